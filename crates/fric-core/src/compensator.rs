@@ -1,0 +1,390 @@
+//! The cycle as one object.
+//!
+//! For: force at the platform and wrench from the winch-side signals, every cycle, in bounded time, without allocation,
+//! without panic, for every input there is. It does not read clocks, files or buses. Non-finite input is flagged
+//! ([`CableStatus`]) and never reaches another cable. Size: about 700 bytes a cable, and 1 kB more a cable for the delay
+//! lines.
+
+use crate::cable::{CableSignals, Features, cable_step};
+use crate::columns::{PLACES, ParamColumns, PulleyColumns, StateColumns};
+use crate::cycle::{CableInput, CycleInput, CycleOutput};
+use crate::effects::time_delay::{Delay, DelayLine};
+use crate::lanes::{LANES, Lanes, LanesMask};
+use crate::platform::{Pose, Wrench};
+use crate::robot::{MAX_PULLEYS, ParamError, ParamProblem, Presliding, RobotParams};
+use crate::scalar::{Mask, Scalar};
+use crate::status::CableStatus;
+use crate::swivel;
+use nalgebra::{Matrix3, SMatrix, Vector3};
+
+/// Sensor forces beyond this are no forces, N.
+const GREATEST_FORCE_N: f64 = 1e9;
+/// Lengths and speeds beyond this are none, m and m/s.
+const GREATEST_MOTION: f64 = 1e6;
+
+/// Friction compensation of a robot with at most `CABLES` cables.
+///
+/// ```
+/// use fric_core::robot::{
+///     CableOptions, CableParams, FrictionOptions, MonitorOptions, PlatformOptions, PulleyOptions, RobotParams,
+/// };
+/// use fric_core::{CableInput, Compensator, CycleInput};
+///
+/// # fn main() -> Result<(), fric_core::ParamError> {
+/// let pulleys = [PulleyOptions::Fixed { wrap_rad: core::f64::consts::PI, sensor: true }];
+/// let friction = FrictionOptions { mu: 0.02, sigma_n_per_m: Some(1000.0), ..FrictionOptions::default() };
+/// let cables = [CableParams::new(&CableOptions { friction, ..CableOptions::new(&pulleys) })?];
+/// let robot = RobotParams::new(0.001, &PlatformOptions::default(), MonitorOptions::for_cycle(0.001), &cables)?;
+/// let mut compensator = Compensator::<1>::new(&robot)?;
+///
+/// let mut input = CycleInput::default();
+/// for cycle in 0..1000 {
+///     input.cables[0] = CableInput {
+///         sensor_force_n: 20.0 + 1e-6 * f64::from(cycle),
+///         length_m: 1e-4 * f64::from(cycle),
+///         speed_m_per_s: 0.1,
+///     };
+///     let output = compensator.step(&input);
+///     assert!(output.cables[0].status.is_ok());
+/// }
+/// // Paying out over a pulley of 180°: F_1 = F_s (1 + μ)/2 ([P] 14).
+/// let force_n = compensator.step(&input).cables[0].force_at_platform_n;
+/// assert!((force_n - 20.000_999 * 1.02 / 2.0).abs() < 1e-9);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct Compensator<const CABLES: usize> {
+    params: ParamColumns<CABLES>,
+    state: State<CABLES>,
+    features: Features,
+    any_delay: bool,
+    any_geometry: bool,
+    all_geometry: bool,
+    cable_count: usize,
+    place_count: usize,
+    frozen_cycles: f64,
+    length_jump_m: f64,
+    gravity_n: Vector3<f64>,
+    center_of_mass_m: Vector3<f64>,
+}
+
+/// What a cycle leaves behind, see [`Compensator::snapshot`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct State<const CABLES: usize> {
+    columns: StateColumns<CABLES>,
+    /// Gravity's torque at the last pose; `None` before the first.
+    gravity: Option<Wrench>,
+}
+
+/// The state of a [`Compensator`] at one moment, for [`Compensator::restore`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Snapshot<const CABLES: usize>(State<CABLES>);
+
+impl<const CABLES: usize> Compensator<CABLES> {
+    const START: State<CABLES> = State { columns: StateColumns::START, gravity: None };
+
+    /// Set-up from checked parameters.
+    ///
+    /// # Errors
+    /// [`ParamError`] if the robot has more than `CABLES` cables.
+    pub fn new(robot: &RobotParams<'_>) -> Result<Self, ParamError> {
+        let cable_count = robot.cables.len();
+        if cable_count > CABLES {
+            let problem = ParamProblem::Count { count: cable_count, min: 1, max: CABLES };
+            return Err(ParamError { key: "cable", pulley: None, problem });
+        }
+        let mut params = ParamColumns::EMPTY;
+        let mut features = Features::default();
+        let mut place_count = 1;
+        for (place, cable) in robot.cables.iter().enumerate() {
+            params.set(place, cable, robot.cycle_s);
+            features.per_pulley |= cable.presliding == Presliding::PerPulley;
+            features.lumped |= cable.presliding == Presliding::Lumped;
+            features.traction |= cable.traction_mu.is_some();
+            features.stribeck |= cable.effects.stribeck.ratio.abs() > 0.0;
+            place_count = place_count.max(cable.pulley_count + usize::from(cable.sensor_wrap_rad.is_none()));
+        }
+        Ok(Self {
+            params,
+            state: Self::START,
+            features,
+            any_delay: robot.cables.iter().any(|cable| cable.effects.delay_s > 0.0),
+            any_geometry: robot.cables.iter().any(|cable| cable.geometry.is_some()),
+            all_geometry: robot.cables.iter().all(|cable| cable.geometry.is_some()),
+            cable_count,
+            place_count,
+            frozen_cycles: match robot.monitor.frozen_cycles {
+                0 => f64::INFINITY,
+                cycles => f64::from(cycles),
+            },
+            length_jump_m: robot.monitor.length_jump_m,
+            gravity_n: robot.gravity_m_per_s2 * robot.mass_kg,
+            center_of_mass_m: robot.center_of_mass_m,
+        })
+    }
+
+    /// How many cables the robot has.
+    #[must_use]
+    pub fn cable_count(&self) -> usize {
+        self.cable_count
+    }
+
+    /// Back to the state after set-up: at rest, nothing stored, no pose.
+    pub fn reset(&mut self) {
+        self.state = Self::START;
+    }
+
+    /// A copy of everything that a cycle leaves for the next.
+    #[must_use]
+    pub fn snapshot(&self) -> Snapshot<CABLES> {
+        Snapshot(self.state)
+    }
+
+    /// Goes on from a snapshot as if nothing had happened since.
+    pub fn restore(&mut self, snapshot: &Snapshot<CABLES>) {
+        self.state = snapshot.0;
+    }
+
+    /// One cycle: total over all inputs, allocation-free, panic-free.
+    #[inline]
+    pub fn step(&mut self, input: &CycleInput<CABLES>) -> CycleOutput<CABLES> {
+        let mut output = CycleOutput::default();
+        self.step_into(input, &mut output);
+        output
+    }
+
+    /// [`step`](Self::step) into an output that the caller keeps.
+    pub fn step_into(&mut self, input: &CycleInput<CABLES>, output: &mut CycleOutput<CABLES>) {
+        let pose = input.pose.as_ref().filter(|pose| pose.is_finite());
+        let rotation = pose.map(|pose| pose.orientation.to_rotation_matrix().into_inner());
+        let mut force = [Lanes::splat(0.0); 3];
+        let mut torque = [Lanes::splat(0.0); 3];
+        let blocks = CABLES.div_ceil(LANES).min(self.cable_count.div_ceil(LANES));
+        for block in 0..blocks {
+            let pose_flags = match (pose, &rotation) {
+                (Some(pose), Some(rotation)) if self.any_geometry => self.follow_pose(block, pose, rotation),
+                _ => PoseFlags { missing: self.misses_pose(block).bits(), unreachable: 0 },
+            };
+            let forces_n = self.step_block(block, input, output, pose_flags);
+            let columns = &self.state.columns;
+            for (sum, column) in force.iter_mut().zip(&columns.direction) {
+                *sum = *sum + Lanes::load(column, block) * forces_n;
+            }
+            for (sum, column) in torque.iter_mut().zip(&columns.moment_arm_m) {
+                *sum = *sum + Lanes::load(column, block) * forces_n;
+            }
+        }
+        if let Some(pose) = pose.filter(|_| self.all_geometry) {
+            let torque_nm = (pose.orientation * self.center_of_mass_m).cross(&self.gravity_n);
+            self.state.gravity = Some(Wrench { force_n: self.gravity_n, torque_nm });
+        }
+        output.outside_wrench = self.state.gravity.map(|_| Wrench {
+            force_n: -Vector3::from(force.map(Lanes::sum)),
+            torque_nm: -Vector3::from(torque.map(Lanes::sum)),
+        });
+        output.applied_wrench =
+            output.outside_wrench.zip(self.state.gravity).map(|(outside, gravity)| outside - gravity);
+    }
+
+    /// Friction stored at each pulley of a cable (from the winch), N: the distribution along the cable.
+    ///
+    /// Coulomb part, without viscous friction; all zero with `lumped` presliding, which knows no pulleys. Entries past
+    /// the cable's pulleys, and cables that the robot does not have, are zero.
+    #[must_use]
+    pub fn pulley_friction_n(&self, cable: usize) -> [f64; MAX_PULLEYS] {
+        let first = self.params.first_place.get(cable).copied().unwrap_or(0);
+        let columns = &self.state.columns.pulley_friction_n;
+        core::array::from_fn(|pulley| {
+            let place = (pulley + first).min(PLACES - 1);
+            columns.get(place).and_then(|column| column.get(cable)).copied().unwrap_or(0.0)
+        })
+    }
+
+    /// The structure matrix `A^T` of the last cycle with a pose, force rows first; columns past the robot's cables are zero.
+    /// `None` before the first pose, and for a robot with a cable whose attachment is not given.
+    #[must_use]
+    pub fn structure_matrix(&self) -> Option<SMatrix<f64, 6, CABLES>> {
+        self.state.gravity?;
+        let columns = &self.state.columns;
+        let entry = |row: usize, cable: usize| {
+            let column = if row < 3 { columns.direction.get(row) } else { columns.moment_arm_m.get(row - 3) };
+            column.and_then(|column| column.get(cable)).copied().unwrap_or(0.0)
+        };
+        Some(SMatrix::from_fn(entry))
+    }
+
+    /// Which cables of a block suffer from a cycle without a pose: those whose wrap follows it, and, once there has
+    /// been a wrench, all that it is made of.
+    #[inline(always)]
+    fn misses_pose(&self, block: usize) -> LanesMask {
+        let stale_wrench = LanesMask::splat(self.state.gravity.is_some());
+        self.params.follows_pose(block).or(stale_wrench.and(self.params.with_geometry(block)))
+    }
+}
+
+/// What a pose means for the lanes of a block.
+#[derive(Clone, Copy)]
+struct PoseFlags {
+    missing: u32,
+    unreachable: u32,
+}
+
+impl<const CABLES: usize> Compensator<CABLES> {
+    /// Wrap, direction and moment arm of a block's cables at a pose; kept where the pose leaves a cable no way out.
+    #[inline(always)]
+    fn follow_pose(&mut self, block: usize, pose: &Pose, rotation: &Matrix3<f64>) -> PoseFlags {
+        let [px, py, pz] = self.params.platform_m(block);
+        let turn = |x: f64, y: f64, z: f64| Lanes::splat(x) * px + Lanes::splat(y) * py + Lanes::splat(z) * pz;
+        let [ax, ay, az] = [
+            turn(rotation.m11, rotation.m12, rotation.m13),
+            turn(rotation.m21, rotation.m22, rotation.m23),
+            turn(rotation.m31, rotation.m32, rotation.m33),
+        ];
+        let [x, y, z] = [pose.position_m.x, pose.position_m.y, pose.position_m.z].map(Lanes::splat);
+        let attachment_m = [x + ax, y + ay, z + az];
+        let exit = swivel::exit(&self.params.swivel(block), attachment_m);
+        let with_geometry = self.params.with_geometry(block);
+        let moves = exit.reachable.and(with_geometry);
+        let [ux, uy, uz] = exit.direction;
+        let moment_arm_m = [ay * uz - az * uy, az * ux - ax * uz, ax * uy - ay * ux];
+        let columns = &mut self.state.columns;
+        let keep = |column: &mut [f64; CABLES], value: Lanes| {
+            Lanes::select(moves, value, Lanes::load(column, block)).store(column, block);
+        };
+        for (column, value) in columns.direction.iter_mut().zip(exit.direction) {
+            keep(column, value);
+        }
+        for (column, value) in columns.moment_arm_m.iter_mut().zip(moment_arm_m) {
+            keep(column, value);
+        }
+        keep(&mut columns.pose_wrap_factor, exit.wrap_factor);
+        if self.features.traction {
+            let traction_mu = Lanes::load(&self.params.traction_mu, block).to_array();
+            let [cos, sin] = exit.cos_sin_wrap.map(Lanes::to_array);
+            // Only robots with a slip limit pay for an angle, an exponential a cable.
+            let wraps_rad = cos.into_iter().zip(sin).map(|(cos, sin)| swivel::wrap_rad([cos, sin]));
+            let mut ratio = [0.0; LANES];
+            for ((ratio, mu), wrap_rad) in ratio.iter_mut().zip(traction_mu).zip(wraps_rad) {
+                *ratio = libm::exp(mu * wrap_rad);
+            }
+            let limited = Lanes::splat(0.0).lt(Lanes::new(traction_mu));
+            let ratio = Lanes::select(limited, Lanes::new(ratio), Lanes::load(&columns.pose_traction_ratio, block));
+            keep(&mut columns.pose_traction_ratio, ratio);
+        }
+        PoseFlags { missing: 0, unreachable: with_geometry.and(exit.reachable.not()).bits() }
+    }
+
+    /// Signals, friction and status of a block's cables; gives their forces at the platform.
+    #[inline(always)]
+    fn step_block(
+        &mut self,
+        block: usize,
+        input: &CycleInput<CABLES>,
+        output: &mut CycleOutput<CABLES>,
+        pose_flags: PoseFlags,
+    ) -> Lanes {
+        let first = block * LANES;
+        let cables: [CableInput; LANES] =
+            core::array::from_fn(|lane| input.cables.get(first + lane).copied().unwrap_or_default());
+        let sensor_n = Lanes::new(cables.map(|cable| cable.sensor_force_n));
+        let length_m = Lanes::new(cables.map(|cable| cable.length_m));
+        let speed_m_per_s = Lanes::new(cables.map(|cable| cable.speed_m_per_s));
+        let zero = Lanes::splat(0.0);
+
+        // Motion: what may be taken for a displacement of the cable.
+        let columns = &mut self.state.columns;
+        let last_length_m = Lanes::load(&columns.length_m, block);
+        let motion_finite = length_m.within(GREATEST_MOTION).and(speed_m_per_s.within(GREATEST_MOTION));
+        let change_m = length_m - last_length_m;
+        let jump = motion_finite.and(Lanes::splat(self.length_jump_m).lt(change_m.abs()));
+        // NaN before the first length compares false: no motion, no flag.
+        let moves = motion_finite.and(change_m.within(self.length_jump_m));
+        let mut displacement_m = Lanes::select(moves, change_m, zero);
+        let mut speed_m_per_s = Lanes::select(motion_finite.and(jump.not()), speed_m_per_s, zero);
+        Lanes::select(motion_finite, length_m, last_length_m).store(&mut columns.length_m, block);
+        if self.any_delay {
+            let delay: [_; LANES] =
+                core::array::from_fn(|lane| self.params.delay.get(first + lane).copied().unwrap_or_default());
+            displacement_m = shift_block(&mut columns.delayed_displacement_m, first, displacement_m, delay);
+            speed_m_per_s = shift_block(&mut columns.delayed_speed_m_per_s, first, speed_m_per_s, delay);
+        }
+
+        // Sensor: what may be taken for a force.
+        let last_sensor_n = Lanes::load(&columns.sensor_force_n, block);
+        let sensor_finite = sensor_n.within(GREATEST_FORCE_N);
+        let moving = Lanes::select(displacement_m.eq(zero), zero, Lanes::splat(1.0));
+        let repeated = Lanes::load(&columns.frozen_count, block) + moving;
+        let frozen_count = Lanes::select(sensor_n.eq(last_sensor_n), repeated.min(Lanes::splat(1e9)), zero);
+        let frozen = Lanes::splat(self.frozen_cycles).le(frozen_count);
+        frozen_count.store(&mut columns.frozen_count, block);
+        let sensor_force_n = Lanes::select(sensor_finite, sensor_n, last_sensor_n);
+        sensor_force_n.store(&mut columns.sensor_force_n, block);
+
+        // Friction. A hold keeps what is stored; motion under a silent sensor is made up for when it speaks again.
+        let sensor_fault = sensor_finite.not().or(frozen);
+        let hold = sensor_fault.or(jump).or(motion_finite.not());
+        let pending_m = Lanes::load(&columns.pending_m, block) + displacement_m;
+        Lanes::select(hold, pending_m, zero).store(&mut columns.pending_m, block);
+        let signals =
+            CableSignals { sensor_force_n, displacement_m: Lanes::select(hold, zero, pending_m), speed_m_per_s };
+        let lumped_friction_n = Lanes::load(&columns.lumped_friction_n, block);
+        let held_friction_n = Lanes::load(&columns.friction_n, block);
+        let model = self.params.model(block);
+        let mut pulleys = PulleyColumns::new(&self.params, columns, block, self.place_count);
+        let forces = cable_step(&model, self.features, &signals, hold, &mut pulleys, lumped_friction_n);
+        forces.lumped_friction_n.store(&mut columns.lumped_friction_n, block);
+
+        let computed_n = forces.platform_force_n - model.offset_n - forces.frictionless_n;
+        let held_n = Lanes::select(forces.no_tension, zero, held_friction_n);
+        let friction_n = Lanes::select(hold, held_n, computed_n);
+        friction_n.store(&mut columns.friction_n, block);
+        let platform_n = Lanes::select(hold, forces.frictionless_n + held_n + model.offset_n, forces.platform_force_n);
+
+        let out_of_range = sensor_force_n
+            .lt(Lanes::load(&self.params.least_force_n, block))
+            .or(Lanes::load(&self.params.greatest_force_n, block).lt(sensor_force_n))
+            .or(Lanes::load(&self.params.greatest_speed_m_per_s, block).lt(speed_m_per_s.abs()));
+        let flags = [
+            (CableStatus::SLACK, forces.slack.bits()),
+            (CableStatus::SLIP, forces.slip.and(hold.not()).bits()),
+            (CableStatus::SENSOR_NOT_FINITE, sensor_finite.not().bits()),
+            (CableStatus::SENSOR_FROZEN, frozen.bits()),
+            (CableStatus::LENGTH_JUMP, jump.bits()),
+            (CableStatus::MOTION_NOT_FINITE, motion_finite.not().bits()),
+            (CableStatus::OUT_OF_RANGE, out_of_range.bits()),
+            (CableStatus::POSE_MISSING, pose_flags.missing),
+            (CableStatus::POSE_UNREACHABLE, pose_flags.unreachable),
+        ];
+        let any_flag = flags.iter().fold(0, |any, (_, bits)| any | bits);
+        let values = platform_n.to_array().into_iter().zip(friction_n.to_array()).zip(forces.frictionless_n.to_array());
+        let present = self.cable_count.saturating_sub(first);
+        let places = output.cables.iter_mut().skip(first).take(present).zip(values).enumerate();
+        for (lane, (place, ((force_at_platform_n, friction_n), frictionless_n))) in places {
+            place.force_at_platform_n = force_at_platform_n;
+            place.friction_n = friction_n;
+            place.frictionless_n = frictionless_n;
+            place.status = CableStatus::OK;
+            if any_flag != 0 {
+                for (flag, bits) in flags {
+                    place.status = place.status | flag.if_set(bits, lane);
+                }
+            }
+        }
+        platform_n
+    }
+}
+
+/// One cycle of a block's delay lines.
+fn shift_block<const CABLES: usize>(
+    lines: &mut [DelayLine; CABLES],
+    first: usize,
+    values: Lanes,
+    delays: [Delay; LANES],
+) -> Lanes {
+    let mut values = values.to_array();
+    for ((line, value), delay) in lines.iter_mut().skip(first).zip(&mut values).zip(delays) {
+        *value = line.shift(*value, delay);
+    }
+    Lanes::new(values)
+}

@@ -1,0 +1,47 @@
+//! Presliding after Dahl: what friction does within the first fractions of a millimetre after a reversal.
+//!
+//! For: one state, the friction *force* that a contact stores, moved on by one step of displacement ([P] 16–17). No time
+//! in it: half the displacement twice is the whole displacement. Non-finite input gives non-finite output; the caller
+//! keeps it out. State: one number per contact.
+
+use crate::scalar::{Mask, Scalar};
+
+/// Friction force after a displacement.
+///
+/// `f ← s·f_c + (f − s·f_c)·exp(−σ|Δl|/f_c)`, the exact solution of `df/dx = σ(1 − s·f/f_c)` over one step.
+///
+/// | symbol | identifier | unit | range |
+/// |---|---|---|---|
+/// | `f` | `friction_n`, stored friction force | N | `−f_c…f_c` |
+/// | `f_c` | `sliding_n`, friction in steady sliding, held over the step | N | ≥ 0 |
+/// | `σ` | `sigma_n_per_m`, presliding stiffness | N/m | > 0 |
+/// | `Δl` | `displacement_m`, positive paying out; `s` is its sign | m | |
+///
+/// Sign convention: see [`pulley`](crate::pulley). Source: [P] 16 with exponent 1; the printed (17) has lost a bracket,
+/// this is the solution of (16). Deviation: the force is stored, not the ratio `f/f_c`, so that a load that changes at
+/// rest does not move the stored force.
+///
+/// - At zero displacement the state stays as it is, bit for bit, also if `f_c` has changed meanwhile.
+/// - Saturates at `±f_c`; if `f_c` has dropped below `|f|`, motion brings `f` back, never a jump.
+/// - `f_c = 0` (no load): any motion releases the contact, `f = 0`.
+///
+/// ```
+/// use fric_core::dahl::dahl_step;
+/// // From rest, one presliding distance f_c/σ reaches 1 − 1/e of the sliding friction.
+/// let friction_n = dahl_step(0.0, 0.5, 1000.0, 0.5 / 1000.0);
+/// assert!((friction_n - 0.5 * (1.0 - (-1.0_f64).exp())).abs() < 1e-15);
+/// ```
+#[inline(always)]
+pub fn dahl_step<T: Scalar>(friction_n: T, sliding_n: T, sigma_n_per_m: T, displacement_m: T) -> T {
+    let target_n = displacement_m.sign() * sliding_n;
+    let softness = T::splat(SMALLEST_SLIDING_N).max(sliding_n);
+    let decay = (-(sigma_n_per_m * displacement_m.abs() / softness)).exp_negative();
+    let moved = target_n + (friction_n - target_n) * decay;
+    let rests = displacement_m.eq(T::splat(0.0));
+    // Past the decay's last bit the state is the bound itself, so that |f| ≤ f_c holds exactly.
+    let saturated = decay.le(T::splat(f64::MIN_POSITIVE)).and(rests.not());
+    T::select(rests, friction_n, T::select(saturated, target_n, moved))
+}
+
+/// Stands in for `f_c = 0` in the quotient; far below any friction that can be measured.
+const SMALLEST_SLIDING_N: f64 = 1e-30;

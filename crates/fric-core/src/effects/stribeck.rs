@@ -1,0 +1,38 @@
+//! `stribeck`: friction that falls with speed.
+//!
+//! Equation: `μ(v) = μ·(1 + ratio·exp(−|v|/velocity))`. At rest friction is higher by `ratio`; it falls to μ within a few
+//! times `velocity`. Neutral: `ratio = 0`.
+//!
+//! Cause: at low speed the lubricant film in the bearing has not formed and the surfaces touch.
+
+use super::{EffectRow, ParameterRow};
+use crate::scalar::Scalar;
+
+/// The catalogue row.
+pub const ROW: EffectRow = EffectRow {
+    kind: "stribeck",
+    cause: "at low speed the lubricant film of a bearing has not formed yet, so friction is higher near standstill",
+    remedy: "check the grease of the pulley bearings: too little of it, or too stiff for the temperature",
+    parameters: &[
+        ParameterRow { key: "ratio", unit: "1", neutral: 0.0, min: -0.9, max: 5.0 },
+        ParameterRow { key: "velocity_m_per_s", unit: "m/s", neutral: 0.02, min: 1e-4, max: 10.0 },
+    ],
+};
+
+/// The effect's parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stribeck<T> {
+    /// Additional friction at rest as a share of μ, 1.
+    pub ratio: T,
+    /// Speed within which the additional share falls by the factor e, m/s.
+    pub velocity_m_per_s: T,
+}
+
+impl<T: Scalar> Stribeck<T> {
+    /// Factor on μ at a speed.
+    #[inline(always)]
+    pub fn factor(&self, speed_m_per_s: T) -> T {
+        let fall = (-(speed_m_per_s.abs() / self.velocity_m_per_s)).exp_negative();
+        T::splat(1.0) + self.ratio * fall
+    }
+}

@@ -1,0 +1,79 @@
+//! `time_delay`: the motion that the control knows runs ahead of the cable's.
+//!
+//! Equation: displacement and speed at `t` are those of `t − delay_s`; between cycles they are interpolated linearly.
+//! Neutral: `delay_s = 0`.
+//!
+//! Cause: set points are used where the drive still follows ([P], section IV A), or the two signals take different ways
+//! through the bus. Deviation from the paper: the set points are shifted, not the friction computed from them, so that
+//! the friction is that of the present force.
+
+use super::{EffectRow, ParameterRow};
+use crate::scalar::Scalar;
+
+/// The catalogue row.
+pub const ROW: EffectRow = EffectRow {
+    kind: "time_delay",
+    cause: "the winch motion is known earlier than the cable moves: set points, or a longer way of the force signal",
+    remedy: "use measured instead of commanded motion, or keep the delay compensated",
+    parameters: &[ParameterRow { key: "delay_s", unit: "s", neutral: 0.0, min: 0.0, max: 1.0 }],
+};
+
+/// The longest delay, in cycles; part of the size of a [`Compensator`](crate::Compensator).
+pub const MAX_DELAY_CYCLES: usize = 64;
+
+/// A delay as whole cycles and the rest.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Delay {
+    /// Whole cycles, less than [`MAX_DELAY_CYCLES`].
+    pub cycles: usize,
+    /// The rest, 0…1.
+    pub fraction: f64,
+}
+
+impl Delay {
+    /// A delay in cycles; held within `0…MAX_DELAY_CYCLES − 1`.
+    #[must_use]
+    pub fn from_cycles(cycles: f64) -> Self {
+        #[expect(clippy::cast_precision_loss, reason = "a small constant")]
+        let longest = (MAX_DELAY_CYCLES - 1) as f64;
+        let bounded = Scalar::min(Scalar::max(cycles, 0.0), longest);
+        let whole = libm::floor(bounded);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "bounded above")]
+        Self { cycles: whole as usize, fraction: bounded - whole }
+    }
+}
+
+/// The last [`MAX_DELAY_CYCLES`] values of one signal, newest at `newest`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DelayLine {
+    values: [f64; MAX_DELAY_CYCLES],
+    newest: usize,
+}
+
+impl DelayLine {
+    /// A line filled with zeros: before the start nothing moved.
+    pub const EMPTY: Self = Self { values: [0.0; MAX_DELAY_CYCLES], newest: 0 };
+
+    /// Takes in this cycle's value and gives the delayed one.
+    ///
+    /// ```
+    /// use fric_core::effects::time_delay::{Delay, DelayLine};
+    /// let mut line = DelayLine::EMPTY;
+    /// let delay = Delay::from_cycles(1.5);
+    /// let out: [f64; 4] = [0.0, 1.0, 2.0, 3.0].map(|value| line.shift(value, delay));
+    /// assert_eq!(out, [0.0, 0.0, 0.5, 1.5]);
+    /// ```
+    #[inline]
+    pub fn shift(&mut self, value: f64, delay: Delay) -> f64 {
+        self.newest = (self.newest + 1) % MAX_DELAY_CYCLES;
+        if let Some(place) = self.values.get_mut(self.newest) {
+            *place = value;
+        }
+        let at = |age: usize| {
+            let place = (self.newest + MAX_DELAY_CYCLES - age % MAX_DELAY_CYCLES) % MAX_DELAY_CYCLES;
+            self.values.get(place).copied().unwrap_or(0.0)
+        };
+        let older = at(delay.cycles + 1);
+        at(delay.cycles) + delay.fraction * (older - at(delay.cycles))
+    }
+}

@@ -1,0 +1,156 @@
+//! The platform: pose, wrench, structure matrix, inverse kinematics.
+//!
+//! For: types that the cycle takes and gives, and the kinematics of a whole robot outside the cycle. The cycle itself
+//! computes the columns of `A^T` four at a time ([`Compensator`](crate::Compensator)); [`structure_matrix`] is the same
+//! from the validated parameters, with `nalgebra`.
+
+use nalgebra::{Matrix3, Quaternion, SMatrix, SVector, UnitQuaternion, Vector3};
+
+use crate::robot::{CableParams, Geometry, RobotParams};
+use crate::swivel::{self, Swivel};
+
+/// Pose of the platform in the base frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// Platform origin, m.
+    pub position_m: Vector3<f64>,
+    /// Rotation from platform to base axes.
+    pub orientation: UnitQuaternion<f64>,
+}
+
+impl Pose {
+    /// The platform frame on the base frame.
+    #[must_use]
+    pub fn identity() -> Self {
+        Self { position_m: Vector3::zeros(), orientation: UnitQuaternion::identity() }
+    }
+
+    /// A pose from position (m) and quaternion `x, y, z, w`; the quaternion is normalised.
+    ///
+    /// `None` where a number is not finite or the quaternion's norm is further than 10 % from 1: an all-zero
+    /// quaternion, as an unset message has it, is no rotation.
+    #[must_use]
+    pub fn from_parts(position_m: [f64; 3], [x, y, z, w]: [f64; 4]) -> Option<Self> {
+        let quaternion = Quaternion::new(w, x, y, z);
+        let norm = quaternion.norm();
+        let pose =
+            Self { position_m: position_m.into(), orientation: UnitQuaternion::new_unchecked(quaternion / norm) };
+        ((0.9..=1.1).contains(&norm) && pose.is_finite()).then_some(pose)
+    }
+
+    /// The pose a share `ratio` (0…1) of the way to `other`: position linear, orientation along the shorter arc
+    /// (normalised linear, which is exact to second order in the angle between the two).
+    #[must_use]
+    pub fn interpolate(&self, other: &Self, ratio: f64) -> Self {
+        Self {
+            position_m: self.position_m.lerp(&other.position_m, ratio),
+            orientation: self.orientation.nlerp(
+                &if self.orientation.coords.dot(&other.orientation.coords) < 0.0 {
+                    UnitQuaternion::new_unchecked(-other.orientation.into_inner())
+                } else {
+                    other.orientation
+                },
+                ratio,
+            ),
+        }
+    }
+
+    /// Whether all numbers are finite and the position is within ±10⁶ m.
+    #[inline]
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        let rotation = &self.orientation.coords;
+        self.position_m.iter().all(|place| place.abs() <= 1e6) && rotation.iter().all(|part| part.abs() <= 1.5)
+    }
+}
+
+/// Force and torque in base axes, torque about the platform origin.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Wrench {
+    /// Force, N.
+    pub force_n: Vector3<f64>,
+    /// Torque, N m.
+    pub torque_nm: Vector3<f64>,
+}
+
+impl Wrench {
+    /// The wrench that gravity exerts on the platform: `m·g` at the centre of mass.
+    #[must_use]
+    pub fn of_gravity(robot: &RobotParams<'_>, orientation: &UnitQuaternion<f64>) -> Self {
+        let force_n = robot.gravity_m_per_s2 * robot.mass_kg;
+        Self { force_n, torque_nm: (orientation * robot.center_of_mass_m).cross(&force_n) }
+    }
+
+    /// As one vector, force first.
+    #[must_use]
+    pub fn to_vector(&self) -> SVector<f64, 6> {
+        let (force, torque) = (&self.force_n, &self.torque_nm);
+        SVector::<f64, 6>::new(force.x, force.y, force.z, torque.x, torque.y, torque.z)
+    }
+}
+
+impl core::ops::Sub for Wrench {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        Self { force_n: self.force_n - other.force_n, torque_nm: self.torque_nm - other.torque_nm }
+    }
+}
+
+impl CableParams {
+    /// Cable length from the entry into the last pulley to the platform, m: `r·β + free` ([P] 1 with the pulley).
+    ///
+    /// `None` without geometry, or where the attachment lies inside the last pulley.
+    #[must_use]
+    pub fn length_m(&self, pose: &Pose) -> Option<f64> {
+        let geometry = self.geometry.as_ref()?;
+        swivel::cable_length_m(&geometry.swivel(), &geometry.attachment_m(pose))
+    }
+
+    /// Unit vector from the attachment to where the cable leaves its last pulley, base axes; `None` as for
+    /// [`length_m`](Self::length_m).
+    #[must_use]
+    pub fn direction(&self, pose: &Pose) -> Option<Vector3<f64>> {
+        let geometry = self.geometry.as_ref()?;
+        let exit = swivel::exit(&geometry.swivel(), geometry.attachment_m(pose).into());
+        exit.reachable.then(|| exit.direction.into())
+    }
+
+    /// Wrap angle of the swivelling last pulley, rad, 0…2π; `None` as for [`length_m`](Self::length_m) and where the
+    /// last pulley does not swivel.
+    #[must_use]
+    pub fn pose_wrap_rad(&self, pose: &Pose) -> Option<f64> {
+        let geometry = self.geometry.as_ref().filter(|_| self.needs_pose())?;
+        let exit = swivel::exit(&geometry.swivel(), geometry.attachment_m(pose).into());
+        exit.reachable.then(|| swivel::wrap_rad(exit.cos_sin_wrap))
+    }
+}
+
+impl Geometry {
+    pub(crate) fn swivel(&self) -> Swivel<f64> {
+        Swivel { entry_m: self.base_m.into(), axis: self.axis.into(), radius_m: self.radius_m }
+    }
+
+    pub(crate) fn attachment_m(&self, pose: &Pose) -> Vector3<f64> {
+        pose.position_m + pose.orientation * self.platform_m
+    }
+}
+
+/// Structure matrix `A^T = [u_i; (R b_i) × u_i]` ([P] 2): the wrench of the cables on the platform is `A^T f`, the one
+/// from outside that balances it `−A^T f` ([P] 3).
+///
+/// `CABLES` columns; those past the robot's cables are zero. `None` where a cable has no geometry or cannot leave its
+/// last pulley, or where the robot has more than `CABLES` cables.
+#[must_use]
+pub fn structure_matrix<const CABLES: usize>(robot: &RobotParams<'_>, pose: &Pose) -> Option<SMatrix<f64, 6, CABLES>> {
+    if robot.cables.len() > CABLES {
+        return None;
+    }
+    let rotation: Matrix3<f64> = pose.orientation.to_rotation_matrix().into_inner();
+    let mut matrix = SMatrix::<f64, 6, CABLES>::zeros();
+    for (mut column, cable) in matrix.column_iter_mut().zip(robot.cables) {
+        let direction = cable.direction(pose)?;
+        let arm_m = rotation * cable.geometry.as_ref()?.platform_m;
+        column.copy_from(&Wrench { force_n: direction, torque_nm: arm_m.cross(&direction) }.to_vector());
+    }
+    Some(matrix)
+}

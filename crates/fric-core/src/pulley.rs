@@ -1,0 +1,83 @@
+//! Macroscopic friction of cable pulleys: bearing friction, the sensor pulley, the slip limit.
+//!
+//! For: the tension behind a pulley from the tension before it, in steady motion ([P] 4–14). Presliding, which blurs the
+//! reversal, is [`dahl`](crate::dahl)'s. No state; non-finite input gives non-finite output, the caller
+//! ([`Compensator`](crate::Compensator)) keeps it out.
+//!
+//! | symbol | identifier | unit | range |
+//! |---|---|---|---|
+//! | `F_{j−1}`, `F_j` | `upstream_n`, `downstream_n`: tension on the winch side, on the platform side | N | ≥ 0 |
+//! | `F_s` | `sensor_force_n` | N | ≥ 0 |
+//! | `μ` | `mu`, bearing friction on the normal force | 1 | 0…0.9 |
+//! | `F_pv` | `viscous_n_s_per_m`, each pulley's | N s/m | ≥ 0 |
+//! | `v` | `speed_m_per_s`, positive paying out | m/s | |
+//! | `s` | `direction`, −1, 0 or +1 | 1 | |
+//! | `k` | `wrap_factor` = `2 sin(α/2)` | 1 | 0…2 |
+//! | `c` | `sensor_cos` = `cos α₁` | 1 | −1…0.99 |
+//!
+//! **Sign convention**, here and everywhere: cable length grows when the cable pays out, `v = dl/dt`; paying out, friction
+//! makes the platform side tighter than the winch side. \[P\] is the paper that the crate's
+//! documentation names; the numbers are its equations.
+
+use crate::scalar::{Mask, Scalar};
+
+/// Normal force on a bearing per mean cable tension: `k = √(2(1 − cos α)) = 2 sin(α/2)` ([P] 8).
+///
+/// `wrap_rad` is the wrap angle α in `0…2π`; 0 gives 0, a pulley that carries nothing.
+///
+/// ```
+/// let right_angle = fric_core::pulley::wrap_factor(core::f64::consts::FRAC_PI_2);
+/// assert!((right_angle - 2f64.sqrt()).abs() < 1e-15);
+/// ```
+#[must_use]
+pub fn wrap_factor(wrap_rad: f64) -> f64 {
+    2.0 * libm::sin(0.5 * wrap_rad)
+}
+
+/// Gain and viscous share of one pulley in steady sliding.
+///
+/// `F_j = gain·F_{j−1} + viscous_gain·F_pv·v` is [P] 10 with `gain = (2 + sμk)/(2 − sμk)` and
+/// `viscous_gain = 2/(2 − sμk)`. At `s = 0` both are 1. `μk < 2` is the caller's to guarantee.
+#[inline(always)]
+pub fn sliding_gains<T: Scalar>(direction: T, mu: T, wrap_factor: T) -> (T, T) {
+    let two = T::splat(2.0);
+    let coulomb = direction * mu * wrap_factor;
+    let inverse = T::splat(1.0) / (two - coulomb);
+    ((two + coulomb) * inverse, two * inverse)
+}
+
+/// Gain and viscous share behind the sensor pulley in steady sliding.
+///
+/// `F_1 = gain·F_s + viscous_gain·F_pv·v`, from the equilibrium of the sensor pulley `F_1 − F_0 cos α₁ = F_s` ([P] 11)
+/// and [P] 10: `gain = (2 + sμk)/d`, `viscous_gain = −2c/d`, `d = (2 + sμk) − c(2 − sμk)`.
+///
+/// The paper solves 90° (`F_1 = F_s`, [P] 12) and 180° (`F_1 = F_s(1 + sμ)/2`, [P] 14); this is every angle. It is
+/// singular where the wrap vanishes, which [`CableParams`](crate::CableParams) refuses.
+#[inline(always)]
+pub fn sensor_gains<T: Scalar>(direction: T, mu: T, wrap_factor: T, sensor_cos: T) -> (T, T) {
+    let two = T::splat(2.0);
+    let coulomb = direction * mu * wrap_factor;
+    let plus = two + coulomb;
+    let inverse = T::splat(1.0) / (plus - sensor_cos * (two - coulomb));
+    (plus * inverse, -(two * sensor_cos) * inverse)
+}
+
+/// Bearing friction at which a pulley slides: `μ·F_N` with `F_N = k(F_{j−1} + F_j)/2` ([P] 8).
+///
+/// Never negative: where a tension computed with large viscous friction falls below zero, the bearing carries nothing.
+#[inline(always)]
+pub fn sliding_friction<T: Scalar>(mu: T, wrap_factor: T, upstream_n: T, downstream_n: T) -> T {
+    (mu * wrap_factor * T::splat(0.5) * (upstream_n + downstream_n)).max(T::splat(0.0))
+}
+
+/// The tension behind a pulley held within the slip limit, and whether it had to be ([P] 4, Eytelwein).
+///
+/// `traction_ratio = e^{μ_p α}` with the friction coefficient `μ_p` between cable and pulley: the cable slips when
+/// `F_j/F_{j−1}` leaves `[1/traction_ratio, traction_ratio]`; the ratio is then held at that bound.
+#[inline(always)]
+pub fn limit_traction<T: Scalar>(upstream_n: T, downstream_n: T, traction_ratio: T) -> (T, T::Mask) {
+    let greatest = upstream_n * traction_ratio;
+    let least = upstream_n / traction_ratio;
+    let slips = greatest.lt(downstream_n).or(downstream_n.lt(least));
+    (downstream_n.min(greatest).max(least), slips)
+}

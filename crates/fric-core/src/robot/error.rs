@@ -1,0 +1,94 @@
+//! What can be wrong with a parameter.
+
+use core::fmt;
+
+/// Why a parameter was refused: which one, its value, what is allowed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct ParamError {
+    /// Name of the parameter, with its unit, as in the robot file.
+    pub key: &'static str,
+    /// Which pulley, from the winch, where it is one's.
+    pub pulley: Option<usize>,
+    /// What is wrong with it.
+    pub problem: ParamProblem,
+}
+
+/// What is wrong with a parameter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum ParamProblem {
+    /// Not finite or out of range.
+    OutOfRange {
+        /// The value given.
+        value: f64,
+        /// Least allowed.
+        min: f64,
+        /// Greatest allowed.
+        max: f64,
+    },
+    /// A list of the wrong length.
+    Count {
+        /// How many were given.
+        count: usize,
+        /// Fewest allowed.
+        min: usize,
+        /// Most allowed.
+        max: usize,
+    },
+    /// Something that does not go together, in words.
+    Conflict(&'static str),
+}
+
+impl ParamError {
+    /// An effect or effect parameter that the catalogue does not have.
+    pub(crate) const UNKNOWN_EFFECT: Self =
+        Self::conflict("effects", "names an effect or a parameter that the catalogue does not have");
+
+    pub(crate) const fn conflict(key: &'static str, reason: &'static str) -> Self {
+        Self { key, pulley: None, problem: ParamProblem::Conflict(reason) }
+    }
+
+    pub(crate) const fn at_pulley(self, place: usize) -> Self {
+        Self { pulley: Some(place), ..self }
+    }
+}
+
+/// `value` if it is finite and in `min…max`.
+///
+/// # Errors
+/// [`ParamProblem::OutOfRange`] otherwise.
+pub(crate) fn check(key: &'static str, value: f64, min: f64, max: f64) -> Result<f64, ParamError> {
+    if (min..=max).contains(&value) && value.is_finite() {
+        Ok(value)
+    } else {
+        Err(ParamError { key, pulley: None, problem: ParamProblem::OutOfRange { value, min, max } })
+    }
+}
+
+impl fmt::Display for ParamError {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { key, pulley, problem } = self;
+        write!(formatter, "`{key}`")?;
+        if let Some(place) = pulley {
+            write!(formatter, " of pulley {}", place + 1)?;
+        }
+        write!(formatter, " {problem}")
+    }
+}
+
+impl fmt::Display for ParamProblem {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::OutOfRange { value, min, max } if !value.is_finite() => {
+                write!(formatter, "is {value}, which is not a finite number; allowed is {min} to {max}")
+            }
+            Self::OutOfRange { value, min, max } => write!(formatter, "is {value}; allowed is {min} to {max}"),
+            Self::Count { count, min, max } if min == max => write!(formatter, "has {count} entries; {min} are needed"),
+            Self::Count { count, min, max } => write!(formatter, "has {count} entries; allowed is {min} to {max}"),
+            Self::Conflict(reason) => formatter.write_str(reason),
+        }
+    }
+}
+
+impl core::error::Error for ParamError {}

@@ -1,0 +1,364 @@
+//! The robot file, `format = "fric-robot/1"`: TOML text to checked parameters.
+//!
+//! Two steps: `serde` gives [`RobotOptions`], exactly what is written; [`RobotFile::parse`] checks it into
+//! [`CableParams`] and the rest. Every error names file, line and key, the value and what is allowed, and for a misspelt
+//! key the nearest one there is. Needs the feature `robot-file`, an allocator and `std`; not for the cycle.
+
+use std::borrow::ToOwned;
+use std::collections::BTreeMap;
+use std::fmt;
+use std::format;
+use std::path::{Path, PathBuf};
+use std::string::{String, ToString};
+use std::vec::Vec;
+
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use super::locate::{Step, describe, line_of};
+use super::{CableParams, MonitorOptions, ParamError, PlatformOptions, RobotParams};
+
+/// The only value of `format` that this version reads.
+pub const FORMAT: &str = "fric-robot/1";
+
+/// A robot file as written.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RobotOptions {
+    /// [`FORMAT`].
+    pub format: String,
+    /// Name of the robot.
+    pub name: String,
+    /// Cycle time, s.
+    pub cycle_s: f64,
+    /// Mass and gravity.
+    #[serde(default)]
+    pub platform: PlatformTable,
+    /// Where the signals are in a log.
+    #[serde(default)]
+    pub log: LogTable,
+    /// When a signal counts as faulty.
+    #[serde(default)]
+    pub monitor: MonitorTable,
+    /// The cables.
+    pub cable: Vec<CableTable>,
+}
+
+/// `[platform]`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct PlatformTable {
+    /// Mass, kg.
+    pub mass_kg: f64,
+    /// Centre of mass, platform frame, m.
+    pub center_of_mass_m: [f64; 3],
+    /// Gravity, base frame, m/s².
+    pub gravity_m_per_s2: [f64; 3],
+}
+
+impl Default for PlatformTable {
+    fn default() -> Self {
+        let PlatformOptions { mass_kg, center_of_mass_m, gravity_m_per_s2 } = PlatformOptions::default();
+        Self { mass_kg, center_of_mass_m, gravity_m_per_s2 }
+    }
+}
+
+/// `[log]`: a topic, or a message path to a field, for each signal.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct LogTable {
+    /// Cable signals.
+    pub cable: String,
+    /// Cable forces measured at the platform.
+    pub reference: String,
+    /// Pose of the platform.
+    pub pose: String,
+    /// Outside wrench on the platform.
+    pub wrench: String,
+}
+
+impl Default for LogTable {
+    fn default() -> Self {
+        Self {
+            cable: "/cable_states".to_owned(),
+            reference: "/reference_forces".to_owned(),
+            pose: "/platform_pose".to_owned(),
+            wrench: "/platform_wrench".to_owned(),
+        }
+    }
+}
+
+/// `[monitor]`: see [`MonitorOptions`].
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MonitorTable {
+    /// Cycles of motion with an unchanged sensor; 0: never.
+    pub frozen_cycles: Option<u32>,
+    /// Greatest change of length in a cycle, m.
+    pub length_jump_m: Option<f64>,
+}
+
+/// `[[cable]]`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CableTable {
+    /// Name, as in the log's `JointState.name`.
+    pub name: String,
+    /// Where the cable enters the last pulley, base frame, m.
+    pub base_m: Option<[f64; 3]>,
+    /// Attachment, platform frame, m.
+    pub platform_m: Option<[f64; 3]>,
+    /// `"per_pulley"` or `"lumped"`.
+    #[serde(default)]
+    pub presliding: PreslidingName,
+    /// From the winch to the platform.
+    pub pulleys: Vec<PulleyTable>,
+    /// Friction.
+    #[serde(default)]
+    pub friction: FrictionTable,
+    /// Friction coefficient between cable and pulley.
+    pub traction_mu: Option<f64>,
+    /// Range of the identification.
+    pub validated: Option<ValidatedTable>,
+    /// Effects of the catalogue.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub effects: Vec<EffectTable>,
+}
+
+/// Presliding form by name.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PreslidingName {
+    /// One state on each pulley.
+    #[default]
+    PerPulley,
+    /// One state per cable.
+    Lumped,
+}
+
+/// An entry of `pulleys`: `wrap_deg`, or `wrap = "pose"` with `radius_m` and `axis`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PulleyTable {
+    /// Fixed wrap angle, degrees.
+    pub wrap_deg: Option<f64>,
+    /// `"pose"`.
+    pub wrap: Option<WrapName>,
+    /// Radius, m.
+    pub radius_m: Option<f64>,
+    /// Direction in which the cable enters.
+    pub axis: Option<[f64; 3]>,
+    /// Whether the pulley carries the force sensor.
+    pub sensor: Option<bool>,
+}
+
+/// What a wrap can follow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum WrapName {
+    /// The pose of the platform.
+    Pose,
+}
+
+/// `friction`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct FrictionTable {
+    /// Bearing friction, 1.
+    pub mu: f64,
+    /// Presliding stiffness of the whole cable, N/m.
+    pub sigma_n_per_m: Option<f64>,
+    /// Viscous friction of each pulley, N s/m.
+    pub viscous_n_s_per_m: f64,
+    /// Offset at the platform, N.
+    pub offset_n: f64,
+}
+
+/// `validated`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ValidatedTable {
+    /// Least and greatest sensor force, N.
+    pub force_n: Option<[f64; 2]>,
+    /// Greatest speed, m/s.
+    pub speed_m_per_s: Option<f64>,
+}
+
+/// An entry of `effects`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EffectTable {
+    /// Name in the catalogue.
+    pub kind: String,
+    /// Parameters by key.
+    #[serde(flatten)]
+    pub parameters: BTreeMap<String, f64>,
+}
+
+/// A robot file that is right.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RobotFile {
+    options: RobotOptions,
+    cables: Vec<CableParams>,
+}
+
+/// What is wrong with a robot file.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum RobotFileError {
+    /// The file cannot be read.
+    #[error("cannot read the robot file {}: {source}; check the path", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// The text is no robot file.
+    #[error("{origin}{}: {problem}", Line(*line))]
+    Invalid {
+        /// Where the text is from.
+        origin: String,
+        /// Line, from 1, where it is known.
+        line: Option<usize>,
+        /// What is wrong, and what to do.
+        problem: String,
+    },
+}
+
+struct Line(Option<usize>);
+
+impl fmt::Display for Line {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.map_or(Ok(()), |line| write!(formatter, ", line {line}"))
+    }
+}
+
+impl RobotFile {
+    /// Reads and checks a file.
+    ///
+    /// # Errors
+    /// [`RobotFileError`] if it cannot be read or is not right.
+    pub fn read(path: &Path) -> Result<Self, RobotFileError> {
+        let text =
+            std::fs::read_to_string(path).map_err(|source| RobotFileError::Read { path: path.to_owned(), source })?;
+        Self::parse(&text, &path.display().to_string())
+    }
+
+    /// Checks a text; `origin` says where it is from, for errors.
+    ///
+    /// # Errors
+    /// [`RobotFileError::Invalid`] for the first thing that is not right.
+    pub fn parse(text: &str, origin: &str) -> Result<Self, RobotFileError> {
+        let invalid = |line, problem| RobotFileError::Invalid { origin: origin.to_owned(), line, problem };
+        let options: RobotOptions = toml::from_str(text).map_err(|error| {
+            let line = error.span().map(|span| text.get(..span.start).unwrap_or(text).matches('\n').count() + 1);
+            invalid(line, describe(&error))
+        })?;
+        Self::check(options).map_err(|fault| invalid(line_of(text, &fault.path), fault.to_string()))
+    }
+
+    /// Checks options that come from elsewhere than a text; `Err` names key and problem.
+    ///
+    /// # Errors
+    /// [`OptionsError`] for the first thing that is not right.
+    pub fn check(options: RobotOptions) -> Result<Self, OptionsError> {
+        if options.format != FORMAT {
+            let problem = format!("is \"{}\"; this version reads \"{FORMAT}\"", options.format);
+            return Err(OptionsError::new(&[Step::Key("format")], "format", problem));
+        }
+        let mut cables = Vec::with_capacity(options.cable.len());
+        for (index, table) in options.cable.iter().enumerate() {
+            let at = |mut error: OptionsError| {
+                error.path.splice(0..0, [Step::Key("cable"), Step::Index(index)]);
+                error.cable = Some(table.name.clone());
+                error
+            };
+            if options.cable.iter().take(index).any(|other| other.name == table.name) {
+                let problem = "is the name of an earlier cable too; names must differ".to_owned();
+                return Err(at(OptionsError::new(&[Step::Key("name")], "name", problem)));
+            }
+            cables.push(table.check().map_err(at)?);
+        }
+        let file = Self { options, cables };
+        file.check_robot()?;
+        Ok(file)
+    }
+
+    fn check_robot(&self) -> Result<(), OptionsError> {
+        let table = |key: &str| match key {
+            "mass_kg" | "center_of_mass_m" | "gravity_m_per_s2" => Some(Step::Key("platform")),
+            "length_jump_m" => Some(Step::Key("monitor")),
+            _ => None,
+        };
+        let error = match self.build() {
+            Ok(_) => return Ok(()),
+            Err(error) => error,
+        };
+        let mut path: Vec<Step> = table(error.key).into_iter().collect();
+        path.push(Step::Key(error.key));
+        Err(OptionsError::new(&path, error.key, error.problem.to_string()))
+    }
+
+    fn build(&self) -> Result<RobotParams<'_>, ParamError> {
+        let PlatformTable { mass_kg, center_of_mass_m, gravity_m_per_s2 } = self.options.platform;
+        let standard = MonitorOptions::for_cycle(self.options.cycle_s);
+        let monitor = MonitorOptions {
+            frozen_cycles: self.options.monitor.frozen_cycles.unwrap_or(standard.frozen_cycles),
+            length_jump_m: self.options.monitor.length_jump_m.unwrap_or(standard.length_jump_m),
+        };
+        let platform = PlatformOptions { mass_kg, center_of_mass_m, gravity_m_per_s2 };
+        RobotParams::new(self.options.cycle_s, &platform, monitor, &self.cables)
+    }
+
+    /// The parameters that a [`Compensator`](crate::Compensator) is built from.
+    ///
+    /// # Errors
+    /// None for a file that has been checked; the signature leaves it to the one check there is.
+    pub fn params(&self) -> Result<RobotParams<'_>, ParamError> {
+        self.build()
+    }
+
+    /// What is written in the file.
+    #[must_use]
+    pub fn options(&self) -> &RobotOptions {
+        &self.options
+    }
+
+    /// Names of the cables in order.
+    #[must_use]
+    pub fn cable_names(&self) -> Vec<&str> {
+        self.options.cable.iter().map(|cable| cable.name.as_str()).collect()
+    }
+
+    /// The file as TOML text, without comments.
+    ///
+    /// # Errors
+    /// None for a file that has been checked; the serialiser's signature has one.
+    pub fn to_toml(&self) -> Result<String, toml::ser::Error> {
+        toml::to_string(&self.options)
+    }
+}
+
+/// What is wrong with [`RobotOptions`]: which key, and why.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub struct OptionsError {
+    pub(super) path: Vec<Step>,
+    cable: Option<String>,
+    key: String,
+    problem: String,
+}
+
+impl OptionsError {
+    pub(super) fn new(path: &[Step], key: &str, problem: String) -> Self {
+        Self { path: path.to_vec(), cable: None, key: key.to_owned(), problem }
+    }
+}
+
+impl fmt::Display for OptionsError {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(cable) = &self.cable {
+            write!(formatter, "cable \"{cable}\": ")?;
+        }
+        write!(formatter, "`{}` {}", self.key, self.problem)
+    }
+}

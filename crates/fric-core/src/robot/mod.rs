@@ -1,0 +1,20 @@
+//! Robot parameters: options as stated, checked into parameters that are right by construction; and, with the feature
+//! `robot-file`, the TOML file that people write.
+
+mod error;
+mod params;
+
+#[cfg(feature = "robot-file")]
+pub mod file;
+#[cfg(feature = "robot-file")]
+mod locate;
+#[cfg(feature = "robot-file")]
+mod table;
+
+pub(crate) use error::check;
+pub use error::{ParamError, ParamProblem};
+pub use params::{
+    CableOptions, CableParams, FrictionOptions, GeometryOptions, MAX_PULLEYS, MonitorOptions, PlatformOptions,
+    Presliding, PulleyOptions, RobotParams, ValidatedRange,
+};
+pub(crate) use params::{Geometry, Wrap};

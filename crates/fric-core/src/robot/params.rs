@@ -1,0 +1,372 @@
+//! Parameters of a robot, right by construction.
+//!
+//! Options are plain data with defaults, as a program or a robot file states them; [`CableParams::new`] and
+//! [`RobotParams::new`] check them once. Nothing behind that check can fail. All of it is `Copy` and without allocation.
+
+use nalgebra::Vector3;
+
+use super::error::{ParamError, ParamProblem, check};
+use crate::effects::EffectParams;
+use crate::effects::time_delay::MAX_DELAY_CYCLES;
+use crate::pulley::wrap_factor;
+
+/// Most pulleys of one cable, the sensor pulley included.
+pub const MAX_PULLEYS: usize = 8;
+
+/// One pulley, as stated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PulleyOptions {
+    /// Its wrap does not change.
+    Fixed {
+        /// Wrap angle in rad, 0…2π.
+        wrap_rad: f64,
+        /// Whether it carries the force sensor; only the first can.
+        sensor: bool,
+    },
+    /// The last pulley, swivelling about the incoming cable; its wrap follows the pose.
+    Swivel {
+        /// Radius of the cable's centre line, m.
+        radius_m: f64,
+        /// Direction in which the cable enters, in the base frame; its length does not matter.
+        axis: [f64; 3],
+    },
+}
+
+/// Presliding form.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Presliding {
+    /// One Dahl state on each pulley.
+    #[default]
+    PerPulley,
+    /// One Dahl state for the whole cable, as in the paper.
+    Lumped,
+}
+
+/// Friction of a cable, as stated. The default rubs nowhere.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FrictionOptions {
+    /// Bearing friction μ on the normal force, 0…0.9.
+    pub mu: f64,
+    /// Presliding stiffness σ of the whole cable, N/m; without it friction reverses at once.
+    pub sigma_n_per_m: Option<f64>,
+    /// Viscous friction F_pv of each pulley, N s/m.
+    pub viscous_n_s_per_m: f64,
+    /// Offset ε added to the force at the platform, N.
+    pub offset_n: f64,
+}
+
+/// Where a cable is attached, as stated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GeometryOptions {
+    /// Where the cable enters the last pulley, base frame, m.
+    pub base_m: [f64; 3],
+    /// Attachment point, platform frame, m.
+    pub platform_m: [f64; 3],
+}
+
+/// Range in which the parameters have been identified; outside it a cycle is flagged.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ValidatedRange {
+    /// Least and greatest sensor force, N.
+    pub force_n: [f64; 2],
+    /// Greatest speed either way, m/s.
+    pub speed_m_per_s: f64,
+}
+
+impl ValidatedRange {
+    /// No limit.
+    pub const ANY: Self = Self { force_n: [-f64::MAX, f64::MAX], speed_m_per_s: f64::MAX };
+}
+
+/// One cable, as stated.
+#[derive(Clone, Copy, Debug)]
+pub struct CableOptions<'a> {
+    /// Pulleys from the winch to the platform, 1…[`MAX_PULLEYS`]. Without a sensor pulley the sensor is in line with
+    /// the cable on the winch side of the first.
+    pub pulleys: &'a [PulleyOptions],
+    /// Presliding form.
+    pub presliding: Presliding,
+    /// Friction.
+    pub friction: FrictionOptions,
+    /// Attachment; needed for a swivelling pulley and for the wrench.
+    pub geometry: Option<GeometryOptions>,
+    /// Friction coefficient μ_p between cable and pulley, 0.01…2; without it the cable never slips.
+    pub traction_mu: Option<f64>,
+    /// Range of the identification.
+    pub validated: ValidatedRange,
+    /// Effects of the catalogue.
+    pub effects: EffectParams,
+}
+
+impl CableOptions<'_> {
+    /// A cable over the given pulleys, without friction, geometry, slip limit, range or effects.
+    #[must_use]
+    pub const fn new(pulleys: &[PulleyOptions]) -> CableOptions<'_> {
+        CableOptions {
+            pulleys,
+            presliding: Presliding::PerPulley,
+            friction: FrictionOptions { mu: 0.0, sigma_n_per_m: None, viscous_n_s_per_m: 0.0, offset_n: 0.0 },
+            geometry: None,
+            traction_mu: None,
+            validated: ValidatedRange::ANY,
+            effects: EffectParams::NEUTRAL,
+        }
+    }
+}
+
+/// A pulley of a checked cable.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Wrap {
+    Fixed { wrap_rad: f64 },
+    Pose,
+}
+
+/// A checked cable.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CableParams {
+    /// Wrap of the sensor pulley, where there is one.
+    pub(crate) sensor_wrap_rad: Option<f64>,
+    pub(crate) wraps: [Wrap; MAX_PULLEYS],
+    pub(crate) pulley_count: usize,
+    pub(crate) presliding: Presliding,
+    pub(crate) friction: FrictionOptions,
+    pub(crate) geometry: Option<Geometry>,
+    pub(crate) traction_mu: Option<f64>,
+    pub(crate) validated: ValidatedRange,
+    pub(crate) effects: EffectParams,
+}
+
+/// Checked attachment and last pulley; an eyelet (radius 0) where the last pulley does not swivel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Geometry {
+    pub base_m: Vector3<f64>,
+    pub platform_m: Vector3<f64>,
+    pub radius_m: f64,
+    pub axis: Vector3<f64>,
+}
+
+const PLACE_M: f64 = 1e4;
+
+fn check_point(key: &'static str, point: [f64; 3]) -> Result<Vector3<f64>, ParamError> {
+    let [x, y, z] = point;
+    Ok(Vector3::new(
+        check(key, x, -PLACE_M, PLACE_M)?,
+        check(key, y, -PLACE_M, PLACE_M)?,
+        check(key, z, -PLACE_M, PLACE_M)?,
+    ))
+}
+
+impl CableParams {
+    /// Checks a cable.
+    ///
+    /// # Errors
+    /// [`ParamError`] names the first parameter that is not finite, out of its range or at odds with another.
+    pub fn new(options: &CableOptions<'_>) -> Result<Self, ParamError> {
+        let count = options.pulleys.len();
+        if count == 0 || count > MAX_PULLEYS {
+            let problem = ParamProblem::Count { count, min: 1, max: MAX_PULLEYS };
+            return Err(ParamError { key: "pulleys", pulley: None, problem });
+        }
+        let FrictionOptions { mu, sigma_n_per_m, viscous_n_s_per_m, offset_n } = options.friction;
+        check("mu", mu, 0.0, 0.9)?;
+        if let Some(sigma_n_per_m) = sigma_n_per_m {
+            check("sigma_n_per_m", sigma_n_per_m, 1e-3, 1e12)?;
+        }
+        check("viscous_n_s_per_m", viscous_n_s_per_m, 0.0, 1e6)?;
+        check("offset_n", offset_n, -1e6, 1e6)?;
+        if let Some(traction_mu) = options.traction_mu {
+            check("traction_mu", traction_mu, 0.01, 2.0)?;
+        }
+        let ValidatedRange { force_n: [least_n, greatest_n], speed_m_per_s } = options.validated;
+        check("force_n", least_n, -f64::MAX, f64::MAX)?;
+        check("force_n", greatest_n, least_n, f64::MAX)?;
+        check("speed_m_per_s", speed_m_per_s, 0.0, f64::MAX)?;
+
+        let mut params = Self {
+            sensor_wrap_rad: None,
+            wraps: [Wrap::Fixed { wrap_rad: 0.0 }; MAX_PULLEYS],
+            pulley_count: count,
+            presliding: options.presliding,
+            friction: options.friction,
+            geometry: None,
+            traction_mu: options.traction_mu,
+            validated: options.validated,
+            effects: options.effects,
+        };
+        let mut last_pulley = (0.0, Vector3::z());
+        for (place, (pulley, wrap)) in options.pulleys.iter().zip(&mut params.wraps).enumerate() {
+            let at = |error: ParamError| error.at_pulley(place);
+            match *pulley {
+                PulleyOptions::Fixed { wrap_rad, sensor } => {
+                    check("wrap_rad", wrap_rad, 0.0, core::f64::consts::TAU).map_err(at)?;
+                    *wrap = Wrap::Fixed { wrap_rad };
+                    if sensor && place > 0 {
+                        return Err(at(ParamError::conflict(
+                            "sensor",
+                            "must stand on the first pulley: list the pulleys from the sensor to the platform only",
+                        )));
+                    }
+                    if sensor {
+                        check_sensor_wrap(wrap_rad, mu * (1.0 + options.effects.stribeck.ratio.max(0.0)))
+                            .map_err(at)?;
+                        params.sensor_wrap_rad = Some(wrap_rad);
+                    }
+                }
+                PulleyOptions::Swivel { radius_m, axis } => {
+                    check("radius_m", radius_m, 0.0, 100.0).map_err(at)?;
+                    let axis = check_point("axis", axis).map_err(at)?;
+                    let norm = libm::sqrt(axis.dot(&axis));
+                    if norm < 1e-9 {
+                        return Err(at(ParamError::conflict("axis", "is the zero vector; give the cable's direction")));
+                    }
+                    if place + 1 != count {
+                        return Err(at(ParamError::conflict("wrap", "can follow the pose at the last pulley only")));
+                    }
+                    if options.geometry.is_none() {
+                        return Err(at(ParamError::conflict(
+                            "wrap",
+                            "follows the pose, which needs `base_m` and `platform_m` of the cable",
+                        )));
+                    }
+                    *wrap = Wrap::Pose;
+                    last_pulley = (radius_m, axis / norm);
+                }
+            }
+        }
+        if let Some(geometry) = options.geometry {
+            params.geometry = Some(Geometry {
+                base_m: check_point("base_m", geometry.base_m)?,
+                platform_m: check_point("platform_m", geometry.platform_m)?,
+                radius_m: last_pulley.0,
+                axis: last_pulley.1,
+            });
+        }
+        Ok(params)
+    }
+
+    /// Pulleys, the sensor pulley included.
+    #[must_use]
+    pub fn pulley_count(&self) -> usize {
+        self.pulley_count
+    }
+
+    /// Whether a pulley's wrap follows the pose.
+    #[must_use]
+    pub fn needs_pose(&self) -> bool {
+        self.wraps.contains(&Wrap::Pose)
+    }
+
+    /// Whether the attachment is known, so that the cable takes part in the wrench.
+    #[must_use]
+    pub fn has_geometry(&self) -> bool {
+        self.geometry.is_some()
+    }
+}
+
+/// The sensor pulley's closed form is singular where `2(1 − c) + sμk(1 + c)` vanishes ([P] 10, 11): it must keep a
+/// third of its frictionless value.
+fn check_sensor_wrap(wrap_rad: f64, greatest_mu: f64) -> Result<(), ParamError> {
+    let (factor, cos) = (wrap_factor(wrap_rad), libm::cos(wrap_rad));
+    let frictionless = 2.0 * (1.0 - cos);
+    if frictionless >= 1e-2 && frictionless - greatest_mu * factor * (1.0 + cos) >= frictionless / 3.0 {
+        Ok(())
+    } else {
+        Err(ParamError::conflict(
+            "wrap_deg",
+            "is too small for a sensor pulley with this friction: the sensor would feel friction and hardly any tension",
+        ))
+    }
+}
+
+/// The platform, as stated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlatformOptions {
+    /// Mass, kg.
+    pub mass_kg: f64,
+    /// Centre of mass, platform frame, m.
+    pub center_of_mass_m: [f64; 3],
+    /// Gravity, base frame, m/s².
+    pub gravity_m_per_s2: [f64; 3],
+}
+
+impl Default for PlatformOptions {
+    /// No mass; standard gravity downwards.
+    fn default() -> Self {
+        Self { mass_kg: 0.0, center_of_mass_m: [0.0; 3], gravity_m_per_s2: [0.0, 0.0, -9.80665] }
+    }
+}
+
+/// When a signal counts as faulty, as stated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MonitorOptions {
+    /// After so many cycles of motion with the same sensor value to the last bit the sensor counts as frozen; 0: never.
+    pub frozen_cycles: u32,
+    /// Greatest change of length in one cycle, m.
+    pub length_jump_m: f64,
+}
+
+impl MonitorOptions {
+    /// 100 cycles; what 10 m/s cover in a cycle.
+    #[must_use]
+    pub fn for_cycle(cycle_s: f64) -> Self {
+        Self { frozen_cycles: 100, length_jump_m: 10.0 * cycle_s }
+    }
+}
+
+/// A checked robot: what a [`Compensator`](crate::Compensator) is built from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RobotParams<'a> {
+    pub(crate) cycle_s: f64,
+    pub(crate) mass_kg: f64,
+    pub(crate) center_of_mass_m: Vector3<f64>,
+    pub(crate) gravity_m_per_s2: Vector3<f64>,
+    pub(crate) monitor: MonitorOptions,
+    pub(crate) cables: &'a [CableParams],
+}
+
+impl<'a> RobotParams<'a> {
+    /// Checks a robot; `cycle_s` is the cycle time.
+    ///
+    /// # Errors
+    /// [`ParamError`] names the first parameter that is not finite or out of range.
+    pub fn new(
+        cycle_s: f64,
+        platform: &PlatformOptions,
+        monitor: MonitorOptions,
+        cables: &'a [CableParams],
+    ) -> Result<Self, ParamError> {
+        if cables.is_empty() {
+            let problem = ParamProblem::Count { count: 0, min: 1, max: usize::MAX };
+            return Err(ParamError { key: "cable", pulley: None, problem });
+        }
+        check("cycle_s", cycle_s, 1e-6, 10.0)?;
+        #[expect(clippy::cast_precision_loss, reason = "a small constant")]
+        let longest_delay_s = (MAX_DELAY_CYCLES - 1) as f64 * cycle_s;
+        for cable in cables {
+            check("delay_s", cable.effects.delay_s, 0.0, longest_delay_s)?;
+        }
+        Ok(Self {
+            cycle_s,
+            mass_kg: check("mass_kg", platform.mass_kg, 0.0, 1e6)?,
+            center_of_mass_m: check_point("center_of_mass_m", platform.center_of_mass_m)?,
+            gravity_m_per_s2: check_point("gravity_m_per_s2", platform.gravity_m_per_s2)?,
+            monitor: MonitorOptions {
+                length_jump_m: check("length_jump_m", monitor.length_jump_m, 1e-9, 1e3)?,
+                ..monitor
+            },
+            cables,
+        })
+    }
+
+    /// The cycle time in s.
+    #[must_use]
+    pub fn cycle_s(&self) -> f64 {
+        self.cycle_s
+    }
+
+    /// The cables in order.
+    #[must_use]
+    pub fn cables(&self) -> &'a [CableParams] {
+        self.cables
+    }
+}

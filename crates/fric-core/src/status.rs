@@ -1,0 +1,108 @@
+//! What a cycle has to say about a cable, as flags.
+
+use core::fmt;
+use core::ops::BitOr;
+
+/// Flags of one cable in one cycle; [`CableStatus::OK`] where nothing is the matter.
+///
+/// Every flag is about its own cable; no flag of one cable changes a bit of another. All of them clear by
+/// themselves in the first cycle in which their cause is gone.
+///
+/// | flag | cause | what the output is |
+/// |---|---|---|
+/// | `SLACK` | corrected sensor force ≤ 0, or viscous friction exceeds the tension | friction 0 and stored friction released; the force is the sensor's own |
+/// | `SLIP` | `F_j/F_{j−1}` beyond `e^{±μ_p α}` at a pulley | the ratio held at that bound |
+/// | `SENSOR_NOT_FINITE` | sensor force NaN, infinite or beyond ±10⁹ N | last good force and friction held; motion meanwhile is made up for in the first good cycle |
+/// | `SENSOR_FROZEN` | the same sensor value to the last bit over `frozen_cycles` cycles in which the cable moved | as above |
+/// | `LENGTH_JUMP` | length changed by more than `length_jump_m` in one cycle | friction held, force follows the sensor; the jump is not taken for motion |
+/// | `MOTION_NOT_FINITE` | length or speed NaN, infinite or beyond ±10⁶ | friction held, force follows the sensor |
+/// | `OUT_OF_RANGE` | force or speed outside the cable's `validated` range | computed as usual |
+/// | `POSE_MISSING` | no pose, or not a finite one, for a cable that needs it | last wrap and direction held; 90° until the first pose |
+/// | `POSE_UNREACHABLE` | the attachment lies inside the last pulley's circle | last wrap and direction held |
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct CableStatus(u32);
+
+impl CableStatus {
+    /// Nothing is the matter.
+    pub const OK: Self = Self(0);
+    /// The cable carries no tension.
+    pub const SLACK: Self = Self(1);
+    /// The cable slips on a pulley.
+    pub const SLIP: Self = Self(1 << 1);
+    /// The sensor force is no number.
+    pub const SENSOR_NOT_FINITE: Self = Self(1 << 2);
+    /// The sensor repeats itself.
+    pub const SENSOR_FROZEN: Self = Self(1 << 3);
+    /// The length jumped.
+    pub const LENGTH_JUMP: Self = Self(1 << 4);
+    /// Length or speed is no number.
+    pub const MOTION_NOT_FINITE: Self = Self(1 << 5);
+    /// Outside the range in which the parameters were identified.
+    pub const OUT_OF_RANGE: Self = Self(1 << 6);
+    /// The pose is missing.
+    pub const POSE_MISSING: Self = Self(1 << 7);
+    /// The pose leaves the cable no way out of its last pulley.
+    pub const POSE_UNREACHABLE: Self = Self(1 << 8);
+
+    /// Every flag with its name, lowest bit first.
+    pub const NAMES: [(&'static str, Self); 9] = [
+        ("SLACK", Self::SLACK),
+        ("SLIP", Self::SLIP),
+        ("SENSOR_NOT_FINITE", Self::SENSOR_NOT_FINITE),
+        ("SENSOR_FROZEN", Self::SENSOR_FROZEN),
+        ("LENGTH_JUMP", Self::LENGTH_JUMP),
+        ("MOTION_NOT_FINITE", Self::MOTION_NOT_FINITE),
+        ("OUT_OF_RANGE", Self::OUT_OF_RANGE),
+        ("POSE_MISSING", Self::POSE_MISSING),
+        ("POSE_UNREACHABLE", Self::POSE_UNREACHABLE),
+    ];
+
+    /// The flags as a number, as it stands in `/fric/status`.
+    #[must_use]
+    pub const fn bits(self) -> u32 {
+        self.0
+    }
+
+    /// Whether nothing is the matter.
+    #[must_use]
+    pub const fn is_ok(self) -> bool {
+        self.0 == 0
+    }
+
+    /// Whether all flags of `other` are set.
+    #[must_use]
+    pub const fn contains(self, other: Self) -> bool {
+        self.0 & other.0 == other.0
+    }
+
+    /// `self` where `condition` holds, else [`OK`](Self::OK).
+    #[inline(always)]
+    pub(crate) const fn if_set(self, lanes: u32, lane: usize) -> Self {
+        Self(self.0 * ((lanes >> lane) & 1))
+    }
+}
+
+impl BitOr for CableStatus {
+    type Output = Self;
+    #[inline(always)]
+    fn bitor(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+}
+
+/// `ok`, or the names of the flags with `|` between them.
+impl fmt::Display for CableStatus {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.is_ok() {
+            return formatter.write_str("ok");
+        }
+        let mut separator = "";
+        for (name, flag) in Self::NAMES {
+            if self.contains(flag) {
+                write!(formatter, "{separator}{name}")?;
+                separator = "|";
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,103 @@
+//! The last pulley before the platform: it swivels about the incoming cable, so its wrap follows the pose.
+//!
+//! For: from the attachment point in the base frame to the direction in which the cable leaves, and the normal-force
+//! factor of the wrap, by vector algebra alone (three square roots, three divisions, no angle); and, outside the cycle,
+//! wrap angle and cable length. No state. Non-finite input gives non-finite output, the caller keeps it out.
+//!
+//! In the plane through the swivel axis and the attachment B, with the tangent point A where the cable enters as origin,
+//! `x` the distance from the axis and `z` along it: `M = (r, 0)`, `D = |B − M|`, `φ = atan2(z_B, x_B − r)`,
+//! `γ = arccos(r/D)`; wrap `β = π − (φ + γ)`, free length `√(D² − r²)`, tangent point `M + r(cos(φ+γ), sin(φ+γ))`.
+//! Source: the standard model of a swivelling pulley, that [P] 1 uses for `a_i(r, R)`. The angles never appear:
+//! `cos(φ+γ) = ((x_B − r)·r − z_B·free)/D²`, `sin(φ+γ) = (z_B·r + (x_B − r)·free)/D²`.
+
+use nalgebra::Vector3;
+
+use crate::scalar::Scalar;
+
+/// A swivelling pulley as the cycle uses it: entry point, axis, radius, in one lane per cable.
+#[derive(Clone, Copy, Debug)]
+pub struct Swivel<T> {
+    /// Tangent point A where the cable enters, in the base frame, m.
+    pub entry_m: [T; 3],
+    /// Unit vector in which the cable enters.
+    pub axis: [T; 3],
+    /// Radius of the cable's centre line, m; 0 is an eyelet.
+    pub radius_m: T,
+}
+
+/// How the cable leaves the pulley.
+#[derive(Clone, Copy, Debug)]
+pub struct Exit<T: Scalar> {
+    /// Unit vector from the attachment on the platform to the point where the cable leaves the pulley.
+    pub direction: [T; 3],
+    /// From there to the attachment, m.
+    pub free_length_m: T,
+    /// `2 sin(β/2)` of the wrap β.
+    pub wrap_factor: T,
+    /// `cos β` and `sin β`, for [`wrap_rad`].
+    pub cos_sin_wrap: [T; 2],
+    /// False where the attachment lies inside the pulley's circle (`D ≤ r`): nothing else is meaningful then.
+    pub reachable: T::Mask,
+}
+
+/// Squared lengths below this (1 nm²) count as on the axis, or on the circle.
+const NEAR_SQUARED_M2: f64 = 1e-18;
+
+/// The way out of a swivelling pulley to the attachment at `attachment_m` (base frame, m).
+///
+/// Straight ahead (`x_B = 0`) the wrap is zero and the direction the axis itself.
+#[inline(always)]
+pub fn exit<T: Scalar>(swivel: &Swivel<T>, attachment_m: [T; 3]) -> Exit<T> {
+    let (one, zero) = (T::splat(1.0), T::splat(0.0));
+    let radius = swivel.radius_m;
+    let [rx, ry, rz] = sub(attachment_m, swivel.entry_m);
+    let [ax, ay, az] = swivel.axis;
+    let along = rx * ax + ry * ay + rz * az;
+    let radial = [rx - along * ax, ry - along * ay, rz - along * az];
+    let distance_squared = dot(radial, radial);
+    let distance = distance_squared.sqrt();
+    let from_centre = distance - radius;
+    let to_centre_squared = from_centre * from_centre + along * along;
+    let free_squared = to_centre_squared - radius * radius;
+    let reachable = T::splat(NEAR_SQUARED_M2).lt(free_squared);
+    let free = T::select(reachable, free_squared, one).sqrt();
+    let inverse_centre = one / T::select(reachable, to_centre_squared, one);
+    let cos = (from_centre * radius - along * free) * inverse_centre;
+    let sin = (along * radius + from_centre * free) * inverse_centre;
+    // (T − B)/free in the plane; e_x is the radial direction, which has no meaning on the axis.
+    let inverse_free = one / free;
+    let across = (radius + radius * cos - distance) * inverse_free;
+    let forward = (radius * sin - along) * inverse_free;
+    let off_axis = T::splat(NEAR_SQUARED_M2).lt(distance_squared);
+    let across = T::select(off_axis, across / distance, zero);
+    let direction =
+        [radial[0] * across + ax * forward, radial[1] * across + ay * forward, radial[2] * across + az * forward];
+    let doubled = (one + cos) * T::splat(2.0);
+    Exit { direction, free_length_m: free, wrap_factor: doubled.max(zero).sqrt(), cos_sin_wrap: [-cos, sin], reachable }
+}
+
+/// Wrap angle β in rad, `0…2π`, from [`Exit::cos_sin_wrap`]. Not for the cycle: an inverse tangent.
+#[must_use]
+pub fn wrap_rad([cos, sin]: [f64; 2]) -> f64 {
+    let angle_rad = libm::atan2(sin, cos);
+    // Rounding may put a vanishing wrap a hair below zero; half a turn further back is a wrap beyond 180°.
+    if angle_rad < -1e-6 { angle_rad + core::f64::consts::TAU } else { angle_rad.max(0.0) }
+}
+
+/// Cable length from the entry point to the attachment, `r·β + free`, m; `None` where the attachment lies inside the
+/// pulley. Not for the cycle: an inverse tangent.
+#[must_use]
+pub fn cable_length_m(swivel: &Swivel<f64>, attachment_m: &Vector3<f64>) -> Option<f64> {
+    let exit = exit(swivel, [attachment_m.x, attachment_m.y, attachment_m.z]);
+    exit.reachable.then(|| swivel.radius_m * wrap_rad(exit.cos_sin_wrap) + exit.free_length_m)
+}
+
+#[inline(always)]
+fn sub<T: Scalar>(a: [T; 3], b: [T; 3]) -> [T; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+#[inline(always)]
+fn dot<T: Scalar>(a: [T; 3], b: [T; 3]) -> T {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
