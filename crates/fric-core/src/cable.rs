@@ -58,6 +58,7 @@ pub trait Pulleys<T> {
 
 /// What may differ between robots but not between the lanes of one: decided once a cycle, outside the arithmetic.
 #[derive(Clone, Copy, Debug, Default)]
+#[expect(clippy::struct_excessive_bools, reason = "independent switches, each read on its own")]
 pub struct Features {
     /// Some cable has one Dahl state per pulley.
     pub per_pulley: bool,

@@ -1,5 +1,35 @@
 //! Pulley friction compensation for cable-driven robots, made for the inside of a 1 ms control loop.
+//!
+//! A cable robot measures its cable forces at the winch. Between winch and platform the pulleys rub: the force that the
+//! sensor shows is not the one that acts on the platform, and it depends on where the motion came from. [`Compensator`]
+//! turns sensor forces, cable lengths, speeds and the pose into platform forces and the platform wrench, once a cycle.
+//!
+//! - **No allocation, no panic, no clock.** `no_std`; set-up can fail, [`Compensator::step`] cannot.
+//! - **Total.** Every input has an output that is finite; what is wrong with a signal stands in [`CableStatus`].
+//! - **Apart.** No bit of a cable's force depends on another cable's signals.
+//! - **The same everywhere.** Only exactly rounded operations are used in the cycle, so the bits do not depend on platform,
+//!   optimisation level or vector width.
+//!
+//! # One cycle
+//!
+//! [`CycleInput`] → [`swivel`] (wrap of the last pulley, direction, moment arm) → signal checks → [`cable`] (the chain of
+//! [`pulley`]s, [`dahl`] presliding, [`effects`]) → force at the platform → wrench → [`CycleOutput`].
+//!
+//! # Sources
+//!
+//! \[P\] stands for W. Kraus, M. Kessler, A. Pott, *Pulley friction compensation for winch-integrated cable force
+//! measurement and verification on a cable-driven parallel robot*, ICRA 2015; numbers are its equations. Where this crate
+//! departs from it, the function's documentation says so and why.
+//!
+//! # Features
+//!
+//! `robot-file` reads and writes the TOML robot file ([`robot::file`]); it needs `std` and is off by default.
 #![no_std]
+#![allow(
+    clippy::inline_always,
+    reason = "the cycle is one loop over lanes; a call in it would pass vectors through memory"
+)]
+#![allow(clippy::doc_markdown, reason = "symbols of equations are no code items")]
 
 #[cfg(feature = "robot-file")]
 extern crate std;

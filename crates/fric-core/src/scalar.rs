@@ -28,24 +28,30 @@ pub trait Scalar:
     /// `if_true` where the mask holds, else `if_false`; what is not chosen may be NaN.
     fn select(mask: Self::Mask, if_true: Self, if_false: Self) -> Self;
     /// Magnitude.
+    #[must_use]
     fn abs(self) -> Self;
     /// Square root, correctly rounded.
+    #[must_use]
     fn sqrt(self) -> Self;
     /// Exponential for arguments ≤ 0, see [`exp_negative`].
+    #[must_use]
     fn exp_negative(self) -> Self;
 
     /// The greater of the two; `other` where `self` is NaN.
     #[inline(always)]
+    #[must_use]
     fn max(self, other: Self) -> Self {
         Self::select(other.lt(self), self, other)
     }
     /// The lesser of the two; `other` where `self` is NaN.
     #[inline(always)]
+    #[must_use]
     fn min(self, other: Self) -> Self {
         Self::select(self.lt(other), self, other)
     }
     /// −1, 0 or +1; 0 for NaN.
     #[inline(always)]
+    #[must_use]
     fn sign(self) -> Self {
         let zero = Self::splat(0.0);
         let negative_or_zero = Self::select(self.lt(zero), Self::splat(-1.0), zero);
@@ -102,7 +108,6 @@ impl Scalar for f64 {
         self <= other
     }
     #[inline(always)]
-    #[expect(clippy::float_cmp, reason = "the caller asks for bit-true repetition, not for closeness")]
     fn eq(self, other: Self) -> bool {
         self == other
     }

@@ -1,7 +1,7 @@
 //! `stribeck`: friction that falls with speed.
 //!
-//! Equation: `μ(v) = μ·(1 + ratio·exp(−|v|/velocity))`. At rest friction is higher by `ratio`; it falls to μ within a few
-//! times `velocity`. Neutral: `ratio = 0`.
+//! Equation: `μ(v) = μ·(1 + ratio·exp(−(v/velocity)²))`. At rest friction is higher by the share `ratio`; at twice
+//! `velocity` all but 2 % of it is gone. Neutral: `ratio = 0`.
 //!
 //! Cause: at low speed the lubricant film in the bearing has not formed and the surfaces touch.
 
@@ -24,7 +24,7 @@ pub const ROW: EffectRow = EffectRow {
 pub struct Stribeck<T> {
     /// Additional friction at rest as a share of μ, 1.
     pub ratio: T,
-    /// Speed within which the additional share falls by the factor e, m/s.
+    /// Speed at which the additional share has fallen by the factor e, m/s.
     pub velocity_m_per_s: T,
 }
 
@@ -32,7 +32,8 @@ impl<T: Scalar> Stribeck<T> {
     /// Factor on μ at a speed.
     #[inline(always)]
     pub fn factor(&self, speed_m_per_s: T) -> T {
-        let fall = (-(speed_m_per_s.abs() / self.velocity_m_per_s)).exp_negative();
+        let relative = speed_m_per_s / self.velocity_m_per_s;
+        let fall = (-(relative * relative)).exp_negative();
         T::splat(1.0) + self.ratio * fall
     }
 }

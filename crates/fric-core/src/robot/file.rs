@@ -290,10 +290,7 @@ impl RobotFile {
             "length_jump_m" => Some(Step::Key("monitor")),
             _ => None,
         };
-        let error = match self.build() {
-            Ok(_) => return Ok(()),
-            Err(error) => error,
-        };
+        let Err(error) = self.build() else { return Ok(()) };
         let mut path: Vec<Step> = table(error.key).into_iter().collect();
         path.push(Step::Key(error.key));
         Err(OptionsError::new(&path, error.key, error.problem.to_string()))
