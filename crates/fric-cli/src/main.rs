@@ -1,1 +1,34 @@
-fn main() {}
+//! `fric-cli`: friction compensation for cable robots on the command line.
+
+mod arguments;
+mod commands;
+mod failure;
+mod interrupt;
+mod model;
+mod output;
+mod progress;
+mod report;
+mod warnings;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use arguments::{Arguments, Command};
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    interrupt::listen();
+    let result = match &arguments.command {
+        Command::Replay(arguments) => commands::replay::run(arguments),
+        Command::Info(arguments) => commands::info::run(arguments),
+        Command::Simulate(arguments) => commands::simulate::run(arguments),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            failure.print();
+            ExitCode::from(failure.exit_code())
+        }
+    }
+}

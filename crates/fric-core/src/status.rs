@@ -63,6 +63,12 @@ impl CableStatus {
         self.0
     }
 
+    /// The flags that a number of `/fric/status` holds.
+    #[must_use]
+    pub const fn from_bits(bits: u32) -> Self {
+        Self(bits)
+    }
+
     /// Whether nothing is the matter.
     #[must_use]
     pub const fn is_ok(self) -> bool {

@@ -1,1 +1,9 @@
-//! fric-lab
+//! Offline work on samples of cable robots with pulley friction.
+//!
+//! [`simulate`] is a robot with known friction: the samples of a log, as a stream, with effects hidden in them on
+//! request. Its friction is computed in another way than the compensator's, so that each is a check of the other.
+//!
+//! Nothing here reads or writes logs, and nothing here belongs into a control cycle.
+
+pub mod replay;
+pub mod simulate;

@@ -69,6 +69,10 @@ impl Default for PlatformTable {
 pub struct LogTable {
     /// Cable signals.
     pub cable: String,
+    /// Cable lengths, where they have a topic or field of their own.
+    pub length: Option<String>,
+    /// Cable speeds, likewise.
+    pub speed: Option<String>,
     /// Cable forces measured at the platform.
     pub reference: String,
     /// Pose of the platform.
@@ -81,6 +85,8 @@ impl Default for LogTable {
     fn default() -> Self {
         Self {
             cable: "/cable_states".to_owned(),
+            length: None,
+            speed: None,
             reference: "/reference_forces".to_owned(),
             pose: "/platform_pose".to_owned(),
             wrench: "/platform_wrench".to_owned(),

@@ -1,0 +1,102 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+
+/// Friction compensation for cable-driven robots: replay logs, look into them, simulate them.
+#[derive(Debug, Parser)]
+#[command(version, arg_required_else_help = true)]
+pub struct Arguments {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Run the compensator over a log as the control loop would, and show the error before and after
+    #[command(after_help = "Example:\n  fric-cli replay examples/mini-ipanema.mcap -o compensated.mcap")]
+    Replay(ReplayArguments),
+    /// Show what is in a log, what each signal maps to, and what is missing for which step
+    #[command(after_help = "Example:\n  fric-cli info examples/mini-ipanema.mcap")]
+    Info(InfoArguments),
+    /// Write the log of a simulated robot, with effects hidden in it on request
+    #[command(after_help = "Example:\n  fric-cli simulate --model examples/mini-ipanema.toml -o simulated.mcap \
+                      --effect stribeck:ratio=0.5,velocity_m_per_s=0.02 --seed 7")]
+    Simulate(SimulateArguments),
+}
+
+/// The log and its robot.
+#[derive(Debug, Args)]
+pub struct LogArguments {
+    /// MCAP log; several files are the parts of one split recording
+    #[arg(required = true, value_name = "LOG")]
+    pub logs: Vec<PathBuf>,
+    /// Robot file; without it the one attached to the log
+    #[arg(long, value_name = "M.toml")]
+    pub model: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub struct ReplayArguments {
+    #[command(flatten)]
+    pub log: LogArguments,
+    /// Write forces, friction, wrench and status to this MCAP file
+    #[arg(short, long, value_name = "OUT.mcap")]
+    pub output: Option<PathBuf>,
+    /// Write a page with the errors over time to this HTML file
+    #[arg(long, value_name = "R.html")]
+    pub report: Option<PathBuf>,
+    #[command(flatten)]
+    pub result: ResultArguments,
+}
+
+#[derive(Debug, Args)]
+pub struct InfoArguments {
+    #[command(flatten)]
+    pub log: LogArguments,
+    #[command(flatten)]
+    pub result: ResultArguments,
+}
+
+#[derive(Debug, Args)]
+pub struct SimulateArguments {
+    /// Robot file; its friction is the truth
+    #[arg(long, value_name = "M.toml", required = true)]
+    pub model: PathBuf,
+    /// The log to write
+    #[arg(short, long, value_name = "LOG.mcap", required = true)]
+    pub output: PathBuf,
+    /// Hide an effect of the catalogue in all cables; may be given several times
+    #[arg(long = "effect", value_name = "kind:key=value,…")]
+    pub effects: Vec<String>,
+    /// Seed of noise and micro motion
+    #[arg(long, value_name = "S", default_value_t = 0)]
+    pub seed: u64,
+    /// Length of the log in s; the identification run is cut or repeated [default: one run]
+    #[arg(long, value_name = "S")]
+    pub duration: Option<f64>,
+    /// Standard deviation of the sensor noise, N
+    #[arg(long, value_name = "N", default_value_t = 0.02)]
+    pub sensor_noise_n: f64,
+    /// Standard deviation of the reference noise, N
+    #[arg(long, value_name = "N", default_value_t = 0.01)]
+    pub reference_noise_n: f64,
+    /// Spread of μ over the pulleys of a cable, as a share of μ
+    #[arg(long, value_name = "RATIO", default_value_t = 0.0)]
+    pub mu_spread_ratio: f64,
+    /// Replace the output if it exists
+    #[arg(long)]
+    pub force: bool,
+}
+
+/// Where the result goes beside the table.
+#[derive(Debug, Args)]
+pub struct ResultArguments {
+    /// Write the result as JSON to this file; `-` is stdout, and the table then goes to stderr
+    #[arg(long, value_name = "F")]
+    pub json: Option<PathBuf>,
+    /// Replace outputs that exist
+    #[arg(long)]
+    pub force: bool,
+}

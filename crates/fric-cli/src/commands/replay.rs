@@ -1,0 +1,269 @@
+//! `replay`: the compensator over a log, as the control loop would run it.
+
+use fric_core::{CableStatus, Sample};
+use fric_lab::replay::{CableErrors, Deviation, Replay, ReplayedCycle};
+use fric_log::recording::Recording;
+use fric_log::signals::{Role, SignalReader};
+use fric_log::write::{CableStatusChannel, JointState, JointStateChannel, LogWriter, Wrench, WrenchChannel};
+use hdrhistogram::Histogram;
+use serde::Serialize;
+
+use crate::arguments::ReplayArguments;
+use crate::failure::{Failure, Outcome};
+use crate::model::{self, Model};
+use crate::output::{JsonTarget, TextFile, table};
+use crate::progress::{self, STRIDE};
+use crate::report::{self, Series};
+use crate::{interrupt, warnings};
+
+/// `fric-replay/1`.
+#[derive(Debug, Serialize)]
+pub struct ReplayResult {
+    format: &'static str,
+    pub robot: String,
+    pub cables: Vec<CableResult>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub wrench: Option<WrenchResult>,
+    pub cycle: CycleResult,
+}
+
+#[derive(Debug, Serialize)]
+pub struct CableResult {
+    pub name: String,
+    pub samples: u64,
+    pub flagged: u64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub before: Option<ForceError>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub after: Option<ForceError>,
+}
+
+#[derive(Debug, Serialize)]
+pub struct ForceError {
+    pub rms_n: f64,
+    pub mae_n: f64,
+}
+
+#[derive(Debug, Serialize)]
+pub struct WrenchResult {
+    pub before: WrenchError,
+    pub after: WrenchError,
+}
+
+#[derive(Debug, Serialize)]
+pub struct WrenchError {
+    pub force_rms_n: f64,
+    pub torque_rms_nm: f64,
+}
+
+#[derive(Debug, Serialize)]
+pub struct CycleResult {
+    pub count: u64,
+    pub median_ns: u64,
+    pub p999_ns: u64,
+    pub max_ns: u64,
+}
+
+/// Runs the command.
+pub fn run(arguments: &ReplayArguments) -> Outcome {
+    let ReplayArguments { log, output, report, result } = arguments;
+    let recording = Recording::open(&log.logs)?;
+    let model = Model::find(log.model.as_deref(), &recording)?.ok_or_else(model::missing)?;
+    let mut inputs = log.logs.clone();
+    inputs.extend(log.model.clone());
+    let json = JsonTarget::prepare(result.json.as_deref(), &inputs, result.force)?;
+    let report = report.as_ref().map(|path| TextFile::prepare(path, &inputs, result.force)).transpose()?;
+    let mut writer = output.as_ref().map(|path| OutputLog::create(path, &inputs, result.force, &model)).transpose()?;
+
+    let paths = model.signal_paths()?;
+    let names = model.robot.cable_names();
+    let params = model.robot.params()?;
+    let bar = progress::bytes(recording.total_bytes());
+    let mut reader = SignalReader::new(recording, paths.clone(), &names);
+    let mut replay = Replay::new(&params)?;
+    // Three digits; durations beyond 2^40 ns (18 minutes) count as that.
+    let mut durations = Histogram::<u64>::new_with_max(1 << 40, 3)
+        .map_err(|error| Failure::new(format!("cannot set up the histogram of cycle times: {error}")))?;
+    let mut series = report.as_ref().map(|_| Series::new(names.len()));
+    loop {
+        if replay.cycle_count().is_multiple_of(STRIDE) {
+            interrupt::check()?;
+            bar.set_position(reader.recording().bytes_read());
+        }
+        let Some(sample) = reader.next_row()? else { break };
+        let cycle = replay.step(&sample);
+        durations.saturating_record(cycle.cycle_ns);
+        if let Some(writer) = &mut writer {
+            writer.write(&sample, &cycle)?;
+        }
+        if let Some(series) = &mut series {
+            series.add(&sample, cycle.cables);
+        }
+    }
+    bar.finish_and_clear();
+    warnings::about_recording(reader.recording());
+    warnings::about_signals(&reader, &paths);
+    warn_about_model(&model, &reader, &replay);
+
+    let outcome = summarize(&model, &names, &replay, &durations);
+    if let Some(writer) = writer {
+        writer.log.finish()?;
+    }
+    if let (Some(report), Some(series)) = (report, series) {
+        report.write(&report::page(&outcome, &series, &log.logs))?;
+    }
+    json.show(&describe(&outcome))?;
+    json.write(&outcome)
+}
+
+fn summarize(model: &Model, names: &[&str], replay: &Replay, durations: &Histogram<u64>) -> ReplayResult {
+    let error =
+        |deviation: &Deviation| Some(ForceError { rms_n: deviation.rms()?, mae_n: deviation.mean_magnitude()? });
+    let cable = |(name, errors): (&&str, &CableErrors)| CableResult {
+        name: (*name).to_owned(),
+        samples: replay.cycle_count(),
+        flagged: errors.flagged_count,
+        before: error(&errors.before_n),
+        after: error(&errors.after_n),
+    };
+    let wrench_error = |(force_rms_n, torque_rms_nm)| WrenchError { force_rms_n, torque_rms_nm };
+    let (before, after) = replay.wrench();
+    ReplayResult {
+        format: "fric-replay/1",
+        robot: model.robot.options().name.clone(),
+        cables: names.iter().zip(replay.cables()).map(cable).collect(),
+        wrench: before
+            .rms()
+            .zip(after.rms())
+            .map(|(before, after)| WrenchResult { before: wrench_error(before), after: wrench_error(after) }),
+        cycle: CycleResult {
+            count: replay.cycle_count(),
+            median_ns: durations.value_at_quantile(0.5),
+            p999_ns: durations.value_at_quantile(0.999),
+            max_ns: durations.max(),
+        },
+    }
+}
+
+/// The result as a table.
+fn describe(result: &ReplayResult) -> String {
+    let rows: Vec<_> = result
+        .cables
+        .iter()
+        .map(|cable| {
+            let number = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.4}"));
+            let (before, after) = (cable.before.as_ref(), cable.after.as_ref());
+            let left = before.zip(after).map(|(before, after)| after.rms_n / before.rms_n * 100.0);
+            [
+                cable.name.clone(),
+                cable.samples.to_string(),
+                cable.flagged.to_string(),
+                number(before.map(|error| error.rms_n)),
+                number(after.map(|error| error.rms_n)),
+                left.filter(|left| left.is_finite()).map_or_else(|| "–".to_owned(), |left| format!("{left:.1} %")),
+                number(before.map(|error| error.mae_n)),
+                number(after.map(|error| error.mae_n)),
+            ]
+        })
+        .collect();
+    let header =
+        ["cable", "samples", "flagged", "rms before [N]", "after [N]", "left", "mean |error| before [N]", "after [N]"];
+    let mut text = format!("{}: force at the platform against the reference\n\n", result.robot);
+    text += &table(header, 1, &rows);
+    if let Some(WrenchResult { before, after }) = &result.wrench {
+        let rows = [
+            ["force".to_owned(), format!("{:.4} N", before.force_rms_n), format!("{:.4} N", after.force_rms_n)],
+            ["torque".to_owned(), format!("{:.4} Nm", before.torque_rms_nm), format!("{:.4} Nm", after.torque_rms_nm)],
+        ];
+        text += "\n";
+        text += &table(["wrench", "rms before", "after"], 1, &rows);
+    }
+    let CycleResult { count, median_ns, p999_ns, max_ns } = result.cycle;
+    text +=
+        &format!("\n{count} cycles; one takes {median_ns} ns (median), {p999_ns} ns (99.9 %), {max_ns} ns (longest)\n");
+    text
+}
+
+/// What the robot file and the log do not agree about.
+fn warn_about_model(model: &Model, reader: &SignalReader, replay: &Replay) {
+    let no_pose = reader.counts(Role::Pose).message_count == 0;
+    let needs_pose = model.robot.params().is_ok_and(|robot| robot.cables().iter().any(|cable| cable.needs_pose()));
+    if no_pose && needs_pose {
+        warnings::warn(
+            "the log has no pose: the wrap of the last pulleys is taken as 90°, and there is no wrench; name the pose's \
+             topic as `pose` under `[log]` in the robot file",
+        );
+    }
+    if replay.cables().iter().all(|cable| cable.before_n.count() == 0) {
+        warnings::warn("the log has no reference forces for these cables, so there is no error to show");
+    }
+    let interval_s = reader.counts(Role::Cable).interval_nanos * 1e-9;
+    let cycle_s = model.robot.options().cycle_s;
+    if interval_s > 0.0 && !(0.8..=1.25).contains(&(interval_s / cycle_s)) {
+        warnings::warn(&format!(
+            "the cable signal comes every {interval_s:.6} s, but `cycle_s` in the robot file is {cycle_s}; delays and \
+             checks that count cycles follow the robot file"
+        ));
+    }
+    for (name, cable) in model.robot.cable_names().iter().zip(replay.cables()) {
+        if cable.flagged_count > 0 {
+            warnings::warn(&format!(
+                "{name}: {} of {} samples are flagged ({})",
+                cable.flagged_count,
+                replay.cycle_count(),
+                CableStatus::from_bits(cable.flags)
+            ));
+        }
+    }
+}
+
+/// The log that `--output` names.
+struct OutputLog {
+    log: LogWriter,
+    forces: JointStateChannel,
+    friction: JointStateChannel,
+    wrench: WrenchChannel,
+    status: CableStatusChannel,
+    numbers: Vec<f64>,
+    flags: Vec<u32>,
+}
+
+impl OutputLog {
+    fn create(path: &std::path::Path, inputs: &[std::path::PathBuf], force: bool, model: &Model) -> Outcome<Self> {
+        let mut log = LogWriter::create(path, inputs, force)?;
+        log.attach_robot_file(&model.text)?;
+        let names = model.robot.cable_names();
+        let bits = CableStatus::NAMES.map(|(name, flag)| (name, flag.bits()));
+        Ok(Self {
+            forces: log.add_joint_state("/fric/cable_forces", "platform", &names)?,
+            friction: log.add_joint_state("/fric/friction", "platform", &names)?,
+            wrench: log.add_wrench("/fric/wrench", "base")?,
+            status: log.add_cable_status("/fric/status", "", &names, &bits)?,
+            numbers: Vec::with_capacity(names.len()),
+            flags: Vec::with_capacity(names.len()),
+            log,
+        })
+    }
+
+    fn write(&mut self, sample: &Sample<'_>, cycle: &ReplayedCycle<'_>) -> Outcome {
+        let stamp_nanos = u64::try_from(sample.stamp_nanos).map_err(|_| {
+            Failure::new(format!("a cable message has the stamp {} ns, before 1970", sample.stamp_nanos))
+                .advise("Such a log cannot be written; replay it without -o.")
+        })?;
+        let Self { log, forces, friction, wrench, status, numbers, flags } = self;
+        numbers.clear();
+        numbers.extend(cycle.cables.iter().map(|cable| cable.force_at_platform_n));
+        log.write_joint_state(forces, stamp_nanos, JointState { effort: numbers, ..JointState::default() })?;
+        numbers.clear();
+        numbers.extend(cycle.cables.iter().map(|cable| cable.friction_n));
+        log.write_joint_state(friction, stamp_nanos, JointState { effort: numbers, ..JointState::default() })?;
+        if let Some(outside) = &cycle.outside_wrench {
+            let message = Wrench { force_n: outside.force_n.into(), torque_nm: outside.torque_nm.into() };
+            log.write_wrench(wrench, stamp_nanos, &message)?;
+        }
+        flags.clear();
+        flags.extend(cycle.cables.iter().map(|cable| cable.status.bits()));
+        log.write_cable_status(status, stamp_nanos, flags)?;
+        Ok(())
+    }
+}

@@ -1,0 +1,64 @@
+//! Why a command stopped, for people: one line with the cause, one with what to do.
+
+use std::fmt::Display;
+use std::io::Write as _;
+
+/// What `main` turns into an exit code.
+#[derive(Debug)]
+pub struct Failure {
+    cause: String,
+    advice: Option<String>,
+    is_usage: bool,
+}
+
+/// Result of a command.
+pub type Outcome<T = ()> = Result<T, Failure>;
+
+impl Failure {
+    /// The work failed: exit code 1.
+    pub fn new(cause: impl Display) -> Self {
+        Self { cause: cause.to_string(), advice: None, is_usage: false }
+    }
+
+    /// The command line is wrong: exit code 2.
+    pub fn usage(cause: impl Display) -> Self {
+        Self { is_usage: true, ..Self::new(cause) }
+    }
+
+    /// Adds what to do.
+    pub fn advise(mut self, advice: impl Display) -> Self {
+        self.advice = Some(advice.to_string());
+        self
+    }
+
+    pub fn exit_code(&self) -> u8 {
+        if self.is_usage { 2 } else { 1 }
+    }
+
+    pub fn print(&self) {
+        let mut stderr = std::io::stderr().lock();
+        // There is nowhere left to report a broken stderr to.
+        let _ = writeln!(stderr, "error: {}", self.cause);
+        if let Some(advice) = &self.advice {
+            let _ = writeln!(stderr, "  {advice}");
+        }
+    }
+}
+
+macro_rules! failure_from {
+    ($($error:ty),* $(,)?) => {$(
+        impl From<$error> for Failure {
+            fn from(error: $error) -> Self {
+                Self::new(error)
+            }
+        }
+    )*};
+}
+
+failure_from!(
+    fric_core::ParamError,
+    fric_core::robot::file::RobotFileError,
+    fric_log::recording::RecordingError,
+    fric_log::signals::SignalError,
+    fric_log::write::WriteError,
+);

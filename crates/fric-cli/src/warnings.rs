@@ -1,0 +1,56 @@
+//! What is worth knowing about a log that was read, on stderr.
+
+use std::io::Write as _;
+
+use fric_log::recording::Recording;
+use fric_log::signals::{Role, SignalPaths, SignalReader, TrackCounts};
+
+/// One line on stderr.
+pub fn warn(text: &str) {
+    // Nothing can be done about a stderr that is gone.
+    let _ = writeln!(std::io::stderr(), "warning: {text}");
+}
+
+/// What could not be read, and what came late.
+pub fn about_recording(recording: &Recording) {
+    for line in recording.damage().to_string().lines() {
+        warn(line);
+    }
+    if recording.late_count() > 0 {
+        #[expect(clippy::cast_precision_loss, reason = "for people")]
+        let most_s = recording.most_late_nanos() as f64 * 1e-9;
+        warn(&format!(
+            "{} messages stand too far from their time in the file to be put in order, by up to {most_s:.3} s",
+            recording.late_count()
+        ));
+    }
+}
+
+/// What the signals' topics did.
+pub fn about_signals(reader: &SignalReader, paths: &SignalPaths) {
+    for role in Role::ALL {
+        let Some(path) = paths.get(role) else { continue };
+        let counts = reader.counts(role);
+        let remarks = remarks(counts);
+        if !remarks.is_empty() {
+            warn(&format!("{} signal `{path}`: {}", role.key(), remarks.join(", ")));
+        }
+        if let Some(problem) = reader.first_problem(role) {
+            warn(&format!("{} signal `{path}`: some messages cannot be used; the first: {problem}", role.key()));
+        }
+    }
+}
+
+/// What a topic did out of the ordinary, in words.
+pub fn remarks(counts: &TrackCounts) -> Vec<String> {
+    let TrackCounts { duplicate_count, late_count, clock_step_count, gap_count, undecodable_count, .. } = *counts;
+    let all = [
+        (gap_count, "gap", "gaps"),
+        (duplicate_count, "message with a stamp used before", "messages with a stamp used before"),
+        (late_count, "late message left out", "late messages left out"),
+        (clock_step_count, "clock step backwards", "clock steps backwards"),
+        (undecodable_count, "unusable message", "unusable messages"),
+    ];
+    let said = all.into_iter().filter(|(count, ..)| *count > 0);
+    said.map(|(count, one, many)| format!("{count} {}", if count == 1 { one } else { many })).collect()
+}

@@ -1,0 +1,132 @@
+//! Replay: the samples of a log through the very cycle that runs in the control loop, compared with the reference.
+//!
+//! [`Replay::step`] runs one cycle and accumulates the errors before (sensor force turned into tension as if nothing
+//! rubbed) and after (compensated). It keeps sums only: memory does not grow with the log. Samples without a reference
+//! count for nothing in the errors; flagged ones count as all others, since the control loop has to live with them.
+
+mod compensator;
+mod error;
+
+use fric_core::{CableOutput, ParamError, RobotParams, Sample, Wrench};
+
+pub use compensator::AnyCompensator;
+pub use error::Deviation;
+
+/// What has been accumulated for a cable.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CableErrors {
+    /// Cycles with any flag of [`fric_core::CableStatus`].
+    pub flagged_count: u64,
+    /// Each flag that has been raised, as bits.
+    pub flags: u32,
+    /// Frictionless force less reference, N.
+    pub before_n: Deviation,
+    /// Compensated force less reference, N.
+    pub after_n: Deviation,
+}
+
+/// What has been accumulated for the wrench.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct WrenchErrors {
+    force_squares: f64,
+    torque_squares: f64,
+    count: u64,
+}
+
+impl WrenchErrors {
+    fn add(&mut self, deviation: &Wrench) {
+        let (force, torque) = (deviation.force_n.norm_squared(), deviation.torque_nm.norm_squared());
+        if force.is_finite() && torque.is_finite() {
+            self.force_squares += force;
+            self.torque_squares += torque;
+            self.count += 1;
+        }
+    }
+
+    /// Root mean square of the force deviation's length, N, and of the torque's, N m; `None` without any.
+    #[must_use]
+    pub fn rms(&self) -> Option<(f64, f64)> {
+        #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
+        let count = self.count as f64;
+        (self.count > 0).then(|| ((self.force_squares / count).sqrt(), (self.torque_squares / count).sqrt()))
+    }
+}
+
+/// A replay in progress.
+#[derive(Debug)]
+pub struct Replay {
+    compensator: AnyCompensator,
+    cables: Vec<CableErrors>,
+    wrench_before: WrenchErrors,
+    wrench_after: WrenchErrors,
+    cycle_count: u64,
+}
+
+/// Outcome of one cycle of a replay.
+#[derive(Clone, Copy, Debug)]
+pub struct ReplayedCycle<'a> {
+    /// The cables in the robot's order.
+    pub cables: &'a [CableOutput],
+    /// Wrench from outside by the compensated forces.
+    pub outside_wrench: Option<Wrench>,
+    /// How long the cycle took, the compensator alone, ns.
+    pub cycle_ns: u64,
+}
+
+impl Replay {
+    /// A replay with a fresh compensator.
+    ///
+    /// # Errors
+    /// As [`AnyCompensator::new`].
+    pub fn new(robot: &RobotParams<'_>) -> Result<Self, ParamError> {
+        Ok(Self {
+            compensator: AnyCompensator::new(robot)?,
+            cables: vec![CableErrors::default(); robot.cables().len()],
+            wrench_before: WrenchErrors::default(),
+            wrench_after: WrenchErrors::default(),
+            cycle_count: 0,
+        })
+    }
+
+    /// Runs one cycle.
+    pub fn step(&mut self, sample: &Sample<'_>) -> ReplayedCycle<'_> {
+        self.compensator.set_input(sample.cables, sample.pose);
+        let start = std::time::Instant::now();
+        let outside_wrench = self.compensator.step();
+        let cycle_ns = u64::try_from(start.elapsed().as_nanos()).unwrap_or(u64::MAX);
+        self.cycle_count += 1;
+        if let (Some(reference), Some(wrench)) = (&sample.outside_wrench, outside_wrench) {
+            self.wrench_after.add(&(wrench - *reference));
+            let frictionless_n = self.compensator.outputs().iter().map(|cable| cable.frictionless_n);
+            if let Some(before) = self.compensator.outside_wrench_of(frictionless_n) {
+                self.wrench_before.add(&(before - *reference));
+            }
+        }
+        let outputs = self.compensator.outputs();
+        for ((errors, output), reference_n) in self.cables.iter_mut().zip(outputs).zip(sample.reference_force_n) {
+            errors.flagged_count += u64::from(!output.status.is_ok());
+            errors.flags |= output.status.bits();
+            errors.before_n.add(output.frictionless_n - reference_n);
+            errors.after_n.add(output.force_at_platform_n - reference_n);
+        }
+        ReplayedCycle { cables: self.compensator.outputs(), outside_wrench, cycle_ns }
+    }
+
+    /// Errors of the cables so far, in the robot's order.
+    #[must_use]
+    pub fn cables(&self) -> &[CableErrors] {
+        &self.cables
+    }
+
+    /// Errors of the wrench so far: before, after.
+    #[must_use]
+    pub fn wrench(&self) -> (&WrenchErrors, &WrenchErrors) {
+        (&self.wrench_before, &self.wrench_after)
+    }
+
+    /// Cycles run so far.
+    #[must_use]
+    pub fn cycle_count(&self) -> u64 {
+        self.cycle_count
+    }
+}

@@ -1,0 +1,203 @@
+//! The friction truth: a bristle in each pulley's bearing.
+//!
+//! A bearing sticks through an elastic bristle of stiffness `σ/n`. Its deflection z follows the cable and gives way as
+//! its force approaches what the bearing can hold, `f_c = μ·F_N`:
+//!
+//! `dz/dt = v − |v|·(σ/n)·z/f_c`, friction force `f = (σ/n)·z` (\[P\] 16 with exponent 1, for the deflection instead of the
+//! force), with the *exact* normal force `F_N = √(F_{j−1}² − 2F_{j−1}F_j cos α + F_j²)` (\[P\] 7).
+//!
+//! The tension is given at the platform, so the chain is solved from there to the winch: `F_{j−1} = F_j − f_j − F_pv·v`
+//! (\[P\] 5, 6), and the sensor shows `F_s = F_1 − F_0 cos α₁` (\[P\] 11), or `F_0` where it is in line with the cable.
+//!
+//! Nothing here is the compensator's: not the unknown (deflection, not force), not the normal force (exact, not its
+//! approximation \[P\] 8), not the direction (platform to winch), not the integration: the two-stage, L-stable,
+//! diagonally implicit Runge-Kutta method of second order with `γ = 1 − √2/2`, several steps to a cycle. An L-stable one
+//! because a bearing without presliding is an infinitely stiff bristle.
+//!
+//! The cable never slips on a pulley here. A cable that friction would slacken at the winch has no tension there.
+
+use core::f64::consts::SQRT_2;
+
+use super::effects::{TruthEffect, TruthEffects};
+
+/// Stiffness that stands for "no presliding", N/m: friction reverses within nanometres.
+pub const STIFF_N_PER_M: f64 = 1e9;
+/// Integration steps in a cycle.
+pub const SUBSTEPS: u32 = 10;
+
+const GAMMA: f64 = 1.0 - SQRT_2 / 2.0;
+/// The normal force depends on the friction that is sought; so many rounds settle it for every μ a robot file may have.
+const MOST_ROUNDS: u32 = 200;
+/// Friction is settled to this share of the tension.
+const SETTLED_SHARE: f64 = 1e-13;
+
+/// A cable at one instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moment {
+    /// Tension at the platform, N.
+    pub force_n: f64,
+    /// Length, m, positive paying out.
+    pub length_m: f64,
+    /// Its rate, m/s.
+    pub speed_m_per_s: f64,
+    /// cos α of the pulley whose wrap follows the pose.
+    pub pose_cos: f64,
+}
+
+/// A pulley as nature has it.
+#[derive(Clone, Copy, Debug)]
+pub struct PulleyTruth {
+    /// Bearing friction, 1.
+    pub mu: f64,
+    /// cos of its wrap; `None` where that follows the pose.
+    pub cos_wrap: Option<f64>,
+    /// F_pv, N s/m.
+    pub viscous_n_s_per_m: f64,
+}
+
+/// The pulleys of a cable from the winch to the platform, with the deflection of their bristles.
+#[derive(Debug)]
+pub struct BristleChain {
+    pulleys: Vec<Bristle>,
+    /// Whether the first pulley carries the sensor; in line with the cable otherwise.
+    sensor_pulley: bool,
+    effects: TruthEffects,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Bristle {
+    pulley: PulleyTruth,
+    stiffness_n_per_m: f64,
+    deflection_m: f64,
+}
+
+impl BristleChain {
+    /// At rest with all bristles relaxed; `sigma_n_per_m` is the whole cable's, shared evenly.
+    pub fn new(pulleys: &[PulleyTruth], sigma_n_per_m: f64, sensor_pulley: bool, effects: TruthEffects) -> Self {
+        #[expect(clippy::cast_precision_loss, reason = "a number of pulleys")]
+        let stiffness_n_per_m = sigma_n_per_m / pulleys.len().max(1) as f64;
+        let pulleys =
+            pulleys.iter().map(|&pulley| Bristle { pulley, stiffness_n_per_m, deflection_m: 0.0 }).collect();
+        Self { pulleys, sensor_pulley, effects }
+    }
+
+    /// From one cycle to the next. In between, force and wrap change linearly and speed as the parabola that has both
+    /// speeds at its ends and covers the change of length.
+    pub fn advance(&mut self, from: &Moment, to: &Moment, cycle_s: f64, substeps: u32) {
+        let span = Span::new(from, to, cycle_s);
+        let step = 1.0 / f64::from(substeps);
+        for part in 0..substeps {
+            let start = f64::from(part) * step;
+            // Stage times of the Runge-Kutta method; the second one is the end of the step.
+            let stages = [span.at(start + GAMMA * step), span.at(start + step)];
+            let mut forces_n = stages.map(|stage| stage.force_n);
+            for bristle in self.pulleys.iter_mut().rev() {
+                bristle.step(&stages, &mut forces_n, step * cycle_s, &self.effects);
+            }
+        }
+    }
+
+    /// What the sensor feels, N.
+    pub fn sensor_force_n(&self, at: &Moment) -> f64 {
+        let mut downstream_n = at.force_n;
+        let mut upstream_n = at.force_n;
+        for bristle in self.pulleys.iter().rev() {
+            downstream_n = upstream_n;
+            upstream_n = bristle.upstream_n(downstream_n, bristle.deflection_m, at);
+        }
+        match self.pulleys.first() {
+            Some(bristle) if self.sensor_pulley => downstream_n - upstream_n * bristle.cos_wrap(at),
+            _ => upstream_n,
+        }
+    }
+
+    /// Force of each bristle, N, from the winch.
+    #[cfg(test)]
+    fn friction_n(&self) -> Vec<f64> {
+        self.pulleys.iter().map(|bristle| bristle.stiffness_n_per_m * bristle.deflection_m).collect()
+    }
+}
+
+impl Bristle {
+    fn cos_wrap(&self, at: &Moment) -> f64 {
+        self.pulley.cos_wrap.unwrap_or(at.pose_cos)
+    }
+
+    fn upstream_n(&self, downstream_n: f64, deflection_m: f64, at: &Moment) -> f64 {
+        let viscous_n = self.pulley.viscous_n_s_per_m * at.speed_m_per_s;
+        (downstream_n - self.stiffness_n_per_m * deflection_m - viscous_n).max(0.0)
+    }
+
+    /// One step; `forces_n` are the tensions behind the pulley at the stages, on return those before it.
+    fn step(&mut self, stages: &[Moment; 2], forces_n: &mut [f64; 2], step_s: f64, effects: &TruthEffects) {
+        let [first, second] = stages;
+        let own_s = GAMMA * step_s;
+        let begin_m = self.deflection_m;
+        let first_m = self.stage(begin_m, own_s, first, forces_n[0], begin_m, effects);
+        let first_m_per_s = (first_m - begin_m) / own_s;
+        let base_m = begin_m + (1.0 - GAMMA) * step_s * first_m_per_s;
+        let second_m = self.stage(base_m, own_s, second, forces_n[1], first_m, effects);
+        forces_n[0] = self.upstream_n(forces_n[0], first_m, first);
+        forces_n[1] = self.upstream_n(forces_n[1], second_m, second);
+        self.deflection_m = second_m;
+    }
+
+    /// Solves `z = base + h·(v − |v|·σ·z/f_c(z))` for z.
+    fn stage(&self, base_m: f64, h_s: f64, at: &Moment, force_n: f64, guess_m: f64, effects: &TruthEffects) -> f64 {
+        let travel_m = h_s * at.speed_m_per_s;
+        if travel_m.abs() <= 0.0 {
+            return base_m;
+        }
+        let mu = self.pulley.mu * effects.mu_factor(at.speed_m_per_s);
+        let cos = self.cos_wrap(at);
+        let give_n = travel_m.abs() * self.stiffness_n_per_m;
+        let mut deflection_m = guess_m;
+        for _ in 0..MOST_ROUNDS {
+            let upstream_n = self.upstream_n(force_n, deflection_m, at);
+            let squared = upstream_n * upstream_n - 2.0 * upstream_n * force_n * cos + force_n * force_n;
+            let sliding_n = mu * libm::sqrt(squared.max(0.0));
+            let last_m = deflection_m;
+            // Multiplied by f_c, so that a bearing without load, whose bristle relaxes at once, is no division by zero.
+            deflection_m = sliding_n * (base_m + travel_m) / (sliding_n + give_n);
+            if (deflection_m - last_m).abs() * self.stiffness_n_per_m <= SETTLED_SHARE * force_n {
+                break;
+            }
+        }
+        deflection_m
+    }
+}
+
+/// One cycle as functions of the share of it that has passed.
+struct Span {
+    from: Moment,
+    to: Moment,
+    cycle_s: f64,
+    excess_m_per_s: f64,
+}
+
+impl Span {
+    fn new(from: &Moment, to: &Moment, cycle_s: f64) -> Self {
+        let mean_m_per_s = (to.length_m - from.length_m) / cycle_s;
+        // ∫₀¹ 6s(1 − s) ds = 1: the parabola adds what the straight line between both speeds misses.
+        let excess_m_per_s = mean_m_per_s - 0.5 * (from.speed_m_per_s + to.speed_m_per_s);
+        Self { from: *from, to: *to, cycle_s, excess_m_per_s }
+    }
+
+    fn at(&self, share: f64) -> Moment {
+        let between = |from: f64, to: f64| from + share * (to - from);
+        let (from, to) = (&self.from, &self.to);
+        let linear_m_per_s = from.speed_m_per_s + 0.5 * share * (to.speed_m_per_s - from.speed_m_per_s);
+        let mean_m_per_s = linear_m_per_s + share * (3.0 - 2.0 * share) * self.excess_m_per_s;
+        Moment {
+            force_n: between(from.force_n, to.force_n),
+            length_m: from.length_m + mean_m_per_s * share * self.cycle_s,
+            speed_m_per_s: between(from.speed_m_per_s, to.speed_m_per_s)
+                + 6.0 * share * (1.0 - share) * self.excess_m_per_s,
+            pose_cos: between(from.pose_cos, to.pose_cos),
+        }
+    }
+}
+
+#[cfg(test)]
+#[path = "bristle_tests.rs"]
+mod tests;

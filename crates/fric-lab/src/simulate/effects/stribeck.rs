@@ -1,0 +1,25 @@
+//! `stribeck` in the simulated robot: the boundary layer of a bearing that has not yet built up its film.
+//!
+//! The additional share of μ decays with speed as `exp(−|v|/velocity)`, the law that the catalogue states; speed is the
+//! cable's at the instant, within the cycle too.
+
+use fric_core::effects::EffectParams;
+
+use super::TruthEffect;
+
+#[derive(Debug)]
+struct BoundaryLayer {
+    additional_ratio: f64,
+    velocity_m_per_s: f64,
+}
+
+pub fn build(params: &EffectParams) -> Box<dyn TruthEffect> {
+    let stribeck = params.stribeck;
+    Box::new(BoundaryLayer { additional_ratio: stribeck.ratio, velocity_m_per_s: stribeck.velocity_m_per_s })
+}
+
+impl TruthEffect for BoundaryLayer {
+    fn mu_factor(&self, speed_m_per_s: f64) -> f64 {
+        1.0 + self.additional_ratio * libm::exp(-speed_m_per_s.abs() / self.velocity_m_per_s)
+    }
+}

@@ -1,0 +1,111 @@
+//! What can be wrong with a simulation.
+
+use fric_core::ParamError;
+use thiserror::Error;
+
+/// Why a simulation cannot be set up. Running it cannot fail.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum SimulationError {
+    /// A number of [`SimulationOptions`](super::SimulationOptions) is not finite or out of range.
+    #[error("`{key}` is {value}; allowed is {min} to {max}")]
+    OptionOutOfRange {
+        /// The field.
+        key: &'static str,
+        /// Its value.
+        value: f64,
+        /// Least allowed.
+        min: f64,
+        /// Greatest allowed.
+        max: f64,
+    },
+    /// Two hidden effects of one kind.
+    #[error("the effect `{kind}` is hidden twice; give each effect once, with all its parameters")]
+    RepeatedEffect {
+        /// Its name in the catalogue.
+        kind: &'static str,
+    },
+    /// An effect of the catalogue that the simulated robot cannot have.
+    #[error("the effect `{kind}` is in the catalogue, but the simulation cannot do it yet; it can do {known}")]
+    UnsupportedEffect {
+        /// Its name in the catalogue.
+        kind: String,
+        /// What it can do, as a list.
+        known: String,
+    },
+    /// The robot file's parameters are not right.
+    #[error("the robot's parameters are not right: {0}")]
+    Robot(#[from] ParamError),
+    /// No place was found where every cable can leave its last pulley.
+    #[error(
+        "the platform finds no place where all cables can leave their last pulleys; \
+         check `base_m`, `platform_m`, `radius_m` and `axis`, above all the unit m"
+    )]
+    NoWorkspace,
+}
+
+/// Why the text of a [`HiddenEffect`](super::HiddenEffect) was refused.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum HiddenEffectError {
+    /// The catalogue has no such effect.
+    #[error("there is no effect `{kind}`; known are {known}")]
+    UnknownKind {
+        /// The name given.
+        kind: String,
+        /// All names, as a list.
+        known: String,
+    },
+    /// The effect has no such parameter.
+    #[error("the effect `{kind}` has no parameter `{key}`; it has {known}")]
+    UnknownKey {
+        /// The effect.
+        kind: &'static str,
+        /// The key given.
+        key: String,
+        /// All keys with unit and range, as a list.
+        known: String,
+    },
+    /// A parameter that is given twice.
+    #[error("the effect `{kind}` has the parameter `{key}` twice")]
+    RepeatedKey {
+        /// The effect.
+        kind: &'static str,
+        /// The key.
+        key: &'static str,
+    },
+    /// No parameter at all, so that nothing would be hidden.
+    #[error("the effect `{kind}` has no value, which would hide nothing; write `{kind}:key=value` with {known}")]
+    NoParameter {
+        /// The effect.
+        kind: &'static str,
+        /// All keys with unit and range, as a list.
+        known: String,
+    },
+    /// Something that is not `key=value`.
+    #[error("`{text}` is not `key=value` with a number; the effect `{kind}` has {known}")]
+    NotAValue {
+        /// The effect.
+        kind: &'static str,
+        /// The text given.
+        text: String,
+        /// All keys with unit and range, as a list.
+        known: String,
+    },
+    /// A value that is not finite or out of range.
+    #[error("`{key}` of the effect `{kind}` is {value}; allowed is {min} to {max} {unit}")]
+    OutOfRange {
+        /// The effect.
+        kind: &'static str,
+        /// The parameter.
+        key: &'static str,
+        /// The value given.
+        value: f64,
+        /// Least allowed.
+        min: f64,
+        /// Greatest allowed.
+        max: f64,
+        /// Its unit.
+        unit: &'static str,
+    },
+}

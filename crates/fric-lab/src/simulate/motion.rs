@@ -1,0 +1,99 @@
+//! How each cable moves: with the platform, or by itself on a test bench, and a little in standstill.
+//!
+//! Of a cable on the platform the length is the inverse kinematics' and its rate `dl/dt = −u·v`, u from the platform to
+//! where the cable leaves its pulley: the wrap adds nothing, for the free cable is tangent to the pulley. A cable without
+//! geometry runs the same movements as a change of its length. Each winch adds the small movements of the cable force
+//! control that \[P\], section III C, describes for standstill.
+
+use fric_core::{CableParams, Pose};
+use nalgebra::Vector3;
+use rand_chacha::ChaCha8Rng;
+
+use super::platform::Platform;
+use super::trajectory::{SetPoint, Trajectory, WorkBox};
+use super::waves::Waves;
+
+/// Micro motion of a winch: amplitudes in m and frequencies in Hz.
+const MICRO: [(f64, f64); 3] = [(10e-6, 0.35), (6e-6, 0.9), (4e-6, 2.1)];
+/// Length of a cable without geometry in the middle of its run, m.
+const BENCH_LENGTH_M: f64 = 1.0;
+/// Half of the longest movement of a cable without geometry, m.
+const BENCH_HALF_M: f64 = 0.2;
+
+/// Length of a cable and its rate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CableMotion {
+    pub length_m: f64,
+    pub speed_m_per_s: f64,
+}
+
+/// The movements of a robot.
+#[derive(Clone, Debug)]
+pub struct Motion {
+    /// Of the platform, where any cable is attached to it.
+    platform: Option<Trajectory>,
+    /// Of cables without geometry, the length as x.
+    bench: Trajectory,
+}
+
+/// How one cable follows them.
+#[derive(Clone, Debug)]
+pub struct Winch {
+    params: CableParams,
+    micro: Waves,
+}
+
+impl Motion {
+    pub fn new(work_box: Option<&WorkBox>) -> Self {
+        let bench = WorkBox {
+            center_m: Vector3::new(BENCH_LENGTH_M, 0.0, 0.0),
+            half_edges_m: Vector3::new(BENCH_HALF_M, 0.0, 0.0),
+            direction: Vector3::x(),
+        };
+        Self {
+            platform: work_box.map(Trajectory::identification),
+            bench: Trajectory::identification(&bench),
+        }
+    }
+
+    /// The run that sets the duration.
+    pub fn trajectory(&self) -> &Trajectory {
+        self.platform.as_ref().unwrap_or(&self.bench)
+    }
+
+    /// Pose and set point of the platform, where there is one.
+    pub fn platform(&self, time_s: f64) -> Option<(Pose, SetPoint)> {
+        let set_point = self.platform.as_ref()?.at(time_s);
+        Some((Platform::pose(set_point.position_m), set_point))
+    }
+}
+
+impl Winch {
+    pub fn new(params: CableParams, random: &mut ChaCha8Rng) -> Self {
+        Self { params, micro: Waves::new(&MICRO, random) }
+    }
+
+    /// The cable's motion at a time at which the platform is at `platform`; `None` where it cannot leave its last pulley.
+    pub fn motion(&self, motion: &Motion, platform: Option<&(Pose, SetPoint)>, time_s: f64) -> Option<CableMotion> {
+        let coarse = match platform.filter(|_| self.params.has_geometry()) {
+            Some((pose, set_point)) => CableMotion {
+                length_m: self.params.length_m(pose)?,
+                speed_m_per_s: -self.params.direction(pose)?.dot(&set_point.velocity_m_per_s),
+            },
+            None => {
+                let set_point = motion.bench.at(time_s);
+                CableMotion { length_m: set_point.position_m.x, speed_m_per_s: set_point.velocity_m_per_s.x }
+            }
+        };
+        Some(CableMotion {
+            length_m: coarse.length_m + self.micro.value(time_s),
+            speed_m_per_s: coarse.speed_m_per_s + self.micro.rate(time_s),
+        })
+    }
+
+    /// cos of the wrap that follows the pose; 1, no wrap, where none does.
+    pub fn pose_cos(&self, platform: Option<&(Pose, SetPoint)>) -> f64 {
+        let wrap_rad = platform.and_then(|(pose, _)| self.params.pose_wrap_rad(pose));
+        wrap_rad.map_or(1.0, libm::cos)
+    }
+}

@@ -1,0 +1,70 @@
+//! What a simulation can be told.
+
+use super::error::SimulationError;
+use super::hidden::HiddenEffect;
+
+/// Longest run, s: 100 days.
+const LONGEST_S: f64 = 8.64e6;
+/// Most noise, N.
+const LOUDEST_N: f64 = 1e6;
+
+/// How to simulate a robot. The robot itself, its friction included, is the robot file's.
+///
+/// ```
+/// use fric_lab::simulate::SimulationOptions;
+/// let quiet = SimulationOptions { sensor_noise_n: 0.0, reference_noise_n: 0.0, ..SimulationOptions::default() };
+/// assert_eq!(quiet.seed, 0);
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct SimulationOptions {
+    /// The same seed gives the same bits.
+    pub seed: u64,
+    /// How long, s; one identification run if not given. A shorter time cuts the run, a longer one repeats it.
+    pub duration_s: Option<f64>,
+    /// Standard deviation of the white Gaussian noise of each cable's force sensor, N.
+    pub sensor_noise_n: f64,
+    /// Standard deviation of the white Gaussian noise of each reference force at the platform, N.
+    pub reference_noise_n: f64,
+    /// How far each pulley's μ is from the cable's at most, as a share of it: uniform in `±mu_spread_ratio`, 0…1.
+    pub mu_spread_ratio: f64,
+    /// Effects that act on every cable beside those in the robot file.
+    pub effects: Vec<HiddenEffect>,
+}
+
+impl Default for SimulationOptions {
+    /// One run with 0.02 N of noise at the sensor and 0.01 N at the reference, all pulleys of a cable alike, nothing
+    /// hidden.
+    fn default() -> Self {
+        Self {
+            seed: 0,
+            duration_s: None,
+            sensor_noise_n: 0.02,
+            reference_noise_n: 0.01,
+            mu_spread_ratio: 0.0,
+            effects: Vec::new(),
+        }
+    }
+}
+
+impl SimulationOptions {
+    /// Whether all numbers are in range for a robot with this cycle time.
+    pub(super) fn check(&self, cycle_s: f64) -> Result<(), SimulationError> {
+        let ranges = [
+            ("duration_s", self.duration_s.unwrap_or(cycle_s), cycle_s, LONGEST_S),
+            ("sensor_noise_n", self.sensor_noise_n, 0.0, LOUDEST_N),
+            ("reference_noise_n", self.reference_noise_n, 0.0, LOUDEST_N),
+            ("mu_spread_ratio", self.mu_spread_ratio, 0.0, 1.0),
+        ];
+        for (key, value, min, max) in ranges {
+            if !(min..=max).contains(&value) {
+                return Err(SimulationError::OptionOutOfRange { key, value, min, max });
+            }
+        }
+        for (place, effect) in self.effects.iter().enumerate() {
+            if self.effects.iter().take(place).any(|other| other.kind() == effect.kind()) {
+                return Err(SimulationError::RepeatedEffect { kind: effect.kind() });
+            }
+        }
+        Ok(())
+    }
+}

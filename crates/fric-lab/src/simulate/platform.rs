@@ -1,0 +1,109 @@
+//! The simulated platform: which wrench acts on it and how its cables pull.
+//!
+//! It keeps its orientation along the base axes; every movement is a translation. Newton and Euler about the platform
+//! origin then read `A^T f + w = 0` with `w = m·[g − a; c × (g − a)]`, c the centre of mass (\[P\] 2, gravity and inertia
+//! on the side of w).
+
+use fric_core::robot::file::RobotFile;
+use fric_core::{CableParams, Pose, Wrench};
+use nalgebra::{UnitQuaternion, Vector3, Vector6};
+
+/// Mass, attachment points and cables, those without geometry left out.
+#[derive(Clone, Debug)]
+pub struct Platform {
+    mass_kg: f64,
+    center_of_mass_m: Vector3<f64>,
+    gravity_m_per_s2: Vector3<f64>,
+    cables: Vec<Attached>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Attached {
+    params: CableParams,
+    base_m: Vector3<f64>,
+    platform_m: Vector3<f64>,
+}
+
+impl Platform {
+    pub fn new(robot: &RobotFile, params: &[CableParams]) -> Self {
+        let table = &robot.options().platform;
+        let cables = robot.options().cable.iter().zip(params).filter_map(|(cable, params)| {
+            let (base_m, platform_m) = cable.base_m.zip(cable.platform_m)?;
+            Some(Attached { params: *params, base_m: base_m.into(), platform_m: platform_m.into() })
+        });
+        Self {
+            mass_kg: table.mass_kg,
+            center_of_mass_m: table.center_of_mass_m.into(),
+            gravity_m_per_s2: table.gravity_m_per_s2.into(),
+            cables: cables.collect(),
+        }
+    }
+
+    /// Attached cables.
+    pub fn cable_count(&self) -> usize {
+        self.cables.len()
+    }
+
+    /// Weight, N.
+    pub fn weight_n(&self) -> f64 {
+        self.mass_kg * self.gravity_m_per_s2.norm()
+    }
+
+    /// Unit vector of gravity; downwards where there is none.
+    pub fn down(&self) -> Vector3<f64> {
+        self.gravity_m_per_s2.try_normalize(1e-9).unwrap_or_else(|| -Vector3::z())
+    }
+
+    /// Root mean square distance of the attachments from the platform origin, m.
+    pub fn arm_m(&self) -> f64 {
+        let squares: Vec<f64> = self.cables.iter().map(|cable| cable.platform_m.norm_squared()).collect();
+        mean(&squares).sqrt()
+    }
+
+    /// Least and greatest corner of the points where the cables enter their last pulleys.
+    pub fn base_corners_m(&self) -> [Vector3<f64>; 2] {
+        let start = [f64::INFINITY, f64::NEG_INFINITY].map(|value| Vector3::repeat(value));
+        self.cables.iter().fold(start, |[least, greatest], cable| [least.inf(&cable.base_m), greatest.sup(&cable.base_m)])
+    }
+
+    /// The platform at a place.
+    pub fn pose(position_m: Vector3<f64>) -> Pose {
+        Pose { position_m, orientation: UnitQuaternion::identity() }
+    }
+
+    /// Columns `[u; b × u]` of `A^T`, u from the platform to where the cable leaves its pulley; false where one cannot
+    /// leave its pulley, and then the columns are as they were.
+    pub fn structure(&self, pose: &Pose, columns: &mut Vec<Vector6<f64>>) -> bool {
+        if self.cables.iter().any(|cable| cable.params.direction(pose).is_none()) {
+            return false;
+        }
+        columns.clear();
+        columns.extend(self.cables.iter().filter_map(|cable| {
+            let direction = cable.params.direction(pose)?;
+            Some(stack(&direction, &cable.platform_m.cross(&direction)))
+        }));
+        true
+    }
+
+    /// The wrench of gravity and inertia at an acceleration of the platform.
+    pub fn outside_wrench(&self, acceleration_m_per_s2: &Vector3<f64>) -> Vector6<f64> {
+        let force_n = (self.gravity_m_per_s2 - acceleration_m_per_s2) * self.mass_kg;
+        stack(&force_n, &self.center_of_mass_m.cross(&force_n))
+    }
+}
+
+/// `−A^T f`: the wrench that acts on the platform from outside when it moves as its cables pull.
+pub fn balanced_wrench(columns: &[Vector6<f64>], forces_n: impl Iterator<Item = f64>) -> Wrench {
+    let sum = columns.iter().zip(forces_n).fold(Vector6::zeros(), |sum, (column, force_n)| sum - column * force_n);
+    Wrench { force_n: sum.fixed_rows::<3>(0).into_owned(), torque_nm: sum.fixed_rows::<3>(3).into_owned() }
+}
+
+fn stack(force: &Vector3<f64>, torque: &Vector3<f64>) -> Vector6<f64> {
+    Vector6::new(force.x, force.y, force.z, torque.x, torque.y, torque.z)
+}
+
+fn mean(values: &[f64]) -> f64 {
+    #[expect(clippy::cast_precision_loss, reason = "a number of cables")]
+    let count = values.len().max(1) as f64;
+    values.iter().sum::<f64>() / count
+}

@@ -1,0 +1,314 @@
+//! The simulated robot as a stream of cycles.
+
+use fric_core::robot::file::{CableTable, RobotFile};
+use fric_core::{CableInput, Pose, Wrench};
+use nalgebra::Vector6;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use rand_distr::{Distribution as _, StandardNormal};
+
+use super::bristle::{BristleChain, Moment, PulleyTruth, STIFF_N_PER_M, SUBSTEPS};
+use super::distribution::Distribution;
+use super::effects::{TruthEffect, TruthEffects};
+use super::error::SimulationError;
+use super::motion::{CableMotion, Motion, Winch};
+use super::options::SimulationOptions;
+use super::platform::{Platform, balanced_wrench};
+use super::tension::{TensionLevel, Variation};
+use super::trajectory::{SetPoint, Trajectory};
+use super::waves::uniform;
+use super::workspace::Workspace;
+
+/// Stamp of the first cycle: 28 May 2026, 20:26:40 UTC. The same in every run, so that equal seeds give equal logs.
+pub const START_NANOS: i64 = 1_780_000_000_000_000_000;
+
+/// A simulated robot at work; memory does not depend on the duration.
+#[derive(Debug)]
+pub struct Simulation {
+    cycle_s: f64,
+    total_cycles: u64,
+    done_cycles: u64,
+    motion: Motion,
+    platform: Platform,
+    tension: Tension,
+    cables: Vec<SimulatedCable>,
+    sensor_noise_n: f64,
+    reference_noise_n: f64,
+    columns: Vec<Vector6<f64>>,
+    forces_n: Vec<f64>,
+    inputs: Vec<CableInput>,
+    references_n: Vec<f64>,
+}
+
+/// One cycle of all cables, in the robot file's order.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SimulatedCycle<'a> {
+    /// Time, ns.
+    pub stamp_nanos: i64,
+    /// What sensors and winches show.
+    pub cables: &'a [CableInput],
+    /// Measured cable forces at the platform, N: the true ones with offset and noise.
+    pub reference_force_n: &'a [f64],
+    /// Pose of the platform, where a cable is attached to it.
+    pub pose: Option<Pose>,
+    /// True wrench `−A^T f` on the platform from outside, gravity and inertia included, base axes, about the platform
+    /// origin; where all cables are attached.
+    pub outside_wrench: Option<Wrench>,
+}
+
+/// Where the tensions come from.
+#[derive(Debug)]
+enum Tension {
+    /// The platform holds itself by all cables.
+    Platform { level: TensionLevel, distribution: Box<Distribution>, common: Variation, balanced: bool },
+    /// Each cable has a load of its own.
+    Bench { level: TensionLevel },
+}
+
+#[derive(Debug)]
+struct SimulatedCable {
+    winch: Winch,
+    variation: Variation,
+    chain: BristleChain,
+    lead_s: f64,
+    offset_n: f64,
+    noise: ChaCha8Rng,
+    moment: Option<Moment>,
+    logged: CableMotion,
+}
+
+/// What a seeded stream of random numbers is for; streams of one seed do not depend on each other.
+#[derive(Clone, Copy)]
+enum Purpose {
+    Spread,
+    Micro,
+    Load,
+    Noise,
+    Prestress,
+}
+
+fn random(seed: u64, purpose: Purpose, cable: usize) -> ChaCha8Rng {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    random.set_stream(((cable as u64) << 8) | purpose as u64);
+    random
+}
+
+impl Simulation {
+    /// Sets the robot up: finds a workspace, draws what the seed decides, hides the effects.
+    ///
+    /// A robot whose cables are all attached to the platform moves it; its tensions hold it (see
+    /// [`is_balanced`](Self::is_balanced)). Cables without geometry run the same movements each for itself, under a load
+    /// that varies. A cable with `presliding = "lumped"` has a bristle on each pulley too: nature knows no other.
+    /// `traction_mu` and `validated` of the file have no effect.
+    ///
+    /// # Errors
+    /// [`SimulationError`] for an option out of range, an effect that cannot be simulated, and a robot without a place
+    /// where all its cables can run.
+    pub fn new(robot: &RobotFile, options: &SimulationOptions) -> Result<Self, SimulationError> {
+        let params = robot.params()?;
+        let cycle_s = params.cycle_s();
+        options.check(cycle_s)?;
+        let tables = &robot.options().cable;
+        let platform = Platform::new(robot, params.cables());
+        let viscous_n_s_per_m = tables.iter().map(whole_viscous_n_s_per_m).fold(0.0, f64::max);
+        let level = TensionLevel::of_platform(&platform, viscous_n_s_per_m);
+        let workspace = (platform.cable_count() > 0).then(|| Workspace::find(&platform, &level)).transpose()?;
+        let motion = Motion::new(workspace.as_ref().map(|workspace| &workspace.work_box));
+        let held = workspace.filter(|_| platform.cable_count() == tables.len());
+        let tension = match held {
+            Some(Workspace { balanced, .. }) => Tension::Platform {
+                level,
+                distribution: Box::new(Distribution::new(platform.arm_m(), level.least_n)),
+                common: Variation::common(&mut random(options.seed, Purpose::Prestress, 0)),
+                balanced,
+            },
+            None => Tension::Bench {
+                level: TensionLevel::of_bench(platform.weight_n(), tables.len(), viscous_n_s_per_m),
+            },
+        };
+        let cables = tables
+            .iter()
+            .zip(params.cables())
+            .enumerate()
+            .map(|(cable, (table, params))| {
+                let load = &mut random(options.seed, Purpose::Load, cable);
+                let effects = TruthEffects::new(&table.effects, &options.effects)?;
+                Ok(SimulatedCable {
+                    winch: Winch::new(*params, &mut random(options.seed, Purpose::Micro, cable)),
+                    variation: if held.is_some() { Variation::own(load) } else { Variation::load(load) },
+                    lead_s: effects.motion_lead_s(),
+                    chain: chain(table, options, cable, effects),
+                    offset_n: table.friction.offset_n,
+                    noise: random(options.seed, Purpose::Noise, cable),
+                    moment: None,
+                    logged: CableMotion { length_m: 0.0, speed_m_per_s: 0.0 },
+                })
+            })
+            .collect::<Result<Vec<_>, SimulationError>>()?;
+        let duration_s = options.duration_s.unwrap_or_else(|| motion.trajectory().duration_s());
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "checked: 1 to 10¹³")]
+        let total_cycles = libm::round(duration_s / cycle_s).max(1.0) as u64;
+        Ok(Self {
+            cycle_s,
+            total_cycles,
+            done_cycles: 0,
+            motion,
+            platform,
+            tension,
+            columns: Vec::with_capacity(cables.len()),
+            forces_n: vec![0.0; cables.len()],
+            inputs: vec![CableInput::default(); cables.len()],
+            references_n: vec![0.0; cables.len()],
+            cables,
+            sensor_noise_n: options.sensor_noise_n,
+            reference_noise_n: options.reference_noise_n,
+        })
+    }
+
+    /// How many cycles there will be.
+    #[must_use]
+    pub fn total_cycles(&self) -> u64 {
+        self.total_cycles
+    }
+
+    /// The run that is repeated.
+    #[must_use]
+    pub fn trajectory(&self) -> &Trajectory {
+        self.motion.trajectory()
+    }
+
+    /// Whether the cables alone hold the platform, so that the outside wrench is gravity and inertia. If not (too few
+    /// cables, say) it is still `−A^T f`, and what is missing to balance comes from a guide. False on a test bench.
+    #[must_use]
+    pub fn is_balanced(&self) -> bool {
+        matches!(self.tension, Tension::Platform { balanced: true, .. })
+    }
+
+    /// The next cycle; `None` after the last. What it lends is overwritten by the following one.
+    ///
+    /// ```
+    /// use fric_core::robot::file::RobotFile;
+    /// use fric_lab::simulate::{Simulation, SimulationOptions};
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let text = r#"
+    ///     format = "fric-robot/1"
+    ///     name = "bench"
+    ///     cycle_s = 0.001
+    ///     [[cable]]
+    ///     name = "winch"
+    ///     pulleys = [{ wrap_deg = 180.0, sensor = true }, { wrap_deg = 90.0 }]
+    ///     friction = { mu = 0.02, sigma_n_per_m = 1000.0 }
+    /// "#;
+    /// let options = SimulationOptions { duration_s: Some(0.1), ..SimulationOptions::default() };
+    /// let mut simulation = Simulation::new(&RobotFile::parse(text, "example")?, &options)?;
+    /// assert_eq!(simulation.total_cycles(), 100);
+    /// let mut cycles = 0;
+    /// while let Some(cycle) = simulation.next_cycle() {
+    ///     // At 180° the sensor feels the cable twice; the rest is friction and noise.
+    ///     assert!((cycle.cables[0].sensor_force_n - 2.0 * cycle.reference_force_n[0]).abs() < 0.5);
+    ///     cycles += 1;
+    /// }
+    /// assert_eq!(cycles, 100);
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn next_cycle(&mut self) -> Option<SimulatedCycle<'_>> {
+        if self.done_cycles >= self.total_cycles {
+            return None;
+        }
+        #[expect(clippy::cast_precision_loss, reason = "checked: at most 10¹³")]
+        let time_s = self.done_cycles as f64 * self.cycle_s;
+        self.done_cycles += 1;
+        let platform = self.motion.platform(time_s);
+        self.set_tensions(platform.as_ref(), time_s);
+        let signals = self.inputs.iter_mut().zip(&mut self.references_n);
+        for ((cable, force_n), (input, reference_n)) in self.cables.iter_mut().zip(&self.forces_n).zip(signals) {
+            let sensor_force_n = cable.advance(&self.motion, platform.as_ref(), time_s, *force_n, self.cycle_s);
+            let mut noise = || -> f64 { StandardNormal.sample(&mut cable.noise) };
+            let (sensor_noise, reference_noise) = (noise(), noise());
+            *input = CableInput {
+                sensor_force_n: sensor_force_n + self.sensor_noise_n * sensor_noise,
+                length_m: cable.logged.length_m,
+                speed_m_per_s: cable.logged.speed_m_per_s,
+            };
+            *reference_n = force_n + cable.offset_n + self.reference_noise_n * reference_noise;
+        }
+        let outside_wrench = matches!(self.tension, Tension::Platform { .. })
+            .then(|| balanced_wrench(&self.columns, self.forces_n.iter().copied()));
+        #[expect(clippy::cast_possible_truncation, reason = "at most 100 days")]
+        let since_start_nanos = libm::round(time_s * 1e9) as i64;
+        Some(SimulatedCycle {
+            stamp_nanos: START_NANOS + since_start_nanos,
+            cables: &self.inputs,
+            reference_force_n: &self.references_n,
+            pose: platform.map(|(pose, _)| pose),
+            outside_wrench,
+        })
+    }
+
+    /// True cable forces at the platform at a time.
+    fn set_tensions(&mut self, platform: Option<&(Pose, SetPoint)>, time_s: f64) {
+        let (mean_n, common_share) = match &self.tension {
+            Tension::Platform { level, common, .. } => (level.mean_n, common.share(time_s)),
+            Tension::Bench { level } => (level.mean_n, 0.0),
+        };
+        for (force_n, cable) in self.forces_n.iter_mut().zip(&self.cables) {
+            *force_n = mean_n * (1.0 + common_share + cable.variation.share(time_s));
+        }
+        if let (Tension::Platform { distribution, .. }, Some((pose, set_point))) = (&mut self.tension, platform) {
+            self.platform.structure(pose, &mut self.columns);
+            let wrench = self.platform.outside_wrench(&set_point.acceleration_m_per_s2);
+            distribution.solve(&self.columns, &wrench, &mut self.forces_n);
+        }
+    }
+}
+
+impl SimulatedCable {
+    /// Moves on to a time; gives the force that the sensor feels.
+    fn advance(
+        &mut self,
+        motion: &Motion,
+        platform: Option<&(Pose, SetPoint)>,
+        time_s: f64,
+        force_n: f64,
+        cycle_s: f64,
+    ) -> f64 {
+        // The workspace has been tried: only a place between those tried could have no way out, and holds the cable.
+        let held = self.moment.map_or(self.logged, |last| CableMotion { length_m: last.length_m, speed_m_per_s: 0.0 });
+        let CableMotion { length_m, speed_m_per_s } = self.winch.motion(motion, platform, time_s).unwrap_or(held);
+        let moment = Moment { force_n, length_m, speed_m_per_s, pose_cos: self.winch.pose_cos(platform) };
+        if let Some(last) = self.moment {
+            self.chain.advance(&last, &moment, cycle_s, SUBSTEPS);
+        }
+        self.moment = Some(moment);
+        self.logged = if self.lead_s > 0.0 {
+            let later_s = time_s + self.lead_s;
+            self.winch.motion(motion, motion.platform(later_s).as_ref(), later_s).unwrap_or(self.logged)
+        } else {
+            CableMotion { length_m, speed_m_per_s }
+        };
+        self.chain.sensor_force_n(&moment)
+    }
+}
+
+/// The cable's pulleys with their own μ.
+fn chain(table: &CableTable, options: &SimulationOptions, cable: usize, effects: TruthEffects) -> BristleChain {
+    let spread = &mut random(options.seed, Purpose::Spread, cable);
+    let ratio = options.mu_spread_ratio;
+    let pulleys: Vec<PulleyTruth> = table
+        .pulleys
+        .iter()
+        .map(|pulley| PulleyTruth {
+            mu: table.friction.mu * (1.0 + uniform(spread, -ratio, ratio)),
+            cos_wrap: pulley.wrap_deg.map(|wrap_deg| libm::cos(wrap_deg.to_radians())),
+            viscous_n_s_per_m: table.friction.viscous_n_s_per_m,
+        })
+        .collect();
+    let sensor_pulley = table.pulleys.first().is_some_and(|pulley| pulley.sensor == Some(true));
+    let sigma_n_per_m = table.friction.sigma_n_per_m.unwrap_or(STIFF_N_PER_M);
+    BristleChain::new(&pulleys, sigma_n_per_m, sensor_pulley, effects)
+}
+
+fn whole_viscous_n_s_per_m(table: &CableTable) -> f64 {
+    table.pulleys.iter().map(|_| table.friction.viscous_n_s_per_m).sum()
+}

@@ -1,0 +1,87 @@
+//! How tight the cables are, and how that varies: prestress of a platform, load of a test bench.
+//!
+//! A run must show each cable under many loads, or friction that grows with load cannot be told from friction that does
+//! not. Tensions therefore wander over about a factor of three, slowly beside the movements.
+
+use rand_chacha::ChaCha8Rng;
+
+use super::platform::Platform;
+use super::waves::Waves;
+
+/// Mean tension of a robot without mass, N: that of a small robot whose sensors work up to 20 N at 180°.
+const LIGHT_N: f64 = 5.0;
+/// Mean tension per weight of the platform.
+const PER_WEIGHT: f64 = 1.25;
+/// Least tension per mean tension, beside what viscous friction takes.
+const LEAST_SHARE: f64 = 0.1;
+/// Fastest cable, m/s: no faster than the platform.
+const FASTEST_M_PER_S: f64 = 1.0;
+/// Prestress common to all cables: amplitudes as shares of the mean, and frequencies in Hz.
+const COMMON: [(f64, f64); 2] = [(0.3, 0.09), (0.15, 0.31)];
+/// What each cable adds of its own.
+const OWN: [(f64, f64); 2] = [(0.06, 0.17), (0.04, 0.53)];
+/// Load of a test bench: slow waves, and steps.
+const LOAD: [(f64, f64); 2] = [(0.25, 0.07), (0.1, 0.23)];
+const LOAD_STEPS: [(f64, f64); 2] = [(0.1, 0.11), (0.07, 0.19)];
+
+/// Mean and least tension at the platform.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TensionLevel {
+    pub mean_n: f64,
+    pub least_n: f64,
+}
+
+impl TensionLevel {
+    /// For a platform held by its cables; `viscous_n_s_per_m` is the greatest sum of F_pv along a cable. Viscous friction
+    /// at full speed is added, so that it does not slacken a cable at its winch.
+    pub fn of_platform(platform: &Platform, viscous_n_s_per_m: f64) -> Self {
+        Self::new((PER_WEIGHT * platform.weight_n()).max(LIGHT_N), viscous_n_s_per_m)
+    }
+
+    /// For a test bench with the platform's weight hung on `cable_count` cables.
+    pub fn of_bench(weight_n: f64, cable_count: usize, viscous_n_s_per_m: f64) -> Self {
+        #[expect(clippy::cast_precision_loss, reason = "a number of cables")]
+        let each_n = weight_n / cable_count.max(1) as f64;
+        Self::new(if each_n > 0.0 { each_n } else { LIGHT_N }, viscous_n_s_per_m)
+    }
+
+    fn new(mean_n: f64, viscous_n_s_per_m: f64) -> Self {
+        let drag_n = viscous_n_s_per_m * FASTEST_M_PER_S;
+        Self { mean_n: mean_n + drag_n, least_n: LEAST_SHARE * mean_n + drag_n }
+    }
+
+    /// The lowest and the highest prestress there can be.
+    pub fn extremes_n(&self) -> [f64; 2] {
+        let swing: f64 = COMMON.iter().chain(&OWN).map(|(amplitude, _)| amplitude).sum();
+        [self.mean_n * (1.0 - swing), self.mean_n * (1.0 + swing)]
+    }
+}
+
+/// Tension over time.
+#[derive(Clone, Debug)]
+pub struct Variation {
+    waves: Waves,
+    steps: Waves,
+}
+
+impl Variation {
+    /// The part of a platform's prestress that all cables share.
+    pub fn common(random: &mut ChaCha8Rng) -> Self {
+        Self { waves: Waves::new(&COMMON, random), steps: Waves::new(&[], random) }
+    }
+
+    /// A cable's own part of it.
+    pub fn own(random: &mut ChaCha8Rng) -> Self {
+        Self { waves: Waves::new(&OWN, random), steps: Waves::new(&[], random) }
+    }
+
+    /// The load of a cable on a test bench.
+    pub fn load(random: &mut ChaCha8Rng) -> Self {
+        Self { waves: Waves::new(&LOAD, random), steps: Waves::new(&LOAD_STEPS, random) }
+    }
+
+    /// Share of the mean tension by which the tension differs from it.
+    pub fn share(&self, time_s: f64) -> f64 {
+        self.waves.value(time_s) + self.steps.steps(time_s)
+    }
+}

@@ -1,0 +1,203 @@
+//! The identification run of \[P\], section III C, as a path of the platform over time.
+//!
+//! Its phases and why: small steps with breaks, stop-and-go in one direction and alternating, show presliding; strokes
+//! of rising speed show viscous friction; rectangles through the workspace vary tension and wrap. The path is a pure
+//! function of time, closed and at rest at both ends, so that it repeats without a jump.
+//!
+//! \[P\] states amplitudes, speeds and breaks; acceleration limits, the amplitudes between the stated ends and the order
+//! within a phase are this module's. An amplitude is the length of a step, not half of it.
+
+use nalgebra::Vector3;
+
+use super::stroke::Stroke;
+
+/// Amplitudes of the small movements, m: 0.25…10 mm.
+pub const AMPLITUDES_M: [f64; 7] = [0.000_25, 0.000_5, 0.001, 0.002, 0.004, 0.007, 0.010];
+/// Speed of the small movements, m/s; reached from about 3 mm on.
+pub const STEP_M_PER_S: f64 = 0.083;
+/// Rest after each small movement, s.
+pub const BREAK_S: f64 = 0.5;
+/// Length of the fast alternating movements, m.
+pub const STROKE_M: f64 = 0.1;
+/// Their speeds, m/s, there and back twice with each.
+pub const STROKES_M_PER_S: [f64; 6] = [0.167, 0.333, 0.5, 0.667, 0.833, 1.0];
+/// Speeds along the rectangles, m/s.
+pub const RECTANGLES_M_PER_S: [f64; 2] = [0.167, 0.5];
+/// Acceleration limit of small movements and rectangles, m/s².
+pub const ACCELERATION_M_PER_S2: f64 = 4.0;
+/// Acceleration limit of the strokes, m/s²: 1 m/s within 100 mm needs it.
+pub const STROKE_ACCELERATION_M_PER_S2: f64 = 16.0;
+
+/// Where a run takes place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WorkBox {
+    /// Its middle, base frame, m.
+    pub center_m: Vector3<f64>,
+    /// Half its edges, along the base axes, m; 0 where the run has no extent.
+    pub half_edges_m: Vector3<f64>,
+    /// Unit vector of the small movements and the strokes.
+    pub direction: Vector3<f64>,
+}
+
+/// What a part of the run is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Phase {
+    /// Steps in one direction with breaks, then back in the other.
+    StopAndGo,
+    /// Steps there and back with breaks.
+    Alternating,
+    /// Strokes of 100 mm there and back, faster and faster.
+    Stroke,
+    /// Along rectangles through the workspace.
+    Rectangle,
+}
+
+/// A straight movement from rest to rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Leg {
+    /// What it is for.
+    pub phase: Phase,
+    /// When it starts, s.
+    pub start_s: f64,
+    /// Where it starts, m.
+    pub from_m: Vector3<f64>,
+    /// Where it ends, m.
+    pub to_m: Vector3<f64>,
+    stroke: Stroke,
+}
+
+impl Leg {
+    /// When it ends, s; the platform rests until the next leg starts.
+    #[must_use]
+    pub fn end_s(&self) -> f64 {
+        self.start_s + self.stroke.duration_s()
+    }
+
+    /// Its greatest speed, m/s.
+    #[must_use]
+    pub fn peak_m_per_s(&self) -> f64 {
+        self.stroke.peak_m_per_s()
+    }
+}
+
+/// Position, velocity and acceleration of the platform at one time, base frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SetPoint {
+    /// Position, m.
+    pub position_m: Vector3<f64>,
+    /// Velocity, m/s.
+    pub velocity_m_per_s: Vector3<f64>,
+    /// Acceleration, m/s².
+    pub acceleration_m_per_s2: Vector3<f64>,
+}
+
+/// The identification run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trajectory {
+    legs: Vec<Leg>,
+    start_m: Vector3<f64>,
+    duration_s: f64,
+}
+
+impl Trajectory {
+    /// The run inside a box. Where the box is too small for a movement along its direction, that is made shorter.
+    #[must_use]
+    pub fn identification(work_box: &WorkBox) -> Self {
+        let WorkBox { center_m, half_edges_m, direction } = *work_box;
+        let mut run = Self { legs: Vec::new(), start_m: center_m, duration_s: BREAK_S };
+        // From the middle to the box's surface along the direction.
+        let reach_m = half_edges_m
+            .iter()
+            .zip(direction.iter())
+            .filter(|(_, part)| part.abs() > 1e-9)
+            .map(|(half_m, part)| half_m / part.abs())
+            .fold(f64::INFINITY, f64::min);
+        let fit = |length_m: f64| length_m.min(2.0 * reach_m);
+
+        let all_steps_m: f64 = AMPLITUDES_M.iter().sum();
+        let step_scale = fit(all_steps_m) / all_steps_m;
+        for sign in [1.0, -1.0] {
+            for amplitude_m in AMPLITUDES_M {
+                let to_m = run.place_m() + direction * (sign * amplitude_m * step_scale);
+                run.step_to(Phase::StopAndGo, to_m);
+            }
+        }
+        for amplitude_m in AMPLITUDES_M {
+            run.step_to(Phase::Alternating, center_m + direction * fit(amplitude_m));
+            run.step_to(Phase::Alternating, center_m);
+        }
+        let end_m = direction * (0.5 * fit(STROKE_M));
+        for speed_m_per_s in STROKES_M_PER_S {
+            for to_m in [center_m + end_m, center_m - end_m, center_m + end_m, center_m - end_m] {
+                run.go(Phase::Stroke, to_m, speed_m_per_s, STROKE_ACCELERATION_M_PER_S2);
+            }
+        }
+        run.go(Phase::Stroke, center_m, STEP_M_PER_S, ACCELERATION_M_PER_S2);
+        let [x, y, z] = [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| half_edges_m.component_mul(&axis));
+        for speed_m_per_s in RECTANGLES_M_PER_S {
+            for (one, other) in [(x, y), (y, z), (z, x)] {
+                for corner_m in [one + other, other - one, -one - other, one - other, one + other] {
+                    run.go(Phase::Rectangle, center_m + corner_m, speed_m_per_s, ACCELERATION_M_PER_S2);
+                }
+            }
+            run.go(Phase::Rectangle, center_m, speed_m_per_s, ACCELERATION_M_PER_S2);
+        }
+        run.duration_s += BREAK_S;
+        run
+    }
+
+    fn place_m(&self) -> Vector3<f64> {
+        self.legs.last().map_or(self.start_m, |leg| leg.to_m)
+    }
+
+    fn go(&mut self, phase: Phase, to_m: Vector3<f64>, speed_m_per_s: f64, acceleration_m_per_s2: f64) {
+        let from_m = self.place_m();
+        let distance_m = (to_m - from_m).norm();
+        if distance_m > 1e-9 {
+            let stroke = Stroke::new(distance_m, speed_m_per_s, acceleration_m_per_s2);
+            let leg = Leg { phase, start_s: self.duration_s, from_m, to_m, stroke };
+            self.duration_s = leg.end_s();
+            self.legs.push(leg);
+        }
+    }
+
+    fn step_to(&mut self, phase: Phase, to_m: Vector3<f64>) {
+        self.go(phase, to_m, STEP_M_PER_S, ACCELERATION_M_PER_S2);
+        self.duration_s += BREAK_S;
+    }
+
+    /// The movements in order.
+    #[must_use]
+    pub fn legs(&self) -> &[Leg] {
+        &self.legs
+    }
+
+    /// How long one run takes, s.
+    #[must_use]
+    pub fn duration_s(&self) -> f64 {
+        self.duration_s
+    }
+
+    /// Where the platform is at a time; the run repeats before its start and after its end.
+    #[must_use]
+    pub fn at(&self, time_s: f64) -> SetPoint {
+        let within_s = time_s - self.duration_s * libm::floor(time_s / self.duration_s);
+        let started = self.legs.partition_point(|leg| leg.start_s <= within_s);
+        let Some(leg) = started.checked_sub(1).and_then(|last| self.legs.get(last)) else {
+            return SetPoint {
+                position_m: self.start_m,
+                velocity_m_per_s: Vector3::zeros(),
+                acceleration_m_per_s2: Vector3::zeros(),
+            };
+        };
+        let along = leg.stroke.at(within_s - leg.start_s);
+        let whole_m = leg.to_m - leg.from_m;
+        let direction = whole_m / whole_m.norm();
+        SetPoint {
+            position_m: if within_s >= leg.end_s() { leg.to_m } else { leg.from_m + direction * along.distance_m },
+            velocity_m_per_s: direction * along.speed_m_per_s,
+            acceleration_m_per_s2: direction * along.acceleration_m_per_s2,
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! Where the platform runs: a box in the middle of the cables' base points.
+//!
+//! Boxes are tried from the largest down, first around the middle of the base points, then below it (a robot hung from
+//! a ceiling), until at a grid of places in the box, under the run's accelerations and at the lowest and highest
+//! prestress, every cable can leave its last pulley and pull. A robot that its cables cannot hold anywhere (too few of
+//! them, say) runs in the box where the least is missing, as if a guide carried the rest.
+
+use fric_core::Pose;
+use nalgebra::{Vector3, Vector6};
+
+use super::distribution::Distribution;
+use super::error::SimulationError;
+use super::platform::Platform;
+use super::tension::TensionLevel;
+use super::trajectory::{ACCELERATION_M_PER_S2, STROKE_ACCELERATION_M_PER_S2, WorkBox};
+
+/// Half edges as shares of the base points' half extent, from the largest.
+const SHARES: [f64; 7] = [0.35, 0.28, 0.2, 0.14, 0.1, 0.06, 0.03];
+/// How far below the middle, as shares of the largest half extent.
+const DEPTHS: [f64; 5] = [0.0, 0.4, 0.7, 1.0, 1.5];
+/// Longest half edge, m: rectangles through a larger box would take minutes.
+const LONGEST_HALF_EDGE_M: f64 = 0.2;
+/// Extent below which the base points lie in a plane, as a share of the largest.
+const FLAT_SHARE: f64 = 0.05;
+/// Edge of the box across such a plane, as a share of the largest.
+const ACROSS_SHARE: f64 = 0.4;
+
+/// A box and whether the cables alone hold the platform in it.
+#[derive(Clone, Copy, Debug)]
+pub struct Workspace {
+    pub work_box: WorkBox,
+    pub balanced: bool,
+}
+
+impl Workspace {
+    /// The box for a platform with at least one cable.
+    pub fn find(platform: &Platform, level: &TensionLevel) -> Result<Self, SimulationError> {
+        let mut trial = Trial {
+            platform,
+            level,
+            distribution: Distribution::new(platform.arm_m(), level.least_n),
+            columns: Vec::new(),
+            forces_n: Vec::new(),
+        };
+        let mut best: Option<(f64, WorkBox)> = None;
+        for depth in DEPTHS {
+            for share in SHARES {
+                let Some(work_box) = candidate(platform, depth, share, &mut trial.columns) else { continue };
+                let Some(missing_n) = trial.worst(&work_box) else { continue };
+                if missing_n <= 1e-9 * level.mean_n {
+                    return Ok(Self { work_box, balanced: true });
+                }
+                if best.is_none_or(|(least_n, _)| missing_n < least_n) {
+                    best = Some((missing_n, work_box));
+                }
+            }
+        }
+        let (_, work_box) = best.ok_or(SimulationError::NoWorkspace)?;
+        Ok(Self { work_box, balanced: false })
+    }
+}
+
+/// A box of a share of the base points' extent at a depth, or `None` where the cables do not get to its middle.
+fn candidate(platform: &Platform, depth: f64, share: f64, columns: &mut Vec<Vector6<f64>>) -> Option<WorkBox> {
+    let [least_m, greatest_m] = platform.base_corners_m();
+    let half_m = (greatest_m - least_m) * 0.5;
+    // A single base point has no extent: the platform then hangs within a metre of it.
+    let largest_m = if half_m.max() > 1e-6 { half_m.max() } else { 0.5 };
+    let across_m = if depth > 0.0 { largest_m * ACROSS_SHARE } else { 0.0 };
+    let half_edges_m = half_m.map(|extent_m| {
+        let extent_m = if extent_m < FLAT_SHARE * largest_m { across_m } else { extent_m };
+        (extent_m * share).min(LONGEST_HALF_EDGE_M)
+    });
+    let center_m = (least_m + greatest_m) * 0.5 + platform.down() * (depth * largest_m);
+    platform.structure(&Platform::pose(center_m), columns).then_some(())?;
+    let direction = best_direction(&half_edges_m, columns)?;
+    Some(WorkBox { center_m, half_edges_m, direction })
+}
+
+/// Of the axes and diagonals inside the box the one along which the cable that moves least moves most.
+fn best_direction(half_edges_m: &Vector3<f64>, columns: &[Vector6<f64>]) -> Option<Vector3<f64>> {
+    let parts = [0.0, 1.0, -1.0];
+    let mut best: Option<(f64, Vector3<f64>)> = None;
+    for direction in parts.into_iter().flat_map(|x| parts.into_iter().flat_map(move |y| parts.map(|z| [x, y, z]))) {
+        let outside = direction.iter().zip(half_edges_m.iter()).any(|(part, half_m)| *part != 0.0 && *half_m <= 0.0);
+        let Some(direction) = Vector3::from(direction).try_normalize(1e-9).filter(|_| !outside) else { continue };
+        let moved = |column: &Vector6<f64>| column.fixed_rows::<3>(0).dot(&direction).abs();
+        let least = columns.iter().map(moved).fold(f64::INFINITY, f64::min);
+        // A hundredth more, so that rounding does not choose between equals.
+        if best.is_none_or(|(other, _)| least > other + 0.01) {
+            best = Some((least, direction));
+        }
+    }
+    best.map(|(_, direction)| direction)
+}
+
+struct Trial<'a> {
+    platform: &'a Platform,
+    level: &'a TensionLevel,
+    distribution: Distribution,
+    columns: Vec<Vector6<f64>>,
+    forces_n: Vec<f64>,
+}
+
+impl Trial<'_> {
+    /// The greatest force that the cables fail to provide in the box, N; `None` where one cannot leave its pulley.
+    fn worst(&mut self, work_box: &WorkBox) -> Option<f64> {
+        let parts = [-1.0, 0.0, 1.0];
+        let mut worst_n = 0.0_f64;
+        for [x, y, z] in parts.into_iter().flat_map(|x| parts.into_iter().flat_map(move |y| parts.map(|z| [x, y, z]))) {
+            let place_m = work_box.center_m + work_box.half_edges_m.component_mul(&Vector3::new(x, y, z));
+            let pose = Platform::pose(place_m);
+            if !self.platform.structure(&pose, &mut self.columns) {
+                return None;
+            }
+            for axis in [Vector3::x(), Vector3::y(), Vector3::z()] {
+                worst_n = worst_n.max(self.missing_n(axis * ACCELERATION_M_PER_S2));
+                worst_n = worst_n.max(self.missing_n(axis * -ACCELERATION_M_PER_S2));
+            }
+        }
+        let pose: Pose = Platform::pose(work_box.center_m);
+        self.platform.structure(&pose, &mut self.columns).then_some(())?;
+        for sign in [1.0, -1.0] {
+            worst_n = worst_n.max(self.missing_n(work_box.direction * (sign * STROKE_ACCELERATION_M_PER_S2)));
+        }
+        Some(worst_n)
+    }
+
+    fn missing_n(&mut self, acceleration_m_per_s2: Vector3<f64>) -> f64 {
+        let wrench = self.platform.outside_wrench(&acceleration_m_per_s2);
+        let mut missing_n = 0.0_f64;
+        for mean_n in self.level.extremes_n() {
+            self.forces_n.clear();
+            self.forces_n.resize(self.columns.len(), mean_n);
+            let balance = self.distribution.solve(&self.columns, &wrench, &mut self.forces_n);
+            missing_n = missing_n.max(balance.residual_n);
+        }
+        missing_n
+    }
+}

@@ -1,0 +1,4 @@
+//! Public behaviour of `fric-lab`.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+mod simulate;

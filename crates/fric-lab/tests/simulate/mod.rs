@@ -1,0 +1,5 @@
+mod compensated;
+mod effects;
+mod robots;
+mod stream;
+mod trajectory;

@@ -1,0 +1,7 @@
+//! fric-log
+
+pub mod path;
+pub mod recording;
+pub mod schema;
+pub mod signals;
+pub mod write;

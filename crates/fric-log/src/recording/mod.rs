@@ -1,0 +1,240 @@
+//! Recordings: one or several MCAP files as one stream of messages in the order of their log time.
+//!
+//! For reading logs as they come from the field: cut off when the recorder lost power, damaged on the disk, split into
+//! several files, written topic after topic. What is readable is read, what is not is counted in [`Damage`]; only a file
+//! that is no MCAP at all, or that the operating system does not hand over, is a [`RecordingError`].
+//!
+//! Not here: what the bytes of a message mean, and what to do about gaps. The indexes in the file are not used, so that a
+//! wrong index cannot hide messages.
+//!
+//! # Bounds
+//!
+//! - Memory: 40 MiB of chunks that overlap in time and 8 MiB read ahead, both decompressed, plus one chunk as stored and
+//!   the buffers in use for recycling; more only for a single chunk that is larger than that, up to
+//!   [`CHUNK_LIMIT_BYTES`], beyond which a chunk is counted as damaged. About 80 bytes for each chunk of the recording.
+//! - Order: exact as long as the chunks that overlap at any time fit into these 40 MiB and the times in the chunks' headers
+//!   do not begin too late; otherwise messages come as early as possible and [`Recording::late_count`] tells how many came late.
+//! - One thread reads and decompresses ahead; it starts with the first message asked for and ends with the [`Recording`].
+//!
+//! # What is trusted
+//!
+//! A chunk with a checksum is delivered only if it fits. A chunk without one, or one that is cut off, is delivered as far
+//! as its records are complete. Messages outside chunks have no checksum of their own: if that of the data section does
+//! not fit, they are delivered and [`Damage`] says so.
+
+mod attachment;
+mod channels;
+mod damage;
+mod decompress;
+mod deliver;
+mod error;
+mod load;
+mod merge;
+mod open;
+mod reader;
+mod record;
+mod scan;
+mod segment;
+mod structure;
+mod window;
+
+use std::path::Path;
+use std::sync::Arc;
+
+pub use self::attachment::{ATTACHMENT_LIMIT_BYTES, Attachment, AttachmentInfo};
+pub use self::channels::{Channel, Schema};
+pub use self::damage::{Damage, DamageKind, DamagedPlace, FileDamage, FileEnd, PLACES_KEPT};
+pub use self::error::RecordingError;
+pub use self::load::CHUNK_LIMIT_BYTES;
+pub use self::scan::Metadata;
+
+use self::channels::ChannelTable;
+use self::merge::Merge;
+use self::reader::{Reader, SourceFile};
+use self::scan::AttachmentPlace;
+use self::segment::Segment;
+
+/// A message, borrowed from the recording until the next one is asked for.
+#[derive(Debug, Clone, Copy)]
+pub struct Message<'a> {
+    /// Its channel.
+    pub channel: &'a Arc<Channel>,
+    /// Its number, as the publisher counts.
+    pub sequence: u32,
+    /// When it was recorded.
+    pub log_time_nanos: u64,
+    /// When it was published.
+    pub publish_time_nanos: u64,
+    /// Its content, encoded as the channel says.
+    pub data: &'a [u8],
+}
+
+/// How many messages a file has.
+#[derive(Debug, Clone, Copy)]
+struct FileCount {
+    /// By its own statistics.
+    expected: Option<u64>,
+    /// In the segments that could be read.
+    found: u64,
+    /// All its chunks were searched for a missing channel.
+    is_searched: bool,
+}
+
+/// Messages that were delivered after a later one.
+#[derive(Debug, Clone, Copy, Default)]
+struct Late {
+    latest_nanos: u64,
+    count: u64,
+    most_nanos: u64,
+}
+
+/// One or several MCAP files, read as one.
+///
+/// ```no_run
+/// use fric_log::recording::Recording;
+///
+/// let mut recording = Recording::open(&["run_0.mcap", "run_1.mcap"])?;
+/// while let Some(message) = recording.next_message()? {
+///     println!("{} {}", message.log_time_nanos, message.channel.topic);
+/// }
+/// if !recording.damage().is_empty() {
+///     eprintln!("{}", recording.damage());
+/// }
+/// # Ok::<(), fric_log::recording::RecordingError>(())
+/// ```
+pub struct Recording {
+    files: Arc<[SourceFile]>,
+    segments: Arc<[Segment]>,
+    channels: ChannelTable,
+    attachments: Vec<(usize, AttachmentPlace)>,
+    metadata: Vec<Metadata>,
+    counts: Vec<FileCount>,
+    damage: Damage,
+    merge: Merge,
+    reader: Option<Reader>,
+    late: Late,
+    bytes_read: u64,
+}
+
+impl std::fmt::Debug for Recording {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Recording")
+            .field("files", &self.damage.files())
+            .field("channels", &self.channels.channels())
+            .finish_non_exhaustive()
+    }
+}
+
+impl Recording {
+    /// Opens the files of one recording, in any order, and finds out what is in them, without reading their chunks.
+    ///
+    /// # Errors
+    ///
+    /// If no file is named, or one of them cannot be opened or read, is empty, or is not MCAP. Damage is no error.
+    pub fn open<P: AsRef<Path>>(paths: &[P]) -> Result<Self, RecordingError> {
+        let paths: Vec<&Path> = paths.iter().map(AsRef::as_ref).collect();
+        open::open(&paths)
+    }
+
+    /// The channels known so far, each at the place of its [`Channel::id`].
+    ///
+    /// A file with a complete summary has all of them here from the start; others become known, and are appended, when
+    /// the chunks that define them are read.
+    #[must_use]
+    pub fn channels(&self) -> &[Arc<Channel>] {
+        self.channels.channels()
+    }
+
+    /// What is attached to the recording.
+    #[must_use]
+    pub fn attachments(&self) -> impl ExactSizeIterator<Item = AttachmentInfo> {
+        self.attachments.iter().map(|(_, place)| AttachmentInfo::new(place))
+    }
+
+    /// Reads an attachment by its name, the last one if there are several; `None` if there is none.
+    ///
+    /// # Errors
+    ///
+    /// If the attachment cannot be read, does not fit its checksum, or exceeds [`ATTACHMENT_LIMIT_BYTES`].
+    pub fn attachment(&self, name: &str) -> Result<Option<Attachment>, RecordingError> {
+        let mut places = self.attachments.iter().rev();
+        let found = places.find(|(_, place)| place.name == name);
+        let Some((source, place)) = found.and_then(|(file, place)| Some((self.files.get(*file)?, place))) else {
+            return Ok(None);
+        };
+        attachment::read_attachment(source, place).map(Some)
+    }
+
+    /// The metadata records of all files.
+    #[must_use]
+    pub fn metadata(&self) -> &[Metadata] {
+        &self.metadata
+    }
+
+    /// What could not be read. Complete when all messages have been read.
+    #[must_use]
+    pub fn damage(&self) -> &Damage {
+        &self.damage
+    }
+
+    /// First and last log time by the chunks' headers; `None` if there are no messages.
+    #[must_use]
+    pub fn log_time_range_nanos(&self) -> Option<(u64, u64)> {
+        let segments = || self.segments.iter().filter(|segment| !segment.is_blank());
+        let start = segments().map(|segment| segment.start_time_nanos).min()?;
+        let end = segments().map(|segment| segment.end_time_nanos).max()?;
+        Some((start, end))
+    }
+
+    /// How many messages the files say they have, if all of them say so.
+    #[must_use]
+    pub fn expected_message_count(&self) -> Option<u64> {
+        self.counts.iter().map(|count| count.expected).sum()
+    }
+
+    /// How many messages came after one with a later log time.
+    #[must_use]
+    pub fn late_count(&self) -> u64 {
+        self.late.count
+    }
+
+    /// By how much the latest of them came late.
+    #[must_use]
+    pub fn most_late_nanos(&self) -> u64 {
+        self.late.most_nanos
+    }
+
+    /// How many bytes of the files have been read so far, for a progress bar: [`Self::total_bytes`] at the end.
+    #[must_use]
+    pub fn bytes_read(&self) -> u64 {
+        self.bytes_read
+    }
+
+    /// The size of all files.
+    #[must_use]
+    pub fn total_bytes(&self) -> u64 {
+        self.files.iter().map(|source| source.len).sum()
+    }
+
+    /// The next message in the order of log time, at equal times as they stand in the files; `None` at the end.
+    ///
+    /// # Errors
+    ///
+    /// If a file that was opened can no longer be read. The next call goes on behind the part concerned.
+    #[inline]
+    pub fn next_message(&mut self) -> Result<Option<Message<'_>>, RecordingError> {
+        let Some((dense, head)) = self.find_next()? else {
+            return Ok(None);
+        };
+        let Some(channel) = self.channels.get(dense) else {
+            return Ok(None);
+        };
+        Ok(Some(Message {
+            channel,
+            sequence: head.fields.sequence,
+            log_time_nanos: head.fields.log_time_nanos,
+            publish_time_nanos: head.fields.publish_time_nanos,
+            data: self.merge.payload(&head),
+        }))
+    }
+}

@@ -1,0 +1,56 @@
+//! One channel's decoder, whichever the encoding.
+
+use prost_reflect::MessageDescriptor;
+
+use super::cdr::CdrReader;
+use super::error::{DecodeError, SchemaError};
+use super::field::Wanted;
+use super::types::TypeTable;
+use super::values::Values;
+use super::{json, protobuf};
+
+/// Reads the wanted fields of one channel's messages; made by [`MessageType::decoder`](super::MessageType::decoder).
+///
+/// It owns the buffers it reads into, about as large as what is wanted from the largest message so far.
+#[derive(Debug, Clone)]
+pub struct Decoder {
+    reader: Reader,
+    values: Values,
+}
+
+#[derive(Debug, Clone)]
+enum Reader {
+    Cdr(Box<CdrReader>),
+    Json(Vec<Wanted>),
+    Protobuf(MessageDescriptor, Vec<Wanted>),
+}
+
+impl Decoder {
+    /// Reads one message. The values are those of this message only, but for [`Texts::revision`](super::Texts::revision).
+    ///
+    /// # Errors
+    /// Where the bytes do not agree with the schema. The next message can be read all the same.
+    pub fn read(&mut self, data: &[u8]) -> Result<&Values, DecodeError> {
+        match &mut self.reader {
+            Reader::Cdr(reader) => reader.read(data, &mut self.values)?,
+            Reader::Json(wanted) => json::read(data, wanted, &mut self.values)?,
+            Reader::Protobuf(descriptor, wanted) => {
+                protobuf::read(descriptor, data, wanted, &mut self.values)?;
+            }
+        }
+        Ok(&self.values)
+    }
+
+    pub(super) fn cdr(types: &TypeTable, wanted: &[Wanted]) -> Result<Self, SchemaError> {
+        let (reader, slots) = CdrReader::new(types, wanted)?;
+        Ok(Self { reader: Reader::Cdr(Box::new(reader)), values: Values::new(wanted.len(), slots) })
+    }
+
+    pub(super) fn json(wanted: &[Wanted]) -> Self {
+        Self { reader: Reader::Json(wanted.to_vec()), values: Values::new(wanted.len(), wanted.len()) }
+    }
+
+    pub(super) fn protobuf(descriptor: MessageDescriptor, wanted: &[Wanted]) -> Self {
+        Self { reader: Reader::Protobuf(descriptor, wanted.to_vec()), values: Values::new(wanted.len(), wanted.len()) }
+    }
+}

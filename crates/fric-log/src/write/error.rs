@@ -1,0 +1,85 @@
+//! What can go wrong while a log is written.
+
+use std::io;
+use std::path::PathBuf;
+
+use mcap::McapError;
+use thiserror::Error;
+
+/// A log that cannot be written.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum WriteError {
+    /// The target exists.
+    #[error("`{}` exists; choose another name, or force it to be replaced", path.display())]
+    Exists {
+        /// The target.
+        path: PathBuf,
+    },
+    /// The target is one of the inputs.
+    #[error("the output `{}` is the input `{}`; inputs are never overwritten, choose another name", path.display(), input.display())]
+    Input {
+        /// The target.
+        path: PathBuf,
+        /// The input, as given.
+        input: PathBuf,
+    },
+    /// The file system refuses.
+    #[error("`{}` cannot be written", path.display())]
+    File {
+        /// The target.
+        path: PathBuf,
+        /// The cause.
+        #[source]
+        source: io::Error,
+    },
+    /// The MCAP library refuses.
+    #[error("`{}` cannot be written as MCAP", path.display())]
+    Mcap {
+        /// The target.
+        path: PathBuf,
+        /// The cause.
+        #[source]
+        source: McapError,
+    },
+    /// Two channels of one topic.
+    #[error("topic `{topic}` is written by another channel already; give each channel its own topic")]
+    Topic {
+        /// The topic.
+        topic: String,
+    },
+    /// A stamp that the 32 bits of seconds in a ROS 2 header cannot hold.
+    #[error("topic `{topic}`: stamp {stamp_nanos} ns is later than a ROS 2 header can hold (2038-01-19)")]
+    Stamp {
+        /// The topic.
+        topic: String,
+        /// The stamp.
+        stamp_nanos: u64,
+    },
+    /// An array that does not have one element per name.
+    #[error("topic `{topic}`: {found} elements of `{field}` for {expected} names")]
+    Length {
+        /// The topic.
+        topic: String,
+        /// The message's field.
+        field: &'static str,
+        /// How many names the channel has.
+        expected: usize,
+        /// How many elements were given.
+        found: usize,
+    },
+    /// A name that cannot be a constant in a message definition.
+    #[error(
+        "flag name `{name}` cannot be a constant in a message definition; use letters, digits and `_`, a letter first"
+    )]
+    FlagName {
+        /// The name.
+        name: String,
+    },
+    /// A text or list longer than 32 bits can count.
+    #[error("a text or list of {length} entries is too long for a message")]
+    TooLong {
+        /// Its length.
+        length: usize,
+    },
+}

@@ -1,0 +1,127 @@
+//! Writing logs: MCAP with the ROS 2 messages that fric puts out.
+//!
+//! A log is written beside its target and appears there, whole, when it is finished; if it never is, nothing is
+//! left. Neither an input nor, unless told so, any other existing file is overwritten. The same calls give
+//! the same bytes: chunks of a fixed size, one compression thread, no clock.
+//!
+//! Writes exactly the message types named here, with the `ros2msg` definitions of the ROS 2 packages they come
+//! from. NaN and infinities are written as they are. A [`LogWriter`] holds one chunk's index and one message.
+
+mod definitions;
+mod error;
+mod messages;
+mod payload;
+mod target;
+
+use std::collections::BTreeMap;
+use std::io::BufWriter;
+use std::path::Path;
+
+use mcap::records::MessageHeader;
+use mcap::{Attachment, Compression, McapError, WriteOptions};
+use tempfile::NamedTempFile;
+
+pub use error::WriteError;
+pub use messages::{CableStatusChannel, JointState, JointStateChannel, Pose, PoseChannel, Wrench, WrenchChannel};
+use payload::Payload;
+use target::Target;
+
+/// Name of the attachment that holds the robot file.
+pub const ROBOT_FILE: &str = "fric-robot.toml";
+
+const LIBRARY: &str = concat!("fric ", env!("CARGO_PKG_VERSION"));
+const CHUNK_BYTES: u64 = 1 << 20;
+const ZSTD_LEVEL: u32 = 3;
+
+/// A log being written.
+///
+/// ```
+/// use fric_log::write::{JointState, LogWriter};
+///
+/// let directory = tempfile::tempdir()?;
+/// let path = directory.path().join("forces.mcap");
+/// let mut writer = LogWriter::create(&path, &["run.mcap"], false)?;
+/// let forces = writer.add_joint_state("/fric/cable_forces", "", &["cable1", "cable2"])?;
+/// let effort = [12.5, 13.0];
+/// writer.write_joint_state(&forces, 1_000_000, JointState { effort: &effort, ..JointState::default() })?;
+/// assert!(!path.exists());
+/// writer.finish()?;
+/// assert!(path.exists());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct LogWriter {
+    writer: mcap::Writer<BufWriter<NamedTempFile>>,
+    target: Target,
+    topics: Vec<String>,
+    payload: Payload,
+}
+
+impl LogWriter {
+    /// Starts a log that will be at `path` once finished.
+    ///
+    /// An existing file is replaced only with `force`, one of the `inputs` never: neither under
+    /// its own name nor under another one (symbolic or hard link).
+    ///
+    /// # Errors
+    /// Where the target is an input, or exists and `force` is not set, or its directory cannot be written to.
+    pub fn create(path: &Path, inputs: &[impl AsRef<Path>], force: bool) -> Result<Self, WriteError> {
+        let (target, file) = Target::open(path, inputs, force)?;
+        let writer = WriteOptions::new()
+            .profile("ros2")
+            .library(LIBRARY)
+            .compression(Some(Compression::Zstd))
+            .compression_level(ZSTD_LEVEL)
+            .compression_threads(0)
+            .chunk_size(Some(CHUNK_BYTES))
+            .create(BufWriter::new(file))
+            .map_err(|source| target.mcap_error(source))?;
+        Ok(Self { writer, target, topics: Vec::new(), payload: Payload::default() })
+    }
+
+    /// Attaches the text of the robot file, best before the first channel is added.
+    ///
+    /// # Errors
+    /// Where the file cannot be written.
+    pub fn attach_robot_file(&mut self, toml: &str) -> Result<(), WriteError> {
+        let attachment = Attachment {
+            log_time: 0,
+            create_time: 0,
+            name: ROBOT_FILE.to_owned(),
+            media_type: "application/toml".to_owned(),
+            data: toml.as_bytes().into(),
+        };
+        let result = self.writer.attach(&attachment);
+        result.map_err(|source| self.target.mcap_error(source))
+    }
+
+    /// Completes the log and puts it in its place.
+    ///
+    /// # Errors
+    /// Where the file cannot be written, or another one has appeared in its place and `force` is not set.
+    pub fn finish(self) -> Result<(), WriteError> {
+        let Self { mut writer, target, .. } = self;
+        writer.finish().map_err(|source| target.mcap_error(source))?;
+        let file = writer.into_inner().into_inner();
+        let file = file.map_err(|error| target.io_error(error.into_error()))?;
+        target.place(file)
+    }
+
+    fn add_channel(&mut self, topic: &str, schema_name: &str, schema: &str) -> Result<u16, WriteError> {
+        if self.topics.iter().any(|known| known == topic) {
+            return Err(WriteError::Topic { topic: topic.to_owned() });
+        }
+        self.topics.push(topic.to_owned());
+        let writer = &mut self.writer;
+        let id = writer
+            .add_schema(schema_name, "ros2msg", schema.as_bytes())
+            .and_then(|schema| writer.add_channel(schema, topic, "cdr", &BTreeMap::new()));
+        id.map_err(|source| self.target.mcap_error(source))
+    }
+
+    /// Writes the message in `payload`.
+    fn write_payload(&mut self, channel_id: u16, stamp_nanos: u64) -> Result<(), WriteError> {
+        let header = MessageHeader { channel_id, sequence: 0, log_time: stamp_nanos, publish_time: stamp_nanos };
+        let result = self.writer.write_to_known_channel(&header, self.payload.bytes());
+        result.map_err(|source: McapError| self.target.mcap_error(source))
+    }
+}

@@ -1,0 +1,12 @@
+//! Tests of what `fric-log` does as seen from outside.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "a test fails by panicking, its helpers too"
+)]
+
+mod path;
+mod recording;
+mod schema;
+mod write;
