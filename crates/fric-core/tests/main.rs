@@ -1,1 +1,30 @@
-#[test] fn t(){}
+//! Public behaviour of `fric-core`, one binary.
+//!
+//! Oracles here are written from the equations of the papers, never from the code under test.
+
+#[cfg(test)]
+mod builds;
+#[cfg(test)]
+mod chain;
+#[cfg(test)]
+mod cycle;
+#[cfg(test)]
+mod dahl;
+#[cfg(test)]
+mod delay;
+#[cfg(test)]
+mod oracle;
+#[cfg(test)]
+mod platform;
+#[cfg(test)]
+mod properties;
+#[cfg(test)]
+mod robot_file;
+#[cfg(test)]
+mod scalar;
+#[cfg(test)]
+mod status;
+#[cfg(test)]
+mod support;
+#[cfg(test)]
+mod swivel;

@@ -1,6 +1,321 @@
-//! `info`
+//! `info`: what is in a log, what maps to what, and which step is impossible and why.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+use fric_log::recording::Recording;
+use fric_log::signals::{Role, SignalPaths, SignalReader};
+use serde::Serialize;
+
 use crate::arguments::InfoArguments;
 use crate::failure::Outcome;
-pub fn run(_a: &InfoArguments) -> Outcome {
-    Ok(())
+use crate::model::Model;
+use crate::output::{JsonTarget, table};
+use crate::progress::{self, STRIDE};
+use crate::{interrupt, warnings};
+
+/// `fric-info/1`.
+#[derive(Debug, Serialize)]
+struct InfoResult {
+    format: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    robot: Option<String>,
+    topics: Vec<TopicResult>,
+    signals: Vec<SignalResult>,
+    steps: Vec<StepResult>,
+}
+
+#[derive(Debug, Serialize)]
+struct TopicResult {
+    topic: String,
+    schema: String,
+    encoding: String,
+    messages: u64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    rate_hz: Option<f64>,
+    /// Standard deviation of the interval between messages.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    jitter_s: Option<f64>,
+    /// Longest interval between messages.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    longest_interval_s: Option<f64>,
+    /// First and last log time, relative to the first message of the log.
+    from_s: f64,
+    to_s: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct SignalResult {
+    signal: &'static str,
+    path: String,
+    messages: u64,
+    gaps: u64,
+    remarks: Vec<String>,
+}
+
+#[derive(Debug, Serialize)]
+struct StepResult {
+    step: &'static str,
+    possible: bool,
+    /// What is missing, or what is missing for all of it.
+    reasons: Vec<String>,
+}
+
+/// Log times of a topic, accumulated.
+#[derive(Debug, Default)]
+struct Times {
+    schema: String,
+    encoding: String,
+    count: u64,
+    first_nanos: u64,
+    last_nanos: u64,
+    interval_sum_s: f64,
+    interval_squares: f64,
+    longest_s: f64,
+}
+
+impl Times {
+    fn add(&mut self, log_time_nanos: u64) {
+        if self.count == 0 {
+            self.first_nanos = log_time_nanos;
+        } else {
+            let interval_s = seconds(log_time_nanos) - seconds(self.last_nanos);
+            let interval_s =
+                if log_time_nanos >= self.last_nanos { seconds(log_time_nanos - self.last_nanos) } else { interval_s };
+            self.interval_sum_s += interval_s;
+            self.interval_squares += interval_s * interval_s;
+            self.longest_s = self.longest_s.max(interval_s);
+        }
+        self.count += 1;
+        self.last_nanos = log_time_nanos;
+    }
+}
+
+#[expect(clippy::cast_precision_loss, reason = "for people")]
+fn seconds(nanos: u64) -> f64 {
+    nanos as f64 * 1e-9
+}
+
+/// Runs the command.
+pub fn run(arguments: &InfoArguments) -> Outcome {
+    let InfoArguments { log, result } = arguments;
+    let mut inputs = log.logs.clone();
+    inputs.extend(log.model.clone());
+    let json = JsonTarget::prepare(result.json.as_deref(), &inputs, result.force)?;
+    let mut recording = Recording::open(&log.logs)?;
+    let model = Model::find(log.model.as_deref(), &recording)?;
+    let topics = read_topics(&mut recording)?;
+    warnings::about_recording(&recording);
+    let attachments: Vec<String> = recording.attachments().map(|attachment| attachment.name.clone()).collect();
+    let (signals, steps) = match &model {
+        Some(model) => read_signals(model, Recording::open(&log.logs)?)?,
+        None => (Vec::new(), Vec::new()),
+    };
+    let outcome = InfoResult {
+        format: "fric-info/1",
+        robot: model.as_ref().map(|model| model.robot.options().name.clone()),
+        topics,
+        signals,
+        steps,
+    };
+    json.show(&describe(&outcome, model.as_ref(), &attachments))?;
+    json.write(&outcome)
+}
+
+fn read_topics(recording: &mut Recording) -> Outcome<Vec<TopicResult>> {
+    let bar = progress::bytes(recording.total_bytes());
+    let mut topics: BTreeMap<String, Times> = BTreeMap::new();
+    for channel in recording.channels() {
+        topics.entry(channel.topic.clone()).or_default();
+    }
+    let mut start_nanos = None;
+    for count in 0_u64.. {
+        if count.is_multiple_of(STRIDE) {
+            interrupt::check()?;
+            bar.set_position(recording.bytes_read());
+        }
+        let Some(message) = recording.next_message()? else { break };
+        start_nanos.get_or_insert(message.log_time_nanos);
+        match topics.get_mut(&message.channel.topic) {
+            Some(times) => times.add(message.log_time_nanos),
+            None => topics.entry(message.channel.topic.clone()).or_default().add(message.log_time_nanos),
+        }
+    }
+    for channel in recording.channels() {
+        let times = topics.entry(channel.topic.clone()).or_default();
+        times.encoding.clone_from(&channel.message_encoding);
+        times.schema = channel.schema.as_ref().map_or_else(String::new, |schema| schema.name.clone());
+    }
+    bar.finish_and_clear();
+    let start_nanos = start_nanos.unwrap_or(0);
+    let topic = |(topic, times): (String, Times)| {
+        #[expect(clippy::cast_precision_loss, reason = "a count of messages")]
+        let intervals = times.count.saturating_sub(1) as f64;
+        let mean_s = times.interval_sum_s / intervals;
+        let variance = times.interval_squares / intervals - mean_s * mean_s;
+        let several = times.count > 1 && mean_s > 0.0;
+        TopicResult {
+            topic,
+            schema: times.schema,
+            encoding: times.encoding,
+            messages: times.count,
+            rate_hz: several.then(|| 1.0 / mean_s),
+            jitter_s: several.then(|| variance.max(0.0).sqrt()),
+            longest_interval_s: several.then_some(times.longest_s),
+            from_s: if times.count > 0 { seconds(times.first_nanos.saturating_sub(start_nanos)) } else { 0.0 },
+            to_s: if times.count > 0 { seconds(times.last_nanos.saturating_sub(start_nanos)) } else { 0.0 },
+        }
+    };
+    Ok(topics.into_iter().map(topic).collect())
+}
+
+/// What the signals map to, found by joining them as the other commands do.
+fn read_signals(model: &Model, recording: Recording) -> Outcome<(Vec<SignalResult>, Vec<StepResult>)> {
+    let paths = model.signal_paths()?;
+    let bar = progress::bytes(recording.total_bytes());
+    let mut reader = SignalReader::new(recording, paths.clone(), &model.robot.cable_names());
+    let mut joined = Joined::default();
+    let problem = loop {
+        if joined.rows.is_multiple_of(STRIDE) {
+            interrupt::check()?;
+            bar.set_position(reader.recording().bytes_read());
+        }
+        match reader.next_row() {
+            Ok(Some(row)) => {
+                joined.rows += 1;
+                joined.referenced += u64::from(row.reference_force_n.iter().any(|force| force.is_finite()));
+                joined.posed += u64::from(row.pose.is_some());
+                joined.wrenched += u64::from(row.outside_wrench.is_some());
+            }
+            Ok(None) => break None,
+            Err(error) => break Some(error.to_string()),
+        }
+    };
+    bar.finish_and_clear();
+    let signals = signal_results(&reader, &paths);
+    Ok((signals, steps(model, &joined, problem)))
+}
+
+/// How many rows have which signal.
+#[derive(Debug, Default)]
+struct Joined {
+    rows: u64,
+    referenced: u64,
+    posed: u64,
+    wrenched: u64,
+}
+
+fn signal_results(reader: &SignalReader, paths: &SignalPaths) -> Vec<SignalResult> {
+    let signal = |role: Role| {
+        let path = paths.get(role)?;
+        let counts = reader.counts(role);
+        let mut remarks = warnings::remarks(counts);
+        remarks.extend(reader.first_problem(role).map(|problem| format!("cannot be used: {problem}")));
+        if counts.message_count == 0 && remarks.is_empty() {
+            remarks.push("not in the log".to_owned());
+        }
+        Some(SignalResult {
+            signal: role.key(),
+            path: path.to_string(),
+            messages: counts.message_count,
+            gaps: counts.gap_count,
+            remarks,
+        })
+    };
+    Role::ALL.into_iter().filter_map(signal).collect()
+}
+
+/// Which steps the log allows.
+fn steps(model: &Model, joined: &Joined, problem: Option<String>) -> Vec<StepResult> {
+    let params = model.robot.params();
+    let cables = params.as_ref().map(fric_core::RobotParams::cables).unwrap_or_default();
+    let needs_pose = cables.iter().any(fric_core::CableParams::needs_pose);
+    let all_geometry = cables.iter().all(fric_core::CableParams::has_geometry);
+    let no_reference = "no reference: the log has no force measured at the platform to compare with";
+    let no_pose = "no pose: the wrap of the last pulleys would be taken as 90°";
+    let mut forces = Vec::new();
+    forces.extend(problem);
+    if joined.rows > 0 && needs_pose && joined.posed == 0 {
+        forces.push(no_pose.to_owned());
+    }
+    let mut wrench = Vec::new();
+    if !all_geometry {
+        wrench.push("no geometry: `base_m` and `platform_m` are needed for every cable".to_owned());
+    }
+    if joined.posed == 0 {
+        wrench.push("no pose: the directions of the cables are not known".to_owned());
+    }
+    let mut identification = Vec::new();
+    if joined.referenced == 0 {
+        identification.push(no_reference.to_owned());
+    }
+    let step = |step, possible: bool, reasons: Vec<String>| StepResult { step, possible, reasons };
+    let replay = joined.rows > 0;
+    let mut compared = Vec::new();
+    if joined.wrenched == 0 && wrench.is_empty() {
+        compared.push("no outside wrench in the log to compare with".to_owned());
+    }
+    let has_wrench = replay && wrench.is_empty();
+    wrench.extend(compared);
+    vec![
+        step("replay: forces", replay, forces),
+        step("replay: wrench", has_wrench, wrench),
+        step("replay: errors", replay && joined.referenced > 0, identification.clone()),
+        step("fit", replay && joined.referenced > 0, identification.clone()),
+        step("discover", replay && joined.referenced > 0, identification),
+    ]
+}
+
+/// The result as tables.
+fn describe(result: &InfoResult, model: Option<&Model>, attachments: &[String]) -> String {
+    let number =
+        |value: Option<f64>, digits: usize| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.digits$}"));
+    let rows: Vec<_> = result
+        .topics
+        .iter()
+        .map(|topic| {
+            let milliseconds = |value: Option<f64>| number(value.map(|seconds| seconds * 1e3), 3);
+            [
+                topic.topic.clone(),
+                topic.schema.clone(),
+                topic.encoding.clone(),
+                topic.messages.to_string(),
+                number(topic.rate_hz, 1),
+                milliseconds(topic.jitter_s),
+                milliseconds(topic.longest_interval_s),
+                format!("{:.3} … {:.3}", topic.from_s, topic.to_s),
+            ]
+        })
+        .collect();
+    let header =
+        ["topic", "schema", "encoding", "messages", "rate [Hz]", "jitter [ms]", "longest gap [ms]", "time [s]"];
+    // Writing to a String cannot fail, here and below.
+    let mut text = table(header, 3, &rows);
+    if !attachments.is_empty() {
+        let _ = writeln!(text, "\nattached: {}", attachments.join(", "));
+    }
+    let Some(model) = model else {
+        text += "\nWhich signal is which is in the robot file: none is attached to the log, name one with --model.\n";
+        return text;
+    };
+    let _ = writeln!(text, "\nrobot: {} ({})\n", model.robot.options().name, model.origin);
+    let rows: Vec<_> = result
+        .signals
+        .iter()
+        .map(|signal| {
+            [signal.signal.to_owned(), signal.path.clone(), signal.messages.to_string(), signal.remarks.join(", ")]
+        })
+        .collect();
+    text += &table(["signal", "path", "messages used", ""], 4, &rows);
+    text += "\n";
+    let rows: Vec<_> = result
+        .steps
+        .iter()
+        .map(|step| {
+            let possible = if step.possible { "possible" } else { "impossible" };
+            [step.step.to_owned(), possible.to_owned(), step.reasons.join("; ")]
+        })
+        .collect();
+    text += &table(["step", "", ""], 3, &rows);
+    text
 }

@@ -1,6 +1,6 @@
 //! `replay`: the compensator over a log, as the control loop would run it.
 
-use fric_core::{CableStatus, Sample};
+use fric_core::{CableParams, CableStatus, Sample};
 use fric_lab::replay::{CableErrors, Deviation, Replay, ReplayedCycle};
 use fric_log::recording::Recording;
 use fric_log::signals::{Role, SignalReader};
@@ -179,15 +179,15 @@ fn describe(result: &ReplayResult) -> String {
         text += &table(["wrench", "rms before", "after"], 1, &rows);
     }
     let CycleResult { count, median_ns, p999_ns, max_ns } = result.cycle;
-    text +=
-        &format!("\n{count} cycles; one takes {median_ns} ns (median), {p999_ns} ns (99.9 %), {max_ns} ns (longest)\n");
-    text
+    text + &format!(
+        "\n{count} cycles; one takes {median_ns} ns (median), {p999_ns} ns (99.9 %), {max_ns} ns (longest)\n"
+    )
 }
 
 /// What the robot file and the log do not agree about.
 fn warn_about_model(model: &Model, reader: &SignalReader, replay: &Replay) {
     let no_pose = reader.counts(Role::Pose).message_count == 0;
-    let needs_pose = model.robot.params().is_ok_and(|robot| robot.cables().iter().any(|cable| cable.needs_pose()));
+    let needs_pose = model.robot.params().is_ok_and(|robot| robot.cables().iter().any(CableParams::needs_pose));
     if no_pose && needs_pose {
         warnings::warn(
             "the log has no pose: the wrap of the last pulleys is taken as 90°, and there is no wrench; name the pose's \
@@ -205,15 +205,18 @@ fn warn_about_model(model: &Model, reader: &SignalReader, replay: &Replay) {
              checks that count cycles follow the robot file"
         ));
     }
-    for (name, cable) in model.robot.cable_names().iter().zip(replay.cables()) {
-        if cable.flagged_count > 0 {
-            warnings::warn(&format!(
-                "{name}: {} of {} samples are flagged ({})",
-                cable.flagged_count,
-                replay.cycle_count(),
-                CableStatus::from_bits(cable.flags)
-            ));
+    // Cables with the same trouble share a line.
+    let mut flagged: Vec<(u64, u32, Vec<&str>)> = Vec::new();
+    for (name, cable) in model.robot.cable_names().into_iter().zip(replay.cables()) {
+        match flagged.iter_mut().find(|(count, flags, _)| (*count, *flags) == (cable.flagged_count, cable.flags)) {
+            Some((.., names)) => names.push(name),
+            None if cable.flagged_count > 0 => flagged.push((cable.flagged_count, cable.flags, vec![name])),
+            None => {}
         }
+    }
+    for (count, flags, names) in flagged {
+        let (names, flags) = (names.join(", "), CableStatus::from_bits(flags));
+        warnings::warn(&format!("{count} of {} samples are flagged {flags}: {names}", replay.cycle_count()));
     }
 }
 

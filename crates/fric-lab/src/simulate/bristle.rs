@@ -51,7 +51,7 @@ pub struct PulleyTruth {
     pub mu: f64,
     /// cos of its wrap; `None` where that follows the pose.
     pub cos_wrap: Option<f64>,
-    /// F_pv, N s/m.
+    /// `F_pv`, N s/m.
     pub viscous_n_s_per_m: f64,
 }
 
@@ -76,8 +76,7 @@ impl BristleChain {
     pub fn new(pulleys: &[PulleyTruth], sigma_n_per_m: f64, sensor_pulley: bool, effects: TruthEffects) -> Self {
         #[expect(clippy::cast_precision_loss, reason = "a number of pulleys")]
         let stiffness_n_per_m = sigma_n_per_m / pulleys.len().max(1) as f64;
-        let pulleys =
-            pulleys.iter().map(|&pulley| Bristle { pulley, stiffness_n_per_m, deflection_m: 0.0 }).collect();
+        let pulleys = pulleys.iter().map(|&pulley| Bristle { pulley, stiffness_n_per_m, deflection_m: 0.0 }).collect();
         Self { pulleys, sensor_pulley, effects }
     }
 

@@ -123,8 +123,7 @@ mod tests {
                 let wrench = Vector6::new(pull_n, -0.5 * pull_n, -4.0, 0.02, -0.01, 0.03);
                 let mut forces_n = [5.0; 8];
                 let balance = Distribution::new(0.09, 0.6).solve(&columns, &wrench, &mut forces_n);
-                let direct =
-                    columns.iter().zip(forces_n).fold(wrench, |sum, (column, force_n)| sum + column * force_n);
+                let direct = columns.iter().zip(forces_n).fold(wrench, |sum, (column, force_n)| sum + column * force_n);
                 assert!(direct.amax() < 1e-9, "{direct}");
                 assert!(!balance.clamped && balance.residual_n < 1e-9);
                 assert!(forces_n.iter().all(|force_n| *force_n >= 0.6 * (1.0 - 1e-9)), "{forces_n:?}");

@@ -67,10 +67,14 @@ impl HiddenEffect {
             if effect.values.iter().any(|(other, _)| *other == key) {
                 return Err(HiddenEffectError::RepeatedKey { kind, key });
             }
-            effect
-                .params
-                .set(kind, key, value)
-                .map_err(|_| HiddenEffectError::OutOfRange { kind, key, value, min, max, unit })?;
+            effect.params.set(kind, key, value).map_err(|_| HiddenEffectError::OutOfRange {
+                kind,
+                key,
+                value,
+                min,
+                max,
+                unit,
+            })?;
             effect.values.push((key, value));
         }
         Ok(effect)
@@ -121,7 +125,11 @@ fn find_row(kind: &str) -> Result<&'static EffectRow, HiddenEffectError> {
 }
 
 fn keys(row: &EffectRow) -> String {
-    list(row.parameters.iter().map(|ParameterRow { key, unit, min, max, .. }| format!("`{key}` ({min} to {max} {unit})")))
+    list(
+        row.parameters
+            .iter()
+            .map(|ParameterRow { key, unit, min, max, .. }| format!("`{key}` ({min} to {max} {unit})")),
+    )
 }
 
 /// With commas between.

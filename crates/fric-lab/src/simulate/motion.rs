@@ -50,10 +50,7 @@ impl Motion {
             half_edges_m: Vector3::new(BENCH_HALF_M, 0.0, 0.0),
             direction: Vector3::x(),
         };
-        Self {
-            platform: work_box.map(Trajectory::identification),
-            bench: Trajectory::identification(&bench),
-        }
+        Self { platform: work_box.map(Trajectory::identification), bench: Trajectory::identification(&bench) }
     }
 
     /// The run that sets the duration.
@@ -69,21 +66,20 @@ impl Motion {
 }
 
 impl Winch {
-    pub fn new(params: CableParams, random: &mut ChaCha8Rng) -> Self {
-        Self { params, micro: Waves::new(&MICRO, random) }
+    pub fn new(params: &CableParams, random: &mut ChaCha8Rng) -> Self {
+        Self { params: *params, micro: Waves::new(&MICRO, random) }
     }
 
     /// The cable's motion at a time at which the platform is at `platform`; `None` where it cannot leave its last pulley.
     pub fn motion(&self, motion: &Motion, platform: Option<&(Pose, SetPoint)>, time_s: f64) -> Option<CableMotion> {
-        let coarse = match platform.filter(|_| self.params.has_geometry()) {
-            Some((pose, set_point)) => CableMotion {
+        let coarse = if let Some((pose, set_point)) = platform.filter(|_| self.params.has_geometry()) {
+            CableMotion {
                 length_m: self.params.length_m(pose)?,
                 speed_m_per_s: -self.params.direction(pose)?.dot(&set_point.velocity_m_per_s),
-            },
-            None => {
-                let set_point = motion.bench.at(time_s);
-                CableMotion { length_m: set_point.position_m.x, speed_m_per_s: set_point.velocity_m_per_s.x }
             }
+        } else {
+            let set_point = motion.bench.at(time_s);
+            CableMotion { length_m: set_point.position_m.x, speed_m_per_s: set_point.velocity_m_per_s.x }
         };
         Some(CableMotion {
             length_m: coarse.length_m + self.micro.value(time_s),

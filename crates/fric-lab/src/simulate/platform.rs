@@ -62,8 +62,10 @@ impl Platform {
 
     /// Least and greatest corner of the points where the cables enter their last pulleys.
     pub fn base_corners_m(&self) -> [Vector3<f64>; 2] {
-        let start = [f64::INFINITY, f64::NEG_INFINITY].map(|value| Vector3::repeat(value));
-        self.cables.iter().fold(start, |[least, greatest], cable| [least.inf(&cable.base_m), greatest.sup(&cable.base_m)])
+        let start = [f64::INFINITY, f64::NEG_INFINITY].map(Vector3::repeat);
+        self.cables
+            .iter()
+            .fold(start, |[least, greatest], cable| [least.inf(&cable.base_m), greatest.sup(&cable.base_m)])
     }
 
     /// The platform at a place.

@@ -1,7 +1,7 @@
 //! The simulated robot as a stream of cycles.
 
 use fric_core::robot::file::{CableTable, RobotFile};
-use fric_core::{CableInput, Pose, Wrench};
+use fric_core::{CableInput, Pose, Sample};
 use nalgebra::Vector6;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -38,22 +38,6 @@ pub struct Simulation {
     forces_n: Vec<f64>,
     inputs: Vec<CableInput>,
     references_n: Vec<f64>,
-}
-
-/// One cycle of all cables, in the robot file's order.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SimulatedCycle<'a> {
-    /// Time, ns.
-    pub stamp_nanos: i64,
-    /// What sensors and winches show.
-    pub cables: &'a [CableInput],
-    /// Measured cable forces at the platform, N: the true ones with offset and noise.
-    pub reference_force_n: &'a [f64],
-    /// Pose of the platform, where a cable is attached to it.
-    pub pose: Option<Pose>,
-    /// True wrench `−A^T f` on the platform from outside, gravity and inertia included, base axes, about the platform
-    /// origin; where all cables are attached.
-    pub outside_wrench: Option<Wrench>,
 }
 
 /// Where the tensions come from.
@@ -122,9 +106,9 @@ impl Simulation {
                 common: Variation::common(&mut random(options.seed, Purpose::Prestress, 0)),
                 balanced,
             },
-            None => Tension::Bench {
-                level: TensionLevel::of_bench(platform.weight_n(), tables.len(), viscous_n_s_per_m),
-            },
+            None => {
+                Tension::Bench { level: TensionLevel::of_bench(platform.weight_n(), tables.len(), viscous_n_s_per_m) }
+            }
         };
         let cables = tables
             .iter()
@@ -134,7 +118,7 @@ impl Simulation {
                 let load = &mut random(options.seed, Purpose::Load, cable);
                 let effects = TruthEffects::new(&table.effects, &options.effects)?;
                 Ok(SimulatedCable {
-                    winch: Winch::new(*params, &mut random(options.seed, Purpose::Micro, cable)),
+                    winch: Winch::new(params, &mut random(options.seed, Purpose::Micro, cable)),
                     variation: if held.is_some() { Variation::own(load) } else { Variation::load(load) },
                     lead_s: effects.motion_lead_s(),
                     chain: chain(table, options, cable, effects),
@@ -186,6 +170,9 @@ impl Simulation {
 
     /// The next cycle; `None` after the last. What it lends is overwritten by the following one.
     ///
+    /// Lengths and speeds are without noise. Reference forces are the true ones with offset and noise, for every cable.
+    /// The pose is there where a cable is attached to the platform, the true wrench `−A^T f` where all are.
+    ///
     /// ```
     /// use fric_core::robot::file::RobotFile;
     /// use fric_lab::simulate::{Simulation, SimulationOptions};
@@ -212,7 +199,7 @@ impl Simulation {
     /// # Ok(())
     /// # }
     /// ```
-    pub fn next_cycle(&mut self) -> Option<SimulatedCycle<'_>> {
+    pub fn next_cycle(&mut self) -> Option<Sample<'_>> {
         if self.done_cycles >= self.total_cycles {
             return None;
         }
@@ -237,7 +224,7 @@ impl Simulation {
             .then(|| balanced_wrench(&self.columns, self.forces_n.iter().copied()));
         #[expect(clippy::cast_possible_truncation, reason = "at most 100 days")]
         let since_start_nanos = libm::round(time_s * 1e9) as i64;
-        Some(SimulatedCycle {
+        Some(Sample {
             stamp_nanos: START_NANOS + since_start_nanos,
             cables: &self.inputs,
             reference_force_n: &self.references_n,

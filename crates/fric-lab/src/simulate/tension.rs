@@ -6,18 +6,17 @@
 use rand_chacha::ChaCha8Rng;
 
 use super::platform::Platform;
+use super::trajectory::FASTEST_M_PER_S;
 use super::waves::Waves;
 
 /// Mean tension of a robot without mass, N: that of a small robot whose sensors work up to 20 N at 180°.
-const LIGHT_N: f64 = 5.0;
+const LIGHT_N: f64 = 4.0;
 /// Mean tension per weight of the platform.
-const PER_WEIGHT: f64 = 1.25;
+const PER_WEIGHT: f64 = 1.0;
 /// Least tension per mean tension, beside what viscous friction takes.
 const LEAST_SHARE: f64 = 0.1;
-/// Fastest cable, m/s: no faster than the platform.
-const FASTEST_M_PER_S: f64 = 1.0;
 /// Prestress common to all cables: amplitudes as shares of the mean, and frequencies in Hz.
-const COMMON: [(f64, f64); 2] = [(0.3, 0.09), (0.15, 0.31)];
+const COMMON: [(f64, f64); 2] = [(0.27, 0.09), (0.13, 0.31)];
 /// What each cable adds of its own.
 const OWN: [(f64, f64); 2] = [(0.06, 0.17), (0.04, 0.53)];
 /// Load of a test bench: slow waves, and steps.
@@ -32,8 +31,8 @@ pub struct TensionLevel {
 }
 
 impl TensionLevel {
-    /// For a platform held by its cables; `viscous_n_s_per_m` is the greatest sum of F_pv along a cable. Viscous friction
-    /// at full speed is added, so that it does not slacken a cable at its winch.
+    /// For a platform held by its cables; `viscous_n_s_per_m` is the greatest sum of `F_pv` along a cable. Viscous
+    /// friction at full speed is added, so that it does not slacken a cable at its winch.
     pub fn of_platform(platform: &Platform, viscous_n_s_per_m: f64) -> Self {
         Self::new((PER_WEIGHT * platform.weight_n()).max(LIGHT_N), viscous_n_s_per_m)
     }
@@ -46,6 +45,7 @@ impl TensionLevel {
     }
 
     fn new(mean_n: f64, viscous_n_s_per_m: f64) -> Self {
+        // No cable is faster than the platform.
         let drag_n = viscous_n_s_per_m * FASTEST_M_PER_S;
         Self { mean_n: mean_n + drag_n, least_n: LEAST_SHARE * mean_n + drag_n }
     }

@@ -12,7 +12,7 @@ use nalgebra::Vector3;
 use super::stroke::Stroke;
 
 /// Amplitudes of the small movements, m: 0.25…10 mm.
-pub const AMPLITUDES_M: [f64; 7] = [0.000_25, 0.000_5, 0.001, 0.002, 0.004, 0.007, 0.010];
+pub const AMPLITUDES_M: [f64; 6] = [0.000_25, 0.000_5, 0.001, 0.002_5, 0.005, 0.010];
 /// Speed of the small movements, m/s; reached from about 3 mm on.
 pub const STEP_M_PER_S: f64 = 0.083;
 /// Rest after each small movement, s.
@@ -21,11 +21,14 @@ pub const BREAK_S: f64 = 0.5;
 pub const STROKE_M: f64 = 0.1;
 /// Their speeds, m/s, there and back twice with each.
 pub const STROKES_M_PER_S: [f64; 6] = [0.167, 0.333, 0.5, 0.667, 0.833, 1.0];
+/// The greatest of them.
+pub const FASTEST_M_PER_S: f64 = 1.0;
 /// Speeds along the rectangles, m/s.
 pub const RECTANGLES_M_PER_S: [f64; 2] = [0.167, 0.5];
 /// Acceleration limit of small movements and rectangles, m/s².
 pub const ACCELERATION_M_PER_S2: f64 = 4.0;
-/// Acceleration limit of the strokes, m/s²: 1 m/s within 100 mm needs it.
+/// Acceleration limit of the fastest strokes, m/s²: 1 m/s within 100 mm needs it. Slower ones take as long to get up to
+/// speed.
 pub const STROKE_ACCELERATION_M_PER_S2: f64 = 16.0;
 
 /// Where a run takes place.
@@ -129,17 +132,18 @@ impl Trajectory {
         }
         let end_m = direction * (0.5 * fit(STROKE_M));
         for speed_m_per_s in STROKES_M_PER_S {
+            let acceleration_m_per_s2 = STROKE_ACCELERATION_M_PER_S2 * speed_m_per_s / FASTEST_M_PER_S;
             for to_m in [center_m + end_m, center_m - end_m, center_m + end_m, center_m - end_m] {
-                run.go(Phase::Stroke, to_m, speed_m_per_s, STROKE_ACCELERATION_M_PER_S2);
+                run.go(Phase::Stroke, to_m, speed_m_per_s, acceleration_m_per_s2);
             }
         }
         run.go(Phase::Stroke, center_m, STEP_M_PER_S, ACCELERATION_M_PER_S2);
-        let [x, y, z] = [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| half_edges_m.component_mul(&axis));
+        // Round the top and the bottom of the box and along the edge between, so that every corner is passed.
+        let round = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0], [1.0, 1.0]];
         for speed_m_per_s in RECTANGLES_M_PER_S {
-            for (one, other) in [(x, y), (y, z), (z, x)] {
-                for corner_m in [one + other, other - one, -one - other, one - other, one + other] {
-                    run.go(Phase::Rectangle, center_m + corner_m, speed_m_per_s, ACCELERATION_M_PER_S2);
-                }
+            for [x, y, z] in [1.0, -1.0].into_iter().flat_map(|z| round.map(|[x, y]| [x, y, z])) {
+                let corner_m = center_m + half_edges_m.component_mul(&Vector3::new(x, y, z));
+                run.go(Phase::Rectangle, corner_m, speed_m_per_s, ACCELERATION_M_PER_S2);
             }
             run.go(Phase::Rectangle, center_m, speed_m_per_s, ACCELERATION_M_PER_S2);
         }

@@ -38,15 +38,13 @@ impl Waves {
 
     /// Derivative with respect to time.
     pub fn rate(&self, time_s: f64) -> f64 {
-        let rate =
-            |wave: &Wave| wave.amplitude * wave.rad_per_s * libm::cos(wave.rad_per_s * time_s + wave.phase_rad);
+        let rate = |wave: &Wave| wave.amplitude * wave.rad_per_s * libm::cos(wave.rad_per_s * time_s + wave.phase_rad);
         self.parts.iter().map(rate).sum()
     }
 
     /// Each sinusoid driven into saturation: it stays at ±amplitude and changes within a tenth of its period.
     pub fn steps(&self, time_s: f64) -> f64 {
-        let step =
-            |wave: &Wave| wave.amplitude * libm::tanh(5.0 * libm::sin(wave.rad_per_s * time_s + wave.phase_rad));
+        let step = |wave: &Wave| wave.amplitude * libm::tanh(5.0 * libm::sin(wave.rad_per_s * time_s + wave.phase_rad));
         self.parts.iter().map(step).sum()
     }
 }

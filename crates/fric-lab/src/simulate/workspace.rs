@@ -15,7 +15,7 @@ use super::tension::TensionLevel;
 use super::trajectory::{ACCELERATION_M_PER_S2, STROKE_ACCELERATION_M_PER_S2, WorkBox};
 
 /// Half edges as shares of the base points' half extent, from the largest.
-const SHARES: [f64; 7] = [0.35, 0.28, 0.2, 0.14, 0.1, 0.06, 0.03];
+const SHARES: [f64; 7] = [0.32, 0.26, 0.2, 0.14, 0.1, 0.06, 0.03];
 /// How far below the middle, as shares of the largest half extent.
 const DEPTHS: [f64; 5] = [0.0, 0.4, 0.7, 1.0, 1.5];
 /// Longest half edge, m: rectangles through a larger box would take minutes.

@@ -91,6 +91,6 @@ fn without_presliding_friction_reverses_at_once() {
     let robot = bench("{ wrap_deg = 180.0, sensor = true }, { wrap_deg = 90.0 }", "mu = 0.02");
     let (before_n, after_n) = rms_n(&robot, &noiseless())[0];
     println!("{before_n:.4} N -> {after_n:.6} N");
-    // The sign of the speed within the cycle of a reversal is a matter of the last bit.
-    assert!(after_n < 5e-3 && before_n > 0.05, "{before_n} N -> {after_n} N");
+    // In the cycle of a reversal the whole friction may have the sign of the cycle's displacement or of its last speed.
+    assert!(after_n < 0.03 && before_n > 0.2, "{before_n} N -> {after_n} N");
 }

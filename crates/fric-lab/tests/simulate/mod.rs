@@ -1,5 +1,7 @@
 mod compensated;
 mod effects;
 mod robots;
+mod shapes;
 mod stream;
 mod trajectory;
+mod tmp;

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use fric_core::robot::file::RobotFile;
 use fric_lab::simulate::{Simulation, SimulationOptions};
 
-/// μ and σ of the published robot's cables ([P] table I), F_pv of each pulley a third of the cable's in a like robot.
+/// μ and σ of the published robot's cables ([P] table I), `F_pv` of each pulley a third of the cable's in a like robot.
 const PUBLISHED: [(f64, f64, f64); 8] = [
     (0.016, 1000.0, 0.17),
     (0.011, 1003.0, 0.35),
@@ -24,7 +24,8 @@ pub fn eight_cables() -> RobotFile {
 
 /// The same with a line more in every cable.
 pub fn eight_cables_with(line: &str) -> RobotFile {
-    let mut text = "format = \"fric-robot/1\"\nname = \"eight\"\ncycle_s = 0.001\n[platform]\nmass_kg = 0.41\n".to_owned();
+    let mut text =
+        "format = \"fric-robot/1\"\nname = \"eight\"\ncycle_s = 0.001\n[platform]\nmass_kg = 0.41\n".to_owned();
     let corners = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)];
     let places = [1.0, -1.0].into_iter().flat_map(|height| corners.map(|(x, y)| (x, y, height)));
     for (cable, ((x, y, height), (mu, sigma, viscous))) in places.zip(PUBLISHED).enumerate() {
@@ -58,7 +59,8 @@ pub fn bench(pulleys: &str, friction: &str) -> RobotFile {
 
 /// Three cables from a ceiling to one point of a platform of 2 kg.
 pub fn hung() -> RobotFile {
-    let mut text = "format = \"fric-robot/1\"\nname = \"hung\"\ncycle_s = 0.001\n[platform]\nmass_kg = 2.0\n".to_owned();
+    let mut text =
+        "format = \"fric-robot/1\"\nname = \"hung\"\ncycle_s = 0.001\n[platform]\nmass_kg = 2.0\n".to_owned();
     for (cable, (x, y)) in [(1.0, 0.0), (-0.5, 0.8), (-0.5, -0.8)].into_iter().enumerate() {
         write!(
             text,

@@ -82,8 +82,9 @@ fn the_wrench_is_gravity_and_inertia_and_the_forces_make_it() {
     let params = robot.params().unwrap();
     let mut simulation = simulate(&robot, &SimulationOptions { duration_s: Some(25.0), ..noiseless() });
     let trajectory = simulation.trajectory().clone();
-    let mut time_s = 0.0;
+    let mut cycles = 0.0;
     while let Some(cycle) = simulation.next_cycle() {
+        let time_s = cycles * 0.001;
         let (pose, Wrench { force_n, torque_nm }) = (cycle.pose.unwrap(), cycle.outside_wrench.unwrap());
         let set_point = trajectory.at(time_s);
         let expected_n = (Vector3::new(0.0, 0.0, -9.80665) - set_point.acceleration_m_per_s2) * 0.41;
@@ -92,7 +93,7 @@ fn the_wrench_is_gravity_and_inertia_and_the_forces_make_it() {
         let forces_n = SVector::<f64, 8>::from_column_slice(cycle.reference_force_n);
         let product = structure_matrix::<8>(&params, &pose).unwrap() * forces_n;
         assert!((product + cycle.outside_wrench.unwrap().to_vector()).amax() < 1e-9);
-        time_s += 0.001;
+        cycles += 1.0;
     }
 }
 
@@ -116,7 +117,8 @@ fn a_bench_runs_its_load_over_a_wide_range() {
     while let Some(cycle) = simulation.next_cycle() {
         let force_n = cycle.reference_force_n[0] - 100.0;
         bounds_n = [bounds_n[0].min(force_n), bounds_n[1].max(force_n)];
-        assert!((cycle.cables[0].sensor_force_n - 2.0 * force_n).abs() < 0.05 * force_n);
+        // 4 % of sliding friction, and more where the load has fallen since the last motion.
+        assert!((cycle.cables[0].sensor_force_n - 2.0 * force_n).abs() < 0.15 * force_n);
     }
     println!("{bounds_n:?}");
     assert!(bounds_n[0] > 1.0 && bounds_n[1] > 2.0 * bounds_n[0] && bounds_n[1] < 10.0);

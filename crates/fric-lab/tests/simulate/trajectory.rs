@@ -1,8 +1,7 @@
 //! The identification run against what [P], section III C, lists.
 
 use fric_lab::simulate::{
-    ACCELERATION_M_PER_S2, AMPLITUDES_M, Leg, Phase, RECTANGLES_M_PER_S, STROKE_ACCELERATION_M_PER_S2, Trajectory,
-    WorkBox,
+    AMPLITUDES_M, Leg, Phase, RECTANGLES_M_PER_S, STROKE_ACCELERATION_M_PER_S2, Trajectory, WorkBox,
 };
 use nalgebra::Vector3;
 
@@ -27,7 +26,7 @@ fn small_steps_one_way_then_the_other_with_breaks() {
     let run = run();
     let steps = legs(&run, Phase::StopAndGo);
     assert_eq!(steps.len(), 2 * AMPLITUDES_M.len());
-    assert!((AMPLITUDES_M[0] - 0.25e-3).abs() < 1e-12 && (AMPLITUDES_M[6] - 0.01).abs() < 1e-12);
+    assert!((AMPLITUDES_M[0] - 0.25e-3).abs() < 1e-12 && (AMPLITUDES_M[5] - 0.01).abs() < 1e-12);
     let direction = Vector3::new(1.0, 1.0, 0.0).normalize();
     for (place, (leg, amplitude_m)) in steps.iter().zip(AMPLITUDES_M.iter().chain(&AMPLITUDES_M)).enumerate() {
         let sign = if place < AMPLITUDES_M.len() { 1.0 } else { -1.0 };
@@ -36,7 +35,7 @@ fn small_steps_one_way_then_the_other_with_breaks() {
         let next = run.legs().iter().find(|next| next.start_s > leg.start_s).unwrap();
         assert!((next.start_s - leg.end_s() - 0.5).abs() < 1e-9);
     }
-    assert!((steps[6].peak_m_per_s() - 0.083).abs() < 1e-12);
+    assert!((steps[5].peak_m_per_s() - 0.083).abs() < 1e-12);
 }
 
 #[test]
@@ -48,7 +47,7 @@ fn small_steps_alternate_with_breaks() {
         assert!((pair[1].to_m - pair[0].from_m).norm() < 1e-12);
         assert!((pair[1].start_s - pair[0].end_s() - 0.5).abs() < 1e-9);
     }
-    assert_eq!(steps.len(), 14);
+    assert_eq!(steps.len(), 12);
 }
 
 #[test]
@@ -73,10 +72,14 @@ fn rectangles_go_round_the_box_at_both_speeds() {
     for speed_m_per_s in RECTANGLES_M_PER_S {
         let sides = legs(&run, Phase::Rectangle);
         let sides: Vec<_> = sides.iter().filter(|leg| (leg.peak_m_per_s() - speed_m_per_s).abs() < 1e-9).collect();
-        for edge_m in [0.4, 0.3, 0.36] {
-            let along_axis =
-                sides.iter().filter(|leg| (leg.to_m - leg.from_m).amax() > length_m(leg) - 1e-12);
-            assert!(along_axis.filter(|leg| (length_m(leg) - edge_m).abs() < 1e-12).count() >= 4, "{edge_m}");
+        for (edge_m, count) in [(0.4, 4), (0.3, 4), (0.36, 1)] {
+            let along_axis = sides.iter().filter(|leg| (leg.to_m - leg.from_m).amax() > length_m(leg) - 1e-12);
+            assert_eq!(along_axis.filter(|leg| (length_m(leg) - edge_m).abs() < 1e-12).count(), count, "{edge_m}");
+        }
+        for corner in 0..8 {
+            let sign = |bit: i32| f64::from((corner >> bit & 1) * 2 - 1);
+            let corner_m = Vector3::new(0.1 + 0.2 * sign(0), 0.2 + 0.15 * sign(1), 0.3 + 0.18 * sign(2));
+            assert!(sides.iter().any(|leg| (leg.to_m - corner_m).norm() < 1e-12), "{corner_m}");
         }
     }
     assert!(RECTANGLES_M_PER_S.iter().zip([0.167, 0.5]).all(|(is, said)| (is - said).abs() < 1e-12));
@@ -95,7 +98,7 @@ fn smooth_within_limits_inside_the_box_and_closed() {
         let trapezoid = (here.velocity_m_per_s + last.velocity_m_per_s) / 2.0;
         assert!((mean - trapezoid).norm() < 1e-4, "{time_s}");
         let change = here.acceleration_m_per_s2 - last.acceleration_m_per_s2;
-        assert!(change.norm() < 1.5, "{time_s}: {}", change.norm());
+        assert!(change.norm() < 0.7, "{time_s}: {}", change.norm());
         assert!(here.acceleration_m_per_s2.norm() <= STROKE_ACCELERATION_M_PER_S2 * (1.0 + 1e-12));
         let outside_m = (here.position_m - Vector3::new(0.1, 0.2, 0.3)).abs() - Vector3::new(0.2, 0.15, 0.18);
         assert!(outside_m.max() < 1e-12, "{time_s}");
@@ -104,7 +107,6 @@ fn smooth_within_limits_inside_the_box_and_closed() {
     }
     assert_eq!(run.at(run.duration_s() - 1e-9).velocity_m_per_s, Vector3::zeros());
     assert!((run.at(run.duration_s() - 1e-9).position_m - run.at(0.0).position_m).norm() < 1e-12);
-    assert!(ACCELERATION_M_PER_S2 < STROKE_ACCELERATION_M_PER_S2);
 }
 
 #[test]

@@ -16,8 +16,8 @@ pub enum DamageKind {
     Magic,
     /// Bytes that are no record, or a record whose structure is broken.
     Garbage,
-    /// A length field was wrong; the record was recovered with the help of its other lengths.
-    LengthRepaired,
+    /// The length or the kind of a record was wrong; the record was recovered with the help of its other lengths.
+    HeaderRepaired,
     /// The checksum of a chunk does not fit its content; none of its messages is delivered.
     ChunkChecksum,
     /// A chunk cannot be decompressed; none of its messages is delivered.
@@ -47,7 +47,7 @@ impl DamageKind {
         match self {
             Self::Magic => "wrong magic bytes",
             Self::Garbage => "unreadable bytes",
-            Self::LengthRepaired => "a wrong length, repaired",
+            Self::HeaderRepaired => "a wrong record header, which could be repaired",
             Self::ChunkChecksum => "a chunk with a wrong checksum",
             Self::ChunkDecompression => "a chunk that cannot be decompressed",
             Self::ChunkSize => "a chunk of the wrong size",
@@ -216,13 +216,9 @@ impl FileDamage {
         let Some(first) = self.places.first() else {
             return Ok(());
         };
-        let plural = if self.place_count == 1 { "" } else { "s" };
-        write!(f, "{} damaged place{plural} (", self.place_count)?;
-        if self.place_count > 1 {
-            f.write_str("the first is ")?;
-        }
-        write!(f, "{} at byte {}", first.kind.describe(), first.offset_bytes)?;
-        f.write_str(")")
+        let (plural, which) = if self.place_count == 1 { ("", "") } else { ("s", "the first ") };
+        let (offset_bytes, kind) = (first.offset_bytes, first.kind.describe());
+        write!(f, "{} damaged place{plural} ({which}at byte {offset_bytes}: {kind})", self.place_count)
     }
 
     fn write_losses(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -238,12 +234,9 @@ impl FileDamage {
             separator = ", ";
         }
         if let Some((from, to)) = self.log_time_nanos {
-            write!(
-                f,
-                "{separator}between {:.3} s and {:.3} s after the start",
-                seconds_after(self.start_time_nanos, from),
-                seconds_after(self.start_time_nanos, to)
-            )?;
+            let from = seconds_after(self.start_time_nanos, from);
+            let to = seconds_after(self.start_time_nanos, to);
+            write!(f, "{separator}between {from:.3} s and {to:.3} s after the start")?;
         }
         Ok(())
     }

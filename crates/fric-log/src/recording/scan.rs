@@ -186,10 +186,11 @@ impl<'a> Scanner<'a> {
         match judge(&mut self.window, offset)? {
             Verdict::Whole { header, repaired } => {
                 if repaired {
-                    self.place(DamageKind::LengthRepaired, offset, 0);
+                    self.place(DamageKind::HeaderRepaired, offset, 0);
                 }
                 self.found.is_mcap = true;
                 self.accept(offset, header, repaired)?;
+                // A damaged message index does not end the row that it stands in.
                 if header.opcode != op::MESSAGE || self.run.is_some() {
                     self.last_opcode = header.opcode;
                 }

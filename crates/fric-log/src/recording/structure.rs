@@ -108,7 +108,7 @@ impl MessageBatch {
             && let Some(next) = bytes.get(record.next..).and_then(RecordHeader::parse)
             && next.opcode == op::MESSAGE
             && (MESSAGE_FIELDS_LEN as u64..=rest).contains(&next.body_len)
-            && disguised(record.body, record.body.len() as u64).is_none()
+            && disguised(record.body, record.body.len() as u64, false).is_none()
         {
             batch.len = record.next;
             batch.count += 1;
@@ -119,12 +119,19 @@ impl MessageBatch {
     }
 }
 
-/// The opcode that the header of a supposed message had before one of its bits was flipped, if its body fits that record
-/// to the byte. A message index is not among them: a message can look like one.
-fn disguised(prefix: &[u8], body_len: u64) -> Option<u8> {
-    [op::HEADER, op::CHANNEL, op::METADATA_INDEX]
-        .into_iter()
-        .find(|opcode| described_len(*opcode, prefix) == Some(body_len))
+/// The opcode that a supposed message had before one of its bits was flipped, if its body fits that record to the byte.
+///
+/// Only where a message cannot look the same by chance: a header is expected at the start of the file only, and a message
+/// would have to be sent at a very special time to look like a channel.
+fn disguised(prefix: &[u8], body_len: u64, is_first: bool) -> Option<u8> {
+    let is_like = |opcode| described_len(opcode, prefix) == Some(body_len);
+    if is_first && is_like(op::HEADER) {
+        Some(op::HEADER)
+    } else if is_like(op::CHANNEL) {
+        Some(op::CHANNEL)
+    } else {
+        None
+    }
 }
 
 /// Whether a supposed message has the structure of a message index.
@@ -157,7 +164,8 @@ pub(super) fn judge(window: &mut Window<'_>, offset: u64) -> io::Result<Verdict>
             return Ok(Verdict::None);
         };
         let prefix = window.bytes(body_offset, MESSAGE_PREFIX_LEN)?;
-        if let Some(opcode) = disguised(prefix, header.body_len) {
+        let is_first = offset == mcap::MAGIC.len() as u64;
+        if let Some(opcode) = disguised(prefix, header.body_len, is_first) {
             return Ok(whole(opcode, header.body_len, true));
         }
         return Ok(if follows(window, end)? {
@@ -264,9 +272,9 @@ fn is_certain(window: &mut Window<'_>, offset: u64) -> io::Result<bool> {
     }
 }
 
-/// The first offset from `offset` on at which a record certainly begins, or at which the closing magic stands.
-pub(super) fn find_record(window: &mut Window<'_>, offset: u64) -> io::Result<Option<u64>> {
-    let mut offset = offset;
+/// The first offset from `start` on at which a record certainly begins, or at which the closing magic stands.
+pub(super) fn find_record(window: &mut Window<'_>, start: u64) -> io::Result<Option<u64>> {
+    let mut offset = start;
     loop {
         let bytes = window.buffered(offset)?;
         let candidate = bytes.windows(HEADER_LEN).position(is_candidate);
@@ -286,7 +294,7 @@ pub(super) fn find_record(window: &mut Window<'_>, offset: u64) -> io::Result<Op
     }
     let magic_at = window.file_len().saturating_sub(mcap::MAGIC.len() as u64);
     let is_magic = window.bytes(magic_at, mcap::MAGIC.len())? == mcap::MAGIC;
-    Ok((is_magic && magic_at >= offset.saturating_sub(1)).then_some(magic_at))
+    Ok((is_magic && magic_at >= start).then_some(magic_at))
 }
 
 /// A known opcode and a length below a terabyte.

@@ -18,7 +18,7 @@ fn what_is_no_recording_is_named() {
     assert!(error(b"#ROSBAG V2.0\n").contains("mcap convert"));
     assert!(error(&[0x1f, 0x8b, 8, 0, 0, 0]).contains("gunzip"));
     assert!(error(&[0xff; 3000]).contains("no MCAP record"));
-    assert!(error(&[0; 100_000]).contains("no MCAP record"));
+    assert!(error(&vec![0; 100_000]).contains("no MCAP record"));
 }
 
 #[test]

@@ -107,7 +107,7 @@ fn a_chunk_with_a_wrong_length_is_recovered() {
             let mut recording = open(&damaged).unwrap();
             assert_eq!(read_all(&mut recording), samples, "{storage:?} byte {at}");
             let places = recording.damage().files()[0].places();
-            assert_eq!(places[0].kind, DamageKind::LengthRepaired);
+            assert_eq!(places[0].kind, DamageKind::HeaderRepaired);
             assert_eq!(places[0].offset_bytes, chunk.start as u64);
         }
     }

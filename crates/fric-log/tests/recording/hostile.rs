@@ -185,6 +185,35 @@ fn a_wrong_summary_is_not_used() {
 }
 
 #[test]
+fn messages_that_resemble_other_records_are_messages() {
+    // Read as the two strings of a header record, channel 18, number 0, and the start of a CDR payload fit the length.
+    let mut resembling = sample("/a", 0, 50, 260);
+    resembling.data[..4].copy_from_slice(&[0, 1, 0, 0]);
+    // Read as a message index, the number is the length of the entries.
+    let index = sample("/a", 80, 60, 64);
+    let zero = Sample { log_time_nanos: 0, publish_time_nanos: 0, ..sample("/a", 0, 0, 4) };
+    let samples = [zero, resembling, index.clone(), index];
+    let mut records = vec![channel(18, "/a")];
+    records.extend(samples.iter().map(|sample| message(18, sample)));
+    let mut recording = open(&file_of(&records)).unwrap();
+    assert_eq!(read_all(&mut recording), samples);
+    assert!(recording.damage().is_empty(), "{}", recording.damage());
+}
+
+#[test]
+fn the_damage_is_said_in_one_sentence() {
+    let bytes = chunk("zstd", b"no zstd", 100, 0, (1_500_000_010, 2_750_000_010));
+    let file = super::support::to_file(&between(bytes));
+    let (_, recording) = super::support::read_files(&[file.path()]);
+    let expected = format!(
+        "`{}` has 1 damaged place (at byte 185: a chunk that cannot be decompressed); 60 bytes skipped, \
+         between 1.500 s and 2.750 s after the start",
+        file.path().display()
+    );
+    assert_eq!(recording.damage().to_string(), expected);
+}
+
+#[test]
 fn random_bytes_do_not_disturb() {
     let mut random = super::support::Random(3);
     let bytes = write(options(Storage::Lz4, 1000), &samples(30));

@@ -238,3 +238,15 @@ fn a_time_with_a_second_of_nanoseconds_is_refused() {
     assert_eq!(read(i32::MAX, 999_999_999), Ok(Some(2_147_483_647_999_999_999)));
     assert!(matches!(read(0, 1_000_000_000), Err(DecodeError::TimeRange { .. })));
 }
+
+#[test]
+fn texts_behind_a_filter_come_and_go() {
+    let mut decoder = decoder("string id\nstring[] name", &[texts("{id==\"x\"}.name")]);
+    let mut read = |id: &str| {
+        let mut encoder = Encoder::new(false, false);
+        encoder.text(id).texts(&["a", "b"]);
+        let values = decoder.read(&encoder.done()).unwrap();
+        (values.texts(0).len(), values.texts(0).revision())
+    };
+    assert_eq!([read("x"), read("x"), read("y"), read("y"), read("x")], [(2, 1), (2, 1), (0, 2), (0, 2), (2, 3)]);
+}

@@ -98,11 +98,10 @@ mod tests {
             kind: "stribeck".to_owned(),
             parameters: [("ratio".to_owned(), 0.5), ("velocity_m_per_s".to_owned(), 0.1)].into(),
         };
-        let hidden = ["stribeck:ratio=0.2,velocity_m_per_s=0.05", "time_delay:delay_s=0.004"]
-            .map(|text| HiddenEffect::parse(text));
+        let hidden = ["stribeck:ratio=0.2,velocity_m_per_s=0.05", "time_delay:delay_s=0.004"].map(HiddenEffect::parse);
         let effects = TruthEffects::new(&[table], &hidden.into_iter().collect::<Result<Vec<_>, _>>()?)?;
         assert!((effects.mu_factor(0.0) - 1.5 * 1.2).abs() < 1e-15);
-        let expected = (1.0 + 0.5 * (-1.0_f64).exp()) * (1.0 + 0.2 * (-2.0_f64).exp());
+        let expected = (1.0 + 0.5 * (-1.0_f64).exp()) * (1.0 + 0.2 * (-4.0_f64).exp());
         assert!((effects.mu_factor(-0.1) - expected).abs() < 1e-15);
         assert!((effects.motion_lead_s() - 0.004).abs() < 1e-18);
         Ok(())

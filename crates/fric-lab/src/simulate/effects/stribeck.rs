@@ -1,6 +1,6 @@
 //! `stribeck` in the simulated robot: the boundary layer of a bearing that has not yet built up its film.
 //!
-//! The additional share of μ decays with speed as `exp(−|v|/velocity)`, the law that the catalogue states; speed is the
+//! The additional share of μ falls with speed as `exp(−(v/velocity)²)`, the law that the catalogue states; speed is the
 //! cable's at the instant, within the cycle too.
 
 use fric_core::effects::EffectParams;
@@ -20,6 +20,6 @@ pub fn build(params: &EffectParams) -> Box<dyn TruthEffect> {
 
 impl TruthEffect for BoundaryLayer {
     fn mu_factor(&self, speed_m_per_s: f64) -> f64 {
-        1.0 + self.additional_ratio * libm::exp(-speed_m_per_s.abs() / self.velocity_m_per_s)
+        1.0 + self.additional_ratio * libm::exp(-libm::pow(speed_m_per_s / self.velocity_m_per_s, 2.0))
     }
 }

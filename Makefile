@@ -1,0 +1,32 @@
+# `make test` is all there is to checking a change; CI runs the same.
+CARGO ?= cargo
+PYTHON ?= python3
+VENV := .venv
+
+.PHONY: test format lint test-rust test-core docs test-python bench
+
+test: format lint test-core test-rust docs test-python
+
+format:
+	$(CARGO) fmt --all --check
+
+lint:
+	$(CARGO) clippy --workspace --all-targets --quiet -- -D warnings
+
+test-rust:
+	$(CARGO) test --workspace --quiet
+
+docs:
+	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --workspace --no-deps --quiet
+
+test-python: $(VENV)/ready
+	$(CARGO) build --release --quiet -p fric-cli
+	$(VENV)/bin/python -m pytest tests/python
+
+$(VENV)/ready: tests/python/requirements.txt
+	$(PYTHON) -m venv $(VENV)
+	$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check -r tests/python/requirements.txt
+	touch $@
+
+bench:
+	$(CARGO) bench
