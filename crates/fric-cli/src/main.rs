@@ -8,6 +8,7 @@ mod model;
 mod output;
 mod progress;
 mod report;
+mod result;
 mod warnings;
 
 use std::process::ExitCode;

@@ -6,7 +6,6 @@ use fric_log::recording::Recording;
 use fric_log::signals::{Role, SignalReader};
 use fric_log::write::{CableStatusChannel, JointState, JointStateChannel, LogWriter, Wrench, WrenchChannel};
 use hdrhistogram::Histogram;
-use serde::Serialize;
 
 use crate::arguments::ReplayArguments;
 use crate::failure::{Failure, Outcome};
@@ -14,55 +13,8 @@ use crate::model::{self, Model};
 use crate::output::{JsonTarget, TextFile, table};
 use crate::progress::{self, STRIDE};
 use crate::report::{self, Series};
+use crate::result::{CableResult, CycleResult, ForceError, ReplayResult, WrenchError, WrenchResult};
 use crate::{interrupt, warnings};
-
-/// `fric-replay/1`.
-#[derive(Debug, Serialize)]
-pub struct ReplayResult {
-    format: &'static str,
-    pub robot: String,
-    pub cables: Vec<CableResult>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub wrench: Option<WrenchResult>,
-    pub cycle: CycleResult,
-}
-
-#[derive(Debug, Serialize)]
-pub struct CableResult {
-    pub name: String,
-    pub samples: u64,
-    pub flagged: u64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub before: Option<ForceError>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub after: Option<ForceError>,
-}
-
-#[derive(Debug, Serialize)]
-pub struct ForceError {
-    pub rms_n: f64,
-    pub mae_n: f64,
-}
-
-#[derive(Debug, Serialize)]
-pub struct WrenchResult {
-    pub before: WrenchError,
-    pub after: WrenchError,
-}
-
-#[derive(Debug, Serialize)]
-pub struct WrenchError {
-    pub force_rms_n: f64,
-    pub torque_rms_nm: f64,
-}
-
-#[derive(Debug, Serialize)]
-pub struct CycleResult {
-    pub count: u64,
-    pub median_ns: u64,
-    pub p999_ns: u64,
-    pub max_ns: u64,
-}
 
 /// Runs the command.
 pub fn run(arguments: &ReplayArguments) -> Outcome {
@@ -129,7 +81,7 @@ fn summarize(model: &Model, names: &[&str], replay: &Replay, durations: &Histogr
     let wrench_error = |(force_rms_n, torque_rms_nm)| WrenchError { force_rms_n, torque_rms_nm };
     let (before, after) = replay.wrench();
     ReplayResult {
-        format: "fric-replay/1",
+        format: ReplayResult::FORMAT,
         robot: model.robot.options().name.clone(),
         cables: names.iter().zip(replay.cables()).map(cable).collect(),
         wrench: before

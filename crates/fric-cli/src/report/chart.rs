@@ -55,7 +55,13 @@ pub fn deviations(series: &Series, cable: usize) -> Option<String> {
             label(tick)
         );
     }
-    let _ = write!(svg, "<text x=\"4\" y=\"{:.1}\">N / s</text>", HEIGHT - 6.0);
+    let _ = write!(
+        svg,
+        "<text x=\"4\" y=\"{:.1}\">N</text><text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">s</text>",
+        TOP + 8.0,
+        WIDTH - 2.0,
+        HEIGHT - 6.0
+    );
     let band = |pick: fn(&super::series::Interval) -> Extent| {
         let intervals = series.of_cable(cable);
         let bars =

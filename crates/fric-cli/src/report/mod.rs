@@ -9,7 +9,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 pub use series::Series;
 
-use crate::commands::replay::{ReplayResult, WrenchResult};
+use crate::result::{ReplayResult, WrenchResult};
 
 const STYLE: &str = "
 :root { color-scheme: light dark; --text: #1b1f24; --soft: #5d6773; --line: #c9d0d8; --page: #ffffff;
@@ -24,6 +24,7 @@ th, td { padding: .2rem .9rem .2rem 0; text-align: right; border-bottom: 1px sol
 th:first-child, td:first-child { text-align: left; }
 th { font-weight: 600; color: var(--soft); }
 p.soft { color: var(--soft); margin: .2rem 0; }
+.keys { white-space: nowrap; }
 .key { display: inline-block; width: .9em; height: .9em; border-radius: .15em; vertical-align: -.1em; margin: 0 .3em 0 .8em; }
 svg { width: 100%; height: auto; display: block; }
 svg text { fill: var(--soft); font: 12px system-ui, sans-serif; }
@@ -57,9 +58,11 @@ pub fn page(result: &ReplayResult, series: &Series, logs: &[PathBuf]) -> String 
                 @if let Some(wrench) = &result.wrench { (wrench_table(wrench)) }
                 p {
                     "Deviation from the reference over time, least and greatest in each interval:"
-                    span.key style="background: var(--before)" {} "uncompensated"
-                    span.key style="background: var(--after)" {} "compensated"
-                    span.key style="background: var(--flag)" {} "flagged"
+                    span.keys { span.key style="background: var(--before)" {} "uncompensated" }
+                    " "
+                    span.keys { span.key style="background: var(--after)" {} "compensated" }
+                    " "
+                    span.keys { span.key style="background: var(--flag)" {} "flagged" }
                 }
                 @for (index, cable) in result.cables.iter().enumerate() {
                     section {

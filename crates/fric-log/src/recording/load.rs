@@ -6,11 +6,8 @@ use std::io;
 use super::damage::DamageKind;
 use super::decompress::Decompressor;
 use super::record::{Compression, MessageFields, framed_at, op};
-use super::segment::Segment;
+use super::segment::{CHUNK_LIMIT_BYTES, Segment};
 use super::window::read_into;
-
-/// The most that one chunk may hold when decompressed; a larger one is counted as damaged.
-pub const CHUNK_LIMIT_BYTES: u64 = 1024 * 1024 * 1024;
 
 /// Log time and place in the content of a message.
 pub(super) type MessagePlace = (u64, u32);

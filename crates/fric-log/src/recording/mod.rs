@@ -45,8 +45,8 @@ pub use self::attachment::{ATTACHMENT_LIMIT_BYTES, Attachment, AttachmentInfo};
 pub use self::channels::{Channel, Schema};
 pub use self::damage::{Damage, DamageKind, DamagedPlace, FileDamage, FileEnd, PLACES_KEPT};
 pub use self::error::RecordingError;
-pub use self::load::CHUNK_LIMIT_BYTES;
 pub use self::scan::Metadata;
+pub use self::segment::CHUNK_LIMIT_BYTES;
 
 use self::channels::ChannelTable;
 use self::merge::Merge;

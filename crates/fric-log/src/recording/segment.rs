@@ -1,7 +1,9 @@
 //! A stretch of a file that is loaded at once, and what is known of it before.
 
-use super::load::CHUNK_LIMIT_BYTES;
 use super::record::Compression;
+
+/// The most that one chunk may hold when decompressed; a larger one is counted as damaged.
+pub const CHUNK_LIMIT_BYTES: u64 = 1024 * 1024 * 1024;
 
 /// A chunk, or a run of messages that are not in chunks.
 #[derive(Debug, Clone, PartialEq, Eq)]
