@@ -56,3 +56,8 @@ pub use platform::{Pose, Wrench};
 pub use robot::{CableParams, ParamError, RobotParams};
 pub use sample::Sample;
 pub use status::CableStatus;
+
+/// Compiles the example of the README.
+#[cfg(all(doctest, feature = "robot-file"))]
+#[doc = include_str!("../../../README.md")]
+struct Readme;
