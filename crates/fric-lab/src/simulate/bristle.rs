@@ -29,7 +29,7 @@ const GAMMA: f64 = 1.0 - SQRT_2 / 2.0;
 /// The normal force depends on the friction that is sought; so many rounds settle it for every μ a robot file may have.
 const MOST_ROUNDS: u32 = 200;
 /// Friction is settled to this share of the tension.
-const SETTLED_SHARE: f64 = 1e-13;
+const SETTLED_SHARE: f64 = 1e-11;
 
 /// A cable at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]

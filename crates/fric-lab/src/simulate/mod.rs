@@ -4,7 +4,7 @@
 //! one cycle after another in bounded memory; the caller writes them where it likes.
 //!
 //! What is simulated: the platform runs the identification run of \[P\], section III C ([`Trajectory`]); its cables hold it
-//! with tensions that wander; on every pulley a bristle rubs ([P] 4–7, 16, in a form and by a method of its own); winches
+//! with tensions that wander; on every pulley a bristle rubs (\[P\] 4–7, 16, in a form and by a method of its own); winches
 //! move a little in standstill; sensor and reference are noisy. What is not: elastic or sagging cables, rotation of the
 //! platform, slip on a pulley, inertia of pulleys.
 //!

@@ -3,9 +3,8 @@
 //! Boxes are tried from the largest down, first around the middle of the base points, then below it (a robot hung from
 //! a ceiling), until at a grid of places in the box, under the run's accelerations and at the lowest and highest
 //! prestress, every cable can leave its last pulley and pull. A robot that its cables cannot hold anywhere (too few of
-//! them, say) runs in the box where the least is missing, as if a guide carried the rest.
+//! them, say) runs in the box where the least is missing in the middle, as if a guide carried the rest.
 
-use fric_core::Pose;
 use nalgebra::{Vector3, Vector6};
 
 use super::distribution::Distribution;
@@ -24,6 +23,12 @@ const LONGEST_HALF_EDGE_M: f64 = 0.2;
 const FLAT_SHARE: f64 = 0.05;
 /// Edge of the box across such a plane, as a share of the largest.
 const ACROSS_SHARE: f64 = 0.4;
+
+/// Forces below this share of the mean tension are rounding.
+const SHORT_SHARE: f64 = 1e-9;
+
+/// How far aside of a single base point, per depth below it.
+const ASIDE_SHARE: f64 = 0.75;
 
 /// A box and whether the cables alone hold the platform in it.
 #[derive(Clone, Copy, Debug)]
@@ -46,8 +51,8 @@ impl Workspace {
         for depth in DEPTHS {
             for share in SHARES {
                 let Some(work_box) = candidate(platform, depth, share, &mut trial.columns) else { continue };
-                let Some(missing_n) = trial.worst(&work_box) else { continue };
-                if missing_n <= 1e-9 * level.mean_n {
+                let Some(missing_n) = trial.missing_in_n(&work_box) else { continue };
+                if missing_n <= 0.0 {
                     return Ok(Self { work_box, balanced: true });
                 }
                 if best.is_none_or(|(least_n, _)| missing_n < least_n) {
@@ -64,14 +69,18 @@ impl Workspace {
 fn candidate(platform: &Platform, depth: f64, share: f64, columns: &mut Vec<Vector6<f64>>) -> Option<WorkBox> {
     let [least_m, greatest_m] = platform.base_corners_m();
     let half_m = (greatest_m - least_m) * 0.5;
-    // A single base point has no extent: the platform then hangs within a metre of it.
-    let largest_m = if half_m.max() > 1e-6 { half_m.max() } else { 0.5 };
+    // A single base point has no extent: the platform then hangs within a metre of it, aside, for straight behind a
+    // swivelling pulley there is no way out.
+    let single = half_m.max() <= 1e-6;
+    let largest_m = if single { 0.5 } else { half_m.max() };
+    let level = if platform.down().x.abs() < 0.9 { Vector3::x() } else { Vector3::y() };
+    let aside = if single { level * ASIDE_SHARE } else { Vector3::zeros() };
     let across_m = if depth > 0.0 { largest_m * ACROSS_SHARE } else { 0.0 };
     let half_edges_m = half_m.map(|extent_m| {
         let extent_m = if extent_m < FLAT_SHARE * largest_m { across_m } else { extent_m };
         (extent_m * share).min(LONGEST_HALF_EDGE_M)
     });
-    let center_m = (least_m + greatest_m) * 0.5 + platform.down() * (depth * largest_m);
+    let center_m = (least_m + greatest_m) * 0.5 + (platform.down() + aside) * (depth * largest_m);
     platform.structure(&Platform::pose(center_m), columns).then_some(())?;
     let direction = best_direction(&half_edges_m, columns)?;
     Some(WorkBox { center_m, half_edges_m, direction })
@@ -103,27 +112,29 @@ struct Trial<'a> {
 }
 
 impl Trial<'_> {
-    /// The greatest force that the cables fail to provide in the box, N; `None` where one cannot leave its pulley.
-    fn worst(&mut self, work_box: &WorkBox) -> Option<f64> {
+    /// The first force found that the cables fail to provide in the box, N, starting from its middle; 0 if they provide
+    /// all. `None` where a cable cannot leave its pulley.
+    fn missing_in_n(&mut self, work_box: &WorkBox) -> Option<f64> {
         let parts = [-1.0, 0.0, 1.0];
-        let mut worst_n = 0.0_f64;
-        for [x, y, z] in parts.into_iter().flat_map(|x| parts.into_iter().flat_map(move |y| parts.map(|z| [x, y, z]))) {
-            let place_m = work_box.center_m + work_box.half_edges_m.component_mul(&Vector3::new(x, y, z));
-            let pose = Platform::pose(place_m);
-            if !self.platform.structure(&pose, &mut self.columns) {
-                return None;
-            }
-            for axis in [Vector3::x(), Vector3::y(), Vector3::z()] {
-                worst_n = worst_n.max(self.missing_n(axis * ACCELERATION_M_PER_S2));
-                worst_n = worst_n.max(self.missing_n(axis * -ACCELERATION_M_PER_S2));
+        let grid = parts.into_iter().flat_map(|x| parts.into_iter().flat_map(move |y| parts.map(|z| [x, y, z])));
+        let places_m =
+            grid.map(|corner| work_box.center_m + work_box.half_edges_m.component_mul(&Vector3::from(corner)));
+        if !places_m.clone().all(|place_m| self.platform.structure(&Platform::pose(place_m), &mut self.columns)) {
+            return None;
+        }
+        let tolerance_n = SHORT_SHARE * self.level.mean_n;
+        let stroke = work_box.direction * STROKE_ACCELERATION_M_PER_S2;
+        let ramps = [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| axis * ACCELERATION_M_PER_S2);
+        let strokes = [(work_box.center_m, stroke)].into_iter();
+        let tried = strokes.chain(places_m.flat_map(|place_m| ramps.map(|ramp| (place_m, ramp))));
+        for (place_m, acceleration_m_per_s2) in tried {
+            self.platform.structure(&Platform::pose(place_m), &mut self.columns);
+            let missing_n = self.missing_n(acceleration_m_per_s2).max(self.missing_n(-acceleration_m_per_s2));
+            if missing_n > tolerance_n {
+                return Some(missing_n);
             }
         }
-        let pose: Pose = Platform::pose(work_box.center_m);
-        self.platform.structure(&pose, &mut self.columns).then_some(())?;
-        for sign in [1.0, -1.0] {
-            worst_n = worst_n.max(self.missing_n(work_box.direction * (sign * STROKE_ACCELERATION_M_PER_S2)));
-        }
-        Some(worst_n)
+        Some(0.0)
     }
 
     fn missing_n(&mut self, acceleration_m_per_s2: Vector3<f64>) -> f64 {

@@ -4,4 +4,3 @@ mod robots;
 mod shapes;
 mod stream;
 mod trajectory;
-mod tmp;

@@ -19,11 +19,6 @@ const PUBLISHED: [(f64, f64, f64); 8] = [
 
 /// Eight cables in a frame of 1.1 × 0.8 × 1.0 m, sensor at 180°, a fixed pulley, a swivelling one.
 pub fn eight_cables() -> RobotFile {
-    eight_cables_with("presliding = \"per_pulley\"")
-}
-
-/// The same with a line more in every cable.
-pub fn eight_cables_with(line: &str) -> RobotFile {
     let mut text =
         "format = \"fric-robot/1\"\nname = \"eight\"\ncycle_s = 0.001\n[platform]\nmass_kg = 0.41\n".to_owned();
     let corners = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)];
@@ -31,7 +26,7 @@ pub fn eight_cables_with(line: &str) -> RobotFile {
     for (cable, ((x, y, height), (mu, sigma, viscous))) in places.zip(PUBLISHED).enumerate() {
         write!(
             text,
-            "[[cable]]\nname = \"cable{}\"\nbase_m = [{}, {}, {}]\nplatform_m = [{}, {}, {}]\n{line}\n\
+            "[[cable]]\nname = \"cable{}\"\nbase_m = [{}, {}, {}]\nplatform_m = [{}, {}, {}]\n\
              pulleys = [{{ wrap_deg = 180.0, sensor = true }}, {{ wrap_deg = 90.0 }}, \
              {{ wrap = \"pose\", radius_m = 0.01, axis = [0.0, 0.0, {height:?}] }}]\n\
              friction = {{ mu = {mu}, sigma_n_per_m = {sigma:?}, viscous_n_s_per_m = {viscous} }}\n",
@@ -50,9 +45,14 @@ pub fn eight_cables_with(line: &str) -> RobotFile {
 
 /// A winch on a test bench: pulleys as given, no geometry.
 pub fn bench(pulleys: &str, friction: &str) -> RobotFile {
+    bench_with(pulleys, friction, "")
+}
+
+/// The same with a line more for the cable.
+pub fn bench_with(pulleys: &str, friction: &str, line: &str) -> RobotFile {
     let text = format!(
         "format = \"fric-robot/1\"\nname = \"bench\"\ncycle_s = 0.001\n[[cable]]\nname = \"winch\"\n\
-         pulleys = [{pulleys}]\nfriction = {{ {friction} }}\n"
+         pulleys = [{pulleys}]\nfriction = {{ {friction} }}\n{line}\n"
     );
     RobotFile::parse(&text, "bench").unwrap()
 }

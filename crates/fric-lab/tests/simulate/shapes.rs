@@ -10,7 +10,7 @@ use super::robots::{noiseless, simulate};
 /// A robot from base points and attachments, one fixed sensor pulley each.
 fn robot(mass_kg: f64, places: &[([f64; 3], [f64; 3])], friction: &str) -> RobotFile {
     let mut text =
-        format!("format = \"fric-robot/1\"\nname = \"shape\"\ncycle_s = 0.002\n[platform]\nmass_kg = {mass_kg:?}\n");
+        format!("format = \"fric-robot/1\"\nname = \"shape\"\ncycle_s = 0.01\n[platform]\nmass_kg = {mass_kg:?}\n");
     for (cable, (base_m, platform_m)) in places.iter().enumerate() {
         write!(
             text,

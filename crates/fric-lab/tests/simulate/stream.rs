@@ -1,7 +1,7 @@
 //! The stream of cycles: reproducible, continuous, in balance.
 
+use fric_core::CableInput;
 use fric_core::platform::structure_matrix;
-use fric_core::{CableInput, Wrench};
 use fric_lab::simulate::{START_NANOS, SimulationOptions};
 use nalgebra::{SVector, Vector3};
 
@@ -42,64 +42,74 @@ fn stamps_are_the_cycle_times() {
     assert!(simulation.next_cycle().is_none());
 }
 
-/// Two runs and a bit: no jump where the run repeats, speeds that belong to the lengths, forces that sensors can bear.
+/// A run and a bit: no jump where it repeats, speeds that belong to the lengths.
 #[test]
-fn lengths_are_continuous_and_tensions_positive() {
-    let robot = eight_cables();
-    let mut simulation = simulate(&robot, &noiseless());
-    let duration_s = simulation.trajectory().duration_s();
-    assert!((50.0..60.0).contains(&duration_s), "{duration_s}");
-    assert!(simulation.is_balanced());
-    simulation = simulate(&robot, &SimulationOptions { duration_s: Some(duration_s + 3.0), ..noiseless() });
-    let mut last: Option<Vec<CableInput>> = None;
-    let mut forces_n = [[f64::INFINITY, f64::NEG_INFINITY]; 8];
-    let mut sensors_n = [f64::INFINITY, f64::NEG_INFINITY];
+fn lengths_are_continuous() {
+    let robot = bench("{ wrap_deg = 180.0, sensor = true }", "mu = 0.02, sigma_n_per_m = 1000.0");
+    let duration_s = simulate(&robot, &noiseless()).trajectory().duration_s();
+    let options = SimulationOptions { duration_s: Some(duration_s + 3.0), ..noiseless() };
+    let mut simulation = simulate(&robot, &options);
+    let mut last: Option<CableInput> = None;
     while let Some(cycle) = simulation.next_cycle() {
-        for (now, before) in cycle.cables.iter().zip(last.iter().flatten()) {
+        let now = cycle.cables[0];
+        assert!(now.speed_m_per_s.abs() < 1.001);
+        if let Some(before) = last {
             let mean_m_per_s = (now.length_m - before.length_m) / 0.001;
             let trapezoid_m_per_s = 0.5 * (now.speed_m_per_s + before.speed_m_per_s);
             assert!((mean_m_per_s - trapezoid_m_per_s).abs() < 1e-3, "{mean_m_per_s} {trapezoid_m_per_s}");
-            assert!(now.speed_m_per_s.abs() < 1.0);
         }
+        last = Some(now);
+    }
+}
+
+/// All phases, and the rectangles as far as the fifth corner.
+#[test]
+fn the_platform_is_held_by_its_cables() {
+    let robot = eight_cables();
+    let params = robot.params().unwrap();
+    let duration_s = simulate(&robot, &noiseless()).trajectory().duration_s();
+    assert!((50.0..60.0).contains(&duration_s), "{duration_s}");
+    let mut simulation = simulate(&robot, &SimulationOptions { duration_s: Some(34.0), ..noiseless() });
+    assert!(simulation.is_balanced());
+    let trajectory = simulation.trajectory().clone();
+    let mut forces_n = [[f64::INFINITY, f64::NEG_INFINITY]; 8];
+    let mut sensors_n = [f64::INFINITY, f64::NEG_INFINITY];
+    let mut cycles = 0.0;
+    let mut last: Option<Vec<CableInput>> = None;
+    while let Some(cycle) = simulation.next_cycle() {
+        let (pose, wrench) = (cycle.pose.unwrap(), cycle.outside_wrench.unwrap());
+        let set_point = trajectory.at(cycles * 0.001);
+        let expected_n = (Vector3::new(0.0, 0.0, -9.80665) - set_point.acceleration_m_per_s2) * 0.41;
+        assert!((wrench.force_n - expected_n).amax() < 1e-9, "{cycles}: {} {expected_n}", wrench.force_n);
+        assert!(wrench.torque_nm.amax() < 1e-9);
+        let references_n = SVector::<f64, 8>::from_column_slice(cycle.reference_force_n);
+        let product = structure_matrix::<8>(&params, &pose).unwrap() * references_n;
+        assert!((product + wrench.to_vector()).amax() < 1e-9);
         for (bounds, force_n) in forces_n.iter_mut().zip(cycle.reference_force_n) {
             *bounds = [bounds[0].min(*force_n), bounds[1].max(*force_n)];
         }
         for cable in cycle.cables {
             sensors_n = [sensors_n[0].min(cable.sensor_force_n), sensors_n[1].max(cable.sensor_force_n)];
         }
+        // The speed by the structure matrix is the derivative of the length by the inverse kinematics.
+        for (now, before) in cycle.cables.iter().zip(last.iter().flatten()) {
+            let mean_m_per_s = (now.length_m - before.length_m) / 0.001;
+            let trapezoid_m_per_s = 0.5 * (now.speed_m_per_s + before.speed_m_per_s);
+            assert!((mean_m_per_s - trapezoid_m_per_s).abs() < 1e-3, "{mean_m_per_s} {trapezoid_m_per_s}");
+        }
         last = Some(cycle.cables.to_vec());
+        cycles += 1.0;
     }
     println!("run {duration_s:.2} s, tensions {forces_n:.2?}, sensors {sensors_n:.2?}");
-    assert!(sensors_n[0] > 1.0 && sensors_n[1] < 25.0);
+    assert!(sensors_n[0] > 1.0 && sensors_n[1] < 30.0);
     for [least_n, greatest_n] in forces_n {
         assert!(least_n > 0.4 && greatest_n > 2.0 * least_n, "{forces_n:?}");
     }
 }
 
 #[test]
-fn the_wrench_is_gravity_and_inertia_and_the_forces_make_it() {
-    let robot = eight_cables();
-    let params = robot.params().unwrap();
-    let mut simulation = simulate(&robot, &SimulationOptions { duration_s: Some(25.0), ..noiseless() });
-    let trajectory = simulation.trajectory().clone();
-    let mut cycles = 0.0;
-    while let Some(cycle) = simulation.next_cycle() {
-        let time_s = cycles * 0.001;
-        let (pose, Wrench { force_n, torque_nm }) = (cycle.pose.unwrap(), cycle.outside_wrench.unwrap());
-        let set_point = trajectory.at(time_s);
-        let expected_n = (Vector3::new(0.0, 0.0, -9.80665) - set_point.acceleration_m_per_s2) * 0.41;
-        assert!((force_n - expected_n).amax() < 1e-9, "{time_s}: {force_n} {expected_n}");
-        assert!(torque_nm.amax() < 1e-9);
-        let forces_n = SVector::<f64, 8>::from_column_slice(cycle.reference_force_n);
-        let product = structure_matrix::<8>(&params, &pose).unwrap() * forces_n;
-        assert!((product + cycle.outside_wrench.unwrap().to_vector()).amax() < 1e-9);
-        cycles += 1.0;
-    }
-}
-
-#[test]
 fn three_cables_from_a_ceiling_carry_a_point() {
-    let mut simulation = simulate(&hung(), &noiseless());
+    let mut simulation = simulate(&hung(), &SimulationOptions { duration_s: Some(25.0), ..noiseless() });
     assert!(simulation.is_balanced());
     while let Some(cycle) = simulation.next_cycle() {
         let pose = cycle.pose.unwrap();
