@@ -1,1 +1,73 @@
-fn main(){}
+//! One cycle of 8 cables with 3 pulleys each, geometry and wrench included: the mean, and the worst beside it.
+//!
+//! `cargo bench -p fric-core --bench cycle`
+
+#![allow(missing_docs, clippy::print_stdout, clippy::expect_used, clippy::cast_precision_loss)]
+
+#[path = "support/mod.rs"]
+mod support;
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use criterion::Criterion;
+use fric_core::robot::Presliding;
+use support::{CYCLES, compensator, inputs};
+
+const FORMS: [(&str, Presliding); 2] = [("lumped", Presliding::Lumped), ("per_pulley", Presliding::PerPulley)];
+
+/// The mean, by Criterion; one iteration is one cycle.
+fn mean(criterion: &mut Criterion) {
+    let inputs = inputs();
+    let mut group = criterion.benchmark_group("cycle");
+    for (name, presliding) in FORMS {
+        let mut compensator = compensator(presliding);
+        let mut order = inputs.iter().cycle();
+        group.bench_function(name, |bencher| {
+            bencher.iter(|| compensator.step(black_box(order.next().expect("never ends"))));
+        });
+    }
+    group.finish();
+}
+
+/// Single cycles with a clock around each: percentiles in nanoseconds, the clock's own cost taken off.
+fn worst(rounds: usize) {
+    let inputs = inputs();
+    let mut clock_ns: Vec<u128> = (0..10_000).map(|_| Instant::now().elapsed().as_nanos()).collect();
+    clock_ns.sort_unstable();
+    let clock_ns = clock_ns[clock_ns.len() / 2];
+    println!("single cycles, ns (the clock's {clock_ns} ns taken off):");
+    for (name, presliding) in FORMS {
+        let mut compensator = compensator(presliding);
+        let mut spans_ns: Vec<u128> = Vec::with_capacity(rounds * CYCLES);
+        for _ in 0..rounds {
+            for input in &inputs {
+                let start = Instant::now();
+                let output = compensator.step(black_box(input));
+                let elapsed_ns = start.elapsed().as_nanos();
+                black_box(&output);
+                spans_ns.push(elapsed_ns.saturating_sub(clock_ns));
+            }
+        }
+        spans_ns.sort_unstable();
+        let last = spans_ns.len() - 1;
+        let at = |thousandths: usize| spans_ns[last * thousandths / 100_000];
+        println!(
+            "  {name}: median {}, 99 % {}, 99.9 % {}, 99.99 % {}, worst {} of {}",
+            at(50_000),
+            at(99_000),
+            at(99_900),
+            at(99_990),
+            spans_ns[last],
+            spans_ns.len(),
+        );
+    }
+}
+
+fn main() {
+    let mut criterion = Criterion::default().configure_from_args();
+    mean(&mut criterion);
+    criterion.final_summary();
+    // `cargo test --benches` runs every bench once to see that it works.
+    worst(if std::env::args().any(|argument| argument == "--bench") { 50 } else { 1 });
+}

@@ -31,15 +31,13 @@ pub struct CableModel<T: Scalar> {
     pub stribeck: Stribeck<T>,
 }
 
-/// One pulley of a cable. All zero, with a traction ratio beyond every tension, is a pulley that is not there.
+/// One pulley of a cable. All zero is a pulley that is not there.
 #[derive(Clone, Copy, Debug)]
 pub struct Pulley<T> {
     /// `2 sin(α/2)` of its wrap.
     pub wrap_factor: T,
     /// F_pv, N s/m.
     pub viscous_n_s_per_m: T,
-    /// `e^{μ_p α}`, the tension ratio at which the cable slips.
-    pub traction_ratio: T,
 }
 
 /// The pulleys of a cable in order from the winch, and the friction force each has stored (`per_pulley`).
@@ -50,6 +48,9 @@ pub trait Pulleys<T> {
     fn count(&self) -> usize;
     /// The pulley at a place.
     fn pulley(&self, place: usize) -> Pulley<T>;
+    /// `e^{μ_p α}` there, the tension ratio at which the cable slips; beyond
+    /// [`NO_LIMIT_RATIO`](pulley::NO_LIMIT_RATIO) where it cannot.
+    fn traction_ratio(&self, place: usize) -> T;
     /// Its stored Coulomb friction, N.
     fn friction_n(&self, place: usize) -> T;
     /// Stores it.
@@ -123,7 +124,7 @@ pub fn cable_step<T: Scalar>(
         lumped_friction_n,
         no_tension,
         slack: no_tension,
-        slip: zero.lt(zero),
+        slip: T::Mask::NONE,
     };
     if features.lumped {
         let (platform_n, friction_n, slip) = lumped_chain(model, features, mu, signals, lumped_friction_n, pulleys);
@@ -160,7 +161,7 @@ fn pulley_chain<T: Scalar>(
 ) -> (T, T::Mask) {
     let zero = T::splat(0.0);
     let mut tension_n = zero;
-    let mut slip = zero.lt(zero);
+    let mut slip = T::Mask::NONE;
     for place in 0..pulleys.count() {
         let pulley = pulleys.pulley(place);
         let stored_n = pulleys.friction_n(place);
@@ -179,14 +180,15 @@ fn pulley_chain<T: Scalar>(
         let mut friction_n = T::select(hold, stored_n, moved_n);
         let mut behind_n = if place == 0 { sensed(friction_n) } else { tension_n + friction_n + viscous_n };
         if features.traction {
+            let traction_ratio = pulleys.traction_ratio(place);
             let before_n = if place == 0 { behind_n - friction_n - viscous_n } else { tension_n };
-            let (limited_n, slips) = pulley::limit_traction(before_n, behind_n, pulley.traction_ratio);
-            // At the sensor pulley neither tension is given, only F_1 − c·F_0: with F_0 = F_1·`inverse`, F_1 follows.
-            let inverse =
-                T::select(behind_n.lt(before_n), pulley.traction_ratio, T::splat(1.0) / pulley.traction_ratio);
-            let sensed_n = signals.sensor_force_n / (T::splat(1.0) - model.sensor_cos * inverse);
-            let (held_before_n, held_n) =
-                if place == 0 { (sensed_n * inverse, sensed_n) } else { (before_n, limited_n) };
+            let (limited_n, slips) = pulley::limit_traction(before_n, behind_n, traction_ratio);
+            let (held_before_n, held_n) = if place == 0 {
+                let unlimited = (before_n, behind_n);
+                pulley::slipping_sensor(signals.sensor_force_n, model.sensor_cos, unlimited, traction_ratio)
+            } else {
+                (before_n, limited_n)
+            };
             behind_n = T::select(slips, held_n, behind_n);
             friction_n = T::select(slips.and(hold.not()), held_n - held_before_n - viscous_n, friction_n);
             slip = slip.or(slips);
@@ -209,7 +211,7 @@ fn lumped_chain<T: Scalar>(
 ) -> (T, T, T::Mask) {
     let zero = T::splat(0.0);
     let direction = signals.displacement_m.sign();
-    let mut slip = zero.lt(zero);
+    let mut slip = T::Mask::NONE;
     let mut coulomb_n = zero;
     let mut viscous_n = zero;
     for place in 0..pulleys.count() {
@@ -219,25 +221,43 @@ fn lumped_chain<T: Scalar>(
             let (gain, viscous_gain) = pulley::sensor_gains(direction, mu, pulley.wrap_factor, model.sensor_cos);
             coulomb_n = signals.sensor_force_n * gain;
             viscous_n = drag_n * viscous_gain;
+            if features.traction {
+                let traction_ratio = pulleys.traction_ratio(place);
+                // [P] 10 the other way round: the tension on the winch side from the one behind.
+                let (inverse_gain, inverse_viscous) = pulley::sliding_gains(-direction, mu, pulley.wrap_factor);
+                let behind_n = coulomb_n + viscous_n;
+                let before_n = behind_n * inverse_gain - drag_n * inverse_viscous;
+                let (_, slips) = pulley::limit_traction(before_n, behind_n, traction_ratio);
+                let tensions = (before_n, behind_n);
+                let (_, held_n) =
+                    pulley::slipping_sensor(signals.sensor_force_n, model.sensor_cos, tensions, traction_ratio);
+                coulomb_n = T::select(slips, held_n - viscous_n, coulomb_n);
+                slip = slips;
+            }
             continue;
         }
         let (gain, viscous_gain) = pulley::sliding_gains(direction, mu, pulley.wrap_factor);
         let before_n = coulomb_n + viscous_n;
         let (next_coulomb_n, next_viscous_n) = (coulomb_n * gain, viscous_n * gain + drag_n * viscous_gain);
         if features.traction {
+            let traction_ratio = pulleys.traction_ratio(place);
             let behind_n = next_coulomb_n + next_viscous_n;
-            let (limited_n, slips) = pulley::limit_traction(before_n, behind_n, pulley.traction_ratio);
-            let ratio = limited_n / before_n;
+            let (limited_n, slips) = pulley::limit_traction(before_n, behind_n, traction_ratio);
             slip = slip.or(slips);
-            coulomb_n = T::select(slips, coulomb_n * ratio, next_coulomb_n);
-            viscous_n = T::select(slips, viscous_n * ratio, next_viscous_n);
+            // The slip limit holds the sum; what it takes away is Coulomb friction.
+            coulomb_n = T::select(slips, limited_n - next_viscous_n, next_coulomb_n);
+            viscous_n = next_viscous_n;
         } else {
             coulomb_n = next_coulomb_n;
             viscous_n = next_viscous_n;
         }
     }
     let frictionless_n = signals.sensor_force_n * model.frictionless_gain;
-    let sliding_n = (coulomb_n - frictionless_n).abs();
-    let moved_n = dahl_step(friction_n, sliding_n, model.sigma_n_per_m, signals.displacement_m);
+    let sliding_n = coulomb_n - frictionless_n;
+    // Sliding this way leads to `sliding_n`, whose sign is not the motion's where a sensor pulley of less than 90°
+    // outweighs the others: its friction lowers the tension behind it.
+    let distance_m = signals.displacement_m.abs();
+    let toward_m = T::select(sliding_n.lt(zero), -distance_m, distance_m);
+    let moved_n = dahl_step(friction_n, sliding_n.abs(), model.sigma_n_per_m, toward_m);
     (frictionless_n + moved_n + viscous_n, moved_n, slip)
 }

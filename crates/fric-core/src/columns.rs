@@ -19,9 +19,6 @@ const NO_SLIP: f64 = 1e200;
 /// Stands for "no presliding": motion of a picometre reverses any friction.
 const NO_PRESLIDING_N_PER_M: f64 = 1e15;
 
-/// A place of a pulley that no cable has.
-const NO_PLACE: f64 = -1.0;
-
 /// Parameters that do not change while running.
 #[derive(Clone, Copy, Debug)]
 pub struct ParamColumns<const CABLES: usize> {
@@ -36,8 +33,8 @@ pub struct ParamColumns<const CABLES: usize> {
     wrap_factor: [[f64; CABLES]; PLACES],
     viscous_n_s_per_m: [[f64; CABLES]; PLACES],
     traction_ratio: [[f64; CABLES]; PLACES],
-    /// Place of the pulley whose wrap follows the pose, or [`NO_PLACE`].
-    pose_place: [f64; CABLES],
+    /// 1 where the pulley at the last place follows the pose.
+    follows_pose: [f64; CABLES],
     pub traction_mu: [f64; CABLES],
     pub least_force_n: [f64; CABLES],
     pub greatest_force_n: [f64; CABLES],
@@ -48,8 +45,8 @@ pub struct ParamColumns<const CABLES: usize> {
     radius_m: [f64; CABLES],
     platform_m: [[f64; CABLES]; 3],
     has_geometry: [f64; CABLES],
-    /// Places before the first pulley that hold no pulley: 1 for a sensor in line with the cable.
-    pub first_place: [usize; CABLES],
+    /// Where each pulley of a cable stands; [`PLACES`] for those that it does not have.
+    pub pulley_place: [[usize; MAX_PULLEYS]; CABLES],
 }
 
 impl<const CABLES: usize> ParamColumns<CABLES> {
@@ -66,7 +63,7 @@ impl<const CABLES: usize> ParamColumns<CABLES> {
         wrap_factor: [[0.0; CABLES]; PLACES],
         viscous_n_s_per_m: [[0.0; CABLES]; PLACES],
         traction_ratio: [[NO_SLIP; CABLES]; PLACES],
-        pose_place: [NO_PLACE; CABLES],
+        follows_pose: [0.0; CABLES],
         traction_mu: [0.0; CABLES],
         least_force_n: [-f64::MAX; CABLES],
         greatest_force_n: [f64::MAX; CABLES],
@@ -77,13 +74,16 @@ impl<const CABLES: usize> ParamColumns<CABLES> {
         radius_m: [0.0; CABLES],
         platform_m: [[0.0; CABLES]; 3],
         has_geometry: [0.0; CABLES],
-        first_place: [0; CABLES],
+        pulley_place: [[PLACES; MAX_PULLEYS]; CABLES],
     };
 }
 
 impl<const CABLES: usize> ParamColumns<CABLES> {
-    /// Enters a cable.
-    pub fn set(&mut self, cable: usize, params: &CableParams, cycle_s: f64) {
+    /// Enters a cable of a robot with `place_count` places a cable.
+    ///
+    /// The pulleys stand from the first place on, but one that follows the pose at the last: there it is for all cables,
+    /// and places without a pulley lie before it.
+    pub fn set(&mut self, cable: usize, params: &CableParams, cycle_s: f64, place_count: usize) {
         let states = match params.presliding {
             Presliding::PerPulley => params.pulley_count,
             Presliding::Lumped => 1,
@@ -105,23 +105,26 @@ impl<const CABLES: usize> ParamColumns<CABLES> {
         put(&mut self.greatest_force_n, cable, params.validated.force_n[1]);
         put(&mut self.greatest_speed_m_per_s, cable, params.validated.speed_m_per_s);
         put(&mut self.delay, cable, Delay::from_cycles(params.effects.delay_s / cycle_s));
-        put(&mut self.first_place, cable, first_place);
         let places = self.wrap_factor.iter_mut().zip(&mut self.viscous_n_s_per_m).zip(&mut self.traction_ratio);
         let wraps = params.wraps.iter().take(params.pulley_count);
-        for (place, (((factors, viscous), ratios), wrap)) in
-            places.skip(first_place).zip(wraps).enumerate().map(|(place, row)| (place + first_place, row))
-        {
-            put(viscous, cable, params.friction.viscous_n_s_per_m);
+        let mut pulley_place = [PLACES; MAX_PULLEYS];
+        let rows = places.enumerate().skip(first_place).zip(wraps).zip(&mut pulley_place);
+        for (((place, ((factors, viscous), ratios)), wrap), stands_at) in rows {
+            *stands_at = if *wrap == Wrap::Pose { place_count - 1 } else { place };
             match *wrap {
                 Wrap::Fixed { wrap_rad } => {
+                    put(viscous, cable, params.friction.viscous_n_s_per_m);
                     put(factors, cable, wrap_factor(wrap_rad));
                     if let Some(traction_mu) = params.traction_mu {
                         put(ratios, cable, libm::exp(traction_mu * wrap_rad));
                     }
                 }
-                #[expect(clippy::cast_precision_loss, reason = "at most MAX_PULLEYS")]
-                Wrap::Pose => put(&mut self.pose_place, cable, place as f64),
+                Wrap::Pose => put(&mut self.follows_pose, cable, 1.0),
             }
+        }
+        put(&mut self.pulley_place, cable, pulley_place);
+        if let Some(viscous) = self.viscous_n_s_per_m.get_mut(place_count - 1).filter(|_| params.needs_pose()) {
+            put(viscous, cable, params.friction.viscous_n_s_per_m);
         }
         if let Some(geometry) = &params.geometry {
             let points = [
@@ -178,10 +181,10 @@ impl<const CABLES: usize> ParamColumns<CABLES> {
         Lanes::splat(0.0).lt(Lanes::load(&self.has_geometry, block))
     }
 
-    /// Where a pulley's wrap follows the pose, in a block.
+    /// Where the last pulley's wrap follows the pose, in a block.
     #[inline(always)]
     pub fn follows_pose(&self, block: usize) -> LanesMask {
-        Lanes::splat(0.0).le(Lanes::load(&self.pose_place, block))
+        Lanes::splat(0.0).lt(Lanes::load(&self.follows_pose, block))
     }
 }
 
@@ -235,9 +238,8 @@ impl<const CABLES: usize> StateColumns<CABLES> {
 pub struct PulleyColumns<'a, const CABLES: usize> {
     pub params: &'a ParamColumns<CABLES>,
     pub pulley_friction_n: &'a mut [[f64; CABLES]; PLACES],
-    pub pose_place: Lanes,
-    pub pose_wrap_factor: Lanes,
-    pub pose_traction_ratio: Lanes,
+    pub pose_wrap_factor: &'a [f64; CABLES],
+    pub pose_traction_ratio: &'a [f64; CABLES],
     pub block: usize,
     pub count: usize,
 }
@@ -251,14 +253,30 @@ impl<'a, const CABLES: usize> PulleyColumns<'a, CABLES> {
         count: usize,
     ) -> Self {
         Self {
-            pose_place: Lanes::load(&params.pose_place, block),
-            pose_wrap_factor: Lanes::load(&state.pose_wrap_factor, block),
-            pose_traction_ratio: Lanes::load(&state.pose_traction_ratio, block),
+            pose_wrap_factor: &state.pose_wrap_factor,
+            pose_traction_ratio: &state.pose_traction_ratio,
             params,
             pulley_friction_n: &mut state.pulley_friction_n,
             block,
             count,
         }
+    }
+}
+
+impl<const CABLES: usize> PulleyColumns<'_, CABLES> {
+    #[inline(always)]
+    fn column(&self, columns: &[[f64; CABLES]; PLACES], place: usize) -> Lanes {
+        columns.get(place).map_or(Lanes::splat(0.0), |column| Lanes::load(column, self.block))
+    }
+
+    /// What the pose gives at the last place of cables that follow it, else what is fixed.
+    #[inline(always)]
+    fn posed(&self, place: usize, by_pose: &[f64; CABLES], fixed: &[[f64; CABLES]; PLACES]) -> Lanes {
+        let fixed = self.column(fixed, place);
+        if place + 1 < self.count {
+            return fixed;
+        }
+        Lanes::select(self.params.follows_pose(self.block), Lanes::load(by_pose, self.block), fixed)
     }
 }
 
@@ -269,20 +287,18 @@ impl<const CABLES: usize> Pulleys<Lanes> for PulleyColumns<'_, CABLES> {
     }
     #[inline(always)]
     fn pulley(&self, place: usize) -> Pulley<Lanes> {
-        #[expect(clippy::cast_precision_loss, reason = "at most PLACES")]
-        let posed = self.pose_place.eq(Lanes::splat(place as f64));
-        let column = |columns: &[[f64; CABLES]; PLACES]| {
-            columns.get(place).map_or(Lanes::splat(0.0), |column| Lanes::load(column, self.block))
-        };
         Pulley {
-            wrap_factor: Lanes::select(posed, self.pose_wrap_factor, column(&self.params.wrap_factor)),
-            viscous_n_s_per_m: column(&self.params.viscous_n_s_per_m),
-            traction_ratio: Lanes::select(posed, self.pose_traction_ratio, column(&self.params.traction_ratio)),
+            wrap_factor: self.posed(place, self.pose_wrap_factor, &self.params.wrap_factor),
+            viscous_n_s_per_m: self.column(&self.params.viscous_n_s_per_m, place),
         }
     }
     #[inline(always)]
+    fn traction_ratio(&self, place: usize) -> Lanes {
+        self.posed(place, self.pose_traction_ratio, &self.params.traction_ratio)
+    }
+    #[inline(always)]
     fn friction_n(&self, place: usize) -> Lanes {
-        self.pulley_friction_n.get(place).map_or(Lanes::splat(0.0), |column| Lanes::load(column, self.block))
+        self.column(self.pulley_friction_n, place)
     }
     #[inline(always)]
     fn set_friction_n(&mut self, place: usize, friction_n: Lanes) {

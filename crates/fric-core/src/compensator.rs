@@ -7,7 +7,7 @@
 
 use crate::cable::{CableSignals, Features, cable_step};
 use crate::columns::{PLACES, ParamColumns, PulleyColumns, StateColumns};
-use crate::cycle::{CableInput, CycleInput, CycleOutput};
+use crate::cycle::{CableInput, CableOutput, CycleInput, CycleOutput};
 use crate::effects::time_delay::{Delay, DelayLine};
 use crate::lanes::{LANES, Lanes, LanesMask};
 use crate::platform::{Pose, Wrench};
@@ -99,13 +99,15 @@ impl<const CABLES: usize> Compensator<CABLES> {
         let mut params = ParamColumns::EMPTY;
         let mut features = Features::default();
         let mut place_count = 1;
-        for (place, cable) in robot.cables.iter().enumerate() {
-            params.set(place, cable, robot.cycle_s);
+        for cable in robot.cables {
             features.per_pulley |= cable.presliding == Presliding::PerPulley;
             features.lumped |= cable.presliding == Presliding::Lumped;
             features.traction |= cable.traction_mu.is_some();
             features.stribeck |= cable.effects.stribeck.ratio.abs() > 0.0;
             place_count = place_count.max(cable.pulley_count + usize::from(cable.sensor_wrap_rad.is_none()));
+        }
+        for (place, cable) in robot.cables.iter().enumerate() {
+            params.set(place, cable, robot.cycle_s, place_count);
         }
         Ok(Self {
             params,
@@ -160,30 +162,30 @@ impl<const CABLES: usize> Compensator<CABLES> {
     pub fn step_into(&mut self, input: &CycleInput<CABLES>, output: &mut CycleOutput<CABLES>) {
         let pose = input.pose.as_ref().filter(|pose| pose.is_finite());
         let rotation = pose.map(|pose| pose.orientation.to_rotation_matrix().into_inner());
-        let mut force = [Lanes::splat(0.0); 3];
-        let mut torque = [Lanes::splat(0.0); 3];
+        let mut forces_n = [0.0; CABLES];
         let blocks = CABLES.div_ceil(LANES).min(self.cable_count.div_ceil(LANES));
         for block in 0..blocks {
             let pose_flags = match (pose, &rotation) {
                 (Some(pose), Some(rotation)) if self.any_geometry => self.follow_pose(block, pose, rotation),
                 _ => PoseFlags { missing: self.misses_pose(block).bits(), unreachable: 0 },
             };
-            let forces_n = self.step_block(block, input, output, pose_flags);
-            let columns = &self.state.columns;
-            for (sum, column) in force.iter_mut().zip(&columns.direction) {
-                *sum = *sum + Lanes::load(column, block) * forces_n;
-            }
-            for (sum, column) in torque.iter_mut().zip(&columns.moment_arm_m) {
-                *sum = *sum + Lanes::load(column, block) * forces_n;
-            }
+            self.step_block(block, input, output, pose_flags).store(&mut forces_n, block);
+        }
+        for place in output.cables.iter_mut().skip(self.cable_count) {
+            *place = CableOutput::default();
         }
         if let Some(pose) = pose.filter(|_| self.all_geometry) {
             let torque_nm = (pose.orientation * self.center_of_mass_m).cross(&self.gravity_n);
             self.state.gravity = Some(Wrench { force_n: self.gravity_n, torque_nm });
         }
+        let columns = &self.state.columns;
+        let along = |row: &[f64; CABLES]| {
+            let products = (0..blocks).map(|block| Lanes::load(row, block) * Lanes::load(&forces_n, block));
+            -products.fold(Lanes::splat(0.0), |sum, product| sum + product).sum()
+        };
         output.outside_wrench = self.state.gravity.map(|_| Wrench {
-            force_n: -Vector3::from(force.map(Lanes::sum)),
-            torque_nm: -Vector3::from(torque.map(Lanes::sum)),
+            force_n: columns.direction.each_ref().map(along).into(),
+            torque_nm: columns.moment_arm_m.each_ref().map(along).into(),
         });
         output.applied_wrench =
             output.outside_wrench.zip(self.state.gravity).map(|(outside, gravity)| outside - gravity);
@@ -195,12 +197,9 @@ impl<const CABLES: usize> Compensator<CABLES> {
     /// the cable's pulleys, and cables that the robot does not have, are zero.
     #[must_use]
     pub fn pulley_friction_n(&self, cable: usize) -> [f64; MAX_PULLEYS] {
-        let first = self.params.first_place.get(cable).copied().unwrap_or(0);
+        let places = self.params.pulley_place.get(cable).copied().unwrap_or([PLACES; MAX_PULLEYS]);
         let columns = &self.state.columns.pulley_friction_n;
-        core::array::from_fn(|pulley| {
-            let place = (pulley + first).min(PLACES - 1);
-            columns.get(place).and_then(|column| column.get(cable)).copied().unwrap_or(0.0)
-        })
+        places.map(|place| columns.get(place).and_then(|column| column.get(cable)).copied().unwrap_or(0.0))
     }
 
     /// The structure matrix `A^T` of the last cycle with a pose, force rows first; columns past the robot's cables are zero.
@@ -251,8 +250,10 @@ impl<const CABLES: usize> Compensator<CABLES> {
         let [ux, uy, uz] = exit.direction;
         let moment_arm_m = [ay * uz - az * uy, az * ux - ax * uz, ax * uy - ay * ux];
         let columns = &mut self.state.columns;
+        let all_move = moves.all();
         let keep = |column: &mut [f64; CABLES], value: Lanes| {
-            Lanes::select(moves, value, Lanes::load(column, block)).store(column, block);
+            let value = if all_move { value } else { Lanes::select(moves, value, Lanes::load(column, block)) };
+            value.store(column, block);
         };
         for (column, value) in columns.direction.iter_mut().zip(exit.direction) {
             keep(column, value);
@@ -347,31 +348,35 @@ impl<const CABLES: usize> Compensator<CABLES> {
             .lt(Lanes::load(&self.params.least_force_n, block))
             .or(Lanes::load(&self.params.greatest_force_n, block).lt(sensor_force_n))
             .or(Lanes::load(&self.params.greatest_speed_m_per_s, block).lt(speed_m_per_s.abs()));
-        let flags = [
-            (CableStatus::SLACK, forces.slack.bits()),
-            (CableStatus::SLIP, forces.slip.and(hold.not()).bits()),
-            (CableStatus::SENSOR_NOT_FINITE, sensor_finite.not().bits()),
-            (CableStatus::SENSOR_FROZEN, frozen.bits()),
-            (CableStatus::LENGTH_JUMP, jump.bits()),
-            (CableStatus::MOTION_NOT_FINITE, motion_finite.not().bits()),
-            (CableStatus::OUT_OF_RANGE, out_of_range.bits()),
-            (CableStatus::POSE_MISSING, pose_flags.missing),
-            (CableStatus::POSE_UNREACHABLE, pose_flags.unreachable),
-        ];
-        let any_flag = flags.iter().fold(0, |any, (_, bits)| any | bits);
-        let values = platform_n.to_array().into_iter().zip(friction_n.to_array()).zip(forces.frictionless_n.to_array());
-        let present = self.cable_count.saturating_sub(first);
-        let places = output.cables.iter_mut().skip(first).take(present).zip(values).enumerate();
-        for (lane, (place, ((force_at_platform_n, friction_n), frictionless_n))) in places {
-            place.force_at_platform_n = force_at_platform_n;
-            place.friction_n = friction_n;
-            place.frictionless_n = frictionless_n;
-            place.status = CableStatus::OK;
-            if any_flag != 0 {
-                for (flag, bits) in flags {
-                    place.status = place.status | flag.if_set(bits, lane);
+        let slip = forces.slip.and(hold.not());
+        let any_flag =
+            hold.or(forces.slack).or(slip).or(out_of_range).bits() | pose_flags.missing | pose_flags.unreachable;
+        let flags = || {
+            [
+                (CableStatus::SLACK, forces.slack.bits()),
+                (CableStatus::SLIP, slip.bits()),
+                (CableStatus::SENSOR_NOT_FINITE, sensor_finite.not().bits()),
+                (CableStatus::SENSOR_FROZEN, frozen.bits()),
+                (CableStatus::LENGTH_JUMP, jump.bits()),
+                (CableStatus::MOTION_NOT_FINITE, motion_finite.not().bits()),
+                (CableStatus::OUT_OF_RANGE, out_of_range.bits()),
+                (CableStatus::POSE_MISSING, pose_flags.missing),
+                (CableStatus::POSE_UNREACHABLE, pose_flags.unreachable),
+            ]
+        };
+        let mut status = [CableStatus::OK; LANES];
+        if any_flag != 0 {
+            for (flag, bits) in flags() {
+                for (lane, status) in status.iter_mut().enumerate() {
+                    *status = *status | flag.if_set(bits, lane);
                 }
             }
+        }
+        let values = platform_n.to_array().into_iter().zip(friction_n.to_array()).zip(forces.frictionless_n.to_array());
+        let present = self.cable_count.saturating_sub(first);
+        let places = output.cables.iter_mut().skip(first).take(present).zip(values.zip(status));
+        for (place, (((force_at_platform_n, friction_n), frictionless_n), status)) in places {
+            *place = CableOutput { force_at_platform_n, friction_n, frictionless_n, status };
         }
         platform_n
     }

@@ -4,7 +4,7 @@
 //! in it: half the displacement twice is the whole displacement. Non-finite input gives non-finite output; the caller
 //! keeps it out. State: one number per contact.
 
-use crate::scalar::{Mask, Scalar};
+use crate::scalar::Scalar;
 
 /// Friction force after a displacement.
 ///
@@ -39,9 +39,11 @@ pub fn dahl_step<T: Scalar>(friction_n: T, sliding_n: T, sigma_n_per_m: T, displ
     let moved = target_n + (friction_n - target_n) * decay;
     let rests = displacement_m.eq(T::splat(0.0));
     // Past the decay's last bit the state is the bound itself, so that |f| ≤ f_c holds exactly.
-    let saturated = decay.le(T::splat(f64::MIN_POSITIVE)).and(rests.not());
+    let saturated = decay.le(T::splat(VANISHED));
     T::select(rests, friction_n, T::select(saturated, target_n, moved))
 }
 
 /// Stands in for `f_c = 0` in the quotient; far below any friction that can be measured.
 const SMALLEST_SLIDING_N: f64 = 1e-30;
+/// A decay of which nothing is left; above the smallest that [`exp_negative`](crate::scalar::exp_negative) gives.
+const VANISHED: f64 = 1e-300;

@@ -76,6 +76,13 @@ impl LanesMask {
         self.0.to_bitmask()
     }
 
+    /// Whether it holds in every lane.
+    #[inline(always)]
+    #[must_use]
+    pub fn all(self) -> bool {
+        self.0.all()
+    }
+
     /// A mask from truth values.
     #[inline(always)]
     #[must_use]
@@ -116,6 +123,8 @@ impl Neg for Lanes {
 }
 
 impl Mask for LanesMask {
+    const NONE: Self = Self(f64x4::ZERO);
+
     #[inline(always)]
     fn and(self, other: Self) -> Self {
         Self(self.0 & other.0)
@@ -167,6 +176,27 @@ impl Scalar for Lanes {
         }
     }
     #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        // The instruction of that name is this very selection, NaN and zeros included; elsewhere it is not.
+        if cfg!(target_feature = "sse2") {
+            return Self(self.0.fast_max(other.0));
+        }
+        Self::select(other.lt(self), self, other)
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        if cfg!(target_feature = "sse2") {
+            return Self(self.0.fast_min(other.0));
+        }
+        Self::select(self.lt(other), self, other)
+    }
+    #[inline(always)]
+    fn sign(self) -> Self {
+        let zero = Self::splat(0.0);
+        let (negative, positive) = (self.lt(zero), zero.lt(self));
+        Self((negative.0 & f64x4::splat(-1.0)) | (positive.0 & f64x4::splat(1.0)))
+    }
+    #[inline(always)]
     fn exp_negative(self) -> Self {
         let (fraction, exponent_bits) = exp_parts(self.max(Self::splat(EXP_LOWEST)));
         let bits: i64x4 = i64x4::new(exponent_bits.to_array().map(|value| value.to_bits().cast_signed()));
@@ -176,6 +206,7 @@ impl Scalar for Lanes {
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "bit for bit is the point")]
 mod tests {
     use super::*;
 

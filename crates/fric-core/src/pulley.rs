@@ -70,14 +70,38 @@ pub fn sliding_friction<T: Scalar>(mu: T, wrap_factor: T, upstream_n: T, downstr
     (mu * wrap_factor * T::splat(0.5) * (upstream_n + downstream_n)).max(T::splat(0.0))
 }
 
+/// A traction ratio beyond this stands for a pulley on which the cable cannot slip; `e^{μ_p α}` is below 3·10⁵.
+pub const NO_LIMIT_RATIO: f64 = 1e6;
+
 /// The tension behind a pulley held within the slip limit, and whether it had to be ([P] 4, Eytelwein).
 ///
 /// `traction_ratio = e^{μ_p α}` with the friction coefficient `μ_p` between cable and pulley: the cable slips when
-/// `F_j/F_{j−1}` leaves `[1/traction_ratio, traction_ratio]`; the ratio is then held at that bound.
+/// `F_j/F_{j−1}` leaves `[1/traction_ratio, traction_ratio]`; the ratio is then held at that bound. Where the cable
+/// arrives without tension there is nothing to hold: no slip, and `downstream_n` as it is. So it is where the ratio is
+/// beyond [`NO_LIMIT_RATIO`].
 #[inline(always)]
 pub fn limit_traction<T: Scalar>(upstream_n: T, downstream_n: T, traction_ratio: T) -> (T, T::Mask) {
     let greatest = upstream_n * traction_ratio;
     let least = upstream_n / traction_ratio;
-    let slips = greatest.lt(downstream_n).or(downstream_n.lt(least));
-    (downstream_n.min(greatest).max(least), slips)
+    let limited = T::splat(0.0).lt(upstream_n).and(traction_ratio.le(T::splat(NO_LIMIT_RATIO)));
+    let slips = limited.and(greatest.lt(downstream_n).or(downstream_n.lt(least)));
+    (T::select(slips, downstream_n.min(greatest).max(least), downstream_n), slips)
+}
+
+/// The tensions before and behind a sensor pulley on which the cable slips.
+///
+/// Neither is given there, only `F_1 − c·F_0 = F_s` ([P] 11); with `F_1/F_0` at the bound that the tensions without slip
+/// exceed ([P] 4), `F_1 = F_s/(1 − c·F_0/F_1)`.
+#[inline(always)]
+pub fn slipping_sensor<T: Scalar>(
+    sensor_force_n: T,
+    sensor_cos: T,
+    (upstream_n, downstream_n): (T, T),
+    traction_ratio: T,
+) -> (T, T) {
+    let one = T::splat(1.0);
+    let inverse = T::select(downstream_n.lt(upstream_n), traction_ratio, one / traction_ratio);
+    // Positive wherever the cable slips; the bound keeps a vanishing sensor force from dividing by zero.
+    let held_n = sensor_force_n / (one - sensor_cos * inverse).max(T::splat(1e-9));
+    (held_n * inverse, held_n)
 }

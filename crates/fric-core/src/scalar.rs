@@ -66,6 +66,8 @@ pub trait Scalar:
 
 /// Truth values of one comparison.
 pub trait Mask: Copy {
+    /// False in every lane.
+    const NONE: Self;
     /// Lane-wise and.
     #[must_use]
     fn and(self, other: Self) -> Self;
@@ -78,6 +80,8 @@ pub trait Mask: Copy {
 }
 
 impl Mask for bool {
+    const NONE: Self = false;
+
     #[inline(always)]
     fn and(self, other: Self) -> Self {
         self & other

@@ -6,11 +6,13 @@ use core::ops::BitOr;
 /// Flags of one cable in one cycle; [`CableStatus::OK`] where nothing is the matter.
 ///
 /// Every flag is about its own cable; no flag of one cable changes a bit of another. All of them clear by
-/// themselves in the first cycle in which their cause is gone.
+/// themselves in the first cycle in which their cause is gone. A cable that has moved by more than `length_jump_m` while
+/// its motion was not finite comes back with one cycle of `LENGTH_JUMP`.
 ///
 /// | flag | cause | what the output is |
 /// |---|---|---|
-/// | `SLACK` | corrected sensor force ≤ 0, or viscous friction exceeds the tension | friction 0 and stored friction released; the force is the sensor's own |
+/// | `SLACK` | sensor force ≤ 0 | friction 0 and stored friction released; the force is the sensor's own |
+/// | `SLACK` | viscous friction exceeds the tension | no force but the offset; stored friction goes on as usual |
 /// | `SLIP` | `F_j/F_{j−1}` beyond `e^{±μ_p α}` at a pulley | the ratio held at that bound |
 /// | `SENSOR_NOT_FINITE` | sensor force NaN, infinite or beyond ±10⁹ N | last good force and friction held; motion meanwhile is made up for in the first good cycle |
 /// | `SENSOR_FROZEN` | the same sensor value to the last bit over `frozen_cycles` cycles in which the cable moved | as above |

@@ -12,7 +12,7 @@
 
 use nalgebra::Vector3;
 
-use crate::scalar::Scalar;
+use crate::scalar::{Mask, Scalar};
 
 /// A swivelling pulley as the cycle uses it: entry point, axis, radius, in one lane per cable.
 #[derive(Clone, Copy, Debug)]
@@ -36,7 +36,8 @@ pub struct Exit<T: Scalar> {
     pub wrap_factor: T,
     /// `cos β` and `sin β`, for [`wrap_rad`].
     pub cos_sin_wrap: [T; 2],
-    /// False where the attachment lies inside the pulley's circle (`D ≤ r`): nothing else is meaningful then.
+    /// False where the attachment lies inside the pulley's circle (`D ≤ r`), or on the axis behind it: nothing else is
+    /// meaningful then.
     pub reachable: T::Mask,
 }
 
@@ -69,6 +70,8 @@ pub fn exit<T: Scalar>(swivel: &Swivel<T>, attachment_m: [T; 3]) -> Exit<T> {
     let across = (radius + radius * cos - distance) * inverse_free;
     let forward = (radius * sin - along) * inverse_free;
     let off_axis = T::splat(NEAR_SQUARED_M2).lt(distance_squared);
+    // On the axis behind a pulley there is no plane to swivel into.
+    let reachable = reachable.and(off_axis.or(zero.lt(along)).or(radius.le(zero)));
     let across = T::select(off_axis, across / distance, zero);
     let direction =
         [radial[0] * across + ax * forward, radial[1] * across + ay * forward, radial[2] * across + az * forward];

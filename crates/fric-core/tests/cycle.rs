@@ -7,9 +7,14 @@ use crate::oracle::{Cable, Geometry, outside_wrench};
 use crate::support::{Random, UNMONITORED, assert_near, bits, compensator, corner_robot, smooth_input};
 
 /// A cable with drawn parameters, as options and as oracle.
-fn draw(random: &mut Random, presliding: Presliding, pulleys: &mut [PulleyOptions; 3]) -> (CableOptions<'static>, Cable) {
+fn draw(
+    random: &mut Random,
+    presliding: Presliding,
+    pulleys: &mut [PulleyOptions; 3],
+) -> (CableOptions<'static>, Cable) {
     let sensor_pulley = random.below(4) != 0;
-    let sensor_wrap_rad = [std::f64::consts::PI, std::f64::consts::FRAC_PI_2, 1.0, 4.0][usize::try_from(random.below(4)).unwrap()];
+    let sensor_wrap_rad =
+        [std::f64::consts::PI, std::f64::consts::FRAC_PI_2, 1.0, 4.0][usize::try_from(random.below(4)).unwrap()];
     let guide_rad = random.range(0.2, 5.0);
     let (radius_m, axis) = (random.range(0.0, 0.03), random.unit_vector());
     *pulleys = [
@@ -88,13 +93,13 @@ fn compare<const CABLES: usize>(seed: u64, forms: &[Presliding]) {
             let arm_m: [f64; 3] = (pose.orientation * nalgebra::Vector3::from(oracle.geometry.platform_m)).into();
             let position_m: [f64; 3] = pose.position_m.into();
             let attachment_m = crate::support::add(position_m, arm_m);
-            let force_n = oracle.step(input.sensor_force_n, input.length_m, input.speed_m_per_s, attachment_m);
+            let expected_n = oracle.step(input.sensor_force_n, input.length_m, input.speed_m_per_s, attachment_m);
             assert!(ours.status.is_ok(), "{}", ours.status);
-            assert_near(ours.force_at_platform_n, force_n, 1e-10);
-            let friction_n = force_n - oracle.offset_n - ours.frictionless_n;
+            assert_near(ours.force_at_platform_n, expected_n, 1e-10);
+            let friction_n = expected_n - oracle.offset_n - ours.frictionless_n;
             assert_near(ours.friction_n, friction_n, 1e-10);
             columns.push((oracle.geometry.exit(attachment_m).direction, arm_m));
-            forces_n.push(force_n);
+            forces_n.push(expected_n);
         }
         let (force, torque) = outside_wrench(&columns, &forces_n);
         let outside = output.outside_wrench.unwrap();
@@ -120,7 +125,10 @@ macro_rules! cable_counts {
 cable_counts!(1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17);
 
 /// Runs a robot and gives all its output bits.
-fn run<const CABLES: usize>(compensator: &mut Compensator<CABLES>, cycles: std::ops::Range<usize>) -> Vec<CycleOutput<CABLES>> {
+fn run<const CABLES: usize>(
+    compensator: &mut Compensator<CABLES>,
+    cycles: std::ops::Range<usize>,
+) -> Vec<CycleOutput<CABLES>> {
     cycles.map(|cycle| compensator.step(&smooth_input(cycle))).collect()
 }
 
@@ -213,4 +221,32 @@ fn the_friction_distribution_adds_up_to_the_friction() {
         }
     }
     assert!(compensator.pulley_friction_n(3).iter().all(|friction_n| *friction_n == 0.0));
+}
+
+#[test]
+fn a_cable_is_the_same_alone_and_among_cables_of_other_lengths() {
+    let (one, two, three) =
+        ([crate::support::SWIVEL], [crate::support::SENSOR_180, crate::support::SWIVEL], crate::support::WINCH);
+    let (fixed, many) = ([crate::support::SENSOR_180], [crate::support::GUIDE_90; 5]);
+    let lists: [&[PulleyOptions]; 5] = [&one, &two, &three, &fixed, &many];
+    for presliding in [Presliding::Lumped, Presliding::PerPulley] {
+        for traction_mu in [None, Some(0.01)] {
+            let corner = |cable: usize| crate::support::corner_cable(cable, presliding);
+            let options: Vec<_> =
+                (0..5).map(|cable| CableOptions { pulleys: lists[cable], traction_mu, ..corner(cable) }).collect();
+            let mut together = compensator::<5>(&options, UNMONITORED);
+            let mut alone: Vec<_> = options.iter().map(|options| compensator::<1>(&[*options], UNMONITORED)).collect();
+            for cycle in 0..600 {
+                let input = smooth_input::<5>(cycle);
+                let output = together.step(&input);
+                for (cable, alone) in alone.iter_mut().enumerate() {
+                    let own = alone.step(&CycleInput { cables: [input.cables[cable]], pose: input.pose });
+                    assert_eq!(bits(&own.cables[0]), bits(&output.cables[cable]), "cable {cable}");
+                    assert_eq!(alone.pulley_friction_n(0), together.pulley_friction_n(cable));
+                    let used = alone.pulley_friction_n(0).iter().filter(|friction_n| **friction_n != 0.0).count();
+                    assert!(cycle < 10 || presliding == Presliding::Lumped || used == lists[cable].len());
+                }
+            }
+        }
+    }
 }

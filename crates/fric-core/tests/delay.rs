@@ -5,11 +5,12 @@ use fric_core::effects::time_delay::{Delay, DelayLine, MAX_DELAY_CYCLES};
 use crate::support::{Random, assert_near};
 
 #[test]
-#[expect(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small numbers")]
+#[expect(clippy::cast_precision_loss, clippy::cast_possible_truncation, reason = "small numbers")]
 fn delays_by_any_number_of_cycles() {
     let mut random = Random::new(21);
     let longest = (MAX_DELAY_CYCLES - 1) as f64;
-    let delays = [0.0, 0.25, 1.0, 7.5, longest - 0.01, longest].into_iter().chain((0..50).map(|_| random.range(0.0, longest)));
+    let delays =
+        [0.0, 0.25, 1.0, 7.5, longest - 0.01, longest].into_iter().chain((0..50).map(|_| random.range(0.0, longest)));
     for delay_cycles in delays.collect::<Vec<_>>() {
         let mut line = DelayLine::EMPTY;
         let history: Vec<f64> = (0..300).map(|_| random.range(-1.0, 1.0)).collect();

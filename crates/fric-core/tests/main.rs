@@ -1,6 +1,7 @@
 //! Public behaviour of `fric-core`, one binary.
 //!
 //! Oracles here are written from the equations of the papers, never from the code under test.
+#![allow(clippy::float_cmp, reason = "bit for bit is what many of these tests are about")]
 
 #[cfg(test)]
 mod builds;

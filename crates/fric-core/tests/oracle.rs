@@ -15,7 +15,6 @@ pub struct Geometry {
 /// How a cable leaves its swivelling pulley, by angles.
 pub struct Exit {
     pub wrap_rad: f64,
-    pub length_m: f64,
     /// From the attachment to the exit point.
     pub direction: [f64; 3],
 }
@@ -35,7 +34,7 @@ impl Geometry {
         let tangent = add(scale(outward, tangent_x), scale(self.axis, tangent_z));
         let free = add(tangent, scale(relative, -1.0));
         let wrap_rad = std::f64::consts::PI - angle;
-        Exit { wrap_rad, length_m: r * wrap_rad + norm(free), direction: scale(free, 1.0 / norm(free)) }
+        Exit { wrap_rad, direction: scale(free, 1.0 / norm(free)) }
     }
 }
 

@@ -1,15 +1,17 @@
 //! Structure matrix and wrench, [P] 1–3.
 
 use fric_core::platform::structure_matrix;
-use fric_core::robot::{CableOptions, GeometryOptions, PlatformOptions, Presliding, PulleyOptions};
+use fric_core::robot::{CableOptions, FrictionOptions, GeometryOptions, PlatformOptions, Presliding, PulleyOptions};
 use fric_core::{Compensator, Pose, RobotParams, Wrench};
-use nalgebra_oracle::{lengths_m, turned};
+use shifted::{lengths_m, turned};
 
 use crate::support::{GUIDE_90, Random, UNMONITORED, assert_near, checked, corner_cable, platform, smooth_input};
 
 /// Helpers that move a pose by hand.
-mod nalgebra_oracle {
+mod shifted {
     use fric_core::{CableParams, Pose};
+
+    use crate::support::{add, cross, dot, scale};
 
     pub fn lengths_m(cables: &[CableParams], pose: &Pose) -> Vec<f64> {
         cables.iter().map(|cable| cable.length_m(pose).unwrap()).collect()
@@ -18,22 +20,19 @@ mod nalgebra_oracle {
     /// The pose moved by `shift` along (rows 0…2) or turned about (rows 3…5) a base axis through the platform origin.
     pub fn turned(pose: &Pose, row: usize, shift: f64) -> Pose {
         let position_m: [f64; 3] = pose.position_m.into();
-        let [x, y, z, w] = [pose.orientation.i, pose.orientation.j, pose.orientation.k, pose.orientation.w];
+        let parts: [f64; 4] = pose.orientation.coords.into();
         if row < 3 {
             let mut moved = position_m;
             moved[row] += shift;
-            return Pose::from_parts(moved, [x, y, z, w]).unwrap();
+            return Pose::from_parts(moved, parts).unwrap();
         }
         // Hamilton product of the small turn (on the left: base axes) with the orientation.
         let mut axis = [0.0; 3];
         axis[row - 3] = (0.5 * shift).sin();
-        let ([a, b, c], d) = (axis, (0.5 * shift).cos());
-        let product = [
-            d * x + a * w + b * z - c * y,
-            d * y - a * z + b * w + c * x,
-            d * z + a * y - b * x + c * w,
-            d * w - a * x - b * y - c * z,
-        ];
+        let (real, [x, y, z, w]) = ((0.5 * shift).cos(), parts);
+        let turn = cross(axis, [x, y, z]);
+        let imaginary = add(add(scale([x, y, z], real), scale(axis, w)), turn);
+        let product = [imaginary[0], imaginary[1], imaginary[2], real * w - dot(axis, [x, y, z])];
         Pose::from_parts(position_m, product).unwrap()
     }
 }
@@ -41,7 +40,8 @@ mod nalgebra_oracle {
 fn robot_cables(random: &mut Random) -> Vec<fric_core::CableParams> {
     (0..8)
         .map(|index| {
-            let pulleys = [GUIDE_90, PulleyOptions::Swivel { radius_m: random.range(0.0, 0.05), axis: random.unit_vector() }];
+            let pulleys =
+                [GUIDE_90, PulleyOptions::Swivel { radius_m: random.range(0.0, 0.05), axis: random.unit_vector() }];
             let eyelet = [GUIDE_90];
             let geometry = GeometryOptions {
                 base_m: [0.6, 0.5, 0.7].map(|size| size * [-1.0, 1.0][usize::from(random.below(2) == 1)]),
@@ -112,7 +112,8 @@ fn structure_matrix_needs_room_and_geometry() {
     let with = corner_cable(0, Presliding::PerPulley);
     let pulleys = [GUIDE_90];
     let without = CableOptions::new(&pulleys);
-    for (options, expected) in [(vec![with, with], true), (vec![with, without], false), (vec![with, with, with], false)] {
+    for (options, expected) in [(vec![with, with], true), (vec![with, without], false), (vec![with, with, with], false)]
+    {
         let cables = checked(&options);
         let robot = RobotParams::new(0.001, &platform(), UNMONITORED, &cables).unwrap();
         assert_eq!(structure_matrix::<2>(&robot, &Pose::identity()).is_some(), expected);
@@ -123,7 +124,7 @@ fn structure_matrix_needs_room_and_geometry() {
 fn the_wrench_is_linear_in_the_forces() {
     // Without friction and offset the platform force is the sensor's, so the wrench must be linear in it.
     let options: Vec<_> = (0..8)
-        .map(|index| CableOptions { friction: Default::default(), ..corner_cable(index, Presliding::Lumped) })
+        .map(|index| CableOptions { friction: FrictionOptions::default(), ..corner_cable(index, Presliding::Lumped) })
         .collect();
     let mut random = Random::new(52);
     let pose = random.pose(0.1);
@@ -163,7 +164,10 @@ fn interpolation_goes_the_short_way_round() {
         let flipped = Pose { orientation: fric_negated(&other), ..other };
         for ratio in [0.0, 0.3, 1.0] {
             let (a, b) = (one.interpolate(&other, ratio), one.interpolate(&flipped, ratio));
-            assert!((a.orientation.to_rotation_matrix().matrix() - b.orientation.to_rotation_matrix().matrix()).abs().max() < 1e-12);
+            assert!(
+                (a.orientation.to_rotation_matrix().matrix() - b.orientation.to_rotation_matrix().matrix()).abs().max()
+                    < 1e-12
+            );
             assert!((a.position_m - b.position_m).abs().max() < 1e-15);
         }
         assert!((one.interpolate(&other, 1.0).position_m - other.position_m).abs().max() < 1e-15);

@@ -1,9 +1,12 @@
 //! The exponential and the sum of lanes.
 
-use fric_core::scalar::exp_negative;
 use fric_core::Lanes;
+use fric_core::scalar::exp_negative;
 
 use crate::support::Random;
+
+/// The same operation on lanes and on one number.
+type Both = (fn(Lanes, Lanes) -> Lanes, fn(f64, f64) -> f64);
 
 /// Distance in units in the last place.
 fn ulps(one: f64, other: f64) -> u64 {
@@ -13,7 +16,8 @@ fn ulps(one: f64, other: f64) -> u64 {
 #[test]
 fn exponential_is_within_two_units_of_the_platforms() {
     let mut random = Random::new(31);
-    let edges = [0.0, -0.0, -f64::MIN_POSITIVE, -1e-300, -1e-17, -1e-9, -0.5, -std::f64::consts::LN_2, -707.999, -708.0];
+    let edges =
+        [0.0, -0.0, -f64::MIN_POSITIVE, -1e-300, -1e-17, -1e-9, -0.5, -std::f64::consts::LN_2, -707.999, -708.0];
     let halves = (0..2044).map(|count| -0.5 * std::f64::consts::LN_2 * f64::from(count)).filter(|x| *x >= -708.0);
     let randoms: Vec<f64> = (0..400_000)
         .map(|index| if index % 2 == 0 { random.range(-708.0, 0.0) } else { -(10_f64.powf(random.range(-20.0, 2.85))) })
@@ -48,7 +52,6 @@ fn lanes_carry_the_bits_of_plain_numbers() {
         let mut draw = || [(); 4].map(|()| f64::from_bits(random.bits()));
         let (a, b) = (draw(), draw());
         let (lanes_a, lanes_b) = (Lanes::new(a), Lanes::new(b));
-        type Both = (fn(Lanes, Lanes) -> Lanes, fn(f64, f64) -> f64);
         let operations: [Both; 10] = [
             (|a, b| a + b, |a, b| a + b),
             (|a, b| a - b, |a, b| a - b),
@@ -64,7 +67,10 @@ fn lanes_carry_the_bits_of_plain_numbers() {
         for (index, (wide, plain)) in operations.iter().enumerate() {
             for (lane, (a, b)) in wide(lanes_a, lanes_b).to_array().into_iter().zip(a.into_iter().zip(b)) {
                 let expected = plain(a, b);
-                assert!(lane.to_bits() == expected.to_bits() || lane.is_nan() && expected.is_nan(), "operation {index} of {a:e}, {b:e}: {lane:e}, {expected:e}");
+                assert!(
+                    lane.to_bits() == expected.to_bits() || lane.is_nan() && expected.is_nan(),
+                    "operation {index} of {a:e}, {b:e}: {lane:e}, {expected:e}"
+                );
             }
         }
         let negative = a.map(|value| -value.abs());

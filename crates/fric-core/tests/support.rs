@@ -5,7 +5,7 @@ use fric_core::robot::{
 };
 use fric_core::{CableInput, CableParams, Compensator, CycleInput, Pose, RobotParams};
 
-/// A reproducible stream of numbers (SplitMix64).
+/// A reproducible stream of numbers (`SplitMix64`).
 pub struct Random(u64);
 
 impl Random {
@@ -86,7 +86,7 @@ pub fn assert_near(one: f64, other: f64, tolerance: f64) {
 /// Where `decreasing` (a sign change of it) crosses zero, to the last bits.
 pub fn bisect(mut low: f64, mut high: f64, value: impl Fn(f64) -> f64) -> f64 {
     let rising = value(low) < value(high);
-    for _ in 0..200 {
+    for _ in 0..100 {
         let middle = 0.5 * (low + high);
         if (value(middle) < 0.0) == rising {
             low = middle;
@@ -135,10 +135,7 @@ pub fn platform() -> PlatformOptions {
     PlatformOptions { mass_kg: 0.41, center_of_mass_m: [0.01, -0.02, 0.005], ..PlatformOptions::default() }
 }
 
-pub fn compensator<const CABLES: usize>(
-    options: &[CableOptions<'_>],
-    monitor: MonitorOptions,
-) -> Compensator<CABLES> {
+pub fn compensator<const CABLES: usize>(options: &[CableOptions<'_>], monitor: MonitorOptions) -> Compensator<CABLES> {
     let cables = checked(options);
     Compensator::new(&RobotParams::new(0.001, &platform(), monitor, &cables).unwrap()).unwrap()
 }

@@ -74,7 +74,7 @@ fn wrap_direction_and_length_are_those_of_the_tangent() {
         let length_m = cable_length_m(&swivel, &attachment_m.into()).unwrap();
         assert_near(length_m, radius_m * wrap + norm(free_m), 1e-12);
     }
-    assert!(beyond_half_turn > 300, "{beyond_half_turn} wraps beyond 180° are too few to mean anything");
+    assert!(beyond_half_turn > 150, "{beyond_half_turn} wraps beyond 180° are too few to mean anything");
 }
 
 #[test]

@@ -81,12 +81,41 @@ impl fmt::Display for ParamProblem {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::OutOfRange { value, min, max } if !value.is_finite() => {
-                write!(formatter, "is {value}, which is not a finite number; allowed is {min} to {max}")
+                write!(formatter, "is {value}, which is not a finite number; allowed is {}", Range(*min, *max))
             }
-            Self::OutOfRange { value, min, max } => write!(formatter, "is {value}; allowed is {min} to {max}"),
+            Self::OutOfRange { value, min, max } => {
+                write!(formatter, "is {}; allowed is {}", Plain(*value), Range(*min, *max))
+            }
             Self::Count { count, min, max } if min == max => write!(formatter, "has {count} entries; {min} are needed"),
             Self::Count { count, min, max } => write!(formatter, "has {count} entries; allowed is {min} to {max}"),
             Self::Conflict(reason) => formatter.write_str(reason),
+        }
+    }
+}
+
+/// A number in the shorter of its two notations.
+struct Plain(f64);
+
+impl fmt::Display for Plain {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(value) = self;
+        if *value == 0.0 || (1e-4..1e7).contains(&value.abs()) {
+            write!(formatter, "{value}")
+        } else {
+            write!(formatter, "{value:e}")
+        }
+    }
+}
+
+/// A range, where the greatest number there is stands for no bound.
+struct Range(f64, f64);
+
+impl fmt::Display for Range {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self(min, f64::MAX) if min <= -f64::MAX => formatter.write_str("any finite number"),
+            Self(min, f64::MAX) => write!(formatter, "{} or greater", Plain(min)),
+            Self(min, max) => write!(formatter, "{} to {}", Plain(min), Plain(max)),
         }
     }
 }

@@ -16,7 +16,8 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::locate::{Step, describe, line_of};
-use super::{CableParams, MonitorOptions, ParamError, PlatformOptions, RobotParams};
+use super::read::{exactly, exactly_if_given};
+use super::{CableParams, MonitorOptions, ParamError, ParamProblem, PlatformOptions, RobotParams};
 
 /// The only value of `format` that this version reads.
 pub const FORMAT: &str = "fric-robot/1";
@@ -51,8 +52,10 @@ pub struct PlatformTable {
     /// Mass, kg.
     pub mass_kg: f64,
     /// Centre of mass, platform frame, m.
+    #[serde(deserialize_with = "exactly")]
     pub center_of_mass_m: [f64; 3],
     /// Gravity, base frame, m/s².
+    #[serde(deserialize_with = "exactly")]
     pub gravity_m_per_s2: [f64; 3],
 }
 
@@ -111,8 +114,10 @@ pub struct CableTable {
     /// Name, as in the log's `JointState.name`.
     pub name: String,
     /// Where the cable enters the last pulley, base frame, m.
+    #[serde(default, deserialize_with = "exactly_if_given")]
     pub base_m: Option<[f64; 3]>,
     /// Attachment, platform frame, m.
+    #[serde(default, deserialize_with = "exactly_if_given")]
     pub platform_m: Option<[f64; 3]>,
     /// `"per_pulley"` or `"lumped"`.
     #[serde(default)]
@@ -153,6 +158,7 @@ pub struct PulleyTable {
     /// Radius, m.
     pub radius_m: Option<f64>,
     /// Direction in which the cable enters.
+    #[serde(default, deserialize_with = "exactly_if_given")]
     pub axis: Option<[f64; 3]>,
     /// Whether the pulley carries the force sensor.
     pub sensor: Option<bool>,
@@ -185,13 +191,14 @@ pub struct FrictionTable {
 #[serde(deny_unknown_fields)]
 pub struct ValidatedTable {
     /// Least and greatest sensor force, N.
+    #[serde(default, deserialize_with = "exactly_if_given")]
     pub force_n: Option<[f64; 2]>,
     /// Greatest speed, m/s.
     pub speed_m_per_s: Option<f64>,
 }
 
 /// An entry of `effects`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EffectTable {
     /// Name in the catalogue.
     pub kind: String,
@@ -258,7 +265,7 @@ impl RobotFile {
         let invalid = |line, problem| RobotFileError::Invalid { origin: origin.to_owned(), line, problem };
         let options: RobotOptions = toml::from_str(text).map_err(|error| {
             let line = error.span().map(|span| text.get(..span.start).unwrap_or(text).matches('\n').count() + 1);
-            invalid(line, describe(&error))
+            invalid(line, describe(text, &error))
         })?;
         Self::check(options).map_err(|fault| invalid(line_of(text, &fault.path), fault.to_string()))
     }
@@ -297,9 +304,27 @@ impl RobotFile {
             _ => None,
         };
         let Err(error) = self.build() else { return Ok(()) };
+        if error.key == "delay_s" {
+            return Err(self.delay_error(error));
+        }
         let mut path: Vec<Step> = table(error.key).into_iter().collect();
         path.push(Step::Key(error.key));
         Err(OptionsError::new(&path, error.key, error.problem.to_string()))
+    }
+
+    /// The longest delay depends on the cycle time, so it is known only with the whole robot.
+    fn delay_error(&self, error: ParamError) -> OptionsError {
+        let of_value = |cable: &CableParams| match error.problem {
+            ParamProblem::OutOfRange { value, .. } => cable.effects.delay_s.to_bits() == value.to_bits(),
+            _ => false,
+        };
+        let place =
+            self.cables.iter().position(of_value).and_then(|index| Some((index, self.options.cable.get(index)?)));
+        let Some((index, table)) = place else { return OptionsError::from(error) };
+        let mut named = table.name_parameter(error);
+        named.path.splice(0..0, [Step::Key("cable"), Step::Index(index)]);
+        named.cable = Some(table.name.clone());
+        named
     }
 
     fn build(&self) -> Result<RobotParams<'_>, ParamError> {

@@ -7,6 +7,8 @@ use std::vec::Vec;
 
 use toml::de::{DeTable, DeValue};
 
+use super::file::FORMAT;
+
 /// One step into a TOML document.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Step {
@@ -40,17 +42,102 @@ pub fn line_of(text: &str, path: &[Step]) -> Option<usize> {
     Some(before.matches('\n').count() + 1)
 }
 
-/// The parser's message in one line, and for a misspelt name the nearest one that exists.
-pub fn describe(error: &toml::de::Error) -> String {
+/// What is wrong with a text that did not become options, in one line and in the words of the file.
+pub fn describe(text: &str, error: &toml::de::Error) -> String {
     let message = error.message().trim().replace('\n', "; ");
+    let Ok(root) = DeTable::parse(text) else { return format!("is not valid TOML: {message}") };
+    let start = error.span().map_or(0, |span| span.start);
+    let keys = keys_around(root.into_inner(), start);
+    let key = keys.last().map_or("the file", String::as_str);
     // serde words it "unknown field `x`, expected one of `a`, `b`" (or "variant"): the names stand in backticks.
-    if !message.starts_with("unknown ") {
-        return message;
-    }
     let names: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
-    match names.split_first() {
-        Some((unknown, known)) => unknown_name("key", unknown, known.iter().copied()),
-        None => message,
+    if let ("unknown field", Some((unknown, known))) = (first_words(&message), names.split_first()) {
+        return unknown_name("key", unknown, known.iter().copied());
+    }
+    if let ("unknown variant", Some((unknown, known))) = (first_words(&message), names.split_first()) {
+        return format!("`{key}` has an {}", unknown_name("value", unknown, known.iter().copied()));
+    }
+    if let ("missing field", Some(missing)) = (first_words(&message), names.first()) {
+        return match (*missing, keys.last()) {
+            ("format", _) => format!("`format` is missing; write format = \"{FORMAT}\""),
+            ("cable", _) => "`cable` is missing; give each cable a table [[cable]]".to_owned(),
+            // What the root lacks is reported at the start of the text.
+            _ if start == 0 => format!("`{missing}` is missing"),
+            (_, None) => format!("`{missing}` is missing"),
+            (_, Some(table)) if table == "cable" => format!("`{missing}` is missing in this [[cable]]"),
+            (_, Some(table)) => format!("`{missing}` is missing in `{table}`"),
+        };
+    }
+    let stripped = message.strip_prefix("invalid type: ").or_else(|| message.strip_prefix("invalid value: "));
+    match (stripped.unwrap_or(&message).split_once(", expected "), stripped) {
+        (Some((found, expected)), Some(_)) => {
+            format!("`{key}` is {}; it must be {}", plain_value(found), plain_words(expected))
+        }
+        (Some((found, expected)), None) if found.starts_with("invalid length ") => {
+            let count = found.trim_start_matches("invalid length ");
+            format!("`{key}` has {count} entries; it must be {}", plain_words(expected))
+        }
+        _ => format!("`{key}`: {message}"),
+    }
+}
+
+/// The first two words.
+fn first_words(message: &str) -> &str {
+    let end = message.match_indices(' ').nth(1).map_or(message.len(), |(place, _)| place);
+    message.get(..end).unwrap_or(message)
+}
+
+/// A value as somebody who writes a file sees it: serde says "string "fast"", "floating point `0.55`", "map".
+fn plain_value(found: &str) -> String {
+    match found.split_once(['"', '`']) {
+        Some(("string ", text)) => format!("the text \"{text}"),
+        Some((_, value)) => value.trim_end_matches('`').to_owned(),
+        None if found == "map" => "a table".to_owned(),
+        None if found == "sequence" => "a list".to_owned(),
+        None => found.to_owned(),
+    }
+}
+
+/// serde's names of types as somebody who writes a file knows them.
+fn plain_words(expected: &str) -> &str {
+    match expected {
+        "f64" => "a number",
+        "u32" => "a whole number, 0 or greater",
+        "a string" => "text in quotes",
+        "a boolean" => "true or false",
+        "an array of length 2" => "2 numbers in brackets",
+        "an array of length 3" => "3 numbers in brackets",
+        "a sequence" => "a list; a cable is a table [[cable]], a pulley an entry of `pulleys = [ … ]`",
+        other if other.starts_with("struct ") => "a table",
+        other => other,
+    }
+}
+
+/// The keys from the root to the innermost value that stands at an offset.
+///
+/// Looks into every table, for the span of one under a header is the header's alone.
+fn keys_around(table: DeTable<'_>, offset: usize) -> Vec<String> {
+    let mut keys = Vec::new();
+    for (key, value) in table {
+        let here = key.span().contains(&offset) || value.span().contains(&offset);
+        let within = keys_within(value.into_inner(), offset);
+        if here || !within.is_empty() {
+            keys = Vec::from([key.into_inner().into_owned()]);
+            keys.extend(within);
+        }
+    }
+    keys
+}
+
+fn keys_within(value: DeValue<'_>, offset: usize) -> Vec<String> {
+    match value {
+        DeValue::Table(table) => keys_around(table, offset),
+        DeValue::Array(array) => array
+            .into_iter()
+            .map(|value| keys_within(value.into_inner(), offset))
+            .max_by_key(Vec::len)
+            .unwrap_or_default(),
+        _ => Vec::new(),
     }
 }
 
@@ -61,13 +148,14 @@ pub fn unknown_name<'a>(what: &str, unknown: &str, known: impl Iterator<Item = &
         .iter()
         .map(|name| (strsim::normalized_damerau_levenshtein(unknown, name), *name))
         .max_by(|(one, _), (other, _)| one.total_cmp(other));
-    let list = known.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
-    let hint = match nearest {
-        Some((likeness, name)) if likeness > 0.4 => format!("did you mean `{name}`? "),
-        _ => String::new(),
-    };
     if known.is_empty() {
-        return format!("unknown {what} `{unknown}`: none belongs here").to_owned();
+        return format!("unknown {what} `{unknown}`: none belongs here");
     }
-    format!("unknown {what} `{unknown}`; {hint}Known: {list}")
+    let list = known.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+    match nearest {
+        Some((likeness, name)) if likeness > 0.4 => {
+            format!("unknown {what} `{unknown}`; did you mean `{name}`? (known here: {list})")
+        }
+        _ => format!("unknown {what} `{unknown}`; known here: {list}"),
+    }
 }

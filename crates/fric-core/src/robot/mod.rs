@@ -9,6 +9,8 @@ pub mod file;
 #[cfg(feature = "robot-file")]
 mod locate;
 #[cfg(feature = "robot-file")]
+mod read;
+#[cfg(feature = "robot-file")]
 mod table;
 
 pub(crate) use error::check;

@@ -146,6 +146,8 @@ pub(crate) struct Geometry {
 }
 
 const PLACE_M: f64 = 1e4;
+/// `2 − μk` of [P] 10 stays well above zero for every wrap.
+const GREATEST_MU: f64 = 0.9;
 
 fn check_point(key: &'static str, point: [f64; 3]) -> Result<Vector3<f64>, ParamError> {
     let [x, y, z] = point;
@@ -168,7 +170,12 @@ impl CableParams {
             return Err(ParamError { key: "pulleys", pulley: None, problem });
         }
         let FrictionOptions { mu, sigma_n_per_m, viscous_n_s_per_m, offset_n } = options.friction;
-        check("mu", mu, 0.0, 0.9)?;
+        check("mu", mu, 0.0, GREATEST_MU)?;
+        let greatest_mu = mu * (1.0 + options.effects.stribeck.ratio.max(0.0));
+        if greatest_mu > GREATEST_MU {
+            let reason = "raises the friction at rest, `mu`·(1 + `ratio`), beyond 0.9; lower it, or `mu`";
+            return Err(ParamError::conflict("ratio", reason));
+        }
         if let Some(sigma_n_per_m) = sigma_n_per_m {
             check("sigma_n_per_m", sigma_n_per_m, 1e-3, 1e12)?;
         }
@@ -207,8 +214,7 @@ impl CableParams {
                         )));
                     }
                     if sensor {
-                        check_sensor_wrap(wrap_rad, mu * (1.0 + options.effects.stribeck.ratio.max(0.0)))
-                            .map_err(at)?;
+                        check_sensor_wrap(wrap_rad, greatest_mu).map_err(at)?;
                         params.sensor_wrap_rad = Some(wrap_rad);
                     }
                 }

@@ -1,6 +1,5 @@
 //! One `[[cable]]` of a robot file, checked.
 
-use std::borrow::ToOwned;
 use std::format;
 use std::string::ToString;
 use std::vec::Vec;
@@ -53,7 +52,19 @@ impl CableTable {
             validated,
             effects: self.effect_params()?,
         })
-        .map_err(OptionsError::from)
+        .map_err(|error| self.name_parameter(error))
+    }
+
+    /// Where a refused parameter stands in this cable's table: in one of its effects, or in the table itself.
+    pub(super) fn name_parameter(&self, error: ParamError) -> OptionsError {
+        for (index, effect) in self.effects.iter().enumerate() {
+            let of_effect = effects::row(&effect.kind).filter(|_| effect.parameters.contains_key(error.key));
+            if let Some(row) = of_effect {
+                let path = [Step::Key("effects"), Step::Index(index), Step::Key(error.key)];
+                return OptionsError::new(&path, error.key, format!("of effect `{}` {}", row.kind, error.problem));
+            }
+        }
+        OptionsError::from(error)
     }
 
     fn effect_params(&self) -> Result<EffectParams, OptionsError> {
@@ -66,7 +77,8 @@ impl CableTable {
                 return Err(OptionsError::new(&path, "kind", problem));
             };
             if self.effects.iter().take(index).any(|other| other.kind == effect.kind) {
-                return Err(OptionsError::new(&path, "kind", "names an effect that the cable already has".to_owned()));
+                let problem = format!("names the effect `{}`, which the cable already has", effect.kind);
+                return Err(OptionsError::new(&path, "kind", problem));
             }
             for (key, value) in &effect.parameters {
                 let known = || row.parameters.iter().map(|parameter| parameter.key);
@@ -74,9 +86,7 @@ impl CableTable {
                     let problem = format!("has an {}", unknown_name("key", key, known()));
                     return Err(OptionsError::new(&path, row.kind, problem));
                 }
-                params
-                    .set(row.kind, key, *value)
-                    .map_err(|error| OptionsError::new(&path, key, error.problem.to_string()))?;
+                params.set(row.kind, key, *value).map_err(|error| self.name_parameter(error))?;
             }
         }
         Ok(params)

@@ -1,0 +1,72 @@
+//! What `serde` derives too loosely or with errors that name no place: lists of so many numbers, effects.
+
+use core::fmt;
+use std::collections::BTreeMap;
+use std::string::String;
+
+use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
+
+use super::file::EffectTable;
+
+/// So many numbers and no more: `serde`'s own arrays pass over what is too much.
+pub fn exactly<'de, const COUNT: usize, D: Deserializer<'de>>(deserializer: D) -> Result<[f64; COUNT], D::Error> {
+    deserializer.deserialize_seq(Numbers)
+}
+
+/// The same for a key that may be left out.
+pub fn exactly_if_given<'de, const COUNT: usize, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Option<[f64; COUNT]>, D::Error> {
+    exactly(deserializer).map(Some)
+}
+
+struct Numbers<const COUNT: usize>;
+
+impl<'de, const COUNT: usize> Visitor<'de> for Numbers<COUNT> {
+    type Value = [f64; COUNT];
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "an array of length {COUNT}")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Self::Value, A::Error> {
+        let mut numbers = [0.0; COUNT];
+        let mut count = 0;
+        while let Some(number) = list.next_element::<f64>()? {
+            if let Some(place) = numbers.get_mut(count) {
+                *place = number;
+            }
+            count += 1;
+        }
+        if count == COUNT { Ok(numbers) } else { Err(A::Error::invalid_length(count, &self)) }
+    }
+}
+
+/// By hand, for a flattened map loses where its keys stand.
+impl<'de> Deserialize<'de> for EffectTable {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Effect;
+
+        impl<'de> Visitor<'de> for Effect {
+            type Value = EffectTable;
+
+            fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+                formatter.write_str("a table with `kind` and the parameters of that effect")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut table: A) -> Result<EffectTable, A::Error> {
+                let (mut kind, mut parameters) = (None, BTreeMap::new());
+                while let Some(key) = table.next_key::<String>()? {
+                    if key == "kind" {
+                        kind = Some(table.next_value()?);
+                    } else {
+                        parameters.insert(key, table.next_value()?);
+                    }
+                }
+                Ok(EffectTable { kind: kind.ok_or_else(|| A::Error::missing_field("kind"))?, parameters })
+            }
+        }
+
+        deserializer.deserialize_map(Effect)
+    }
+}

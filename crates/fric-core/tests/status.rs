@@ -1,0 +1,309 @@
+//! Every row of the table of [`CableStatus`]: when the flag stands, what the output is, how it clears.
+
+use fric_core::robot::{CableOptions, FrictionOptions, MonitorOptions, Presliding, ValidatedRange};
+use fric_core::{CableInput, CableOutput, CableStatus, Compensator, CycleInput, Pose};
+
+use crate::support::{FRICTION, GUIDE_90, SENSOR_180, assert_near, compensator, corner_cable};
+
+const FORMS: [Presliding; 2] = [Presliding::Lumped, Presliding::PerPulley];
+const PULLEYS: [fric_core::robot::PulleyOptions; 2] = [SENSOR_180, GUIDE_90];
+const MONITOR: MonitorOptions = MonitorOptions { frozen_cycles: 10, length_jump_m: 0.01 };
+
+type Change = fn(&mut CableInput);
+
+/// A winch on a test bench that pays out at 0.1 m/s, its force rising a little every cycle.
+struct Bench {
+    compensator: Compensator<1>,
+    cycle: i32,
+}
+
+impl Bench {
+    fn new(presliding: Presliding) -> Self {
+        Self::with(CableOptions { presliding, friction: FRICTION, ..CableOptions::new(&PULLEYS) })
+    }
+
+    fn with(options: CableOptions<'_>) -> Self {
+        Self { compensator: compensator(&[options], MONITOR), cycle: 0 }
+    }
+
+    fn signals(&self) -> CableInput {
+        let cycle = f64::from(self.cycle);
+        CableInput { sensor_force_n: 20.0 + 1e-3 * cycle, length_m: 1e-4 * cycle, speed_m_per_s: 0.1 }
+    }
+
+    fn step(&mut self, change: impl Fn(&mut CableInput)) -> CableOutput {
+        self.cycle += 1;
+        let mut signals = self.signals();
+        change(&mut signals);
+        self.compensator.step(&CycleInput { cables: [signals], pose: None }).cables[0]
+    }
+
+    fn run(&mut self, cycles: usize) -> CableOutput {
+        (0..cycles).map(|_| self.step(|_| ())).last().unwrap()
+    }
+
+    fn stored_n(&self) -> f64 {
+        self.compensator.pulley_friction_n(0).iter().map(|friction_n| friction_n.abs()).sum()
+    }
+}
+
+#[test]
+fn good_signals_have_no_flag() {
+    for presliding in FORMS {
+        let mut bench = Bench::new(presliding);
+        for _ in 0..500 {
+            assert_eq!(bench.run(1).status, CableStatus::OK);
+        }
+    }
+}
+
+#[test]
+fn slack_shows_the_sensors_own_force_and_releases_the_friction() {
+    for presliding in FORMS {
+        for force_n in [0.0, -0.0, -3.0] {
+            let mut bench = Bench::new(presliding);
+            assert!(bench.run(300).friction_n > 0.1);
+            let output = bench.step(|signals| signals.sensor_force_n = force_n);
+            assert_eq!(output.status, CableStatus::SLACK);
+            assert_eq!(output.friction_n, 0.0);
+            assert_near(output.force_at_platform_n, 0.5 * force_n + FRICTION.offset_n, 1e-15);
+            assert_eq!(bench.stored_n(), 0.0);
+            // Tension comes back: no flag, and friction builds up anew over the presliding distance.
+            let output = bench.step(|_| ());
+            assert_eq!(output.status, CableStatus::OK);
+            let viscous_n = FRICTION.viscous_n_s_per_m * 0.1 * 1.5;
+            assert!(output.friction_n > 0.0 && output.friction_n - viscous_n < 0.12, "{output:?}");
+        }
+    }
+}
+
+#[test]
+fn viscous_friction_beyond_the_tension_is_slack_too() {
+    for presliding in FORMS {
+        let friction = FrictionOptions { viscous_n_s_per_m: 100.0, ..FRICTION };
+        let mut bench = Bench::with(CableOptions { presliding, friction, ..CableOptions::new(&PULLEYS) });
+        bench.run(100);
+        let output = bench.step(|signals| signals.speed_m_per_s = -1.0);
+        assert_eq!(output.status, CableStatus::SLACK);
+        // A cable cannot push: no force but the offset.
+        assert_near(output.force_at_platform_n, FRICTION.offset_n, 1e-15);
+        assert_near(output.friction_n, -output.frictionless_n, 1e-12);
+        assert_eq!(bench.run(1).status, CableStatus::OK);
+    }
+}
+
+#[test]
+fn a_silent_sensor_holds_force_and_friction_and_the_motion_is_made_up_for() {
+    for presliding in FORMS {
+        for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1.001e9, -1e300] {
+            let (mut bench, mut other) = (Bench::new(presliding), Bench::new(presliding));
+            let last = bench.run(20);
+            other.run(20);
+            for _ in 0..7 {
+                let output = bench.step(|signals| signals.sensor_force_n = value);
+                assert_eq!(output.status, CableStatus::SENSOR_NOT_FINITE);
+                assert_eq!(output.frictionless_n.to_bits(), last.frictionless_n.to_bits());
+                assert_eq!(output.friction_n.to_bits(), last.friction_n.to_bits());
+                assert_near(output.force_at_platform_n, last.force_at_platform_n, 1e-15);
+            }
+            // All the motion in one step, as if the sensor had spoken only now.
+            other.cycle += 7;
+            let (output, expected) = (bench.run(1), other.run(1));
+            assert_eq!(output.status, CableStatus::OK);
+            assert_near(output.force_at_platform_n, expected.force_at_platform_n, 1e-12);
+        }
+    }
+}
+
+#[test]
+fn a_frozen_sensor_is_one_that_repeats_itself_while_the_cable_moves() {
+    for presliding in FORMS {
+        let mut bench = Bench::new(presliding);
+        bench.run(20);
+        let first = bench.step(|signals| signals.sensor_force_n = 20.5);
+        assert!(first.status.is_ok());
+        let mut last = first;
+        for repeat in 1..40 {
+            let output = bench.step(|signals| signals.sensor_force_n = 20.5);
+            if repeat < 10 {
+                assert!(output.status.is_ok(), "repeat {repeat}");
+                last = output;
+            } else {
+                assert_eq!(output.status, CableStatus::SENSOR_FROZEN, "repeat {repeat}");
+                assert_eq!(output.friction_n.to_bits(), last.friction_n.to_bits());
+                assert_near(output.force_at_platform_n, last.force_at_platform_n, 1e-15);
+            }
+        }
+        assert_eq!(bench.run(1).status, CableStatus::OK);
+        // At rest a quiet sensor is no fault.
+        let mut still = Bench::new(presliding);
+        still.run(5);
+        for _ in 0..100 {
+            let output = still
+                .step(|signals| *signals = CableInput { sensor_force_n: 20.5, length_m: 5e-4, speed_m_per_s: 0.0 });
+            assert_eq!(output.status, CableStatus::OK);
+        }
+    }
+}
+
+#[test]
+fn no_check_for_a_frozen_sensor_where_it_is_switched_off() {
+    let monitor = MonitorOptions { frozen_cycles: 0, ..MONITOR };
+    let mut compensator = compensator::<1>(&[CableOptions::new(&PULLEYS)], monitor);
+    for cycle in 0..5000 {
+        let cables = [CableInput { sensor_force_n: 20.5, length_m: 1e-4 * f64::from(cycle), speed_m_per_s: 0.1 }];
+        assert!(compensator.step(&CycleInput { cables, pose: None }).cables[0].status.is_ok());
+    }
+}
+
+#[test]
+fn a_jump_of_length_is_no_motion() {
+    for presliding in FORMS {
+        for jump_m in [0.02, -0.02, 5.0, -900.0] {
+            let mut bench = Bench::new(presliding);
+            let last = bench.run(50);
+            let stored_n = bench.stored_n();
+            let output = bench.step(|signals| signals.length_m += jump_m);
+            assert_eq!(output.status, CableStatus::LENGTH_JUMP);
+            assert_eq!(output.friction_n.to_bits(), last.friction_n.to_bits());
+            // The force follows the sensor.
+            assert_near(output.frictionless_n, 0.5 * bench.signals().sensor_force_n, 1e-15);
+            assert_near(output.force_at_platform_n, output.frictionless_n + last.friction_n + FRICTION.offset_n, 1e-12);
+            assert_eq!(bench.stored_n(), stored_n);
+            // Going on from the new length is motion again.
+            let output = bench.step(|signals| signals.length_m += jump_m);
+            assert_eq!(output.status, CableStatus::OK);
+        }
+    }
+}
+
+#[test]
+fn motion_that_is_no_number_holds_the_friction() {
+    for presliding in FORMS {
+        for value in [f64::NAN, f64::INFINITY, -1.001e6, 1e300] {
+            for of_length in [true, false] {
+                let (mut bench, mut other) = (Bench::new(presliding), Bench::new(presliding));
+                let last = bench.run(50);
+                other.run(50);
+                for _ in 0..5 {
+                    let output = bench.step(|signals| {
+                        *(if of_length { &mut signals.length_m } else { &mut signals.speed_m_per_s }) = value;
+                    });
+                    assert_eq!(output.status, CableStatus::MOTION_NOT_FINITE);
+                    assert_eq!(output.friction_n.to_bits(), last.friction_n.to_bits());
+                    assert_near(output.frictionless_n, 0.5 * bench.signals().sensor_force_n, 1e-15);
+                }
+                // The length tells afterwards how far the cable has moved.
+                other.cycle += 5;
+                let (output, expected) = (bench.run(1), other.run(1));
+                assert_eq!(output.status, CableStatus::OK);
+                assert_near(output.force_at_platform_n, expected.force_at_platform_n, 1e-12);
+            }
+        }
+    }
+}
+
+#[test]
+fn outside_the_range_of_identification_it_is_computed_as_usual() {
+    for presliding in FORMS {
+        let validated = ValidatedRange { force_n: [5.0, 21.0], speed_m_per_s: 0.15 };
+        let mut bench =
+            Bench::with(CableOptions { presliding, friction: FRICTION, validated, ..CableOptions::new(&PULLEYS) });
+        let mut plain = Bench::new(presliding);
+        let changes: [(Change, bool); 6] = [
+            (|_| (), false),
+            (|signals| signals.sensor_force_n = 4.9, true),
+            (|signals| signals.sensor_force_n = 21.1, true),
+            (|signals| signals.speed_m_per_s = 0.16, true),
+            (|signals| signals.speed_m_per_s = -0.16, true),
+            (|_| (), false),
+        ];
+        for (change, flagged) in changes {
+            let (output, expected) = (bench.step(change), plain.step(change));
+            assert_eq!(output.status == CableStatus::OUT_OF_RANGE, flagged);
+            assert_eq!(output.force_at_platform_n.to_bits(), expected.force_at_platform_n.to_bits());
+        }
+    }
+}
+
+fn posed(compensator: &mut Compensator<1>, cycle: i32, pose: Option<Pose>) -> fric_core::CycleOutput<1> {
+    let cycle = f64::from(cycle);
+    let cables = [CableInput { sensor_force_n: 20.0 + 1e-3 * cycle, length_m: 1e-4 * cycle, speed_m_per_s: 0.1 }];
+    compensator.step(&CycleInput { cables, pose })
+}
+
+fn somewhere(x_m: f64) -> Pose {
+    Pose::from_parts([x_m, 0.05, -0.1], [0.0, 0.0, 0.0, 1.0]).unwrap()
+}
+
+#[test]
+fn without_a_pose_wrap_and_direction_are_held() {
+    for presliding in FORMS {
+        let options = [corner_cable(0, presliding)];
+        let mut compensator = compensator::<1>(&options, MONITOR);
+        // Before the first pose: 90° and no wrench.
+        let output = posed(&mut compensator, 0, None);
+        assert_eq!(output.cables[0].status, CableStatus::POSE_MISSING);
+        assert_eq!(output.outside_wrench, None);
+        let with_90 = [SENSOR_180, GUIDE_90, GUIDE_90];
+        let mut fixed = crate::support::compensator::<1>(&[CableOptions { pulleys: &with_90, ..options[0] }], MONITOR);
+        posed(&mut fixed, 0, None);
+        for cycle in 1..100 {
+            let (one, other) = (posed(&mut compensator, cycle, None), posed(&mut fixed, cycle, None));
+            assert_eq!(other.cables[0].status, CableStatus::OK);
+            assert_near(one.cables[0].force_at_platform_n, other.cables[0].force_at_platform_n, 1e-12);
+        }
+        // A pose, and gone again: as if the platform stood still.
+        let mut still = compensator.clone();
+        posed(&mut compensator, 100, Some(somewhere(0.1)));
+        posed(&mut still, 100, Some(somewhere(0.1)));
+        let broken = Pose { position_m: [f64::NAN, 0.0, 0.0].into(), ..somewhere(0.1) };
+        for (cycle, pose) in [(101, None), (102, Some(broken)), (103, None)] {
+            let output = posed(&mut compensator, cycle, pose);
+            assert_eq!(output.cables[0].status, CableStatus::POSE_MISSING);
+            let expected = posed(&mut still, cycle, Some(somewhere(0.1)));
+            assert_eq!(
+                output.cables[0].force_at_platform_n.to_bits(),
+                expected.cables[0].force_at_platform_n.to_bits()
+            );
+            assert_eq!(output.outside_wrench, expected.outside_wrench);
+            assert_eq!(output.applied_wrench, expected.applied_wrench);
+        }
+        assert_eq!(posed(&mut compensator, 104, Some(somewhere(0.1))).cables[0].status, CableStatus::OK);
+    }
+}
+
+#[test]
+fn an_attachment_inside_the_pulley_holds_wrap_and_direction() {
+    for presliding in FORMS {
+        let options = [corner_cable(0, presliding)];
+        let mut compensator = compensator::<1>(&options, MONITOR);
+        posed(&mut compensator, 0, Some(somewhere(0.1)));
+        let mut still = compensator.clone();
+        // The attachment onto the centre of the pulley: radius beside the entry point.
+        let geometry = options[0].geometry.unwrap();
+        let centre: [f64; 3] =
+            core::array::from_fn(|axis| geometry.base_m[axis] - geometry.platform_m[axis] + [0.01, 0.0, 0.0][axis]);
+        let inside = Pose::from_parts(centre, [0.0, 0.0, 0.0, 1.0]).unwrap();
+        for cycle in 1..5 {
+            let (output, expected) =
+                (posed(&mut compensator, cycle, Some(inside)), posed(&mut still, cycle, Some(somewhere(0.1))));
+            assert_eq!(output.cables[0].status, CableStatus::POSE_UNREACHABLE);
+            assert_eq!(
+                output.cables[0].force_at_platform_n.to_bits(),
+                expected.cables[0].force_at_platform_n.to_bits()
+            );
+            assert_eq!(output.outside_wrench.unwrap().force_n, expected.outside_wrench.unwrap().force_n);
+        }
+        assert_eq!(posed(&mut compensator, 5, Some(somewhere(0.1))).cables[0].status, CableStatus::OK);
+    }
+}
+
+#[test]
+fn flags_have_names() {
+    assert_eq!(CableStatus::OK.to_string(), "ok");
+    assert_eq!((CableStatus::SLACK | CableStatus::POSE_MISSING).to_string(), "SLACK|POSE_MISSING");
+    let all = CableStatus::NAMES.iter().fold(CableStatus::OK, |all, (_, flag)| all | *flag);
+    assert_eq!(all.bits(), 0x1ff);
+    assert_eq!(all.to_string().split('|').count(), 9);
+}
