@@ -71,19 +71,19 @@ pub struct SimulateArguments {
     #[arg(long = "effect", value_name = "kind:key=value,…")]
     pub effects: Vec<String>,
     /// Seed of noise and micro motion
-    #[arg(long, value_name = "S", default_value_t = 0)]
+    #[arg(long, value_name = "S", default_value_t = 0, allow_negative_numbers = true)]
     pub seed: u64,
     /// Length of the log in s; the identification run is cut or repeated [default: one run]
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub duration: Option<f64>,
     /// Standard deviation of the sensor noise, N
-    #[arg(long, value_name = "N", default_value_t = 0.02)]
+    #[arg(long, value_name = "N", default_value_t = 0.02, allow_negative_numbers = true)]
     pub sensor_noise_n: f64,
     /// Standard deviation of the reference noise, N
-    #[arg(long, value_name = "N", default_value_t = 0.01)]
+    #[arg(long, value_name = "N", default_value_t = 0.01, allow_negative_numbers = true)]
     pub reference_noise_n: f64,
     /// Spread of μ over the pulleys of a cable, as a share of μ
-    #[arg(long, value_name = "RATIO", default_value_t = 0.0)]
+    #[arg(long, value_name = "RATIO", default_value_t = 0.0, allow_negative_numbers = true)]
     pub mu_spread_ratio: f64,
     /// Replace the output if it exists
     #[arg(long)]

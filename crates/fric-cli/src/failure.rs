@@ -1,7 +1,12 @@
 //! Why a command stopped, for people: one line with the cause, one with what to do.
 
+use std::error::Error;
 use std::fmt::Display;
-use std::io::Write as _;
+use std::io::{self, Write as _};
+
+use fric_log::write::WriteError;
+
+use crate::output;
 
 /// What `main` turns into an exit code.
 #[derive(Debug)]
@@ -45,11 +50,31 @@ impl Failure {
     }
 }
 
+/// What an error says, and what its sources add.
+fn in_full(error: &dyn Error) -> String {
+    let mut text = error.to_string();
+    let mut source = error.source();
+    while let Some(error) = source {
+        let reason = error.to_string();
+        if !text.contains(&reason) {
+            text = format!("{text}: {reason}");
+        }
+        source = error.source();
+    }
+    text
+}
+
+/// What the operating system said, without the name of a temporary file that means nothing to people.
+pub fn reason(error: &io::Error) -> String {
+    let text = error.to_string();
+    text.split(" at path ").next().map_or_else(String::new, ToOwned::to_owned)
+}
+
 macro_rules! failure_from {
     ($($error:ty),* $(,)?) => {$(
         impl From<$error> for Failure {
             fn from(error: $error) -> Self {
-                Self::new(error)
+                Self::new(in_full(&error))
             }
         }
     )*};
@@ -60,5 +85,16 @@ failure_from!(
     fric_core::robot::file::RobotFileError,
     fric_log::recording::RecordingError,
     fric_log::signals::SignalError,
-    fric_log::write::WriteError,
 );
+
+impl From<WriteError> for Failure {
+    /// In the words of [`crate::output`], so that all outputs fail alike.
+    fn from(error: WriteError) -> Self {
+        match &error {
+            WriteError::Exists { path } => output::exists(path),
+            WriteError::Input { path, .. } => output::is_input(path),
+            WriteError::File { path, source } => output::unwritable(path, source),
+            _ => Self::new(in_full(&error)),
+        }
+    }
+}

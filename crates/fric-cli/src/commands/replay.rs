@@ -10,7 +10,7 @@ use hdrhistogram::Histogram;
 use crate::arguments::ReplayArguments;
 use crate::failure::{Failure, Outcome};
 use crate::model::{self, Model};
-use crate::output::{JsonTarget, TextFile, table};
+use crate::output::{self, JsonTarget, TextFile, table};
 use crate::progress::{self, STRIDE};
 use crate::report::{self, Series};
 use crate::result::{CableResult, CycleResult, ForceError, ReplayResult, WrenchError, WrenchResult};
@@ -19,6 +19,8 @@ use crate::{interrupt, warnings};
 /// Runs the command.
 pub fn run(arguments: &ReplayArguments) -> Outcome {
     let ReplayArguments { log, output, report, result } = arguments;
+    let json_file = result.json.as_deref().filter(|path| !output::is_stdout(path));
+    output::check_distinct(&[output.as_deref(), report.as_deref(), json_file])?;
     let recording = Recording::open(&log.logs)?;
     let model = Model::find(log.model.as_deref(), &recording)?.ok_or_else(model::missing)?;
     let mut inputs = log.logs.clone();

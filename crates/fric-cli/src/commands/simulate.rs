@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use fric_core::Sample;
-use fric_lab::simulate::{HiddenEffect, Simulation, SimulationOptions};
+use fric_lab::simulate::{HiddenEffect, Simulation, SimulationError, SimulationOptions};
 use fric_log::path::MessagePath;
 use fric_log::signals::{Role, SignalPaths};
 use fric_log::write::{JointState, JointStateChannel, LogWriter, Pose, PoseChannel, Wrench, WrenchChannel};
@@ -35,7 +35,7 @@ pub fn run(arguments: &SimulateArguments) -> Outcome {
         mu_spread_ratio: arguments.mu_spread_ratio,
         effects,
     };
-    let mut simulation = Simulation::new(&model.robot, &options).map_err(Failure::new)?;
+    let mut simulation = Simulation::new(&model.robot, &options).map_err(refused)?;
     let mut log = SimulatedLog::create(arguments, &model)?;
     let total_cycles = simulation.total_cycles();
     let bar = progress::cycles(total_cycles);
@@ -59,6 +59,18 @@ pub fn run(arguments: &SimulateArguments) -> Outcome {
         options.seed,
         if hidden.is_empty() { "no effect hidden".to_owned() } else { format!("hidden: {}", hidden.join(", ")) }
     ))
+}
+
+/// A number or an effect on the command line is the command line's fault, the rest the robot file's.
+fn refused(error: SimulationError) -> Failure {
+    match error {
+        SimulationError::OptionOutOfRange { key, value, min, max } => {
+            let option = if key == "duration_s" { "duration".to_owned() } else { key.replace('_', "-") };
+            Failure::usage(format!("--{option} is {value:?}; allowed is {min} to {max}"))
+        }
+        SimulationError::RepeatedEffect { .. } => Failure::usage(format!("--effect: {error}")),
+        error => Failure::new(error),
+    }
 }
 
 struct SimulatedLog {

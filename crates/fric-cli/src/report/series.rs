@@ -130,6 +130,7 @@ mod tests {
     use super::*;
 
     #[test]
+    #[expect(clippy::float_cmp, reason = "whole numbers")]
     fn thinning_keeps_every_extreme() {
         let mut series = Series::new(2);
         for index in 0..10_000_i32 {

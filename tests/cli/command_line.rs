@@ -1,0 +1,80 @@
+//! Command lines that are wrong: exit code 2, and nothing is touched.
+
+use super::support::Place;
+
+#[test]
+fn what_is_no_command_line_is_told() {
+    let place = Place::with_log();
+    place.run_in_vain(&["replai", "log.mcap"]).fails(2, &["replai"]);
+    place.run_in_vain(&["replay"]).fails(2, &["required arguments"]);
+    place.run_in_vain(&["replay", "log.mcap", "--wrong"]).fails(2, &["--wrong"]);
+    place.run_in_vain(&["replay", "log.mcap", "--model"]).fails(2, &["--model"]);
+    place.run_in_vain(&["replay", "log.mcap", "-o", ""]).fails(2, &["--output"]);
+    place.run_in_vain(&["info"]).fails(2, &["required arguments"]);
+    place.run_in_vain(&["simulate", "-o", "new.mcap"]).fails(2, &["required arguments"]);
+    place.run_in_vain(&["simulate", "--model", "robot.toml"]).fails(2, &["required arguments"]);
+    place.run_in_vain(&["simulate", "--model", "robot.toml", "--model", "robot.toml"]).fails(2, &["--model"]);
+    let help = place.run_in_vain(&[]);
+    assert_eq!((help.code, help.stdout.as_str()), (Some(2), ""));
+    assert!(help.stderr.contains("replay"), "{help:#?}");
+}
+
+/// `simulate` with one more option.
+fn simulate(place: &Place, option: &str, value: &str) -> super::support::Run {
+    place.run_in_vain(&["simulate", "--model", "robot.toml", "-o", "new.mcap", option, value])
+}
+
+#[test]
+fn effects_that_are_none_are_told() {
+    let place = Place::with_log();
+    for (effect, words) in [
+        ("stribek:ratio=0.5", &["`stribek`", "`stribeck`"][..]),
+        ("", &["--effect"]),
+        ("stribeck", &["stribeck", "`ratio`"]),
+        ("stribeck:", &["stribeck", "`ratio`"]),
+        ("stribeck:ratio", &["`ratio`", "key=value"]),
+        ("stribeck:ratio=x", &["`ratio=x`"]),
+        ("stribeck:rati=0.5", &["`rati`", "`ratio`", "`velocity_m_per_s`"]),
+        ("stribeck:ratio=nan", &["`ratio`", "NaN"]),
+        ("stribeck:ratio=-1", &["`ratio`", "-1"]),
+        ("stribeck:ratio=1e999", &["`ratio`", "inf"]),
+        ("stribeck:ratio=0.5,ratio=0.6", &["`ratio`", "twice"]),
+        ("time_delay:delay_s=-0.001", &["`delay_s`", "-0.001"]),
+    ] {
+        let run = simulate(&place, "--effect", effect).fails(2, &["--effect"]);
+        run.fails(2, words);
+    }
+    let twice = ["--effect", "time_delay:delay_s=0.001", "--effect", "time_delay:delay_s=0.002"];
+    let start = ["simulate", "--model", "robot.toml", "-o", "new.mcap"];
+    place.run_in_vain(&[&start[..], &twice].concat()).fails(2, &["--effect", "`time_delay`", "twice"]);
+}
+
+#[test]
+fn numbers_out_of_range_are_told() {
+    let place = Place::with_log();
+    for value in ["-1", "0", "nan", "inf", "1e300", "1e-9"] {
+        simulate(&place, "--duration", value).fails(2, &["--duration", "allowed is 0.001 to"]);
+    }
+    let joined = ["simulate", "--model", "robot.toml", "-o", "new.mcap", "--duration=-inf"];
+    place.run_in_vain(&joined).fails(2, &["--duration is -inf"]);
+    for option in ["--sensor-noise-n", "--reference-noise-n", "--mu-spread-ratio"] {
+        for value in ["-1", "nan", "inf"] {
+            simulate(&place, option, value).fails(2, &[option, "allowed is 0 to"]);
+        }
+    }
+    simulate(&place, "--mu-spread-ratio", "1.01").fails(2, &["--mu-spread-ratio", "1.01"]);
+    simulate(&place, "--duration", "1s").fails(2, &["--duration", "1s"]);
+    simulate(&place, "--duration", "1,5").fails(2, &["--duration", "1,5"]);
+    simulate(&place, "--seed", "-1").fails(2, &["--seed", "-1"]);
+    simulate(&place, "--seed", "1.5").fails(2, &["--seed", "1.5"]);
+}
+
+#[test]
+fn one_file_for_two_outputs_is_refused() {
+    let place = Place::with_log();
+    for force in [&[][..], &["--force"]] {
+        let replay = |rest: &[&str]| place.run_in_vain(&[&["replay", "log.mcap"], rest, force].concat());
+        replay(&["-o", "a", "--json", "a"]).fails(2, &["a is named for two outputs"]).advises(&["of its own"]);
+        replay(&["-o", "a", "--report", "./a"]).fails(2, &["a is named for two outputs"]);
+    }
+}

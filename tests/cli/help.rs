@@ -1,0 +1,55 @@
+//! `--help`: each command has an example, and the example runs.
+
+use super::support::{Place, example_robot, short_log};
+
+/// The commands that the program names.
+fn commands(place: &Place) -> Vec<String> {
+    let help = place.run(&["--help"]).succeeds().stdout;
+    let list = help.split_once("Commands:\n").unwrap().1.split("\n\n").next().unwrap();
+    let names = list.lines().filter(|line| line.starts_with("  ") && !line.starts_with("   "));
+    names.map(|line| line.split_whitespace().next().unwrap().to_owned()).filter(|name| name != "help").collect()
+}
+
+/// The examples of a command as they are to be typed.
+fn examples(help: &str) -> Vec<Vec<String>> {
+    let (_, text) = help.split_once("Example:\n").or_else(|| help.split_once("Examples:\n")).unwrap_or_default();
+    // A long line is wrapped; the program's name begins a new one.
+    let joined = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let lines = joined.split("fric-cli ").skip(1);
+    lines.map(|line| line.split_whitespace().map(ToOwned::to_owned).collect()).collect()
+}
+
+#[test]
+fn each_command_has_an_example_that_runs() {
+    let place = Place::empty();
+    // What stands in examples/, but short, to keep the tests so.
+    std::fs::create_dir(place.path("examples")).unwrap();
+    place.write("examples/mini-ipanema.mcap", short_log());
+    place.write("examples/mini-ipanema.toml", example_robot());
+    let commands = commands(&place);
+    for expected in ["replay", "info", "simulate"] {
+        assert!(commands.iter().any(|command| command == expected), "{commands:?}");
+    }
+    for command in commands {
+        let help = place.run(&[&command, "--help"]).succeeds().stdout;
+        let examples = examples(&help);
+        assert!(!examples.is_empty(), "{help}");
+        for example in examples {
+            assert_eq!(example[0], command);
+            let mut arguments: Vec<&str> = example.iter().map(String::as_str).collect();
+            if command == "simulate" && !arguments.contains(&"--duration") {
+                arguments.extend(["--duration", "0.1"]);
+            }
+            place.run(&arguments).succeeds();
+        }
+    }
+    assert_eq!(place.names(), ["compensated.mcap", "examples", "simulated.mcap"]);
+}
+
+#[test]
+fn the_examples_name_files_that_are_there() {
+    let root = super::support::root();
+    for name in ["examples/mini-ipanema.mcap", "examples/mini-ipanema.toml"] {
+        assert!(root.join(name).is_file(), "{name}");
+    }
+}

@@ -1,0 +1,108 @@
+//! `info`: what is in a log, what maps to what, and which step is impossible and why.
+
+use serde_json::Value;
+
+use super::logs::without;
+use super::support::{Place, short_log};
+
+/// Table and JSON of a log without some topics.
+fn info(topics: &[&str]) -> (String, Value) {
+    let place = Place::empty();
+    place.write("log.mcap", without(short_log(), topics));
+    let run = place.run(&["info", "log.mcap", "--json", "j.json"]).succeeds();
+    let stdout = place.run_in_vain(&["info", "log.mcap", "--json", "-"]);
+    let (file, piped): (_, Value) = (place.json("j.json"), serde_json::from_str(&stdout.stdout).unwrap());
+    assert_eq!(file, piped);
+    assert_eq!(file["format"], "fric-info/1");
+    assert_eq!(stdout.stderr, run.stdout);
+    (run.stdout, file)
+}
+
+/// Whether a step is possible, and the reasons; table and JSON have to say the same.
+#[track_caller]
+fn step((table, json): &(String, Value), name: &str) -> (bool, String) {
+    let steps = json["steps"].as_array().unwrap();
+    let step = steps.iter().find(|step| step["step"] == name).unwrap();
+    let possible = step["possible"].as_bool().unwrap();
+    let reasons: Vec<&str> =
+        step["reasons"].as_array().unwrap().iter().map(|reason| reason.as_str().unwrap()).collect();
+    let reasons = reasons.join("; ");
+    let row = table.lines().find(|line| line.trim_start().starts_with(&format!("{name} "))).unwrap();
+    let words = format!(" {} ", if possible { "possible" } else { "impossible" });
+    assert!(format!("{row} ").contains(&words) && row.contains(&reasons), "{row}");
+    (possible, reasons)
+}
+
+#[test]
+fn a_complete_log_allows_everything() {
+    let all = info(&[]);
+    for name in ["replay: forces", "replay: wrench", "replay: errors", "fit", "discover"] {
+        assert_eq!(step(&all, name), (true, String::new()), "{name}");
+    }
+    let (table, json) = &all;
+    assert_eq!(json["robot"], "mini-ipanema");
+    assert!(table.contains("attached: fric-robot.toml"), "{table}");
+    for (signal, path, messages) in [
+        ("cable", "/cable_states", 400),
+        ("reference", "/reference_forces", 400),
+        ("pose", "/platform_pose", 101),
+        ("wrench", "/platform_wrench", 101),
+    ] {
+        let found = json["signals"].as_array().unwrap().iter().find(|found| found["signal"] == signal).unwrap();
+        assert_eq!((&found["path"], &found["messages"]), (&path.into(), &messages.into()));
+        let topic = json["topics"].as_array().unwrap().iter().find(|topic| topic["topic"] == path).unwrap();
+        assert_eq!((&topic["messages"], &topic["encoding"]), (&messages.into(), &"cdr".into()));
+        let row: Vec<&str> = table
+            .lines()
+            .map(|line| line.split_whitespace().collect::<Vec<_>>())
+            .find(|row| row[..] == [signal, path, &messages.to_string()])
+            .unwrap();
+        assert_eq!(row.len(), 3);
+    }
+    let cable = &json["topics"].as_array().unwrap()[0];
+    assert_eq!(cable["topic"], "/cable_states");
+    assert!((cable["rate_hz"].as_f64().unwrap() - 1000.0).abs() < 1e-6);
+    assert!((cable["longest_interval_s"].as_f64().unwrap() - 0.001).abs() < 1e-9);
+    assert!((cable["to_s"].as_f64().unwrap() - 0.399).abs() < 1e-9);
+}
+
+#[test]
+fn without_a_reference_there_is_no_fit() {
+    let found = info(&["/reference_forces"]);
+    for name in ["replay: errors", "fit", "discover"] {
+        let (possible, reasons) = step(&found, name);
+        assert!(!possible && reasons.contains("no reference"), "{name}: {reasons}");
+    }
+    assert!(step(&found, "replay: forces").0 && step(&found, "replay: wrench").0);
+    assert!(found.0.lines().any(|line| line.contains("/reference_forces") && line.contains("not in the log")));
+}
+
+#[test]
+fn without_a_pose_there_is_no_wrench() {
+    let found = info(&["/platform_pose"]);
+    let (possible, reasons) = step(&found, "replay: wrench");
+    assert!(!possible && reasons.contains("no pose"), "{reasons}");
+    // The forces are less exact then, which is said.
+    let (possible, reasons) = step(&found, "replay: forces");
+    assert!(possible && reasons.contains("no pose"), "{reasons}");
+    assert!(step(&found, "fit").0);
+}
+
+#[test]
+fn without_cables_there_is_nothing() {
+    let found = info(&["/cable_states"]);
+    for name in ["replay: forces", "replay: wrench", "replay: errors", "fit", "discover"] {
+        let (possible, reasons) = step(&found, name);
+        assert!(!possible && !reasons.is_empty(), "{name}: {reasons}");
+    }
+    assert!(step(&found, "replay: forces").1.contains("/cable_states"));
+}
+
+#[test]
+fn damage_is_told_here_too() {
+    let place = Place::empty();
+    let log = short_log();
+    place.write("log.mcap", &log[..log.len() * 2 / 3]);
+    let run = place.run(&["info", "log.mcap"]).warns(&["`log.mcap` is cut off"]);
+    assert!(run.stdout.contains("/cable_states"), "{run:#?}");
+}

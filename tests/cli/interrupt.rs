@@ -1,0 +1,45 @@
+//! Ctrl-C and its like: no half file, no temporary one.
+#![cfg(unix)]
+
+use std::process::{Command, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use super::support::{Place, root};
+
+/// Starts the program, sends it the signal once its output is in the making, and looks at what is left.
+fn interrupt(arguments: &[&str], signal: &str) {
+    let place = Place::empty();
+    place.write("robot.toml", super::support::example_robot());
+    let mut child = place.command(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let start = Instant::now();
+    while !place.names().iter().any(|name| name.starts_with(".fric-")) {
+        assert!(start.elapsed() < Duration::from_secs(30), "no output in the making: {:?}", place.names());
+        assert!(child.try_wait().unwrap().is_none(), "ended before it could be interrupted");
+        sleep(Duration::from_millis(2));
+    }
+    let kill = Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
+    assert!(kill.success());
+    let output = child.wait_with_output().unwrap();
+    let stderr = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{arguments:?} {signal}: {stderr}");
+    assert_eq!(stderr, "error: interrupted; no output was written\n");
+    assert_eq!(output.stdout, b"");
+    assert_eq!(place.names(), ["robot.toml"], "{arguments:?} {signal}");
+}
+
+#[test]
+fn an_interrupted_simulation_leaves_nothing() {
+    for signal in ["-INT", "-TERM"] {
+        interrupt(&["simulate", "--model", "robot.toml", "-o", "out.mcap", "--duration", "100000"], signal);
+    }
+}
+
+#[test]
+fn an_interrupted_replay_leaves_nothing() {
+    let log = root().join("examples/mini-ipanema.mcap");
+    for signal in ["-INT", "-TERM"] {
+        let outputs = ["-o", "out.mcap", "--report", "out.html", "--json", "out.json"];
+        interrupt(&[&["replay", log.to_str().unwrap()], &outputs[..]].concat(), signal);
+    }
+}

@@ -1,0 +1,25 @@
+//! The program as its users meet it: what they type, what they get, what is left behind.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "a test fails by panicking, its helpers too"
+)]
+
+mod cdr;
+mod closed_stdout;
+mod command_line;
+mod damage;
+mod help;
+mod info;
+mod inputs;
+mod interrupt;
+mod logs;
+mod outputs;
+mod replay;
+mod replay_output;
+mod report;
+mod robot_files;
+mod simulate;
+mod split;
+mod support;

@@ -1,0 +1,121 @@
+//! Outputs that must not or cannot be written: everything stays as it was.
+
+use super::support::Place;
+
+/// Options that name an output, of `replay`.
+const OPTIONS: [&str; 3] = ["-o", "--json", "--report"];
+
+#[test]
+fn what_exists_is_replaced_only_with_force() {
+    let place = Place::with_log();
+    place.write("old", "kept");
+    for option in OPTIONS {
+        let run = place.run_in_vain(&["replay", "log.mcap", option, "old"]);
+        run.fails(1, &["old exists already"]).advises(&["--force"]);
+    }
+    place.run_in_vain(&["info", "log.mcap", "--json", "old"]).fails(1, &["old exists"]).advises(&["--force"]);
+    let simulate = ["simulate", "--model", "robot.toml", "--duration", "0.05", "-o", "old"];
+    place.run_in_vain(&simulate).fails(1, &["old exists already"]).advises(&["--force"]);
+    // Of several outputs one that exists is enough to write none.
+    let several = ["replay", "log.mcap", "-o", "new.mcap", "--report", "new.html", "--json", "old"];
+    place.run_in_vain(&several).fails(1, &["old exists already"]);
+
+    for option in OPTIONS {
+        place.write("old", "not kept");
+        place.run(&["replay", "log.mcap", option, "old", "--force"]).succeeds();
+        assert!(place.read("old").len() > 500, "{option}");
+    }
+    place.run(&[&simulate[..], &["--force"]].concat()).succeeds();
+    assert_eq!(place.names(), ["log.mcap", "old", "robot.toml"]);
+}
+
+#[test]
+fn inputs_are_never_overwritten() {
+    let place = Place::with_log();
+    for option in OPTIONS {
+        for force in [&[][..], &["--force"]] {
+            let over = |output| place.run_in_vain(&[&["replay", "log.mcap", option, output], force].concat());
+            over("log.mcap").fails(1, &["log.mcap is an input"]).advises(&["another output"]);
+            over("./log.mcap").fails(1, &["./log.mcap is an input"]);
+            let start = ["replay", "log.mcap", "--model", "robot.toml", option, "robot.toml"];
+            place.run_in_vain(&[&start, force].concat()).fails(1, &["robot.toml is an input"]);
+        }
+    }
+    let simulate = ["simulate", "--model", "robot.toml", "-o", "robot.toml", "--force"];
+    place.run_in_vain(&simulate).fails(1, &["robot.toml is an input"]);
+    let info = ["info", "log.mcap", "--json", "log.mcap", "--force"];
+    place.run_in_vain(&info).fails(1, &["log.mcap is an input"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn inputs_are_known_by_their_other_names() {
+    let place = Place::with_log();
+    std::fs::hard_link(place.path("log.mcap"), place.path("hard")).unwrap();
+    std::os::unix::fs::symlink("log.mcap", place.path("soft")).unwrap();
+    for option in OPTIONS {
+        for (log, output) in [("log.mcap", "hard"), ("log.mcap", "soft"), ("soft", "log.mcap"), ("soft", "hard")] {
+            let run = place.run_in_vain(&["replay", log, option, output, "--force"]);
+            run.fails(1, &[&format!("{output} is an input")]);
+        }
+    }
+    assert!(place.path("soft").is_symlink());
+}
+
+#[test]
+fn places_that_cannot_be_written_are_told_before_the_work() {
+    let place = Place::with_log();
+    std::fs::create_dir(place.path("folder")).unwrap();
+    for option in OPTIONS {
+        let run = |output| place.run_in_vain(&["replay", "log.mcap", option, output, "--force"]);
+        run("no/such/out").fails(1, &["cannot write no/such/out", "No such file"]).advises(&["no/such", "exists"]);
+        run("log.mcap/out").fails(1, &["cannot write log.mcap/out", "Not a directory"]);
+        run("folder").fails(1, &["cannot write folder", "directory"]).advises(&["file in it"]);
+    }
+    let simulate = ["simulate", "--model", "robot.toml", "-o", "no/out.mcap"];
+    place.run_in_vain(&simulate).fails(1, &["cannot write no/out.mcap"]).advises(&["directory no exists"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_link_that_leads_nowhere_is_not_replaced() {
+    let place = Place::with_log();
+    std::os::unix::fs::symlink("nowhere", place.path("link")).unwrap();
+    for option in OPTIONS {
+        place.run_in_vain(&["replay", "log.mcap", option, "link"]).fails(1, &["link exists already"]);
+    }
+    assert!(place.path("link").is_symlink());
+}
+
+#[cfg(unix)]
+#[test]
+fn a_directory_that_may_not_be_written_is_told() {
+    use std::fs::{Permissions, set_permissions, write};
+    use std::os::unix::fs::PermissionsExt;
+
+    let place = Place::with_log();
+    std::fs::create_dir(place.path("locked")).unwrap();
+    set_permissions(place.path("locked"), Permissions::from_mode(0o555)).unwrap();
+    // The superuser may write everywhere: there is nothing to see then.
+    if write(place.path("locked/probe"), "").is_ok() {
+        return;
+    }
+    for option in OPTIONS {
+        let run = place.run_in_vain(&["replay", "log.mcap", option, "locked/out"]);
+        run.fails(1, &["cannot write locked/out", "denied"]).advises(&["locked", "writable"]);
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn outputs_are_ordinary_files() {
+    use std::os::unix::fs::PermissionsExt;
+
+    let place = Place::with_log();
+    place.run(&["replay", "log.mcap", "-o", "o.mcap", "--json", "j.json", "--report", "r.html"]).succeeds();
+    let mode = |name| std::fs::metadata(place.path(name)).unwrap().permissions().mode();
+    // The test wrote the log itself, under the same umask.
+    for name in ["o.mcap", "j.json", "r.html"] {
+        assert_eq!(mode(name), mode("log.mcap"), "{name}");
+    }
+}

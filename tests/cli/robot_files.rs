@@ -1,0 +1,82 @@
+//! Robot files with mistakes in them: the message names file, line and key, and what is right.
+
+use super::logs::{Storage, rewrite};
+use super::support::{Place, example_robot, short_log};
+
+const FRICTION: &str = "friction = { mu = 0.016, sigma_n_per_m = 1000.0, viscous_n_s_per_m = 0.17 }";
+
+/// The example's robot file with one change, and the line, from 1, where it is.
+fn changed(from: &str, to: &str) -> (String, String) {
+    let text = example_robot();
+    let at = text.find(from).unwrap_or_else(|| panic!("{from} is not in the example"));
+    let line = text[..at].lines().count() + usize::from(text[..at].ends_with('\n'));
+    (text.replacen(from, to, 1), format!("bad.toml, line {line}"))
+}
+
+/// All commands have to refuse the changed file with these words.
+#[track_caller]
+fn refuses(from: &str, to: &str, words: &[&str]) {
+    let place = Place::with_log();
+    let (text, line) = changed(from, to);
+    place.write("bad.toml", text);
+    for start in [&["replay", "log.mcap", "-o", "o.mcap"][..], &["info", "log.mcap"], &["simulate", "-o", "o.mcap"]] {
+        let run = place.run_in_vain(&[start, &["--model", "bad.toml"]].concat()).fails(1, words);
+        run.fails(1, &[&line]);
+    }
+}
+
+#[test]
+fn misspelt_keys_are_told_with_the_nearest() {
+    refuses("mass_kg", "mass_gk", &["`mass_gk`", "did you mean `mass_kg`"]);
+    refuses("cycle_s", "cycles_s", &["`cycles_s`", "did you mean `cycle_s`"]);
+    refuses(FRICTION, &FRICTION.replace("mu", "nu"), &["`nu`", "did you mean `mu`"]);
+    refuses(FRICTION, &FRICTION.replace("viscous_n_s_per_m", "viscous"), &["`viscous`", "`viscous_n_s_per_m`"]);
+    refuses("{ wrap_deg = 180.0", "{ wrap_dge = 180.0", &["`wrap_dge`", "did you mean `wrap_deg`"]);
+}
+
+#[test]
+fn numbers_that_are_none_or_out_of_range_are_told_with_the_range() {
+    for (value, shown) in [("nan", "NaN"), ("inf", "inf"), ("-0.1", "-0.1"), ("7.0", "7")] {
+        let to = FRICTION.replace("0.016", value);
+        refuses(FRICTION, &to, &["cable1", "`mu`", shown, "allowed is 0 to"]);
+    }
+    refuses("cycle_s = 0.001", "cycle_s = 0.0", &["`cycle_s`", "allowed is"]);
+    refuses("cycle_s = 0.001", "cycle_s = nan", &["`cycle_s`", "NaN"]);
+    refuses("mass_kg = 0.41", "mass_kg = -1.0", &["`mass_kg`", "-1"]);
+}
+
+#[test]
+fn values_of_a_wrong_type_are_told() {
+    refuses(FRICTION, &FRICTION.replace("0.016", "'much'"), &["much"]);
+    refuses("cycle_s = 0.001", "cycle_s = 'often'", &["often"]);
+    refuses("name = \"mini-ipanema\"", "name = 5", &["5"]);
+    refuses("name = \"mini-ipanema\"", "name = mini-ipanema", &[]);
+    refuses("format = \"fric-robot/1\"", "format = \"fric-robot/9\"", &["fric-robot/9", "fric-robot/1"]);
+}
+
+#[test]
+fn effects_that_are_none_are_told() {
+    let with = |effect: &str| format!("{FRICTION}\neffects = [ {{ {effect} }} ]");
+    let place = Place::with_log();
+    let line = changed(FRICTION, "").1.replace("bad.toml, line ", "").parse::<usize>().unwrap() + 1;
+    for (effect, words) in [
+        ("kind = 'stribek', ratio = 0.5, velocity_m_per_s = 0.02", &["`stribek`", "did you mean `stribeck`"][..]),
+        ("kind = 'stribeck', ratio = nan, velocity_m_per_s = 0.02", &["`ratio`", "NaN"]),
+        ("kind = 'stribeck', rati = 0.5, velocity_m_per_s = 0.02", &["`rati`", "`ratio`"]),
+    ] {
+        place.write("bad.toml", changed(FRICTION, &with(effect)).0);
+        let run = place.run_in_vain(&["replay", "log.mcap", "--model", "bad.toml", "-o", "o.mcap"]);
+        run.fails(1, &["bad.toml", &format!("line {line}")]).fails(1, words);
+    }
+}
+
+#[test]
+fn a_bad_robot_file_in_the_log_is_told_as_such() {
+    let place = Place::with_log();
+    let robot = example_robot().replacen("mu = 0.016", "mu = nan", 1);
+    place.write("bad.mcap", rewrite(short_log(), Storage::Zstd, Some(&robot), |_, _| true));
+    let run = place.run_in_vain(&["replay", "bad.mcap", "-o", "o.mcap"]);
+    run.fails(1, &["fric-robot.toml attached to the log, line ", "`mu`", "NaN"]);
+    // A good one beside it takes its place.
+    place.run(&["replay", "bad.mcap", "--model", "robot.toml"]).succeeds();
+}
