@@ -2,6 +2,8 @@
 //!
 //! Both are given in messages of the file per second, so their ratio is the price of joining, decoding and the cycle.
 
+#![allow(clippy::unwrap_used, reason = "a benchmark that cannot start has nothing else to do")]
+
 use std::hint::black_box;
 use std::path::PathBuf;
 

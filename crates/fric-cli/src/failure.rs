@@ -30,6 +30,14 @@ impl Failure {
         Self { is_usage: true, ..Self::new(cause) }
     }
 
+    /// The work failed, for a reason that ends with what to do after a semicolon, as the libraries word it.
+    fn in_two_lines(text: &str) -> Self {
+        match text.rsplit_once("; ") {
+            Some((cause, advice)) => Self::new(cause).advise(advice),
+            None => Self::new(text),
+        }
+    }
+
     /// Adds what to do.
     pub fn advise(mut self, advice: impl Display) -> Self {
         self.advice = Some(advice.to_string());
@@ -74,7 +82,7 @@ macro_rules! failure_from {
     ($($error:ty),* $(,)?) => {$(
         impl From<$error> for Failure {
             fn from(error: $error) -> Self {
-                Self::new(in_full(&error))
+                Self::in_two_lines(&in_full(&error))
             }
         }
     )*};

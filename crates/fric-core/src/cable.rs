@@ -3,7 +3,7 @@
 //! For: sensor force and displacement in, force at the platform out ([`cable_step`]). Generic over [`Scalar`], so the
 //! control cycle (four cables at once) and a fit that carries derivatives run the very same code. It does not judge
 //! signals: whoever calls it passes finite numbers ([`Compensator`](crate::Compensator) sees to that). State: one number
-//! per pulley, or one per cable, kept by the caller behind [`Pulleys`] and in [`CableState`].
+//! per pulley, or one per cable, kept by the caller: behind [`Pulleys`], or passed as `lumped_friction_n`.
 //!
 //! Symbols and sign convention are those of [`pulley`].
 
@@ -19,13 +19,13 @@ pub struct CableModel<T: Scalar> {
     pub mu: T,
     /// Presliding stiffness σ of one Dahl state: the whole cable's for `lumped`, its n-th part for `per_pulley`, N/m.
     pub sigma_n_per_m: T,
-    /// Force added at the platform, ε of [P] 18, N.
+    /// Force added at the platform, ε of \[P\] 18, N.
     pub offset_n: T,
     /// cos α₁ of the sensor pulley; 0 for a sensor in line with the cable.
     pub sensor_cos: T,
     /// `1/(1 − cos α₁)`: from sensor force to cable tension without friction, 1.
     pub frictionless_gain: T,
-    /// One state per cable ([P]'s) instead of one per pulley.
+    /// One state per cable (\[P\]'s) instead of one per pulley.
     pub lumped: T::Mask,
     /// Friction falling with speed.
     pub stribeck: Stribeck<T>,
@@ -103,8 +103,8 @@ pub struct CableForces<T: Scalar> {
 ///
 /// `hold` keeps every stored friction as it is; slack releases it. `lumped_friction_n` is the stored friction of the
 /// `lumped` form. Viscous friction stays outside the Dahl state in both forms: it needs no presliding distance
-/// (deviation from [P] 15, where it is inside). The macroscopic friction is taken from the frictionless cable,
-/// `F_f = F_n − F_s/(1 − c)`, so that presliding covers the sensor pulley too (deviation from [P] 15: `F_n − F_1`).
+/// (deviation from \[P\] 15, where it is inside). The macroscopic friction is taken from the frictionless cable,
+/// `F_f = F_n − F_s/(1 − c)`, so that presliding covers the sensor pulley too (deviation from \[P\] 15: `F_n − F_1`).
 #[inline(always)]
 pub fn cable_step<T: Scalar>(
     model: &CableModel<T>,
@@ -147,8 +147,8 @@ pub fn cable_step<T: Scalar>(
 
 /// `per_pulley`: one Dahl state on each bearing; its normal force includes the friction it has stored.
 ///
-/// With the stored Coulomb friction `f_j`: `F_1 = (F_s − c(f_1 + F_pv v))/(1 − c)` ([P] 11), then
-/// `F_j = F_{j−1} + f_j + F_pv v`. In steady sliding this is [P] 10.
+/// With the stored Coulomb friction `f_j`: `F_1 = (F_s − c(f_1 + F_pv v))/(1 − c)` (\[P\] 11), then
+/// `F_j = F_{j−1} + f_j + F_pv v`. In steady sliding this is \[P\] 10.
 #[inline(always)]
 fn pulley_chain<T: Scalar>(
     model: &CableModel<T>,

@@ -339,7 +339,8 @@ impl<const CABLES: usize> Compensator<CABLES> {
         forces.lumped_friction_n.store(&mut columns.lumped_friction_n, block);
 
         let computed_n = forces.platform_force_n - model.offset_n - forces.frictionless_n;
-        let held_n = Lanes::select(forces.no_tension, zero, held_friction_n);
+        // Held friction takes no cable below zero tension.
+        let held_n = Lanes::select(forces.no_tension, zero, held_friction_n.max(-forces.frictionless_n));
         let friction_n = Lanes::select(hold, held_n, computed_n);
         friction_n.store(&mut columns.friction_n, block);
         let platform_n = Lanes::select(hold, forces.frictionless_n + held_n + model.offset_n, forces.platform_force_n);
@@ -353,7 +354,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
             hold.or(forces.slack).or(slip).or(out_of_range).bits() | pose_flags.missing | pose_flags.unreachable;
         let flags = || {
             [
-                (CableStatus::SLACK, forces.slack.bits()),
+                (CableStatus::SLACK, forces.slack.and(sensor_fault.not()).bits()),
                 (CableStatus::SLIP, slip.bits()),
                 (CableStatus::SENSOR_NOT_FINITE, sensor_finite.not().bits()),
                 (CableStatus::SENSOR_FROZEN, frozen.bits()),

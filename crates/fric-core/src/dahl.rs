@@ -1,6 +1,6 @@
 //! Presliding after Dahl: what friction does within the first fractions of a millimetre after a reversal.
 //!
-//! For: one state, the friction *force* that a contact stores, moved on by one step of displacement ([P] 16–17). No time
+//! For: one state, the friction *force* that a contact stores, moved on by one step of displacement (\[P\] 16–17). No time
 //! in it: half the displacement twice is the whole displacement. Non-finite input gives non-finite output; the caller
 //! keeps it out. State: one number per contact.
 
@@ -17,7 +17,7 @@ use crate::scalar::Scalar;
 /// | `σ` | `sigma_n_per_m`, presliding stiffness | N/m | > 0 |
 /// | `Δl` | `displacement_m`, positive paying out; `s` is its sign | m | |
 ///
-/// Sign convention: see [`pulley`](crate::pulley). Source: [P] 16 with exponent 1; the printed (17) has lost a bracket,
+/// Sign convention: see [`pulley`](crate::pulley). Source: \[P\] 16 with exponent 1; the printed (17) has lost a bracket,
 /// this is the solution of (16). Deviation: the force is stored, not the ratio `f/f_c`, so that a load that changes at
 /// rest does not move the stored force.
 ///

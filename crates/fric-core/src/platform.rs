@@ -97,7 +97,7 @@ impl core::ops::Sub for Wrench {
 }
 
 impl CableParams {
-    /// Cable length from the entry into the last pulley to the platform, m: `r·β + free` ([P] 1 with the pulley).
+    /// Cable length from the entry into the last pulley to the platform, m: `r·β + free` (\[P\] 1 with the pulley).
     ///
     /// `None` without geometry, or where the attachment lies inside the last pulley.
     #[must_use]
@@ -135,8 +135,8 @@ impl Geometry {
     }
 }
 
-/// Structure matrix `A^T = [u_i; (R b_i) × u_i]` ([P] 2): the wrench of the cables on the platform is `A^T f`, the one
-/// from outside that balances it `−A^T f` ([P] 3).
+/// Structure matrix `A^T = [u_i; (R b_i) × u_i]` (\[P\] 2): the wrench of the cables on the platform is `A^T f`, the one
+/// from outside that balances it `−A^T f` (\[P\] 3).
 ///
 /// `CABLES` columns; those past the robot's cables are zero. `None` where a cable has no geometry or cannot leave its
 /// last pulley, or where the robot has more than `CABLES` cables.

@@ -1,6 +1,6 @@
 //! Macroscopic friction of cable pulleys: bearing friction, the sensor pulley, the slip limit.
 //!
-//! For: the tension behind a pulley from the tension before it, in steady motion ([P] 4–14). Presliding, which blurs the
+//! For: the tension behind a pulley from the tension before it, in steady motion (\[P\] 4–14). Presliding, which blurs the
 //! reversal, is [`dahl`](crate::dahl)'s. No state; non-finite input gives non-finite output, the caller
 //! ([`Compensator`](crate::Compensator)) keeps it out.
 //!
@@ -21,7 +21,7 @@
 
 use crate::scalar::{Mask, Scalar};
 
-/// Normal force on a bearing per mean cable tension: `k = √(2(1 − cos α)) = 2 sin(α/2)` ([P] 8).
+/// Normal force on a bearing per mean cable tension: `k = √(2(1 − cos α)) = 2 sin(α/2)` (\[P\] 8).
 ///
 /// `wrap_rad` is the wrap angle α in `0…2π`; 0 gives 0, a pulley that carries nothing.
 ///
@@ -36,7 +36,7 @@ pub fn wrap_factor(wrap_rad: f64) -> f64 {
 
 /// Gain and viscous share of one pulley in steady sliding.
 ///
-/// `F_j = gain·F_{j−1} + viscous_gain·F_pv·v` is [P] 10 with `gain = (2 + sμk)/(2 − sμk)` and
+/// `F_j = gain·F_{j−1} + viscous_gain·F_pv·v` is \[P\] 10 with `gain = (2 + sμk)/(2 − sμk)` and
 /// `viscous_gain = 2/(2 − sμk)`. At `s = 0` both are 1. `μk < 2` is the caller's to guarantee.
 #[inline(always)]
 pub fn sliding_gains<T: Scalar>(direction: T, mu: T, wrap_factor: T) -> (T, T) {
@@ -48,10 +48,10 @@ pub fn sliding_gains<T: Scalar>(direction: T, mu: T, wrap_factor: T) -> (T, T) {
 
 /// Gain and viscous share behind the sensor pulley in steady sliding.
 ///
-/// `F_1 = gain·F_s + viscous_gain·F_pv·v`, from the equilibrium of the sensor pulley `F_1 − F_0 cos α₁ = F_s` ([P] 11)
-/// and [P] 10: `gain = (2 + sμk)/d`, `viscous_gain = −2c/d`, `d = (2 + sμk) − c(2 − sμk)`.
+/// `F_1 = gain·F_s + viscous_gain·F_pv·v`, from the equilibrium of the sensor pulley `F_1 − F_0 cos α₁ = F_s` (\[P\] 11)
+/// and \[P\] 10: `gain = (2 + sμk)/d`, `viscous_gain = −2c/d`, `d = (2 + sμk) − c(2 − sμk)`.
 ///
-/// The paper solves 90° (`F_1 = F_s`, [P] 12) and 180° (`F_1 = F_s(1 + sμ)/2`, [P] 14); this is every angle. It is
+/// The paper solves 90° (`F_1 = F_s`, \[P\] 12) and 180° (`F_1 = F_s(1 + sμ)/2`, \[P\] 14); this is every angle. It is
 /// singular where the wrap vanishes, which [`CableParams`](crate::CableParams) refuses.
 #[inline(always)]
 pub fn sensor_gains<T: Scalar>(direction: T, mu: T, wrap_factor: T, sensor_cos: T) -> (T, T) {
@@ -62,7 +62,7 @@ pub fn sensor_gains<T: Scalar>(direction: T, mu: T, wrap_factor: T, sensor_cos: 
     (plus * inverse, -(two * sensor_cos) * inverse)
 }
 
-/// Bearing friction at which a pulley slides: `μ·F_N` with `F_N = k(F_{j−1} + F_j)/2` ([P] 8).
+/// Bearing friction at which a pulley slides: `μ·F_N` with `F_N = k(F_{j−1} + F_j)/2` (\[P\] 8).
 ///
 /// Never negative: where a tension computed with large viscous friction falls below zero, the bearing carries nothing.
 #[inline(always)]
@@ -73,7 +73,7 @@ pub fn sliding_friction<T: Scalar>(mu: T, wrap_factor: T, upstream_n: T, downstr
 /// A traction ratio beyond this stands for a pulley on which the cable cannot slip; `e^{μ_p α}` is below 3·10⁵.
 pub const NO_LIMIT_RATIO: f64 = 1e6;
 
-/// The tension behind a pulley held within the slip limit, and whether it had to be ([P] 4, Eytelwein).
+/// The tension behind a pulley held within the slip limit, and whether it had to be (\[P\] 4, Eytelwein).
 ///
 /// `traction_ratio = e^{μ_p α}` with the friction coefficient `μ_p` between cable and pulley: the cable slips when
 /// `F_j/F_{j−1}` leaves `[1/traction_ratio, traction_ratio]`; the ratio is then held at that bound. Where the cable
@@ -90,8 +90,8 @@ pub fn limit_traction<T: Scalar>(upstream_n: T, downstream_n: T, traction_ratio:
 
 /// The tensions before and behind a sensor pulley on which the cable slips.
 ///
-/// Neither is given there, only `F_1 − c·F_0 = F_s` ([P] 11); with `F_1/F_0` at the bound that the tensions without slip
-/// exceed ([P] 4), `F_1 = F_s/(1 − c·F_0/F_1)`.
+/// Neither is given there, only `F_1 − c·F_0 = F_s` (\[P\] 11); with `F_1/F_0` at the bound that the tensions without slip
+/// exceed (\[P\] 4), `F_1 = F_s/(1 − c·F_0/F_1)`.
 #[inline(always)]
 pub fn slipping_sensor<T: Scalar>(
     sensor_force_n: T,

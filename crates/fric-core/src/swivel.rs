@@ -7,7 +7,7 @@
 //! In the plane through the swivel axis and the attachment B, with the tangent point A where the cable enters as origin,
 //! `x` the distance from the axis and `z` along it: `M = (r, 0)`, `D = |B − M|`, `φ = atan2(z_B, x_B − r)`,
 //! `γ = arccos(r/D)`; wrap `β = π − (φ + γ)`, free length `√(D² − r²)`, tangent point `M + r(cos(φ+γ), sin(φ+γ))`.
-//! Source: the standard model of a swivelling pulley, that [P] 1 uses for `a_i(r, R)`. The angles never appear:
+//! Source: the standard model of a swivelling pulley, that \[P\] 1 uses for `a_i(r, R)`. The angles never appear:
 //! `cos(φ+γ) = ((x_B − r)·r − z_B·free)/D²`, `sin(φ+γ) = (z_B·r + (x_B − r)·free)/D²`.
 
 use nalgebra::Vector3;

@@ -1,4 +1,4 @@
-//! The pulley chain in steady sliding, [P] 4–14.
+//! The pulley chain in steady sliding, \[P\] 4–14.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -8,7 +8,7 @@ use fric_core::{CableInput, CableStatus, Compensator, CycleInput};
 
 use crate::support::{GUIDE_90, Random, SENSOR_180, UNMONITORED, assert_near, bisect, compensator};
 
-/// [P] 5, 6, 8: what the tension behind a pulley lacks to be the one before it plus bearing friction.
+/// \[P\] 5, 6, 8: what the tension behind a pulley lacks to be the one before it plus bearing friction.
 fn imbalance(downstream_n: f64, upstream_n: f64, mu: f64, wrap_rad: f64, viscous: f64, speed: f64) -> f64 {
     let normal_n = 0.5 * (upstream_n + downstream_n) * (2.0 * (1.0 - wrap_rad.cos())).sqrt();
     let friction_n = mu * normal_n + viscous * speed.abs();

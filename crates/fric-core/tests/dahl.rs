@@ -1,11 +1,11 @@
-//! Presliding, [P] 16–17.
+//! Presliding, \[P\] 16–17.
 
 use fric_core::dahl::dahl_step;
 use proptest::prelude::*;
 
 use crate::support::{Random, assert_near};
 
-/// [P] 16 with exponent 1, integrated by the classical Runge-Kutta rule in fine steps.
+/// \[P\] 16 with exponent 1, integrated by the classical Runge-Kutta rule in fine steps.
 fn integrated(friction_n: f64, sliding_n: f64, sigma_n_per_m: f64, displacement_m: f64) -> f64 {
     let slope = |f: f64| sigma_n_per_m * (1.0 - f / sliding_n * displacement_m.signum());
     let steps = 2000;

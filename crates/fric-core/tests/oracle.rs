@@ -135,7 +135,7 @@ impl Cable {
     }
 }
 
-/// `−Σ f_i [u_i; (R b_i) × u_i]`, [P] 2 and 3.
+/// `−Σ f_i [u_i; (R b_i) × u_i]`, \[P\] 2 and 3.
 pub fn outside_wrench(columns: &[([f64; 3], [f64; 3])], forces_n: &[f64]) -> ([f64; 3], [f64; 3]) {
     let (mut force, mut torque) = ([0.0; 3], [0.0; 3]);
     for ((direction, arm), force_n) in columns.iter().zip(forces_n) {

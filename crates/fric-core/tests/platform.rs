@@ -1,4 +1,4 @@
-//! Structure matrix and wrench, [P] 1–3.
+//! Structure matrix and wrench, \[P\] 1–3.
 
 use fric_core::platform::structure_matrix;
 use fric_core::robot::{CableOptions, FrictionOptions, GeometryOptions, PlatformOptions, Presliding, PulleyOptions};

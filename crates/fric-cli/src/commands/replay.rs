@@ -168,7 +168,12 @@ fn warn_about_model(model: &Model, reader: &SignalReader, replay: &Replay) {
             None => {}
         }
     }
+    let silent = CableStatus::SENSOR_NOT_FINITE | CableStatus::MOTION_NOT_FINITE;
     for (count, flags, names) in flagged {
+        if count == replay.cycle_count() && CableStatus::from_bits(flags) == silent {
+            warnings::warn(&format!("the log has no signal of {}; compare the names in it", names.join(", ")));
+            continue;
+        }
         let (names, flags) = (names.join(", "), CableStatus::from_bits(flags));
         warnings::warn(&format!("{count} of {} samples are flagged {flags}: {names}", replay.cycle_count()));
     }

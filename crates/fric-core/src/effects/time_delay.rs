@@ -3,7 +3,7 @@
 //! Equation: displacement and speed at `t` are those of `t − delay_s`; between cycles they are interpolated linearly.
 //! Neutral: `delay_s = 0`.
 //!
-//! Cause: set points are used where the drive still follows ([P], section IV A), or the two signals take different ways
+//! Cause: set points are used where the drive still follows (\[P\], section IV A), or the two signals take different ways
 //! through the bus. Deviation from the paper: the set points are shifted, not the friction computed from them, so that
 //! the friction is that of the present force.
 

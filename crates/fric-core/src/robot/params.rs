@@ -146,7 +146,7 @@ pub(crate) struct Geometry {
 }
 
 const PLACE_M: f64 = 1e4;
-/// `2 − μk` of [P] 10 stays well above zero for every wrap.
+/// `2 − μk` of \[P\] 10 stays well above zero for every wrap.
 const GREATEST_MU: f64 = 0.9;
 
 fn check_point(key: &'static str, point: [f64; 3]) -> Result<Vector3<f64>, ParamError> {
@@ -269,7 +269,7 @@ impl CableParams {
     }
 }
 
-/// The sensor pulley's closed form is singular where `2(1 − c) + sμk(1 + c)` vanishes ([P] 10, 11): it must keep a
+/// The sensor pulley's closed form is singular where `2(1 − c) + sμk(1 + c)` vanishes (\[P\] 10, 11): it must keep a
 /// third of its frictionless value.
 fn check_sensor_wrap(wrap_rad: f64, greatest_mu: f64) -> Result<(), ParamError> {
     let (factor, cos) = (wrap_factor(wrap_rad), libm::cos(wrap_rad));

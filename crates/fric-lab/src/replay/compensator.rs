@@ -62,8 +62,7 @@ struct Fixed<const CABLES: usize> {
     output: CycleOutput<CABLES>,
 }
 
-const NOTHING: CableInput =
-    CableInput { sensor_force_n: f64::NAN, length_m: f64::NAN, speed_m_per_s: f64::NAN };
+const NOTHING: CableInput = CableInput { sensor_force_n: f64::NAN, length_m: f64::NAN, speed_m_per_s: f64::NAN };
 
 impl<const CABLES: usize> Fixed<CABLES> {
     fn boxed(robot: &RobotParams<'_>) -> Result<Box<dyn Cycle>, ParamError> {

@@ -22,7 +22,7 @@ fn slide(chain: &mut BristleChain, force_n: f64, speed_m_per_s: f64, cycles: u32
     at(cycles)
 }
 
-/// [P] 10 and 11, solved for `F_s` from `F_n` backwards by the paper's approximate normal force.
+/// \[P\] 10 and 11, solved for `F_s` from `F_n` backwards by the paper's approximate normal force.
 fn steady_sensor_n(pulleys: &[(f64, f64, f64)], force_n: f64, speed_m_per_s: f64) -> f64 {
     let sign = speed_m_per_s.signum();
     let mut downstream_n = force_n;
@@ -35,7 +35,7 @@ fn steady_sensor_n(pulleys: &[(f64, f64, f64)], force_n: f64, speed_m_per_s: f64
     downstream_n - upstream_n * pulleys[0].1.cos()
 }
 
-/// With m the mean and d the difference of both tensions, [P] 7 is `√(k²m² + d² cos²(α/2))`, [P] 8 is `k·m`: the exact
+/// With m the mean and d the difference of both tensions, \[P\] 7 is `√(k²m² + d² cos²(α/2))`, \[P\] 8 is `k·m`: the exact
 /// normal force is larger by the share `(d cos(α/2)/(k m))²/2` to second order. The friction of each pulley is off by
 /// that share, and so, summed over the chain, is the sensor.
 #[test]

@@ -93,7 +93,7 @@ pub enum HiddenEffectError {
         known: String,
     },
     /// A value that is not finite or out of range.
-    #[error("`{key}` of the effect `{kind}` is {value}; allowed is {min} to {max} {unit}")]
+    #[error("`{key}` of the effect `{kind}` is {value}; allowed is {min} to {max}{}", with_unit(unit))]
     OutOfRange {
         /// The effect.
         kind: &'static str,
@@ -108,4 +108,9 @@ pub enum HiddenEffectError {
         /// Its unit.
         unit: &'static str,
     },
+}
+
+/// A unit behind a number; nothing for a ratio.
+pub(super) fn with_unit(unit: &str) -> String {
+    if unit == "1" { String::new() } else { format!(" {unit}") }
 }

@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use fric_core::effects::{self, EffectParams, EffectRow, ParameterRow};
 
-use super::error::HiddenEffectError;
+use super::error::{HiddenEffectError, with_unit};
 
 /// An effect of the catalogue with values, checked against its row.
 ///
@@ -128,7 +128,7 @@ fn keys(row: &EffectRow) -> String {
     list(
         row.parameters
             .iter()
-            .map(|ParameterRow { key, unit, min, max, .. }| format!("`{key}` ({min} to {max} {unit})")),
+            .map(|ParameterRow { key, unit, min, max, .. }| format!("`{key}` ({min} to {max}{})", with_unit(unit))),
     )
 }
 

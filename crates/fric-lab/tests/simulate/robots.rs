@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use fric_core::robot::file::RobotFile;
 use fric_lab::simulate::{Simulation, SimulationOptions};
 
-/// μ and σ of the published robot's cables ([P] table I), `F_pv` of each pulley a third of the cable's in a like robot.
+/// μ and σ of the published robot's cables (\[P\] table I), `F_pv` of each pulley a third of the cable's in a like robot.
 const PUBLISHED: [(f64, f64, f64); 8] = [
     (0.016, 1000.0, 0.17),
     (0.011, 1003.0, 0.35),

@@ -1,4 +1,4 @@
-//! The identification run against what [P], section III C, lists.
+//! The identification run against what \[P\], section III C, lists.
 
 use fric_lab::simulate::{
     AMPLITUDES_M, Leg, Phase, RECTANGLES_M_PER_S, STROKE_ACCELERATION_M_PER_S2, Trajectory, WorkBox,
