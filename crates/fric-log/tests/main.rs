@@ -9,4 +9,5 @@
 mod path;
 mod recording;
 mod schema;
+mod signals;
 mod write;

@@ -1,9 +1,9 @@
 //! Which fields of a message a signal is made of.
 //!
-//! Asked of the schema; where that leaves the fields open (JSON), of the first message.
+//! Asked of the schema; where that leaves the fields open (JSON), of a message.
 
 use crate::path::{FieldPath, Step};
-use crate::schema::{FieldKind, MessageType, SchemaError, Wanted};
+use crate::schema::{DecodeError, FieldKind, MessageType, SchemaError, Wanted};
 
 use super::Role;
 
@@ -11,8 +11,8 @@ use super::Role;
 #[derive(Debug, Default)]
 pub(super) struct Layout {
     pub wanted: Vec<Wanted>,
-    /// Index of the stamp.
-    pub stamp: Option<usize>,
+    /// Indices of the stamps, the innermost first.
+    pub stamps: Vec<usize>,
     /// Index of the cables' names.
     pub names: Option<usize>,
     /// Indices of the numbers: force, length, speed of cables; the one array of length, speed and reference; position
@@ -20,35 +20,57 @@ pub(super) struct Layout {
     pub numbers: Vec<Option<usize>>,
 }
 
-/// A message type and the first message of it.
+/// Why there is no layout.
+#[derive(Debug)]
+pub(super) enum Unfit {
+    /// No message of this type has the fields.
+    Type(SchemaError),
+    /// All is there but cable lengths.
+    NoLength,
+    /// This message has not, but the next one may.
+    Message(String),
+    /// The path selects nothing in this message, but may in the next one.
+    Nothing,
+}
+
+impl From<SchemaError> for Unfit {
+    fn from(error: SchemaError) -> Self {
+        Self::Type(error)
+    }
+}
+
+/// A message type and a message of it.
 pub(super) struct Probe<'a> {
     pub message_type: &'a MessageType,
-    pub first_message: &'a [u8],
+    pub message: &'a [u8],
 }
 
 impl Probe<'_> {
     /// Whether there is a field to be read as wanted, with several elements or one.
-    fn has(&self, wanted: &Wanted, kind: FieldKind) -> bool {
+    fn has(&self, wanted: Wanted, kind: FieldKind) -> bool {
         match self.message_type.field(&wanted.path) {
-            Ok(field) if field.kind == FieldKind::Unknown => self
-                .message_type
-                .decoder(std::slice::from_ref(wanted))
-                .is_ok_and(|mut decoder| decoder.read(self.first_message).is_ok()),
+            Ok(field) if field.kind == FieldKind::Unknown => {
+                let decoder = self.message_type.decoder(&[wanted]);
+                decoder.is_ok_and(|mut decoder| decoder.read(self.message).is_ok())
+            }
             Ok(field) => field.kind == kind,
             Err(_) => false,
         }
     }
 
-    fn has_numbers(&self, path: &FieldPath) -> bool {
-        self.has(&Wanted::numbers(path.clone()), FieldKind::Number)
+    fn has_numbers(&self, path: FieldPath) -> bool {
+        self.has(Wanted::numbers(path), FieldKind::Number)
     }
 
-    fn has_texts(&self, path: &FieldPath) -> bool {
-        self.has(&Wanted::texts(path.clone()), FieldKind::Text)
-    }
-
-    fn has_time(&self, path: &FieldPath) -> bool {
-        self.has(&Wanted::times(path.clone()), FieldKind::Time)
+    /// Checks that there are numbers; where only messages can tell, that this one has.
+    fn require_numbers(&self, path: &FieldPath) -> Result<(), Unfit> {
+        if self.message_type.field(path)?.kind != FieldKind::Unknown {
+            return Ok(());
+        }
+        let mut decoder = self.message_type.decoder(&[Wanted::numbers(path.clone())])?;
+        let values = decoder.read(self.message).map_err(|error: DecodeError| Unfit::Message(error.to_string()))?;
+        let is_filtered = path.steps().iter().any(|step| !matches!(step, Step::Member(_)));
+        if is_filtered && values.numbers(0).is_empty() { Err(Unfit::Nothing) } else { Ok(()) }
     }
 }
 
@@ -56,10 +78,9 @@ impl Layout {
     /// The fields of `role` at `path`.
     ///
     /// # Errors
-    /// [`SchemaError`] where the messages do not have them.
-    pub fn find(role: Role, path: &FieldPath, probe: &Probe<'_>) -> Result<Self, SchemaError> {
+    /// [`Unfit`] where the messages, or this one, do not have them.
+    pub fn find(role: Role, path: &FieldPath, probe: &Probe<'_>) -> Result<Self, Unfit> {
         let mut layout = Self::default();
-        layout.find_stamp(path, probe);
         match role {
             Role::Cable => layout.cable_numbers(path, probe, &["effort", "position", "velocity"])?,
             Role::Length => layout.cable_numbers(path, probe, &["position"])?,
@@ -68,6 +89,7 @@ impl Layout {
             Role::Pose => layout.vectors(path, probe, POSES)?,
             Role::Wrench => layout.vectors(path, probe, WRENCHES)?,
         }
+        layout.find_stamps(path, probe);
         Ok(layout)
     }
 
@@ -76,43 +98,46 @@ impl Layout {
         self.wanted.len() - 1
     }
 
-    /// `header.stamp` of the message, or of the innermost object on the path that has one.
-    fn find_stamp(&mut self, path: &FieldPath, probe: &Probe<'_>) {
+    /// The stamps of the objects on the path, from the innermost to the message itself.
+    fn find_stamps(&mut self, path: &FieldPath, probe: &Probe<'_>) {
         let steps = path.steps();
-        let parents = (0..=steps.len()).rev().map(|count| steps.iter().take(count).cloned().collect::<FieldPath>());
-        let mut stamps = parents.map(|parent| parent.member("header").member("stamp"));
-        self.stamp = stamps.find(|stamp| probe.has_time(stamp)).map(|stamp| self.want(Wanted::times(stamp)));
+        for count in (0..=steps.len()).rev() {
+            let parent: FieldPath = steps.iter().take(count).cloned().collect();
+            let mut stamps = STAMPS.iter().map(|names| members(&parent, names));
+            if let Some(stamp) = stamps.find(|stamp| probe.has(Wanted::times(stamp.clone()), FieldKind::Time)) {
+                let index = self.want(Wanted::times(stamp));
+                self.stamps.push(index);
+            }
+        }
     }
 
     /// An object with names and arrays, as `JointState`; or a path to the numbers themselves, the neighbours of which
     /// are looked at too. The first of `members` has to be there.
-    fn cable_numbers(&mut self, path: &FieldPath, probe: &Probe<'_>, members: &[&str]) -> Result<(), SchemaError> {
+    fn cable_numbers(&mut self, path: &FieldPath, probe: &Probe<'_>, members: &[&str]) -> Result<(), Unfit> {
         let steps = path.steps();
-        let direct = !path.is_empty() && probe.has_numbers(path);
+        let is_direct = !path.is_empty() && probe.has_numbers(path.clone());
         let selection = match steps.last() {
-            Some(Step::Elements(selection)) if direct => Some(*selection),
+            Some(Step::Elements(selection)) if is_direct => Some(*selection),
             _ => None,
         };
-        let inner = usize::from(direct) + usize::from(selection.is_some());
+        let inner = usize::from(is_direct) + usize::from(selection.is_some());
         let parent = steps.get(..steps.len().saturating_sub(inner)).unwrap_or_default();
         let field = |name: &str| -> FieldPath {
             let member = parent.iter().cloned().chain([Step::Member(name.to_owned())]);
             member.chain(selection.map(Step::Elements)).collect()
         };
-        let first = if direct { path.clone() } else { field(members.first().copied().unwrap_or_default()) };
-        if !direct {
-            // Says what is wrong with the path, or which members there are instead.
-            probe.message_type.field(&first)?;
-        }
+        let first = if is_direct { path.clone() } else { field(members.first().copied().unwrap_or_default()) };
+        // Says what is wrong with the path, or which members there are instead.
+        probe.require_numbers(&first)?;
         let names = field("name");
-        if probe.has_texts(&names) {
+        if probe.has(Wanted::texts(names.clone()), FieldKind::Text) {
             self.names = Some(self.want(Wanted::texts(names)));
         }
         let index = self.want(Wanted::numbers(first.clone()));
         self.numbers.push(Some(index));
         for member in members.iter().skip(1) {
             let field = field(member);
-            let found = field != first && probe.has_numbers(&field);
+            let found = field != first && probe.has_numbers(field.clone());
             let index = found.then(|| self.want(Wanted::numbers(field)));
             self.numbers.push(index);
         }
@@ -120,20 +145,24 @@ impl Layout {
     }
 
     /// Two vectors, coordinate by coordinate, under the first of several names that the messages have.
-    fn vectors(&mut self, path: &FieldPath, probe: &Probe<'_>, forms: &[Vectors]) -> Result<(), SchemaError> {
-        let at = |form: &Vectors| form.prefix.iter().fold(path.clone(), |path, name| path.member(name));
-        let form = forms.iter().find(|form| probe.has_numbers(&at(form).member(form.first).member("x")));
+    fn vectors(&mut self, path: &FieldPath, probe: &Probe<'_>, forms: &[Vectors]) -> Result<(), Unfit> {
+        let first = |form: &Vectors| members(path, form.prefix).member(form.first).member("x");
+        let form = forms.iter().find(|form| probe.require_numbers(&first(form)).is_ok());
         let Some(form) = form.or(forms.first()) else { return Ok(()) };
         for (vector, coordinates) in [(form.first, AXES), (form.second, form.second_coordinates)] {
             for coordinate in coordinates {
-                let field = at(form).member(vector).member(coordinate);
-                probe.message_type.field(&field)?;
+                let field = members(path, form.prefix).member(vector).member(coordinate);
+                probe.require_numbers(&field)?;
                 let index = self.want(Wanted::numbers(field));
                 self.numbers.push(Some(index));
             }
         }
         Ok(())
     }
+}
+
+fn members(path: &FieldPath, names: &[&str]) -> FieldPath {
+    names.iter().fold(path.clone(), |path, name| path.member(name))
 }
 
 /// How a message may name two vectors.
@@ -143,6 +172,9 @@ struct Vectors {
     second: &'static str,
     second_coordinates: &'static [&'static str],
 }
+
+/// Where an object may have its stamp.
+const STAMPS: [&[&str]; 3] = [&["header", "stamp"], &["stamp"], &["timestamp"]];
 
 const QUATERNION: &[&str] = &["x", "y", "z", "w"];
 const AXES: &[&str] = &["x", "y", "z"];

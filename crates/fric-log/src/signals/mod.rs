@@ -5,38 +5,54 @@
 //!
 //! # Time
 //!
-//! A message's time is its `header.stamp`, else (no header, or a stamp of zero) its log time. The rows have the times of
-//! the cable signal; pose, wrench, reference and, where they come on topics of their own, length and speed are
-//! interpolated linearly between the two messages around it. Nothing is extrapolated past the first and the last
-//! message, nor bridged over a gap: an interval of more than ten times the usual one.
+//! A message's time is its `header.stamp` (else a `stamp` or `timestamp` beside the data, or nearer to the root), else
+//! (none, or zero) its log time. The rows have the times of the cable signal; pose, wrench, reference and, where they come
+//! on topics of their own, length and speed are interpolated linearly between the two messages around it; a message of
+//! the row's very time is passed bit by bit. Nothing is extrapolated past the first and the last message, nor bridged over
+//! a gap: an interval of more than ten times the longest usual one. Usual are the last 32 intervals, the longest eighth
+//! left out; the first eight are judged by one another.
 //!
 //! | what a topic does | what is done | counted as |
 //! |---|---|---|
 //! | same stamp again | the first counts | `duplicate_count` |
 //! | one or a few messages with earlier stamps, then on as before | they are left out | `late_count` |
-//! | goes on with earlier stamps ([`CLOCK_STEP_MESSAGES`] in a row) | the clock was set back: the stream goes on in the new time | `clock_step_count` |
+//! | goes on with earlier stamps ([`CLOCK_STEP_MESSAGES`] that follow one another) | the clock was set back: the stream goes on in the new time | `clock_step_count` |
 //! | pauses | rows in between lack that signal; cable signal: no rows | `gap_count` |
-//! | a message that does not agree with its schema | it is left out | `undecodable_count` |
+//! | a message that does not agree with its schema, has not one number per name, or a name twice | it is left out | `undecodable_count` |
+//! | a message about other cables, or without what the path selects | it is left out | nothing |
 //!
-//! Messages wait for those of slower topics for at most [`WAIT_NANOS`] of log.
+//! A row waits for the messages of other topics that come later in the log: for [`WAIT_NANOS`] of log time, and while no
+//! topic has more than [`WAITING_LIMIT`] messages waiting. What comes later still is as if it had not come. When several
+//! topics' clocks are set back together, each is followed when the rows get there, whichever notices first; once the cable
+//! signal's is known to be, one message of another topic is enough.
 //!
 //! # Numbers
 //!
 //! NaN and infinities pass through: the core flags them for the cable concerned. A cable that a message does not name is
-//! NaN in that row. Speed that a log does not have is the change of length over the time since the last row.
+//! NaN in that row. A quaternion that is none, such as all zeros, gives no pose; the sign of a quaternion does not matter.
+//!
+//! Speed that a message does not have (an empty `velocity`) is the change of length since it was last known over the time
+//! since then, also over a gap; 0 in the first row and where the clock went back.
 
 mod channel;
+mod error;
 mod layout;
+mod order;
+mod pace;
 mod reader;
+mod row;
 mod track;
 
-pub use reader::{SignalError, SignalReader};
+pub use error::SignalError;
+pub use reader::SignalReader;
 pub use track::CLOCK_STEP_MESSAGES;
 
 use crate::path::MessagePath;
 
-/// How long a row waits for messages of other topics, in time of the cable signal.
-pub const WAIT_NANOS: i64 = 1_000_000_000;
+/// How long a row waits for messages of other topics, in log time.
+pub const WAIT_NANOS: u64 = 10_000_000_000;
+/// How many messages of a topic wait at most: for rows, or rows for them.
+pub const WAITING_LIMIT: usize = 16_384;
 
 /// The signals of a robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -107,10 +123,10 @@ pub struct TrackCounts {
     pub clock_step_count: u64,
     /// Pauses.
     pub gap_count: u64,
-    /// Messages that could not be decoded.
+    /// Messages that could not be used.
     pub undecodable_count: u64,
     /// First and last stamp, in nanoseconds.
     pub stamps_nanos: Option<(i64, i64)>,
-    /// The usual interval, in nanoseconds.
+    /// The usual interval (median of the last 32), in nanoseconds.
     pub interval_nanos: f64,
 }

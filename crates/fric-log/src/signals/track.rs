@@ -1,42 +1,45 @@
 //! One signal over time: stamps put in order, values between them interpolated.
+//!
+//! A track holds the samples that rows may still need. When its clock is set back, those since then are kept apart until
+//! the rows get there too: a topic may notice earlier or later than the cable signal does.
 
 use std::collections::VecDeque;
 
-use super::TrackCounts;
+use super::pace::Pace;
+use super::{TrackCounts, WAITING_LIMIT};
 
 /// So many messages in a row that go on from an earlier time are a clock that was set back, not late messages.
 pub const CLOCK_STEP_MESSAGES: usize = 8;
-/// An interval of so many usual ones is a gap.
-const GAP_RATIO: f64 = 10.0;
-/// How fast the usual interval follows the present one.
-const INTERVAL_SHARE: f64 = 0.1;
 
 /// A stamp and what was measured then.
 #[derive(Debug, Default)]
 pub(super) struct Tracked {
     pub stamp_nanos: i64,
+    /// When it was recorded.
+    pub log_time_nanos: u64,
+    /// Which of the track's samples it is.
+    pub number: u64,
     pub values: Vec<f64>,
     /// Whether more than a usual interval lies before it.
-    pub after_gap: bool,
-}
-
-/// What a new sample did.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Arrival {
-    /// It came in its turn, or was left out.
-    InTurn,
-    /// The clock has been set back; what was waiting belongs to the time before.
-    ClockStep,
+    after_gap: bool,
 }
 
 /// The samples of a signal that are still needed, in the order of time.
 #[derive(Debug, Default)]
 pub(super) struct Track {
     samples: VecDeque<Tracked>,
+    /// Samples since the clock was set back, until the rows follow.
+    ahead: VecDeque<Tracked>,
+    is_stepped: bool,
     /// Samples behind the time, until it is clear what they are.
     suspects: VecDeque<Tracked>,
+    /// For so many more messages the cable signal's clock step makes this topic's likely.
+    expecting: usize,
     spare: Vec<Vec<f64>>,
     last_nanos: Option<i64>,
+    /// Rows up to this time have all that they can get.
+    reached_nanos: Option<i64>,
+    pace: Pace,
     counts: TrackCounts,
 }
 
@@ -49,94 +52,157 @@ impl Track {
         self.counts.undecodable_count += 1;
     }
 
+    /// The samples of the time in which the rows are.
     pub fn samples(&self) -> &VecDeque<Tracked> {
         &self.samples
     }
 
-    /// Stamp of the newest sample.
-    pub fn newest_nanos(&self) -> Option<i64> {
-        self.samples.back().map(|sample| sample.stamp_nanos)
-    }
-
     /// Takes in a sample; `fill` writes its values into an empty vector.
-    pub fn push(&mut self, stamp_nanos: i64, fill: impl FnOnce(&mut Vec<f64>)) -> Arrival {
-        match self.last_nanos {
-            Some(last) if stamp_nanos == last => {
-                self.counts.duplicate_count += 1;
-                return Arrival::InTurn;
-            }
-            Some(last) if stamp_nanos < last => return self.suspect(stamp_nanos, fill),
-            _ => {}
+    pub fn push(&mut self, stamp_nanos: i64, log_time_nanos: u64, fill: impl FnOnce(&mut Vec<f64>)) {
+        let is_behind = self.last_nanos.is_some_and(|last| stamp_nanos <= last);
+        let is_expecting = self.expecting > 0;
+        self.expecting = self.expecting.saturating_sub(1);
+        if is_behind && !self.may_be_step(stamp_nanos) {
+            return;
         }
-        self.drop_suspects();
-        let sample = self.sample(stamp_nanos, fill);
-        self.accept(sample);
-        Arrival::InTurn
-    }
-
-    /// What is left at the end of the log: single stragglers.
-    pub fn finish(&mut self) {
-        self.drop_suspects();
-    }
-
-    fn sample(&mut self, stamp_nanos: i64, fill: impl FnOnce(&mut Vec<f64>)) -> Tracked {
         let mut values = self.spare.pop().unwrap_or_default();
         values.clear();
         fill(&mut values);
-        Tracked { stamp_nanos, values, after_gap: false }
-    }
-
-    fn accept(&mut self, mut sample: Tracked) {
-        let counts = &mut self.counts;
-        if let Some(last) = self.last_nanos {
-            #[expect(clippy::cast_precision_loss, reason = "an interval, compared with a usual one")]
-            let interval_nanos = sample.stamp_nanos.saturating_sub(last) as f64;
-            let usual = if counts.interval_nanos > 0.0 { counts.interval_nanos } else { interval_nanos };
-            sample.after_gap = interval_nanos > GAP_RATIO * usual;
-            counts.gap_count += u64::from(sample.after_gap);
-            counts.interval_nanos = usual + INTERVAL_SHARE * (interval_nanos.min(2.0 * usual) - usual);
-        }
-        counts.message_count += 1;
-        let (first, last) = counts.stamps_nanos.unwrap_or((sample.stamp_nanos, sample.stamp_nanos));
-        counts.stamps_nanos = Some((first.min(sample.stamp_nanos), last.max(sample.stamp_nanos)));
-        self.last_nanos = Some(sample.stamp_nanos);
-        self.samples.push_back(sample);
-    }
-
-    fn suspect(&mut self, stamp_nanos: i64, fill: impl FnOnce(&mut Vec<f64>)) -> Arrival {
-        // Suspects that do not go on from one another are no clock.
-        if self.suspects.back().is_some_and(|before| stamp_nanos <= before.stamp_nanos) {
-            self.drop_suspects();
-        }
-        let sample = self.sample(stamp_nanos, fill);
-        self.suspects.push_back(sample);
-        if self.suspects.len() < CLOCK_STEP_MESSAGES {
-            return Arrival::InTurn;
-        }
-        self.counts.clock_step_count += 1;
-        self.last_nanos = None;
-        Arrival::ClockStep
-    }
-
-    /// Forgets all samples.
-    pub fn clear(&mut self) {
-        while let Some(sample) = self.samples.pop_front() {
-            self.spare.push(sample.values);
-        }
-    }
-
-    /// After [`Arrival::ClockStep`]: forgets the time before and goes on in the new one.
-    pub fn restart(&mut self) {
-        self.clear();
-        while let Some(sample) = self.suspects.pop_front() {
+        let sample = Tracked { stamp_nanos, log_time_nanos, number: 0, values, after_gap: false };
+        if is_behind {
+            self.suspects.push_back(sample);
+            if is_expecting || self.suspects.len() >= CLOCK_STEP_MESSAGES {
+                self.step_back();
+            }
+        } else {
+            self.drop_suspects(i64::MIN);
             self.accept(sample);
         }
     }
 
-    fn drop_suspects(&mut self) {
-        while let Some(sample) = self.suspects.pop_front() {
+    /// What is left at the end of the log: single stragglers.
+    pub fn finish(&mut self) {
+        self.drop_suspects(i64::MIN);
+    }
+
+    /// Whether a sample that is not ahead of the last one may belong to a clock that was set back; else it is counted.
+    fn may_be_step(&mut self, stamp_nanos: i64) -> bool {
+        let last = self.suspects.back().map(|suspect| suspect.stamp_nanos);
+        if self.last_nanos == Some(stamp_nanos) || last == Some(stamp_nanos) {
+            self.counts.duplicate_count += 1;
+            return false;
+        }
+        // Suspects that this one does not go on from are no clock.
+        if last > Some(stamp_nanos) {
+            self.drop_suspects(stamp_nanos);
+        }
+        true
+    }
+
+    fn accept(&mut self, mut sample: Tracked) {
+        let interval_nanos = self.last_nanos.map(|last| sample.stamp_nanos.saturating_sub(last));
+        let was_settled = self.pace.is_settled();
+        if let Some(interval_nanos) = interval_nanos {
+            sample.after_gap = self.pace.is_gap(interval_nanos);
+            self.counts.gap_count += u64::from(was_settled && sample.after_gap);
+            if self.pace.add(interval_nanos) {
+                #[expect(clippy::cast_precision_loss, reason = "an interval")]
+                let median_nanos = self.pace.median_nanos() as f64;
+                self.counts.interval_nanos = median_nanos;
+            }
+        }
+        self.counts.message_count += 1;
+        sample.number = self.counts.message_count;
+        let stamp_nanos = sample.stamp_nanos;
+        let (first, last) = self.counts.stamps_nanos.unwrap_or((stamp_nanos, stamp_nanos));
+        self.counts.stamps_nanos = Some((first.min(stamp_nanos), last.max(stamp_nanos)));
+        self.last_nanos = Some(stamp_nanos);
+        if self.is_stepped { &mut self.ahead } else { &mut self.samples }.push_back(sample);
+        if self.pace.is_settled() {
+            self.reached_nanos = self.reached_nanos.max(Some(stamp_nanos));
+        }
+        if self.samples.len().max(self.ahead.len()) > WAITING_LIMIT {
+            self.keep_within_limit();
+        }
+        if !was_settled {
+            self.judge_early_intervals();
+        }
+    }
+
+    /// The first intervals are judged by one another.
+    #[cold]
+    fn judge_early_intervals(&mut self) {
+        self.counts.gap_count = self.pace.early_gap_count();
+        for samples in [&mut self.samples, &mut self.ahead] {
+            let mut before = None;
+            for sample in samples {
+                let interval_nanos = before.map(|before| sample.stamp_nanos.saturating_sub(before));
+                sample.after_gap = interval_nanos.is_some_and(|interval| self.pace.is_gap(interval));
+                before = Some(sample.stamp_nanos);
+            }
+        }
+    }
+
+    #[cold]
+    fn step_back(&mut self) {
+        self.counts.clock_step_count += 1;
+        self.expecting = 0;
+        self.last_nanos = None;
+        if self.is_stepped {
+            self.follow_step();
+        }
+        self.is_stepped = !self.samples.is_empty();
+        let mut suspects = std::mem::take(&mut self.suspects);
+        suspects.drain(..).for_each(|suspect| self.accept(suspect));
+        self.suspects = suspects;
+    }
+
+    /// Whether the clock was set back and the rows have not followed.
+    pub fn is_stepped(&self) -> bool {
+        self.is_stepped
+    }
+
+    /// Goes on in the new time; what is left of the one before is forgotten.
+    pub fn follow_step(&mut self) {
+        self.clear();
+        self.is_stepped = false;
+        std::mem::swap(&mut self.samples, &mut self.ahead);
+        let newest_nanos = self.samples.back().map(|sample| sample.stamp_nanos);
+        self.reached_nanos = newest_nanos.filter(|_| self.pace.is_settled());
+    }
+
+    /// The cable signal's clock was set back, so that this one's will have been: one message is enough to tell.
+    pub fn expect_step(&mut self) {
+        self.clear();
+        self.expecting = CLOCK_STEP_MESSAGES;
+        if !self.suspects.is_empty() {
+            self.step_back();
+        }
+    }
+
+    /// Forgets the samples of the time in which the rows are.
+    fn clear(&mut self) {
+        self.reached_nanos = None;
+        self.spare.extend(self.samples.drain(..).map(|sample| sample.values));
+    }
+
+    /// Nothing is kept for rows that may never come.
+    #[cold]
+    fn keep_within_limit(&mut self) {
+        if self.samples.len() > WAITING_LIMIT {
+            self.spare.extend(self.samples.pop_front().map(|sample| sample.values));
+        }
+        if self.ahead.len() > WAITING_LIMIT {
+            self.follow_step();
+            self.keep_within_limit();
+        }
+    }
+
+    /// Drops the suspects from a time on.
+    fn drop_suspects(&mut self, from_nanos: i64) {
+        while self.suspects.back().is_some_and(|suspect| suspect.stamp_nanos >= from_nanos) {
             self.counts.late_count += 1;
-            self.spare.push(sample.values);
+            self.spare.extend(self.suspects.pop_back().map(|suspect| suspect.values));
         }
     }
 
@@ -150,28 +216,76 @@ impl Track {
         self.spare.push(sample.values);
     }
 
-    /// Forgets all but the last sample at or before a time: those after it are still needed.
+    /// Whether all is there that a row of this time can get.
+    #[inline]
+    pub fn has_reached(&self, stamp_nanos: i64) -> bool {
+        self.reached_nanos >= Some(stamp_nanos)
+    }
+
+    /// Gets ready for the row of a time: follows a clock step if the time is rather after it, and forgets all but the
+    /// last sample at or before the time.
     pub fn advance(&mut self, stamp_nanos: i64) {
         while self.samples.get(1).is_some_and(|next| next.stamp_nanos <= stamp_nanos) {
-            if let Some(sample) = self.samples.pop_front() {
-                self.spare.push(sample.values);
-            }
+            self.spare.extend(self.samples.pop_front().map(|sample| sample.values));
         }
+        if self.is_stepped && self.is_rather_ahead(stamp_nanos) {
+            self.follow_step();
+            self.advance(stamp_nanos);
+        }
+    }
+
+    #[cold]
+    fn is_rather_ahead(&self, stamp_nanos: i64) -> bool {
+        if self.around(stamp_nanos).is_some() {
+            return false;
+        }
+        let distance = |sample: Option<&Tracked>| sample.map_or(u64::MAX, |it| it.stamp_nanos.abs_diff(stamp_nanos));
+        let (first, last) = (self.ahead.front(), self.ahead.back());
+        let is_within = first.is_some_and(|first| first.stamp_nanos <= stamp_nanos)
+            && last.is_some_and(|last| last.stamp_nanos >= stamp_nanos);
+        let ahead = if is_within { 0 } else { distance(first).min(distance(last)) };
+        ahead < distance(self.samples.front()).min(distance(self.samples.get(1)))
     }
 
     /// The samples around a time and the share of the way between them; `None` outside the samples and in gaps.
     ///
     /// Call [`advance`](Self::advance) with the same time first.
-    pub fn around(&self, stamp_nanos: i64) -> Option<(&Tracked, &Tracked, f64)> {
+    pub fn around(&self, stamp_nanos: i64) -> Option<Around<'_>> {
         let before = self.samples.front().filter(|sample| sample.stamp_nanos <= stamp_nanos)?;
         if before.stamp_nanos == stamp_nanos {
-            return Some((before, before, 0.0));
+            return Some(Around { before, after: before, ratio: 0.0 });
         }
         let after = self.samples.get(1).filter(|sample| !sample.after_gap)?;
+        let [since, interval] = [stamp_nanos, after.stamp_nanos].map(|nanos| nanos.saturating_sub(before.stamp_nanos));
         #[expect(clippy::cast_precision_loss, reason = "a ratio of two intervals")]
-        let ratio =
-            (stamp_nanos - before.stamp_nanos) as f64 / (after.stamp_nanos.saturating_sub(before.stamp_nanos)) as f64;
-        Some((before, after, ratio))
+        let ratio = since as f64 / interval as f64;
+        Some(Around { before, after, ratio })
+    }
+}
+
+/// The samples before and after a time.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Around<'a> {
+    pub before: &'a Tracked,
+    pub after: &'a Tracked,
+    /// Share of the way; 0 where the sample before has this very time.
+    pub ratio: f64,
+}
+
+impl Around<'_> {
+    /// The values at the time, as many as there is room for; a sample's own values are passed bit by bit.
+    pub fn interpolate(&self, out: &mut [f64]) {
+        let Self { before, after, ratio } = self;
+        // Without the difference a NaN in a message not needed would spoil the number.
+        if *ratio == 0.0 {
+            for (place, value) in out.iter_mut().zip(&before.values) {
+                *place = *value;
+            }
+            return;
+        }
+        for ((place, before), after) in out.iter_mut().zip(&before.values).zip(&after.values) {
+            *place = before + ratio * (after - before);
+        }
     }
 }
 
@@ -179,50 +293,75 @@ impl Track {
 mod tests {
     use super::*;
 
-    fn pushed(stamps: &[i64]) -> Track {
+    fn pushed(stamps: impl IntoIterator<Item = i64>) -> Track {
         let mut track = Track::default();
-        for &stamp in stamps {
+        for stamp in stamps {
             #[expect(clippy::cast_precision_loss, reason = "small numbers")]
-            let arrival = track.push(stamp, |values| values.push(stamp as f64));
-            if arrival == Arrival::ClockStep {
-                track.restart();
-            }
+            track.push(stamp, 0, |values| values.push(stamp as f64));
         }
         track.finish();
         track
     }
 
-    fn stamps(track: &Track) -> Vec<i64> {
-        track.samples().iter().map(|sample| sample.stamp_nanos).collect()
+    fn stamps(samples: &VecDeque<Tracked>) -> Vec<i64> {
+        samples.iter().map(|sample| sample.stamp_nanos).collect()
     }
 
     #[test]
     fn duplicates_and_stragglers_are_left_out_and_counted() {
-        let track = pushed(&[10, 20, 20, 30, 15, 16, 40]);
-        assert_eq!(stamps(&track), [10, 20, 30, 40]);
-        assert_eq!((track.counts().duplicate_count, track.counts().late_count), (1, 2));
+        let track = pushed([10, 20, 20, 30, 15, 16, 16, 40]);
+        assert_eq!(stamps(&track.samples), [10, 20, 30, 40]);
+        assert_eq!((track.counts().duplicate_count, track.counts().late_count), (2, 2));
     }
 
     #[test]
-    fn a_clock_set_back_goes_on_in_the_new_time() {
-        let back: Vec<i64> = (100..120).chain(50..70).collect();
-        let track = pushed(&back);
-        assert_eq!(stamps(&track), (50..70).collect::<Vec<_>>());
+    fn a_clock_set_back_is_followed_when_the_rows_are() {
+        let mut track = pushed((100..120).chain(50..70));
+        assert_eq!(stamps(&track.samples), (100..120).collect::<Vec<_>>());
         assert_eq!((track.counts().clock_step_count, track.counts().late_count), (1, 0));
+        track.advance(119);
+        assert_eq!(stamps(&track.samples), [119]);
+        track.advance(50);
+        assert_eq!(stamps(&track.samples), (50..70).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn a_clock_set_back_with_disorder_is_found_too() {
+        let track = pushed((100..120).chain([90, 50, 51, 51, 52, 54, 53, 55, 56, 57, 58, 59]));
+        assert_eq!(stamps(&track.ahead), [50, 51, 52, 53, 55, 56, 57, 58, 59]);
+        let counts = track.counts();
+        assert_eq!((counts.clock_step_count, counts.late_count, counts.duplicate_count), (1, 2, 1));
+    }
+
+    #[test]
+    fn one_stamp_in_the_far_future_costs_no_more_than_a_clock_step() {
+        let mut track = pushed((0..20).chain([1_000_000]).chain(20..60));
+        track.advance(19);
+        track.advance(30);
+        assert_eq!(track.around(30).unwrap().before.stamp_nanos, 30);
     }
 
     #[test]
     fn values_are_interpolated_but_not_over_gaps_or_past_the_ends() {
-        let mut track = pushed(&[0, 10, 20, 30, 1000, 1010]);
+        let mut track = pushed([0, 10, 20, 30, 40, 50, 60, 1000, 1010]);
         assert_eq!(track.counts().gap_count, 1);
         assert!(track.around(-1).is_none());
         track.advance(25);
-        let (before, after, ratio) = track.around(25).unwrap();
+        let Around { before, after, ratio } = track.around(25).unwrap();
         assert_eq!((before.stamp_nanos, after.stamp_nanos), (20, 30));
         assert!((ratio - 0.5).abs() < 1e-15);
         track.advance(500);
         assert!(track.around(500).is_none());
         track.advance(1011);
         assert!(track.around(1011).is_none());
+    }
+
+    #[test]
+    fn what_nobody_takes_is_limited() {
+        let limit = i64::try_from(WAITING_LIMIT).unwrap();
+        let track = pushed((0..3 * limit).map(|index| index + 10 * limit).chain(0..3 * limit));
+        assert_eq!(track.samples.len(), WAITING_LIMIT);
+        assert_eq!(track.samples.back().unwrap().stamp_nanos, 3 * limit - 1);
+        assert!(track.ahead.is_empty() && track.spare.len() <= 2 * WAITING_LIMIT);
     }
 }

@@ -1,0 +1,66 @@
+//! Which cables the entries of a message are of: matched by name, never by place.
+
+use crate::schema::Texts;
+
+use super::channel::Rejection;
+
+/// The order of a channel's messages, found anew whenever their names change.
+#[derive(Debug, Default)]
+pub(super) struct Order {
+    revision: Option<u64>,
+    /// For each entry of a message, the cable it is of.
+    cables: Vec<Option<usize>>,
+    is_robots: bool,
+    is_foreign: bool,
+    twice: Option<String>,
+    /// The names, as far as an error shows them.
+    names: Vec<String>,
+}
+
+impl Order {
+    /// Looks at a message's names; how many there are.
+    ///
+    /// # Errors
+    /// [`Rejection`] where none is the robot's, or one is there twice.
+    #[inline]
+    pub fn update(&mut self, names: &Texts, cables: &[String]) -> Result<usize, Rejection> {
+        if self.revision != Some(names.revision()) {
+            self.find(names, cables);
+        }
+        if self.is_foreign {
+            return Err(Rejection::Foreign);
+        }
+        match &self.twice {
+            Some(name) => Err(Rejection::Unusable(format!("it names `{name}` twice"))),
+            None => Ok(self.cables.len()),
+        }
+    }
+
+    /// For each entry of a message, the cable it is of.
+    pub fn cables(&self) -> &[Option<usize>] {
+        &self.cables
+    }
+
+    /// Whether the entries are the robot's cables in the robot's order.
+    pub fn is_robots(&self) -> bool {
+        self.is_robots
+    }
+
+    /// What is named instead of the robot's cables.
+    pub fn describe(&self, cables: &[String]) -> String {
+        let found = if self.names.is_empty() { "nothing at all".to_owned() } else { self.names.join(", ") };
+        format!("it names none of the robot's cables ({}), but {found}", cables.join(", "))
+    }
+
+    #[cold]
+    fn find(&mut self, names: &Texts, cables: &[String]) {
+        self.revision = Some(names.revision());
+        self.cables.clear();
+        self.cables.extend(names.iter().map(|name| cables.iter().position(|cable| cable == name)));
+        self.is_robots = names.len() == cables.len() && self.cables.iter().copied().eq((0..cables.len()).map(Some));
+        self.is_foreign = !self.cables.iter().any(Option::is_some);
+        self.names = names.iter().take(8).map(str::to_owned).collect();
+        let is_twice = |cable: usize| self.cables.iter().filter(|entry| **entry == Some(cable)).count() > 1;
+        self.twice = (0..cables.len()).find(|cable| is_twice(*cable)).and_then(|cable| cables.get(cable)).cloned();
+    }
+}

@@ -1,0 +1,162 @@
+//! The row given out: the signals of one time, put together from the tracks.
+
+use fric_core::{CableInput, Pose, Sample, Wrench};
+
+use super::track::{Around, Track, Tracked};
+use super::{Role, SignalPaths};
+
+/// The row given out, and what the next one needs of it.
+#[derive(Debug)]
+pub(super) struct RowBuffer {
+    stamp_nanos: i64,
+    cables: Vec<CableInput>,
+    reference_force_n: Vec<f64>,
+    pose: Option<Pose>,
+    outside_wrench: Option<Wrench>,
+    has_length_path: bool,
+    has_speed_path: bool,
+    /// Room for lengths and speeds of their own topics.
+    numbers: Vec<f64>,
+    last_lengths: Vec<LastLength>,
+    poses: [KnownPose; 2],
+}
+
+/// The last length that was known, and when.
+#[derive(Debug, Clone, Copy)]
+struct LastLength {
+    stamp_nanos: i64,
+    length_m: f64,
+}
+
+/// The pose of a sample of the pose track; number 0 is no sample.
+#[derive(Debug, Clone, Copy, Default)]
+struct KnownPose {
+    number: u64,
+    pose: Option<Pose>,
+}
+
+impl RowBuffer {
+    pub fn new(cable_count: usize, paths: &SignalPaths) -> Self {
+        Self {
+            stamp_nanos: 0,
+            cables: vec![CableInput::default(); cable_count],
+            reference_force_n: vec![f64::NAN; cable_count],
+            pose: None,
+            outside_wrench: None,
+            has_length_path: paths.get(Role::Length).is_some(),
+            has_speed_path: paths.get(Role::Speed).is_some(),
+            numbers: vec![f64::NAN; cable_count],
+            last_lengths: vec![LastLength { stamp_nanos: 0, length_m: f64::NAN }; cable_count],
+            poses: [KnownPose::default(); 2],
+        }
+    }
+
+    pub fn sample(&self) -> Sample<'_> {
+        Sample {
+            stamp_nanos: self.stamp_nanos,
+            cables: &self.cables,
+            reference_force_n: &self.reference_force_n,
+            pose: self.pose,
+            outside_wrench: self.outside_wrench,
+        }
+    }
+
+    /// The row of a cable sample; `others` are the tracks of the other roles, advanced to its time.
+    pub fn fill(&mut self, sample: &Tracked, others: &[Track; 5]) {
+        let [length, speed, reference, pose, wrench] = others;
+        self.stamp_nanos = sample.stamp_nanos;
+        self.fill_cables(sample, length, speed);
+        interpolate(reference, self.stamp_nanos, &mut self.reference_force_n);
+        self.pose = pose.around(self.stamp_nanos).and_then(|around| self.pose_at(&around));
+        self.outside_wrench = wrench.around(self.stamp_nanos).map(|around| {
+            let mut parts = [f64::NAN; 6];
+            around.interpolate(&mut parts);
+            let [fx, fy, fz, tx, ty, tz] = parts;
+            Wrench { force_n: [fx, fy, fz].into(), torque_nm: [tx, ty, tz].into() }
+        });
+    }
+
+    fn fill_cables(&mut self, sample: &Tracked, length: &Track, speed: &Track) {
+        let stamp_nanos = self.stamp_nanos;
+        let mut blocks = sample.values.chunks_exact(self.cables.len().max(1));
+        for (cable, force_n) in self.cables.iter_mut().zip(blocks.next().unwrap_or_default()) {
+            cable.sensor_force_n = *force_n;
+        }
+        let mut lengths_m = blocks.next().unwrap_or_default();
+        if self.has_length_path {
+            interpolate(length, stamp_nanos, &mut self.numbers);
+            lengths_m = &self.numbers;
+        }
+        for (cable, length_m) in self.cables.iter_mut().zip(lengths_m) {
+            cable.length_m = *length_m;
+        }
+        let mut speeds = blocks.next();
+        if self.has_speed_path {
+            interpolate(speed, stamp_nanos, &mut self.numbers);
+            speeds = Some(&self.numbers);
+        }
+        match speeds {
+            Some(speeds) => {
+                for (cable, speed_m_per_s) in self.cables.iter_mut().zip(speeds) {
+                    cable.speed_m_per_s = *speed_m_per_s;
+                }
+            }
+            None => {
+                for (cable, last) in self.cables.iter_mut().zip(&self.last_lengths) {
+                    cable.speed_m_per_s = last.speed_m_per_s(cable.length_m, stamp_nanos);
+                }
+            }
+        }
+        for (cable, last) in self.cables.iter().zip(&mut self.last_lengths) {
+            if cable.length_m.is_finite() {
+                *last = LastLength { stamp_nanos, length_m: cable.length_m };
+            }
+        }
+    }
+
+    fn pose_at(&mut self, around: &Around<'_>) -> Option<Pose> {
+        let before = self.pose_of(around.before)?;
+        if around.ratio == 0.0 {
+            return Some(before);
+        }
+        Some(before.interpolate(&self.pose_of(around.after)?, around.ratio))
+    }
+
+    /// The pose of a sample, normalised once: rows are often more frequent than poses.
+    fn pose_of(&mut self, sample: &Tracked) -> Option<Pose> {
+        let [older, newer] = &mut self.poses;
+        if newer.number == sample.number {
+            return newer.pose;
+        }
+        if older.number == sample.number {
+            return older.pose;
+        }
+        let pose = match *sample.values {
+            [x, y, z, qx, qy, qz, qw] => Pose::from_parts([x, y, z], [qx, qy, qz, qw]),
+            _ => None,
+        };
+        *older = std::mem::replace(newer, KnownPose { number: sample.number, pose });
+        pose
+    }
+}
+
+impl LastLength {
+    /// Change of length per time; 0 where none was known before, or time went back; NaN where it is not known now.
+    fn speed_m_per_s(&self, length_m: f64, stamp_nanos: i64) -> f64 {
+        if !length_m.is_finite() {
+            return f64::NAN;
+        }
+        #[expect(clippy::cast_precision_loss, reason = "an interval between rows")]
+        let interval_s = stamp_nanos.saturating_sub(self.stamp_nanos) as f64 * 1e-9;
+        let is_known = self.length_m.is_finite() && interval_s > 0.0;
+        if is_known { (length_m - self.length_m) / interval_s } else { 0.0 }
+    }
+}
+
+/// The values of a track at a time, NaN where there are none.
+fn interpolate(track: &Track, stamp_nanos: i64, out: &mut [f64]) {
+    match track.around(stamp_nanos) {
+        Some(around) => around.interpolate(out),
+        None => out.fill(f64::NAN),
+    }
+}

@@ -1,0 +1,11 @@
+//! Rows joined from topics, against definitions and hand-made logs.
+
+mod clocks;
+mod cut;
+mod errors;
+mod layouts;
+mod oracle;
+mod random;
+mod support;
+mod table;
+mod waiting;
