@@ -3,9 +3,9 @@ CARGO ?= cargo
 PYTHON ?= python3
 VENV := .venv
 
-.PHONY: test format lint test-rust test-core docs test-python bench
+.PHONY: test format lint test-rust docs test-python bench
 
-test: format lint test-core test-rust docs test-python
+test: format lint test-rust docs test-python
 
 format:
 	$(CARGO) fmt --all --check
@@ -20,7 +20,7 @@ docs:
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --workspace --no-deps --quiet
 
 test-python: $(VENV)/ready
-	$(CARGO) build --release --quiet -p fric-cli
+	$(CARGO) build --quiet -p fric-cli
 	$(VENV)/bin/python -m pytest tests/python
 
 $(VENV)/ready: tests/python/requirements.txt

@@ -29,9 +29,9 @@ FLAGS = [
 
 
 def run(*arguments):
-    """Runs the release build, where cargo puts it, and gives what it warns of."""
+    """Runs the build that `cargo test` leaves behind and gives what it warns of."""
     target = ROOT / os.environ.get("CARGO_TARGET_DIR", "target")
-    command = [target / "release" / "fric-cli", *arguments]
+    command = [target / "debug" / "fric-cli", *arguments]
     done = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", check=False)
     assert done.returncode == 0, done
     return done.stderr
