@@ -59,7 +59,7 @@ impl Run {
         self
     }
 
-    /// Failed with this code and nothing on stdout; the first line of stderr says all of `words`.
+    /// Failed with this code and nothing on stdout; the cause and the advice under it say all of `words`.
     #[track_caller]
     pub fn fails(self, code: i32, words: &[&str]) -> Self {
         assert_eq!((self.code, self.stdout.as_str()), (Some(code), ""), "{self:#?}");
@@ -67,8 +67,9 @@ impl Run {
         assert_eq!(errors, 1, "{self:#?}");
         let cause = self.stderr.lines().find(|line| !line.starts_with("warning: ")).unwrap_or_default();
         assert!(cause.starts_with("error: "), "{self:#?}");
+        let sentence: String = self.stderr.lines().filter(|line| !line.starts_with("warning: ")).collect();
         for word in words {
-            assert!(cause.contains(word), "no {word:?} in {self:#?}");
+            assert!(sentence.contains(word), "no {word:?} in {self:#?}");
         }
         for noise in ["panicked", "RUST_BACKTRACE", ".tmp", ".part", "Os {", "Some(", "\u{1b}"] {
             assert!(!self.stderr.contains(noise), "{self:#?}");
