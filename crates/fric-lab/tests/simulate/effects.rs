@@ -25,7 +25,7 @@ fn errors_name_what_is_known() {
     let key = problem("stribeck:ration=0.5");
     assert!(
         key.starts_with(
-            "the effect `stribeck` has no parameter `ration`; it has `ratio` (-0.9 to 5 1), \
+            "the effect `stribeck` has no parameter `ration`; it has `ratio` (-0.9 to 5), \
              `velocity_m_per_s` (0.0001 to 10 m/s)"
         ),
         "{key}"
