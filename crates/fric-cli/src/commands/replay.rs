@@ -39,12 +39,16 @@ pub fn run(arguments: &ReplayArguments) -> Outcome {
     let mut durations = Histogram::<u64>::new_with_max(1 << 40, 3)
         .map_err(|error| Failure::new(format!("cannot set up the histogram of cycle times: {error}")))?;
     let mut series = report.as_ref().map(|_| Series::new(names.len()));
-    loop {
+    let end = loop {
         if replay.cycle_count().is_multiple_of(STRIDE) {
             interrupt::check()?;
             bar.set_position(reader.recording().bytes_read());
         }
-        let Some(sample) = reader.next_row()? else { break };
+        let sample = match reader.next_row() {
+            Ok(Some(sample)) => sample,
+            Ok(None) => break Ok(()),
+            Err(error) => break Err(error),
+        };
         let cycle = replay.step(&sample);
         durations.saturating_record(cycle.cycle_ns);
         if let Some(writer) = &mut writer {
@@ -53,9 +57,11 @@ pub fn run(arguments: &ReplayArguments) -> Outcome {
         if let Some(series) = &mut series {
             series.add(&sample, cycle.cables);
         }
-    }
+    };
     bar.finish_and_clear();
+    // Damage may be why there is nothing to go on with.
     warnings::about_recording(reader.recording());
+    end?;
     warnings::about_signals(&reader, &paths);
     warn_about_model(&model, &reader, &replay);
 
