@@ -88,7 +88,7 @@ pub fn inputs() -> Vec<CycleInput<CABLES>> {
                     speed_m_per_s: -along,
                 }
             });
-            CycleInput { cables, pose: Some(pose) }
+            CycleInput { cables, pose: Some(pose), ..CycleInput::default() }
         })
         .collect()
 }

@@ -101,7 +101,7 @@ pub struct CableForces<T: Scalar> {
 
 /// One cycle of one cable (or of several in lanes).
 ///
-/// `hold` keeps every stored friction as it is; slack releases it. `lumped_friction_n` is the stored friction of the
+/// Slack releases the stored friction. `lumped_friction_n` is the stored friction of the
 /// `lumped` form. Viscous friction stays outside the Dahl state in both forms: it needs no presliding distance
 /// (deviation from \[P\] 15, where it is inside). The macroscopic friction is taken from the frictionless cable,
 /// `F_f = F_n − F_s/(1 − c)`, so that presliding covers the sensor pulley too (deviation from \[P\] 15: `F_n − F_1`).
@@ -110,7 +110,6 @@ pub fn cable_step<T: Scalar>(
     model: &CableModel<T>,
     features: Features,
     signals: &CableSignals<T>,
-    hold: T::Mask,
     pulleys: &mut impl Pulleys<T>,
     lumped_friction_n: T,
 ) -> CableForces<T> {
@@ -129,12 +128,11 @@ pub fn cable_step<T: Scalar>(
     if features.lumped {
         let (platform_n, friction_n, slip) = lumped_chain(model, features, mu, signals, lumped_friction_n, pulleys);
         forces.platform_force_n = platform_n;
-        let friction_n = T::select(hold, lumped_friction_n, friction_n);
         forces.lumped_friction_n = T::select(no_tension, zero, friction_n);
         forces.slip = slip;
     }
     if features.per_pulley {
-        let (platform_n, slip) = pulley_chain(model, features, mu, signals, hold.or(model.lumped), no_tension, pulleys);
+        let (platform_n, slip) = pulley_chain(model, features, mu, signals, no_tension.or(model.lumped), pulleys);
         forces.platform_force_n = T::select(model.lumped, forces.platform_force_n, platform_n);
         forces.slip = model.lumped.and(forces.slip).or(model.lumped.not().and(slip));
     }
@@ -155,7 +153,6 @@ fn pulley_chain<T: Scalar>(
     features: Features,
     mu: T,
     signals: &CableSignals<T>,
-    hold: T::Mask,
     release: T::Mask,
     pulleys: &mut impl Pulleys<T>,
 ) -> (T, T::Mask) {
@@ -176,8 +173,7 @@ fn pulley_chain<T: Scalar>(
             (tension_n, tension_n + stored_n + viscous_n)
         };
         let sliding_n = pulley::sliding_friction(mu, pulley.wrap_factor, upstream_n, downstream_n);
-        let moved_n = dahl_step(stored_n, sliding_n, model.sigma_n_per_m, signals.displacement_m);
-        let mut friction_n = T::select(hold, stored_n, moved_n);
+        let mut friction_n = dahl_step(stored_n, sliding_n, model.sigma_n_per_m, signals.displacement_m);
         let mut behind_n = if place == 0 { sensed(friction_n) } else { tension_n + friction_n + viscous_n };
         if features.traction {
             let traction_ratio = pulleys.traction_ratio(place);
@@ -190,7 +186,7 @@ fn pulley_chain<T: Scalar>(
                 (before_n, limited_n)
             };
             behind_n = T::select(slips, held_n, behind_n);
-            friction_n = T::select(slips.and(hold.not()), held_n - held_before_n - viscous_n, friction_n);
+            friction_n = T::select(slips, held_n - held_before_n - viscous_n, friction_n);
             slip = slip.or(slips);
         }
         pulleys.set_friction_n(place, T::select(release, zero, friction_n));

@@ -197,8 +197,8 @@ pub struct StateColumns<const CABLES: usize> {
     pub frozen_count: [f64; CABLES],
     /// Last finite length, m; NaN before the first.
     pub length_m: [f64; CABLES],
-    /// Motion during a hold, not yet applied, m.
-    pub pending_m: [f64; CABLES],
+    /// How far the cable has moved since the sensor has changed last, m.
+    pub frozen_travel_m: [f64; CABLES],
     /// Last good friction in all, N.
     pub friction_n: [f64; CABLES],
     /// Dahl state of the `lumped` form, N.
@@ -208,6 +208,8 @@ pub struct StateColumns<const CABLES: usize> {
     /// Wrap factor and traction ratio of the pulley that follows the pose.
     pub pose_wrap_factor: [f64; CABLES],
     pub pose_traction_ratio: [f64; CABLES],
+    /// 1 once a pose has let the cable leave its last pulley.
+    pub direction_known: [f64; CABLES],
     /// Columns of the structure matrix.
     pub direction: [[f64; CABLES]; 3],
     pub moment_arm_m: [[f64; CABLES]; 3],
@@ -221,12 +223,13 @@ impl<const CABLES: usize> StateColumns<CABLES> {
         sensor_force_n: [0.0; CABLES],
         frozen_count: [0.0; CABLES],
         length_m: [f64::NAN; CABLES],
-        pending_m: [0.0; CABLES],
+        frozen_travel_m: [0.0; CABLES],
         friction_n: [0.0; CABLES],
         lumped_friction_n: [0.0; CABLES],
         pulley_friction_n: [[0.0; CABLES]; PLACES],
         pose_wrap_factor: [core::f64::consts::SQRT_2; CABLES],
         pose_traction_ratio: [NO_SLIP; CABLES],
+        direction_known: [0.0; CABLES],
         direction: [[0.0; CABLES]; 3],
         moment_arm_m: [[0.0; CABLES]; 3],
         delayed_displacement_m: [DelayLine::EMPTY; CABLES],

@@ -19,6 +19,10 @@ use nalgebra::{Matrix3, SMatrix, Vector3};
 
 /// Sensor forces beyond this are no forces, N.
 const GREATEST_FORCE_N: f64 = 1e9;
+/// A sensor that does not change while the cable travels this far is frozen, m; beyond every encoder's noise.
+const FROZEN_TRAVEL_M: f64 = 1e-3;
+/// A pause counts as at most so many cycles.
+const GREATEST_ELAPSED: f64 = 1e6;
 /// Lengths and speeds beyond this are none, m and m/s.
 const GREATEST_MOTION: f64 = 1e6;
 
@@ -67,6 +71,7 @@ pub struct Compensator<const CABLES: usize> {
     place_count: usize,
     frozen_cycles: f64,
     length_jump_m: f64,
+    length_noise_m: f64,
     gravity_n: Vector3<f64>,
     center_of_mass_m: Vector3<f64>,
 }
@@ -75,7 +80,9 @@ pub struct Compensator<const CABLES: usize> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct State<const CABLES: usize> {
     columns: StateColumns<CABLES>,
-    /// Gravity's torque at the last pose; `None` before the first.
+    /// Every cable has an attachment and has been seen to leave its last pulley, so that there is a wrench.
+    directions_known: bool,
+    /// Wrench of gravity at the last pose since then.
     gravity: Option<Wrench>,
 }
 
@@ -84,7 +91,7 @@ struct State<const CABLES: usize> {
 pub struct Snapshot<const CABLES: usize>(State<CABLES>);
 
 impl<const CABLES: usize> Compensator<CABLES> {
-    const START: State<CABLES> = State { columns: StateColumns::START, gravity: None };
+    const START: State<CABLES> = State { columns: StateColumns::START, directions_known: false, gravity: None };
 
     /// Set-up from checked parameters.
     ///
@@ -123,6 +130,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
                 cycles => f64::from(cycles),
             },
             length_jump_m: robot.monitor.length_jump_m,
+            length_noise_m: robot.monitor.length_noise_m,
             gravity_n: robot.gravity_m_per_s2 * robot.mass_kg,
             center_of_mass_m: robot.center_of_mass_m,
         })
@@ -160,7 +168,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
 
     /// [`step`](Self::step) into an output that the caller keeps.
     pub fn step_into(&mut self, input: &CycleInput<CABLES>, output: &mut CycleOutput<CABLES>) {
-        let pose = input.pose.as_ref().filter(|pose| pose.is_finite());
+        let pose = input.pose.as_ref().filter(|pose| pose.is_usable());
         let rotation = pose.map(|pose| pose.orientation.to_rotation_matrix().into_inner());
         let mut forces_n = [0.0; CABLES];
         let blocks = CABLES.div_ceil(LANES).min(self.cable_count.div_ceil(LANES));
@@ -174,7 +182,11 @@ impl<const CABLES: usize> Compensator<CABLES> {
         for place in output.cables.iter_mut().skip(self.cable_count) {
             *place = CableOutput::default();
         }
-        if let Some(pose) = pose.filter(|_| self.all_geometry) {
+        if pose.is_some() && !self.state.directions_known {
+            let known = self.state.columns.direction_known.iter().take(self.cable_count).all(|&known| known > 0.0);
+            self.state.directions_known = self.all_geometry && known;
+        }
+        if let Some(pose) = pose.filter(|_| self.state.directions_known) {
             let torque_nm = (pose.orientation * self.center_of_mass_m).cross(&self.gravity_n);
             self.state.gravity = Some(Wrench { force_n: self.gravity_n, torque_nm });
         }
@@ -189,6 +201,8 @@ impl<const CABLES: usize> Compensator<CABLES> {
         });
         output.applied_wrench =
             output.outside_wrench.zip(self.state.gravity).map(|(outside, gravity)| outside - gravity);
+        output.wrench_status =
+            output.cables.iter().take(self.cable_count).fold(CableStatus::OK, |status, cable| status | cable.status);
     }
 
     /// Friction stored at each pulley of a cable (from the winch), N: the distribution along the cable.
@@ -262,6 +276,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
             keep(column, value);
         }
         keep(&mut columns.pose_wrap_factor, exit.wrap_factor);
+        keep(&mut columns.direction_known, Lanes::splat(1.0));
         if self.features.traction {
             let traction_mu = Lanes::load(&self.params.traction_mu, block).to_array();
             let [cos, sin] = exit.cos_sin_wrap.map(Lanes::to_array);
@@ -300,12 +315,17 @@ impl<const CABLES: usize> Compensator<CABLES> {
         let last_length_m = Lanes::load(&columns.length_m, block);
         let motion_finite = length_m.within(GREATEST_MOTION).and(speed_m_per_s.within(GREATEST_MOTION));
         let change_m = length_m - last_length_m;
-        let jump = motion_finite.and(Lanes::splat(self.length_jump_m).lt(change_m.abs()));
+        let elapsed_cycles = Scalar::min(Scalar::max(input.elapsed_cycles, 1.0), GREATEST_ELAPSED);
+        let length_jump_m = Lanes::splat(self.length_jump_m * elapsed_cycles);
+        let jump = motion_finite.and(length_jump_m.lt(change_m.abs()));
         // NaN before the first length compares false: no motion, no flag.
-        let moves = motion_finite.and(change_m.within(self.length_jump_m));
-        let mut displacement_m = Lanes::select(moves, change_m, zero);
+        let moves = motion_finite.and(change_m.abs().le(length_jump_m));
+        // The play of measured lengths: only what pushes against its edge is motion.
+        let beyond_m = (change_m.abs() - Lanes::splat(self.length_noise_m)).max(zero);
+        let mut displacement_m = Lanes::select(moves, change_m.sign() * beyond_m, zero);
         let mut speed_m_per_s = Lanes::select(motion_finite.and(jump.not()), speed_m_per_s, zero);
-        Lanes::select(motion_finite, length_m, last_length_m).store(&mut columns.length_m, block);
+        let within_play_m = Lanes::select(moves, change_m - displacement_m, zero);
+        Lanes::select(motion_finite, length_m - within_play_m, last_length_m).store(&mut columns.length_m, block);
         if self.any_delay {
             let delay: [_; LANES] =
                 core::array::from_fn(|lane| self.params.delay.get(first + lane).copied().unwrap_or_default());
@@ -316,33 +336,39 @@ impl<const CABLES: usize> Compensator<CABLES> {
         // Sensor: what may be taken for a force.
         let last_sensor_n = Lanes::load(&columns.sensor_force_n, block);
         let sensor_finite = sensor_n.within(GREATEST_FORCE_N);
+        let unchanged = sensor_n.eq(last_sensor_n).and(zero.lt(sensor_n));
         let moving = Lanes::select(displacement_m.eq(zero), zero, Lanes::splat(1.0));
-        let repeated = Lanes::load(&columns.frozen_count, block) + moving;
-        let frozen_count = Lanes::select(sensor_n.eq(last_sensor_n), repeated.min(Lanes::splat(1e9)), zero);
-        let frozen = Lanes::splat(self.frozen_cycles).le(frozen_count);
+        let last_count = Lanes::load(&columns.frozen_count, block);
+        let last_travel_m = Lanes::load(&columns.frozen_travel_m, block);
+        let count = Lanes::select(unchanged, (last_count + moving).min(Lanes::splat(1e9)), zero);
+        let travel_m = Lanes::select(unchanged, last_travel_m + displacement_m, zero);
+        // A value that is none says nothing about the ones around it.
+        let frozen_count = Lanes::select(sensor_finite, count, last_count);
+        let frozen_travel_m = Lanes::select(sensor_finite, travel_m, last_travel_m);
         frozen_count.store(&mut columns.frozen_count, block);
+        frozen_travel_m.store(&mut columns.frozen_travel_m, block);
+        let frozen = Lanes::splat(self.frozen_cycles)
+            .le(frozen_count)
+            .and(Lanes::splat(FROZEN_TRAVEL_M).le(frozen_travel_m.abs()));
         let sensor_force_n = Lanes::select(sensor_finite, sensor_n, last_sensor_n);
         sensor_force_n.store(&mut columns.sensor_force_n, block);
 
-        // Friction. A hold keeps what is stored; motion under a silent sensor is made up for when it speaks again.
+        // Friction. What is stored follows the motion also under a silent sensor, with its last force; the output holds.
         let sensor_fault = sensor_finite.not().or(frozen);
         let hold = sensor_fault.or(jump).or(motion_finite.not());
-        let pending_m = Lanes::load(&columns.pending_m, block) + displacement_m;
-        Lanes::select(hold, pending_m, zero).store(&mut columns.pending_m, block);
-        let signals =
-            CableSignals { sensor_force_n, displacement_m: Lanes::select(hold, zero, pending_m), speed_m_per_s };
+        let signals = CableSignals { sensor_force_n, displacement_m, speed_m_per_s };
         let lumped_friction_n = Lanes::load(&columns.lumped_friction_n, block);
         let held_friction_n = Lanes::load(&columns.friction_n, block);
         let model = self.params.model(block);
         let mut pulleys = PulleyColumns::new(&self.params, columns, block, self.place_count);
-        let forces = cable_step(&model, self.features, &signals, hold, &mut pulleys, lumped_friction_n);
+        let forces = cable_step(&model, self.features, &signals, &mut pulleys, lumped_friction_n);
         forces.lumped_friction_n.store(&mut columns.lumped_friction_n, block);
 
         let computed_n = forces.platform_force_n - model.offset_n - forces.frictionless_n;
+        Lanes::select(hold, held_friction_n, computed_n).store(&mut columns.friction_n, block);
         // Held friction takes no cable below zero tension.
         let held_n = Lanes::select(forces.no_tension, zero, held_friction_n.max(-forces.frictionless_n));
         let friction_n = Lanes::select(hold, held_n, computed_n);
-        friction_n.store(&mut columns.friction_n, block);
         let platform_n = Lanes::select(hold, forces.frictionless_n + held_n + model.offset_n, forces.platform_force_n);
 
         let out_of_range = sensor_force_n

@@ -7,8 +7,8 @@
 //! - **No allocation, no panic, no clock.** `no_std`; set-up can fail, [`Compensator::step`] cannot.
 //! - **Total.** Every input has an output that is finite; what is wrong with a signal stands in [`CableStatus`].
 //! - **Apart.** No bit of a cable's force depends on another cable's signals.
-//! - **The same everywhere.** Only exactly rounded operations are used in the cycle, so the bits do not depend on platform,
-//!   optimisation level or vector width.
+//! - **The same everywhere.** The cycle uses exactly rounded operations, and for slip limits and set-up the `libm` crate's
+//!   functions, never the platform's, so the bits do not depend on platform, optimisation level or vector width.
 //!
 //! # One cycle
 //!

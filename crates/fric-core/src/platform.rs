@@ -35,7 +35,7 @@ impl Pose {
         let norm = quaternion.norm();
         let pose =
             Self { position_m: position_m.into(), orientation: UnitQuaternion::new_unchecked(quaternion / norm) };
-        ((0.9..=1.1).contains(&norm) && pose.is_finite()).then_some(pose)
+        ((0.9..=1.1).contains(&norm) && pose.is_usable()).then_some(pose)
     }
 
     /// The pose a share `ratio` (0…1) of the way to `other`: position linear, orientation along the shorter arc
@@ -55,12 +55,12 @@ impl Pose {
         }
     }
 
-    /// Whether all numbers are finite and the position is within ±10⁶ m.
+    /// Whether the cycle takes the pose: position finite and within ±10⁶ m, orientation of a norm within 10 % of 1.
     #[inline]
     #[must_use]
-    pub fn is_finite(&self) -> bool {
-        let rotation = &self.orientation.coords;
-        self.position_m.iter().all(|place| place.abs() <= 1e6) && rotation.iter().all(|part| part.abs() <= 1.5)
+    pub fn is_usable(&self) -> bool {
+        let norm_squared = self.orientation.coords.norm_squared();
+        self.position_m.iter().all(|place| place.abs() <= 1e6) && (0.81..=1.21).contains(&norm_squared)
     }
 }
 

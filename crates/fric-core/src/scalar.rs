@@ -2,8 +2,8 @@
 //!
 //! Every equation of this crate is generic over [`Scalar`], so that one source serves three uses: plain `f64` (one
 //! cable, one number), [`Lanes`](crate::Lanes) (four cables side by side in the control cycle), and any number that
-//! carries derivatives along. Choices that depend on data are [`select`](Scalar::select)s, never branches: all lanes
-//! take the same path, and the time of a cycle does not depend on what the cables do.
+//! carries derivatives along. Choices that depend on data are [`select`](Scalar::select)s, not branches: all lanes take the
+//! same path, and the time that the equations take does not depend on what the cables do.
 //!
 //! Only operations that IEEE 754 rounds exactly are used (`+ − × ÷ √` and comparisons); the one transcendental
 //! function, [`exp_negative`], is built from them here. So results do not depend on the platform's `libm`.

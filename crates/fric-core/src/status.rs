@@ -14,9 +14,9 @@ use core::ops::BitOr;
 /// | `SLACK` | sensor force ≤ 0 | friction 0 and stored friction released; the force is the sensor's own |
 /// | `SLACK` | viscous friction exceeds the tension | no force but the offset; stored friction goes on as usual |
 /// | `SLIP` | `F_j/F_{j−1}` beyond `e^{±μ_p α}` at a pulley | the ratio held at that bound |
-/// | `SENSOR_NOT_FINITE` | sensor force NaN, infinite or beyond ±10⁹ N | last good force and friction held; motion meanwhile is made up for in the first good cycle |
-/// | `SENSOR_FROZEN` | the same sensor value to the last bit over `frozen_cycles` cycles in which the cable moved | as above |
-/// | `LENGTH_JUMP` | length changed by more than `length_jump_m` in one cycle | friction held, force follows the sensor; the jump is not taken for motion |
+/// | `SENSOR_NOT_FINITE` | sensor force NaN, infinite or beyond ±10⁹ N | last good force and friction held; the stored friction follows the motion with the last good force, so that the first good cycle goes on from where the cable is |
+/// | `SENSOR_FROZEN` | the same positive sensor value to the last bit over `frozen_cycles` cycles of motion and 1 mm of way | as above |
+/// | `LENGTH_JUMP` | length changed by more than `length_jump_m` per elapsed cycle | friction held, force follows the sensor; the jump is not taken for motion |
 /// | `MOTION_NOT_FINITE` | length or speed NaN, infinite or beyond ±10⁶ | friction held, force follows the sensor |
 /// | `OUT_OF_RANGE` | force or speed outside the cable's `validated` range | computed as usual |
 /// | `POSE_MISSING` | no pose, or not a finite one, for a cable that needs it | last wrap and direction held; 90° until the first pose |
@@ -83,6 +83,18 @@ impl CableStatus {
         self.0 & other.0 == other.0
     }
 
+    /// Whether any flag of `other` is set.
+    #[must_use]
+    pub const fn intersects(self, other: Self) -> bool {
+        self.0 & other.0 != 0
+    }
+
+    /// The flags of both.
+    #[must_use]
+    pub const fn union(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
     /// `self` where `condition` holds, else [`OK`](Self::OK).
     #[inline(always)]
     pub(crate) const fn if_set(self, lanes: u32, lane: usize) -> Self {
@@ -94,7 +106,7 @@ impl BitOr for CableStatus {
     type Output = Self;
     #[inline(always)]
     fn bitor(self, other: Self) -> Self {
-        Self(self.0 | other.0)
+        self.union(other)
     }
 }
 

@@ -79,7 +79,8 @@ pub fn exit<T: Scalar>(swivel: &Swivel<T>, attachment_m: [T; 3]) -> Exit<T> {
     Exit { direction, free_length_m: free, wrap_factor: doubled.max(zero).sqrt(), cos_sin_wrap: [-cos, sin], reachable }
 }
 
-/// Wrap angle β in rad, `0…2π`, from [`Exit::cos_sin_wrap`]. Not for the cycle: an inverse tangent.
+/// Wrap angle β in rad, `0…2π`, from [`Exit::cos_sin_wrap`]. An inverse tangent: the
+/// cycle calls it only for robots with a slip limit.
 #[must_use]
 pub fn wrap_rad([cos, sin]: [f64; 2]) -> f64 {
     let angle_rad = libm::atan2(sin, cos);

@@ -36,7 +36,7 @@ fn everything_on() -> Compensator<8> {
             CableParams::new(&options).unwrap()
         })
         .collect();
-    let monitor = MonitorOptions { frozen_cycles: 10, length_jump_m: 0.01 };
+    let monitor = MonitorOptions { frozen_cycles: 10, length_jump_m: 0.01, length_noise_m: 0.0 };
     let robot = RobotParams::new(0.001, &PlatformOptions::default(), monitor, &cables).unwrap();
     Compensator::new(&robot).unwrap()
 }
@@ -57,7 +57,7 @@ fn input(cycle: u32) -> CycleInput<8> {
         }
     }
     let pose = Pose::from_parts([0.0, 0.05 * t.sin(), -0.1], [0.0, 0.0, 0.0, 1.0]);
-    CycleInput { cables, pose: pose.filter(|_| !cycle.is_multiple_of(13)) }
+    CycleInput { cables, pose: pose.filter(|_| !cycle.is_multiple_of(13)), ..CycleInput::default() }
 }
 
 #[test]

@@ -109,7 +109,7 @@ fn slide(
     for cycle in 0..1500 {
         let length_m = f64::from(cycle) * 0.001 * speed_m_per_s;
         let cables = [CableInput { sensor_force_n, length_m, speed_m_per_s }];
-        output = compensator.step(&CycleInput { cables, pose: None });
+        output = compensator.step(&CycleInput { cables, ..CycleInput::default() });
     }
     (output.cables[0], compensator)
 }
@@ -214,7 +214,7 @@ fn slip_at_the_pulley_that_follows_the_pose() {
     let wrap_rad = params[0].pose_wrap_rad(&pose).unwrap();
     for cycle in 0..3000 {
         let cables = [CableInput { sensor_force_n: 20.0, length_m: f64::from(cycle) * 1e-4, speed_m_per_s: 0.1 }];
-        let output = compensator.step(&CycleInput { cables, pose: Some(pose) }).cables[0];
+        let output = compensator.step(&CycleInput { cables, pose: Some(pose), ..CycleInput::default() }).cables[0];
         if cycle > 100 {
             assert_eq!(output.status, CableStatus::SLIP);
             assert_near(output.force_at_platform_n, 20.0 * (0.05 * wrap_rad).exp(), 1e-12);
@@ -235,7 +235,7 @@ fn a_slip_limit_does_not_touch_a_cable_without_one() {
             let speed_m_per_s = (f64::from(cycle) * 0.003).sin() * 4.0;
             let length_m = (f64::from(cycle) * 0.003).cos() * -4.0 / 3.0;
             let cables = [CableInput { sensor_force_n: 4.0, length_m, speed_m_per_s }; 2];
-            let input = CycleInput { cables, pose: None };
+            let input = CycleInput { cables, ..CycleInput::default() };
             let (one, other) = (alone.step(&input).cables[0], beside.step(&input).cables[0]);
             assert_near(one.force_at_platform_n, other.force_at_platform_n, 1e-12);
             assert_eq!(one.status, other.status);

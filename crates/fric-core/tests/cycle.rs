@@ -86,7 +86,7 @@ fn compare<const CABLES: usize>(seed: u64, forms: &[Presliding]) {
                 speed_m_per_s: if still { 0.0 } else { 0.22 * angle.cos() },
             }
         });
-        let output = compensator.step(&CycleInput { cables, pose: Some(pose) });
+        let output = compensator.step(&CycleInput { cables, pose: Some(pose), ..CycleInput::default() });
         let mut columns = Vec::new();
         let mut forces_n = Vec::new();
         for ((oracle, input), ours) in oracles.iter_mut().zip(&cables).zip(&output.cables) {
@@ -240,7 +240,11 @@ fn a_cable_is_the_same_alone_and_among_cables_of_other_lengths() {
                 let input = smooth_input::<5>(cycle);
                 let output = together.step(&input);
                 for (cable, alone) in alone.iter_mut().enumerate() {
-                    let own = alone.step(&CycleInput { cables: [input.cables[cable]], pose: input.pose });
+                    let own = alone.step(&CycleInput {
+                        cables: [input.cables[cable]],
+                        pose: input.pose,
+                        elapsed_cycles: 1.0,
+                    });
                     assert_eq!(bits(&own.cables[0]), bits(&output.cables[cable]), "cable {cable}");
                     assert_eq!(alone.pulley_friction_n(0), together.pulley_friction_n(cable));
                     let used = alone.pulley_friction_n(0).iter().filter(|friction_n| **friction_n != 0.0).count();

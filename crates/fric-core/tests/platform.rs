@@ -131,7 +131,11 @@ fn the_wrench_is_linear_in_the_forces() {
     let wrench = |forces_n: [f64; 8]| {
         let mut compensator = crate::support::compensator::<8>(&options, UNMONITORED);
         let cables = forces_n.map(|sensor_force_n| fric_core::CableInput { sensor_force_n, ..Default::default() });
-        compensator.step(&fric_core::CycleInput { cables, pose: Some(pose) }).outside_wrench.unwrap().to_vector()
+        compensator
+            .step(&fric_core::CycleInput { cables, pose: Some(pose), ..fric_core::CycleInput::default() })
+            .outside_wrench
+            .unwrap()
+            .to_vector()
     };
     for _ in 0..200 {
         let mut draw = || [(); 8].map(|()| random.range(0.1, 50.0));

@@ -7,7 +7,7 @@ use crate::support::{FRICTION, GUIDE_90, SENSOR_180, assert_near, compensator, c
 
 const FORMS: [Presliding; 2] = [Presliding::Lumped, Presliding::PerPulley];
 const PULLEYS: [fric_core::robot::PulleyOptions; 2] = [SENSOR_180, GUIDE_90];
-const MONITOR: MonitorOptions = MonitorOptions { frozen_cycles: 10, length_jump_m: 0.01 };
+const MONITOR: MonitorOptions = MonitorOptions { frozen_cycles: 10, length_jump_m: 0.01, length_noise_m: 0.0 };
 
 type Change = fn(&mut CableInput);
 
@@ -35,7 +35,7 @@ impl Bench {
         self.cycle += 1;
         let mut signals = self.signals();
         change(&mut signals);
-        self.compensator.step(&CycleInput { cables: [signals], pose: None }).cables[0]
+        self.compensator.step(&CycleInput { cables: [signals], ..CycleInput::default() }).cables[0]
     }
 
     fn run(&mut self, cycles: usize) -> CableOutput {
@@ -93,26 +93,112 @@ fn viscous_friction_beyond_the_tension_is_slack_too() {
 }
 
 #[test]
-fn a_silent_sensor_holds_force_and_friction_and_the_motion_is_made_up_for() {
+fn a_silent_sensor_holds_the_output_while_the_stored_friction_follows_the_motion() {
     for presliding in FORMS {
         for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1.001e9, -1e300] {
             let (mut bench, mut other) = (Bench::new(presliding), Bench::new(presliding));
             let last = bench.run(20);
             other.run(20);
-            for _ in 0..7 {
-                let output = bench.step(|signals| signals.sensor_force_n = value);
+            let silent_n = other.signals().sensor_force_n;
+            // Out and back: what the net way would not tell.
+            for step in 1..=60 {
+                let way_m = 1e-4 * f64::from(if step <= 30 { step } else { 60 - step });
+                let speed_m_per_s = if step <= 30 { 0.1 } else { -0.1 };
+                let signals = |sensor_force_n| CableInput { sensor_force_n, length_m: 2e-3 + way_m, speed_m_per_s };
+                let output = bench.step(|place| *place = signals(value));
+                other.step(|place| *place = signals(silent_n));
                 assert_eq!(output.status, CableStatus::SENSOR_NOT_FINITE);
                 assert_eq!(output.frictionless_n.to_bits(), last.frictionless_n.to_bits());
                 assert_eq!(output.friction_n.to_bits(), last.friction_n.to_bits());
                 assert_near(output.force_at_platform_n, last.force_at_platform_n, 1e-15);
             }
-            // All the motion in one step, as if the sensor had spoken only now.
-            other.cycle += 7;
-            let (output, expected) = (bench.run(1), other.run(1));
+            // As if the sensor had shown its last good force all the time.
+            let rest = CableInput { sensor_force_n: 20.0, length_m: 2e-3, speed_m_per_s: 0.0 };
+            let (output, expected) = (bench.step(|place| *place = rest), other.step(|place| *place = rest));
             assert_eq!(output.status, CableStatus::OK);
+            assert!(output.friction_n < 0.0);
             assert_near(output.force_at_platform_n, expected.force_at_platform_n, 1e-12);
         }
     }
+}
+
+#[test]
+fn a_slack_sensor_at_zero_is_slack_not_frozen_and_leaves_no_friction_behind() {
+    for presliding in FORMS {
+        let mut bench = Bench::new(presliding);
+        bench.run(30);
+        for cycle in 0..60 {
+            let output = bench.step(|place| {
+                *place =
+                    CableInput { sensor_force_n: 0.0, length_m: 3e-3 - 1e-4 * f64::from(cycle), speed_m_per_s: -0.1 };
+            });
+            assert_eq!(output.status, CableStatus::SLACK);
+        }
+        let tight = CableInput { sensor_force_n: 20.0, length_m: 3e-3 - 1e-4 * 59.0, speed_m_per_s: 0.0 };
+        let output = bench.step(|place| *place = tight);
+        assert_eq!((output.status, output.friction_n), (CableStatus::OK, 0.0));
+    }
+}
+
+#[test]
+fn a_dip_of_the_sensor_does_not_wear_the_held_friction_down() {
+    for presliding in FORMS {
+        let mut bench = Bench::new(presliding);
+        for cycle in 0..40 {
+            bench.step(|place| {
+                *place = CableInput { sensor_force_n: 20.0, length_m: -1e-4 * f64::from(cycle), speed_m_per_s: -0.1 };
+            });
+        }
+        let blind = |sensor_force_n| CableInput { sensor_force_n, length_m: f64::NAN, speed_m_per_s: -0.1 };
+        let held = bench.step(|place| *place = blind(20.1));
+        let dip = bench.step(|place| *place = blind(0.1));
+        assert!(dip.friction_n > held.friction_n && dip.force_at_platform_n >= FRICTION.offset_n);
+        let after = bench.step(|place| *place = blind(20.2));
+        assert_eq!(after.friction_n.to_bits(), held.friction_n.to_bits());
+    }
+}
+
+#[test]
+fn noise_of_the_length_within_its_play_moves_nothing() {
+    for presliding in FORMS {
+        let friction = FrictionOptions { viscous_n_s_per_m: 0.0, ..FRICTION };
+        let options = CableOptions { presliding, friction, ..CableOptions::new(&PULLEYS) };
+        let monitor = MonitorOptions { frozen_cycles: 0, length_noise_m: 1e-5, ..MONITOR };
+        let mut bench = Bench { compensator: compensator(&[options], monitor), cycle: 0 };
+        let slid = bench.run(40);
+        for cycle in 0..1000 {
+            let dither_m = if cycle % 2 == 0 { -1e-5 } else { 1e-5 };
+            let output = bench.step(|place| {
+                *place = CableInput { sensor_force_n: 20.04, length_m: 4e-3 - 1e-5 + dither_m, speed_m_per_s: 0.0 };
+            });
+            assert_near(output.friction_n, slid.friction_n, 1e-3);
+        }
+    }
+}
+
+#[test]
+fn a_longer_pause_allows_a_longer_way() {
+    let mut bench = Bench::new(Presliding::PerPulley);
+    bench.run(20);
+    let signals = CableInput { sensor_force_n: 20.0, length_m: 0.102, speed_m_per_s: 0.1 };
+    let mut late = bench.compensator.clone();
+    let input = CycleInput { cables: [signals], ..CycleInput::default() };
+    assert_eq!(bench.compensator.step(&input).cables[0].status, CableStatus::LENGTH_JUMP);
+    let output = late.step(&CycleInput { elapsed_cycles: 1000.0, ..input });
+    assert!(output.cables[0].status.is_ok());
+}
+
+#[test]
+fn a_rotation_that_is_none_is_no_pose() {
+    let options = [fric_core::robot::CableOptions { ..crate::support::corner_cable(0, Presliding::PerPulley) }];
+    let mut compensator = compensator::<1>(&options, MONITOR);
+    let zero = nalgebra::UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(0.0, 0.0, 0.0, 0.0));
+    let pose = Pose { orientation: zero, ..Pose::identity() };
+    let cables = [CableInput { sensor_force_n: 20.0, length_m: 1.0, speed_m_per_s: 0.0 }];
+    let output = compensator.step(&CycleInput { cables, pose: Some(pose), ..CycleInput::default() });
+    assert_eq!((output.cables[0].status, output.outside_wrench), (CableStatus::POSE_MISSING, None));
+    let output = compensator.step(&CycleInput { cables, pose: Some(Pose::identity()), ..CycleInput::default() });
+    assert!(output.wrench_status.is_ok() && output.outside_wrench.is_some());
 }
 
 #[test]
@@ -152,7 +238,7 @@ fn no_check_for_a_frozen_sensor_where_it_is_switched_off() {
     let mut compensator = compensator::<1>(&[CableOptions::new(&PULLEYS)], monitor);
     for cycle in 0..5000 {
         let cables = [CableInput { sensor_force_n: 20.5, length_m: 1e-4 * f64::from(cycle), speed_m_per_s: 0.1 }];
-        assert!(compensator.step(&CycleInput { cables, pose: None }).cables[0].status.is_ok());
+        assert!(compensator.step(&CycleInput { cables, ..CycleInput::default() }).cables[0].status.is_ok());
     }
 }
 
@@ -229,7 +315,7 @@ fn outside_the_range_of_identification_it_is_computed_as_usual() {
 fn posed(compensator: &mut Compensator<1>, cycle: i32, pose: Option<Pose>) -> fric_core::CycleOutput<1> {
     let cycle = f64::from(cycle);
     let cables = [CableInput { sensor_force_n: 20.0 + 1e-3 * cycle, length_m: 1e-4 * cycle, speed_m_per_s: 0.1 }];
-    compensator.step(&CycleInput { cables, pose })
+    compensator.step(&CycleInput { cables, pose, ..CycleInput::default() })
 }
 
 fn somewhere(x_m: f64) -> Pose {

@@ -106,7 +106,7 @@ pub const FRICTION: FrictionOptions =
     FrictionOptions { mu: 0.019, sigma_n_per_m: Some(950.0), viscous_n_s_per_m: 0.5, offset_n: 0.03 };
 
 /// No check for a frozen sensor: tests feed constant forces.
-pub const UNMONITORED: MonitorOptions = MonitorOptions { frozen_cycles: 0, length_jump_m: 0.01 };
+pub const UNMONITORED: MonitorOptions = MonitorOptions { frozen_cycles: 0, length_jump_m: 0.01, length_noise_m: 0.0 };
 
 /// The paper's winch: 180° sensor pulley, 90° guide, swivel.
 pub const WINCH: [PulleyOptions; 3] = [SENSOR_180, GUIDE_90, SWIVEL];
@@ -162,7 +162,7 @@ pub fn smooth_input<const CABLES: usize>(cycle: usize) -> CycleInput<CABLES> {
         [0.1 * (0.9 * t).sin(), 0.1 * (1.1 * t).cos(), 0.05 * (0.7 * t).sin()],
         [0.0, 0.0, (0.1 * t.sin()).sin(), (0.1 * t.sin()).cos()],
     );
-    CycleInput { cables, pose }
+    CycleInput { cables, pose, ..CycleInput::default() }
 }
 
 /// The bits of everything a cable's output says.

@@ -248,6 +248,8 @@ fn steps(model: &Model, joined: &Joined, problem: Option<String>) -> Vec<StepRes
     let mut identification = Vec::new();
     if joined.referenced == 0 {
         identification.push(no_reference.to_owned());
+    } else if needs_pose && joined.posed == 0 {
+        identification.push(no_pose.to_owned());
     }
     let step = |step, possible: bool, reasons: Vec<String>| StepResult { step, possible, reasons };
     let replay = joined.rows > 0;

@@ -162,7 +162,7 @@ fn warn_about_model(model: &Model, reader: &SignalReader, replay: &Replay) {
     if interval_s > 0.0 && !(0.8..=1.25).contains(&(interval_s / cycle_s)) {
         warnings::warn(&format!(
             "the cable signal comes every {interval_s:.6} s, but `cycle_s` in the robot file is {cycle_s}; delays and \
-             checks that count cycles follow the robot file"
+             the check for a frozen sensor count cycles of the robot file; friction itself does not depend on the rate"
         ));
     }
     // Cables with the same trouble share a line.

@@ -14,7 +14,7 @@ use crate::scalar::Scalar;
 pub const ROW: EffectRow = EffectRow {
     kind: "time_delay",
     cause: "the winch motion is known earlier than the cable moves: set points, or a longer way of the force signal",
-    remedy: "use measured instead of commanded motion, or keep the delay compensated",
+    remedy: "keep the delay compensated, or bring both signals to the same time: the set points delayed by the drive's lag",
     parameters: &[ParameterRow { key: "delay_s", unit: "s", neutral: 0.0, min: 0.0, max: 1.0 }],
 };
 
@@ -73,7 +73,7 @@ impl DelayLine {
             let place = (self.newest + MAX_DELAY_CYCLES - age % MAX_DELAY_CYCLES) % MAX_DELAY_CYCLES;
             self.values.get(place).copied().unwrap_or(0.0)
         };
-        let older = at(delay.cycles + 1);
-        at(delay.cycles) + delay.fraction * (older - at(delay.cycles))
+        let cycles = delay.cycles.min(MAX_DELAY_CYCLES - 1);
+        at(cycles) + delay.fraction * (at(cycles + 1) - at(cycles))
     }
 }

@@ -105,6 +105,8 @@ pub struct MonitorTable {
     pub frozen_cycles: Option<u32>,
     /// Greatest change of length in a cycle, m.
     pub length_jump_m: Option<f64>,
+    /// Amplitude of the noise of measured lengths, m.
+    pub length_noise_m: Option<f64>,
 }
 
 /// `[[cable]]`.
@@ -300,7 +302,7 @@ impl RobotFile {
     fn check_robot(&self) -> Result<(), OptionsError> {
         let table = |key: &str| match key {
             "mass_kg" | "center_of_mass_m" | "gravity_m_per_s2" => Some(Step::Key("platform")),
-            "length_jump_m" => Some(Step::Key("monitor")),
+            "length_jump_m" | "length_noise_m" => Some(Step::Key("monitor")),
             _ => None,
         };
         let Err(error) = self.build() else { return Ok(()) };
@@ -333,6 +335,7 @@ impl RobotFile {
         let monitor = MonitorOptions {
             frozen_cycles: self.options.monitor.frozen_cycles.unwrap_or(standard.frozen_cycles),
             length_jump_m: self.options.monitor.length_jump_m.unwrap_or(standard.length_jump_m),
+            length_noise_m: self.options.monitor.length_noise_m.unwrap_or(standard.length_noise_m),
         };
         let platform = PlatformOptions { mass_kg, center_of_mass_m, gravity_m_per_s2 };
         RobotParams::new(self.options.cycle_s, &platform, monitor, &self.cables)

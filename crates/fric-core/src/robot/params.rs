@@ -51,7 +51,8 @@ pub struct FrictionOptions {
     pub sigma_n_per_m: Option<f64>,
     /// Viscous friction F_pv of each pulley, N s/m.
     pub viscous_n_s_per_m: f64,
-    /// Offset ε added to the force at the platform, N.
+    /// Offset ε added to the force at the platform after friction, N (\[P\] 18): what the two force sensors of an
+    /// identification differ by. It counts in the wrench too; the paper neglects it in operation, for which 0 stands.
     pub offset_n: f64,
 }
 
@@ -309,13 +310,15 @@ pub struct MonitorOptions {
     pub frozen_cycles: u32,
     /// Greatest change of length in one cycle, m.
     pub length_jump_m: f64,
+    /// Amplitude of the noise of measured lengths, m: changes within it are no motion. 0 for set points.
+    pub length_noise_m: f64,
 }
 
 impl MonitorOptions {
-    /// 100 cycles; what 10 m/s cover in a cycle.
+    /// 100 cycles; what 10 m/s cover in a cycle; no noise.
     #[must_use]
     pub fn for_cycle(cycle_s: f64) -> Self {
-        Self { frozen_cycles: 100, length_jump_m: 10.0 * cycle_s }
+        Self { frozen_cycles: 100, length_jump_m: 10.0 * cycle_s, length_noise_m: 0.0 }
     }
 }
 
@@ -358,6 +361,7 @@ impl<'a> RobotParams<'a> {
             gravity_m_per_s2: check_point("gravity_m_per_s2", platform.gravity_m_per_s2)?,
             monitor: MonitorOptions {
                 length_jump_m: check("length_jump_m", monitor.length_jump_m, 1e-9, 1e3)?,
+                length_noise_m: check("length_noise_m", monitor.length_noise_m, 0.0, 0.1)?,
                 ..monitor
             },
             cables,

@@ -1,6 +1,8 @@
 //! A compensator for a robot whose number of cables is known only at run time.
 
-use fric_core::{CableInput, CableOutput, Compensator, CycleInput, CycleOutput, ParamError, Pose, RobotParams, Wrench};
+use fric_core::{
+    CableInput, CableOutput, CableStatus, Compensator, CycleInput, CycleOutput, ParamError, Pose, RobotParams, Wrench,
+};
 
 /// [`Compensator`] for any number of cables up to [`AnyCompensator::MOST_CABLES`]: the smallest of a few sizes that
 /// holds the robot. The size does not change a bit of the result.
@@ -24,14 +26,21 @@ impl AnyCompensator {
         }))
     }
 
-    /// Takes in the signals of a cycle; cables that `cables` lacks count as not finite.
-    pub fn set_input(&mut self, cables: &[CableInput], pose: Option<Pose>) {
-        self.0.set_input(cables, pose);
+    /// Takes in the signals of a cycle; cables that `cables` lacks count as not finite. `elapsed_cycles` is that of
+    /// [`CycleInput`].
+    pub fn set_input(&mut self, cables: &[CableInput], pose: Option<Pose>, elapsed_cycles: f64) {
+        self.0.set_input(cables, pose, elapsed_cycles);
     }
 
     /// One cycle on the signals taken in last; gives the wrench from outside.
     pub fn step(&mut self) -> Option<Wrench> {
         self.0.step()
+    }
+
+    /// What is the matter with the wrench of the last cycle, see [`CycleOutput::wrench_status`].
+    #[must_use]
+    pub fn wrench_status(&self) -> CableStatus {
+        self.0.wrench_status()
     }
 
     /// Outcome of the last cycle for the robot's cables.
@@ -49,9 +58,10 @@ impl AnyCompensator {
 }
 
 trait Cycle: Send + std::fmt::Debug {
-    fn set_input(&mut self, cables: &[CableInput], pose: Option<Pose>);
+    fn set_input(&mut self, cables: &[CableInput], pose: Option<Pose>, elapsed_cycles: f64);
     fn step(&mut self) -> Option<Wrench>;
     fn outputs(&self) -> &[CableOutput];
+    fn wrench_status(&self) -> CableStatus;
     fn outside_wrench_of(&self, forces_n: &mut dyn Iterator<Item = f64>) -> Option<Wrench>;
 }
 
@@ -72,17 +82,22 @@ impl<const CABLES: usize> Fixed<CABLES> {
 }
 
 impl<const CABLES: usize> Cycle for Fixed<CABLES> {
-    fn set_input(&mut self, cables: &[CableInput], pose: Option<Pose>) {
+    fn set_input(&mut self, cables: &[CableInput], pose: Option<Pose>, elapsed_cycles: f64) {
         let signals = cables.iter().copied().chain(std::iter::repeat(NOTHING));
         for (place, signal) in self.input.cables.iter_mut().zip(signals) {
             *place = signal;
         }
         self.input.pose = pose;
+        self.input.elapsed_cycles = elapsed_cycles;
     }
 
     fn step(&mut self) -> Option<Wrench> {
         self.compensator.step_into(&self.input, &mut self.output);
         self.output.outside_wrench
+    }
+
+    fn wrench_status(&self) -> CableStatus {
+        self.output.wrench_status
     }
 
     fn outputs(&self) -> &[CableOutput] {

@@ -7,7 +7,7 @@
 mod compensator;
 mod error;
 
-use fric_core::{CableOutput, ParamError, RobotParams, Sample, Wrench};
+use fric_core::{CableOutput, CableStatus, ParamError, RobotParams, Sample, Wrench};
 
 pub use compensator::AnyCompensator;
 pub use error::Deviation;
@@ -60,14 +60,20 @@ pub struct Replay {
     wrench_before: WrenchErrors,
     wrench_after: WrenchErrors,
     cycle_count: u64,
+    cycle_s: f64,
+    last_stamp_nanos: Option<i64>,
 }
+
+/// With these a wrench is none: a cable's force or direction is not known.
+const NO_WRENCH: CableStatus =
+    CableStatus::SENSOR_NOT_FINITE.union(CableStatus::POSE_MISSING).union(CableStatus::POSE_UNREACHABLE);
 
 /// Outcome of one cycle of a replay.
 #[derive(Clone, Copy, Debug)]
 pub struct ReplayedCycle<'a> {
     /// The cables in the robot's order.
     pub cables: &'a [CableOutput],
-    /// Wrench from outside by the compensated forces.
+    /// Wrench from outside by the compensated forces; `None` also while the pose or a cable's force is not known.
     pub outside_wrench: Option<Wrench>,
     /// How long the cycle took, the compensator alone, ns.
     pub cycle_ns: u64,
@@ -85,16 +91,25 @@ impl Replay {
             wrench_before: WrenchErrors::default(),
             wrench_after: WrenchErrors::default(),
             cycle_count: 0,
+            cycle_s: robot.cycle_s(),
+            last_stamp_nanos: None,
         })
     }
 
     /// Runs one cycle.
     pub fn step(&mut self, sample: &Sample<'_>) -> ReplayedCycle<'_> {
-        self.compensator.set_input(sample.cables, sample.pose);
+        #[expect(clippy::cast_precision_loss, reason = "an interval between two samples")]
+        let elapsed_cycles = self.last_stamp_nanos.map_or(1.0, |last| {
+            // The nearest whole number: stamps jitter, cycles do not. A clock set back counts as one cycle.
+            (sample.stamp_nanos.saturating_sub(last) as f64 * 1e-9 / self.cycle_s).round()
+        });
+        self.last_stamp_nanos = Some(sample.stamp_nanos);
+        self.compensator.set_input(sample.cables, sample.pose, elapsed_cycles);
         let start = std::time::Instant::now();
         let outside_wrench = self.compensator.step();
         let cycle_ns = u64::try_from(start.elapsed().as_nanos()).unwrap_or(u64::MAX);
         self.cycle_count += 1;
+        let outside_wrench = outside_wrench.filter(|_| !self.compensator.wrench_status().intersects(NO_WRENCH));
         if let (Some(reference), Some(wrench)) = (&sample.outside_wrench, outside_wrench) {
             self.wrench_after.add(&(wrench - *reference));
             let frictionless_n = self.compensator.outputs().iter().map(|cable| cable.frictionless_n);

@@ -31,8 +31,8 @@
 //! NaN and infinities pass through: the core flags them for the cable concerned. A cable that a message does not name is
 //! NaN in that row. A quaternion that is none, such as all zeros, gives no pose; the sign of a quaternion does not matter.
 //!
-//! Speed that a message does not have (an empty `velocity`) is the change of length since it was last known over the time
-//! since then, also over a gap; 0 in the first row and where the clock went back.
+//! Speed that a message does not have (an empty `velocity`, or NaN in it) is the change of length since it was last known
+//! over the time since then, also over a gap; 0 in the first row and where the clock went back.
 
 mod channel;
 mod error;

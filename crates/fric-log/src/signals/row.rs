@@ -95,17 +95,12 @@ impl RowBuffer {
             interpolate(speed, stamp_nanos, &mut self.numbers);
             speeds = Some(&self.numbers);
         }
-        match speeds {
-            Some(speeds) => {
-                for (cable, speed_m_per_s) in self.cables.iter_mut().zip(speeds) {
-                    cable.speed_m_per_s = *speed_m_per_s;
-                }
-            }
-            None => {
-                for (cable, last) in self.cables.iter_mut().zip(&self.last_lengths) {
-                    cable.speed_m_per_s = last.speed_m_per_s(cable.length_m, stamp_nanos);
-                }
-            }
+        let speeds = speeds.unwrap_or_default().iter().copied().chain(std::iter::repeat(f64::NAN));
+        for ((cable, last), speed_m_per_s) in self.cables.iter_mut().zip(&self.last_lengths).zip(speeds) {
+            // Drivers that do not measure a speed publish NaN.
+            let is_derived = speed_m_per_s.is_nan() && !self.has_speed_path;
+            cable.speed_m_per_s =
+                if is_derived { last.speed_m_per_s(cable.length_m, stamp_nanos) } else { speed_m_per_s };
         }
         for (cable, last) in self.cables.iter().zip(&mut self.last_lengths) {
             if cable.length_m.is_finite() {
