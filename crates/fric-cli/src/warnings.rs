@@ -31,6 +31,12 @@ pub fn about_signals(reader: &SignalReader, paths: &SignalPaths) {
     for role in Role::ALL {
         let Some(path) = paths.get(role) else { continue };
         let counts = reader.counts(role);
+        if matches!(role, Role::Length | Role::Speed) && counts.message_count == 0 {
+            warn(&format!(
+                "the log has nothing on `{path}`, named as `{}` under `[log]`: without it nothing is compensated",
+                role.key()
+            ));
+        }
         let remarks = remarks(counts);
         if !remarks.is_empty() {
             warn(&format!("{} signal `{path}`: {}", role.key(), remarks.join(", ")));

@@ -128,13 +128,18 @@ pub fn cable_step<T: Scalar>(
     if features.lumped {
         let (platform_n, friction_n, slip) = lumped_chain(model, features, mu, signals, lumped_friction_n, pulleys);
         forces.platform_force_n = platform_n;
-        forces.lumped_friction_n = T::select(no_tension, zero, friction_n);
+        forces.lumped_friction_n = friction_n.keep(no_tension.not());
         forces.slip = slip;
     }
     if features.per_pulley {
         let (platform_n, slip) = pulley_chain(model, features, mu, signals, no_tension.or(model.lumped), pulleys);
-        forces.platform_force_n = T::select(model.lumped, forces.platform_force_n, platform_n);
-        forces.slip = model.lumped.and(forces.slip).or(model.lumped.not().and(slip));
+        if features.lumped {
+            forces.platform_force_n = T::select(model.lumped, forces.platform_force_n, platform_n);
+            forces.slip = model.lumped.and(forces.slip).or(model.lumped.not().and(slip));
+        } else {
+            forces.platform_force_n = platform_n;
+            forces.slip = slip;
+        }
     }
     forces.slack = no_tension.or(forces.platform_force_n.lt(zero));
     let pulled_n = forces.platform_force_n.max(zero);
@@ -189,7 +194,7 @@ fn pulley_chain<T: Scalar>(
             friction_n = T::select(slips, held_n - held_before_n - viscous_n, friction_n);
             slip = slip.or(slips);
         }
-        pulleys.set_friction_n(place, T::select(release, zero, friction_n));
+        pulleys.set_friction_n(place, friction_n.keep(release.not()));
         tension_n = behind_n;
     }
     (tension_n, slip)

@@ -193,7 +193,7 @@ impl<const CABLES: usize> ParamColumns<CABLES> {
 pub struct StateColumns<const CABLES: usize> {
     /// Last good sensor force, N.
     pub sensor_force_n: [f64; CABLES],
-    /// Cycles of motion in which it has not changed.
+    /// Cycles since it has changed.
     pub frozen_count: [f64; CABLES],
     /// Last finite length, m; NaN before the first.
     pub length_m: [f64; CABLES],

@@ -171,13 +171,16 @@ impl<const CABLES: usize> Compensator<CABLES> {
         let pose = input.pose.as_ref().filter(|pose| pose.is_usable());
         let rotation = pose.map(|pose| pose.orientation.to_rotation_matrix().into_inner());
         let mut forces_n = [0.0; CABLES];
+        let mut wrench_status = CableStatus::OK;
         let blocks = CABLES.div_ceil(LANES).min(self.cable_count.div_ceil(LANES));
         for block in 0..blocks {
             let pose_flags = match (pose, &rotation) {
                 (Some(pose), Some(rotation)) if self.any_geometry => self.follow_pose(block, pose, rotation),
                 _ => PoseFlags { missing: self.misses_pose(block).bits(), unreachable: 0 },
             };
-            self.step_block(block, input, output, pose_flags).store(&mut forces_n, block);
+            let (platform_n, status) = self.step_block(block, input, output, pose_flags);
+            platform_n.store(&mut forces_n, block);
+            wrench_status = wrench_status | status;
         }
         for place in output.cables.iter_mut().skip(self.cable_count) {
             *place = CableOutput::default();
@@ -201,8 +204,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
         });
         output.applied_wrench =
             output.outside_wrench.zip(self.state.gravity).map(|(outside, gravity)| outside - gravity);
-        output.wrench_status =
-            output.cables.iter().take(self.cable_count).fold(CableStatus::OK, |status, cable| status | cable.status);
+        output.wrench_status = wrench_status;
     }
 
     /// Friction stored at each pulley of a cable (from the winch), N: the distribution along the cable.
@@ -276,7 +278,9 @@ impl<const CABLES: usize> Compensator<CABLES> {
             keep(column, value);
         }
         keep(&mut columns.pose_wrap_factor, exit.wrap_factor);
-        keep(&mut columns.direction_known, Lanes::splat(1.0));
+        if !self.state.directions_known {
+            keep(&mut columns.direction_known, Lanes::splat(1.0));
+        }
         if self.features.traction {
             let traction_mu = Lanes::load(&self.params.traction_mu, block).to_array();
             let [cos, sin] = exit.cos_sin_wrap.map(Lanes::to_array);
@@ -293,7 +297,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
         PoseFlags { missing: 0, unreachable: with_geometry.and(exit.reachable.not()).bits() }
     }
 
-    /// Signals, friction and status of a block's cables; gives their forces at the platform.
+    /// Signals, friction and status of a block's cables; gives their forces at the platform and every flag of any of them.
     #[inline(always)]
     fn step_block(
         &mut self,
@@ -301,7 +305,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
         input: &CycleInput<CABLES>,
         output: &mut CycleOutput<CABLES>,
         pose_flags: PoseFlags,
-    ) -> Lanes {
+    ) -> (Lanes, CableStatus) {
         let first = block * LANES;
         let cables: [CableInput; LANES] =
             core::array::from_fn(|lane| input.cables.get(first + lane).copied().unwrap_or_default());
@@ -320,12 +324,16 @@ impl<const CABLES: usize> Compensator<CABLES> {
         let jump = motion_finite.and(length_jump_m.lt(change_m.abs()));
         // NaN before the first length compares false: no motion, no flag.
         let moves = motion_finite.and(change_m.abs().le(length_jump_m));
-        // The play of measured lengths: only what pushes against its edge is motion.
-        let beyond_m = (change_m.abs() - Lanes::splat(self.length_noise_m)).max(zero);
-        let mut displacement_m = Lanes::select(moves, change_m.sign() * beyond_m, zero);
-        let mut speed_m_per_s = Lanes::select(motion_finite.and(jump.not()), speed_m_per_s, zero);
-        let within_play_m = Lanes::select(moves, change_m - displacement_m, zero);
-        Lanes::select(motion_finite, length_m - within_play_m, last_length_m).store(&mut columns.length_m, block);
+        let mut displacement_m = change_m.keep(moves);
+        let mut settled_m = length_m;
+        if self.length_noise_m > 0.0 {
+            // The play of measured lengths: only what pushes against its edge is motion.
+            let beyond_m = (change_m.abs() - Lanes::splat(self.length_noise_m)).max(zero);
+            displacement_m = (change_m.sign() * beyond_m).keep(moves);
+            settled_m = length_m - (change_m - displacement_m).keep(moves);
+        }
+        let mut speed_m_per_s = speed_m_per_s.keep(motion_finite.and(jump.not()));
+        Lanes::select(motion_finite, settled_m, last_length_m).store(&mut columns.length_m, block);
         if self.any_delay {
             let delay: [_; LANES] =
                 core::array::from_fn(|lane| self.params.delay.get(first + lane).copied().unwrap_or_default());
@@ -336,22 +344,16 @@ impl<const CABLES: usize> Compensator<CABLES> {
         // Sensor: what may be taken for a force.
         let last_sensor_n = Lanes::load(&columns.sensor_force_n, block);
         let sensor_finite = sensor_n.within(GREATEST_FORCE_N);
-        let unchanged = sensor_n.eq(last_sensor_n).and(zero.lt(sensor_n));
-        let moving = Lanes::select(displacement_m.eq(zero), zero, Lanes::splat(1.0));
-        let last_count = Lanes::load(&columns.frozen_count, block);
-        let last_travel_m = Lanes::load(&columns.frozen_travel_m, block);
-        let count = Lanes::select(unchanged, (last_count + moving).min(Lanes::splat(1e9)), zero);
-        let travel_m = Lanes::select(unchanged, last_travel_m + displacement_m, zero);
-        // A value that is none says nothing about the ones around it.
-        let frozen_count = Lanes::select(sensor_finite, count, last_count);
-        let frozen_travel_m = Lanes::select(sensor_finite, travel_m, last_travel_m);
-        frozen_count.store(&mut columns.frozen_count, block);
-        frozen_travel_m.store(&mut columns.frozen_travel_m, block);
-        let frozen = Lanes::splat(self.frozen_cycles)
-            .le(frozen_count)
-            .and(Lanes::splat(FROZEN_TRAVEL_M).le(frozen_travel_m.abs()));
         let sensor_force_n = Lanes::select(sensor_finite, sensor_n, last_sensor_n);
         sensor_force_n.store(&mut columns.sensor_force_n, block);
+        // A value that is none says nothing about the ones around it.
+        let unchanged = sensor_force_n.eq(last_sensor_n).and(zero.lt(sensor_force_n));
+        let count = (Lanes::load(&columns.frozen_count, block) + Lanes::splat(1.0)).keep(unchanged);
+        let travel_m = (Lanes::load(&columns.frozen_travel_m, block) + displacement_m).keep(unchanged);
+        count.store(&mut columns.frozen_count, block);
+        travel_m.store(&mut columns.frozen_travel_m, block);
+        let stuck = Lanes::splat(self.frozen_cycles).le(count).and(Lanes::splat(FROZEN_TRAVEL_M).le(travel_m.abs()));
+        let frozen = stuck.and(sensor_finite);
 
         // Friction. What is stored follows the motion also under a silent sensor, with its last force; the output holds.
         let sensor_fault = sensor_finite.not().or(frozen);
@@ -367,7 +369,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
         let computed_n = forces.platform_force_n - model.offset_n - forces.frictionless_n;
         Lanes::select(hold, held_friction_n, computed_n).store(&mut columns.friction_n, block);
         // Held friction takes no cable below zero tension.
-        let held_n = Lanes::select(forces.no_tension, zero, held_friction_n.max(-forces.frictionless_n));
+        let held_n = held_friction_n.max(-forces.frictionless_n).keep(forces.no_tension.not());
         let friction_n = Lanes::select(hold, held_n, computed_n);
         let platform_n = Lanes::select(hold, forces.frictionless_n + held_n + model.offset_n, forces.platform_force_n);
 
@@ -405,7 +407,8 @@ impl<const CABLES: usize> Compensator<CABLES> {
         for (place, (((force_at_platform_n, friction_n), frictionless_n), status)) in places {
             *place = CableOutput { force_at_platform_n, friction_n, frictionless_n, status };
         }
-        platform_n
+        let present_status = status.into_iter().take(present).fold(CableStatus::OK, |all, status| all | status);
+        (platform_n, present_status)
     }
 }
 

@@ -36,11 +36,9 @@ pub fn dahl_step<T: Scalar>(friction_n: T, sliding_n: T, sigma_n_per_m: T, displ
     let target_n = displacement_m.sign() * sliding_n;
     let softness = T::splat(SMALLEST_SLIDING_N).max(sliding_n);
     let decay = (-(sigma_n_per_m * displacement_m.abs() / softness)).exp_negative();
-    let moved = target_n + (friction_n - target_n) * decay;
-    let rests = displacement_m.eq(T::splat(0.0));
-    // Past the decay's last bit the state is the bound itself, so that |f| ≤ f_c holds exactly.
-    let saturated = decay.le(T::splat(VANISHED));
-    T::select(rests, friction_n, T::select(saturated, target_n, moved))
+    // At rest the target is 0 and the decay 1: the state comes out as it went in, without a case of its own. Past the
+    // decay's last bit the state is the bound itself, so that |f| ≤ f_c holds exactly.
+    target_n + (friction_n - target_n) * decay.keep(T::splat(VANISHED).lt(decay))
 }
 
 /// Stands in for `f_c = 0` in the quotient; far below any friction that can be measured.

@@ -163,6 +163,10 @@ impl Scalar for Lanes {
         Self(mask.0.select(if_true.0, if_false.0))
     }
     #[inline(always)]
+    fn keep(self, mask: LanesMask) -> Self {
+        Self(self.0 & mask.0)
+    }
+    #[inline(always)]
     fn abs(self) -> Self {
         Self(self.0.abs())
     }

@@ -57,6 +57,12 @@ pub trait Scalar:
         let negative_or_zero = Self::select(self.lt(zero), Self::splat(-1.0), zero);
         Self::select(zero.lt(self), Self::splat(1.0), negative_or_zero)
     }
+    /// `self` where the mask holds, else 0.
+    #[inline(always)]
+    #[must_use]
+    fn keep(self, mask: Self::Mask) -> Self {
+        Self::select(mask, self, Self::splat(0.0))
+    }
     /// Whether the magnitude is at most `bound`; false for NaN.
     #[inline(always)]
     fn within(self, bound: f64) -> Self::Mask {

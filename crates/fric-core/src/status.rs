@@ -15,7 +15,7 @@ use core::ops::BitOr;
 /// | `SLACK` | viscous friction exceeds the tension | no force but the offset; stored friction goes on as usual |
 /// | `SLIP` | `F_j/F_{j−1}` beyond `e^{±μ_p α}` at a pulley | the ratio held at that bound |
 /// | `SENSOR_NOT_FINITE` | sensor force NaN, infinite or beyond ±10⁹ N | last good force and friction held; the stored friction follows the motion with the last good force, so that the first good cycle goes on from where the cable is |
-/// | `SENSOR_FROZEN` | the same positive sensor value to the last bit over `frozen_cycles` cycles of motion and 1 mm of way | as above |
+/// | `SENSOR_FROZEN` | the same positive sensor value to the last bit over `frozen_cycles` cycles and 1 mm of way | as above |
 /// | `LENGTH_JUMP` | length changed by more than `length_jump_m` per elapsed cycle | friction held, force follows the sensor; the jump is not taken for motion |
 /// | `MOTION_NOT_FINITE` | length or speed NaN, infinite or beyond ±10⁶ | friction held, force follows the sensor |
 /// | `OUT_OF_RANGE` | force or speed outside the cable's `validated` range | computed as usual |

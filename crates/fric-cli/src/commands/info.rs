@@ -318,6 +318,6 @@ fn describe(result: &InfoResult, model: Option<&Model>, attachments: &[String]) 
             [step.step.to_owned(), possible.to_owned(), step.reasons.join("; ")]
         })
         .collect();
-    text += &table(["step", "", ""], 3, &rows);
+    text += &table(["the log allows", "", ""], 3, &rows);
     text
 }

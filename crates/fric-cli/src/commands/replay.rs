@@ -1,5 +1,6 @@
 //! `replay`: the compensator over a log, as the control loop would run it.
 
+use fric_core::robot::file::CableTable;
 use fric_core::{CableParams, CableStatus, Sample};
 use fric_lab::replay::{CableErrors, Deviation, Replay, ReplayedCycle};
 use fric_log::recording::Recording;
@@ -163,6 +164,15 @@ fn warn_about_model(model: &Model, reader: &SignalReader, replay: &Replay) {
         warnings::warn(&format!(
             "the cable signal comes every {interval_s:.6} s, but `cycle_s` in the robot file is {cycle_s}; delays and \
              the check for a frozen sensor count cycles of the robot file; friction itself does not depend on the rate"
+        ));
+    }
+    let tables = &model.robot.options().cable;
+    let frictionless = |cable: &&CableTable| cable.friction.mu == 0.0 && cable.friction.viscous_n_s_per_m == 0.0;
+    let names: Vec<&str> = tables.iter().filter(frictionless).map(|cable| cable.name.as_str()).collect();
+    if !names.is_empty() {
+        warnings::warn(&format!(
+            "the robot file gives no `friction` for {}: nothing is compensated there",
+            names.join(", ")
         ));
     }
     // Cables with the same trouble share a line.

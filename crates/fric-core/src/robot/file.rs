@@ -101,7 +101,7 @@ impl Default for LogTable {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MonitorTable {
-    /// Cycles of motion with an unchanged sensor; 0: never.
+    /// Cycles with an unchanged sensor; 0: never.
     pub frozen_cycles: Option<u32>,
     /// Greatest change of length in a cycle, m.
     pub length_jump_m: Option<f64>,

@@ -306,7 +306,8 @@ impl Default for PlatformOptions {
 /// When a signal counts as faulty, as stated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MonitorOptions {
-    /// After so many cycles of motion with the same sensor value to the last bit the sensor counts as frozen; 0: never.
+    /// After so many cycles, and 1 mm of way, with the same sensor value to the last bit the sensor counts as frozen;
+    /// 0: never.
     pub frozen_cycles: u32,
     /// Greatest change of length in one cycle, m.
     pub length_jump_m: f64,
