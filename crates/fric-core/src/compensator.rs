@@ -393,22 +393,23 @@ impl<const CABLES: usize> Compensator<CABLES> {
                 (CableStatus::POSE_UNREACHABLE, pose_flags.unreachable),
             ]
         };
+        let present = self.cable_count.saturating_sub(first);
         let mut status = [CableStatus::OK; LANES];
+        let mut of_all = CableStatus::OK;
         if any_flag != 0 {
             for (flag, bits) in flags() {
-                for (lane, status) in status.iter_mut().enumerate() {
+                for (lane, status) in status.iter_mut().enumerate().take(present) {
                     *status = *status | flag.if_set(bits, lane);
+                    of_all = of_all | *status;
                 }
             }
         }
         let values = platform_n.to_array().into_iter().zip(friction_n.to_array()).zip(forces.frictionless_n.to_array());
-        let present = self.cable_count.saturating_sub(first);
         let places = output.cables.iter_mut().skip(first).take(present).zip(values.zip(status));
         for (place, (((force_at_platform_n, friction_n), frictionless_n), status)) in places {
             *place = CableOutput { force_at_platform_n, friction_n, frictionless_n, status };
         }
-        let present_status = status.into_iter().take(present).fold(CableStatus::OK, |all, status| all | status);
-        (platform_n, present_status)
+        (platform_n, of_all)
     }
 }
 
