@@ -29,7 +29,7 @@ p.soft { color: var(--soft); margin: .2rem 0; }
 svg { width: 100%; height: auto; display: block; }
 svg text { fill: var(--soft); font: 12px system-ui, sans-serif; }
 svg .axis { stroke: var(--line); stroke-width: 1; fill: none; }
-svg .before { fill: var(--before); stroke: var(--before); stroke-width: .7; opacity: .75; }
+svg .before { fill: var(--before); stroke: var(--before); stroke-width: 1; }
 svg .after { fill: var(--after); stroke: var(--after); stroke-width: .7; }
 svg .flag { fill: var(--flag); }
 @media print { body { max-width: none; margin: 0; } section { break-inside: avoid; } }
