@@ -19,7 +19,7 @@ use core::ops::BitOr;
 /// | `LENGTH_JUMP` | length changed by more than `length_jump_m` per elapsed cycle | friction held, force follows the sensor; the jump is not taken for motion |
 /// | `MOTION_NOT_FINITE` | length or speed NaN, infinite or beyond ±10⁶ | friction held, force follows the sensor |
 /// | `OUT_OF_RANGE` | force or speed outside the cable's `validated` range | computed as usual |
-/// | `POSE_MISSING` | no pose, or not a finite one, for a cable that needs it | last wrap and direction held; 90° until the first pose |
+/// | `POSE_MISSING` | no pose, or not a usable one (not finite, or a quaternion far from norm 1), for a cable that needs it | last wrap and direction held; 90° until the first pose |
 /// | `POSE_UNREACHABLE` | the attachment lies inside the last pulley's circle | last wrap and direction held |
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct CableStatus(u32);
