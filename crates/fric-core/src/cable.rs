@@ -2,15 +2,18 @@
 //!
 //! For: sensor force and displacement in, force at the platform out ([`cable_step`]). Generic over [`Scalar`], so the
 //! control cycle (four cables at once) and a fit that carries derivatives run the very same code. It does not judge
-//! signals: whoever calls it passes finite numbers ([`Compensator`](crate::Compensator) sees to that). State: one number
-//! per pulley, or one per cable, kept by the caller: behind [`Pulleys`], or passed as `lumped_friction_n`.
+//! signals: [`condition`](crate::signals::condition) sees to it that they are finite. State: one number per pulley, or
+//! one per cable, kept by the caller behind [`Cable`].
 //!
 //! Symbols and sign convention are those of [`pulley`].
 
 use crate::dahl::dahl_step;
-use crate::effects::stribeck::Stribeck;
+use crate::effects::stribeck::{self, Stribeck};
+use crate::parameters::{MU, OFFSET, SIGMA, Values};
 use crate::pulley;
+use crate::robot::{CableParams, Presliding};
 use crate::scalar::{Mask, Scalar};
+use crate::signals::Conditioned;
 
 /// Parameters of a cable as the cycle uses them.
 #[derive(Clone, Copy, Debug)]
@@ -27,8 +30,28 @@ pub struct CableModel<T: Scalar> {
     pub frictionless_gain: T,
     /// One state per cable (\[P\]'s) instead of one per pulley.
     pub lumped: T::Mask,
-    /// Friction falling with speed.
-    pub stribeck: Stribeck<T>,
+}
+
+impl<T: Scalar> CableModel<T> {
+    /// The model of a cable with `values` in place of the cable's own.
+    #[must_use]
+    pub fn new(params: &CableParams, values: &Values<T>) -> Self {
+        let states = match params.presliding {
+            Presliding::PerPulley => params.pulley_count,
+            Presliding::Lumped => 1,
+        };
+        let sensor_cos = params.sensor_wrap_rad.map_or(0.0, libm::cos);
+        #[expect(clippy::cast_precision_loss, reason = "at most MAX_PULLEYS")]
+        let sigma_n_per_m = values[SIGMA] / T::splat(states as f64);
+        Self {
+            mu: values[MU],
+            sigma_n_per_m,
+            offset_n: values[OFFSET],
+            sensor_cos: T::splat(sensor_cos),
+            frictionless_gain: T::splat(1.0 / (1.0 - sensor_cos)),
+            lumped: T::splat(0.0).lt(T::splat(f64::from(params.presliding == Presliding::Lumped))),
+        }
+    }
 }
 
 /// One pulley of a cable. All zero is a pulley that is not there.
@@ -40,21 +63,31 @@ pub struct Pulley<T> {
     pub viscous_n_s_per_m: T,
 }
 
-/// The pulleys of a cable in order from the winch, and the friction force each has stored (`per_pulley`).
+/// A cable, or several in lanes: its pulleys in order from the winch, its effects, and what it remembers.
 ///
 /// Pulley 0 is the sensor pulley; a sensor in line with the cable is a sensor pulley without wrap.
-pub trait Pulleys<T> {
-    /// How many, at least 1.
+pub trait Cable<T: Scalar> {
+    /// How many pulleys, at least 1.
     fn count(&self) -> usize;
     /// The pulley at a place.
     fn pulley(&self, place: usize) -> Pulley<T>;
     /// `e^{μ_p α}` there, the tension ratio at which the cable slips; beyond
     /// [`NO_LIMIT_RATIO`](pulley::NO_LIMIT_RATIO) where it cannot.
     fn traction_ratio(&self, place: usize) -> T;
-    /// Its stored Coulomb friction, N.
-    fn friction_n(&self, place: usize) -> T;
+    /// A parameter of an effect, by its place in [`Values`].
+    fn effect(&self, place: usize) -> T;
+    /// Coulomb friction stored at a pulley (`per_pulley`), N.
+    fn pulley_friction_n(&self, place: usize) -> T;
     /// Stores it.
-    fn set_friction_n(&mut self, place: usize, friction_n: T);
+    fn set_pulley_friction_n(&mut self, place: usize, friction_n: T);
+    /// Coulomb friction stored in the cable (`lumped`), N.
+    fn lumped_friction_n(&self) -> T;
+    /// Stores it.
+    fn set_lumped_friction_n(&mut self, friction_n: T);
+    /// Last good friction in all, N.
+    fn held_friction_n(&self) -> T;
+    /// Keeps it.
+    fn set_held_friction_n(&mut self, friction_n: T);
 }
 
 /// What may differ between robots but not between the lanes of one: decided once a cycle, outside the arithmetic.
@@ -71,6 +104,23 @@ pub struct Features {
     pub stribeck: bool,
 }
 
+impl Features {
+    /// These and what a cable needs.
+    pub(crate) fn with(mut self, params: &CableParams) -> Self {
+        self.per_pulley |= params.presliding == Presliding::PerPulley;
+        self.lumped |= params.presliding == Presliding::Lumped;
+        self.traction |= params.traction_mu.is_some();
+        self.stribeck |= params.effects.get("stribeck", "ratio").is_some_and(|ratio| ratio.abs() > 0.0);
+        self
+    }
+
+    /// These and the effects of which a parameter varies, see [`Values`].
+    pub(crate) fn and_varying(mut self, varies: impl Fn(usize) -> bool) -> Self {
+        self.stribeck |= varies(stribeck::RATIO) || varies(stribeck::VELOCITY);
+        self
+    }
+}
+
 /// Signals of one cable in one cycle, all finite.
 #[derive(Clone, Copy, Debug)]
 pub struct CableSignals<T> {
@@ -85,67 +135,88 @@ pub struct CableSignals<T> {
 /// Outcome of one cycle for one cable.
 #[derive(Clone, Copy, Debug)]
 pub struct CableForces<T: Scalar> {
-    /// Force at the platform, N.
+    /// Force at the platform, N, the offset ε included.
     pub platform_force_n: T,
+    /// Friction: force at the platform less the frictionless one, without ε, N.
+    pub friction_n: T,
     /// Sensor force turned into cable tension as if nothing rubbed, N.
     pub frictionless_n: T,
-    /// The `lumped` state after the cycle, N.
-    pub lumped_friction_n: T,
-    /// The sensor shows no tension.
-    pub no_tension: T::Mask,
     /// The cable carries no tension at the platform, or none at all.
     pub slack: T::Mask,
     /// Slip on a pulley.
     pub slip: T::Mask,
 }
 
-/// One cycle of one cable (or of several in lanes).
+/// One cycle of one cable (or of several in lanes) on conditioned signals.
 ///
-/// Slack releases the stored friction. `lumped_friction_n` is the stored friction of the
-/// `lumped` form. Viscous friction stays outside the Dahl state in both forms: it needs no presliding distance
-/// (deviation from \[P\] 15, where it is inside). The macroscopic friction is taken from the frictionless cable,
-/// `F_f = F_n − F_s/(1 − c)`, so that presliding covers the sensor pulley too (deviation from \[P\] 15: `F_n − F_1`).
+/// While a signal is faulty ([`Conditioned::hold`]) the stored friction follows the motion with the last good force, and
+/// the output holds the last good friction, which takes no cable below zero tension. Slack releases the stored friction.
 #[inline(always)]
-pub fn cable_step<T: Scalar>(
+pub fn cable_cycle<T: Scalar>(
+    model: &CableModel<T>,
+    features: Features,
+    conditioned: &Conditioned<T>,
+    cable: &mut impl Cable<T>,
+) -> CableForces<T> {
+    let held_friction_n = cable.held_friction_n();
+    let forces = cable_step(model, features, &conditioned.signals(), cable);
+    let no_tension = conditioned.sensor_force_n.le(T::splat(0.0));
+    let hold = conditioned.hold();
+    cable.set_held_friction_n(T::select(hold, held_friction_n, forces.friction_n));
+    let held_n = held_friction_n.max(-forces.frictionless_n).keep(no_tension.not());
+    CableForces {
+        platform_force_n: T::select(hold, forces.frictionless_n + held_n + model.offset_n, forces.platform_force_n),
+        friction_n: T::select(hold, held_n, forces.friction_n),
+        slip: forces.slip.and(hold.not()),
+        ..forces
+    }
+}
+
+/// One cycle of one cable on signals that may be believed.
+///
+/// Viscous friction stays outside the Dahl state in both forms: it needs no presliding distance (deviation from \[P\] 15,
+/// where it is inside). The macroscopic friction is taken from the frictionless cable, `F_f = F_n − F_s/(1 − c)`, so that
+/// presliding covers the sensor pulley too (deviation from \[P\] 15: `F_n − F_1`).
+#[inline(always)]
+fn cable_step<T: Scalar>(
     model: &CableModel<T>,
     features: Features,
     signals: &CableSignals<T>,
-    pulleys: &mut impl Pulleys<T>,
-    lumped_friction_n: T,
+    cable: &mut impl Cable<T>,
 ) -> CableForces<T> {
     let zero = T::splat(0.0);
     let frictionless_n = signals.sensor_force_n * model.frictionless_gain;
     let no_tension = signals.sensor_force_n.le(zero);
-    let mu = if features.stribeck { model.mu * model.stribeck.factor(signals.speed_m_per_s) } else { model.mu };
-    let mut forces = CableForces {
-        platform_force_n: frictionless_n,
-        frictionless_n,
-        lumped_friction_n,
-        no_tension,
-        slack: no_tension,
-        slip: T::Mask::NONE,
-    };
+    let mut mu = model.mu;
+    if features.stribeck {
+        mu = mu * Stribeck::of(|place| cable.effect(place)).factor(signals.speed_m_per_s);
+    }
+    let mut chain_n = frictionless_n;
+    let mut slip = T::Mask::NONE;
     if features.lumped {
-        let (platform_n, friction_n, slip) = lumped_chain(model, features, mu, signals, lumped_friction_n, pulleys);
-        forces.platform_force_n = platform_n;
-        forces.lumped_friction_n = friction_n.keep(no_tension.not());
-        forces.slip = slip;
+        let (platform_n, friction_n, slips) = lumped_chain(model, features, mu, signals, cable);
+        cable.set_lumped_friction_n(friction_n.keep(no_tension.not()));
+        (chain_n, slip) = (platform_n, slips);
     }
     if features.per_pulley {
-        let (platform_n, slip) = pulley_chain(model, features, mu, signals, no_tension.or(model.lumped), pulleys);
+        let (platform_n, slips) = pulley_chain(model, features, mu, signals, no_tension.or(model.lumped), cable);
         if features.lumped {
-            forces.platform_force_n = T::select(model.lumped, forces.platform_force_n, platform_n);
-            forces.slip = model.lumped.and(forces.slip).or(model.lumped.not().and(slip));
+            chain_n = T::select(model.lumped, chain_n, platform_n);
+            slip = model.lumped.and(slip).or(model.lumped.not().and(slips));
         } else {
-            forces.platform_force_n = platform_n;
-            forces.slip = slip;
+            (chain_n, slip) = (platform_n, slips);
         }
     }
-    forces.slack = no_tension.or(forces.platform_force_n.lt(zero));
-    let pulled_n = forces.platform_force_n.max(zero);
-    forces.platform_force_n = T::select(no_tension, frictionless_n, pulled_n) + model.offset_n;
-    forces.slip = forces.slip.and(forces.slack.not());
-    forces
+    let slack = no_tension.or(chain_n.lt(zero));
+    let pulled_n = chain_n.max(zero);
+    let platform_force_n = T::select(no_tension, frictionless_n, pulled_n) + model.offset_n;
+    CableForces {
+        platform_force_n,
+        friction_n: platform_force_n - model.offset_n - frictionless_n,
+        frictionless_n,
+        slack,
+        slip: slip.and(slack.not()),
+    }
 }
 
 /// `per_pulley`: one Dahl state on each bearing; its normal force includes the friction it has stored.
@@ -159,14 +230,14 @@ fn pulley_chain<T: Scalar>(
     mu: T,
     signals: &CableSignals<T>,
     release: T::Mask,
-    pulleys: &mut impl Pulleys<T>,
+    cable: &mut impl Cable<T>,
 ) -> (T, T::Mask) {
     let zero = T::splat(0.0);
     let mut tension_n = zero;
     let mut slip = T::Mask::NONE;
-    for place in 0..pulleys.count() {
-        let pulley = pulleys.pulley(place);
-        let stored_n = pulleys.friction_n(place);
+    for place in 0..cable.count() {
+        let pulley = cable.pulley(place);
+        let stored_n = cable.pulley_friction_n(place);
         let viscous_n = pulley.viscous_n_s_per_m * signals.speed_m_per_s;
         let sensed = |friction_n: T| {
             (signals.sensor_force_n - model.sensor_cos * (friction_n + viscous_n)) * model.frictionless_gain
@@ -181,7 +252,7 @@ fn pulley_chain<T: Scalar>(
         let mut friction_n = dahl_step(stored_n, sliding_n, model.sigma_n_per_m, signals.displacement_m);
         let mut behind_n = if place == 0 { sensed(friction_n) } else { tension_n + friction_n + viscous_n };
         if features.traction {
-            let traction_ratio = pulleys.traction_ratio(place);
+            let traction_ratio = cable.traction_ratio(place);
             let before_n = if place == 0 { behind_n - friction_n - viscous_n } else { tension_n };
             let (limited_n, slips) = pulley::limit_traction(before_n, behind_n, traction_ratio);
             let (held_before_n, held_n) = if place == 0 {
@@ -194,7 +265,7 @@ fn pulley_chain<T: Scalar>(
             friction_n = T::select(slips, held_n - held_before_n - viscous_n, friction_n);
             slip = slip.or(slips);
         }
-        pulleys.set_friction_n(place, friction_n.keep(release.not()));
+        cable.set_pulley_friction_n(place, friction_n.keep(release.not()));
         tension_n = behind_n;
     }
     (tension_n, slip)
@@ -207,23 +278,22 @@ fn lumped_chain<T: Scalar>(
     features: Features,
     mu: T,
     signals: &CableSignals<T>,
-    friction_n: T,
-    pulleys: &impl Pulleys<T>,
+    cable: &impl Cable<T>,
 ) -> (T, T, T::Mask) {
     let zero = T::splat(0.0);
     let direction = signals.displacement_m.sign();
     let mut slip = T::Mask::NONE;
     let mut coulomb_n = zero;
     let mut viscous_n = zero;
-    for place in 0..pulleys.count() {
-        let pulley = pulleys.pulley(place);
+    for place in 0..cable.count() {
+        let pulley = cable.pulley(place);
         let drag_n = pulley.viscous_n_s_per_m * signals.speed_m_per_s;
         if place == 0 {
             let (gain, viscous_gain) = pulley::sensor_gains(direction, mu, pulley.wrap_factor, model.sensor_cos);
             coulomb_n = signals.sensor_force_n * gain;
             viscous_n = drag_n * viscous_gain;
             if features.traction {
-                let traction_ratio = pulleys.traction_ratio(place);
+                let traction_ratio = cable.traction_ratio(place);
                 // [P] 10 the other way round: the tension on the winch side from the one behind.
                 let (inverse_gain, inverse_viscous) = pulley::sliding_gains(-direction, mu, pulley.wrap_factor);
                 let behind_n = coulomb_n + viscous_n;
@@ -241,7 +311,7 @@ fn lumped_chain<T: Scalar>(
         let before_n = coulomb_n + viscous_n;
         let (next_coulomb_n, next_viscous_n) = (coulomb_n * gain, viscous_n * gain + drag_n * viscous_gain);
         if features.traction {
-            let traction_ratio = pulleys.traction_ratio(place);
+            let traction_ratio = cable.traction_ratio(place);
             let behind_n = next_coulomb_n + next_viscous_n;
             let (limited_n, slips) = pulley::limit_traction(before_n, behind_n, traction_ratio);
             slip = slip.or(slips);
@@ -259,6 +329,6 @@ fn lumped_chain<T: Scalar>(
     // outweighs the others: its friction lowers the tension behind it.
     let distance_m = signals.displacement_m.abs();
     let toward_m = T::select(sliding_n.lt(zero), -distance_m, distance_m);
-    let moved_n = dahl_step(friction_n, sliding_n.abs(), model.sigma_n_per_m, toward_m);
+    let moved_n = dahl_step(cable.lumped_friction_n(), sliding_n.abs(), model.sigma_n_per_m, toward_m);
     (frictionless_n + moved_n + viscous_n, moved_n, slip)
 }

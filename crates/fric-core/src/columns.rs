@@ -2,22 +2,16 @@
 //!
 //! Private to the crate: the structure-of-arrays behind [`Compensator`](crate::Compensator).
 
-use crate::cable::{CableModel, Pulley, Pulleys};
-use crate::effects::stribeck::Stribeck;
-use crate::effects::time_delay::{Delay, DelayLine};
+use crate::cable::{Cable, CableModel, Pulley};
+use crate::effects::EFFECT_PARAMETER_COUNT;
+use crate::effects::time_delay::{self, Delay, DelayLine};
 use crate::lanes::{Lanes, LanesMask};
-use crate::pulley::wrap_factor;
-use crate::robot::{CableParams, MAX_PULLEYS, Presliding, Wrap};
+use crate::parameters::FRICTION_COUNT;
+use crate::places::{NO_SLIP, PLACES, Places, START_WRAP_FACTOR};
+use crate::robot::{CableParams, MAX_PULLEYS};
 use crate::scalar::Scalar;
+use crate::signals::SignalState;
 use crate::swivel::Swivel;
-
-/// Places of pulleys: a sensor in line with the cable takes one of its own.
-pub const PLACES: usize = MAX_PULLEYS + 1;
-
-/// Far beyond every tension ratio, and its inverse still a normal number.
-const NO_SLIP: f64 = 1e200;
-/// Stands for "no presliding": motion of a picometre reverses any friction.
-const NO_PRESLIDING_N_PER_M: f64 = 1e15;
 
 /// Parameters that do not change while running.
 #[derive(Clone, Copy, Debug)]
@@ -28,8 +22,7 @@ pub struct ParamColumns<const CABLES: usize> {
     sensor_cos: [f64; CABLES],
     frictionless_gain: [f64; CABLES],
     lumped: [f64; CABLES],
-    stribeck_ratio: [f64; CABLES],
-    stribeck_velocity_m_per_s: [f64; CABLES],
+    effects: [[f64; CABLES]; EFFECT_PARAMETER_COUNT],
     wrap_factor: [[f64; CABLES]; PLACES],
     viscous_n_s_per_m: [[f64; CABLES]; PLACES],
     traction_ratio: [[f64; CABLES]; PLACES],
@@ -58,8 +51,7 @@ impl<const CABLES: usize> ParamColumns<CABLES> {
         sensor_cos: [0.0; CABLES],
         frictionless_gain: [1.0; CABLES],
         lumped: [0.0; CABLES],
-        stribeck_ratio: [0.0; CABLES],
-        stribeck_velocity_m_per_s: [1.0; CABLES],
+        effects: [[1.0; CABLES]; EFFECT_PARAMETER_COUNT],
         wrap_factor: [[0.0; CABLES]; PLACES],
         viscous_n_s_per_m: [[0.0; CABLES]; PLACES],
         traction_ratio: [[NO_SLIP; CABLES]; PLACES],
@@ -80,52 +72,36 @@ impl<const CABLES: usize> ParamColumns<CABLES> {
 
 impl<const CABLES: usize> ParamColumns<CABLES> {
     /// Enters a cable of a robot with `place_count` places a cable.
-    ///
-    /// The pulleys stand from the first place on, but one that follows the pose at the last: there it is for all cables,
-    /// and places without a pulley lie before it.
     pub fn set(&mut self, cable: usize, params: &CableParams, cycle_s: f64, place_count: usize) {
-        let states = match params.presliding {
-            Presliding::PerPulley => params.pulley_count,
-            Presliding::Lumped => 1,
-        };
-        #[expect(clippy::cast_precision_loss, reason = "at most MAX_PULLEYS")]
-        let sigma_n_per_m = params.friction.sigma_n_per_m.unwrap_or(NO_PRESLIDING_N_PER_M) / states as f64;
-        let sensor_cos = params.sensor_wrap_rad.map_or(0.0, libm::cos);
-        let first_place = usize::from(params.sensor_wrap_rad.is_none());
-        put(&mut self.mu, cable, params.friction.mu);
-        put(&mut self.sigma_n_per_m, cable, sigma_n_per_m);
-        put(&mut self.offset_n, cable, params.friction.offset_n);
-        put(&mut self.sensor_cos, cable, sensor_cos);
-        put(&mut self.frictionless_gain, cable, 1.0 / (1.0 - sensor_cos));
-        put(&mut self.lumped, cable, f64::from(params.presliding == Presliding::Lumped));
-        put(&mut self.stribeck_ratio, cable, params.effects.stribeck.ratio);
-        put(&mut self.stribeck_velocity_m_per_s, cable, params.effects.stribeck.velocity_m_per_s);
+        let values = params.values();
+        let model = CableModel::<f64>::new(params, &values);
+        put(&mut self.mu, cable, model.mu);
+        put(&mut self.sigma_n_per_m, cable, model.sigma_n_per_m);
+        put(&mut self.offset_n, cable, model.offset_n);
+        put(&mut self.sensor_cos, cable, model.sensor_cos);
+        put(&mut self.frictionless_gain, cable, model.frictionless_gain);
+        put(&mut self.lumped, cable, f64::from(model.lumped));
+        for (column, value) in self.effects.iter_mut().zip(values.iter().skip(FRICTION_COUNT)) {
+            put(column, cable, *value);
+        }
         put(&mut self.traction_mu, cable, params.traction_mu.unwrap_or(0.0));
         put(&mut self.least_force_n, cable, params.validated.force_n[0]);
         put(&mut self.greatest_force_n, cable, params.validated.force_n[1]);
         put(&mut self.greatest_speed_m_per_s, cable, params.validated.speed_m_per_s);
-        put(&mut self.delay, cable, Delay::from_cycles(params.effects.delay_s / cycle_s));
-        let places = self.wrap_factor.iter_mut().zip(&mut self.viscous_n_s_per_m).zip(&mut self.traction_ratio);
-        let wraps = params.wraps.iter().take(params.pulley_count);
-        let mut pulley_place = [PLACES; MAX_PULLEYS];
-        let rows = places.enumerate().skip(first_place).zip(wraps).zip(&mut pulley_place);
-        for (((place, ((factors, viscous), ratios)), wrap), stands_at) in rows {
-            *stands_at = if *wrap == Wrap::Pose { place_count - 1 } else { place };
-            match *wrap {
-                Wrap::Fixed { wrap_rad } => {
-                    put(viscous, cable, params.friction.viscous_n_s_per_m);
-                    put(factors, cable, wrap_factor(wrap_rad));
-                    if let Some(traction_mu) = params.traction_mu {
-                        put(ratios, cable, libm::exp(traction_mu * wrap_rad));
-                    }
-                }
-                Wrap::Pose => put(&mut self.follows_pose, cable, 1.0),
-            }
+        let delay_cycles = values[time_delay::DELAY] / cycle_s;
+        put(&mut self.delay, cable, Delay::from_cycles(delay_cycles, delay_cycles));
+        let places = Places::new(params, place_count);
+        for (place, viscous) in self.viscous_n_s_per_m.iter_mut().enumerate() {
+            put(viscous, cable, params.friction.viscous_n_s_per_m * f64::from(places.has_pulley[place]));
         }
-        put(&mut self.pulley_place, cable, pulley_place);
-        if let Some(viscous) = self.viscous_n_s_per_m.get_mut(place_count - 1).filter(|_| params.needs_pose()) {
-            put(viscous, cable, params.friction.viscous_n_s_per_m);
+        for (column, factor) in self.wrap_factor.iter_mut().zip(places.wrap_factor) {
+            put(column, cable, factor);
         }
+        for (column, ratio) in self.traction_ratio.iter_mut().zip(places.traction_ratio) {
+            put(column, cable, ratio);
+        }
+        put(&mut self.follows_pose, cable, f64::from(params.needs_pose()));
+        put(&mut self.pulley_place, cable, places.of_pulley);
         if let Some(geometry) = &params.geometry {
             let points = [
                 (&mut self.entry_m, geometry.base_m),
@@ -152,10 +128,6 @@ impl<const CABLES: usize> ParamColumns<CABLES> {
             sensor_cos: Lanes::load(&self.sensor_cos, block),
             frictionless_gain: Lanes::load(&self.frictionless_gain, block),
             lumped: Lanes::splat(0.0).lt(Lanes::load(&self.lumped, block)),
-            stribeck: Stribeck {
-                ratio: Lanes::load(&self.stribeck_ratio, block),
-                velocity_m_per_s: Lanes::load(&self.stribeck_velocity_m_per_s, block),
-            },
         }
     }
 
@@ -218,6 +190,26 @@ pub struct StateColumns<const CABLES: usize> {
 }
 
 impl<const CABLES: usize> StateColumns<CABLES> {
+    /// What is remembered of a block's signals.
+    #[inline(always)]
+    pub fn signals(&self, block: usize) -> SignalState<Lanes> {
+        SignalState {
+            sensor_force_n: Lanes::load(&self.sensor_force_n, block),
+            frozen_count: Lanes::load(&self.frozen_count, block),
+            frozen_travel_m: Lanes::load(&self.frozen_travel_m, block),
+            length_m: Lanes::load(&self.length_m, block),
+        }
+    }
+
+    /// Keeps it.
+    #[inline(always)]
+    pub fn set_signals(&mut self, block: usize, signals: &SignalState<Lanes>) {
+        signals.sensor_force_n.store(&mut self.sensor_force_n, block);
+        signals.frozen_count.store(&mut self.frozen_count, block);
+        signals.frozen_travel_m.store(&mut self.frozen_travel_m, block);
+        signals.length_m.store(&mut self.length_m, block);
+    }
+
     /// At rest, nothing stored, no pose yet: the wrap that follows it taken as 90°.
     pub const START: Self = Self {
         sensor_force_n: [0.0; CABLES],
@@ -227,7 +219,7 @@ impl<const CABLES: usize> StateColumns<CABLES> {
         friction_n: [0.0; CABLES],
         lumped_friction_n: [0.0; CABLES],
         pulley_friction_n: [[0.0; CABLES]; PLACES],
-        pose_wrap_factor: [core::f64::consts::SQRT_2; CABLES],
+        pose_wrap_factor: [START_WRAP_FACTOR; CABLES],
         pose_traction_ratio: [NO_SLIP; CABLES],
         direction_known: [0.0; CABLES],
         direction: [[0.0; CABLES]; 3],
@@ -237,17 +229,15 @@ impl<const CABLES: usize> StateColumns<CABLES> {
     };
 }
 
-/// The pulleys of a block with their stored friction.
-pub struct PulleyColumns<'a, const CABLES: usize> {
-    pub params: &'a ParamColumns<CABLES>,
-    pub pulley_friction_n: &'a mut [[f64; CABLES]; PLACES],
-    pub pose_wrap_factor: &'a [f64; CABLES],
-    pub pose_traction_ratio: &'a [f64; CABLES],
-    pub block: usize,
-    pub count: usize,
+/// The cables of a block with their state.
+pub struct BlockOfCables<'a, const CABLES: usize> {
+    params: &'a ParamColumns<CABLES>,
+    state: &'a mut StateColumns<CABLES>,
+    block: usize,
+    count: usize,
 }
 
-impl<'a, const CABLES: usize> PulleyColumns<'a, CABLES> {
+impl<'a, const CABLES: usize> BlockOfCables<'a, CABLES> {
     #[inline(always)]
     pub fn new(
         params: &'a ParamColumns<CABLES>,
@@ -255,20 +245,11 @@ impl<'a, const CABLES: usize> PulleyColumns<'a, CABLES> {
         block: usize,
         count: usize,
     ) -> Self {
-        Self {
-            pose_wrap_factor: &state.pose_wrap_factor,
-            pose_traction_ratio: &state.pose_traction_ratio,
-            params,
-            pulley_friction_n: &mut state.pulley_friction_n,
-            block,
-            count,
-        }
+        Self { params, state, block, count }
     }
-}
 
-impl<const CABLES: usize> PulleyColumns<'_, CABLES> {
     #[inline(always)]
-    fn column(&self, columns: &[[f64; CABLES]; PLACES], place: usize) -> Lanes {
+    fn column(&self, columns: &[[f64; CABLES]], place: usize) -> Lanes {
         columns.get(place).map_or(Lanes::splat(0.0), |column| Lanes::load(column, self.block))
     }
 
@@ -283,7 +264,7 @@ impl<const CABLES: usize> PulleyColumns<'_, CABLES> {
     }
 }
 
-impl<const CABLES: usize> Pulleys<Lanes> for PulleyColumns<'_, CABLES> {
+impl<const CABLES: usize> Cable<Lanes> for BlockOfCables<'_, CABLES> {
     #[inline(always)]
     fn count(&self) -> usize {
         self.count
@@ -291,23 +272,43 @@ impl<const CABLES: usize> Pulleys<Lanes> for PulleyColumns<'_, CABLES> {
     #[inline(always)]
     fn pulley(&self, place: usize) -> Pulley<Lanes> {
         Pulley {
-            wrap_factor: self.posed(place, self.pose_wrap_factor, &self.params.wrap_factor),
+            wrap_factor: self.posed(place, &self.state.pose_wrap_factor, &self.params.wrap_factor),
             viscous_n_s_per_m: self.column(&self.params.viscous_n_s_per_m, place),
         }
     }
     #[inline(always)]
     fn traction_ratio(&self, place: usize) -> Lanes {
-        self.posed(place, self.pose_traction_ratio, &self.params.traction_ratio)
+        self.posed(place, &self.state.pose_traction_ratio, &self.params.traction_ratio)
     }
     #[inline(always)]
-    fn friction_n(&self, place: usize) -> Lanes {
-        self.column(self.pulley_friction_n, place)
+    fn effect(&self, place: usize) -> Lanes {
+        self.column(&self.params.effects, place - FRICTION_COUNT)
     }
     #[inline(always)]
-    fn set_friction_n(&mut self, place: usize, friction_n: Lanes) {
-        if let Some(column) = self.pulley_friction_n.get_mut(place) {
+    fn pulley_friction_n(&self, place: usize) -> Lanes {
+        self.column(&self.state.pulley_friction_n, place)
+    }
+    #[inline(always)]
+    fn set_pulley_friction_n(&mut self, place: usize, friction_n: Lanes) {
+        if let Some(column) = self.state.pulley_friction_n.get_mut(place) {
             friction_n.store(column, self.block);
         }
+    }
+    #[inline(always)]
+    fn lumped_friction_n(&self) -> Lanes {
+        Lanes::load(&self.state.lumped_friction_n, self.block)
+    }
+    #[inline(always)]
+    fn set_lumped_friction_n(&mut self, friction_n: Lanes) {
+        friction_n.store(&mut self.state.lumped_friction_n, self.block);
+    }
+    #[inline(always)]
+    fn held_friction_n(&self) -> Lanes {
+        Lanes::load(&self.state.friction_n, self.block)
+    }
+    #[inline(always)]
+    fn set_held_friction_n(&mut self, friction_n: Lanes) {
+        friction_n.store(&mut self.state.friction_n, self.block);
     }
 }
 

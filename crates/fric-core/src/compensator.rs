@@ -5,26 +5,20 @@
 //! ([`CableStatus`]) and never reaches another cable. Size: about 700 bytes a cable, and 1 kB more a cable for the delay
 //! lines.
 
-use crate::cable::{CableSignals, Features, cable_step};
-use crate::columns::{PLACES, ParamColumns, PulleyColumns, StateColumns};
+use crate::cable::{Features, cable_cycle};
+use crate::columns::{BlockOfCables, ParamColumns, StateColumns};
 use crate::cycle::{CableInput, CableOutput, CycleInput, CycleOutput};
-use crate::effects::time_delay::{Delay, DelayLine};
+use crate::effects::time_delay::{self, Delay, DelayLine};
 use crate::lanes::{LANES, Lanes, LanesMask};
-use crate::platform::{Pose, Wrench};
-use crate::robot::{MAX_PULLEYS, ParamError, ParamProblem, Presliding, RobotParams};
+use crate::places::{PLACES, Places};
+use crate::platform::{self, Pose, Wrench};
+use crate::pulley::traction_ratio;
+use crate::robot::{MAX_PULLEYS, ParamError, ParamProblem, RobotParams};
 use crate::scalar::{Mask, Scalar};
+use crate::signals::{Conditioned, RawSignals, SignalLimits, condition};
 use crate::status::CableStatus;
 use crate::swivel;
 use nalgebra::{Matrix3, SMatrix, Vector3};
-
-/// Sensor forces beyond this are no forces, N.
-const GREATEST_FORCE_N: f64 = 1e9;
-/// A sensor that does not change while the cable travels this far is frozen, m; beyond every encoder's noise.
-const FROZEN_TRAVEL_M: f64 = 1e-3;
-/// A pause counts as at most so many cycles.
-const GREATEST_ELAPSED: f64 = 1e6;
-/// Lengths and speeds beyond this are none, m and m/s.
-const GREATEST_MOTION: f64 = 1e6;
 
 /// Friction compensation of a robot with at most `CABLES` cables.
 ///
@@ -69,9 +63,7 @@ pub struct Compensator<const CABLES: usize> {
     all_geometry: bool,
     cable_count: usize,
     place_count: usize,
-    frozen_cycles: f64,
-    length_jump_m: f64,
-    length_noise_m: f64,
+    limits: SignalLimits,
     gravity_n: Vector3<f64>,
     center_of_mass_m: Vector3<f64>,
 }
@@ -107,11 +99,8 @@ impl<const CABLES: usize> Compensator<CABLES> {
         let mut features = Features::default();
         let mut place_count = 1;
         for cable in robot.cables {
-            features.per_pulley |= cable.presliding == Presliding::PerPulley;
-            features.lumped |= cable.presliding == Presliding::Lumped;
-            features.traction |= cable.traction_mu.is_some();
-            features.stribeck |= cable.effects.stribeck.ratio.abs() > 0.0;
-            place_count = place_count.max(cable.pulley_count + usize::from(cable.sensor_wrap_rad.is_none()));
+            features = features.with(cable);
+            place_count = place_count.max(Places::needed(cable));
         }
         for (place, cable) in robot.cables.iter().enumerate() {
             params.set(place, cable, robot.cycle_s, place_count);
@@ -120,17 +109,12 @@ impl<const CABLES: usize> Compensator<CABLES> {
             params,
             state: Self::START,
             features,
-            any_delay: robot.cables.iter().any(|cable| cable.effects.delay_s > 0.0),
+            any_delay: robot.cables.iter().any(|cable| cable.values()[time_delay::DELAY] > 0.0),
             any_geometry: robot.cables.iter().any(|cable| cable.geometry.is_some()),
             all_geometry: robot.cables.iter().all(|cable| cable.geometry.is_some()),
             cable_count,
             place_count,
-            frozen_cycles: match robot.monitor.frozen_cycles {
-                0 => f64::INFINITY,
-                cycles => f64::from(cycles),
-            },
-            length_jump_m: robot.monitor.length_jump_m,
-            length_noise_m: robot.monitor.length_noise_m,
+            limits: robot.monitor.limits(),
             gravity_n: robot.gravity_m_per_s2 * robot.mass_kg,
             center_of_mass_m: robot.center_of_mass_m,
         })
@@ -251,15 +235,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
     /// Wrap, direction and moment arm of a block's cables at a pose; kept where the pose leaves a cable no way out.
     #[inline(always)]
     fn follow_pose(&mut self, block: usize, pose: &Pose, rotation: &Matrix3<f64>) -> PoseFlags {
-        let [px, py, pz] = self.params.platform_m(block);
-        let turn = |x: f64, y: f64, z: f64| Lanes::splat(x) * px + Lanes::splat(y) * py + Lanes::splat(z) * pz;
-        let [ax, ay, az] = [
-            turn(rotation.m11, rotation.m12, rotation.m13),
-            turn(rotation.m21, rotation.m22, rotation.m23),
-            turn(rotation.m31, rotation.m32, rotation.m33),
-        ];
-        let [x, y, z] = [pose.position_m.x, pose.position_m.y, pose.position_m.z].map(Lanes::splat);
-        let attachment_m = [x + ax, y + ay, z + az];
+        let (attachment_m, [ax, ay, az]) = platform::attachment(pose, rotation, self.params.platform_m(block));
         let exit = swivel::exit(&self.params.swivel(block), attachment_m);
         let with_geometry = self.params.with_geometry(block);
         let moves = exit.reachable.and(with_geometry);
@@ -288,7 +264,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
             let wraps_rad = cos.into_iter().zip(sin).map(|(cos, sin)| swivel::wrap_rad([cos, sin]));
             let mut ratio = [0.0; LANES];
             for ((ratio, mu), wrap_rad) in ratio.iter_mut().zip(traction_mu).zip(wraps_rad) {
-                *ratio = libm::exp(mu * wrap_rad);
+                *ratio = traction_ratio(mu, wrap_rad);
             }
             let limited = Lanes::splat(0.0).lt(Lanes::new(traction_mu));
             let ratio = Lanes::select(limited, Lanes::new(ratio), Lanes::load(&columns.pose_traction_ratio, block));
@@ -309,81 +285,38 @@ impl<const CABLES: usize> Compensator<CABLES> {
         let first = block * LANES;
         let cables: [CableInput; LANES] =
             core::array::from_fn(|lane| input.cables.get(first + lane).copied().unwrap_or_default());
-        let sensor_n = Lanes::new(cables.map(|cable| cable.sensor_force_n));
-        let length_m = Lanes::new(cables.map(|cable| cable.length_m));
-        let speed_m_per_s = Lanes::new(cables.map(|cable| cable.speed_m_per_s));
-        let zero = Lanes::splat(0.0);
-
-        // Motion: what may be taken for a displacement of the cable.
+        let raw = RawSignals {
+            sensor_force_n: Lanes::new(cables.map(|cable| cable.sensor_force_n)),
+            length_m: Lanes::new(cables.map(|cable| cable.length_m)),
+            speed_m_per_s: Lanes::new(cables.map(|cable| cable.speed_m_per_s)),
+        };
         let columns = &mut self.state.columns;
-        let last_length_m = Lanes::load(&columns.length_m, block);
-        let motion_finite = length_m.within(GREATEST_MOTION).and(speed_m_per_s.within(GREATEST_MOTION));
-        let change_m = length_m - last_length_m;
-        let elapsed_cycles = Scalar::min(Scalar::max(input.elapsed_cycles, 1.0), GREATEST_ELAPSED);
-        let length_jump_m = Lanes::splat(self.length_jump_m * elapsed_cycles);
-        let jump = motion_finite.and(length_jump_m.lt(change_m.abs()));
-        // NaN before the first length compares false: no motion, no flag.
-        let moves = motion_finite.and(change_m.abs().le(length_jump_m));
-        let mut displacement_m = change_m.keep(moves);
-        let mut settled_m = length_m;
-        if self.length_noise_m > 0.0 {
-            // The play of measured lengths: only what pushes against its edge is motion.
-            let beyond_m = (change_m.abs() - Lanes::splat(self.length_noise_m)).max(zero);
-            displacement_m = (change_m.sign() * beyond_m).keep(moves);
-            settled_m = length_m - (change_m - displacement_m).keep(moves);
-        }
-        let mut speed_m_per_s = speed_m_per_s.keep(motion_finite.and(jump.not()));
-        Lanes::select(motion_finite, settled_m, last_length_m).store(&mut columns.length_m, block);
+        let mut signals = columns.signals(block);
+        let mut conditioned = condition(&self.limits, &mut signals, &raw, input.elapsed_cycles);
+        columns.set_signals(block, &signals);
         if self.any_delay {
             let delay: [_; LANES] =
                 core::array::from_fn(|lane| self.params.delay.get(first + lane).copied().unwrap_or_default());
-            displacement_m = shift_block(&mut columns.delayed_displacement_m, first, displacement_m, delay);
-            speed_m_per_s = shift_block(&mut columns.delayed_speed_m_per_s, first, speed_m_per_s, delay);
+            let Conditioned { displacement_m, speed_m_per_s, .. } = &mut conditioned;
+            *displacement_m = shift_block(&mut columns.delayed_displacement_m, first, *displacement_m, delay);
+            *speed_m_per_s = shift_block(&mut columns.delayed_speed_m_per_s, first, *speed_m_per_s, delay);
         }
-
-        // Sensor: what may be taken for a force.
-        let last_sensor_n = Lanes::load(&columns.sensor_force_n, block);
-        let sensor_finite = sensor_n.within(GREATEST_FORCE_N);
-        let sensor_force_n = Lanes::select(sensor_finite, sensor_n, last_sensor_n);
-        sensor_force_n.store(&mut columns.sensor_force_n, block);
-        // A value that is none says nothing about the ones around it.
-        let unchanged = sensor_force_n.eq(last_sensor_n).and(zero.lt(sensor_force_n));
-        let count = (Lanes::load(&columns.frozen_count, block) + Lanes::splat(1.0)).keep(unchanged);
-        let travel_m = (Lanes::load(&columns.frozen_travel_m, block) + displacement_m).keep(unchanged);
-        count.store(&mut columns.frozen_count, block);
-        travel_m.store(&mut columns.frozen_travel_m, block);
-        let stuck = Lanes::splat(self.frozen_cycles).le(count).and(Lanes::splat(FROZEN_TRAVEL_M).le(travel_m.abs()));
-        let frozen = stuck.and(sensor_finite);
-
-        // Friction. What is stored follows the motion also under a silent sensor, with its last force; the output holds.
-        let sensor_fault = sensor_finite.not().or(frozen);
-        let hold = sensor_fault.or(jump).or(motion_finite.not());
-        let signals = CableSignals { sensor_force_n, displacement_m, speed_m_per_s };
-        let lumped_friction_n = Lanes::load(&columns.lumped_friction_n, block);
-        let held_friction_n = Lanes::load(&columns.friction_n, block);
         let model = self.params.model(block);
-        let mut pulleys = PulleyColumns::new(&self.params, columns, block, self.place_count);
-        let forces = cable_step(&model, self.features, &signals, &mut pulleys, lumped_friction_n);
-        forces.lumped_friction_n.store(&mut columns.lumped_friction_n, block);
+        let mut cable = BlockOfCables::new(&self.params, columns, block, self.place_count);
+        let forces = cable_cycle(&model, self.features, &conditioned, &mut cable);
 
-        let computed_n = forces.platform_force_n - model.offset_n - forces.frictionless_n;
-        Lanes::select(hold, held_friction_n, computed_n).store(&mut columns.friction_n, block);
-        // Held friction takes no cable below zero tension.
-        let held_n = held_friction_n.max(-forces.frictionless_n).keep(forces.no_tension.not());
-        let friction_n = Lanes::select(hold, held_n, computed_n);
-        let platform_n = Lanes::select(hold, forces.frictionless_n + held_n + model.offset_n, forces.platform_force_n);
-
+        let Conditioned { sensor_force_n, speed_m_per_s, sensor_finite, frozen, jump, motion_finite, .. } = conditioned;
+        let (hold, sensor_fault) = (conditioned.hold(), conditioned.sensor_fault());
         let out_of_range = sensor_force_n
             .lt(Lanes::load(&self.params.least_force_n, block))
             .or(Lanes::load(&self.params.greatest_force_n, block).lt(sensor_force_n))
             .or(Lanes::load(&self.params.greatest_speed_m_per_s, block).lt(speed_m_per_s.abs()));
-        let slip = forces.slip.and(hold.not());
         let any_flag =
-            hold.or(forces.slack).or(slip).or(out_of_range).bits() | pose_flags.missing | pose_flags.unreachable;
+            hold.or(forces.slack).or(forces.slip).or(out_of_range).bits() | pose_flags.missing | pose_flags.unreachable;
         let flags = || {
             [
                 (CableStatus::SLACK, forces.slack.and(sensor_fault.not()).bits()),
-                (CableStatus::SLIP, slip.bits()),
+                (CableStatus::SLIP, forces.slip.bits()),
                 (CableStatus::SENSOR_NOT_FINITE, sensor_finite.not().bits()),
                 (CableStatus::SENSOR_FROZEN, frozen.bits()),
                 (CableStatus::LENGTH_JUMP, jump.bits()),
@@ -404,7 +337,9 @@ impl<const CABLES: usize> Compensator<CABLES> {
                 }
             }
         }
-        let values = platform_n.to_array().into_iter().zip(friction_n.to_array()).zip(forces.frictionless_n.to_array());
+        let platform_n = forces.platform_force_n;
+        let values =
+            platform_n.to_array().into_iter().zip(forces.friction_n.to_array()).zip(forces.frictionless_n.to_array());
         let places = output.cables.iter_mut().skip(first).take(present).zip(values.zip(status));
         for (place, (((force_at_platform_n, friction_n), frictionless_n), status)) in places {
             *place = CableOutput { force_at_platform_n, friction_n, frictionless_n, status };

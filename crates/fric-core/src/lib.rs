@@ -41,11 +41,15 @@ mod cycle;
 pub mod dahl;
 pub mod effects;
 mod lanes;
+pub mod parameters;
+mod places;
 pub mod platform;
 pub mod pulley;
 pub mod robot;
 mod sample;
 pub mod scalar;
+pub mod signals;
+mod single;
 mod status;
 pub mod swivel;
 
@@ -55,6 +59,7 @@ pub use lanes::{LANES, Lanes};
 pub use platform::{Pose, Wrench};
 pub use robot::{CableParams, ParamError, RobotParams};
 pub use sample::Sample;
+pub use single::{PoseWrap, SingleCable};
 pub use status::CableStatus;
 
 /// Compiles the example of the README.

@@ -7,6 +7,7 @@
 use nalgebra::{Matrix3, Quaternion, SMatrix, SVector, UnitQuaternion, Vector3};
 
 use crate::robot::{CableParams, Geometry, RobotParams};
+use crate::scalar::Scalar;
 use crate::swivel::{self, Swivel};
 
 /// Pose of the platform in the base frame.
@@ -131,8 +132,24 @@ impl Geometry {
     }
 
     pub(crate) fn attachment_m(&self, pose: &Pose) -> Vector3<f64> {
-        pose.position_m + pose.orientation * self.platform_m
+        let rotation = pose.orientation.to_rotation_matrix().into_inner();
+        attachment(pose, &rotation, self.platform_m.into()).0.into()
     }
+}
+
+/// Attachment point in the base frame, m, and its distance from the platform origin in base axes (`R·b`), m; `rotation`
+/// is the pose's.
+#[inline(always)]
+pub(crate) fn attachment<T: Scalar>(pose: &Pose, rotation: &Matrix3<f64>, platform_m: [T; 3]) -> ([T; 3], [T; 3]) {
+    let [px, py, pz] = platform_m;
+    let turn = |x: f64, y: f64, z: f64| T::splat(x) * px + T::splat(y) * py + T::splat(z) * pz;
+    let arm_m @ [ax, ay, az] = [
+        turn(rotation.m11, rotation.m12, rotation.m13),
+        turn(rotation.m21, rotation.m22, rotation.m23),
+        turn(rotation.m31, rotation.m32, rotation.m33),
+    ];
+    let [x, y, z] = [pose.position_m.x, pose.position_m.y, pose.position_m.z].map(T::splat);
+    ([x + ax, y + ay, z + az], arm_m)
 }
 
 /// Structure matrix `A^T = [u_i; (R b_i) × u_i]` (\[P\] 2): the wrench of the cables on the platform is `A^T f`, the one

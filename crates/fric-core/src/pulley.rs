@@ -70,6 +70,13 @@ pub fn sliding_friction<T: Scalar>(mu: T, wrap_factor: T, upstream_n: T, downstr
     (mu * wrap_factor * T::splat(0.5) * (upstream_n + downstream_n)).max(T::splat(0.0))
 }
 
+/// Tension ratio at which the cable slips on a pulley: `e^{μ_p α}` (\[P\] 4, Eytelwein), with the friction coefficient
+/// `traction_mu` between cable and pulley and the wrap angle `wrap_rad`.
+#[must_use]
+pub fn traction_ratio(traction_mu: f64, wrap_rad: f64) -> f64 {
+    libm::exp(traction_mu * wrap_rad)
+}
+
 /// A traction ratio beyond this stands for a pulley on which the cable cannot slip; `e^{μ_p α}` is below 3·10⁵.
 pub const NO_LIMIT_RATIO: f64 = 1e6;
 

@@ -12,7 +12,13 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A real number, or several side by side, with comparison masks instead of branches.
 pub trait Scalar:
-    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
+    Copy
+    + core::fmt::Debug
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
 {
     /// The outcome of a comparison, one truth value per lane.
     type Mask: Mask;
@@ -71,7 +77,7 @@ pub trait Scalar:
 }
 
 /// Truth values of one comparison.
-pub trait Mask: Copy {
+pub trait Mask: Copy + core::fmt::Debug {
     /// False in every lane.
     const NONE: Self;
     /// Lane-wise and.

@@ -20,7 +20,7 @@ fn delays_by_any_number_of_cycles() {
             let time = cycle as f64 - delay_cycles;
             let (before, share) = (time.floor() as i64, time - time.floor());
             let expected = if share == 0.0 { at(before) } else { at(before) * (1.0 - share) + at(before + 1) * share };
-            assert_near(line.shift(*value, Delay::from_cycles(delay_cycles)), expected, 1e-12);
+            assert_near(line.shift(*value, Delay::from_cycles(delay_cycles, delay_cycles)), expected, 1e-12);
         }
     }
 }
@@ -28,7 +28,7 @@ fn delays_by_any_number_of_cycles() {
 #[test]
 fn out_of_range_delays_are_held_within() {
     for (cycles, whole) in [(-1.0, 0), (f64::NAN, 0), (f64::NEG_INFINITY, 0), (1e9, MAX_DELAY_CYCLES - 1)] {
-        assert_eq!(Delay::from_cycles(cycles), Delay { cycles: whole, fraction: 0.0 });
+        assert_eq!(Delay::from_cycles(cycles, cycles), Delay { cycles: whole, fraction: 0.0 });
     }
     // A delay that was not made by `from_cycles` must not reach past the line.
     let mut line = DelayLine::EMPTY;

@@ -1,7 +1,10 @@
 //! What holds for every input there is.
 
 use fric_core::robot::{CableOptions, FrictionOptions, MonitorOptions, Presliding, PulleyOptions};
-use fric_core::{CableInput, CableStatus, Compensator, CycleInput, CycleOutput, Pose};
+use fric_core::signals::{RawSignals, SignalState, condition};
+use fric_core::{
+    CableInput, CableParams, CableStatus, Compensator, CycleInput, CycleOutput, Pose, PoseWrap, SingleCable,
+};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -351,6 +354,51 @@ proptest! {
                 input.pose = posed.then(|| Pose { position_m: [numbers[28], numbers[29], numbers[30]].into(), orientation });
             }
             assert_finite(&compensator.step(&input));
+        }
+    }
+}
+
+#[test]
+fn one_cable_by_itself_has_the_compensators_bits() {
+    static GUIDE_AND_SWIVEL: [PulleyOptions; 2] = [WINCH[1], WINCH[2]];
+    for seed in 0..30 {
+        let mut random = Random::new(seed);
+        let options: Vec<_> = (0..3)
+            .map(|cable| demanding(&mut random, [&WINCH as &[_], &GUIDE_AND_SWIVEL, &WINCH][cable % 3]))
+            .collect();
+        let monitor = MonitorOptions { frozen_cycles: 3, length_jump_m: 0.01, length_noise_m: 1e-6 };
+        let mut compensator = compensator::<3>(&options, monitor);
+        let params: Vec<_> = options.iter().map(|options| CableParams::new(options).unwrap()).collect();
+        let mut alone: Vec<_> = params
+            .iter()
+            .map(|params| {
+                let cable = SingleCable::new(params, &params.values(), 0.001, |number: f64| number, |_| false);
+                (cable, SignalState::<f64>::start(), PoseWrap::START)
+            })
+            .collect();
+        for cycle in 0..400 {
+            let mut input = smooth_input::<3>(cycle);
+            if random.below(4) == 0 {
+                let cable = &mut input.cables[usize::try_from(random.below(3)).unwrap()];
+                cable.sensor_force_n = any_number(&mut random);
+                cable.length_m = any_number(&mut random);
+            }
+            input.pose = any_pose(&mut random);
+            let output = compensator.step(&input);
+            let pose = input.pose.filter(Pose::is_usable);
+            let rows = params.iter().zip(&mut alone).zip(input.cables.iter().zip(&output.cables));
+            for ((params, (cable, signals, pose_wrap)), (raw, expected)) in rows {
+                let raw = RawSignals {
+                    sensor_force_n: raw.sensor_force_n,
+                    length_m: raw.length_m,
+                    speed_m_per_s: raw.speed_m_per_s,
+                };
+                let conditioned = condition(&monitor.limits(), signals, &raw, input.elapsed_cycles);
+                *pose_wrap = pose.and_then(|pose| PoseWrap::at(params, &pose)).unwrap_or(*pose_wrap);
+                let forces = cable.step(&conditioned, *pose_wrap);
+                assert_eq!(forces.platform_force_n.to_bits(), expected.force_at_platform_n.to_bits());
+                assert_eq!(forces.friction_n.to_bits(), expected.friction_n.to_bits());
+            }
         }
     }
 }

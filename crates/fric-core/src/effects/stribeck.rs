@@ -5,7 +5,8 @@
 //!
 //! Cause: at low speed the lubricant film in the bearing has not formed and the surfaces touch.
 
-use super::{EffectRow, ParameterRow};
+use super::{EffectRow, first_place};
+use crate::parameters::ParameterRow;
 use crate::scalar::Scalar;
 
 /// The catalogue row.
@@ -19,6 +20,11 @@ pub const ROW: EffectRow = EffectRow {
     ],
 };
 
+/// Place of `ratio` in [`Values`](crate::parameters::Values).
+pub const RATIO: usize = first_place(ROW.kind);
+/// Place of `velocity_m_per_s`.
+pub const VELOCITY: usize = RATIO + 1;
+
 /// The effect's parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stribeck<T> {
@@ -29,6 +35,12 @@ pub struct Stribeck<T> {
 }
 
 impl<T: Scalar> Stribeck<T> {
+    /// From a cable's parameter values, by their place.
+    #[inline(always)]
+    pub fn of(value: impl Fn(usize) -> T) -> Self {
+        Self { ratio: value(RATIO), velocity_m_per_s: value(VELOCITY) }
+    }
+
     /// Factor on μ at a speed.
     #[inline(always)]
     pub fn factor(&self, speed_m_per_s: T) -> T {

@@ -7,7 +7,8 @@
 //! through the bus. Deviation from the paper: the set points are shifted, not the friction computed from them, so that
 //! the friction is that of the present force.
 
-use super::{EffectRow, ParameterRow};
+use super::{EffectRow, first_place};
+use crate::parameters::ParameterRow;
 use crate::scalar::Scalar;
 
 /// The catalogue row.
@@ -18,28 +19,31 @@ pub const ROW: EffectRow = EffectRow {
     parameters: &[ParameterRow { key: "delay_s", unit: "s", neutral: 0.0, min: 0.0, max: 1.0 }],
 };
 
+/// Place of `delay_s` in [`Values`](crate::parameters::Values).
+pub const DELAY: usize = first_place(ROW.kind);
+
 /// The longest delay, in cycles; part of the size of a [`Compensator`](crate::Compensator).
 pub const MAX_DELAY_CYCLES: usize = 64;
 
 /// A delay as whole cycles and the rest.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Delay {
+pub struct Delay<T = f64> {
     /// Whole cycles, less than [`MAX_DELAY_CYCLES`].
     pub cycles: usize,
     /// The rest, 0…1.
-    pub fraction: f64,
+    pub fraction: T,
 }
 
-impl Delay {
-    /// A delay in cycles; held within `0…MAX_DELAY_CYCLES − 1`.
+impl<T: Scalar> Delay<T> {
+    /// A delay in cycles, of which `value` is the number itself; held within `0…MAX_DELAY_CYCLES − 1`.
     #[must_use]
-    pub fn from_cycles(cycles: f64) -> Self {
+    pub fn from_cycles(cycles: T, value: f64) -> Self {
         #[expect(clippy::cast_precision_loss, reason = "a small constant")]
         let longest = (MAX_DELAY_CYCLES - 1) as f64;
-        let bounded = Scalar::min(Scalar::max(cycles, 0.0), longest);
-        let whole = libm::floor(bounded);
+        let whole = libm::floor(Scalar::min(Scalar::max(value, 0.0), longest));
+        let fraction = cycles.max(T::splat(0.0)).min(T::splat(longest)) - T::splat(whole);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "bounded above")]
-        Self { cycles: whole as usize, fraction: bounded - whole }
+        Self { cycles: whole as usize, fraction }
     }
 }
 
@@ -59,12 +63,12 @@ impl DelayLine {
     /// ```
     /// use fric_core::effects::time_delay::{Delay, DelayLine};
     /// let mut line = DelayLine::EMPTY;
-    /// let delay = Delay::from_cycles(1.5);
+    /// let delay = Delay::from_cycles(1.5, 1.5);
     /// let out: [f64; 4] = [0.0, 1.0, 2.0, 3.0].map(|value| line.shift(value, delay));
     /// assert_eq!(out, [0.0, 0.0, 0.5, 1.5]);
     /// ```
     #[inline]
-    pub fn shift(&mut self, value: f64, delay: Delay) -> f64 {
+    pub fn shift<T: Scalar>(&mut self, value: f64, delay: Delay<T>) -> T {
         self.newest = (self.newest + 1) % MAX_DELAY_CYCLES;
         if let Some(place) = self.values.get_mut(self.newest) {
             *place = value;
@@ -74,6 +78,6 @@ impl DelayLine {
             self.values.get(place).copied().unwrap_or(0.0)
         };
         let cycles = delay.cycles.min(MAX_DELAY_CYCLES - 1);
-        at(cycles) + delay.fraction * (at(cycles + 1) - at(cycles))
+        T::splat(at(cycles)) + delay.fraction * T::splat(at(cycles + 1) - at(cycles))
     }
 }

@@ -317,7 +317,9 @@ impl RobotFile {
     /// The longest delay depends on the cycle time, so it is known only with the whole robot.
     fn delay_error(&self, error: ParamError) -> OptionsError {
         let of_value = |cable: &CableParams| match error.problem {
-            ParamProblem::OutOfRange { value, .. } => cable.effects.delay_s.to_bits() == value.to_bits(),
+            ParamProblem::OutOfRange { value, .. } => {
+                cable.effects.get("time_delay", "delay_s").is_some_and(|delay_s| delay_s.to_bits() == value.to_bits())
+            }
             _ => false,
         };
         let place =

@@ -8,7 +8,9 @@ use nalgebra::Vector3;
 use super::error::{ParamError, ParamProblem, check};
 use crate::effects::EffectParams;
 use crate::effects::time_delay::MAX_DELAY_CYCLES;
+use crate::parameters::{FRICTION, GREATEST_MU};
 use crate::pulley::wrap_factor;
+use crate::signals::SignalLimits;
 
 /// Most pulleys of one cable, the sensor pulley included.
 pub const MAX_PULLEYS: usize = 8;
@@ -147,8 +149,6 @@ pub(crate) struct Geometry {
 }
 
 const PLACE_M: f64 = 1e4;
-/// `2 − μk` of \[P\] 10 stays well above zero for every wrap.
-const GREATEST_MU: f64 = 0.9;
 
 fn check_point(key: &'static str, point: [f64; 3]) -> Result<Vector3<f64>, ParamError> {
     let [x, y, z] = point;
@@ -170,18 +170,6 @@ impl CableParams {
             let problem = ParamProblem::Count { count, min: 1, max: MAX_PULLEYS };
             return Err(ParamError { key: "pulleys", pulley: None, problem });
         }
-        let FrictionOptions { mu, sigma_n_per_m, viscous_n_s_per_m, offset_n } = options.friction;
-        check("mu", mu, 0.0, GREATEST_MU)?;
-        let greatest_mu = mu * (1.0 + options.effects.stribeck.ratio.max(0.0));
-        if greatest_mu > GREATEST_MU {
-            let reason = "raises the friction at rest, `mu`·(1 + `ratio`), beyond 0.9; lower it, or `mu`";
-            return Err(ParamError::conflict("ratio", reason));
-        }
-        if let Some(sigma_n_per_m) = sigma_n_per_m {
-            check("sigma_n_per_m", sigma_n_per_m, 1e-3, 1e12)?;
-        }
-        check("viscous_n_s_per_m", viscous_n_s_per_m, 0.0, 1e6)?;
-        check("offset_n", offset_n, -1e6, 1e6)?;
         if let Some(traction_mu) = options.traction_mu {
             check("traction_mu", traction_mu, 0.01, 2.0)?;
         }
@@ -215,7 +203,6 @@ impl CableParams {
                         )));
                     }
                     if sensor {
-                        check_sensor_wrap(wrap_rad, greatest_mu).map_err(at)?;
                         params.sensor_wrap_rad = Some(wrap_rad);
                     }
                 }
@@ -240,6 +227,7 @@ impl CableParams {
                 }
             }
         }
+        params.check_friction()?;
         if let Some(geometry) = options.geometry {
             params.geometry = Some(Geometry {
                 base_m: check_point("base_m", geometry.base_m)?,
@@ -249,6 +237,23 @@ impl CableParams {
             });
         }
         Ok(params)
+    }
+
+    /// Whether the friction's numbers are in range, each and together.
+    pub(crate) fn check_friction(&self) -> Result<(), ParamError> {
+        let FrictionOptions { mu, sigma_n_per_m, viscous_n_s_per_m, offset_n } = self.friction;
+        let stated = [Some(mu), sigma_n_per_m, Some(viscous_n_s_per_m), Some(offset_n)];
+        for (row, value) in FRICTION.iter().zip(stated) {
+            value.map(|value| check(row.key, value, row.min, row.max)).transpose()?;
+        }
+        let ratio = self.effects.get("stribeck", "ratio").unwrap_or(0.0);
+        let greatest_mu = mu * (1.0 + ratio.max(0.0));
+        if greatest_mu > GREATEST_MU {
+            let reason = "raises the friction at rest, `mu`·(1 + `ratio`), beyond 0.9; lower it, or `mu`";
+            return Err(ParamError::conflict("ratio", reason));
+        }
+        self.sensor_wrap_rad
+            .map_or(Ok(()), |wrap_rad| check_sensor_wrap(wrap_rad, greatest_mu).map_err(|error| error.at_pulley(0)))
     }
 
     /// Pulleys, the sensor pulley included.
@@ -321,6 +326,14 @@ impl MonitorOptions {
     pub fn for_cycle(cycle_s: f64) -> Self {
         Self { frozen_cycles: 100, length_jump_m: 10.0 * cycle_s, length_noise_m: 0.0 }
     }
+
+    /// As the signal checks take them.
+    #[must_use]
+    pub fn limits(&self) -> SignalLimits {
+        let Self { frozen_cycles, length_jump_m, length_noise_m } = *self;
+        let frozen_cycles = if frozen_cycles == 0 { f64::INFINITY } else { f64::from(frozen_cycles) };
+        SignalLimits { frozen_cycles, length_jump_m, length_noise_m }
+    }
 }
 
 /// A checked robot: what a [`Compensator`](crate::Compensator) is built from.
@@ -353,7 +366,8 @@ impl<'a> RobotParams<'a> {
         #[expect(clippy::cast_precision_loss, reason = "a small constant")]
         let longest_delay_s = (MAX_DELAY_CYCLES - 1) as f64 * cycle_s;
         for cable in cables {
-            check("delay_s", cable.effects.delay_s, 0.0, longest_delay_s)?;
+            let delay_s = cable.effects.get("time_delay", "delay_s").unwrap_or(0.0);
+            check("delay_s", delay_s, 0.0, longest_delay_s)?;
         }
         Ok(Self {
             cycle_s,

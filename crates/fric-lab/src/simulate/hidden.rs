@@ -3,7 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
-use fric_core::effects::{self, EffectParams, EffectRow, ParameterRow};
+use fric_core::effects::{self, EffectParams, EffectRow};
+use fric_core::parameters::ParameterRow;
 
 use super::error::{HiddenEffectError, with_unit};
 

@@ -14,8 +14,9 @@ struct BoundaryLayer {
 }
 
 pub fn build(params: &EffectParams) -> Box<dyn TruthEffect> {
-    let stribeck = params.stribeck;
-    Box::new(BoundaryLayer { additional_ratio: stribeck.ratio, velocity_m_per_s: stribeck.velocity_m_per_s })
+    let [additional_ratio, velocity_m_per_s] =
+        ["ratio", "velocity_m_per_s"].map(|key| params.get("stribeck", key).unwrap_or_default());
+    Box::new(BoundaryLayer { additional_ratio, velocity_m_per_s })
 }
 
 impl TruthEffect for BoundaryLayer {

@@ -12,7 +12,7 @@ struct MotionAhead {
 }
 
 pub fn build(params: &EffectParams) -> Box<dyn TruthEffect> {
-    Box::new(MotionAhead { lead_s: params.delay_s })
+    Box::new(MotionAhead { lead_s: params.get("time_delay", "delay_s").unwrap_or_default() })
 }
 
 impl TruthEffect for MotionAhead {

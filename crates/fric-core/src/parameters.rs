@@ -1,0 +1,83 @@
+//! Every number of a cable's friction in one list: what an identification may vary.
+//!
+//! First the four of the robot file's `friction`, then those of each effect in the order of the catalogue. The order is
+//! that of [`Values`]; a [`ParameterRow`] says what each is.
+
+use crate::effects::{self, EFFECT_PARAMETER_COUNT};
+use crate::robot::{CableParams, FrictionOptions, ParamError};
+
+/// One parameter of the friction model.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct ParameterRow {
+    /// Its key in robot files, with the unit in it.
+    pub key: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// The value without effect; also what a file that leaves it out means.
+    pub neutral: f64,
+    /// Least value.
+    pub min: f64,
+    /// Greatest value.
+    pub max: f64,
+}
+
+/// Stands for "no presliding": motion of a picometre reverses any friction.
+pub const NO_PRESLIDING_N_PER_M: f64 = 1e15;
+/// `2 − μk` of \[P\] 10 stays well above zero for every wrap.
+pub(crate) const GREATEST_MU: f64 = 0.9;
+
+/// Parameters of the robot file's `friction`, the vector p of \[P\] 18.
+pub const FRICTION: [ParameterRow; FRICTION_COUNT] = [
+    ParameterRow { key: "mu", unit: "1", neutral: 0.0, min: 0.0, max: GREATEST_MU },
+    ParameterRow { key: "sigma_n_per_m", unit: "N/m", neutral: NO_PRESLIDING_N_PER_M, min: 1e-3, max: 1e12 },
+    ParameterRow { key: "viscous_n_s_per_m", unit: "N s/m", neutral: 0.0, min: 0.0, max: 1e6 },
+    ParameterRow { key: "offset_n", unit: "N", neutral: 0.0, min: -1e6, max: 1e6 },
+];
+/// How many there are.
+pub const FRICTION_COUNT: usize = 4;
+/// Place of μ.
+pub const MU: usize = 0;
+/// Place of σ of the whole cable.
+pub const SIGMA: usize = 1;
+/// Place of F_pv.
+pub const VISCOUS: usize = 2;
+/// Place of ε.
+pub const OFFSET: usize = 3;
+
+/// Parameters of a cable in all.
+pub const PARAMETER_COUNT: usize = FRICTION_COUNT + EFFECT_PARAMETER_COUNT;
+
+/// A value for each parameter of a cable; `T` is a number, or one that carries derivatives along.
+pub type Values<T = f64> = [T; PARAMETER_COUNT];
+
+/// Each parameter in the order of [`Values`], with the kind of its effect; `None` for those of `friction`.
+pub fn parameters() -> impl Iterator<Item = (Option<&'static str>, &'static ParameterRow)> {
+    let of_effects = effects::parameters().map(|(row, parameter)| (Some(row.kind), parameter));
+    FRICTION.iter().map(|parameter| (None, parameter)).chain(of_effects)
+}
+
+impl CableParams {
+    /// The values of all parameters.
+    #[must_use]
+    pub fn values(&self) -> Values {
+        let FrictionOptions { mu, sigma_n_per_m, viscous_n_s_per_m, offset_n } = self.friction;
+        let friction = [mu, sigma_n_per_m.unwrap_or(NO_PRESLIDING_N_PER_M), viscous_n_s_per_m, offset_n];
+        let mut all = friction.into_iter().chain(*self.effects.values());
+        core::array::from_fn(|_| all.next().unwrap_or(0.0))
+    }
+
+    /// The same cable with other values.
+    ///
+    /// # Errors
+    /// [`ParamError`] names the first that is out of range or at odds with the rest of the cable. A σ of
+    /// [`NO_PRESLIDING_N_PER_M`] is none.
+    pub fn with_values(&self, values: &Values) -> Result<Self, ParamError> {
+        let &[mu, sigma_n_per_m, viscous_n_s_per_m, offset_n, ref effects @ ..] = values;
+        let sigma_n_per_m = (sigma_n_per_m < NO_PRESLIDING_N_PER_M).then_some(sigma_n_per_m);
+        let friction = FrictionOptions { mu, sigma_n_per_m, viscous_n_s_per_m, offset_n };
+        let params = Self { friction, effects: effects::EffectParams::from_values(*effects)?, ..*self };
+        params.check_friction()?;
+        Ok(params)
+    }
+}

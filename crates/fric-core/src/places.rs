@@ -1,0 +1,64 @@
+//! Where the pulleys of a cable stand in the order of the cycle.
+
+use crate::pulley::{traction_ratio, wrap_factor};
+use crate::robot::{CableParams, MAX_PULLEYS, Wrap};
+
+/// Places of pulleys: a sensor in line with the cable takes one of its own.
+pub const PLACES: usize = MAX_PULLEYS + 1;
+/// Far beyond every tension ratio, and its inverse still a normal number.
+pub const NO_SLIP: f64 = 1e200;
+/// Of a wrap that follows the pose, before the first pose: 90°.
+pub const START_WRAP_FACTOR: f64 = core::f64::consts::SQRT_2;
+
+/// The pulleys of one cable, place by place.
+///
+/// They stand from the first place on, but one that follows the pose at the last: there it is for all cables of a robot,
+/// and places without a pulley lie before it.
+#[derive(Clone, Copy, Debug)]
+pub struct Places {
+    /// Whether a pulley stands there.
+    pub has_pulley: [bool; PLACES],
+    /// `2 sin(α/2)` of fixed wraps.
+    pub wrap_factor: [f64; PLACES],
+    /// `e^{μ_p α}` of fixed wraps; [`NO_SLIP`] without a slip limit.
+    pub traction_ratio: [f64; PLACES],
+    /// Where each pulley stands; [`PLACES`] for those that the cable does not have.
+    pub of_pulley: [usize; MAX_PULLEYS],
+}
+
+impl Places {
+    /// How many places a cable needs.
+    pub fn needed(params: &CableParams) -> usize {
+        params.pulley_count + usize::from(params.sensor_wrap_rad.is_none())
+    }
+
+    /// The places of a cable, `place_count` of them at least [`needed`](Self::needed).
+    pub fn new(params: &CableParams, place_count: usize) -> Self {
+        let mut places = Self {
+            has_pulley: [false; PLACES],
+            wrap_factor: [0.0; PLACES],
+            traction_ratio: [NO_SLIP; PLACES],
+            of_pulley: [PLACES; MAX_PULLEYS],
+        };
+        let first_place = usize::from(params.sensor_wrap_rad.is_none());
+        let pulleys = params.wraps.iter().take(params.pulley_count).zip(&mut places.of_pulley).enumerate();
+        for (pulley, (wrap, stands_at)) in pulleys {
+            *stands_at = if *wrap == Wrap::Pose { place_count - 1 } else { first_place + pulley };
+            let at = |column: &mut [f64; PLACES], value| {
+                if let Some(place) = column.get_mut(*stands_at) {
+                    *place = value;
+                }
+            };
+            if let Some(has_pulley) = places.has_pulley.get_mut(*stands_at) {
+                *has_pulley = true;
+            }
+            if let Wrap::Fixed { wrap_rad } = *wrap {
+                at(&mut places.wrap_factor, wrap_factor(wrap_rad));
+                if let Some(traction_mu) = params.traction_mu {
+                    at(&mut places.traction_ratio, traction_ratio(traction_mu, wrap_rad));
+                }
+            }
+        }
+        places
+    }
+}

@@ -1,0 +1,145 @@
+//! What may be believed of a cable's signals: motion and sensor force checked, and what to do where they are none.
+//!
+//! For: raw signals of one cycle in, finite ones and their faults out ([`condition`]). It knows no friction and no
+//! parameters of it, so that a log can be conditioned once and fitted many times. State: four numbers a cable.
+
+use crate::cable::CableSignals;
+use crate::scalar::{Mask, Scalar};
+
+/// Sensor forces beyond this are no forces, N.
+const GREATEST_FORCE_N: f64 = 1e9;
+/// A sensor that does not change while the cable travels this far is frozen, m; beyond every encoder's noise.
+const FROZEN_TRAVEL_M: f64 = 1e-3;
+/// A pause counts as at most so many cycles.
+const GREATEST_ELAPSED: f64 = 1e6;
+/// Lengths and speeds beyond this are none, m and m/s.
+const GREATEST_MOTION: f64 = 1e6;
+
+/// When a signal counts as faulty.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SignalLimits {
+    /// Cycles with an unchanged sensor after which it is frozen; infinite: never.
+    pub frozen_cycles: f64,
+    /// Greatest change of length in one cycle, m.
+    pub length_jump_m: f64,
+    /// Amplitude of the noise of measured lengths, m.
+    pub length_noise_m: f64,
+}
+
+/// What is remembered of the signals.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SignalState<T> {
+    /// Last good sensor force, N.
+    pub sensor_force_n: T,
+    /// Cycles since it has changed.
+    pub frozen_count: T,
+    /// How far the cable has moved since then, m.
+    pub frozen_travel_m: T,
+    /// Last finite length, m; NaN before the first.
+    pub length_m: T,
+}
+
+impl<T: Scalar> SignalState<T> {
+    /// Nothing seen yet.
+    #[must_use]
+    pub fn start() -> Self {
+        let zero = T::splat(0.0);
+        Self { sensor_force_n: zero, frozen_count: zero, frozen_travel_m: zero, length_m: T::splat(f64::NAN) }
+    }
+}
+
+/// Signals as they come, not checked.
+#[derive(Clone, Copy, Debug)]
+pub struct RawSignals<T> {
+    /// Sensor force, N.
+    pub sensor_force_n: T,
+    /// Length, m.
+    pub length_m: T,
+    /// Speed, m/s.
+    pub speed_m_per_s: T,
+}
+
+/// Signals of one cycle, all finite, and what is the matter with them.
+#[derive(Clone, Copy, Debug)]
+pub struct Conditioned<T: Scalar> {
+    /// Sensor force, the last good one where there is none, N.
+    pub sensor_force_n: T,
+    /// Change of length that counts as motion, m.
+    pub displacement_m: T,
+    /// Speed; 0 where the motion is not to be believed, m/s.
+    pub speed_m_per_s: T,
+    /// The sensor force is a number.
+    pub sensor_finite: T::Mask,
+    /// The sensor repeats itself.
+    pub frozen: T::Mask,
+    /// The length jumped.
+    pub jump: T::Mask,
+    /// Length and speed are numbers.
+    pub motion_finite: T::Mask,
+}
+
+impl<T: Scalar> Conditioned<T> {
+    /// The sensor tells nothing.
+    #[inline(always)]
+    pub fn sensor_fault(&self) -> T::Mask {
+        self.sensor_finite.not().or(self.frozen)
+    }
+
+    /// The friction cannot be told from these signals: hold the last.
+    #[inline(always)]
+    pub fn hold(&self) -> T::Mask {
+        self.sensor_fault().or(self.jump).or(self.motion_finite.not())
+    }
+
+    /// What the friction is computed from.
+    #[inline(always)]
+    pub fn signals(&self) -> CableSignals<T> {
+        CableSignals {
+            sensor_force_n: self.sensor_force_n,
+            displacement_m: self.displacement_m,
+            speed_m_per_s: self.speed_m_per_s,
+        }
+    }
+}
+
+/// Checks the signals of one cycle, `elapsed_cycles` after the last (less than 1 and NaN count as 1).
+#[inline(always)]
+pub fn condition<T: Scalar>(
+    limits: &SignalLimits,
+    state: &mut SignalState<T>,
+    raw: &RawSignals<T>,
+    elapsed_cycles: f64,
+) -> Conditioned<T> {
+    let zero = T::splat(0.0);
+    // Motion: what may be taken for a displacement of the cable.
+    let motion_finite = raw.length_m.within(GREATEST_MOTION).and(raw.speed_m_per_s.within(GREATEST_MOTION));
+    let change_m = raw.length_m - state.length_m;
+    let elapsed_cycles = Scalar::min(Scalar::max(elapsed_cycles, 1.0), GREATEST_ELAPSED);
+    let length_jump_m = T::splat(limits.length_jump_m * elapsed_cycles);
+    let jump = motion_finite.and(length_jump_m.lt(change_m.abs()));
+    // NaN before the first length compares false: no motion, no flag.
+    let moves = motion_finite.and(change_m.abs().le(length_jump_m));
+    let mut displacement_m = change_m.keep(moves);
+    let mut settled_m = raw.length_m;
+    if limits.length_noise_m > 0.0 {
+        // The play of measured lengths: only what pushes against its edge is motion.
+        let beyond_m = (change_m.abs() - T::splat(limits.length_noise_m)).max(zero);
+        displacement_m = (change_m.sign() * beyond_m).keep(moves);
+        settled_m = raw.length_m - (change_m - displacement_m).keep(moves);
+    }
+    let speed_m_per_s = raw.speed_m_per_s.keep(motion_finite.and(jump.not()));
+    state.length_m = T::select(motion_finite, settled_m, state.length_m);
+
+    // Sensor: what may be taken for a force.
+    let sensor_finite = raw.sensor_force_n.within(GREATEST_FORCE_N);
+    let sensor_force_n = T::select(sensor_finite, raw.sensor_force_n, state.sensor_force_n);
+    // A value that is none says nothing about the ones around it.
+    let unchanged = sensor_force_n.eq(state.sensor_force_n).and(zero.lt(sensor_force_n));
+    state.sensor_force_n = sensor_force_n;
+    state.frozen_count = (state.frozen_count + T::splat(1.0)).keep(unchanged);
+    state.frozen_travel_m = (state.frozen_travel_m + displacement_m).keep(unchanged);
+    let far = T::splat(FROZEN_TRAVEL_M).le(state.frozen_travel_m.abs());
+    let stuck = T::splat(limits.frozen_cycles).le(state.frozen_count).and(far);
+    let frozen = stuck.and(sensor_finite);
+    Conditioned { sensor_force_n, displacement_m, speed_m_per_s, sensor_finite, frozen, jump, motion_finite }
+}
