@@ -10,6 +10,7 @@
 use crate::dahl::dahl_step;
 use crate::effects::stribeck::{self, Stribeck};
 use crate::parameters::{MU, OFFSET, SIGMA, Values};
+use crate::places::{Places, START_WRAP_FACTOR};
 use crate::pulley;
 use crate::robot::{CableParams, Presliding};
 use crate::scalar::{Mask, Scalar};
@@ -51,6 +52,22 @@ impl<T: Scalar> CableModel<T> {
             frictionless_gain: T::splat(1.0 / (1.0 - sensor_cos)),
             lumped: T::splat(0.0).lt(T::splat(f64::from(params.presliding == Presliding::Lumped))),
         }
+    }
+}
+
+impl CableParams {
+    /// The way over which the pulley that remembers longest forgets its stored friction to 1/e, for each newton of sensor
+    /// force: `f_c/σ` of one Dahl state with `F_N = k·F`, m/N. Without presliding it is 0.
+    #[must_use]
+    pub fn memory_m_per_n(&self, mu: f64, sigma_n_per_m: f64) -> f64 {
+        let mut values = self.values();
+        (values[MU], values[SIGMA]) = (mu, sigma_n_per_m);
+        let model = CableModel::<f64>::new(self, &values);
+        let factors = Places::new(self, Places::needed(self)).wrap_factor;
+        let pose_factor = if self.needs_pose() { START_WRAP_FACTOR } else { 0.0 };
+        let pick = |pick: fn(f64, f64) -> f64| factors.into_iter().chain([pose_factor]).fold(0.0, pick);
+        let factor = if model.lumped { pick(|sum, factor| sum + factor) } else { pick(f64::max) };
+        mu * factor * model.frictionless_gain / model.sigma_n_per_m
     }
 }
 

@@ -116,6 +116,15 @@ impl CableParams {
         exit.reachable.then(|| exit.direction.into())
     }
 
+    /// The cable's column of the structure matrix `A^T`, `[u; (R b) × u]` (\[P\] 2): the wrench on the platform by 1 N of
+    /// tension, force first, torque about the platform origin; `None` as for [`length_m`](Self::length_m).
+    #[must_use]
+    pub fn structure_column(&self, pose: &Pose) -> Option<SVector<f64, 6>> {
+        let direction = self.direction(pose)?;
+        let arm_m = pose.orientation.to_rotation_matrix().into_inner() * self.geometry.as_ref()?.platform_m;
+        Some(Wrench { force_n: direction, torque_nm: arm_m.cross(&direction) }.to_vector())
+    }
+
     /// Wrap angle of the swivelling last pulley, rad, 0…2π; `None` as for [`length_m`](Self::length_m) and where the
     /// last pulley does not swivel.
     #[must_use]
@@ -162,12 +171,9 @@ pub fn structure_matrix<const CABLES: usize>(robot: &RobotParams<'_>, pose: &Pos
     if robot.cables.len() > CABLES {
         return None;
     }
-    let rotation: Matrix3<f64> = pose.orientation.to_rotation_matrix().into_inner();
     let mut matrix = SMatrix::<f64, 6, CABLES>::zeros();
     for (mut column, cable) in matrix.column_iter_mut().zip(robot.cables) {
-        let direction = cable.direction(pose)?;
-        let arm_m = rotation * cable.geometry.as_ref()?.platform_m;
-        column.copy_from(&Wrench { force_n: direction, torque_nm: arm_m.cross(&direction) }.to_vector());
+        column.copy_from(&cable.structure_column(pose)?);
     }
     Some(matrix)
 }

@@ -5,5 +5,7 @@
 //!
 //! Nothing here reads or writes logs, and nothing here belongs into a control cycle.
 
+mod clock;
+pub mod fit;
 pub mod replay;
 pub mod simulate;

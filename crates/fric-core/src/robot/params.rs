@@ -389,6 +389,12 @@ impl<'a> RobotParams<'a> {
         self.cycle_s
     }
 
+    /// When a signal counts as faulty.
+    #[must_use]
+    pub fn monitor(&self) -> MonitorOptions {
+        self.monitor
+    }
+
     /// The cables in order.
     #[must_use]
     pub fn cables(&self) -> &'a [CableParams] {

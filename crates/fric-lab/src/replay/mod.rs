@@ -9,6 +9,8 @@ mod error;
 
 use fric_core::{CableOutput, CableStatus, ParamError, RobotParams, Sample, Wrench};
 
+use crate::clock::Clock;
+
 pub use compensator::AnyCompensator;
 pub use error::Deviation;
 
@@ -60,8 +62,7 @@ pub struct Replay {
     wrench_before: WrenchErrors,
     wrench_after: WrenchErrors,
     cycle_count: u64,
-    cycle_s: f64,
-    last_stamp_nanos: Option<i64>,
+    clock: Clock,
 }
 
 /// With these a wrench is none: a cable's force or direction is not known.
@@ -91,19 +92,13 @@ impl Replay {
             wrench_before: WrenchErrors::default(),
             wrench_after: WrenchErrors::default(),
             cycle_count: 0,
-            cycle_s: robot.cycle_s(),
-            last_stamp_nanos: None,
+            clock: Clock::new(robot.cycle_s()),
         })
     }
 
     /// Runs one cycle.
     pub fn step(&mut self, sample: &Sample<'_>) -> ReplayedCycle<'_> {
-        #[expect(clippy::cast_precision_loss, reason = "an interval between two samples")]
-        let elapsed_cycles = self.last_stamp_nanos.map_or(1.0, |last| {
-            // The nearest whole number: stamps jitter, cycles do not. A clock set back counts as one cycle.
-            (sample.stamp_nanos.saturating_sub(last) as f64 * 1e-9 / self.cycle_s).round()
-        });
-        self.last_stamp_nanos = Some(sample.stamp_nanos);
+        let elapsed_cycles = self.clock.elapsed_cycles(sample.stamp_nanos);
         self.compensator.set_input(sample.cables, sample.pose, elapsed_cycles);
         let start = std::time::Instant::now();
         let outside_wrench = self.compensator.step();

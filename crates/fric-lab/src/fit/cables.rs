@@ -1,0 +1,122 @@
+//! Identification of each cable by itself, from the force measured at its platform end (\[P\] 18).
+
+use fric_core::parameters::Values;
+use rayon::prelude::*;
+
+use super::determined::Yardstick;
+use super::problem::{Comparison, Loss, Member, Problem};
+use super::record::{CableRecord, Measurements, Row};
+use super::report::{CableFit, ForceErrors};
+use super::selection::{self, Standing};
+use super::solve::{Solution, solve};
+use super::vector::Parameter;
+use super::{FitOptions, Progress, pass};
+use crate::replay::Deviation;
+
+/// Fits every cable that has a reference.
+#[must_use]
+pub fn fit_cables(measurements: &Measurements<'_>, options: &FitOptions, progress: &Progress) -> Vec<CableFit> {
+    let records: Vec<CableRecord<'_>> = measurements.cables().collect();
+    progress.begin(records.len());
+    let fit = |record: &CableRecord<'_>| {
+        let fit = fit_cable(record, options, progress);
+        progress.finish_one();
+        fit
+    };
+    records.par_iter().map(fit).collect()
+}
+
+fn fit_cable(record: &CableRecord<'_>, options: &FitOptions, progress: &Progress) -> CableFit {
+    let given = record.params.values();
+    let mut standings = selection::first_look(record, |_, row| row.reference_n.is_finite());
+    selection::leave_out_still_references(record, &mut standings);
+    let mut problem = Problem {
+        members: vec![Member { record: *record, free: options.free(record.params) }],
+        comparison: Comparison::Forces,
+        loss: Loss::Squares,
+        used: used(&standings),
+        stop: progress.stop_flag(),
+    };
+    let solution = loop {
+        let solution = solve(
+            &mut problem,
+            &[given],
+            record.cycle_s,
+            options.weighing,
+            |problem, values| yardsticks(problem, values),
+            &mut standings,
+        );
+        // How long the start of a log is remembered is known only now.
+        let before = selection::count(&standings).warm_up;
+        if let Some(values) = solution.values.first() {
+            selection::leave_out_warm_up(record, values, &mut standings);
+        }
+        if selection::count(&standings).warm_up == before {
+            break solution;
+        }
+        problem.used = used(&standings);
+        problem.loss = Loss::Squares;
+        problem.members = vec![Member { record: *record, free: options.free(record.params) }];
+    };
+    cable_fit(record, &given, &solution, 0, &standings)
+}
+
+/// Which samples count.
+pub(super) fn used(standings: &[Standing]) -> Vec<bool> {
+    standings.iter().map(|standing| *standing == Standing::Used).collect()
+}
+
+/// What matters for each cable of a problem.
+pub(super) fn yardsticks(problem: &Problem<'_>, values: &[Values]) -> Vec<Yardstick> {
+    let of = |(member, values): (&Member<'_>, &Values)| {
+        let mut friction = Deviation::default();
+        pass::run_plain(&member.record, values, |_, row, forces| {
+            if row.is_sound() {
+                friction.add(forces.friction_n);
+            }
+        });
+        let pulley_count = member.record.params.pulley_count();
+        Yardstick { friction_n: friction.rms().unwrap_or(0.0), pulley_count }
+    };
+    problem.members.iter().zip(values).map(of).collect()
+}
+
+/// The result of one cable of a solved problem.
+pub(super) fn cable_fit(
+    record: &CableRecord<'_>,
+    given: &Values,
+    solution: &Solution,
+    member: usize,
+    standings: &[Standing],
+) -> CableFit {
+    let values = solution.values.get(member).copied().unwrap_or(*given);
+    let of_member = |unknown: &&super::solve::Unknown| unknown.member == member;
+    let places: Vec<usize> = (0..solution.unknowns.len()).filter(|k| solution.unknowns[*k].member == member).collect();
+    let fitted: Vec<Parameter> = places.iter().map(|place| solution.unknowns[*place].parameter).collect();
+    let undetermined = solution.undetermined.iter().filter(of_member).map(|unknown| unknown.parameter).collect();
+    let covariance = solution.covariance.select_rows(&places).select_columns(&places);
+    CableFit {
+        samples: selection::count(standings),
+        values,
+        fitted,
+        undetermined,
+        covariance,
+        termination: solution.termination,
+        evaluation_count: solution.evaluation_count,
+        errors: force_errors(record, &values),
+    }
+}
+
+/// Errors of the force at the platform without and with compensation, over every sample that has a reference, flagged ones
+/// too: the figures of a replay.
+fn force_errors(record: &CableRecord<'_>, values: &Values) -> ForceErrors {
+    let mut errors = ForceErrors::default();
+    pass::run_plain(record, values, |_, row: &Row, forces| {
+        if row.reference_n.is_finite() {
+            errors.reference_n.add(row.reference_n);
+            errors.before_n.add(forces.frictionless_n - row.reference_n);
+            errors.after_n.add(forces.platform_force_n - row.reference_n);
+        }
+    });
+    errors
+}

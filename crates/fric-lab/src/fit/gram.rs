@@ -1,0 +1,174 @@
+//! A least-squares problem reduced to as many rows as it has parameters.
+//!
+//! For: residuals `r` and Jacobian `J` of any number of samples, taken in row by row, as the upper triangle `R` and the
+//! vector `q` with `RᵀR = JᵀJ`, `Rᵀq' = Jᵀr` and `‖q‖ = ‖r‖`: everything that Levenberg–Marquardt looks at. Memory does not
+//! grow with the log. By normal equations of columns scaled to unit length: the condition number is squared, which costs
+//! half the digits of a nearly undetermined parameter and nothing of the others; sums are taken in blocks, so that
+//! rounding does not grow with the number of samples.
+
+use nalgebra::{DMatrix, DVector};
+
+/// Rows that are summed up before they join the rest.
+const BLOCK: usize = 1024;
+
+/// `[J r]ᵀ[J r]`, the upper triangle column by column.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gram {
+    columns: usize,
+    sums: Vec<f64>,
+    block: Vec<f64>,
+    in_block: usize,
+    row_count: usize,
+}
+
+impl Gram {
+    /// Of no rows yet, for `parameters` columns beside the residual.
+    pub fn new(parameters: usize) -> Self {
+        let columns = parameters + 1;
+        let count = columns * (columns + 1) / 2;
+        Self { columns, sums: vec![0.0; count], block: vec![0.0; count], in_block: 0, row_count: 0 }
+    }
+
+    /// Takes in one row: the derivatives of a residual, then the residual.
+    #[inline]
+    pub fn add(&mut self, row: &[f64]) {
+        let mut places = self.block.iter_mut();
+        for (column, right) in row.iter().enumerate() {
+            for (left, place) in row.iter().take(column + 1).zip(&mut places) {
+                *place += left * right;
+            }
+        }
+        self.row_count += 1;
+        self.in_block += 1;
+        if self.in_block == BLOCK {
+            self.close_block();
+        }
+    }
+
+    /// Takes in all rows of another.
+    pub fn merge(&mut self, mut other: Self) {
+        other.close_block();
+        self.close_block();
+        for (sum, part) in self.sums.iter_mut().zip(other.sums) {
+            *sum += part;
+        }
+        self.row_count += other.row_count;
+    }
+
+    fn close_block(&mut self) {
+        for (sum, part) in self.sums.iter_mut().zip(&mut self.block) {
+            *sum += std::mem::take(part);
+        }
+        self.in_block = 0;
+    }
+
+    /// Rows taken in.
+    pub fn row_count(&self) -> usize {
+        self.row_count
+    }
+
+    /// `JᵀJ`, `Jᵀr` and `rᵀr`.
+    pub fn normal_equations(&self) -> (DMatrix<f64>, DVector<f64>, f64) {
+        let entry = |row: usize, column: usize| {
+            let (low, high) = (row.min(column), row.max(column));
+            let place = high * (high + 1) / 2 + low;
+            self.sums.get(place).zip(self.block.get(place)).map_or(f64::NAN, |(sum, part)| sum + part)
+        };
+        let count = self.columns - 1;
+        let matrix = DMatrix::from_fn(count, count, entry);
+        (matrix, DVector::from_fn(count, |row, _| entry(row, count)), entry(count, count))
+    }
+}
+
+/// The reduced problem.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Triangle {
+    /// `R`, with one more row, of zeros, than columns.
+    pub jacobian: DMatrix<f64>,
+    /// `q`, of the same number of rows.
+    pub residuals: DVector<f64>,
+}
+
+impl Triangle {
+    /// From normal equations, by Cholesky's factorisation of the scaled matrix. A column that is zero, or depends on those
+    /// before it to rounding, has an all but zero diagonal in `R`.
+    pub fn new(matrix: &DMatrix<f64>, gradient: &DVector<f64>, squares: f64) -> Self {
+        let count = gradient.len();
+        let scale: Vec<f64> = matrix.diagonal().iter().map(|square| square.sqrt()).collect();
+        let unit = |place: usize| if scale[place] > 0.0 { 1.0 / scale[place] } else { 0.0 };
+        let mut jacobian = DMatrix::zeros(count + 1, count);
+        let mut residuals = DVector::zeros(count + 1);
+        let mut left = squares;
+        for row in 0..count {
+            let before = |jacobian: &DMatrix<f64>, column: usize| -> f64 {
+                (0..row).map(|k| jacobian[(k, row)] * jacobian[(k, column)]).sum()
+            };
+            let square = matrix[(row, row)] * unit(row) * unit(row) - before(&jacobian, row);
+            // Rounding leaves some 1e-16 for each addition; below that nothing is known of the column's own direction.
+            let pivot = square.max(1e-14).sqrt();
+            for column in row..count {
+                let product = matrix[(row, column)] * unit(row) * unit(column) - before(&jacobian, column);
+                jacobian[(row, column)] = if column == row { pivot } else { product / pivot };
+            }
+            let projected: f64 = (0..row).map(|k| jacobian[(k, row)] * residuals[k]).sum();
+            residuals[row] = (gradient[row] * unit(row) - projected) / pivot;
+            left -= residuals[row] * residuals[row];
+        }
+        residuals[count] = left.max(0.0).sqrt();
+        for (mut column, scale) in jacobian.column_iter_mut().zip(&scale) {
+            column *= *scale;
+        }
+        Self { jacobian, residuals }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rows() -> Vec<[f64; 4]> {
+        (0..5000)
+            .map(|k| f64::from(k) * 0.01)
+            .map(|t| [t.sin(), 30.0 * (0.3 * t).cos(), 1e-3 * t, t.cos() + 0.1])
+            .collect()
+    }
+
+    #[test]
+    fn has_the_normal_equations_and_the_norm_of_the_long_problem() {
+        let mut gram = Gram::new(3);
+        let mut other = Gram::new(3);
+        for (index, row) in rows().iter().enumerate() {
+            if index < 3000 { gram.add(row) } else { other.add(row) }
+        }
+        gram.merge(other);
+        let jacobian = DMatrix::from_fn(5000, 3, |row, column| rows()[row][column]);
+        let residuals = DVector::from_fn(5000, |row, _| rows()[row][3]);
+        let (matrix, gradient, squares) = gram.normal_equations();
+        assert!((jacobian.transpose() * &jacobian - &matrix).amax() < 1e-9 * matrix.amax());
+        let Triangle { jacobian: reduced, residuals: q } = Triangle::new(&matrix, &gradient, squares);
+        assert!((reduced.transpose() * &reduced - &matrix).amax() < 1e-12 * matrix.amax());
+        assert!((reduced.transpose() * &q - jacobian.transpose() * &residuals).amax() < 1e-9 * gradient.amax());
+        assert!((q.norm() - residuals.norm()).abs() < 1e-9 * residuals.norm());
+        // The least-squares solution is that of the long problem by a QR factorisation.
+        let solve = |jacobian: DMatrix<f64>, residuals: &DVector<f64>| {
+            let qr = jacobian.qr();
+            qr.r().solve_upper_triangular(&(qr.q().transpose() * residuals)).unwrap()
+        };
+        let (long, short) = (solve(jacobian, &residuals), solve(reduced, &q));
+        assert!((&long - &short).amax() < 1e-9 * long.amax(), "{long} {short}");
+        assert_eq!(gram.row_count(), 5000);
+    }
+
+    #[test]
+    fn a_column_without_effect_does_no_harm() {
+        let mut gram = Gram::new(2);
+        for [a, _, _, r] in rows() {
+            gram.add(&[a, 0.0, r]);
+        }
+        let (matrix, gradient, squares) = gram.normal_equations();
+        let Triangle { jacobian, residuals } = Triangle::new(&matrix, &gradient, squares);
+        assert!(jacobian.iter().chain(residuals.iter()).all(|number| number.is_finite()));
+        assert_eq!(jacobian.column(1).amax().to_bits(), 0.0_f64.to_bits());
+        assert!((residuals.norm_squared() - squares).abs() < 1e-9 * squares);
+    }
+}

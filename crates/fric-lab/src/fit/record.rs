@@ -1,0 +1,193 @@
+//! What a log holds for an identification: the signals of each cable as the cycle takes them, sample by sample.
+//!
+//! A log is conditioned once ([`fric_core::signals`]) and then evaluated many times. Memory: 64 bytes a sample and cable;
+//! for a fit to the wrench 48 bytes more for each cable and 150 for the platform.
+
+use fric_core::robot::RobotParams;
+use fric_core::signals::{Conditioned, RawSignals, SignalState, condition};
+use fric_core::{CableInput, CableParams, Pose, PoseWrap, Sample, Wrench};
+use nalgebra::Vector6;
+
+use crate::clock::Clock;
+
+/// What a fit compares the model with, and so what has to be kept of a sample.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Reference {
+    /// Cable forces measured at the platform (\[P\] 18).
+    #[default]
+    Forces,
+    /// The outside wrench on the platform: measured, or else by the platform's mass.
+    Wrench,
+}
+
+/// One cycle of one cable.
+#[derive(Clone, Copy, Debug)]
+pub struct Row {
+    /// Signals as the friction takes them.
+    pub signals: Conditioned<f64>,
+    /// Wrap of the pulley that follows the pose.
+    pub pose_wrap: PoseWrap,
+    /// Cable force measured at the platform, N; NaN where there is none.
+    pub reference_n: f64,
+    /// No pose that can be used, for a cable that needs one.
+    pub pose_fault: bool,
+}
+
+impl Row {
+    /// Whether a fit can learn from the cycle: no fault of sensor, motion or pose, and tension on the cable.
+    #[must_use]
+    pub fn is_sound(&self) -> bool {
+        !self.signals.hold() && !self.pose_fault && self.signals.sensor_force_n > 0.0
+    }
+}
+
+/// The platform over all cycles.
+#[derive(Clone, Debug, Default)]
+pub struct PlatformRecord {
+    /// Columns of the structure matrix, all cables of a cycle one after the other; NaN without a usable pose.
+    pub structure: Vec<Vector6<f64>>,
+    /// Pose of each cycle.
+    pub poses: Vec<Option<Pose>>,
+    /// Measured outside wrench of each cycle.
+    pub wrenches: Vec<Option<Wrench>>,
+}
+
+/// The samples of one or several logs of a robot.
+#[derive(Clone, Debug)]
+pub struct Measurements<'a> {
+    robot: RobotParams<'a>,
+    reference: Reference,
+    cables: Vec<Vec<Row>>,
+    platform: PlatformRecord,
+    starts: Vec<usize>,
+    clock: Clock,
+    signals: Vec<SignalState<f64>>,
+    pose_wraps: Vec<PoseWrap>,
+}
+
+impl<'a> Measurements<'a> {
+    /// None yet, of a robot.
+    #[must_use]
+    pub fn new(robot: &RobotParams<'a>, reference: Reference) -> Self {
+        let count = robot.cables().len();
+        Self {
+            robot: *robot,
+            reference,
+            cables: vec![Vec::new(); count],
+            platform: PlatformRecord::default(),
+            starts: Vec::new(),
+            clock: Clock::new(robot.cycle_s()),
+            signals: vec![SignalState::start(); count],
+            pose_wraps: vec![PoseWrap::START; count],
+        }
+    }
+
+    /// The samples that follow are of another log: what a cable remembers does not go over.
+    pub fn start_log(&mut self) {
+        self.clock = Clock::new(self.robot.cycle_s());
+        self.signals.fill(SignalState::start());
+        self.pose_wraps.fill(PoseWrap::START);
+        if self.starts.last() != Some(&self.len()) {
+            self.starts.push(self.len());
+        }
+    }
+
+    /// Takes in the next sample of the log.
+    pub fn add(&mut self, sample: &Sample<'_>) {
+        if self.starts.is_empty() {
+            self.start_log();
+        }
+        let elapsed_cycles = self.clock.elapsed_cycles(sample.stamp_nanos);
+        let pose = sample.pose.filter(Pose::is_usable);
+        let limits = self.robot.monitor().limits();
+        let states = self.signals.iter_mut().zip(&mut self.pose_wraps);
+        let cables = self.robot.cables().iter().zip(&mut self.cables).zip(states);
+        for (index, ((params, rows), (state, wrap))) in cables.enumerate() {
+            let input = sample.cables.get(index).copied().unwrap_or(NOTHING);
+            let CableInput { sensor_force_n, length_m, speed_m_per_s } = input;
+            let raw = RawSignals { sensor_force_n, length_m, speed_m_per_s };
+            let signals = condition(&limits, state, &raw, elapsed_cycles);
+            let pose_wrap = pose.as_ref().and_then(|pose| PoseWrap::at(params, pose));
+            *wrap = pose_wrap.unwrap_or(*wrap);
+            let reference_n = sample.reference_force_n.get(index).copied().unwrap_or(f64::NAN);
+            let pose_fault = params.needs_pose() && pose_wrap.is_none();
+            rows.push(Row { signals, pose_wrap: *wrap, reference_n, pose_fault });
+            if self.reference == Reference::Wrench {
+                let column = pose.as_ref().and_then(|pose| params.structure_column(pose));
+                self.platform.structure.push(column.unwrap_or_else(|| Vector6::repeat(f64::NAN)));
+            }
+        }
+        if self.reference == Reference::Wrench {
+            self.platform.poses.push(pose);
+            self.platform.wrenches.push(sample.outside_wrench);
+        }
+    }
+
+    /// The robot.
+    #[must_use]
+    pub fn robot(&self) -> &RobotParams<'a> {
+        &self.robot
+    }
+
+    /// What is kept to compare with.
+    #[must_use]
+    pub fn reference(&self) -> Reference {
+        self.reference
+    }
+
+    /// How many samples.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.cables.first().map_or(0, Vec::len)
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// A cable's parameters and its cycles; `None` past the robot's cables.
+    #[must_use]
+    pub fn cable(&self, index: usize) -> Option<CableRecord<'_>> {
+        let (params, rows) = (self.robot.cables().get(index)?, self.cables.get(index)?);
+        Some(CableRecord { params, rows, starts: &self.starts, cycle_s: self.robot.cycle_s() })
+    }
+
+    /// All cables in order.
+    pub fn cables(&self) -> impl Iterator<Item = CableRecord<'_>> {
+        (0..self.cables.len()).filter_map(|index| self.cable(index))
+    }
+
+    /// The platform; empty unless the reference is the wrench.
+    pub(super) fn platform(&self) -> &PlatformRecord {
+        &self.platform
+    }
+
+    /// Where each log begins.
+    pub(super) fn starts(&self) -> &[usize] {
+        &self.starts
+    }
+}
+
+const NOTHING: CableInput = CableInput { sensor_force_n: f64::NAN, length_m: f64::NAN, speed_m_per_s: f64::NAN };
+
+/// The cycles of one cable.
+#[derive(Clone, Copy, Debug)]
+pub struct CableRecord<'a> {
+    /// Its parameters as they were.
+    pub params: &'a CableParams,
+    /// Its cycles, one log after the other.
+    pub rows: &'a [Row],
+    starts: &'a [usize],
+    pub(super) cycle_s: f64,
+}
+
+impl<'a> CableRecord<'a> {
+    /// The cycles of each log, with the place of the first.
+    pub fn logs(&self) -> impl Iterator<Item = (usize, &'a [Row])> {
+        let rows = self.rows;
+        let ends = self.starts.iter().skip(1).copied().chain([rows.len()]);
+        self.starts.iter().zip(ends).filter_map(move |(start, end)| Some((*start, rows.get(*start..end)?)))
+    }
+}

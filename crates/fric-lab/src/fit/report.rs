@@ -1,0 +1,50 @@
+//! What a fit gives.
+
+use fric_core::parameters::Values;
+use nalgebra::DMatrix;
+
+use super::optimizer::Termination;
+use super::selection::SampleCounts;
+use super::vector::Parameter;
+use crate::replay::Deviation;
+
+/// Errors of a cable's force at the platform.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ForceErrors {
+    /// The reference itself, N.
+    pub reference_n: Deviation,
+    /// Frictionless force less reference, N.
+    pub before_n: Deviation,
+    /// Compensated force less reference, N.
+    pub after_n: Deviation,
+}
+
+/// One cable's parameters, and how sure they are.
+#[derive(Clone, Debug)]
+pub struct CableFit {
+    /// Samples by what was done with them.
+    pub samples: SampleCounts,
+    /// All parameters, the fitted ones and the others.
+    pub values: Values,
+    /// What was fitted, in the order of the covariance.
+    pub fitted: Vec<Parameter>,
+    /// What the samples do not determine; `values` holds what was given.
+    pub undetermined: Vec<Parameter>,
+    /// Covariance of the fitted parameters, in their units.
+    pub covariance: DMatrix<f64>,
+    /// Why the search has ended.
+    pub termination: Termination,
+    /// How often the model was evaluated with its derivatives.
+    pub evaluation_count: usize,
+    /// Errors against the reference, where there is one.
+    pub errors: ForceErrors,
+}
+
+impl CableFit {
+    /// Standard error of a parameter, in its unit; `None` where it was not fitted.
+    #[must_use]
+    pub fn standard_error(&self, parameter: &Parameter) -> Option<f64> {
+        let place = self.fitted.iter().position(|fitted| fitted == parameter)?;
+        Some(self.covariance.get((place, place))?.sqrt())
+    }
+}

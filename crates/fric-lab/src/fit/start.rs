@@ -1,0 +1,128 @@
+//! Where a search starts: from the data, not from what the robot file says.
+//!
+//! - μ, F_pv and ε: while a cable slides far from its last reversal, friction is all but linear in them, and σ does not
+//!   matter. One step of Gauss and Newton from nothing gives them.
+//! - σ: the sum of squares is compared over four orders of magnitude of the presliding distance; every valley of it is a
+//!   start.
+
+use fric_core::parameters::{MU, NO_PRESLIDING_N_PER_M, OFFSET, SIGMA, VISCOUS, Values};
+use nalgebra::DMatrix;
+
+use super::problem::{Member, Problem};
+use super::record::Row;
+use super::vector::{Coordinate, Parameter, with};
+
+/// μ about which friction is linearised.
+const TYPICAL_MU: f64 = 0.02;
+/// Presliding distances that are tried, m: half an order of magnitude apart.
+const DISTANCES_M: [[f64; 4]; 2] = [[1e-5, 3e-5, 1e-4, 3e-4], [1e-3, 3e-3, 1e-2, 3e-2]];
+/// So many per cent of the moving samples are too near to their last reversal to count as sliding.
+const NOT_SLIDING_PERCENT: usize = 60;
+/// A valley whose sum of squares is above this multiple of the least is no start.
+const SHALLOW: f64 = 1.5;
+
+/// Values for each cable to start from; the most promising first.
+pub fn starts(problem: &Problem<'_>, given: &[Values], cycle_s: f64) -> Vec<Vec<Values>> {
+    let sliding = slide(problem, given, cycle_s);
+    if !problem.members.iter().any(|member| varies(member, SIGMA)) {
+        return vec![sliding];
+    }
+    let of_distance = |distance_m: f64| -> Vec<f64> {
+        let sigma_of = |(member, values): (&Member<'_>, &Values)| {
+            let tension_n = mean(member.record.rows.iter().map(|row| row.signals.sensor_force_n.max(0.0)));
+            let sigma_n_per_m = member.record.params.memory_m_per_n(values[MU].max(1e-4), 1.0) * tension_n / distance_m;
+            if varies(member, SIGMA) { sigma_n_per_m.clamp(1e-2, 1e11) } else { values[SIGMA] }
+        };
+        problem.members.iter().zip(&sliding).map(sigma_of).collect()
+    };
+    let candidates: Vec<(Vec<f64>, f64)> = DISTANCES_M
+        .iter()
+        .flat_map(|distances_m| {
+            let sigmas = distances_m.map(of_distance);
+            let losses = problem.losses_by_sigma(&sliding, &sigmas);
+            sigmas.into_iter().zip(losses)
+        })
+        .collect();
+    let loss = |place: usize| candidates.get(place).map_or(f64::INFINITY, |(_, loss)| *loss);
+    let is_valley = |place: usize| {
+        place.checked_sub(1).is_none_or(|left| loss(left) > loss(place)) && loss(place + 1) >= loss(place)
+    };
+    let mut valleys: Vec<_> =
+        candidates.iter().enumerate().filter(|(place, _)| is_valley(*place)).map(|(_, candidate)| candidate).collect();
+    valleys.sort_by(|one, other| one.1.total_cmp(&other.1));
+    let least = valleys.first().map_or(f64::NAN, |(_, loss)| *loss);
+    let of_valley = |(sigmas, _): &(Vec<f64>, f64)| -> Vec<Values> {
+        let mut values = sliding.clone();
+        for (values, sigma_n_per_m) in values.iter_mut().zip(sigmas) {
+            values[SIGMA] = *sigma_n_per_m;
+        }
+        values
+    };
+    let starts: Vec<_> = valleys.into_iter().filter(|(_, loss)| *loss <= SHALLOW * least).map(of_valley).collect();
+    if starts.is_empty() { vec![sliding] } else { starts }
+}
+
+fn varies(member: &Member<'_>, place: usize) -> bool {
+    member.free.iter().any(|parameter| parameter.place() == place)
+}
+
+fn mean(numbers: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = numbers.fold((0.0, 0.0), |(sum, count), number| (sum + number, count + 1.0));
+    if count > 0.0 { sum / count } else { 0.0 }
+}
+
+/// μ, F_pv and ε by one linear step on the sliding samples; σ as stiff as can be.
+fn slide(problem: &Problem<'_>, given: &[Values], cycle_s: f64) -> Vec<Values> {
+    let linear = |parameter: &Parameter| [MU, VISCOUS, OFFSET].contains(&parameter.place());
+    let mut reduced = problem.clone();
+    let mut nothing = given.to_vec();
+    for (member, values) in reduced.members.iter_mut().zip(&mut nothing) {
+        if varies(member, SIGMA) {
+            values[SIGMA] = NO_PRESLIDING_N_PER_M;
+        }
+        member.free.retain(linear);
+        let start = |parameter: &Parameter| if parameter.place() == MU { TYPICAL_MU } else { 0.0 };
+        *values = with(values, &member.free, member.free.iter().map(start));
+    }
+    let sliding = sliding_samples(problem);
+    for (used, sliding) in reduced.used.iter_mut().zip(&sliding) {
+        *used &= sliding;
+    }
+    let Some(gram) = reduced.gram(&nothing) else { return given.to_vec() };
+    let (matrix, gradient, _) = gram.normal_equations();
+    // A share of the diagonal keeps what the samples do not determine near nothing.
+    let damped = &matrix + DMatrix::from_diagonal(&matrix.diagonal().map(|square| 1e-9 * square + f64::MIN_POSITIVE));
+    let step = damped.cholesky().map(|factor| factor.solve(&gradient));
+    let Some(step) = step.filter(|step| step.iter().all(|part| part.is_finite())) else { return nothing };
+    let mut parts = step.iter();
+    for (member, values) in reduced.members.iter().zip(&mut nothing) {
+        for parameter in &member.free {
+            let coordinate = Coordinate::of(parameter, cycle_s);
+            let value = values[parameter.place()] - parts.next().copied().unwrap_or(0.0);
+            let value = if parameter.place() == MU { value.max(1e-4) } else { value };
+            values[parameter.place()] = coordinate.to_value(coordinate.from_value(value)).0;
+        }
+    }
+    nothing
+}
+
+/// Samples in which most cables are far from their last reversal.
+fn sliding_samples(problem: &Problem<'_>) -> Vec<bool> {
+    let mut counts = vec![0_usize; problem.used.len()];
+    for member in &problem.members {
+        let mut travel_m = 0.0_f64;
+        let since_reversal = |row: &Row| {
+            let step_m = row.signals.displacement_m;
+            travel_m = if travel_m * step_m < 0.0 { step_m } else { travel_m + step_m };
+            if step_m.abs() > 0.0 { travel_m.abs() } else { 0.0 }
+        };
+        let travels_m: Vec<f64> = member.record.rows.iter().map(since_reversal).collect();
+        let mut moving: Vec<f64> = travels_m.iter().copied().filter(|travel_m| *travel_m > 0.0).collect();
+        moving.sort_by(f64::total_cmp);
+        let least_m = moving.get(moving.len() * NOT_SLIDING_PERCENT / 100).copied().unwrap_or(f64::INFINITY);
+        for (count, travel_m) in counts.iter_mut().zip(&travels_m) {
+            *count += usize::from(*travel_m >= least_m);
+        }
+    }
+    counts.into_iter().map(|count| 4 * count >= 3 * problem.members.len()).collect()
+}

@@ -1,0 +1,165 @@
+//! Which parameters a fit varies, and the coordinates it varies them in.
+//!
+//! Ranges are kept by a change of coordinates, so that the optimiser itself knows no bounds: a positive quantity that may
+//! be of any size is varied by its logarithm, every other one `p ∈ [a, b]` by `u` with `p = a + (b − a)·sin²(u/2)`.
+
+use std::fmt;
+
+use fric_core::effects::time_delay::{DELAY, MAX_DELAY_CYCLES};
+use fric_core::parameters::{self, FRICTION_COUNT, PARAMETER_COUNT, ParameterRow, Values};
+
+/// One parameter of a cable: its place in [`Values`] with its row.
+#[derive(Clone, Copy, Debug)]
+pub struct Parameter {
+    place: usize,
+    effect: Option<&'static str>,
+    row: &'static ParameterRow,
+}
+
+impl Parameter {
+    /// Every parameter there is, in the order of [`Values`].
+    pub fn all() -> impl Iterator<Item = Self> {
+        parameters::parameters().enumerate().map(|(place, (effect, row))| Self { place, effect, row })
+    }
+
+    /// The parameter of a name: a key of the robot file's `friction`, or `effect.key`.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        Self::all().find(|parameter| parameter.to_string() == name)
+    }
+
+    /// Its place in [`Values`].
+    #[must_use]
+    pub fn place(&self) -> usize {
+        self.place
+    }
+
+    /// Kind of its effect; `None` for those of `friction`.
+    #[must_use]
+    pub fn effect(&self) -> Option<&'static str> {
+        self.effect
+    }
+
+    /// Unit, range and neutral value.
+    #[must_use]
+    pub fn row(&self) -> &'static ParameterRow {
+        self.row
+    }
+
+    /// Whether it belongs to `friction`.
+    #[must_use]
+    pub fn is_friction(&self) -> bool {
+        self.place < FRICTION_COUNT
+    }
+}
+
+/// The name of [`Parameter::named`].
+impl fmt::Display for Parameter {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(effect) = self.effect {
+            write!(formatter, "{effect}.")?;
+        }
+        formatter.write_str(self.row.key)
+    }
+}
+
+impl PartialEq for Parameter {
+    fn eq(&self, other: &Self) -> bool {
+        self.place == other.place
+    }
+}
+
+impl Eq for Parameter {}
+
+/// The coordinate in which a parameter is varied.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coordinate {
+    min: f64,
+    max: f64,
+    logarithmic: bool,
+}
+
+/// A range of more than this many is one of orders of magnitude.
+const WIDE_RATIO: f64 = 1e3;
+/// Starts keep this share of a range's width away from its ends, where the coordinate has no slope.
+const MARGIN_RATIO: f64 = 1e-9;
+
+impl Coordinate {
+    /// Of a parameter at a cycle time.
+    pub fn of(parameter: &Parameter, cycle_s: f64) -> Self {
+        let ParameterRow { min, max, .. } = *parameter.row;
+        #[expect(clippy::cast_precision_loss, reason = "a small constant")]
+        let longest_s = (MAX_DELAY_CYCLES - 1) as f64 * cycle_s;
+        let max = if parameter.place == DELAY { longest_s } else { max };
+        Self { min, max, logarithmic: min > 0.0 && max / min > WIDE_RATIO }
+    }
+
+    /// The coordinate of a value; one out of range is moved into it.
+    pub fn from_value(&self, value: f64) -> f64 {
+        if self.logarithmic {
+            return value.clamp(self.min, self.max).ln();
+        }
+        let share = ((value - self.min) / (self.max - self.min)).clamp(MARGIN_RATIO, 1.0 - MARGIN_RATIO);
+        2.0 * share.sqrt().asin()
+    }
+
+    /// The value at a coordinate, and its slope.
+    pub fn to_value(&self, coordinate: f64) -> (f64, f64) {
+        if self.logarithmic {
+            let value = coordinate.exp().clamp(self.min, self.max);
+            return (value, value);
+        }
+        let (sin, cos) = (0.5 * coordinate).sin_cos();
+        let width = self.max - self.min;
+        (self.min + width * sin * sin, width * sin * cos)
+    }
+}
+
+/// `values` with `changed` at the places of `free`.
+pub fn with(values: &Values, free: &[Parameter], changed: impl IntoIterator<Item = f64>) -> Values {
+    let mut values = *values;
+    for (parameter, value) in free.iter().zip(changed) {
+        values[parameter.place] = value;
+    }
+    values
+}
+
+const _: () = assert!(PARAMETER_COUNT <= super::pass::MOST_PARAMETERS);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn coordinates_keep_the_range_and_their_slope_is_the_derivative() {
+        for parameter in Parameter::all() {
+            let coordinate = Coordinate::of(&parameter, 0.001);
+            for share in [1e-4, 0.01, 0.3, 0.8] {
+                let (min, max) = (coordinate.min, coordinate.max);
+                let value =
+                    if coordinate.logarithmic { min * (max / min).powf(share) } else { min + share * (max - min) };
+                let place = coordinate.from_value(value);
+                let (back, slope) = coordinate.to_value(place);
+                assert!(
+                    (back - value).abs() <= 1e-9 * (max - min).min(value.abs().max(1.0)),
+                    "{parameter}: {value} {back}"
+                );
+                let h = 1e-6 * place.abs().max(1e-3);
+                let numeric = (coordinate.to_value(place + h).0 - coordinate.to_value(place - h).0) / (2.0 * h);
+                assert!((slope - numeric).abs() <= 1e-5 * numeric.abs(), "{parameter}: {slope} {numeric}");
+            }
+            for wild in [-1e9, -1.0, 0.0, 17.3, 1e4] {
+                let (value, _) = coordinate.to_value(wild);
+                assert!((coordinate.min..=coordinate.max).contains(&value), "{parameter}");
+            }
+        }
+    }
+
+    #[test]
+    fn names_lead_to_their_parameter() {
+        assert_eq!(Parameter::named("mu").map(|parameter| parameter.place()), Some(parameters::MU));
+        assert_eq!(Parameter::named("time_delay.delay_s").map(|parameter| parameter.place()), Some(DELAY));
+        assert!(Parameter::named("delay_s").is_none());
+        assert!(Parameter::all().all(|parameter| Parameter::named(&parameter.to_string()) == Some(parameter)));
+    }
+}
