@@ -27,7 +27,7 @@ fn replay(robot: &RobotFile) -> f64 {
         .with(Role::Wrench, path(&log.wrench));
     let recording = Recording::open(&[example("mini-ipanema.mcap")]).unwrap();
     let mut reader = SignalReader::new(recording, paths, &robot.cable_names());
-    let mut replay = Replay::new(&robot.params().unwrap()).unwrap();
+    let mut replay = Replay::new(&robot.params()).unwrap();
     while let Some(row) = reader.next_row().unwrap() {
         replay.step(&row);
     }

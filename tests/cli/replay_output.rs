@@ -56,7 +56,7 @@ fn the_output_stands_at_the_times_of_the_input() {
 fn the_forces_are_those_of_the_library_to_the_bit() {
     let (place, _, output, _) = replayed();
     let robot = RobotFile::parse(&example_robot(), "robot").unwrap();
-    let mut compensator = Compensator::<8>::new(&robot.params().unwrap()).unwrap();
+    let mut compensator = Compensator::<8>::new(&robot.params()).unwrap();
     let paths = SignalPaths::default()
         .with(Role::Cable, Some("/cable_states".parse().unwrap()))
         .with(Role::Pose, Some("/platform_pose".parse().unwrap()));

@@ -62,7 +62,7 @@ fn the_documented_example_is_read() {
     let file = RobotFile::parse(EXAMPLE, "rig.toml").unwrap();
     assert_eq!(file.options().format, FORMAT);
     assert_eq!(file.cable_names(), ["cable1"]);
-    let robot = file.params().unwrap();
+    let robot = file.params();
     assert_near(robot.cycle_s(), 0.001, 0.0);
     let cable = &robot.cables()[0];
     assert_eq!(cable.pulley_count(), 3);
@@ -80,7 +80,7 @@ fn what_is_left_out_has_its_default() {
     let topics = [&log.cable, &log.reference, &log.pose, &log.wrench];
     assert_eq!(topics, ["/cable_states", "/reference_forces", "/platform_pose", "/platform_wrench"]);
     assert_near(short.options().platform.gravity_m_per_s2[2], -9.80665, 0.0);
-    assert!(!short.params().unwrap().cables()[0].needs_pose());
+    assert!(!short.params().cables()[0].needs_pose());
     assert_eq!(fric_core::robot::CableOptions::new(&[]).presliding, Presliding::PerPulley);
     // One name of [log] alone leaves the others.
     let text = format!("{SHORT}[log]\npose = \"/pose\"\n");

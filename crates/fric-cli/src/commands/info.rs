@@ -228,7 +228,7 @@ fn signal_results(reader: &SignalReader, paths: &SignalPaths) -> Vec<SignalResul
 /// Which steps the log allows.
 fn steps(model: &Model, joined: &Joined, problem: Option<String>) -> Vec<StepResult> {
     let params = model.robot.params();
-    let cables = params.as_ref().map(fric_core::RobotParams::cables).unwrap_or_default();
+    let cables = params.cables();
     let needs_pose = cables.iter().any(fric_core::CableParams::needs_pose);
     let all_geometry = cables.iter().all(fric_core::CableParams::has_geometry);
     let no_reference = "no reference: the log has no force measured at the platform to compare with";

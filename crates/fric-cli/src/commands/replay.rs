@@ -32,7 +32,7 @@ pub fn run(arguments: &ReplayArguments) -> Outcome {
 
     let paths = model.signal_paths()?;
     let names = model.robot.cable_names();
-    let params = model.robot.params()?;
+    let params = model.robot.params();
     let bar = progress::bytes(recording.total_bytes());
     let mut reader = SignalReader::new(recording, paths.clone(), &names);
     let mut replay = Replay::new(&params)?;
@@ -148,7 +148,7 @@ fn describe(result: &ReplayResult) -> String {
 /// What the robot file and the log do not agree about.
 fn warn_about_model(model: &Model, reader: &SignalReader, replay: &Replay) {
     let no_pose = reader.counts(Role::Pose).message_count == 0;
-    let needs_pose = model.robot.params().is_ok_and(|robot| robot.cables().iter().any(CableParams::needs_pose));
+    let needs_pose = model.robot.params().cables().iter().any(CableParams::needs_pose);
     if no_pose && needs_pose {
         warnings::warn(
             "the log has no pose: the wrap of the last pulleys is taken as 90°, and there is no wrench; name the pose's \

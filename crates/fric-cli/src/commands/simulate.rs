@@ -94,7 +94,7 @@ impl SimulatedLog {
         let names = model.robot.cable_names();
         let cables = writer.add_joint_state(&topic(Role::Cable)?, "base", &names)?;
         let reference = writer.add_joint_state(&topic(Role::Reference)?, "platform", &names)?;
-        let params = model.robot.params()?;
+        let params = model.robot.params();
         let any_geometry = params.cables().iter().any(fric_core::CableParams::has_geometry);
         let all_geometry = params.cables().iter().all(fric_core::CableParams::has_geometry);
         let pose = any_geometry.then(|| Outcome::Ok(writer.add_pose(&topic(Role::Pose)?, "base")?)).transpose()?;

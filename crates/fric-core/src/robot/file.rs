@@ -213,6 +213,8 @@ pub struct EffectTable {
 #[derive(Clone, Debug, PartialEq)]
 pub struct RobotFile {
     options: RobotOptions,
+    /// All but the cables, which stand beside it.
+    robot: RobotParams<'static>,
     cables: Vec<CableParams>,
 }
 
@@ -294,61 +296,14 @@ impl RobotFile {
             }
             cables.push(table.check().map_err(at)?);
         }
-        let file = Self { options, cables };
-        file.check_robot()?;
-        Ok(file)
-    }
-
-    fn check_robot(&self) -> Result<(), OptionsError> {
-        let table = |key: &str| match key {
-            "mass_kg" | "center_of_mass_m" | "gravity_m_per_s2" => Some(Step::Key("platform")),
-            "length_jump_m" | "length_noise_m" => Some(Step::Key("monitor")),
-            _ => None,
-        };
-        let Err(error) = self.build() else { return Ok(()) };
-        if error.key == "delay_s" {
-            return Err(self.delay_error(error));
-        }
-        let mut path: Vec<Step> = table(error.key).into_iter().collect();
-        path.push(Step::Key(error.key));
-        Err(OptionsError::new(&path, error.key, error.problem.to_string()))
-    }
-
-    /// The longest delay depends on the cycle time, so it is known only with the whole robot.
-    fn delay_error(&self, error: ParamError) -> OptionsError {
-        let of_value = |cable: &CableParams| match error.problem {
-            ParamProblem::OutOfRange { value, .. } => {
-                cable.effects.get("time_delay", "delay_s").is_some_and(|delay_s| delay_s.to_bits() == value.to_bits())
-            }
-            _ => false,
-        };
-        let place =
-            self.cables.iter().position(of_value).and_then(|index| Some((index, self.options.cable.get(index)?)));
-        let Some((index, table)) = place else { return OptionsError::from(error) };
-        let mut named = table.name_parameter(error);
-        named.path.splice(0..0, [Step::Key("cable"), Step::Index(index)]);
-        named.cable = Some(table.name.clone());
-        named
-    }
-
-    fn build(&self) -> Result<RobotParams<'_>, ParamError> {
-        let PlatformTable { mass_kg, center_of_mass_m, gravity_m_per_s2 } = self.options.platform;
-        let standard = MonitorOptions::for_cycle(self.options.cycle_s);
-        let monitor = MonitorOptions {
-            frozen_cycles: self.options.monitor.frozen_cycles.unwrap_or(standard.frozen_cycles),
-            length_jump_m: self.options.monitor.length_jump_m.unwrap_or(standard.length_jump_m),
-            length_noise_m: self.options.monitor.length_noise_m.unwrap_or(standard.length_noise_m),
-        };
-        let platform = PlatformOptions { mass_kg, center_of_mass_m, gravity_m_per_s2 };
-        RobotParams::new(self.options.cycle_s, &platform, monitor, &self.cables)
+        let robot = options.robot_params(&cables)?;
+        Ok(Self { options, robot, cables })
     }
 
     /// The parameters that a [`Compensator`](crate::Compensator) is built from.
-    ///
-    /// # Errors
-    /// None for a file that has been checked; the signature leaves it to the one check there is.
-    pub fn params(&self) -> Result<RobotParams<'_>, ParamError> {
-        self.build()
+    #[must_use]
+    pub fn params(&self) -> RobotParams<'_> {
+        RobotParams { cables: &self.cables, ..self.robot }
     }
 
     /// What is written in the file.
@@ -369,6 +324,53 @@ impl RobotFile {
     /// None for a file that has been checked; the serialiser's signature has one.
     pub fn to_toml(&self) -> Result<String, toml::ser::Error> {
         toml::to_string(&self.options)
+    }
+}
+
+impl RobotOptions {
+    /// The checked parameters of a robot with these cables, without them.
+    fn robot_params(&self, cables: &[CableParams]) -> Result<RobotParams<'static>, OptionsError> {
+        let PlatformTable { mass_kg, center_of_mass_m, gravity_m_per_s2 } = self.platform;
+        let standard = MonitorOptions::for_cycle(self.cycle_s);
+        let monitor = MonitorOptions {
+            frozen_cycles: self.monitor.frozen_cycles.unwrap_or(standard.frozen_cycles),
+            length_jump_m: self.monitor.length_jump_m.unwrap_or(standard.length_jump_m),
+            length_noise_m: self.monitor.length_noise_m.unwrap_or(standard.length_noise_m),
+        };
+        let platform = PlatformOptions { mass_kg, center_of_mass_m, gravity_m_per_s2 };
+        let RobotParams { cycle_s, mass_kg, center_of_mass_m, gravity_m_per_s2, monitor, .. } =
+            RobotParams::new(self.cycle_s, &platform, monitor, cables)
+                .map_err(|error| self.name_parameter(cables, error))?;
+        Ok(RobotParams { cycle_s, mass_kg, center_of_mass_m, gravity_m_per_s2, monitor, cables: &[] })
+    }
+
+    /// Where a refused parameter of the whole robot stands.
+    fn name_parameter(&self, cables: &[CableParams], error: ParamError) -> OptionsError {
+        let table = match error.key {
+            "mass_kg" | "center_of_mass_m" | "gravity_m_per_s2" => Some(Step::Key("platform")),
+            "length_jump_m" | "length_noise_m" => Some(Step::Key("monitor")),
+            "delay_s" => return self.delay_error(cables, error),
+            _ => None,
+        };
+        let mut path: Vec<Step> = table.into_iter().collect();
+        path.push(Step::Key(error.key));
+        OptionsError::new(&path, error.key, error.problem.to_string())
+    }
+
+    /// The longest delay depends on the cycle time, so it is known only with the whole robot.
+    fn delay_error(&self, cables: &[CableParams], error: ParamError) -> OptionsError {
+        let of_value = |cable: &CableParams| match error.problem {
+            ParamProblem::OutOfRange { value, .. } => {
+                cable.effects.get("time_delay", "delay_s").is_some_and(|delay_s| delay_s.to_bits() == value.to_bits())
+            }
+            _ => false,
+        };
+        let place = cables.iter().position(of_value).and_then(|index| Some((index, self.cable.get(index)?)));
+        let Some((index, table)) = place else { return OptionsError::from(error) };
+        let mut named = table.name_parameter(error);
+        named.path.splice(0..0, [Step::Key("cable"), Step::Index(index)]);
+        named.cable = Some(table.name.clone());
+        named
     }
 }
 

@@ -89,7 +89,7 @@ impl Simulation {
     /// [`SimulationError`] for an option out of range, an effect that cannot be simulated, and a robot without a place
     /// where all its cables can run.
     pub fn new(robot: &RobotFile, options: &SimulationOptions) -> Result<Self, SimulationError> {
-        let params = robot.params()?;
+        let params = robot.params();
         let cycle_s = params.cycle_s();
         options.check(cycle_s)?;
         let tables = &robot.options().cable;

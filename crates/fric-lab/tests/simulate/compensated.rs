@@ -9,7 +9,7 @@ use super::robots::{bench, bench_with, eight_cables, noiseless, simulate};
 /// Rms error of each cable before and after compensation with the robot file's parameters, N.
 fn rms_n(robot: &RobotFile, options: &SimulationOptions) -> Vec<(f64, f64)> {
     let mut simulation = simulate(robot, options);
-    let mut compensator = Compensator::<8>::new(&robot.params().unwrap()).unwrap();
+    let mut compensator = Compensator::<8>::new(&robot.params()).unwrap();
     let count = robot.options().cable.len();
     let mut squares = vec![(0.0, 0.0); count];
     let mut cycles = 0.0;

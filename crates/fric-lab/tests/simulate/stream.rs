@@ -66,7 +66,7 @@ fn lengths_are_continuous() {
 #[test]
 fn the_platform_is_held_by_its_cables() {
     let robot = eight_cables();
-    let params = robot.params().unwrap();
+    let params = robot.params();
     let duration_s = simulate(&robot, &noiseless()).trajectory().duration_s();
     assert!((50.0..60.0).contains(&duration_s), "{duration_s}");
     let mut simulation = simulate(&robot, &SimulationOptions { duration_s: Some(34.0), ..noiseless() });
