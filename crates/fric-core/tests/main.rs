@@ -14,6 +14,8 @@ mod dahl;
 #[cfg(test)]
 mod delay;
 #[cfg(test)]
+mod edit;
+#[cfg(test)]
 mod oracle;
 #[cfg(test)]
 mod platform;

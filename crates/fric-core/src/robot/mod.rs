@@ -5,11 +5,15 @@ mod error;
 mod params;
 
 #[cfg(feature = "robot-file")]
+pub mod edit;
+#[cfg(feature = "robot-file")]
 pub mod file;
 #[cfg(feature = "robot-file")]
 mod locate;
 #[cfg(feature = "robot-file")]
 mod read;
+#[cfg(feature = "robot-file")]
+mod splice;
 #[cfg(feature = "robot-file")]
 mod table;
 

@@ -1,0 +1,347 @@
+//! New parameters in a robot file that somebody wrote: comments, order and layout stay.
+//!
+//! [`rewrite`] takes the text and, per cable, friction values and effects, and gives the text in which exactly these
+//! have changed. Values are replaced where they stand. What is new goes beside its like: in braces, on a line of its own,
+//! or under a header of its own, as the file does it. Needs the feature `robot-file`; not for the cycle.
+
+use std::borrow::ToOwned;
+use std::format;
+use std::string::{String, ToString};
+use std::vec::Vec;
+
+use toml_edit::{Array, ArrayOfTables, Document, InlineTable, Item, Table, TableLike, Value};
+
+use super::file::{RobotFile, RobotFileError};
+use super::locate::unknown_name;
+use super::splice::{self, Entry, Splice};
+
+/// What to change of one cable.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CableEdit<'a> {
+    /// Name of the cable in the file.
+    pub name: &'a str,
+    /// Friction values.
+    pub friction: FrictionEdit,
+    /// Effects, one after the other.
+    pub effects: &'a [EffectEdit<'a>],
+}
+
+/// New friction values; those that are `None` stay as they are.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FrictionEdit {
+    /// Bearing friction μ, 1.
+    pub mu: Option<f64>,
+    /// Presliding stiffness of the whole cable, N/m.
+    pub sigma_n_per_m: Option<f64>,
+    /// Viscous friction of each pulley, N s/m.
+    pub viscous_n_s_per_m: Option<f64>,
+    /// Offset at the platform, N.
+    pub offset_n: Option<f64>,
+}
+
+/// What to do about one effect of a cable.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum EffectEdit<'a> {
+    /// Sets parameters by key, in the units of the effect's catalogue row; the effect is appended if the cable has not
+    /// got it.
+    Set {
+        /// Name in the catalogue.
+        kind: &'a str,
+        /// Parameters; those that an effect already there has beside them stay.
+        parameters: &'a [(&'a str, f64)],
+    },
+    /// Takes the effect away, with a comment on its line; it has to be there.
+    Remove {
+        /// Name in the catalogue.
+        kind: &'a str,
+    },
+}
+
+impl FrictionEdit {
+    /// The values given, by key, in the order of the file format.
+    fn values(&self) -> impl Iterator<Item = (&'static str, f64)> {
+        let Self { mu, sigma_n_per_m, viscous_n_s_per_m, offset_n } = *self;
+        let all = [
+            ("mu", mu),
+            ("sigma_n_per_m", sigma_n_per_m),
+            ("viscous_n_s_per_m", viscous_n_s_per_m),
+            ("offset_n", offset_n),
+        ];
+        all.into_iter().filter_map(|(key, value)| Some((key, value?)))
+    }
+}
+
+/// The text of a robot file with new parameters; `origin` says where it is from, for errors.
+///
+/// Numbers read back to the same bits. What is not changed stays to the byte, a value that is given as it is included.
+///
+/// ```
+/// use fric_core::robot::edit::{CableEdit, EffectEdit, FrictionEdit, rewrite};
+/// # fn main() -> Result<(), fric_core::robot::file::RobotFileError> {
+/// let text = r#"
+/// format = "fric-robot/1"
+/// name = "bench"
+/// cycle_s = 0.001
+///
+/// [[cable]]
+/// name = "winch"   # the left one
+/// pulleys = [{ wrap_deg = 180.0, sensor = true }]
+/// friction = { mu = 0.019, viscous_n_s_per_m = 0.5 }
+/// "#;
+/// let effects = [EffectEdit::Set { kind: "stribeck", parameters: &[("ratio", 0.5)] }];
+/// let friction = FrictionEdit { mu: Some(0.0161), ..FrictionEdit::default() };
+/// let fitted = rewrite(text, "robot.toml", &[CableEdit { name: "winch", friction, effects: &effects }])?;
+/// assert!(fitted.contains("# the left one"));
+/// assert!(fitted.contains("friction = { mu = 0.0161, viscous_n_s_per_m = 0.5 }\n"));
+/// assert!(fitted.ends_with("effects = [ { kind = \"stribeck\", ratio = 0.5 } ]\n"));
+/// # Ok(())
+/// # }
+/// ```
+///
+/// # Errors
+/// [`RobotFileError::Invalid`] if the text is not right, before or with the new values, or has no such cable or effect.
+pub fn rewrite(text: &str, origin: &str, edits: &[CableEdit<'_>]) -> Result<String, RobotFileError> {
+    RobotFile::parse(text, origin)?;
+    let mut draft = Draft { text: text.to_owned(), origin };
+    for edit in edits {
+        draft.edit(edit)?;
+    }
+    RobotFile::parse(&draft.text, &format!("{origin} with the new values"))?;
+    Ok(draft.text)
+}
+
+/// A text in the making. It is read again after each change, so that each sees the places as they are.
+struct Draft<'a> {
+    text: String,
+    origin: &'a str,
+}
+
+impl Draft<'_> {
+    fn edit(&mut self, edit: &CableEdit<'_>) -> Result<(), RobotFileError> {
+        let CableEdit { name, friction, effects } = *edit;
+        for value in friction.values() {
+            self.change(name, |cable, text| cable.set_friction(text, value))?;
+        }
+        for effect in effects {
+            match *effect {
+                EffectEdit::Set { kind, parameters } => {
+                    self.change(name, |cable, text| cable.add_effect(text, kind, parameters))?;
+                    for value in parameters {
+                        self.change(name, |cable, text| cable.set_effect(text, kind, *value))?;
+                    }
+                }
+                EffectEdit::Remove { kind } => self.change(name, |cable, text| cable.remove_effect(text, kind))?,
+            }
+        }
+        Ok(())
+    }
+
+    /// Makes one change of a cable; the `Err` of what makes it is the problem in words.
+    fn change(
+        &mut self,
+        name: &str,
+        plan: impl FnOnce(&Cable<'_>, &str) -> Result<Vec<Splice>, String>,
+    ) -> Result<(), RobotFileError> {
+        let planned = Document::parse(self.text.as_str())
+            .map_err(|error| error.message().to_owned())
+            .and_then(|document| plan(&Cable::find(&document, name)?, &self.text));
+        let splices = planned.map_err(|problem| RobotFileError::Invalid {
+            origin: self.origin.to_owned(),
+            line: None,
+            problem,
+        })?;
+        splice::apply(&mut self.text, splices);
+        Ok(())
+    }
+}
+
+/// A cable's table where it stands.
+struct Cable<'a> {
+    name: &'a str,
+    body: Body<'a>,
+}
+
+/// A table under a header or with dotted keys, or one in braces.
+#[derive(Clone, Copy)]
+enum Body<'a> {
+    Lines(&'a Table),
+    Braces(&'a InlineTable),
+}
+
+/// `effects` as written.
+enum Effects<'a> {
+    Missing,
+    List(&'a Array),
+    Tables(&'a ArrayOfTables),
+}
+
+impl<'a> Body<'a> {
+    fn of_item(item: &'a Item) -> Option<Self> {
+        match item {
+            Item::Table(table) => Some(Self::Lines(table)),
+            Item::Value(Value::InlineTable(table)) => Some(Self::Braces(table)),
+            _ => None,
+        }
+    }
+
+    fn table(self) -> &'a dyn TableLike {
+        match self {
+            Self::Lines(table) => table,
+            Self::Braces(table) => table,
+        }
+    }
+
+    /// Puts an entry behind the last one; `dotted` is the key to write before its own where the keys are dotted.
+    fn append(self, text: &str, dotted: &str, entry: &str) -> Option<Vec<Splice>> {
+        let last = splice::last_entry(self.table());
+        let entry = if self.table().is_dotted() { format!("{dotted}.{entry}") } else { entry.to_owned() };
+        match self {
+            Self::Braces(table) if table.is_dotted() => Some(splice::beside(&last?, &entry)),
+            Self::Braces(table) => Some(splice::in_list(text, &table.span()?, last.as_ref(), &entry)),
+            Self::Lines(table) => {
+                let place = last.or_else(|| Some(Entry::from(table.span()?)))?;
+                Some(splice::below(text, &place, &entry))
+            }
+        }
+    }
+}
+
+impl<'a> Cable<'a> {
+    fn find(document: &'a Table, name: &'a str) -> Result<Self, String> {
+        let bodies: Vec<Body<'a>> = match document.get("cable") {
+            Some(Item::ArrayOfTables(tables)) => tables.iter().map(Body::Lines).collect(),
+            Some(Item::Value(Value::Array(list))) => {
+                list.iter().filter_map(Value::as_inline_table).map(Body::Braces).collect()
+            }
+            _ => Vec::new(),
+        };
+        let name_of = |body: Body<'a>| body.table().get("name").and_then(Item::as_str);
+        let found = bodies.iter().find(|body| name_of(**body) == Some(name));
+        let known = || bodies.iter().filter_map(|body| name_of(*body));
+        let body = *found.ok_or_else(|| unknown_name("cable", name, known()))?;
+        Ok(Self { name, body })
+    }
+
+    /// What stands at a key cannot be added to.
+    fn refuse(&self, key: &str) -> String {
+        format!("`{key}` of cable \"{}\" is written in a way that cannot be added to; write it in one table", self.name)
+    }
+
+    /// Puts an entry behind the first of these keys that is one line or list of the cable.
+    fn append(&self, text: &str, behind: &[&str], entry: &str) -> Option<Vec<Splice>> {
+        match self.body {
+            Body::Braces(_) => self.body.append(text, "", entry),
+            Body::Lines(table) => {
+                let place = behind.iter().find_map(|key| {
+                    let (key, item) = table.get_key_value(key)?;
+                    Some(Entry { start: key.span()?.start, end: item.as_value()?.span()?.end })
+                })?;
+                Some(splice::below(text, &place, entry))
+            }
+        }
+    }
+
+    fn set_friction(&self, text: &str, (key, value): (&str, f64)) -> Result<Vec<Splice>, String> {
+        let splices = match self.body.table().get("friction") {
+            None => self.append(text, &["pulleys", "name"], &format!("friction = {{ {} }}", entry(key, value))),
+            Some(item) => Body::of_item(item).and_then(|body| set(body, text, "friction", key, value)),
+        };
+        splices.ok_or_else(|| self.refuse("friction"))
+    }
+
+    fn effects(&self) -> Result<Effects<'a>, String> {
+        match self.body.table().get("effects") {
+            None => Ok(Effects::Missing),
+            Some(Item::Value(Value::Array(array))) => Ok(Effects::List(array)),
+            Some(Item::ArrayOfTables(tables)) => Ok(Effects::Tables(tables)),
+            Some(_) => Err(self.refuse("effects")),
+        }
+    }
+
+    /// Appends an effect that is not there, with its parameters.
+    fn add_effect(&self, text: &str, kind: &str, parameters: &[(&str, f64)]) -> Result<Vec<Splice>, String> {
+        let effects = self.effects()?;
+        if effects.find(kind).is_some() {
+            return Ok(Vec::new());
+        }
+        let mut entries = Vec::from([format!("kind = {}", quoted(kind))]);
+        entries.extend(parameters.iter().map(|(key, value)| entry(key, *value)));
+        let braces = || format!("{{ {} }}", entries.join(", "));
+        let splices = match effects {
+            Effects::Missing => {
+                self.append(text, &["friction", "pulleys", "name"], &format!("effects = [ {} ]", braces()))
+            }
+            Effects::List(array) => {
+                let last = array.iter().last().and_then(Value::span).map(Entry::from);
+                array.span().map(|array| splice::in_list(text, &array, last.as_ref(), &braces()))
+            }
+            Effects::Tables(tables) => tables.iter().last().and_then(|last| {
+                let header = last.span()?;
+                let end = splice::last_entry(last)?;
+                Some(splice::table_below(text, &header, &end, &entries))
+            }),
+        };
+        splices.ok_or_else(|| self.refuse("effects"))
+    }
+
+    fn set_effect(&self, text: &str, kind: &str, (key, value): (&str, f64)) -> Result<Vec<Splice>, String> {
+        let found = self.effects()?.find(kind);
+        found.and_then(|(_, body)| set(body, text, "", key, value)).ok_or_else(|| self.refuse("effects"))
+    }
+
+    fn remove_effect(&self, text: &str, kind: &str) -> Result<Vec<Splice>, String> {
+        let effects = self.effects()?;
+        let Some((index, body)) = effects.find(kind) else {
+            return Err(format!("cable \"{}\" has no effect `{kind}` to be removed", self.name));
+        };
+        let splices = match (effects, body) {
+            (Effects::List(array), _) => {
+                let places: Vec<Entry> = array.iter().filter_map(Value::span).map(Entry::from).collect();
+                array.span().and_then(|array| splice::out_of_list(text, &array, &places, index))
+            }
+            (_, Body::Lines(table)) => {
+                table.span().map(|header| splice::without_lines(text, &header, splice::last_entry(table)))
+            }
+            _ => None,
+        };
+        splices.ok_or_else(|| self.refuse("effects"))
+    }
+}
+
+impl<'a> Effects<'a> {
+    /// Place and table of the effect of a kind.
+    fn find(&self, kind: &str) -> Option<(usize, Body<'a>)> {
+        let bodies: Vec<Body<'a>> = match *self {
+            Self::Missing => Vec::new(),
+            Self::List(list) => list.iter().filter_map(Value::as_inline_table).map(Body::Braces).collect(),
+            Self::Tables(tables) => tables.iter().map(Body::Lines).collect(),
+        };
+        let is_it = |body: &Body<'a>| body.table().get("kind").and_then(Item::as_str) == Some(kind);
+        bodies.into_iter().enumerate().find(|(_, body)| is_it(body))
+    }
+}
+
+/// Sets one number of a table: in its place, or behind the last entry.
+fn set(body: Body<'_>, text: &str, dotted: &str, key: &str, value: f64) -> Option<Vec<Splice>> {
+    let Some(item) = body.table().get(key) else { return body.append(text, dotted, &entry(key, value)) };
+    #[expect(clippy::cast_precision_loss, reason = "as the file is read")]
+    let written = item.as_float().or_else(|| item.as_integer().map(|whole| whole as f64));
+    if written.is_some_and(|written| written.to_bits() == value.to_bits()) {
+        return Some(Vec::new());
+    }
+    Some(Vec::from([Splice { range: item.span()?, with: number(value) }]))
+}
+
+fn entry(key: &str, value: f64) -> String {
+    format!("{key} = {}", number(value))
+}
+
+/// The shortest text that reads back to the same bits, with a point or an exponent, as TOML writes it.
+fn number(value: f64) -> String {
+    if value.is_nan() { "nan".to_owned() } else { format!("{value:?}") }
+}
+
+/// A name that the catalogue has needs no escapes; another one is refused when the text is read again.
+fn quoted(kind: &str) -> String {
+    toml::Value::from(kind).to_string()
+}
