@@ -74,6 +74,30 @@ fn the_documented_example_is_read() {
 }
 
 #[test]
+fn checked_parameters_tell_what_the_file_says() {
+    let text = format!("{EXAMPLE}traction_mu = 0.15\n[monitor]\nfrozen_cycles = 7\nlength_noise_m = 1e-6\n");
+    let file = RobotFile::parse(&with(&text, "per_pulley", "lumped"), "rig.toml").unwrap();
+    let robot = file.params();
+    assert_eq!(robot.mass_kg(), 0.41);
+    assert_eq!((robot.center_of_mass_m().as_slice(), robot.gravity_m_per_s2().z), (&[0.0; 3][..], -9.80665));
+    let monitor = robot.monitor();
+    assert_eq!((monitor.frozen_cycles, monitor.length_jump_m, monitor.length_noise_m), (7, 0.01, 1e-6));
+    let cable = &robot.cables()[0];
+    let wraps: Vec<_> = cable.fixed_wraps_rad().collect();
+    assert_eq!(wraps, [Some(core::f64::consts::PI), Some(core::f64::consts::FRAC_PI_2), None]);
+    assert_eq!((cable.sensor_wrap_rad(), cable.presliding()), (Some(core::f64::consts::PI), Presliding::Lumped));
+    let friction = cable.friction();
+    assert_eq!((friction.mu, friction.sigma_n_per_m), (0.019, Some(950.0)));
+    assert_eq!((friction.viscous_n_s_per_m, friction.offset_n), (0.5, 0.0));
+    assert_eq!((cable.effects().stribeck.ratio, cable.traction_mu()), (0.5, Some(0.15)));
+    assert_eq!(cable.base_m().unwrap().as_slice(), [0.55, 0.4, 0.5]);
+    assert_eq!(cable.platform_m().unwrap().as_slice(), [0.06, 0.05, -0.05]);
+    let bench = RobotFile::parse(SHORT, "bench.toml").unwrap();
+    let cable = &bench.params().cables()[0];
+    assert_eq!((cable.base_m(), cable.platform_m(), cable.traction_mu()), (None, None, None));
+}
+
+#[test]
 fn what_is_left_out_has_its_default() {
     let short = RobotFile::parse(SHORT, "bench.toml").unwrap();
     let log = &short.options().log;

@@ -262,6 +262,57 @@ impl CableParams {
         self.pulley_count
     }
 
+    /// Wrap angle of each pulley from the winch to the platform, rad, 0…2π; `None` where it follows the pose
+    /// ([`pose_wrap_rad`](Self::pose_wrap_rad)).
+    pub fn fixed_wraps_rad(&self) -> impl Iterator<Item = Option<f64>> + '_ {
+        self.wraps.iter().take(self.pulley_count).map(|wrap| match *wrap {
+            Wrap::Fixed { wrap_rad } => Some(wrap_rad),
+            Wrap::Pose => None,
+        })
+    }
+
+    /// Wrap angle of the first pulley if it carries the force sensor, rad.
+    #[must_use]
+    pub fn sensor_wrap_rad(&self) -> Option<f64> {
+        self.sensor_wrap_rad
+    }
+
+    /// Presliding form.
+    #[must_use]
+    pub fn presliding(&self) -> Presliding {
+        self.presliding
+    }
+
+    /// Friction: μ (1, 0…0.9), σ (N/m, 10⁻³…10¹² if given), F_pv (N s/m, 0…10⁶), ε (N, ±10⁶).
+    #[must_use]
+    pub fn friction(&self) -> FrictionOptions {
+        self.friction
+    }
+
+    /// Effects, each parameter in the unit and range of its row in the catalogue.
+    #[must_use]
+    pub fn effects(&self) -> &EffectParams {
+        &self.effects
+    }
+
+    /// Friction coefficient μ_p between cable and pulley, 1, 0.01…2; `None` if the cable never slips.
+    #[must_use]
+    pub fn traction_mu(&self) -> Option<f64> {
+        self.traction_mu
+    }
+
+    /// Where the cable enters the last pulley, base frame, m; `None` without geometry.
+    #[must_use]
+    pub fn base_m(&self) -> Option<Vector3<f64>> {
+        self.geometry.map(|geometry| geometry.base_m)
+    }
+
+    /// Attachment, platform frame, m; `None` without geometry.
+    #[must_use]
+    pub fn platform_m(&self) -> Option<Vector3<f64>> {
+        self.geometry.map(|geometry| geometry.platform_m)
+    }
+
     /// Whether a pulley's wrap follows the pose.
     #[must_use]
     pub fn needs_pose(&self) -> bool {
@@ -389,10 +440,28 @@ impl<'a> RobotParams<'a> {
         self.cycle_s
     }
 
+    /// Mass of the platform in kg.
+    #[must_use]
+    pub fn mass_kg(&self) -> f64 {
+        self.mass_kg
+    }
+
+    /// Centre of mass of the platform, platform frame, m.
+    #[must_use]
+    pub fn center_of_mass_m(&self) -> Vector3<f64> {
+        self.center_of_mass_m
+    }
+
+    /// Gravity, base frame, m/s².
+    #[must_use]
+    pub fn gravity_m_per_s2(&self) -> Vector3<f64> {
+        self.gravity_m_per_s2
+    }
+
     /// When a signal counts as faulty.
     #[must_use]
-    pub fn monitor(&self) -> MonitorOptions {
-        self.monitor
+    pub fn monitor(&self) -> &MonitorOptions {
+        &self.monitor
     }
 
     /// The cables in order.

@@ -4,8 +4,7 @@
 //! origin then read `A^T f + w = 0` with `w = m·[g − a; c × (g − a)]`, c the centre of mass (\[P\] 2, gravity and inertia
 //! on the side of w).
 
-use fric_core::robot::file::RobotFile;
-use fric_core::{CableParams, Pose, Wrench};
+use fric_core::{CableParams, Pose, RobotParams, Wrench};
 use nalgebra::{UnitQuaternion, Vector3, Vector6};
 
 /// Mass, attachment points and cables, those without geometry left out.
@@ -25,16 +24,15 @@ struct Attached {
 }
 
 impl Platform {
-    pub fn new(robot: &RobotFile, params: &[CableParams]) -> Self {
-        let table = &robot.options().platform;
-        let cables = robot.options().cable.iter().zip(params).filter_map(|(cable, params)| {
-            let (base_m, platform_m) = cable.base_m.zip(cable.platform_m)?;
-            Some(Attached { params: *params, base_m: base_m.into(), platform_m: platform_m.into() })
+    pub fn new(robot: &RobotParams<'_>) -> Self {
+        let cables = robot.cables().iter().filter_map(|cable| {
+            let (base_m, platform_m) = cable.base_m().zip(cable.platform_m())?;
+            Some(Attached { params: *cable, base_m, platform_m })
         });
         Self {
-            mass_kg: table.mass_kg,
-            center_of_mass_m: table.center_of_mass_m.into(),
-            gravity_m_per_s2: table.gravity_m_per_s2.into(),
+            mass_kg: robot.mass_kg(),
+            center_of_mass_m: robot.center_of_mass_m(),
+            gravity_m_per_s2: robot.gravity_m_per_s2(),
             cables: cables.collect(),
         }
     }

@@ -93,7 +93,7 @@ impl Simulation {
         let cycle_s = params.cycle_s();
         options.check(cycle_s)?;
         let tables = &robot.options().cable;
-        let platform = Platform::new(robot, params.cables());
+        let platform = Platform::new(&params);
         let viscous_n_s_per_m = tables.iter().map(whole_viscous_n_s_per_m).fold(0.0, f64::max);
         let level = TensionLevel::of_platform(&platform, viscous_n_s_per_m);
         let workspace = (platform.cable_count() > 0).then(|| Workspace::find(&platform, &level)).transpose()?;
