@@ -5,7 +5,7 @@ use fric_core::{CableParams, CableStatus, Sample};
 use fric_lab::replay::{CableErrors, Deviation, Replay, ReplayedCycle};
 use fric_log::recording::Recording;
 use fric_log::signals::{Role, SignalReader};
-use fric_log::write::{CableStatusChannel, JointState, JointStateChannel, LogWriter, Wrench, WrenchChannel};
+use fric_log::write::{CableStatusChannel, JointState, JointStateChannel, LogWriter, WrenchChannel};
 use hdrhistogram::Histogram;
 
 use crate::arguments::ReplayArguments;
@@ -236,8 +236,7 @@ impl OutputLog {
         numbers.extend(cycle.cables.iter().map(|cable| cable.friction_n));
         log.write_joint_state(friction, stamp_nanos, JointState { effort: numbers, ..JointState::default() })?;
         if let Some(outside) = &cycle.outside_wrench {
-            let message = Wrench { force_n: outside.force_n.into(), torque_nm: outside.torque_nm.into() };
-            log.write_wrench(wrench, stamp_nanos, &message)?;
+            log.write_wrench(wrench, stamp_nanos, outside)?;
         }
         flags.clear();
         flags.extend(cycle.cables.iter().map(|cable| cable.status.bits()));

@@ -6,7 +6,7 @@ use fric_core::Sample;
 use fric_lab::simulate::{HiddenEffect, Simulation, SimulationError, SimulationOptions};
 use fric_log::path::MessagePath;
 use fric_log::signals::{Role, SignalPaths};
-use fric_log::write::{JointState, JointStateChannel, LogWriter, Pose, PoseChannel, Wrench, WrenchChannel};
+use fric_log::write::{JointState, JointStateChannel, LogWriter, PoseChannel, WrenchChannel};
 
 use crate::arguments::SimulateArguments;
 use crate::failure::{Failure, Outcome};
@@ -122,13 +122,10 @@ impl SimulatedLog {
             return Ok(());
         }
         if let (Some(channel), Some(truth)) = (&pose, &sample.pose) {
-            let message =
-                Pose { position_m: truth.position_m.into(), orientation_xyzw: truth.orientation.coords.into() };
-            writer.write_pose(channel, stamp_nanos, &message)?;
+            writer.write_pose(channel, stamp_nanos, truth)?;
         }
         if let (Some(channel), Some(truth)) = (&wrench, &sample.outside_wrench) {
-            let message = Wrench { force_n: truth.force_n.into(), torque_nm: truth.torque_nm.into() };
-            writer.write_wrench(channel, stamp_nanos, &message)?;
+            writer.write_wrench(channel, stamp_nanos, truth)?;
         }
         Ok(())
     }

@@ -1,5 +1,7 @@
 //! The messages that can be written, each to a channel of its own type.
 
+use fric_core::{Pose, Wrench};
+
 use super::definitions;
 use super::error::WriteError;
 use super::payload::encode_texts;
@@ -32,24 +34,6 @@ pub struct JointState<'a> {
     pub velocity: &'a [f64],
     /// Forces.
     pub effort: &'a [f64],
-}
-
-/// A pose: the axes' position and orientation in the frame of the channel.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Pose {
-    /// Position, in metres.
-    pub position_m: [f64; 3],
-    /// Orientation as a unit quaternion, the scalar last.
-    pub orientation_xyzw: [f64; 4],
-}
-
-/// A force and a torque in the frame of the channel.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Wrench {
-    /// Force, in newtons.
-    pub force_n: [f64; 3],
-    /// Torque, in newton metres.
-    pub torque_nm: [f64; 3],
 }
 
 #[derive(Debug)]
@@ -134,19 +118,20 @@ impl LogWriter {
         })
     }
 
-    /// Writes one pose; stamp, log time and publish time are `stamp_nanos` since 1970.
+    /// Writes one pose, in the frame of the channel; stamp, log time and publish time are `stamp_nanos` since 1970.
     ///
     /// # Errors
     /// Where the stamp is too late or the file cannot be written.
     pub fn write_pose(&mut self, channel: &PoseChannel, stamp_nanos: u64, pose: &Pose) -> Result<(), WriteError> {
         self.write(&channel.0, stamp_nanos, |payload| {
-            for number in pose.position_m.iter().chain(&pose.orientation_xyzw) {
+            // The quaternion's coordinates stand as in the message: x, y, z, w.
+            for number in pose.position_m.iter().chain(pose.orientation.coords.iter()) {
                 payload.f64(*number);
             }
         })
     }
 
-    /// Writes one wrench; stamp, log time and publish time are `stamp_nanos` since 1970.
+    /// Writes one wrench, in the axes of the channel's frame; stamp, log time and publish time are `stamp_nanos` since 1970.
     ///
     /// # Errors
     /// Where the stamp is too late or the file cannot be written.
@@ -157,7 +142,7 @@ impl LogWriter {
         wrench: &Wrench,
     ) -> Result<(), WriteError> {
         self.write(&channel.0, stamp_nanos, |payload| {
-            for number in wrench.force_n.iter().chain(&wrench.torque_nm) {
+            for number in wrench.force_n.iter().chain(wrench.torque_nm.iter()) {
                 payload.f64(*number);
             }
         })

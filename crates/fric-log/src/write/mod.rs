@@ -22,7 +22,7 @@ use mcap::{Attachment, Compression, McapError, WriteOptions};
 use tempfile::NamedTempFile;
 
 pub use error::WriteError;
-pub use messages::{CableStatusChannel, JointState, JointStateChannel, Pose, PoseChannel, Wrench, WrenchChannel};
+pub use messages::{CableStatusChannel, JointState, JointStateChannel, PoseChannel, WrenchChannel};
 use payload::Payload;
 use target::Target;
 

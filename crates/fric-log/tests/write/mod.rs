@@ -3,8 +3,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use fric_core::{Pose, Wrench};
 use fric_log::schema::{MessageType, Wanted};
-use fric_log::write::{JointState, LogWriter, Pose, ROBOT_FILE, Wrench, WriteError};
+use fric_log::write::{JointState, LogWriter, ROBOT_FILE, WriteError};
 use mcap::MessageStream;
 use mcap::sans_io::SummaryReader;
 use tempfile::TempDir;
@@ -32,9 +33,9 @@ fn write(path: &Path, messages: u32) {
         writer.write_joint_state(&forces, stamp_nanos, state).unwrap();
         let state = JointState { effort: &[x], ..JointState::default() };
         writer.write_joint_state(&friction, stamp_nanos, state).unwrap();
-        let pose = Pose { position_m: [x, 2.0, 3.0], orientation_xyzw: [0.0, 0.0, 0.6, 0.8] };
+        let pose = Pose::from_parts([x, 2.0, 3.0], [0.0, 0.0, 0.6, 0.8]).unwrap();
         writer.write_pose(&poses, stamp_nanos, &pose).unwrap();
-        let wrench = Wrench { force_n: [x, 5.0, 6.0], torque_nm: [7.0, 8.0, -x] };
+        let wrench = Wrench { force_n: [x, 5.0, 6.0].into(), torque_nm: [7.0, 8.0, -x].into() };
         writer.write_wrench(&wrenches, stamp_nanos, &wrench).unwrap();
         writer.write_cable_status(&status, stamp_nanos, &[0, 5, index]).unwrap();
     }
@@ -183,8 +184,7 @@ fn nothing_is_left_of_an_unfinished_log() {
     let (directory, path) = in_directory();
     let mut writer = LogWriter::create(&path, &NONE, false).unwrap();
     let poses = writer.add_pose("/p", "").unwrap();
-    let pose = Pose { position_m: [0.0; 3], orientation_xyzw: [0.0, 0.0, 0.0, 1.0] };
-    writer.write_pose(&poses, 1, &pose).unwrap();
+    writer.write_pose(&poses, 1, &Pose::identity()).unwrap();
     assert_eq!(files(&directory).len(), 1);
     assert!(!path.exists());
     drop(writer);
