@@ -2,11 +2,11 @@
 
 use std::error::Error;
 use std::fmt::Display;
-use std::io::{self, Write as _};
+use std::io::{self, ErrorKind, Write as _};
+use std::path::Path;
 
+use fric_log::output::{OutputError, directory_of};
 use fric_log::write::WriteError;
-
-use crate::output;
 
 /// What `main` turns into an exit code.
 #[derive(Debug)]
@@ -73,7 +73,7 @@ fn in_full(error: &dyn Error) -> String {
 }
 
 /// What the operating system said, without the name of a temporary file that means nothing to people.
-pub fn reason(error: &io::Error) -> String {
+fn reason(error: &io::Error) -> String {
     let text = error.to_string();
     text.split(" at path ").next().map_or_else(String::new, ToOwned::to_owned)
 }
@@ -95,14 +95,38 @@ failure_from!(
     fric_log::signals::SignalError,
 );
 
-impl From<WriteError> for Failure {
-    /// In the words of [`crate::output`], so that all outputs fail alike.
-    fn from(error: WriteError) -> Self {
-        match &error {
-            WriteError::Exists { path } => output::exists(path),
-            WriteError::Input { path, .. } => output::is_input(path),
-            WriteError::File { path, source } => output::unwritable(path, source),
+impl From<OutputError> for Failure {
+    fn from(error: OutputError) -> Self {
+        match error {
+            OutputError::Exists { path } => Self::new(format!("{} exists already", path.display()))
+                .advise("Name another output file, or replace it with --force."),
+            OutputError::Input { path, .. } => {
+                Self::new(format!("{} is an input of this command and would be overwritten", path.display()))
+                    .advise("Name another output file.")
+            }
+            OutputError::File { path, source } => unwritable(&path, &source),
             _ => Self::new(in_full(&error)),
+        }
+    }
+}
+
+impl From<WriteError> for Failure {
+    fn from(error: WriteError) -> Self {
+        match error {
+            WriteError::Output(error) => error.into(),
+            error => Self::new(in_full(&error)),
+        }
+    }
+}
+
+/// The failure of an output that the operating system refuses.
+fn unwritable(path: &Path, error: &io::Error) -> Failure {
+    let failure = Failure::new(format!("cannot write {}: {}", path.display(), reason(error)));
+    match error.kind() {
+        ErrorKind::IsADirectory => failure.advise("Name a file in it."),
+        ErrorKind::StorageFull => failure.advise("Free some space, or name a file on another disk."),
+        _ => {
+            failure.advise(format!("Check that the directory {} exists and is writable.", directory_of(path).display()))
         }
     }
 }

@@ -1,77 +1,18 @@
 //! Where results go: tables to stdout, JSON and pages to files that appear whole or not at all.
 
-use std::fs;
-use std::io::{self, ErrorKind, Write};
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use comfy_table::{CellAlignment, Table, presets};
+use fric_log::output::{OutputError, OutputFile, directory_of};
 use serde::Serialize;
-use tempfile::NamedTempFile;
 
-use crate::failure::{self, Failure, Outcome};
+use crate::failure::{Failure, Outcome};
 
-/// A text file to be written at the end, checked at the start.
-#[derive(Debug)]
-pub struct TextFile {
-    path: PathBuf,
-    file: NamedTempFile,
-    force: bool,
-}
-
-impl TextFile {
-    /// Makes sure that the file can be written and is neither an input nor, without `force`, there already.
-    pub fn prepare(path: &Path, inputs: &[PathBuf], force: bool) -> Outcome<Self> {
-        if inputs.iter().any(|input| is_same_file(path, input)) {
-            return Err(is_input(path));
-        }
-        if !force && path.symlink_metadata().is_ok() {
-            return Err(exists(path));
-        }
-        if path.is_dir() {
-            return Err(unwritable(path, &ErrorKind::IsADirectory.into()));
-        }
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(".fric-").suffix(".part");
-        // Temporary files are private; this one becomes an ordinary file, which the umask restricts.
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let file = builder.tempfile_in(directory_of(path)).map_err(|error| unwritable(path, &error))?;
-        Ok(Self { path: path.to_owned(), file, force })
-    }
-
-    /// Writes the text and puts the file in its place.
-    pub fn write(mut self, text: &str) -> Outcome {
-        self.file.write_all(text.as_bytes()).map_err(|error| unwritable(&self.path, &error))?;
-        let placed = if self.force { self.file.persist(&self.path) } else { self.file.persist_noclobber(&self.path) };
-        placed.map(drop).map_err(|error| match error.error.kind() {
-            ErrorKind::AlreadyExists => exists(&self.path),
-            _ => unwritable(&self.path, &error.error),
-        })
-    }
-}
-
-/// The failure of an output that is there already.
-pub fn exists(path: &Path) -> Failure {
-    Failure::new(format!("{} exists already", path.display()))
-        .advise("Name another output file, or replace it with --force.")
-}
-
-/// The failure of an output that is an input.
-pub fn is_input(path: &Path) -> Failure {
-    Failure::new(format!("{} is an input of this command and would be overwritten", path.display()))
-        .advise("Name another output file.")
-}
-
-/// The failure of an output that the operating system refuses.
-pub fn unwritable(path: &Path, error: &io::Error) -> Failure {
-    let failure = Failure::new(format!("cannot write {}: {}", path.display(), failure::reason(error)));
-    match error.kind() {
-        ErrorKind::IsADirectory => failure.advise("Name a file in it."),
-        ErrorKind::StorageFull => failure.advise("Free some space, or name a file on another disk."),
-        _ => {
-            failure.advise(format!("Check that the directory {} exists and is writable.", directory_of(path).display()))
-        }
-    }
+/// Writes a text and puts the file in its place.
+pub fn write_text(mut file: OutputFile, text: &str) -> Outcome {
+    file.write_all(text.as_bytes()).map_err(|source| OutputError::File { path: file.path().to_owned(), source })?;
+    Ok(file.finish()?)
 }
 
 /// Makes sure that no two outputs are to stand in the same place.
@@ -92,40 +33,12 @@ pub fn check_distinct(outputs: &[Option<&Path>]) -> Outcome {
     Ok(())
 }
 
-fn directory_of(path: &Path) -> &Path {
-    match path.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    }
-}
-
-/// Whether both paths lead to the same existing file, under whichever of its names.
-fn is_same_file(one: &Path, other: &Path) -> bool {
-    let same_path = match (fs::canonicalize(one), fs::canonicalize(other)) {
-        (Ok(one), Ok(other)) => one == other,
-        _ => return false,
-    };
-    same_path || is_same_inode(one, other)
-}
-
-#[cfg(unix)]
-fn is_same_inode(one: &Path, other: &Path) -> bool {
-    use std::os::unix::fs::MetadataExt as _;
-    let inode = |path| fs::metadata(path).ok().map(|metadata| (metadata.dev(), metadata.ino()));
-    inode(one).is_some_and(|one| inode(other) == Some(one))
-}
-
-#[cfg(not(unix))]
-fn is_same_inode(_: &Path, _: &Path) -> bool {
-    false
-}
-
 /// Where the machine-readable result goes.
 #[derive(Debug)]
 pub enum JsonTarget {
     Nowhere,
     Stdout,
-    File(TextFile),
+    File(OutputFile),
 }
 
 impl JsonTarget {
@@ -133,7 +46,7 @@ impl JsonTarget {
         match path {
             None => Ok(Self::Nowhere),
             Some(path) if is_stdout(path) => Ok(Self::Stdout),
-            Some(path) => TextFile::prepare(path, inputs, force).map(Self::File),
+            Some(path) => Ok(Self::File(OutputFile::create(path, inputs, force)?)),
         }
     }
 
@@ -147,7 +60,7 @@ impl JsonTarget {
         match self {
             Self::Nowhere => Ok(()),
             Self::Stdout => print_to(std::io::stdout(), &text()?),
-            Self::File(file) => file.write(&text()?),
+            Self::File(file) => write_text(file, &text()?),
         }
     }
 

@@ -1,5 +1,6 @@
 //! fric-log
 
+pub mod output;
 pub mod path;
 pub mod recording;
 pub mod schema;

@@ -3,6 +3,7 @@
 use fric_core::robot::file::CableTable;
 use fric_core::{CableParams, CableStatus, Sample};
 use fric_lab::replay::{CableErrors, Deviation, Replay, ReplayedCycle};
+use fric_log::output::OutputFile;
 use fric_log::recording::Recording;
 use fric_log::signals::{Role, SignalReader};
 use fric_log::write::{CableStatusChannel, JointState, JointStateChannel, LogWriter, WrenchChannel};
@@ -11,7 +12,7 @@ use hdrhistogram::Histogram;
 use crate::arguments::ReplayArguments;
 use crate::failure::{Failure, Outcome};
 use crate::model::{self, Model};
-use crate::output::{self, JsonTarget, TextFile, table};
+use crate::output::{self, JsonTarget, table};
 use crate::progress::{self, STRIDE};
 use crate::report::{self, Series};
 use crate::result::{CableResult, CycleResult, ForceError, ReplayResult, WrenchError, WrenchResult};
@@ -27,7 +28,7 @@ pub fn run(arguments: &ReplayArguments) -> Outcome {
     let mut inputs = log.logs.clone();
     inputs.extend(log.model.clone());
     let json = JsonTarget::prepare(result.json.as_deref(), &inputs, result.force)?;
-    let report = report.as_ref().map(|path| TextFile::prepare(path, &inputs, result.force)).transpose()?;
+    let report = report.as_ref().map(|path| OutputFile::create(path, &inputs, result.force)).transpose()?;
     let mut writer = output.as_ref().map(|path| OutputLog::create(path, &inputs, result.force, &model)).transpose()?;
 
     let paths = model.signal_paths()?;
@@ -71,7 +72,7 @@ pub fn run(arguments: &ReplayArguments) -> Outcome {
         writer.log.finish()?;
     }
     if let (Some(report), Some(series)) = (report, series) {
-        report.write(&report::page(&outcome, &series, &log.logs))?;
+        output::write_text(report, &report::page(&outcome, &series, &log.logs))?;
     }
     json.show(&describe(&outcome))?;
     json.write(&outcome)

@@ -1,42 +1,23 @@
 //! What can go wrong while a log is written.
 
-use std::io;
 use std::path::PathBuf;
 
 use mcap::McapError;
 use thiserror::Error;
 
+use crate::output::OutputError;
+
 /// A log that cannot be written.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum WriteError {
-    /// The target exists.
-    #[error("`{}` exists; choose another name, or force it to be replaced", path.display())]
-    Exists {
-        /// The target.
-        path: PathBuf,
-    },
-    /// The target is one of the inputs.
-    #[error("the output `{}` is the input `{}`; inputs are never overwritten, choose another name", path.display(), input.display())]
-    Input {
-        /// The target.
-        path: PathBuf,
-        /// The input, as given.
-        input: PathBuf,
-    },
-    /// The file system refuses.
-    #[error("`{}` cannot be written", path.display())]
-    File {
-        /// The target.
-        path: PathBuf,
-        /// The cause.
-        #[source]
-        source: io::Error,
-    },
+    /// The log cannot be put in its place.
+    #[error(transparent)]
+    Output(#[from] OutputError),
     /// The MCAP library refuses.
     #[error("`{}` cannot be written as MCAP", path.display())]
     Mcap {
-        /// The target.
+        /// Where the log was to be.
         path: PathBuf,
         /// The cause.
         #[source]

@@ -1,8 +1,7 @@
 //! Writing logs: MCAP with the ROS 2 messages that fric puts out.
 //!
-//! A log is written beside its target and appears there, whole, when it is finished; if it never is, nothing is
-//! left. Neither an input nor, unless told so, any other existing file is overwritten. The same calls give
-//! the same bytes: chunks of a fixed size, one compression thread, no clock.
+//! A log appears in its place, whole, when it is finished, see [`output`](crate::output). The same calls give the same
+//! bytes: chunks of a fixed size, one compression thread, no clock.
 //!
 //! Writes exactly the message types named here, with the `ros2msg` definitions of the ROS 2 packages they come
 //! from. NaN and infinities are written as they are. A [`LogWriter`] holds one chunk's index and one message.
@@ -11,20 +10,18 @@ mod definitions;
 mod error;
 mod messages;
 mod payload;
-mod target;
 
 use std::collections::BTreeMap;
 use std::io::BufWriter;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use mcap::records::MessageHeader;
 use mcap::{Attachment, Compression, McapError, WriteOptions};
-use tempfile::NamedTempFile;
 
+use crate::output::{OutputError, OutputFile};
 pub use error::WriteError;
 pub use messages::{CableStatusChannel, JointState, JointStateChannel, PoseChannel, WrenchChannel};
 use payload::Payload;
-use target::Target;
 
 /// Name of the attachment that holds the robot file.
 pub const ROBOT_FILE: &str = "fric-robot.toml";
@@ -50,22 +47,19 @@ const ZSTD_LEVEL: u32 = 3;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct LogWriter {
-    writer: mcap::Writer<BufWriter<NamedTempFile>>,
-    target: Target,
+    writer: mcap::Writer<BufWriter<OutputFile>>,
+    path: PathBuf,
     topics: Vec<String>,
     payload: Payload,
 }
 
 impl LogWriter {
-    /// Starts a log that will be at `path` once finished.
-    ///
-    /// An existing file is replaced only with `force`, one of the `inputs` never: neither under
-    /// its own name nor under another one (symbolic or hard link).
+    /// Starts a log that will be at `path` once finished; `inputs` and `force` are those of [`OutputFile::create`].
     ///
     /// # Errors
-    /// Where the target is an input, or exists and `force` is not set, or its directory cannot be written to.
+    /// As [`OutputFile::create`].
     pub fn create(path: &Path, inputs: &[impl AsRef<Path>], force: bool) -> Result<Self, WriteError> {
-        let (target, file) = Target::open(path, inputs, force)?;
+        let file = OutputFile::create(path, inputs, force)?;
         let writer = WriteOptions::new()
             .profile("ros2")
             .library(LIBRARY)
@@ -74,8 +68,8 @@ impl LogWriter {
             .compression_threads(0)
             .chunk_size(Some(CHUNK_BYTES))
             .create(BufWriter::new(file))
-            .map_err(|source| target.mcap_error(source))?;
-        Ok(Self { writer, target, topics: Vec::new(), payload: Payload::default() })
+            .map_err(|source| mcap_error(path, source))?;
+        Ok(Self { writer, path: path.to_owned(), topics: Vec::new(), payload: Payload::default() })
     }
 
     /// Attaches the text of the robot file, best before the first channel is added.
@@ -91,7 +85,7 @@ impl LogWriter {
             data: toml.as_bytes().into(),
         };
         let result = self.writer.attach(&attachment);
-        result.map_err(|source| self.target.mcap_error(source))
+        result.map_err(|source| mcap_error(&self.path, source))
     }
 
     /// Completes the log and puts it in its place.
@@ -99,11 +93,11 @@ impl LogWriter {
     /// # Errors
     /// Where the file cannot be written, or another one has appeared in its place and `force` is not set.
     pub fn finish(self) -> Result<(), WriteError> {
-        let Self { mut writer, target, .. } = self;
-        writer.finish().map_err(|source| target.mcap_error(source))?;
+        let Self { mut writer, path, .. } = self;
+        writer.finish().map_err(|source| mcap_error(&path, source))?;
         let file = writer.into_inner().into_inner();
-        let file = file.map_err(|error| target.io_error(error.into_error()))?;
-        target.place(file)
+        let file = file.map_err(|error| OutputError::File { path, source: error.into_error() })?;
+        Ok(file.finish()?)
     }
 
     fn add_channel(&mut self, topic: &str, schema_name: &str, schema: &str) -> Result<u16, WriteError> {
@@ -115,13 +109,21 @@ impl LogWriter {
         let id = writer
             .add_schema(schema_name, "ros2msg", schema.as_bytes())
             .and_then(|schema| writer.add_channel(schema, topic, "cdr", &BTreeMap::new()));
-        id.map_err(|source| self.target.mcap_error(source))
+        id.map_err(|source| mcap_error(&self.path, source))
     }
 
     /// Writes the message in `payload`.
     fn write_payload(&mut self, channel_id: u16, stamp_nanos: u64) -> Result<(), WriteError> {
         let header = MessageHeader { channel_id, sequence: 0, log_time: stamp_nanos, publish_time: stamp_nanos };
         let result = self.writer.write_to_known_channel(&header, self.payload.bytes());
-        result.map_err(|source: McapError| self.target.mcap_error(source))
+        result.map_err(|source| mcap_error(&self.path, source))
+    }
+}
+
+fn mcap_error(path: &Path, source: McapError) -> WriteError {
+    let path = path.to_owned();
+    match source {
+        McapError::Io(source) => OutputError::File { path, source }.into(),
+        source => WriteError::Mcap { path, source },
     }
 }

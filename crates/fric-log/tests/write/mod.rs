@@ -4,6 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use fric_core::{Pose, Wrench};
+use fric_log::output::OutputError;
 use fric_log::schema::{MessageType, Wanted};
 use fric_log::write::{JointState, LogWriter, ROBOT_FILE, WriteError};
 use mcap::MessageStream;
@@ -198,7 +199,7 @@ fn existing_files_are_replaced_only_by_force() {
     let (directory, path) = in_directory();
     fs::write(&path, "mine").unwrap();
     let Err(error) = LogWriter::create(&path, &NONE, false) else { panic!("created") };
-    assert!(matches!(error, WriteError::Exists { .. }), "{error}");
+    assert!(matches!(error, WriteError::Output(OutputError::Exists { .. })), "{error}");
     assert!(error.to_string().ends_with("exists; choose another name, or force it to be replaced"), "{error}");
 
     let writer = LogWriter::create(&path, &NONE, true).unwrap();
@@ -212,7 +213,7 @@ fn existing_files_are_replaced_only_by_force() {
     let late = directory.path().join("late.mcap");
     let writer = LogWriter::create(&late, &NONE, false).unwrap();
     fs::write(&late, "other").unwrap();
-    assert!(matches!(writer.finish(), Err(WriteError::Exists { .. })));
+    assert!(matches!(writer.finish(), Err(WriteError::Output(OutputError::Exists { .. }))));
     assert_eq!(fs::read(&late).unwrap(), b"other");
     assert_eq!(files(&directory), ["late.mcap", "out.mcap"]);
 }
@@ -235,7 +236,7 @@ fn inputs_are_never_replaced() {
     for target in others {
         let inputs = [directory.path().join("missing.mcap"), input.clone()];
         let Err(error) = LogWriter::create(&target, &inputs, true) else { panic!("created") };
-        assert!(matches!(error, WriteError::Input { .. }), "{error}");
+        assert!(matches!(error, WriteError::Output(OutputError::Input { .. })), "{error}");
     }
     LogWriter::create(&path, &[input], true).unwrap().finish().unwrap();
 }
@@ -245,7 +246,7 @@ fn impossible_places_and_messages_are_refused() {
     let (directory, path) = in_directory();
     for place in [directory.path().to_owned(), directory.path().join("no/such/place.mcap")] {
         let Err(error) = LogWriter::create(&place, &NONE, true) else { panic!("created") };
-        assert!(matches!(error, WriteError::File { .. }), "{error}");
+        assert!(matches!(error, WriteError::Output(OutputError::File { .. })), "{error}");
     }
 
     let mut writer = LogWriter::create(&path, &NONE, false).unwrap();
