@@ -121,7 +121,12 @@ fn robots_of_all_sizes_work() {
     for cables in [1, 3, 9, 17] {
         let place = Place::empty();
         place.write("robot.toml", robot_with(cables));
-        simulated(&place, &["--duration", "0.2"]);
+        let run = place.run(&["simulate", "--model", "robot.toml", "-o", "log.mcap", "--duration", "0.2"]);
+        if cables < 6 {
+            run.warns(&["cannot hold the platform"])
+        } else {
+            run.succeeds()
+        };
         let run = place.run(&["replay", "log.mcap", "-o", "out.mcap", "--json", "j.json"]).succeeds();
         let result = place.json("j.json");
         assert_eq!(result["cables"].as_array().unwrap().len(), cables, "{run:#?}");
@@ -130,6 +135,18 @@ fn robots_of_all_sizes_work() {
         assert!(forces.iter().all(|state| state.effort.len() == cables), "{cables} cables");
         place.run(&["info", "log.mcap"]).succeeds();
     }
+}
+
+#[test]
+fn a_platform_that_its_cables_cannot_hold_is_warned_of() {
+    let place = Place::empty();
+    // Two cables of many; and all of them at one height.
+    place.write("robot.toml", robot_with(2));
+    let run = place.run(&["simulate", "--model", "robot.toml", "-o", "two.mcap", "--duration", "0.05"]);
+    run.warns(&["cannot hold the platform in 50 of 50 cycles", " N at ", "] m", "guide", "`base_m`", "`mass_kg`"]);
+    place.write("robot.toml", robot_with(8).replace(", 0.7000]", ", 2.0]").replace(", -0.7000]", ", 2.0]"));
+    let run = place.run(&["simulate", "--model", "robot.toml", "-o", "level.mcap", "--duration", "0.05"]);
+    run.warns(&["at one height", "`base_m`"]);
 }
 
 #[test]

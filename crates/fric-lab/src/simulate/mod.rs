@@ -32,7 +32,7 @@ mod workspace;
 pub use error::{HiddenEffectError, SimulationError};
 pub use hidden::HiddenEffect;
 pub use options::SimulationOptions;
-pub use stream::{START_NANOS, Simulation};
+pub use stream::{Imbalance, START_NANOS, Simulation};
 pub use trajectory::{
     ACCELERATION_M_PER_S2, AMPLITUDES_M, BREAK_S, FASTEST_M_PER_S, Leg, Phase, RECTANGLES_M_PER_S, STEP_M_PER_S,
     STROKE_ACCELERATION_M_PER_S2, STROKE_M, STROKES_M_PER_S, SetPoint, Trajectory, WorkBox,

@@ -2,7 +2,7 @@
 
 use fric_core::robot::file::{CableTable, RobotFile};
 use fric_core::{CableInput, Pose, Sample};
-use nalgebra::Vector6;
+use nalgebra::{Vector3, Vector6};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution as _, StandardNormal};
@@ -17,7 +17,7 @@ use super::platform::{Platform, balanced_wrench};
 use super::tension::{TensionLevel, Variation};
 use super::trajectory::{SetPoint, Trajectory};
 use super::waves::uniform;
-use super::workspace::Workspace;
+use super::workspace::{SHORT_SHARE, Workspace};
 
 /// Stamp of the first cycle: 28 May 2026, 20:26:40 UTC. The same in every run, so that equal seeds give equal logs.
 pub const START_NANOS: i64 = 1_780_000_000_000_000_000;
@@ -38,6 +38,21 @@ pub struct Simulation {
     forces_n: Vec<f64>,
     inputs: Vec<CableInput>,
     references_n: Vec<f64>,
+    is_among_anchors: bool,
+    imbalance: Option<Imbalance>,
+}
+
+/// Cycles in which the cables did not hold the platform.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Imbalance {
+    /// How many.
+    pub cycle_count: u64,
+    /// The most that was missing: the largest component of `A^T f + w`, torques divided by the mean moment arm, N.
+    pub missing_n: f64,
+    /// When, s since the start.
+    pub time_s: f64,
+    /// Where the platform's origin was then, base frame, m.
+    pub position_m: Vector3<f64>,
 }
 
 /// Where the tensions come from.
@@ -143,6 +158,8 @@ impl Simulation {
             forces_n: vec![0.0; cables.len()],
             inputs: vec![CableInput::default(); cables.len()],
             references_n: vec![0.0; cables.len()],
+            is_among_anchors: workspace.is_some_and(|workspace| workspace.among_anchors),
+            imbalance: None,
             cables,
             sensor_noise_n: options.sensor_noise_n,
             reference_noise_n: options.reference_noise_n,
@@ -166,6 +183,19 @@ impl Simulation {
     #[must_use]
     pub fn is_balanced(&self) -> bool {
         matches!(self.tension, Tension::Platform { balanced: true, .. })
+    }
+
+    /// Whether the platform has weight and hangs from base points that are all at one height, but runs at that height or
+    /// above: its cables are then nearly level, and no real robot would be used like that.
+    #[must_use]
+    pub fn is_among_anchors(&self) -> bool {
+        self.is_among_anchors
+    }
+
+    /// The cycles so far in which the cables alone did not hold the platform; `None` if they did, and on a test bench.
+    #[must_use]
+    pub fn imbalance(&self) -> Option<&Imbalance> {
+        self.imbalance.as_ref()
     }
 
     /// The next cycle; `None` after the last. What it lends is overwritten by the following one.
@@ -242,10 +272,17 @@ impl Simulation {
         for (force_n, cable) in self.forces_n.iter_mut().zip(&self.cables) {
             *force_n = mean_n * (1.0 + common_share + cable.variation.share(time_s));
         }
-        if let (Tension::Platform { distribution, .. }, Some((pose, set_point))) = (&mut self.tension, platform) {
+        if let (Tension::Platform { level, distribution, .. }, Some((pose, set_point))) = (&mut self.tension, platform)
+        {
             self.platform.structure(pose, &mut self.columns);
             let wrench = self.platform.outside_wrench(&set_point.acceleration_m_per_s2);
-            distribution.solve(&self.columns, &wrench, &mut self.forces_n);
+            let missing_n = distribution.solve(&self.columns, &wrench, &mut self.forces_n).residual_n;
+            if missing_n > SHORT_SHARE * level.mean_n {
+                let here = Imbalance { cycle_count: 0, missing_n, time_s, position_m: pose.position_m };
+                let so_far = self.imbalance.unwrap_or(here);
+                let worst = if missing_n > so_far.missing_n { here } else { so_far };
+                self.imbalance = Some(Imbalance { cycle_count: so_far.cycle_count + 1, ..worst });
+            }
         }
     }
 }

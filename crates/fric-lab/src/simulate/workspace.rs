@@ -24,8 +24,8 @@ const FLAT_SHARE: f64 = 0.05;
 /// Edge of the box across such a plane, as a share of the largest.
 const ACROSS_SHARE: f64 = 0.4;
 
-/// Forces below this share of the mean tension are rounding.
-const SHORT_SHARE: f64 = 1e-9;
+/// Missing forces below this share of the mean tension are rounding.
+pub const SHORT_SHARE: f64 = 1e-9;
 
 /// How far aside of a single base point, per depth below it.
 const ASIDE_SHARE: f64 = 0.75;
@@ -35,6 +35,8 @@ const ASIDE_SHARE: f64 = 0.75;
 pub struct Workspace {
     pub work_box: WorkBox,
     pub balanced: bool,
+    /// The platform has weight and hangs from base points at one height, and the box is not below them.
+    pub among_anchors: bool,
 }
 
 impl Workspace {
@@ -53,7 +55,7 @@ impl Workspace {
                 let Some(work_box) = candidate(platform, depth, share, &mut trial.columns) else { continue };
                 let Some(missing_n) = trial.missing_in_n(&work_box) else { continue };
                 if missing_n <= 0.0 {
-                    return Ok(Self { work_box, balanced: true });
+                    return Ok(Self { work_box, balanced: true, among_anchors: among_anchors(platform, &work_box) });
                 }
                 if best.is_none_or(|(least_n, _)| missing_n < least_n) {
                     best = Some((missing_n, work_box));
@@ -61,8 +63,18 @@ impl Workspace {
             }
         }
         let (_, work_box) = best.ok_or(SimulationError::NoWorkspace)?;
-        Ok(Self { work_box, balanced: false })
+        Ok(Self { work_box, balanced: false, among_anchors: among_anchors(platform, &work_box) })
     }
+}
+
+fn among_anchors(platform: &Platform, work_box: &WorkBox) -> bool {
+    let down = platform.down();
+    let [least_m, greatest_m] = platform.base_corners_m();
+    let along_m = |edges_m: &Vector3<f64>| edges_m.component_mul(&down).abs().sum();
+    let half_m = (greatest_m - least_m) * 0.5;
+    let is_level = along_m(&half_m) < FLAT_SHARE * half_m.max();
+    let depth_m = (work_box.center_m - (least_m + greatest_m) * 0.5).dot(&down);
+    platform.weight_n() > 0.0 && is_level && depth_m - along_m(&work_box.half_edges_m) <= 0.0
 }
 
 /// A box of a share of the base points' extent at a depth, or `None` where the cables do not get to its middle.

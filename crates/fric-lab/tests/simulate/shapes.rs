@@ -94,6 +94,33 @@ fn what_hardly_holds_is_said() {
     let two = [([1.0, 0.0, 1.0], [0.1, 0.0, 0.0]), ([-1.0, 0.5, 1.0], [-0.1, 0.0, 0.1])];
     let (balanced, bounds_n) = run(&robot(1.0, &two, "mu = 0.02, sigma_n_per_m = 1000.0"));
     assert!(!balanced && bounds_n[0] > 0.0, "{bounds_n:?}");
+    let mut simulation = simulate(&robot(1.0, &two, "mu = 0.02"), &noiseless());
+    assert_eq!(simulation.imbalance(), None);
+    let mut run = Vec::new();
+    while let Some(cycle) = simulation.next_cycle() {
+        let weight = nalgebra::Vector3::new(0.0, 0.0, -9.80665);
+        run.push((cycle.pose.unwrap().position_m, (cycle.outside_wrench.unwrap().force_n - weight).amax()));
+    }
+    let imbalance = simulation.imbalance().unwrap();
+    // What is missing at rest, at the first moment, is at most what is missing ever.
+    assert!(imbalance.missing_n >= run[0].1 && imbalance.cycle_count <= simulation.total_cycles());
+    assert!(run.iter().any(|(position_m, _)| *position_m == imbalance.position_m));
+    assert!(!simulation.is_among_anchors());
+}
+
+#[test]
+fn a_platform_among_its_anchors_is_said() {
+    // Two winches at each corner of a ceiling, one for the top of the platform and one for its bottom.
+    let corner = |[x, y]: [f64; 2]| {
+        let top = ([x, 0.8 * y, 2.0], [0.05 * x, 0.1 * y, 0.05]);
+        [top, ([x + 0.1, 0.8 * y - 0.1, 2.0], [0.1 * x, 0.05 * y, -0.05])]
+    };
+    let level = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]].map(corner).concat();
+    let at = |mass_kg| simulate(&robot(mass_kg, &level, "mu = 0.02"), &noiseless()).is_among_anchors();
+    assert!(at(5.0) && !at(0.0));
+    let boxed = box_of([1.0, 0.8, 0.7], [0.1, 0.08, 0.05]);
+    let simulation = simulate(&robot(5.0, &boxed, "mu = 0.02"), &noiseless());
+    assert!(!simulation.is_among_anchors() && simulation.imbalance().is_none());
 }
 
 #[test]
