@@ -63,10 +63,27 @@ fn numbers_out_of_range_are_told() {
         }
     }
     simulate(&place, "--mu-spread-ratio", "1.01").fails(2, &["--mu-spread-ratio", "1.01"]);
-    simulate(&place, "--duration", "1s").fails(2, &["--duration", "1s"]);
-    simulate(&place, "--duration", "1,5").fails(2, &["--duration", "1,5"]);
-    simulate(&place, "--seed", "-1").fails(2, &["--seed", "-1"]);
-    simulate(&place, "--seed", "1.5").fails(2, &["--seed", "1.5"]);
+    for option in ["--duration", "--sensor-noise-n", "--reference-noise-n", "--mu-spread-ratio"] {
+        for value in ["1s", "1,5", "", "x"] {
+            simulate(&place, option, value).fails(2, &[option, value, "a number in digits, such as 0 or 1.5"]);
+        }
+    }
+    for value in ["-1", "1.5", "x", "18446744073709551616"] {
+        simulate(&place, "--seed", value).fails(2, &["--seed", value, "a whole number, 0 to 18446744073709551615"]);
+    }
+}
+
+#[test]
+fn what_cannot_go_to_stdout_is_refused() {
+    let place = Place::with_log();
+    for force in [&[][..], &["--force"]] {
+        for option in ["-o", "--report"] {
+            let run = place.run_in_vain(&[&["replay", "log.mcap", option, "-"], force].concat());
+            run.fails(2, &["'-'", "stdout", "name a file"]);
+        }
+        let run = place.run_in_vain(&[&["simulate", "--model", "robot.toml", "-o", "-"], force].concat());
+        run.fails(2, &["'-'", "stdout", "name a file"]);
+    }
 }
 
 #[test]

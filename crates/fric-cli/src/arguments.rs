@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 
 /// Friction compensation for cable-driven robots: replay logs, look into them, simulate them.
@@ -42,10 +43,10 @@ pub struct ReplayArguments {
     #[command(flatten)]
     pub log: LogArguments,
     /// Write forces, friction, wrench and status to this MCAP file
-    #[arg(short, long, value_name = "OUT.mcap")]
+    #[arg(short, long, value_name = "OUT.mcap", value_parser = a_file())]
     pub output: Option<PathBuf>,
     /// Write a page with the errors over time to this HTML file
-    #[arg(long, value_name = "R.html")]
+    #[arg(long, value_name = "R.html", value_parser = a_file())]
     pub report: Option<PathBuf>,
     #[command(flatten)]
     pub result: ResultArguments,
@@ -65,25 +66,25 @@ pub struct SimulateArguments {
     #[arg(long, value_name = "M.toml", required = true)]
     pub model: PathBuf,
     /// The log to write
-    #[arg(short, long, value_name = "LOG.mcap", required = true)]
+    #[arg(short, long, value_name = "LOG.mcap", required = true, value_parser = a_file())]
     pub output: PathBuf,
     /// Hide an effect of the catalogue in all cables; may be given several times
     #[arg(long = "effect", value_name = "kind:key=value,…")]
     pub effects: Vec<String>,
     /// Seed of noise and micro motion
-    #[arg(long, value_name = "S", default_value_t = 0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", default_value_t = 0, allow_negative_numbers = true, value_parser = a_seed)]
     pub seed: u64,
     /// Length of the log in s; the identification run is cut or repeated [default: one run]
-    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = a_number)]
     pub duration: Option<f64>,
     /// Standard deviation of the sensor noise, N
-    #[arg(long, value_name = "N", default_value_t = 0.02, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", default_value_t = 0.02, allow_negative_numbers = true, value_parser = a_number)]
     pub sensor_noise_n: f64,
     /// Standard deviation of the reference noise, N
-    #[arg(long, value_name = "N", default_value_t = 0.01, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", default_value_t = 0.01, allow_negative_numbers = true, value_parser = a_number)]
     pub reference_noise_n: f64,
     /// Spread of μ over the pulleys of a cable, as a share of μ
-    #[arg(long, value_name = "RATIO", default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "RATIO", default_value_t = 0.0, allow_negative_numbers = true, value_parser = a_number)]
     pub mu_spread_ratio: f64,
     /// Replace the output if it exists
     #[arg(long)]
@@ -99,4 +100,20 @@ pub struct ResultArguments {
     /// Replace outputs that exist
     #[arg(long)]
     pub force: bool,
+}
+
+/// An output that appears whole or not at all, which stdout cannot.
+fn a_file() -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(|path| {
+        if path.as_os_str() == "-" { Err("this output cannot go to stdout; name a file") } else { Ok(path) }
+    })
+}
+
+/// Whether it is in range depends on the robot and is checked with it.
+fn a_number(text: &str) -> Result<f64, &'static str> {
+    text.parse().map_err(|_| "it must be a number in digits, such as 0 or 1.5, without its unit")
+}
+
+fn a_seed(text: &str) -> Result<u64, String> {
+    text.parse().map_err(|_| format!("it must be a whole number, 0 to {}", u64::MAX))
 }
