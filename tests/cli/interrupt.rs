@@ -23,7 +23,7 @@ fn interrupt(arguments: &[&str], signal: &str) {
     let output = child.wait_with_output().unwrap();
     let stderr = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(1), "{arguments:?} {signal}: {stderr}");
-    assert_eq!(stderr, "error: interrupted; no output was written\n");
+    assert_eq!(stderr, "error: interrupted before the end: nothing was written\n");
     assert_eq!(output.stdout, b"");
     assert_eq!(place.names(), ["robot.toml"], "{arguments:?} {signal}");
 }

@@ -19,7 +19,7 @@ pub fn listen() {
 /// An error once Ctrl-C has been pressed.
 pub fn check() -> Outcome {
     if INTERRUPTED.load(Ordering::Relaxed) {
-        return Err(Failure::new("interrupted; no output was written"));
+        return Err(Failure::new("interrupted before the end: nothing was written"));
     }
     Ok(())
 }
