@@ -147,3 +147,17 @@ fn a_damaged_robot_file_is_not_trusted() {
     let named = place.run(&["replay", "damaged.mcap", "--model", "robot.toml", "-o", "out.mcap"]);
     assert_eq!(named.code, Some(0), "{named:#?}");
 }
+
+#[test]
+fn a_tail_says_that_its_beginning_is_missing() {
+    for storage in STORAGES {
+        let log = stored(storage);
+        let place = Place::with_log();
+        place.write("tail.mcap", &log[log.len() / 2..log.len() / 4 * 3]);
+        let arguments = ["replay", "tail.mcap", "--model", "robot.toml", "-o", "out.mcap"];
+        let run = place.run_in_vain(&arguments).fails(1, &["beginning of `tail.mcap`", "channels", "schemas"]);
+        run.advises(&["a complete copy"]);
+        let info = place.run_in_vain(&["info", "tail.mcap", "--model", "robot.toml"]);
+        assert!(info.stdout.contains("impossible  the beginning of `tail.mcap` is missing"), "{info:#?}");
+    }
+}

@@ -27,6 +27,31 @@ fn what_is_no_log_is_told() {
 }
 
 #[test]
+fn a_semicolon_is_not_the_end_of_a_cause() {
+    let place = Place::with_log();
+    place.write("my; notes.txt", "run 1 was good; run 2 was not\n");
+    for (log, lines) in [
+        ("no; where.mcap", ["error: there is no file `no; where.mcap`", "  check the path"]),
+        (
+            "my; notes.txt",
+            [
+                "error: `my; notes.txt` is not an MCAP recording: it is a text file",
+                "  name the file that the recorder wrote (it usually ends in `.mcap`)",
+            ],
+        ),
+    ] {
+        let run = place.run_in_vain(&["replay", log]).fails(1, &[]);
+        assert_eq!(run.stderr.lines().collect::<Vec<_>>(), lines);
+    }
+    place.write("my; robot.toml", example_robot().replacen("mu = 0.016", "mu = 1.6", 1));
+    let run = place.run_in_vain(&["replay", "log.mcap", "--model", "my; robot.toml"]).fails(1, &[]);
+    let lines: Vec<&str> = run.stderr.lines().collect();
+    assert!(lines[0].starts_with("error: my; robot.toml, line "), "{run:#?}");
+    assert!(lines[0].ends_with("`mu` is 1.6; allowed is 0 to 0.9"), "{run:#?}");
+    assert_eq!(lines[1..], ["  Correct the robot file, or name another one with --model."]);
+}
+
+#[test]
 fn a_log_without_a_robot_needs_one() {
     let place = Place::with_log();
     let bare = rewrite(short_log(), Storage::Zstd, None, |_, _| true);

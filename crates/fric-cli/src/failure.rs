@@ -5,7 +5,11 @@ use std::fmt::Display;
 use std::io::{self, ErrorKind, Write as _};
 use std::path::Path;
 
+use fric_core::ParamError;
+use fric_core::robot::file::RobotFileError;
 use fric_log::output::{OutputError, directory_of};
+use fric_log::recording::RecordingError;
+use fric_log::signals::SignalError;
 use fric_log::write::WriteError;
 
 /// What `main` turns into an exit code.
@@ -30,12 +34,13 @@ impl Failure {
         Self { is_usage: true, ..Self::new(cause) }
     }
 
-    /// The work failed, for a reason that ends with what to do after a semicolon, as the libraries word it.
-    fn in_two_lines(text: &str) -> Self {
-        match text.rsplit_once("; ") {
-            Some((cause, advice)) => Self::new(cause).advise(advice),
-            None => Self::new(text),
-        }
+    /// The work failed, for a reason that ends with what to do, if with anything.
+    fn with_advice(error: &dyn Error, advice: Option<&str>) -> Self {
+        let sentence = error.to_string();
+        let Some(advice) = advice else { return Self::new(in_full(sentence, error)) };
+        let cause =
+            sentence.strip_suffix(advice).map_or(sentence.as_str(), |cause| cause.trim_end_matches(['.', ';', ' ']));
+        Self::new(in_full(cause.to_owned(), error)).advise(advice)
     }
 
     /// Adds what to do.
@@ -58,9 +63,8 @@ impl Failure {
     }
 }
 
-/// What an error says, and what its sources add.
-fn in_full(error: &dyn Error) -> String {
-    let mut text = error.to_string();
+/// What an error says, in words of its own, and what its sources add.
+fn in_full(mut text: String, error: &dyn Error) -> String {
     let mut source = error.source();
     while let Some(error) = source {
         let reason = error.to_string();
@@ -78,22 +82,29 @@ fn reason(error: &io::Error) -> String {
     text.split(" at path ").next().map_or_else(String::new, ToOwned::to_owned)
 }
 
-macro_rules! failure_from {
-    ($($error:ty),* $(,)?) => {$(
-        impl From<$error> for Failure {
-            fn from(error: $error) -> Self {
-                Self::in_two_lines(&in_full(&error))
-            }
-        }
-    )*};
+impl From<RecordingError> for Failure {
+    fn from(error: RecordingError) -> Self {
+        Self::with_advice(&error, error.advice())
+    }
 }
 
-failure_from!(
-    fric_core::ParamError,
-    fric_core::robot::file::RobotFileError,
-    fric_log::recording::RecordingError,
-    fric_log::signals::SignalError,
-);
+impl From<SignalError> for Failure {
+    fn from(error: SignalError) -> Self {
+        Self::with_advice(&error, error.advice())
+    }
+}
+
+impl From<RobotFileError> for Failure {
+    fn from(error: RobotFileError) -> Self {
+        Self::new(error).advise("Correct the robot file, or name another one with --model.")
+    }
+}
+
+impl From<ParamError> for Failure {
+    fn from(error: ParamError) -> Self {
+        Self::new(error).advise("Change it in the robot file.")
+    }
+}
 
 impl From<OutputError> for Failure {
     fn from(error: OutputError) -> Self {
@@ -105,7 +116,7 @@ impl From<OutputError> for Failure {
                     .advise("Name another output file.")
             }
             OutputError::File { path, source } => unwritable(&path, &source),
-            _ => Self::new(in_full(&error)),
+            _ => Self::new(in_full(error.to_string(), &error)),
         }
     }
 }
@@ -114,7 +125,7 @@ impl From<WriteError> for Failure {
     fn from(error: WriteError) -> Self {
         match error {
             WriteError::Output(error) => error.into(),
-            error => Self::new(in_full(&error)),
+            error => Self::new(in_full(error.to_string(), &error)),
         }
     }
 }

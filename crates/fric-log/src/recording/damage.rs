@@ -165,6 +165,12 @@ impl FileDamage {
         self.end
     }
 
+    /// Whether the file does not begin as a recording does: what stood in front of its first readable record is lost.
+    #[must_use]
+    pub fn lacks_beginning(&self) -> bool {
+        self.places.iter().any(|place| place.offset_bytes == 0)
+    }
+
     /// Whether nothing is wrong with the file.
     #[must_use]
     pub fn is_empty(&self) -> bool {

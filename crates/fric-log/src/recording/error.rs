@@ -5,33 +5,48 @@
 use std::io;
 use std::path::PathBuf;
 
+/// What to do, each the end of a sentence.
+mod advice {
+    pub const NAME: &str = "give at least one MCAP file";
+    pub const PATH: &str = "check the path";
+    pub const DIRECTORY: &str = "name the MCAP file (or files) in it";
+    pub const PIPE: &str = "save the recording to a file first";
+    pub const PERMISSIONS: &str = "check its permissions";
+    pub const EMPTY: &str = "copy the recording again, or name another one";
+    pub const DISK: &str = "check the disk, or copy the file and try again";
+    pub const COPY: &str = "take it from another copy of the recording";
+    pub const EXTRACT: &str = "extract it with another tool";
+    pub const MEMORY: &str = "free some memory or raise the process limit";
+    pub const REPORT: &str = "please report it with the recording";
+}
+
 /// Why a recording, or a part of it that was asked for, cannot be read.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecordingError {
     /// No path was given.
-    #[error("no recording was named; give at least one MCAP file")]
+    #[error("no recording was named; {}", advice::NAME)]
     NoFiles,
     /// There is no such file.
-    #[error("there is no file `{}`; check the path", path.display())]
+    #[error("there is no file `{}`; {}", path.display(), advice::PATH)]
     Missing {
         /// The path as given.
         path: PathBuf,
     },
     /// The path is a directory.
-    #[error("`{}` is a directory; name the MCAP file (or files) in it", path.display())]
+    #[error("`{}` is a directory; {}", path.display(), advice::DIRECTORY)]
     Directory {
         /// The path as given.
         path: PathBuf,
     },
     /// The path is a pipe or a device.
-    #[error("`{}` is not a regular file; save the recording to a file first", path.display())]
+    #[error("`{}` is not a regular file; {}", path.display(), advice::PIPE)]
     NotAFile {
         /// The path as given.
         path: PathBuf,
     },
     /// The file exists but may not be read.
-    #[error("`{}` may not be read; check its permissions", path.display())]
+    #[error("`{}` may not be read; {}", path.display(), advice::PERMISSIONS)]
     Forbidden {
         /// The path as given.
         path: PathBuf,
@@ -45,21 +60,23 @@ pub enum RecordingError {
         source: io::Error,
     },
     /// The file has no bytes.
-    #[error("`{}` is empty (0 bytes); the recorder wrote nothing, or the copy did not finish", path.display())]
+    #[error("`{}` is empty (0 bytes): the recorder wrote nothing, or the copy did not finish; {}", path.display(), advice::EMPTY)]
     Empty {
         /// The path as given.
         path: PathBuf,
     },
     /// Nothing in the file looks like MCAP.
-    #[error("`{}` is not an MCAP recording; {hint}", path.display())]
+    #[error("`{}` is not an MCAP recording: {found}; {advice}", path.display())]
     NotMcap {
         /// The path as given.
         path: PathBuf,
-        /// What the file looks like instead and what to do.
-        hint: &'static str,
+        /// What the file looks like instead.
+        found: &'static str,
+        /// What to do.
+        advice: &'static str,
     },
     /// The operating system failed to read bytes it had promised.
-    #[error("`{}` could not be read at byte {offset_bytes}; check the disk, or copy the file and try again", path.display())]
+    #[error("`{}` could not be read at byte {offset_bytes}; {}", path.display(), advice::DISK)]
     Read {
         /// The path as given.
         path: PathBuf,
@@ -70,8 +87,8 @@ pub enum RecordingError {
     },
     /// The content of an attachment does not fit its checksum.
     #[error(
-        "the attachment `{name}` at byte {offset_bytes} of `{}` is damaged (checksum {found:#010x} instead of {expected:#010x}); take it from another copy of the recording",
-        path.display()
+        "the attachment `{name}` at byte {offset_bytes} of `{}` is damaged (checksum {found:#010x} instead of {expected:#010x}); {}",
+        path.display(), advice::COPY
     )]
     AttachmentChecksum {
         /// The attachment's name.
@@ -87,8 +104,8 @@ pub enum RecordingError {
     },
     /// An attachment is too large to be held in memory.
     #[error(
-        "the attachment `{name}` at byte {offset_bytes} of `{}` has {size_bytes} bytes, more than the {limit_bytes} that can be read; extract it with another tool",
-        path.display()
+        "the attachment `{name}` at byte {offset_bytes} of `{}` has {size_bytes} bytes, more than the {limit_bytes} that can be read; {}",
+        path.display(), advice::EXTRACT
     )]
     AttachmentTooLarge {
         /// The attachment's name.
@@ -103,14 +120,34 @@ pub enum RecordingError {
         limit_bytes: u64,
     },
     /// The thread that reads ahead could not be started.
-    #[error("the thread that reads ahead could not be started; free some memory or raise the process limit")]
+    #[error("the thread that reads ahead could not be started; {}", advice::MEMORY)]
     StartReader {
         /// What the operating system said.
         source: io::Error,
     },
     /// The thread that reads ahead ended by a bug.
-    #[error(
-        "the thread that reads ahead ended unexpectedly; this is a bug in fric, please report it with the recording"
-    )]
+    #[error("the thread that reads ahead ended unexpectedly, by a bug in fric; {}", advice::REPORT)]
     ReaderStopped,
+}
+
+impl RecordingError {
+    /// What to do: the words that end the error's sentence, where it has any.
+    #[must_use]
+    pub fn advice(&self) -> Option<&'static str> {
+        Some(match self {
+            Self::NoFiles => advice::NAME,
+            Self::Missing { .. } => advice::PATH,
+            Self::Directory { .. } => advice::DIRECTORY,
+            Self::NotAFile { .. } => advice::PIPE,
+            Self::Forbidden { .. } => advice::PERMISSIONS,
+            Self::Open { .. } => return None,
+            Self::Empty { .. } => advice::EMPTY,
+            Self::NotMcap { advice, .. } => advice,
+            Self::Read { .. } => advice::DISK,
+            Self::AttachmentChecksum { .. } => advice::COPY,
+            Self::AttachmentTooLarge { .. } => advice::EXTRACT,
+            Self::StartReader { .. } => advice::MEMORY,
+            Self::ReaderStopped => advice::REPORT,
+        })
+    }
 }

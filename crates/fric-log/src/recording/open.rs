@@ -90,8 +90,8 @@ fn scan_file(path: &Path) -> Result<(SourceFile, FileScan), RecordingError> {
     if scan.is_mcap {
         Ok((source, scan))
     } else {
-        let hint = hint(&source.file).map_err(|error| source.read_error(0, error))?;
-        Err(RecordingError::NotMcap { path: source.path, hint })
+        let (found, advice) = looks_like(&source.file).map_err(|error| source.read_error(0, error))?;
+        Err(RecordingError::NotMcap { path: source.path, found, advice })
     }
 }
 
@@ -120,20 +120,21 @@ fn open_file(path: &Path) -> Result<(File, u64), RecordingError> {
 }
 
 /// What a file that is not MCAP may be, and what to do about it.
-fn hint(mut file: &File) -> io::Result<&'static str> {
+fn looks_like(mut file: &File) -> io::Result<(&'static str, &'static str)> {
+    const RIGHT_FILE: &str = "name the file that the recorder wrote (it usually ends in `.mcap`)";
     let mut start = Vec::new();
     file.by_ref().take(256).read_to_end(&mut start)?;
     Ok(if start.starts_with(b"SQLite format 3\0") {
-        "it is an SQLite database, as older ROS 2 bags are; convert it with `ros2 bag convert`"
+        ("it is an SQLite database, as older ROS 2 bags are", "convert it with `ros2 bag convert`")
     } else if start.starts_with(b"#ROSBAG") {
-        "it is a ROS 1 bag; convert it with `mcap convert`"
+        ("it is a ROS 1 bag", "convert it with `mcap convert`")
     } else if start.starts_with(&[0x28, 0xb5, 0x2f, 0xfd]) {
-        "it is compressed as a whole with zstd; decompress it with `unzstd`"
+        ("it is compressed as a whole with zstd", "decompress it with `unzstd`")
     } else if start.starts_with(&[0x1f, 0x8b]) {
-        "it is compressed as a whole with gzip; decompress it with `gunzip`"
+        ("it is compressed as a whole with gzip", "decompress it with `gunzip`")
     } else if std::str::from_utf8(&start).is_ok_and(|text| !text.contains('\0')) {
-        "it is a text file; name the file that the recorder wrote (it usually ends in `.mcap`)"
+        ("it is a text file", RIGHT_FILE)
     } else {
-        "no MCAP record was found in it; name the file that the recorder wrote (it usually ends in `.mcap`)"
+        ("no MCAP record was found in it", RIGHT_FILE)
     })
 }

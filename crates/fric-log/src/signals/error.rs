@@ -1,9 +1,20 @@
 //! Why there are no rows.
 
+use std::path::PathBuf;
+
 use thiserror::Error;
 
 use crate::recording::RecordingError;
 use crate::schema::SchemaError;
+
+/// What to do, each the end of a sentence.
+mod advice {
+    pub const TOPIC: &str = "Name the right one as `cable` under `[log]` in the robot file";
+    pub const TOPIC_OR_PATH: &str =
+        "Name the right topic, or the path to the forces, as `cable` under `[log]` in the robot file";
+    pub const LENGTH: &str = "name the topic or path of the lengths as `length` under `[log]` in the robot file";
+    pub const BEGINNING: &str = "use a complete copy of the recording";
+}
 
 /// Why there are no rows.
 #[derive(Debug, Error)]
@@ -20,11 +31,20 @@ pub enum SignalError {
         /// Those there are.
         topics: Vec<String>,
     },
-    /// The cable signal cannot be found in its messages.
+    /// The recording has no cable signal, and the beginning of a file, which says whose its messages are, is lost.
     #[error(
-        "the messages on `{topic}` cannot be read as cable signals: {source}. Name the right topic, or the path to the \
-         forces, as `cable` under `[log]` in the robot file"
+        "the beginning of `{}` is missing, and with it the channels and schemas that say on which topics its messages \
+         are: the cable signals on `{topic}` cannot be told from others; {}",
+        path.display(), advice::BEGINNING
     )]
+    NoBeginning {
+        /// The topic looked for.
+        topic: String,
+        /// The file.
+        path: PathBuf,
+    },
+    /// The cable signal cannot be found in its messages.
+    #[error("the messages on `{topic}` cannot be read as cable signals: {source}. {}", advice::TOPIC_OR_PATH)]
     CableFields {
         /// The topic.
         topic: String,
@@ -40,19 +60,31 @@ pub enum SignalError {
         reason: String,
     },
     /// There is force but no length.
-    #[error(
-        "the messages on `{topic}` bring forces but no cable lengths (`position`); name the topic or path of the \
-         lengths as `length` under `[log]` in the robot file"
-    )]
+    #[error("the messages on `{topic}` bring forces but no cable lengths (`position`); {}", advice::LENGTH)]
     NoLength {
         /// The topic.
         topic: String,
     },
 }
 
+impl SignalError {
+    /// What to do: the words that end the error's sentence, where it has any.
+    #[must_use]
+    pub fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Recording(error) => error.advice(),
+            Self::NoCableTopic { topics, .. } => (!topics.is_empty()).then_some(advice::TOPIC),
+            Self::NoBeginning { .. } => Some(advice::BEGINNING),
+            Self::CableFields { .. } => Some(advice::TOPIC_OR_PATH),
+            Self::NoUsableMessage { .. } => None,
+            Self::NoLength { .. } => Some(advice::LENGTH),
+        }
+    }
+}
+
 fn available(topics: &[String]) -> String {
     if topics.is_empty() {
         return "it has no other topics either".to_owned();
     }
-    format!("it has {}. Name the right one as `cable` under `[log]` in the robot file", topics.join(", "))
+    format!("it has {}. {}", topics.join(", "), advice::TOPIC)
 }

@@ -215,6 +215,11 @@ impl SignalReader {
             let mut topics: Vec<_> = channels.map(|channel| channel.topic.clone()).filter(|it| *it != topic).collect();
             topics.sort();
             topics.dedup();
+            let damage = self.recording.damage();
+            let beheaded = damage.files().iter().find(|file| file.lacks_beginning());
+            if let Some(file) = beheaded.filter(|_| topics.is_empty() || damage.lost_messages() > 0) {
+                return Err(SignalError::NoBeginning { topic, path: file.path().to_owned() });
+            }
             return Err(SignalError::NoCableTopic { topic, topics });
         }
         if self.counts(Role::Cable).message_count == 0 {
