@@ -33,6 +33,30 @@ fn a_split_recording_replays_like_the_whole() {
 fn a_part_named_twice_counts_once() {
     let place = Place::with_log();
     place.run(&["replay", "log.mcap", "-o", "once.mcap"]).succeeds();
-    place.run(&["replay", "log.mcap", "log.mcap", "-o", "twice.mcap"]).warns(&["stamp used before"]);
+    let run = place.run(&["replay", "log.mcap", "log.mcap", "-o", "twice.mcap"]).warns(&["stamp used before"]);
+    run.warns(&["`log.mcap` and `log.mcap`", "0.000 s to 0.399 s"]);
     assert!(place.read("twice.mcap") == place.read("once.mcap"));
+}
+
+#[test]
+fn recordings_of_the_same_time_are_not_parts_of_one() {
+    let place = Place::with_log();
+    let log = short_log();
+    let start = messages(log)[0].log_time_nanos;
+    let part = |from_ms: u64, to_ms: u64| {
+        let range = start + from_ms * 1_000_000..start + to_ms * 1_000_000;
+        rewrite(log, Storage::Unchunked, Some(&attached_robot(log)), |_, time| range.contains(&time))
+    };
+    place.write("a.mcap", part(0, 250));
+    place.write("b.mcap", part(150, 400));
+    for command in ["replay", "info"] {
+        for logs in [["a.mcap", "b.mcap"], ["b.mcap", "a.mcap"]] {
+            let run = place.run(&[&[command], &logs[..]].concat());
+            run.warns(&["`a.mcap` and `b.mcap`", "from 0.150 s to 0.249 s", "one split recording"]);
+        }
+    }
+    // A few messages at the seam are none of a user's doing.
+    place.write("b.mcap", part(245, 400));
+    let run = place.run(&["info", "a.mcap", "b.mcap"]);
+    assert!(!run.stderr.contains("split recording"), "{run:#?}");
 }

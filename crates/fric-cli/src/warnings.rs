@@ -2,7 +2,7 @@
 
 use std::io::Write as _;
 
-use fric_log::recording::Recording;
+use fric_log::recording::{Overlap, Recording};
 use fric_log::signals::{Role, SignalPaths, SignalReader, TrackCounts};
 
 /// One line on stderr.
@@ -15,6 +15,19 @@ pub fn warn(text: &str) {
 pub fn about_recording(recording: &Recording) {
     for line in recording.damage().to_string().lines() {
         warn(line);
+    }
+    let start_nanos = recording.log_time_range_nanos().map_or(0, |(start, _)| start);
+    for Overlap { earlier, later, log_time_nanos: (from, to) } in recording.overlaps() {
+        #[expect(clippy::cast_precision_loss, reason = "for people")]
+        let after_start_s = |nanos: u64| nanos.saturating_sub(start_nanos) as f64 * 1e-9;
+        warn(&format!(
+            "`{}` and `{}` both hold the time from {:.3} s to {:.3} s after the start, but several files are read as the \
+             parts of one split recording; name recordings of their own in runs of their own",
+            earlier.display(),
+            later.display(),
+            after_start_s(from),
+            after_start_s(to),
+        ));
     }
     if recording.late_count() > 0 {
         #[expect(clippy::cast_precision_loss, reason = "for people")]

@@ -80,6 +80,17 @@ struct FileCount {
     is_searched: bool,
 }
 
+/// Two files of a recording that hold messages of the same time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Overlap<'a> {
+    /// The one that begins first.
+    pub earlier: &'a Path,
+    /// The other one.
+    pub later: &'a Path,
+    /// First and last log time that both cover.
+    pub log_time_nanos: (u64, u64),
+}
+
 /// Messages that were delivered after a later one.
 #[derive(Debug, Clone, Copy, Default)]
 struct Late {
@@ -184,6 +195,33 @@ impl Recording {
         let start = segments().map(|segment| segment.start_time_nanos).min()?;
         let end = segments().map(|segment| segment.end_time_nanos).max()?;
         Some((start, end))
+    }
+
+    /// Files that are hardly parts of one recording: each with the one before it that lasts longest, where the times in
+    /// their chunks' headers overlap by more than a tenth of the shorter one. At the seam of a recording that was split a
+    /// few messages may change places.
+    #[must_use]
+    pub fn overlaps(&self) -> Vec<Overlap<'_>> {
+        let mut overlaps = Vec::new();
+        let mut longest: Option<(&Path, (u64, u64))> = None;
+        for (place, file) in self.files.iter().enumerate() {
+            let own = self.segments.iter().filter(|segment| segment.file as usize == place && !segment.is_blank());
+            let range = own.map(|segment| (segment.start_time_nanos, segment.end_time_nanos));
+            let Some((start, end)) = range.reduce(|(start, end), (from, to)| (start.min(from), end.max(to))) else {
+                continue;
+            };
+            if let Some((earlier, (earlier_start, earlier_end))) = longest {
+                let to = end.min(earlier_end);
+                let shorter = (end.saturating_sub(start)).min(earlier_end.saturating_sub(earlier_start));
+                if to.saturating_sub(start) > shorter / 10 {
+                    overlaps.push(Overlap { earlier, later: &file.path, log_time_nanos: (start, to) });
+                }
+            }
+            if longest.is_none_or(|(_, (_, longest_end))| end > longest_end) {
+                longest = Some((&file.path, (start, end)));
+            }
+        }
+        overlaps
     }
 
     /// How many messages the files say they have, if all of them say so.
