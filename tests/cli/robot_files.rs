@@ -80,3 +80,21 @@ fn a_bad_robot_file_in_the_log_is_told_as_such() {
     // A good one beside it takes its place.
     place.run(&["replay", "bad.mcap", "--model", "robot.toml"]).succeeds();
 }
+
+#[test]
+fn effects_that_do_nothing_are_warned_of() {
+    let place = Place::with_log();
+    let with = |effects: &str| {
+        let text = example_robot();
+        let (head, tail) = text.split_once("[[cable]]").unwrap();
+        format!("{head}[[cable]]\neffects = [ {effects} ]{tail}")
+    };
+    for idle in ["{ kind = 'stribeck', ratio = 0.0 }", "{ kind = 'stribeck' }"] {
+        place.write("idle.toml", with(&format!("{idle}, {{ kind = 'time_delay', delay_s = 0.002 }}")));
+        for command in ["replay", "info"] {
+            let run = place.run(&[command, "log.mcap", "--model", "idle.toml"]);
+            let run = run.warns(&["`stribeck`", "of cable1 ", "neutral", "does nothing"]);
+            assert!(!run.stderr.contains("time_delay"), "{run:#?}");
+        }
+    }
+}

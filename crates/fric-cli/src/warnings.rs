@@ -2,6 +2,8 @@
 
 use std::io::Write as _;
 
+use fric_core::effects;
+use fric_core::robot::file::{EffectTable, RobotFile};
 use fric_log::recording::{Overlap, Recording};
 use fric_log::signals::{Role, SignalPaths, SignalReader, TrackCounts};
 
@@ -36,6 +38,30 @@ pub fn about_recording(recording: &Recording) {
             "{} messages stand too far from their time in the file to be put in order, by up to {most_s:.3} s",
             recording.late_count()
         ));
+    }
+}
+
+/// Effects of the robot file that change nothing.
+pub fn about_effects(robot: &RobotFile) {
+    let is_idle = |effect: &EffectTable| {
+        effects::row(&effect.kind).is_some_and(|row| {
+            let neutral = |key: &str| row.parameters.iter().find(|row| row.key == key).map(|row| row.neutral);
+            effect.parameters.iter().all(|(key, value)| neutral(key) == Some(*value))
+        })
+    };
+    for row in effects::CATALOGUE {
+        let has_idle =
+            |effects: &[EffectTable]| effects.iter().any(|effect| effect.kind == row.kind && is_idle(effect));
+        let cables = robot.options().cable.iter().filter(|cable| has_idle(&cable.effects));
+        let names: Vec<&str> = cables.map(|cable| cable.name.as_str()).collect();
+        if !names.is_empty() {
+            warn(&format!(
+                "the effect `{}` of {} has only neutral values and does nothing; give it others, or take it out of the \
+                 robot file",
+                row.kind,
+                names.join(", ")
+            ));
+        }
     }
 }
 

@@ -106,6 +106,9 @@ pub fn run(arguments: &InfoArguments) -> Outcome {
     let model = Model::find(log.model.as_deref(), &recording)?;
     let topics = read_topics(&mut recording)?;
     warnings::about_recording(&recording);
+    if let Some(model) = &model {
+        warnings::about_effects(&model.robot);
+    }
     let attachments: Vec<String> = recording.attachments().map(|attachment| attachment.name.clone()).collect();
     let (signals, steps) = match &model {
         Some(model) => read_signals(model, Recording::open(&log.logs)?)?,

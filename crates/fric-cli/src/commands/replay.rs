@@ -148,6 +148,7 @@ fn describe(result: &ReplayResult) -> String {
 
 /// What the robot file and the log do not agree about.
 fn warn_about_model(model: &Model, reader: &SignalReader, replay: &Replay) {
+    warnings::about_effects(&model.robot);
     let no_pose = reader.counts(Role::Pose).message_count == 0;
     let needs_pose = model.robot.params().cables().iter().any(CableParams::needs_pose);
     if no_pose && needs_pose {
