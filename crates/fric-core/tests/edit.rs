@@ -224,6 +224,14 @@ fn what_is_not_there_or_not_right_is_told() {
     assert_eq!(rewrite(&text, "rig.toml", &[]).unwrap(), text);
 }
 
+#[test]
+fn a_byte_order_mark_stays() {
+    let text = format!("\u{feff}{HEAD}{}", LAYOUTS[0]);
+    let friction = FrictionEdit { mu: Some(0.01), ..FrictionEdit::default() };
+    let new = edited(&text, friction, &[]);
+    assert_eq!(new, text.replacen("mu = 0.02", "mu = 0.01", 1));
+}
+
 /// Numbers of every size, and those that people write.
 fn value(range: core::ops::RangeInclusive<f64>) -> impl Strategy<Value = f64> {
     let (min, max) = (*range.start(), *range.end());
