@@ -3,15 +3,13 @@
 use fric_core::parameters::Values;
 use rayon::prelude::*;
 
-use super::determined::Yardstick;
 use super::problem::{Comparison, Loss, Member, Problem};
 use super::record::{CableRecord, Measurements, Row};
 use super::report::{CableFit, ForceErrors};
 use super::selection::{self, Standing};
 use super::solve::{Solution, solve};
 use super::vector::Parameter;
-use super::{FitOptions, Progress, pass};
-use crate::replay::Deviation;
+use super::{FitOptions, Progress, pass, start};
 
 /// Fits every cable that has a reference.
 #[must_use]
@@ -28,8 +26,7 @@ pub fn fit_cables(measurements: &Measurements<'_>, options: &FitOptions, progres
 
 fn fit_cable(record: &CableRecord<'_>, options: &FitOptions, progress: &Progress) -> CableFit {
     let given = record.params.values();
-    let mut standings = selection::first_look(record, |_, row| row.reference_n.is_finite());
-    selection::leave_out_still_references(record, &mut standings);
+    let mut standings = prepared(record);
     let mut problem = Problem {
         members: vec![Member { record: *record, free: options.free(record.params) }],
         comparison: Comparison::Forces,
@@ -37,28 +34,18 @@ fn fit_cable(record: &CableRecord<'_>, options: &FitOptions, progress: &Progress
         used: used(&standings),
         stop: progress.stop_flag(),
     };
-    let solution = loop {
-        let solution = solve(
-            &mut problem,
-            &[given],
-            record.cycle_s,
-            options.weighing,
-            |problem, values| yardsticks(problem, values),
-            &mut standings,
-        );
-        // How long the start of a log is remembered is known only now.
-        let before = selection::count(&standings).warm_up;
-        if let Some(values) = solution.values.first() {
-            selection::leave_out_warm_up(record, values, &mut standings);
-        }
-        if selection::count(&standings).warm_up == before {
-            break solution;
-        }
-        problem.used = used(&standings);
-        problem.loss = Loss::Squares;
-        problem.members = vec![Member { record: *record, free: options.free(record.params) }];
-    };
+    let starts = start::starts(&problem, &[given], record.cycle_s);
+    leave_out_warm_up(&problem, &starts, &mut standings);
+    problem.used = used(&standings);
+    let solution = solve(&mut problem, starts, &[given], record.cycle_s, options.weighing, &mut standings);
     cable_fit(record, &given, &solution, 0, &standings)
+}
+
+/// Standing of each sample before anything is known about the friction.
+pub(super) fn prepared(record: &CableRecord<'_>) -> Vec<Standing> {
+    let mut standings = selection::first_look(record, |_, row| row.reference_n.is_finite());
+    selection::leave_out_still_references(record, &mut standings);
+    standings
 }
 
 /// Which samples count.
@@ -66,19 +53,12 @@ pub(super) fn used(standings: &[Standing]) -> Vec<bool> {
     standings.iter().map(|standing| *standing == Standing::Used).collect()
 }
 
-/// What matters for each cable of a problem.
-pub(super) fn yardsticks(problem: &Problem<'_>, values: &[Values]) -> Vec<Yardstick> {
-    let of = |(member, values): (&Member<'_>, &Values)| {
-        let mut friction = Deviation::default();
-        pass::run_plain(&member.record, values, |_, row, forces| {
-            if row.is_sound() {
-                friction.add(forces.friction_n);
-            }
-        });
-        let pulley_count = member.record.params.pulley_count();
-        Yardstick { friction_n: friction.rms().unwrap_or(0.0), pulley_count }
-    };
-    problem.members.iter().zip(values).map(of).collect()
+/// Takes out what the cables still remember of the time before each log, by what they would at the best start.
+pub(super) fn leave_out_warm_up(problem: &Problem<'_>, starts: &[Vec<Values>], standings: &mut [Standing]) {
+    let best = starts.first().into_iter().flatten();
+    for (member, values) in problem.members.iter().zip(best) {
+        selection::leave_out_warm_up(&member.record, values, standings);
+    }
 }
 
 /// The result of one cable of a solved problem.

@@ -3,6 +3,7 @@
 //! `value + Σ gradient_k·ε_k` with `ε_j·ε_k = 0`: every operation follows the chain rule exactly, so a result holds the
 //! derivatives of what the equations computed, to rounding. Comparisons look at the value alone; at a kink the derivative is
 //! that of the branch taken.
+#![allow(clippy::inline_always, reason = "a call in the cycle's equations would pass the derivatives through memory")]
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -107,7 +108,6 @@ impl<const N: usize> Scalar for Dual<N> {
         self.value <= other.value
     }
     #[inline(always)]
-    #[expect(clippy::float_cmp, reason = "the comparison that the trait asks for")]
     fn eq(self, other: Self) -> bool {
         self.value == other.value
     }

@@ -43,7 +43,7 @@ pub enum Comparison<'a> {
         /// The wrench of each sample; NaN where there is none.
         outside: &'a [Vector6<f64>],
         /// Turns deviations into numbers of variance 1 that do not depend on each other.
-        whitening: Matrix6<f64>,
+        whitening: Box<Matrix6<f64>>,
     },
 }
 
@@ -82,16 +82,7 @@ pub struct Problem<'a> {
 }
 
 /// The rows of a sample: derivatives by every free parameter, then the residual.
-struct Rows {
-    numbers: Vec<f64>,
-    width: usize,
-}
-
-impl Rows {
-    fn iter(&self) -> impl Iterator<Item = &[f64]> {
-        self.numbers.chunks_exact(self.width)
-    }
-}
+type Rows<'a> = std::slice::ChunksExact<'a, f64>;
 
 impl Problem<'_> {
     /// How many parameters vary, of all cables.
@@ -102,22 +93,18 @@ impl Problem<'_> {
     /// Residuals and Jacobian at the values of each cable, reduced; `None` when stopped.
     pub fn gram(&self, values: &[Values]) -> Option<Gram> {
         let mut gram = Gram::new(self.parameter_count());
-        let completed = self.visit(values, |_, rows| {
-            for row in rows.iter() {
-                gram.add(row);
-            }
-        });
-        completed.then_some(gram)
+        self.visit(values, |_, rows| rows.for_each(|row| gram.add(row))).then_some(gram)
     }
 
-    /// The samples' scores at the values of each cable.
-    pub fn scores(&self, values: &[Values]) -> Scores {
+    /// The same with the samples' scores.
+    pub fn gram_and_scores(&self, values: &[Values]) -> Option<(Gram, Scores)> {
         let count = self.parameter_count();
-        let mut scores = Scores::new(count);
+        let (mut gram, mut scores) = (Gram::new(count), Scores::new(count));
         let mut score = vec![0.0; count];
-        self.visit(values, |_, rows| {
+        let completed = self.visit(values, |_, rows| {
             score.fill(0.0);
-            for row in rows.iter() {
+            for row in rows {
+                gram.add(row);
                 let Some((residual, derivatives)) = row.split_last() else { continue };
                 for (sum, derivative) in score.iter_mut().zip(derivatives) {
                     *sum += derivative * residual;
@@ -125,20 +112,25 @@ impl Problem<'_> {
             }
             scores.add(&score);
         });
-        scores
+        completed.then_some((gram, scores))
     }
 
     /// Residuals of every sample that counts, with the sample's place: one, or six whitened.
     pub fn residuals(&self, values: &[Values], mut visit: impl FnMut(usize, &[f64])) {
         let mut residuals = Vec::new();
-        self.visit(values, |place, rows| {
+        visit_with::<0>(self, values, |place, rows| {
             residuals.clear();
-            residuals.extend(rows.iter().filter_map(|row| row.last()));
+            residuals.extend(rows.filter_map(|row| row.last()));
             visit(place, &residuals);
         });
     }
 
-    fn visit(&self, values: &[Values], visit: impl FnMut(usize, &Rows)) -> bool {
+    /// Every row: derivatives by the free parameters, then the residual.
+    pub fn rows(&self, values: &[Values], mut visit: impl FnMut(&[f64])) {
+        self.visit(values, |_, rows| rows.for_each(&mut visit));
+    }
+
+    fn visit(&self, values: &[Values], visit: impl FnMut(usize, Rows<'_>)) -> bool {
         let most = self.members.iter().map(|member| member.free.len()).max().unwrap_or(0);
         with_room_for!(most, visit_with(self, values, visit))
     }
@@ -174,7 +166,6 @@ impl Problem<'_> {
                 for (force_n, of_cable) in of_sample.iter_mut().zip(&forces) {
                     *force_n = of_cable.get(place).map_or(f64::NAN, |lanes| lanes[candidate]);
                 }
-                residuals.clear();
                 self.compare(place, &of_sample, &mut residuals);
                 *sum += residuals.iter().map(|residual| self.loss.root(*residual).0.powi(2)).sum::<f64>();
             }
@@ -184,6 +175,7 @@ impl Problem<'_> {
 
     /// Residuals of a sample from the forces of all cables.
     fn compare(&self, place: usize, forces_n: &[f64], residuals: &mut Vec<f64>) {
+        residuals.clear();
         match &self.comparison {
             Comparison::Forces => {
                 let rows = self.members.first().and_then(|member| member.record.rows.get(place));
@@ -194,70 +186,100 @@ impl Problem<'_> {
                 let columns = structure.iter().skip(place * count).zip(forces_n);
                 let start = outside.get(place).copied().unwrap_or_else(|| Vector6::repeat(f64::NAN));
                 let balance = columns.fold(start, |sum, (column, force_n)| sum + column * *force_n);
-                residuals.extend((whitening * balance).iter());
+                residuals.extend((**whitening * balance).iter());
             }
         }
     }
 
-    /// Rows of a sample from the forces of all cables with their derivatives.
-    fn assemble<const N: usize>(&self, place: usize, forces: &[&Dual<N>], plain_n: &mut Vec<f64>, rows: &mut Rows) {
-        plain_n.clear();
-        plain_n.extend(forces.iter().map(|force| force.value));
-        let mut residuals = Vec::with_capacity(6);
-        self.compare(place, plain_n, &mut residuals);
-        rows.numbers.clear();
-        for (component, residual) in residuals.into_iter().enumerate() {
-            let (root, slope) = self.loss.root(residual);
-            for (index, (member, force)) in self.members.iter().zip(forces).enumerate() {
-                let factor = slope * self.lever(place, index, component);
-                rows.numbers.extend(force.gradient.iter().take(member.free.len()).map(|part| factor * part));
-            }
-            rows.numbers.push(root);
-        }
-    }
-
-    /// Derivative of a residual by a cable's force.
-    fn lever(&self, place: usize, cable: usize, component: usize) -> f64 {
+    /// Derivatives of a sample's residuals by the force of each cable: one column a cable.
+    fn levers(&self, place: usize, levers: &mut Vec<Vector6<f64>>) {
+        levers.clear();
         match &self.comparison {
-            Comparison::Forces => 1.0,
-            Comparison::Wrench { structure, whitening, .. } => structure
-                .get(place * self.members.len() + cable)
-                .map_or(f64::NAN, |column| (whitening.row(component) * column).x),
+            Comparison::Forces => levers.push(Vector6::repeat(1.0)),
+            Comparison::Wrench { structure, whitening, .. } => {
+                let count = self.members.len();
+                levers.extend(structure.iter().skip(place * count).take(count).map(|column| **whitening * column));
+            }
         }
     }
 }
 
-/// Evaluates all samples; false when stopped.
-fn visit_with<const N: usize>(problem: &Problem<'_>, values: &[Values], mut visit: impl FnMut(usize, &Rows)) -> bool {
-    let members = || problem.members.iter().zip(values);
-    let mut rows = Rows { numbers: Vec::new(), width: problem.parameter_count() + 1 };
-    let mut plain_n = Vec::new();
+/// Room for what is made of each sample.
+#[derive(Default)]
+struct Assembly {
+    forces_n: Vec<f64>,
+    residuals: Vec<f64>,
+    levers: Vec<Vector6<f64>>,
+    rows: Vec<f64>,
+}
+
+impl Assembly {
+    /// Rows of a sample from the forces of all cables with their derivatives.
+    fn assemble<const N: usize>(&mut self, problem: &Problem<'_>, place: usize, runs: &[Run<'_, N>], offset: usize) {
+        let Self { forces_n, residuals, levers, rows } = self;
+        forces_n.clear();
+        forces_n.extend(runs.iter().filter_map(|run| run.forces.get(offset)).map(|force| force.value));
+        problem.compare(place, forces_n, residuals);
+        problem.levers(place, levers);
+        rows.clear();
+        for (component, residual) in residuals.iter().enumerate() {
+            let (root, slope) = problem.loss.root(*residual);
+            for (run, lever) in runs.iter().zip(&*levers) {
+                let factor = slope * lever[component];
+                let gradient = run.forces.get(offset).map_or([f64::NAN; N], |force| force.gradient);
+                rows.extend(gradient.iter().take(run.member.free.len()).map(|part| factor * part));
+            }
+            rows.push(root);
+        }
+    }
+}
+
+/// A cable on its way through a log.
+struct Run<'a, const N: usize> {
+    member: &'a Member<'a>,
+    cable: SingleCable<Dual<N>>,
+    forces: Vec<Dual<N>>,
+}
+
+impl<const N: usize> Run<'_, N> {
+    fn advance(&mut self, from: usize, to: usize) {
+        let Self { member, cable, forces } = self;
+        forces.clear();
+        let rows = member.record.rows.get(from..to).unwrap_or_default();
+        forces.extend(rows.iter().map(|row| cable.step(&row.signals, row.pose_wrap).platform_force_n));
+    }
+}
+
+/// Evaluates all samples, with the derivatives by the first `N` free parameters of each cable; false when stopped.
+fn visit_with<const N: usize>(
+    problem: &Problem<'_>,
+    values: &[Values],
+    mut visit: impl FnMut(usize, Rows<'_>),
+) -> bool {
     let Some(first) = problem.members.first() else { return true };
+    let width = problem.members.iter().map(|member| member.free.len().min(N)).sum::<usize>() + 1;
+    let mut assembly = Assembly::default();
     for (start, log) in first.record.logs() {
-        let mut cables: Vec<_> = members()
-            .map(|(member, values)| (member, differentiated::<N>(&member.record, values, &member.free), Vec::new()))
-            .collect();
+        let mut runs: Vec<Run<'_, N>> = Vec::with_capacity(problem.members.len());
+        for (member, values) in problem.members.iter().zip(values) {
+            let cable = differentiated::<N>(&member.record, values, &member.free);
+            runs.push(Run { member, cable, forces: Vec::with_capacity(CHUNK) });
+        }
         let end = start + log.len();
         for from in (start..end).step_by(CHUNK) {
             if problem.stopped() {
                 return false;
             }
             let to = (from + CHUNK).min(end);
-            let run = |(member, cable, forces): &mut (&Member<'_>, SingleCable<Dual<N>>, Vec<Dual<N>>)| {
-                forces.clear();
-                let chunk = member.record.rows.get(from..to).unwrap_or_default();
-                forces.extend(chunk.iter().map(|row| cable.step(&row.signals, row.pose_wrap).platform_force_n));
-            };
-            if let [only] = cables.as_mut_slice() {
-                run(only);
+            if let [only] = runs.as_mut_slice() {
+                only.advance(from, to);
             } else {
-                cables.par_iter_mut().for_each(run);
+                runs.par_iter_mut().for_each(|run| run.advance(from, to));
             }
             for (offset, place) in (from..to).enumerate() {
                 if problem.used.get(place).copied().unwrap_or(false) {
-                    let forces: Vec<&Dual<N>> = cables.iter().filter_map(|(_, _, forces)| forces.get(offset)).collect();
-                    problem.assemble(place, &forces, &mut plain_n, &mut rows);
-                    visit(place, &rows);
+                    assembly.assemble(problem, place, &runs, offset);
+                    visit(place, assembly.rows.chunks_exact(width));
                 }
             }
         }

@@ -40,6 +40,15 @@ pub struct CableFit {
     pub errors: ForceErrors,
 }
 
+/// What a fit to the wrench gives.
+#[derive(Clone, Debug)]
+pub struct WrenchFit {
+    /// The cables in the robot's order.
+    pub cables: Vec<CableFit>,
+    /// Whether the wrench was measured; otherwise it is that of the platform's mass.
+    pub measured: bool,
+}
+
 impl CableFit {
     /// Standard error of a parameter, in its unit; `None` where it was not fitted.
     #[must_use]

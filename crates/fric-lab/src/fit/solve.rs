@@ -6,10 +6,11 @@ use nalgebra::DMatrix;
 use super::determined::Yardstick;
 use super::gram::{Gram, Triangle};
 use super::optimizer::{self, Minimum, Termination};
-use super::problem::{Loss, Problem};
+use super::pass;
+use super::problem::{Loss, Member, Problem};
 use super::selection::Standing;
-use super::start;
 use super::vector::{Coordinate, Parameter, with};
+use crate::replay::Deviation;
 
 /// Deviations beyond this many standard deviations are no measurements.
 const OUTLIER_RATIO: f64 = 8.0;
@@ -56,65 +57,92 @@ pub struct Solution {
     pub evaluation_count: usize,
 }
 
-/// Solves a problem. `standings` of its samples are updated with the outliers.
+/// Solves a problem from the starts given, the most promising first. `standings` of its samples are updated with the
+/// outliers.
 pub fn solve(
     problem: &mut Problem<'_>,
+    starts: Vec<Vec<Values>>,
     given: &[Values],
     cycle_s: f64,
     weighing: Weighing,
-    yardsticks: impl Fn(&Problem<'_>, &[Values]) -> Vec<Yardstick>,
     standings: &mut [Standing],
 ) -> Solution {
-    let all = unknowns(problem);
-    let mut evaluation_count = 0;
-    let mut termination = Termination::NothingToFit;
-    let mut values = given.to_vec();
-    if problem.used.contains(&true) && !all.is_empty() {
-        let tries = start::starts(problem, given, cycle_s).into_iter().map(|start| search(problem, start, cycle_s));
-        let best = tries
-            .inspect(|(_, minimum)| evaluation_count += minimum.evaluation_count)
+    let mut solution = Solution {
+        values: given.to_vec(),
+        unknowns: unknowns(problem),
+        undetermined: Vec::new(),
+        covariance: DMatrix::zeros(0, 0),
+        termination: Termination::NothingToFit,
+        evaluation_count: 0,
+    };
+    if problem.used.contains(&true) {
+        let best = starts
+            .into_iter()
+            .map(|start| search(problem, &start, cycle_s))
+            .inspect(|(_, minimum)| solution.evaluation_count += minimum.evaluation_count)
             .min_by(|(_, one), (_, other)| one.squares.total_cmp(&other.squares));
         if let Some((found, minimum)) = best {
-            (values, termination) = (found, minimum.termination);
+            (solution.values, solution.termination) = (found, minimum.termination);
         }
         for _ in 0..ROUNDS {
-            if !look_again(problem, &values, weighing, standings) {
+            if !look_again(problem, &solution.values, weighing, standings) {
                 break;
             }
-            let (found, minimum) = search(problem, values, cycle_s);
-            evaluation_count += minimum.evaluation_count;
-            (values, termination) = (found, minimum.termination);
+            solution.search_on(problem, cycle_s);
         }
     }
-    let mut undetermined = Vec::new();
-    loop {
-        let unknowns = unknowns(problem);
-        let covariance = covariance(problem, &values);
-        let sticks = yardsticks(problem, &values);
-        let vagueness = |(place, unknown): (usize, &Unknown)| {
-            let value = values.get(unknown.member).map_or(f64::NAN, |values| values[unknown.parameter.place()]);
-            let stick = sticks.get(unknown.member)?;
-            Some((stick.vagueness(&unknown.parameter, value, covariance[(place, place)].sqrt()), *unknown))
-        };
-        let vaguest =
-            unknowns.iter().enumerate().filter_map(vagueness).max_by(|(one, _), (other, _)| one.total_cmp(other));
-        let Some((_, worst)) = vaguest.filter(|(vagueness, _)| *vagueness > 1.0 && termination != Termination::Stopped)
-        else {
-            return Solution { values, unknowns, undetermined, covariance, termination, evaluation_count };
-        };
-        hold(problem, worst, &mut values, given);
-        undetermined.push(worst);
-        if problem.parameter_count() > 0 {
-            let (found, minimum) = search(problem, values, cycle_s);
-            evaluation_count += minimum.evaluation_count;
-            (values, termination) = (found, minimum.termination);
+    solution.hold_undetermined(problem, given, cycle_s);
+    solution
+}
+
+impl Solution {
+    /// Goes on from where the last search has ended.
+    fn search_on(&mut self, problem: &Problem<'_>, cycle_s: f64) {
+        let (found, minimum) = search(problem, &self.values, cycle_s);
+        self.evaluation_count += minimum.evaluation_count;
+        (self.values, self.termination) = (found, minimum.termination);
+    }
+
+    /// Holds one parameter after the other that the samples do not determine, the vaguest first.
+    fn hold_undetermined(&mut self, problem: &mut Problem<'_>, given: &[Values], cycle_s: f64) {
+        loop {
+            self.unknowns = unknowns(problem);
+            self.covariance = covariance(problem, &self.values);
+            let sticks = yardsticks(problem, &self.values);
+            let vagueness = |(place, unknown): (usize, &Unknown)| {
+                let value = self.values.get(unknown.member)?[unknown.parameter.place()];
+                let standard_error = self.covariance[(place, place)].sqrt();
+                Some((sticks.get(unknown.member)?.vagueness(&unknown.parameter, value, standard_error), *unknown))
+            };
+            let all = self.unknowns.iter().enumerate().filter_map(vagueness);
+            let vaguest = all.max_by(|(one, _), (other, _)| one.total_cmp(other));
+            let stopped = self.termination == Termination::Stopped;
+            let Some((_, worst)) = vaguest.filter(|(vagueness, _)| *vagueness > 1.0 && !stopped) else { return };
+            hold(problem, worst, &mut self.values, given);
+            self.undetermined.push(worst);
+            self.search_on(problem, cycle_s);
         }
     }
 }
 
+/// What matters for each cable of a problem.
+fn yardsticks(problem: &Problem<'_>, values: &[Values]) -> Vec<Yardstick> {
+    let of = |(member, values): (&Member<'_>, &Values)| {
+        let mut friction = Deviation::default();
+        pass::run_plain(&member.record, values, |_, row, forces| {
+            if row.is_sound() {
+                friction.add(forces.friction_n);
+            }
+        });
+        let pulley_count = member.record.params.pulley_count();
+        Yardstick { friction_n: friction.rms().unwrap_or(0.0), pulley_count }
+    };
+    problem.members.iter().zip(values).map(of).collect()
+}
+
 /// What a problem varies.
 fn unknowns(problem: &Problem<'_>) -> Vec<Unknown> {
-    let of_member = |(member, of): (usize, &super::problem::Member<'_>)| {
+    let of_member = |(member, of): (usize, &Member<'_>)| {
         of.free.iter().map(|parameter| Unknown { member, parameter: *parameter }).collect::<Vec<_>>()
     };
     problem.members.iter().enumerate().flat_map(of_member).collect()
@@ -132,7 +160,7 @@ fn hold(problem: &mut Problem<'_>, unknown: Unknown, values: &mut [Values], give
 }
 
 /// The minimum from a start.
-fn search(problem: &Problem<'_>, start: Vec<Values>, cycle_s: f64) -> (Vec<Values>, Minimum) {
+fn search(problem: &Problem<'_>, start: &[Values], cycle_s: f64) -> (Vec<Values>, Minimum) {
     let unknowns = unknowns(problem);
     let coordinates: Vec<Coordinate> =
         unknowns.iter().map(|unknown| Coordinate::of(&unknown.parameter, cycle_s)).collect();
@@ -140,16 +168,14 @@ fn search(problem: &Problem<'_>, start: Vec<Values>, cycle_s: f64) -> (Vec<Value
         .iter()
         .zip(&coordinates)
         .map(|(unknown, coordinate)| {
-            start
-                .get(unknown.member)
-                .map_or(f64::NAN, |values| coordinate.from_value(values[unknown.parameter.place()]))
+            start.get(unknown.member).map_or(f64::NAN, |values| coordinate.place_of(values[unknown.parameter.place()]))
         })
         .collect();
     let values_at = |places: &[f64]| -> (Vec<Values>, Vec<f64>) {
         let (numbers, slopes): (Vec<f64>, Vec<f64>) =
-            places.iter().zip(&coordinates).map(|(place, coordinate)| coordinate.to_value(*place)).unzip();
+            places.iter().zip(&coordinates).map(|(place, coordinate)| coordinate.value_at(*place)).unzip();
         let mut numbers = numbers.into_iter();
-        let members = problem.members.iter().zip(&start);
+        let members = problem.members.iter().zip(start);
         (
             members
                 .map(|(member, values)| with(values, &member.free, numbers.by_ref().take(member.free.len())))
@@ -175,7 +201,7 @@ fn search(problem: &Problem<'_>, start: Vec<Values>, cycle_s: f64) -> (Vec<Value
 fn covariance(problem: &Problem<'_>, values: &[Values]) -> DMatrix<f64> {
     let count = problem.parameter_count();
     let unknown = || DMatrix::from_diagonal_element(count, count, f64::INFINITY);
-    let Some(gram) = problem.gram(values) else { return unknown() };
+    let Some((gram, scores)) = problem.gram_and_scores(values) else { return unknown() };
     let (matrix, ..) = gram.normal_equations();
     let scale: Vec<f64> = matrix.diagonal().iter().map(|square| 1.0 / square.max(f64::MIN_POSITIVE).sqrt()).collect();
     let scaled = DMatrix::from_fn(count, count, |row, column| {
@@ -186,7 +212,7 @@ fn covariance(problem: &Problem<'_>, values: &[Values]) -> DMatrix<f64> {
     let Some(factor) = scaled.cholesky() else { return unknown() };
     let inverse = factor.inverse();
     let inverse = DMatrix::from_fn(count, count, |row, column| inverse[(row, column)] * scale[row] * scale[column]);
-    let covariance = problem.scores(values).covariance(&inverse);
+    let covariance = scores.covariance(&inverse);
     let silent = |place: usize| matrix[(place, place)] <= 0.0;
     DMatrix::from_fn(
         count,

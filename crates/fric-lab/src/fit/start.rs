@@ -100,7 +100,7 @@ fn slide(problem: &Problem<'_>, given: &[Values], cycle_s: f64) -> Vec<Values> {
             let coordinate = Coordinate::of(parameter, cycle_s);
             let value = values[parameter.place()] - parts.next().copied().unwrap_or(0.0);
             let value = if parameter.place() == MU { value.max(1e-4) } else { value };
-            values[parameter.place()] = coordinate.to_value(coordinate.from_value(value)).0;
+            values[parameter.place()] = coordinate.value_at(coordinate.place_of(value)).0;
         }
     }
     nothing
@@ -110,11 +110,11 @@ fn slide(problem: &Problem<'_>, given: &[Values], cycle_s: f64) -> Vec<Values> {
 fn sliding_samples(problem: &Problem<'_>) -> Vec<bool> {
     let mut counts = vec![0_usize; problem.used.len()];
     for member in &problem.members {
-        let mut travel_m = 0.0_f64;
+        let mut way_m = 0.0_f64;
         let since_reversal = |row: &Row| {
             let step_m = row.signals.displacement_m;
-            travel_m = if travel_m * step_m < 0.0 { step_m } else { travel_m + step_m };
-            if step_m.abs() > 0.0 { travel_m.abs() } else { 0.0 }
+            way_m = if way_m * step_m < 0.0 { step_m } else { way_m + step_m };
+            if step_m.abs() > 0.0 { way_m.abs() } else { 0.0 }
         };
         let travels_m: Vec<f64> = member.record.rows.iter().map(since_reversal).collect();
         let mut moving: Vec<f64> = travels_m.iter().copied().filter(|travel_m| *travel_m > 0.0).collect();

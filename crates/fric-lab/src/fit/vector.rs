@@ -95,7 +95,7 @@ impl Coordinate {
     }
 
     /// The coordinate of a value; one out of range is moved into it.
-    pub fn from_value(&self, value: f64) -> f64 {
+    pub fn place_of(self, value: f64) -> f64 {
         if self.logarithmic {
             return value.clamp(self.min, self.max).ln();
         }
@@ -104,7 +104,7 @@ impl Coordinate {
     }
 
     /// The value at a coordinate, and its slope.
-    pub fn to_value(&self, coordinate: f64) -> (f64, f64) {
+    pub fn value_at(self, coordinate: f64) -> (f64, f64) {
         if self.logarithmic {
             let value = coordinate.exp().clamp(self.min, self.max);
             return (value, value);
@@ -138,18 +138,18 @@ mod tests {
                 let (min, max) = (coordinate.min, coordinate.max);
                 let value =
                     if coordinate.logarithmic { min * (max / min).powf(share) } else { min + share * (max - min) };
-                let place = coordinate.from_value(value);
-                let (back, slope) = coordinate.to_value(place);
+                let place = coordinate.place_of(value);
+                let (back, slope) = coordinate.value_at(place);
                 assert!(
                     (back - value).abs() <= 1e-9 * (max - min).min(value.abs().max(1.0)),
                     "{parameter}: {value} {back}"
                 );
                 let h = 1e-6 * place.abs().max(1e-3);
-                let numeric = (coordinate.to_value(place + h).0 - coordinate.to_value(place - h).0) / (2.0 * h);
+                let numeric = (coordinate.value_at(place + h).0 - coordinate.value_at(place - h).0) / (2.0 * h);
                 assert!((slope - numeric).abs() <= 1e-5 * numeric.abs(), "{parameter}: {slope} {numeric}");
             }
             for wild in [-1e9, -1.0, 0.0, 17.3, 1e4] {
-                let (value, _) = coordinate.to_value(wild);
+                let (value, _) = coordinate.value_at(wild);
                 assert!((coordinate.min..=coordinate.max).contains(&value), "{parameter}");
             }
         }

@@ -1,0 +1,103 @@
+//! The residuals of \[P\] 18 as a function of the parameters, for optimisers of one's own.
+
+use std::sync::atomic::AtomicBool;
+
+use fric_core::parameters::Values;
+
+use super::FitOptions;
+use super::cables::{leave_out_warm_up, prepared, used};
+use super::problem::{Comparison, Loss, Member, Problem};
+use super::record::CableRecord;
+use super::start;
+use super::vector::{Parameter, with};
+
+/// Residuals `f(p) − f_ref` in N of a cable's sound samples, and their derivatives, as functions of its free parameters.
+///
+/// Samples are those that [`fit_cables`](super::fit_cables) starts with: flagged ones, those without a reference and the
+/// warm-up are left out, outliers are not.
+#[derive(Clone, Debug)]
+pub struct ResidualFunction<'a> {
+    record: CableRecord<'a>,
+    free: Vec<Parameter>,
+    given: Values,
+    start: Values,
+    used: Vec<bool>,
+}
+
+impl<'a> ResidualFunction<'a> {
+    /// Of a cable, with what `options` says to vary.
+    #[must_use]
+    pub fn new(record: &CableRecord<'a>, options: &FitOptions) -> Self {
+        let given = record.params.values();
+        let free = options.free(record.params);
+        let mut standings = prepared(record);
+        let stop = AtomicBool::new(false);
+        let problem = Problem {
+            members: vec![Member { record: *record, free: free.clone() }],
+            comparison: Comparison::Forces,
+            loss: Loss::Squares,
+            used: used(&standings),
+            stop: &stop,
+        };
+        let starts = start::starts(&problem, &[given], record.cycle_s);
+        leave_out_warm_up(&problem, &starts, &mut standings);
+        let start = starts.first().and_then(|start| start.first()).copied().unwrap_or(given);
+        Self { record: *record, free, given, start, used: used(&standings) }
+    }
+
+    /// What varies, in the order of the arguments.
+    #[must_use]
+    pub fn parameters(&self) -> &[Parameter] {
+        &self.free
+    }
+
+    /// Values to start from, by the data.
+    #[must_use]
+    pub fn start(&self) -> Vec<f64> {
+        self.free.iter().map(|parameter| self.start[parameter.place()]).collect()
+    }
+
+    /// How many residuals.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.used.iter().filter(|used| **used).count()
+    }
+
+    /// Place of each residual's sample in the record.
+    pub fn samples(&self) -> impl Iterator<Item = usize> {
+        self.used.iter().enumerate().filter(|(_, used)| **used).map(|(place, _)| place)
+    }
+
+    /// The residuals, N. Values past the parameters are not looked at, missing ones are the cable's own.
+    #[must_use]
+    pub fn residuals(&self, values: &[f64]) -> Vec<f64> {
+        let mut residuals = Vec::with_capacity(self.count());
+        self.with_problem(|problem| {
+            let values = [with(&self.given, &self.free, values.iter().copied())];
+            problem.residuals(&values, |_, of_sample| residuals.extend(of_sample));
+        });
+        residuals
+    }
+
+    /// Their derivatives, row by row: N per unit of each parameter.
+    #[must_use]
+    pub fn jacobian(&self, values: &[f64]) -> Vec<f64> {
+        let mut rows = Vec::with_capacity(self.count() * self.free.len());
+        self.with_problem(|problem| {
+            let values = [with(&self.given, &self.free, values.iter().copied())];
+            problem.rows(&values, |row| rows.extend(row.iter().take(self.free.len())));
+        });
+        rows
+    }
+
+    fn with_problem(&self, run: impl FnOnce(&Problem<'_>)) {
+        let stop = AtomicBool::new(false);
+        run(&Problem {
+            members: vec![Member { record: self.record, free: self.free.clone() }],
+            comparison: Comparison::Forces,
+            loss: Loss::Squares,
+            used: self.used.clone(),
+            stop: &stop,
+        });
+    }
+}

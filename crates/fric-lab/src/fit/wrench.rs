@@ -1,0 +1,132 @@
+//! Identification of all cables at once from the wrench on the platform, without a force sensor there.
+//!
+//! With the outside wrench `w` known, `A^T f(p) + w = 0` (\[P\] 3) holds for the true parameters: six equations a sample for
+//! the parameters of all cables. Neither force sensors at the platform nor a change of the robot are needed.
+//!
+//! **What it cannot see.** Forces that hold each other in balance (`A^T f = 0`: inner tension) change no wrench. A robot of
+//! m cables has m − 6 such combinations in each pose; over a run through the workspace they turn, so that what friction
+//! does to a cable still shows. A constant offset does not turn enough: ε of the cables is seen in combinations only, and
+//! is held where it is not determined.
+//!
+//! The six deviations are weighed by the inverse of their covariance, found from the first fit; the standard errors do not
+//! rely on it.
+
+use fric_core::parameters::Values;
+use nalgebra::{Matrix6, Vector6};
+
+use super::cables::{cable_fit, leave_out_warm_up, used};
+use super::problem::{Comparison, Loss, Member, Problem};
+use super::record::{CableRecord, Measurements};
+use super::report::{CableFit, WrenchFit};
+use super::selection::{self, Standing};
+use super::solve::solve;
+use super::{FitOptions, Progress, start, weight};
+
+/// Fits all cables to the outside wrench. Only for a robot of which every cable has an attachment, and for
+/// [`Measurements`] with [`Reference::Wrench`](super::Reference::Wrench).
+#[must_use]
+pub fn fit_wrench(measurements: &Measurements<'_>, options: &FitOptions, progress: &Progress) -> WrenchFit {
+    let records: Vec<CableRecord<'_>> = measurements.cables().collect();
+    let given: Vec<Values> = records.iter().map(|record| record.params.values()).collect();
+    let platform = measurements.platform();
+    let measured = platform.wrenches.iter().flatten().next().is_some();
+    let outside = outside_wrenches(measurements, measured);
+    let has_wrench = |place: usize| outside.get(place).is_some_and(|wrench| wrench.iter().all(|part| part.is_finite()));
+    let reaches = |place: usize| {
+        let mut columns = platform.structure.iter().skip(place * records.len()).take(records.len());
+        columns.all(|column| column.x.is_finite())
+    };
+    let mut of_cables: Vec<Vec<Standing>> = records
+        .iter()
+        .map(|record| selection::first_look(record, |place, _| has_wrench(place) && reaches(place)))
+        .collect();
+    progress.begin(2);
+    let mut problem = Problem {
+        members: all_of(&records, options),
+        comparison: Comparison::Wrench {
+            structure: &platform.structure,
+            outside: &outside,
+            whitening: Box::new(by_moment_arm(&platform.structure)),
+        },
+        loss: Loss::Squares,
+        used: used(&together(&of_cables)),
+        stop: progress.stop_flag(),
+    };
+    let cycle_s = measurements.robot().cycle_s();
+    let starts = start::starts(&problem, &given, cycle_s);
+    for standings in &mut of_cables {
+        leave_out_warm_up(&problem, &starts, standings);
+    }
+    let mut standings = together(&of_cables);
+    problem.used = used(&standings);
+    // Once to learn how the six deviations scatter, once with that.
+    let first = solve(&mut problem, starts, &given, cycle_s, options.weighing, &mut standings);
+    progress.finish_one();
+    let scatter = scatter(&problem, &first.values);
+    if let (Comparison::Wrench { whitening, .. }, Some(turn)) = (&mut problem.comparison, scatter) {
+        **whitening = turn * **whitening;
+    }
+    problem.members = all_of(&records, options);
+    problem.loss = Loss::Squares;
+    let solution = solve(&mut problem, vec![first.values], &given, cycle_s, options.weighing, &mut standings);
+    progress.finish_one();
+    let cables = records.iter().zip(&given).enumerate();
+    let cables: Vec<CableFit> =
+        cables.map(|(index, (record, given))| cable_fit(record, given, &solution, index, &standings)).collect();
+    WrenchFit { cables, measured }
+}
+
+fn all_of<'a>(records: &[CableRecord<'a>], options: &FitOptions) -> Vec<Member<'a>> {
+    records.iter().map(|record| Member { record: *record, free: options.free(record.params) }).collect()
+}
+
+/// The outside wrench of each sample; NaN where there is none.
+fn outside_wrenches(measurements: &Measurements<'_>, measured: bool) -> Vec<Vector6<f64>> {
+    let platform = measurements.platform();
+    if measured {
+        let vector = |wrench: &Option<fric_core::Wrench>| {
+            wrench.as_ref().map_or_else(|| Vector6::repeat(f64::NAN), fric_core::Wrench::to_vector)
+        };
+        return platform.wrenches.iter().map(vector).collect();
+    }
+    let ends = measurements.starts().iter().skip(1).copied().chain([platform.poses.len()]);
+    let logs = measurements.starts().iter().zip(ends).filter_map(|(start, end)| platform.poses.get(*start..end));
+    logs.flat_map(|poses| weight::wrenches(measurements.robot(), poses)).collect()
+}
+
+/// Standing of each sample for all cables together: what is the matter with the first that it cannot be used for.
+fn together(of_cables: &[Vec<Standing>]) -> Vec<Standing> {
+    let count = of_cables.first().map_or(0, Vec::len);
+    let of_sample = |place: usize| {
+        let mut standings = of_cables.iter().filter_map(|standings| standings.get(place));
+        standings.find(|standing| **standing != Standing::Used).copied().unwrap_or(Standing::Used)
+    };
+    (0..count).map(of_sample).collect()
+}
+
+/// Brings torques to the scale of forces, by the mean moment arm.
+fn by_moment_arm(structure: &[Vector6<f64>]) -> Matrix6<f64> {
+    let all_m = structure.iter().map(|column| column.fixed_rows::<3>(3).norm()).filter(|arm_m| arm_m.is_finite());
+    let (sum_m, count) = all_m.fold((0.0, 0.0), |(sum, count), arm_m| (sum + arm_m, count + 1.0));
+    // Cables that all meet in the platform's origin exert no torque: there is nothing to scale.
+    let arm_m = if sum_m > 0.0 { sum_m / count } else { 1.0 };
+    Matrix6::from_diagonal(&Vector6::new(1.0, 1.0, 1.0, 1.0 / arm_m, 1.0 / arm_m, 1.0 / arm_m))
+}
+
+/// What turns the deviations at `values` into independent ones of variance 1; `None` where they span fewer than six
+/// directions.
+fn scatter(problem: &Problem<'_>, values: &[Values]) -> Option<Matrix6<f64>> {
+    let mut squares = Matrix6::zeros();
+    let mut count = 0.0;
+    problem.residuals(values, |_, residuals| {
+        if residuals.len() == 6 {
+            let deviation = Vector6::from_row_slice(residuals);
+            squares += deviation * deviation.transpose();
+            count += 1.0;
+        }
+    });
+    let covariance = squares / count;
+    let factor = covariance.cholesky()?.l();
+    let least = factor.diagonal().min() / factor.diagonal().max();
+    if least > 1e-6 { factor.try_inverse() } else { None }
+}
