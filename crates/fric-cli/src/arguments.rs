@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::builder::{PathBufValueParser, TypedValueParser};
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 
 /// Friction compensation for cable-driven robots: replay logs, look into them, simulate them.
 #[derive(Debug, Parser)]
@@ -18,6 +18,10 @@ pub enum Command {
     /// Run the compensator over a log as the control loop would, and show the error before and after
     #[command(after_help = "Example:\n  fric-cli replay examples/mini-ipanema.mcap -o compensated.mcap")]
     Replay(ReplayArguments),
+    /// Identify the friction parameters from the log of an identification run
+    #[command(after_help = "Example:\n  fric-cli fit examples/mini-ipanema.mcap -o fitted.toml\n  \
+                      fric-cli fit run.mcap --model robot.toml --reference wrench -o fitted.toml")]
+    Fit(FitArguments),
     /// Show what is in a log, what each signal maps to, and what is missing for which step
     #[command(after_help = "Example:\n  fric-cli info examples/mini-ipanema.mcap")]
     Info(InfoArguments),
@@ -50,6 +54,36 @@ pub struct ReplayArguments {
     pub report: Option<PathBuf>,
     #[command(flatten)]
     pub result: ResultArguments,
+}
+
+#[derive(Debug, Args)]
+pub struct FitArguments {
+    #[command(flatten)]
+    pub log: LogArguments,
+    /// Write the robot file with the identified values to this file
+    #[arg(short, long, value_name = "FITTED.toml", required = true)]
+    pub output: PathBuf,
+    /// What to compare the model with
+    #[arg(long, value_name = "WHAT", default_value = "forces")]
+    pub reference: ReferenceName,
+    /// Identify these parameters only, such as `mu,sigma_n_per_m,stribeck.ratio` [default: those of `friction`, and of
+    /// the effects that the robot file has]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub parameters: Option<Vec<String>>,
+    /// Weigh deviations that are far out less (Huber's loss) instead of leaving out what cannot be a measurement
+    #[arg(long)]
+    pub huber: bool,
+    #[command(flatten)]
+    pub result: ResultArguments,
+}
+
+/// What a fit compares the model with.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum ReferenceName {
+    /// Cable forces measured at the platform, each cable by itself
+    Forces,
+    /// The outside wrench on the platform, or without one the platform's mass; all cables at once, no sensor there
+    Wrench,
 }
 
 #[derive(Debug, Args)]

@@ -3,6 +3,7 @@
 mod arguments;
 mod commands;
 mod failure;
+mod identification;
 mod interrupt;
 mod model;
 mod output;
@@ -21,6 +22,7 @@ fn main() -> ExitCode {
     let arguments = Arguments::parse();
     interrupt::listen();
     let result = match &arguments.command {
+        Command::Fit(arguments) => commands::fit::run(arguments),
         Command::Replay(arguments) => commands::replay::run(arguments),
         Command::Info(arguments) => commands::info::run(arguments),
         Command::Simulate(arguments) => commands::simulate::run(arguments),

@@ -89,11 +89,11 @@ fn print_to(mut stream: impl Write, text: &str) -> Outcome {
 }
 
 /// A table with a header; all columns but the first `left` are aligned right.
-pub fn table<const COLUMNS: usize>(header: [&str; COLUMNS], left: usize, rows: &[[String; COLUMNS]]) -> String {
+pub fn table(header: &[&str], left: usize, rows: &[impl AsRef<[String]>]) -> String {
     let mut table = Table::new();
     table.load_style(presets::NOTHING).set_header(header);
     for row in rows {
-        table.add_row(row);
+        table.add_row(row.as_ref());
     }
     for column in table.column_iter_mut().skip(left) {
         column.set_cell_alignment(CellAlignment::Right);

@@ -15,6 +15,11 @@ pub fn cycles(total: u64) -> ProgressBar {
     bar(total, "{bar:40} {human_pos}/{human_len} cycles {eta}")
 }
 
+/// A bar of steps, whose number is not known yet.
+pub fn steps() -> ProgressBar {
+    bar(0, "{bar:40} {pos}/{len} fitted {elapsed}")
+}
+
 fn bar(total: u64, template: &str) -> ProgressBar {
     let bar = ProgressBar::new(total);
     if let Ok(style) = ProgressStyle::with_template(template) {

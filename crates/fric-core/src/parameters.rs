@@ -20,6 +20,8 @@ pub struct ParameterRow {
     pub min: f64,
     /// Greatest value.
     pub max: f64,
+    /// What a log has to hold for it to be identified.
+    pub excitation: &'static str,
 }
 
 /// Stands for "no presliding": motion of a picometre reverses any friction.
@@ -29,10 +31,38 @@ pub(crate) const GREATEST_MU: f64 = 0.9;
 
 /// Parameters of the robot file's `friction`, the vector p of \[P\] 18.
 pub const FRICTION: [ParameterRow; FRICTION_COUNT] = [
-    ParameterRow { key: "mu", unit: "1", neutral: 0.0, min: 0.0, max: GREATEST_MU },
-    ParameterRow { key: "sigma_n_per_m", unit: "N/m", neutral: NO_PRESLIDING_N_PER_M, min: 1e-3, max: 1e12 },
-    ParameterRow { key: "viscous_n_s_per_m", unit: "N s/m", neutral: 0.0, min: 0.0, max: 1e6 },
-    ParameterRow { key: "offset_n", unit: "N", neutral: 0.0, min: -1e6, max: 1e6 },
+    ParameterRow {
+        key: "mu",
+        unit: "1",
+        neutral: 0.0,
+        min: 0.0,
+        max: GREATEST_MU,
+        excitation: "motion of the cable in both directions, each time much further than its presliding distance",
+    },
+    ParameterRow {
+        key: "sigma_n_per_m",
+        unit: "N/m",
+        neutral: NO_PRESLIDING_N_PER_M,
+        min: 1e-3,
+        max: 1e12,
+        excitation: "small movements that reverse: steps of 0.25 … 10 mm there and back, with breaks",
+    },
+    ParameterRow {
+        key: "viscous_n_s_per_m",
+        unit: "N s/m",
+        neutral: 0.0,
+        min: 0.0,
+        max: 1e6,
+        excitation: "fast motion beside slow: strokes at several speeds up to the highest",
+    },
+    ParameterRow {
+        key: "offset_n",
+        unit: "N",
+        neutral: 0.0,
+        min: -1e6,
+        max: 1e6,
+        excitation: "a force sensor at the platform, or poses throughout the workspace",
+    },
 ];
 /// How many there are.
 pub const FRICTION_COUNT: usize = 4;

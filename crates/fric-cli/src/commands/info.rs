@@ -295,7 +295,7 @@ fn describe(result: &InfoResult, model: Option<&Model>, attachments: &[String]) 
     let header =
         ["topic", "schema", "encoding", "messages", "rate [Hz]", "jitter [ms]", "longest gap [ms]", "time [s]"];
     // Writing to a String cannot fail, here and below.
-    let mut text = table(header, 3, &rows);
+    let mut text = table(&header, 3, &rows);
     if !attachments.is_empty() {
         let _ = writeln!(text, "\nattached: {}", attachments.join(", "));
     }
@@ -311,7 +311,7 @@ fn describe(result: &InfoResult, model: Option<&Model>, attachments: &[String]) 
             [signal.signal.to_owned(), signal.path.clone(), signal.messages.to_string(), signal.remarks.join(", ")]
         })
         .collect();
-    text += &table(["signal", "path", "messages used", ""], 4, &rows);
+    text += &table(&["signal", "path", "messages used", ""], 4, &rows);
     text += "\n";
     let rows: Vec<_> = result
         .steps
@@ -321,6 +321,6 @@ fn describe(result: &InfoResult, model: Option<&Model>, attachments: &[String]) 
             [step.step.to_owned(), possible.to_owned(), step.reasons.join("; ")]
         })
         .collect();
-    text += &table(["the log allows", "", ""], 3, &rows);
+    text += &table(&["the log allows", "", ""], 3, &rows);
     text
 }

@@ -1,5 +1,6 @@
 //! One file per command.
 
+pub mod fit;
 pub mod info;
 pub mod replay;
 pub mod simulate;

@@ -2,7 +2,7 @@
 
 use fric_core::robot::file::CableTable;
 use fric_core::{CableParams, CableStatus, Sample};
-use fric_lab::replay::{CableErrors, Deviation, Replay, ReplayedCycle};
+use fric_lab::replay::{CableErrors, Replay, ReplayedCycle};
 use fric_log::output::OutputFile;
 use fric_log::recording::Recording;
 use fric_log::signals::{Role, SignalReader};
@@ -15,7 +15,7 @@ use crate::model::{self, Model};
 use crate::output::{self, JsonTarget, table};
 use crate::progress::{self, STRIDE};
 use crate::report::{self, Series};
-use crate::result::{CableResult, CycleResult, ForceError, ReplayResult, WrenchError, WrenchResult};
+use crate::result::{CableResult, CycleResult, ReplayResult, WrenchError, WrenchResult, force_error};
 use crate::{interrupt, warnings};
 
 /// Runs the command.
@@ -79,14 +79,12 @@ pub fn run(arguments: &ReplayArguments) -> Outcome {
 }
 
 fn summarize(model: &Model, names: &[&str], replay: &Replay, durations: &Histogram<u64>) -> ReplayResult {
-    let error =
-        |deviation: &Deviation| Some(ForceError { rms_n: deviation.rms()?, mae_n: deviation.mean_magnitude()? });
     let cable = |(name, errors): (&&str, &CableErrors)| CableResult {
         name: (*name).to_owned(),
         samples: replay.cycle_count(),
         flagged: errors.flagged_count,
-        before: error(&errors.before_n),
-        after: error(&errors.after_n),
+        before: force_error(&errors.before_n),
+        after: force_error(&errors.after_n),
     };
     let wrench_error = |(force_rms_n, torque_rms_nm)| WrenchError { force_rms_n, torque_rms_nm };
     let (before, after) = replay.wrench();
@@ -131,14 +129,14 @@ fn describe(result: &ReplayResult) -> String {
     let header =
         ["cable", "samples", "flagged", "rms before [N]", "after [N]", "left", "mean |error| before [N]", "after [N]"];
     let mut text = format!("{}: force at the platform against the reference\n\n", result.robot);
-    text += &table(header, 1, &rows);
+    text += &table(&header, 1, &rows);
     if let Some(WrenchResult { before, after }) = &result.wrench {
         let rows = [
             ["force".to_owned(), format!("{:.4} N", before.force_rms_n), format!("{:.4} N", after.force_rms_n)],
             ["torque".to_owned(), format!("{:.4} Nm", before.torque_rms_nm), format!("{:.4} Nm", after.torque_rms_nm)],
         ];
         text += "\n";
-        text += &table(["wrench", "rms before", "after"], 1, &rows);
+        text += &table(&["wrench", "rms before", "after"], 1, &rows);
     }
     let CycleResult { count, median_ns, p999_ns, max_ns } = result.cycle;
     text + &format!(

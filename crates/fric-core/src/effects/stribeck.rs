@@ -9,14 +9,23 @@ use super::{EffectRow, first_place};
 use crate::parameters::ParameterRow;
 use crate::scalar::Scalar;
 
+const EXCITATION: &str = "long movements at several speeds, creeping ones too, in both directions";
+
 /// The catalogue row.
 pub const ROW: EffectRow = EffectRow {
     kind: "stribeck",
     cause: "at low speed the lubricant film of a bearing has not formed yet, so friction is higher near standstill",
     remedy: "check the grease of the pulley bearings: too little of it, or too stiff for the temperature",
     parameters: &[
-        ParameterRow { key: "ratio", unit: "1", neutral: 0.0, min: -0.9, max: 5.0 },
-        ParameterRow { key: "velocity_m_per_s", unit: "m/s", neutral: 0.02, min: 1e-4, max: 10.0 },
+        ParameterRow { key: "ratio", unit: "1", neutral: 0.0, min: -0.9, max: 5.0, excitation: EXCITATION },
+        ParameterRow {
+            key: "velocity_m_per_s",
+            unit: "m/s",
+            neutral: 0.02,
+            min: 1e-4,
+            max: 10.0,
+            excitation: EXCITATION,
+        },
     ],
 };
 

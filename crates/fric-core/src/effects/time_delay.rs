@@ -16,7 +16,14 @@ pub const ROW: EffectRow = EffectRow {
     kind: "time_delay",
     cause: "the winch motion is known earlier than the cable moves: set points, or a longer way of the force signal",
     remedy: "keep the delay compensated, or bring both signals to the same time: the set points delayed by the drive's lag",
-    parameters: &[ParameterRow { key: "delay_s", unit: "s", neutral: 0.0, min: 0.0, max: 1.0 }],
+    parameters: &[ParameterRow {
+        key: "delay_s",
+        unit: "s",
+        neutral: 0.0,
+        min: 0.0,
+        max: 1.0,
+        excitation: "quick reversals: strokes there and back without breaks",
+    }],
 };
 
 /// Place of `delay_s` in [`Values`](crate::parameters::Values).

@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 use super::optimizer::Termination;
 use super::selection::SampleCounts;
 use super::vector::Parameter;
-use crate::replay::Deviation;
+use crate::replay::{Deviation, WrenchErrors};
 
 /// Errors of a cable's force at the platform.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -47,6 +47,10 @@ pub struct WrenchFit {
     pub cables: Vec<CableFit>,
     /// Whether the wrench was measured; otherwise it is that of the platform's mass.
     pub measured: bool,
+    /// Wrench by the frictionless forces less the outside wrench, over every sample where that is known.
+    pub before: WrenchErrors,
+    /// The same by the compensated forces.
+    pub after: WrenchErrors,
 }
 
 impl CableFit {

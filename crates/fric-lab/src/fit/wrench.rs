@@ -11,6 +11,7 @@
 //! The six deviations are weighed by the inverse of their covariance, found from the first fit; the standard errors do not
 //! rely on it.
 
+use fric_core::Wrench;
 use fric_core::parameters::Values;
 use nalgebra::{Matrix6, Vector6};
 
@@ -20,7 +21,8 @@ use super::record::{CableRecord, Measurements};
 use super::report::{CableFit, WrenchFit};
 use super::selection::{self, Standing};
 use super::solve::solve;
-use super::{FitOptions, Progress, start, weight};
+use super::{FitOptions, Progress, pass, start, weight};
+use crate::replay::WrenchErrors;
 
 /// Fits all cables to the outside wrench. Only for a robot of which every cable has an attachment, and for
 /// [`Measurements`] with [`Reference::Wrench`](super::Reference::Wrench).
@@ -73,7 +75,35 @@ pub fn fit_wrench(measurements: &Measurements<'_>, options: &FitOptions, progres
     let cables = records.iter().zip(&given).enumerate();
     let cables: Vec<CableFit> =
         cables.map(|(index, (record, given))| cable_fit(record, given, &solution, index, &standings)).collect();
-    WrenchFit { cables, measured }
+    let [before, after] = wrench_errors(&records, &cables, &platform.structure, &outside);
+    WrenchFit { cables, measured, before, after }
+}
+
+/// Deviation of the wrench by the cable forces from the one outside, with frictionless and with compensated forces.
+fn wrench_errors(
+    records: &[CableRecord<'_>],
+    cables: &[CableFit],
+    structure: &[Vector6<f64>],
+    outside: &[Vector6<f64>],
+) -> [WrenchErrors; 2] {
+    let mut sums = [outside.to_vec(), outside.to_vec()];
+    for (index, (record, cable)) in records.iter().zip(cables).enumerate() {
+        pass::run_plain(record, &cable.values, |place, _, forces| {
+            let Some(column) = structure.get(place * records.len() + index) else { return };
+            for (sums, force_n) in sums.iter_mut().zip([forces.frictionless_n, forces.platform_force_n]) {
+                if let Some(sum) = sums.get_mut(place) {
+                    *sum += column * force_n;
+                }
+            }
+        });
+    }
+    sums.map(|sums| {
+        let mut errors = WrenchErrors::default();
+        for sum in &sums {
+            errors.add(&Wrench { force_n: sum.fixed_rows::<3>(0).into(), torque_nm: sum.fixed_rows::<3>(3).into() });
+        }
+        errors
+    })
 }
 
 fn all_of<'a>(records: &[CableRecord<'a>], options: &FitOptions) -> Vec<Member<'a>> {
@@ -84,9 +114,8 @@ fn all_of<'a>(records: &[CableRecord<'a>], options: &FitOptions) -> Vec<Member<'
 fn outside_wrenches(measurements: &Measurements<'_>, measured: bool) -> Vec<Vector6<f64>> {
     let platform = measurements.platform();
     if measured {
-        let vector = |wrench: &Option<fric_core::Wrench>| {
-            wrench.as_ref().map_or_else(|| Vector6::repeat(f64::NAN), fric_core::Wrench::to_vector)
-        };
+        let vector =
+            |wrench: &Option<Wrench>| wrench.as_ref().map_or_else(|| Vector6::repeat(f64::NAN), Wrench::to_vector);
         return platform.wrenches.iter().map(vector).collect();
     }
     let ends = measurements.starts().iter().skip(1).copied().chain([platform.poses.len()]);

@@ -36,7 +36,7 @@ pub struct WrenchErrors {
 }
 
 impl WrenchErrors {
-    fn add(&mut self, deviation: &Wrench) {
+    pub(crate) fn add(&mut self, deviation: &Wrench) {
         let (force, torque) = (deviation.force_n.norm_squared(), deviation.torque_nm.norm_squared());
         if force.is_finite() && torque.is_finite() {
             self.force_squares += force;
