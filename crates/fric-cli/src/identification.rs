@@ -140,7 +140,7 @@ fn error_table(result: &FitResult) -> String {
     let row = |cable: &FitCableResult| {
         let mut row = vec![cable.name.clone()];
         row.extend(fitted.iter().map(|parameter| {
-            value_of(&cable.standard_errors, parameter.place()).map_or_else(|| "–".to_owned(), |error| plain(error))
+            value_of(&cable.standard_errors, parameter.place()).map_or_else(|| "–".to_owned(), plain)
         }));
         let LeftOut { flagged, without_reference, warm_up, outliers } = cable.left_out;
         let reasons = [
