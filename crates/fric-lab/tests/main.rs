@@ -1,4 +1,5 @@
 //! Public behaviour of `fric-lab`.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
+mod fit;
 mod simulate;

@@ -1,6 +1,6 @@
 //! Identification of each cable by itself, from the force measured at its platform end (\[P\] 18).
 
-use fric_core::parameters::Values;
+use fric_core::parameters::{MU, SIGMA, Values};
 use rayon::prelude::*;
 
 use super::problem::{Comparison, Loss, Member, Problem};
@@ -10,6 +10,9 @@ use super::selection::{self, Standing};
 use super::solve::{Solution, solve};
 use super::vector::Parameter;
 use super::{FitOptions, Progress, pass, start};
+
+/// A warm-up that is wrong by more than this share of the samples, in per cent, is worth another fit.
+const MISJUDGED_PERCENT: usize = 1;
 
 /// Fits every cable that has a reference.
 #[must_use]
@@ -26,19 +29,48 @@ pub fn fit_cables(measurements: &Measurements<'_>, options: &FitOptions, progres
 
 fn fit_cable(record: &CableRecord<'_>, options: &FitOptions, progress: &Progress) -> CableFit {
     let given = record.params.values();
-    let mut standings = prepared(record);
-    let mut problem = Problem {
+    let all = prepared(record);
+    let problem = |standings: &[Standing]| Problem {
         members: vec![Member { record: *record, free: options.free(record.params) }],
         comparison: Comparison::Forces,
         loss: Loss::Squares,
-        used: used(&standings),
+        used: used(standings),
         stop: progress.stop_flag(),
     };
-    let starts = start::starts(&problem, &[given], record.cycle_s);
-    leave_out_warm_up(&problem, &starts, &mut standings);
-    problem.used = used(&standings);
-    let solution = solve(&mut problem, starts, &[given], record.cycle_s, options.weighing, &mut standings);
+    let starts = start::starts(&problem(&all), &[given], record.cycle_s);
+    let solve_without_warm_up = |starts: Vec<Vec<Values>>| {
+        let mut standings = all.clone();
+        leave_out_warm_up(&problem(&all), &starts, &mut standings);
+        let solution =
+            solve(&mut problem(&standings), starts, &[given], record.cycle_s, options.weighing, &mut standings);
+        (solution, standings)
+    };
+    let (mut solution, mut standings) = solve_without_warm_up(starts);
+    if warm_up_was_misjudged(record, &solution, &all, &standings) {
+        let evaluation_count = solution.evaluation_count;
+        (solution, standings) = solve_without_warm_up(vec![solution.values]);
+        solution.evaluation_count += evaluation_count;
+    }
     cable_fit(record, &given, &solution, 0, &standings)
+}
+
+/// Whether the fitted values, as far as they can be trusted, give another warm-up than the start did.
+fn warm_up_was_misjudged(
+    record: &CableRecord<'_>,
+    solution: &Solution,
+    all: &[Standing],
+    standings: &[Standing],
+) -> bool {
+    let determines_memory = [MU, SIGMA]
+        .into_iter()
+        .all(|place| !solution.undetermined.iter().any(|unknown| unknown.parameter.place() == place));
+    let Some(values) = solution.values.first().filter(|_| determines_memory && !solution.unknowns.is_empty()) else {
+        return false;
+    };
+    let mut renewed = all.to_vec();
+    selection::leave_out_warm_up(record, values, &mut renewed);
+    let [before, after] = [standings, &renewed].map(|standings| selection::count(standings).warm_up);
+    before.abs_diff(after) * 100 > MISJUDGED_PERCENT * all.len()
 }
 
 /// Standing of each sample before anything is known about the friction.

@@ -1,13 +1,13 @@
 //! From a problem and a start to values with their covariance: search, outliers, what is not determined.
 
-use fric_core::parameters::Values;
+use fric_core::parameters::{OFFSET, Values};
 use nalgebra::DMatrix;
 
 use super::determined::Yardstick;
 use super::gram::{Gram, Triangle};
 use super::optimizer::{self, Minimum, Termination};
 use super::pass;
-use super::problem::{Loss, Member, Problem};
+use super::problem::{Comparison, Loss, Member, Problem};
 use super::selection::Standing;
 use super::vector::{Coordinate, Parameter, with};
 use crate::replay::Deviation;
@@ -20,6 +20,10 @@ const MOST_OUTLIERS_RATIO: f64 = 0.02;
 const HUBER_RATIO: f64 = 1.345;
 /// Standard deviation of a normal distribution per median of the magnitude.
 const DEVIATION_PER_MEDIAN: f64 = 1.482_602_218_505_602;
+/// Vaguenesses within this ratio are alike: those of parameters that only together have an effect.
+const COMPARABLE_RATIO: f64 = 0.01;
+/// A given value that raises the sum of squares by more than this share contradicts the samples.
+const CONTRADICTION_RATIO: f64 = 0.01;
 /// Rounds of search and new look at the deviations.
 const ROUNDS: usize = 3;
 
@@ -103,39 +107,64 @@ impl Solution {
         (self.values, self.termination) = (found, minimum.termination);
     }
 
-    /// Holds one parameter after the other that the samples do not determine, the vaguest first.
+    /// Holds one parameter after the other that the samples do not determine, the vaguest first. One whose given value the
+    /// samples contradict stays as found: they know that much.
     fn hold_undetermined(&mut self, problem: &mut Problem<'_>, given: &[Values], cycle_s: f64) {
+        let mut kept: Vec<Unknown> = Vec::new();
         loop {
             self.unknowns = unknowns(problem);
-            self.covariance = covariance(problem, &self.values);
+            let leverages;
+            (self.covariance, leverages) = covariance(problem, &self.values);
             let sticks = yardsticks(problem, &self.values);
             let vagueness = |(place, unknown): (usize, &Unknown)| {
                 let value = self.values.get(unknown.member)?[unknown.parameter.place()];
                 let standard_error = self.covariance[(place, place)].sqrt();
-                Some((sticks.get(unknown.member)?.vagueness(&unknown.parameter, value, standard_error), *unknown))
+                let leverage = leverages.get(place).copied().unwrap_or(0.0);
+                let stick = sticks.get(unknown.member)?;
+                Some((stick.vagueness(&unknown.parameter, value, standard_error, leverage), *unknown))
             };
-            let all = self.unknowns.iter().enumerate().filter_map(vagueness);
-            let vaguest = all.max_by(|(one, _), (other, _)| one.total_cmp(other));
+            let open = self.unknowns.iter().enumerate().filter(|(_, unknown)| !kept.contains(unknown));
+            let all: Vec<(f64, Unknown)> = open.filter_map(vagueness).collect();
+            let most = all.iter().fold(1.0, |most: f64, (vagueness, _)| most.max(*vagueness));
+            let is_offset = |unknown: &Unknown| unknown.parameter.place() == OFFSET;
+            // Of those that are about as vague the offset comes last.
+            let vague = all.iter().filter(|(vagueness, _)| *vagueness > 1.0 && *vagueness >= COMPARABLE_RATIO * most);
+            let vaguest = vague.max_by(|(one, of_one), (other, of_other)| {
+                is_offset(of_other).cmp(&is_offset(of_one)).then(one.total_cmp(other))
+            });
             let stopped = self.termination == Termination::Stopped;
-            let Some((_, worst)) = vaguest.filter(|(vagueness, _)| *vagueness > 1.0 && !stopped) else { return };
+            let Some((_, worst)) = vaguest.filter(|_| !stopped).copied() else { return };
+            let (members, found, termination) = (problem.members.clone(), self.values.clone(), self.termination);
+            let bound = squares(problem, &self.values) * (1.0 + CONTRADICTION_RATIO);
             hold(problem, worst, &mut self.values, given);
-            self.undetermined.push(worst);
             self.search_on(problem, cycle_s);
+            if squares(problem, &self.values) > bound {
+                (problem.members, self.values, self.termination) = (members, found, termination);
+                kept.push(worst);
+            } else {
+                self.undetermined.push(worst);
+            }
         }
     }
+}
+
+/// Sum of squares at some values; NaN when stopped.
+fn squares(problem: &Problem<'_>, values: &[Values]) -> f64 {
+    problem.gram(values).map_or(f64::NAN, |gram| gram.normal_equations().2)
 }
 
 /// What matters for each cable of a problem.
 fn yardsticks(problem: &Problem<'_>, values: &[Values]) -> Vec<Yardstick> {
     let of = |(member, values): (&Member<'_>, &Values)| {
-        let mut friction = Deviation::default();
+        let (mut friction, mut tension) = (Deviation::default(), Deviation::default());
         pass::run_plain(&member.record, values, |_, row, forces| {
             if row.is_sound() {
                 friction.add(forces.friction_n);
+                tension.add(forces.frictionless_n);
             }
         });
-        let pulley_count = member.record.params.pulley_count();
-        Yardstick { friction_n: friction.rms().unwrap_or(0.0), pulley_count }
+        let [friction_n, tension_n] = [friction, tension].map(|force| force.rms().unwrap_or(0.0));
+        Yardstick::new(friction_n, tension_n, member.record.params.pulley_count())
     };
     problem.members.iter().zip(values).map(of).collect()
 }
@@ -197,10 +226,11 @@ fn search(problem: &Problem<'_>, start: &[Values], cycle_s: f64) -> (Vec<Values>
     (values_at(&minimum.coordinates).0, minimum)
 }
 
-/// Covariance of what a problem varies; infinite where the samples say nothing.
-fn covariance(problem: &Problem<'_>, values: &[Values]) -> DMatrix<f64> {
+/// Covariance of what a problem varies, infinite where the samples say nothing; and by how much each moves for residuals of
+/// 1 N in every sample, at worst.
+fn covariance(problem: &Problem<'_>, values: &[Values]) -> (DMatrix<f64>, Vec<f64>) {
     let count = problem.parameter_count();
-    let unknown = || DMatrix::from_diagonal_element(count, count, f64::INFINITY);
+    let unknown = || (DMatrix::from_diagonal_element(count, count, f64::INFINITY), vec![f64::INFINITY; count]);
     let Some((gram, scores)) = problem.gram_and_scores(values) else { return unknown() };
     let (matrix, ..) = gram.normal_equations();
     let scale: Vec<f64> = matrix.diagonal().iter().map(|square| 1.0 / square.max(f64::MIN_POSITIVE).sqrt()).collect();
@@ -214,19 +244,29 @@ fn covariance(problem: &Problem<'_>, values: &[Values]) -> DMatrix<f64> {
     let inverse = DMatrix::from_fn(count, count, |row, column| inverse[(row, column)] * scale[row] * scale[column]);
     let covariance = scores.covariance(&inverse);
     let silent = |place: usize| matrix[(place, place)] <= 0.0;
-    DMatrix::from_fn(
-        count,
-        count,
-        |row, column| {
-            if row == column && silent(row) { f64::INFINITY } else { covariance[(row, column)] }
-        },
-    )
+    let finite = |row, column| if row == column && silent(row) { f64::INFINITY } else { covariance[(row, column)] };
+    // Residuals of a wrench are no forces of a cable.
+    #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
+    let samples = match problem.comparison {
+        Comparison::Forces => problem.used.iter().filter(|used| **used).count() as f64,
+        Comparison::Wrench { .. } => 0.0,
+    };
+    let leverages = inverse.diagonal().iter().map(|variance| (samples * variance).sqrt()).collect();
+    (DMatrix::from_fn(count, count, finite), leverages)
 }
 
 /// Looks at the deviations anew: leaves out what cannot be a measurement, or sets Huber's bound. Whether something has
 /// changed.
 fn look_again(problem: &mut Problem<'_>, values: &[Values], weighing: Weighing, standings: &mut [Standing]) -> bool {
     problem.loss = Loss::Squares;
+    // What was left out before is judged again: a worse fit may have been at fault.
+    let mut before = Vec::new();
+    for (place, (standing, used)) in standings.iter_mut().zip(&mut problem.used).enumerate() {
+        if *standing == Standing::Outlier {
+            (*standing, *used) = (Standing::Used, true);
+            before.push(place);
+        }
+    }
     let mut deviations: Vec<(usize, f64)> = Vec::new();
     problem.residuals(values, |place, residuals| {
         let most = residuals.iter().fold(0.0, |most: f64, residual| most.max(residual.abs()));
@@ -239,28 +279,21 @@ fn look_again(problem: &mut Problem<'_>, values: &[Values], weighing: Weighing, 
     }
     let (_, median, _) = magnitudes.select_nth_unstable_by(middle, f64::total_cmp);
     let deviation = *median * DEVIATION_PER_MEDIAN;
-    match weighing {
-        Weighing::Huber => {
-            problem.loss = Loss::Huber(HUBER_RATIO * deviation);
-            true
-        }
-        Weighing::LeastSquares => {
-            let outliers: Vec<usize> = deviations
-                .iter()
-                .filter(|(_, far)| *far > OUTLIER_RATIO * deviation)
-                .map(|(place, _)| *place)
-                .collect();
-            #[expect(clippy::cast_precision_loss, reason = "counts of samples")]
-            let few = outliers.len() as f64 <= MOST_OUTLIERS_RATIO * deviations.len() as f64;
-            if outliers.is_empty() || !few {
-                return false;
-            }
-            for place in outliers {
-                if let (Some(used), Some(standing)) = (problem.used.get_mut(place), standings.get_mut(place)) {
-                    (*used, *standing) = (false, Standing::Outlier);
-                }
-            }
-            true
+    if weighing == Weighing::Huber {
+        problem.loss = Loss::Huber(HUBER_RATIO * deviation);
+        return true;
+    }
+    let far = deviations.iter().filter(|(_, far)| *far > OUTLIER_RATIO * deviation);
+    let mut outliers: Vec<usize> = far.map(|(place, _)| *place).collect();
+    #[expect(clippy::cast_precision_loss, reason = "counts of samples")]
+    let few = outliers.len() as f64 <= MOST_OUTLIERS_RATIO * deviations.len() as f64;
+    if !few {
+        outliers.clear();
+    }
+    for place in &outliers {
+        if let (Some(used), Some(standing)) = (problem.used.get_mut(*place), standings.get_mut(*place)) {
+            (*used, *standing) = (false, Standing::Outlier);
         }
     }
+    outliers != before
 }

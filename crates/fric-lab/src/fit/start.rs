@@ -16,8 +16,12 @@ use super::vector::{Coordinate, Parameter, with};
 const TYPICAL_MU: f64 = 0.02;
 /// Presliding distances that are tried, m: half an order of magnitude apart.
 const DISTANCES_M: [[f64; 4]; 2] = [[1e-5, 3e-5, 1e-4, 3e-4], [1e-3, 3e-3, 1e-2, 3e-2]];
+/// And these multiples of the best of them: an eighth of an order of magnitude apart.
+const CLOSER: [f64; 4] = [0.56, 0.75, 1.33, 1.78];
 /// So many per cent of the moving samples are too near to their last reversal to count as sliding.
 const NOT_SLIDING_PERCENT: usize = 60;
+/// A pulley's viscous friction at this speed is no more than the sensor force.
+const FAST_M_PER_S: f64 = 1.0;
 /// A valley whose sum of squares is above this multiple of the least is no start.
 const SHALLOW: f64 = 1.5;
 
@@ -35,30 +39,41 @@ pub fn starts(problem: &Problem<'_>, given: &[Values], cycle_s: f64) -> Vec<Vec<
         };
         problem.members.iter().zip(&sliding).map(sigma_of).collect()
     };
-    let candidates: Vec<(Vec<f64>, f64)> = DISTANCES_M
-        .iter()
-        .flat_map(|distances_m| {
-            let sigmas = distances_m.map(of_distance);
-            let losses = problem.losses_by_sigma(&sliding, &sigmas);
-            sigmas.into_iter().zip(losses)
-        })
-        .collect();
+    let tried = |distances_m: [f64; 4]| {
+        let sigmas = distances_m.map(of_distance);
+        let losses = problem.losses_by_sigma(&sliding, &sigmas);
+        sigmas.into_iter().zip(losses)
+    };
+    let candidates: Vec<(Vec<f64>, f64)> = DISTANCES_M.into_iter().flat_map(tried).collect();
     let loss = |place: usize| candidates.get(place).map_or(f64::INFINITY, |(_, loss)| *loss);
     let is_valley = |place: usize| {
         place.checked_sub(1).is_none_or(|left| loss(left) > loss(place)) && loss(place + 1) >= loss(place)
     };
-    let mut valleys: Vec<_> =
-        candidates.iter().enumerate().filter(|(place, _)| is_valley(*place)).map(|(_, candidate)| candidate).collect();
+    let distances_m = DISTANCES_M.into_iter().flatten();
+    let mut valleys: Vec<_> = candidates
+        .iter()
+        .zip(distances_m)
+        .enumerate()
+        .filter(|(place, _)| is_valley(*place))
+        .map(|(_, ((sigmas, loss), distance_m))| (sigmas.clone(), *loss, distance_m))
+        .collect();
     valleys.sort_by(|one, other| one.1.total_cmp(&other.1));
-    let least = valleys.first().map_or(f64::NAN, |(_, loss)| *loss);
-    let of_valley = |(sigmas, _): &(Vec<f64>, f64)| -> Vec<Values> {
+    if let Some((sigmas, loss, distance_m)) = valleys.first_mut() {
+        // The deepest once more and closer, for how long a cable remembers follows from it.
+        let closer = tried(CLOSER.map(|factor| factor * *distance_m)).filter(|(_, other)| *other < *loss);
+        if let Some(best) = closer.min_by(|(_, one), (_, other)| one.total_cmp(other)) {
+            (*sigmas, *loss) = best;
+        }
+    }
+    let least = valleys.first().map_or(f64::NAN, |(_, loss, _)| *loss);
+    let of_valley = |(sigmas, ..): (Vec<f64>, f64, f64)| -> Vec<Values> {
         let mut values = sliding.clone();
         for (values, sigma_n_per_m) in values.iter_mut().zip(sigmas) {
-            values[SIGMA] = *sigma_n_per_m;
+            values[SIGMA] = sigma_n_per_m;
         }
         values
     };
-    let starts: Vec<_> = valleys.into_iter().filter(|(_, loss)| *loss <= SHALLOW * least).map(of_valley).collect();
+    let starts: Vec<_> = valleys.into_iter().filter(|(_, loss, _)| *loss <= SHALLOW * least).map(of_valley).collect();
     if starts.is_empty() { vec![sliding] } else { starts }
 }
 
@@ -88,14 +103,32 @@ fn slide(problem: &Problem<'_>, given: &[Values], cycle_s: f64) -> Vec<Values> {
     for (used, sliding) in reduced.used.iter_mut().zip(&sliding) {
         *used &= sliding;
     }
-    let Some(gram) = reduced.gram(&nothing) else { return given.to_vec() };
-    let (matrix, gradient, _) = gram.normal_equations();
+    let mut slid = linear_step(&reduced, &nothing, cycle_s);
+    // Motion too slow for viscous friction to show gives it any size, and the rest what makes up for it.
+    let mut is_wild = false;
+    for (member, values) in reduced.members.iter_mut().zip(slid.iter().flatten()) {
+        let tension_n = mean(member.record.rows.iter().map(|row| row.signals.sensor_force_n.max(0.0)));
+        if values[VISCOUS] * FAST_M_PER_S > tension_n && varies(member, VISCOUS) {
+            member.free.retain(|parameter| parameter.place() != VISCOUS);
+            is_wild = true;
+        }
+    }
+    if is_wild {
+        slid = linear_step(&reduced, &nothing, cycle_s);
+    }
+    slid.unwrap_or(nothing)
+}
+
+/// One step of Gauss and Newton from `values`, into the parameters' ranges; `None` where it leads nowhere.
+fn linear_step(problem: &Problem<'_>, values: &[Values], cycle_s: f64) -> Option<Vec<Values>> {
+    let (matrix, gradient, _) = problem.gram(values)?.normal_equations();
     // A share of the diagonal keeps what the samples do not determine near nothing.
     let damped = &matrix + DMatrix::from_diagonal(&matrix.diagonal().map(|square| 1e-9 * square + f64::MIN_POSITIVE));
     let step = damped.cholesky().map(|factor| factor.solve(&gradient));
-    let Some(step) = step.filter(|step| step.iter().all(|part| part.is_finite())) else { return nothing };
+    let step = step.filter(|step| step.iter().all(|part| part.is_finite()))?;
     let mut parts = step.iter();
-    for (member, values) in reduced.members.iter().zip(&mut nothing) {
+    let mut stepped = values.to_vec();
+    for (member, values) in problem.members.iter().zip(&mut stepped) {
         for parameter in &member.free {
             let coordinate = Coordinate::of(parameter, cycle_s);
             let value = values[parameter.place()] - parts.next().copied().unwrap_or(0.0);
@@ -103,7 +136,7 @@ fn slide(problem: &Problem<'_>, given: &[Values], cycle_s: f64) -> Vec<Values> {
             values[parameter.place()] = coordinate.value_at(coordinate.place_of(value)).0;
         }
     }
-    nothing
+    Some(stepped)
 }
 
 /// Samples in which most cables are far from their last reversal.

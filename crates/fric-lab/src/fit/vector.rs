@@ -1,7 +1,9 @@
 //! Which parameters a fit varies, and the coordinates it varies them in.
 //!
 //! Ranges are kept by a change of coordinates, so that the optimiser itself knows no bounds: a positive quantity that may
-//! be of any size is varied by its logarithm, every other one `p ∈ [a, b]` by `u` with `p = a + (b − a)·sin²(u/2)`.
+//! be of any size is varied by its logarithm, one of both signs whose range nobody meets as it is, and every other one
+//! `p ∈ [a, b]` by `u` with `p = a + (b − a)·sin²(u/2)`. A coordinate is of the size of what can be known of it: the
+//! optimiser ends when steps are small beside the coordinates, each times its effect.
 
 use std::fmt;
 
@@ -76,11 +78,20 @@ impl Eq for Parameter {}
 pub struct Coordinate {
     min: f64,
     max: f64,
-    logarithmic: bool,
+    shape: Shape,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Shape {
+    Logarithmic,
+    Plain,
+    Bounded,
 }
 
 /// A range of more than this many is one of orders of magnitude.
 const WIDE_RATIO: f64 = 1e3;
+/// Bounds of both signs beyond this are never met, in the parameter's unit.
+const FAR: f64 = 1e3;
 /// Starts keep this share of a range's width away from its ends, where the coordinate has no slope.
 const MARGIN_RATIO: f64 = 1e-9;
 
@@ -91,27 +102,42 @@ impl Coordinate {
         #[expect(clippy::cast_precision_loss, reason = "a small constant")]
         let longest_s = (MAX_DELAY_CYCLES - 1) as f64 * cycle_s;
         let max = if parameter.place == DELAY { longest_s } else { max };
-        Self { min, max, logarithmic: min > 0.0 && max / min > WIDE_RATIO }
+        let shape = if min > 0.0 && max / min > WIDE_RATIO {
+            Shape::Logarithmic
+        } else if min < -FAR && max > FAR {
+            Shape::Plain
+        } else {
+            Shape::Bounded
+        };
+        Self { min, max, shape }
     }
 
     /// The coordinate of a value; one out of range is moved into it.
     pub fn place_of(self, value: f64) -> f64 {
-        if self.logarithmic {
-            return value.clamp(self.min, self.max).ln();
+        match self.shape {
+            Shape::Logarithmic => value.clamp(self.min, self.max).ln(),
+            Shape::Plain => value.clamp(self.min, self.max),
+            Shape::Bounded => {
+                let share = ((value - self.min) / (self.max - self.min)).clamp(MARGIN_RATIO, 1.0 - MARGIN_RATIO);
+                2.0 * share.sqrt().asin()
+            }
         }
-        let share = ((value - self.min) / (self.max - self.min)).clamp(MARGIN_RATIO, 1.0 - MARGIN_RATIO);
-        2.0 * share.sqrt().asin()
     }
 
     /// The value at a coordinate, and its slope.
     pub fn value_at(self, coordinate: f64) -> (f64, f64) {
-        if self.logarithmic {
-            let value = coordinate.exp().clamp(self.min, self.max);
-            return (value, value);
+        match self.shape {
+            Shape::Logarithmic => {
+                let value = coordinate.exp().clamp(self.min, self.max);
+                (value, value)
+            }
+            Shape::Plain => (coordinate.clamp(self.min, self.max), 1.0),
+            Shape::Bounded => {
+                let (sin, cos) = (0.5 * coordinate).sin_cos();
+                let width = self.max - self.min;
+                (self.min + width * sin * sin, width * sin * cos)
+            }
         }
-        let (sin, cos) = (0.5 * coordinate).sin_cos();
-        let width = self.max - self.min;
-        (self.min + width * sin * sin, width * sin * cos)
     }
 }
 
@@ -136,8 +162,11 @@ mod tests {
             let coordinate = Coordinate::of(&parameter, 0.001);
             for share in [1e-4, 0.01, 0.3, 0.8] {
                 let (min, max) = (coordinate.min, coordinate.max);
-                let value =
-                    if coordinate.logarithmic { min * (max / min).powf(share) } else { min + share * (max - min) };
+                let value = if coordinate.shape == Shape::Logarithmic {
+                    min * (max / min).powf(share)
+                } else {
+                    min + share * (max - min)
+                };
                 let place = coordinate.place_of(value);
                 let (back, slope) = coordinate.value_at(place);
                 assert!(

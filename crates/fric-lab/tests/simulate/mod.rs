@@ -1,6 +1,6 @@
 mod compensated;
 mod effects;
-mod robots;
+pub mod robots;
 mod shapes;
 mod stream;
 mod trajectory;

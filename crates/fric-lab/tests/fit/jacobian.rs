@@ -1,0 +1,157 @@
+//! The derivatives that the fit takes, against differences of the residuals.
+//!
+//! Residuals are smooth in the parameters but for a few kinks: a delay at a whole cycle, a displacement that the delay
+//! brings through zero, a cable about to slacken. At a kink the differences to both sides disagree by what does not
+//! vanish with the step; such points are left out, and counted.
+
+use fric_core::robot::file::RobotFile;
+use fric_core::{CableInput, Sample};
+use fric_lab::fit::{CableRecord, FitOptions, Measurements, Parameter, Reference, ResidualFunction};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use rand_distr::{Distribution, StandardNormal, Uniform};
+
+/// Points for each of the robots.
+const POINTS: u32 = 250;
+const SAMPLES: u32 = 160;
+/// Agreement of central difference and derivative, relative to the parameter's greatest derivative in the record.
+const AGREEMENT: f64 = 1e-6;
+/// The differences to both sides part by this share of the greatest derivative at a kink. Without one they part by
+/// the step times the curvature, some 1e-5.
+const KINK: f64 = 3e-4;
+/// Rounding of the forces as a share of the greatest: differences know no less.
+const ROUNDING: f64 = 2e-15;
+
+fn uniform(random: &mut ChaCha8Rng, min: f64, max: f64) -> f64 {
+    Uniform::new(min, max).unwrap().sample(random)
+}
+
+fn log_uniform(random: &mut ChaCha8Rng, min: f64, max: f64) -> f64 {
+    uniform(random, min.ln(), max.ln()).exp()
+}
+
+/// One cable with both effects, so that all their parameters vary.
+fn robot(presliding: &str, pulleys: &str) -> RobotFile {
+    let text = format!(
+        "format = \"fric-robot/1\"\nname = \"bench\"\ncycle_s = 0.001\n[[cable]]\nname = \"winch\"\n\
+         presliding = \"{presliding}\"\npulleys = [{pulleys}]\n\
+         friction = {{ mu = 0.02, sigma_n_per_m = 1000.0 }}\n\
+         effects = [{{ kind = \"stribeck\", ratio = 0.3 }}, {{ kind = \"time_delay\", delay_s = 0.004 }}]\n"
+    );
+    RobotFile::parse(&text, "bench").unwrap()
+}
+
+/// Random tension and motion with rests and reversals; faults and gaps in the reference, which is `gain` times the sensor
+/// force with some friction.
+fn random_record<'a>(robot: &'a RobotFile, gain: f64, random: &mut ChaCha8Rng) -> Measurements<'a> {
+    let mut measurements = Measurements::new(&robot.params(), Reference::Forces);
+    let (mut length_m, mut speed_m_per_s) = (1.0, uniform(random, -0.5, 0.5));
+    let tension_n = log_uniform(random, 3.0, 300.0);
+    for cycle in 0..SAMPLES {
+        if uniform(random, 0.0, 1.0) < 0.04 {
+            speed_m_per_s = if uniform(random, 0.0, 1.0) < 0.2 { 0.0 } else { uniform(random, -0.6, 0.6) };
+        }
+        let noise: f64 = StandardNormal.sample(random);
+        length_m += 0.001 * speed_m_per_s;
+        let sensor_force_n = match uniform(random, 0.0, 1.0) {
+            chance if chance < 0.02 => f64::NAN,
+            _ => tension_n * (1.0 + 0.3 * (0.05 * f64::from(cycle)).sin() + 0.02 * noise),
+        };
+        let reference_n = match uniform(random, 0.0, 1.0) {
+            chance if chance < 0.03 => f64::NAN,
+            _ => gain * tension_n * (1.0 + 0.04 * speed_m_per_s.signum() + 0.01 * noise),
+        };
+        measurements.add(&Sample {
+            stamp_nanos: 1_000_000 * i64::from(cycle),
+            cables: &[CableInput { sensor_force_n, length_m, speed_m_per_s }],
+            reference_force_n: &[reference_n],
+            pose: None,
+            outside_wrench: None,
+        });
+    }
+    measurements
+}
+
+/// A random value and the step of its differences.
+fn value_and_step(parameter: &Parameter, random: &mut ChaCha8Rng) -> (f64, f64) {
+    let relative = |value: f64| (value, 1e-5 * value);
+    match parameter.to_string().as_str() {
+        "mu" => relative(log_uniform(random, 0.002, 0.3)),
+        "sigma_n_per_m" => relative(log_uniform(random, 30.0, 1e5)),
+        "viscous_n_s_per_m" => (uniform(random, 0.0, 3.0), 1e-5),
+        "offset_n" => (uniform(random, -10.0, 10.0), 1e-4),
+        "stribeck.ratio" => (uniform(random, -0.7, 2.0), 1e-5),
+        "stribeck.velocity_m_per_s" => relative(log_uniform(random, 0.01, 1.0)),
+        "time_delay.delay_s" => (uniform(random, 1e-5, 0.02), 1e-9),
+        other => panic!("no range for {other}"),
+    }
+}
+
+/// Of each parameter: whether the two one-sided differences part, and how far the central one is from the derivative.
+fn check(record: &CableRecord<'_>, function: &ResidualFunction<'_>, values: &[f64], steps: &[f64]) -> Vec<(bool, f64)> {
+    let width = values.len();
+    let jacobian = function.jacobian(values);
+    let middle = function.residuals(values);
+    assert_eq!(jacobian.len(), width * middle.len());
+    // The sensor's force is near enough: residuals are far smaller than what they are differences of.
+    let greatest_n = record.rows.iter().fold(0.0, |most: f64, row| most.max(row.signals.sensor_force_n));
+    let of_parameter = |(column, step): (usize, &f64)| {
+        let moved = |sign: f64| {
+            let mut values = values.to_vec();
+            values[column] += sign * step;
+            function.residuals(&values)
+        };
+        let (plus, minus) = (moved(1.0), moved(-1.0));
+        let derivatives: Vec<f64> = jacobian.iter().skip(column).step_by(width).copied().collect();
+        let scale = derivatives.iter().fold(0.0, |most: f64, derivative| most.max(derivative.abs()));
+        let rounding = ROUNDING * greatest_n / step;
+        let (mut parting, mut error) = (0.0_f64, 0.0_f64);
+        for (((plus, minus), middle), derivative) in plus.iter().zip(&minus).zip(&middle).zip(derivatives) {
+            parting = parting.max((plus - 2.0 * middle + minus).abs() / step / (scale + rounding / KINK));
+            error = error.max(((plus - minus) / (2.0 * step) - derivative).abs() / (scale + rounding / AGREEMENT));
+        }
+        (parting > KINK, error)
+    };
+    steps.iter().enumerate().map(of_parameter).collect()
+}
+
+#[test]
+fn jacobian_is_the_central_difference_at_a_thousand_points() {
+    let robots = [
+        ("per_pulley", "{ wrap_deg = 180.0, sensor = true }, { wrap_deg = 90.0 }, { wrap_deg = 60.0 }", 0.5),
+        ("per_pulley", "{ wrap_deg = 90.0 }, { wrap_deg = 120.0 }", 1.0),
+        ("lumped", "{ wrap_deg = 180.0, sensor = true }, { wrap_deg = 90.0 }, { wrap_deg = 60.0 }", 0.5),
+        ("lumped", "{ wrap_deg = 125.0, sensor = true }, { wrap_deg = 90.0 }", 0.64),
+    ];
+    let mut random = ChaCha8Rng::seed_from_u64(1);
+    let (mut points, mut left_out, mut worst) = (0, 0, 0.0_f64);
+    for (presliding, pulleys, gain) in robots {
+        let robot = robot(presliding, pulleys);
+        let mut of_robot = 0;
+        while of_robot < POINTS {
+            let measurements = random_record(&robot, gain, &mut random);
+            let record = measurements.cable(0).unwrap();
+            let function = ResidualFunction::new(&record, &FitOptions::default());
+            assert_eq!(function.parameters().len(), 7);
+            // Too little motion to forget what was before: another one.
+            if function.count() < 40 {
+                continue;
+            }
+            let (values, steps): (Vec<f64>, Vec<f64>) =
+                function.parameters().iter().map(|parameter| value_and_step(parameter, &mut random)).unzip();
+            let checks = check(&record, &function, &values, &steps);
+            (points, of_robot) = (points + 1, of_robot + 1);
+            if checks.iter().any(|(kink, _)| *kink) {
+                left_out += 1;
+                continue;
+            }
+            for (parameter, (_, error)) in function.parameters().iter().zip(checks) {
+                worst = worst.max(error);
+                assert!(error < AGREEMENT, "{presliding} {pulleys} {parameter} at {values:?}: {error:e}");
+            }
+        }
+    }
+    println!("{points} points, {left_out} at a kink; worst of the others {worst:e}");
+    assert_eq!(points, 1000);
+    assert!(left_out <= 30, "{left_out}");
+}

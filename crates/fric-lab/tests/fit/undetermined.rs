@@ -1,0 +1,98 @@
+//! What a log cannot tell is named and left as it was given; the rest is right.
+
+use fric_core::robot::file::RobotFile;
+use fric_lab::fit::{CableFit, FitOptions, Termination};
+
+use super::logs::{Log, assert_near, deviation, parameter, undetermined, value};
+use super::oracle::{Bench, PULLEYS, strokes, wandering};
+use crate::simulate::robots::bench;
+
+/// The values given, all wrong.
+const GIVEN: [(&str, f64); 4] =
+    [("mu", 0.05), ("sigma_n_per_m", 300.0), ("viscous_n_s_per_m", 0.7), ("offset_n", -0.1)];
+
+fn given() -> RobotFile {
+    bench(PULLEYS, "mu = 0.05, sigma_n_per_m = 300.0, viscous_n_s_per_m = 0.7, offset_n = -0.1")
+}
+
+/// The fit of a log, of which exactly `names` are undetermined, and left at what was given.
+fn fit(log: &Log, names: &[&str]) -> CableFit {
+    let fit = log.fit(&given(), &FitOptions::default()).remove(0);
+    let mut found = undetermined(&fit);
+    found.sort();
+    assert_eq!(found, names);
+    for (name, given) in GIVEN.into_iter().filter(|(name, _)| names.contains(name)) {
+        assert_eq!(value(&fit, name).to_bits(), given.to_bits(), "{name}");
+        assert!(fit.standard_error(&parameter(name)).is_none());
+    }
+    fit
+}
+
+#[test]
+fn slow_motion_leaves_the_viscous_friction() {
+    let truth = Bench::default();
+    // One stroke there and back in 40 s, at most 0.3 mm/s.
+    for rad_per_s in [0.15, 0.2, 0.3] {
+        let log = truth.run(40.0, |time_s| 1.0 + 0.002 * (rad_per_s * time_s).sin(), wandering(8.0));
+        let fit = fit(&log, &["viscous_n_s_per_m"]);
+        assert!(fit.samples.used > 15_000, "{:?}", fit.samples);
+        assert_near(&fit, &["mu", "sigma_n_per_m", "offset_n"], &truth.truth());
+        assert!(fit.errors.after_n.rms().unwrap() < 1.02 * truth.floor_n());
+    }
+}
+
+#[test]
+fn motion_one_way_leaves_the_presliding() {
+    let truth = Bench::default();
+    let log = truth.run(20.0, |time_s| 1.0 + 0.2 * time_s + 0.15 * time_s.sin(), wandering(8.0));
+    let fit = fit(&log, &["sigma_n_per_m"]);
+    assert_near(&fit, &["mu", "viscous_n_s_per_m", "offset_n"], &truth.truth());
+}
+
+/// Whatever the pulleys had stored before the log began adds up with ε while nothing moves, so not even that is known.
+#[test]
+fn standstill_tells_nothing() {
+    let log = Bench::default().run(10.0, |_| 1.0, wandering(8.0));
+    let fit = fit(&log, &["mu", "offset_n", "sigma_n_per_m", "viscous_n_s_per_m"]);
+    assert_eq!((fit.samples.used, fit.samples.warm_up), (0, 10_000));
+    assert_eq!(fit.termination, Termination::NothingToFit);
+}
+
+/// Viscous friction at one speed is an offset: F_pv stays as given, and ε takes what it is wrong by. μ is told by the
+/// tension, and right.
+#[test]
+fn one_speed_leaves_viscous_friction_and_offset_together() {
+    let truth = Bench::default();
+    let speed_m_per_s = 0.1;
+    let log = truth.run(20.0, |time_s| 1.0 + speed_m_per_s * time_s, wandering(8.0));
+    let fit = fit(&log, &["sigma_n_per_m", "viscous_n_s_per_m"]);
+    assert_near(&fit, &["mu"], &truth.truth());
+    // Half of the sensor pulley's at 180°, all of the other's.
+    let drag_n = |viscous_n_s_per_m: f64| 1.5 * viscous_n_s_per_m * speed_m_per_s;
+    let together_n = truth.offset_n + drag_n(truth.viscous_n_s_per_m) - drag_n(value(&fit, "viscous_n_s_per_m"));
+    assert!(deviation(&fit, "offset_n", together_n).abs() < 3.5);
+}
+
+/// Under one load sliding friction is an offset too.
+#[test]
+fn one_load_one_way_leaves_the_bearing_friction() {
+    let log = Bench::default().run(20.0, |time_s| 1.0 + 0.2 * time_s + 0.15 * time_s.sin(), |_| 8.0);
+    let fit = fit(&log, &["mu", "sigma_n_per_m"]);
+    assert!(fit.fitted.contains(&parameter("offset_n")) && fit.fitted.contains(&parameter("viscous_n_s_per_m")));
+}
+
+/// Movements far smaller than the presliding distance see the bristle alone.
+#[test]
+fn presliding_by_itself_tells_the_stiffness() {
+    let truth = Bench::default();
+    let log = truth.run(20.0, |time_s| 1.0 + 2e-5 * (3.0 * time_s).sin(), wandering(8.0));
+    let fit = fit(&log, &["mu", "viscous_n_s_per_m"]);
+    assert_near(&fit, &["sigma_n_per_m", "offset_n"], &truth.truth());
+}
+
+#[test]
+fn everything_moving_leaves_nothing() {
+    let truth = Bench::default();
+    let fit = fit(&truth.run(10.0, strokes(0.05, 1.0), wandering(8.0)), &[]);
+    assert_near(&fit, &["mu", "sigma_n_per_m", "viscous_n_s_per_m", "offset_n"], &truth.truth());
+}
