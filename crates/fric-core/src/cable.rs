@@ -34,35 +34,41 @@ pub struct CableModel<T: Scalar> {
 }
 
 impl<T: Scalar> CableModel<T> {
-    /// The model of a cable with `values` in place of the cable's own.
+    /// The model of cables, one a lane, with `values` in place of the cables' own.
     #[must_use]
-    pub fn new(params: &CableParams, values: &Values<T>) -> Self {
-        let states = match params.presliding {
-            Presliding::PerPulley => params.pulley_count,
-            Presliding::Lumped => 1,
-        };
-        let sensor_cos = params.sensor_wrap_rad.map_or(0.0, libm::cos);
+    pub fn new<'a>(of_lane: impl Fn(usize) -> &'a CableParams, values: &Values<T>) -> Self {
         #[expect(clippy::cast_precision_loss, reason = "at most MAX_PULLEYS")]
-        let sigma_n_per_m = values[SIGMA] / T::splat(states as f64);
+        let states = |params: &CableParams| match params.presliding {
+            Presliding::PerPulley => params.pulley_count as f64,
+            Presliding::Lumped => 1.0,
+        };
+        let sensor_cos = |lane| of_lane(lane).sensor_wrap_rad.map_or(0.0, libm::cos);
+        let is_lumped = |lane| f64::from(of_lane(lane).presliding == Presliding::Lumped);
         Self {
             mu: values[MU],
-            sigma_n_per_m,
+            sigma_n_per_m: values[SIGMA] / T::from_lanes(|lane| states(of_lane(lane))),
             offset_n: values[OFFSET],
-            sensor_cos: T::splat(sensor_cos),
-            frictionless_gain: T::splat(1.0 / (1.0 - sensor_cos)),
-            lumped: T::splat(0.0).lt(T::splat(f64::from(params.presliding == Presliding::Lumped))),
+            sensor_cos: T::from_lanes(sensor_cos),
+            frictionless_gain: T::from_lanes(|lane| 1.0 / (1.0 - sensor_cos(lane))),
+            lumped: T::splat(0.0).lt(T::from_lanes(is_lumped)),
         }
     }
 }
 
 impl CableParams {
+    /// From sensor force to cable tension without friction: `1/(1 − cos α₁)`, 1.
+    #[must_use]
+    pub fn frictionless_gain(&self) -> f64 {
+        CableModel::<f64>::new(|_| self, &self.values()).frictionless_gain
+    }
+
     /// The way over which the pulley that remembers longest forgets its stored friction to 1/e, for each newton of sensor
     /// force: `f_c/σ` of one Dahl state with `F_N = k·F`, m/N. Without presliding it is 0.
     #[must_use]
     pub fn memory_m_per_n(&self, mu: f64, sigma_n_per_m: f64) -> f64 {
         let mut values = self.values();
         (values[MU], values[SIGMA]) = (mu, sigma_n_per_m);
-        let model = CableModel::<f64>::new(self, &values);
+        let model = CableModel::<f64>::new(|_| self, &values);
         let factors = Places::new(self, Places::needed(self)).wrap_factor;
         let pose_factor = if self.needs_pose() { START_WRAP_FACTOR } else { 0.0 };
         let pick = |pick: fn(f64, f64) -> f64| factors.into_iter().chain([pose_factor]).fold(0.0, pick);
@@ -202,7 +208,7 @@ fn cable_step<T: Scalar>(
     cable: &mut impl Cable<T>,
 ) -> CableForces<T> {
     let zero = T::splat(0.0);
-    let frictionless_n = signals.sensor_force_n * model.frictionless_gain;
+    let frictionless_n = signals.sensor_force_n.scale(model.frictionless_gain);
     let no_tension = signals.sensor_force_n.le(zero);
     let mut mu = model.mu;
     if features.stribeck {
@@ -257,7 +263,7 @@ fn pulley_chain<T: Scalar>(
         let stored_n = cable.pulley_friction_n(place);
         let viscous_n = pulley.viscous_n_s_per_m * signals.speed_m_per_s;
         let sensed = |friction_n: T| {
-            (signals.sensor_force_n - model.sensor_cos * (friction_n + viscous_n)) * model.frictionless_gain
+            (signals.sensor_force_n - (friction_n + viscous_n).scale(model.sensor_cos)).scale(model.frictionless_gain)
         };
         let (upstream_n, downstream_n) = if place == 0 {
             let behind_n = sensed(stored_n);
@@ -340,7 +346,7 @@ fn lumped_chain<T: Scalar>(
             viscous_n = next_viscous_n;
         }
     }
-    let frictionless_n = signals.sensor_force_n * model.frictionless_gain;
+    let frictionless_n = signals.sensor_force_n.scale(model.frictionless_gain);
     let sliding_n = coulomb_n - frictionless_n;
     // Sliding this way leads to `sliding_n`, whose sign is not the motion's where a sensor pulley of less than 90°
     // outweighs the others: its friction lowers the tension behind it.

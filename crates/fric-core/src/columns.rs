@@ -74,7 +74,7 @@ impl<const CABLES: usize> ParamColumns<CABLES> {
     /// Enters a cable of a robot with `place_count` places a cable.
     pub fn set(&mut self, cable: usize, params: &CableParams, cycle_s: f64, place_count: usize) {
         let values = params.values();
-        let model = CableModel::<f64>::new(params, &values);
+        let model = CableModel::<f64>::new(|_| params, &values);
         put(&mut self.mu, cable, model.mu);
         put(&mut self.sigma_n_per_m, cable, model.sigma_n_per_m);
         put(&mut self.offset_n, cable, model.offset_n);
@@ -92,7 +92,7 @@ impl<const CABLES: usize> ParamColumns<CABLES> {
         put(&mut self.delay, cable, Delay::from_cycles(delay_cycles, delay_cycles));
         let places = Places::new(params, place_count);
         for (place, viscous) in self.viscous_n_s_per_m.iter_mut().enumerate() {
-            put(viscous, cable, params.friction.viscous_n_s_per_m * f64::from(places.has_pulley[place]));
+            put(viscous, cable, params.friction.viscous_n_s_per_m * places.has_pulley[place]);
         }
         for (column, factor) in self.wrap_factor.iter_mut().zip(places.wrap_factor) {
             put(column, cable, factor);

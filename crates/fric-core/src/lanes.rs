@@ -141,10 +141,25 @@ impl Mask for LanesMask {
 
 impl Scalar for Lanes {
     type Mask = LanesMask;
+    const COUNT: usize = LANES;
 
     #[inline(always)]
     fn splat(value: f64) -> Self {
         Self(f64x4::splat(value))
+    }
+    #[inline(always)]
+    fn from_lanes(value: impl FnMut(usize) -> f64) -> Self {
+        Self::new(core::array::from_fn(value))
+    }
+    #[inline(always)]
+    fn lane(self, lane: usize) -> f64 {
+        let [first, second, third, fourth] = self.to_array();
+        match lane {
+            0 => first,
+            1 => second,
+            2 => third,
+            _ => fourth,
+        }
     }
     #[inline(always)]
     fn lt(self, other: Self) -> LanesMask {

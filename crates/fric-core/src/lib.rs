@@ -40,6 +40,7 @@ mod compensator;
 mod cycle;
 pub mod dahl;
 pub mod effects;
+mod group;
 mod lanes;
 pub mod parameters;
 mod places;
@@ -49,17 +50,17 @@ pub mod robot;
 mod sample;
 pub mod scalar;
 pub mod signals;
-mod single;
 mod status;
 pub mod swivel;
 
 pub use compensator::{Compensator, Snapshot};
 pub use cycle::{CableInput, CableOutput, CycleInput, CycleOutput};
+pub use group::{CableCycle, CableGroup, PoseWrap};
 pub use lanes::{LANES, Lanes};
 pub use platform::{Pose, Wrench};
 pub use robot::{CableParams, ParamError, RobotParams};
 pub use sample::Sample;
-pub use single::{PoseWrap, SingleCable};
+
 pub use status::CableStatus;
 
 /// Compiles the example of the README.

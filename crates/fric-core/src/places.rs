@@ -16,8 +16,8 @@ pub const START_WRAP_FACTOR: f64 = core::f64::consts::SQRT_2;
 /// and places without a pulley lie before it.
 #[derive(Clone, Copy, Debug)]
 pub struct Places {
-    /// Whether a pulley stands there.
-    pub has_pulley: [bool; PLACES],
+    /// 1 where a pulley stands, else 0.
+    pub has_pulley: [f64; PLACES],
     /// `2 sin(α/2)` of fixed wraps.
     pub wrap_factor: [f64; PLACES],
     /// `e^{μ_p α}` of fixed wraps; [`NO_SLIP`] without a slip limit.
@@ -35,7 +35,7 @@ impl Places {
     /// The places of a cable, `place_count` of them at least [`needed`](Self::needed).
     pub fn new(params: &CableParams, place_count: usize) -> Self {
         let mut places = Self {
-            has_pulley: [false; PLACES],
+            has_pulley: [0.0; PLACES],
             wrap_factor: [0.0; PLACES],
             traction_ratio: [NO_SLIP; PLACES],
             of_pulley: [PLACES; MAX_PULLEYS],
@@ -49,9 +49,7 @@ impl Places {
                     *place = value;
                 }
             };
-            if let Some(has_pulley) = places.has_pulley.get_mut(*stands_at) {
-                *has_pulley = true;
-            }
+            at(&mut places.has_pulley, 1.0);
             if let Wrap::Fixed { wrap_rad } = *wrap {
                 at(&mut places.wrap_factor, wrap_factor(wrap_rad));
                 if let Some(traction_mu) = params.traction_mu {

@@ -41,7 +41,7 @@ pub fn wrap_factor(wrap_rad: f64) -> f64 {
 #[inline(always)]
 pub fn sliding_gains<T: Scalar>(direction: T, mu: T, wrap_factor: T) -> (T, T) {
     let two = T::splat(2.0);
-    let coulomb = direction * mu * wrap_factor;
+    let coulomb = mu.scale(direction).scale(wrap_factor);
     let inverse = T::splat(1.0) / (two - coulomb);
     ((two + coulomb) * inverse, two * inverse)
 }
@@ -56,7 +56,7 @@ pub fn sliding_gains<T: Scalar>(direction: T, mu: T, wrap_factor: T) -> (T, T) {
 #[inline(always)]
 pub fn sensor_gains<T: Scalar>(direction: T, mu: T, wrap_factor: T, sensor_cos: T) -> (T, T) {
     let two = T::splat(2.0);
-    let coulomb = direction * mu * wrap_factor;
+    let coulomb = mu.scale(direction).scale(wrap_factor);
     let plus = two + coulomb;
     let inverse = T::splat(1.0) / (plus - sensor_cos * (two - coulomb));
     (plus * inverse, -(two * sensor_cos) * inverse)
@@ -67,7 +67,7 @@ pub fn sensor_gains<T: Scalar>(direction: T, mu: T, wrap_factor: T, sensor_cos: 
 /// Never negative: where a tension computed with large viscous friction falls below zero, the bearing carries nothing.
 #[inline(always)]
 pub fn sliding_friction<T: Scalar>(mu: T, wrap_factor: T, upstream_n: T, downstream_n: T) -> T {
-    (mu * wrap_factor * T::splat(0.5) * (upstream_n + downstream_n)).max(T::splat(0.0))
+    (mu.scale(wrap_factor).scale(T::splat(0.5)) * (upstream_n + downstream_n)).max(T::splat(0.0))
 }
 
 /// Tension ratio at which the cable slips on a pulley: `e^{μ_p α}` (\[P\] 4, Eytelwein), with the friction coefficient

@@ -23,8 +23,15 @@ pub trait Scalar:
     /// The outcome of a comparison, one truth value per lane.
     type Mask: Mask;
 
+    /// How many numbers stand side by side.
+    const COUNT: usize;
+
     /// The same constant in every lane.
     fn splat(value: f64) -> Self;
+    /// A constant for each lane.
+    fn from_lanes(value: impl FnMut(usize) -> f64) -> Self;
+    /// The number in a lane, without what it carries along; the last lane's past the end.
+    fn lane(self, lane: usize) -> f64;
     /// `self < other`; false where either is NaN.
     fn lt(self, other: Self) -> Self::Mask;
     /// `self ≤ other`; false where either is NaN.
@@ -62,6 +69,12 @@ pub trait Scalar:
         let zero = Self::splat(0.0);
         let negative_or_zero = Self::select(self.lt(zero), Self::splat(-1.0), zero);
         Self::select(zero.lt(self), Self::splat(1.0), negative_or_zero)
+    }
+    /// `self` times a number that carries nothing along: a signal, a wrap, a constant of the geometry.
+    #[inline(always)]
+    #[must_use]
+    fn scale(self, constant: Self) -> Self {
+        self * constant
     }
     /// `self` where the mask holds, else 0.
     #[inline(always)]
@@ -110,10 +123,19 @@ impl Mask for bool {
 
 impl Scalar for f64 {
     type Mask = bool;
+    const COUNT: usize = 1;
 
     #[inline(always)]
     fn splat(value: f64) -> Self {
         value
+    }
+    #[inline(always)]
+    fn from_lanes(mut value: impl FnMut(usize) -> f64) -> Self {
+        value(0)
+    }
+    #[inline(always)]
+    fn lane(self, _: usize) -> f64 {
+        self
     }
     #[inline(always)]
     fn lt(self, other: Self) -> bool {

@@ -1,9 +1,11 @@
 //! What holds for every input there is.
 
 use fric_core::robot::{CableOptions, FrictionOptions, MonitorOptions, Presliding, PulleyOptions};
+use fric_core::scalar::Scalar as _;
 use fric_core::signals::{RawSignals, SignalState, condition};
 use fric_core::{
-    CableInput, CableParams, CableStatus, Compensator, CycleInput, CycleOutput, Pose, PoseWrap, SingleCable,
+    CableCycle, CableGroup, CableInput, CableParams, CableStatus, Compensator, CycleInput, CycleOutput, Lanes, Pose,
+    PoseWrap,
 };
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -358,8 +360,11 @@ proptest! {
     }
 }
 
+/// A cable outside the compensator: its group, what its signals left, and the wrap of its last pulley.
+type Outside<T> = (CableGroup<T>, SignalState<f64>, PoseWrap);
+
 #[test]
-fn one_cable_by_itself_has_the_compensators_bits() {
+fn cables_outside_the_compensator_have_its_bits_alone_and_in_lanes() {
     static GUIDE_AND_SWIVEL: [PulleyOptions; 2] = [WINCH[1], WINCH[2]];
     for seed in 0..30 {
         let mut random = Random::new(seed);
@@ -369,13 +374,14 @@ fn one_cable_by_itself_has_the_compensators_bits() {
         let monitor = MonitorOptions { frozen_cycles: 3, length_jump_m: 0.01, length_noise_m: 1e-6 };
         let mut compensator = compensator::<3>(&options, monitor);
         let params: Vec<_> = options.iter().map(|options| CableParams::new(options).unwrap()).collect();
-        let mut alone: Vec<_> = params
-            .iter()
-            .map(|params| {
-                let cable = SingleCable::new(params, &params.values(), 0.001, |number: f64| number, |_| false);
-                (cable, SignalState::<f64>::start(), PoseWrap::START)
-            })
-            .collect();
+        let outside = |params: &CableParams| -> Outside<f64> {
+            let group = CableGroup::new(&[params], &params.values(), 0.001, |_| false).unwrap();
+            (group, SignalState::start(), PoseWrap::START)
+        };
+        let mut alone: Vec<_> = params.iter().map(outside).collect();
+        let values = std::array::from_fn(|place| Lanes::from_lanes(|lane| params[lane.min(2)].values()[place]));
+        let all: Vec<&CableParams> = params.iter().collect();
+        let mut together = CableGroup::new(&all, &values, 0.001, |_| false).unwrap();
         for cycle in 0..400 {
             let mut input = smooth_input::<3>(cycle);
             if random.below(4) == 0 {
@@ -386,18 +392,24 @@ fn one_cable_by_itself_has_the_compensators_bits() {
             input.pose = any_pose(&mut random);
             let output = compensator.step(&input);
             let pose = input.pose.filter(Pose::is_usable);
-            let rows = params.iter().zip(&mut alone).zip(input.cables.iter().zip(&output.cables));
-            for ((params, (cable, signals, pose_wrap)), (raw, expected)) in rows {
-                let raw = RawSignals {
-                    sensor_force_n: raw.sensor_force_n,
-                    length_m: raw.length_m,
-                    speed_m_per_s: raw.speed_m_per_s,
-                };
-                let conditioned = condition(&monitor.limits(), signals, &raw, input.elapsed_cycles);
+            let mut conditioned = Vec::new();
+            for ((params, (group, signals, pose_wrap)), raw) in params.iter().zip(&mut alone).zip(&input.cables) {
+                let CableInput { sensor_force_n, length_m, speed_m_per_s } = *raw;
+                let raw = RawSignals { sensor_force_n, length_m, speed_m_per_s };
+                let signals = condition(&monitor.limits(), signals, &raw, input.elapsed_cycles);
                 *pose_wrap = pose.and_then(|pose| PoseWrap::at(params, &pose)).unwrap_or(*pose_wrap);
-                let forces = cable.step(&conditioned, *pose_wrap);
-                assert_eq!(forces.platform_force_n.to_bits(), expected.force_at_platform_n.to_bits());
-                assert_eq!(forces.friction_n.to_bits(), expected.friction_n.to_bits());
+                let pose_wrap = *pose_wrap;
+                let force_n = group.step(|_| CableCycle { signals: &signals, pose_wrap }).platform_force_n;
+                conditioned.push((signals, pose_wrap, force_n));
+            }
+            let lanes = together.step(|lane| {
+                let (signals, pose_wrap, _) = &conditioned[lane.min(2)];
+                CableCycle { signals, pose_wrap: *pose_wrap }
+            });
+            for (lane, (expected, (.., force_n))) in output.cables.iter().zip(&conditioned).enumerate() {
+                assert_eq!(force_n.to_bits(), expected.force_at_platform_n.to_bits());
+                assert_eq!(lanes.platform_force_n.lane(lane).to_bits(), expected.force_at_platform_n.to_bits());
+                assert_eq!(lanes.friction_n.lane(lane).to_bits(), expected.friction_n.to_bits());
             }
         }
     }

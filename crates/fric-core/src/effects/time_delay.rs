@@ -75,16 +75,28 @@ impl DelayLine {
     /// assert_eq!(out, [0.0, 0.0, 0.5, 1.5]);
     /// ```
     #[inline]
-    pub fn shift<T: Scalar>(&mut self, value: f64, delay: Delay<T>) -> T {
+    pub fn shift(&mut self, value: f64, delay: Delay) -> f64 {
+        self.push(value);
+        let [at, before] = self.around(delay.cycles);
+        at + delay.fraction * (before - at)
+    }
+
+    /// Takes in this cycle's value.
+    #[inline]
+    pub(crate) fn push(&mut self, value: f64) {
         self.newest = (self.newest + 1) % MAX_DELAY_CYCLES;
         if let Some(place) = self.values.get_mut(self.newest) {
             *place = value;
         }
-        let at = |age: usize| {
+    }
+
+    /// The value so many cycles ago, and the one before it.
+    #[inline]
+    pub(crate) fn around(&self, cycles: usize) -> [f64; 2] {
+        let cycles = cycles.min(MAX_DELAY_CYCLES - 1);
+        [cycles, cycles + 1].map(|age| {
             let place = (self.newest + MAX_DELAY_CYCLES - age % MAX_DELAY_CYCLES) % MAX_DELAY_CYCLES;
             self.values.get(place).copied().unwrap_or(0.0)
-        };
-        let cycles = delay.cycles.min(MAX_DELAY_CYCLES - 1);
-        T::splat(at(cycles)) + delay.fraction * T::splat(at(cycles + 1) - at(cycles))
+        })
     }
 }

@@ -1,15 +1,20 @@
 //! Identification of each cable by itself, from the force measured at its platform end (\[P\] 18).
 
+use fric_core::LANES;
 use fric_core::parameters::{MU, SIGMA, Values};
-use rayon::prelude::*;
+use std::panic::resume_unwind;
+use std::rc::Rc;
+use std::thread;
 
+use super::gang::{Gang, Seat};
+use super::pass::Forces;
 use super::problem::{Comparison, Loss, Member, Problem};
-use super::record::{CableRecord, Measurements, Row};
+use super::record::{CableRecord, Measurements};
 use super::report::{CableFit, ForceErrors};
 use super::selection::{self, Standing};
 use super::solve::{Solution, solve};
 use super::vector::Parameter;
-use super::{FitOptions, Progress, pass, start};
+use super::{FitOptions, Progress, start};
 
 /// A warm-up that is wrong by more than this share of the samples, in per cent, is worth another fit.
 const MISJUDGED_PERCENT: usize = 1;
@@ -19,15 +24,31 @@ const MISJUDGED_PERCENT: usize = 1;
 pub fn fit_cables(measurements: &Measurements<'_>, options: &FitOptions, progress: &Progress) -> Vec<CableFit> {
     let records: Vec<CableRecord<'_>> = measurements.cables().collect();
     progress.begin(records.len());
-    let fit = |record: &CableRecord<'_>| {
-        let fit = fit_cable(record, options, progress);
-        progress.finish_one();
-        fit
-    };
-    records.par_iter().map(fit).collect()
+    let gangs: Vec<(&[CableRecord<'_>], Gang<'_>)> =
+        records.chunks(LANES).map(|records| (records, Gang::new(records.len(), progress.stop_flag()))).collect();
+    thread::scope(|scope| {
+        let mut searches = Vec::with_capacity(records.len());
+        for (records, gang) in &gangs {
+            for (place, record) in records.iter().enumerate() {
+                let seat = gang.seat(place);
+                searches.push(scope.spawn(move || {
+                    let fit = fit_cable(record, options, progress, seat);
+                    progress.finish_one();
+                    fit
+                }));
+            }
+        }
+        searches.into_iter().flat_map(|search| search.join().unwrap_or_else(|panic| resume_unwind(panic))).collect()
+    })
 }
 
-fn fit_cable(record: &CableRecord<'_>, options: &FitOptions, progress: &Progress) -> CableFit {
+fn fit_cable<'a>(
+    record: &CableRecord<'a>,
+    options: &FitOptions,
+    progress: &'a Progress,
+    seat: Seat<'a>,
+) -> Vec<CableFit> {
+    let seat = Rc::new(seat);
     let given = record.params.values();
     let all = prepared(record);
     let problem = |standings: &[Standing]| Problem {
@@ -36,6 +57,7 @@ fn fit_cable(record: &CableRecord<'_>, options: &FitOptions, progress: &Progress
         loss: Loss::Squares,
         used: used(standings),
         stop: progress.stop_flag(),
+        seat: Some(Rc::clone(&seat)),
     };
     let starts = start::starts(&problem(&all), &[given], record.cycle_s);
     let solve_without_warm_up = |starts: Vec<Vec<Values>>| {
@@ -51,7 +73,7 @@ fn fit_cable(record: &CableRecord<'_>, options: &FitOptions, progress: &Progress
         (solution, standings) = solve_without_warm_up(vec![solution.values]);
         solution.evaluation_count += evaluation_count;
     }
-    cable_fit(record, &given, &solution, 0, &standings)
+    cable_fits(&problem(&all), &[given], &solution, &standings)
 }
 
 /// Whether the fitted values, as far as they can be trusted, give another warm-up than the start did.
@@ -93,42 +115,49 @@ pub(super) fn leave_out_warm_up(problem: &Problem<'_>, starts: &[Vec<Values>], s
     }
 }
 
-/// The result of one cable of a solved problem.
-pub(super) fn cable_fit(
-    record: &CableRecord<'_>,
-    given: &Values,
+/// The results of the cables of a solved problem.
+pub(super) fn cable_fits(
+    problem: &Problem<'_>,
+    given: &[Values],
     solution: &Solution,
-    member: usize,
     standings: &[Standing],
-) -> CableFit {
-    let values = solution.values.get(member).copied().unwrap_or(*given);
-    let of_member = |unknown: &&super::solve::Unknown| unknown.member == member;
-    let places: Vec<usize> = (0..solution.unknowns.len()).filter(|k| solution.unknowns[*k].member == member).collect();
-    let fitted: Vec<Parameter> = places.iter().map(|place| solution.unknowns[*place].parameter).collect();
-    let undetermined = solution.undetermined.iter().filter(of_member).map(|unknown| unknown.parameter).collect();
-    let covariance = solution.covariance.select_rows(&places).select_columns(&places);
-    CableFit {
-        samples: selection::count(standings),
-        values,
-        fitted,
-        undetermined,
-        covariance,
-        termination: solution.termination,
-        evaluation_count: solution.evaluation_count,
-        errors: force_errors(record, &values),
-    }
+) -> Vec<CableFit> {
+    let forces = problem.forces(&solution.values).unwrap_or_default();
+    let members = problem.members.iter().zip(given).enumerate();
+    members
+        .map(|(member, (of, given))| {
+            let values = solution.values.get(member).copied().unwrap_or(*given);
+            let (places, fitted): (Vec<usize>, Vec<Parameter>) = solution
+                .unknowns
+                .iter()
+                .enumerate()
+                .filter(|(_, unknown)| unknown.member == member)
+                .map(|(place, unknown)| (place, unknown.parameter))
+                .unzip();
+            let undetermined = solution.undetermined.iter().filter(|unknown| unknown.member == member);
+            CableFit {
+                samples: selection::count(standings),
+                values,
+                fitted,
+                undetermined: undetermined.map(|unknown| unknown.parameter).collect(),
+                covariance: solution.covariance.select_rows(&places).select_columns(&places),
+                termination: solution.termination,
+                evaluation_count: solution.evaluation_count,
+                errors: forces.get(member).map_or_else(ForceErrors::default, |forces| force_errors(&of.record, forces)),
+            }
+        })
+        .collect()
 }
 
 /// Errors of the force at the platform without and with compensation, over every sample that has a reference, flagged ones
 /// too: the figures of a replay.
-fn force_errors(record: &CableRecord<'_>, values: &Values) -> ForceErrors {
+fn force_errors(record: &CableRecord<'_>, forces: &Forces) -> ForceErrors {
+    let gain = record.params.frictionless_gain();
     let mut errors = ForceErrors::default();
-    pass::run_plain(record, values, |_, row: &Row, forces| {
-        if row.reference_n.is_finite() {
-            errors.reference_n.add(row.reference_n);
-            errors.before_n.add(forces.frictionless_n - row.reference_n);
-            errors.after_n.add(forces.platform_force_n - row.reference_n);
-        }
-    });
+    for (cycle, row) in record.rows.iter().enumerate().filter(|(_, row)| row.reference_n.is_finite()) {
+        errors.reference_n.add(row.reference_n);
+        errors.before_n.add(row.signals.sensor_force_n * gain - row.reference_n);
+        errors.after_n.add(forces.at(cycle).0 - row.reference_n);
+    }
     errors
 }

@@ -9,124 +9,136 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use fric_core::scalar::Scalar;
 
-/// A number with its derivatives by `N` parameters.
+/// A number, or several side by side, with the derivatives by `N` parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Dual<const N: usize> {
+pub struct Dual<V, const N: usize> {
     /// The number.
-    pub value: f64,
+    pub value: V,
     /// Its derivatives.
-    pub gradient: [f64; N],
+    pub gradient: [V; N],
 }
 
-impl<const N: usize> Dual<N> {
+impl<V: Scalar, const N: usize> Dual<V, N> {
     /// A number that does not depend on any parameter.
     #[inline(always)]
     #[must_use]
-    pub const fn constant(value: f64) -> Self {
-        Self { value, gradient: [0.0; N] }
-    }
-
-    /// The parameter at a place; a constant where the place is past the end.
-    #[must_use]
-    pub fn variable(value: f64, place: usize) -> Self {
-        Self { value, gradient: std::array::from_fn(|k| f64::from(u8::from(k == place))) }
+    pub fn constant(value: V) -> Self {
+        Self { value, gradient: [V::splat(0.0); N] }
     }
 
     /// `value` with the derivatives scaled, the chain rule of one argument.
     #[inline(always)]
-    fn chain(self, value: f64, slope: f64) -> Self {
+    fn chain(self, value: V, slope: V) -> Self {
         Self { value, gradient: self.gradient.map(|part| slope * part) }
     }
 
-    /// `value` with the derivatives `a·self' + b·other'`.
+    /// `value` with derivatives made of those of both.
     #[inline(always)]
-    fn combine(self, other: Self, value: f64, a: f64, b: f64) -> Self {
-        Self { value, gradient: std::array::from_fn(|k| a * self.gradient[k] + b * other.gradient[k]) }
+    fn combine(self, other: Self, value: V, part: impl Fn(V, V) -> V) -> Self {
+        Self { value, gradient: std::array::from_fn(|k| part(self.gradient[k], other.gradient[k])) }
     }
 }
 
-impl<const N: usize> Add for Dual<N> {
+impl<V: Scalar, const N: usize> Add for Dual<V, N> {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
-        Self {
-            value: self.value + other.value,
-            gradient: std::array::from_fn(|k| self.gradient[k] + other.gradient[k]),
-        }
+        self.combine(other, self.value + other.value, |mine, others| mine + others)
     }
 }
 
-impl<const N: usize> Sub for Dual<N> {
+impl<V: Scalar, const N: usize> Sub for Dual<V, N> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
-        Self {
-            value: self.value - other.value,
-            gradient: std::array::from_fn(|k| self.gradient[k] - other.gradient[k]),
-        }
+        self.combine(other, self.value - other.value, |mine, others| mine - others)
     }
 }
 
-impl<const N: usize> Mul for Dual<N> {
+impl<V: Scalar, const N: usize> Mul for Dual<V, N> {
     type Output = Self;
     #[inline(always)]
+    #[expect(clippy::suspicious_arithmetic_impl, reason = "the product rule is a sum")]
     fn mul(self, other: Self) -> Self {
-        self.combine(other, self.value * other.value, other.value, self.value)
+        let (a, b) = (self.value, other.value);
+        self.combine(other, a * b, |mine, others| b * mine + a * others)
     }
 }
 
-impl<const N: usize> Div for Dual<N> {
+impl<V: Scalar, const N: usize> Div for Dual<V, N> {
     type Output = Self;
     #[inline(always)]
     fn div(self, other: Self) -> Self {
-        let (quotient, inverse) = (self.value / other.value, 1.0 / other.value);
-        self.combine(other, quotient, inverse, -quotient * inverse)
+        let (quotient, inverse) = (self.value / other.value, V::splat(1.0) / other.value);
+        self.combine(other, quotient, |mine, others| inverse * (mine - quotient * others))
     }
 }
 
-impl<const N: usize> Neg for Dual<N> {
+impl<V: Scalar, const N: usize> Neg for Dual<V, N> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        self.chain(-self.value, -1.0)
+        Self { value: -self.value, gradient: self.gradient.map(|part| -part) }
     }
 }
 
-impl<const N: usize> Scalar for Dual<N> {
-    type Mask = bool;
+impl<V: Scalar, const N: usize> Scalar for Dual<V, N> {
+    type Mask = V::Mask;
+    const COUNT: usize = V::COUNT;
 
     #[inline(always)]
     fn splat(value: f64) -> Self {
-        Self::constant(value)
+        Self::constant(V::splat(value))
     }
     #[inline(always)]
-    fn lt(self, other: Self) -> bool {
-        self.value < other.value
+    fn from_lanes(value: impl FnMut(usize) -> f64) -> Self {
+        Self::constant(V::from_lanes(value))
     }
     #[inline(always)]
-    fn le(self, other: Self) -> bool {
-        self.value <= other.value
+    fn lane(self, lane: usize) -> f64 {
+        self.value.lane(lane)
     }
     #[inline(always)]
-    fn eq(self, other: Self) -> bool {
-        self.value == other.value
+    fn lt(self, other: Self) -> V::Mask {
+        self.value.lt(other.value)
     }
     #[inline(always)]
-    fn select(mask: bool, if_true: Self, if_false: Self) -> Self {
-        if mask { if_true } else { if_false }
+    fn le(self, other: Self) -> V::Mask {
+        self.value.le(other.value)
+    }
+    #[inline(always)]
+    fn eq(self, other: Self) -> V::Mask {
+        self.value.eq(other.value)
+    }
+    #[inline(always)]
+    fn select(mask: V::Mask, if_true: Self, if_false: Self) -> Self {
+        let value = V::select(mask, if_true.value, if_false.value);
+        if_true.combine(if_false, value, |mine, others| V::select(mask, mine, others))
+    }
+    #[inline(always)]
+    fn scale(self, constant: Self) -> Self {
+        self.chain(self.value * constant.value, constant.value)
+    }
+    #[inline(always)]
+    fn keep(self, mask: V::Mask) -> Self {
+        Self { value: self.value.keep(mask), gradient: self.gradient.map(|part| part.keep(mask)) }
     }
     #[inline(always)]
     fn abs(self) -> Self {
-        if self.value < 0.0 { -self } else { Self { value: self.value.abs(), ..self } }
+        self.chain(self.value.abs(), V::select(self.value.lt(V::splat(0.0)), V::splat(-1.0), V::splat(1.0)))
+    }
+    #[inline(always)]
+    fn sign(self) -> Self {
+        Self::constant(self.value.sign())
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
-        let root = Scalar::sqrt(self.value);
-        self.chain(root, 0.5 / root)
+        let root = self.value.sqrt();
+        self.chain(root, V::splat(0.5) / root)
     }
     #[inline(always)]
     fn exp_negative(self) -> Self {
-        let power = Scalar::exp_negative(self.value);
+        let power = self.value.exp_negative();
         self.chain(power, power)
     }
 }
@@ -153,7 +165,7 @@ mod tests {
             ]
         }
         for (x, y) in [(0.7, 1.3), (2.5, 0.4), (0.1, 3.0)] {
-            let duals = expression(Dual::<2>::variable(x, 0), Dual::variable(y, 1));
+            let duals = expression(Dual { value: x, gradient: [1.0, 0.0] }, Dual { value: y, gradient: [0.0, 1.0] });
             let h = 1e-6;
             let [plus_x, minus_x] = [expression(x + h, y), expression(x - h, y)];
             let [plus_y, minus_y] = [expression(x, y + h), expression(x, y - h)];

@@ -4,13 +4,14 @@
 //! cannot determine. Samples go into [`Measurements`]; [`fit_cables`] compares with cable forces measured at the platform,
 //! [`fit_wrench`] with the outside wrench, for all cables at once.
 //!
-//! The model is the cycle's own ([`fric_core::SingleCable`]) run with numbers that carry derivatives along; there is no second one.
+//! The model is the cycle's own ([`fric_core::CableGroup`]) run with numbers that carry derivatives along; there is no second one.
 //! Nothing here fails: a search that does not converge says so in its [`Termination`]. Results do not depend on the
 //! number of threads.
 
 mod cables;
 mod determined;
 mod dual;
+mod gang;
 mod gram;
 mod optimizer;
 mod options;

@@ -1,9 +1,10 @@
-//! One pass of the cycle's equations over a cable's record, with the derivatives by chosen parameters.
+//! Passes of the cycle's equations over the records of cables, with the derivatives by chosen parameters.
 
-use fric_core::SingleCable;
-use fric_core::cable::CableForces;
+use std::ops::Range;
+
 use fric_core::parameters::Values;
 use fric_core::scalar::Scalar;
+use fric_core::{CableCycle, CableGroup, CableParams, LANES, Lanes};
 
 use super::dual::Dual;
 use super::record::{CableRecord, Row};
@@ -16,7 +17,8 @@ pub const MOST_PARAMETERS: usize = 32;
 macro_rules! with_room_for {
     ($count:expr, $run:ident($($argument:expr),* $(,)?)) => {
         match $count {
-            0..=4 => $run::<4>($($argument),*),
+            0 => $run::<0>($($argument),*),
+            1..=4 => $run::<4>($($argument),*),
             5..=8 => $run::<8>($($argument),*),
             9..=16 => $run::<16>($($argument),*),
             _ => $run::<{ crate::fit::pass::MOST_PARAMETERS }>($($argument),*),
@@ -25,36 +27,116 @@ macro_rules! with_room_for {
 }
 pub(super) use with_room_for;
 
-/// A cable at rest that carries the derivatives by `free`.
-pub fn differentiated<const N: usize>(
-    record: &CableRecord<'_>,
-    values: &Values,
-    free: &[Parameter],
-) -> SingleCable<Dual<N>> {
-    let mut duals = values.map(Dual::constant);
-    for (derivative, parameter) in free.iter().enumerate() {
-        duals[parameter.place()] = Dual::variable(values[parameter.place()], derivative);
+/// The room that [`with_room_for`] takes for a number of derivatives.
+pub fn room_for(count: usize) -> usize {
+    fn room<const N: usize>() -> usize {
+        N
     }
-    let varies = |place| free.iter().any(|parameter| parameter.place() == place);
-    SingleCable::new(record.params, &duals, record.cycle_s, |number: Dual<N>| number.value, varies)
+    with_room_for!(count, room())
 }
 
-/// Runs every cycle and gives its outcome, with the cycle's place, to `visit`.
-pub fn run<T: Scalar>(
-    record: &CableRecord<'_>,
-    cable: impl Fn() -> SingleCable<T>,
-    mut visit: impl FnMut(usize, &Row, &CableForces<T>),
-) {
-    for (start, rows) in record.logs() {
-        let mut cable = cable();
-        for (place, row) in (start..).zip(rows) {
-            visit(place, row, &cable.step(&row.signals, row.pose_wrap));
+/// One cable's part in a pass.
+#[derive(Clone, Debug)]
+pub struct Part<'a> {
+    pub record: CableRecord<'a>,
+    pub values: Values,
+    /// What to differentiate by.
+    pub free: Vec<Parameter>,
+}
+
+impl Part<'_> {
+    /// Whether the forces of this part are those of the other, with its derivatives or more.
+    pub fn serves(&self, other: &Self) -> bool {
+        let bits = |part: &Self| part.values.map(f64::to_bits);
+        std::ptr::eq(self.record.rows, other.record.rows)
+            && bits(self) == bits(other)
+            && (other.free.is_empty() || self.free == other.free)
+    }
+}
+
+/// Forces of one cable at the platform with their derivatives, cycle by cycle.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Forces {
+    derivative_count: usize,
+    numbers: Vec<f64>,
+}
+
+impl Forces {
+    /// None yet, with so many derivatives, and room for so many cycles.
+    pub fn new(derivative_count: usize, cycles: usize) -> Self {
+        Self { derivative_count, numbers: Vec::with_capacity(cycles * (derivative_count + 1)) }
+    }
+
+    /// Force in N and derivatives in a cycle; NaN past the end.
+    #[inline]
+    pub fn at(&self, cycle: usize) -> (f64, &[f64]) {
+        let width = self.derivative_count + 1;
+        let numbers = self.numbers.get(cycle * width..(cycle + 1) * width);
+        numbers.and_then(<[f64]>::split_first).map_or((f64::NAN, &[]), |(force_n, derivatives)| (*force_n, derivatives))
+    }
+}
+
+/// Forces of up to [`LANES`] cables with records of the same length, side by side.
+#[derive(Debug)]
+pub struct LanePass<'a, const N: usize> {
+    parts: Vec<Part<'a>>,
+    at_rest: Option<CableGroup<Dual<Lanes, N>>>,
+    group: Option<CableGroup<Dual<Lanes, N>>>,
+}
+
+impl<'a, const N: usize> LanePass<'a, N> {
+    /// Of the first [`LANES`] parts.
+    pub fn new(parts: impl IntoIterator<Item = Part<'a>>) -> Self {
+        let parts: Vec<Part<'a>> = parts.into_iter().take(LANES).collect();
+        let of_lane = |lane: usize| parts.get(lane).or(parts.last());
+        let value = |place: usize| Dual {
+            value: Lanes::from_lanes(|lane| of_lane(lane).map_or(f64::NAN, |part| part.values[place])),
+            gradient: std::array::from_fn(|derivative| {
+                let is_it = |part: &Part<'_>| part.free.get(derivative).is_some_and(|of| of.place() == place);
+                Lanes::from_lanes(|lane| f64::from(u8::from(of_lane(lane).is_some_and(is_it))))
+            }),
+        };
+        let varies = |place: usize| parts.iter().any(|part| part.free.iter().any(|of| of.place() == place));
+        let params: Vec<&CableParams> = parts.iter().map(|part| part.record.params).collect();
+        let cycle_s = parts.first().map_or(f64::NAN, |part| part.record.cycle_s);
+        let at_rest = CableGroup::new(&params, &std::array::from_fn(value), cycle_s, varies);
+        Self { at_rest, group: None, parts }
+    }
+
+    /// Starts a log: nothing is remembered.
+    pub fn rest(&mut self) {
+        self.group.clone_from(&self.at_rest);
+    }
+
+    /// The cycles `from..to`; the forces of each part go to the end of `forces`.
+    pub fn advance(&mut self, from: usize, to: usize, forces: &mut [Forces]) {
+        let (Some(group), Some(last)) = (&mut self.group, self.parts.len().checked_sub(1)) else { return };
+        let rows: [&[Row]; LANES] = std::array::from_fn(|lane| {
+            self.parts.get(lane.min(last)).and_then(|part| part.record.rows.get(from..to)).unwrap_or_default()
+        });
+        let [first, second, third, fourth] = rows;
+        for (((first, second), third), fourth) in first.iter().zip(second).zip(third).zip(fourth) {
+            let rows = [first, second, third, fourth];
+            let force = group.step(|lane| cycle(rows[lane % LANES])).platform_force_n;
+            let gradient = force.gradient.map(Lanes::to_array);
+            let values = force.value.to_array();
+            for (lane, forces) in forces.iter_mut().enumerate().take(last + 1) {
+                forces.numbers.push(values[lane]);
+                forces.numbers.extend(gradient.iter().map(|part| part[lane]));
+            }
         }
     }
 }
 
-/// The same in plain numbers.
-pub fn run_plain(record: &CableRecord<'_>, values: &Values, visit: impl FnMut(usize, &Row, &CableForces<f64>)) {
-    let cable = || SingleCable::new(record.params, values, record.cycle_s, |number: f64| number, |_| false);
-    run(record, cable, visit);
+fn cycle(row: &Row) -> CableCycle<'_> {
+    CableCycle { signals: &row.signals, pose_wrap: row.pose_wrap }
+}
+
+/// Forces of one cable in consecutive cycles, begun at rest, for the values in each lane.
+pub fn candidate_forces(record: &CableRecord<'_>, values: &Values<Lanes>, cycles: Range<usize>) -> Vec<[f64; LANES]> {
+    let Some(mut group) = CableGroup::new(&[record.params], values, record.cycle_s, |_| false) else {
+        return Vec::new();
+    };
+    let rows = record.rows.get(cycles).unwrap_or_default();
+    rows.iter().map(|row| group.step(|_| cycle(row)).platform_force_n.to_array()).collect()
 }

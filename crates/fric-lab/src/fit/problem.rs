@@ -4,19 +4,20 @@
 //! - Wrench: six residuals a sample, `w + A^T f(p)` (\[P\] 3), for all cables together; forces and torques are brought to
 //!   one scale by a [`whitening`](Comparison::Wrench) matrix.
 
+use std::ops::Range;
+use std::rc::Rc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use fric_core::cable::CableForces;
 use fric_core::parameters::{SIGMA, Values};
 use fric_core::scalar::Scalar;
-use fric_core::{LANES, Lanes, SingleCable};
+use fric_core::{LANES, Lanes};
 use nalgebra::{Matrix6, Vector6};
 use rayon::prelude::*;
 
-use super::dual::Dual;
+use super::gang::{Seat, all_forces};
 use super::gram::Gram;
-use super::pass::{differentiated, run, with_room_for};
-use super::record::{CableRecord, Row};
+use super::pass::{Forces, LanePass, Part, candidate_forces, with_room_for};
+use super::record::CableRecord;
 use super::scores::Scores;
 use super::vector::Parameter;
 
@@ -29,6 +30,14 @@ pub struct Member<'a> {
     pub record: CableRecord<'a>,
     /// The parameters that vary.
     pub free: Vec<Parameter>,
+}
+
+impl<'a> Member<'a> {
+    /// Its part in a pass.
+    fn part(&self, values: &Values, derivatives: bool) -> Part<'a> {
+        let free = if derivatives { self.free.clone() } else { Vec::new() };
+        Part { record: self.record, values: *values, free }
+    }
 }
 
 /// What the model is compared with.
@@ -79,6 +88,8 @@ pub struct Problem<'a> {
     pub used: Vec<bool>,
     /// Set from outside to end every evaluation.
     pub stop: &'a AtomicBool,
+    /// Where a single cable has its passes run beside those of others.
+    pub seat: Option<Rc<Seat<'a>>>,
 }
 
 /// The rows of a sample: derivatives by every free parameter, then the residual.
@@ -93,7 +104,7 @@ impl Problem<'_> {
     /// Residuals and Jacobian at the values of each cable, reduced; `None` when stopped.
     pub fn gram(&self, values: &[Values]) -> Option<Gram> {
         let mut gram = Gram::new(self.parameter_count());
-        self.visit(values, |_, rows| rows.for_each(|row| gram.add(row))).then_some(gram)
+        self.visit(values, true, |_, rows| rows.for_each(|row| gram.add(row))).then_some(gram)
     }
 
     /// The same with the samples' scores.
@@ -101,7 +112,7 @@ impl Problem<'_> {
         let count = self.parameter_count();
         let (mut gram, mut scores) = (Gram::new(count), Scores::new(count));
         let mut score = vec![0.0; count];
-        let completed = self.visit(values, |_, rows| {
+        let completed = self.visit(values, true, |_, rows| {
             score.fill(0.0);
             for row in rows {
                 gram.add(row);
@@ -118,7 +129,7 @@ impl Problem<'_> {
     /// Residuals of every sample that counts, with the sample's place: one, or six whitened.
     pub fn residuals(&self, values: &[Values], mut visit: impl FnMut(usize, &[f64])) {
         let mut residuals = Vec::new();
-        visit_with::<0>(self, values, |place, rows| {
+        self.visit(values, false, |place, rows| {
             residuals.clear();
             residuals.extend(rows.filter_map(|row| row.last()));
             visit(place, &residuals);
@@ -127,44 +138,38 @@ impl Problem<'_> {
 
     /// Every row: derivatives by the free parameters, then the residual.
     pub fn rows(&self, values: &[Values], mut visit: impl FnMut(&[f64])) {
-        self.visit(values, |_, rows| rows.for_each(&mut visit));
-    }
-
-    fn visit(&self, values: &[Values], visit: impl FnMut(usize, Rows<'_>)) -> bool {
-        let most = self.members.iter().map(|member| member.free.len()).max().unwrap_or(0);
-        with_room_for!(most, visit_with(self, values, visit))
+        self.visit(values, true, |_, rows| rows.for_each(&mut visit));
     }
 
     fn stopped(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// Sum of the losses for several σ at once, of all cables: `sigmas_n_per_m[candidate][cable]`.
-    pub fn losses_by_sigma(&self, values: &[Values], sigmas_n_per_m: &[Vec<f64>; LANES]) -> [f64; LANES] {
-        let first_of = |lanes: Lanes| lanes.to_array()[0];
-        let cables = self.members.iter().zip(values).enumerate().map(|(index, (member, values))| {
+    /// Sum of the losses for several σ at once, of all cables: `sigmas_n_per_m[candidate][cable]`; over consecutive cycles of
+    /// a log, of which the first eighth lets the cables forget that they began at rest.
+    pub fn losses_by_sigma(
+        &self,
+        values: &[Values],
+        sigmas_n_per_m: &[Vec<f64>; LANES],
+        cycles: &Range<usize>,
+    ) -> [f64; LANES] {
+        let mut forces: Vec<Vec<[f64; LANES]>> = Vec::with_capacity(self.members.len());
+        for (index, (member, values)) in self.members.iter().zip(values).enumerate() {
             let mut lanes = values.map(Lanes::splat);
             let of_cable = |candidate: &Vec<f64>| candidate.get(index).copied().unwrap_or(values[SIGMA]);
             lanes[SIGMA] = Lanes::new(sigmas_n_per_m.each_ref().map(of_cable));
-            (member.record, SingleCable::new(member.record.params, &lanes, member.record.cycle_s, first_of, |_| false))
-        });
-        let cables: Vec<_> = cables.collect();
-        let forces: Vec<Vec<[f64; LANES]>> = cables
-            .par_iter()
-            .map(|(record, at_rest)| {
-                let mut forces_n = Vec::with_capacity(record.rows.len());
-                let keep = |_, _: &Row, forces: &CableForces<Lanes>| forces_n.push(forces.platform_force_n.to_array());
-                run(record, || at_rest.clone(), keep);
-                forces_n
-            })
-            .collect();
+            forces.push(candidate_forces(&member.record, &lanes, cycles.clone()));
+        }
         let mut sums = [0.0; LANES];
         let mut of_sample = vec![0.0; self.members.len()];
         let mut residuals = Vec::new();
-        for (place, _) in self.used.iter().enumerate().filter(|(_, used)| **used) {
+        for (offset, place) in cycles.clone().enumerate().skip(cycles.len() / 8) {
+            if !self.used.get(place).copied().unwrap_or(false) {
+                continue;
+            }
             for (candidate, sum) in sums.iter_mut().enumerate() {
                 for (force_n, of_cable) in of_sample.iter_mut().zip(&forces) {
-                    *force_n = of_cable.get(place).map_or(f64::NAN, |lanes| lanes[candidate]);
+                    *force_n = of_cable.get(offset).map_or(f64::NAN, |lanes| lanes[candidate]);
                 }
                 self.compare(place, &of_sample, &mut residuals);
                 *sum += residuals.iter().map(|residual| self.loss.root(*residual).0.powi(2)).sum::<f64>();
@@ -214,71 +219,97 @@ struct Assembly {
 }
 
 impl Assembly {
-    /// Rows of a sample from the forces of all cables with their derivatives.
-    fn assemble<const N: usize>(&mut self, problem: &Problem<'_>, place: usize, runs: &[Run<'_, N>], offset: usize) {
+    /// Rows of a sample from the forces of all cables with their derivatives; without derivatives, residuals alone.
+    fn assemble(&mut self, problem: &Problem<'_>, place: usize, forces: &[Forces], cycle: usize, derivatives: bool) {
         let Self { forces_n, residuals, levers, rows } = self;
+        if let (Comparison::Forces, [member], [of_cable]) = (&problem.comparison, problem.members.as_slice(), forces) {
+            // What follows, for a single cable and a single residual.
+            let (force_n, gradient) = of_cable.at(cycle);
+            let reference_n = member.record.rows.get(place).map_or(f64::NAN, |row| row.reference_n);
+            let (root, slope) = problem.loss.root(force_n - reference_n);
+            rows.clear();
+            rows.extend(gradient.iter().take(if derivatives { member.free.len() } else { 0 }).map(|part| slope * part));
+            rows.push(root);
+            return;
+        }
         forces_n.clear();
-        forces_n.extend(runs.iter().filter_map(|run| run.forces.get(offset)).map(|force| force.value));
+        forces_n.extend(forces.iter().map(|of_cable| of_cable.at(cycle).0));
         problem.compare(place, forces_n, residuals);
         problem.levers(place, levers);
         rows.clear();
         for (component, residual) in residuals.iter().enumerate() {
             let (root, slope) = problem.loss.root(*residual);
-            for (run, lever) in runs.iter().zip(&*levers) {
-                let factor = slope * lever[component];
-                let gradient = run.forces.get(offset).map_or([f64::NAN; N], |force| force.gradient);
-                rows.extend(gradient.iter().take(run.member.free.len()).map(|part| factor * part));
+            if derivatives {
+                for ((member, of_cable), lever) in problem.members.iter().zip(forces).zip(&*levers) {
+                    let factor = slope * lever[component];
+                    rows.extend(of_cable.at(cycle).1.iter().take(member.free.len()).map(|part| factor * part));
+                }
             }
             rows.push(root);
         }
     }
 }
 
-/// A cable on its way through a log.
-struct Run<'a, const N: usize> {
-    member: &'a Member<'a>,
-    cable: SingleCable<Dual<N>>,
-    forces: Vec<Dual<N>>,
-}
+impl<'a> Problem<'a> {
+    /// Forces of every cable in every cycle, without derivatives; `None` when stopped.
+    pub fn forces(&self, values: &[Values]) -> Option<Vec<Forces>> {
+        let parts: Vec<Part<'_>> =
+            self.members.iter().zip(values).map(|(member, values)| member.part(values, false)).collect();
+        if let (Some(seat), [part]) = (&self.seat, parts.as_slice()) {
+            return seat.forces(part).map(|forces| vec![(*forces).clone()]);
+        }
+        let of_lanes: Option<Vec<Vec<Forces>>> =
+            parts.par_chunks(LANES).map(|parts| all_forces::<0>(parts, self.stop)).collect();
+        of_lanes.map(|forces| forces.into_iter().flatten().collect())
+    }
 
-impl<const N: usize> Run<'_, N> {
-    fn advance(&mut self, from: usize, to: usize) {
-        let Self { member, cable, forces } = self;
-        forces.clear();
-        let rows = member.record.rows.get(from..to).unwrap_or_default();
-        forces.extend(rows.iter().map(|row| cable.step(&row.signals, row.pose_wrap).platform_force_n));
+    /// Evaluates all samples that count, with the derivatives by the free parameters or without; false when stopped.
+    fn visit(&self, values: &[Values], derivatives: bool, mut visit: impl FnMut(usize, Rows<'_>)) -> bool {
+        let parts: Vec<Part<'a>> =
+            self.members.iter().zip(values).map(|(member, values)| member.part(values, derivatives)).collect();
+        if let (Some(seat), [part]) = (&self.seat, parts.as_slice()) {
+            let Some(forces) = seat.forces(part) else { return false };
+            let width = 1 + if derivatives { self.parameter_count() } else { 0 };
+            let mut assembly = Assembly::default();
+            for (place, _) in self.used.iter().enumerate().filter(|(_, used)| **used) {
+                assembly.assemble(self, place, std::slice::from_ref(&*forces), place, derivatives);
+                visit(place, assembly.rows.chunks_exact(width));
+            }
+            return true;
+        }
+        let most = parts.iter().map(|part| part.free.len()).max().unwrap_or(0);
+        with_room_for!(most, visit_chunks(self, &parts, derivatives, visit))
     }
 }
 
-/// Evaluates all samples, with the derivatives by the first `N` free parameters of each cable; false when stopped.
-fn visit_with<const N: usize>(
+/// Chunk by chunk, so that memory does not grow with the log.
+fn visit_chunks<const N: usize>(
     problem: &Problem<'_>,
-    values: &[Values],
+    parts: &[Part<'_>],
+    derivatives: bool,
     mut visit: impl FnMut(usize, Rows<'_>),
 ) -> bool {
-    let Some(first) = problem.members.first() else { return true };
-    let width = problem.members.iter().map(|member| member.free.len().min(N)).sum::<usize>() + 1;
+    let Some(first) = parts.first() else { return true };
+    let width = parts.iter().map(|part| part.free.len()).sum::<usize>() + 1;
     let mut assembly = Assembly::default();
+    let mut passes: Vec<LanePass<'_, N>> =
+        parts.chunks(LANES).map(|parts| LanePass::new(parts.iter().cloned())).collect();
     for (start, log) in first.record.logs() {
-        let mut runs: Vec<Run<'_, N>> = Vec::with_capacity(problem.members.len());
-        for (member, values) in problem.members.iter().zip(values) {
-            let cable = differentiated::<N>(&member.record, values, &member.free);
-            runs.push(Run { member, cable, forces: Vec::with_capacity(CHUNK) });
-        }
+        passes.iter_mut().for_each(LanePass::rest);
         let end = start + log.len();
         for from in (start..end).step_by(CHUNK) {
             if problem.stopped() {
                 return false;
             }
             let to = (from + CHUNK).min(end);
-            if let [only] = runs.as_mut_slice() {
-                only.advance(from, to);
-            } else {
-                runs.par_iter_mut().for_each(|run| run.advance(from, to));
-            }
-            for (offset, place) in (from..to).enumerate() {
+            let mut forces: Vec<Forces> = parts.iter().map(|_| Forces::new(N, CHUNK)).collect();
+            passes
+                .par_iter_mut()
+                .zip(forces.par_chunks_mut(LANES))
+                .for_each(|(pass, forces)| pass.advance(from, to, forces));
+            for (cycle, place) in (from..to).enumerate() {
                 if problem.used.get(place).copied().unwrap_or(false) {
-                    assembly.assemble(problem, place, &runs, offset);
+                    assembly.assemble(problem, place, &forces, cycle, derivatives);
                     visit(place, assembly.rows.chunks_exact(width));
                 }
             }

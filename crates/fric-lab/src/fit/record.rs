@@ -3,6 +3,8 @@
 //! A log is conditioned once ([`fric_core::signals`]) and then evaluated many times. Memory: 64 bytes a sample and cable;
 //! for a fit to the wrench 48 bytes more for each cable and 150 for the platform.
 
+use std::ops::Range;
+
 use fric_core::robot::RobotParams;
 use fric_core::signals::{Conditioned, RawSignals, SignalState, condition};
 use fric_core::{CableInput, CableParams, Pose, PoseWrap, Sample, Wrench};
@@ -184,6 +186,19 @@ pub struct CableRecord<'a> {
 }
 
 impl<'a> CableRecord<'a> {
+    /// A stretch of its cycles, as a log of its own.
+    pub(super) fn stretch(&self, cycles: &Range<usize>) -> Self {
+        Self { rows: self.rows.get(cycles.clone()).unwrap_or_default(), starts: &[0], ..*self }
+    }
+
+    /// Other cycles of the same cable, as one log.
+    pub(super) fn with_rows<'b>(&self, rows: &'b [Row]) -> CableRecord<'b>
+    where
+        'a: 'b,
+    {
+        CableRecord { params: self.params, rows, starts: &[0], cycle_s: self.cycle_s }
+    }
+
     /// The cycles of each log, with the place of the first.
     pub fn logs(&self) -> impl Iterator<Item = (usize, &'a [Row])> {
         let rows = self.rows;

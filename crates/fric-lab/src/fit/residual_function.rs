@@ -38,6 +38,7 @@ impl<'a> ResidualFunction<'a> {
             loss: Loss::Squares,
             used: used(&standings),
             stop: &stop,
+            seat: None,
         };
         let starts = start::starts(&problem, &[given], record.cycle_s);
         leave_out_warm_up(&problem, &starts, &mut standings);
@@ -98,6 +99,7 @@ impl<'a> ResidualFunction<'a> {
             loss: Loss::Squares,
             used: self.used.clone(),
             stop: &stop,
+            seat: None,
         });
     }
 }

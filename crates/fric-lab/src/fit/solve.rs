@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 use super::determined::Yardstick;
 use super::gram::{Gram, Triangle};
 use super::optimizer::{self, Minimum, Termination};
-use super::pass;
+use super::pass::Forces;
 use super::problem::{Comparison, Loss, Member, Problem};
 use super::selection::Standing;
 use super::vector::{Coordinate, Parameter, with};
@@ -155,18 +155,19 @@ fn squares(problem: &Problem<'_>, values: &[Values]) -> f64 {
 
 /// What matters for each cable of a problem.
 fn yardsticks(problem: &Problem<'_>, values: &[Values]) -> Vec<Yardstick> {
-    let of = |(member, values): (&Member<'_>, &Values)| {
+    let forces = problem.forces(values).unwrap_or_default();
+    let of = |((member, values), forces): ((&Member<'_>, &Values), &Forces)| {
+        let gain = member.record.params.frictionless_gain();
         let (mut friction, mut tension) = (Deviation::default(), Deviation::default());
-        pass::run_plain(&member.record, values, |_, row, forces| {
-            if row.is_sound() {
-                friction.add(forces.friction_n);
-                tension.add(forces.frictionless_n);
-            }
-        });
+        for (cycle, row) in member.record.rows.iter().enumerate().filter(|(_, row)| row.is_sound()) {
+            let frictionless_n = row.signals.sensor_force_n * gain;
+            friction.add(forces.at(cycle).0 - values[OFFSET] - frictionless_n);
+            tension.add(frictionless_n);
+        }
         let [friction_n, tension_n] = [friction, tension].map(|force| force.rms().unwrap_or(0.0));
         Yardstick::new(friction_n, tension_n, member.record.params.pulley_count())
     };
-    problem.members.iter().zip(values).map(of).collect()
+    problem.members.iter().zip(values).zip(&forces).map(of).collect()
 }
 
 /// What a problem varies.
@@ -189,7 +190,7 @@ fn hold(problem: &mut Problem<'_>, unknown: Unknown, values: &mut [Values], give
 }
 
 /// The minimum from a start.
-fn search(problem: &Problem<'_>, start: &[Values], cycle_s: f64) -> (Vec<Values>, Minimum) {
+pub(super) fn search(problem: &Problem<'_>, start: &[Values], cycle_s: f64) -> (Vec<Values>, Minimum) {
     let unknowns = unknowns(problem);
     let coordinates: Vec<Coordinate> =
         unknowns.iter().map(|unknown| Coordinate::of(&unknown.parameter, cycle_s)).collect();

@@ -5,11 +5,15 @@
 //! - σ: the sum of squares is compared over four orders of magnitude of the presliding distance; every valley of it is a
 //!   start.
 
+use std::ops::Range;
+
 use fric_core::parameters::{MU, NO_PRESLIDING_N_PER_M, OFFSET, SIGMA, VISCOUS, Values};
 use nalgebra::DMatrix;
 
-use super::problem::{Member, Problem};
+use super::gram::Gram;
+use super::problem::{Comparison, Member, Problem};
 use super::record::Row;
+use super::solve::search;
 use super::vector::{Coordinate, Parameter, with};
 
 /// μ about which friction is linearised.
@@ -22,11 +26,41 @@ const CLOSER: [f64; 4] = [0.56, 0.75, 1.33, 1.78];
 const NOT_SLIDING_PERCENT: usize = 60;
 /// A pulley's viscous friction at this speed is no more than the sensor force.
 const FAST_M_PER_S: f64 = 1.0;
+/// Way since the last reversal in which a cable may preslide, m.
+const PRESLIDING_M: Range<f64> = 1e-5..1e-2;
+/// Cycles that are enough for a linear step.
+const ENOUGH_SLIDING: usize = 4096;
+/// Cycles over which σ is looked for.
+const STRETCH: usize = 8192;
 /// A valley whose sum of squares is above this multiple of the least is no start.
 const SHALLOW: f64 = 1.5;
 
 /// Values for each cable to start from; the most promising first.
 pub fn starts(problem: &Problem<'_>, given: &[Values], cycle_s: f64) -> Vec<Vec<Values>> {
+    let coarse = valleys(problem, given, cycle_s);
+    let Some(stretch) = stretch_of(problem) else { return coarse };
+    coarse.into_iter().map(|start| search(&stretch, &start, cycle_s).0).collect()
+}
+
+/// μ and σ of a single cable on the stretch where it preslides most: a few evaluations of it bring a start near enough that the
+/// whole log needs fewer. `None` where there is nothing to gain.
+fn stretch_of<'a>(problem: &Problem<'a>) -> Option<Problem<'a>> {
+    let (Comparison::Forces, [member]) = (&problem.comparison, problem.members.as_slice()) else { return None };
+    let cycles = most_presliding(problem);
+    let mut used = problem.used.get(cycles.clone())?.to_vec();
+    used.iter_mut().take(cycles.len() / 8).for_each(|used| *used = false);
+    let short = cycles.len() * 4 < problem.used.len() && used.contains(&true);
+    let free: Vec<Parameter> =
+        member.free.iter().copied().filter(|parameter| [MU, SIGMA].contains(&parameter.place())).collect();
+    short.then(|| Problem {
+        members: vec![Member { record: member.record.stretch(&cycles), free }],
+        used,
+        ..problem.clone()
+    })
+}
+
+/// The valleys of the sum of squares over the presliding distance; the deepest first.
+fn valleys(problem: &Problem<'_>, given: &[Values], cycle_s: f64) -> Vec<Vec<Values>> {
     let sliding = slide(problem, given, cycle_s);
     if !problem.members.iter().any(|member| varies(member, SIGMA)) {
         return vec![sliding];
@@ -39,9 +73,10 @@ pub fn starts(problem: &Problem<'_>, given: &[Values], cycle_s: f64) -> Vec<Vec<
         };
         problem.members.iter().zip(&sliding).map(sigma_of).collect()
     };
+    let stretch = most_presliding(problem);
     let tried = |distances_m: [f64; 4]| {
         let sigmas = distances_m.map(of_distance);
-        let losses = problem.losses_by_sigma(&sliding, &sigmas);
+        let losses = problem.losses_by_sigma(&sliding, &sigmas, &stretch);
         sigmas.into_iter().zip(losses)
     };
     let candidates: Vec<(Vec<f64>, f64)> = DISTANCES_M.into_iter().flat_map(tried).collect();
@@ -99,8 +134,7 @@ fn slide(problem: &Problem<'_>, given: &[Values], cycle_s: f64) -> Vec<Values> {
         let start = |parameter: &Parameter| if parameter.place() == MU { TYPICAL_MU } else { 0.0 };
         *values = with(values, &member.free, member.free.iter().map(start));
     }
-    let sliding = sliding_samples(problem);
-    for (used, sliding) in reduced.used.iter_mut().zip(&sliding) {
+    for (used, sliding) in reduced.used.iter_mut().zip(sliding_samples(problem)) {
         *used &= sliding;
     }
     let mut slid = linear_step(&reduced, &nothing, cycle_s);
@@ -119,9 +153,31 @@ fn slide(problem: &Problem<'_>, given: &[Values], cycle_s: f64) -> Vec<Values> {
     slid.unwrap_or(nothing)
 }
 
+/// Residuals and Jacobian of sliding samples. Without presliding a cycle does not depend on those before: for a single
+/// cable some of them, evenly spread, are enough.
+fn sliding_gram(problem: &Problem<'_>, values: &[Values]) -> Option<Gram> {
+    let (Comparison::Forces, [member], true) =
+        (&problem.comparison, problem.members.as_slice(), values.iter().all(|of| of[SIGMA] >= NO_PRESLIDING_N_PER_M))
+    else {
+        return problem.gram(values);
+    };
+    let counted = problem.used.iter().filter(|used| **used).count();
+    let used = member.record.rows.iter().zip(&problem.used).filter(|(_, used)| **used).map(|(row, _)| *row);
+    let rows: Vec<Row> = used.step_by(counted / ENOUGH_SLIDING + 1).collect();
+    let reduced = Problem {
+        members: vec![Member { record: member.record.with_rows(&rows), free: member.free.clone() }],
+        comparison: Comparison::Forces,
+        loss: problem.loss,
+        used: vec![true; rows.len()],
+        stop: problem.stop,
+        seat: None,
+    };
+    reduced.gram(values)
+}
+
 /// One step of Gauss and Newton from `values`, into the parameters' ranges; `None` where it leads nowhere.
 fn linear_step(problem: &Problem<'_>, values: &[Values], cycle_s: f64) -> Option<Vec<Values>> {
-    let (matrix, gradient, _) = problem.gram(values)?.normal_equations();
+    let (matrix, gradient, _) = sliding_gram(problem, values)?.normal_equations();
     // A share of the diagonal keeps what the samples do not determine near nothing.
     let damped = &matrix + DMatrix::from_diagonal(&matrix.diagonal().map(|square| 1e-9 * square + f64::MIN_POSITIVE));
     let step = damped.cholesky().map(|factor| factor.solve(&gradient));
@@ -139,23 +195,59 @@ fn linear_step(problem: &Problem<'_>, values: &[Values], cycle_s: f64) -> Option
     Some(stepped)
 }
 
+/// Way of a cable since its last reversal in each cycle, m; 0 where it rests.
+fn ways_since_reversal(rows: &[Row]) -> impl Iterator<Item = f64> {
+    let mut way_m = 0.0_f64;
+    rows.iter().map(move |row| {
+        let step_m = row.signals.displacement_m;
+        way_m = if way_m * step_m < 0.0 { step_m } else { way_m + step_m };
+        if step_m.abs() > 0.0 { way_m.abs() } else { 0.0 }
+    })
+}
+
 /// Samples in which most cables are far from their last reversal.
 fn sliding_samples(problem: &Problem<'_>) -> Vec<bool> {
     let mut counts = vec![0_usize; problem.used.len()];
     for member in &problem.members {
-        let mut way_m = 0.0_f64;
-        let since_reversal = |row: &Row| {
-            let step_m = row.signals.displacement_m;
-            way_m = if way_m * step_m < 0.0 { step_m } else { way_m + step_m };
-            if step_m.abs() > 0.0 { way_m.abs() } else { 0.0 }
-        };
-        let travels_m: Vec<f64> = member.record.rows.iter().map(since_reversal).collect();
-        let mut moving: Vec<f64> = travels_m.iter().copied().filter(|travel_m| *travel_m > 0.0).collect();
-        moving.sort_by(f64::total_cmp);
-        let least_m = moving.get(moving.len() * NOT_SLIDING_PERCENT / 100).copied().unwrap_or(f64::INFINITY);
-        for (count, travel_m) in counts.iter_mut().zip(&travels_m) {
-            *count += usize::from(*travel_m >= least_m);
+        let ways_m: Vec<f64> = ways_since_reversal(member.record.rows).collect();
+        let mut moving: Vec<f64> = ways_m.iter().copied().filter(|way_m| *way_m > 0.0).collect();
+        let least = moving.len() * NOT_SLIDING_PERCENT / 100;
+        if least >= moving.len() {
+            continue;
+        }
+        let (_, least_m, _) = moving.select_nth_unstable_by(least, f64::total_cmp);
+        for (count, way_m) in counts.iter_mut().zip(&ways_m) {
+            *count += usize::from(way_m >= least_m);
         }
     }
     counts.into_iter().map(|count| 4 * count >= 3 * problem.members.len()).collect()
+}
+
+/// The stretch of a log in which the cables preslide most: there σ shows.
+fn most_presliding(problem: &Problem<'_>) -> Range<usize> {
+    let mut sums = vec![0_u32; problem.used.len() + 1];
+    for member in &problem.members {
+        for (sum, way_m) in sums.iter_mut().skip(1).zip(ways_since_reversal(member.record.rows)) {
+            *sum += u32::from(PRESLIDING_M.contains(&way_m));
+        }
+    }
+    let mut total = 0_u64;
+    let totals: Vec<u64> = sums
+        .into_iter()
+        .map(|count| {
+            total += u64::from(count);
+            total
+        })
+        .collect();
+    let logs = problem.members.first().into_iter().flat_map(|member| member.record.logs());
+    let stretches = logs.flat_map(|(start, rows)| {
+        let (end, length) = (start + rows.len(), rows.len().min(STRETCH));
+        (start..=end - length).step_by(STRETCH / 8).map(move |from| from..from + length)
+    });
+    let presliding = |cycles: &Range<usize>| {
+        let at = |place: usize| totals.get(place).copied().unwrap_or(0);
+        at(cycles.end) - at(cycles.start)
+    };
+    let most = stretches.reduce(|most, other| if presliding(&other) > presliding(&most) { other } else { most });
+    most.unwrap_or(0..0)
 }

@@ -15,13 +15,13 @@ use fric_core::Wrench;
 use fric_core::parameters::Values;
 use nalgebra::{Matrix6, Vector6};
 
-use super::cables::{cable_fit, leave_out_warm_up, used};
+use super::cables::{cable_fits, leave_out_warm_up, used};
 use super::problem::{Comparison, Loss, Member, Problem};
 use super::record::{CableRecord, Measurements};
-use super::report::{CableFit, WrenchFit};
+use super::report::WrenchFit;
 use super::selection::{self, Standing};
 use super::solve::solve;
-use super::{FitOptions, Progress, pass, start, weight};
+use super::{FitOptions, Progress, start, weight};
 use crate::replay::WrenchErrors;
 
 /// Fits all cables to the outside wrench. Only for a robot of which every cable has an attachment, and for
@@ -53,6 +53,7 @@ pub fn fit_wrench(measurements: &Measurements<'_>, options: &FitOptions, progres
         loss: Loss::Squares,
         used: used(&together(&of_cables)),
         stop: progress.stop_flag(),
+        seat: None,
     };
     let cycle_s = measurements.robot().cycle_s();
     let starts = start::starts(&problem, &given, cycle_s);
@@ -72,38 +73,35 @@ pub fn fit_wrench(measurements: &Measurements<'_>, options: &FitOptions, progres
     problem.loss = Loss::Squares;
     let solution = solve(&mut problem, vec![first.values], &given, cycle_s, options.weighing, &mut standings);
     progress.finish_one();
-    let cables = records.iter().zip(&given).enumerate();
-    let cables: Vec<CableFit> =
-        cables.map(|(index, (record, given))| cable_fit(record, given, &solution, index, &standings)).collect();
-    let [before, after] = wrench_errors(&records, &cables, &platform.structure, &outside);
+    let cables = cable_fits(&problem, &given, &solution, &standings);
+    let [before, after] = wrench_errors(&problem, &solution.values, &platform.structure, &outside);
     WrenchFit { cables, measured, before, after }
 }
 
 /// Deviation of the wrench by the cable forces from the one outside, with frictionless and with compensated forces.
 fn wrench_errors(
-    records: &[CableRecord<'_>],
-    cables: &[CableFit],
+    problem: &Problem<'_>,
+    values: &[Values],
     structure: &[Vector6<f64>],
     outside: &[Vector6<f64>],
 ) -> [WrenchErrors; 2] {
-    let mut sums = [outside.to_vec(), outside.to_vec()];
-    for (index, (record, cable)) in records.iter().zip(cables).enumerate() {
-        pass::run_plain(record, &cable.values, |place, _, forces| {
-            let Some(column) = structure.get(place * records.len() + index) else { return };
-            for (sums, force_n) in sums.iter_mut().zip([forces.frictionless_n, forces.platform_force_n]) {
-                if let Some(sum) = sums.get_mut(place) {
-                    *sum += column * force_n;
-                }
-            }
-        });
-    }
-    sums.map(|sums| {
-        let mut errors = WrenchErrors::default();
-        for sum in &sums {
+    let forces = problem.forces(values).unwrap_or_default();
+    let count = problem.members.len();
+    let mut errors = [WrenchErrors::default(), WrenchErrors::default()];
+    for (cycle, outside) in outside.iter().enumerate() {
+        let mut sums = [*outside, *outside];
+        let columns = structure.iter().skip(cycle * count).take(count);
+        for ((member, forces), column) in problem.members.iter().zip(&forces).zip(columns) {
+            let sensor_n = member.record.rows.get(cycle).map_or(f64::NAN, |row| row.signals.sensor_force_n);
+            let frictionless_n = sensor_n * member.record.params.frictionless_gain();
+            sums[0] += column * frictionless_n;
+            sums[1] += column * forces.at(cycle).0;
+        }
+        for (errors, sum) in errors.iter_mut().zip(sums) {
             errors.add(&Wrench { force_n: sum.fixed_rows::<3>(0).into(), torque_nm: sum.fixed_rows::<3>(3).into() });
         }
-        errors
-    })
+    }
+    errors
 }
 
 fn all_of<'a>(records: &[CableRecord<'a>], options: &FitOptions) -> Vec<Member<'a>> {

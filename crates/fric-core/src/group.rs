@@ -1,0 +1,236 @@
+//! Cables without a robot around them, in any number type: one in plain numbers, four in lanes.
+//!
+//! For: identification, which runs the cycle's equations with numbers that carry derivatives along. A cable has the bits that
+//! the [`Compensator`](crate::Compensator) gives it, whatever the type and whichever cables stand beside it. Signals come conditioned ([`condition`](crate::signals::condition)), the wrap of a last
+//! pulley that follows the pose as [`PoseWrap`].
+
+use crate::cable::{Cable, CableForces, CableModel, Features, Pulley, cable_cycle};
+use crate::effects::time_delay::{DELAY, Delay, DelayLine};
+use crate::lanes::LANES;
+use crate::parameters::{VISCOUS, Values};
+use crate::places::{NO_SLIP, PLACES, Places, START_WRAP_FACTOR};
+use crate::platform::Pose;
+use crate::pulley::traction_ratio;
+use crate::robot::CableParams;
+use crate::scalar::Scalar;
+use crate::signals::Conditioned;
+use crate::swivel;
+
+/// What the pose means for the last pulley of a cable.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PoseWrap {
+    /// `2 sin(β/2)` of its wrap.
+    pub wrap_factor: f64,
+    /// `e^{μ_p β}`; beyond [`NO_LIMIT_RATIO`](crate::pulley::NO_LIMIT_RATIO) without a slip limit.
+    pub traction_ratio: f64,
+}
+
+impl PoseWrap {
+    /// Before the first pose: 90°, no slip.
+    pub const START: Self = Self { wrap_factor: START_WRAP_FACTOR, traction_ratio: NO_SLIP };
+
+    /// The wrap at a pose; `None` for a cable without a pulley that follows it, and where the pose leaves the cable no
+    /// way out of it.
+    #[must_use]
+    pub fn at(params: &CableParams, pose: &Pose) -> Option<Self> {
+        let geometry = params.geometry.as_ref().filter(|_| params.needs_pose())?;
+        let exit = swivel::exit(&geometry.swivel(), geometry.attachment_m(pose).into());
+        let ratio = |traction_mu| traction_ratio(traction_mu, swivel::wrap_rad(exit.cos_sin_wrap));
+        let traction_ratio = params.traction_mu.map_or(NO_SLIP, ratio);
+        exit.reachable.then_some(Self { wrap_factor: exit.wrap_factor, traction_ratio })
+    }
+}
+
+/// As many cables as a `T` has lanes, with their state.
+#[derive(Clone, Debug)]
+pub struct CableGroup<T: Scalar> {
+    model: CableModel<T>,
+    features: Features,
+    delay: Option<Delayed<T>>,
+    state: State<T>,
+}
+
+/// What the delay of set points remembers, lane by lane.
+#[derive(Clone, Debug)]
+struct Delayed<T> {
+    delays: [Delay<T>; LANES],
+    displacement_m: [DelayLine; LANES],
+    speed_m_per_s: [DelayLine; LANES],
+}
+
+#[derive(Clone, Debug)]
+struct State<T: Scalar> {
+    values: Values<T>,
+    wrap_factor: [T; PLACES],
+    has_pulley: [T; PLACES],
+    traction_ratio: [T; PLACES],
+    /// Where the pulley at the last place follows the pose.
+    follows_pose: T::Mask,
+    pose_wrap_factor: T,
+    pose_traction_ratio: T,
+    count: usize,
+    pulley_friction_n: [T; PLACES],
+    lumped_friction_n: T,
+    held_friction_n: T,
+}
+
+/// What a cable of a group is fed in one cycle.
+#[derive(Clone, Copy, Debug)]
+pub struct CableCycle<'a> {
+    /// Its signals.
+    pub signals: &'a Conditioned<f64>,
+    /// Wrap at the last pose there was.
+    pub pose_wrap: PoseWrap,
+}
+
+impl<T: Scalar> CableGroup<T> {
+    /// Cables at rest with `values` in place of their own, one cable a lane; lanes without one repeat the last. A parameter
+    /// that `varies` takes part also at its neutral value, so that its derivative is right there.
+    ///
+    /// Without any cable there is no group: `None`.
+    #[must_use]
+    pub fn new(
+        cables: &[&CableParams],
+        values: &Values<T>,
+        cycle_s: f64,
+        varies: impl Fn(usize) -> bool,
+    ) -> Option<Self> {
+        let last = **cables.last()?;
+        let of_lane = |lane: usize| cables.get(lane).map_or(&last, |params| *params);
+        let count = cables.iter().map(|params| Places::needed(params)).max()?;
+        let places: [Places; LANES] = core::array::from_fn(|lane| Places::new(of_lane(lane), count));
+        let at = |column: fn(&Places) -> &[f64; PLACES]| {
+            core::array::from_fn(|place| T::from_lanes(|lane| column(&places[lane.min(LANES - 1)])[place]))
+        };
+        let features = cables.iter().fold(Features::default(), |features, params| features.with(params));
+        let delay = values[DELAY] / T::splat(cycle_s);
+        let delayed = varies(DELAY) || (0..T::COUNT).any(|lane| values[DELAY].lane(lane) > 0.0);
+        let zero = T::splat(0.0);
+        Some(Self {
+            model: CableModel::new(of_lane, values),
+            features: features.and_varying(&varies),
+            delay: delayed.then(|| Delayed {
+                delays: core::array::from_fn(|lane| Delay::from_cycles(delay, delay.lane(lane))),
+                displacement_m: [DelayLine::EMPTY; LANES],
+                speed_m_per_s: [DelayLine::EMPTY; LANES],
+            }),
+            state: State {
+                values: *values,
+                wrap_factor: at(|places| &places.wrap_factor),
+                has_pulley: at(|places| &places.has_pulley),
+                traction_ratio: at(|places| &places.traction_ratio),
+                follows_pose: zero.lt(T::from_lanes(|lane| f64::from(of_lane(lane).needs_pose()))),
+                pose_wrap_factor: zero,
+                pose_traction_ratio: zero,
+                count,
+                pulley_friction_n: [zero; PLACES],
+                lumped_friction_n: zero,
+                held_friction_n: zero,
+            },
+        })
+    }
+
+    /// One cycle; `cycle` gives what the cable of a lane is fed.
+    #[inline(always)]
+    pub fn step<'a>(&mut self, cycle: impl Fn(usize) -> CableCycle<'a>) -> CableForces<T> {
+        let number = |of: fn(&Conditioned<f64>) -> f64| T::from_lanes(|lane| of(cycle(lane).signals));
+        let (mut displacement_m, mut speed_m_per_s) =
+            (number(|signals| signals.displacement_m), number(|signals| signals.speed_m_per_s));
+        if let Some(delayed) = &mut self.delay {
+            displacement_m = shift(&mut delayed.displacement_m, displacement_m, &delayed.delays);
+            speed_m_per_s = shift(&mut delayed.speed_m_per_s, speed_m_per_s, &delayed.delays);
+        }
+        let mask = |of: fn(&Conditioned<f64>) -> bool| {
+            T::splat(0.0).lt(T::from_lanes(|lane| f64::from(of(cycle(lane).signals))))
+        };
+        let conditioned = Conditioned {
+            sensor_force_n: number(|signals| signals.sensor_force_n),
+            displacement_m,
+            speed_m_per_s,
+            sensor_finite: mask(|signals| signals.sensor_finite),
+            frozen: mask(|signals| signals.frozen),
+            jump: mask(|signals| signals.jump),
+            motion_finite: mask(|signals| signals.motion_finite),
+        };
+        self.state.pose_wrap_factor = T::from_lanes(|lane| cycle(lane).pose_wrap.wrap_factor);
+        self.state.pose_traction_ratio = T::from_lanes(|lane| cycle(lane).pose_wrap.traction_ratio);
+        cable_cycle(&self.model, self.features, &conditioned, &mut self.state)
+    }
+}
+
+/// One cycle of the delay lines of all lanes.
+fn shift<T: Scalar>(lines: &mut [DelayLine; LANES], values: T, delays: &[Delay<T>; LANES]) -> T {
+    let mut ends = [[0.0; 2]; LANES];
+    for ((lane, line), ends) in lines.iter_mut().enumerate().take(T::COUNT).zip(&mut ends) {
+        line.push(values.lane(lane));
+        *ends = delays.get(lane).map_or([0.0; 2], |delay| line.around(delay.cycles));
+    }
+    let [first, ..] = delays;
+    let end = |which: usize| T::from_lanes(|lane| ends.get(lane).map_or(0.0, |ends| ends[which]));
+    let fraction = delays.iter().enumerate().skip(1).take(T::COUNT.saturating_sub(1)).fold(
+        first.fraction,
+        |fraction, (lane, delay)| {
+            let here = T::splat(0.5).lt(T::from_lanes(|other| f64::from(other == lane)));
+            T::select(here, delay.fraction, fraction)
+        },
+    );
+    end(0) + fraction * (end(1) - end(0))
+}
+
+impl<T: Scalar> State<T> {
+    /// What the pose gives at the last place of cables that follow it, else what is fixed.
+    #[inline(always)]
+    fn posed(&self, place: usize, by_pose: T, fixed: &[T; PLACES]) -> T {
+        let fixed = fixed.get(place).copied().unwrap_or(T::splat(0.0));
+        if place + 1 < self.count { fixed } else { T::select(self.follows_pose, by_pose, fixed) }
+    }
+}
+
+impl<T: Scalar> Cable<T> for State<T> {
+    #[inline(always)]
+    fn count(&self) -> usize {
+        self.count
+    }
+    #[inline(always)]
+    fn pulley(&self, place: usize) -> Pulley<T> {
+        let has_pulley = self.has_pulley.get(place).copied().unwrap_or(T::splat(0.0));
+        Pulley {
+            wrap_factor: self.posed(place, self.pose_wrap_factor, &self.wrap_factor),
+            viscous_n_s_per_m: self.values[VISCOUS] * has_pulley,
+        }
+    }
+    #[inline(always)]
+    fn traction_ratio(&self, place: usize) -> T {
+        self.posed(place, self.pose_traction_ratio, &self.traction_ratio)
+    }
+    #[inline(always)]
+    fn effect(&self, place: usize) -> T {
+        self.values[place]
+    }
+    #[inline(always)]
+    fn pulley_friction_n(&self, place: usize) -> T {
+        self.pulley_friction_n.get(place).copied().unwrap_or(T::splat(0.0))
+    }
+    #[inline(always)]
+    fn set_pulley_friction_n(&mut self, place: usize, friction_n: T) {
+        if let Some(stored_n) = self.pulley_friction_n.get_mut(place) {
+            *stored_n = friction_n;
+        }
+    }
+    #[inline(always)]
+    fn lumped_friction_n(&self) -> T {
+        self.lumped_friction_n
+    }
+    #[inline(always)]
+    fn set_lumped_friction_n(&mut self, friction_n: T) {
+        self.lumped_friction_n = friction_n;
+    }
+    #[inline(always)]
+    fn held_friction_n(&self) -> T {
+        self.held_friction_n
+    }
+    #[inline(always)]
+    fn set_held_friction_n(&mut self, friction_n: T) {
+        self.held_friction_n = friction_n;
+    }
+}
