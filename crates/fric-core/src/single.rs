@@ -82,7 +82,7 @@ impl<T: Scalar> SingleCable<T> {
     ) -> Self {
         let count = Places::needed(params);
         let follows_pose = params.wraps.iter().take(params.pulley_count).any(|wrap| *wrap == Wrap::Pose);
-        let features = Features::default().with(params).and_varying(&varies);
+        let features = Features::default().with(params).and_acting(|place| plain(values[place])).and_varying(&varies);
         let delay_cycles = values[DELAY] / T::splat(cycle_s);
         let delayed = plain(values[DELAY]) > 0.0 || varies(DELAY);
         let zero = T::splat(0.0);

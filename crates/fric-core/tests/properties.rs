@@ -1,5 +1,6 @@
 //! What holds for every input there is.
 
+use fric_core::effects::EffectParams;
 use fric_core::robot::{CableOptions, FrictionOptions, MonitorOptions, Presliding, PulleyOptions};
 use fric_core::signals::{RawSignals, SignalState, condition};
 use fric_core::{
@@ -369,10 +370,17 @@ fn one_cable_by_itself_has_the_compensators_bits() {
         let monitor = MonitorOptions { frozen_cycles: 3, length_jump_m: 0.01, length_noise_m: 1e-6 };
         let mut compensator = compensator::<3>(&options, monitor);
         let params: Vec<_> = options.iter().map(|options| CableParams::new(options).unwrap()).collect();
-        let mut alone: Vec<_> = params
+        // A cable that has the numbers from elsewhere, as a fit gives them to it: its own friction does not show.
+        let frictionless = |options: &CableOptions<'static>| {
+            let (friction, effects) = (FrictionOptions::default(), EffectParams::NEUTRAL);
+            CableParams::new(&CableOptions { friction, effects, ..*options }).unwrap()
+        };
+        let mut alone: Vec<_> = options
             .iter()
-            .map(|params| {
-                let cable = SingleCable::new(params, &params.values(), 0.001, |number: f64| number, |_| false);
+            .map(frictionless)
+            .zip(&params)
+            .map(|(frictionless, params)| {
+                let cable = SingleCable::new(&frictionless, &params.values(), 0.001, |number: f64| number, |_| false);
                 (cable, SignalState::<f64>::start(), PoseWrap::START)
             })
             .collect();
