@@ -1,6 +1,7 @@
 //! `--help`: each command has an example, and the example runs.
 
-use super::support::{Place, example_robot, short_log};
+use super::fit::platform_log;
+use super::support::{Place, example_robot};
 
 /// The commands that the program names.
 fn commands(place: &Place) -> Vec<String> {
@@ -24,10 +25,10 @@ fn each_command_has_an_example_that_runs() {
     let place = Place::empty();
     // What stands in examples/, but short, to keep the tests so.
     std::fs::create_dir(place.path("examples")).unwrap();
-    place.write("examples/mini-ipanema.mcap", short_log());
+    place.write("examples/mini-ipanema.mcap", platform_log());
     place.write("examples/mini-ipanema.toml", example_robot());
     let commands = commands(&place);
-    for expected in ["replay", "info", "simulate"] {
+    for expected in ["replay", "fit", "info", "simulate"] {
         assert!(commands.iter().any(|command| command == expected), "{commands:?}");
     }
     for command in commands {
@@ -43,7 +44,8 @@ fn each_command_has_an_example_that_runs() {
             place.run(&arguments).succeeds();
         }
     }
-    assert_eq!(place.names(), ["compensated.mcap", "examples", "simulated.mcap"]);
+    let names = ["by-wrench.toml", "compensated.mcap", "examples", "fitted.toml", "simulated.mcap"];
+    assert_eq!(place.names(), names);
 }
 
 #[test]

@@ -2,8 +2,8 @@
 
 use serde_json::Value;
 
-use super::logs::without;
-use super::support::{Place, short_log};
+use super::logs::{without, without_reference_of};
+use super::support::{Place, example_robot, short_log};
 
 /// Table and JSON of a log without some topics.
 fn info(topics: &[&str]) -> (String, Value) {
@@ -36,7 +36,7 @@ fn step((table, json): &(String, Value), name: &str) -> (bool, String) {
 #[test]
 fn a_complete_log_allows_everything() {
     let all = info(&[]);
-    for name in ["replay: forces", "replay: wrench", "replay: errors", "fit", "discover"] {
+    for name in ["replay: forces", "replay: wrench", "replay: errors", "fit: forces", "fit: wrench"] {
         assert_eq!(step(&all, name), (true, String::new()), "{name}");
     }
     let (table, json) = &all;
@@ -67,12 +67,13 @@ fn a_complete_log_allows_everything() {
 }
 
 #[test]
-fn without_a_reference_there_is_no_fit() {
+fn without_a_reference_the_wrench_is_left_to_fit() {
     let found = info(&["/reference_forces"]);
-    for name in ["replay: errors", "fit", "discover"] {
+    for name in ["replay: errors", "fit: forces"] {
         let (possible, reasons) = step(&found, name);
         assert!(!possible && reasons.contains("no reference"), "{name}: {reasons}");
     }
+    assert_eq!(step(&found, "fit: wrench"), (true, String::new()));
     assert!(step(&found, "replay: forces").0 && step(&found, "replay: wrench").0);
     assert!(found.0.lines().any(|line| line.contains("/reference_forces") && line.contains("not in the log")));
 }
@@ -85,13 +86,46 @@ fn without_a_pose_there_is_no_wrench() {
     // The forces are less exact then, which is said.
     let (possible, reasons) = step(&found, "replay: forces");
     assert!(possible && reasons.contains("no pose"), "{reasons}");
-    assert!(step(&found, "fit").0);
+    // A fit takes no wrap for another.
+    for name in ["fit: forces", "fit: wrench"] {
+        let (possible, reasons) = step(&found, name);
+        assert!(!possible && reasons.contains("no pose on /platform_pose"), "{name}: {reasons}");
+    }
+}
+
+#[test]
+fn without_a_wrench_the_mass_is_left_to_fit() {
+    let found = info(&["/platform_wrench"]);
+    let (possible, reasons) = step(&found, "fit: wrench");
+    assert!(possible && reasons.contains("no wrench on /platform_wrench") && reasons.contains("0.41 kg"), "{reasons}");
+    assert_eq!(step(&found, "fit: forces"), (true, String::new()));
+    let place = Place::empty();
+    place.write("log.mcap", without(short_log(), &["/platform_wrench", "/reference_forces"]));
+    place.write("light.toml", example_robot().replace("mass_kg = 0.41", ""));
+    place.run(&["info", "log.mcap", "--model", "light.toml", "--json", "j.json"]).succeeds();
+    let steps = place.json("j.json")["steps"].clone();
+    let fits: Vec<&Value> =
+        steps.as_array().unwrap().iter().filter(|step| step["step"].as_str().unwrap().starts_with("fit")).collect();
+    assert_eq!(fits.len(), 2);
+    assert!(fits.iter().all(|step| step["possible"] == false), "{steps}");
+    assert!(fits[1]["reasons"].to_string().contains("no mass"), "{steps}");
+}
+
+#[test]
+fn the_cables_that_cannot_be_fitted_are_named() {
+    let place = Place::empty();
+    place.write("log.mcap", without_reference_of(short_log(), "cable3"));
+    place.run(&["info", "log.mcap", "--json", "j.json"]).succeeds();
+    let json = place.json("j.json");
+    let step = json["steps"].as_array().unwrap().iter().find(|step| step["step"] == "fit: forces").unwrap();
+    assert_eq!(step["possible"], true);
+    assert_eq!(step["reasons"], serde_json::json!(["the log has no reference forces on /reference_forces of cable3"]));
 }
 
 #[test]
 fn without_cables_there_is_nothing() {
     let found = info(&["/cable_states"]);
-    for name in ["replay: forces", "replay: wrench", "replay: errors", "fit", "discover"] {
+    for name in ["replay: forces", "replay: wrench", "replay: errors", "fit: forces", "fit: wrench"] {
         let (possible, reasons) = step(&found, name);
         assert!(!possible && !reasons.is_empty(), "{name}: {reasons}");
     }

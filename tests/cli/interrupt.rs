@@ -9,6 +9,11 @@ use super::support::{Place, root};
 
 /// Starts the program, sends it the signal once its output is in the making, and looks at what is left.
 fn interrupt(arguments: &[&str], signal: &str) {
+    interrupt_after(arguments, signal, Duration::ZERO);
+}
+
+/// The same some time later.
+fn interrupt_after(arguments: &[&str], signal: &str, delay: Duration) {
     let place = Place::empty();
     place.write("robot.toml", super::support::example_robot());
     let mut child = place.command(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
@@ -18,6 +23,7 @@ fn interrupt(arguments: &[&str], signal: &str) {
         assert!(child.try_wait().unwrap().is_none(), "ended before it could be interrupted");
         sleep(Duration::from_millis(2));
     }
+    sleep(delay);
     let kill = Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
     assert!(kill.success());
     let output = child.wait_with_output().unwrap();
@@ -42,4 +48,21 @@ fn an_interrupted_replay_leaves_nothing() {
         let outputs = ["-o", "out.mcap", "--report", "out.html", "--json", "out.json"];
         interrupt(&[&["replay", log.to_str().unwrap()], &outputs[..]].concat(), signal);
     }
+}
+
+#[test]
+fn an_interrupted_fit_leaves_nothing() {
+    let log = root().join("examples/mini-ipanema.mcap");
+    for signal in ["-INT", "-TERM"] {
+        // At once: it reads the log.
+        interrupt(&["fit", log.to_str().unwrap(), "-o", "out.toml", "--json", "out.json"], signal);
+    }
+}
+
+/// A second after the beginning it has read the log, and searches for several more.
+#[test]
+fn a_fit_interrupted_in_its_search_leaves_nothing() {
+    let log = root().join("examples/mini-ipanema.mcap");
+    let arguments = ["fit", log.to_str().unwrap(), "--reference", "wrench", "-o", "out.toml", "--json", "out.json"];
+    interrupt_after(&arguments, "-INT", Duration::from_secs(1));
 }

@@ -49,6 +49,23 @@ pub fn attached_robot(log: &[u8]) -> String {
 
 /// The log again, stored in another way, with this robot file and the messages wanted by topic and time.
 pub fn rewrite(log: &[u8], storage: Storage, robot: Option<&str>, wants: impl Fn(&str, u64) -> bool) -> Vec<u8> {
+    rewrite_data(log, storage, robot, |topic, time, data| wants(topic, time).then(|| data.to_vec()))
+}
+
+/// The log with other bytes in the messages of a topic.
+pub fn with_data(log: &[u8], topic: &str, change: impl Fn(&[u8]) -> Vec<u8>) -> Vec<u8> {
+    rewrite_data(log, Storage::Zstd, Some(&attached_robot(log)), |of, _, data| {
+        Some(if of == topic { change(data) } else { data.to_vec() })
+    })
+}
+
+/// The log again with what is made of each message's bytes.
+fn rewrite_data(
+    log: &[u8],
+    storage: Storage,
+    robot: Option<&str>,
+    data_of: impl Fn(&str, u64, &[u8]) -> Option<Vec<u8>>,
+) -> Vec<u8> {
     let mut writer = WriteOptions::new()
         .compression((storage == Storage::Zstd).then_some(Compression::Zstd))
         .compression_threads(0)
@@ -63,16 +80,14 @@ pub fn rewrite(log: &[u8], storage: Storage, robot: Option<&str>, wants: impl Fn
     }
     for message in MessageStream::new(log).unwrap().map(Result::unwrap) {
         let channel = &message.channel;
-        if !wants(&channel.topic, message.log_time) {
-            continue;
-        }
+        let Some(data) = data_of(&channel.topic, message.log_time, &message.data) else { continue };
         let schema = channel.schema.as_ref().unwrap();
         let schema = writer.add_schema(&schema.name, &schema.encoding, &schema.data).unwrap();
         let channel_id =
             writer.add_channel(schema, &channel.topic, &channel.message_encoding, &channel.metadata).unwrap();
         let (log_time, publish_time) = (message.log_time, message.publish_time);
         let header = MessageHeader { channel_id, sequence: message.sequence, log_time, publish_time };
-        writer.write_to_known_channel(&header, &message.data).unwrap();
+        writer.write_to_known_channel(&header, &data).unwrap();
     }
     writer.finish().unwrap();
     writer.into_inner().into_inner()
@@ -81,4 +96,14 @@ pub fn rewrite(log: &[u8], storage: Storage, robot: Option<&str>, wants: impl Fn
 /// The log without the topics named.
 pub fn without(log: &[u8], topics: &[&str]) -> Vec<u8> {
     rewrite(log, Storage::Zstd, Some(&attached_robot(log)), |topic, _| !topics.contains(&topic))
+}
+
+/// The log with the reference of one cable under another name of the same length.
+pub fn without_reference_of(log: &[u8], cable: &str) -> Vec<u8> {
+    with_data(log, "/reference_forces", |data| {
+        let at = data.windows(cable.len()).position(|window| window == cable.as_bytes()).unwrap();
+        let mut data = data.to_vec();
+        data[at..at + cable.len()].fill(b'x');
+        data
+    })
 }

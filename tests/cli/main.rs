@@ -10,6 +10,8 @@ mod cdr;
 mod closed_stdout;
 mod command_line;
 mod damage;
+mod fit;
+mod fit_inputs;
 mod help;
 mod info;
 mod inputs;

@@ -14,7 +14,8 @@ fn keys(value: &Value, path: &str, all: &mut Vec<String>) {
     }
 }
 
-fn shape(value: &Value) -> Vec<String> {
+/// The same, each once.
+pub fn shape(value: &Value) -> Vec<String> {
     let mut all = Vec::new();
     keys(value, "", &mut all);
     all.sort();

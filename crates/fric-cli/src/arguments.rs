@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-/// Friction compensation for cable-driven robots: replay logs, look into them, simulate them.
+/// Friction compensation for cable-driven robots: identify friction, replay logs, look into them, simulate them.
 #[derive(Debug, Parser)]
 #[command(version, arg_required_else_help = true)]
 pub struct Arguments {
@@ -19,8 +19,8 @@ pub enum Command {
     #[command(after_help = "Example:\n  fric-cli replay examples/mini-ipanema.mcap -o compensated.mcap")]
     Replay(ReplayArguments),
     /// Identify the friction parameters from the log of an identification run
-    #[command(after_help = "Example:\n  fric-cli fit examples/mini-ipanema.mcap -o fitted.toml\n  \
-                      fric-cli fit run.mcap --model robot.toml --reference wrench -o fitted.toml")]
+    #[command(after_help = "Examples:\n  fric-cli fit examples/mini-ipanema.mcap -o fitted.toml\n  \
+                      fric-cli fit examples/mini-ipanema.mcap --reference wrench -o by-wrench.toml")]
     Fit(FitArguments),
     /// Show what is in a log, what each signal maps to, and what is missing for which step
     #[command(after_help = "Example:\n  fric-cli info examples/mini-ipanema.mcap")]
@@ -58,16 +58,20 @@ pub struct ReplayArguments {
 
 #[derive(Debug, Args)]
 pub struct FitArguments {
-    #[command(flatten)]
-    pub log: LogArguments,
+    /// MCAP log; several are runs of the same robot, identified together
+    #[arg(required = true, value_name = "LOG")]
+    pub logs: Vec<PathBuf>,
+    /// Robot file; without it the one attached to the first log that has one
+    #[arg(long, value_name = "M.toml")]
+    pub model: Option<PathBuf>,
     /// Write the robot file with the identified values to this file
-    #[arg(short, long, value_name = "FITTED.toml", required = true)]
+    #[arg(short, long, value_name = "FITTED.toml", required = true, value_parser = a_file())]
     pub output: PathBuf,
     /// What to compare the model with
     #[arg(long, value_name = "WHAT", default_value = "forces")]
     pub reference: ReferenceName,
-    /// Identify these parameters only, such as `mu,sigma_n_per_m,stribeck.ratio` [default: those of `friction`, and of
-    /// the effects that the robot file has]
+    /// Identify these parameters only, such as `mu,sigma_n_per_m,stribeck.ratio`; an effect that a cable lacks is added
+    /// [default: those of `friction`, and of the effects that each cable has]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub parameters: Option<Vec<String>>,
     /// Weigh deviations that are far out less (Huber's loss) instead of leaving out what cannot be a measurement

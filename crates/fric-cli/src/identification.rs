@@ -2,13 +2,14 @@
 
 use std::fmt::Write as _;
 
-use fric_core::parameters::{MU, NO_PRESLIDING_N_PER_M, OFFSET, SIGMA, VISCOUS};
+use fric_core::effects;
+use fric_core::parameters::{FRICTION_COUNT, MU, NO_PRESLIDING_N_PER_M, OFFSET, SIGMA, VISCOUS};
 use fric_core::robot::file::RobotFile;
 use fric_lab::fit::{CableFit, Parameter, WrenchFit};
 use fric_lab::replay::WrenchErrors;
 
 use crate::commands::fit::Fits;
-use crate::output::table;
+use crate::output::{table, wrench_table};
 use crate::result::{FitCableResult, FitResult, LeftOut, Numbers, WrenchError, WrenchResult, force_error};
 
 /// The result for machines.
@@ -65,27 +66,79 @@ fn cable_result(name: &str, fit: &CableFit) -> FitCableResult {
 
 /// The result for people: \[P\] table I, how sure it is, and what the log does not tell.
 pub fn describe(result: &FitResult) -> String {
-    let mut text = match result.reference {
-        "forces" => format!("{}: identified from the forces at the platform\n\n", result.robot),
-        "wrench" => format!("{}: identified from the outside wrench, all cables at once\n\n", result.robot),
-        _ => format!("{}: identified from the platform's mass and pose, all cables at once\n\n", result.robot),
+    let from = match result.reference {
+        "forces" => "the cable forces at the platform",
+        "wrench" => "the wrench on the platform, all cables at once",
+        _ => "the platform's mass and pose, all cables at once",
     };
+    let mut text = format!("{}: friction identified from {from}\n\n", result.robot);
     text += &paper_table(result);
-    text += "\nstandard errors\n\n";
+    text += &legend(result);
+    text += "\nstandard errors; ± twice as much holds the value with 95 %\n\n";
     text += &error_table(result);
-    if let Some(WrenchResult { before, after }) = &result.wrench {
-        let _ = writeln!(
-            text,
-            "\nwrench rms: {:.4} N and {:.4} Nm before, {:.4} N and {:.4} Nm after",
-            before.force_rms_n, before.torque_rms_nm, after.force_rms_n, after.torque_rms_nm
-        );
+    for effect in effects::CATALOGUE {
+        text += &effect_table(result, effect.kind);
+    }
+    text += "\nsamples\n\n";
+    text += &sample_table(result);
+    if let Some(wrench) = &result.wrench {
+        text += "\n";
+        text += &wrench_table(wrench);
     }
     text += &undetermined(result);
     text
 }
 
-fn number(value: Option<f64>, digits: usize) -> String {
-    value.map_or_else(|| "–".to_owned(), |value| format!("{value:.digits$}"))
+/// A number, without the sign of nothing.
+fn number(value: f64, digits: usize) -> String {
+    let text = format!("{value:.digits$}");
+    match text.strip_prefix('-') {
+        Some(magnitude) if magnitude.chars().all(|digit| matches!(digit, '0' | '.')) => magnitude.to_owned(),
+        _ => text,
+    }
+}
+
+/// A cell that may be empty.
+fn cell(text: Option<String>) -> String {
+    text.unwrap_or_else(|| "–".to_owned())
+}
+
+/// A parameter as the tables show it: name and unit, factor from its own unit, digits.
+struct Shown {
+    place: usize,
+    symbol: &'static str,
+    unit: &'static str,
+    factor: f64,
+    digits: usize,
+}
+
+/// In the order of [`Parameter::all`], with the units of \[P\] table I.
+const FRICTION: [Shown; FRICTION_COUNT] = [
+    Shown { place: MU, symbol: "μ", unit: "", factor: 1.0, digits: 5 },
+    Shown { place: SIGMA, symbol: "σ", unit: "[N/mm]", factor: 1e-3, digits: 4 },
+    Shown { place: VISCOUS, symbol: "F_pv", unit: "[Ns/m]", factor: 1.0, digits: 4 },
+    Shown { place: OFFSET, symbol: "ε", unit: "[N]", factor: 1.0, digits: 4 },
+];
+
+impl Shown {
+    fn of(&self, numbers: &Numbers) -> Option<f64> {
+        Some(value_of(numbers, self.place)? * self.factor)
+    }
+
+    /// The value; in brackets where it is not identified but that of the robot file.
+    fn value(&self, cable: &FitCableResult) -> String {
+        let text = self.of(&cable.parameters).map(|value| number(value, self.digits));
+        let is_identified = value_of(&cable.standard_errors, self.place).is_some();
+        cell(text.map(|text| if is_identified { text } else { format!("({text})") }))
+    }
+
+    fn identified(&self, cable: &FitCableResult) -> Option<f64> {
+        value_of(&cable.standard_errors, self.place).and_then(|_| self.of(&cable.parameters))
+    }
+
+    fn error(&self, cable: &FitCableResult) -> String {
+        cell(self.of(&cable.standard_errors).map(plain))
+    }
 }
 
 /// The number of a parameter by its place.
@@ -93,102 +146,191 @@ fn value_of(numbers: &Numbers, place: usize) -> Option<f64> {
     numbers.get(&Parameter::all().nth(place)?.to_string())
 }
 
-/// A column of a table: header, digits, value.
-type Column = (&'static str, usize, fn(&FitCableResult) -> Option<f64>);
+/// The mean of the numbers there are.
+fn mean(numbers: impl Iterator<Item = f64>) -> Option<f64> {
+    let (sum, count) = numbers.fold((0.0, 0.0), |(sum, count), number| (sum + number, count + 1.0));
+    (count > 0.0).then(|| sum / count)
+}
 
-/// Columns of \[P\] table I, with ε and the root mean square beside them; those that nothing is known of are left out.
-fn paper_table(result: &FitResult) -> String {
-    let all: [Column; 8] = [
-        ("μ", 5, |cable| value_of(&cable.parameters, MU)),
-        ("σ [N/mm]", 4, |cable| Some(value_of(&cable.parameters, SIGMA)? * 1e-3)),
-        ("F_pv [Ns/m]", 4, |cable| value_of(&cable.parameters, VISCOUS)),
-        ("ε [N]", 4, |cable| value_of(&cable.parameters, OFFSET)),
-        ("|F_ref − F_s| [N]", 4, |cable| Some(cable.before.as_ref()?.mae_n)),
-        ("|F_ref − F_s − F_d| [N]", 4, |cable| Some(cable.after.as_ref()?.mae_n)),
-        ("F_ref [N]", 2, |cable| cable.mean_reference_n),
-        ("rms after [N]", 4, |cable| Some(cable.after.as_ref()?.rms_n)),
-    ];
-    let known = |(.., value): &&Column| result.cables.iter().any(|cable| value(cable).is_some());
-    let columns: Vec<&Column> = all.iter().filter(known).collect();
-    let mut rows: Vec<Vec<String>> = Vec::new();
-    for cable in &result.cables {
-        let cells = columns.iter().map(|(_, digits, value)| number(value(cable), *digits));
-        rows.push(std::iter::once(cable.name.clone()).chain(cells).collect());
+/// A column of a table: name and unit, a cell for each cable, and one below them.
+struct Column {
+    header: String,
+    cells: Vec<String>,
+    last: String,
+}
+
+impl Column {
+    fn of_parameter(result: &FitResult, shown: &Shown) -> Option<Self> {
+        let cables = &result.cables;
+        let mean = mean(cables.iter().filter_map(|cable| shown.identified(cable)));
+        cables.iter().any(|cable| shown.of(&cable.parameters).is_some()).then(|| Self {
+            header: format!("{}\n{}", shown.symbol, shown.unit),
+            cells: cables.iter().map(|cable| shown.value(cable)).collect(),
+            last: cell(mean.map(|mean| number(mean, shown.digits))),
+        })
     }
-    if result.cables.len() > 1 {
-        let mean = |value: fn(&FitCableResult) -> Option<f64>| {
-            let (sum, count) =
-                result.cables.iter().filter_map(value).fold((0.0, 0.0), |(sum, count), one| (sum + one, count + 1.0));
-            (count > 0.0).then(|| sum / count)
-        };
-        let cells = columns.iter().map(|(_, digits, value)| number(mean(*value), *digits));
-        rows.push(std::iter::once("mean".to_owned()).chain(cells).collect());
+
+    fn of_parameter_error(result: &FitResult, shown: &Shown) -> Option<Self> {
+        let cables = &result.cables;
+        cables.iter().any(|cable| shown.of(&cable.standard_errors).is_some()).then(|| Self {
+            header: format!("± {}\n{}", shown.symbol, shown.unit),
+            cells: cables.iter().map(|cable| shown.error(cable)).collect(),
+            last: String::new(),
+        })
     }
-    let header: Vec<&str> = std::iter::once("cable").chain(columns.iter().map(|(header, ..)| *header)).collect();
+
+    fn of_forces(
+        result: &FitResult,
+        header: &str,
+        digits: usize,
+        value: impl Fn(&FitCableResult) -> Option<f64>,
+    ) -> Option<Self> {
+        let values: Vec<Option<f64>> = result.cables.iter().map(value).collect();
+        let mean = mean(values.iter().flatten().copied())?;
+        let shown = |value: &Option<f64>| cell(value.map(|value| number(value, digits)));
+        let last = number(mean, digits);
+        Some(Self { header: format!("{header}\n[N]"), cells: values.iter().map(shown).collect(), last })
+    }
+}
+
+/// The cables with these columns; the row below them is `last`, where it has a name.
+fn table_of(result: &FitResult, title: &str, columns: &[Column], last: Option<&str>) -> String {
+    let header: Vec<&str> = std::iter::once(title).chain(columns.iter().map(|column| column.header.as_str())).collect();
+    let row = |place: usize, name: &str| -> Vec<String> {
+        let cells = columns.iter().map(|column| column.cells.get(place).unwrap_or(&column.last).clone());
+        std::iter::once(name.to_owned()).chain(cells).collect()
+    };
+    let mut rows: Vec<Vec<String>> =
+        result.cables.iter().enumerate().map(|(place, cable)| row(place, &cable.name)).collect();
+    rows.extend(last.map(|name| row(usize::MAX, name)));
     table(&header, 1, &rows)
 }
 
-/// How sure each value is, and from how many samples.
-fn error_table(result: &FitResult) -> String {
-    let fitted: Vec<Parameter> = Parameter::all()
-        .filter(|p| result.cables.iter().any(|c| value_of(&c.standard_errors, p.place()).is_some()))
-        .collect();
-    let names: Vec<String> = fitted.iter().map(|parameter| format!("± {parameter}")).collect();
-    let mut header = vec!["cable"];
-    header.extend(names.iter().map(String::as_str));
-    header.extend(["samples", "left out", "search"]);
-    let row = |cable: &FitCableResult| {
-        let mut row = vec![cable.name.clone()];
-        row.extend(fitted.iter().map(|parameter| {
-            value_of(&cable.standard_errors, parameter.place()).map_or_else(|| "–".to_owned(), plain)
-        }));
-        let LeftOut { flagged, without_reference, warm_up, outliers } = cable.left_out;
-        let reasons = [
-            (flagged, "flagged"),
-            (without_reference, "without reference"),
-            (warm_up, "warm-up"),
-            (outliers, "outliers"),
-        ];
-        let said = reasons.into_iter().filter(|(count, _)| *count > 0);
-        let left_out: Vec<String> = said.map(|(count, reason)| format!("{count} {reason}")).collect();
-        row.extend([
-            cable.samples.to_string(),
-            left_out.join(", "),
-            format!("{} after {} evaluations", cable.termination, cable.evaluations),
-        ]);
-        row
+/// \[P\] table I; columns that nothing is known of are left out.
+fn paper_table(result: &FitResult) -> String {
+    let parameters = FRICTION.iter().filter(|shown| shown.place != OFFSET);
+    let mut columns: Vec<Column> = parameters.filter_map(|shown| Column::of_parameter(result, shown)).collect();
+    columns.extend(Column::of_forces(result, "|F_ref − F_s|", 4, |cable| Some(cable.before.as_ref()?.mae_n)));
+    columns.extend(Column::of_forces(result, "|F_ref − F_s − F_d|", 4, |cable| Some(cable.after.as_ref()?.mae_n)));
+    columns.extend(Column::of_forces(result, "F_ref", 2, |cable| cable.mean_reference_n));
+    table_of(result, "cable", &columns, (result.cables.len() > 1).then_some("mean"))
+}
+
+/// What the columns are.
+fn legend(result: &FitResult) -> String {
+    let mut text = String::new();
+    if result.cables.iter().any(|cable| cable.before.is_some()) {
+        text += "\nMeans over all samples: |F_ref − F_s| is the error before compensation, as if\nnothing rubbed; \
+                 |F_ref − F_s − F_d| is the error after it, with these values.\n";
+    }
+    let is_kept = |cable: &FitCableResult| {
+        let friction =
+            || cable.parameters.0.iter().filter(|(name, _)| Parameter::named(name).is_some_and(|p| p.is_friction()));
+        friction().any(|(name, _)| cable.standard_errors.get(name).is_none())
     };
-    let rows: Vec<Vec<String>> = result.cables.iter().map(row).collect();
+    if result.cables.iter().any(is_kept) {
+        text += "\n(…) is not identified but kept from the robot file, and left out of the mean.\n";
+    }
+    text
+}
+
+/// How sure each value is, and what \[P\] table I leaves out.
+fn error_table(result: &FitResult) -> String {
+    let mut columns = Vec::new();
+    for shown in &FRICTION {
+        columns.extend((shown.place == OFFSET).then(|| Column::of_parameter(result, shown)).flatten());
+        columns.extend(Column::of_parameter_error(result, shown));
+    }
+    columns.extend(Column::of_forces(result, "rms before", 4, |cable| Some(cable.before.as_ref()?.rms_n)));
+    columns.extend(Column::of_forces(result, "rms after", 4, |cable| Some(cable.after.as_ref()?.rms_n)));
+    table_of(result, "cable", &columns, None)
+}
+
+/// The parameters of an effect with their standard errors; nothing for an effect that no cable has.
+fn effect_table(result: &FitResult, kind: &str) -> String {
+    let mut columns = Vec::new();
+    for parameter in Parameter::all().filter(|parameter| parameter.effect() == Some(kind)) {
+        let name = parameter.to_string();
+        let value = |cable: &FitCableResult| {
+            let value = cable.parameters.get(&name)?;
+            // As many digits as the error, which has two.
+            let error = cable.standard_errors.get(&name);
+            Some(error.map_or_else(|| format!("({value})"), |error| number(value, digits_of(error))))
+        };
+        let header = parameter.row().key.to_owned();
+        let cells: Vec<Option<String>> = result.cables.iter().map(value).collect();
+        if cells.iter().any(Option::is_some) {
+            let error = |cable: &FitCableResult| cell(cable.standard_errors.get(&name).map(plain));
+            columns.push(Column { header, cells: cells.into_iter().map(cell).collect(), last: String::new() });
+            let cells = result.cables.iter().map(error).collect();
+            columns.push(Column { header: "±".to_owned(), cells, last: String::new() });
+        }
+    }
+    if columns.is_empty() { String::new() } else { format!("\n{}", table_of(result, kind, &columns, None)) }
+}
+
+/// What the values were learned from; one row where it is the same for all.
+fn sample_table(result: &FitResult) -> String {
+    type Count = fn(&FitCableResult) -> usize;
+    let no_reference = if result.reference == "forces" { "no reference" } else { "no wrench" };
+    let all: [(&str, Count); 6] = [
+        ("used", |cable| cable.samples),
+        ("flagged", |cable| cable.left_out.flagged),
+        (no_reference, |cable| cable.left_out.without_reference),
+        ("warm-up", |cable| cable.left_out.warm_up),
+        ("outliers", |cable| cable.left_out.outliers),
+        ("evaluations", |cable| cable.evaluations),
+    ];
+    let counts: Vec<(&str, Count)> =
+        all.into_iter().filter(|(_, count)| result.cables.iter().any(|cable| count(cable) > 0)).collect();
+    let mut header = vec!["cable"];
+    header.extend(counts.iter().map(|(name, _)| *name));
+    header.push("search");
+    let row = |cable: &FitCableResult| -> Vec<String> {
+        let numbers = counts.iter().map(|(_, count)| count(cable).to_string());
+        numbers.chain([cable.termination.to_owned()]).collect()
+    };
+    let cells: Vec<Vec<String>> = result.cables.iter().map(row).collect();
+    let is_same = cells.len() > 1 && cells.windows(2).all(|pair| pair.first() == pair.last());
+    let names = result.cables.iter().map(|cable| if is_same { "all" } else { cable.name.as_str() });
+    let rows = names.zip(cells).map(|(name, cells)| std::iter::once(name.to_owned()).chain(cells).collect());
+    let rows: Vec<Vec<String>> = rows.take(if is_same { 1 } else { usize::MAX }).collect();
     table(&header, 1, &rows)
+}
+
+/// Digits behind the point that show two of an error.
+fn digits_of(error: f64) -> usize {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within 0 and 12")]
+    let digits = (1.0 - error.log10().floor()).clamp(0.0, 12.0) as usize;
+    digits
 }
 
 /// A standard error with two digits that count, without an exponent where that can be read.
 fn plain(error: f64) -> String {
-    if !(1e-7..1e7).contains(&error) {
-        return format!("{error:.1e}");
-    }
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 8")]
-    let digits = (1.0 - error.log10().floor()).max(0.0) as usize;
-    format!("{error:.digits$}")
+    if (1e-7..1e7).contains(&error) { number(error, digits_of(error)) } else { format!("{error:.1e}") }
 }
 
 /// What the log cannot determine, and what to record for it.
 fn undetermined(result: &FitResult) -> String {
     let mut text = String::new();
+    // A cable without samples has been told of.
+    let learned: Vec<&FitCableResult> = result.cables.iter().filter(|cable| cable.samples > 0).collect();
     for parameter in Parameter::all() {
         let name = parameter.to_string();
-        let cables: Vec<&str> = result
-            .cables
-            .iter()
-            .filter(|cable| cable.undetermined.contains(&name))
-            .map(|cable| cable.name.as_str())
-            .collect();
+        let without = learned.iter().filter(|cable| cable.undetermined.contains(&name));
+        let cables: Vec<&str> = without.map(|cable| cable.name.as_str()).collect();
         if !cables.is_empty() {
-            let excitation = parameter.row().excitation;
+            let symbol = FRICTION.iter().find(|shown| shown.place == parameter.place());
+            let shown = symbol.map_or_else(|| name.clone(), |shown| format!("{} ({name})", shown.symbol));
             let _ = writeln!(
                 text,
-                "\nThe log does not determine {name} of {}; the given value is kept. Record {excitation}.",
-                cables.join(", ")
+                "\nThe log does not determine {shown} of {}: the given value is kept.\n  Record {}.",
+                if cables.len() == result.cables.len() && cables.len() > 1 {
+                    "any cable".to_owned()
+                } else {
+                    cables.join(", ")
+                },
+                parameter.row().excitation
             );
         }
     }

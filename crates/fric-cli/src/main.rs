@@ -8,6 +8,7 @@ mod interrupt;
 mod model;
 mod output;
 mod progress;
+mod readiness;
 mod report;
 mod result;
 mod warnings;

@@ -8,6 +8,7 @@ use fric_log::output::{OutputError, OutputFile, directory_of};
 use serde::Serialize;
 
 use crate::failure::{Failure, Outcome};
+use crate::result::WrenchResult;
 
 /// Writes a text and puts the file in its place.
 pub fn write_text(mut file: OutputFile, text: &str) -> Outcome {
@@ -100,4 +101,13 @@ pub fn table(header: &[&str], left: usize, rows: &[impl AsRef<[String]>]) -> Str
     }
     let lines = table.lines().map(|line| line.trim_end().to_owned() + "\n");
     lines.collect()
+}
+
+/// The errors of the wrench.
+pub fn wrench_table(WrenchResult { before, after }: &WrenchResult) -> String {
+    let rows = [
+        ["force".to_owned(), format!("{:.4} N", before.force_rms_n), format!("{:.4} N", after.force_rms_n)],
+        ["torque".to_owned(), format!("{:.4} Nm", before.torque_rms_nm), format!("{:.4} Nm", after.torque_rms_nm)],
+    ];
+    table(&["wrench", "rms before", "after"], 1, &rows)
 }

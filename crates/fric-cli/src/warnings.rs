@@ -65,6 +65,18 @@ pub fn about_effects(robot: &RobotFile) {
     }
 }
 
+/// A cable signal at another pace than the robot file says.
+pub fn about_cycle(reader: &SignalReader, robot: &RobotFile) {
+    let interval_s = reader.counts(Role::Cable).interval_nanos * 1e-9;
+    let cycle_s = robot.options().cycle_s;
+    if interval_s > 0.0 && !(0.8..=1.25).contains(&(interval_s / cycle_s)) {
+        warn(&format!(
+            "the cable signal comes every {interval_s:.6} s, but `cycle_s` in the robot file is {cycle_s}; delays and \
+             the check for a frozen sensor count cycles of the robot file; friction itself does not depend on the rate"
+        ));
+    }
+}
+
 /// What the signals' topics did.
 pub fn about_signals(reader: &SignalReader, paths: &SignalPaths) {
     for role in Role::ALL {

@@ -137,6 +137,12 @@ impl Features {
         self
     }
 
+    /// These and the effects that act at values other than the cable's own.
+    pub(crate) fn and_acting(mut self, value: impl Fn(usize) -> f64) -> Self {
+        self.stribeck |= value(stribeck::RATIO).abs() > 0.0;
+        self
+    }
+
     /// These and the effects of which a parameter varies, see [`Values`].
     pub(crate) fn and_varying(mut self, varies: impl Fn(usize) -> bool) -> Self {
         self.stribeck |= varies(stribeck::RATIO) || varies(stribeck::VELOCITY);

@@ -102,13 +102,15 @@ impl<T: Scalar> CableGroup<T> {
         let at = |column: fn(&Places) -> &[f64; PLACES]| {
             core::array::from_fn(|place| T::from_lanes(|lane| column(&places[lane.min(LANES - 1)])[place]))
         };
+        let greatest =
+            |place: usize| (0..T::COUNT).fold(0.0, |most: f64, lane| most.max(values[place].lane(lane).abs()));
         let features = cables.iter().fold(Features::default(), |features, params| features.with(params));
         let delay = values[DELAY] / T::splat(cycle_s);
-        let delayed = varies(DELAY) || (0..T::COUNT).any(|lane| values[DELAY].lane(lane) > 0.0);
+        let delayed = varies(DELAY) || greatest(DELAY) > 0.0;
         let zero = T::splat(0.0);
         Some(Self {
             model: CableModel::new(of_lane, values),
-            features: features.and_varying(&varies),
+            features: features.and_acting(greatest).and_varying(&varies),
             delay: delayed.then(|| Delayed {
                 delays: core::array::from_fn(|lane| Delay::from_cycles(delay, delay.lane(lane))),
                 displacement_m: [DelayLine::EMPTY; LANES],

@@ -61,7 +61,7 @@ pub const FRICTION: [ParameterRow; FRICTION_COUNT] = [
         neutral: 0.0,
         min: -1e6,
         max: 1e6,
-        excitation: "a force sensor at the platform, or poses throughout the workspace",
+        excitation: "a long run with a force sensor at the platform, or with poses throughout the workspace",
     },
 ];
 /// How many there are.

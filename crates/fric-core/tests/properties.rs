@@ -1,5 +1,6 @@
 //! What holds for every input there is.
 
+use fric_core::effects::EffectParams;
 use fric_core::robot::{CableOptions, FrictionOptions, MonitorOptions, Presliding, PulleyOptions};
 use fric_core::scalar::Scalar as _;
 use fric_core::signals::{RawSignals, SignalState, condition};
@@ -374,13 +375,19 @@ fn cables_outside_the_compensator_have_its_bits_alone_and_in_lanes() {
         let monitor = MonitorOptions { frozen_cycles: 3, length_jump_m: 0.01, length_noise_m: 1e-6 };
         let mut compensator = compensator::<3>(&options, monitor);
         let params: Vec<_> = options.iter().map(|options| CableParams::new(options).unwrap()).collect();
-        let outside = |params: &CableParams| -> Outside<f64> {
-            let group = CableGroup::new(&[params], &params.values(), 0.001, |_| false).unwrap();
+        // Cables that have their numbers from elsewhere, as a fit gives them: their own friction does not show.
+        let frictionless = |options: &CableOptions<'static>| {
+            let (friction, effects) = (FrictionOptions::default(), EffectParams::NEUTRAL);
+            CableParams::new(&CableOptions { friction, effects, ..*options }).unwrap()
+        };
+        let frictionless: Vec<_> = options.iter().map(frictionless).collect();
+        let outside = |(frictionless, params): (&CableParams, &CableParams)| -> Outside<f64> {
+            let group = CableGroup::new(&[frictionless], &params.values(), 0.001, |_| false).unwrap();
             (group, SignalState::start(), PoseWrap::START)
         };
-        let mut alone: Vec<_> = params.iter().map(outside).collect();
+        let mut alone: Vec<_> = frictionless.iter().zip(&params).map(outside).collect();
         let values = std::array::from_fn(|place| Lanes::from_lanes(|lane| params[lane.min(2)].values()[place]));
-        let all: Vec<&CableParams> = params.iter().collect();
+        let all: Vec<&CableParams> = frictionless.iter().collect();
         let mut together = CableGroup::new(&all, &values, 0.001, |_| false).unwrap();
         for cycle in 0..400 {
             let mut input = smooth_input::<3>(cycle);

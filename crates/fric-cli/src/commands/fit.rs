@@ -1,11 +1,12 @@
 //! `fit`: the parameters of the friction model from the log of an identification run.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::Duration;
 
 use fric_core::parameters::{MU, NO_PRESLIDING_N_PER_M, OFFSET, SIGMA, VISCOUS};
 use fric_core::robot::edit::{CableEdit, EffectEdit, FrictionEdit, rewrite};
+use fric_core::robot::unknown_name;
 use fric_lab::fit::{
     CableFit, FitOptions, Measurements, Parameter, Progress, Reference, Termination, Weighing, WrenchFit, fit_cables,
     fit_wrench,
@@ -19,7 +20,8 @@ use crate::failure::{Failure, Outcome};
 use crate::model::{self, Model};
 use crate::output::{self, JsonTarget};
 use crate::progress::{self, STRIDE};
-use crate::result::FitResult;
+use crate::readiness::{self, Holdings, Readiness};
+use crate::result::{FitResult, LeftOut};
 use crate::{identification, interrupt, warnings};
 
 /// How often the bar moves and Ctrl-C is looked at while all cores compute.
@@ -27,31 +29,39 @@ const WATCH_INTERVAL: Duration = Duration::from_millis(20);
 
 /// Runs the command.
 pub fn run(arguments: &FitArguments) -> Outcome {
-    let FitArguments { log, output, reference, parameters, huber, result } = arguments;
+    let FitArguments { logs, model, output, reference, parameters, huber, result } = arguments;
     let json_file = result.json.as_deref().filter(|path| !output::is_stdout(path));
     output::check_distinct(&[Some(output), json_file])?;
+    check_named_once(logs)?;
     let options = FitOptions {
         parameters: parameters.as_deref().map(named).transpose()?,
         weighing: if *huber { Weighing::Huber } else { Weighing::LeastSquares },
     };
-    let [first, ..] = log.logs.as_slice() else { return Err(Failure::usage("no log is named")) };
-    let model = Model::find(log.model.as_deref(), &Recording::open(&[first])?)?.ok_or_else(model::missing)?;
-    let mut inputs = log.logs.clone();
-    inputs.extend(log.model.clone());
+    let mut inputs = logs.clone();
+    inputs.extend(model.clone());
+    let model = find_model(model.as_deref(), logs)?;
     let json = JsonTarget::prepare(result.json.as_deref(), &inputs, result.force)?;
     let fitted_file = OutputFile::create(output, &inputs, result.force)?;
 
-    let compared = match reference {
-        ReferenceName::Forces => Reference::Forces,
-        ReferenceName::Wrench => Reference::Wrench,
-    };
-    let measurements = read(&log.logs, &model, compared)?;
-    let fits = match compared {
-        Reference::Forces => Fits::Forces(by_forces(&model, &measurements, &options)?),
-        Reference::Wrench => Fits::Wrench(by_wrench(&model, &measurements, &options)?),
+    let (fits, readiness) = match reference {
+        ReferenceName::Forces => {
+            let (measurements, holdings) = read(logs, &model, Reference::Forces)?;
+            let readiness = readiness::by_forces(&model, &holdings);
+            readiness.check()?;
+            (Fits::Forces(watched(|progress| fit_cables(&measurements, &options, progress))?), readiness)
+        }
+        ReferenceName::Wrench => {
+            // The robot file alone can rule it out.
+            readiness::geometry(&model).map_or(Ok(()), |lack| Err(Failure::from(lack)))?;
+            let (measurements, holdings) = read(logs, &model, Reference::Wrench)?;
+            let readiness = readiness::by_wrench(&model, &holdings);
+            readiness.check()?;
+            (Fits::Wrench(watched(|progress| fit_wrench(&measurements, &options, progress))?), readiness)
+        }
     };
     let outcome = identification::result(&model.robot, &fits);
-    warn_about(&outcome, fits.cables());
+    check_used(&outcome)?;
+    warn_about(&outcome, fits.cables(), &readiness);
     let text = rewritten(&model, fits.cables())?;
     output::write_text(fitted_file, &text)?;
     json.show(&identification::describe(&outcome))?;
@@ -73,47 +83,95 @@ impl Fits {
     }
 }
 
+/// Makes sure that no sample counts twice.
+fn check_named_once(logs: &[PathBuf]) -> Outcome {
+    for (count, log) in logs.iter().enumerate() {
+        let is_same =
+            |other: &PathBuf| log.canonicalize().is_ok_and(|path| other.canonicalize().is_ok_and(|of| of == path));
+        if logs.iter().take(count).any(is_same) {
+            return Err(Failure::usage(format!("{} is named twice, and its samples would count twice", log.display()))
+                .advise("Name each log once."));
+        }
+    }
+    Ok(())
+}
+
 /// The parameters that the command line names.
 fn named(names: &[String]) -> Outcome<Vec<Parameter>> {
-    let parameter = |name: &String| {
-        Parameter::named(name).ok_or_else(|| {
+    let mut parameters = Vec::new();
+    for name in names.iter().map(|name| name.trim()) {
+        let parameter = Parameter::named(name).ok_or_else(|| {
             let known: Vec<String> = Parameter::all().map(|parameter| parameter.to_string()).collect();
-            Failure::usage(format!("--parameters: there is no parameter `{name}`"))
-                .advise(format!("Known are {}.", known.join(", ")))
-        })
-    };
-    names.iter().map(parameter).collect()
+            let problem = unknown_name("parameter", name, known.iter().map(String::as_str));
+            Failure::usage(format!("--parameters: {problem}"))
+        })?;
+        if parameters.contains(&parameter) {
+            return Err(Failure::usage(format!("--parameters: `{name}` is named twice; name it once")));
+        }
+        parameters.push(parameter);
+    }
+    Ok(parameters)
+}
+
+/// The robot file named, or else the first that is attached to a log.
+fn find_model(named: Option<&Path>, logs: &[PathBuf]) -> Outcome<Model> {
+    for log in logs {
+        if let Some(model) = Model::find(named, &Recording::open(&[log])?)? {
+            return Ok(model);
+        }
+    }
+    Err(model::missing())
 }
 
 /// Reads all logs, each by itself.
-fn read<'a>(logs: &[PathBuf], model: &'a Model, reference: Reference) -> Outcome<Measurements<'a>> {
-    let paths = match reference {
-        // What is not compared with is not even read.
-        Reference::Forces => model.signal_paths()?.with(Role::Wrench, None),
-        Reference::Wrench => model.signal_paths()?.with(Role::Reference, None),
+fn read<'a>(logs: &[PathBuf], model: &'a Model, reference: Reference) -> Outcome<(Measurements<'a>, Holdings)> {
+    // What is not compared with is not even read.
+    let (unread, compared) = match reference {
+        Reference::Forces => (Role::Wrench, Role::Reference),
+        Reference::Wrench => (Role::Reference, Role::Wrench),
     };
+    let paths = model.signal_paths()?.with(unread, None);
+    warnings::about_effects(&model.robot);
     let names = model.robot.cable_names();
     let mut measurements = Measurements::new(&model.robot.params(), reference);
+    let mut all: Option<Holdings> = None;
     for log in logs {
         measurements.start_log();
-        read_one(log, &paths, &names, &mut measurements)?;
+        let mut reader = SignalReader::new(Recording::open(&[log])?, paths.clone(), &names);
+        let holdings = read_one(&mut reader, &paths, &mut measurements, names.len())?;
+        warnings::about_cycle(&reader, &model.robot);
+        let has_compared = holdings.has_reference() || holdings.wrenched > 0;
+        match &mut all {
+            Some(all) => all.join(&holdings),
+            None => all = Some(holdings),
+        }
+        if logs.len() > 1 && !has_compared {
+            let (log, key) = (log.display(), compared.key());
+            warnings::warn(&format!("`{log}` has nothing to compare with on the signal `{key}`"));
+        }
     }
-    Ok(measurements)
+    let holdings = all.unwrap_or_else(|| Holdings::new(names.len()));
+    Ok((measurements, holdings))
 }
 
-fn read_one(log: &PathBuf, paths: &SignalPaths, names: &[&str], measurements: &mut Measurements<'_>) -> Outcome {
-    let recording = Recording::open(std::slice::from_ref(log))?;
-    let bar = progress::bytes(recording.total_bytes());
-    let mut reader = SignalReader::new(recording, paths.clone(), names);
-    let mut count = 0_u64;
+fn read_one(
+    reader: &mut SignalReader,
+    paths: &SignalPaths,
+    measurements: &mut Measurements<'_>,
+    cable_count: usize,
+) -> Outcome<Holdings> {
+    let mut holdings = Holdings::new(cable_count);
+    let bar = progress::bytes(reader.recording().total_bytes());
     let end = loop {
-        if count.is_multiple_of(STRIDE) {
+        if holdings.rows.is_multiple_of(STRIDE) {
             interrupt::check()?;
             bar.set_position(reader.recording().bytes_read());
         }
-        count += 1;
         match reader.next_row() {
-            Ok(Some(sample)) => measurements.add(&sample),
+            Ok(Some(sample)) => {
+                holdings.add(&sample);
+                measurements.add(&sample);
+            }
             Ok(None) => break Ok(()),
             Err(error) => break Err(error),
         }
@@ -121,49 +179,8 @@ fn read_one(log: &PathBuf, paths: &SignalPaths, names: &[&str], measurements: &m
     bar.finish_and_clear();
     warnings::about_recording(reader.recording());
     end?;
-    warnings::about_signals(&reader, paths);
-    Ok(())
-}
-
-fn by_forces(model: &Model, measurements: &Measurements<'_>, options: &FitOptions) -> Outcome<Vec<CableFit>> {
-    let fits = watched(|progress| fit_cables(measurements, options, progress))?;
-    if fits.iter().all(|fit| fit.errors.reference_n.count() == 0) {
-        let topic = &model.robot.options().log.reference;
-        return Err(Failure::new(format!(
-            "the log has no reference forces on {topic} for any cable of the robot file"
-        ))
-        .advise("Name their topic as `reference` under `[log]`, or fit without them: --reference wrench."));
-    }
-    if fits.iter().all(|fit| fit.samples.used == 0) {
-        return Err(Failure::new("no sample can be used: the cables do not move, or every sample is flagged")
-            .advise("See what is in the log with `fric-cli info`; record the run of `fric-cli excite`."));
-    }
-    Ok(fits)
-}
-
-fn by_wrench(model: &Model, measurements: &Measurements<'_>, options: &FitOptions) -> Outcome<WrenchFit> {
-    let robot = model.robot.params();
-    if !robot.cables().iter().all(fric_core::CableParams::has_geometry) {
-        return Err(Failure::new(format!("{}: not every cable has `base_m` and `platform_m`", model.origin))
-            .advise("The wrench needs the attachment of every cable; without it fit to --reference forces."));
-    }
-    let fit = watched(|progress| fit_wrench(measurements, options, progress))?;
-    if !fit.measured {
-        let mass_kg = robot.mass_kg();
-        let topic = &model.robot.options().log.wrench;
-        if mass_kg <= 0.0 {
-            return Err(Failure::new(format!("the log has no wrench on {topic}, and the robot file no mass"))
-                .advise("Name the topic as `wrench`, or give `mass_kg` under `[platform]`."));
-        }
-        warnings::warn(&format!(
-            "the log has no wrench on {topic}: taken from the platform's mass of {mass_kg} kg and the pose, in quiet motion only"
-        ));
-    }
-    if fit.cables.iter().all(|fit| fit.samples.used == 0) {
-        return Err(Failure::new("no sample can be used: without a pose, or flagged, or the cables do not move")
-            .advise("See what is in the log with `fric-cli info`; record the run of `fric-cli excite`."));
-    }
-    Ok(fit)
+    warnings::about_signals(reader, paths);
+    Ok(holdings)
 }
 
 /// Runs a fit beside a bar, until it is done or Ctrl-C is pressed.
@@ -188,17 +205,52 @@ fn watched<T: Send>(fit: impl FnOnce(&Progress) -> T + Send) -> Outcome<T> {
     fitted.map_err(|_| Failure::new("the fit broke off: this is a defect of fric; please report it with the log"))
 }
 
+/// Fails where not one sample could be used.
+fn check_used(outcome: &FitResult) -> Outcome {
+    let Some(first) = outcome.cables.first().filter(|_| outcome.cables.iter().all(|cable| cable.samples == 0)) else {
+        return Ok(());
+    };
+    let (cause, advice) = why_unused(&first.left_out);
+    Err(Failure::new(format!("no sample can be used: {cause}")).advise(advice))
+}
+
+/// Why there is not one sample to learn from, and what to do.
+fn why_unused(left_out: &LeftOut) -> (&'static str, &'static str) {
+    let LeftOut { flagged, without_reference, warm_up, outliers: _ } = *left_out;
+    if warm_up >= flagged.max(without_reference) {
+        let cause = "the cables move too little to forget the friction stored in them when the log began";
+        (cause, "Record longer strokes, best the run of `fric-cli excite`.")
+    } else if flagged >= without_reference {
+        ("each is flagged, or has no tension on the cable", "See the flags with `fric-cli replay`.")
+    } else {
+        ("none has anything to compare with while its other signals are there", "See the signals with `fric-cli info`.")
+    }
+}
+
 /// What people have to know beside the table.
-fn warn_about(outcome: &FitResult, fits: &[CableFit]) {
+fn warn_about(outcome: &FitResult, fits: &[CableFit], readiness: &Readiness) {
+    // Cables with the same trouble share a line.
+    let mut unused: Vec<(&str, Vec<&str>)> = Vec::new();
+    let told = |place: &usize| readiness.is_lacking(*place);
+    for (_, cable) in outcome.cables.iter().enumerate().filter(|(place, cable)| cable.samples == 0 && !told(place)) {
+        let (cause, _) = why_unused(&cable.left_out);
+        match unused.iter_mut().find(|(of, _)| *of == cause) {
+            Some((_, names)) => names.push(&cable.name),
+            None => unused.push((cause, vec![&cable.name])),
+        }
+    }
+    for (cause, names) in unused {
+        warnings::warn(&format!("{}: no sample can be used, values kept: {cause}", names.join(", ")));
+    }
     for (cable, fit) in outcome.cables.iter().zip(fits) {
-        match fit.termination {
-            Termination::Converged => {}
-            Termination::NothingToFit => warnings::warn(&format!("{}: nothing to learn from, values kept", cable.name)),
-            termination => warnings::warn(&format!(
-                "{}: the search ended without converging ({}); the values are the best found",
+        // What is left unfitted is told below the tables.
+        if !matches!(fit.termination, Termination::Converged | Termination::NothingToFit) {
+            warnings::warn(&format!(
+                "{}: the search ended without converging ({}); the values are the best found: look at the error that \
+                 is left before you use them",
                 cable.name,
-                termination.name()
-            )),
+                fit.termination.name()
+            ));
         }
     }
 }

@@ -12,6 +12,7 @@ use crate::failure::Outcome;
 use crate::model::Model;
 use crate::output::{JsonTarget, table};
 use crate::progress::{self, STRIDE};
+use crate::readiness::{self, Holdings, Readiness};
 use crate::{interrupt, warnings};
 
 /// `fric-info/1`.
@@ -177,35 +178,21 @@ fn read_signals(model: &Model, recording: Recording) -> Outcome<(Vec<SignalResul
     let paths = model.signal_paths()?;
     let bar = progress::bytes(recording.total_bytes());
     let mut reader = SignalReader::new(recording, paths.clone(), &model.robot.cable_names());
-    let mut joined = Joined::default();
+    let mut holdings = Holdings::new(model.robot.cable_names().len());
     let problem = loop {
-        if joined.rows.is_multiple_of(STRIDE) {
+        if holdings.rows.is_multiple_of(STRIDE) {
             interrupt::check()?;
             bar.set_position(reader.recording().bytes_read());
         }
         match reader.next_row() {
-            Ok(Some(row)) => {
-                joined.rows += 1;
-                joined.referenced += u64::from(row.reference_force_n.iter().any(|force| force.is_finite()));
-                joined.posed += u64::from(row.pose.is_some());
-                joined.wrenched += u64::from(row.outside_wrench.is_some());
-            }
+            Ok(Some(row)) => holdings.add(&row),
             Ok(None) => break None,
             Err(error) => break Some(error.to_string()),
         }
     };
     bar.finish_and_clear();
     let signals = signal_results(&reader, &paths);
-    Ok((signals, steps(model, &joined, problem)))
-}
-
-/// How many rows have which signal.
-#[derive(Debug, Default)]
-struct Joined {
-    rows: u64,
-    referenced: u64,
-    posed: u64,
-    wrenched: u64,
+    Ok((signals, steps(model, &holdings, problem.as_deref())))
 }
 
 fn signal_results(reader: &SignalReader, paths: &SignalPaths) -> Vec<SignalResult> {
@@ -229,45 +216,48 @@ fn signal_results(reader: &SignalReader, paths: &SignalPaths) -> Vec<SignalResul
 }
 
 /// Which steps the log allows.
-fn steps(model: &Model, joined: &Joined, problem: Option<String>) -> Vec<StepResult> {
+fn steps(model: &Model, holdings: &Holdings, problem: Option<&str>) -> Vec<StepResult> {
     let params = model.robot.params();
     let cables = params.cables();
     let needs_pose = cables.iter().any(fric_core::CableParams::needs_pose);
     let all_geometry = cables.iter().all(fric_core::CableParams::has_geometry);
-    let no_reference = "no reference: the log has no force measured at the platform to compare with";
-    let no_pose = "no pose: the wrap of the last pulleys would be taken as 90°";
+    let has_rows = holdings.rows > 0;
+    let no_pose = || "no pose: the wrap of the last pulleys would be taken as 90°".to_owned();
+    // Without a row there is nothing else to say.
+    let nothing = || problem.unwrap_or("no samples").to_owned();
     let mut forces = Vec::new();
-    forces.extend(problem);
-    if joined.rows > 0 && needs_pose && joined.posed == 0 {
-        forces.push(no_pose.to_owned());
+    forces.extend(problem.map(ToOwned::to_owned));
+    if has_rows && needs_pose && holdings.posed == 0 {
+        forces.push(no_pose());
     }
     let mut wrench = Vec::new();
     if !all_geometry {
         wrench.push("no geometry: `base_m` and `platform_m` are needed for every cable".to_owned());
     }
-    if joined.posed == 0 {
+    if holdings.posed == 0 {
         wrench.push("no pose: the directions of the cables are not known".to_owned());
     }
-    let mut identification = Vec::new();
-    if joined.referenced == 0 {
-        identification.push(no_reference.to_owned());
-    } else if needs_pose && joined.posed == 0 {
-        identification.push(no_pose.to_owned());
+    let has_wrench = has_rows && wrench.is_empty();
+    if holdings.wrenched == 0 && wrench.is_empty() {
+        wrench.push("no outside wrench in the log to compare with".to_owned());
+    }
+    let mut errors = Vec::new();
+    if !holdings.has_reference() {
+        errors.push("no reference: the log has no force measured at the platform to compare with".to_owned());
+    } else if needs_pose && holdings.posed == 0 {
+        errors.push(no_pose());
     }
     let step = |step, possible: bool, reasons: Vec<String>| StepResult { step, possible, reasons };
-    let replay = joined.rows > 0;
-    let mut compared = Vec::new();
-    if joined.wrenched == 0 && wrench.is_empty() {
-        compared.push("no outside wrench in the log to compare with".to_owned());
-    }
-    let has_wrench = replay && wrench.is_empty();
-    wrench.extend(compared);
+    let fit = |name, readiness: Readiness| {
+        let causes = || readiness.lacks.iter().map(|lack| lack.cause.clone()).collect();
+        step(name, has_rows && readiness.is_possible(), if has_rows { causes() } else { vec![nothing()] })
+    };
     vec![
-        step("replay: forces", replay, forces),
+        step("replay: forces", has_rows, forces),
         step("replay: wrench", has_wrench, wrench),
-        step("replay: errors", replay && joined.referenced > 0, identification.clone()),
-        step("fit", replay && joined.referenced > 0, identification.clone()),
-        step("discover", replay && joined.referenced > 0, identification),
+        step("replay: errors", has_rows && holdings.has_reference(), errors),
+        fit("fit: forces", readiness::by_forces(model, holdings)),
+        fit("fit: wrench", readiness::by_wrench(model, holdings)),
     ]
 }
 

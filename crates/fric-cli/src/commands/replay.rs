@@ -12,7 +12,7 @@ use hdrhistogram::Histogram;
 use crate::arguments::ReplayArguments;
 use crate::failure::{Failure, Outcome};
 use crate::model::{self, Model};
-use crate::output::{self, JsonTarget, table};
+use crate::output::{self, JsonTarget, table, wrench_table};
 use crate::progress::{self, STRIDE};
 use crate::report::{self, Series};
 use crate::result::{CableResult, CycleResult, ReplayResult, WrenchError, WrenchResult, force_error};
@@ -130,13 +130,9 @@ fn describe(result: &ReplayResult) -> String {
         ["cable", "samples", "flagged", "rms before [N]", "after [N]", "left", "mean |error| before [N]", "after [N]"];
     let mut text = format!("{}: force at the platform against the reference\n\n", result.robot);
     text += &table(&header, 1, &rows);
-    if let Some(WrenchResult { before, after }) = &result.wrench {
-        let rows = [
-            ["force".to_owned(), format!("{:.4} N", before.force_rms_n), format!("{:.4} N", after.force_rms_n)],
-            ["torque".to_owned(), format!("{:.4} Nm", before.torque_rms_nm), format!("{:.4} Nm", after.torque_rms_nm)],
-        ];
+    if let Some(wrench) = &result.wrench {
         text += "\n";
-        text += &table(&["wrench", "rms before", "after"], 1, &rows);
+        text += &wrench_table(wrench);
     }
     let CycleResult { count, median_ns, p999_ns, max_ns } = result.cycle;
     text + &format!(
@@ -158,14 +154,7 @@ fn warn_about_model(model: &Model, reader: &SignalReader, replay: &Replay) {
     if replay.cables().iter().all(|cable| cable.before_n.count() == 0) {
         warnings::warn("the log has no reference forces for these cables, so there is no error to show");
     }
-    let interval_s = reader.counts(Role::Cable).interval_nanos * 1e-9;
-    let cycle_s = model.robot.options().cycle_s;
-    if interval_s > 0.0 && !(0.8..=1.25).contains(&(interval_s / cycle_s)) {
-        warnings::warn(&format!(
-            "the cable signal comes every {interval_s:.6} s, but `cycle_s` in the robot file is {cycle_s}; delays and \
-             the check for a frozen sensor count cycles of the robot file; friction itself does not depend on the rate"
-        ));
-    }
+    warnings::about_cycle(reader, &model.robot);
     let tables = &model.robot.options().cable;
     let frictionless = |cable: &&CableTable| cable.friction.mu == 0.0 && cable.friction.viscous_n_s_per_m == 0.0;
     let names: Vec<&str> = tables.iter().filter(frictionless).map(|cable| cable.name.as_str()).collect();

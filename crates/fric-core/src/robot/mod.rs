@@ -19,6 +19,8 @@ mod table;
 
 pub(crate) use error::check;
 pub use error::{ParamError, ParamProblem};
+#[cfg(feature = "robot-file")]
+pub use locate::unknown_name;
 pub use params::{
     CableOptions, CableParams, FrictionOptions, GeometryOptions, MAX_PULLEYS, MonitorOptions, PlatformOptions,
     Presliding, PulleyOptions, RobotParams, ValidatedRange,

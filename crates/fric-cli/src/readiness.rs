@@ -1,0 +1,227 @@
+//! What a log holds for an identification, and what it lacks.
+
+use fric_core::Sample;
+
+use crate::failure::{Failure, Outcome};
+use crate::model::Model;
+use crate::warnings;
+
+/// How many rows of one or several logs have which signal.
+#[derive(Clone, Debug)]
+pub struct Holdings {
+    pub rows: u64,
+    pub posed: u64,
+    pub wrenched: u64,
+    cables: Vec<CableHoldings>,
+}
+
+/// The same for one cable.
+#[derive(Clone, Copy, Debug, Default)]
+struct CableHoldings {
+    signalled: u64,
+    referenced: u64,
+}
+
+impl Holdings {
+    /// Nothing yet, of so many cables.
+    pub fn new(cable_count: usize) -> Self {
+        Self { rows: 0, posed: 0, wrenched: 0, cables: vec![CableHoldings::default(); cable_count] }
+    }
+
+    pub fn add(&mut self, row: &Sample<'_>) {
+        self.rows += 1;
+        self.posed += u64::from(row.pose.is_some());
+        self.wrenched += u64::from(row.outside_wrench.is_some());
+        for (holdings, (input, reference_n)) in self.cables.iter_mut().zip(row.cables.iter().zip(row.reference_force_n))
+        {
+            holdings.signalled += u64::from(input.sensor_force_n.is_finite() && input.length_m.is_finite());
+            holdings.referenced += u64::from(reference_n.is_finite());
+        }
+    }
+
+    /// Takes in those of another log.
+    pub fn join(&mut self, other: &Self) {
+        self.rows += other.rows;
+        self.posed += other.posed;
+        self.wrenched += other.wrenched;
+        for (cable, other) in self.cables.iter_mut().zip(&other.cables) {
+            cable.signalled += other.signalled;
+            cable.referenced += other.referenced;
+        }
+    }
+
+    /// Whether any cable has a reference.
+    pub fn has_reference(&self) -> bool {
+        self.cables.iter().any(|cable| cable.referenced > 0)
+    }
+}
+
+/// Something that is missing.
+#[derive(Debug)]
+pub struct Lack {
+    /// In one sentence, without its full stop.
+    pub cause: String,
+    advice: &'static str,
+    /// The cables that cannot be identified without it, by place.
+    cables: Vec<usize>,
+}
+
+/// All that is missing for an identification.
+#[derive(Debug)]
+pub struct Readiness {
+    pub lacks: Vec<Lack>,
+    cable_count: usize,
+}
+
+impl Readiness {
+    /// Whether any cable can be identified.
+    pub fn is_possible(&self) -> bool {
+        (0..self.cable_count).any(|cable| !self.is_lacking(cable))
+    }
+
+    /// Whether something is missing for a cable.
+    pub fn is_lacking(&self, cable: usize) -> bool {
+        self.lacks.iter().any(|lack| lack.cables.contains(&cable))
+    }
+
+    /// Fails where no cable can be identified; otherwise warns of what is missing.
+    pub fn check(&self) -> Outcome {
+        if !self.is_possible() {
+            let worst = self.lacks.iter().rev().max_by_key(|lack| lack.cables.len());
+            return Err(worst.map_or_else(
+                || Failure::new("the robot has no cables"),
+                |lack| Failure::new(&lack.cause).advise(lack.advice),
+            ));
+        }
+        for Lack { cause, cables, .. } in &self.lacks {
+            let consequence = match cables.as_slice() {
+                [] => "",
+                [_] => ": its values are kept",
+                _ => ": their values are kept",
+            };
+            warnings::warn(&format!("{cause}{consequence}"));
+        }
+        Ok(())
+    }
+}
+
+const POSE_ADVICE: &str = "Name the topic of the poses as `pose` under `[log]` in the robot file.";
+
+/// What is missing to identify each cable from its force at the platform.
+pub fn by_forces(model: &Model, holdings: &Holdings) -> Readiness {
+    let log = &model.robot.options().log;
+    let (names, robot) = (model.robot.cable_names(), model.robot.params());
+    let mut readiness = Readiness { lacks: silent(&names, holdings), cable_count: names.len() };
+    let without = |readiness: &Readiness, is_missing: &dyn Fn(usize) -> bool| -> Vec<usize> {
+        (0..names.len()).filter(|cable| !readiness.is_lacking(*cable) && is_missing(*cable)).collect()
+    };
+    let cables = without(&readiness, &|cable| holdings.cables.get(cable).is_none_or(|of| of.referenced == 0));
+    if !cables.is_empty() {
+        readiness.lacks.push(Lack {
+            cause: format!("the log has no reference forces on {}{}", log.reference, of(&names, &cables)),
+            advice: "Name their topic as `reference` under `[log]` in the robot file, or fit without them: \
+                     --reference wrench.",
+            cables,
+        });
+    }
+    let follows_pose = |cable: usize| robot.cables().get(cable).is_some_and(fric_core::CableParams::needs_pose);
+    let cables = if holdings.posed == 0 { without(&readiness, &follows_pose) } else { Vec::new() };
+    if !cables.is_empty() {
+        readiness.lacks.push(Lack {
+            cause: format!(
+                "the log has no pose on {}, and so no wrap of the last pulley{}",
+                log.pose,
+                of(&names, &cables)
+            ),
+            advice: POSE_ADVICE,
+            cables,
+        });
+    }
+    readiness
+}
+
+/// What is missing to identify all cables from the wrench on the platform.
+pub fn by_wrench(model: &Model, holdings: &Holdings) -> Readiness {
+    let log = &model.robot.options().log;
+    let names = model.robot.cable_names();
+    let all: Vec<usize> = (0..names.len()).collect();
+    let mut lacks: Vec<Lack> = geometry(model).into_iter().collect();
+    for lack in silent(&names, holdings) {
+        lacks.push(Lack {
+            cause: format!("{}, and the wrench is that of all", lack.cause),
+            cables: all.clone(),
+            ..lack
+        });
+    }
+    if holdings.posed == 0 {
+        lacks.push(Lack {
+            cause: format!("the log has no pose on {}: the directions of the cables are not known", log.pose),
+            advice: POSE_ADVICE,
+            cables: all.clone(),
+        });
+    }
+    let mass_kg = model.robot.params().mass_kg();
+    if holdings.wrenched == 0 && mass_kg > 0.0 {
+        lacks.push(Lack {
+            cause: format!(
+                "the log has no wrench on {}: it is taken from the platform's mass of {mass_kg} kg and the pose, in \
+                 quiet motion only",
+                log.wrench
+            ),
+            advice: "",
+            cables: Vec::new(),
+        });
+    } else if holdings.wrenched == 0 {
+        lacks.push(Lack {
+            cause: format!("the log has no wrench on {}, and the robot file no mass to take it from", log.wrench),
+            advice: "Name the topic as `wrench` under `[log]`, or give `mass_kg` under `[platform]`, in the robot file.",
+            cables: all,
+        });
+    }
+    Readiness { lacks, cable_count: names.len() }
+}
+
+/// What the robot file lacks for the wrench.
+pub fn geometry(model: &Model) -> Option<Lack> {
+    let (names, robot) = (model.robot.cable_names(), model.robot.params());
+    let without: Vec<&str> =
+        names.iter().zip(robot.cables()).filter(|(_, cable)| !cable.has_geometry()).map(|(name, _)| *name).collect();
+    (!without.is_empty()).then(|| Lack {
+        cause: format!(
+            "{} has no `base_m` and `platform_m` of {}, which the wrench needs of every cable",
+            model.origin,
+            without.join(", ")
+        ),
+        advice: "Add them, or fit each cable to its reference force: --reference forces.",
+        cables: (0..names.len()).collect(),
+    })
+}
+
+impl From<Lack> for Failure {
+    fn from(lack: Lack) -> Self {
+        Self::new(lack.cause).advise(lack.advice)
+    }
+}
+
+/// Cables that the log says nothing of.
+fn silent(names: &[&str], holdings: &Holdings) -> Vec<Lack> {
+    let all = 0..names.len();
+    let cables: Vec<usize> =
+        all.filter(|cable| holdings.cables.get(*cable).is_none_or(|of| of.signalled == 0)).collect();
+    let listed: Vec<&str> = cables.iter().filter_map(|cable| names.get(*cable).copied()).collect();
+    let lack = (!cables.is_empty()).then(|| Lack {
+        cause: format!("the log has no signal of {}", listed.join(", ")),
+        advice: "Compare the names of the cables in the log with those in the robot file.",
+        cables,
+    });
+    lack.into_iter().collect()
+}
+
+/// Which cables, unless it is all.
+fn of(names: &[&str], cables: &[usize]) -> String {
+    if cables.len() == names.len() {
+        return String::new();
+    }
+    let listed: Vec<&str> = cables.iter().filter_map(|cable| names.get(*cable).copied()).collect();
+    format!(" of {}", listed.join(", "))
+}
