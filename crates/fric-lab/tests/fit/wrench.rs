@@ -38,7 +38,10 @@ fn worst(fit: &WrenchFit, truth: &RobotFile) -> ([f64; 3], f64) {
         }
         ratio = ratio.max(cable.errors.after_n.rms().unwrap() / FLOOR_N);
     }
-    println!("worst of all cables: μ, σ, F_pv off by {errors:.5?}; rms {ratio:.4} of the noise");
+    println!(
+        "{} evaluations; worst of all cables: μ, σ, F_pv off by {errors:.5?}; rms {ratio:.4} of the noise",
+        fit.cables[0].evaluation_count
+    );
     (errors, ratio)
 }
 
@@ -68,14 +71,23 @@ fn weight_of_the_platform() {
     assert!(mu < 0.05);
 }
 
-/// A mass 5 % too large, and a hand that pushes with a slow force of ±1 N that nobody has measured.
+fn forty_seconds() -> Log {
+    Log::record(&truth(), &SimulationOptions { duration_s: Some(40.0), ..SimulationOptions::default() })
+}
+
+/// A mass 5 % too large.
 #[test]
-fn a_hand_and_a_wrong_mass() {
-    let log = Log::record(&truth(), &SimulationOptions { duration_s: Some(40.0), ..SimulationOptions::default() });
+fn a_wrong_mass() {
     let heavy = mini_ipanema_text("mass_kg = 0.41", "mass_kg = 0.4305");
-    let ([mu, ..], ratio) = worst(&fit(&without_wrench(log.clone()), &heavy), &truth());
+    let ([mu, ..], ratio) = worst(&fit(&without_wrench(forty_seconds()), &heavy), &truth());
     assert!(mu < 0.01 && ratio > 2.0);
-    let mut pushed = log;
+}
+
+/// A hand that pushes with a slow force of ±1 N that nobody has measured.
+#[test]
+#[ignore = "takes minutes: one parameter after the other turns out to be undetermined"]
+fn a_hand() {
+    let mut pushed = forty_seconds();
     for (cycle, t) in pushed.0.iter_mut().zip(0_u32..) {
         let time_s = f64::from(t) * 0.001;
         let hand = Wrench {
