@@ -107,11 +107,16 @@ pub(super) fn used(standings: &[Standing]) -> Vec<bool> {
     standings.iter().map(|standing| *standing == Standing::Used).collect()
 }
 
-/// Takes out what the cables still remember of the time before each log, by what they would at the best start.
+/// Takes out what the cables still remember of the time before each log, by what they would at the best start. One cable
+/// of several that never forgets it keeps it all along, and it adds up with its offset: the others can be told.
 pub(super) fn leave_out_warm_up(problem: &Problem<'_>, starts: &[Vec<Values>], standings: &mut [Standing]) {
     let best = starts.first().into_iter().flatten();
     for (member, values) in problem.members.iter().zip(best) {
-        selection::leave_out_warm_up(&member.record, values, standings);
+        let mut left = standings.to_vec();
+        selection::leave_out_warm_up(&member.record, values, &mut left);
+        if problem.members.len() == 1 || left.contains(&Standing::Used) {
+            standings.copy_from_slice(&left);
+        }
     }
 }
 

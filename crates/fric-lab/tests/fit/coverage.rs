@@ -16,11 +16,12 @@ use super::logs::{FRICTION, Log, deviation, value};
 use super::oracle::{Bench, PULLEYS, strokes, wandering};
 use crate::simulate::robots::bench;
 
-/// A log of 6 s; its reference wanders by itself by `wander_n` with a memory of 100 ms.
+/// A log of 6 s; its reference wanders by itself by `wander_n` with a memory of 20 ms, a
+/// three-hundredth of the log.
 fn log(seed: u64, wander_n: f64) -> Log {
     let mut log = Bench { seed, ..Bench::default() }.run(6.0, strokes(0.05, 1.0), wandering(8.0));
     let mut random = ChaCha8Rng::seed_from_u64(1_000_000 + seed);
-    let memory = (-0.01_f64).exp();
+    let memory = (-0.05_f64).exp();
     let mut wandered_n = 0.0;
     for cycle in &mut log.0 {
         let fresh: f64 = StandardNormal.sample(&mut random);

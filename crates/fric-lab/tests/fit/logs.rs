@@ -1,7 +1,5 @@
 //! Logs in memory, and what the fits of this folder have in common.
 
-use std::ops::Range;
-
 use fric_core::robot::file::RobotFile;
 use fric_core::{CableInput, Pose, Sample, Wrench};
 use fric_lab::fit::{CableFit, FitOptions, Measurements, Parameter, Progress, Reference, fit_cables};
@@ -38,13 +36,6 @@ impl Log {
         Self(cycles)
     }
 
-    /// The cycles from one time to another, s.
-    pub fn between(&self, seconds: Range<f64>) -> Self {
-        let start = self.0[0].stamp_nanos;
-        let within = |cycle: &&Cycle| seconds.contains(&(seconds_between(start, cycle.stamp_nanos)));
-        Self(self.0.iter().filter(within).cloned().collect())
-    }
-
     /// Goes into measurements as a log of its own.
     pub fn add_to(&self, measurements: &mut Measurements<'_>) {
         measurements.start_log();
@@ -70,11 +61,6 @@ impl Log {
     pub fn fit(&self, robot: &RobotFile, options: &FitOptions) -> Vec<CableFit> {
         fit_cables(&self.measured(robot, Reference::Forces), options, &Progress::new())
     }
-}
-
-#[expect(clippy::cast_precision_loss, reason = "the length of a log")]
-fn seconds_between(from_nanos: i64, to_nanos: i64) -> f64 {
-    (to_nanos - from_nanos) as f64 * 1e-9
 }
 
 /// The parameter of a name.
@@ -103,10 +89,6 @@ pub fn undetermined(fit: &CableFit) -> Vec<String> {
 
 /// Mini-IPAnema of the example file with other friction values, cable by cable.
 pub fn mini_ipanema(friction: impl Fn(usize) -> String) -> RobotFile {
-    RobotFile::parse(&toml_of(friction), "mini-ipanema").unwrap()
-}
-
-pub fn toml_of(friction: impl Fn(usize) -> String) -> String {
     let mut count = 0;
     let lines = include_str!("../../../../examples/mini-ipanema.toml").lines().map(|line| {
         if !line.starts_with("friction =") {
@@ -116,7 +98,7 @@ pub fn toml_of(friction: impl Fn(usize) -> String) -> String {
         format!("friction = {{ {} }}", friction(count - 1))
     });
     let text: Vec<String> = lines.collect();
-    text.join("\n")
+    RobotFile::parse(&text.join("\n"), "mini-ipanema").unwrap()
 }
 
 /// Fitted values are within 3.5 standard errors of the truth: chance alone takes one of 2,000 further.

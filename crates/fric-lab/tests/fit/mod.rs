@@ -1,4 +1,6 @@
 //! Identification against robots whose friction is known.
+#![allow(clippy::print_stdout, reason = "the figures behind each assertion")]
+#![allow(clippy::doc_markdown, reason = "symbols of equations are no code items")]
 
 mod coverage;
 mod delicate;
@@ -10,3 +12,5 @@ mod oracle;
 mod published;
 mod together;
 mod undetermined;
+mod winch;
+mod wrench;

@@ -42,14 +42,15 @@ fn the_number_of_threads_changes_no_bit() {
     let robot = mini_ipanema(|_| "mu = 0.02, sigma_n_per_m = 900.0, viscous_n_s_per_m = 0.2".to_owned());
     let log = Log::record(&robot, &SimulationOptions { duration_s: Some(22.0), ..SimulationOptions::default() });
     let (forces, wrench) = (log.measured(&robot, Reference::Forces), log.measured(&robot, Reference::Wrench));
-    let results = [1, 2, 3].map(|threads| {
+    let results = [1, 2].map(|threads| {
         ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(|| {
             let options = FitOptions::default();
+            let few = FitOptions { parameters: Some(vec![parameter("mu")]), ..FitOptions::default() };
             let mut bits_of_both = bits(&fit_cables(&forces, &options, &Progress::new()));
-            bits_of_both.extend(bits(&fit_wrench(&wrench, &options, &Progress::new()).cables));
+            bits_of_both.extend(bits(&fit_wrench(&wrench, &few, &Progress::new()).cables));
             bits_of_both
         })
     });
     assert!(results[0].len() > 8 * 2 * 7);
-    assert!(results[0] == results[1] && results[0] == results[2]);
+    assert!(results[0] == results[1]);
 }
