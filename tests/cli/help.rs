@@ -1,6 +1,6 @@
 //! `--help`: each command has an example, and the example runs.
 
-use super::support::{Place, example_robot, short_log};
+use super::support::{Place, slow_robot};
 
 /// The commands that the program names.
 fn commands(place: &Place) -> Vec<String> {
@@ -22,12 +22,13 @@ fn examples(help: &str) -> Vec<Vec<String>> {
 #[test]
 fn each_command_has_an_example_that_runs() {
     let place = Place::empty();
-    // What stands in examples/, but short, to keep the tests so.
+    // What stands in examples/, but at a slow pace, to keep the tests short.
     std::fs::create_dir(place.path("examples")).unwrap();
-    place.write("examples/mini-ipanema.mcap", short_log());
-    place.write("examples/mini-ipanema.toml", example_robot());
+    place.write("examples/mini-ipanema.toml", slow_robot());
+    let simulate = ["simulate", "--model", "examples/mini-ipanema.toml", "-o", "examples/mini-ipanema.mcap"];
+    place.run(&simulate).succeeds();
     let commands = commands(&place);
-    for expected in ["replay", "info", "simulate"] {
+    for expected in ["replay", "fit", "info", "simulate"] {
         assert!(commands.iter().any(|command| command == expected), "{commands:?}");
     }
     for command in commands {
@@ -43,7 +44,7 @@ fn each_command_has_an_example_that_runs() {
             place.run(&arguments).succeeds();
         }
     }
-    assert_eq!(place.names(), ["compensated.mcap", "examples", "simulated.mcap"]);
+    assert_eq!(place.names(), ["by-wrench.toml", "compensated.mcap", "examples", "fitted.toml", "simulated.mcap"]);
 }
 
 #[test]

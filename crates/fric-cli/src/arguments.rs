@@ -19,8 +19,8 @@ pub enum Command {
     #[command(after_help = "Example:\n  fric-cli replay examples/mini-ipanema.mcap -o compensated.mcap")]
     Replay(ReplayArguments),
     /// Identify the friction parameters from the log of an identification run
-    #[command(after_help = "Example:\n  fric-cli fit examples/mini-ipanema.mcap -o fitted.toml\n  \
-                      fric-cli fit run.mcap --model robot.toml --reference wrench -o fitted.toml")]
+    #[command(after_help = "Examples:\n  fric-cli fit examples/mini-ipanema.mcap -o fitted.toml\n  \
+                      fric-cli fit examples/mini-ipanema.mcap --reference wrench -o by-wrench.toml")]
     Fit(FitArguments),
     /// Show what is in a log, what each signal maps to, and what is missing for which step
     #[command(after_help = "Example:\n  fric-cli info examples/mini-ipanema.mcap")]

@@ -17,7 +17,7 @@ use super::error::{HiddenEffectError, with_unit};
 /// # fn main() -> Result<(), fric_lab::simulate::HiddenEffectError> {
 /// let effect = HiddenEffect::parse("stribeck:ratio=0.5,velocity_m_per_s=0.02")?;
 /// assert_eq!(effect.kind(), "stribeck");
-/// assert_eq!(effect.params().stribeck.ratio, 0.5);
+/// assert_eq!(effect.params().get("stribeck", "ratio"), Some(0.5));
 /// let problem = HiddenEffect::parse("stribek:ratio=0.5").map_err(|error| error.to_string());
 /// assert!(problem.is_err_and(|text| text.starts_with("there is no effect `stribek`; known are `stribeck`")));
 /// # Ok(())
