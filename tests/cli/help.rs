@@ -44,7 +44,10 @@ fn each_command_has_an_example_that_runs() {
             place.run(&arguments).succeeds();
         }
     }
-    assert_eq!(place.names(), ["by-wrench.toml", "compensated.mcap", "examples", "fitted.toml", "simulated.mcap"]);
+    assert_eq!(
+        place.names(),
+        ["by-wrench.toml", "compensated.mcap", "crossing.mcap", "examples", "fitted.toml", "simulated.mcap"]
+    );
 }
 
 #[test]

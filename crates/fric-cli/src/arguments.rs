@@ -26,8 +26,9 @@ pub enum Command {
     #[command(after_help = "Example:\n  fric-cli info examples/mini-ipanema.mcap")]
     Info(InfoArguments),
     /// Write the log of a simulated robot, with effects hidden in it on request
-    #[command(after_help = "Example:\n  fric-cli simulate --model examples/mini-ipanema.toml -o simulated.mcap \
-                      --effect stribeck:ratio=0.5,velocity_m_per_s=0.02 --seed 7")]
+    #[command(after_help = "Examples:\n  fric-cli simulate --model examples/mini-ipanema.toml -o simulated.mcap \
+                      --effect stribeck:ratio=0.5,velocity_m_per_s=0.02 --seed 7\n  \
+                      fric-cli simulate --model examples/mini-ipanema.toml --run crossing -o crossing.mcap")]
     Simulate(SimulateArguments),
 }
 
@@ -102,13 +103,16 @@ pub struct SimulateArguments {
     /// The log to write
     #[arg(short, long, value_name = "LOG.mcap", required = true, value_parser = a_file())]
     pub output: PathBuf,
+    /// What the platform does
+    #[arg(long, value_name = "RUN", value_enum, default_value_t)]
+    pub run: RunName,
     /// Hide an effect of the catalogue in all cables; may be given several times
     #[arg(long = "effect", value_name = "kind:key=value,…")]
     pub effects: Vec<String>,
     /// Seed of noise and micro motion
     #[arg(long, value_name = "S", default_value_t = 0, allow_negative_numbers = true, value_parser = a_seed)]
     pub seed: u64,
-    /// Length of the log in s; the identification run is cut or repeated [default: one run]
+    /// Length of the log in s; the run is cut or repeated [default: one run]
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = a_number)]
     pub duration: Option<f64>,
     /// Standard deviation of the sensor noise, N
@@ -123,6 +127,16 @@ pub struct SimulateArguments {
     /// Replace the output if it exists
     #[arg(long)]
     pub force: bool,
+}
+
+/// The runs of a simulated platform.
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub enum RunName {
+    /// Small steps, strokes and rectangles, as for the identification
+    #[default]
+    Identification,
+    /// One position crossed along x, y, z and about them, as for the hysteresis of the wrench
+    Crossing,
 }
 
 /// Where the result goes beside the table.

@@ -7,6 +7,7 @@ use std::path::Path;
 
 use fric_core::ParamError;
 use fric_core::robot::file::RobotFileError;
+use fric_lab::simulate::SimulationError;
 use fric_log::output::{OutputError, directory_of};
 use fric_log::recording::RecordingError;
 use fric_log::signals::SignalError;
@@ -82,17 +83,17 @@ fn reason(error: &io::Error) -> String {
     text.split(" at path ").next().map_or_else(String::new, ToOwned::to_owned)
 }
 
-impl From<RecordingError> for Failure {
-    fn from(error: RecordingError) -> Self {
-        Self::with_advice(&error, error.advice())
-    }
+macro_rules! failure_with_advice_from {
+    ($($error:ty),* $(,)?) => {$(
+        impl From<$error> for Failure {
+            fn from(error: $error) -> Self {
+                Self::with_advice(&error, error.advice())
+            }
+        }
+    )*};
 }
 
-impl From<SignalError> for Failure {
-    fn from(error: SignalError) -> Self {
-        Self::with_advice(&error, error.advice())
-    }
-}
+failure_with_advice_from!(RecordingError, SignalError, SimulationError);
 
 impl From<RobotFileError> for Failure {
     fn from(error: RobotFileError) -> Self {

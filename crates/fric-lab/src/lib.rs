@@ -1,5 +1,6 @@
 //! Offline work on samples of cable robots with pulley friction.
 //!
+//! [`trajectory`] holds the runs of a platform: identification, and crossing for the hysteresis of the wrench.
 //! [`simulate`] is a robot with known friction: the samples of a log, as a stream, with effects hidden in them on
 //! request. Its friction is computed in another way than the compensator's, so that each is a check of the other.
 //!
@@ -10,7 +11,11 @@
 
 #![allow(clippy::doc_markdown, reason = "symbols of equations are no code items")]
 
+mod axis;
 mod clock;
 pub mod fit;
 pub mod replay;
 pub mod simulate;
+pub mod trajectory;
+
+pub use axis::CartesianAxis;

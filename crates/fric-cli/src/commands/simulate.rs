@@ -3,12 +3,12 @@
 use std::path::PathBuf;
 
 use fric_core::Sample;
-use fric_lab::simulate::{HiddenEffect, Imbalance, Simulation, SimulationError, SimulationOptions};
+use fric_lab::simulate::{HiddenEffect, Imbalance, Run, Simulation, SimulationError, SimulationOptions};
 use fric_log::path::MessagePath;
 use fric_log::signals::{Role, SignalPaths};
 use fric_log::write::{JointState, JointStateChannel, LogWriter, PoseChannel, WrenchChannel};
 
-use crate::arguments::SimulateArguments;
+use crate::arguments::{RunName, SimulateArguments};
 use crate::failure::{Failure, Outcome};
 use crate::model::Model;
 use crate::output::JsonTarget;
@@ -28,6 +28,10 @@ pub fn run(arguments: &SimulateArguments) -> Outcome {
         .map_err(|error| Failure::usage(format!("--effect: {error}")))?;
     let model = Model::read(&arguments.model)?;
     let options = SimulationOptions {
+        run: match arguments.run {
+            RunName::Identification => Run::Identification,
+            RunName::Crossing => Run::Crossing,
+        },
         seed: arguments.seed,
         duration_s: arguments.duration,
         sensor_noise_n: arguments.sensor_noise_n,
@@ -92,7 +96,7 @@ fn refused(error: SimulationError) -> Failure {
             Failure::usage(format!("--{option} is {value:?}; allowed is {min} to {max}"))
         }
         SimulationError::RepeatedEffect { .. } => Failure::usage(format!("--effect: {error}")),
-        error => Failure::new(error),
+        error => Failure::from(error),
     }
 }
 
