@@ -4,8 +4,8 @@
 //! [`simulate`] is a robot with known friction: the samples of a log, as a stream, with effects hidden in them on
 //! request. Its friction is computed in another way than the compensator's, so that each is a check of the other.
 //!
-//! [`fit`] identifies the parameters of the friction model, [`replay`] runs the compensator over samples and sums up the
-//! errors.
+//! [`excite`] gives the identification run as set points for a real robot; [`fit`] identifies the parameters of the
+//! friction model from its log. [`replay`] runs the control loop's cycle over samples and sums up the errors.
 //!
 //! Nothing here reads or writes logs, and nothing here belongs into a control cycle.
 
@@ -13,6 +13,7 @@
 
 mod axis;
 mod clock;
+pub mod excite;
 pub mod fit;
 pub mod replay;
 pub mod simulate;
