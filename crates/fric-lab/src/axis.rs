@@ -1,7 +1,7 @@
 //! The six Cartesian axes of a platform: along and about the base axes.
 
-use fric_core::Wrench;
-use nalgebra::{UnitQuaternion, Vector3};
+use fric_core::{Pose, Wrench};
+use nalgebra::{UnitQuaternion, Vector3, Vector6};
 
 /// An axis along which the platform moves, or about which it turns, named as in table II of \[P\].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -65,6 +65,18 @@ impl CartesianAxis {
         let part = if self.is_rotation() { &wrench.torque_nm } else { &wrench.force_n };
         part.dot(&self.direction())
     }
+
+    /// Its place in a wrench.
+    pub(crate) fn index(self) -> usize {
+        self as usize
+    }
+}
+
+/// How far a pose is from another: position, m, and rotation vector in base axes, rad (`R = exp(θ)·R_other`).
+pub(crate) fn displacement(pose: &Pose, from: &Pose) -> Vector6<f64> {
+    let moved_m = pose.position_m - from.position_m;
+    let turned_rad = (pose.orientation * from.orientation.inverse()).scaled_axis();
+    Vector6::new(moved_m.x, moved_m.y, moved_m.z, turned_rad.x, turned_rad.y, turned_rad.z)
 }
 
 /// The rotation by a rotation vector, rad; on every platform the same to the bit.

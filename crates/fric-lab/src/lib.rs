@@ -5,7 +5,8 @@
 //! request. Its friction is computed in another way than the compensator's, so that each is a check of the other.
 //!
 //! [`excite`] gives the identification run as set points for a real robot; [`fit`] identifies the parameters of the
-//! friction model from its log. [`replay`] runs the control loop's cycle over samples and sums up the errors.
+//! friction model from its log. [`replay`] runs the control loop's cycle over samples and sums up the errors, [`hysteresis`]
+//! tells what is left of the wrench's hysteresis.
 //!
 //! Nothing here reads or writes logs, and nothing here belongs into a control cycle.
 
@@ -15,6 +16,7 @@ mod axis;
 mod clock;
 pub mod excite;
 pub mod fit;
+pub mod hysteresis;
 pub mod replay;
 pub mod simulate;
 pub mod trajectory;

@@ -3,5 +3,6 @@
 
 mod excite;
 mod fit;
+mod hysteresis;
 mod simulate;
 mod trajectory;
