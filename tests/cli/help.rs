@@ -28,7 +28,7 @@ fn each_command_has_an_example_that_runs() {
     let simulate = ["simulate", "--model", "examples/mini-ipanema.toml", "-o", "examples/mini-ipanema.mcap"];
     place.run(&simulate).succeeds();
     let commands = commands(&place);
-    for expected in ["replay", "fit", "info", "simulate"] {
+    for expected in ["replay", "fit", "info", "simulate", "excite", "hysteresis"] {
         assert!(commands.iter().any(|command| command == expected), "{commands:?}");
     }
     for command in commands {
@@ -38,7 +38,8 @@ fn each_command_has_an_example_that_runs() {
         for example in examples {
             assert_eq!(example[0], command);
             let mut arguments: Vec<&str> = example.iter().map(String::as_str).collect();
-            if command == "simulate" && !arguments.contains(&"--duration") {
+            // The crossing run is whole, for `hysteresis` needs it.
+            if command == "simulate" && !arguments.contains(&"crossing") {
                 arguments.extend(["--duration", "0.1"]);
             }
             place.run(&arguments).succeeds();
@@ -46,7 +47,17 @@ fn each_command_has_an_example_that_runs() {
     }
     assert_eq!(
         place.names(),
-        ["by-wrench.toml", "compensated.mcap", "crossing.mcap", "examples", "fitted.toml", "simulated.mcap"]
+        [
+            "by-wrench.toml",
+            "compensated.mcap",
+            "crossing.mcap",
+            "examples",
+            "fitted.toml",
+            "gentle.csv",
+            "run.csv",
+            "run.html",
+            "simulated.mcap"
+        ]
     );
 }
 

@@ -71,7 +71,7 @@ fn simulated_noise_is_what_is_left() {
     assert!((0.9..1.2).contains(&(error_n / noise_n)), "{error_n} N");
 }
 
-fn bench_robot() -> String {
+pub fn bench_robot() -> String {
     "format = 'fric-robot/1'\nname = 'bench'\ncycle_s = 0.001\n\n[[cable]]\nname = 'winch'\n\
      pulleys = [{ wrap_deg = 180.0, sensor = true }, { wrap_deg = 90.0 }]\n\
      friction = { mu = 0.02, sigma_n_per_m = 1000.0, viscous_n_s_per_m = 0.2 }\n"

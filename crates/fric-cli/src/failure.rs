@@ -7,6 +7,8 @@ use std::path::Path;
 
 use fric_core::ParamError;
 use fric_core::robot::file::RobotFileError;
+use fric_lab::excite::ExcitationError;
+use fric_lab::hysteresis::HysteresisError;
 use fric_lab::simulate::SimulationError;
 use fric_log::output::{OutputError, directory_of};
 use fric_log::recording::RecordingError;
@@ -93,7 +95,7 @@ macro_rules! failure_with_advice_from {
     )*};
 }
 
-failure_with_advice_from!(RecordingError, SignalError, SimulationError);
+failure_with_advice_from!(ExcitationError, HysteresisError, RecordingError, SignalError, SimulationError);
 
 impl From<RobotFileError> for Failure {
     fn from(error: RobotFileError) -> Self {

@@ -88,6 +88,11 @@ fn print_to(mut stream: impl Write, text: &str) -> Outcome {
     }
 }
 
+/// A coordinate to the millimetre, without a minus before a zero.
+pub fn to_millimetre(part_m: f64) -> f64 {
+    (part_m * 1e3).round() / 1e3 + 0.0
+}
+
 /// A table with a header; all columns but the first `left` are aligned right.
 pub fn table(header: &[&str], left: usize, rows: &[impl AsRef<[String]>]) -> String {
     let mut table = Table::new();

@@ -2,8 +2,9 @@
 
 use std::io::Write as _;
 
-use fric_core::effects;
-use fric_core::robot::file::{EffectTable, RobotFile};
+use fric_core::robot::file::{CableTable, EffectTable, RobotFile};
+use fric_core::{CableStatus, effects};
+use fric_lab::replay::Replay;
 use fric_log::recording::{Overlap, Recording};
 use fric_log::signals::{Role, SignalPaths, SignalReader, TrackCounts};
 
@@ -83,6 +84,34 @@ pub fn about_signals(reader: &SignalReader, paths: &SignalPaths) {
         if let Some(problem) = reader.first_problem(role) {
             warn(&format!("{} signal `{path}`: some messages cannot be used; the first: {problem}", role.key()));
         }
+    }
+}
+
+/// Cables that the robot file or the log says too little of, and those that the compensator flagged.
+pub fn about_cables(robot: &RobotFile, replay: &Replay) {
+    let tables = &robot.options().cable;
+    let frictionless = |cable: &&CableTable| cable.friction.mu == 0.0 && cable.friction.viscous_n_s_per_m == 0.0;
+    let names: Vec<&str> = tables.iter().filter(frictionless).map(|cable| cable.name.as_str()).collect();
+    if !names.is_empty() {
+        warn(&format!("the robot file gives no `friction` for {}: nothing is compensated there", names.join(", ")));
+    }
+    // Cables with the same trouble share a line.
+    let mut flagged: Vec<(u64, u32, Vec<&str>)> = Vec::new();
+    for (name, cable) in robot.cable_names().into_iter().zip(replay.cables()) {
+        match flagged.iter_mut().find(|(count, flags, _)| (*count, *flags) == (cable.flagged_count, cable.flags)) {
+            Some((.., names)) => names.push(name),
+            None if cable.flagged_count > 0 => flagged.push((cable.flagged_count, cable.flags, vec![name])),
+            None => {}
+        }
+    }
+    let silent = CableStatus::SENSOR_NOT_FINITE | CableStatus::MOTION_NOT_FINITE;
+    for (count, flags, names) in flagged {
+        if count == replay.cycle_count() && CableStatus::from_bits(flags) == silent {
+            warn(&format!("the log has no signal of {}; compare the names in it", names.join(", ")));
+            continue;
+        }
+        let (names, flags) = (names.join(", "), CableStatus::from_bits(flags));
+        warn(&format!("{count} of {} samples are flagged {flags}: {names}", replay.cycle_count()));
     }
 }
 

@@ -1,6 +1,5 @@
 //! `replay`: the compensator over a log, as the control loop would run it.
 
-use fric_core::robot::file::CableTable;
 use fric_core::{CableParams, CableStatus, Sample};
 use fric_lab::replay::{CableErrors, Replay, ReplayedCycle};
 use fric_log::output::OutputFile;
@@ -72,7 +71,7 @@ pub fn run(arguments: &ReplayArguments) -> Outcome {
         writer.log.finish()?;
     }
     if let (Some(report), Some(series)) = (report, series) {
-        output::write_text(report, &report::page(&outcome, &series, &log.logs))?;
+        output::write_text(report, &report::errors::page(&outcome, &series, &log.logs))?;
     }
     json.show(&describe(&outcome))?;
     json.write(&outcome)
@@ -166,33 +165,7 @@ fn warn_about_model(model: &Model, reader: &SignalReader, replay: &Replay) {
              the check for a frozen sensor count cycles of the robot file; friction itself does not depend on the rate"
         ));
     }
-    let tables = &model.robot.options().cable;
-    let frictionless = |cable: &&CableTable| cable.friction.mu == 0.0 && cable.friction.viscous_n_s_per_m == 0.0;
-    let names: Vec<&str> = tables.iter().filter(frictionless).map(|cable| cable.name.as_str()).collect();
-    if !names.is_empty() {
-        warnings::warn(&format!(
-            "the robot file gives no `friction` for {}: nothing is compensated there",
-            names.join(", ")
-        ));
-    }
-    // Cables with the same trouble share a line.
-    let mut flagged: Vec<(u64, u32, Vec<&str>)> = Vec::new();
-    for (name, cable) in model.robot.cable_names().into_iter().zip(replay.cables()) {
-        match flagged.iter_mut().find(|(count, flags, _)| (*count, *flags) == (cable.flagged_count, cable.flags)) {
-            Some((.., names)) => names.push(name),
-            None if cable.flagged_count > 0 => flagged.push((cable.flagged_count, cable.flags, vec![name])),
-            None => {}
-        }
-    }
-    let silent = CableStatus::SENSOR_NOT_FINITE | CableStatus::MOTION_NOT_FINITE;
-    for (count, flags, names) in flagged {
-        if count == replay.cycle_count() && CableStatus::from_bits(flags) == silent {
-            warnings::warn(&format!("the log has no signal of {}; compare the names in it", names.join(", ")));
-            continue;
-        }
-        let (names, flags) = (names.join(", "), CableStatus::from_bits(flags));
-        warnings::warn(&format!("{count} of {} samples are flagged {flags}: {names}", replay.cycle_count()));
-    }
+    warnings::about_cables(&model.robot, replay);
 }
 
 /// The log that `--output` names.
