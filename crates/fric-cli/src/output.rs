@@ -4,16 +4,10 @@ use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use comfy_table::{CellAlignment, Table, presets};
-use fric_log::output::{OutputError, OutputFile, directory_of};
+use fric_log::output::{OutputFile, directory_of};
 use serde::Serialize;
 
 use crate::failure::{Failure, Outcome};
-
-/// Writes a text and puts the file in its place.
-pub fn write_text(mut file: OutputFile, text: &str) -> Outcome {
-    file.write_all(text.as_bytes()).map_err(|source| OutputError::File { path: file.path().to_owned(), source })?;
-    Ok(file.finish()?)
-}
 
 /// Makes sure that no two outputs are to stand in the same place.
 pub fn check_distinct(outputs: &[Option<&Path>]) -> Outcome {
@@ -60,7 +54,7 @@ impl JsonTarget {
         match self {
             Self::Nowhere => Ok(()),
             Self::Stdout => print_to(std::io::stdout(), &text()?),
-            Self::File(file) => write_text(file, &text()?),
+            Self::File(file) => Ok(file.finish_with(&text()?)?),
         }
     }
 

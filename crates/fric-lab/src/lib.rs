@@ -6,7 +6,7 @@
 //!
 //! [`excite`] gives the identification run as set points for a real robot; [`fit`] identifies the parameters of the
 //! friction model from its log. [`replay`] runs the control loop's cycle over samples and sums up the errors, [`hysteresis`]
-//! tells what is left of the wrench's hysteresis.
+//! tells what is left of the wrench's hysteresis. [`columns`] keeps the samples of a whole log in memory.
 //!
 //! Nothing here reads or writes logs, and nothing here belongs into a control cycle.
 
@@ -14,6 +14,7 @@
 
 mod axis;
 mod clock;
+pub mod columns;
 pub mod excite;
 pub mod fit;
 pub mod hysteresis;

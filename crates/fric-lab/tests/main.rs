@@ -4,5 +4,6 @@
 mod excite;
 mod fit;
 mod hysteresis;
+mod replay;
 mod simulate;
 mod trajectory;

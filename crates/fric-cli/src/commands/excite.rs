@@ -48,7 +48,7 @@ pub fn run(arguments: &ExciteArguments) -> Outcome {
     bar.finish_and_clear();
     table.finish()?;
     if let Some(page) = page {
-        output::write_text(page, &preview::page(&model.robot, &excitation, &series))?;
+        page.finish_with(&preview::page(&model.robot, &excitation, &series))?;
     }
     JsonTarget::Nowhere.show(&format!(
         "{}: {done_cycles} set points, {:.1} s{}\n",

@@ -20,7 +20,8 @@ use crate::model::{self, Model};
 use crate::output::{self, JsonTarget};
 use crate::progress::{self, STRIDE};
 use crate::result::FitResult;
-use crate::{identification, interrupt, warnings};
+use crate::warnings::{warn, warn_all};
+use crate::{identification, interrupt};
 
 /// How often the bar moves and Ctrl-C is looked at while all cores compute.
 const WATCH_INTERVAL: Duration = Duration::from_millis(20);
@@ -53,7 +54,7 @@ pub fn run(arguments: &FitArguments) -> Outcome {
     let outcome = identification::result(&model.robot, &fits);
     warn_about(&outcome, fits.cables());
     let text = rewritten(&model, fits.cables())?;
-    output::write_text(fitted_file, &text)?;
+    fitted_file.finish_with(&text)?;
     json.show(&identification::describe(&outcome))?;
     json.write(&outcome)
 }
@@ -119,9 +120,9 @@ fn read_one(log: &PathBuf, paths: &SignalPaths, names: &[&str], measurements: &m
         }
     };
     bar.finish_and_clear();
-    warnings::about_recording(reader.recording());
+    warn_all(&reader.recording().warnings());
     end?;
-    warnings::about_signals(&reader, paths);
+    warn_all(&reader.warnings());
     Ok(())
 }
 
@@ -155,7 +156,7 @@ fn by_wrench(model: &Model, measurements: &Measurements<'_>, options: &FitOption
             return Err(Failure::new(format!("the log has no wrench on {topic}, and the robot file no mass"))
                 .advise("Name the topic as `wrench`, or give `mass_kg` under `[platform]`."));
         }
-        warnings::warn(&format!(
+        warn(&format!(
             "the log has no wrench on {topic}: taken from the platform's mass of {mass_kg} kg and the pose, in quiet motion only"
         ));
     }
@@ -193,8 +194,8 @@ fn warn_about(outcome: &FitResult, fits: &[CableFit]) {
     for (cable, fit) in outcome.cables.iter().zip(fits) {
         match fit.termination {
             Termination::Converged => {}
-            Termination::NothingToFit => warnings::warn(&format!("{}: nothing to learn from, values kept", cable.name)),
-            termination => warnings::warn(&format!(
+            Termination::NothingToFit => warn(&format!("{}: nothing to learn from, values kept", cable.name)),
+            termination => warn(&format!(
                 "{}: the search ended without converging ({}); the values are the best found",
                 cable.name,
                 termination.name()

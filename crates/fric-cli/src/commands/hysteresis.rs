@@ -6,15 +6,16 @@ use fric_core::Sample;
 use fric_lab::CartesianAxis;
 use fric_lab::hysteresis::{AxisHysteresis, CrossedPose, Hysteresis, Survey, Width};
 use fric_log::recording::Recording;
-use fric_log::signals::{SignalPaths, SignalReader};
+use fric_log::signals::SignalReader;
 use serde::Serialize;
 
 use crate::arguments::HysteresisArguments;
 use crate::failure::Outcome;
+use crate::interrupt;
 use crate::model::{self, Model};
 use crate::output::{JsonTarget, table, to_millimetre};
 use crate::progress::{self, STRIDE};
-use crate::{interrupt, warnings};
+use crate::warnings::warn_all;
 
 /// `fric-hysteresis/1`.
 #[derive(Debug, Serialize)]
@@ -60,12 +61,17 @@ pub fn run(arguments: &HysteresisArguments) -> Outcome {
 
     // The first reading finds the position, the second runs the compensator; what the log is like is told once.
     let mut survey = Survey::new(&model.robot)?;
-    read(recording, &model, |sample| survey.add(sample), warn_about)?;
+    let warn_about_log = |reader: &SignalReader| {
+        warn_all(&reader.recording().warnings());
+        warn_all(&reader.warnings());
+    };
+    read(recording, &model, |sample| survey.add(sample), warn_about_log)?;
     let crossed = survey.finish()?;
     let mut hysteresis = Hysteresis::new(&model.robot, &crossed)?;
-    read(Recording::open(&log.logs)?, &model, |sample| hysteresis.step(sample), |_, _| ())?;
-    warnings::about_effects(&model.robot);
-    warnings::about_cables(&model.robot, hysteresis.replay());
+    let warn_about_robot = |reader: &SignalReader| warn_all(&reader.robot_warnings(&model.robot));
+    read(Recording::open(&log.logs)?, &model, |sample| hysteresis.step(sample), warn_about_robot)?;
+    warn_all(&model.robot.warnings());
+    warn_all(&hysteresis.replay().cable_warnings(&model.robot));
 
     let axes = hysteresis.axes()?;
     let outcome = HysteresisResult {
@@ -82,11 +88,11 @@ fn read(
     recording: Recording,
     model: &Model,
     mut take: impl FnMut(&Sample<'_>),
-    warn: impl FnOnce(&SignalReader, &SignalPaths),
+    warn: impl FnOnce(&SignalReader),
 ) -> Outcome {
     let paths = model.signal_paths()?;
     let bar = progress::bytes(recording.total_bytes());
-    let mut reader = SignalReader::new(recording, paths.clone(), &model.robot.cable_names());
+    let mut reader = SignalReader::new(recording, paths, &model.robot.cable_names());
     let mut count = 0_u64;
     let end = loop {
         if count.is_multiple_of(STRIDE) {
@@ -102,13 +108,8 @@ fn read(
     };
     bar.finish_and_clear();
     // Damage may be why there is nothing to go on with.
-    warn(&reader, &paths);
+    warn(&reader);
     Ok(end?)
-}
-
-fn warn_about(reader: &SignalReader, paths: &SignalPaths) {
-    warnings::about_recording(reader.recording());
-    warnings::about_signals(reader, paths);
 }
 
 fn axis_result(axis: CartesianAxis, all: &[AxisHysteresis]) -> AxisResult {

@@ -141,7 +141,8 @@ fn keys_within(value: DeValue<'_>, offset: usize) -> Vec<String> {
     }
 }
 
-/// "unknown key `x`; did you mean `y`?" with all names there are.
+/// "unknown key `x`; did you mean `y`?" with all names there are; `what` is what they are names of.
+#[must_use]
 pub fn unknown_name<'a>(what: &str, unknown: &str, known: impl Iterator<Item = &'a str>) -> String {
     let known: Vec<&str> = known.collect();
     let nearest = known

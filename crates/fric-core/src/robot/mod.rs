@@ -16,9 +16,13 @@ mod read;
 mod splice;
 #[cfg(feature = "robot-file")]
 mod table;
+#[cfg(feature = "robot-file")]
+mod warnings;
 
 pub(crate) use error::check;
 pub use error::{ParamError, ParamProblem};
+#[cfg(feature = "robot-file")]
+pub use locate::unknown_name;
 pub use params::{
     CableOptions, CableParams, FrictionOptions, GeometryOptions, MAX_PULLEYS, MonitorOptions, PlatformOptions,
     Presliding, PulleyOptions, RobotParams, ValidatedRange,

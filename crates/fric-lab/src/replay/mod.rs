@@ -6,12 +6,13 @@
 
 mod compensator;
 mod error;
+mod warnings;
 
 use fric_core::{CableOutput, CableStatus, ParamError, RobotParams, Sample, Wrench};
 
 use crate::clock::Clock;
 
-pub use compensator::AnyCompensator;
+pub use compensator::{AnyCompensator, AnySnapshot, SnapshotMismatch};
 pub use error::Deviation;
 
 /// What has been accumulated for a cable.

@@ -24,6 +24,7 @@ mod options;
 pub(crate) mod platform;
 mod stream;
 pub(crate) mod tension;
+mod warnings;
 mod waves;
 pub(crate) mod workspace;
 
