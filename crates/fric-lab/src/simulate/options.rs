@@ -21,6 +21,20 @@ pub enum Run {
     Crossing,
 }
 
+impl Run {
+    /// All there are.
+    pub const ALL: [Self; 2] = [Self::Identification, Self::Crossing];
+
+    /// In one word, as the command line has it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Identification => "identification",
+            Self::Crossing => "crossing",
+        }
+    }
+}
+
 /// How to simulate a robot. The robot itself, its friction included, is the robot file's.
 ///
 /// ```
