@@ -2,6 +2,7 @@
 CARGO ?= cargo
 PYTHON ?= python3
 VENV := .venv
+PIP := $(VENV)/bin/python -m pip --quiet --disable-pip-version-check
 
 .PHONY: test format lint test-rust docs test-python bench
 
@@ -21,11 +22,13 @@ docs:
 
 test-python: $(VENV)/ready
 	$(CARGO) build --quiet -p fric-cli
+	# As `pip install .` does, but with what has been built for the other tests.
+	PATH="$(CURDIR)/$(VENV)/bin:$$PATH" MATURIN_PEP517_ARGS="--profile dev" $(PIP) install --no-build-isolation --no-deps .
 	$(VENV)/bin/python -m pytest tests/python
 
 $(VENV)/ready: tests/python/requirements.txt
 	$(PYTHON) -m venv $(VENV)
-	$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check -r tests/python/requirements.txt
+	$(PIP) install -r tests/python/requirements.txt
 	touch $@
 
 bench:

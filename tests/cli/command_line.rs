@@ -81,8 +81,10 @@ fn what_cannot_go_to_stdout_is_refused() {
             let run = place.run_in_vain(&[&["replay", "log.mcap", option, "-"], force].concat());
             run.fails(2, &["'-'", "stdout", "name a file"]);
         }
-        let run = place.run_in_vain(&[&["simulate", "--model", "robot.toml", "-o", "-"], force].concat());
-        run.fails(2, &["'-'", "stdout", "name a file"]);
+        for command in ["simulate", "excite"] {
+            let run = place.run_in_vain(&[&[command, "--model", "robot.toml", "-o", "-"], force].concat());
+            run.fails(2, &["'-'", "stdout", "name a file"]);
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! `--help`: each command has an example, and the example runs.
 
 use super::fit::platform_log;
-use super::support::{Place, example_robot};
+use super::support::{Place, slow_robot};
 
 /// The commands that the program names.
 fn commands(place: &Place) -> Vec<String> {
@@ -23,12 +23,12 @@ fn examples(help: &str) -> Vec<Vec<String>> {
 #[test]
 fn each_command_has_an_example_that_runs() {
     let place = Place::empty();
-    // What stands in examples/, but short, to keep the tests so.
+    // What stands in examples/, but at a slow pace, to keep the tests short.
     std::fs::create_dir(place.path("examples")).unwrap();
+    place.write("examples/mini-ipanema.toml", slow_robot());
     place.write("examples/mini-ipanema.mcap", platform_log());
-    place.write("examples/mini-ipanema.toml", example_robot());
     let commands = commands(&place);
-    for expected in ["replay", "fit", "info", "simulate"] {
+    for expected in ["replay", "fit", "info", "simulate", "excite", "hysteresis"] {
         assert!(commands.iter().any(|command| command == expected), "{commands:?}");
     }
     for command in commands {
@@ -38,14 +38,27 @@ fn each_command_has_an_example_that_runs() {
         for example in examples {
             assert_eq!(example[0], command);
             let mut arguments: Vec<&str> = example.iter().map(String::as_str).collect();
-            if command == "simulate" && !arguments.contains(&"--duration") {
+            // The crossing run is whole, for `hysteresis` needs it.
+            if command == "simulate" && !arguments.contains(&"crossing") {
                 arguments.extend(["--duration", "0.1"]);
             }
             place.run(&arguments).succeeds();
         }
     }
-    let names = ["by-wrench.toml", "compensated.mcap", "examples", "fitted.toml", "simulated.mcap"];
-    assert_eq!(place.names(), names);
+    assert_eq!(
+        place.names(),
+        [
+            "by-wrench.toml",
+            "compensated.mcap",
+            "crossing.mcap",
+            "examples",
+            "fitted.toml",
+            "gentle.csv",
+            "run.csv",
+            "run.html",
+            "simulated.mcap"
+        ]
+    );
 }
 
 #[test]

@@ -9,7 +9,7 @@ fn report(place: &Place, arguments: &[&str]) -> String {
 }
 
 #[track_caller]
-fn assert_self_contained(page: &str) {
+pub fn assert_self_contained(page: &str) {
     assert!(page.starts_with("<!DOCTYPE html>") && page.trim_end().ends_with("</html>"));
     for foreign in [
         "http:",

@@ -22,6 +22,11 @@ pub fn example_robot() -> String {
     fs::read_to_string(root().join("examples/mini-ipanema.toml")).unwrap()
 }
 
+/// The same robot with a cycle of 10 ms, so that a whole run is short.
+pub fn slow_robot() -> String {
+    example_robot().replacen("cycle_s = 0.001", "cycle_s = 0.01", 1)
+}
+
 /// The program in a directory.
 pub fn command(directory: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(PROGRAM);

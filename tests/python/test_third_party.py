@@ -1,18 +1,14 @@
 """What `fric-cli` writes, opened with the readers other people use and computed again with NumPy."""
 
 import json
-import os
 import re
-import subprocess
-from pathlib import Path
 
 import numpy as np
 import pytest
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
+from support import ROBOT, run
 
-ROOT = Path(__file__).resolve().parents[2]
-ROBOT = ROOT / "examples" / "mini-ipanema.toml"
 CABLES = [f"cable{number}" for number in range(1, 9)]
 # As documented at `CableStatus`; a name or number that changes breaks the users' scripts.
 FLAGS = [
@@ -26,15 +22,6 @@ FLAGS = [
     "POSE_MISSING",
     "POSE_UNREACHABLE",
 ]
-
-
-def run(*arguments):
-    """Runs the build that `cargo test` leaves behind and gives what it warns of."""
-    target = ROOT / os.environ.get("CARGO_TARGET_DIR", "target")
-    command = [target / "debug" / "fric-cli", *arguments]
-    done = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", check=False)
-    assert done.returncode == 0, done
-    return done.stderr
 
 
 class Log:

@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-/// Friction compensation for cable-driven robots: identify friction, replay logs, look into them, simulate them.
+/// Friction compensation for cable-driven robots: identify friction, replay logs, look into them, simulate and excite
+/// robots.
 #[derive(Debug, Parser)]
 #[command(version, arg_required_else_help = true)]
 pub struct Arguments {
@@ -26,9 +27,22 @@ pub enum Command {
     #[command(after_help = "Example:\n  fric-cli info examples/mini-ipanema.mcap")]
     Info(InfoArguments),
     /// Write the log of a simulated robot, with effects hidden in it on request
-    #[command(after_help = "Example:\n  fric-cli simulate --model examples/mini-ipanema.toml -o simulated.mcap \
-                      --effect stribeck:ratio=0.5,velocity_m_per_s=0.02 --seed 7")]
+    #[command(after_help = "Examples:\n  fric-cli simulate --model examples/mini-ipanema.toml -o simulated.mcap \
+                      --effect stribeck:ratio=0.5,velocity_m_per_s=0.02 --seed 7\n  \
+                      fric-cli simulate --model examples/mini-ipanema.toml --run crossing -o crossing.mcap")]
     Simulate(SimulateArguments),
+    /// Write the identification run as set points for a robot's controller
+    #[command(
+        after_help = "Examples:\n  fric-cli excite --model examples/mini-ipanema.toml -o run.csv --preview run.html\n  \
+                      fric-cli excite --model examples/mini-ipanema.toml -o gentle.csv --box=-0.1,-0.1,-0.1,0.1,0.1,0.1 \
+                      --max-speed-m-per-s 0.5 --max-acceleration-m-per-s2 5 --min-tension-n 2 --max-tension-n 30"
+    )]
+    Excite(ExciteArguments),
+    /// Show how much the wrench depends on the side from which a position is reached, with and without compensation
+    ///
+    /// The platform has to cross a position to and fro along an axis; `simulate --run crossing` makes such a log.
+    #[command(after_help = "Example:\n  fric-cli hysteresis crossing.mcap")]
+    Hysteresis(HysteresisArguments),
 }
 
 /// The log and its robot.
@@ -106,13 +120,16 @@ pub struct SimulateArguments {
     /// The log to write
     #[arg(short, long, value_name = "LOG.mcap", required = true, value_parser = a_file())]
     pub output: PathBuf,
+    /// What the platform does
+    #[arg(long, value_name = "RUN", value_enum, default_value_t)]
+    pub run: RunName,
     /// Hide an effect of the catalogue in all cables; may be given several times
     #[arg(long = "effect", value_name = "kind:key=value,…")]
     pub effects: Vec<String>,
     /// Seed of noise and micro motion
     #[arg(long, value_name = "S", default_value_t = 0, allow_negative_numbers = true, value_parser = a_seed)]
     pub seed: u64,
-    /// Length of the log in s; the identification run is cut or repeated [default: one run]
+    /// Length of the log in s; the run is cut or repeated [default: one run]
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = a_number)]
     pub duration: Option<f64>,
     /// Standard deviation of the sensor noise, N
@@ -127,6 +144,66 @@ pub struct SimulateArguments {
     /// Replace the output if it exists
     #[arg(long)]
     pub force: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct ExciteArguments {
+    /// Robot file
+    #[arg(long, value_name = "M.toml", required = true)]
+    pub model: PathBuf,
+    /// The CSV file to write, one row a cycle
+    #[arg(short, long, value_name = "RUN.csv", required = true, value_parser = a_file())]
+    pub output: PathBuf,
+    /// Two corners of the box in which the platform runs, base frame, m [default: where the simulation runs]
+    #[arg(long = "box", value_name = "x0,y0,z0,x1,y1,z1", allow_hyphen_values = true, value_parser = corners)]
+    pub box_m: Option<Corners>,
+    /// Cap on the speed of the platform, m/s [default: the run's own, 1]
+    #[arg(long, value_name = "V", allow_negative_numbers = true, value_parser = a_number)]
+    pub max_speed_m_per_s: Option<f64>,
+    /// Cap on the acceleration of the platform, m/s² [default: the run's own, 16]
+    #[arg(long, value_name = "A", allow_negative_numbers = true, value_parser = a_number)]
+    pub max_acceleration_m_per_s2: Option<f64>,
+    /// Least force of each cable at the platform, N [default: a tenth of its mean, and the viscous friction]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = a_number)]
+    pub min_tension_n: Option<f64>,
+    /// Greatest force of each cable at the platform, N [default: any]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = a_number)]
+    pub max_tension_n: Option<f64>,
+    /// Draw the run on a page, this HTML file
+    #[arg(long, value_name = "P.html", value_parser = a_file())]
+    pub preview: Option<PathBuf>,
+    /// Replace outputs that exist
+    #[arg(long)]
+    pub force: bool,
+}
+
+/// Six coordinates, m.
+pub type Corners = [f64; 6];
+
+fn corners(text: &str) -> Result<Corners, String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|number| number.trim().parse()).collect();
+    numbers.ok().and_then(|numbers| numbers.try_into().ok()).ok_or_else(|| {
+        "a box is six numbers in m, x0,y0,z0,x1,y1,z1, the lesser corner first, such as -0.1,-0.1,0,0.1,0.1,0.3"
+            .to_owned()
+    })
+}
+
+#[derive(Debug, Args)]
+pub struct HysteresisArguments {
+    #[command(flatten)]
+    pub log: LogArguments,
+    #[command(flatten)]
+    pub result: ResultArguments,
+}
+
+/// The runs of a simulated platform.
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub enum RunName {
+    /// Small steps, strokes and rectangles, as for the identification
+    #[default]
+    Identification,
+    /// One position crossed along x, y, z and about them, as for the hysteresis of the wrench
+    Crossing,
 }
 
 /// Where the result goes beside the table.

@@ -7,10 +7,14 @@ use std::path::Path;
 
 use fric_core::ParamError;
 use fric_core::robot::file::RobotFileError;
+use fric_lab::excite::ExcitationError;
+use fric_lab::hysteresis::HysteresisError;
+use fric_lab::simulate::SimulationError;
 use fric_log::output::{OutputError, directory_of};
 use fric_log::recording::RecordingError;
 use fric_log::signals::SignalError;
 use fric_log::write::WriteError;
+use fric_log::{in_full, reason, with_sources};
 
 /// What `main` turns into an exit code.
 #[derive(Debug)]
@@ -36,11 +40,11 @@ impl Failure {
 
     /// The work failed, for a reason that ends with what to do, if with anything.
     fn with_advice(error: &dyn Error, advice: Option<&str>) -> Self {
+        let Some(advice) = advice else { return Self::new(in_full(error)) };
         let sentence = error.to_string();
-        let Some(advice) = advice else { return Self::new(in_full(sentence, error)) };
         let cause =
             sentence.strip_suffix(advice).map_or(sentence.as_str(), |cause| cause.trim_end_matches(['.', ';', ' ']));
-        Self::new(in_full(cause.to_owned(), error)).advise(advice)
+        Self::new(with_sources(cause.to_owned(), error)).advise(advice)
     }
 
     /// Adds what to do.
@@ -63,36 +67,17 @@ impl Failure {
     }
 }
 
-/// What an error says, in words of its own, and what its sources add.
-fn in_full(mut text: String, error: &dyn Error) -> String {
-    let mut source = error.source();
-    while let Some(error) = source {
-        let reason = error.to_string();
-        if !text.contains(&reason) {
-            text = format!("{text}: {reason}");
+macro_rules! failure_with_advice_from {
+    ($($error:ty),* $(,)?) => {$(
+        impl From<$error> for Failure {
+            fn from(error: $error) -> Self {
+                Self::with_advice(&error, error.advice())
+            }
         }
-        source = error.source();
-    }
-    text
+    )*};
 }
 
-/// What the operating system said, without the name of a temporary file that means nothing to people.
-fn reason(error: &io::Error) -> String {
-    let text = error.to_string();
-    text.split(" at path ").next().map_or_else(String::new, ToOwned::to_owned)
-}
-
-impl From<RecordingError> for Failure {
-    fn from(error: RecordingError) -> Self {
-        Self::with_advice(&error, error.advice())
-    }
-}
-
-impl From<SignalError> for Failure {
-    fn from(error: SignalError) -> Self {
-        Self::with_advice(&error, error.advice())
-    }
-}
+failure_with_advice_from!(ExcitationError, HysteresisError, RecordingError, SignalError, SimulationError);
 
 impl From<RobotFileError> for Failure {
     fn from(error: RobotFileError) -> Self {
@@ -116,7 +101,7 @@ impl From<OutputError> for Failure {
                     .advise("Name another output file.")
             }
             OutputError::File { path, source } => unwritable(&path, &source),
-            _ => Self::new(in_full(error.to_string(), &error)),
+            _ => Self::new(in_full(&error)),
         }
     }
 }
@@ -125,7 +110,8 @@ impl From<WriteError> for Failure {
     fn from(error: WriteError) -> Self {
         match error {
             WriteError::Output(error) => error.into(),
-            error => Self::new(in_full(error.to_string(), &error)),
+            WriteError::EarlyStamp { .. } => Self::new(error).advise("Replay it without -o."),
+            error => Self::new(in_full(&error)),
         }
     }
 }

@@ -11,6 +11,7 @@ mod progress;
 mod readiness;
 mod report;
 mod result;
+mod set_points;
 mod warnings;
 
 use std::process::ExitCode;
@@ -27,6 +28,8 @@ fn main() -> ExitCode {
         Command::Replay(arguments) => commands::replay::run(arguments),
         Command::Info(arguments) => commands::info::run(arguments),
         Command::Simulate(arguments) => commands::simulate::run(arguments),
+        Command::Excite(arguments) => commands::excite::run(arguments),
+        Command::Hysteresis(arguments) => commands::hysteresis::run(arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,13 +1,11 @@
 //! The robot file of a log: named on the command line, or attached to the log.
 
 use std::path::Path;
-use std::str::FromStr as _;
 
-use fric_core::robot::file::{LogTable, RobotFile};
-use fric_log::path::MessagePath;
+use fric_core::robot::file::RobotFile;
 use fric_log::recording::Recording;
-use fric_log::signals::{Role, SignalPaths};
-use fric_log::write::ROBOT_FILE;
+use fric_log::robot::{ATTACHED, AttachedRobot, AttachedRobotError, ROBOT_FILE};
+use fric_log::signals::SignalPaths;
 
 use crate::failure::{Failure, Outcome};
 
@@ -36,13 +34,13 @@ impl Model {
         if let Some(path) = named {
             return Self::read(path).map(Some);
         }
-        let advice = "Name a robot file with --model.";
-        let attachment = recording.attachment(ROBOT_FILE).map_err(|error| Failure::new(error).advise(advice))?;
-        let Some(attachment) = attachment else { return Ok(None) };
-        let origin = format!("{ROBOT_FILE} attached to the log");
-        let text = String::from_utf8(attachment.data)
-            .map_err(|_| Failure::new(format!("{origin} is not UTF-8 text")).advise(advice))?;
-        Self::parse(text, origin).map(Some)
+        match AttachedRobot::find(recording) {
+            Ok(attached) => {
+                Ok(attached.map(|AttachedRobot { robot, text }| Self { robot, text, origin: ATTACHED.to_owned() }))
+            }
+            Err(AttachedRobotError::Robot(error)) => Err(error.into()),
+            Err(error) => Err(Failure::new(error).advise("Name a robot file with --model.")),
+        }
     }
 
     fn parse(text: String, origin: String) -> Outcome<Self> {
@@ -52,24 +50,10 @@ impl Model {
 
     /// The signals' paths as the robot file has them.
     pub fn signal_paths(&self) -> Outcome<SignalPaths> {
-        let LogTable { cable, length, speed, reference, pose, wrench } = &self.robot.options().log;
-        let paths = [
-            (Role::Cable, Some(cable)),
-            (Role::Length, length.as_ref()),
-            (Role::Speed, speed.as_ref()),
-            (Role::Reference, Some(reference)),
-            (Role::Pose, Some(pose)),
-            (Role::Wrench, Some(wrench)),
-        ];
-        let mut signals = SignalPaths::default();
-        for (role, text) in paths {
-            let path = text.map(|text| MessagePath::from_str(text)).transpose().map_err(|error| {
-                Failure::new(format!("{}: `{}` under [log]: {error}", self.origin, role.key()))
-                    .advise("A signal is a topic, or a path to a field such as /joints.effort[:].")
-            })?;
-            signals = signals.with(role, path);
-        }
-        Ok(signals)
+        SignalPaths::from_table(&self.robot.options().log).map_err(|error| {
+            Failure::new(format!("{}: {error}", self.origin))
+                .advise("A signal is a topic, or a path to a field such as /joints.effort[:].")
+        })
     }
 }
 

@@ -4,17 +4,11 @@ use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use comfy_table::{CellAlignment, Table, presets};
-use fric_log::output::{OutputError, OutputFile, directory_of};
+use fric_log::output::{OutputFile, directory_of};
 use serde::Serialize;
 
 use crate::failure::{Failure, Outcome};
 use crate::result::WrenchResult;
-
-/// Writes a text and puts the file in its place.
-pub fn write_text(mut file: OutputFile, text: &str) -> Outcome {
-    file.write_all(text.as_bytes()).map_err(|source| OutputError::File { path: file.path().to_owned(), source })?;
-    Ok(file.finish()?)
-}
 
 /// Makes sure that no two outputs are to stand in the same place.
 pub fn check_distinct(outputs: &[Option<&Path>]) -> Outcome {
@@ -61,7 +55,7 @@ impl JsonTarget {
         match self {
             Self::Nowhere => Ok(()),
             Self::Stdout => print_to(std::io::stdout(), &text()?),
-            Self::File(file) => write_text(file, &text()?),
+            Self::File(file) => Ok(file.finish_with(&text()?)?),
         }
     }
 
@@ -87,6 +81,11 @@ fn print_to(mut stream: impl Write, text: &str) -> Outcome {
         }
         _ => Ok(()),
     }
+}
+
+/// A coordinate to the millimetre, without a minus before a zero.
+pub fn to_millimetre(part_m: f64) -> f64 {
+    (part_m * 1e3).round() / 1e3 + 0.0
 }
 
 /// A table with a header; all columns but the first `left` are aligned right.

@@ -4,7 +4,7 @@ use fric_core::Sample;
 
 use crate::failure::{Failure, Outcome};
 use crate::model::Model;
-use crate::warnings;
+use crate::warnings::warn;
 
 /// How many rows of one or several logs have which signal.
 #[derive(Clone, Debug)]
@@ -99,7 +99,7 @@ impl Readiness {
                 [_] => ": its values are kept",
                 _ => ": their values are kept",
             };
-            warnings::warn(&format!("{cause}{consequence}"));
+            warn(&format!("{cause}{consequence}"));
         }
         Ok(())
     }

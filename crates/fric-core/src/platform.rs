@@ -10,6 +10,9 @@ use crate::robot::{CableParams, Geometry, RobotParams};
 use crate::scalar::Scalar;
 use crate::swivel::{self, Swivel};
 
+/// A normalised quaternion's norm is no further from 1: four rounded squares and a root, four rounded quotients.
+const NORM_ROUNDING: f64 = 4.0 * f64::EPSILON;
+
 /// Pose of the platform in the base frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
@@ -26,7 +29,8 @@ impl Pose {
         Self { position_m: Vector3::zeros(), orientation: UnitQuaternion::identity() }
     }
 
-    /// A pose from position (m) and quaternion `x, y, z, w`; the quaternion is normalised.
+    /// A pose from position (m) and quaternion `x, y, z, w`; the quaternion is normalised. One that has norm 1 but for
+    /// rounding is taken as it is, so that the parts of a pose give that pose again, to the bit.
     ///
     /// `None` where a number is not finite or the quaternion's norm is further than 10 % from 1: an all-zero
     /// quaternion, as an unset message has it, is no rotation.
@@ -34,8 +38,9 @@ impl Pose {
     pub fn from_parts(position_m: [f64; 3], [x, y, z, w]: [f64; 4]) -> Option<Self> {
         let quaternion = Quaternion::new(w, x, y, z);
         let norm = quaternion.norm();
-        let pose =
-            Self { position_m: position_m.into(), orientation: UnitQuaternion::new_unchecked(quaternion / norm) };
+        let is_unit = (norm - 1.0).abs() <= NORM_ROUNDING;
+        let unit = if is_unit { quaternion } else { quaternion / norm };
+        let pose = Self { position_m: position_m.into(), orientation: UnitQuaternion::new_unchecked(unit) };
         ((0.9..=1.1).contains(&norm) && pose.is_usable()).then_some(pose)
     }
 

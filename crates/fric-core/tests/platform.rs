@@ -161,6 +161,19 @@ fn poses_that_are_none_are_refused() {
 }
 
 #[test]
+fn the_parts_of_a_pose_give_it_again_to_the_bit() {
+    let mut random = Random::new(71);
+    for _ in 0..2000 {
+        let quaternion = [(); 4].map(|()| random.range(-1.0, 1.0));
+        let norm = quaternion.iter().map(|part| part * part).sum::<f64>().sqrt();
+        let stretch = random.range(0.91, 1.09) / norm;
+        let pose = Pose::from_parts([0.1, 0.2, 0.3], quaternion.map(|part| part * stretch)).unwrap();
+        assert!((pose.orientation.coords.norm() - 1.0).abs() <= 4.0 * f64::EPSILON);
+        assert_eq!(Pose::from_parts(pose.position_m.into(), pose.orientation.coords.into()), Some(pose));
+    }
+}
+
+#[test]
 fn interpolation_goes_the_short_way_round() {
     let mut random = Random::new(53);
     for _ in 0..200 {

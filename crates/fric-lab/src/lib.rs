@@ -1,16 +1,25 @@
 //! Offline work on samples of cable robots with pulley friction.
 //!
+//! [`trajectory`] holds the runs of a platform: identification, and crossing for the hysteresis of the wrench.
 //! [`simulate`] is a robot with known friction: the samples of a log, as a stream, with effects hidden in them on
 //! request. Its friction is computed in another way than the compensator's, so that each is a check of the other.
 //!
-//! [`fit`] identifies the parameters of the friction model, [`replay`] runs the compensator over samples and sums up the
-//! errors.
+//! [`excite`] gives the identification run as set points for a real robot; [`fit`] identifies the parameters of the
+//! friction model from its log. [`replay`] runs the control loop's cycle over samples and sums up the errors, [`hysteresis`]
+//! tells what is left of the wrench's hysteresis. [`columns`] keeps the samples of a whole log in memory.
 //!
 //! Nothing here reads or writes logs, and nothing here belongs into a control cycle.
 
 #![allow(clippy::doc_markdown, reason = "symbols of equations are no code items")]
 
+mod axis;
 mod clock;
+pub mod columns;
+pub mod excite;
 pub mod fit;
+pub mod hysteresis;
 pub mod replay;
 pub mod simulate;
+pub mod trajectory;
+
+pub use axis::CartesianAxis;

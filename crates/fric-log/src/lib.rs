@@ -1,8 +1,13 @@
 //! fric-log
 
+mod error;
 pub mod output;
 pub mod path;
 pub mod recording;
+pub mod robot;
 pub mod schema;
 pub mod signals;
+mod warnings;
 pub mod write;
+
+pub use error::{in_full, reason, with_sources};

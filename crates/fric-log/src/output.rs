@@ -98,6 +98,17 @@ impl OutputFile {
         &self.path
     }
 
+    /// Writes a text and puts the file in its place.
+    ///
+    /// # Errors
+    /// As [`finish`](Self::finish).
+    pub fn finish_with(mut self, text: &str) -> Result<(), OutputError> {
+        match self.file.write_all(text.as_bytes()) {
+            Ok(()) => self.finish(),
+            Err(source) => Err(OutputError::File { path: self.path, source }),
+        }
+    }
+
     /// Puts the file in its place.
     ///
     /// # Errors

@@ -13,7 +13,7 @@ use fric_lab::fit::{
 };
 use fric_log::output::OutputFile;
 use fric_log::recording::Recording;
-use fric_log::signals::{Role, SignalPaths, SignalReader};
+use fric_log::signals::{Role, SignalReader};
 
 use crate::arguments::{FitArguments, ReferenceName};
 use crate::failure::{Failure, Outcome};
@@ -22,7 +22,8 @@ use crate::output::{self, JsonTarget};
 use crate::progress::{self, STRIDE};
 use crate::readiness::{self, Holdings, Readiness};
 use crate::result::{FitResult, LeftOut};
-use crate::{identification, interrupt, warnings};
+use crate::warnings::{warn, warn_all};
+use crate::{identification, interrupt};
 
 /// How often the bar moves and Ctrl-C is looked at while all cores compute.
 const WATCH_INTERVAL: Duration = Duration::from_millis(20);
@@ -63,7 +64,7 @@ pub fn run(arguments: &FitArguments) -> Outcome {
     check_used(&outcome)?;
     warn_about(&outcome, fits.cables(), &readiness);
     let text = rewritten(&model, fits.cables())?;
-    output::write_text(fitted_file, &text)?;
+    fitted_file.finish_with(&text)?;
     json.show(&identification::describe(&outcome))?;
     json.write(&outcome)
 }
@@ -131,15 +132,15 @@ fn read<'a>(logs: &[PathBuf], model: &'a Model, reference: Reference) -> Outcome
         Reference::Wrench => (Role::Reference, Role::Wrench),
     };
     let paths = model.signal_paths()?.with(unread, None);
-    warnings::about_effects(&model.robot);
+    warn_all(&model.robot.warnings());
     let names = model.robot.cable_names();
     let mut measurements = Measurements::new(&model.robot.params(), reference);
     let mut all: Option<Holdings> = None;
     for log in logs {
         measurements.start_log();
         let mut reader = SignalReader::new(Recording::open(&[log])?, paths.clone(), &names);
-        let holdings = read_one(&mut reader, &paths, &mut measurements, names.len())?;
-        warnings::about_cycle(&reader, &model.robot);
+        let holdings = read_one(&mut reader, &mut measurements, names.len())?;
+        warn_all(reader.cycle_warning(&model.robot).as_slice());
         let has_compared = holdings.has_reference() || holdings.wrenched > 0;
         match &mut all {
             Some(all) => all.join(&holdings),
@@ -147,19 +148,14 @@ fn read<'a>(logs: &[PathBuf], model: &'a Model, reference: Reference) -> Outcome
         }
         if logs.len() > 1 && !has_compared {
             let (log, key) = (log.display(), compared.key());
-            warnings::warn(&format!("`{log}` has nothing to compare with on the signal `{key}`"));
+            warn(&format!("`{log}` has nothing to compare with on the signal `{key}`"));
         }
     }
     let holdings = all.unwrap_or_else(|| Holdings::new(names.len()));
     Ok((measurements, holdings))
 }
 
-fn read_one(
-    reader: &mut SignalReader,
-    paths: &SignalPaths,
-    measurements: &mut Measurements<'_>,
-    cable_count: usize,
-) -> Outcome<Holdings> {
+fn read_one(reader: &mut SignalReader, measurements: &mut Measurements<'_>, cable_count: usize) -> Outcome<Holdings> {
     let mut holdings = Holdings::new(cable_count);
     let bar = progress::bytes(reader.recording().total_bytes());
     let end = loop {
@@ -177,9 +173,9 @@ fn read_one(
         }
     };
     bar.finish_and_clear();
-    warnings::about_recording(reader.recording());
+    warn_all(&reader.recording().warnings());
     end?;
-    warnings::about_signals(reader, paths);
+    warn_all(&reader.warnings());
     Ok(holdings)
 }
 
@@ -240,12 +236,12 @@ fn warn_about(outcome: &FitResult, fits: &[CableFit], readiness: &Readiness) {
         }
     }
     for (cause, names) in unused {
-        warnings::warn(&format!("{}: no sample can be used, values kept: {cause}", names.join(", ")));
+        warn(&format!("{}: no sample can be used, values kept: {cause}", names.join(", ")));
     }
     for (cable, fit) in outcome.cables.iter().zip(fits) {
         // What is left unfitted is told below the tables.
         if !matches!(fit.termination, Termination::Converged | Termination::NothingToFit) {
-            warnings::warn(&format!(
+            warn(&format!(
                 "{}: the search ended without converging ({}); the values are the best found: look at the error that \
                  is left before you use them",
                 cable.name,

@@ -9,11 +9,12 @@ use serde::Serialize;
 
 use crate::arguments::InfoArguments;
 use crate::failure::Outcome;
+use crate::interrupt;
 use crate::model::Model;
 use crate::output::{JsonTarget, table};
 use crate::progress::{self, STRIDE};
 use crate::readiness::{self, Holdings, Readiness};
-use crate::{interrupt, warnings};
+use crate::warnings::warn_all;
 
 /// `fric-info/1`.
 #[derive(Debug, Serialize)]
@@ -106,9 +107,9 @@ pub fn run(arguments: &InfoArguments) -> Outcome {
     let mut recording = Recording::open(&log.logs)?;
     let model = Model::find(log.model.as_deref(), &recording)?;
     let topics = read_topics(&mut recording)?;
-    warnings::about_recording(&recording);
+    warn_all(&recording.warnings());
     if let Some(model) = &model {
-        warnings::about_effects(&model.robot);
+        warn_all(&model.robot.warnings());
     }
     let attachments: Vec<String> = recording.attachments().map(|attachment| attachment.name.clone()).collect();
     let (signals, steps) = match &model {
@@ -199,7 +200,7 @@ fn signal_results(reader: &SignalReader, paths: &SignalPaths) -> Vec<SignalResul
     let signal = |role: Role| {
         let path = paths.get(role)?;
         let counts = reader.counts(role);
-        let mut remarks = warnings::remarks(counts);
+        let mut remarks = counts.remarks();
         remarks.extend(reader.first_problem(role).map(|problem| format!("cannot be used: {problem}")));
         if counts.message_count == 0 && remarks.is_empty() {
             remarks.push("not in the log".to_owned());

@@ -1,6 +1,8 @@
 //! One file per command.
 
+pub mod excite;
 pub mod fit;
+pub mod hysteresis;
 pub mod info;
 pub mod replay;
 pub mod simulate;

@@ -1,22 +1,23 @@
 //! `replay`: the compensator over a log, as the control loop would run it.
 
-use fric_core::robot::file::CableTable;
-use fric_core::{CableParams, CableStatus, Sample};
-use fric_lab::replay::{CableErrors, Replay, ReplayedCycle};
+use std::path::PathBuf;
+
+use fric_lab::replay::{CableErrors, Replay};
 use fric_log::output::OutputFile;
 use fric_log::recording::Recording;
-use fric_log::signals::{Role, SignalReader};
-use fric_log::write::{CableStatusChannel, JointState, JointStateChannel, LogWriter, WrenchChannel};
+use fric_log::signals::SignalReader;
+use fric_log::write::ReplayedLog;
 use hdrhistogram::Histogram;
 
 use crate::arguments::ReplayArguments;
 use crate::failure::{Failure, Outcome};
+use crate::interrupt;
 use crate::model::{self, Model};
 use crate::output::{self, JsonTarget, table, wrench_table};
 use crate::progress::{self, STRIDE};
 use crate::report::{self, Series};
 use crate::result::{CableResult, CycleResult, ReplayResult, WrenchError, WrenchResult, force_error};
-use crate::{interrupt, warnings};
+use crate::warnings::warn_all;
 
 /// Runs the command.
 pub fn run(arguments: &ReplayArguments) -> Outcome {
@@ -29,13 +30,15 @@ pub fn run(arguments: &ReplayArguments) -> Outcome {
     inputs.extend(log.model.clone());
     let json = JsonTarget::prepare(result.json.as_deref(), &inputs, result.force)?;
     let report = report.as_ref().map(|path| OutputFile::create(path, &inputs, result.force)).transpose()?;
-    let mut writer = output.as_ref().map(|path| OutputLog::create(path, &inputs, result.force, &model)).transpose()?;
+
+    let names = model.robot.cable_names();
+    let create = |path: &PathBuf| ReplayedLog::create(path, &inputs, result.force, &model.text, &names);
+    let mut writer = output.as_ref().map(create).transpose()?;
 
     let paths = model.signal_paths()?;
-    let names = model.robot.cable_names();
     let params = model.robot.params();
     let bar = progress::bytes(recording.total_bytes());
-    let mut reader = SignalReader::new(recording, paths.clone(), &names);
+    let mut reader = SignalReader::new(recording, paths, &names);
     let mut replay = Replay::new(&params)?;
     // Three digits; durations beyond 2^40 ns (18 minutes) count as that.
     let mut durations = Histogram::<u64>::new_with_max(1 << 40, 3)
@@ -54,7 +57,7 @@ pub fn run(arguments: &ReplayArguments) -> Outcome {
         let cycle = replay.step(&sample);
         durations.saturating_record(cycle.cycle_ns);
         if let Some(writer) = &mut writer {
-            writer.write(&sample, &cycle)?;
+            writer.write(sample.stamp_nanos, cycle.cables, cycle.outside_wrench.as_ref())?;
         }
         if let Some(series) = &mut series {
             series.add(&sample, cycle.cables);
@@ -62,17 +65,18 @@ pub fn run(arguments: &ReplayArguments) -> Outcome {
     };
     bar.finish_and_clear();
     // Damage may be why there is nothing to go on with.
-    warnings::about_recording(reader.recording());
+    warn_all(&reader.recording().warnings());
     end?;
-    warnings::about_signals(&reader, &paths);
-    warn_about_model(&model, &reader, &replay);
+    warn_all(&reader.warnings());
+    warn_all(&reader.robot_warnings(&model.robot));
+    warn_all(&replay.warnings(&model.robot));
 
     let outcome = summarize(&model, &names, &replay, &durations);
     if let Some(writer) = writer {
-        writer.log.finish()?;
+        writer.finish()?;
     }
     if let (Some(report), Some(series)) = (report, series) {
-        output::write_text(report, &report::page(&outcome, &series, &log.logs))?;
+        report.finish_with(&report::errors::page(&outcome, &series, &log.logs))?;
     }
     json.show(&describe(&outcome))?;
     json.write(&outcome)
@@ -138,98 +142,4 @@ fn describe(result: &ReplayResult) -> String {
     text + &format!(
         "\n{count} cycles; one takes {median_ns} ns (median), {p999_ns} ns (99.9 %), {max_ns} ns (longest)\n"
     )
-}
-
-/// What the robot file and the log do not agree about.
-fn warn_about_model(model: &Model, reader: &SignalReader, replay: &Replay) {
-    warnings::about_effects(&model.robot);
-    let no_pose = reader.counts(Role::Pose).message_count == 0;
-    let needs_pose = model.robot.params().cables().iter().any(CableParams::needs_pose);
-    if no_pose && needs_pose {
-        warnings::warn(
-            "the log has no pose: the wrap of the last pulleys is taken as 90°, and there is no wrench; name the pose's \
-             topic as `pose` under `[log]` in the robot file",
-        );
-    }
-    if replay.cables().iter().all(|cable| cable.before_n.count() == 0) {
-        warnings::warn("the log has no reference forces for these cables, so there is no error to show");
-    }
-    warnings::about_cycle(reader, &model.robot);
-    let tables = &model.robot.options().cable;
-    let frictionless = |cable: &&CableTable| cable.friction.mu == 0.0 && cable.friction.viscous_n_s_per_m == 0.0;
-    let names: Vec<&str> = tables.iter().filter(frictionless).map(|cable| cable.name.as_str()).collect();
-    if !names.is_empty() {
-        warnings::warn(&format!(
-            "the robot file gives no `friction` for {}: nothing is compensated there",
-            names.join(", ")
-        ));
-    }
-    // Cables with the same trouble share a line.
-    let mut flagged: Vec<(u64, u32, Vec<&str>)> = Vec::new();
-    for (name, cable) in model.robot.cable_names().into_iter().zip(replay.cables()) {
-        match flagged.iter_mut().find(|(count, flags, _)| (*count, *flags) == (cable.flagged_count, cable.flags)) {
-            Some((.., names)) => names.push(name),
-            None if cable.flagged_count > 0 => flagged.push((cable.flagged_count, cable.flags, vec![name])),
-            None => {}
-        }
-    }
-    let silent = CableStatus::SENSOR_NOT_FINITE | CableStatus::MOTION_NOT_FINITE;
-    for (count, flags, names) in flagged {
-        if count == replay.cycle_count() && CableStatus::from_bits(flags) == silent {
-            warnings::warn(&format!("the log has no signal of {}; compare the names in it", names.join(", ")));
-            continue;
-        }
-        let (names, flags) = (names.join(", "), CableStatus::from_bits(flags));
-        warnings::warn(&format!("{count} of {} samples are flagged {flags}: {names}", replay.cycle_count()));
-    }
-}
-
-/// The log that `--output` names.
-struct OutputLog {
-    log: LogWriter,
-    forces: JointStateChannel,
-    friction: JointStateChannel,
-    wrench: WrenchChannel,
-    status: CableStatusChannel,
-    numbers: Vec<f64>,
-    flags: Vec<u32>,
-}
-
-impl OutputLog {
-    fn create(path: &std::path::Path, inputs: &[std::path::PathBuf], force: bool, model: &Model) -> Outcome<Self> {
-        let mut log = LogWriter::create(path, inputs, force)?;
-        log.attach_robot_file(&model.text)?;
-        let names = model.robot.cable_names();
-        let bits = CableStatus::NAMES.map(|(name, flag)| (name, flag.bits()));
-        Ok(Self {
-            forces: log.add_joint_state("/fric/cable_forces", "platform", &names)?,
-            friction: log.add_joint_state("/fric/friction", "platform", &names)?,
-            wrench: log.add_wrench("/fric/wrench", "base")?,
-            status: log.add_cable_status("/fric/status", "", &names, &bits)?,
-            numbers: Vec::with_capacity(names.len()),
-            flags: Vec::with_capacity(names.len()),
-            log,
-        })
-    }
-
-    fn write(&mut self, sample: &Sample<'_>, cycle: &ReplayedCycle<'_>) -> Outcome {
-        let stamp_nanos = u64::try_from(sample.stamp_nanos).map_err(|_| {
-            Failure::new(format!("a cable message has the stamp {} ns, before 1970", sample.stamp_nanos))
-                .advise("Such a log cannot be written; replay it without -o.")
-        })?;
-        let Self { log, forces, friction, wrench, status, numbers, flags } = self;
-        numbers.clear();
-        numbers.extend(cycle.cables.iter().map(|cable| cable.force_at_platform_n));
-        log.write_joint_state(forces, stamp_nanos, JointState { effort: numbers, ..JointState::default() })?;
-        numbers.clear();
-        numbers.extend(cycle.cables.iter().map(|cable| cable.friction_n));
-        log.write_joint_state(friction, stamp_nanos, JointState { effort: numbers, ..JointState::default() })?;
-        if let Some(outside) = &cycle.outside_wrench {
-            log.write_wrench(wrench, stamp_nanos, outside)?;
-        }
-        flags.clear();
-        flags.extend(cycle.cables.iter().map(|cable| cable.status.bits()));
-        log.write_cable_status(status, stamp_nanos, flags)?;
-        Ok(())
-    }
 }

@@ -3,17 +3,18 @@
 use std::path::PathBuf;
 
 use fric_core::Sample;
-use fric_lab::simulate::{HiddenEffect, Imbalance, Simulation, SimulationError, SimulationOptions};
+use fric_lab::simulate::{HiddenEffect, Run, Simulation, SimulationError, SimulationOptions};
 use fric_log::path::MessagePath;
 use fric_log::signals::{Role, SignalPaths};
 use fric_log::write::{JointState, JointStateChannel, LogWriter, PoseChannel, WrenchChannel};
 
-use crate::arguments::SimulateArguments;
+use crate::arguments::{RunName, SimulateArguments};
 use crate::failure::{Failure, Outcome};
+use crate::interrupt;
 use crate::model::Model;
 use crate::output::JsonTarget;
 use crate::progress::{self, STRIDE};
-use crate::{interrupt, warnings};
+use crate::warnings::warn_all;
 
 /// Pose and wrench come at 250 Hz, as a slower controller would publish them.
 const PLATFORM_INTERVAL_S: f64 = 0.004;
@@ -28,6 +29,10 @@ pub fn run(arguments: &SimulateArguments) -> Outcome {
         .map_err(|error| Failure::usage(format!("--effect: {error}")))?;
     let model = Model::read(&arguments.model)?;
     let options = SimulationOptions {
+        run: match arguments.run {
+            RunName::Identification => Run::Identification,
+            RunName::Crossing => Run::Crossing,
+        },
         seed: arguments.seed,
         duration_s: arguments.duration,
         sensor_noise_n: arguments.sensor_noise_n,
@@ -51,7 +56,7 @@ pub fn run(arguments: &SimulateArguments) -> Outcome {
         log.write(&sample, with_platform)?;
     }
     bar.finish_and_clear();
-    warn_about_balance(&simulation);
+    warn_all(&simulation.warnings());
     log.writer.finish()?;
     let hidden: Vec<String> = options.effects.iter().map(ToString::to_string).collect();
     JsonTarget::Nowhere.show(&format!(
@@ -62,28 +67,6 @@ pub fn run(arguments: &SimulateArguments) -> Outcome {
     ))
 }
 
-/// What of the run no real robot could do.
-fn warn_about_balance(simulation: &Simulation) {
-    if simulation.is_among_anchors() {
-        warnings::warn(
-            "all base points are at one height, and the run is not below them: cables that are nearly level cannot carry \
-             the platform in reality; check `base_m` and `platform_m`, or give a platform that does not hang `mass_kg` 0",
-        );
-    }
-    if let Some(imbalance) = simulation.imbalance() {
-        let Imbalance { cycle_count, missing_n, time_s, position_m } = imbalance;
-        warnings::warn(&format!(
-            "the cables cannot hold the platform in {cycle_count} of {} cycles, by up to {missing_n:.3} N at {time_s:.3} s, \
-             where it is at [{:.3}, {:.3}, {:.3}] m: the log is that of a platform on a guide that carries the rest; for \
-             one without check `base_m`, `platform_m` and `mass_kg`",
-            simulation.total_cycles(),
-            position_m.x,
-            position_m.y,
-            position_m.z,
-        ));
-    }
-}
-
 /// A number or an effect on the command line is the command line's fault, the rest the robot file's.
 fn refused(error: SimulationError) -> Failure {
     match error {
@@ -92,7 +75,7 @@ fn refused(error: SimulationError) -> Failure {
             Failure::usage(format!("--{option} is {value:?}; allowed is {min} to {max}"))
         }
         SimulationError::RepeatedEffect { .. } => Failure::usage(format!("--effect: {error}")),
-        error => Failure::new(error),
+        error => Failure::from(error),
     }
 }
 

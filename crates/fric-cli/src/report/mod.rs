@@ -1,15 +1,15 @@
-//! The page of `replay --report`: the table and the errors over time, in one file without network access.
+//! Pages for people, each one file without network access, for light and dark screens and for paper.
 
 mod chart;
+pub mod errors;
+pub mod preview;
+mod run;
 mod series;
-
-use std::path::PathBuf;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
+pub use run::RunSeries;
 pub use series::Series;
-
-use crate::result::{ReplayResult, WrenchResult};
 
 const STYLE: &str = "
 :root { color-scheme: light dark; --text: #1b1f24; --soft: #5d6773; --line: #c9d0d8; --page: #ffffff;
@@ -25,20 +25,26 @@ th:first-child, td:first-child { text-align: left; }
 th { font-weight: 600; color: var(--soft); }
 p.soft { color: var(--soft); margin: .2rem 0; }
 .keys { white-space: nowrap; }
-.key { display: inline-block; width: .9em; height: .9em; border-radius: .15em; vertical-align: -.1em; margin: 0 .3em 0 .8em; }
+.key { display: inline-block; width: .9em; height: .9em; border-radius: .15em; vertical-align: -.1em; margin: 0 .3em 0 .8em;
+  print-color-adjust: exact; }
 svg { width: 100%; height: auto; display: block; }
 svg text { fill: var(--soft); font: 12px system-ui, sans-serif; }
 svg .axis { stroke: var(--line); stroke-width: 1; fill: none; }
 svg .before { fill: var(--before); stroke: var(--before); stroke-width: 1; }
 svg .after { fill: var(--after); stroke: var(--after); stroke-width: .7; }
 svg .flag { fill: var(--flag); }
+svg .greatest { stroke: var(--before); stroke-width: 1.2; } svg .least { stroke: var(--after); stroke-width: 1.2; }
+svg .path { stroke: var(--after); stroke-width: 1.5; fill: none; stroke-linejoin: round; }
+svg .box { stroke: var(--soft); stroke-width: 1.2; stroke-dasharray: 5 4; fill: none; }
+svg .base { fill: var(--before); }
+svg .bound { stroke: var(--flag); stroke-width: 1.2; stroke-dasharray: 5 4; fill: none; }
+svg .even { fill: none; } svg .odd { fill: var(--line); opacity: .35; }
+.views { display: flex; gap: 1rem; flex-wrap: wrap; } .views section { flex: 1 1 24rem; }
 @media print { body { max-width: none; margin: 0; } section { break-inside: avoid; } }
 ";
 
-/// The page.
-pub fn page(result: &ReplayResult, series: &Series, logs: &[PathBuf]) -> String {
-    let title = format!("{}: forces at the platform", result.robot);
-    let logs: Vec<String> = logs.iter().map(|log| log.display().to_string()).collect();
+/// A page with this title and content.
+fn shell(title: &str, content: &Markup) -> String {
     html! {
         (DOCTYPE)
         html lang="en" {
@@ -50,69 +56,9 @@ pub fn page(result: &ReplayResult, series: &Series, logs: &[PathBuf]) -> String 
             }
             body {
                 h1 { (title) }
-                p.soft {
-                    (logs.join(", ")) ", " (result.cycle.count) " cycles; one takes " (result.cycle.median_ns) " ns (median), "
-                    (result.cycle.p999_ns) " ns (99.9 %), " (result.cycle.max_ns) " ns (longest)."
-                }
-                (cables(result))
-                @if let Some(wrench) = &result.wrench { (wrench_table(wrench)) }
-                p {
-                    "Deviation from the reference over time, least and greatest in each interval:"
-                    span.keys { span.key style="background: var(--before)" {} "uncompensated" }
-                    " "
-                    span.keys { span.key style="background: var(--after)" {} "compensated" }
-                    " "
-                    span.keys { span.key style="background: var(--flag)" {} "flagged" }
-                }
-                @for (index, cable) in result.cables.iter().enumerate() {
-                    section {
-                        h2 { (cable.name) }
-                        @match chart::deviations(series, index) {
-                            Some(chart) => (PreEscaped(chart)),
-                            None => p.soft { "The log has no reference for this cable." },
-                        }
-                    }
-                }
+                (content)
             }
         }
     }
     .into_string()
-}
-
-fn cables(result: &ReplayResult) -> Markup {
-    let number = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.4}"));
-    html! {
-        table {
-            tr {
-                th { "cable" } th { "samples" } th { "flagged" } th { "rms before [N]" } th { "after [N]" }
-                th { "mean |error| before [N]" } th { "after [N]" }
-            }
-            @for cable in &result.cables {
-                tr {
-                    td { (cable.name) } td { (cable.samples) } td { (cable.flagged) }
-                    td { (number(cable.before.as_ref().map(|error| error.rms_n))) }
-                    td { (number(cable.after.as_ref().map(|error| error.rms_n))) }
-                    td { (number(cable.before.as_ref().map(|error| error.mae_n))) }
-                    td { (number(cable.after.as_ref().map(|error| error.mae_n))) }
-                }
-            }
-        }
-    }
-}
-
-fn wrench_table(wrench: &WrenchResult) -> Markup {
-    let WrenchResult { before, after } = wrench;
-    html! {
-        table {
-            tr { th { "wrench" } th { "rms before" } th { "after" } }
-            tr {
-                td { "force" }
-                td { (format!("{:.4} N", before.force_rms_n)) } td { (format!("{:.4} N", after.force_rms_n)) }
-            }
-            tr {
-                td { "torque" }
-                td { (format!("{:.4} Nm", before.torque_rms_nm)) } td { (format!("{:.4} Nm", after.torque_rms_nm)) }
-            }
-        }
-    }
 }

@@ -13,16 +13,16 @@ pub struct Extent {
 }
 
 impl Extent {
-    const NOTHING: Self = Self { least: f64::INFINITY, greatest: f64::NEG_INFINITY };
+    pub const NOTHING: Self = Self { least: f64::INFINITY, greatest: f64::NEG_INFINITY };
 
-    fn add(&mut self, value: f64) {
+    pub fn add(&mut self, value: f64) {
         if value.is_finite() {
             self.least = self.least.min(value);
             self.greatest = self.greatest.max(value);
         }
     }
 
-    fn merge(&mut self, other: Self) {
+    pub fn merge(&mut self, other: Self) {
         self.add(other.least);
         self.add(other.greatest);
     }

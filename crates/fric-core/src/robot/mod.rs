@@ -16,6 +16,8 @@ mod read;
 mod splice;
 #[cfg(feature = "robot-file")]
 mod table;
+#[cfg(feature = "robot-file")]
+mod warnings;
 
 pub(crate) use error::check;
 pub use error::{ParamError, ParamProblem};

@@ -1,13 +1,35 @@
 //! A compensator for a robot whose number of cables is known only at run time.
 
+use std::any::Any;
+
+use fric_core::robot::MAX_PULLEYS;
 use fric_core::{
-    CableInput, CableOutput, CableStatus, Compensator, CycleInput, CycleOutput, ParamError, Pose, RobotParams, Wrench,
+    CableInput, CableOutput, CableStatus, Compensator, CycleInput, CycleOutput, ParamError, Pose, RobotParams,
+    Snapshot, Wrench,
 };
+use thiserror::Error;
 
 /// [`Compensator`] for any number of cables up to [`AnyCompensator::MOST_CABLES`]: the smallest of a few sizes that
 /// holds the robot. The size does not change a bit of the result.
 #[derive(Debug)]
 pub struct AnyCompensator(Box<dyn Cycle>);
+
+/// The state of an [`AnyCompensator`] at one moment, for [`AnyCompensator::restore`].
+#[derive(Debug)]
+pub struct AnySnapshot {
+    cable_count: usize,
+    state: Box<dyn Any + Send + Sync>,
+}
+
+/// A snapshot that was taken of a robot with another number of cables.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("the snapshot is of a robot with {found} cables, this one has {expected}")]
+pub struct SnapshotMismatch {
+    /// How many cables the robot has.
+    pub expected: usize,
+    /// How many that of the snapshot had.
+    pub found: usize,
+}
 
 impl AnyCompensator {
     /// The largest robot.
@@ -24,6 +46,39 @@ impl AnyCompensator {
             9..=16 => Fixed::<16>::boxed(robot)?,
             _ => Fixed::<{ Self::MOST_CABLES }>::boxed(robot)?,
         }))
+    }
+
+    /// How many cables the robot has.
+    #[must_use]
+    pub fn cable_count(&self) -> usize {
+        self.0.outputs().len()
+    }
+
+    /// Back to the state after set-up, see [`Compensator::reset`].
+    pub fn reset(&mut self) {
+        self.0.reset();
+    }
+
+    /// A copy of everything that a cycle leaves for the next, its outcome included.
+    #[must_use]
+    pub fn snapshot(&self) -> AnySnapshot {
+        AnySnapshot { cable_count: self.cable_count(), state: self.0.snapshot() }
+    }
+
+    /// Goes on from a snapshot as if nothing had happened since.
+    ///
+    /// # Errors
+    /// [`SnapshotMismatch`] if it is of a robot with another number of cables; nothing is changed then.
+    pub fn restore(&mut self, snapshot: &AnySnapshot) -> Result<(), SnapshotMismatch> {
+        let (expected, found) = (self.cable_count(), snapshot.cable_count);
+        let is_restored = expected == found && self.0.restore(snapshot.state.as_ref());
+        if is_restored { Ok(()) } else { Err(SnapshotMismatch { expected, found }) }
+    }
+
+    /// Friction stored at each pulley of a cable, see [`Compensator::pulley_friction_n`].
+    #[must_use]
+    pub fn pulley_friction_n(&self, cable: usize) -> [f64; MAX_PULLEYS] {
+        self.0.pulley_friction_n(cable)
     }
 
     /// Takes in the signals of a cycle; cables that `cables` lacks count as not finite. `elapsed_cycles` is that of
@@ -57,7 +112,12 @@ impl AnyCompensator {
     }
 }
 
-trait Cycle: Send + std::fmt::Debug {
+trait Cycle: Send + Sync + std::fmt::Debug {
+    fn reset(&mut self);
+    fn snapshot(&self) -> Box<dyn Any + Send + Sync>;
+    /// Whether the snapshot is one of this size.
+    fn restore(&mut self, state: &(dyn Any + Send + Sync)) -> bool;
+    fn pulley_friction_n(&self, cable: usize) -> [f64; MAX_PULLEYS];
     fn set_input(&mut self, cables: &[CableInput], pose: Option<Pose>, elapsed_cycles: f64);
     fn step(&mut self) -> Option<Wrench>;
     fn outputs(&self) -> &[CableOutput];
@@ -82,6 +142,28 @@ impl<const CABLES: usize> Fixed<CABLES> {
 }
 
 impl<const CABLES: usize> Cycle for Fixed<CABLES> {
+    fn reset(&mut self) {
+        self.compensator.reset();
+        self.output = CycleOutput::default();
+    }
+
+    fn snapshot(&self) -> Box<dyn Any + Send + Sync> {
+        Box::new((self.compensator.snapshot(), self.output))
+    }
+
+    fn restore(&mut self, state: &(dyn Any + Send + Sync)) -> bool {
+        let Some((snapshot, output)) = state.downcast_ref::<(Snapshot<CABLES>, CycleOutput<CABLES>)>() else {
+            return false;
+        };
+        self.compensator.restore(snapshot);
+        self.output = *output;
+        true
+    }
+
+    fn pulley_friction_n(&self, cable: usize) -> [f64; MAX_PULLEYS] {
+        self.compensator.pulley_friction_n(cable)
+    }
+
     fn set_input(&mut self, cables: &[CableInput], pose: Option<Pose>, elapsed_cycles: f64) {
         let signals = cables.iter().copied().chain(std::iter::repeat(NOTHING));
         for (place, signal) in self.input.cables.iter_mut().zip(signals) {

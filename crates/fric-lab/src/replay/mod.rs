@@ -6,12 +6,13 @@
 
 mod compensator;
 mod error;
+mod warnings;
 
 use fric_core::{CableOutput, CableStatus, ParamError, RobotParams, Sample, Wrench};
 
 use crate::clock::Clock;
 
-pub use compensator::AnyCompensator;
+pub use compensator::{AnyCompensator, AnySnapshot, SnapshotMismatch};
 pub use error::Deviation;
 
 /// What has been accumulated for a cable.
@@ -104,11 +105,10 @@ impl Replay {
         let outside_wrench = self.compensator.step();
         let cycle_ns = u64::try_from(start.elapsed().as_nanos()).unwrap_or(u64::MAX);
         self.cycle_count += 1;
-        let outside_wrench = outside_wrench.filter(|_| !self.compensator.wrench_status().intersects(NO_WRENCH));
+        let outside_wrench = outside_wrench.filter(|_| self.has_wrench());
         if let (Some(reference), Some(wrench)) = (&sample.outside_wrench, outside_wrench) {
             self.wrench_after.add(&(wrench - *reference));
-            let frictionless_n = self.compensator.outputs().iter().map(|cable| cable.frictionless_n);
-            if let Some(before) = self.compensator.outside_wrench_of(frictionless_n) {
+            if let Some(before) = self.frictionless_wrench() {
                 self.wrench_before.add(&(before - *reference));
             }
         }
@@ -120,6 +120,17 @@ impl Replay {
             errors.after_n.add(output.force_at_platform_n - reference_n);
         }
         ReplayedCycle { cables: self.compensator.outputs(), outside_wrench, cycle_ns }
+    }
+
+    /// Wrench from outside in the last cycle as if nothing rubbed; `None` as [`ReplayedCycle::outside_wrench`].
+    #[must_use]
+    pub fn frictionless_wrench(&self) -> Option<Wrench> {
+        let frictionless_n = self.compensator.outputs().iter().map(|cable| cable.frictionless_n);
+        self.compensator.outside_wrench_of(frictionless_n).filter(|_| self.has_wrench())
+    }
+
+    fn has_wrench(&self) -> bool {
+        !self.compensator.wrench_status().intersects(NO_WRENCH)
     }
 
     /// Errors of the cables so far, in the robot's order.

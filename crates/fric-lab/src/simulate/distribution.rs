@@ -8,6 +8,8 @@
 //!
 //! Torque rows are divided by the mean moment arm, so that N and N m weigh alike.
 
+mod bounded;
+
 use nalgebra::{Matrix6, SymmetricEigen, Vector6};
 
 /// Eigenvalues of `A^T A` below this share of the greatest count as zero.
@@ -43,14 +45,9 @@ impl Distribution {
     ///
     /// `forces_n` holds the mean tensions before and the forces after.
     pub fn solve(&mut self, structure: &[Vector6<f64>], wrench: &Vector6<f64>, forces_n: &mut [f64]) -> Balance {
-        let arm_m = self.arm_m;
-        let scaled = |vector: &Vector6<f64>| {
-            Vector6::new(vector.x, vector.y, vector.z, vector.w / arm_m, vector.a / arm_m, vector.b / arm_m)
-        };
-        self.columns.clear();
-        self.columns.extend(structure.iter().map(scaled));
-        let wrench = scaled(wrench);
-        let pseudo_inverse = self.pseudo_inverse();
+        let wrench = self.take(structure, wrench);
+        let square = self.columns.iter().map(|column| column * column.transpose()).sum();
+        let pseudo_inverse = Self::pseudo_inverse(&square);
         // The second pass removes the rounding of the first.
         for _ in 0..2 {
             let multiplier = pseudo_inverse * self.unbalance(&wrench, forces_n);
@@ -67,15 +64,25 @@ impl Distribution {
         Balance { residual_n: self.unbalance(&wrench, forces_n).amax(), clamped }
     }
 
+    /// Takes in a structure matrix, torques divided by the moment arm; gives the wrench likewise.
+    fn take(&mut self, structure: &[Vector6<f64>], wrench: &Vector6<f64>) -> Vector6<f64> {
+        let arm_m = self.arm_m;
+        let scaled = |vector: &Vector6<f64>| {
+            Vector6::new(vector.x, vector.y, vector.z, vector.w / arm_m, vector.a / arm_m, vector.b / arm_m)
+        };
+        self.columns.clear();
+        self.columns.extend(structure.iter().map(scaled));
+        scaled(wrench)
+    }
+
     /// `A^T f + w`.
     fn unbalance(&self, wrench: &Vector6<f64>, forces_n: &[f64]) -> Vector6<f64> {
         self.columns.iter().zip(forces_n).fold(*wrench, |sum, (column, force_n)| sum + column * *force_n)
     }
 
-    /// `(A^T A)⁺` by its eigenvectors.
-    fn pseudo_inverse(&self) -> Matrix6<f64> {
-        let square: Matrix6<f64> = self.columns.iter().map(|column| column * column.transpose()).sum();
-        let SymmetricEigen { eigenvalues, eigenvectors } = SymmetricEigen::new(square);
+    /// Pseudo-inverse of a symmetric matrix, `(A^T A)⁺`, by its eigenvectors.
+    fn pseudo_inverse(square: &Matrix6<f64>) -> Matrix6<f64> {
+        let SymmetricEigen { eigenvalues, eigenvectors } = SymmetricEigen::new(*square);
         let least = eigenvalues.amax() * RANK_SHARE;
         let inverse = eigenvalues.map(|value| if value > least { 1.0 / value } else { 0.0 });
         eigenvectors * Matrix6::from_diagonal(&inverse) * eigenvectors.transpose()
@@ -97,11 +104,11 @@ impl Distribution {
 }
 
 #[cfg(test)]
-mod tests {
+pub mod tests {
     use super::*;
 
     /// Eight cables from the corners of a box to those of a smaller one, crossed in height.
-    fn eight(place: [f64; 3]) -> Vec<Vector6<f64>> {
+    pub fn eight(place: [f64; 3]) -> Vec<Vector6<f64>> {
         let corners = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]];
         let columns = [1.0, -1.0].into_iter().flat_map(|height| {
             corners.map(|[x, y]| {

@@ -3,6 +3,13 @@
 use fric_core::ParamError;
 use thiserror::Error;
 
+/// What to do, each the end of a sentence.
+mod advice {
+    pub const EFFECT: &str = "give each effect once, with all its parameters";
+    pub const GEOMETRY: &str = "check `base_m`, `platform_m`, `radius_m` and `axis`, above all the unit m";
+    pub const PLATFORM: &str = "give every cable both, or simulate the identification run";
+}
+
 /// Why a simulation cannot be set up. Running it cannot fail.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
@@ -20,7 +27,7 @@ pub enum SimulationError {
         max: f64,
     },
     /// Two hidden effects of one kind.
-    #[error("the effect `{kind}` is hidden twice; give each effect once, with all its parameters")]
+    #[error("the effect `{kind}` is hidden twice; {}", advice::EFFECT)]
     RepeatedEffect {
         /// Its name in the catalogue.
         kind: &'static str,
@@ -37,11 +44,30 @@ pub enum SimulationError {
     #[error("the robot's parameters are not right: {0}")]
     Robot(#[from] ParamError),
     /// No place was found where every cable can leave its last pulley.
-    #[error(
-        "the platform finds no place where all cables can leave their last pulleys; \
-         check `base_m`, `platform_m`, `radius_m` and `axis`, above all the unit m"
-    )]
+    #[error("the platform finds no place where all cables can leave their last pulleys; {}", advice::GEOMETRY)]
     NoWorkspace,
+    /// A crossing run of a robot without a platform that all cables hold.
+    #[error(
+        "a crossing run needs a platform that all cables are attached to, and {cable} has no `base_m` and `platform_m`; {}",
+        advice::PLATFORM
+    )]
+    NoPlatform {
+        /// The first cable without.
+        cable: String,
+    },
+}
+
+impl SimulationError {
+    /// What to do: the words that end the error's sentence, where it has any.
+    #[must_use]
+    pub fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::OptionOutOfRange { .. } | Self::UnsupportedEffect { .. } | Self::Robot(_) => None,
+            Self::RepeatedEffect { .. } => Some(advice::EFFECT),
+            Self::NoWorkspace => Some(advice::GEOMETRY),
+            Self::NoPlatform { .. } => Some(advice::PLATFORM),
+        }
+    }
 }
 
 /// Why the text of a [`HiddenEffect`](super::HiddenEffect) was refused.

@@ -1,17 +1,16 @@
 //! How each cable moves: with the platform, or by itself on a test bench, and a little in standstill.
 //!
-//! Of a cable on the platform the length is the inverse kinematics' and its rate `dl/dt = −u·v`, u from the platform to
-//! where the cable leaves its pulley: the wrap adds nothing, for the free cable is tangent to the pulley. A cable without
-//! geometry runs the same movements as a change of its length. Each winch adds the small movements of the cable force
-//! control that \[P\], section III C, describes for standstill.
+//! Of a cable on the platform the length is the inverse kinematics' and its rate `dl/dt = −u·(v + ω × R b)`, u from the
+//! platform to where the cable leaves its pulley: the wrap adds nothing, for the free cable is tangent to the pulley. A
+//! cable without geometry runs the same movements as a change of its length. Each winch adds the small movements of the
+//! cable force control that \[P\], section III C, describes for standstill.
 
-use fric_core::{CableParams, Pose};
+use fric_core::CableParams;
 use nalgebra::Vector3;
 use rand_chacha::ChaCha8Rng;
 
-use super::platform::Platform;
-use super::trajectory::{SetPoint, Trajectory, WorkBox};
 use super::waves::Waves;
+use crate::trajectory::{Limits, SetPoint, Trajectory, WorkBox};
 
 /// Micro motion of a winch: amplitudes in m and frequencies in Hz.
 const MICRO: [(f64, f64); 3] = [(10e-6, 0.35), (6e-6, 0.9), (4e-6, 2.1)];
@@ -23,7 +22,9 @@ const BENCH_HALF_M: f64 = 0.2;
 /// Length of a cable and its rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CableMotion {
+    /// Length, m.
     pub length_m: f64,
+    /// Its rate, m/s, positive paying out.
     pub speed_m_per_s: f64,
 }
 
@@ -44,13 +45,13 @@ pub struct Winch {
 }
 
 impl Motion {
-    pub fn new(work_box: Option<&WorkBox>) -> Self {
+    pub fn new(platform: Option<Trajectory>, limits: &Limits) -> Self {
         let bench = WorkBox {
             center_m: Vector3::new(BENCH_LENGTH_M, 0.0, 0.0),
             half_edges_m: Vector3::new(BENCH_HALF_M, 0.0, 0.0),
             direction: Vector3::x(),
         };
-        Self { platform: work_box.map(Trajectory::identification), bench: Trajectory::identification(&bench) }
+        Self { platform, bench: Trajectory::identification(&bench, limits) }
     }
 
     /// The run that sets the duration.
@@ -58,10 +59,23 @@ impl Motion {
         self.platform.as_ref().unwrap_or(&self.bench)
     }
 
-    /// Pose and set point of the platform, where there is one.
-    pub fn platform(&self, time_s: f64) -> Option<(Pose, SetPoint)> {
-        let set_point = self.platform.as_ref()?.at(time_s);
-        Some((Platform::pose(set_point.position_m), set_point))
+    /// Set point of the platform, where there is one.
+    pub fn platform(&self, time_s: f64) -> Option<SetPoint> {
+        Some(self.platform.as_ref()?.at(time_s))
+    }
+
+    /// A cable's motion at a time at which the platform is at `platform`; `None` where it cannot leave its last pulley.
+    pub fn of_cable(&self, cable: &CableParams, platform: Option<&SetPoint>, time_s: f64) -> Option<CableMotion> {
+        let Some((set_point, platform_m)) = platform.zip(cable.platform_m()) else {
+            let set_point = self.bench.at(time_s);
+            return Some(CableMotion { length_m: set_point.position_m.x, speed_m_per_s: set_point.velocity_m_per_s.x });
+        };
+        let (pose, arm_m) = (set_point.pose(), set_point.orientation * platform_m);
+        let velocity_m_per_s = set_point.velocity_m_per_s + set_point.angular_velocity_rad_per_s.cross(&arm_m);
+        Some(CableMotion {
+            length_m: cable.length_m(&pose)?,
+            speed_m_per_s: -cable.direction(&pose)?.dot(&velocity_m_per_s),
+        })
     }
 }
 
@@ -70,17 +84,9 @@ impl Winch {
         Self { params: *params, micro: Waves::new(&MICRO, random) }
     }
 
-    /// The cable's motion at a time at which the platform is at `platform`; `None` where it cannot leave its last pulley.
-    pub fn motion(&self, motion: &Motion, platform: Option<&(Pose, SetPoint)>, time_s: f64) -> Option<CableMotion> {
-        let coarse = if let Some((pose, set_point)) = platform.filter(|_| self.params.has_geometry()) {
-            CableMotion {
-                length_m: self.params.length_m(pose)?,
-                speed_m_per_s: -self.params.direction(pose)?.dot(&set_point.velocity_m_per_s),
-            }
-        } else {
-            let set_point = motion.bench.at(time_s);
-            CableMotion { length_m: set_point.position_m.x, speed_m_per_s: set_point.velocity_m_per_s.x }
-        };
+    /// The cable's motion with the small movements, see [`Motion::of_cable`].
+    pub fn motion(&self, motion: &Motion, platform: Option<&SetPoint>, time_s: f64) -> Option<CableMotion> {
+        let coarse = motion.of_cable(&self.params, platform, time_s)?;
         Some(CableMotion {
             length_m: coarse.length_m + self.micro.value(time_s),
             speed_m_per_s: coarse.speed_m_per_s + self.micro.rate(time_s),
@@ -88,8 +94,8 @@ impl Winch {
     }
 
     /// cos of the wrap that follows the pose; 1, no wrap, where none does.
-    pub fn pose_cos(&self, platform: Option<&(Pose, SetPoint)>) -> f64 {
-        let wrap_rad = platform.and_then(|(pose, _)| self.params.pose_wrap_rad(pose));
+    pub fn pose_cos(&self, platform: Option<&SetPoint>) -> f64 {
+        let wrap_rad = platform.and_then(|set_point| self.params.pose_wrap_rad(&set_point.pose()));
         wrap_rad.map_or(1.0, libm::cos)
     }
 }

@@ -8,6 +8,33 @@ const LONGEST_S: f64 = 8.64e6;
 /// Most noise, N.
 const LOUDEST_N: f64 = 1e6;
 
+/// What the platform does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Run {
+    /// The identification run, [`Trajectory::identification`](crate::trajectory::Trajectory::identification), under tensions
+    /// that wander.
+    #[default]
+    Identification,
+    /// The crossing run, [`Trajectory::crossing`](crate::trajectory::Trajectory::crossing), under a steady prestress, so that
+    /// one pass differs from the next by noise and micro motion alone. For robots whose cables are all attached to a
+    /// platform.
+    Crossing,
+}
+
+impl Run {
+    /// All there are.
+    pub const ALL: [Self; 2] = [Self::Identification, Self::Crossing];
+
+    /// In one word, as the command line has it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Identification => "identification",
+            Self::Crossing => "crossing",
+        }
+    }
+}
+
 /// How to simulate a robot. The robot itself, its friction included, is the robot file's.
 ///
 /// ```
@@ -17,9 +44,11 @@ const LOUDEST_N: f64 = 1e6;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct SimulationOptions {
+    /// What the platform does.
+    pub run: Run,
     /// The same seed gives the same bits.
     pub seed: u64,
-    /// How long, s; one identification run if not given. A shorter time cuts the run, a longer one repeats it.
+    /// How long, s; one run if not given. A shorter time cuts the run, a longer one repeats it.
     pub duration_s: Option<f64>,
     /// Standard deviation of the white Gaussian noise of each cable's force sensor, N.
     pub sensor_noise_n: f64,
@@ -32,10 +61,11 @@ pub struct SimulationOptions {
 }
 
 impl Default for SimulationOptions {
-    /// One run with 0.02 N of noise at the sensor and 0.01 N at the reference, all pulleys of a cable alike, nothing
+    /// One identification run with 0.02 N of noise at the sensor and 0.01 N at the reference, all pulleys of a cable alike, nothing
     /// hidden.
     fn default() -> Self {
         Self {
+            run: Run::default(),
             seed: 0,
             duration_s: None,
             sensor_noise_n: 0.02,

@@ -1,8 +1,9 @@
 //! The simulated platform: which wrench acts on it and how its cables pull.
 //!
-//! It keeps its orientation along the base axes; every movement is a translation. Newton and Euler about the platform
-//! origin then read `A^T f + w = 0` with `w = m·[g − a; c × (g − a)]`, c the centre of mass (\[P\] 2, gravity and inertia
-//! on the side of w).
+//! Newton and Euler about the platform origin read `A^T f + w = 0` with `w = m·[g − a; R c × (g − a)]`, a the
+//! acceleration of the origin and c the centre of mass (\[P\] 2, gravity and inertia on the side of w). Rotation is
+//! quasi-static: the robot file has no inertia tensor, so what angular acceleration and the centre of mass on its circle
+//! add is left out. Exact while the platform does not turn.
 
 use fric_core::{CableParams, Pose, RobotParams, Wrench};
 use nalgebra::{UnitQuaternion, Vector3, Vector6};
@@ -66,12 +67,12 @@ impl Platform {
             .fold(start, |[least, greatest], cable| [least.inf(&cable.base_m), greatest.sup(&cable.base_m)])
     }
 
-    /// The platform at a place.
+    /// The platform at a place, along the base axes.
     pub fn pose(position_m: Vector3<f64>) -> Pose {
         Pose { position_m, orientation: UnitQuaternion::identity() }
     }
 
-    /// Columns `[u; b × u]` of `A^T`, u from the platform to where the cable leaves its pulley; false where one cannot
+    /// Columns `[u; R b × u]` of `A^T`, u from the platform to where the cable leaves its pulley; false where one cannot
     /// leave its pulley, and then the columns are as they were.
     pub fn structure(&self, pose: &Pose, columns: &mut Vec<Vector6<f64>>) -> bool {
         if self.cables.iter().any(|cable| cable.params.direction(pose).is_none()) {
@@ -80,15 +81,19 @@ impl Platform {
         columns.clear();
         columns.extend(self.cables.iter().filter_map(|cable| {
             let direction = cable.params.direction(pose)?;
-            Some(stack(&direction, &cable.platform_m.cross(&direction)))
+            Some(stack(&direction, &(pose.orientation * cable.platform_m).cross(&direction)))
         }));
         true
     }
 
-    /// The wrench of gravity and inertia at an acceleration of the platform.
-    pub fn outside_wrench(&self, acceleration_m_per_s2: &Vector3<f64>) -> Vector6<f64> {
+    /// The wrench of gravity and inertia at an orientation and an acceleration of the platform.
+    pub fn outside_wrench(
+        &self,
+        orientation: &UnitQuaternion<f64>,
+        acceleration_m_per_s2: &Vector3<f64>,
+    ) -> Vector6<f64> {
         let force_n = (self.gravity_m_per_s2 - acceleration_m_per_s2) * self.mass_kg;
-        stack(&force_n, &self.center_of_mass_m.cross(&force_n))
+        stack(&force_n, &(orientation * self.center_of_mass_m).cross(&force_n))
     }
 }
 

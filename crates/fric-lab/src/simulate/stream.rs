@@ -1,7 +1,7 @@
 //! The simulated robot as a stream of cycles.
 
 use fric_core::robot::file::{CableTable, RobotFile};
-use fric_core::{CableInput, Pose, Sample};
+use fric_core::{CableInput, Sample};
 use nalgebra::{Vector3, Vector6};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -12,12 +12,12 @@ use super::distribution::Distribution;
 use super::effects::{TruthEffect, TruthEffects};
 use super::error::SimulationError;
 use super::motion::{CableMotion, Motion, Winch};
-use super::options::SimulationOptions;
+use super::options::{Run, SimulationOptions};
 use super::platform::{Platform, balanced_wrench};
 use super::tension::{TensionLevel, Variation};
-use super::trajectory::{SetPoint, Trajectory};
 use super::waves::uniform;
 use super::workspace::{SHORT_SHARE, Workspace};
+use crate::trajectory::{Limits, SetPoint, Trajectory};
 
 /// Stamp of the first cycle: 28 May 2026, 20:26:40 UTC. The same in every run, so that equal seeds give equal logs.
 pub const START_NANOS: i64 = 1_780_000_000_000_000_000;
@@ -59,7 +59,14 @@ pub struct Imbalance {
 #[derive(Debug)]
 enum Tension {
     /// The platform holds itself by all cables.
-    Platform { level: TensionLevel, distribution: Box<Distribution>, common: Variation, balanced: bool },
+    Platform {
+        level: TensionLevel,
+        distribution: Box<Distribution>,
+        common: Variation,
+        /// Whether the prestress varies, or stays at its mean.
+        wanders: bool,
+        balanced: bool,
+    },
     /// Each cable has a load of its own.
     Bench { level: TensionLevel },
 }
@@ -97,33 +104,43 @@ impl Simulation {
     ///
     /// A robot whose cables are all attached to the platform moves it; its tensions hold it (see
     /// [`is_balanced`](Self::is_balanced)). Cables without geometry run the same movements each for itself, under a load
-    /// that varies. A cable with `presliding = "lumped"` has a bristle on each pulley too: nature knows no other.
-    /// `traction_mu` and `validated` of the file have no effect.
+    /// that varies. What the platform does is [`SimulationOptions::run`]. A cable with `presliding = "lumped"` has a
+    /// bristle on each pulley too: nature knows no other. `traction_mu` and `validated` of the file have no effect.
     ///
     /// # Errors
-    /// [`SimulationError`] for an option out of range, an effect that cannot be simulated, and a robot without a place
-    /// where all its cables can run.
+    /// [`SimulationError`] for an option out of range, an effect that cannot be simulated, a robot without a place where
+    /// all its cables can run, and a crossing run without a platform.
     pub fn new(robot: &RobotFile, options: &SimulationOptions) -> Result<Self, SimulationError> {
         let params = robot.params();
         let cycle_s = params.cycle_s();
         options.check(cycle_s)?;
         let tables = &robot.options().cable;
         let platform = Platform::new(&params);
-        let viscous_n_s_per_m = tables.iter().map(whole_viscous_n_s_per_m).fold(0.0, f64::max);
-        let level = TensionLevel::of_platform(&platform, viscous_n_s_per_m);
+        let level = TensionLevel::of_platform(&platform, tables);
         let workspace = (platform.cable_count() > 0).then(|| Workspace::find(&platform, &level)).transpose()?;
-        let motion = Motion::new(workspace.as_ref().map(|workspace| &workspace.work_box));
+        let run = match options.run {
+            Run::Identification => {
+                workspace.as_ref().map(|workspace| Trajectory::identification(&workspace.work_box, &Limits::NONE))
+            }
+            Run::Crossing => {
+                let loose = tables.iter().find(|table| table.base_m.is_none() || table.platform_m.is_none());
+                if let Some(CableTable { name, .. }) = loose {
+                    return Err(SimulationError::NoPlatform { cable: name.clone() });
+                }
+                workspace.as_ref().map(|workspace| workspace.crossing(&platform, &level))
+            }
+        };
+        let motion = Motion::new(run, &Limits::NONE);
         let held = workspace.filter(|_| platform.cable_count() == tables.len());
         let tension = match held {
             Some(Workspace { balanced, .. }) => Tension::Platform {
                 level,
                 distribution: Box::new(Distribution::new(platform.arm_m(), level.least_n)),
                 common: Variation::common(&mut random(options.seed, Purpose::Prestress, 0)),
+                wanders: options.run == Run::Identification,
                 balanced,
             },
-            None => {
-                Tension::Bench { level: TensionLevel::of_bench(platform.weight_n(), tables.len(), viscous_n_s_per_m) }
-            }
+            None => Tension::Bench { level: TensionLevel::of_bench(platform.weight_n(), tables) },
         };
         let cables = tables
             .iter()
@@ -258,24 +275,26 @@ impl Simulation {
             stamp_nanos: START_NANOS + since_start_nanos,
             cables: &self.inputs,
             reference_force_n: &self.references_n,
-            pose: platform.map(|(pose, _)| pose),
+            pose: platform.as_ref().map(SetPoint::pose),
             outside_wrench,
         })
     }
 
     /// True cable forces at the platform at a time.
-    fn set_tensions(&mut self, platform: Option<&(Pose, SetPoint)>, time_s: f64) {
-        let (mean_n, common_share) = match &self.tension {
-            Tension::Platform { level, common, .. } => (level.mean_n, common.share(time_s)),
-            Tension::Bench { level } => (level.mean_n, 0.0),
+    fn set_tensions(&mut self, platform: Option<&SetPoint>, time_s: f64) {
+        let (mean_n, common_share, wanders) = match &self.tension {
+            Tension::Platform { level, wanders: false, .. } => (level.mean_n, 0.0, false),
+            Tension::Platform { level, common, .. } => (level.mean_n, common.share(time_s), true),
+            Tension::Bench { level } => (level.mean_n, 0.0, true),
         };
         for (force_n, cable) in self.forces_n.iter_mut().zip(&self.cables) {
-            *force_n = mean_n * (1.0 + common_share + cable.variation.share(time_s));
+            let own_share = if wanders { cable.variation.share(time_s) } else { 0.0 };
+            *force_n = mean_n * (1.0 + common_share + own_share);
         }
-        if let (Tension::Platform { level, distribution, .. }, Some((pose, set_point))) = (&mut self.tension, platform)
-        {
-            self.platform.structure(pose, &mut self.columns);
-            let wrench = self.platform.outside_wrench(&set_point.acceleration_m_per_s2);
+        if let (Tension::Platform { level, distribution, .. }, Some(set_point)) = (&mut self.tension, platform) {
+            let pose = set_point.pose();
+            self.platform.structure(&pose, &mut self.columns);
+            let wrench = self.platform.outside_wrench(&set_point.orientation, &set_point.acceleration_m_per_s2);
             let missing_n = distribution.solve(&self.columns, &wrench, &mut self.forces_n).residual_n;
             if missing_n > SHORT_SHARE * level.mean_n {
                 let here = Imbalance { cycle_count: 0, missing_n, time_s, position_m: pose.position_m };
@@ -292,7 +311,7 @@ impl SimulatedCable {
     fn advance(
         &mut self,
         motion: &Motion,
-        platform: Option<&(Pose, SetPoint)>,
+        platform: Option<&SetPoint>,
         time_s: f64,
         force_n: f64,
         cycle_s: f64,
@@ -331,8 +350,4 @@ fn chain(table: &CableTable, options: &SimulationOptions, cable: usize, effects:
     let sensor_pulley = table.pulleys.first().is_some_and(|pulley| pulley.sensor == Some(true));
     let sigma_n_per_m = table.friction.sigma_n_per_m.unwrap_or(STIFF_N_PER_M);
     BristleChain::new(&pulleys, sigma_n_per_m, sensor_pulley, effects)
-}
-
-fn whole_viscous_n_s_per_m(table: &CableTable) -> f64 {
-    table.pulleys.iter().map(|_| table.friction.viscous_n_s_per_m).sum()
 }

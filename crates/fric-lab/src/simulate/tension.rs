@@ -3,11 +3,12 @@
 //! A run must show each cable under many loads, or friction that grows with load cannot be told from friction that does
 //! not. Tensions therefore wander over about a factor of three, slowly beside the movements.
 
+use fric_core::robot::file::CableTable;
 use rand_chacha::ChaCha8Rng;
 
 use super::platform::Platform;
-use super::trajectory::FASTEST_M_PER_S;
 use super::waves::Waves;
+use crate::trajectory::FASTEST_M_PER_S;
 
 /// Mean tension of a robot without mass, N: that of a small robot whose sensors work up to 20 N at 180°.
 const LIGHT_N: f64 = 4.0;
@@ -31,16 +32,18 @@ pub struct TensionLevel {
 }
 
 impl TensionLevel {
-    /// For a platform held by its cables; `viscous_n_s_per_m` is the greatest sum of `F_pv` along a cable. Viscous
-    /// friction at full speed is added, so that it does not slacken a cable at its winch.
-    pub fn of_platform(platform: &Platform, viscous_n_s_per_m: f64) -> Self {
+    /// For a platform held by its cables. Viscous friction at full speed is added, so that it does not slacken a cable at
+    /// its winch.
+    pub fn of_platform(platform: &Platform, tables: &[CableTable]) -> Self {
+        let viscous_n_s_per_m = most_viscous_n_s_per_m(tables);
         Self::new((PER_WEIGHT * platform.weight_n()).max(LIGHT_N), viscous_n_s_per_m)
     }
 
-    /// For a test bench with the platform's weight hung on `cable_count` cables.
-    pub fn of_bench(weight_n: f64, cable_count: usize, viscous_n_s_per_m: f64) -> Self {
+    /// For a test bench with the platform's weight hung on the cables.
+    pub fn of_bench(weight_n: f64, tables: &[CableTable]) -> Self {
         #[expect(clippy::cast_precision_loss, reason = "a number of cables")]
-        let each_n = weight_n / cable_count.max(1) as f64;
+        let each_n = weight_n / tables.len().max(1) as f64;
+        let viscous_n_s_per_m = most_viscous_n_s_per_m(tables);
         Self::new(if each_n > 0.0 { each_n } else { LIGHT_N }, viscous_n_s_per_m)
     }
 
@@ -55,6 +58,12 @@ impl TensionLevel {
         let swing: f64 = COMMON.iter().chain(&OWN).map(|(amplitude, _)| amplitude).sum();
         [self.mean_n * (1.0 - swing), self.mean_n * (1.0 + swing)]
     }
+}
+
+/// The greatest sum of `F_pv` along a cable.
+fn most_viscous_n_s_per_m(tables: &[CableTable]) -> f64 {
+    let whole = |table: &CableTable| table.pulleys.iter().map(|_| table.friction.viscous_n_s_per_m).sum();
+    tables.iter().map(whole).fold(0.0, f64::max)
 }
 
 /// Tension over time.

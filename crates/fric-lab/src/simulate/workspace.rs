@@ -5,13 +5,17 @@
 //! prestress, every cable can leave its last pulley and pull. A robot that its cables cannot hold anywhere (too few of
 //! them, say) runs in the box where the least is missing in the middle, as if a guide carried the rest.
 
-use nalgebra::{Vector3, Vector6};
+use fric_core::Pose;
+use nalgebra::{UnitQuaternion, Vector3, Vector6};
 
 use super::distribution::Distribution;
 use super::error::SimulationError;
 use super::platform::Platform;
 use super::tension::TensionLevel;
-use super::trajectory::{ACCELERATION_M_PER_S2, STROKE_ACCELERATION_M_PER_S2, WorkBox};
+use crate::axis::rotation;
+use crate::trajectory::{
+    ACCELERATION_M_PER_S2, CROSSING_HALF_M, CROSSING_HALF_RAD, STROKE_ACCELERATION_M_PER_S2, Trajectory, WorkBox,
+};
 
 /// Half edges as shares of the base points' half extent, from the largest.
 const SHARES: [f64; 7] = [0.32, 0.26, 0.2, 0.14, 0.1, 0.06, 0.03];
@@ -26,6 +30,9 @@ const ACROSS_SHARE: f64 = 0.4;
 
 /// Missing forces below this share of the mean tension are rounding.
 pub const SHORT_SHARE: f64 = 1e-9;
+
+/// Turns of a crossing run that are tried, as shares of its own.
+const TURN_SHARES: [f64; 4] = [1.0, 0.5, 0.25, 0.125];
 
 /// How far aside of a single base point, per depth below it.
 const ASIDE_SHARE: f64 = 0.75;
@@ -42,17 +49,11 @@ pub struct Workspace {
 impl Workspace {
     /// The box for a platform with at least one cable.
     pub fn find(platform: &Platform, level: &TensionLevel) -> Result<Self, SimulationError> {
-        let mut trial = Trial {
-            platform,
-            level,
-            distribution: Distribution::new(platform.arm_m(), level.least_n),
-            columns: Vec::new(),
-            forces_n: Vec::new(),
-        };
+        let mut trial = Trial::new(platform, level);
         let mut best: Option<(f64, WorkBox)> = None;
         for depth in DEPTHS {
             for share in SHARES {
-                let Some(work_box) = candidate(platform, depth, share, &mut trial.columns) else { continue };
+                let Some(work_box) = candidate(platform, depth, share) else { continue };
                 let Some(missing_n) = trial.missing_in_n(&work_box) else { continue };
                 if missing_n <= 0.0 {
                     return Ok(Self { work_box, balanced: true, among_anchors: among_anchors(platform, &work_box) });
@@ -65,6 +66,37 @@ impl Workspace {
         let (_, work_box) = best.ok_or(SimulationError::NoWorkspace)?;
         Ok(Self { work_box, balanced: false, among_anchors: among_anchors(platform, &work_box) })
     }
+
+    /// The crossing run in its middle, as far to all sides as there is room.
+    pub fn crossing(&self, platform: &Platform, level: &TensionLevel) -> Trajectory {
+        let half_m = self.work_box.half_edges_m.map(|half_m| half_m.min(CROSSING_HALF_M));
+        Trajectory::crossing(self.work_box.center_m, &half_m, &turns_rad(platform, level, self))
+    }
+}
+
+/// How far the platform can turn to either side about each base axis in the middle of a workspace, rad: the turn of a
+/// crossing run, or the half, a quarter … of it that every cable can follow, and hold where the cables hold the platform at
+/// all; 0 where not even the last.
+fn turns_rad(platform: &Platform, level: &TensionLevel, workspace: &Workspace) -> Vector3<f64> {
+    let mut trial = Trial::new(platform, level);
+    let mut allowed = |turn_rad: Vector3<f64>| {
+        let pose = Pose { position_m: workspace.work_box.center_m, orientation: rotation(&turn_rad) };
+        trial.platform.structure(&pose, &mut trial.columns)
+            && (!workspace.balanced
+                || trial.missing_n(&pose.orientation, Vector3::zeros()) <= SHORT_SHARE * level.mean_n)
+    };
+    Vector3::from([Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| {
+        let turns_rad = TURN_SHARES.map(|share| share * CROSSING_HALF_RAD);
+        turns_rad.into_iter().find(|turn_rad| allowed(axis * *turn_rad) && allowed(axis * -turn_rad)).unwrap_or(0.0)
+    }))
+}
+
+/// Of the axes and diagonals inside the box the one along which the cable that moves least moves most, with the platform
+/// in the middle; `None` where a cable does not get there.
+pub fn direction_in(platform: &Platform, center_m: Vector3<f64>, half_edges_m: &Vector3<f64>) -> Option<Vector3<f64>> {
+    let mut columns = Vec::new();
+    platform.structure(&Platform::pose(center_m), &mut columns).then_some(())?;
+    best_direction(half_edges_m, &columns)
 }
 
 fn among_anchors(platform: &Platform, work_box: &WorkBox) -> bool {
@@ -78,7 +110,7 @@ fn among_anchors(platform: &Platform, work_box: &WorkBox) -> bool {
 }
 
 /// A box of a share of the base points' extent at a depth, or `None` where the cables do not get to its middle.
-fn candidate(platform: &Platform, depth: f64, share: f64, columns: &mut Vec<Vector6<f64>>) -> Option<WorkBox> {
+fn candidate(platform: &Platform, depth: f64, share: f64) -> Option<WorkBox> {
     let [least_m, greatest_m] = platform.base_corners_m();
     let half_m = (greatest_m - least_m) * 0.5;
     // A single base point has no extent: the platform then hangs within a metre of it, aside, for straight behind a
@@ -93,8 +125,7 @@ fn candidate(platform: &Platform, depth: f64, share: f64, columns: &mut Vec<Vect
         (extent_m * share).min(LONGEST_HALF_EDGE_M)
     });
     let center_m = (least_m + greatest_m) * 0.5 + (platform.down() + aside) * (depth * largest_m);
-    platform.structure(&Platform::pose(center_m), columns).then_some(())?;
-    let direction = best_direction(&half_edges_m, columns)?;
+    let direction = direction_in(platform, center_m, &half_edges_m)?;
     Some(WorkBox { center_m, half_edges_m, direction })
 }
 
@@ -123,7 +154,12 @@ struct Trial<'a> {
     forces_n: Vec<f64>,
 }
 
-impl Trial<'_> {
+impl<'a> Trial<'a> {
+    fn new(platform: &'a Platform, level: &'a TensionLevel) -> Self {
+        let distribution = Distribution::new(platform.arm_m(), level.least_n);
+        Self { platform, level, distribution, columns: Vec::new(), forces_n: Vec::new() }
+    }
+
     /// The first force found that the cables fail to provide in the box, N, starting from its middle; 0 if they provide
     /// all. `None` where a cable cannot leave its pulley.
     fn missing_in_n(&mut self, work_box: &WorkBox) -> Option<f64> {
@@ -134,6 +170,7 @@ impl Trial<'_> {
         if !places_m.clone().all(|place_m| self.platform.structure(&Platform::pose(place_m), &mut self.columns)) {
             return None;
         }
+        let upright = UnitQuaternion::identity();
         let tolerance_n = SHORT_SHARE * self.level.mean_n;
         let stroke = work_box.direction * STROKE_ACCELERATION_M_PER_S2;
         let ramps = [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| axis * ACCELERATION_M_PER_S2);
@@ -141,7 +178,8 @@ impl Trial<'_> {
         let tried = strokes.chain(places_m.flat_map(|place_m| ramps.map(|ramp| (place_m, ramp))));
         for (place_m, acceleration_m_per_s2) in tried {
             self.platform.structure(&Platform::pose(place_m), &mut self.columns);
-            let missing_n = self.missing_n(acceleration_m_per_s2).max(self.missing_n(-acceleration_m_per_s2));
+            let missing_n =
+                self.missing_n(&upright, acceleration_m_per_s2).max(self.missing_n(&upright, -acceleration_m_per_s2));
             if missing_n > tolerance_n {
                 return Some(missing_n);
             }
@@ -149,8 +187,9 @@ impl Trial<'_> {
         Some(0.0)
     }
 
-    fn missing_n(&mut self, acceleration_m_per_s2: Vector3<f64>) -> f64 {
-        let wrench = self.platform.outside_wrench(&acceleration_m_per_s2);
+    /// What the cables fail to provide at the pose of the columns, N.
+    fn missing_n(&mut self, orientation: &UnitQuaternion<f64>, acceleration_m_per_s2: Vector3<f64>) -> f64 {
+        let wrench = self.platform.outside_wrench(orientation, &acceleration_m_per_s2);
         let mut missing_n = 0.0_f64;
         for mean_n in self.level.extremes_n() {
             self.forces_n.clear();

@@ -3,7 +3,7 @@
 use fric_core::robot::file::RobotFile;
 use fric_lab::fit::{CableFit, FitOptions, Reference};
 use fric_lab::replay::Replay;
-use fric_lab::simulate::SimulationOptions;
+use fric_lab::simulate::{Run, SimulationOptions};
 
 use super::logs::{FRICTION, Log, assert_near, value};
 use fric_core::Sample;
@@ -12,6 +12,7 @@ use fric_core::Sample;
 const TRUTH: [f64; 4] = [0.013, 36_600.0, 74.5 / 3.0, 0.0];
 /// Noise of sensor and reference, N: 0.2 % of the load.
 const NOISE: SimulationOptions = SimulationOptions {
+    run: Run::Identification,
     seed: 0,
     duration_s: None,
     sensor_noise_n: 4.0,

@@ -3,4 +3,3 @@ mod effects;
 pub mod robots;
 mod shapes;
 mod stream;
-mod trajectory;

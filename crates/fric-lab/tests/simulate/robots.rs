@@ -19,17 +19,31 @@ const PUBLISHED: [(f64, f64, f64); 8] = [
 
 /// Eight cables in a frame of 1.1 × 0.8 × 1.0 m, sensor at 180°, a fixed pulley, a swivelling one.
 pub fn eight_cables() -> RobotFile {
+    eight_cables_with(&PUBLISHED, 0.001)
+}
+
+/// The same with a cycle of 4 ms.
+pub fn slow_eight() -> RobotFile {
+    eight_cables_with(&PUBLISHED, 0.004)
+}
+
+/// The same with nothing that rubs.
+pub fn frictionless_eight() -> RobotFile {
+    eight_cables_with(&[(0.0, 1000.0, 0.0); 8], 0.001)
+}
+
+fn eight_cables_with(friction: &[(f64, f64, f64); 8], cycle_s: f64) -> RobotFile {
     let mut text =
-        "format = \"fric-robot/1\"\nname = \"eight\"\ncycle_s = 0.001\n[platform]\nmass_kg = 0.41\n".to_owned();
+        format!("format = \"fric-robot/1\"\nname = \"eight\"\ncycle_s = {cycle_s}\n[platform]\nmass_kg = 0.41\n");
     let corners = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)];
     let places = [1.0, -1.0].into_iter().flat_map(|height| corners.map(|(x, y)| (x, y, height)));
-    for (cable, ((x, y, height), (mu, sigma, viscous))) in places.zip(PUBLISHED).enumerate() {
+    for (cable, ((x, y, height), (mu, sigma, viscous))) in places.zip(*friction).enumerate() {
         write!(
             text,
             "[[cable]]\nname = \"cable{}\"\nbase_m = [{}, {}, {}]\nplatform_m = [{}, {}, {}]\n\
              pulleys = [{{ wrap_deg = 180.0, sensor = true }}, {{ wrap_deg = 90.0 }}, \
              {{ wrap = \"pose\", radius_m = 0.01, axis = [0.0, 0.0, {height:?}] }}]\n\
-             friction = {{ mu = {mu}, sigma_n_per_m = {sigma:?}, viscous_n_s_per_m = {viscous} }}\n",
+             friction = {{ mu = {mu:?}, sigma_n_per_m = {sigma:?}, viscous_n_s_per_m = {viscous:?} }}\n",
             cable + 1,
             0.55 * x,
             0.4 * y,

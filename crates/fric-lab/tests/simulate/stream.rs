@@ -2,7 +2,7 @@
 
 use fric_core::CableInput;
 use fric_core::platform::structure_matrix;
-use fric_lab::simulate::{START_NANOS, SimulationOptions};
+use fric_lab::simulate::{Run, START_NANOS, Simulation, SimulationError, SimulationOptions};
 use nalgebra::{SVector, Vector3};
 
 use super::robots::{bench, eight_cables, hung, noiseless, simulate};
@@ -158,4 +158,42 @@ fn noise_is_white_and_as_loud_as_asked() {
         }
     }
     assert!((product(&sensor_n, &reference_n) / (0.02 * 0.01)).abs() < 0.03);
+}
+
+/// The run's turns: lengths, speeds and the structure matrix follow the orientation.
+#[test]
+fn the_platform_turns_in_a_crossing_run_and_is_held() {
+    let robot = eight_cables();
+    let params = robot.params();
+    let mut simulation = simulate(&robot, &SimulationOptions { run: Run::Crossing, ..noiseless() });
+    assert!(simulation.is_balanced());
+    let mut greatest_rad = Vector3::zeros();
+    let mut last: Option<Vec<CableInput>> = None;
+    while let Some(cycle) = simulation.next_cycle() {
+        let (pose, wrench) = (cycle.pose.unwrap(), cycle.outside_wrench.unwrap());
+        greatest_rad = greatest_rad.sup(&pose.orientation.scaled_axis());
+        let references_n = SVector::<f64, 8>::from_column_slice(cycle.reference_force_n);
+        let product = structure_matrix::<8>(&params, &pose).unwrap() * references_n;
+        assert!((product + wrench.to_vector()).amax() < 1e-9);
+        for (cable, params) in cycle.cables.iter().zip(params.cables()) {
+            // Micro motion of the winches is up to 20 µm.
+            assert!((cable.length_m - params.length_m(&pose).unwrap()).abs() < 21e-6);
+        }
+        for (now, before) in cycle.cables.iter().zip(last.iter().flatten()) {
+            let mean_m_per_s = (now.length_m - before.length_m) / 0.001;
+            let trapezoid_m_per_s = 0.5 * (now.speed_m_per_s + before.speed_m_per_s);
+            assert!((mean_m_per_s - trapezoid_m_per_s).abs() < 1e-4, "{mean_m_per_s} {trapezoid_m_per_s}");
+        }
+        last = Some(cycle.cables.to_vec());
+    }
+    // About z a cable would fall below the least tension at 5°, at the lowest prestress there can be.
+    let expected_rad = Vector3::new(5.0, 5.0, 2.5).map(f64::to_radians);
+    assert!((greatest_rad - expected_rad).amax() < 1e-12, "{greatest_rad}");
+}
+
+#[test]
+fn a_bench_cannot_cross_anything() {
+    let options = SimulationOptions { run: Run::Crossing, ..noiseless() };
+    let error = Simulation::new(&bench("{ wrap_deg = 90.0, sensor = true }", "mu = 0.02"), &options).unwrap_err();
+    assert_eq!(error, SimulationError::NoPlatform { cable: "winch".to_owned() });
 }

@@ -41,10 +41,12 @@ mod order;
 mod pace;
 mod reader;
 mod row;
+mod speed;
 mod track;
 
 pub use error::SignalError;
 pub use reader::SignalReader;
+pub use speed::LastLength;
 pub use track::CLOCK_STEP_MESSAGES;
 
 use crate::path::MessagePath;

@@ -102,6 +102,12 @@ impl SignalReader {
         &self.recording
     }
 
+    /// Where the signals are looked for.
+    #[must_use]
+    pub fn paths(&self) -> &SignalPaths {
+        &self.topics.paths
+    }
+
     /// What has been counted for a role so far.
     #[must_use]
     pub fn counts(&self, role: Role) -> &TrackCounts {

@@ -2,6 +2,7 @@
 
 use fric_core::{CableInput, Pose, Sample, Wrench};
 
+use super::speed::LastLength;
 use super::track::{Around, Track, Tracked};
 use super::{Role, SignalPaths};
 
@@ -19,13 +20,6 @@ pub(super) struct RowBuffer {
     numbers: Vec<f64>,
     last_lengths: Vec<LastLength>,
     poses: [KnownPose; 2],
-}
-
-/// The last length that was known, and when.
-#[derive(Debug, Clone, Copy)]
-struct LastLength {
-    stamp_nanos: i64,
-    length_m: f64,
 }
 
 /// The pose of a sample of the pose track; number 0 is no sample.
@@ -46,7 +40,7 @@ impl RowBuffer {
             has_length_path: paths.get(Role::Length).is_some(),
             has_speed_path: paths.get(Role::Speed).is_some(),
             numbers: vec![f64::NAN; cable_count],
-            last_lengths: vec![LastLength { stamp_nanos: 0, length_m: f64::NAN }; cable_count],
+            last_lengths: vec![LastLength::UNKNOWN; cable_count],
             poses: [KnownPose::default(); 2],
         }
     }
@@ -103,9 +97,7 @@ impl RowBuffer {
                 if is_derived { last.speed_m_per_s(cable.length_m, stamp_nanos) } else { speed_m_per_s };
         }
         for (cable, last) in self.cables.iter().zip(&mut self.last_lengths) {
-            if cable.length_m.is_finite() {
-                *last = LastLength { stamp_nanos, length_m: cable.length_m };
-            }
+            last.update(cable.length_m, stamp_nanos);
         }
     }
 
@@ -132,19 +124,6 @@ impl RowBuffer {
         };
         *older = std::mem::replace(newer, KnownPose { number: sample.number, pose });
         pose
-    }
-}
-
-impl LastLength {
-    /// Change of length per time; 0 where none was known before, or time went back; NaN where it is not known now.
-    fn speed_m_per_s(&self, length_m: f64, stamp_nanos: i64) -> f64 {
-        if !length_m.is_finite() {
-            return f64::NAN;
-        }
-        #[expect(clippy::cast_precision_loss, reason = "an interval between rows")]
-        let interval_s = stamp_nanos.saturating_sub(self.stamp_nanos) as f64 * 1e-9;
-        let is_known = self.length_m.is_finite() && interval_s > 0.0;
-        if is_known { (length_m - self.length_m) / interval_s } else { 0.0 }
     }
 }
 

@@ -37,6 +37,12 @@ pub enum WriteError {
         /// The stamp.
         stamp_nanos: u64,
     },
+    /// A stamp that messages cannot hold.
+    #[error("a cable message has the stamp {stamp_nanos} ns, before 1970, with which no log can be written")]
+    EarlyStamp {
+        /// The stamp.
+        stamp_nanos: i64,
+    },
     /// An array that does not have one element per name.
     #[error("topic `{topic}`: {found} elements of `{field}` for {expected} names")]
     Length {

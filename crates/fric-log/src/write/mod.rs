@@ -10,6 +10,7 @@ mod definitions;
 mod error;
 mod messages;
 mod payload;
+mod replayed;
 
 use std::collections::BTreeMap;
 use std::io::BufWriter;
@@ -22,9 +23,7 @@ use crate::output::{OutputError, OutputFile};
 pub use error::WriteError;
 pub use messages::{CableStatusChannel, JointState, JointStateChannel, PoseChannel, WrenchChannel};
 use payload::Payload;
-
-/// Name of the attachment that holds the robot file.
-pub const ROBOT_FILE: &str = "fric-robot.toml";
+pub use replayed::ReplayedLog;
 
 const LIBRARY: &str = concat!("fric ", env!("CARGO_PKG_VERSION"));
 const CHUNK_BYTES: u64 = 1 << 20;
@@ -80,7 +79,7 @@ impl LogWriter {
         let attachment = Attachment {
             log_time: 0,
             create_time: 0,
-            name: ROBOT_FILE.to_owned(),
+            name: crate::robot::ROBOT_FILE.to_owned(),
             media_type: "application/toml".to_owned(),
             data: toml.as_bytes().into(),
         };

@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 
 use fric_core::{Pose, Wrench};
 use fric_log::output::OutputError;
+use fric_log::robot::ROBOT_FILE;
 use fric_log::schema::{MessageType, Wanted};
-use fric_log::write::{JointState, LogWriter, ROBOT_FILE, WriteError};
+use fric_log::write::{JointState, LogWriter, WriteError};
 use mcap::MessageStream;
 use mcap::sans_io::SummaryReader;
 use tempfile::TempDir;

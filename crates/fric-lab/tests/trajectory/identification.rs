@@ -1,16 +1,21 @@
 //! The identification run against what \[P\], section III C, lists.
 
-use fric_lab::simulate::{
-    AMPLITUDES_M, Leg, Phase, RECTANGLES_M_PER_S, STROKE_ACCELERATION_M_PER_S2, Trajectory, WorkBox,
+use fric_lab::trajectory::{
+    AMPLITUDES_M, Leg, Limits, Phase, RECTANGLES_M_PER_S, STROKE_ACCELERATION_M_PER_S2, Trajectory, WorkBox,
 };
 use nalgebra::Vector3;
 
 fn run() -> Trajectory {
-    Trajectory::identification(&WorkBox {
+    run_within(&Limits::NONE)
+}
+
+fn run_within(limits: &Limits) -> Trajectory {
+    let work_box = WorkBox {
         center_m: Vector3::new(0.1, 0.2, 0.3),
         half_edges_m: Vector3::new(0.2, 0.15, 0.18),
         direction: Vector3::new(1.0, 1.0, 0.0).normalize(),
-    })
+    };
+    Trajectory::identification(&work_box, limits)
 }
 
 fn legs(run: &Trajectory, phase: Phase) -> Vec<&Leg> {
@@ -113,10 +118,30 @@ fn smooth_within_limits_inside_the_box_and_closed() {
 fn a_small_box_makes_movements_shorter() {
     let half_edges_m = Vector3::new(0.01, 0.01, 0.01);
     let center_m = Vector3::zeros();
-    let small = Trajectory::identification(&WorkBox { center_m, half_edges_m, direction: Vector3::x() });
+    let work_box = WorkBox { center_m, half_edges_m, direction: Vector3::x() };
+    let small = Trajectory::identification(&work_box, &Limits::NONE);
     let mut time_s = 0.0;
     while time_s < small.duration_s() {
         assert!(small.at(time_s).position_m.amax() <= 0.02 + 1e-12);
         time_s += 0.001;
     }
+}
+
+#[test]
+fn limits_cap_speed_and_acceleration_and_change_nothing_else() {
+    let limits = Limits { speed_m_per_s: 0.3, acceleration_m_per_s2: 2.0 };
+    let (capped, free) = (run_within(&limits), run());
+    assert_eq!(capped.legs().len(), free.legs().len());
+    for (capped, free) in capped.legs().iter().zip(free.legs()) {
+        assert_eq!((capped.from_m, capped.to_m, capped.phase), (free.from_m, free.to_m, free.phase));
+    }
+    let (mut fastest, mut strongest, mut time_s) = (0.0_f64, 0.0_f64, 0.0);
+    while time_s < capped.duration_s() {
+        let here = capped.at(time_s);
+        fastest = fastest.max(here.velocity_m_per_s.norm());
+        strongest = strongest.max(here.acceleration_m_per_s2.norm());
+        time_s += 0.001;
+    }
+    assert!((0.299..=0.3 + 1e-12).contains(&fastest), "{fastest}");
+    assert!((1.99..=2.0 + 1e-12).contains(&strongest), "{strongest}");
 }

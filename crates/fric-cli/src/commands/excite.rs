@@ -1,0 +1,97 @@
+//! `excite`: the identification run as set points.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use fric_lab::excite::{Excitation, ExcitationError, ExcitationOptions};
+use fric_log::output::OutputFile;
+
+use crate::arguments::ExciteArguments;
+use crate::failure::{Failure, Outcome};
+use crate::interrupt;
+use crate::model::Model;
+use crate::output::{self, JsonTarget};
+use crate::progress::{self, STRIDE};
+use crate::report::{RunSeries, preview};
+use crate::set_points::SetPointTable;
+
+/// Runs the command.
+pub fn run(arguments: &ExciteArguments) -> Outcome {
+    output::check_distinct(&[Some(&arguments.output), arguments.preview.as_deref()])?;
+    let model = Model::read(&arguments.model)?;
+    let options = ExcitationOptions {
+        box_m: arguments.box_m.map(|[x0, y0, z0, x1, y1, z1]| [[x0, y0, z0], [x1, y1, z1]]),
+        max_speed_m_per_s: arguments.max_speed_m_per_s,
+        max_acceleration_m_per_s2: arguments.max_acceleration_m_per_s2,
+        min_tension_n: arguments.min_tension_n,
+        max_tension_n: arguments.max_tension_n,
+    };
+    let mut excitation = Excitation::new(&model.robot, &options).map_err(refused)?;
+    let inputs: [PathBuf; 1] = [arguments.model.clone()];
+    let file = OutputFile::create(&arguments.output, &inputs, arguments.force)?;
+    let page = arguments.preview.as_ref().map(|path| OutputFile::create(path, &inputs, arguments.force)).transpose()?;
+
+    let mut table = SetPointTable::new(file);
+    table.write_header(&model.robot.cable_names(), &excitation)?;
+    let mut series = RunSeries::new(excitation.total_cycles());
+    let bar = progress::cycles(excitation.total_cycles());
+    let mut done_cycles = 0_u64;
+    while let Some(cycle) = excitation.next_cycle()? {
+        if done_cycles.is_multiple_of(STRIDE) {
+            interrupt::check()?;
+            bar.set_position(done_cycles);
+        }
+        done_cycles += 1;
+        table.write(&cycle)?;
+        series.add(&cycle);
+    }
+    bar.finish_and_clear();
+    table.finish()?;
+    if let Some(page) = page {
+        page.finish_with(&preview::page(&model.robot, &excitation, &series))?;
+    }
+    JsonTarget::Nowhere.show(&format!(
+        "{}: {done_cycles} set points, {:.1} s{}\n",
+        arguments.output.display(),
+        excitation.trajectory().duration_s(),
+        describe(&excitation, &series)
+    ))
+}
+
+/// Where the run goes and how hard.
+fn describe(excitation: &Excitation, series: &RunSeries) -> String {
+    let mut text = format!(", up to {:.3} m/s", series.speed().greatest);
+    if let Some(work_box) = excitation.work_box() {
+        let corners_m = [work_box.center_m - work_box.half_edges_m, work_box.center_m + work_box.half_edges_m];
+        let [from, to] = corners_m.map(|corner_m| {
+            let [x, y, z] = <[f64; 3]>::from(corner_m.map(output::to_millimetre));
+            format!("({x:.3}, {y:.3}, {z:.3})")
+        });
+        // Writing to a String cannot fail, here and below.
+        let _ = write!(text, ", from {from} to {to} m");
+    }
+    if let Some(tension_n) = series.tension_n() {
+        let _ = write!(text, ", cable forces {:.2} to {:.2} N", tension_n.least, tension_n.greatest);
+    }
+    text
+}
+
+/// A number on the command line is the command line's fault, the rest the robot's or the run's.
+fn refused(error: ExcitationError) -> Failure {
+    let flag = |key: &str| if key == "box_m" { "--box".to_owned() } else { format!("--{}", key.replace('_', "-")) };
+    match error {
+        ExcitationError::OptionOutOfRange { key, value, min, max } => {
+            Failure::usage(format!("{} is {value:?}; allowed is {min} to {max}", flag(key)))
+        }
+        ExcitationError::BadBox { axis, from, to } => {
+            Failure::usage(format!("--box goes from {from} to {to} m along {axis}"))
+                .advise("Give the lesser corner first, and at least one edge of 1 mm.")
+        }
+        ExcitationError::NeedsPlatform { key, cable } => Failure::usage(format!(
+            "{} needs a platform, but {cable} has no `base_m` and `platform_m` in the robot file",
+            flag(key)
+        ))
+        .advise("Leave it out, or give every cable both."),
+        error => Failure::from(error),
+    }
+}

@@ -1,0 +1,129 @@
+//! A run of set points, thinned out to what a screen can show; memory does not depend on its length.
+
+use fric_lab::excite::ExcitedCycle;
+use fric_lab::trajectory::Phase;
+
+use super::series::Extent;
+
+/// As many intervals as a chart has pixels to show.
+const MOST_INTERVALS: u64 = 900;
+
+/// A run, thinned out to what a page can show.
+#[derive(Debug)]
+pub struct RunSeries {
+    cycles_per_interval: u64,
+    cycles_in_last: u64,
+    intervals: Vec<RunInterval>,
+    /// Speed, least and greatest force of the last cycle: an interval goes on from there.
+    last: [f64; 3],
+    phases: Vec<PhaseSpan>,
+    end_s: f64,
+}
+
+/// What the robot does in one interval.
+#[derive(Clone, Copy, Debug)]
+pub struct RunInterval {
+    pub start_s: f64,
+    /// Of the platform, or of the fastest cable without one, m/s.
+    pub speed: Extent,
+    /// Least and greatest force of the cables, N.
+    pub least_n: Extent,
+    pub greatest_n: Extent,
+    /// Of the cables, m.
+    pub length_m: Extent,
+}
+
+/// What the robot does in one phase.
+#[derive(Clone, Copy, Debug)]
+pub struct PhaseSpan {
+    pub phase: Phase,
+    pub start_s: f64,
+    pub end_s: f64,
+    pub fastest: f64,
+    pub tension_n: Extent,
+}
+
+impl RunSeries {
+    pub fn new(total_cycles: u64) -> Self {
+        Self {
+            cycles_per_interval: total_cycles.div_ceil(MOST_INTERVALS).max(1),
+            cycles_in_last: 0,
+            intervals: Vec::new(),
+            last: [f64::NAN; 3],
+            phases: Vec::new(),
+            end_s: 0.0,
+        }
+    }
+
+    /// Takes in one cycle.
+    pub fn add(&mut self, cycle: &ExcitedCycle<'_>) {
+        let ExcitedCycle { time_s, phase, platform, cables, tensions_n } = *cycle;
+        let speed = platform.map_or_else(
+            || cables.iter().map(|cable| cable.speed_m_per_s.abs()).fold(0.0, f64::max),
+            |set_point| set_point.velocity_m_per_s.norm(),
+        );
+        let mut tension_n = Extent::NOTHING;
+        for force_n in tensions_n.unwrap_or_default() {
+            tension_n.add(*force_n);
+        }
+        self.end_s = time_s;
+        if self.cycles_in_last == self.cycles_per_interval || self.intervals.is_empty() {
+            let [speed, least_n, greatest_n, length_m] = [Extent::NOTHING; 4];
+            self.intervals.push(RunInterval { start_s: time_s, speed, least_n, greatest_n, length_m });
+            self.cycles_in_last = 0;
+        }
+        self.cycles_in_last += 1;
+        if let Some(interval) = self.intervals.last_mut() {
+            for cable in cables {
+                interval.length_m.add(cable.length_m);
+            }
+        }
+        let now = [speed, tension_n.least, tension_n.greatest];
+        for [speed, least_n, greatest_n] in [std::mem::replace(&mut self.last, now), now] {
+            if let Some(interval) = self.intervals.last_mut() {
+                interval.speed.add(speed);
+                interval.least_n.add(least_n);
+                interval.greatest_n.add(greatest_n);
+            }
+        }
+        if self.phases.last().is_none_or(|last| last.phase != phase) {
+            let (start_s, end_s) = (time_s, time_s);
+            self.phases.push(PhaseSpan { phase, start_s, end_s, fastest: 0.0, tension_n: Extent::NOTHING });
+        }
+        if let Some(last) = self.phases.last_mut() {
+            last.end_s = time_s;
+            last.fastest = last.fastest.max(speed);
+            last.tension_n.merge(tension_n);
+        }
+    }
+
+    /// Speeds of the whole run, from 0, m/s.
+    pub fn speed(&self) -> Extent {
+        let fastest = self.phases.iter().map(|phase| phase.fastest).fold(0.0, f64::max);
+        Extent { least: 0.0, greatest: fastest }
+    }
+
+    /// Cable forces of the whole run, N, where there are any.
+    pub fn tension_n(&self) -> Option<Extent> {
+        let mut all = Extent::NOTHING;
+        for phase in &self.phases {
+            all.merge(phase.tension_n);
+        }
+        all.is_something().then_some(all)
+    }
+
+    /// The intervals in order.
+    pub fn intervals(&self) -> &[RunInterval] {
+        &self.intervals
+    }
+
+    /// The phases in order.
+    pub fn phases(&self) -> &[PhaseSpan] {
+        &self.phases
+    }
+
+    /// Time of the last cycle, s.
+    pub fn end_s(&self) -> f64 {
+        self.end_s
+    }
+}

@@ -1,0 +1,101 @@
+//! Set points as CSV: one row a cycle, units in the header.
+
+use std::io;
+
+use fric_lab::excite::{Excitation, ExcitedCycle};
+use fric_log::output::{OutputError, OutputFile};
+
+use crate::failure::{Failure, Outcome};
+
+/// The file in the making.
+pub struct SetPointTable {
+    writer: csv::Writer<OutputFile>,
+}
+
+/// Columns of a platform behind time and phase.
+const PLATFORM_COLUMNS: [&str; 13] = [
+    "x_m",
+    "y_m",
+    "z_m",
+    "qx",
+    "qy",
+    "qz",
+    "qw",
+    "vx_m_per_s",
+    "vy_m_per_s",
+    "vz_m_per_s",
+    "ax_m_per_s2",
+    "ay_m_per_s2",
+    "az_m_per_s2",
+];
+
+impl SetPointTable {
+    /// At the start of a file.
+    pub fn new(file: OutputFile) -> Self {
+        Self { writer: csv::Writer::from_writer(file) }
+    }
+
+    /// The names of the columns, with units.
+    pub fn write_header(&mut self, names: &[&str], excitation: &Excitation) -> Outcome {
+        let mut header: Vec<String> = vec!["time_s".to_owned(), "phase".to_owned()];
+        if excitation.work_box().is_some() {
+            header.extend(PLATFORM_COLUMNS.map(ToOwned::to_owned));
+        }
+        let quantities = ["length_m", "speed_m_per_s", "tension_n"];
+        let quantities = if excitation.tension_bounds_n().is_some() { &quantities[..] } else { &quantities[..2] };
+        for name in names {
+            header.extend(quantities.iter().map(|quantity| format!("{name}_{quantity}")));
+        }
+        self.writer.write_record(&header).map_err(|error| self.failure(error))
+    }
+
+    /// One row.
+    pub fn write(&mut self, cycle: &ExcitedCycle<'_>) -> Outcome {
+        // Cycle times are whole nanoseconds; the product has the noise of binary fractions.
+        let time_s = (cycle.time_s * 1e9).round() / 1e9;
+        self.field(&time_s.to_string())?;
+        self.field(cycle.phase.name())?;
+        if let Some(set_point) = &cycle.platform {
+            let vectors = [&set_point.position_m, &set_point.velocity_m_per_s, &set_point.acceleration_m_per_s2];
+            let [place, velocity, acceleration] = vectors.map(|vector| vector.iter().copied());
+            let orientation = set_point.orientation.coords.iter().copied();
+            for number in place.chain(orientation).chain(velocity).chain(acceleration) {
+                self.number(number)?;
+            }
+        }
+        for (index, cable) in cycle.cables.iter().enumerate() {
+            self.number(cable.length_m)?;
+            self.number(cable.speed_m_per_s)?;
+            if let Some(tension_n) = cycle.tensions_n.and_then(|tensions_n| tensions_n.get(index)) {
+                self.number(*tension_n)?;
+            }
+        }
+        // An empty record ends the row.
+        self.writer.write_record(None::<&[u8]>).map_err(|error| self.failure(error))
+    }
+
+    /// Puts the file with all its rows in its place.
+    pub fn finish(self) -> Outcome {
+        let path = self.writer.get_ref().path().to_owned();
+        let file = self.writer.into_inner().map_err(|error| OutputError::File { path, source: error.into_error() })?;
+        Ok(file.finish()?)
+    }
+
+    /// All digits, so that the reader has the very number; no minus before a zero.
+    fn number(&mut self, number: f64) -> Outcome {
+        self.field(&(number + 0.0).to_string())
+    }
+
+    fn field(&mut self, text: &str) -> Outcome {
+        self.writer.write_field(text).map_err(|error| self.failure(error))
+    }
+
+    fn failure(&self, error: csv::Error) -> Failure {
+        let source = match error.into_kind() {
+            csv::ErrorKind::Io(error) => error,
+            // Rows are as long as the header, and text is all there is to write.
+            kind => io::Error::other(format!("{kind:?}")),
+        };
+        OutputError::File { path: self.writer.get_ref().path().to_owned(), source }.into()
+    }
+}

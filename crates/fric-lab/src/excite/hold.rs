@@ -1,0 +1,90 @@
+//! Whether the cables hold the platform within bounds, and with which forces.
+
+use nalgebra::{Vector3, Vector6};
+
+use super::error::ExcitationError;
+use crate::simulate::distribution::Distribution;
+use crate::simulate::platform::Platform;
+use crate::trajectory::{Phase, SetPoint};
+
+/// The platform with bounds for the forces of its cables.
+#[derive(Debug)]
+pub struct Hold {
+    platform: Platform,
+    distribution: Distribution,
+    least_n: f64,
+    greatest_n: Option<f64>,
+    /// Force that each cable is to have where there is a choice, N.
+    wanted_n: f64,
+    columns: Vec<Vector6<f64>>,
+    forces_n: Vec<f64>,
+}
+
+impl Hold {
+    /// Forces near the middle of the bounds, or near `mean_n` where there is no upper one.
+    pub fn new(platform: Platform, least_n: f64, greatest_n: Option<f64>, mean_n: f64) -> Self {
+        Self {
+            distribution: Distribution::new(platform.arm_m(), least_n),
+            least_n,
+            greatest_n,
+            wanted_n: greatest_n.map_or_else(|| mean_n.max(2.0 * least_n), |greatest_n| 0.5 * (least_n + greatest_n)),
+            columns: Vec::with_capacity(platform.cable_count()),
+            forces_n: vec![0.0; platform.cable_count()],
+            platform,
+        }
+    }
+
+    /// Least and greatest force allowed, N.
+    pub fn bounds_n(&self) -> (f64, Option<f64>) {
+        (self.least_n, self.greatest_n)
+    }
+
+    /// The forces of the cables at a set point, N.
+    pub fn forces_n(
+        &mut self,
+        set_point: &SetPoint,
+        time_s: f64,
+        phase: Phase,
+        names: &[String],
+    ) -> Result<&[f64], ExcitationError> {
+        let pose = set_point.pose();
+        // Whoever asks has been through the kinematics: every cable leaves its pulley.
+        self.platform.structure(&pose, &mut self.columns);
+        if self.holds(set_point, &set_point.acceleration_m_per_s2) {
+            return Ok(&self.forces_n);
+        }
+        let worst = self.worst(set_point).and_then(|(cable, force_n)| Some((names.get(cable)?.clone(), force_n)));
+        Err(ExcitationError::NotHeld {
+            least_n: self.least_n,
+            greatest_n: self.greatest_n,
+            position_m: pose.position_m.into(),
+            time_s,
+            phase,
+            worst,
+            holds_at_rest: self.holds(set_point, &Vector3::zeros()),
+        })
+    }
+
+    /// Whether there are forces within the bounds at an acceleration; they are in `forces_n` then.
+    fn holds(&mut self, set_point: &SetPoint, acceleration_m_per_s2: &Vector3<f64>) -> bool {
+        let wrench = self.platform.outside_wrench(&set_point.orientation, acceleration_m_per_s2);
+        let bounds_n = [self.least_n, self.greatest_n.unwrap_or(f64::INFINITY)];
+        self.forces_n.fill(self.wanted_n);
+        self.distribution.solve_within(&self.columns, &wrench, bounds_n, &mut self.forces_n)
+    }
+
+    /// The cable furthest out of bounds by the forces nearest to those wanted, and its force, N; `None` where no forces
+    /// of whatever sign hold the platform.
+    fn worst(&mut self, set_point: &SetPoint) -> Option<(usize, f64)> {
+        let wrench = self.platform.outside_wrench(&set_point.orientation, &set_point.acceleration_m_per_s2);
+        self.forces_n.fill(self.wanted_n);
+        let unbounded = [f64::NEG_INFINITY, f64::INFINITY];
+        if !self.distribution.solve_within(&self.columns, &wrench, unbounded, &mut self.forces_n) {
+            return None;
+        }
+        let greatest_n = self.greatest_n.unwrap_or(f64::INFINITY);
+        let beyond_n = |force_n: f64| (self.least_n - force_n).max(force_n - greatest_n);
+        let all = self.forces_n.iter().copied().enumerate();
+        all.max_by(|(_, one_n), (_, other_n)| beyond_n(*one_n).total_cmp(&beyond_n(*other_n)))
+    }
+}

@@ -1,0 +1,78 @@
+//! What an identification run can be told.
+
+use super::error::ExcitationError;
+use crate::trajectory::Limits;
+
+/// Furthest corner of a box, m.
+const FURTHEST_M: f64 = 1e4;
+/// Shortest of the longest edge of a box, m.
+const SHORTEST_EDGE_M: f64 = 1e-3;
+
+/// Where and how hard to run.
+///
+/// ```
+/// use fric_lab::excite::ExcitationOptions;
+/// let gentle = ExcitationOptions { max_speed_m_per_s: Some(0.3), ..ExcitationOptions::default() };
+/// assert_eq!(gentle.max_tension_n, None);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ExcitationOptions {
+    /// Lesser and greater corner of the box in which the platform runs, base frame, m; the simulation's if not given.
+    pub box_m: Option<[[f64; 3]; 2]>,
+    /// Cap on the speed of the platform, m/s; the run's own if not given.
+    pub max_speed_m_per_s: Option<f64>,
+    /// Cap on the acceleration of the platform, m/s²; the run's own if not given.
+    pub max_acceleration_m_per_s2: Option<f64>,
+    /// Least cable force at the platform, N; the simulation's if not given.
+    pub min_tension_n: Option<f64>,
+    /// Greatest cable force at the platform, N; any if not given.
+    pub max_tension_n: Option<f64>,
+}
+
+impl ExcitationOptions {
+    /// Whether all numbers are in range.
+    pub(super) fn check(&self) -> Result<(), ExcitationError> {
+        let ranges = [
+            ("max_speed_m_per_s", self.max_speed_m_per_s, 1e-3, 100.0),
+            ("max_acceleration_m_per_s2", self.max_acceleration_m_per_s2, 1e-3, 1e4),
+            ("min_tension_n", self.min_tension_n, 1e-6, 1e6),
+            ("max_tension_n", self.max_tension_n, self.min_tension_n.unwrap_or(1e-6), 1e7),
+        ];
+        for (key, value, min, max) in ranges {
+            if let Some(value) = value.filter(|value| !(min..=max).contains(value)) {
+                return Err(ExcitationError::OptionOutOfRange { key, value, min, max });
+            }
+        }
+        let Some([least_m, greatest_m]) = self.box_m else { return Ok(()) };
+        for value in least_m.into_iter().chain(greatest_m) {
+            if !(-FURTHEST_M..=FURTHEST_M).contains(&value) {
+                let (key, min, max) = ("box_m", -FURTHEST_M, FURTHEST_M);
+                return Err(ExcitationError::OptionOutOfRange { key, value, min, max });
+            }
+        }
+        let edges = ["x", "y", "z"].into_iter().zip(least_m.into_iter().zip(greatest_m));
+        let is_point = edges.clone().all(|(_, (from, to))| to - from < SHORTEST_EDGE_M);
+        match edges.into_iter().find(|(_, (from, to))| is_point || to < from) {
+            Some((axis, (from, to))) => Err(ExcitationError::BadBox { axis, from, to }),
+            None => Ok(()),
+        }
+    }
+
+    pub(super) fn limits(&self) -> Limits {
+        Limits {
+            speed_m_per_s: self.max_speed_m_per_s.unwrap_or(Limits::NONE.speed_m_per_s),
+            acceleration_m_per_s2: self.max_acceleration_m_per_s2.unwrap_or(Limits::NONE.acceleration_m_per_s2),
+        }
+    }
+
+    /// The first option given that is about the platform.
+    pub(super) fn about_platform(&self) -> Option<&'static str> {
+        [
+            ("box_m", self.box_m.is_some()),
+            ("min_tension_n", self.min_tension_n.is_some()),
+            ("max_tension_n", self.max_tension_n.is_some()),
+        ]
+        .into_iter()
+        .find_map(|(key, given)| given.then_some(key))
+    }
+}

@@ -1,0 +1,221 @@
+//! Hysteresis of the wrench: how much the measured wrench depends on the side from which a position is reached.
+//!
+//! For: table II of \[P\]. The platform crosses one position along, and turning about, the base axes, both ways. On each axis
+//! the component of the outside wrench `−A^T f` (\[P\] 3) along it is taken at the position in each pass; the width of the
+//! hysteresis is the difference of the means over the passes in either direction, as a magnitude. It is given for the
+//! frictionless forces (without compensation) and for the compensated ones, and what the second is of the first is the
+//! lasting share.
+//!
+//! Where a log has the true outside wrench, that is subtracted: what is really applied does not count as hysteresis. Where
+//! it has none, gravity is the same in both directions, and inertia is none at constant speed; other forces would count.
+//!
+//! Two readings of the log, each in bounded memory: [`Survey`] finds the crossed position from the poses, [`Hysteresis`]
+//! runs the compensator as the control loop would ([`Replay`]) and gathers the passes. Samples that are not finite break the
+//! pass that they are in and nothing else.
+
+mod error;
+mod movement;
+mod pass;
+mod survey;
+
+use fric_core::robot::file::RobotFile;
+use fric_core::{Pose, Sample};
+
+use crate::axis::CartesianAxis;
+use crate::replay::Replay;
+use pass::{Components, Pass, PassFinder};
+
+pub use error::HysteresisError;
+pub use survey::{CrossedPose, Survey};
+
+/// A platform so many tolerances aside is not on the axis.
+const ON_AXIS: f64 = 3.0;
+
+/// A width of at least so many standard errors is more than scatter.
+const SIGNIFICANT: f64 = 2.0;
+
+/// Width of a hysteresis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Width {
+    /// Difference of the means in either direction, N or N m.
+    pub width: f64,
+    /// Its standard error by the scatter of the passes; `None` with a single pass in a direction.
+    pub standard_error: Option<f64>,
+}
+
+/// Hysteresis along, or about, one axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AxisHysteresis {
+    /// The axis.
+    pub axis: CartesianAxis,
+    /// Passes in both directions together.
+    pub pass_count: u64,
+    /// From frictionless forces.
+    pub without: Width,
+    /// From compensated forces.
+    pub with: Width,
+    /// Whether the outside wrench of the log was subtracted.
+    pub is_applied_subtracted: bool,
+}
+
+impl AxisHysteresis {
+    /// Width with compensation per width without; `None` where the width without is none but scatter: within twice its
+    /// standard error.
+    #[must_use]
+    pub fn lasting_ratio(&self) -> Option<f64> {
+        let scatter = SIGNIFICANT * self.without.standard_error.unwrap_or(0.0);
+        (self.without.width > scatter).then(|| self.with.width / self.without.width)
+    }
+}
+
+/// The second reading of a log: the passes.
+#[derive(Debug)]
+pub struct Hysteresis {
+    replay: Replay,
+    crossed: CrossedPose,
+    axes: Vec<AxisPasses>,
+}
+
+#[derive(Debug)]
+struct AxisPasses {
+    axis: CartesianAxis,
+    finder: PassFinder,
+    /// Against and in the direction of the axis.
+    directions: [Gathered; 2],
+}
+
+/// Passes in one direction.
+#[derive(Clone, Copy, Debug, Default)]
+struct Gathered {
+    without: Statistics,
+    with: Statistics,
+    /// The same less what is truly applied, of passes for which that is known.
+    without_less_applied: Statistics,
+    with_less_applied: Statistics,
+}
+
+impl Hysteresis {
+    /// For a robot and the position that its log crosses.
+    ///
+    /// # Errors
+    /// [`HysteresisError::Robot`] as [`Replay::new`].
+    pub fn new(robot: &RobotFile, crossed: &CrossedPose) -> Result<Self, HysteresisError> {
+        let finder = |axis: CartesianAxis| {
+            let finder = PassFinder::new(crossed.reach_m(axis)?, crossed.scale.tolerance_m);
+            Some(AxisPasses { axis, finder, directions: [Gathered::default(); 2] })
+        };
+        let axes = CartesianAxis::ALL.into_iter().filter_map(finder).collect();
+        Ok(Self { replay: Replay::new(&robot.params())?, crossed: crossed.clone(), axes })
+    }
+
+    /// Runs one cycle.
+    pub fn step(&mut self, sample: &Sample<'_>) {
+        let with = self.replay.step(sample).outside_wrench;
+        let wrenches = self.replay.frictionless_wrench().zip(with);
+        let Some(pose) = sample.pose.filter(Pose::is_usable) else {
+            for passes in &mut self.axes {
+                passes.add(0.0, None);
+            }
+            return;
+        };
+        let scale = self.crossed.scale;
+        for passes in &mut self.axes {
+            let axis = passes.axis;
+            let (along_m, aside_m) = scale.along_and_aside(&pose, self.crossed.pose(), axis);
+            let components = wrenches.filter(|_| aside_m <= ON_AXIS * scale.tolerance_m).map(|(without, with)| {
+                let applied = sample.outside_wrench.map_or(f64::NAN, |applied| axis.component(&applied));
+                Components { without: axis.component(&without), with: axis.component(&with), applied }
+            });
+            passes.add(along_m, components);
+        }
+    }
+
+    /// The axes crossed both ways, in the order x, y, z, a, b, c.
+    ///
+    /// # Errors
+    /// [`HysteresisError::NoWrench`] if there is none.
+    pub fn axes(&self) -> Result<Vec<AxisHysteresis>, HysteresisError> {
+        let axes: Vec<_> = self.axes.iter().filter_map(AxisPasses::hysteresis).collect();
+        if axes.is_empty() { Err(HysteresisError::NoWrench) } else { Ok(axes) }
+    }
+
+    /// The replay behind it, for what it has to say about the cables.
+    #[must_use]
+    pub fn replay(&self) -> &Replay {
+        &self.replay
+    }
+}
+
+impl AxisPasses {
+    fn add(&mut self, along_m: f64, components: Option<Components>) {
+        let Some(Pass { is_forward, components }) = self.finder.add(along_m, components) else { return };
+        let Components { without, with, applied } = components;
+        let [back, forward] = &mut self.directions;
+        let gathered = if is_forward { forward } else { back };
+        gathered.without.add(without);
+        gathered.with.add(with);
+        if applied.is_finite() {
+            gathered.without_less_applied.add(without - applied);
+            gathered.with_less_applied.add(with - applied);
+        }
+    }
+
+    fn hysteresis(&self) -> Option<AxisHysteresis> {
+        let [back, forward] = &self.directions;
+        // All or none: passes with and without it cannot be compared.
+        let is_applied_subtracted =
+            self.directions.iter().all(|gathered| gathered.without_less_applied.count == gathered.without.count);
+        let [without, with] = if is_applied_subtracted {
+            [
+                Statistics::width(&back.without_less_applied, &forward.without_less_applied),
+                Statistics::width(&back.with_less_applied, &forward.with_less_applied),
+            ]
+        } else {
+            [Statistics::width(&back.without, &forward.without), Statistics::width(&back.with, &forward.with)]
+        };
+        Some(AxisHysteresis {
+            axis: self.axis,
+            pass_count: back.without.count + forward.without.count,
+            without: without?,
+            with: with?,
+            is_applied_subtracted,
+        })
+    }
+}
+
+/// Count, mean and scatter, by running sums.
+#[derive(Clone, Copy, Debug, Default)]
+struct Statistics {
+    count: u64,
+    mean: f64,
+    squares: f64,
+}
+
+impl Statistics {
+    fn add(&mut self, value: f64) {
+        self.count += 1;
+        let before = value - self.mean;
+        self.mean += before / number(self.count);
+        self.squares += before * (value - self.mean);
+    }
+
+    /// Of the means of both; `None` where one has nothing.
+    fn width(back: &Self, forward: &Self) -> Option<Width> {
+        (back.count > 0 && forward.count > 0).then(|| Width {
+            width: (forward.mean - back.mean).abs(),
+            standard_error: back
+                .variance_of_mean()
+                .zip(forward.variance_of_mean())
+                .map(|(one, other)| (one + other).sqrt()),
+        })
+    }
+
+    fn variance_of_mean(&self) -> Option<f64> {
+        (self.count > 1).then(|| self.squares / number(self.count - 1) / number(self.count))
+    }
+}
+
+#[expect(clippy::cast_precision_loss, reason = "a count of passes")]
+fn number(count: u64) -> f64 {
+    count as f64
+}

@@ -1,0 +1,257 @@
+//! Runs of a platform as pure functions of time: what a simulated robot does, and what a real one is to do.
+//!
+//! [`Trajectory::identification`] is the identification run of \[P\], section III C; [`Trajectory::crossing`] crosses one
+//! position along and about each axis, \[P\] section IV B. Both are made of straight movements and turns from rest to
+//! rest, closed and at rest at both ends, so that they repeat without a jump. Finite for any finite input; nothing
+//! here knows of cables.
+
+mod crossing;
+mod identification;
+mod stroke;
+
+use fric_core::Pose;
+use nalgebra::{UnitQuaternion, Vector3};
+
+use crate::axis::{CartesianAxis, rotation};
+use stroke::Stroke;
+
+pub use crossing::{CROSSING_CYCLES, CROSSING_HALF_M, CROSSING_HALF_RAD, CROSSING_RAD_PER_S, CROSSING_RAD_PER_S2};
+pub use identification::{
+    ACCELERATION_M_PER_S2, AMPLITUDES_M, BREAK_S, FASTEST_M_PER_S, RECTANGLES_M_PER_S, STEP_M_PER_S,
+    STROKE_ACCELERATION_M_PER_S2, STROKE_M, STROKES_M_PER_S,
+};
+
+/// Where a run takes place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WorkBox {
+    /// Its middle, base frame, m.
+    pub center_m: Vector3<f64>,
+    /// Half its edges, along the base axes, m; 0 where the run has no extent.
+    pub half_edges_m: Vector3<f64>,
+    /// Unit vector of the small movements and the strokes.
+    pub direction: Vector3<f64>,
+}
+
+/// Caps on a run's own speeds and accelerations.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Greatest speed of the platform, m/s, above 0.
+    pub speed_m_per_s: f64,
+    /// Greatest acceleration of the platform, m/s², above 0.
+    pub acceleration_m_per_s2: f64,
+}
+
+impl Limits {
+    /// None: the run as it is.
+    pub const NONE: Self = Self { speed_m_per_s: f64::INFINITY, acceleration_m_per_s2: f64::INFINITY };
+}
+
+/// What a part of a run is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Phase {
+    /// Steps in one direction with breaks, then back in the other.
+    StopAndGo,
+    /// Steps there and back with breaks.
+    Alternating,
+    /// Strokes of 100 mm there and back, faster and faster.
+    Stroke,
+    /// Along rectangles through the workspace.
+    Rectangle,
+    /// Across the middle along or about an axis, there and back.
+    Crossing(CartesianAxis),
+}
+
+impl Phase {
+    /// One word for it, as it stands in files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::StopAndGo => "stop_and_go",
+            Self::Alternating => "alternating",
+            Self::Stroke => "stroke",
+            Self::Rectangle => "rectangle",
+            Self::Crossing(_) => "crossing",
+        }
+    }
+}
+
+/// A movement from rest to rest: straight, or a turn about a base axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Leg {
+    /// What it is for.
+    pub phase: Phase,
+    /// When it starts, s.
+    pub start_s: f64,
+    /// Where it starts, m.
+    pub from_m: Vector3<f64>,
+    /// Where it ends, m.
+    pub to_m: Vector3<f64>,
+    /// Rotation vector at its start, base axes, rad.
+    pub from_rad: Vector3<f64>,
+    /// Rotation vector at its end, base axes, rad: a multiple of that at the start, for a turn goes about one axis.
+    pub to_rad: Vector3<f64>,
+    stroke: Stroke,
+}
+
+impl Leg {
+    /// When it ends, s; the platform rests until the next leg starts.
+    #[must_use]
+    pub fn end_s(&self) -> f64 {
+        self.start_s + self.stroke.duration_s()
+    }
+
+    /// Its greatest speed, m/s; 0 for a turn.
+    #[must_use]
+    pub fn peak_m_per_s(&self) -> f64 {
+        if self.is_turn() { 0.0 } else { self.stroke.peak() }
+    }
+
+    fn is_turn(&self) -> bool {
+        self.from_rad != self.to_rad
+    }
+}
+
+/// Pose of the platform at one time with its rates, base frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SetPoint {
+    /// Position, m.
+    pub position_m: Vector3<f64>,
+    /// Rotation from platform to base axes.
+    pub orientation: UnitQuaternion<f64>,
+    /// Velocity, m/s.
+    pub velocity_m_per_s: Vector3<f64>,
+    /// Angular velocity, rad/s.
+    pub angular_velocity_rad_per_s: Vector3<f64>,
+    /// Acceleration, m/s².
+    pub acceleration_m_per_s2: Vector3<f64>,
+}
+
+impl SetPoint {
+    /// At rest at a place, along the base axes.
+    fn resting_at(position_m: Vector3<f64>) -> Self {
+        Self {
+            position_m,
+            orientation: UnitQuaternion::identity(),
+            velocity_m_per_s: Vector3::zeros(),
+            angular_velocity_rad_per_s: Vector3::zeros(),
+            acceleration_m_per_s2: Vector3::zeros(),
+        }
+    }
+
+    /// Position and orientation.
+    #[must_use]
+    pub fn pose(&self) -> Pose {
+        Pose { position_m: self.position_m, orientation: self.orientation }
+    }
+}
+
+/// A run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trajectory {
+    legs: Vec<Leg>,
+    start_m: Vector3<f64>,
+    duration_s: f64,
+}
+
+impl Trajectory {
+    /// A run that starts at rest at a place, with a rest before its first movement.
+    fn starting_at(start_m: Vector3<f64>, rest_s: f64) -> Self {
+        Self { legs: Vec::new(), start_m, duration_s: rest_s }
+    }
+
+    fn place_m(&self) -> Vector3<f64> {
+        self.legs.last().map_or(self.start_m, |leg| leg.to_m)
+    }
+
+    fn rotation_rad(&self) -> Vector3<f64> {
+        self.legs.last().map_or_else(Vector3::zeros, |leg| leg.to_rad)
+    }
+
+    /// Adds a straight movement; none where the platform is there already.
+    fn go(&mut self, phase: Phase, to_m: Vector3<f64>, speed_m_per_s: f64, acceleration_m_per_s2: f64) {
+        let (from_m, rotation_rad) = (self.place_m(), self.rotation_rad());
+        let distance_m = (to_m - from_m).norm();
+        if distance_m > 1e-9 {
+            let stroke = Stroke::new(distance_m, speed_m_per_s, acceleration_m_per_s2);
+            let start_s = self.duration_s;
+            self.add(Leg { phase, start_s, from_m, to_m, from_rad: rotation_rad, to_rad: rotation_rad, stroke });
+        }
+    }
+
+    /// Adds a turn to a rotation vector about the axis of the present one.
+    fn turn(&mut self, phase: Phase, to_rad: Vector3<f64>, speed_rad_per_s: f64, acceleration_rad_per_s2: f64) {
+        let (place_m, from_rad) = (self.place_m(), self.rotation_rad());
+        let angle_rad = (to_rad - from_rad).norm();
+        if angle_rad > 1e-9 {
+            let stroke = Stroke::new(angle_rad, speed_rad_per_s, acceleration_rad_per_s2);
+            let start_s = self.duration_s;
+            self.add(Leg { phase, start_s, from_m: place_m, to_m: place_m, from_rad, to_rad, stroke });
+        }
+    }
+
+    fn add(&mut self, leg: Leg) {
+        self.duration_s = leg.end_s();
+        self.legs.push(leg);
+    }
+
+    fn rest(&mut self, rest_s: f64) {
+        self.duration_s += rest_s;
+    }
+
+    /// The movements in order.
+    #[must_use]
+    pub fn legs(&self) -> &[Leg] {
+        &self.legs
+    }
+
+    /// How long one run takes, s.
+    #[must_use]
+    pub fn duration_s(&self) -> f64 {
+        self.duration_s
+    }
+
+    /// The last movement that has started at a time of the first run.
+    fn leg_at(&self, time_s: f64) -> Option<&Leg> {
+        let started = self.legs.partition_point(|leg| leg.start_s <= time_s);
+        started.checked_sub(1).and_then(|last| self.legs.get(last))
+    }
+
+    /// What the run is for at a time, rests counting to the movement before them; `None` for a run without movements.
+    #[must_use]
+    pub fn phase_at(&self, time_s: f64) -> Option<Phase> {
+        self.leg_at(self.within_s(time_s)).or(self.legs.first()).map(|leg| leg.phase)
+    }
+
+    fn within_s(&self, time_s: f64) -> f64 {
+        time_s - self.duration_s * libm::floor(time_s / self.duration_s)
+    }
+
+    /// Where the platform is at a time; the run repeats before its start and after its end.
+    #[must_use]
+    pub fn at(&self, time_s: f64) -> SetPoint {
+        let within_s = self.within_s(time_s);
+        let Some(leg) = self.leg_at(within_s) else { return SetPoint::resting_at(self.start_m) };
+        let along = leg.stroke.at(within_s - leg.start_s);
+        let is_over = within_s >= leg.end_s();
+        let resting = SetPoint { orientation: rotation(&leg.to_rad), ..SetPoint::resting_at(leg.to_m) };
+        if leg.is_turn() {
+            let whole_rad = leg.to_rad - leg.from_rad;
+            let axis = whole_rad / whole_rad.norm();
+            let turned_rad = if is_over { leg.to_rad } else { leg.from_rad + axis * along.distance };
+            return SetPoint {
+                orientation: rotation(&turned_rad),
+                angular_velocity_rad_per_s: axis * along.speed,
+                ..resting
+            };
+        }
+        let whole_m = leg.to_m - leg.from_m;
+        let direction = whole_m / whole_m.norm();
+        SetPoint {
+            position_m: if is_over { leg.to_m } else { leg.from_m + direction * along.distance },
+            velocity_m_per_s: direction * along.speed,
+            acceleration_m_per_s2: direction * along.acceleration,
+            ..resting
+        }
+    }
+}

@@ -1,0 +1,4 @@
+mod logs;
+mod oracle;
+mod simulated;
+mod unfit;

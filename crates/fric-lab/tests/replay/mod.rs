@@ -1,0 +1,2 @@
+mod any_compensator;
+mod columns;

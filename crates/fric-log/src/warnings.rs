@@ -1,0 +1,110 @@
+//! What is worth knowing about a log that was read, a sentence each.
+
+use fric_core::CableParams;
+use fric_core::robot::file::RobotFile;
+
+use crate::recording::{Overlap, Recording};
+use crate::signals::{Role, SignalReader, TrackCounts};
+
+impl Recording {
+    /// What could not be read, what is there twice, and what came late. Complete when all messages have been read.
+    #[must_use]
+    pub fn warnings(&self) -> Vec<String> {
+        let mut warnings: Vec<String> = self.damage().to_string().lines().map(ToOwned::to_owned).collect();
+        let start_nanos = self.log_time_range_nanos().map_or(0, |(start, _)| start);
+        for Overlap { earlier, later, log_time_nanos: (from, to) } in self.overlaps() {
+            #[expect(clippy::cast_precision_loss, reason = "for people")]
+            let after_start_s = |nanos: u64| nanos.saturating_sub(start_nanos) as f64 * 1e-9;
+            warnings.push(format!(
+                "`{}` and `{}` both hold the time from {:.3} s to {:.3} s after the start, but several files are read as the \
+                 parts of one split recording; name recordings of their own in runs of their own",
+                earlier.display(),
+                later.display(),
+                after_start_s(from),
+                after_start_s(to),
+            ));
+        }
+        if self.late_count() > 0 {
+            #[expect(clippy::cast_precision_loss, reason = "for people")]
+            let most_s = self.most_late_nanos() as f64 * 1e-9;
+            warnings.push(format!(
+                "{} messages stand too far from their time in the file to be put in order, by up to {most_s:.3} s",
+                self.late_count()
+            ));
+        }
+        warnings
+    }
+}
+
+impl SignalReader {
+    /// What the signals' topics did out of the ordinary. Complete when all rows have been read.
+    #[must_use]
+    pub fn warnings(&self) -> Vec<String> {
+        let mut warnings = Vec::new();
+        for role in Role::ALL {
+            let Some(path) = self.paths().get(role) else { continue };
+            let counts = self.counts(role);
+            if matches!(role, Role::Length | Role::Speed) && counts.message_count == 0 {
+                warnings.push(format!(
+                    "the log has nothing on `{path}`, named as `{}` under `[log]`: without it nothing is compensated",
+                    role.key()
+                ));
+            }
+            let remarks = counts.remarks();
+            if !remarks.is_empty() {
+                warnings.push(format!("{} signal `{path}`: {}", role.key(), remarks.join(", ")));
+            }
+            if let Some(problem) = self.first_problem(role) {
+                let signal = role.key();
+                warnings.push(format!("{signal} signal `{path}`: some messages cannot be used; the first: {problem}"));
+            }
+        }
+        warnings
+    }
+
+    /// What the robot file and the signals do not agree about. Complete when all rows have been read.
+    #[must_use]
+    pub fn robot_warnings(&self, robot: &RobotFile) -> Vec<String> {
+        let mut warnings = Vec::new();
+        let no_pose = self.counts(Role::Pose).message_count == 0;
+        let needs_pose = robot.params().cables().iter().any(CableParams::needs_pose);
+        if no_pose && needs_pose {
+            let text = "the log has no pose: the wrap of the last pulleys is taken as 90°, and there is no wrench; name \
+                        the pose's topic as `pose` under `[log]` in the robot file";
+            warnings.push(text.to_owned());
+        }
+        warnings.extend(self.cycle_warning(robot));
+        warnings
+    }
+
+    /// A cable signal at another pace than the robot file says.
+    #[must_use]
+    pub fn cycle_warning(&self, robot: &RobotFile) -> Option<String> {
+        let interval_s = self.counts(Role::Cable).interval_nanos * 1e-9;
+        let cycle_s = robot.options().cycle_s;
+        let agree = interval_s <= 0.0 || (0.8..=1.25).contains(&(interval_s / cycle_s));
+        (!agree).then(|| {
+            format!(
+                "the cable signal comes every {interval_s:.6} s, but `cycle_s` in the robot file is {cycle_s}; delays and \
+                 the check for a frozen sensor count cycles of the robot file; friction itself does not depend on the rate"
+            )
+        })
+    }
+}
+
+impl TrackCounts {
+    /// What a topic did out of the ordinary, in words.
+    #[must_use]
+    pub fn remarks(&self) -> Vec<String> {
+        let Self { duplicate_count, late_count, clock_step_count, gap_count, undecodable_count, .. } = *self;
+        let all = [
+            (gap_count, "gap", "gaps"),
+            (duplicate_count, "message with a stamp used before", "messages with a stamp used before"),
+            (late_count, "late message left out", "late messages left out"),
+            (clock_step_count, "clock step backwards", "clock steps backwards"),
+            (undecodable_count, "unusable message", "unusable messages"),
+        ];
+        let said = all.into_iter().filter(|(count, ..)| *count > 0);
+        said.map(|(count, one, many)| format!("{count} {}", if count == 1 { one } else { many })).collect()
+    }
+}

@@ -1,0 +1,108 @@
+//! NumPy arrays in, checked, and out.
+
+use numpy::{
+    Element, IntoPyArray, PyArray1, PyArray2, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyUntypedArray,
+    PyUntypedArrayMethods,
+};
+use pyo3::prelude::*;
+
+use crate::errors::{Fault, Outcome};
+
+/// How long an axis of an array has to be.
+#[derive(Clone, Copy)]
+pub enum Axis {
+    /// So long.
+    Exactly(usize),
+    /// As long as it likes: as many rows as there are.
+    Rows,
+}
+
+/// What an argument has to be.
+pub struct Wanted<'a> {
+    /// The argument.
+    pub name: &'a str,
+    /// Its axes.
+    pub shape: &'a [Axis],
+    /// What an entry is, for people: "one number per cable".
+    pub entries: &'a str,
+}
+
+/// A copy of an argument's numbers, row by row; a copy, so that nobody changes them while the interpreter is released.
+pub fn numbers(wanted: &Wanted<'_>, value: &Bound<'_, PyAny>) -> Outcome<Vec<f64>> {
+    checked(wanted, value, b"fiu", "real numbers", "float64")
+}
+
+/// The same for whole numbers.
+pub fn integers(wanted: &Wanted<'_>, value: &Bound<'_, PyAny>) -> Outcome<Vec<i64>> {
+    checked(wanted, value, b"iu", "whole numbers", "int64")
+}
+
+fn checked<T: Element + Copy>(
+    wanted: &Wanted<'_>,
+    value: &Bound<'_, PyAny>,
+    kinds: &[u8],
+    what: &str,
+    dtype: &str,
+) -> Outcome<Vec<T>> {
+    let numpy = value.py().import("numpy")?;
+    let refuse = |found: String| {
+        let Wanted { name, shape, entries } = wanted;
+        Fault::shape(format!(
+            "`{name}` must be {what} ({dtype}) of shape {}, {entries}; what came is {found}",
+            shape_text(shape)
+        ))
+    };
+    let array = numpy.call_method1("asarray", (value,));
+    let array = array.map_err(|error| refuse(format!("no array: {}", error.value(value.py()))))?;
+    let array = array.cast::<PyUntypedArray>()?;
+    let fits = |(axis, length): (&Axis, &usize)| match axis {
+        Axis::Exactly(expected) => length == expected,
+        Axis::Rows => true,
+    };
+    let lengths = array.shape();
+    let has_shape = lengths.len() == wanted.shape.len() && wanted.shape.iter().zip(lengths).all(fits);
+    if !has_shape || !kinds.contains(&array.dtype().kind()) {
+        let lengths: Vec<String> = lengths.iter().map(ToString::to_string).collect();
+        return Err(refuse(format!("{} of shape {}", array.dtype().str()?, tuple_text(&lengths))));
+    }
+    let array = numpy.call_method1("ascontiguousarray", (array, dtype))?;
+    Ok(array.cast::<PyArrayDyn<T>>()?.readonly().as_slice()?.to_vec())
+}
+
+fn shape_text(shape: &[Axis]) -> String {
+    let length = |axis: &Axis| match axis {
+        Axis::Exactly(length) => length.to_string(),
+        Axis::Rows => "N".to_owned(),
+    };
+    tuple_text(&shape.iter().map(length).collect::<Vec<_>>())
+}
+
+/// As Python writes a tuple.
+fn tuple_text(parts: &[String]) -> String {
+    match parts {
+        [part] => format!("({part},)"),
+        parts => format!("({})", parts.join(", ")),
+    }
+}
+
+/// Numbers as an array of a shape; without copying them.
+pub fn array<T: Element>(py: Python<'_>, numbers: Vec<T>, shape: &[usize]) -> Outcome<Py<PyArrayDyn<T>>> {
+    Ok(numbers.into_pyarray(py).reshape(shape)?.unbind())
+}
+
+/// Rows of `width` numbers as an array that nobody can write to.
+pub fn fixed_rows(py: Python<'_>, numbers: Vec<f64>, width: usize) -> Outcome<Py<PyArray2<f64>>> {
+    let row_count = numbers.len() / width.max(1);
+    let flat = numbers.into_pyarray(py);
+    let rows = flat.reshape([row_count, width])?;
+    flat.readwrite().make_nonwriteable();
+    rows.readwrite().make_nonwriteable();
+    Ok(rows.unbind())
+}
+
+/// Numbers as an array that nobody can write to.
+pub fn fixed<T: Element>(py: Python<'_>, numbers: Vec<T>) -> Py<PyArray1<T>> {
+    let array = numbers.into_pyarray(py);
+    array.readwrite().make_nonwriteable();
+    array.unbind()
+}

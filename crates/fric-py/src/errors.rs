@@ -1,0 +1,119 @@
+//! Errors of the crates below as the exceptions of `fric._errors`.
+
+use fric_core::ParamError;
+use fric_core::robot::file::RobotFileError;
+use fric_lab::replay::SnapshotMismatch;
+use fric_lab::simulate::{HiddenEffectError, SimulationError};
+use fric_log::output;
+use fric_log::recording::RecordingError;
+use fric_log::robot::{AttachedRobotError, SignalPathError};
+use fric_log::signals::SignalError;
+use fric_log::write::WriteError;
+use fric_log::{in_full, reason};
+use numpy::AsSliceError;
+use pyo3::prelude::*;
+
+pyo3::import_exception!(fric._errors, ConfigError);
+pyo3::import_exception!(fric._errors, LogError);
+pyo3::import_exception!(fric._errors, OutputError);
+pyo3::import_exception!(fric._errors, ShapeError);
+
+/// What a call ends with that does not succeed.
+pub struct Fault(PyErr);
+
+/// Result of a call.
+pub type Outcome<T = ()> = Result<T, Fault>;
+
+impl Fault {
+    /// A parameter, key or option that is not right.
+    pub fn config(text: impl Into<String>) -> Self {
+        Self(ConfigError::new_err(text.into()))
+    }
+
+    /// A log that cannot be used.
+    pub fn log(text: impl Into<String>) -> Self {
+        Self(LogError::new_err(text.into()))
+    }
+
+    /// A file that cannot be written.
+    pub fn output(text: impl Into<String>) -> Self {
+        Self(OutputError::new_err(text.into()))
+    }
+
+    /// An array of the wrong shape, type or content.
+    pub fn shape(text: impl Into<String>) -> Self {
+        Self(ShapeError::new_err(text.into()))
+    }
+}
+
+impl From<Fault> for PyErr {
+    fn from(fault: Fault) -> Self {
+        fault.0
+    }
+}
+
+impl From<PyErr> for Fault {
+    fn from(error: PyErr) -> Self {
+        Self(error)
+    }
+}
+
+impl From<pyo3::CastError<'_, '_>> for Fault {
+    fn from(error: pyo3::CastError<'_, '_>) -> Self {
+        Self(error.into())
+    }
+}
+
+impl From<AsSliceError> for Fault {
+    fn from(error: AsSliceError) -> Self {
+        Self(error.into())
+    }
+}
+
+macro_rules! fault_from {
+    ($($error:ty => $kind:ident),* $(,)?) => {$(
+        impl From<$error> for Fault {
+            fn from(error: $error) -> Self {
+                Self::$kind(in_full(&error))
+            }
+        }
+    )*};
+}
+
+fault_from!(
+    ParamError => config,
+    RobotFileError => config,
+    SimulationError => config,
+    HiddenEffectError => config,
+    SignalPathError => config,
+    RecordingError => log,
+    SignalError => log,
+    SnapshotMismatch => shape,
+);
+
+impl From<output::OutputError> for Fault {
+    fn from(error: output::OutputError) -> Self {
+        match &error {
+            output::OutputError::File { source, .. } => Self::output(format!("{error}: {}", reason(source))),
+            error => Self::output(in_full(error)),
+        }
+    }
+}
+
+impl From<WriteError> for Fault {
+    fn from(error: WriteError) -> Self {
+        match error {
+            WriteError::Output(error) => error.into(),
+            error => Self::output(in_full(&error)),
+        }
+    }
+}
+
+impl From<AttachedRobotError> for Fault {
+    fn from(error: AttachedRobotError) -> Self {
+        match error {
+            AttachedRobotError::Robot(error) => error.into(),
+            error => Self::log(in_full(&error)),
+        }
+    }
+}

@@ -1,0 +1,46 @@
+//! `fric._fric`, the compiled part of the Python package `fric`.
+//!
+//! One file per function or class that Python sees. Each class wraps one Rust value; what is computed is computed in the
+//! crates below. Long calls release the interpreter, look for Ctrl-C every few thousand cycles (`watch.rs`) and
+//! leave nothing half done. `python/fric/_fric.pyi` declares what is here.
+#![allow(clippy::doc_markdown, clippy::doc_link_with_quotes, reason = "documentation here is read in Python")]
+#![allow(clippy::needless_pass_by_value, reason = "values come as the interpreter passes them")]
+#![allow(clippy::too_many_arguments, reason = "they are keywords in Python")]
+
+mod arrays;
+mod compensator;
+mod errors;
+mod log;
+mod replay;
+mod robot;
+mod simulate;
+mod watch;
+
+/// The module.
+#[pyo3::pymodule]
+mod _fric {
+    use fric_core::CableStatus;
+    use pyo3::prelude::*;
+    use pyo3::types::PyDict;
+
+    #[pymodule_export]
+    use crate::compensator::{Compensation, Compensator, Snapshot};
+    #[pymodule_export]
+    use crate::log::{Log, read_log};
+    #[pymodule_export]
+    use crate::replay::{CableErrors, ForceError, ReplayResult, WrenchError, replay};
+    #[pymodule_export]
+    use crate::robot::{Cable, Friction, LogPaths, Monitor, Platform, Robot};
+    #[pymodule_export]
+    use crate::simulate::simulate;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        let bits = PyDict::new(module.py());
+        for (name, flag) in CableStatus::NAMES {
+            bits.set_item(name, flag.bits())?;
+        }
+        module.add("STATUS_BITS", bits)?;
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

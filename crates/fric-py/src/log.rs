@@ -1,0 +1,362 @@
+//! `Log`: the samples of a log as arrays; `read_log`.
+
+use std::path::PathBuf;
+
+use fric_core::Pose;
+use fric_lab::columns::{SampleColumns, SampleRows};
+use fric_log::recording::Recording;
+use fric_log::robot::{AttachedRobot, ROBOT_FILE};
+use fric_log::signals::{LastLength, SignalPaths, SignalReader};
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
+
+use crate::arrays::{Axis, Wanted, fixed, fixed_rows, integers, numbers};
+use crate::errors::{Fault, Outcome};
+use crate::robot::Robot;
+use crate::watch::{STRIDE, Watch};
+
+/// The samples of a log, joined on the time of the cable signal: arrays with a row per sample that cannot be written to.
+///
+/// Columns of cable arrays are the cables in the order of `cable_names`. What is not known at a time is NaN.
+///
+/// >>> import numpy as np
+/// >>> log = Log.from_arrays(
+/// ...     cable_names=["winch"],
+/// ...     stamp_nanos=np.arange(3) * 1_000_000,
+/// ...     sensor_force_n=np.full((3, 1), 20.0),
+/// ...     length_m=np.array([[0.0], [0.001], [0.002]]),
+/// ... )
+/// >>> log.speed_m_per_s[:, 0]
+/// array([0., 1., 1.])
+#[pyclass(module = "fric", frozen)]
+pub struct Log {
+    /// Time, ns since 1970.
+    #[pyo3(get)]
+    stamp_nanos: Py<PyArray1<i64>>,
+    /// Time since the first row, s.
+    #[pyo3(get)]
+    time_s: Py<PyArray1<f64>>,
+    /// Force that the sensor shows, N, a column per cable.
+    #[pyo3(get)]
+    sensor_force_n: Py<PyArray2<f64>>,
+    /// Cable length, m, growing as the cable pays out.
+    #[pyo3(get)]
+    length_m: Py<PyArray2<f64>>,
+    /// Its rate, m/s.
+    #[pyo3(get)]
+    speed_m_per_s: Py<PyArray2<f64>>,
+    /// Cable force measured at the platform, N; NaN where there is none.
+    #[pyo3(get)]
+    reference_force_n: Py<PyArray2<f64>>,
+    /// Position of the platform in the base frame, m, (N, 3); NaN where it is not known.
+    #[pyo3(get)]
+    position_m: Py<PyArray2<f64>>,
+    /// Orientation of the platform as a unit quaternion x, y, z, w, (N, 4); NaN where it is not known.
+    #[pyo3(get)]
+    orientation_xyzw: Py<PyArray2<f64>>,
+    /// Force on the platform from outside, gravity included, N, (N, 3); NaN where it is not known.
+    #[pyo3(get)]
+    outside_force_n: Py<PyArray2<f64>>,
+    /// The torque likewise, about the platform origin, N m, (N, 3).
+    #[pyo3(get)]
+    outside_torque_nm: Py<PyArray2<f64>>,
+    /// The robot: the one it was read for, else the one attached to the log; None for arrays of one's own.
+    #[pyo3(get)]
+    robot: Option<Py<Robot>>,
+    cable_names: Vec<String>,
+    /// The files it was read from, which no output may overwrite.
+    pub sources: Vec<PathBuf>,
+}
+
+#[pymethods]
+impl Log {
+    /// A log of arrays of one's own, copied and checked.
+    ///
+    /// `stamp_nanos` ascends. Without `speed_m_per_s` the speed is the change of length over time, as where a log file
+    /// has none. A row without reference, pose or wrench is NaN; a pose or wrench is given whole or not at all.
+    #[staticmethod]
+    #[pyo3(signature = (*, cable_names, stamp_nanos, sensor_force_n, length_m, speed_m_per_s=None, reference_force_n=None, position_m=None, orientation_xyzw=None, outside_force_n=None, outside_torque_nm=None))]
+    fn from_arrays(
+        py: Python<'_>,
+        cable_names: Vec<String>,
+        stamp_nanos: &Bound<'_, PyAny>,
+        sensor_force_n: &Bound<'_, PyAny>,
+        length_m: &Bound<'_, PyAny>,
+        speed_m_per_s: Option<&Bound<'_, PyAny>>,
+        reference_force_n: Option<&Bound<'_, PyAny>>,
+        position_m: Option<&Bound<'_, PyAny>>,
+        orientation_xyzw: Option<&Bound<'_, PyAny>>,
+        outside_force_n: Option<&Bound<'_, PyAny>>,
+        outside_torque_nm: Option<&Bound<'_, PyAny>>,
+    ) -> Outcome<Self> {
+        check_names(&cable_names)?;
+        let stamp_nanos = ascending(stamp_nanos)?;
+        let (row_count, cable_count) = (stamp_nanos.len(), cable_names.len());
+        let read = |name, width, entries, value: Option<&Bound<'_, PyAny>>| {
+            let shape = [Axis::Exactly(row_count), Axis::Exactly(width)];
+            let unknown = || Ok(vec![f64::NAN; row_count * width]);
+            value.map_or_else(unknown, |value| numbers(&Wanted { name, shape: &shape, entries }, value))
+        };
+        let of_cables = |name, value| read(name, cable_count, "a row per stamp, a column per cable", value);
+        let of_axes = |name, value| read(name, 3, "a row per stamp: x, y, z", value);
+        let length_m = of_cables("length_m", Some(length_m))?;
+        let speed_m_per_s = match speed_m_per_s {
+            Some(speed_m_per_s) => of_cables("speed_m_per_s", Some(speed_m_per_s))?,
+            None => derived_speed_m_per_s(&stamp_nanos, &length_m, cable_count),
+        };
+        let mut columns = SampleColumns {
+            sensor_force_n: of_cables("sensor_force_n", Some(sensor_force_n))?,
+            length_m,
+            speed_m_per_s,
+            reference_force_n: of_cables("reference_force_n", reference_force_n)?,
+            position_m: of_axes("position_m", position_m)?,
+            orientation_xyzw: read("orientation_xyzw", 4, "a row per stamp: x, y, z, w", orientation_xyzw)?,
+            outside_force_n: of_axes("outside_force_n", outside_force_n)?,
+            outside_torque_nm: of_axes("outside_torque_nm", outside_torque_nm)?,
+            stamp_nanos,
+        };
+        check_poses(&mut columns)?;
+        check_wrenches(&columns)?;
+        let names: Vec<&str> = cable_names.iter().map(String::as_str).collect();
+        Self::new(py, columns, &names, None, Vec::new())
+    }
+
+    /// Names of the cables in the order of the columns.
+    #[getter]
+    fn cable_names<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, &self.cable_names)
+    }
+
+    /// The log as a polars data frame, a column per cable and coordinate; needs polars.
+    fn to_polars<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        slf.py().import("fric._frames")?.call_method1("frame", (slf, "polars"))
+    }
+
+    /// The log as a pandas data frame, a column per cable and coordinate; needs pandas.
+    fn to_pandas<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        slf.py().import("fric._frames")?.call_method1("frame", (slf, "pandas"))
+    }
+
+    fn __len__(&self, py: Python<'_>) -> PyResult<usize> {
+        self.stamp_nanos.bind(py).len()
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(format!("<Log: {} rows, cables {}>", self.__len__(py)?, self.cable_names.join(", ")))
+    }
+}
+
+impl Log {
+    /// Samples for Python, without copying them.
+    pub fn new(
+        py: Python<'_>,
+        columns: SampleColumns,
+        cable_names: &[&str],
+        robot: Option<Robot>,
+        sources: Vec<PathBuf>,
+    ) -> Outcome<Self> {
+        let cable_count = cable_names.len();
+        Ok(Self {
+            time_s: fixed(py, columns.time_s()),
+            stamp_nanos: fixed(py, columns.stamp_nanos),
+            sensor_force_n: fixed_rows(py, columns.sensor_force_n, cable_count)?,
+            length_m: fixed_rows(py, columns.length_m, cable_count)?,
+            speed_m_per_s: fixed_rows(py, columns.speed_m_per_s, cable_count)?,
+            reference_force_n: fixed_rows(py, columns.reference_force_n, cable_count)?,
+            position_m: fixed_rows(py, columns.position_m, 3)?,
+            orientation_xyzw: fixed_rows(py, columns.orientation_xyzw, 4)?,
+            outside_force_n: fixed_rows(py, columns.outside_force_n, 3)?,
+            outside_torque_nm: fixed_rows(py, columns.outside_torque_nm, 3)?,
+            robot: robot.map(|robot| Py::new(py, robot)).transpose()?,
+            cable_names: cable_names.iter().map(|name| (*name).to_owned()).collect(),
+            sources,
+        })
+    }
+
+    /// Lends the samples.
+    pub fn with_rows<T>(&self, py: Python<'_>, work: impl FnOnce(SampleRows<'_>) -> Outcome<T>) -> Outcome<T> {
+        let stamp_nanos = self.stamp_nanos.bind(py).readonly();
+        let [sensor, length, speed, reference, position, orientation, force, torque] = [
+            &self.sensor_force_n,
+            &self.length_m,
+            &self.speed_m_per_s,
+            &self.reference_force_n,
+            &self.position_m,
+            &self.orientation_xyzw,
+            &self.outside_force_n,
+            &self.outside_torque_nm,
+        ]
+        .map(|array| array.bind(py).readonly());
+        work(SampleRows {
+            stamp_nanos: stamp_nanos.as_slice()?,
+            sensor_force_n: sensor.as_slice()?,
+            length_m: length.as_slice()?,
+            speed_m_per_s: speed.as_slice()?,
+            reference_force_n: reference.as_slice()?,
+            position_m: position.as_slice()?,
+            orientation_xyzw: orientation.as_slice()?,
+            outside_force_n: force.as_slice()?,
+            outside_torque_nm: torque.as_slice()?,
+        })
+    }
+
+    /// Makes sure that the columns are a robot's cables.
+    pub fn check_cables(&self, names: &[&str]) -> Outcome {
+        if self.cable_names == names {
+            return Ok(());
+        }
+        let (found, expected) = (self.cable_names.join(", "), names.join(", "));
+        Err(Fault::shape(format!("the log has the cables {found}, the robot {expected}; they must be the same")))
+    }
+}
+
+/// Reads an MCAP log, or the files of one split recording, for a robot: the one given, else the one attached to the log.
+///
+/// What is out of the ordinary in the log is told as LogWarning. Samples are joined on the time of the cable signal; speed
+/// that the log does not have is derived from the length.
+///
+/// >>> log = read_log("examples/mini-ipanema.mcap")
+/// >>> len(log), log.robot
+/// (50000, <Robot "mini-ipanema": 8 cables, cycle 0.001 s>)
+/// >>> log.cable_names[:2], log.length_m.shape
+/// (('cable1', 'cable2'), (50000, 8))
+#[pyfunction]
+#[pyo3(
+    signature = (paths, robot=None, *, progress=None),
+    text_signature = "(paths, robot=None, *, progress=False)"
+)]
+pub fn read_log(
+    py: Python<'_>,
+    paths: &Bound<'_, PyAny>,
+    robot: Option<&Bound<'_, Robot>>,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> Outcome<Log> {
+    read(py, paths, robot, &mut Watch::new(py, progress)?)
+}
+
+/// [`read_log`] as a part of a longer call.
+pub fn read(
+    py: Python<'_>,
+    paths: &Bound<'_, PyAny>,
+    robot: Option<&Bound<'_, Robot>>,
+    watch: &mut Watch<'_>,
+) -> Outcome<Log> {
+    let sources: Vec<PathBuf> = match paths.extract() {
+        Ok(path) => vec![path],
+        Err(_) => paths.extract().map_err(|_| {
+            let class = paths.get_type();
+            PyTypeError::new_err(format!("a log is given as a path or several paths, not as {class}"))
+        })?,
+    };
+    let recording = py.detach(|| Recording::open(&sources))?;
+    let file = match robot {
+        Some(robot) => robot.borrow().file.clone(),
+        None => AttachedRobot::find(&recording)?.map(|attached| attached.robot).ok_or_else(|| {
+            Fault::log(format!("the log has no robot file attached ({ROBOT_FILE}); give the robot as `robot`"))
+        })?,
+    };
+    let names = file.cable_names();
+    let total_bytes = recording.total_bytes();
+    let mut reader = SignalReader::new(recording, SignalPaths::from_table(&file.options().log)?, &names);
+    let mut columns = SampleColumns::default();
+    let end = loop {
+        watch.look(reader.recording().bytes_read(), total_bytes)?;
+        let piece = py.detach(|| {
+            for _ in 0..STRIDE {
+                let Some(sample) = reader.next_row()? else { return Ok(true) };
+                columns.push(&sample);
+            }
+            Ok(false)
+        });
+        match piece {
+            Ok(false) => {}
+            Ok(true) => break Ok(()),
+            Err(error) => break Err::<(), fric_log::signals::SignalError>(error),
+        }
+    };
+    watch.look(total_bytes, total_bytes)?;
+    // Damage may be why there is nothing to go on with.
+    warn(py, &reader.recording().warnings())?;
+    end?;
+    warn(py, &reader.warnings())?;
+    warn(py, &reader.robot_warnings(&file))?;
+    Log::new(py, columns, &names, Some(Robot { file: file.clone() }), sources)
+}
+
+/// Issues warnings.
+pub fn warn(py: Python<'_>, texts: &[String]) -> Outcome {
+    for text in texts {
+        let category = py.import("fric._errors")?.getattr("LogWarning")?;
+        py.import("warnings")?.call_method1("warn", (text, category))?;
+    }
+    Ok(())
+}
+
+fn check_names(names: &[String]) -> Outcome {
+    let is_repeated = |(place, name)| names.iter().take(place).any(|other| other == name);
+    match names.iter().enumerate().find(|place| is_repeated(*place)) {
+        Some((_, name)) => Err(Fault::shape(format!("`cable_names` has {name:?} twice; names must differ"))),
+        None if names.is_empty() => Err(Fault::shape("`cable_names` is empty; name at least one cable")),
+        None => Ok(()),
+    }
+}
+
+fn ascending(stamp_nanos: &Bound<'_, PyAny>) -> Outcome<Vec<i64>> {
+    let wanted = Wanted { name: "stamp_nanos", shape: &[Axis::Rows], entries: "nanoseconds since 1970" };
+    let stamps = integers(&wanted, stamp_nanos)?;
+    match stamps.iter().zip(stamps.iter().skip(1)).position(|(one, next)| next <= one) {
+        None => Ok(stamps),
+        Some(row) => Err(Fault::shape(format!("`stamp_nanos` does not ascend from row {row} to row {}", row + 1))),
+    }
+}
+
+/// Speeds as where a log file has none.
+fn derived_speed_m_per_s(stamp_nanos: &[i64], length_m: &[f64], cable_count: usize) -> Vec<f64> {
+    let mut last = vec![LastLength::UNKNOWN; cable_count];
+    let mut speed_m_per_s = Vec::with_capacity(length_m.len());
+    for (stamp_nanos, lengths_m) in stamp_nanos.iter().zip(length_m.chunks(cable_count)) {
+        for (last, length_m) in last.iter_mut().zip(lengths_m) {
+            speed_m_per_s.push(last.speed_m_per_s(*length_m, *stamp_nanos));
+            last.update(*length_m, *stamp_nanos);
+        }
+    }
+    speed_m_per_s
+}
+
+/// Normalises the quaternions; a pose that is none is refused unless all of it is NaN.
+fn check_poses(columns: &mut SampleColumns) -> Outcome {
+    let rows = columns.position_m.chunks_exact(3).zip(columns.orientation_xyzw.chunks_exact_mut(4));
+    for (row, (position_m, orientation_xyzw)) in rows.enumerate() {
+        if position_m.iter().chain(orientation_xyzw.iter()).all(|number| number.is_nan()) {
+            continue;
+        }
+        let parts = position_m.try_into().ok().zip((&*orientation_xyzw).try_into().ok());
+        let pose = parts.and_then(|(position_m, orientation_xyzw)| Pose::from_parts(position_m, orientation_xyzw));
+        let Some(pose) = pose else {
+            return Err(Fault::shape(format!(
+                "`position_m` {position_m:?} and `orientation_xyzw` {orientation_xyzw:?} in row {row} are no pose: all \
+                 numbers must be finite and the quaternion near norm 1, or all must be NaN where the pose is not known"
+            )));
+        };
+        orientation_xyzw.copy_from_slice(pose.orientation.coords.as_slice());
+    }
+    Ok(())
+}
+
+/// Refuses wrenches that are known in part.
+fn check_wrenches(columns: &SampleColumns) -> Outcome {
+    let rows = columns.outside_force_n.chunks_exact(3).zip(columns.outside_torque_nm.chunks_exact(3));
+    for (row, (force_n, torque_nm)) in rows.enumerate() {
+        let known = force_n.iter().chain(torque_nm).filter(|number| number.is_finite()).count();
+        let unknown = force_n.iter().chain(torque_nm).filter(|number| number.is_nan()).count();
+        if known != 6 && unknown != 6 {
+            return Err(Fault::shape(format!(
+                "`outside_force_n` {force_n:?} and `outside_torque_nm` {torque_nm:?} in row {row} are no wrench: all \
+                 numbers must be finite, or all NaN where the wrench is not known"
+            )));
+        }
+    }
+    Ok(())
+}

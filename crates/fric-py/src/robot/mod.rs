@@ -1,0 +1,169 @@
+//! `Robot`: a robot file, editable, right at every moment.
+
+mod edit;
+mod tables;
+mod values;
+
+use std::path::PathBuf;
+
+use fric_core::robot::file::RobotFile;
+use fric_core::robot::unknown_name;
+use fric_log::output::OutputFile;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple, PyType};
+
+use self::edit::Step;
+pub use self::tables::{Cable, Friction, LogPaths, Monitor, Platform};
+use self::tables::{Keys, Place, misspelt, pairs};
+use crate::errors::{Fault, Outcome};
+
+/// A cable robot: what its robot file says.
+///
+/// Its attributes are the keys of the file, units included; setting one checks the whole robot, and a value that is not
+/// allowed raises ConfigError and leaves the robot as it was.
+///
+/// >>> robot = Robot.read("examples/mini-ipanema.toml")
+/// >>> robot.name, robot.cycle_s, len(robot.cables)
+/// ('mini-ipanema', 0.001, 8)
+/// >>> robot.cable("cable1").friction.mu = 0.02
+/// >>> robot.cable("cable1").friction
+/// Friction(mu=0.02, sigma_n_per_m=1000.0, viscous_n_s_per_m=0.17, offset_n=0.0)
+/// >>> robot.cable("cable1").friction.mu = 2
+/// Traceback (most recent call last):
+/// ...
+/// fric.ConfigError: cable "cable1": `mu` is 2; allowed is 0 to 0.9
+#[pyclass(module = "fric")]
+pub struct Robot {
+    /// The file as edited.
+    pub file: RobotFile,
+}
+
+const KEYS: Keys = Keys { class: "Robot", all: &["name", "cycle_s", "platform", "log", "monitor"], optional: &[] };
+
+#[pymethods]
+impl Robot {
+    /// The robot of a robot file.
+    #[staticmethod]
+    fn read(path: PathBuf) -> Outcome<Self> {
+        Ok(Self { file: RobotFile::read(&path)? })
+    }
+
+    /// The robot of a robot file's text.
+    #[staticmethod]
+    fn from_toml(text: &str) -> Outcome<Self> {
+        Ok(Self { file: RobotFile::parse(text, "text")? })
+    }
+
+    /// The robot as the text of a robot file, without comments.
+    pub fn to_toml(&self) -> Outcome<String> {
+        self.file.to_toml().map_err(|error| Fault::config(format!("the robot cannot be written as TOML: {error}")))
+    }
+
+    /// Writes the robot file, whole or not at all; an existing file is replaced only with `force`.
+    #[pyo3(signature = (path, *, force = false))]
+    fn write(&self, path: PathBuf, force: bool) -> Outcome {
+        let text = self.to_toml()?;
+        // The file that it was read from may be replaced as any other.
+        let inputs: [PathBuf; 0] = [];
+        Ok(OutputFile::create(&path, &inputs, force)?.finish_with(&text)?)
+    }
+
+    /// Name of the robot.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.file.options().name
+    }
+
+    /// Cycle time, s.
+    #[getter]
+    fn cycle_s(&self) -> f64 {
+        self.file.options().cycle_s
+    }
+
+    /// Names of the cables in order.
+    #[getter]
+    fn cable_names<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, self.file.cable_names())
+    }
+
+    /// Mass and gravity.
+    #[getter]
+    fn platform(slf: Bound<'_, Self>) -> Platform {
+        Platform::new(Place::new(slf.unbind(), &[Step::Key("platform")]))
+    }
+
+    /// When a signal counts as faulty.
+    #[getter]
+    fn monitor(slf: Bound<'_, Self>) -> Monitor {
+        Monitor::new(Place::new(slf.unbind(), &[Step::Key("monitor")]))
+    }
+
+    /// Where the signals are in a log.
+    #[getter]
+    fn log(slf: Bound<'_, Self>) -> LogPaths {
+        LogPaths::new(Place::new(slf.unbind(), &[Step::Key("log")]))
+    }
+
+    /// The cables in order.
+    #[getter]
+    fn cables<'py>(slf: &Bound<'py, Self>) -> Outcome<Bound<'py, PyTuple>> {
+        let count = slf.borrow().file.options().cable.len();
+        Ok(PyTuple::new(slf.py(), (0..count).map(|index| cable_at(slf, index)))?)
+    }
+
+    /// The cable of a name.
+    fn cable(slf: &Bound<'_, Self>, name: &str) -> Outcome<Cable> {
+        Ok(cable_at(slf, slf.borrow().cable_index(name)?))
+    }
+
+    /// Sets several keys at once, checked together.
+    #[pyo3(signature = (**values))]
+    fn set(slf: &Bound<'_, Self>, values: Option<&Bound<'_, PyDict>>) -> Outcome {
+        edit_keys(slf, &pairs(values)?)
+    }
+
+    fn __setattr__(slf: &Bound<'_, Self>, name: String, value: Bound<'_, PyAny>) -> Outcome {
+        KEYS.check(&name)?;
+        edit_keys(slf, &[(name, value)])
+    }
+
+    fn __getattr__(slf: &Bound<'_, Self>, name: String) -> PyResult<Py<PyAny>> {
+        Err(misspelt(slf.as_any(), &name))
+    }
+
+    fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {
+        other.cast::<Self>().is_ok_and(|other| self.file == other.borrow().file)
+    }
+
+    fn __repr__(&self) -> String {
+        let count = self.file.options().cable.len();
+        format!("<Robot {:?}: {count} cables, cycle {} s>", self.name(), self.cycle_s())
+    }
+
+    /// Pickled, and copied, as the text of its file.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> Outcome<(Bound<'py, PyAny>, (String,))> {
+        let class: Bound<'py, PyType> = slf.get_type();
+        Ok((class.getattr("from_toml")?, (slf.borrow().to_toml()?,)))
+    }
+}
+
+impl Robot {
+    /// Which cable has a name.
+    pub fn cable_index(&self, name: &str) -> Outcome<usize> {
+        let names = self.file.cable_names();
+        let place = names.iter().position(|other| *other == name);
+        place.ok_or_else(|| Fault::config(unknown_name("cable", name, names.into_iter())))
+    }
+}
+
+fn edit_keys(robot: &Bound<'_, Robot>, given: &[(String, Bound<'_, PyAny>)]) -> Outcome {
+    // Reading the values may run Python code that looks at the robot.
+    let given = KEYS.read(given, "")?;
+    let file = edit::with(&robot.borrow().file, &[], given)?;
+    robot.borrow_mut().file = file;
+    Ok(())
+}
+
+fn cable_at(robot: &Bound<'_, Robot>, index: usize) -> Cable {
+    Cable::new(Place::new(robot.clone().unbind(), &[Step::Key("cable"), Step::Index(index)]))
+}

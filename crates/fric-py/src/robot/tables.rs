@@ -1,0 +1,266 @@
+//! The robot file's tables as objects whose attributes are its keys.
+
+use fric_core::robot::unknown_name;
+use pyo3::exceptions::PyAttributeError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use super::edit::{self, Step};
+use super::{Robot, values};
+use crate::errors::{Fault, Outcome};
+
+/// A table of a robot: where it stands.
+pub struct Place {
+    robot: Py<Robot>,
+    steps: Vec<Step>,
+}
+
+impl Place {
+    pub fn new(robot: Py<Robot>, steps: &[Step]) -> Self {
+        Self { robot, steps: steps.to_vec() }
+    }
+
+    fn inside(&self, py: Python<'_>, key: &'static str) -> Self {
+        let steps = self.steps.iter().copied().chain([Step::Key(key)]).collect();
+        Self { robot: self.robot.clone_ref(py), steps }
+    }
+
+    fn value(&self, py: Python<'_>, key: &str) -> Outcome<Option<toml::Value>> {
+        edit::get(&self.robot.borrow(py).file, &self.steps, key)
+    }
+
+    fn get<'py>(&self, py: Python<'py>, key: &str) -> Outcome<Option<Bound<'py, PyAny>>> {
+        let value = self.value(py, key)?;
+        Ok(value.map(|value| values::to_python(py, &value)).transpose()?)
+    }
+
+    fn set(&self, py: Python<'_>, given: &[(String, Bound<'_, PyAny>)], keys: &Keys) -> Outcome {
+        let cable = edit::cable_of(&self.robot.borrow(py).file, &self.steps);
+        // Reading the values may run Python code that looks at the robot.
+        let given = keys.read(given, &cable)?;
+        let file = edit::with(&self.robot.borrow(py).file, &self.steps, given)?;
+        self.robot.borrow_mut(py).file = file;
+        Ok(())
+    }
+}
+
+/// The keys of a class.
+pub struct Keys {
+    /// The class.
+    pub class: &'static str,
+    /// All of them.
+    pub all: &'static [&'static str],
+    /// Those that can be left out.
+    pub optional: &'static [&'static str],
+}
+
+impl Keys {
+    /// Values for keys as they are to stand in the file; `cable` says whose they are, for errors.
+    pub fn read(
+        &self,
+        given: &[(String, Bound<'_, PyAny>)],
+        cable: &str,
+    ) -> Outcome<Vec<(String, Option<toml::Value>)>> {
+        let read = |(key, value): &(String, Bound<'_, PyAny>)| {
+            let refuse = |problem: &str| Fault::config(format!("{cable}`{key}` {problem}"));
+            if value.is_none() && self.all.contains(&key.as_str()) && !self.optional.contains(&key.as_str()) {
+                return Err(refuse("is None; it needs a value"));
+            }
+            let read = values::from_python(value).map_err(|class| {
+                refuse(&format!("holds a {class}, which a robot file cannot; numbers, text, lists and dicts can"))
+            })?;
+            Ok((key.clone(), read))
+        };
+        given.iter().map(read).collect()
+    }
+
+    /// Makes sure that `name` can be set.
+    pub fn check(&self, name: &str) -> PyResult<()> {
+        if self.all.contains(&name) {
+            return Ok(());
+        }
+        let text = unknown_name("attribute", name, self.all.iter().copied());
+        Err(PyAttributeError::new_err(format!("{}: {text}", self.class)))
+    }
+}
+
+/// An attribute that an object does not have.
+pub fn misspelt(object: &Bound<'_, PyAny>, name: &str) -> PyErr {
+    let names =
+        || Some((object.get_type().dir().ok()?.extract::<Vec<String>>().ok()?, object.get_type().qualname().ok()?));
+    let (names, class) = match names() {
+        Some((names, class)) => (names, class.to_string()),
+        None => (Vec::new(), String::new()),
+    };
+    let public = names.iter().map(String::as_str).filter(|name| !name.starts_with('_'));
+    PyAttributeError::new_err(format!("{class}: {}", unknown_name("attribute", name, public)))
+}
+
+/// Keyword arguments.
+pub fn pairs<'py>(given: Option<&Bound<'py, PyDict>>) -> Outcome<Vec<(String, Bound<'py, PyAny>)>> {
+    let Some(given) = given else { return Ok(Vec::new()) };
+    given.iter().map(|(key, value)| Ok((key.extract()?, value))).collect()
+}
+
+/// A class for a table: a read attribute for each key, all of them set through `__setattr__` and `set`, which check.
+macro_rules! table {
+    (
+        $(#[$doc:meta])* $name:ident, optional: [$($optional:ident),*];
+        keys: { $($(#[$key_doc:meta])* $key:ident,)* }
+        also [$($also_key:literal),*] { $($also:tt)* }
+    ) => {
+        $(#[$doc])*
+        #[pyclass(module = "fric", frozen)]
+        pub struct $name(Place);
+
+        impl $name {
+            const KEYS: Keys = Keys {
+                class: stringify!($name),
+                all: &[$(stringify!($key),)* $($also_key),*],
+                optional: &[$(stringify!($optional)),*],
+            };
+
+            /// The table at a place.
+            pub(super) fn new(place: Place) -> Self {
+                Self(place)
+            }
+        }
+
+        #[pymethods]
+        impl $name {
+            $(
+                $(#[$key_doc])*
+                #[getter]
+                fn $key<'py>(&self, py: Python<'py>) -> Outcome<Option<Bound<'py, PyAny>>> {
+                    self.0.get(py, stringify!($key))
+                }
+            )*
+
+            /// Sets several keys at once, checked together; None leaves a key out.
+            #[pyo3(signature = (**values))]
+            fn set(&self, py: Python<'_>, values: Option<&Bound<'_, PyDict>>) -> Outcome {
+                self.0.set(py, &pairs(values)?, &Self::KEYS)
+            }
+
+            fn __setattr__(&self, py: Python<'_>, name: String, value: Bound<'_, PyAny>) -> Outcome {
+                Self::KEYS.check(&name)?;
+                self.0.set(py, &[(name, value)], &Self::KEYS)
+            }
+
+            fn __getattr__(slf: &Bound<'_, Self>, name: String) -> PyResult<Py<PyAny>> {
+                Err(misspelt(slf.as_any(), &name))
+            }
+
+            fn __repr__(&self, py: Python<'_>) -> Outcome<String> {
+                let mut parts = Vec::new();
+                for key in Self::KEYS.all {
+                    if let Some(value) = self.0.value(py, key)? {
+                        parts.push(format!("{key}={value}"));
+                    }
+                }
+                Ok(format!("{}({})", Self::KEYS.class, parts.join(", ")))
+            }
+
+            $($also)*
+        }
+    };
+}
+
+table! {
+    /// `[platform]`: what the cables hold.
+    Platform, optional: [];
+    keys: {
+        /// Mass, kg.
+        mass_kg,
+        /// Centre of mass in the platform frame, m.
+        center_of_mass_m,
+        /// Gravity in the base frame, m/s².
+        gravity_m_per_s2,
+    }
+    also [] {}
+}
+
+table! {
+    /// `[monitor]`: when a signal counts as faulty. None stands for the default.
+    Monitor, optional: [frozen_cycles, length_jump_m, length_noise_m];
+    keys: {
+        /// After so many cycles with the same value a sensor counts as frozen (100); 0 switches it off.
+        frozen_cycles,
+        /// Greatest change of length in a cycle, m (what 10 m/s cover).
+        length_jump_m,
+        /// Amplitude of the noise of measured lengths, m (0).
+        length_noise_m,
+    }
+    also [] {}
+}
+
+table! {
+    /// `[log]`: the topic of each signal, or a path to a field.
+    LogPaths, optional: [length, speed];
+    keys: {
+        /// Cable signals.
+        cable,
+        /// Cable lengths, where they have a topic or field of their own.
+        length,
+        /// Cable speeds, likewise.
+        speed,
+        /// Cable forces measured at the platform.
+        reference,
+        /// Pose of the platform.
+        pose,
+        /// Wrench on the platform from outside.
+        wrench,
+    }
+    also [] {}
+}
+
+table! {
+    /// `friction` of a cable.
+    Friction, optional: [sigma_n_per_m];
+    keys: {
+        /// Friction of each bearing on its normal force, 0 to 0.9.
+        mu,
+        /// Presliding stiffness of the whole cable, N/m; None: friction reverses at once.
+        sigma_n_per_m,
+        /// Viscous friction of each pulley, N s/m.
+        viscous_n_s_per_m,
+        /// Force added at the platform, N.
+        offset_n,
+    }
+    also [] {}
+}
+
+table! {
+    /// A `[[cable]]`. What is read from it is a copy: set the attribute to change it.
+    Cable, optional: [base_m, platform_m, traction_mu, validated];
+    keys: {
+        /// Name, as in the log.
+        name,
+        /// Where the cable enters the last pulley, base frame, m.
+        base_m,
+        /// Attachment, platform frame, m.
+        platform_m,
+        /// "per_pulley" or "lumped".
+        presliding,
+        /// A dict for each pulley, from the winch to the platform.
+        pulleys,
+        /// Friction coefficient between cable and pulley beyond which the cable slips; None: it never does.
+        traction_mu,
+        /// Range in which the parameters were identified.
+        validated,
+    }
+    also ["friction", "effects"] {
+        /// The friction of this cable.
+        #[getter]
+        fn friction(&self, py: Python<'_>) -> Friction {
+            Friction::new(self.0.inside(py, "friction"))
+        }
+
+        /// A dict for each effect of the catalogue.
+        #[getter]
+        fn effects<'py>(&self, py: Python<'py>) -> Outcome<Bound<'py, PyAny>> {
+            let effects = self.0.get(py, "effects")?;
+            Ok(effects.unwrap_or_else(|| pyo3::types::PyTuple::empty(py).into_any()))
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! `simulate`: the log of a robot whose friction is known.
+
+use fric_core::robot::unknown_name;
+use fric_lab::columns::SampleColumns;
+use fric_lab::simulate::{HiddenEffect, Run, Simulation, SimulationOptions};
+use pyo3::prelude::*;
+use pyo3::types::PyString;
+
+use crate::errors::{Fault, Outcome};
+use crate::log::{self, Log};
+use crate::robot::Robot;
+use crate::watch::{STRIDE, Watch};
+
+/// The log of a simulated robot; its friction is the robot file's, computed in another way than the compensator's.
+///
+/// `run` is what the platform does, `"identification"` or `"crossing"`: one position crossed along and about all axes, for
+/// the hysteresis of the wrench. `effects` are hidden in all cables, each a dict as in the robot file or a text as for `fric-cli simulate`. The
+/// same `seed` gives the same bits, which are those of `fric-cli simulate`, except that this log has pose and wrench in
+/// every row, where the file has them every 4 ms. Without `duration_s` it is one run. What of it no real robot could do is
+/// told as LogWarning.
+///
+/// >>> robot = Robot.read("examples/mini-ipanema.toml")
+/// >>> log = simulate(robot, seed=7, duration_s=0.5, effects=[{"kind": "stribeck", "ratio": 0.5}])
+/// >>> len(log), log.sensor_force_n.shape
+/// (500, (500, 8))
+#[pyfunction]
+#[pyo3(
+    signature = (robot, *, run="identification", seed=0, duration_s=None, effects=None, sensor_noise_n=0.02, reference_noise_n=0.01, mu_spread_ratio=0.0, progress=None),
+    text_signature = "(robot, *, run=\"identification\", seed=0, duration_s=None, effects=(), sensor_noise_n=0.02, reference_noise_n=0.01, mu_spread_ratio=0.0, progress=False)"
+)]
+pub fn simulate(
+    robot: &Bound<'_, Robot>,
+    run: &str,
+    seed: u64,
+    duration_s: Option<f64>,
+    effects: Option<&Bound<'_, PyAny>>,
+    sensor_noise_n: f64,
+    reference_noise_n: f64,
+    mu_spread_ratio: f64,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> Outcome<Log> {
+    let py = robot.py();
+    let effects = match effects {
+        None => Vec::new(),
+        Some(effects) => effects.try_iter()?.map(|effect| hidden(&effect?)).collect::<Outcome<Vec<_>>>()?,
+    };
+    let run = named(run)?;
+    let options =
+        SimulationOptions { run, seed, duration_s, sensor_noise_n, reference_noise_n, mu_spread_ratio, effects };
+    let file = robot.borrow().file.clone();
+    let mut simulation = py.detach(|| Simulation::new(&file, &options))?;
+    let mut columns = SampleColumns::default();
+    let mut watch = Watch::new(py, progress)?;
+    let total = simulation.total_cycles();
+    loop {
+        let done = columns.stamp_nanos.len() as u64;
+        watch.look(done, total)?;
+        if done >= total {
+            break;
+        }
+        py.detach(|| {
+            for _ in 0..STRIDE {
+                let Some(sample) = simulation.next_cycle() else { break };
+                columns.push(&sample);
+            }
+        });
+    }
+    log::warn(py, &simulation.warnings())?;
+    Log::new(py, columns, &file.cable_names(), Some(Robot { file: file.clone() }), Vec::new())
+}
+
+/// A run by its name.
+fn named(name: &str) -> Outcome<Run> {
+    let known = || Run::ALL.into_iter();
+    known()
+        .find(|run| run.name() == name)
+        .ok_or_else(|| Fault::config(unknown_name("run", name, known().map(Run::name))))
+}
+
+/// An effect as a dict of the robot file, or as text.
+fn hidden(effect: &Bound<'_, PyAny>) -> Outcome<HiddenEffect> {
+    if let Ok(text) = effect.cast::<PyString>() {
+        return Ok(HiddenEffect::parse(text.to_str()?)?);
+    }
+    let malformed = || Fault::config("an effect is a dict such as {\"kind\": \"stribeck\", \"ratio\": 0.5}, or a text");
+    let items = effect.cast::<pyo3::types::PyMapping>().map_err(|_| malformed())?.items()?;
+    let (mut kind, mut values) = (None, Vec::new());
+    for item in items {
+        let (key, value): (String, Bound<'_, PyAny>) = item.extract()?;
+        if key == "kind" {
+            kind = Some(value.extract::<String>().map_err(|_| malformed())?);
+        } else {
+            let number = value.extract::<f64>();
+            values
+                .push((key.clone(), number.map_err(|_| Fault::config(format!("`{key}` of an effect is no number")))?));
+        }
+    }
+    let values: Vec<(&str, f64)> = values.iter().map(|(key, value)| (key.as_str(), *value)).collect();
+    Ok(HiddenEffect::new(&kind.ok_or_else(malformed)?, &values)?)
+}

@@ -1,0 +1,73 @@
+//! Long calls: progress, Ctrl-C, and the interpreter for others meanwhile.
+
+use std::ops::Range;
+
+use pyo3::prelude::*;
+
+use crate::errors::Outcome;
+
+/// So many cycles pass between two looks at Ctrl-C and progress: a few milliseconds.
+pub const STRIDE: usize = 4096;
+
+/// Watches over a long call.
+pub struct Watch<'py> {
+    py: Python<'py>,
+    progress: Option<Bound<'py, PyAny>>,
+    last_percent: Option<u64>,
+    /// Which part of how many equal ones of the work is being done.
+    part: (u64, u64),
+}
+
+impl<'py> Watch<'py> {
+    /// `progress` is what the caller gave: false, true for a bar on stderr, or something to call with a share of 0…1.
+    pub fn new(py: Python<'py>, progress: Option<&Bound<'py, PyAny>>) -> Outcome<Self> {
+        let progress = match progress {
+            Some(given) if given.is_callable() => Some(given.clone()),
+            Some(given) if given.is_truthy()? => Some(py.import("fric._progress")?.getattr("Bar")?.call0()?),
+            Some(_) | None => None,
+        };
+        Ok(Self { py, progress, last_percent: None, part: (0, 1) })
+    }
+
+    /// Says which part of how many is being done, from 0.
+    pub fn part(&mut self, part: u64, count: u64) {
+        self.part = (part, count);
+    }
+
+    /// Raises what Ctrl-C raises, and shows how far the work is.
+    pub fn look(&mut self, done: u64, total: u64) -> Outcome {
+        self.py.check_signals()?;
+        let Some(progress) = &self.progress else { return Ok(()) };
+        let of_part = (done.min(total) * 100).checked_div(total).unwrap_or(100);
+        let percent = (self.part.0 * 100 + of_part) / self.part.1;
+        if self.last_percent < Some(percent) {
+            self.last_percent = Some(percent);
+            #[expect(clippy::cast_precision_loss, reason = "0…100")]
+            progress.call1((percent as f64 / 100.0,))?;
+        }
+        Ok(())
+    }
+
+    /// Does the work of `0..count` in pieces, the interpreter released during each.
+    pub fn work(&mut self, count: usize, mut piece: impl FnMut(Range<usize>) -> Outcome + Send) -> Outcome {
+        let mut done = 0;
+        while done < count {
+            self.look(done as u64, count as u64)?;
+            let end = count.min(done + STRIDE);
+            self.py.detach(|| piece(done..end))?;
+            done = end;
+        }
+        self.look(count as u64, count as u64)
+    }
+}
+
+/// A bar that was being drawn leaves its line.
+impl Drop for Watch<'_> {
+    fn drop(&mut self) {
+        if let Some(close) = self.progress.as_ref().and_then(|progress| progress.getattr("close").ok())
+            && self.last_percent.is_some_and(|percent| percent < 100)
+        {
+            let _ = close.call0();
+        }
+    }
+}

@@ -1,0 +1,29 @@
+"""What fric raises and warns of."""
+
+
+class FricError(Exception):
+    """Anything that fric refuses or cannot do."""
+
+
+class ConfigError(FricError, ValueError):
+    """A robot file, a parameter or an option is not right; says which, its value and what is allowed."""
+
+
+class ShapeError(FricError, ValueError):
+    """An array is not of the shape, type or content that is needed; says what was expected and what came."""
+
+
+class LogError(FricError):
+    """A log cannot be read, or lacks what is needed."""
+
+
+class OutputError(FricError, OSError):
+    """A file cannot be written: it exists, is an input, or the disk says no. Nothing was written."""
+
+
+class LogWarning(UserWarning):
+    """Something in a log is worth knowing: damage, gaps, flags, a signal that is missing."""
+
+
+for _public in (FricError, ConfigError, ShapeError, LogError, OutputError, LogWarning):
+    _public.__module__ = "fric"

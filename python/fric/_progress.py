@@ -1,0 +1,18 @@
+"""The progress bar of long calls."""
+
+import sys
+
+
+class Bar:
+    """Draws on stderr how far a call is."""
+
+    def __call__(self, fraction: float) -> None:
+        full = int(40 * fraction)
+        sys.stderr.write(f"\r[{'#' * full}{'.' * (40 - full)}] {fraction:4.0%}")
+        if fraction >= 1:
+            self.close()
+        sys.stderr.flush()
+
+    def close(self) -> None:
+        """Leaves the bar's line."""
+        sys.stderr.write("\n")

@@ -1,0 +1,18 @@
+"""What several tests need."""
+
+import os
+import subprocess
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+ROBOT = ROOT / "examples" / "mini-ipanema.toml"
+LOG = ROOT / "examples" / "mini-ipanema.mcap"
+
+
+def run(*arguments):
+    """Runs the build that `cargo test` leaves behind and gives what it warns of."""
+    target = ROOT / os.environ.get("CARGO_TARGET_DIR", "target")
+    command = [target / "debug" / "fric-cli", *arguments]
+    done = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", check=False)
+    assert done.returncode == 0, done
+    return done.stderr

@@ -1,0 +1,288 @@
+"""Logs, simulated and replayed, from Python and by the command line: the same bits."""
+
+import json
+
+import fric
+import numpy as np
+import pytest
+from support import LOG, ROBOT, run
+
+ARRAYS = [
+    "stamp_nanos",
+    "sensor_force_n",
+    "length_m",
+    "speed_m_per_s",
+    "reference_force_n",
+    "position_m",
+    "orientation_xyzw",
+    "outside_force_n",
+    "outside_torque_nm",
+]
+
+
+@pytest.fixture(scope="module")
+def robot():
+    return fric.Robot.read(ROBOT)
+
+
+@pytest.fixture(scope="module")
+def log():
+    return fric.read_log(LOG)
+
+
+def arrays_of(log):
+    return {name: np.array(getattr(log, name)) for name in ARRAYS}
+
+
+def of_bits(array):
+    return np.ascontiguousarray(array).view(np.uint64)
+
+
+def test_a_log_has_named_arrays(log, robot):
+    assert len(log) == 50_000 and log.robot == robot and log.cable_names == robot.cable_names
+    shapes = {name: getattr(log, name).shape[1:] for name in ARRAYS}
+    assert shapes == {
+        "stamp_nanos": (),
+        "sensor_force_n": (8,),
+        "length_m": (8,),
+        "speed_m_per_s": (8,),
+        "reference_force_n": (8,),
+        "position_m": (3,),
+        "orientation_xyzw": (4,),
+        "outside_force_n": (3,),
+        "outside_torque_nm": (3,),
+    }
+    assert log.stamp_nanos.dtype == np.int64 and all(getattr(log, name).dtype == np.float64 for name in ARRAYS[1:])
+    assert np.allclose(log.time_s, np.arange(50_000) * 1e-3, rtol=0, atol=1e-12)
+    for name in [*ARRAYS, "time_s"]:
+        with pytest.raises(ValueError, match="read-only"):
+            getattr(log, name)[0] = 0
+
+
+def test_a_replay_tells_what_the_command_line_tells(tmp_path, robot, log):
+    path, output = tmp_path / "result.json", [tmp_path / "cli.mcap", tmp_path / "python.mcap"]
+    assert run("replay", LOG, "--json", path, "-o", output[0]) == ""
+    told = json.loads(path.read_text(encoding="utf-8"))
+    result = fric.replay(robot, LOG, output=output[1])
+    cables = [
+        {
+            "name": cable.name,
+            "samples": cable.samples,
+            "flagged": cable.flagged,
+            "before": {"rms_n": cable.before.rms_n, "mae_n": cable.before.mae_n},
+            "after": {"rms_n": cable.after.rms_n, "mae_n": cable.after.mae_n},
+        }
+        for cable in result.cables
+    ]
+    assert cables == told["cables"] and result.robot == told["robot"]
+    before, after = (
+        {"force_rms_n": error.force_rms_n, "torque_rms_nm": error.torque_rms_nm} for error in result.wrench
+    )
+    assert {"before": before, "after": after} == told["wrench"]
+    assert result.cable("cable3").after.rms_n == result.cables[2].after.rms_n
+
+    # The files differ in nothing but the comments of the robot file attached.
+    attached = fric.Robot.read(ROBOT)
+    logs = []
+    for file in output:
+        for topic in ["/fric/cable_forces", "/fric/friction"]:
+            effort = topic + ".effort[:]"
+            attached.log.set(cable=topic, length=effort, speed=effort, wrench="/fric/wrench")
+            with pytest.warns(fric.LogWarning, match="no pose"):
+                logs.append(fric.read_log(file, attached))
+    for ours, name, column in [(logs[2], "force_at_platform_n", 0), (logs[3], "friction_n", 1)]:
+        assert np.array_equal(ours.sensor_force_n, getattr(result, name))
+        assert np.array_equal(ours.sensor_force_n, logs[column].sensor_force_n)
+    assert np.array_equal(np.hstack([logs[2].outside_force_n, logs[2].outside_torque_nm]), result.outside_wrench)
+    with pytest.raises(fric.OutputError, match="exists"):
+        fric.replay(robot, log, output=output[1])
+    with pytest.raises(fric.OutputError, match="inputs are never overwritten"):
+        fric.replay(robot, logs[3], output=output[1], force=True)
+
+
+def test_a_log_in_arrays_is_replayed_to_the_same_bits(robot, log):
+    expected = fric.replay(robot, log)
+    names = {"cable_names": log.cable_names}
+    for other in [fric.replay(robot, fric.Log.from_arrays(**names, **arrays_of(log))), fric.replay(robot, [LOG])]:
+        assert repr(other.cables) == repr(expected.cables) and repr(other.wrench) == repr(expected.wrench)
+        for name in ["force_at_platform_n", "friction_n", "frictionless_n", "status"]:
+            assert np.array_equal(getattr(other, name), getattr(expected, name))
+        assert np.array_equal(other.outside_wrench, expected.outside_wrench, equal_nan=True)
+
+
+def test_a_simulation_has_the_bits_of_the_command_line(tmp_path, robot):
+    path = tmp_path / "log.mcap"
+    effect = "stribeck:ratio=0.5,velocity_m_per_s=0.02"
+    cli = ["--duration", "3", "--seed", "5", "--effect", effect, "--mu-spread-ratio", "0.1"]
+    run("simulate", "--model", ROBOT, "-o", path, *cli)
+    options = {"seed": 5, "duration_s": 3.0, "mu_spread_ratio": 0.1}
+    of_dict = {"kind": "stribeck", "ratio": 0.5, "velocity_m_per_s": 0.02}
+    read = fric.read_log(path)
+    for effects in [[effect], [of_dict]]:
+        ours = fric.simulate(robot, effects=effects, **options)
+        for name in [*ARRAYS[:5], "time_s"]:
+            assert np.array_equal(of_bits(getattr(ours, name)), of_bits(getattr(read, name))), name
+        # Pose and wrench stand in the file every 4 ms, and are interpolated between.
+        for name in ARRAYS[5:]:
+            assert np.array_equal(of_bits(getattr(ours, name)[::4]), of_bits(getattr(read, name)[::4])), name
+        assert np.allclose(ours.position_m, read.position_m, rtol=0, atol=1e-5)
+    assert not np.array_equal(fric.simulate(robot, **options).sensor_force_n, read.sensor_force_n)
+
+
+def test_simulated_crossing_runs_are_those_of_the_command_line(tmp_path, robot):
+    path = tmp_path / "log.mcap"
+    run("simulate", "--model", ROBOT, "-o", path, "--run", "crossing", "--duration", "3")
+    read, ours = fric.read_log(path), fric.simulate(robot, run="crossing", duration_s=3.0)
+    assert np.array_equal(of_bits(ours.sensor_force_n), of_bits(read.sensor_force_n))
+    assert not np.array_equal(fric.simulate(robot, duration_s=3.0).length_m, ours.length_m)
+
+
+def test_what_no_robot_could_do_is_told_as_by_the_command_line(tmp_path):
+    text = """
+        format = "fric-robot/1"
+        name = "hung"
+        cycle_s = 0.01
+        platform = { mass_kg = 1.0 }
+        [[cable]]
+        name = "left"
+        pulleys = [{ wrap_deg = 180.0, sensor = true }]
+        base_m = [1.0, 0.0, 1.0]
+        platform_m = [0.1, 0.0, 0.0]
+        [[cable]]
+        name = "right"
+        pulleys = [{ wrap_deg = 180.0, sensor = true }]
+        base_m = [-1.0, 0.5, 1.0]
+        platform_m = [-0.1, 0.0, 0.1]
+    """
+    (tmp_path / "robot.toml").write_text(text)
+    told = run("simulate", "--model", tmp_path / "robot.toml", "-o", tmp_path / "log.mcap", "--duration", "1")
+    assert "cannot hold the platform" in told
+    with pytest.warns(fric.LogWarning) as issued:
+        fric.simulate(fric.Robot.from_toml(text), duration_s=1.0)
+    assert [f"warning: {warning.message}" for warning in issued] == told.splitlines()
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        ({"duration_s": -1.0}, "`duration_s` is -1; allowed is 0.001 to"),
+        ({"sensor_noise_n": float("nan")}, "`sensor_noise_n` is NaN"),
+        ({"run": "crosing"}, "unknown run `crosing`; did you mean `crossing`?"),
+        ({"effects": ["stribek:ratio=1"]}, "there is no effect `stribek`; known are `stribeck`"),
+        ({"effects": [{"kind": "stribeck", "ratio": 9.0}]}, "`ratio` of the effect `stribeck` is 9; allowed is -0.9"),
+        ({"effects": [{"kind": "stribeck", "ratio": "much"}]}, "`ratio` of an effect is no number"),
+        ({"effects": [{"ratio": 0.5}]}, "an effect is a dict such as"),
+        ({"effects": [3]}, "an effect is a dict such as"),
+    ],
+)
+def test_options_out_of_range_are_told(robot, options, told):
+    with pytest.raises(fric.ConfigError) as raised:
+        fric.simulate(robot, **options)
+    assert told in str(raised.value)
+
+
+def test_what_cannot_be_read_is_told(tmp_path, robot, log):
+    with pytest.raises(fric.LogError, match="there is no file `.*none.mcap`; check the path"):
+        fric.read_log(tmp_path / "none.mcap")
+    with pytest.raises(fric.LogError, match="is not an MCAP recording"):
+        fric.read_log(ROBOT)
+    with pytest.raises(TypeError, match="a path or several paths, not as <class 'int'>"):
+        fric.read_log(3)
+    with pytest.raises(fric.OutputError, match=r"cannot be written: No such file or directory \(os error 2\)$"):
+        fric.replay(log.robot, log, output=tmp_path / "nowhere" / "out.mcap")
+    robot = fric.Robot.read(ROBOT)
+    robot.log.cable = "/elsewhere"
+    with pytest.raises(fric.LogError, match="no messages on `/elsewhere`"):
+        fric.read_log(LOG, robot)
+    robot.log.cable = "/a["
+    with pytest.raises(fric.ConfigError, match=r"`cable` under \[log\]: message path `/a\[`"):
+        fric.read_log(LOG, robot)
+    robot = fric.Robot.read(ROBOT)
+    robot.cable("cable1").name = "other"
+    with pytest.raises(fric.ShapeError, match="the log has the cables cable1, .* the robot other, "):
+        fric.replay(robot, log)
+
+
+def test_warnings_are_those_of_the_command_line(tmp_path, robot):
+    whole, cut, model = tmp_path / "whole.mcap", tmp_path / "cut.mcap", tmp_path / "robot.toml"
+    run("simulate", "--model", ROBOT, "-o", whole, "--duration", "3")
+    cut.write_bytes(whole.read_bytes()[:-200_000])
+    robot = fric.Robot.read(ROBOT)
+    robot.log.pose = "/nowhere"
+    robot.cable("cable2").friction.set(mu=0.0, viscous_n_s_per_m=0.0)
+    robot.cable("cable3").validated = {"force_n": [0.0, 1.0]}
+    robot.cable("cable4").effects = [{"kind": "stribeck", "ratio": 0.0, "velocity_m_per_s": 0.02}]
+    robot.cycle_s = 0.01
+    robot.write(model)
+    expected = [line.removeprefix("warning: ") for line in run("replay", cut, "--model", model).splitlines()]
+    assert len(expected) >= 6 and any("does nothing" in line for line in expected)
+    with pytest.warns(fric.LogWarning) as issued:
+        fric.replay(robot, cut)
+    assert [str(warning.message) for warning in issued] == expected
+    with pytest.warns(fric.LogWarning, match="no reference forces"):
+        arrays = {name: array for name, array in arrays_of(fric.read_log(whole)).items() if name != "reference_force_n"}
+        result = fric.replay(fric.Robot.read(ROBOT), fric.Log.from_arrays(cable_names=robot.cable_names, **arrays))
+    assert result.cables[0].before is None and result.cables[0].after is None
+
+
+def good():
+    return {
+        "cable_names": ["one", "two"],
+        "stamp_nanos": np.arange(4) * 1_000_000,
+        "sensor_force_n": np.full((4, 2), 20.0),
+        "length_m": np.arange(8.0).reshape(4, 2) * 1e-3,
+    }
+
+
+def test_speed_that_is_not_given_is_derived(log):
+    length_m = good()["length_m"]
+    length_m[2, 1] = np.nan
+    made = fric.Log.from_arrays(**good() | {"length_m": length_m})
+    # Over what is missing the speed is the change since the last that was known.
+    assert np.allclose(made.speed_m_per_s, [[0, 0], [2, 2], [2, np.nan], [2, 2]], equal_nan=True)
+    assert np.isnan(made.reference_force_n).all() and np.isnan(made.orientation_xyzw).all() and made.robot is None
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        (
+            {"stamp_nanos": np.arange(4) * 1e6},
+            "`stamp_nanos` must be whole numbers (int64) of shape (N,), nanoseconds since 1970; what came is float64",
+        ),
+        ({"stamp_nanos": [0, 2, 2, 3]}, "`stamp_nanos` does not ascend from row 1 to row 2"),
+        ({"sensor_force_n": np.zeros((3, 2))}, "`sensor_force_n` must be real numbers (float64) of shape (4, 2)"),
+        ({"cable_names": ["one", "one"]}, '`cable_names` has "one" twice'),
+        ({"cable_names": []}, "`cable_names` is empty"),
+        ({"position_m": np.zeros((4, 3))}, "in row 0 are no pose"),
+        ({"position_m": np.zeros((4, 3)), "orientation_xyzw": np.zeros((4, 4))}, "in row 0 are no pose"),
+        ({"outside_force_n": np.zeros((4, 3))}, "in row 0 are no wrench"),
+        ({"outside_torque_nm": np.full((4, 3), np.inf)}, "in row 0 are no wrench"),
+    ],
+)
+def test_arrays_that_are_no_log_are_told(change, told):
+    with pytest.raises(fric.ShapeError) as raised:
+        fric.Log.from_arrays(**good() | change)
+    assert told in str(raised.value)
+
+
+def test_arrays_are_copied_and_quaternions_normalised():
+    orientation = np.array([[0.0, 0.0, 0.0, 1.05], [np.nan] * 4, [0.0, 0.6, 0.8, 0.0], [0.5, 0.5, 0.5, 0.5]])
+    position = np.where(np.isnan(orientation[:, :1]), np.nan, np.ones((4, 3)))
+    arrays = good() | {"position_m": position, "orientation_xyzw": orientation}
+    made = fric.Log.from_arrays(**arrays)
+    assert made.orientation_xyzw[0].tolist() == [0.0, 0.0, 0.0, 1.0] and np.isnan(made.orientation_xyzw[1]).all()
+    arrays["length_m"][:] = 9.0
+    assert made.length_m[0, 0] == 0.0
+
+
+@pytest.mark.parametrize("library", ["polars", "pandas"])
+def test_logs_become_data_frames(log, library, monkeypatch):
+    frame = getattr(log, f"to_{library}")()
+    assert list(frame.columns)[:3] == ["stamp_nanos", "time_s", "sensor_force_n.cable1"]
+    assert frame.shape == (50_000, 2 + 4 * 8 + 13)
+    assert np.array_equal(frame["length_m.cable7"].to_numpy(), log.length_m[:, 6])
+    assert np.array_equal(frame["orientation_xyzw.w"].to_numpy(), log.orientation_xyzw[:, 3])
+    monkeypatch.setitem(__import__("sys").modules, library, None)
+    with pytest.raises(ImportError, match=f"pip install {library}"):
+        getattr(log, f"to_{library}")()

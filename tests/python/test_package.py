@@ -1,0 +1,68 @@
+"""The package as a whole: stubs, documentation, Ctrl-C."""
+
+import doctest
+import inspect
+import signal
+import subprocess
+import sys
+import time
+
+import fric
+import pytest
+from support import ROBOT, ROOT
+
+
+def test_the_stubs_are_true():
+    for command in (["mypy.stubtest", "fric"], ["mypy", "--strict", "-p", "fric"]):
+        done = subprocess.run([sys.executable, "-m", *command], capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_what_is_public_is_documented_and_examples_are_right(monkeypatch):
+    monkeypatch.chdir(ROOT)
+    names = {name: getattr(fric, name) for name in fric.__all__}
+    assert [name for name, value in names.items() if not isinstance(value, str) and not inspect.getdoc(value)] == []
+    runner = doctest.DocTestRunner()
+    for test in doctest.DocTestFinder().find(fric, "fric", module=False, globs=names):
+        runner.run(test, clear_globs=False)
+    assert runner.summarize(verbose=False).failed == 0
+    assert runner.tries > 20
+
+
+def test_the_status_is_the_core_s():
+    assert {flag.name: flag.value for flag in fric.Status} == fric._fric.STATUS_BITS
+    assert fric.Status(1 | 1 << 8) == fric.Status.SLACK | fric.Status.POSE_UNREACHABLE
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals are sent otherwise there")
+@pytest.mark.parametrize(
+    "call", ["fric.simulate(robot, duration_s=1e6, progress=ready)", "replay_for_ever()", "run_for_ever()"]
+)
+def test_ctrl_c_ends_a_long_call_and_leaves_the_interpreter_whole(call):
+    code = f"""
+import fric
+robot = fric.Robot.read({str(ROBOT)!r})
+log = fric.simulate(robot, duration_s=20.0)
+told = []
+def ready(fraction):
+    if not told:
+        told.append(print("ready", flush=True))
+def replay_for_ever():
+    while True:
+        fric.replay(robot, log, progress=ready)
+def run_for_ever():
+    while True:
+        fric.Compensator(robot).run(log.sensor_force_n, log.length_m, log.speed_m_per_s, progress=ready)
+try:
+    {call}
+except KeyboardInterrupt:
+    print(len(fric.simulate(robot, duration_s=0.5)))
+"""
+    process = subprocess.Popen(
+        [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    assert process.stdout.readline() == "ready\n"
+    time.sleep(0.2)
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=30)
+    assert (out, process.returncode) == ("500\n", 0), err
