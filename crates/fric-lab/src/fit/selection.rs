@@ -35,6 +35,8 @@ const STILL_TRAVEL_M: f64 = 1e-3;
 const STILL_COUNT: usize = 20;
 /// What is left of the friction stored at the start of a log when it no longer matters.
 const FORGOTTEN: f64 = 1e-3;
+/// A log's way, as a multiple of what it takes to forget, from which on it is used at all.
+const LEAST_WAY_RATIO: f64 = 2.0;
 
 /// Standing of each sample before anything is known about the friction; `has_reference` says whether there is something
 /// to compare with.
@@ -70,21 +72,29 @@ pub fn leave_out_still_references(record: &CableRecord<'_>, standings: &mut [Sta
 /// it longest; `values` need to be right to some ten per cent only.
 pub fn leave_out_warm_up(record: &CableRecord<'_>, values: &Values, standings: &mut [Standing]) {
     let memory_m = record.params.memory_m_per_n(values[MU], values[SIGMA]);
+    if memory_m <= 0.0 {
+        return;
+    }
+    let forgotten = -FORGOTTEN.ln();
     for (start, rows) in record.logs() {
         let mut exponent = 0.0;
-        for (row, standing) in rows.iter().zip(standings.iter_mut().skip(start)) {
-            let tension_n = row.signals.sensor_force_n.max(0.0);
-            if tension_n > 0.0 && memory_m > 0.0 {
-                exponent += row.signals.displacement_m.abs() / (memory_m * tension_n);
-            }
-            if memory_m > 0.0 && (-exponent).exp() > FORGOTTEN {
-                if *standing == Standing::Used {
-                    *standing = Standing::WarmUp;
-                }
-            } else {
-                break;
-            }
-        }
+        let exponents: Vec<f64> = rows
+            .iter()
+            .map(|row| {
+                let tension_n = row.signals.sensor_force_n;
+                exponent +=
+                    if tension_n > 0.0 { row.signals.displacement_m.abs() / (memory_m * tension_n) } else { 0.0 };
+                exponent
+            })
+            .collect();
+        // A log whose cable moves hardly further than it takes to forget tells nothing that could be relied on.
+        let warm_up = if exponent < LEAST_WAY_RATIO * forgotten {
+            rows.len()
+        } else {
+            exponents.partition_point(|exponent| *exponent < forgotten)
+        };
+        let of_log = standings.iter_mut().skip(start).take(warm_up);
+        of_log.filter(|standing| **standing == Standing::Used).for_each(|standing| *standing = Standing::WarmUp);
     }
 }
 

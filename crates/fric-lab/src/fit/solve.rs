@@ -112,19 +112,10 @@ impl Solution {
     fn hold_undetermined(&mut self, problem: &mut Problem<'_>, given: &[Values], cycle_s: f64) {
         let mut kept: Vec<Unknown> = Vec::new();
         loop {
-            self.unknowns = unknowns(problem);
-            let leverages;
-            (self.covariance, leverages) = covariance(problem, &self.values);
-            let sticks = yardsticks(problem, &self.values);
-            let vagueness = |(place, unknown): (usize, &Unknown)| {
-                let value = self.values.get(unknown.member)?[unknown.parameter.place()];
-                let standard_error = self.covariance[(place, place)].sqrt();
-                let leverage = leverages.get(place).copied().unwrap_or(0.0);
-                let stick = sticks.get(unknown.member)?;
-                Some((stick.vagueness(&unknown.parameter, value, standard_error, leverage), *unknown))
-            };
-            let open = self.unknowns.iter().enumerate().filter(|(_, unknown)| !kept.contains(unknown));
-            let all: Vec<(f64, Unknown)> = open.filter_map(vagueness).collect();
+            let mut all;
+            (self.covariance, all) = vagueness(problem, &self.values);
+            self.unknowns = all.iter().map(|(_, unknown)| *unknown).collect();
+            all.retain(|(_, unknown)| !kept.contains(unknown));
             let most = all.iter().fold(1.0, |most: f64, (vagueness, _)| most.max(*vagueness));
             let is_offset = |unknown: &Unknown| unknown.parameter.place() == OFFSET;
             // Of those that are about as vague the offset comes last.
@@ -146,6 +137,23 @@ impl Solution {
             }
         }
     }
+}
+
+/// Covariance of what a problem varies at some values, and how vague each is, in the order of the covariance.
+pub(super) fn vagueness(problem: &Problem<'_>, values: &[Values]) -> (DMatrix<f64>, Vec<(f64, Unknown)>) {
+    let (covariance, leverages) = covariance(problem, values);
+    let sticks = yardsticks(problem, values);
+    let of = |(place, unknown): (usize, Unknown)| {
+        let value = values.get(unknown.member).map_or(f64::NAN, |values| values[unknown.parameter.place()]);
+        let standard_error = covariance[(place, place)].sqrt();
+        let leverage = leverages.get(place).copied().unwrap_or(0.0);
+        let vagueness = sticks
+            .get(unknown.member)
+            .map_or(f64::INFINITY, |stick| stick.vagueness(&unknown.parameter, value, standard_error, leverage));
+        (vagueness, unknown)
+    };
+    let all = unknowns(problem).into_iter().enumerate().map(of).collect();
+    (covariance, all)
 }
 
 /// Sum of squares at some values; NaN when stopped.

@@ -32,6 +32,8 @@ const PRESLIDING_M: Range<f64> = 1e-5..1e-2;
 const ENOUGH_SLIDING: usize = 4096;
 /// Cycles over which σ is looked for.
 const STRETCH: usize = 8192;
+/// A refined start further than this factor from the coarse one has lost its way.
+const REFINEMENT: f64 = 3.0;
 /// A valley whose sum of squares is above this multiple of the least is no start.
 const SHALLOW: f64 = 1.5;
 
@@ -39,7 +41,14 @@ const SHALLOW: f64 = 1.5;
 pub fn starts(problem: &Problem<'_>, given: &[Values], cycle_s: f64) -> Vec<Vec<Values>> {
     let coarse = valleys(problem, given, cycle_s);
     let Some(stretch) = stretch_of(problem) else { return coarse };
-    coarse.into_iter().map(|start| search(&stretch, &start, cycle_s).0).collect()
+    let refine = |start: Vec<Values>| {
+        let (refined, _) = search(&stretch, &start, cycle_s);
+        let near = |one: &Values, other: &Values| {
+            [MU, SIGMA].into_iter().all(|place| (1.0 / REFINEMENT..=REFINEMENT).contains(&(one[place] / other[place])))
+        };
+        if refined.iter().zip(&start).all(|(refined, start)| near(refined, start)) { refined } else { start }
+    };
+    coarse.into_iter().map(refine).collect()
 }
 
 /// μ and σ of a single cable on the stretch where it preslides most: a few evaluations of it bring a start near enough that the

@@ -5,14 +5,14 @@
 //!
 //! **What it cannot see.** Forces that hold each other in balance (`A^T f = 0`: inner tension) change no wrench. A robot of
 //! m cables has m − 6 such combinations in each pose; over a run through the workspace they turn, so that what friction
-//! does to a cable still shows. A constant offset does not turn enough: ε of the cables is seen in combinations only, and
-//! is held where it is not determined.
+//! does to a cable still shows. A constant offset hardly turns: ε of the cables is often seen in combinations only. So friction is
+//! fitted first with the offsets held; then those join in that the samples turn out to determine.
 //!
 //! The six deviations are weighed by the inverse of their covariance, found from the first fit; the standard errors do not
 //! rely on it.
 
 use fric_core::Wrench;
-use fric_core::parameters::Values;
+use fric_core::parameters::{OFFSET, Values};
 use nalgebra::{Matrix6, Vector6};
 
 use super::cables::{cable_fits, leave_out_warm_up, used};
@@ -20,7 +20,7 @@ use super::problem::{Comparison, Loss, Member, Problem};
 use super::record::{CableRecord, Measurements};
 use super::report::WrenchFit;
 use super::selection::{self, Standing};
-use super::solve::solve;
+use super::solve::{Solution, Unknown, search, solve, vagueness};
 use super::{FitOptions, Progress, start, weight};
 use crate::replay::WrenchErrors;
 
@@ -44,7 +44,7 @@ pub fn fit_wrench(measurements: &Measurements<'_>, options: &FitOptions, progres
         .collect();
     progress.begin(2);
     let mut problem = Problem {
-        members: all_of(&records, options),
+        members: without_offsets(&records, options, &[]),
         comparison: Comparison::Wrench {
             structure: &platform.structure,
             outside: &outside,
@@ -69,9 +69,24 @@ pub fn fit_wrench(measurements: &Measurements<'_>, options: &FitOptions, progres
     if let (Comparison::Wrench { whitening, .. }, Some(turn)) = (&mut problem.comparison, scatter) {
         **whitening = turn * **whitening;
     }
-    problem.members = all_of(&records, options);
+    problem.members = without_offsets(&records, options, &first.undetermined);
     problem.loss = Loss::Squares;
-    let solution = solve(&mut problem, vec![first.values], &given, cycle_s, options.weighing, &mut standings);
+    let mut solution = solve(&mut problem, vec![first.values], &given, cycle_s, options.weighing, &mut standings);
+    solution.undetermined.extend(first.undetermined);
+    solution.evaluation_count += first.evaluation_count;
+    let (determined, vague) = offsets(&problem, &records, options, &solution, cycle_s);
+    if !determined.is_empty() {
+        let (held, evaluation_count) = (std::mem::take(&mut solution.undetermined), solution.evaluation_count);
+        for offset in determined {
+            if let Some(member) = problem.members.get_mut(offset.member) {
+                member.free.push(offset.parameter);
+            }
+        }
+        solution = solve(&mut problem, vec![solution.values], &given, cycle_s, options.weighing, &mut standings);
+        solution.undetermined.extend(held);
+        solution.evaluation_count += evaluation_count;
+    }
+    solution.undetermined.extend(vague);
     progress.finish_one();
     let cables = cable_fits(&problem, &given, &solution, &standings);
     let [before, after] = wrench_errors(&problem, &solution.values, &platform.structure, &outside);
@@ -104,8 +119,38 @@ fn wrench_errors(
     errors
 }
 
-fn all_of<'a>(records: &[CableRecord<'a>], options: &FitOptions) -> Vec<Member<'a>> {
-    records.iter().map(|record| Member { record: *record, free: options.free(record.params) }).collect()
+/// All cables with what is to be varied of them, but for the offsets and what is known to be undetermined.
+fn without_offsets<'a>(records: &[CableRecord<'a>], options: &FitOptions, undetermined: &[Unknown]) -> Vec<Member<'a>> {
+    let member = |(member, record): (usize, &CableRecord<'a>)| {
+        let mut free = options.free(record.params);
+        free.retain(|parameter| parameter.place() != OFFSET);
+        free.retain(|parameter| !undetermined.contains(&Unknown { member, parameter: *parameter }));
+        Member { record: *record, free }
+    };
+    records.iter().enumerate().map(member).collect()
+}
+
+/// The offsets that are to be varied: those that the samples determine, and the others.
+fn offsets(
+    problem: &Problem<'_>,
+    records: &[CableRecord<'_>],
+    options: &FitOptions,
+    solution: &Solution,
+    cycle_s: f64,
+) -> (Vec<Unknown>, Vec<Unknown>) {
+    let mut trial = problem.clone();
+    for (member, record) in trial.members.iter_mut().zip(records) {
+        member.free.extend(options.free(record.params).into_iter().filter(|parameter| parameter.place() == OFFSET));
+    }
+    if trial.parameter_count() == problem.parameter_count() || !problem.used.contains(&true) {
+        return Default::default();
+    }
+    let (values, _) = search(&trial, &solution.values, cycle_s);
+    let (_, all) = vagueness(&trial, &values);
+    let offsets = all.into_iter().filter(|(_, unknown)| unknown.parameter.place() == OFFSET);
+    let (determined, vague): (Vec<_>, Vec<_>) = offsets.partition(|(vagueness, _)| *vagueness <= 1.0);
+    let unknowns = |all: Vec<(f64, Unknown)>| all.into_iter().map(|(_, unknown)| unknown).collect();
+    (unknowns(determined), unknowns(vague))
 }
 
 /// The outside wrench of each sample; NaN where there is none.
