@@ -11,9 +11,9 @@ use super::gram::Triangle;
 
 /// Relative reduction of the sum of squares at which the search ends. With n samples a parameter is then at most `√(1e-8·n)`
 /// standard errors from the minimum, 0.02 for a minute at 1 kHz; the last step, which is taken all the same, brings it nearer by far.
-const SQUARES_TOLERANCE: f64 = 1e-8;
+const SQUARES_TOLERANCE: f64 = 1e-10;
 /// And relative change of the parameters. They have standard errors of 1e-4 of their value and more.
-const STEP_TOLERANCE: f64 = 1e-6;
+const STEP_TOLERANCE: f64 = 1e-8;
 /// Evaluations per parameter before giving up.
 const PATIENCE: usize = 20;
 

@@ -35,8 +35,8 @@ const STILL_TRAVEL_M: f64 = 1e-3;
 const STILL_COUNT: usize = 20;
 /// What is left of the friction stored at the start of a log when it no longer matters.
 const FORGOTTEN: f64 = 1e-3;
-/// A log's way, as a multiple of what it takes to forget, from which on it is used at all.
-const LEAST_WAY_RATIO: f64 = 2.0;
+/// A cable that moves less than this at all rests, whatever its winch does to hold the force, m.
+const LEAST_RANGE_M: f64 = 1e-4;
 
 /// Standing of each sample before anything is known about the friction; `has_reference` says whether there is something
 /// to compare with.
@@ -87,8 +87,7 @@ pub fn leave_out_warm_up(record: &CableRecord<'_>, values: &Values, standings: &
                 exponent
             })
             .collect();
-        // A log whose cable moves hardly further than it takes to forget tells nothing that could be relied on.
-        let warm_up = if exponent < LEAST_WAY_RATIO * forgotten {
+        let warm_up = if range_m(rows) < LEAST_RANGE_M {
             rows.len()
         } else {
             exponents.partition_point(|exponent| *exponent < forgotten)
@@ -96,6 +95,16 @@ pub fn leave_out_warm_up(record: &CableRecord<'_>, values: &Values, standings: &
         let of_log = standings.iter_mut().skip(start).take(warm_up);
         of_log.filter(|standing| **standing == Standing::Used).for_each(|standing| *standing = Standing::WarmUp);
     }
+}
+
+/// Greatest length of a cable less its least, m.
+fn range_m(rows: &[Row]) -> f64 {
+    let (mut length_m, mut least_m, mut greatest_m) = (0.0_f64, 0.0_f64, 0.0_f64);
+    for row in rows {
+        length_m += row.signals.displacement_m;
+        (least_m, greatest_m) = (least_m.min(length_m), greatest_m.max(length_m));
+    }
+    greatest_m - least_m
 }
 
 /// Counts them.

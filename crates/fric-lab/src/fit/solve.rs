@@ -111,6 +111,7 @@ impl Solution {
     /// samples contradict stays as found: they know that much.
     fn hold_undetermined(&mut self, problem: &mut Problem<'_>, given: &[Values], cycle_s: f64) {
         let mut kept: Vec<Unknown> = Vec::new();
+        let mut least = None;
         loop {
             let mut all;
             (self.covariance, all) = vagueness(problem, &self.values);
@@ -126,7 +127,8 @@ impl Solution {
             let stopped = self.termination == Termination::Stopped;
             let Some((_, worst)) = vaguest.filter(|_| !stopped).copied() else { return };
             let (members, found, termination) = (problem.members.clone(), self.values.clone(), self.termination);
-            let bound = squares(problem, &self.values) * (1.0 + CONTRADICTION_RATIO);
+            // By what all were before the first was held: many small steps are one big one.
+            let bound = *least.get_or_insert_with(|| squares(problem, &self.values)) * (1.0 + CONTRADICTION_RATIO);
             hold(problem, worst, &mut self.values, given);
             self.search_on(problem, cycle_s);
             if squares(problem, &self.values) > bound {
@@ -140,7 +142,7 @@ impl Solution {
 }
 
 /// Covariance of what a problem varies at some values, and how vague each is, in the order of the covariance.
-pub(super) fn vagueness(problem: &Problem<'_>, values: &[Values]) -> (DMatrix<f64>, Vec<(f64, Unknown)>) {
+fn vagueness(problem: &Problem<'_>, values: &[Values]) -> (DMatrix<f64>, Vec<(f64, Unknown)>) {
     let (covariance, leverages) = covariance(problem, values);
     let sticks = yardsticks(problem, values);
     let of = |(place, unknown): (usize, Unknown)| {

@@ -58,7 +58,7 @@ fn stretch_of<'a>(problem: &Problem<'a>) -> Option<Problem<'a>> {
     let cycles = most_presliding(problem);
     let mut used = problem.used.get(cycles.clone())?.to_vec();
     used.iter_mut().take(cycles.len() / 8).for_each(|used| *used = false);
-    let short = cycles.len() * 4 < problem.used.len() && used.contains(&true);
+    let short = is_simple(problem) && cycles.len() * 4 < problem.used.len() && used.contains(&true);
     let free: Vec<Parameter> =
         member.free.iter().copied().filter(|parameter| [MU, SIGMA].contains(&parameter.place())).collect();
     short.then(|| Problem {
@@ -82,7 +82,7 @@ fn valleys(problem: &Problem<'_>, given: &[Values], cycle_s: f64) -> Vec<Vec<Val
         };
         problem.members.iter().zip(&sliding).map(sigma_of).collect()
     };
-    let stretch = most_presliding(problem);
+    let stretch = if is_simple(problem) { most_presliding(problem) } else { longest_log(problem) };
     let tried = |distances_m: [f64; 4]| {
         let sigmas = distances_m.map(of_distance);
         let losses = problem.losses_by_sigma(&sliding, &sigmas, &stretch);
@@ -165,8 +165,9 @@ fn slide(problem: &Problem<'_>, given: &[Values], cycle_s: f64) -> Vec<Values> {
 /// Residuals and Jacobian of sliding samples. Without presliding a cycle does not depend on those before: for a single
 /// cable some of them, evenly spread, are enough.
 fn sliding_gram(problem: &Problem<'_>, values: &[Values]) -> Option<Gram> {
+    let stiff = values.iter().all(|of| of[SIGMA] >= NO_PRESLIDING_N_PER_M);
     let (Comparison::Forces, [member], true) =
-        (&problem.comparison, problem.members.as_slice(), values.iter().all(|of| of[SIGMA] >= NO_PRESLIDING_N_PER_M))
+        (&problem.comparison, problem.members.as_slice(), stiff && is_simple(problem))
     else {
         return problem.gram(values);
     };
@@ -202,6 +203,25 @@ fn linear_step(problem: &Problem<'_>, values: &[Values], cycle_s: f64) -> Option
         }
     }
     Some(stepped)
+}
+
+/// Whether no cable has an effect. With effects, of whose values nothing is known yet, a part of the log may lead astray,
+/// and a cycle may depend on those before.
+fn is_simple(problem: &Problem<'_>) -> bool {
+    let has_none = |member: &Member<'_>| {
+        let values = member.record.params.values();
+        Parameter::all().filter(|parameter| !parameter.is_friction()).all(|parameter| {
+            values[parameter.place()].to_bits() == parameter.row().neutral.to_bits()
+                && !member.free.contains(&parameter)
+        })
+    };
+    problem.members.iter().all(has_none)
+}
+
+/// The cycles of the longest log.
+fn longest_log(problem: &Problem<'_>) -> Range<usize> {
+    let logs = problem.members.first().into_iter().flat_map(|member| member.record.logs());
+    logs.map(|(start, rows)| start..start + rows.len()).max_by_key(Range::len).unwrap_or(0..0)
 }
 
 /// Way of a cable since its last reversal in each cycle, m; 0 where it rests.

@@ -5,8 +5,8 @@
 //!
 //! **What it cannot see.** Forces that hold each other in balance (`A^T f = 0`: inner tension) change no wrench. A robot of
 //! m cables has m − 6 such combinations in each pose; over a run through the workspace they turn, so that what friction
-//! does to a cable still shows. A constant offset hardly turns: ε of the cables is often seen in combinations only. So friction is
-//! fitted first with the offsets held; then those join in that the samples turn out to determine.
+//! does to a cable still shows. A constant offset does not turn enough: ε of the cables is seen in combinations only, and
+//! is held where it is not determined.
 //!
 //! The six deviations are weighed by the inverse of their covariance, found from the first fit; the standard errors do not
 //! rely on it.
@@ -20,9 +20,10 @@ use super::problem::{Comparison, Loss, Member, Problem};
 use super::record::{CableRecord, Measurements};
 use super::report::WrenchFit;
 use super::selection::{self, Standing};
-use super::solve::{Solution, Unknown, search, solve, vagueness};
+use super::solve::{Solution, Unknown, solve};
+use super::vector::Parameter;
 use super::{FitOptions, Progress, start, weight};
-use crate::replay::WrenchErrors;
+use crate::replay::{Deviation, WrenchErrors};
 
 /// Fits all cables to the outside wrench. Only for a robot of which every cable has an attachment, and for
 /// [`Measurements`] with [`Reference::Wrench`](super::Reference::Wrench).
@@ -38,59 +39,86 @@ pub fn fit_wrench(measurements: &Measurements<'_>, options: &FitOptions, progres
         let mut columns = platform.structure.iter().skip(place * records.len()).take(records.len());
         columns.all(|column| column.x.is_finite())
     };
-    let mut of_cables: Vec<Vec<Standing>> = records
+    let of_cables: Vec<Vec<Standing>> = records
         .iter()
         .map(|record| selection::first_look(record, |place, _| has_wrench(place) && reaches(place)))
         .collect();
     progress.begin(2);
-    let mut problem = Problem {
-        members: without_offsets(&records, options, &[]),
-        comparison: Comparison::Wrench {
-            structure: &platform.structure,
-            outside: &outside,
-            whitening: Box::new(by_moment_arm(&platform.structure)),
-        },
+    let comparison = Comparison::Wrench {
+        structure: &platform.structure,
+        outside: &outside,
+        whitening: Box::new(by_moment_arm(&platform.structure)),
+    };
+    let problem = |members: Vec<Member<'_>>| Problem {
+        members,
+        comparison: comparison.clone(),
         loss: Loss::Squares,
         used: used(&together(&of_cables)),
         stop: progress.stop_flag(),
         seat: None,
     };
     let cycle_s = measurements.robot().cycle_s();
-    let starts = start::starts(&problem, &given, cycle_s);
+    let all = all_of(&records, options);
+    let mut fitted = in_two_rounds(problem(all.clone()), &of_cables, &given, cycle_s, options);
+    if offsets_ran_away(&fitted) {
+        // The samples cannot tell the offsets from each other at all: hold them, or they take the friction with them.
+        let is_offset = |parameter: &Parameter| parameter.place() == OFFSET;
+        let mut held = all;
+        held.iter_mut().for_each(|member| member.free.retain(|parameter| !is_offset(parameter)));
+        let offsets = fitted.1.unknowns.iter().chain(&fitted.1.undetermined);
+        let offsets: Vec<Unknown> = offsets.filter(|unknown| is_offset(&unknown.parameter)).copied().collect();
+        let evaluation_count = fitted.1.evaluation_count;
+        fitted = in_two_rounds(problem(held), &of_cables, &given, cycle_s, options);
+        fitted.1.undetermined.extend(offsets);
+        fitted.1.evaluation_count += evaluation_count;
+    }
+    progress.finish_one();
+    let (problem, solution, standings) = fitted;
+    let cables = cable_fits(&problem, &given, &solution, &standings);
+    let [before, after] = wrench_errors(&problem, &solution.values, &platform.structure, &outside);
+    WrenchFit { cables, measured, before, after }
+}
+
+/// A solved problem with the standing of its samples.
+type Solved<'a> = (Problem<'a>, Solution, Vec<Standing>);
+
+/// Solves once to learn how the six deviations scatter, and once with that.
+fn in_two_rounds<'a>(
+    mut problem: Problem<'a>,
+    of_cables: &[Vec<Standing>],
+    given: &[Values],
+    cycle_s: f64,
+    options: &FitOptions,
+) -> Solved<'a> {
+    let members = problem.members.clone();
+    let starts = start::starts(&problem, given, cycle_s);
+    let mut of_cables = of_cables.to_vec();
     for standings in &mut of_cables {
         leave_out_warm_up(&problem, &starts, standings);
     }
     let mut standings = together(&of_cables);
     problem.used = used(&standings);
-    // Once to learn how the six deviations scatter, once with that.
-    let first = solve(&mut problem, starts, &given, cycle_s, options.weighing, &mut standings);
-    progress.finish_one();
+    let first = solve(&mut problem, starts, given, cycle_s, options.weighing, &mut standings);
     let scatter = scatter(&problem, &first.values);
     if let (Comparison::Wrench { whitening, .. }, Some(turn)) = (&mut problem.comparison, scatter) {
         **whitening = turn * **whitening;
     }
-    problem.members = without_offsets(&records, options, &first.undetermined);
+    problem.members = members;
     problem.loss = Loss::Squares;
-    let mut solution = solve(&mut problem, vec![first.values], &given, cycle_s, options.weighing, &mut standings);
-    solution.undetermined.extend(first.undetermined);
+    let mut solution = solve(&mut problem, vec![first.values], given, cycle_s, options.weighing, &mut standings);
     solution.evaluation_count += first.evaluation_count;
-    let (determined, vague) = offsets(&problem, &records, options, &solution, cycle_s);
-    if !determined.is_empty() {
-        let (held, evaluation_count) = (std::mem::take(&mut solution.undetermined), solution.evaluation_count);
-        for offset in determined {
-            if let Some(member) = problem.members.get_mut(offset.member) {
-                member.free.push(offset.parameter);
-            }
-        }
-        solution = solve(&mut problem, vec![solution.values], &given, cycle_s, options.weighing, &mut standings);
-        solution.undetermined.extend(held);
-        solution.evaluation_count += evaluation_count;
-    }
-    solution.undetermined.extend(vague);
-    progress.finish_one();
-    let cables = cable_fits(&problem, &given, &solution, &standings);
-    let [before, after] = wrench_errors(&problem, &solution.values, &platform.structure, &outside);
-    WrenchFit { cables, measured, before, after }
+    (problem, solution, standings)
+}
+
+/// Whether an offset is known to no better than the tension that it is added to.
+fn offsets_ran_away((problem, solution, _): &Solved<'_>) -> bool {
+    solution.unknowns.iter().enumerate().any(|(place, unknown)| {
+        let rows = problem.members.get(unknown.member).map_or(&[][..], |member| member.record.rows);
+        let mut sensor = Deviation::default();
+        rows.iter().filter(|row| row.is_sound()).for_each(|row| sensor.add(row.signals.sensor_force_n));
+        let standard_error_n = solution.covariance.get((place, place)).map_or(f64::NAN, |variance| variance.sqrt());
+        unknown.parameter.place() == OFFSET && !(standard_error_n < sensor.rms().unwrap_or(0.0))
+    })
 }
 
 /// Deviation of the wrench by the cable forces from the one outside, with frictionless and with compensated forces.
@@ -119,38 +147,8 @@ fn wrench_errors(
     errors
 }
 
-/// All cables with what is to be varied of them, but for the offsets and what is known to be undetermined.
-fn without_offsets<'a>(records: &[CableRecord<'a>], options: &FitOptions, undetermined: &[Unknown]) -> Vec<Member<'a>> {
-    let member = |(member, record): (usize, &CableRecord<'a>)| {
-        let mut free = options.free(record.params);
-        free.retain(|parameter| parameter.place() != OFFSET);
-        free.retain(|parameter| !undetermined.contains(&Unknown { member, parameter: *parameter }));
-        Member { record: *record, free }
-    };
-    records.iter().enumerate().map(member).collect()
-}
-
-/// The offsets that are to be varied: those that the samples determine, and the others.
-fn offsets(
-    problem: &Problem<'_>,
-    records: &[CableRecord<'_>],
-    options: &FitOptions,
-    solution: &Solution,
-    cycle_s: f64,
-) -> (Vec<Unknown>, Vec<Unknown>) {
-    let mut trial = problem.clone();
-    for (member, record) in trial.members.iter_mut().zip(records) {
-        member.free.extend(options.free(record.params).into_iter().filter(|parameter| parameter.place() == OFFSET));
-    }
-    if trial.parameter_count() == problem.parameter_count() || !problem.used.contains(&true) {
-        return Default::default();
-    }
-    let (values, _) = search(&trial, &solution.values, cycle_s);
-    let (_, all) = vagueness(&trial, &values);
-    let offsets = all.into_iter().filter(|(_, unknown)| unknown.parameter.place() == OFFSET);
-    let (determined, vague): (Vec<_>, Vec<_>) = offsets.partition(|(vagueness, _)| *vagueness <= 1.0);
-    let unknowns = |all: Vec<(f64, Unknown)>| all.into_iter().map(|(_, unknown)| unknown).collect();
-    (unknowns(determined), unknowns(vague))
+fn all_of<'a>(records: &[CableRecord<'a>], options: &FitOptions) -> Vec<Member<'a>> {
+    records.iter().map(|record| Member { record: *record, free: options.free(record.params) }).collect()
 }
 
 /// The outside wrench of each sample; NaN where there is none.

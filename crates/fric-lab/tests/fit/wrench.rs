@@ -80,7 +80,7 @@ fn forty_seconds() -> Log {
 fn a_wrong_mass() {
     let heavy = mini_ipanema_text("mass_kg = 0.41", "mass_kg = 0.4305");
     let ([mu, ..], ratio) = worst(&fit(&without_wrench(forty_seconds()), &heavy), &truth());
-    assert!(mu < 0.01 && ratio > 2.0);
+    assert!(mu < 0.01 && ratio > 2.0, "{mu} {ratio}");
 }
 
 /// A hand that pushes with a slow force of ±1 N that nobody has measured.
