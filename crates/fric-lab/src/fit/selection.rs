@@ -36,7 +36,7 @@ const STILL_COUNT: usize = 20;
 /// What is left of the friction stored at the start of a log when it no longer matters.
 const FORGOTTEN: f64 = 1e-3;
 /// A cable that moves less than this at all rests, whatever its winch does to hold the force, m.
-const LEAST_RANGE_M: f64 = 1e-4;
+const LEAST_RANGE_M: f64 = 3e-5;
 
 /// Standing of each sample before anything is known about the friction; `has_reference` says whether there is something
 /// to compare with.

@@ -49,26 +49,25 @@ pub fn fit_wrench(measurements: &Measurements<'_>, options: &FitOptions, progres
         outside: &outside,
         whitening: Box::new(by_moment_arm(&platform.structure)),
     };
-    let problem = |members: Vec<Member<'_>>| Problem {
-        members,
-        comparison: comparison.clone(),
+    let problem = Problem {
+        members: all_of(&records, options),
+        comparison,
         loss: Loss::Squares,
         used: used(&together(&of_cables)),
         stop: progress.stop_flag(),
         seat: None,
     };
     let cycle_s = measurements.robot().cycle_s();
-    let all = all_of(&records, options);
-    let mut fitted = in_two_rounds(problem(all.clone()), &of_cables, &given, cycle_s, options);
+    let mut fitted = in_two_rounds(problem.clone(), &of_cables, &given, cycle_s, options);
     if offsets_ran_away(&fitted) {
         // The samples cannot tell the offsets from each other at all: hold them, or they take the friction with them.
         let is_offset = |parameter: &Parameter| parameter.place() == OFFSET;
-        let mut held = all;
-        held.iter_mut().for_each(|member| member.free.retain(|parameter| !is_offset(parameter)));
+        let mut held = problem;
+        held.members.iter_mut().for_each(|member| member.free.retain(|parameter| !is_offset(parameter)));
         let offsets = fitted.1.unknowns.iter().chain(&fitted.1.undetermined);
         let offsets: Vec<Unknown> = offsets.filter(|unknown| is_offset(&unknown.parameter)).copied().collect();
         let evaluation_count = fitted.1.evaluation_count;
-        fitted = in_two_rounds(problem(held), &of_cables, &given, cycle_s, options);
+        fitted = in_two_rounds(held, &of_cables, &given, cycle_s, options);
         fitted.1.undetermined.extend(offsets);
         fitted.1.evaluation_count += evaluation_count;
     }
@@ -117,7 +116,8 @@ fn offsets_ran_away((problem, solution, _): &Solved<'_>) -> bool {
         let mut sensor = Deviation::default();
         rows.iter().filter(|row| row.is_sound()).for_each(|row| sensor.add(row.signals.sensor_force_n));
         let standard_error_n = solution.covariance.get((place, place)).map_or(f64::NAN, |variance| variance.sqrt());
-        unknown.parameter.place() == OFFSET && !(standard_error_n < sensor.rms().unwrap_or(0.0))
+        unknown.parameter.place() == OFFSET
+            && (standard_error_n.is_nan() || standard_error_n >= sensor.rms().unwrap_or(0.0))
     })
 }
 
