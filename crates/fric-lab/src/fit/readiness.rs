@@ -95,6 +95,12 @@ impl Readiness {
         self.lacks.iter().any(|lack| lack.cables.contains(&cable))
     }
 
+    /// What is missing for a cable first of all.
+    #[must_use]
+    pub fn lack_of(&self, cable: usize) -> Option<&Lack> {
+        self.lacks.iter().find(|lack| lack.cables.contains(&cable))
+    }
+
     /// What to warn of: what is missing for some cables.
     ///
     /// # Errors
