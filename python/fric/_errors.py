@@ -17,6 +17,10 @@ class LogError(FricError):
     """A log cannot be read, or lacks what is needed."""
 
 
+class FitError(FricError):
+    """Data allow no fit; says what is missing and what to do."""
+
+
 class OutputError(FricError, OSError):
     """A file cannot be written: it exists, is an input, or the disk says no. Nothing was written."""
 
@@ -25,5 +29,5 @@ class LogWarning(UserWarning):
     """Something in a log is worth knowing: damage, gaps, flags, a signal that is missing."""
 
 
-for _public in (FricError, ConfigError, ShapeError, LogError, OutputError, LogWarning):
+for _public in (FricError, ConfigError, ShapeError, LogError, FitError, OutputError, LogWarning):
     _public.__module__ = "fric"

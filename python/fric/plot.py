@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._errors import ConfigError, ShapeError
+from ._fric import FitResult
 
 if TYPE_CHECKING:
     # Whoever checks types without matplotlib takes axes as they come.
@@ -39,7 +40,7 @@ class FittedCable(Protocol):
     def standard_errors(self) -> dict[str, float]: ...
 
 
-class FitResult(Protocol):
+class Fitted(Protocol):
     """What `parameters` wants to know of a fit."""
 
     @property
@@ -82,16 +83,20 @@ def friction_loop(log: Log, result: ReplayResult | Compensation, cable: str, *, 
 
 def residuals(
     log: Log,
-    result: ReplayResult | Compensation,
+    result: ReplayResult | Compensation | FitResult,
     cable: str,
     *,
     ax: Sequence[_Axes] | None = None,
     lag_count: int = 200,
 ) -> tuple[_Axes, _Axes]:
     """Draws what the compensation leaves of a cable's error, into two axes: its distribution beside the normal one of
-    the same width, and its autocorrelation with the band in which that of white noise stays (95 %)."""
-    column = _column(log, result, cable)
-    left_n = result.force_at_platform_n[:, column] - log.reference_force_n[:, column]
+    the same width, and its autocorrelation with the band in which that of white noise stays (95 %).
+    The result of a fit has all the residuals of its logs in it."""
+    if isinstance(result, FitResult):
+        left_n = result.cable(cable).residuals_n
+    else:
+        column = _column(log, result, cable)
+        left_n = result.force_at_platform_n[:, column] - log.reference_force_n[:, column]
     left_n = left_n[np.isfinite(left_n)]
     if left_n.size <= lag_count:
         raise ShapeError(f"{cable} has a reference in {left_n.size} rows; more than lag_count = {lag_count} are needed")
@@ -115,7 +120,7 @@ def residuals(
     return histogram, correlogram
 
 
-def parameters(fit_result: FitResult, *, ax: Sequence[_Axes] | None = None) -> tuple[_Axes, ...]:
+def parameters(fit_result: Fitted, *, ax: Sequence[_Axes] | None = None) -> tuple[_Axes, ...]:
     """Draws fitted parameters with their 95 % intervals, one of `ax` for each parameter, a line for each cable. A value
     without a standard error has an open mark."""
     cables = fit_result.cables

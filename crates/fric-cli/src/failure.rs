@@ -8,6 +8,7 @@ use std::path::Path;
 use fric_core::ParamError;
 use fric_core::robot::file::RobotFileError;
 use fric_lab::excite::ExcitationError;
+use fric_lab::fit::FitError;
 use fric_lab::hysteresis::HysteresisError;
 use fric_lab::simulate::SimulationError;
 use fric_log::output::{OutputError, directory_of};
@@ -78,6 +79,17 @@ macro_rules! failure_with_advice_from {
 }
 
 failure_with_advice_from!(ExcitationError, HysteresisError, RecordingError, SignalError, SimulationError);
+
+impl From<FitError> for Failure {
+    fn from(error: FitError) -> Self {
+        let advice = error.advice(|reference| format!("--reference {}", reference.name()));
+        let failure = Self::new(error);
+        match advice {
+            Some(advice) => failure.advise(advice),
+            None => failure,
+        }
+    }
+}
 
 impl From<RobotFileError> for Failure {
     fn from(error: RobotFileError) -> Self {

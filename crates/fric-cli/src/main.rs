@@ -3,12 +3,10 @@
 mod arguments;
 mod commands;
 mod failure;
-mod identification;
 mod interrupt;
 mod model;
 mod output;
 mod progress;
-mod readiness;
 mod report;
 mod result;
 mod set_points;

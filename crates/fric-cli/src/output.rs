@@ -3,12 +3,10 @@
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use comfy_table::{CellAlignment, Table, presets};
 use fric_log::output::{OutputFile, directory_of};
 use serde::Serialize;
 
 use crate::failure::{Failure, Outcome};
-use crate::result::WrenchResult;
 
 /// Makes sure that no two outputs are to stand in the same place.
 pub fn check_distinct(outputs: &[Option<&Path>]) -> Outcome {
@@ -81,32 +79,4 @@ fn print_to(mut stream: impl Write, text: &str) -> Outcome {
         }
         _ => Ok(()),
     }
-}
-
-/// A coordinate to the millimetre, without a minus before a zero.
-pub fn to_millimetre(part_m: f64) -> f64 {
-    (part_m * 1e3).round() / 1e3 + 0.0
-}
-
-/// A table with a header; all columns but the first `left` are aligned right.
-pub fn table(header: &[&str], left: usize, rows: &[impl AsRef<[String]>]) -> String {
-    let mut table = Table::new();
-    table.load_style(presets::NOTHING).set_header(header);
-    for row in rows {
-        table.add_row(row.as_ref());
-    }
-    for column in table.column_iter_mut().skip(left) {
-        column.set_cell_alignment(CellAlignment::Right);
-    }
-    let lines = table.lines().map(|line| line.trim_end().to_owned() + "\n");
-    lines.collect()
-}
-
-/// The errors of the wrench.
-pub fn wrench_table(WrenchResult { before, after }: &WrenchResult) -> String {
-    let rows = [
-        ["force".to_owned(), format!("{:.4} N", before.force_rms_n), format!("{:.4} N", after.force_rms_n)],
-        ["torque".to_owned(), format!("{:.4} Nm", before.torque_rms_nm), format!("{:.4} Nm", after.torque_rms_nm)],
-    ];
-    table(&["wrench", "rms before", "after"], 1, &rows)
 }

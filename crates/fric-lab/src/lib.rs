@@ -6,7 +6,8 @@
 //!
 //! [`excite`] gives the identification run as set points for a real robot; [`fit`] identifies the parameters of the
 //! friction model from its log. [`replay`] runs the control loop's cycle over samples and sums up the errors, [`hysteresis`]
-//! tells what is left of the wrench's hysteresis. [`columns`] keeps the samples of a whole log in memory.
+//! tells what is left of the wrench's hysteresis. [`columns`] keeps the samples of a whole log in memory;
+//! [`errors`] and [`text`] are what results for machines and people share.
 //!
 //! Nothing here reads or writes logs, and nothing here belongs into a control cycle.
 
@@ -15,11 +16,13 @@
 mod axis;
 mod clock;
 pub mod columns;
+pub mod errors;
 pub mod excite;
 pub mod fit;
 pub mod hysteresis;
 pub mod replay;
 pub mod simulate;
+pub mod text;
 pub mod trajectory;
 
 pub use axis::CartesianAxis;

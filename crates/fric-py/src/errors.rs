@@ -2,6 +2,7 @@
 
 use fric_core::ParamError;
 use fric_core::robot::file::RobotFileError;
+use fric_lab::hysteresis::HysteresisError;
 use fric_lab::replay::SnapshotMismatch;
 use fric_lab::simulate::{HiddenEffectError, SimulationError};
 use fric_log::output;
@@ -14,6 +15,7 @@ use numpy::AsSliceError;
 use pyo3::prelude::*;
 
 pyo3::import_exception!(fric._errors, ConfigError);
+pyo3::import_exception!(fric._errors, FitError);
 pyo3::import_exception!(fric._errors, LogError);
 pyo3::import_exception!(fric._errors, OutputError);
 pyo3::import_exception!(fric._errors, ShapeError);
@@ -28,6 +30,11 @@ impl Fault {
     /// A parameter, key or option that is not right.
     pub fn config(text: impl Into<String>) -> Self {
         Self(ConfigError::new_err(text.into()))
+    }
+
+    /// Data that allow no fit.
+    pub fn fit(text: impl Into<String>) -> Self {
+        Self(FitError::new_err(text.into()))
     }
 
     /// A log that cannot be used.
@@ -90,6 +97,22 @@ fault_from!(
     SignalError => log,
     SnapshotMismatch => shape,
 );
+
+impl From<fric_lab::fit::FitError> for Fault {
+    fn from(error: fric_lab::fit::FitError) -> Self {
+        let advice = error.advice(|reference| format!("reference=\"{}\"", reference.name()));
+        Self::fit(advice.map_or_else(|| error.cause.clone(), |advice| format!("{}. {advice}", error.cause)))
+    }
+}
+
+impl From<HysteresisError> for Fault {
+    fn from(error: HysteresisError) -> Self {
+        match error {
+            HysteresisError::Robot(_) | HysteresisError::NoGeometry { .. } => Self::config(in_full(&error)),
+            _ => Self::log(in_full(&error)),
+        }
+    }
+}
 
 impl From<output::OutputError> for Fault {
     fn from(error: output::OutputError) -> Self {

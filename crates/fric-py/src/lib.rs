@@ -10,9 +10,13 @@
 mod arrays;
 mod compensator;
 mod errors;
+mod fit;
+mod hysteresis;
 mod log;
 mod replay;
+mod residual_function;
 mod robot;
+mod runs;
 mod simulate;
 mod watch;
 
@@ -26,9 +30,15 @@ mod _fric {
     #[pymodule_export]
     use crate::compensator::{Compensation, Compensator, Snapshot};
     #[pymodule_export]
+    use crate::fit::{CableFit, FitResult, fit};
+    #[pymodule_export]
+    use crate::hysteresis::{AxisHysteresis, HysteresisResult, Width, hysteresis};
+    #[pymodule_export]
     use crate::log::{Log, read_log};
     #[pymodule_export]
     use crate::replay::{CableErrors, ForceError, ReplayResult, WrenchError, replay};
+    #[pymodule_export]
+    use crate::residual_function::{ResidualFunction, residual_function};
     #[pymodule_export]
     use crate::robot::{Cable, Friction, LogPaths, Monitor, Platform, Robot};
     #[pymodule_export]

@@ -6,11 +6,12 @@ use fric_core::Pose;
 use fric_lab::columns::{SampleColumns, SampleRows};
 use fric_log::recording::Recording;
 use fric_log::robot::{AttachedRobot, ROBOT_FILE};
-use fric_log::signals::{LastLength, SignalPaths, SignalReader};
+use fric_log::signals::{LastLength, Role, SignalPaths, SignalReader};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
+use serde::Serialize;
 
 use crate::arrays::{Axis, Wanted, fixed, fixed_rows, integers, numbers};
 use crate::errors::{Fault, Outcome};
@@ -233,14 +234,16 @@ pub fn read_log(
     robot: Option<&Bound<'_, Robot>>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> Outcome<Log> {
-    read(py, paths, robot, &mut Watch::new(py, progress)?)
+    read(py, paths, robot, None, &mut Watch::new(py, progress)?)
 }
 
-/// [`read_log`] as a part of a longer call.
+/// [`read_log`] as a part of a longer call, for a fit without the signal that it does not compare with, of whose lacks it
+/// tells itself.
 pub fn read(
     py: Python<'_>,
     paths: &Bound<'_, PyAny>,
     robot: Option<&Bound<'_, Robot>>,
+    unread: Option<Role>,
     watch: &mut Watch<'_>,
 ) -> Outcome<Log> {
     let sources: Vec<PathBuf> = match paths.extract() {
@@ -251,15 +254,20 @@ pub fn read(
         })?,
     };
     let recording = py.detach(|| Recording::open(&sources))?;
-    let file = match robot {
-        Some(robot) => robot.borrow().file.clone(),
-        None => AttachedRobot::find(&recording)?.map(|attached| attached.robot).ok_or_else(|| {
-            Fault::log(format!("the log has no robot file attached ({ROBOT_FILE}); give the robot as `robot`"))
-        })?,
+    let robot = match robot {
+        Some(robot) => robot.borrow().clone(),
+        None => AttachedRobot::find(&recording)?.map(|attached| Robot::new(attached.robot, attached.text)).ok_or_else(
+            || Fault::log(format!("the log has no robot file attached ({ROBOT_FILE}); give the robot as `robot`")),
+        )?,
     };
+    let file = robot.file.clone();
     let names = file.cable_names();
     let total_bytes = recording.total_bytes();
-    let mut reader = SignalReader::new(recording, SignalPaths::from_table(&file.options().log)?, &names);
+    let mut paths = SignalPaths::from_table(&file.options().log)?;
+    if let Some(unread) = unread {
+        paths = paths.with(unread, None);
+    }
+    let mut reader = SignalReader::new(recording, paths, &names);
     let mut columns = SampleColumns::default();
     let end = loop {
         watch.look(reader.recording().bytes_read(), total_bytes)?;
@@ -281,8 +289,11 @@ pub fn read(
     warn(py, &reader.recording().warnings())?;
     end?;
     warn(py, &reader.warnings())?;
-    warn(py, &reader.robot_warnings(&file))?;
-    Log::new(py, columns, &names, Some(Robot { file: file.clone() }), sources)
+    match unread {
+        Some(_) => warn(py, reader.cycle_warning(&file).as_slice())?,
+        None => warn(py, &reader.robot_warnings(&file))?,
+    }
+    Log::new(py, columns, &names, Some(robot), sources)
 }
 
 /// Issues warnings.
@@ -292,6 +303,12 @@ pub fn warn(py: Python<'_>, texts: &[String]) -> Outcome {
         py.import("warnings")?.call_method1("warn", (text, category))?;
     }
     Ok(())
+}
+
+/// A result as the command line writes it.
+pub fn json(result: &impl Serialize) -> Outcome<String> {
+    let text = serde_json::to_string_pretty(result);
+    text.map(|text| text + "\n").map_err(|error| Fault::output(format!("cannot write the result as JSON: {error}")))
 }
 
 fn check_names(names: &[String]) -> Outcome {

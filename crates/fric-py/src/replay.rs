@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use fric_lab::columns::OutputColumns;
+use fric_lab::errors::{self, WrenchResult};
 use fric_lab::replay::{CableErrors as ReplayErrors, Deviation, Replay};
 use fric_log::write::ReplayedLog;
 use numpy::PyArrayDyn;
@@ -61,8 +62,18 @@ pub struct ReplayResult {
 }
 
 impl ForceError {
-    fn new(deviation: &Deviation) -> Option<Self> {
-        Some(Self { rms_n: deviation.rms()?, mae_n: deviation.mean_magnitude()? })
+    pub fn new(deviation: &Deviation) -> Option<Self> {
+        errors::ForceError::of(deviation).map(|errors::ForceError { rms_n, mae_n }| Self { rms_n, mae_n })
+    }
+}
+
+impl WrenchError {
+    /// Before and after.
+    pub fn pair(py: Python<'_>, wrench: &WrenchResult) -> PyResult<(Py<Self>, Py<Self>)> {
+        let error = |error: errors::WrenchError| {
+            Py::new(py, Self { force_rms_n: error.force_rms_n, torque_rms_nm: error.torque_rms_nm })
+        };
+        Ok((error(wrench.before)?, error(wrench.after)?))
     }
 }
 
@@ -206,7 +217,7 @@ pub fn replay(
         log.clone()
     } else {
         watch.part(0, 2);
-        let log = log::read(py, log, Some(robot), &mut watch)?;
+        let log = log::read(py, log, Some(robot), None, &mut watch)?;
         watch.part(1, 2);
         Bound::new(py, log)?
     };
@@ -240,15 +251,12 @@ pub fn replay(
     let cable = |(name, errors): (&&str, &ReplayErrors)| {
         Py::new(py, CableErrors { name: (*name).to_owned(), samples: replay.cycle_count(), errors: *errors })
     };
-    let wrench_error = |(force_rms_n, torque_rms_nm)| Py::new(py, WrenchError { force_rms_n, torque_rms_nm });
     let (before, after) = replay.wrench();
-    let wrench = before.rms().zip(after.rms());
+    let wrench = WrenchResult::of(before, after);
     Ok(ReplayResult {
         robot: file.options().name.clone(),
         cables: errors.map(cable).collect::<PyResult<_>>()?,
-        wrench: wrench
-            .map(|(before, after)| PyResult::Ok((wrench_error(before)?, wrench_error(after)?)))
-            .transpose()?,
+        wrench: wrench.map(|wrench| WrenchError::pair(py, &wrench)).transpose()?,
         compensation: Compensation::new(py, columns, Some(row_count), names.len())?,
     })
 }

@@ -47,7 +47,8 @@ pub fn simulate(
     let run = named(run)?;
     let options =
         SimulationOptions { run, seed, duration_s, sensor_noise_n, reference_noise_n, mu_spread_ratio, effects };
-    let file = robot.borrow().file.clone();
+    let robot = robot.borrow().clone();
+    let file = robot.file.clone();
     let mut simulation = py.detach(|| Simulation::new(&file, &options))?;
     let mut columns = SampleColumns::default();
     let mut watch = Watch::new(py, progress)?;
@@ -66,7 +67,7 @@ pub fn simulate(
         });
     }
     log::warn(py, &simulation.warnings())?;
-    Log::new(py, columns, &file.cable_names(), Some(Robot { file: file.clone() }), Vec::new())
+    Log::new(py, columns, &file.cable_names(), Some(robot), Vec::new())
 }
 
 /// A run by its name.

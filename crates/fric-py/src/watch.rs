@@ -1,13 +1,20 @@
 //! Long calls: progress, Ctrl-C, and the interpreter for others meanwhile.
 
 use std::ops::Range;
+use std::panic::resume_unwind;
+use std::thread;
+use std::time::Duration;
 
+use fric_lab::fit::Progress;
 use pyo3::prelude::*;
 
 use crate::errors::Outcome;
 
 /// So many cycles pass between two looks at Ctrl-C and progress: a few milliseconds.
 pub const STRIDE: usize = 4096;
+
+/// How often Ctrl-C and progress are looked at while other threads compute.
+const INTERVAL: Duration = Duration::from_millis(10);
 
 /// Watches over a long call.
 pub struct Watch<'py> {
@@ -46,6 +53,25 @@ impl<'py> Watch<'py> {
             progress.call1((percent as f64 / 100.0,))?;
         }
         Ok(())
+    }
+
+    /// Runs a fit in threads of its own, the interpreter released, and ends it on Ctrl-C.
+    pub fn fit<T: Send>(&mut self, fit: impl FnOnce(&Progress) -> T + Send) -> Outcome<T> {
+        let (py, progress) = (self.py, Progress::new());
+        thread::scope(|scope| {
+            let worker = scope.spawn(|| fit(&progress));
+            let mut seen = Ok(());
+            while !worker.is_finished() {
+                let (done, total) = progress.steps();
+                seen = seen.and_then(|()| self.look(done as u64, total.max(1) as u64));
+                if seen.is_err() {
+                    progress.stop();
+                }
+                py.detach(|| thread::sleep(INTERVAL));
+            }
+            let fitted = worker.join().unwrap_or_else(|panic| resume_unwind(panic));
+            seen.and_then(|()| self.look(1, 1)).map(|()| fitted)
+        })
     }
 
     /// Does the work of `0..count` in pieces, the interpreter released during each.

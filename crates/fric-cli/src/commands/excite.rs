@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use fric_lab::excite::{Excitation, ExcitationError, ExcitationOptions};
+use fric_lab::text::to_millimetre;
 use fric_log::output::OutputFile;
 
 use crate::arguments::ExciteArguments;
@@ -64,7 +65,7 @@ fn describe(excitation: &Excitation, series: &RunSeries) -> String {
     if let Some(work_box) = excitation.work_box() {
         let corners_m = [work_box.center_m - work_box.half_edges_m, work_box.center_m + work_box.half_edges_m];
         let [from, to] = corners_m.map(|corner_m| {
-            let [x, y, z] = <[f64; 3]>::from(corner_m.map(output::to_millimetre));
+            let [x, y, z] = <[f64; 3]>::from(corner_m.map(to_millimetre));
             format!("({x:.3}, {y:.3}, {z:.3})")
         });
         // Writing to a String cannot fail, here and below.

@@ -4,12 +4,10 @@ use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::Duration;
 
-use fric_core::parameters::{MU, NO_PRESLIDING_N_PER_M, OFFSET, SIGMA, VISCOUS};
-use fric_core::robot::edit::{CableEdit, EffectEdit, FrictionEdit, rewrite};
-use fric_core::robot::unknown_name;
+use fric_lab::fit::readiness::{self, Holdings};
+use fric_lab::fit::result::{FitResult, Fits};
 use fric_lab::fit::{
-    CableFit, FitOptions, Measurements, Parameter, Progress, Reference, Termination, Weighing, WrenchFit, fit_cables,
-    fit_wrench,
+    FitOptions, Measurements, Parameter, Progress, Reference, Weighing, fit_cables, fit_wrench, rewritten,
 };
 use fric_log::output::OutputFile;
 use fric_log::recording::Recording;
@@ -17,13 +15,11 @@ use fric_log::signals::{Role, SignalReader};
 
 use crate::arguments::{FitArguments, ReferenceName};
 use crate::failure::{Failure, Outcome};
+use crate::interrupt;
 use crate::model::{self, Model};
 use crate::output::{self, JsonTarget};
 use crate::progress::{self, STRIDE};
-use crate::readiness::{self, Holdings, Readiness};
-use crate::result::{FitResult, LeftOut};
 use crate::warnings::{warn, warn_all};
-use crate::{identification, interrupt};
 
 /// How often the bar moves and Ctrl-C is looked at while all cores compute.
 const WATCH_INTERVAL: Duration = Duration::from_millis(20);
@@ -47,41 +43,26 @@ pub fn run(arguments: &FitArguments) -> Outcome {
     let (fits, readiness) = match reference {
         ReferenceName::Forces => {
             let (measurements, holdings) = read(logs, &model, Reference::Forces)?;
-            let readiness = readiness::by_forces(&model, &holdings);
-            readiness.check()?;
+            let readiness = readiness::by_forces(&model.robot, &holdings);
+            warn_all(&readiness.check()?);
             (Fits::Forces(watched(|progress| fit_cables(&measurements, &options, progress))?), readiness)
         }
         ReferenceName::Wrench => {
             // The robot file alone can rule it out.
-            readiness::geometry(&model).map_or(Ok(()), |lack| Err(Failure::from(lack)))?;
+            readiness::geometry(&model.robot, &model.origin).map_or(Ok(()), |lack| Err(lack.error()))?;
             let (measurements, holdings) = read(logs, &model, Reference::Wrench)?;
-            let readiness = readiness::by_wrench(&model, &holdings);
-            readiness.check()?;
+            let readiness = readiness::by_wrench(&model.robot, &model.origin, &holdings);
+            warn_all(&readiness.check()?);
             (Fits::Wrench(watched(|progress| fit_wrench(&measurements, &options, progress))?), readiness)
         }
     };
-    let outcome = identification::result(&model.robot, &fits);
-    check_used(&outcome)?;
-    warn_about(&outcome, fits.cables(), &readiness);
-    let text = rewritten(&model, fits.cables())?;
+    let outcome = FitResult::new(&model.robot, &fits);
+    outcome.check_used()?;
+    warn_all(&outcome.warnings(&fits, &readiness));
+    let text = rewritten(&model.text, &model.origin, fits.cables())?;
     fitted_file.finish_with(&text)?;
-    json.show(&identification::describe(&outcome))?;
+    json.show(&outcome.summary())?;
     json.write(&outcome)
-}
-
-/// What was fitted to what.
-pub enum Fits {
-    Forces(Vec<CableFit>),
-    Wrench(WrenchFit),
-}
-
-impl Fits {
-    pub fn cables(&self) -> &[CableFit] {
-        match self {
-            Self::Forces(cables) => cables,
-            Self::Wrench(fit) => &fit.cables,
-        }
-    }
 }
 
 /// Makes sure that no sample counts twice.
@@ -99,19 +80,8 @@ fn check_named_once(logs: &[PathBuf]) -> Outcome {
 
 /// The parameters that the command line names.
 fn named(names: &[String]) -> Outcome<Vec<Parameter>> {
-    let mut parameters = Vec::new();
-    for name in names.iter().map(|name| name.trim()) {
-        let parameter = Parameter::named(name).ok_or_else(|| {
-            let known: Vec<String> = Parameter::all().map(|parameter| parameter.to_string()).collect();
-            let problem = unknown_name("parameter", name, known.iter().map(String::as_str));
-            Failure::usage(format!("--parameters: {problem}"))
-        })?;
-        if parameters.contains(&parameter) {
-            return Err(Failure::usage(format!("--parameters: `{name}` is named twice; name it once")));
-        }
-        parameters.push(parameter);
-    }
-    Ok(parameters)
+    Parameter::all_named(names.iter().map(|name| name.trim()))
+        .map_err(|problem| Failure::usage(format!("--parameters: {problem}")))
 }
 
 /// The robot file named, or else the first that is attached to a log.
@@ -199,102 +169,4 @@ fn watched<T: Send>(fit: impl FnOnce(&Progress) -> T + Send) -> Outcome<T> {
     bar.finish_and_clear();
     interrupt::check()?;
     fitted.map_err(|_| Failure::new("the fit broke off: this is a defect of fric; please report it with the log"))
-}
-
-/// Fails where not one sample could be used.
-fn check_used(outcome: &FitResult) -> Outcome {
-    let Some(first) = outcome.cables.first().filter(|_| outcome.cables.iter().all(|cable| cable.samples == 0)) else {
-        return Ok(());
-    };
-    let (cause, advice) = why_unused(&first.left_out);
-    Err(Failure::new(format!("no sample can be used: {cause}")).advise(advice))
-}
-
-/// Why there is not one sample to learn from, and what to do.
-fn why_unused(left_out: &LeftOut) -> (&'static str, &'static str) {
-    let LeftOut { flagged, without_reference, warm_up, outliers: _ } = *left_out;
-    if warm_up >= flagged.max(without_reference) {
-        let cause = "the cables move too little to forget the friction stored in them when the log began";
-        (cause, "Record longer strokes, best the run of `fric-cli excite`.")
-    } else if flagged >= without_reference {
-        ("each is flagged, or has no tension on the cable", "See the flags with `fric-cli replay`.")
-    } else {
-        ("none has anything to compare with while its other signals are there", "See the signals with `fric-cli info`.")
-    }
-}
-
-/// What people have to know beside the table.
-fn warn_about(outcome: &FitResult, fits: &[CableFit], readiness: &Readiness) {
-    // Cables with the same trouble share a line.
-    let mut unused: Vec<(&str, Vec<&str>)> = Vec::new();
-    let told = |place: &usize| readiness.is_lacking(*place);
-    for (_, cable) in outcome.cables.iter().enumerate().filter(|(place, cable)| cable.samples == 0 && !told(place)) {
-        let (cause, _) = why_unused(&cable.left_out);
-        match unused.iter_mut().find(|(of, _)| *of == cause) {
-            Some((_, names)) => names.push(&cable.name),
-            None => unused.push((cause, vec![&cable.name])),
-        }
-    }
-    for (cause, names) in unused {
-        warn(&format!("{}: no sample can be used, values kept: {cause}", names.join(", ")));
-    }
-    for (cable, fit) in outcome.cables.iter().zip(fits) {
-        // What is left unfitted is told below the tables.
-        if !matches!(fit.termination, Termination::Converged | Termination::NothingToFit) {
-            warn(&format!(
-                "{}: the search ended without converging ({}); the values are the best found: look at the error that \
-                 is left before you use them",
-                cable.name,
-                fit.termination.name()
-            ));
-        }
-    }
-}
-
-/// The robot file with the fitted values; everything else stays as it is written.
-fn rewritten(model: &Model, fits: &[CableFit]) -> Outcome<String> {
-    let names = model.robot.cable_names();
-    let effects: Vec<EffectValues> = fits.iter().map(effects_of).collect();
-    let effect_edits: Vec<Vec<EffectEdit<'_>>> = effects
-        .iter()
-        .map(|of_cable| {
-            let set = |(kind, parameters)| EffectEdit::Set { kind, parameters };
-            of_cable.iter().map(|(kind, parameters)| set((*kind, parameters.as_slice()))).collect()
-        })
-        .collect();
-    let edits: Vec<CableEdit<'_>> = names
-        .into_iter()
-        .zip(fits)
-        .zip(&effect_edits)
-        .map(|((name, fit), effects)| {
-            let fitted = |place: usize| {
-                fit.fitted.iter().any(|parameter| parameter.place() == place).then_some(fit.values[place])
-            };
-            let friction = FrictionEdit {
-                mu: fitted(MU),
-                sigma_n_per_m: fitted(SIGMA).filter(|sigma_n_per_m| *sigma_n_per_m < NO_PRESLIDING_N_PER_M),
-                viscous_n_s_per_m: fitted(VISCOUS),
-                offset_n: fitted(OFFSET),
-            };
-            CableEdit { name, friction, effects }
-        })
-        .collect();
-    Ok(rewrite(&model.text, &model.origin, &edits)?)
-}
-
-/// Parameters of effects, by kind and key.
-type EffectValues = Vec<(&'static str, Vec<(&'static str, f64)>)>;
-
-/// Fitted parameters of each effect.
-fn effects_of(fit: &CableFit) -> EffectValues {
-    let mut effects = EffectValues::new();
-    for parameter in &fit.fitted {
-        let Some(kind) = parameter.effect() else { continue };
-        let number = (parameter.row().key, fit.values[parameter.place()]);
-        match effects.iter_mut().find(|(of, _)| *of == kind) {
-            Some((_, numbers)) => numbers.push(number),
-            None => effects.push((kind, vec![number])),
-        }
-    }
-    effects
 }

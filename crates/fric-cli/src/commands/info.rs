@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
+use fric_lab::fit::readiness::{self, Holdings, Readiness};
+use fric_lab::text::table;
 use fric_log::recording::Recording;
 use fric_log::signals::{Role, SignalPaths, SignalReader};
 use serde::Serialize;
@@ -11,9 +13,8 @@ use crate::arguments::InfoArguments;
 use crate::failure::Outcome;
 use crate::interrupt;
 use crate::model::Model;
-use crate::output::{JsonTarget, table};
+use crate::output::JsonTarget;
 use crate::progress::{self, STRIDE};
-use crate::readiness::{self, Holdings, Readiness};
 use crate::warnings::warn_all;
 
 /// `fric-info/1`.
@@ -257,8 +258,8 @@ fn steps(model: &Model, holdings: &Holdings, problem: Option<&str>) -> Vec<StepR
         step("replay: forces", has_rows, forces),
         step("replay: wrench", has_wrench, wrench),
         step("replay: errors", has_rows && holdings.has_reference(), errors),
-        fit("fit: forces", readiness::by_forces(model, holdings)),
-        fit("fit: wrench", readiness::by_wrench(model, holdings)),
+        fit("fit: forces", readiness::by_forces(&model.robot, holdings)),
+        fit("fit: wrench", readiness::by_wrench(&model.robot, &model.origin, holdings)),
     ]
 }
 

@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
+use fric_lab::errors::{ForceError, WrenchResult};
 use fric_lab::replay::{CableErrors, Replay};
+use fric_lab::text::table;
 use fric_log::output::OutputFile;
 use fric_log::recording::Recording;
 use fric_log::signals::SignalReader;
@@ -13,10 +15,10 @@ use crate::arguments::ReplayArguments;
 use crate::failure::{Failure, Outcome};
 use crate::interrupt;
 use crate::model::{self, Model};
-use crate::output::{self, JsonTarget, table, wrench_table};
+use crate::output::{self, JsonTarget};
 use crate::progress::{self, STRIDE};
 use crate::report::{self, Series};
-use crate::result::{CableResult, CycleResult, ReplayResult, WrenchError, WrenchResult, force_error};
+use crate::result::{CableResult, CycleResult, ReplayResult};
 use crate::warnings::warn_all;
 
 /// Runs the command.
@@ -87,19 +89,15 @@ fn summarize(model: &Model, names: &[&str], replay: &Replay, durations: &Histogr
         name: (*name).to_owned(),
         samples: replay.cycle_count(),
         flagged: errors.flagged_count,
-        before: force_error(&errors.before_n),
-        after: force_error(&errors.after_n),
+        before: ForceError::of(&errors.before_n),
+        after: ForceError::of(&errors.after_n),
     };
-    let wrench_error = |(force_rms_n, torque_rms_nm)| WrenchError { force_rms_n, torque_rms_nm };
     let (before, after) = replay.wrench();
     ReplayResult {
         format: ReplayResult::FORMAT,
         robot: model.robot.options().name.clone(),
         cables: names.iter().zip(replay.cables()).map(cable).collect(),
-        wrench: before
-            .rms()
-            .zip(after.rms())
-            .map(|(before, after)| WrenchResult { before: wrench_error(before), after: wrench_error(after) }),
+        wrench: WrenchResult::of(before, after),
         cycle: CycleResult {
             count: replay.cycle_count(),
             median_ns: durations.value_at_quantile(0.5),
@@ -136,7 +134,7 @@ fn describe(result: &ReplayResult) -> String {
     text += &table(&header, 1, &rows);
     if let Some(wrench) = &result.wrench {
         text += "\n";
-        text += &wrench_table(wrench);
+        text += &wrench.table();
     }
     let CycleResult { count, median_ns, p999_ns, max_ns } = result.cycle;
     text + &format!(

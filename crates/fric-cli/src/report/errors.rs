@@ -2,11 +2,12 @@
 
 use std::path::PathBuf;
 
+use fric_lab::errors::WrenchResult;
 use maud::{Markup, PreEscaped, html};
 
 use super::chart::{Chart, Span};
 use super::series::{Extent, Interval, Series};
-use crate::result::{ReplayResult, WrenchResult};
+use crate::result::ReplayResult;
 
 /// The page.
 pub fn page(result: &ReplayResult, series: &Series, logs: &[PathBuf]) -> String {

@@ -4,6 +4,7 @@ use fric_core::LANES;
 use fric_core::parameters::{MU, SIGMA, Values};
 use std::panic::resume_unwind;
 use std::rc::Rc;
+use std::sync::atomic::AtomicBool;
 use std::thread;
 
 use super::gang::{Gang, Seat};
@@ -152,6 +153,26 @@ pub(super) fn cable_fits(
             }
         })
         .collect()
+}
+
+/// Compensated force less reference with the fitted values, N: of every cable, for every sample; NaN without a reference.
+#[must_use]
+pub fn residuals_n(measurements: &Measurements<'_>, fits: &[CableFit]) -> Vec<Vec<f64>> {
+    let stop = AtomicBool::new(false);
+    let problem = Problem {
+        members: measurements.cables().map(|record| Member { record, free: Vec::new() }).collect(),
+        comparison: Comparison::Forces,
+        loss: Loss::Squares,
+        used: Vec::new(),
+        stop: &stop,
+        seat: None,
+    };
+    let values: Vec<Values> = fits.iter().map(|fit| fit.values).collect();
+    let of_cable = |(member, forces): (&Member<'_>, &Forces)| {
+        let rows = member.record.rows.iter().enumerate();
+        rows.map(|(cycle, row)| forces.at(cycle).0 - row.reference_n).collect()
+    };
+    problem.members.iter().zip(&problem.forces(&values).unwrap_or_default()).map(of_cable).collect()
 }
 
 /// Errors of the force at the platform without and with compensation, over every sample that has a reference, flagged ones

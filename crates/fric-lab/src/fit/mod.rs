@@ -4,6 +4,9 @@
 //! cannot determine. Samples go into [`Measurements`]; [`fit_cables`] compares with cable forces measured at the platform,
 //! [`fit_wrench`] with the outside wrench, for all cables at once.
 //!
+//! [`readiness`] tells beforehand what a log lacks, [`result`] is what a fit gives to machines and people, [`rewritten`] puts
+//! the values into a robot file.
+//!
 //! The model is the cycle's own ([`fric_core::CableGroup`]) run with numbers that carry derivatives along; there is no second one.
 //! Nothing here fails: a search that does not converge says so in its [`Termination`]. Results do not depend on the
 //! number of threads.
@@ -11,6 +14,7 @@
 mod cables;
 mod determined;
 mod dual;
+mod error;
 mod gang;
 mod gram;
 mod optimizer;
@@ -18,26 +22,32 @@ mod options;
 mod pass;
 mod problem;
 mod progress;
+pub mod readiness;
 mod record;
 mod report;
 mod residual_function;
+pub mod result;
+mod rewritten;
 mod scores;
 mod selection;
 mod solve;
 mod start;
+mod summary;
 mod vector;
 mod weight;
 mod wrench;
 
-pub use cables::fit_cables;
+pub use cables::{fit_cables, residuals_n};
 pub use determined::HALF_INTERVAL;
 pub use dual::Dual;
+pub use error::FitError;
 pub use optimizer::Termination;
 pub use options::FitOptions;
 pub use progress::Progress;
 pub use record::{CableRecord, Measurements, Reference, Row};
 pub use report::{CableFit, ForceErrors, WrenchFit};
 pub use residual_function::ResidualFunction;
+pub use rewritten::rewritten;
 pub use selection::SampleCounts;
 pub use solve::Weighing;
 pub use vector::Parameter;

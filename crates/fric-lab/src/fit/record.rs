@@ -22,6 +22,20 @@ pub enum Reference {
     Wrench,
 }
 
+impl Reference {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Forces, Self::Wrench];
+
+    /// In a word.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Forces => "forces",
+            Self::Wrench => "wrench",
+        }
+    }
+}
+
 /// One cycle of one cable.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
@@ -181,7 +195,7 @@ pub struct CableRecord<'a> {
     pub params: &'a CableParams,
     /// Its cycles, one log after the other.
     pub rows: &'a [Row],
-    starts: &'a [usize],
+    pub(super) starts: &'a [usize],
     pub(super) cycle_s: f64,
 }
 

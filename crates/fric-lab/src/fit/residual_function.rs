@@ -1,33 +1,35 @@
 //! The residuals of \[P\] 18 as a function of the parameters, for optimisers of one's own.
 
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use fric_core::CableParams;
 use fric_core::parameters::Values;
 
 use super::FitOptions;
 use super::cables::{leave_out_warm_up, prepared, used};
 use super::problem::{Comparison, Loss, Member, Problem};
-use super::record::CableRecord;
+use super::record::{CableRecord, Row};
 use super::start;
-use super::vector::{Parameter, with};
+use super::vector::{Coordinate, Parameter, with};
 
 /// Residuals `f(p) − f_ref` in N of a cable's sound samples, and their derivatives, as functions of its free parameters.
 ///
 /// Samples are those that [`fit_cables`](super::fit_cables) starts with: flagged ones, those without a reference and the
-/// warm-up are left out, outliers are not.
+/// warm-up are left out, outliers are not. It keeps them itself; copies share them.
 #[derive(Clone, Debug)]
-pub struct ResidualFunction<'a> {
-    record: CableRecord<'a>,
+pub struct ResidualFunction {
+    cable: Arc<Cable>,
     free: Vec<Parameter>,
     given: Values,
     start: Values,
     used: Vec<bool>,
 }
 
-impl<'a> ResidualFunction<'a> {
+impl ResidualFunction {
     /// Of a cable, with what `options` says to vary.
     #[must_use]
-    pub fn new(record: &CableRecord<'a>, options: &FitOptions) -> Self {
+    pub fn new(record: &CableRecord<'_>, options: &FitOptions) -> Self {
         let given = record.params.values();
         let free = options.free(record.params);
         let mut standings = prepared(record);
@@ -43,7 +45,7 @@ impl<'a> ResidualFunction<'a> {
         let starts = start::starts(&problem, &[given], record.cycle_s);
         leave_out_warm_up(&problem, &starts, &mut standings);
         let start = starts.first().and_then(|start| start.first()).copied().unwrap_or(given);
-        Self { record: *record, free, given, start, used: used(&standings) }
+        Self { cable: Arc::new(Cable::of(record)), free, given, start, used: used(&standings) }
     }
 
     /// What varies, in the order of the arguments.
@@ -56,6 +58,12 @@ impl<'a> ResidualFunction<'a> {
     #[must_use]
     pub fn start(&self) -> Vec<f64> {
         self.free.iter().map(|parameter| self.start[parameter.place()]).collect()
+    }
+
+    /// Least and greatest value of each that the model takes.
+    #[must_use]
+    pub fn bounds(&self) -> Vec<(f64, f64)> {
+        self.free.iter().map(|parameter| Coordinate::of(parameter, self.cable.cycle_s).range()).collect()
     }
 
     /// How many residuals.
@@ -94,12 +102,32 @@ impl<'a> ResidualFunction<'a> {
     fn with_problem(&self, run: impl FnOnce(&Problem<'_>)) {
         let stop = AtomicBool::new(false);
         run(&Problem {
-            members: vec![Member { record: self.record, free: self.free.clone() }],
+            members: vec![Member { record: self.cable.record(), free: self.free.clone() }],
             comparison: Comparison::Forces,
             loss: Loss::Squares,
             used: self.used.clone(),
             stop: &stop,
             seat: None,
         });
+    }
+}
+
+/// A cable's record of its own.
+#[derive(Clone, Debug)]
+struct Cable {
+    params: CableParams,
+    rows: Vec<Row>,
+    starts: Vec<usize>,
+    cycle_s: f64,
+}
+
+impl Cable {
+    fn of(record: &CableRecord<'_>) -> Self {
+        let starts = record.logs().map(|(start, _)| start).collect();
+        Self { params: *record.params, rows: record.rows.to_vec(), starts, cycle_s: record.cycle_s }
+    }
+
+    fn record(&self) -> CableRecord<'_> {
+        CableRecord { params: &self.params, rows: &self.rows, starts: &self.starts, cycle_s: self.cycle_s }
     }
 }

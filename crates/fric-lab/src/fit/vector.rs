@@ -9,6 +9,7 @@ use std::fmt;
 
 use fric_core::effects::time_delay::{DELAY, MAX_DELAY_CYCLES};
 use fric_core::parameters::{self, FRICTION_COUNT, PARAMETER_COUNT, ParameterRow, Values};
+use fric_core::robot::unknown_name;
 
 /// One parameter of a cable: its place in [`Values`] with its row.
 #[derive(Clone, Copy, Debug)]
@@ -28,6 +29,25 @@ impl Parameter {
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         Self::all().find(|parameter| parameter.to_string() == name)
+    }
+
+    /// The parameters of several names.
+    ///
+    /// # Errors
+    /// What is wrong with the first name that is unknown or comes twice, in a sentence without its full stop.
+    pub fn all_named<'a>(names: impl IntoIterator<Item = &'a str>) -> Result<Vec<Self>, String> {
+        let mut parameters = Vec::new();
+        for name in names {
+            let parameter = Self::named(name).ok_or_else(|| {
+                let known: Vec<String> = Self::all().map(|parameter| parameter.to_string()).collect();
+                unknown_name("parameter", name, known.iter().map(String::as_str))
+            })?;
+            if parameters.contains(&parameter) {
+                return Err(format!("`{name}` is named twice; name it once"));
+            }
+            parameters.push(parameter);
+        }
+        Ok(parameters)
     }
 
     /// Its place in [`Values`].
@@ -110,6 +130,11 @@ impl Coordinate {
             Shape::Bounded
         };
         Self { min, max, shape }
+    }
+
+    /// Least and greatest value.
+    pub fn range(self) -> (f64, f64) {
+        (self.min, self.max)
     }
 
     /// The coordinate of a value; one out of range is moved into it.

@@ -16,6 +16,7 @@
 mod error;
 mod movement;
 mod pass;
+mod result;
 mod survey;
 
 use fric_core::robot::file::RobotFile;
@@ -26,6 +27,7 @@ use crate::replay::Replay;
 use pass::{Components, Pass, PassFinder};
 
 pub use error::HysteresisError;
+pub use result::{AxisResult, HysteresisResult, WidthResult};
 pub use survey::{CrossedPose, Survey};
 
 /// A platform so many tolerances aside is not on the axis.

@@ -88,7 +88,7 @@ fn value_and_step(parameter: &Parameter, random: &mut ChaCha8Rng) -> (f64, f64) 
 }
 
 /// Of each parameter: whether the two one-sided differences part, and how far the central one is from the derivative.
-fn check(record: &CableRecord<'_>, function: &ResidualFunction<'_>, values: &[f64], steps: &[f64]) -> Vec<(bool, f64)> {
+fn check(record: &CableRecord<'_>, function: &ResidualFunction, values: &[f64], steps: &[f64]) -> Vec<(bool, f64)> {
     let width = values.len();
     let jacobian = function.jacobian(values);
     let middle = function.residuals(values);

@@ -5,8 +5,9 @@ mod tables;
 mod values;
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
-use fric_core::robot::file::RobotFile;
+use fric_core::robot::file::{RobotFile, RobotFileError};
 use fric_core::robot::unknown_name;
 use fric_log::output::OutputFile;
 use pyo3::prelude::*;
@@ -33,9 +34,12 @@ use crate::errors::{Fault, Outcome};
 /// ...
 /// fric.ConfigError: cable "cable1": `mu` is 2; allowed is 0 to 0.9
 #[pyclass(module = "fric")]
+#[derive(Clone)]
 pub struct Robot {
     /// The file as edited.
     pub file: RobotFile,
+    /// Its text, as long as nothing is edited.
+    text: Option<Arc<str>>,
 }
 
 const KEYS: Keys = Keys { class: "Robot", all: &["name", "cycle_s", "platform", "log", "monitor"], optional: &[] };
@@ -45,17 +49,22 @@ impl Robot {
     /// The robot of a robot file.
     #[staticmethod]
     fn read(path: PathBuf) -> Outcome<Self> {
-        Ok(Self { file: RobotFile::read(&path)? })
+        let text =
+            std::fs::read_to_string(&path).map_err(|source| RobotFileError::Read { path: path.clone(), source })?;
+        Self::parse(text, &path.display().to_string())
     }
 
     /// The robot of a robot file's text.
     #[staticmethod]
     fn from_toml(text: &str) -> Outcome<Self> {
-        Ok(Self { file: RobotFile::parse(text, "text")? })
+        Self::parse(text.to_owned(), "text")
     }
 
-    /// The robot as the text of a robot file, without comments.
+    /// The robot as the text of a robot file: as it was read, comments included, unless an attribute has been set since.
     pub fn to_toml(&self) -> Outcome<String> {
+        if let Some(text) = &self.text {
+            return Ok(text.as_ref().to_owned());
+        }
         self.file.to_toml().map_err(|error| Fault::config(format!("the robot cannot be written as TOML: {error}")))
     }
 
@@ -148,6 +157,21 @@ impl Robot {
 }
 
 impl Robot {
+    /// The robot of a text; `origin` says where it is from, for errors.
+    pub fn parse(text: String, origin: &str) -> Outcome<Self> {
+        Ok(Self { file: RobotFile::parse(&text, origin)?, text: Some(text.into()) })
+    }
+
+    /// A robot file with the text it was read from.
+    pub fn new(file: RobotFile, text: String) -> Self {
+        Self { file, text: Some(text.into()) }
+    }
+
+    /// Takes another file in the place of this one.
+    fn edit(&mut self, file: RobotFile) {
+        *self = Self { file, text: None };
+    }
+
     /// Which cable has a name.
     pub fn cable_index(&self, name: &str) -> Outcome<usize> {
         let names = self.file.cable_names();
@@ -160,7 +184,7 @@ fn edit_keys(robot: &Bound<'_, Robot>, given: &[(String, Bound<'_, PyAny>)]) -> 
     // Reading the values may run Python code that looks at the robot.
     let given = KEYS.read(given, "")?;
     let file = edit::with(&robot.borrow().file, &[], given)?;
-    robot.borrow_mut().file = file;
+    robot.borrow_mut().edit(file);
     Ok(())
 }
 

@@ -39,7 +39,7 @@ impl Place {
         // Reading the values may run Python code that looks at the robot.
         let given = keys.read(given, &cable)?;
         let file = edit::with(&self.robot.borrow(py).file, &self.steps, given)?;
-        self.robot.borrow_mut(py).file = file;
+        self.robot.borrow_mut(py).edit(file);
         Ok(())
     }
 }

@@ -1,16 +1,19 @@
 //! What a log holds for an identification, and what it lacks.
 
 use fric_core::Sample;
+use fric_core::robot::file::RobotFile;
 
-use crate::failure::{Failure, Outcome};
-use crate::model::Model;
-use crate::warnings::warn;
+use super::error::FitError;
+use super::record::Reference;
 
 /// How many rows of one or several logs have which signal.
 #[derive(Clone, Debug)]
 pub struct Holdings {
+    /// Rows.
     pub rows: u64,
+    /// Those with a pose.
     pub posed: u64,
+    /// Those with the outside wrench.
     pub wrenched: u64,
     cables: Vec<CableHoldings>,
 }
@@ -24,10 +27,12 @@ struct CableHoldings {
 
 impl Holdings {
     /// Nothing yet, of so many cables.
+    #[must_use]
     pub fn new(cable_count: usize) -> Self {
         Self { rows: 0, posed: 0, wrenched: 0, cables: vec![CableHoldings::default(); cable_count] }
     }
 
+    /// Takes in a row.
     pub fn add(&mut self, row: &Sample<'_>) {
         self.rows += 1;
         self.posed += u64::from(row.pose.is_some());
@@ -51,6 +56,7 @@ impl Holdings {
     }
 
     /// Whether any cable has a reference.
+    #[must_use]
     pub fn has_reference(&self) -> bool {
         self.cables.iter().any(|cable| cable.referenced > 0)
     }
@@ -62,6 +68,8 @@ pub struct Lack {
     /// In one sentence, without its full stop.
     pub cause: String,
     advice: &'static str,
+    /// The other reference, with which it would not be missing.
+    instead: Option<Reference>,
     /// The cables that cannot be identified without it, by place.
     cables: Vec<usize>,
 }
@@ -69,48 +77,66 @@ pub struct Lack {
 /// All that is missing for an identification.
 #[derive(Debug)]
 pub struct Readiness {
+    /// Each of it.
     pub lacks: Vec<Lack>,
     cable_count: usize,
 }
 
 impl Readiness {
     /// Whether any cable can be identified.
+    #[must_use]
     pub fn is_possible(&self) -> bool {
         (0..self.cable_count).any(|cable| !self.is_lacking(cable))
     }
 
     /// Whether something is missing for a cable.
+    #[must_use]
     pub fn is_lacking(&self, cable: usize) -> bool {
         self.lacks.iter().any(|lack| lack.cables.contains(&cable))
     }
 
-    /// Fails where no cable can be identified; otherwise warns of what is missing.
-    pub fn check(&self) -> Outcome {
+    /// What is missing for a cable first of all.
+    #[must_use]
+    pub fn lack_of(&self, cable: usize) -> Option<&Lack> {
+        self.lacks.iter().find(|lack| lack.cables.contains(&cable))
+    }
+
+    /// What to warn of: what is missing for some cables.
+    ///
+    /// # Errors
+    /// [`FitError`] where no cable can be identified.
+    pub fn check(&self) -> Result<Vec<String>, FitError> {
         if !self.is_possible() {
             let worst = self.lacks.iter().rev().max_by_key(|lack| lack.cables.len());
-            return Err(worst.map_or_else(
-                || Failure::new("the robot has no cables"),
-                |lack| Failure::new(&lack.cause).advise(lack.advice),
-            ));
+            return Err(worst.map_or_else(|| FitError::new("the robot has no cables", ""), Lack::error));
         }
-        for Lack { cause, cables, .. } in &self.lacks {
+        let warning = |Lack { cause, cables, .. }: &Lack| {
             let consequence = match cables.as_slice() {
                 [] => "",
                 [_] => ": its values are kept",
                 _ => ": their values are kept",
             };
-            warn(&format!("{cause}{consequence}"));
-        }
-        Ok(())
+            format!("{cause}{consequence}")
+        };
+        Ok(self.lacks.iter().map(warning).collect())
+    }
+}
+
+impl Lack {
+    /// As what ends the work.
+    #[must_use]
+    pub fn error(&self) -> FitError {
+        FitError { instead: self.instead, ..FitError::new(&self.cause, self.advice) }
     }
 }
 
 const POSE_ADVICE: &str = "Name the topic of the poses as `pose` under `[log]` in the robot file.";
 
 /// What is missing to identify each cable from its force at the platform.
-pub fn by_forces(model: &Model, holdings: &Holdings) -> Readiness {
-    let log = &model.robot.options().log;
-    let (names, robot) = (model.robot.cable_names(), model.robot.params());
+#[must_use]
+pub fn by_forces(robot: &RobotFile, holdings: &Holdings) -> Readiness {
+    let log = &robot.options().log;
+    let (names, params) = (robot.cable_names(), robot.params());
     let mut readiness = Readiness { lacks: silent(&names, holdings), cable_count: names.len() };
     let without = |readiness: &Readiness, is_missing: &dyn Fn(usize) -> bool| -> Vec<usize> {
         (0..names.len()).filter(|cable| !readiness.is_lacking(*cable) && is_missing(*cable)).collect()
@@ -119,12 +145,12 @@ pub fn by_forces(model: &Model, holdings: &Holdings) -> Readiness {
     if !cables.is_empty() {
         readiness.lacks.push(Lack {
             cause: format!("the log has no reference forces on {}{}", log.reference, of(&names, &cables)),
-            advice: "Name their topic as `reference` under `[log]` in the robot file, or fit without them: \
-                     --reference wrench.",
+            advice: "Name their topic as `reference` under `[log]` in the robot file, or fit without them",
+            instead: Some(Reference::Wrench),
             cables,
         });
     }
-    let follows_pose = |cable: usize| robot.cables().get(cable).is_some_and(fric_core::CableParams::needs_pose);
+    let follows_pose = |cable: usize| params.cables().get(cable).is_some_and(fric_core::CableParams::needs_pose);
     let cables = if holdings.posed == 0 { without(&readiness, &follows_pose) } else { Vec::new() };
     if !cables.is_empty() {
         readiness.lacks.push(Lack {
@@ -134,18 +160,20 @@ pub fn by_forces(model: &Model, holdings: &Holdings) -> Readiness {
                 of(&names, &cables)
             ),
             advice: POSE_ADVICE,
+            instead: None,
             cables,
         });
     }
     readiness
 }
 
-/// What is missing to identify all cables from the wrench on the platform.
-pub fn by_wrench(model: &Model, holdings: &Holdings) -> Readiness {
-    let log = &model.robot.options().log;
-    let names = model.robot.cable_names();
+/// What is missing to identify all cables from the wrench on the platform; `origin` says where the robot file is from.
+#[must_use]
+pub fn by_wrench(robot: &RobotFile, origin: &str, holdings: &Holdings) -> Readiness {
+    let log = &robot.options().log;
+    let names = robot.cable_names();
     let all: Vec<usize> = (0..names.len()).collect();
-    let mut lacks: Vec<Lack> = geometry(model).into_iter().collect();
+    let mut lacks: Vec<Lack> = geometry(robot, origin).into_iter().collect();
     for lack in silent(&names, holdings) {
         lacks.push(Lack {
             cause: format!("{}, and the wrench is that of all", lack.cause),
@@ -157,10 +185,11 @@ pub fn by_wrench(model: &Model, holdings: &Holdings) -> Readiness {
         lacks.push(Lack {
             cause: format!("the log has no pose on {}: the directions of the cables are not known", log.pose),
             advice: POSE_ADVICE,
+            instead: None,
             cables: all.clone(),
         });
     }
-    let mass_kg = model.robot.params().mass_kg();
+    let mass_kg = robot.params().mass_kg();
     if holdings.wrenched == 0 && mass_kg > 0.0 {
         lacks.push(Lack {
             cause: format!(
@@ -169,38 +198,35 @@ pub fn by_wrench(model: &Model, holdings: &Holdings) -> Readiness {
                 log.wrench
             ),
             advice: "",
+            instead: None,
             cables: Vec::new(),
         });
     } else if holdings.wrenched == 0 {
         lacks.push(Lack {
             cause: format!("the log has no wrench on {}, and the robot file no mass to take it from", log.wrench),
             advice: "Name the topic as `wrench` under `[log]`, or give `mass_kg` under `[platform]`, in the robot file.",
+            instead: None,
             cables: all,
         });
     }
     Readiness { lacks, cable_count: names.len() }
 }
 
-/// What the robot file lacks for the wrench.
-pub fn geometry(model: &Model) -> Option<Lack> {
-    let (names, robot) = (model.robot.cable_names(), model.robot.params());
+/// What the robot file lacks for the wrench; `origin` says where it is from.
+#[must_use]
+pub fn geometry(robot: &RobotFile, origin: &str) -> Option<Lack> {
+    let (names, params) = (robot.cable_names(), robot.params());
     let without: Vec<&str> =
-        names.iter().zip(robot.cables()).filter(|(_, cable)| !cable.has_geometry()).map(|(name, _)| *name).collect();
+        names.iter().zip(params.cables()).filter(|(_, cable)| !cable.has_geometry()).map(|(name, _)| *name).collect();
     (!without.is_empty()).then(|| Lack {
         cause: format!(
-            "{} has no `base_m` and `platform_m` of {}, which the wrench needs of every cable",
-            model.origin,
+            "{origin} has no `base_m` and `platform_m` of {}, which the wrench needs of every cable",
             without.join(", ")
         ),
-        advice: "Add them, or fit each cable to its reference force: --reference forces.",
+        advice: "Add them, or fit each cable to its reference force",
+        instead: Some(Reference::Forces),
         cables: (0..names.len()).collect(),
     })
-}
-
-impl From<Lack> for Failure {
-    fn from(lack: Lack) -> Self {
-        Self::new(lack.cause).advise(lack.advice)
-    }
 }
 
 /// Cables that the log says nothing of.
@@ -212,6 +238,7 @@ fn silent(names: &[&str], holdings: &Holdings) -> Vec<Lack> {
     let lack = (!cables.is_empty()).then(|| Lack {
         cause: format!("the log has no signal of {}", listed.join(", ")),
         advice: "Compare the names of the cables in the log with those in the robot file.",
+        instead: None,
         cables,
     });
     lack.into_iter().collect()

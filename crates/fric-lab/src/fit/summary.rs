@@ -1,71 +1,16 @@
-//! The result of an identification: for machines, and as the tables of \[P\].
+//! The result of an identification for people, as the tables of \[P\].
 
 use std::fmt::Write as _;
 
 use fric_core::effects;
-use fric_core::parameters::{FRICTION_COUNT, MU, NO_PRESLIDING_N_PER_M, OFFSET, SIGMA, VISCOUS};
-use fric_core::robot::file::RobotFile;
-use fric_lab::fit::{CableFit, Parameter, WrenchFit};
-use fric_lab::replay::WrenchErrors;
+use fric_core::parameters::{FRICTION_COUNT, MU, OFFSET, SIGMA, VISCOUS};
 
-use crate::commands::fit::Fits;
-use crate::output::{table, wrench_table};
-use crate::result::{FitCableResult, FitResult, LeftOut, Numbers, WrenchError, WrenchResult, force_error};
+use super::result::{FitCableResult, FitResult, Numbers};
+use super::vector::Parameter;
+use crate::text::table;
 
-/// The result for machines.
-pub fn result(robot: &RobotFile, fits: &Fits) -> FitResult {
-    let cables = robot.cable_names().into_iter().zip(fits.cables());
-    let (reference, wrench) = match fits {
-        Fits::Forces(_) => ("forces", None),
-        Fits::Wrench(WrenchFit { measured, before, after, .. }) => {
-            (if *measured { "wrench" } else { "mass" }, wrench_result(before, after))
-        }
-    };
-    FitResult {
-        format: FitResult::FORMAT,
-        robot: robot.options().name.clone(),
-        reference,
-        cables: cables.map(|(name, fit)| cable_result(name, fit)).collect(),
-        wrench,
-    }
-}
-
-fn wrench_result(before: &WrenchErrors, after: &WrenchErrors) -> Option<WrenchResult> {
-    let error = |(force_rms_n, torque_rms_nm)| WrenchError { force_rms_n, torque_rms_nm };
-    Some(WrenchResult { before: error(before.rms()?), after: error(after.rms()?) })
-}
-
-fn cable_result(name: &str, fit: &CableFit) -> FitCableResult {
-    let shown = |parameter: &Parameter| {
-        let value = fit.values[parameter.place()];
-        let relevant =
-            parameter.is_friction() || fit.fitted.contains(parameter) || fit.undetermined.contains(parameter);
-        (relevant && value < NO_PRESLIDING_N_PER_M).then(|| (parameter.to_string(), value))
-    };
-    let error = |parameter: &Parameter| Some((parameter.to_string(), fit.standard_error(parameter)?));
-    let samples = fit.samples;
-    FitCableResult {
-        name: name.to_owned(),
-        samples: samples.used,
-        left_out: LeftOut {
-            flagged: samples.flagged,
-            without_reference: samples.without_reference,
-            warm_up: samples.warm_up,
-            outliers: samples.outliers,
-        },
-        termination: fit.termination.name(),
-        evaluations: fit.evaluation_count,
-        parameters: Numbers(Parameter::all().filter_map(|parameter| shown(&parameter)).collect()),
-        standard_errors: Numbers(Parameter::all().filter_map(|parameter| error(&parameter)).collect()),
-        undetermined: fit.undetermined.iter().map(ToString::to_string).collect(),
-        before: force_error(&fit.errors.before_n),
-        after: force_error(&fit.errors.after_n),
-        mean_reference_n: fit.errors.reference_n.mean_magnitude(),
-    }
-}
-
-/// The result for people: \[P\] table I, how sure it is, and what the log does not tell.
-pub fn describe(result: &FitResult) -> String {
+/// \[P\] table I, how sure it is, and what the log does not tell.
+pub(super) fn describe(result: &FitResult) -> String {
     let from = match result.reference {
         "forces" => "the cable forces at the platform",
         "wrench" => "the wrench on the platform, all cables at once",
@@ -83,7 +28,7 @@ pub fn describe(result: &FitResult) -> String {
     text += &sample_table(result);
     if let Some(wrench) = &result.wrench {
         text += "\n";
-        text += &wrench_table(wrench);
+        text += &wrench.table();
     }
     text += &undetermined(result);
     text

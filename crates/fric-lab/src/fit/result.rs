@@ -1,0 +1,230 @@
+//! The result of an identification for machines, `format = "fric-fit/1"`, with what is to be told beside it.
+
+use fric_core::parameters::NO_PRESLIDING_N_PER_M;
+use fric_core::robot::file::RobotFile;
+use serde::ser::SerializeMap as _;
+use serde::{Serialize, Serializer};
+
+use super::error::FitError;
+use super::optimizer::Termination;
+use super::readiness::Readiness;
+use super::report::{CableFit, WrenchFit};
+use super::summary;
+use super::vector::Parameter;
+use crate::errors::{ForceError, WrenchResult};
+
+/// What was fitted to what.
+#[derive(Clone, Debug)]
+pub enum Fits {
+    /// Each cable to its force at the platform.
+    Forces(Vec<CableFit>),
+    /// All cables to the outside wrench.
+    Wrench(WrenchFit),
+}
+
+impl Fits {
+    /// The cables in the robot's order.
+    #[must_use]
+    pub fn cables(&self) -> &[CableFit] {
+        match self {
+            Self::Forces(cables) => cables,
+            Self::Wrench(fit) => &fit.cables,
+        }
+    }
+}
+
+/// All of an identification.
+#[derive(Clone, Debug, Serialize)]
+pub struct FitResult {
+    /// Name and version of the form.
+    pub format: &'static str,
+    /// Name of the robot.
+    pub robot: String,
+    /// `forces`, `wrench`, or `mass` where the wrench is that of the platform's mass.
+    pub reference: &'static str,
+    /// The cables in the robot's order.
+    pub cables: Vec<FitCableResult>,
+    /// Errors of the wrench, where it is the reference.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub wrench: Option<WrenchResult>,
+}
+
+/// One cable.
+#[derive(Clone, Debug, Serialize)]
+pub struct FitCableResult {
+    /// Its name.
+    pub name: String,
+    /// Samples learned from.
+    pub samples: usize,
+    /// Samples not learned from.
+    pub left_out: LeftOut,
+    /// Why the search has ended.
+    pub termination: &'static str,
+    /// How often the model was evaluated with its derivatives.
+    pub evaluations: usize,
+    /// Values, fitted or kept.
+    pub parameters: Numbers,
+    /// Standard errors of those fitted.
+    pub standard_errors: Numbers,
+    /// What the samples do not determine.
+    pub undetermined: Vec<String>,
+    /// Error as if nothing rubbed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub before: Option<ForceError>,
+    /// Error with these values.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub after: Option<ForceError>,
+    /// Mean of the reference, N.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mean_reference_n: Option<f64>,
+}
+
+/// Samples that were not learned from.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct LeftOut {
+    /// Faulty, or without tension on the cable.
+    pub flagged: usize,
+    /// Nothing to compare with.
+    pub without_reference: usize,
+    /// At the start of a log.
+    pub warm_up: usize,
+    /// Too far out.
+    pub outliers: usize,
+}
+
+/// Numbers by name, in order.
+#[derive(Clone, Debug)]
+pub struct Numbers(pub Vec<(String, f64)>);
+
+impl Numbers {
+    /// The number of a name.
+    #[must_use]
+    pub fn get(&self, name: &str) -> Option<f64> {
+        self.0.iter().find(|(of, _)| of == name).map(|(_, value)| *value)
+    }
+}
+
+impl Serialize for Numbers {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(self.0.len()))?;
+        for (name, value) in &self.0 {
+            map.serialize_entry(name, value)?;
+        }
+        map.end()
+    }
+}
+
+impl FitResult {
+    /// Name and version of the form.
+    pub const FORMAT: &str = "fric-fit/1";
+
+    /// Of a robot's fits.
+    #[must_use]
+    pub fn new(robot: &RobotFile, fits: &Fits) -> Self {
+        let cables = robot.cable_names().into_iter().zip(fits.cables());
+        let (reference, wrench) = match fits {
+            Fits::Forces(_) => ("forces", None),
+            Fits::Wrench(WrenchFit { measured, before, after, .. }) => {
+                (if *measured { "wrench" } else { "mass" }, WrenchResult::of(before, after))
+            }
+        };
+        Self {
+            format: Self::FORMAT,
+            robot: robot.options().name.clone(),
+            reference,
+            cables: cables.map(|(name, fit)| cable_result(name, fit)).collect(),
+            wrench,
+        }
+    }
+
+    /// For people: \[P\] table I, how sure it is, and what the log does not tell.
+    #[must_use]
+    pub fn summary(&self) -> String {
+        summary::describe(self)
+    }
+
+    /// Makes sure that at least one sample was used.
+    ///
+    /// # Errors
+    /// [`FitError`] with the likely cause.
+    pub fn check_used(&self) -> Result<(), FitError> {
+        let Some(first) = self.cables.first().filter(|_| self.cables.iter().all(|cable| cable.samples == 0)) else {
+            return Ok(());
+        };
+        let (cause, advice) = why_unused(&first.left_out);
+        Err(FitError::new(format!("no sample can be used: {cause}"), advice))
+    }
+
+    /// What people have to know beside the summary.
+    #[must_use]
+    pub fn warnings(&self, fits: &Fits, readiness: &Readiness) -> Vec<String> {
+        // Cables with the same trouble share a line.
+        let mut unused: Vec<(&str, Vec<&str>)> = Vec::new();
+        let told = |place: &usize| readiness.is_lacking(*place);
+        for (_, cable) in self.cables.iter().enumerate().filter(|(place, cable)| cable.samples == 0 && !told(place)) {
+            let (cause, _) = why_unused(&cable.left_out);
+            match unused.iter_mut().find(|(of, _)| *of == cause) {
+                Some((_, names)) => names.push(&cable.name),
+                None => unused.push((cause, vec![&cable.name])),
+            }
+        }
+        let told_unused = |(cause, names): (&str, Vec<&str>)| {
+            format!("{}: no sample can be used, values kept: {cause}", names.join(", "))
+        };
+        let mut warnings: Vec<String> = unused.into_iter().map(told_unused).collect();
+        for (cable, fit) in self.cables.iter().zip(fits.cables()) {
+            // What is left unfitted is told below the tables.
+            if !matches!(fit.termination, Termination::Converged | Termination::NothingToFit) {
+                warnings.push(format!(
+                    "{}: the search ended without converging ({}); the values are the best found: look at the error \
+                     that is left before you use them",
+                    cable.name,
+                    fit.termination.name()
+                ));
+            }
+        }
+        warnings
+    }
+}
+
+/// Why there is not one sample to learn from, and what to do.
+fn why_unused(left_out: &LeftOut) -> (&'static str, &'static str) {
+    let LeftOut { flagged, without_reference, warm_up, outliers: _ } = *left_out;
+    if warm_up >= flagged.max(without_reference) {
+        let cause = "the cables move too little to forget the friction stored in them when the log began";
+        (cause, "Record longer strokes, best the run of `fric-cli excite`.")
+    } else if flagged >= without_reference {
+        ("each is flagged, or has no tension on the cable", "See the flags with `fric-cli replay`.")
+    } else {
+        ("none has anything to compare with while its other signals are there", "See the signals with `fric-cli info`.")
+    }
+}
+
+fn cable_result(name: &str, fit: &CableFit) -> FitCableResult {
+    let shown = |parameter: &Parameter| {
+        let value = fit.values[parameter.place()];
+        let relevant =
+            parameter.is_friction() || fit.fitted.contains(parameter) || fit.undetermined.contains(parameter);
+        (relevant && value < NO_PRESLIDING_N_PER_M).then(|| (parameter.to_string(), value))
+    };
+    let error = |parameter: &Parameter| Some((parameter.to_string(), fit.standard_error(parameter)?));
+    let samples = fit.samples;
+    FitCableResult {
+        name: name.to_owned(),
+        samples: samples.used,
+        left_out: LeftOut {
+            flagged: samples.flagged,
+            without_reference: samples.without_reference,
+            warm_up: samples.warm_up,
+            outliers: samples.outliers,
+        },
+        termination: fit.termination.name(),
+        evaluations: fit.evaluation_count,
+        parameters: Numbers(Parameter::all().filter_map(|parameter| shown(&parameter)).collect()),
+        standard_errors: Numbers(Parameter::all().filter_map(|parameter| error(&parameter)).collect()),
+        undetermined: fit.undetermined.iter().map(ToString::to_string).collect(),
+        before: ForceError::of(&fit.errors.before_n),
+        after: ForceError::of(&fit.errors.after_n),
+        mean_reference_n: fit.errors.reference_n.mean_magnitude(),
+    }
+}

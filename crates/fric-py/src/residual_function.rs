@@ -1,0 +1,144 @@
+//! `residual_function`: the fit's problem for optimisers of one's own.
+
+use fric_lab::fit::readiness;
+use fric_lab::fit::{self, FitOptions, Measurements, Reference};
+use numpy::{PyArray1, PyArrayDyn};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+
+use crate::arrays::{Axis, Wanted, array, fixed, numbers};
+use crate::errors::{Fault, Outcome};
+use crate::robot::Robot;
+use crate::runs::{Runs, named_parameters};
+use crate::watch::Watch;
+
+/// Compensated force less reference in N, of a cable's samples that can be learned from, as a function of its parameters.
+///
+/// It goes straight into `scipy.optimize.least_squares(f, f.x0, jac=f.jac, bounds=f.bounds, x_scale="jac")` and
+/// `lmfit.minimize(f, f.lmfit_parameters(), method="least_squares", jac=f.jac, x_scale="jac")`. It keeps its samples itself.
+/// How long a cable remembers the time before the log is judged by `x0`; where `fit` judges that again by what it found, it
+/// learns from other samples.
+#[pyclass(module = "fric", frozen)]
+pub struct ResidualFunction(fit::ResidualFunction);
+
+#[pymethods]
+impl ResidualFunction {
+    /// What varies, in the order of `x`.
+    #[getter]
+    fn names<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, self.names_of())
+    }
+
+    /// Values to start from, by the data.
+    #[getter]
+    fn x0(&self, py: Python<'_>) -> Py<PyArray1<f64>> {
+        fixed(py, self.0.start())
+    }
+
+    /// Least and greatest values: two arrays.
+    #[getter]
+    fn bounds(&self, py: Python<'_>) -> (Py<PyArray1<f64>>, Py<PyArray1<f64>>) {
+        let (least, greatest) = self.0.bounds().into_iter().unzip();
+        (fixed(py, least), fixed(py, greatest))
+    }
+
+    /// Row of each residual in the logs, one after the other.
+    #[getter]
+    fn rows(&self, py: Python<'_>) -> Py<PyArray1<i64>> {
+        #[expect(clippy::cast_possible_wrap, reason = "a row of a log in memory")]
+        let rows = self.0.samples().map(|row| row as i64).collect();
+        fixed(py, rows)
+    }
+
+    /// The parameters for lmfit, their names made identifiers (`stribeck_ratio`); needs lmfit.
+    fn lmfit_parameters<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        slf.py().import("fric._lmfit")?.call_method1("parameters", (slf,))
+    }
+
+    /// The residuals, N, at `x`: an array in the order of `names`, or parameters of lmfit.
+    fn __call__(&self, py: Python<'_>, x: &Bound<'_, PyAny>) -> Outcome<Py<PyArrayDyn<f64>>> {
+        let x = self.values(x)?;
+        let residuals = py.detach(|| self.0.residuals(&x));
+        let count = residuals.len();
+        array(py, residuals, &[count])
+    }
+
+    /// Their derivatives, N per unit: a row per residual, a column per parameter.
+    fn jac(&self, py: Python<'_>, x: &Bound<'_, PyAny>) -> Outcome<Py<PyArrayDyn<f64>>> {
+        let x = self.values(x)?;
+        let rows = py.detach(|| self.0.jacobian(&x));
+        array(py, rows, &[self.0.count(), x.len()])
+    }
+
+    fn __len__(&self) -> usize {
+        self.0.count()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<ResidualFunction of {}: {} residuals>", self.names_of().join(", "), self.0.count())
+    }
+}
+
+impl ResidualFunction {
+    fn names_of(&self) -> Vec<String> {
+        self.0.parameters().iter().map(ToString::to_string).collect()
+    }
+
+    fn values(&self, x: &Bound<'_, PyAny>) -> Outcome<Vec<f64>> {
+        let names = self.names_of();
+        let Ok(values) = x.getattr("valuesdict") else {
+            let entries = format!("one number per parameter: {}", names.join(", "));
+            let shape = [Axis::Exactly(names.len())];
+            return numbers(&Wanted { name: "x", shape: &shape, entries: &entries }, x);
+        };
+        let values = values.call0()?;
+        let values = values.cast::<PyDict>()?;
+        let value = |name: &String| {
+            let identifier = name.replace('.', "_");
+            let value = values.get_item(&identifier)?;
+            value
+                .ok_or_else(|| Fault::config(format!("the parameters have no `{identifier}`")))?
+                .extract()
+                .map_err(Fault::from)
+        };
+        names.iter().map(value).collect()
+    }
+}
+
+/// The residuals of a cable, for optimisers of one's own; `log` and `parameters` as for `fit`.
+///
+/// >>> robot = Robot.read("examples/mini-ipanema.toml")
+/// >>> f = residual_function(robot, simulate(robot, duration_s=4.0), "cable1")
+/// >>> f.names
+/// ('mu', 'sigma_n_per_m', 'viscous_n_s_per_m', 'offset_n')
+/// >>> f(f.x0).shape == (len(f),), f.jac(f.x0).shape == (len(f), 4)
+/// (True, True)
+#[pyfunction]
+#[pyo3(
+    signature = (robot, log, cable, *, parameters=None, progress=None),
+    text_signature = "(robot, log, cable, *, parameters=None, progress=False)"
+)]
+pub fn residual_function(
+    robot: &Bound<'_, Robot>,
+    log: &Bound<'_, PyAny>,
+    cable: &str,
+    parameters: Option<Vec<String>>,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> Outcome<ResidualFunction> {
+    let py = robot.py();
+    let mut watch = Watch::new(py, progress)?;
+    let options =
+        FitOptions { parameters: parameters.as_deref().map(named_parameters).transpose()?, ..FitOptions::default() };
+    let runs = Runs::new(log)?;
+    let place = robot.borrow().cable_index(cable)?;
+    let file = robot.borrow().file.clone();
+    let mut measurements = Measurements::new(&file.params(), Reference::Forces);
+    let holdings = runs.read(robot, &mut measurements, &mut watch)?;
+    let readiness = readiness::by_forces(&file, &holdings);
+    readiness.lack_of(place).map_or(Ok(()), |lack| Err(lack.error()))?;
+    let function =
+        watch.fit(|_| measurements.cable(place).map(|record| fit::ResidualFunction::new(&record, &options)))?;
+    let function = function.filter(|function| function.count() > 0);
+    let nothing = || Fault::fit(format!("no sample of {cable} can be used; `fit` says why"));
+    Ok(ResidualFunction(function.ok_or_else(nothing)?))
+}

@@ -1,0 +1,133 @@
+//! The logs that a fit learns from.
+
+use fric_lab::fit::readiness::Holdings;
+use fric_lab::fit::{Measurements, Parameter, Reference};
+use fric_log::signals::Role;
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use std::path::{Path, PathBuf};
+
+use crate::errors::{Fault, Outcome};
+use crate::log::{self, Log};
+use crate::robot::Robot;
+use crate::watch::Watch;
+
+/// Logs, each a run of its own.
+pub struct Runs<'py>(Vec<Bound<'py, PyAny>>);
+
+impl<'py> Runs<'py> {
+    /// A Log, a path, or several of them.
+    pub fn new(given: &Bound<'py, PyAny>) -> Outcome<Self> {
+        let is_one = |item: &Bound<'py, PyAny>| item.is_instance_of::<Log>() || item.extract::<PathBuf>().is_ok();
+        let refuse =
+            |class| PyTypeError::new_err(format!("a log is given as a Log, a path, or a list of them, not as {class}"));
+        let runs: Vec<Bound<'py, PyAny>> = if is_one(given) {
+            vec![given.clone()]
+        } else {
+            let items = given.try_iter().map_err(|_| refuse(given.get_type()))?;
+            items.collect::<PyResult<_>>()?
+        };
+        if let Some(other) = runs.iter().find(|item| !is_one(item)) {
+            return Err(refuse(other.get_type()).into());
+        }
+        if runs.is_empty() {
+            return Err(Fault::config("`log` is an empty list; give at least one log"));
+        }
+        let runs = Self(runs);
+        runs.check_given_once()?;
+        Ok(runs)
+    }
+
+    /// Makes sure that no sample counts twice.
+    fn check_given_once(&self) -> Outcome {
+        let files = |item: &Bound<'_, PyAny>| -> Vec<PathBuf> {
+            let paths = match item.cast::<Log>() {
+                Ok(log) => log.get().sources.clone(),
+                Err(_) => item.extract().into_iter().collect(),
+            };
+            paths.iter().filter_map(|path: &PathBuf| Path::canonicalize(path).ok()).collect()
+        };
+        for (count, item) in self.0.iter().enumerate() {
+            let own = files(item);
+            let is_same =
+                |other: &Bound<'_, PyAny>| other.is(item) || files(other).iter().any(|file| own.contains(file));
+            if self.0.iter().take(count).any(is_same) {
+                let name = own.first().map_or_else(|| "a log".to_owned(), |path| path.display().to_string());
+                return Err(Fault::config(format!("{name} is given twice, and its samples would count twice")));
+            }
+        }
+        Ok(())
+    }
+
+    /// Reads all of them into the measurements, with one more part left to be watched.
+    pub fn read(
+        &self,
+        robot: &Bound<'py, Robot>,
+        measurements: &mut Measurements<'_>,
+        watch: &mut Watch<'py>,
+    ) -> Outcome<Holdings> {
+        let py = robot.py();
+        let names = measurements.robot().cables().len();
+        // What is not compared with is not even read.
+        let (unread, compared) = match measurements.reference() {
+            Reference::Forces => (Role::Wrench, Role::Reference),
+            Reference::Wrench => (Role::Reference, Role::Wrench),
+        };
+        let mut all = Holdings::new(names);
+        for (place, item) in self.0.iter().enumerate() {
+            watch.part(place as u64, self.0.len() as u64 + 1);
+            let log = match item.cast::<Log>() {
+                Ok(log) => log.clone(),
+                Err(_) => Bound::new(py, log::read(py, item, Some(robot), Some(unread), watch)?)?,
+            };
+            let holdings = add(py, log.get(), robot, measurements, watch)?;
+            if self.0.len() > 1 && !holdings.has_reference() && holdings.wrenched == 0 {
+                let text = format!(
+                    "log {} of `log` has nothing to compare with on the signal `{}`",
+                    place + 1,
+                    compared.key()
+                );
+                log::warn(py, &[text])?;
+            }
+            all.join(&holdings);
+        }
+        watch.part(self.0.len() as u64, self.0.len() as u64 + 1);
+        Ok(all)
+    }
+}
+
+/// Takes in a log.
+fn add(
+    py: Python<'_>,
+    log: &Log,
+    robot: &Bound<'_, Robot>,
+    measurements: &mut Measurements<'_>,
+    watch: &mut Watch<'_>,
+) -> Outcome<Holdings> {
+    log.check_cables(&robot.borrow().file.cable_names())?;
+    let cable_count = measurements.robot().cables().len();
+    let (mut holdings, mut cables) = (Holdings::new(cable_count), Vec::new());
+    let unknown = vec![f64::NAN; cable_count];
+    measurements.start_log();
+    log.with_rows(py, |rows| {
+        watch.work(rows.len(), |range| {
+            for row in range {
+                let Some(mut sample) = rows.sample(row, &mut cables) else { break };
+                match measurements.reference() {
+                    Reference::Forces => sample.outside_wrench = None,
+                    Reference::Wrench => sample.reference_force_n = &unknown,
+                }
+                holdings.add(&sample);
+                measurements.add(&sample);
+            }
+            Ok(())
+        })
+    })?;
+    Ok(holdings)
+}
+
+/// Parameters by their names.
+pub fn named_parameters(names: &[String]) -> Outcome<Vec<Parameter>> {
+    Parameter::all_named(names.iter().map(String::as_str))
+        .map_err(|problem| Fault::config(format!("`parameters`: {problem}")))
+}
