@@ -185,7 +185,9 @@ fn a_replay_with_the_fitted_file_has_the_very_errors_of_the_fit() {
     }
     // Against the wrench it sums in another order.
     let run = fit(&place, &["log.mcap", "--reference", "wrench"]).succeeds();
-    assert_shape(&place.json("fit.json"), &[&CABLE, &WRENCH]);
+    // So short a log tells nothing of the offsets by the wrench.
+    let told: Vec<&str> = CABLE.iter().copied().filter(|key| *key != ".cables[].standard_errors.offset_n").collect();
+    assert_shape(&place.json("fit.json"), &[&told, &WRENCH]);
     let force = rows(&run.stdout, "force").into_iter().next().unwrap();
     let after = |key: &str| place.json("fit.json")["wrench"]["after"][key].as_f64().unwrap();
     assert_eq!(force[3], format!("{:.4}", after("force_rms_n")));
@@ -360,7 +362,7 @@ fn what_the_log_does_not_determine_is_named_with_what_to_record() {
     // In three seconds the platform has moved for one; half of the cables have hardly begun.
     let log = simulated(&SHORT, &example_robot(), &["--duration", "3", "--seed", "3"]);
     place.write("log.mcap", log);
-    let run = fit(&place, &["log.mcap"]).warns(&["cable8", "no sample can be used, values kept", "move too little"]);
+    let run = fit(&place, &["log.mcap"]).warns(&["no sample can be used, values kept", "move too little"]);
     let result = place.json("fit.json");
     let cables = result["cables"].as_array().unwrap();
     let undetermined =

@@ -65,7 +65,7 @@ fn fit_cable<'a>(
         let mut standings = all.clone();
         leave_out_warm_up(&problem(&all), &starts, &mut standings);
         let solution =
-            solve(&mut problem(&standings), starts, &[given], record.cycle_s, options.weighing, &mut standings);
+            solve(&mut problem(&standings), starts, &[given], record.cycle_s, options.weighing, &mut standings, &[]);
         (solution, standings)
     };
     let (mut solution, mut standings) = solve_without_warm_up(starts);

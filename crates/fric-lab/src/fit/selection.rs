@@ -35,6 +35,8 @@ const STILL_TRAVEL_M: f64 = 1e-3;
 const STILL_COUNT: usize = 20;
 /// What is left of the friction stored at the start of a log when it no longer matters.
 const FORGOTTEN: f64 = 1e-3;
+/// A log's way, as a multiple of what it takes to forget, from which on it is used at all.
+const LEAST_WAY_RATIO: f64 = 1.25;
 /// A cable that moves less than this at all rests, whatever its winch does to hold the force, m.
 const LEAST_RANGE_M: f64 = 3e-5;
 
@@ -87,7 +89,8 @@ pub fn leave_out_warm_up(record: &CableRecord<'_>, values: &Values, standings: &
                 exponent
             })
             .collect();
-        let warm_up = if range_m(rows) < LEAST_RANGE_M {
+        // A log whose cable moves hardly further than it takes to forget tells nothing that could be relied on.
+        let warm_up = if exponent < LEAST_WAY_RATIO * forgotten || range_m(rows) < LEAST_RANGE_M {
             rows.len()
         } else {
             exponents.partition_point(|exponent| *exponent < forgotten)

@@ -62,7 +62,7 @@ pub struct Solution {
 }
 
 /// Solves a problem from the starts given, the most promising first. `standings` of its samples are updated with the
-/// outliers.
+/// outliers; `kept` are varied however little is known of them.
 pub fn solve(
     problem: &mut Problem<'_>,
     starts: Vec<Vec<Values>>,
@@ -70,6 +70,7 @@ pub fn solve(
     cycle_s: f64,
     weighing: Weighing,
     standings: &mut [Standing],
+    kept: &[Unknown],
 ) -> Solution {
     let mut solution = Solution {
         values: given.to_vec(),
@@ -95,7 +96,7 @@ pub fn solve(
             solution.search_on(problem, cycle_s);
         }
     }
-    solution.hold_undetermined(problem, given, cycle_s);
+    solution.hold_undetermined(problem, given, cycle_s, kept);
     solution
 }
 
@@ -109,8 +110,8 @@ impl Solution {
 
     /// Holds one parameter after the other that the samples do not determine, the vaguest first. One whose given value the
     /// samples contradict stays as found: they know that much.
-    fn hold_undetermined(&mut self, problem: &mut Problem<'_>, given: &[Values], cycle_s: f64) {
-        let mut kept: Vec<Unknown> = Vec::new();
+    fn hold_undetermined(&mut self, problem: &mut Problem<'_>, given: &[Values], cycle_s: f64, kept: &[Unknown]) {
+        let mut kept = kept.to_vec();
         let mut least = None;
         loop {
             let mut all;
@@ -142,7 +143,7 @@ impl Solution {
 }
 
 /// Covariance of what a problem varies at some values, and how vague each is, in the order of the covariance.
-fn vagueness(problem: &Problem<'_>, values: &[Values]) -> (DMatrix<f64>, Vec<(f64, Unknown)>) {
+pub(super) fn vagueness(problem: &Problem<'_>, values: &[Values]) -> (DMatrix<f64>, Vec<(f64, Unknown)>) {
     let (covariance, leverages) = covariance(problem, values);
     let sticks = yardsticks(problem, values);
     let of = |(place, unknown): (usize, Unknown)| {
@@ -156,6 +157,11 @@ fn vagueness(problem: &Problem<'_>, values: &[Values]) -> (DMatrix<f64>, Vec<(f6
     };
     let all = unknowns(problem).into_iter().enumerate().map(of).collect();
     (covariance, all)
+}
+
+/// Whether the samples contradict values that were held: with them free the sum of squares is smaller by far.
+pub(super) fn contradicts(held: &Problem<'_>, at: &[Values], free: &Problem<'_>, found: &[Values]) -> bool {
+    squares(held, at) > squares(free, found) * (1.0 + CONTRADICTION_RATIO)
 }
 
 /// Sum of squares at some values; NaN when stopped.

@@ -5,8 +5,8 @@
 //!
 //! **What it cannot see.** Forces that hold each other in balance (`A^T f = 0`: inner tension) change no wrench. A robot of
 //! m cables has m − 6 such combinations in each pose; over a run through the workspace they turn, so that what friction
-//! does to a cable still shows. A constant offset does not turn enough: ε of the cables is seen in combinations only, and
-//! is held where it is not determined.
+//! does to a cable still shows. A constant offset hardly turns: ε of the cables is often seen in combinations only. So friction is
+//! fitted first with the offsets held; then those join in that the samples turn out to determine.
 //!
 //! The six deviations are weighed by the inverse of their covariance, found from the first fit; the standard errors do not
 //! rely on it.
@@ -20,10 +20,9 @@ use super::problem::{Comparison, Loss, Member, Problem};
 use super::record::{CableRecord, Measurements};
 use super::report::WrenchFit;
 use super::selection::{self, Standing};
-use super::solve::{Solution, Unknown, solve};
-use super::vector::Parameter;
+use super::solve::{Solution, Unknown, contradicts, search, solve, vagueness};
 use super::{FitOptions, Progress, start, weight};
-use crate::replay::{Deviation, WrenchErrors};
+use crate::replay::WrenchErrors;
 
 /// Fits all cables to the outside wrench. Only for a robot of which every cable has an attachment, and for
 /// [`Measurements`] with [`Reference::Wrench`](super::Reference::Wrench).
@@ -39,86 +38,60 @@ pub fn fit_wrench(measurements: &Measurements<'_>, options: &FitOptions, progres
         let mut columns = platform.structure.iter().skip(place * records.len()).take(records.len());
         columns.all(|column| column.x.is_finite())
     };
-    let of_cables: Vec<Vec<Standing>> = records
+    let mut of_cables: Vec<Vec<Standing>> = records
         .iter()
         .map(|record| selection::first_look(record, |place, _| has_wrench(place) && reaches(place)))
         .collect();
     progress.begin(2);
-    let comparison = Comparison::Wrench {
-        structure: &platform.structure,
-        outside: &outside,
-        whitening: Box::new(by_moment_arm(&platform.structure)),
-    };
-    let problem = Problem {
-        members: all_of(&records, options),
-        comparison,
+    let mut problem = Problem {
+        members: without_offsets(&records, options),
+        comparison: Comparison::Wrench {
+            structure: &platform.structure,
+            outside: &outside,
+            whitening: Box::new(by_moment_arm(&platform.structure)),
+        },
         loss: Loss::Squares,
         used: used(&together(&of_cables)),
         stop: progress.stop_flag(),
         seat: None,
     };
     let cycle_s = measurements.robot().cycle_s();
-    let mut fitted = in_two_rounds(problem.clone(), &of_cables, &given, cycle_s, options);
-    if offsets_ran_away(&fitted) {
-        // The samples cannot tell the offsets from each other at all: hold them, or they take the friction with them.
-        let is_offset = |parameter: &Parameter| parameter.place() == OFFSET;
-        let mut held = problem;
-        held.members.iter_mut().for_each(|member| member.free.retain(|parameter| !is_offset(parameter)));
-        let offsets = fitted.1.unknowns.iter().chain(&fitted.1.undetermined);
-        let offsets: Vec<Unknown> = offsets.filter(|unknown| is_offset(&unknown.parameter)).copied().collect();
-        let evaluation_count = fitted.1.evaluation_count;
-        fitted = in_two_rounds(held, &of_cables, &given, cycle_s, options);
-        fitted.1.undetermined.extend(offsets);
-        fitted.1.evaluation_count += evaluation_count;
-    }
-    progress.finish_one();
-    let (problem, solution, standings) = fitted;
-    let cables = cable_fits(&problem, &given, &solution, &standings);
-    let [before, after] = wrench_errors(&problem, &solution.values, &platform.structure, &outside);
-    WrenchFit { cables, measured, before, after }
-}
-
-/// A solved problem with the standing of its samples.
-type Solved<'a> = (Problem<'a>, Solution, Vec<Standing>);
-
-/// Solves once to learn how the six deviations scatter, and once with that.
-fn in_two_rounds<'a>(
-    mut problem: Problem<'a>,
-    of_cables: &[Vec<Standing>],
-    given: &[Values],
-    cycle_s: f64,
-    options: &FitOptions,
-) -> Solved<'a> {
-    let members = problem.members.clone();
-    let starts = start::starts(&problem, given, cycle_s);
-    let mut of_cables = of_cables.to_vec();
+    let starts = start::starts(&problem, &given, cycle_s);
     for standings in &mut of_cables {
         leave_out_warm_up(&problem, &starts, standings);
     }
     let mut standings = together(&of_cables);
     problem.used = used(&standings);
-    let first = solve(&mut problem, starts, given, cycle_s, options.weighing, &mut standings);
-    let scatter = scatter(&problem, &first.values);
+    // Friction first, then the offsets with it; all once to learn how the six deviations scatter, and once with that.
+    let mut solution = solve(&mut problem, starts, &given, cycle_s, options.weighing, &mut standings, &[]);
+    let (mut undetermined, mut evaluation_count) =
+        (std::mem::take(&mut solution.undetermined), solution.evaluation_count);
+    let (determined, vague, kept) = offsets(&problem, &records, options, &solution, cycle_s);
+    undetermined.extend(vague);
+    let with_offsets = !determined.is_empty();
+    for offset in determined {
+        if let Some(member) = problem.members.get_mut(offset.member) {
+            member.free.push(offset.parameter);
+        }
+    }
+    if with_offsets {
+        solution = solve(&mut problem, vec![solution.values], &given, cycle_s, options.weighing, &mut standings, &kept);
+        undetermined.append(&mut solution.undetermined);
+        evaluation_count += solution.evaluation_count;
+    }
+    progress.finish_one();
+    let scatter = scatter(&problem, &solution.values);
     if let (Comparison::Wrench { whitening, .. }, Some(turn)) = (&mut problem.comparison, scatter) {
         **whitening = turn * **whitening;
     }
-    problem.members = members;
     problem.loss = Loss::Squares;
-    let mut solution = solve(&mut problem, vec![first.values], given, cycle_s, options.weighing, &mut standings);
-    solution.evaluation_count += first.evaluation_count;
-    (problem, solution, standings)
-}
-
-/// Whether an offset is known to no better than the tension that it is added to.
-fn offsets_ran_away((problem, solution, _): &Solved<'_>) -> bool {
-    solution.unknowns.iter().enumerate().any(|(place, unknown)| {
-        let rows = problem.members.get(unknown.member).map_or(&[][..], |member| member.record.rows);
-        let mut sensor = Deviation::default();
-        rows.iter().filter(|row| row.is_sound()).for_each(|row| sensor.add(row.signals.sensor_force_n));
-        let standard_error_n = solution.covariance.get((place, place)).map_or(f64::NAN, |variance| variance.sqrt());
-        unknown.parameter.place() == OFFSET
-            && (standard_error_n.is_nan() || standard_error_n >= sensor.rms().unwrap_or(0.0))
-    })
+    solution = solve(&mut problem, vec![solution.values], &given, cycle_s, options.weighing, &mut standings, &kept);
+    solution.undetermined.extend(undetermined);
+    solution.evaluation_count += evaluation_count;
+    progress.finish_one();
+    let cables = cable_fits(&problem, &given, &solution, &standings);
+    let [before, after] = wrench_errors(&problem, &solution.values, &platform.structure, &outside);
+    WrenchFit { cables, measured, before, after }
 }
 
 /// Deviation of the wrench by the cable forces from the one outside, with frictionless and with compensated forces.
@@ -147,8 +120,43 @@ fn wrench_errors(
     errors
 }
 
-fn all_of<'a>(records: &[CableRecord<'a>], options: &FitOptions) -> Vec<Member<'a>> {
-    records.iter().map(|record| Member { record: *record, free: options.free(record.params) }).collect()
+/// All cables with what is to be varied of them, but for the offsets.
+fn without_offsets<'a>(records: &[CableRecord<'a>], options: &FitOptions) -> Vec<Member<'a>> {
+    let member = |record: &CableRecord<'a>| {
+        let mut free = options.free(record.params);
+        free.retain(|parameter| parameter.place() != OFFSET);
+        Member { record: *record, free }
+    };
+    records.iter().map(member).collect()
+}
+
+/// The offsets that are to be varied, those that the samples determine or that they contradict to be as given, those to be
+/// held, and which of the first are to be varied in any case.
+fn offsets(
+    problem: &Problem<'_>,
+    records: &[CableRecord<'_>],
+    options: &FitOptions,
+    solution: &Solution,
+    cycle_s: f64,
+) -> (Vec<Unknown>, Vec<Unknown>, Vec<Unknown>) {
+    let mut trial = problem.clone();
+    for (member, record) in trial.members.iter_mut().zip(records) {
+        member.free.extend(options.free(record.params).into_iter().filter(|parameter| parameter.place() == OFFSET));
+    }
+    if trial.parameter_count() == problem.parameter_count() || !problem.used.contains(&true) {
+        return Default::default();
+    }
+    let (values, _) = search(&trial, &solution.values, cycle_s);
+    let (_, all) = vagueness(&trial, &values);
+    let offsets = all.into_iter().filter(|(_, unknown)| unknown.parameter.place() == OFFSET);
+    if contradicts(problem, &solution.values, &trial, &values) {
+        // Together they matter, whatever is known of each: a wrong mass, a payload.
+        let offsets: Vec<Unknown> = offsets.map(|(_, unknown)| unknown).collect();
+        return (offsets.clone(), Vec::new(), offsets);
+    }
+    let (determined, vague): (Vec<_>, Vec<_>) = offsets.partition(|(vagueness, _)| *vagueness <= 1.0);
+    let unknowns = |all: Vec<(f64, Unknown)>| all.into_iter().map(|(_, unknown)| unknown).collect();
+    (unknowns(determined), unknowns(vague), Vec::new())
 }
 
 /// The outside wrench of each sample; NaN where there is none.

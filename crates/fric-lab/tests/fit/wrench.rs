@@ -1,8 +1,8 @@
 //! All cables at once from the wrench on the platform; the references that the logs hold are only looked at afterwards.
 //!
-//! What the fit is not told becomes friction as far as friction can be like it. A mass that is 5 % too large hardly moves
-//! μ (0.2 %), but σ and F_pv by 4 and 7 %, and the offsets carry the weight that is not there. A hand that pushes unseen
-//! with a slow force of 1 N, a quarter of the platform's weight, takes μ 14 % and σ 30 % off and F_pv to nothing: a log
+//! What the fit is not told becomes friction as far as friction can be like it. A mass that is 5 % too large takes μ up to
+//! 14 % off here, and the force error to five times the noise. A hand that pushes unseen with a slow force of 1 N, a
+//! quarter of the platform's weight, takes μ 14 % and σ 30 % off and F_pv to nothing: the mass has to be right, and a log
 //! for this fit must be free of hands, or have them measured.
 
 use fric_core::Wrench;
@@ -80,7 +80,7 @@ fn forty_seconds() -> Log {
 fn a_wrong_mass() {
     let heavy = mini_ipanema_text("mass_kg = 0.41", "mass_kg = 0.4305");
     let ([mu, ..], ratio) = worst(&fit(&without_wrench(forty_seconds()), &heavy), &truth());
-    assert!(mu < 0.01 && ratio > 2.0, "{mu} {ratio}");
+    assert!((0.05..0.25).contains(&mu) && ratio > 2.0, "{mu} {ratio}");
 }
 
 /// A hand that pushes with a slow force of ±1 N that nobody has measured.
