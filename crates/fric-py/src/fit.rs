@@ -194,10 +194,10 @@ fn dict<'py>(py: Python<'py>, numbers: &Numbers) -> PyResult<Bound<'py, PyDict>>
 /// the cable has. `huber` weighs deviations that are far out linearly. Data that allow no fit raise FitError.
 ///
 /// >>> robot = Robot.read("examples/mini-ipanema.toml")
-/// >>> robot.cable("cable1").friction.mu = 0.1
-/// >>> result = fit(robot, simulate(robot, duration_s=8.0))
+/// >>> robot.cable("cable1").friction.mu = 0.03
+/// >>> result = fit(robot, simulate(robot, duration_s=20.0))
 /// >>> cable = result.cable("cable1")
-/// >>> abs(cable.values["mu"] - 0.1) < 5 * cable.standard_errors["mu"]
+/// >>> abs(cable.values["mu"] - 0.03) < 5 * cable.standard_errors["mu"]
 /// True
 /// >>> result.robot.cable("cable1").friction.mu == cable.values["mu"]
 /// True
