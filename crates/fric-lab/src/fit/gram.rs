@@ -103,6 +103,13 @@ impl Triangle {
         }
         Self { jacobian, residuals }
     }
+
+    /// By which share of itself the sum of squares would fall at most, were the residuals linear in the parameters.
+    pub fn reducible_ratio(&self) -> f64 {
+        let left = self.residuals.iter().last().map_or(f64::NAN, |left| left * left);
+        let squares = self.residuals.norm_squared();
+        (squares - left) / squares
+    }
 }
 
 #[cfg(test)]

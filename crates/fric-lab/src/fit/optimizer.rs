@@ -9,10 +9,8 @@ use nalgebra_of_optimizer::{DMatrix, DVector, Dyn};
 
 use super::gram::Triangle;
 
-/// Relative reduction of the sum of squares at which the search ends. With n samples a parameter is then at most `√(1e-8·n)`
-/// standard errors from the minimum, 0.02 for a minute at 1 kHz; the last step, which is taken all the same, brings it nearer by far.
-const SQUARES_TOLERANCE: f64 = 1e-10;
-/// And relative change of the parameters. They have standard errors of 1e-4 of their value and more.
+/// Relative change of the parameters at which a search ends in any case: they have standard errors of 1e-4 of their value and
+/// more.
 const STEP_TOLERANCE: f64 = 1e-8;
 /// Evaluations per parameter before giving up.
 const PATIENCE: usize = 20;
@@ -61,17 +59,22 @@ pub struct Minimum {
 }
 
 /// Minimises the sum of squares of `evaluate`, which gives `None` to stop.
-pub fn minimize(start: &[f64], evaluate: impl FnMut(&[f64]) -> Option<Triangle>) -> Minimum {
+///
+/// The search has arrived where the sum cannot fall by more than `negligible_ratio` of itself, by the linear model there: nothing
+/// is evaluated any more to confirm it.
+pub fn minimize(
+    start: &[f64],
+    negligible_ratio: f64,
+    evaluate: impl FnMut(&[f64]) -> Option<Triangle>,
+) -> Minimum {
     if start.is_empty() {
         let termination = Termination::NothingToFit;
         return Minimum { coordinates: Vec::new(), termination, evaluation_count: 0, squares: f64::NAN };
     }
-    let mut adapter = Adapter { evaluate, coordinates: DVector::from_row_slice(start), current: None };
+    let mut adapter = Adapter { evaluate, coordinates: DVector::from_row_slice(start), current: None, negligible_ratio };
     adapter.update();
     let (adapter, report) = LevenbergMarquardt::new()
-        .with_ftol(SQUARES_TOLERANCE)
         .with_xtol(STEP_TOLERANCE)
-        .with_gtol(STEP_TOLERANCE)
         .with_patience(PATIENCE)
         .minimize(adapter);
     let termination = match report.termination {
@@ -80,6 +83,7 @@ pub fn minimize(start: &[f64], evaluate: impl FnMut(&[f64]) -> Option<Triangle>)
         | TerminationReason::Converged { .. }
         | TerminationReason::NoImprovementPossible(_) => Termination::Converged,
         TerminationReason::LostPatience => Termination::OutOfPatience,
+        TerminationReason::User(_) if adapter.has_arrived() => Termination::Converged,
         TerminationReason::User(_) => Termination::Stopped,
         _ => Termination::Stalled,
     };
@@ -95,11 +99,16 @@ struct Adapter<E> {
     evaluate: E,
     coordinates: DVector<f64>,
     current: Option<Triangle>,
+    negligible_ratio: f64,
 }
 
 impl<E: FnMut(&[f64]) -> Option<Triangle>> Adapter<E> {
     fn update(&mut self) {
         self.current = (self.evaluate)(self.coordinates.as_slice());
+    }
+
+    fn has_arrived(&self) -> bool {
+        self.current.as_ref().is_some_and(|triangle| triangle.reducible_ratio() <= self.negligible_ratio)
     }
 }
 
@@ -123,7 +132,11 @@ impl<E: FnMut(&[f64]) -> Option<Triangle>> LeastSquaresProblem<f64, Dyn, Dyn> fo
         self.current.as_ref().map(|triangle| DVector::from_row_slice(triangle.residuals.as_slice()))
     }
 
+    /// None where the search has arrived: that ends it.
     fn jacobian(&self) -> Option<DMatrix<f64>> {
+        if self.has_arrived() {
+            return None;
+        }
         let jacobian = &self.current.as_ref()?.jacobian;
         Some(DMatrix::from_column_slice(jacobian.nrows(), jacobian.ncols(), jacobian.as_slice()))
     }

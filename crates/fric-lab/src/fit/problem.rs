@@ -101,6 +101,15 @@ impl Problem<'_> {
         self.members.iter().map(|member| member.free.len()).sum()
     }
 
+    /// How many residuals count.
+    pub fn residual_count(&self) -> usize {
+        let of_sample = match self.comparison {
+            Comparison::Forces => 1,
+            Comparison::Wrench { .. } => 6,
+        };
+        self.used.iter().filter(|used| **used).count() * of_sample
+    }
+
     /// Residuals and Jacobian at the values of each cable, reduced; `None` when stopped.
     pub fn gram(&self, values: &[Values]) -> Option<Gram> {
         let mut gram = Gram::new(self.parameter_count());

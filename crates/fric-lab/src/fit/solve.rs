@@ -24,6 +24,9 @@ const DEVIATION_PER_MEDIAN: f64 = 1.482_602_218_505_602;
 const COMPARABLE_RATIO: f64 = 0.01;
 /// A given value that raises the sum of squares by more than this share contradicts the samples.
 const CONTRADICTION_RATIO: f64 = 0.01;
+/// A search has arrived where no parameter, and no combination of them, is further from the minimum than this many of its
+/// standard errors, as they were if residuals did not remember: true ones are no smaller.
+const NEAR_ERRORS: f64 = 0.01;
 /// Rounds of search and new look at the deviations.
 const ROUNDS: usize = 3;
 
@@ -207,6 +210,19 @@ fn hold(problem: &mut Problem<'_>, unknown: Unknown, values: &mut [Values], give
 
 /// The minimum from a start.
 pub(super) fn search(problem: &Problem<'_>, start: &[Values], cycle_s: f64) -> (Vec<Values>, Minimum) {
+    search_near(problem, start, cycle_s, NEAR_ERRORS)
+}
+
+/// A place no more than `near_errors` standard errors from the minimum. With n residuals, δ standard errors in any direction
+/// raise the sum of squares by δ²/n of itself.
+pub(super) fn search_near(
+    problem: &Problem<'_>,
+    start: &[Values],
+    cycle_s: f64,
+    near_errors: f64,
+) -> (Vec<Values>, Minimum) {
+    #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
+    let negligible_ratio = near_errors * near_errors / problem.residual_count() as f64;
     let unknowns = unknowns(problem);
     let coordinates: Vec<Coordinate> =
         unknowns.iter().map(|unknown| Coordinate::of(&unknown.parameter, cycle_s)).collect();
@@ -229,7 +245,7 @@ pub(super) fn search(problem: &Problem<'_>, start: &[Values], cycle_s: f64) -> (
             slopes,
         )
     };
-    let minimum = optimizer::minimize(&at_start, |places| {
+    let minimum = optimizer::minimize(&at_start, negligible_ratio, |places| {
         let (values, slopes) = values_at(places);
         let gram: Gram = problem.gram(&values)?;
         let (mut matrix, mut gradient, squares) = gram.normal_equations();
