@@ -26,6 +26,12 @@ pub struct PoseWrap {
 }
 
 impl PoseWrap {
+    /// The wrap, rad.
+    #[must_use]
+    pub fn wrap_rad(&self) -> f64 {
+        2.0 * libm::asin((0.5 * self.wrap_factor).min(1.0))
+    }
+
     /// Before the first pose: 90°, no slip.
     pub const START: Self = Self { wrap_factor: START_WRAP_FACTOR, traction_ratio: NO_SLIP };
 
@@ -149,6 +155,7 @@ impl<T: Scalar> CableGroup<T> {
             sensor_force_n: number(|signals| signals.sensor_force_n),
             displacement_m,
             speed_m_per_s,
+            length_m: number(|signals| signals.length_m),
             sensor_finite: mask(|signals| signals.sensor_finite),
             frozen: mask(|signals| signals.frozen),
             jump: mask(|signals| signals.jump),

@@ -68,6 +68,8 @@ pub struct Conditioned<T: Scalar> {
     pub displacement_m: T,
     /// Speed; 0 where the motion is not to be believed, m/s.
     pub speed_m_per_s: T,
+    /// Length, the last one where there is none; NaN before the first, m.
+    pub length_m: T,
     /// The sensor force is a number.
     pub sensor_finite: T::Mask,
     /// The sensor repeats itself.
@@ -141,5 +143,6 @@ pub fn condition<T: Scalar>(
     let far = T::splat(FROZEN_TRAVEL_M).le(state.frozen_travel_m.abs());
     let stuck = T::splat(limits.frozen_cycles).le(state.frozen_count).and(far);
     let frozen = stuck.and(sensor_finite);
-    Conditioned { sensor_force_n, displacement_m, speed_m_per_s, sensor_finite, frozen, jump, motion_finite }
+    let length_m = state.length_m;
+    Conditioned { sensor_force_n, displacement_m, speed_m_per_s, length_m, sensor_finite, frozen, jump, motion_finite }
 }

@@ -161,6 +161,12 @@ fn check_point(key: &'static str, point: [f64; 3]) -> Result<Vector3<f64>, Param
 }
 
 impl CableParams {
+    /// Radius of the pulley that follows the pose, m; `None` without one.
+    #[must_use]
+    pub fn pose_pulley_radius_m(&self) -> Option<f64> {
+        self.geometry.map(|geometry| geometry.radius_m).filter(|radius_m| *radius_m > 0.0 && self.needs_pose())
+    }
+
     /// Checks a cable.
     ///
     /// # Errors

@@ -50,31 +50,60 @@ fn fit_cable<'a>(
     seat: Seat<'a>,
 ) -> Vec<CableFit> {
     let seat = Rc::new(seat);
-    let given = record.params.values();
-    let all = prepared(record);
-    let problem = |standings: &[Standing]| Problem {
+    let problem = problem(record, options, progress.stop_flag(), &seat);
+    let (solution, standings) = identified(&problem, options, prepared(record));
+    cable_fits(&problem, &[record.params.values()], &solution, &standings)
+}
+
+/// Friction and effects of a cable by itself, with the standing of each sample; those that are not `sound` count as flagged.
+pub fn identify<'a>(record: &CableRecord<'a>, sound: &[bool], stop: &'a AtomicBool) -> (Solution, Vec<Standing>) {
+    let gang = Gang::new(1, stop);
+    let seat = Rc::new(gang.seat(0));
+    let mut standings = prepared(record);
+    for (standing, _) in standings.iter_mut().zip(sound).filter(|(_, sound)| !**sound) {
+        *standing = Standing::Flagged;
+    }
+    let options = FitOptions::default();
+    identified(&problem(record, &options, stop, &seat), &options, standings)
+}
+
+/// The problem of a cable by itself; which samples count is not said.
+fn problem<'a>(
+    record: &CableRecord<'a>,
+    options: &FitOptions,
+    stop: &'a AtomicBool,
+    seat: &Rc<Seat<'a>>,
+) -> Problem<'a> {
+    Problem {
         members: vec![Member { record: *record, free: options.free(record.params) }],
         comparison: Comparison::Forces,
         loss: Loss::Squares,
-        used: used(standings),
-        stop: progress.stop_flag(),
-        seat: Some(Rc::clone(&seat)),
-    };
-    let starts = start::starts(&problem(&all), &[given], record.cycle_s);
+        used: Vec::new(),
+        stop,
+        seat: Some(Rc::clone(seat)),
+    }
+}
+
+/// Solves it; `all` are the standings before anything is known about the friction.
+fn identified(problem: &Problem<'_>, options: &FitOptions, all: Vec<Standing>) -> (Solution, Vec<Standing>) {
+    let Some(record) = problem.members.first().map(|member| member.record) else { unreachable!() };
+    let given = record.params.values();
+    let of = |standings: &[Standing]| Problem { used: used(standings), ..problem.clone() };
+    let starts = start::starts(&of(&all), &[given], record.cycle_s);
     let solve_without_warm_up = |starts: Vec<Vec<Values>>| {
         let mut standings = all.clone();
-        leave_out_warm_up(&problem(&all), &starts, &mut standings);
+        leave_out_warm_up(&of(&all), &starts, &mut standings);
         let solution =
-            solve(&mut problem(&standings), starts, &[given], record.cycle_s, options.weighing, &mut standings, &[]);
+            solve(&mut of(&standings), starts, &[given], record.cycle_s, options.weighing, &mut standings, &[]);
         (solution, standings)
     };
     let (mut solution, mut standings) = solve_without_warm_up(starts);
-    if warm_up_was_misjudged(record, &solution, &all, &standings) {
+    if warm_up_was_misjudged(&record, &solution, &all, &standings) {
         let evaluation_count = solution.evaluation_count;
         (solution, standings) = solve_without_warm_up(vec![solution.values]);
         solution.evaluation_count += evaluation_count;
     }
-    cable_fits(&problem(&all), &[given], &solution, &standings)
+    (solution, standings)
 }
 
 /// Whether the fitted values, as far as they can be trusted, give another warm-up than the start did.
@@ -104,7 +133,7 @@ pub(super) fn prepared(record: &CableRecord<'_>) -> Vec<Standing> {
 }
 
 /// Which samples count.
-pub(super) fn used(standings: &[Standing]) -> Vec<bool> {
+pub fn used(standings: &[Standing]) -> Vec<bool> {
     standings.iter().map(|standing| *standing == Standing::Used).collect()
 }
 

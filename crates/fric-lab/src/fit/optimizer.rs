@@ -62,21 +62,16 @@ pub struct Minimum {
 ///
 /// The search has arrived where the sum cannot fall by more than `negligible_ratio` of itself, by the linear model there: nothing
 /// is evaluated any more to confirm it.
-pub fn minimize(
-    start: &[f64],
-    negligible_ratio: f64,
-    evaluate: impl FnMut(&[f64]) -> Option<Triangle>,
-) -> Minimum {
+pub fn minimize(start: &[f64], negligible_ratio: f64, evaluate: impl FnMut(&[f64]) -> Option<Triangle>) -> Minimum {
     if start.is_empty() {
         let termination = Termination::NothingToFit;
         return Minimum { coordinates: Vec::new(), termination, evaluation_count: 0, squares: f64::NAN };
     }
-    let mut adapter = Adapter { evaluate, coordinates: DVector::from_row_slice(start), current: None, negligible_ratio };
+    let mut adapter =
+        Adapter { evaluate, coordinates: DVector::from_row_slice(start), current: None, negligible_ratio };
     adapter.update();
-    let (adapter, report) = LevenbergMarquardt::new()
-        .with_xtol(STEP_TOLERANCE)
-        .with_patience(PATIENCE)
-        .minimize(adapter);
+    let (adapter, report) =
+        LevenbergMarquardt::new().with_xtol(STEP_TOLERANCE).with_patience(PATIENCE).minimize(adapter);
     let termination = match report.termination {
         TerminationReason::ResidualsZero
         | TerminationReason::Orthogonal

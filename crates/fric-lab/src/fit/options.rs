@@ -19,7 +19,7 @@ pub struct FitOptions {
 
 impl FitOptions {
     /// What to vary of a cable.
-    pub(super) fn free(&self, params: &CableParams) -> Vec<Parameter> {
+    pub(crate) fn free(&self, params: &CableParams) -> Vec<Parameter> {
         self.parameters.clone().unwrap_or_else(|| {
             let values = params.values();
             let acts = |kind: &str| {

@@ -196,7 +196,8 @@ pub struct CableRecord<'a> {
     /// Its cycles, one log after the other.
     pub rows: &'a [Row],
     pub(super) starts: &'a [usize],
-    pub(super) cycle_s: f64,
+    /// Duration of a cycle, s.
+    pub cycle_s: f64,
 }
 
 impl<'a> CableRecord<'a> {
@@ -206,11 +207,19 @@ impl<'a> CableRecord<'a> {
     }
 
     /// Other cycles of the same cable, as one log.
-    pub(super) fn with_rows<'b>(&self, rows: &'b [Row]) -> CableRecord<'b>
+    pub(super) fn as_one_log<'b>(&self, rows: &'b [Row]) -> CableRecord<'b>
     where
         'a: 'b,
     {
         CableRecord { params: self.params, rows, starts: &[0], cycle_s: self.cycle_s }
+    }
+
+    /// The same cycles with other signals.
+    pub(crate) fn with_signals<'b>(&self, rows: &'b [Row]) -> CableRecord<'b>
+    where
+        'a: 'b,
+    {
+        CableRecord { params: self.params, rows, starts: self.starts, cycle_s: self.cycle_s }
     }
 
     /// The cycles of each log, with the place of the first.

@@ -209,7 +209,7 @@ fn hold(problem: &mut Problem<'_>, unknown: Unknown, values: &mut [Values], give
 }
 
 /// The minimum from a start.
-pub(super) fn search(problem: &Problem<'_>, start: &[Values], cycle_s: f64) -> (Vec<Values>, Minimum) {
+pub fn search(problem: &Problem<'_>, start: &[Values], cycle_s: f64) -> (Vec<Values>, Minimum) {
     search_near(problem, start, cycle_s, NEAR_ERRORS)
 }
 
@@ -261,7 +261,7 @@ pub(super) fn search_near(
 
 /// Covariance of what a problem varies, infinite where the samples say nothing; and by how much each moves for residuals of
 /// 1 N in every sample, at worst.
-fn covariance(problem: &Problem<'_>, values: &[Values]) -> (DMatrix<f64>, Vec<f64>) {
+pub fn covariance(problem: &Problem<'_>, values: &[Values]) -> (DMatrix<f64>, Vec<f64>) {
     let count = problem.parameter_count();
     let unknown = || (DMatrix::from_diagonal_element(count, count, f64::INFINITY), vec![f64::INFINITY; count]);
     let Some((gram, scores)) = problem.gram_and_scores(values) else { return unknown() };

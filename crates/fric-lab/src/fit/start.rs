@@ -177,7 +177,7 @@ fn sliding_gram(problem: &Problem<'_>, values: &[Values]) -> Option<Gram> {
     let used = member.record.rows.iter().zip(&problem.used).filter(|(_, used)| **used).map(|(row, _)| *row);
     let rows: Vec<Row> = used.step_by(counted / ENOUGH_SLIDING + 1).collect();
     let reduced = Problem {
-        members: vec![Member { record: member.record.with_rows(&rows), free: member.free.clone() }],
+        members: vec![Member { record: member.record.as_one_log(&rows), free: member.free.clone() }],
         comparison: Comparison::Forces,
         loss: problem.loss,
         used: vec![true; rows.len()],

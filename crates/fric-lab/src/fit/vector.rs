@@ -7,6 +7,7 @@
 
 use std::fmt;
 
+use fric_core::effects::EffectRow;
 use fric_core::effects::time_delay::{DELAY, delay_range_s};
 use fric_core::parameters::{self, FRICTION_COUNT, PARAMETER_COUNT, ParameterRow, Values};
 use fric_core::robot::unknown_name;
@@ -23,6 +24,11 @@ impl Parameter {
     /// Every parameter there is, in the order of [`Values`].
     pub fn all() -> impl Iterator<Item = Self> {
         parameters::parameters().enumerate().map(|(place, (effect, row))| Self { place, effect, row })
+    }
+
+    /// Those of a row of the catalogue, or of the friction that every model has.
+    pub fn of_row(row: &EffectRow) -> impl Iterator<Item = Self> {
+        Self::all().skip(row.places().start).take(row.places().len())
     }
 
     /// The parameter of a name: a key of the robot file's `friction`, or `effect.key`.

@@ -1,0 +1,236 @@
+//! Where a disagreement sits: in which operating conditions the residual is more than noise.
+//!
+//! Two questions are asked of every condition. How much of the excess is a function of it, told apart by the direction of
+//! motion: means over bins of the samples learned from, tried on those held out, so that chance gains nothing. And in
+//! which range of it the excess is densest. The scatter of the gain over the blocks of the log gives its significance, which
+//! holds for residuals that remember no longer than a block.
+
+use std::ops::Range;
+
+use serde::Serialize;
+
+use super::conditions::{Condition, sign};
+use super::split::Block;
+use crate::fit::CableRecord;
+
+/// A gain of less than this many standard errors is chance.
+const LEAST_SIGNIFICANCE: f64 = 4.0;
+/// Bins beside the densest one belong to it down to this share of its density.
+const SHOULDER: f64 = 0.4;
+/// Intervals in time that are worth a look.
+const MOST_INTERVALS: usize = 5;
+/// Two intervals with less than this between them are one, s.
+const MERGED_S: f64 = 0.25;
+
+/// A range of a condition in which the excess sits.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Place {
+    /// The condition.
+    pub signal: &'static str,
+    /// Where the range begins, in `unit`.
+    pub from: f64,
+    /// Where it ends.
+    pub to: f64,
+    /// The condition's unit.
+    pub unit: &'static str,
+    /// Share of the excess in this range.
+    pub share_of_excess: f64,
+    /// Share of the samples in this range.
+    pub share_of_samples: f64,
+    /// Share of the excess that is a function of this condition and of the direction of motion.
+    pub explains: f64,
+    /// How many standard errors that is above chance.
+    pub significance: f64,
+    /// When to look, s since the first sample.
+    pub intervals_s: Vec<[f64; 2]>,
+}
+
+/// What is looked at.
+#[derive(Clone, Copy, Debug)]
+pub struct Excess<'a> {
+    /// The cable.
+    pub record: &'a CableRecord<'a>,
+    /// Its blocks.
+    pub blocks: &'a [Block],
+    /// What is left, N; NaN where a sample does not count.
+    pub residual_n: &'a [f64],
+    /// Standard deviation of the noise, N.
+    pub noise_n: f64,
+}
+
+impl Excess<'_> {
+    /// Sum of the squares above the noise over all samples, N².
+    pub fn sum(&self) -> f64 {
+        self.residual_n.iter().filter(|number| number.is_finite()).map(|number| self.of(*number)).sum()
+    }
+
+    fn of(&self, residual_n: f64) -> f64 {
+        residual_n * residual_n - self.noise_n * self.noise_n
+    }
+
+    /// Where the excess sits, the most telling condition first.
+    pub fn places(&self, conditions: &[Condition]) -> Vec<Place> {
+        let mut places: Vec<Place> = conditions.iter().filter_map(|condition| self.place(condition)).collect();
+        places.retain(|place| place.significance >= LEAST_SIGNIFICANCE);
+        places.sort_by(|one, other| other.explains.total_cmp(&one.explains));
+        places
+    }
+
+    /// Where it sits in one condition; `None` where there is nothing to compare.
+    pub fn place(&self, condition: &Condition) -> Option<Place> {
+        let bins = Bins::new(condition, self.residual_n)?;
+        let total = self.sum();
+        let (explains, significance) = self.explained(&bins, condition);
+        let range = self.densest(&bins, condition)?;
+        let inside = |value: f64| bins.of(value).is_some_and(|bin| range.contains(&bin));
+        let (mut share_of_excess, mut count_inside, mut count) = (0.0, 0.0, 0.0);
+        for (value, residual_n) in self.samples(condition) {
+            count += 1.0;
+            if inside(value) {
+                share_of_excess += self.of(residual_n) / total;
+                count_inside += 1.0;
+            }
+        }
+        Some(Place {
+            signal: condition.signal,
+            from: *bins.edges.get(range.start)?,
+            to: *bins.edges.get(range.end)?,
+            unit: condition.unit,
+            share_of_excess,
+            share_of_samples: count_inside / count,
+            explains: explains / total,
+            significance,
+            intervals_s: self.intervals_s(|cycle| condition.values.get(cycle).is_some_and(|value| inside(*value))),
+        })
+    }
+
+    /// Values of a condition with the residual, where there are both.
+    fn samples(&self, condition: &Condition) -> impl Iterator<Item = (f64, f64)> {
+        let samples = condition.values.iter().copied().zip(self.residual_n.iter().copied());
+        samples.filter(|(value, residual_n)| value.is_finite() && residual_n.is_finite())
+    }
+
+    /// How much of the squares of all samples a function of the condition and of the direction takes away, and its significance.
+    fn explained(&self, bins: &Bins, condition: &Condition) -> (f64, f64) {
+        let cell_of = |cycle: usize| -> Option<usize> {
+            let bin = bins.of(*condition.values.get(cycle)?)?;
+            let direction = sign(self.record.rows.get(cycle)?.signals.displacement_m);
+            Some(3 * bin + if direction > 0.0 { 2 } else { usize::from(direction < 0.0) })
+        };
+        let residual = |cycle: usize| self.residual_n.get(cycle).copied().filter(|number| number.is_finite());
+        let mut means = vec![(0.0_f64, 0.0_f64); 3 * bins.count()];
+        for cycle in self.blocks.iter().filter(|block| !block.held_out).flat_map(|block| block.cycles.clone()) {
+            let (Some(cell), Some(residual_n)) = (cell_of(cycle), residual(cycle)) else { continue };
+            if let Some((sum, count)) = means.get_mut(cell) {
+                (*sum, *count) = (*sum + residual_n, *count + 1.0);
+            }
+        }
+        let mut gains = Vec::new();
+        let (mut held_out, mut all) = (0.0, 0.0);
+        for block in self.blocks {
+            let mut gain = 0.0;
+            for cycle in block.cycles.clone() {
+                let (Some(cell), Some(residual_n)) = (cell_of(cycle), residual(cycle)) else { continue };
+                all += 1.0;
+                if let Some((sum, count)) = means.get(cell).filter(|(_, count)| block.held_out && *count > 0.0) {
+                    held_out += 1.0;
+                    let mean_n = sum / count;
+                    gain += 2.0 * residual_n * mean_n - mean_n * mean_n;
+                }
+            }
+            if block.held_out {
+                gains.push(gain);
+            }
+        }
+        let (sum, error) = sum_and_error(&gains);
+        (sum * if held_out > 0.0 { all / held_out } else { 0.0 }, if error > 0.0 { sum / error } else { 0.0 })
+    }
+
+    /// The contiguous bins about the one with most excess a sample.
+    fn densest(&self, bins: &Bins, condition: &Condition) -> Option<Range<usize>> {
+        let mut sums = vec![(0.0, 0.0); bins.count()];
+        for (value, residual_n) in self.samples(condition) {
+            if let Some((sum, count)) = bins.of(value).and_then(|bin| sums.get_mut(bin)) {
+                (*sum, *count) = (*sum + self.of(residual_n), *count + 1.0);
+            }
+        }
+        let density = |bin: usize| sums.get(bin).map_or(f64::NEG_INFINITY, |(sum, count)| sum / f64::max(*count, 1.0));
+        let best = (0..bins.count()).max_by(|one, other| density(*one).total_cmp(&density(*other)))?;
+        let belongs = |bin: usize| density(bin) >= SHOULDER * density(best);
+        let (mut from, mut to) = (best, best + 1);
+        while from > 0 && belongs(from - 1) {
+            from -= 1;
+        }
+        while to < bins.count() && belongs(to) {
+            to += 1;
+        }
+        Some(from..to)
+    }
+
+    /// The stretches of time in which samples are wanted, those with most excess, in the order of time.
+    pub fn intervals_s(&self, wanted: impl Fn(usize) -> bool) -> Vec<[f64; 2]> {
+        let mut found: Vec<(Range<f64>, f64)> = Vec::new();
+        for (cycle, residual_n) in self.residual_n.iter().enumerate().filter(|(_, number)| number.is_finite()) {
+            if !wanted(cycle) {
+                continue;
+            }
+            #[expect(clippy::cast_precision_loss, reason = "a count of cycles")]
+            let time_s = cycle as f64 * self.record.cycle_s;
+            match found.last_mut().filter(|(range, _)| time_s - range.end < MERGED_S) {
+                Some((range, excess)) => (range.end, *excess) = (time_s, *excess + self.of(*residual_n)),
+                None => found.push((time_s..time_s, self.of(*residual_n))),
+            }
+        }
+        found.sort_by(|one, other| other.1.total_cmp(&one.1));
+        found.truncate(MOST_INTERVALS);
+        found.sort_by(|one, other| one.0.start.total_cmp(&other.0.start));
+        found.into_iter().map(|(range, _)| [range.start, range.end]).collect()
+    }
+}
+
+/// Sum of numbers, and its standard error by their scatter.
+pub fn sum_and_error(numbers: &[f64]) -> (f64, f64) {
+    #[expect(clippy::cast_precision_loss, reason = "a count of blocks")]
+    let count = numbers.len() as f64;
+    let sum: f64 = numbers.iter().sum();
+    let mean = sum / count;
+    let scatter: f64 = numbers.iter().map(|number| (number - mean).powi(2)).sum();
+    (sum, if count > 1.0 { (scatter * count / (count - 1.0)).sqrt() } else { f64::INFINITY })
+}
+
+/// Bins of a condition that hold as many samples each.
+struct Bins {
+    edges: Vec<f64>,
+}
+
+impl Bins {
+    fn new(condition: &Condition, residual_n: &[f64]) -> Option<Self> {
+        let mut sorted: Vec<f64> = condition
+            .values
+            .iter()
+            .zip(residual_n)
+            .filter(|(value, residual_n)| value.is_finite() && residual_n.is_finite())
+            .map(|(value, _)| *value)
+            .collect();
+        sorted.sort_by(f64::total_cmp);
+        let last = sorted.len().checked_sub(1)?;
+        let quantiles = (0..=condition.bins).filter_map(|bin| sorted.get(bin * last / condition.bins).copied());
+        let mut edges: Vec<f64> = quantiles.collect();
+        edges.dedup_by(|one, other| one.to_bits() == other.to_bits());
+        if edges.len() == 2 && condition.bins <= 3 {
+            // Two values: each a bin of its own.
+            edges.insert(1, f64::midpoint(edges[0], edges[1]));
+        }
+        (edges.len() > 2).then_some(Self { edges })
+    }
+
+    fn count(&self) -> usize {
+        self.edges.len() - 1
+    }
+
+    fn of(&self, value: f64) -> Option<usize> {
+        let inside = value.is_finite() && value <= *self.edges.last()?;
+        let place = self.edges.partition_point(|edge| *edge <= value);
+        (inside && place > 0).then(|| (place - 1).min(self.count() - 1))
+    }
+}
