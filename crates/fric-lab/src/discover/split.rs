@@ -9,7 +9,7 @@ use std::ops::Range;
 use crate::fit::CableRecord;
 
 /// Most blocks of a log, and what they last at least, s.
-const MOST_BLOCKS: usize = 48;
+const MOST_BLOCKS: f64 = 48.0;
 const SHORTEST_S: f64 = 0.25;
 
 /// A stretch of the log.
@@ -23,28 +23,29 @@ pub struct Block {
 
 /// Blocks of all logs of a cable, in order.
 pub fn split(record: &CableRecord<'_>) -> Vec<Block> {
-    let mut blocks = Vec::new();
     let mut draw = 0x9e37_79b9_u32;
-    for (start, rows) in record.logs() {
-        #[expect(clippy::cast_precision_loss, reason = "a count of cycles")]
-        let longest = (rows.len() as f64 * record.cycle_s / SHORTEST_S).floor();
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to a small count")]
-        let count = longest.clamp(2.0, MOST_BLOCKS as f64) as usize & !1;
-        let edge = |place: usize| start + place * rows.len() / count;
-        let mut first_held_out = false;
-        for place in 0..count {
-            if place % 2 == 0 {
-                // xorshift: one bit a pair.
-                draw ^= draw << 13;
-                draw ^= draw >> 17;
-                draw ^= draw << 5;
-                first_held_out = draw & 1 == 1;
-            }
-            let held_out = (place % 2 == 0) == first_held_out;
-            blocks.push(Block { cycles: edge(place)..edge(place + 1), held_out });
+    record.logs().flat_map(|(start, rows)| cut(start..start + rows.len(), record.cycle_s, &mut draw)).collect()
+}
+
+/// Blocks of one log.
+fn cut(cycles: Range<usize>, cycle_s: f64, draw: &mut u32) -> Vec<Block> {
+    #[expect(clippy::cast_precision_loss, reason = "a count of cycles")]
+    let longest = (cycles.len() as f64 * cycle_s / SHORTEST_S).floor();
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to a small count")]
+    let count = longest.clamp(2.0, MOST_BLOCKS) as usize & !1;
+    let edge = |place: usize| cycles.start + place * cycles.len() / count;
+    let mut first_held_out = false;
+    let block = |place: usize| {
+        if place.is_multiple_of(2) {
+            // xorshift: one bit a pair.
+            *draw ^= *draw << 13;
+            *draw ^= *draw >> 17;
+            *draw ^= *draw << 5;
+            first_held_out = *draw & 1 == 1;
         }
-    }
-    blocks
+        Block { cycles: edge(place)..edge(place + 1), held_out: place.is_multiple_of(2) == first_held_out }
+    };
+    (0..count).map(block).collect()
 }
 
 #[cfg(test)]
@@ -54,8 +55,8 @@ mod tests {
     #[test]
     fn one_of_each_two_neighbours_is_held_out() {
         let mut first_of_pair = [0, 0];
-        let blocks = blocks_of(51_561);
-        assert_eq!(blocks.len(), MOST_BLOCKS);
+        let blocks = cut(0..51_561, 1e-3, &mut 0x9e37_79b9);
+        assert_eq!(blocks.len(), 48);
         for pair in blocks.chunks(2) {
             assert_ne!(pair[0].held_out, pair[1].held_out);
             first_of_pair[usize::from(pair[0].held_out)] += 1;
