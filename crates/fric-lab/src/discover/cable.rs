@@ -133,8 +133,7 @@ impl<'a> Case<'a> {
         let base = bench.try_one(start);
         let residual_n = bench.residuals_n(&base.values);
         let noise_n = white_noise(&residual_n).unwrap_or(0.0);
-        let mut search = Search { bench: &bench, noise_n, scale: self.scale(&base) };
-        let naming = search.run(&base);
+        let naming = Search::new(&bench, noise_n, self.scale(&base), &base).run();
         let rest_n = bench.residuals_n(&naming.model.values);
         let noise_n = white_noise(&rest_n).unwrap_or(noise_n);
         let excess = self.excess(&rest_n, noise_n);
@@ -201,7 +200,8 @@ impl<'a> Case<'a> {
             covariance: self.covariance(counts, trial),
             held_out_n: held_out_of(&trial.values),
         };
-        let search = Search { bench: &self.bench(counts), noise_n: *noise_n, scale: self.scale(base) };
+        let bench = self.bench(counts);
+        let search = Search::new(&bench, *noise_n, self.scale(base), base);
         let findings = naming.named.iter().zip(naming.ladder.iter().skip(1));
         let findings: Vec<Finding> =
             findings.map(|(named, step)| finding(&search, &naming.model, named, held_out_of(&step.values))).collect();
@@ -217,7 +217,6 @@ impl<'a> Case<'a> {
             .collect();
         tried.sort_by(|one, other| one.delta_bic.total_cmp(&other.delta_bic));
         let after = model(&naming.model);
-        let bench = self.bench(counts);
         let residual_before_n = bench.residuals_n(&base.values);
         let places = self.excess(&residual_before_n, *noise_n).places(conditions);
         let worth_telling = self.excess_share(&residual_before_n, *noise_n) > WORTH;

@@ -6,6 +6,8 @@
 //! 3. *Leave.* An effect stays if the evidence for it is strong, if it is large enough to matter, and if it explains more than
 //!    what remains unexplained: a name that leaves most of the gap open is not the name.
 
+use std::collections::BTreeMap;
+
 use fric_core::effects::{self, EffectRow};
 use fric_core::parameters::MU;
 
@@ -20,12 +22,15 @@ const MOST_EFFECTS: usize = 4;
 const LEAST_GAIN: f64 = 0.02;
 /// And of the noise itself this share: the rms falls by half of it.
 const LEAST_SIZE: f64 = 0.002;
-/// What is left above the noise, as a share of it, that is not worth a further search.
-const NEGLIGIBLE: f64 = 0.002;
+/// What is left above the noise, as a share of it, from which on no further name is sought: the rms is half of it above.
+const NEGLIGIBLE: f64 = 0.01;
 /// Evidence that an effect has to have to stay, and names have to have over each other to be told apart.
 pub const STRONG_BIC: f64 = 10.0;
 /// Rounds of entering and exchanging.
 const ROUNDS: usize = 4;
+
+/// Names of effects in the order of the alphabet.
+type Kinds = Vec<&'static str>;
 
 /// An effect in a model with what speaks for it.
 #[derive(Clone, Debug)]
@@ -53,177 +58,38 @@ pub struct Naming {
     pub first_round: Vec<(&'static EffectRow, Trial)>,
 }
 
-/// The search on one cable.
+/// The search on one cable. Every set of effects is fitted once.
 pub struct Search<'b, 'a> {
-    /// The cable.
-    pub bench: &'b Workbench<'a>,
-    /// Noise, N.
-    pub noise_n: f64,
-    /// For the starts.
-    pub scale: Scale,
+    bench: &'b Workbench<'a>,
+    noise_squares: f64,
+    scale: Scale,
+    fits: BTreeMap<Kinds, Trial>,
 }
 
-impl Search<'_, '_> {
-    /// Names what a model lacks.
-    pub fn run(&mut self, base: &Trial) -> Naming {
-        let mut model = base.clone();
+impl<'b, 'a> Search<'b, 'a> {
+    /// From the given model, fitted; `noise_n` is the standard deviation of the noise.
+    pub fn new(bench: &'b Workbench<'a>, noise_n: f64, scale: Scale, base: &Trial) -> Self {
+        #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
+        let noise_squares = bench.count(true) as f64 * noise_n * noise_n;
+        Self { bench, noise_squares, scale, fits: BTreeMap::from([(Kinds::new(), base.clone())]) }
+    }
+
+    /// Names what the model lacks.
+    pub fn run(&mut self) -> Naming {
         let mut rows: Vec<&'static EffectRow> = Vec::new();
-        let mut first_round = Vec::new();
+        let base = self.fit(&rows);
+        let first_round = if self.excess(&base) > NEGLIGIBLE { self.round(&rows) } else { Vec::new() };
         for _ in 0..ROUNDS {
             let before = rows.clone();
-            while rows.len() < MOST_EFFECTS && self.excess(&model) > NEGLIGIBLE {
-                let tried = self.round(&model, &rows);
-                if first_round.is_empty() {
-                    first_round.clone_from(&tried);
-                }
-                let Some((row, trial)) = best(tried).filter(|(_, trial)| self.enters(&model, trial)) else { break };
-                rows.push(row);
-                model = trial;
-            }
-            self.exchange(&mut model, &mut rows);
+            self.enter(&mut rows);
+            self.exchange(&mut rows);
             if kinds(&rows) == kinds(&before) {
                 break;
             }
         }
-        let named = self.justify(base, &mut model, &mut rows);
-        let ladder = self.ladder(base, &model, &rows);
-        Naming { model, named, ladder, first_round }
-    }
-
-    /// Mean square above the noise of the samples held out, as a share of the noise's.
-    pub fn excess(&self, trial: &Trial) -> f64 {
-        trial.held_out / self.noise_squares() - 1.0
-    }
-
-    /// Squares that noise alone leaves in the samples held out, N².
-    fn noise_squares(&self) -> f64 {
-        #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
-        let count = self.bench.count(true) as f64;
-        count * self.noise_n * self.noise_n
-    }
-
-    /// Whether a candidate is let in.
-    fn enters(&self, before: &Trial, after: &Trial) -> bool {
-        let gain = before.held_out - after.held_out;
-        let gap = (before.held_out - self.noise_squares()).max(0.0);
-        gain > LEAST_GAIN * gap && gain > LEAST_SIZE * self.noise_squares()
-    }
-
-    /// Each candidate that a model lacks, fitted beside all that it has; the ladder of friction comes before everything else.
-    fn round(&mut self, model: &Trial, rows: &[&'static EffectRow]) -> Vec<(&'static EffectRow, Trial)> {
-        self.renew_scale(model);
-        let lacks = |row: &&'static EffectRow| !has(row, &model.values) && !contains(rows, row);
-        let friction: Vec<&'static EffectRow> = effects::named()
-            .filter(|row| is_friction(row))
-            .filter(lacks)
-            .filter(|row| self.is_possible(row, model))
-            .collect();
-        if !friction.is_empty() {
-            let tried = self.try_rows(model, &friction);
-            if tried.iter().any(|(_, trial)| self.enters(model, trial)) {
-                return tried;
-            }
-        }
-        let others: Vec<&'static EffectRow> = effects::named().filter(|row| !is_friction(row)).filter(lacks).collect();
-        self.try_rows(model, &others)
-    }
-
-    /// Presliding needs friction to preslide.
-    fn is_possible(&self, row: &EffectRow, model: &Trial) -> bool {
-        row.kind != "presliding" || model.values[MU] > 0.0
-    }
-
-    fn renew_scale(&mut self, model: &Trial) {
-        self.scale.periods_m = candidates::periods_m(&self.bench.record, &self.bench.residuals_n(&model.values));
-    }
-
-    /// The best fit of each row beside a model.
-    fn try_rows(&self, model: &Trial, rows: &[&'static EffectRow]) -> Vec<(&'static EffectRow, Trial)> {
-        let mut models = Vec::new();
-        let mut owners = Vec::new();
-        for row in rows {
-            for values in starts(row, &model.values, &self.scale, &self.bench.record) {
-                let mut free = model.free.clone();
-                free.extend(fitted(row).into_iter().filter(|parameter| !model.free.contains(parameter)));
-                models.push(Model { values, free });
-                owners.push(*row);
-            }
-        }
-        let mut tried: Vec<(&'static EffectRow, Trial)> = Vec::new();
-        for (row, trial) in owners.into_iter().zip(self.bench.try_all(&models)) {
-            match tried.iter_mut().find(|(of, _)| of.kind == row.kind) {
-                Some((_, best)) if trial.training < best.training => *best = trial,
-                Some(_) => {}
-                None => tried.push((row, trial)),
-            }
-        }
-        tried.retain(|(_, trial)| trial.training.is_finite());
-        tried
-    }
-
-    /// A model without one of its effects, fitted anew.
-    fn without(&self, model: &Trial, row: &EffectRow) -> Trial {
-        let mut values = model.values;
-        for parameter in Parameter::of_row(row) {
-            values[parameter.place()] = parameter.row().neutral;
-        }
-        let fitted = fitted(row);
-        let free: Vec<Parameter> = model.free.iter().copied().filter(|parameter| !fitted.contains(parameter)).collect();
-        self.bench.try_one(&Model { values, free })
-    }
-
-    /// Tries all other effects in the place of each.
-    fn exchange(&mut self, model: &mut Trial, rows: &mut [&'static EffectRow]) {
-        for place in 0..rows.len() {
-            let Some(row) = rows.get(place).copied() else { continue };
-            let Some((other, trial)) = self.alternative(model, rows, row) else { continue };
-            if trial.training < model.training && trial.held_out < model.held_out {
-                *model = trial;
-                rows[place] = other;
-            }
-        }
-    }
-
-    /// The best other effect in the place of one.
-    fn alternative(
-        &mut self,
-        model: &Trial,
-        rows: &[&'static EffectRow],
-        row: &'static EffectRow,
-    ) -> Option<(&'static EffectRow, Trial)> {
-        if is_friction(row) {
-            return None;
-        }
-        let without = self.without(model, row);
-        let others: Vec<&'static EffectRow> = rows.iter().copied().chain([row]).collect();
-        best(self.round(&without, &others))
-    }
-
-    /// Takes away what cannot justify itself, the weakest first.
-    fn justify(&mut self, base: &Trial, model: &mut Trial, rows: &mut Vec<&'static EffectRow>) -> Vec<Named> {
-        loop {
-            let mut named = Vec::new();
-            for row in rows.clone() {
-                let without = self.without(model, row);
-                let inflation = inflation(self.bench, model, &fitted(row));
-                named.push(Named { row, without, runner_up: None, inflation });
-            }
-            let remains = (model.held_out - self.noise_squares()).max(0.0);
-            let gain = |named: &Named| named.without.held_out - model.held_out;
-            let fails = |named: &&Named| {
-                let strong = self.delta_bic(&named.without, model, named.inflation) < -STRONG_BIC;
-                !(strong && gain(named) > LEAST_SIZE * self.noise_squares() && gain(named) > remains)
-            };
-            let weakest = named.iter().filter(fails).min_by(|one, other| gain(one).total_cmp(&gain(other)));
-            let Some(weakest) = weakest.map(|named| named.row) else {
-                for named in &mut named {
-                    named.runner_up = self.alternative(model, rows, named.row);
-                }
-                return named;
-            };
-            rows.retain(|row| row.kind != weakest.kind);
-            *model = if rows.is_empty() { base.clone() } else { self.without(model, weakest) };
-        }
+        let named = self.justify(&mut rows);
+        let ladder = (0..=rows.len()).map(|count| self.fit(rows.get(..count).unwrap_or_default())).collect();
+        Naming { model: self.fit(&rows), named, ladder, first_round }
     }
 
     /// Difference of Schwarz's criterion from one model to another over the samples learned from; negative speaks for the other.
@@ -233,24 +99,155 @@ impl Search<'_, '_> {
         count * (to.training / from.training).ln() + more * count.ln()
     }
 
-    /// The given model, then one effect more at each step.
-    fn ladder(&self, base: &Trial, model: &Trial, rows: &[&'static EffectRow]) -> Vec<Trial> {
-        let mut ladder = vec![model.clone()];
-        for row in rows.iter().skip(1).rev() {
-            let Some(last) = ladder.last() else { break };
-            let shorter = self.without(last, row);
-            ladder.push(shorter);
+    /// Mean square above the noise of the samples held out, as a share of the noise's.
+    fn excess(&self, trial: &Trial) -> f64 {
+        trial.held_out / self.noise_squares - 1.0
+    }
+
+    /// Lets the best candidates in as long as they help.
+    fn enter(&mut self, rows: &mut Vec<&'static EffectRow>) {
+        while rows.len() < MOST_EFFECTS {
+            let model = self.fit(rows);
+            if self.excess(&model) <= NEGLIGIBLE {
+                break;
+            }
+            let Some((row, _)) = best(self.round(rows)).filter(|(_, trial)| self.enters(&model, trial)) else { break };
+            rows.push(row);
         }
-        if !rows.is_empty() {
-            ladder.push(base.clone());
+    }
+
+    /// Whether a candidate is let in.
+    fn enters(&self, before: &Trial, after: &Trial) -> bool {
+        let gain = before.held_out - after.held_out;
+        let gap = (before.held_out - self.noise_squares).max(0.0);
+        gain > LEAST_GAIN * gap && gain > LEAST_SIZE * self.noise_squares
+    }
+
+    /// Each candidate that a model lacks, fitted beside all that it has; the ladder of friction comes before everything else.
+    fn round(&mut self, rows: &[&'static EffectRow]) -> Vec<(&'static EffectRow, Trial)> {
+        let model = self.fit(rows);
+        let lacking = |friction: bool| -> Vec<&'static EffectRow> {
+            let slides = model.values[MU] > 0.0;
+            effects::named()
+                .filter(|row| is_friction(row) == friction && !has(row, &model.values) && !contains(rows, row))
+                .filter(|row| row.kind != "presliding" || slides)
+                .collect()
+        };
+        let friction = self.beside(rows, &lacking(true));
+        if friction.iter().any(|(_, trial)| self.enters(&model, trial)) {
+            return friction;
         }
-        ladder.reverse();
-        ladder
+        self.beside(rows, &lacking(false))
+    }
+
+    /// The model with one more effect, for each of several.
+    fn beside(
+        &mut self,
+        rows: &[&'static EffectRow],
+        candidates: &[&'static EffectRow],
+    ) -> Vec<(&'static EffectRow, Trial)> {
+        let with = |row: &&'static EffectRow| kinds(&[rows, &[*row]].concat());
+        let model = self.fit(rows);
+        let unknown: Vec<&'static EffectRow> =
+            candidates.iter().copied().filter(|row| !self.fits.contains_key(&with(row))).collect();
+        if unknown.iter().any(|row| row.kind == "pulley_eccentricity") {
+            let residuals_n = self.bench.residuals_n(&model.values);
+            self.scale.periods_m = candidates::periods_m(&self.bench.record, &residuals_n);
+        }
+        let (mut models, mut owners) = (Vec::new(), Vec::new());
+        for row in unknown {
+            for values in starts(row, &model.values, &self.scale, &self.bench.record) {
+                let mut free = model.free.clone();
+                free.extend(fitted(row).into_iter().filter(|parameter| !model.free.contains(parameter)));
+                models.push(Model { values, free });
+                owners.push(with(&row));
+            }
+        }
+        for (owner, trial) in owners.into_iter().zip(self.bench.try_all(&models)) {
+            let is_better = self.fits.get(&owner).is_none_or(|other| trial.training < other.training);
+            if trial.training.is_finite() && is_better {
+                self.fits.insert(owner, trial);
+            }
+        }
+        candidates.iter().filter_map(|row| Some((*row, self.fits.get(&with(row))?.clone()))).collect()
+    }
+
+    /// The model with a set of effects. One that has not been tried yet is fitted from the best that has one more.
+    fn fit(&mut self, rows: &[&'static EffectRow]) -> Trial {
+        let set = kinds(rows);
+        if let Some(trial) = self.fits.get(&set) {
+            return trial.clone();
+        }
+        let larger = self
+            .fits
+            .iter()
+            .filter(|(kinds, _)| kinds.len() == set.len() + 1 && set.iter().all(|kind| kinds.contains(kind)))
+            .min_by(|(_, one), (_, other)| one.training.total_cmp(&other.training));
+        let Some((larger, of_larger)) = larger else { return self.fit(&[]) };
+        let mut model = Model { values: of_larger.values, free: of_larger.free.clone() };
+        for row in effects::named().filter(|row| larger.contains(&row.kind) && !set.contains(&row.kind)) {
+            for parameter in Parameter::of_row(row) {
+                model.values[parameter.place()] = parameter.row().neutral;
+            }
+            let of_row = fitted(row);
+            model.free.retain(|parameter| !of_row.contains(parameter));
+        }
+        let trial = self.bench.try_one(&model);
+        self.fits.insert(set, trial.clone());
+        trial
+    }
+
+    /// Tries all other effects in the place of each.
+    fn exchange(&mut self, rows: &mut [&'static EffectRow]) {
+        for place in 0..rows.len() {
+            let Some((other, trial)) = self.alternative(rows, place) else { continue };
+            let model = self.fit(rows);
+            if trial.training < model.training && trial.held_out < model.held_out {
+                rows[place] = other;
+            }
+        }
+    }
+
+    /// The best other effect in the place of one; friction that every model has stays.
+    fn alternative(&mut self, rows: &[&'static EffectRow], place: usize) -> Option<(&'static EffectRow, Trial)> {
+        let row = *rows.get(place)?;
+        if is_friction(row) {
+            return None;
+        }
+        let others: Vec<&'static EffectRow> = rows.iter().copied().filter(|other| other.kind != row.kind).collect();
+        best(self.round(&others).into_iter().filter(|(other, _)| other.kind != row.kind))
+    }
+
+    /// Takes away what cannot justify itself, the weakest first.
+    fn justify(&mut self, rows: &mut Vec<&'static EffectRow>) -> Vec<Named> {
+        loop {
+            let model = self.fit(rows);
+            let mut named = Vec::new();
+            for (place, row) in rows.clone().into_iter().enumerate() {
+                let others: Vec<&'static EffectRow> =
+                    rows.iter().copied().filter(|other| other.kind != row.kind).collect();
+                named.push(Named {
+                    row,
+                    without: self.fit(&others),
+                    runner_up: self.alternative(rows, place),
+                    inflation: inflation(self.bench, &model, &fitted(row)),
+                });
+            }
+            let remains = (model.held_out - self.noise_squares).max(0.0);
+            let gain = |named: &Named| named.without.held_out - model.held_out;
+            let fails = |named: &&Named| {
+                let strong = self.delta_bic(&named.without, &model, named.inflation) < -STRONG_BIC;
+                !(strong && gain(named) > LEAST_SIZE * self.noise_squares && gain(named) > remains)
+            };
+            let weakest = named.iter().filter(fails).min_by(|one, other| gain(one).total_cmp(&gain(other)));
+            let Some(weakest) = weakest.map(|named| named.row.kind) else { return named };
+            rows.retain(|row| row.kind != weakest);
+        }
     }
 }
 
 /// The best on the samples learned from.
-fn best(tried: Vec<(&'static EffectRow, Trial)>) -> Option<(&'static EffectRow, Trial)> {
+fn best(tried: impl IntoIterator<Item = (&'static EffectRow, Trial)>) -> Option<(&'static EffectRow, Trial)> {
     tried.into_iter().min_by(|(_, one), (_, other)| one.training.total_cmp(&other.training))
 }
 
@@ -258,6 +255,8 @@ fn contains(rows: &[&'static EffectRow], row: &EffectRow) -> bool {
     rows.iter().any(|of| of.kind == row.kind)
 }
 
-fn kinds(rows: &[&'static EffectRow]) -> Vec<&'static str> {
-    rows.iter().map(|row| row.kind).collect()
+fn kinds(rows: &[&'static EffectRow]) -> Kinds {
+    let mut kinds: Kinds = rows.iter().map(|row| row.kind).collect();
+    kinds.sort_unstable();
+    kinds
 }

@@ -10,8 +10,11 @@ use fric_core::parameters::Values;
 use rayon::prelude::*;
 
 use super::split::Block;
-use crate::fit::engine::{Comparison, Gang, Loss, Member, Problem, Seat, search};
+use crate::fit::engine::{Comparison, Gang, Loss, Member, Problem, Seat, search_near};
 use crate::fit::{CableRecord, Parameter};
+
+/// A model is judged this near to its minimum, in standard errors: it changes the sum of squares by next to nothing.
+const NEAR_ERRORS: f64 = 0.1;
 
 /// A model to try: where its search starts, and what it varies.
 #[derive(Clone, Debug)]
@@ -117,7 +120,7 @@ impl<'a> Workbench<'a> {
         let problem = bench.problem(&model.free, Some(Rc::new(seat)));
         let mut values = model.values;
         if !model.free.is_empty() {
-            let (found, _) = search(&problem, &[model.values], self.record.cycle_s);
+            let (found, _) = search_near(&problem, &[model.values], self.record.cycle_s, NEAR_ERRORS);
             values = found.first().copied().unwrap_or(values);
         }
         let residuals_n = bench.residuals_with(&problem, &values);

@@ -43,7 +43,7 @@ pub(crate) mod engine {
     pub use super::gang::{Gang, Seat};
     pub use super::problem::{Comparison, Loss, Member, Problem};
     pub use super::selection::count;
-    pub use super::solve::{Solution, covariance, search};
+    pub use super::solve::{Solution, covariance, search_near};
 }
 
 pub use cables::{fit_cables, residuals_n};

@@ -209,18 +209,13 @@ fn hold(problem: &mut Problem<'_>, unknown: Unknown, values: &mut [Values], give
 }
 
 /// The minimum from a start.
-pub fn search(problem: &Problem<'_>, start: &[Values], cycle_s: f64) -> (Vec<Values>, Minimum) {
+pub(super) fn search(problem: &Problem<'_>, start: &[Values], cycle_s: f64) -> (Vec<Values>, Minimum) {
     search_near(problem, start, cycle_s, NEAR_ERRORS)
 }
 
 /// A place no more than `near_errors` standard errors from the minimum. With n residuals, δ standard errors in any direction
 /// raise the sum of squares by δ²/n of itself.
-pub(super) fn search_near(
-    problem: &Problem<'_>,
-    start: &[Values],
-    cycle_s: f64,
-    near_errors: f64,
-) -> (Vec<Values>, Minimum) {
+pub fn search_near(problem: &Problem<'_>, start: &[Values], cycle_s: f64, near_errors: f64) -> (Vec<Values>, Minimum) {
     #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
     let negligible_ratio = near_errors * near_errors / problem.residual_count() as f64;
     let unknowns = unknowns(problem);
