@@ -304,7 +304,8 @@ impl Simulation {
             let reference_noise_n = self.reference_noise_n * reference_noise + cable.reference_wander.advance();
             *reference_n = force_n + cable.offset_n + reference_noise_n;
         }
-        let outside_wrench = matches!(self.tension, Tension::Platform { .. })
+        let is_whole = self.cables.len() == self.forces_n.len();
+        let outside_wrench = (is_whole && matches!(self.tension, Tension::Platform { .. }))
             .then(|| balanced_wrench(&self.columns, self.forces_n.iter().copied()));
         #[expect(clippy::cast_possible_truncation, reason = "at most 100 days")]
         let since_start_nanos = libm::round(time_s * 1e9) as i64;
