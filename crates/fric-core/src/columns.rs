@@ -60,7 +60,7 @@ impl<const CABLES: usize> ParamColumns<CABLES> {
         least_force_n: [-f64::MAX; CABLES],
         greatest_force_n: [f64::MAX; CABLES],
         greatest_speed_m_per_s: [f64::MAX; CABLES],
-        delay: [Delay { cycles: 0, fraction: 0.0 }; CABLES],
+        delay: [Delay { cycles: 0, fraction: 0.0, leads: false }; CABLES],
         entry_m: [[0.0; CABLES]; 3],
         axis: [[0.0; CABLES], [0.0; CABLES], [1.0; CABLES]],
         radius_m: [0.0; CABLES],

@@ -93,7 +93,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
         let cable_count = robot.cables.len();
         if cable_count > CABLES {
             let problem = ParamProblem::Count { count: cable_count, min: 1, max: CABLES };
-            return Err(ParamError { key: "cable", pulley: None, problem });
+            return Err(ParamError { key: "cable", pulley: None, effect: None, problem });
         }
         let mut params = ParamColumns::EMPTY;
         let mut features = Features::default();
@@ -357,7 +357,7 @@ fn shift_block<const CABLES: usize>(
 ) -> Lanes {
     let mut values = values.to_array();
     for ((line, value), delay) in lines.iter_mut().skip(first).zip(&mut values).zip(delays) {
-        *value = line.shift(*value, delay);
+        *value = line.shift(*value, true, delay);
     }
     Lanes::new(values)
 }

@@ -164,8 +164,8 @@ impl<T: Scalar> CableGroup<T> {
 fn shift<T: Scalar>(lines: &mut [DelayLine; LANES], values: T, delays: &[Delay<T>; LANES]) -> T {
     let mut ends = [[0.0; 2]; LANES];
     for ((lane, line), ends) in lines.iter_mut().enumerate().take(T::COUNT).zip(&mut ends) {
-        line.push(values.lane(lane));
-        *ends = delays.get(lane).map_or([0.0; 2], |delay| line.around(delay.cycles));
+        line.push(values.lane(lane), true);
+        *ends = delays.get(lane).map_or([0.0; 2], |delay| line.around(delay.cycles, delay.leads));
     }
     let [first, ..] = delays;
     let end = |which: usize| T::from_lanes(|lane| ends.get(lane).map_or(0.0, |ends| ends[which]));

@@ -40,6 +40,7 @@ mod compensator;
 mod cycle;
 pub mod dahl;
 pub mod effects;
+mod functions;
 mod group;
 mod lanes;
 pub mod parameters;

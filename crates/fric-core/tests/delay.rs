@@ -20,7 +20,7 @@ fn delays_by_any_number_of_cycles() {
             let time = cycle as f64 - delay_cycles;
             let (before, share) = (time.floor() as i64, time - time.floor());
             let expected = if share == 0.0 { at(before) } else { at(before) * (1.0 - share) + at(before + 1) * share };
-            assert_near(line.shift(*value, Delay::from_cycles(delay_cycles, delay_cycles)), expected, 1e-12);
+            assert_near(line.shift(*value, true, Delay::from_cycles(delay_cycles, delay_cycles)), expected, 1e-12);
         }
     }
 }
@@ -32,5 +32,5 @@ fn out_of_range_delays_are_held_within() {
     }
     // A delay that was not made by `from_cycles` must not reach past the line.
     let mut line = DelayLine::EMPTY;
-    assert!(line.shift(1.0, Delay { cycles: usize::MAX - 1, fraction: 0.5 }).is_finite());
+    assert!(line.shift(1.0, true, Delay { cycles: usize::MAX - 1, fraction: 0.5, leads: false }).is_finite());
 }

@@ -141,6 +141,16 @@ impl<V: Scalar, const N: usize> Scalar for Dual<V, N> {
         let power = self.value.exp_negative();
         self.chain(power, power)
     }
+    #[inline]
+    fn ln(self) -> Self {
+        self.chain(self.value.ln(), V::splat(1.0) / self.value)
+    }
+    #[inline]
+    fn sin_cos_turns(self) -> [Self; 2] {
+        let [sin, cos] = self.value.sin_cos_turns();
+        let turn = V::splat(std::f64::consts::TAU);
+        [self.chain(sin, turn * cos), self.chain(cos, -(turn * sin))]
+    }
 }
 
 #[cfg(test)]
@@ -150,7 +160,7 @@ mod tests {
     /// Each operation against the central difference of the same expression in plain numbers.
     #[test]
     fn every_operation_follows_the_chain_rule() {
-        fn expression<T: Scalar>(x: T, y: T) -> [T; 9] {
+        fn expression<T: Scalar>(x: T, y: T) -> [T; 14] {
             let half = T::splat(0.5);
             [
                 x + half * y,
@@ -162,6 +172,11 @@ mod tests {
                 (x * x + y).sqrt(),
                 (-(x * y)).exp_negative(),
                 x.max(y) * x.min(y).sign(),
+                x.pow(y - half),
+                (x - y).exp(),
+                x.sin_cos_turns()[0] * y.sin_cos_turns()[1],
+                (half * (x - y)).ln_1p_ratio(),
+                (half * half * half * (x - y)).ln_1p_ratio(),
             ]
         }
         for (x, y) in [(0.7, 1.3), (2.5, 0.4), (0.1, 3.0)] {

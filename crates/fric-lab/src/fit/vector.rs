@@ -7,7 +7,7 @@
 
 use std::fmt;
 
-use fric_core::effects::time_delay::{DELAY, MAX_DELAY_CYCLES};
+use fric_core::effects::time_delay::{DELAY, delay_range_s};
 use fric_core::parameters::{self, FRICTION_COUNT, PARAMETER_COUNT, ParameterRow, Values};
 use fric_core::robot::unknown_name;
 
@@ -119,9 +119,7 @@ impl Coordinate {
     /// Of a parameter at a cycle time.
     pub fn of(parameter: &Parameter, cycle_s: f64) -> Self {
         let ParameterRow { min, max, .. } = *parameter.row;
-        #[expect(clippy::cast_precision_loss, reason = "a small constant")]
-        let longest_s = (MAX_DELAY_CYCLES - 1) as f64 * cycle_s;
-        let max = if parameter.place == DELAY { longest_s } else { max };
+        let (min, max) = if parameter.place == DELAY { delay_range_s(cycle_s) } else { (min, max) };
         let shape = if min > 0.0 && max / min > WIDE_RATIO {
             Shape::Logarithmic
         } else if min < -FAR && max > FAR {
