@@ -45,8 +45,16 @@ pub fn simulate(
         Some(effects) => effects.try_iter()?.map(|effect| hidden(&effect?)).collect::<Outcome<Vec<_>>>()?,
     };
     let run = named(run)?;
-    let options =
-        SimulationOptions { run, seed, duration_s, sensor_noise_n, reference_noise_n, mu_spread_ratio, effects };
+    let options = SimulationOptions {
+        run,
+        seed,
+        duration_s,
+        sensor_noise_n,
+        reference_noise_n,
+        mu_spread_ratio,
+        effects,
+        ..SimulationOptions::default()
+    };
     let robot = robot.borrow().clone();
     let file = robot.file.clone();
     let mut simulation = py.detach(|| Simulation::new(&file, &options))?;
