@@ -25,7 +25,9 @@ const MOST_PERIODS: usize = 2;
 pub struct Scale {
     /// Root mean square of the cable tension, N.
     pub tension_n: f64,
-    /// The same of the friction found so far, N.
+    /// Standard deviation of the noise, N.
+    pub noise_n: f64,
+    /// Root mean square of the friction found so far, N.
     pub friction_n: f64,
     /// The same of the speed while it moves, m/s.
     pub speed_m_per_s: f64,
@@ -90,7 +92,10 @@ pub fn starts(row: &EffectRow, current: &Values, scale: &Scale, record: &CableRe
             let of_period = |period_m: &f64| set(&[("sin_ratio", 1e-3), ("cos_ratio", 1e-3), ("period_m", *period_m)]);
             scale.periods_m.iter().map(of_period).collect()
         }
-        "cable_elasticity" => [2e-5, 1e-4, 5e-4].map(|compliance| set(&[("compliance_m_per_n", compliance)])).to_vec(),
+        // Twice the noise of the sensor; that of the reference is in what is known of it too.
+        "cable_elasticity" => [(1e-4, 1.0), (1e-4, 2.0), (5e-4, 1.4)]
+            .map(|(compliance, plays)| set(&[("compliance_m_per_n", compliance), ("play_n", plays * scale.noise_n)]))
+            .to_vec(),
         _ => vec![*current],
     }
 }
