@@ -5,12 +5,13 @@
 //! does (\[P\]'s open question: an outside force reverses the friction at the far pulleys while the winch rests). The one
 //! state of `lumped` presliding moves by the mean of its pulleys, `(n + 1)/(2n)` of the stretch.
 //!
-//! ΔF is how far the frictionless tension pushes the edge of a play of ± `play_n`: noise within it moves nothing, and a tension
-//! that goes on changing is followed without delay. Without it the noise of the sensor would shake the stored friction
-//! loose; with twice the noise of the sensor, as cable tension, next to nothing of it is left. (A low pass instead delays the stretch: on a
-//! simulated log it leaves 1.3 times what the play does.) Taken from the sensor, not from the
-//! computed force at the platform, there is no feedback that could swing. Only presliding and its direction follow the
-//! stretch; viscous friction and what depends on speed follow the winch, since the rate of a tension is mostly noise.
+//! ΔF is how far the tension at the platform, with the friction of the last cycle, pushes the edge of a play of ± `play_n`: noise
+//! within it moves nothing, and a tension that goes on changing is followed without delay. Without it the noise of the
+//! sensor would shake the stored friction loose; with one and a half times the noise of the sensor, as cable tension, next
+//! to nothing of it is left. (A low pass would delay the stretch: on a simulated log it leaves a third more of the noise than the play
+//! does.) Friction that follows a tension it adds to is stable while `compliance·σ·(n + 1)/(2n) < 1`, as it is for a cable far
+//! stiffer than its presliding; beyond, friction jumps to its Coulomb bound and no further. Only presliding and its direction follow
+//! the stretch; viscous friction and what depends on speed follow the winch, since the rate of a tension is mostly noise.
 //! Neutral: `compliance_m_per_n = 0`.
 //!
 //! Cause: the cable is an elastic spring between winch and platform.
