@@ -89,7 +89,7 @@ impl Scale<'_> {
             }
             "frozen" => vec![("interval_s", 10.0), ("length_s", self.about(0.6))],
             // The sensor at 180° feels the cable twice; the fuller the strength, the more is cut off.
-            "clipped" => vec![("greatest_n", 2.0 * self.tension_n * (1.35 - self.about(0.2)))],
+            "clipped" => vec![("greatest_n", 2.0 * self.tension_n * (1.6 - self.about(0.25)))],
             "step" => vec![("shift_n", self.either(0.3))],
             "quantised" => vec![("resolution_n", self.about(0.3))],
             "warming" => vec![("amplitude_n", self.about(0.1)), ("period_s", uniform(self.random, 15.0, 25.0))],
