@@ -394,8 +394,8 @@ fn shift_block<const CABLES: usize>(
     delays: [Delay; LANES],
 ) -> Lanes {
     let mut values = values.to_array();
-    let lanes = lines.iter_mut().skip(first).zip(&mut values).zip(delays);
-    for (lane, ((line, value), delay)) in lanes.enumerate() {
+    let of_lanes = lines.iter_mut().skip(first).zip(&mut values).zip(delays);
+    for (lane, ((line, value), delay)) in of_lanes.enumerate() {
         *value = line.shift(*value, in_order >> lane & 1 == 1, delay);
     }
     Lanes::new(values)

@@ -5,6 +5,7 @@
 //! pulley that follows the pose as [`PoseWrap`].
 
 use crate::cable::{Cable, CableForces, CableModel, Features, MEMORY, Moment, Pulley, UNKNOWN, cable_cycle};
+use crate::effects::cable_elasticity::{COMPLIANCE, LEAST_VARIED_M_PER_N};
 use crate::effects::time_delay::{self, DELAY, Delay, DelayLine};
 use crate::lanes::LANES;
 use crate::parameters::{ParameterRow, VISCOUS, Values};
@@ -117,11 +118,15 @@ impl<T: Scalar> CableGroup<T> {
         };
         let features = cables.iter().fold(Features::default(), |features, params| features.with(params));
         let features = features.and_acting(is_active);
+        let mut values = *values;
+        if varies(COMPLIANCE) {
+            values[COMPLIANCE] = values[COMPLIANCE] + T::splat(LEAST_VARIED_M_PER_N);
+        }
         let delay = values[DELAY] / T::splat(cycle_s);
         let delayed = features.acting.has(time_delay::ACTS);
         let zero = T::splat(0.0);
         Some(Self {
-            model: CableModel::new(of_lane, values),
+            model: CableModel::new(of_lane, &values),
             features,
             delay: delayed.then(|| Delayed {
                 delays: core::array::from_fn(|lane| Delay::from_cycles(delay, delay.lane(lane))),
@@ -132,7 +137,7 @@ impl<T: Scalar> CableGroup<T> {
             cycle_s,
             last_cycle: T::splat(f64::NAN),
             state: State {
-                values: *values,
+                values,
                 wrap_factor: at(|places| &places.wrap_factor),
                 has_pulley: at(|places| &places.has_pulley),
                 stretch_ratio: at(|places| &places.stretch_ratio),
