@@ -10,6 +10,8 @@ use crate::simulate::HiddenEffect;
 use crate::simulate::effects::CableCause;
 
 type Outcome = Result<(), Box<dyn core::error::Error>>;
+/// Sliding friction at a normal force, both in N.
+type Law = Box<dyn Fn(f64) -> f64>;
 
 const MU: f64 = 0.03;
 const VISCOUS: f64 = 0.2;
@@ -61,7 +63,6 @@ fn steady_sliding_has_its_closed_form_under_every_effect() -> Outcome {
         let sign = f64::signum(speed_m_per_s);
         let film = 1.0 + 0.6 * f64::exp(-(speed_m_per_s / 0.03).powi(2));
         let asymmetry = 1.0 + 0.25 * sign;
-        type Law = Box<dyn Fn(f64) -> f64>;
         let cases: [(&[&str], Law, f64); 8] = [
             (&[], Box::new(|normal_n| MU * normal_n), VISCOUS),
             (&["stribeck:ratio=0.6,velocity_m_per_s=0.03"], Box::new(move |normal_n| film * MU * normal_n), VISCOUS),
