@@ -54,9 +54,6 @@ pub const COMPLIANCE: usize = first_place(ROW.kind);
 /// Place of `window_s`.
 pub const WINDOW: usize = COMPLIANCE + 1;
 
-/// What is added to a compliance that varies, m/N: without any the cable at rest moves nowhere, and has no derivative.
-pub(crate) const LEAST_VARIED_M_PER_N: f64 = 1e-15;
-
 /// The effect's parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CableElasticity<T> {

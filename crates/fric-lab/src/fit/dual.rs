@@ -2,7 +2,7 @@
 //!
 //! `value + Σ gradient_k·ε_k` with `ε_j·ε_k = 0`: every operation follows the chain rule exactly, so a result holds the
 //! derivatives of what the equations computed, to rounding. Comparisons look at the value alone; at a kink the derivative is
-//! that of the branch taken.
+//! that of the branch taken, and that of a magnitude at 0 is 0.
 #![allow(clippy::inline_always, reason = "a call in the cycle's equations would pass the derivatives through memory")]
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -125,7 +125,7 @@ impl<V: Scalar, const N: usize> Scalar for Dual<V, N> {
     }
     #[inline(always)]
     fn abs(self) -> Self {
-        self.chain(self.value.abs(), V::select(self.value.lt(V::splat(0.0)), V::splat(-1.0), V::splat(1.0)))
+        self.chain(self.value.abs(), self.value.sign())
     }
     #[inline(always)]
     fn sign(self) -> Self {
