@@ -98,7 +98,7 @@ fn draw_effects(random: &mut Random, presliding: Presliding, options: &mut Cable
     set("pulley_eccentricity", random, ripple);
     let stretch = &mut [
         ("compliance_m_per_n", &mut of.compliance_m_per_n, 0.0, 1e-4),
-        ("window_s", &mut of.stretch_window_s, 0.0, 0.1),
+        ("play_n", &mut of.stretch_play_n, 0.0, 0.1),
     ];
     set("cable_elasticity", random, stretch);
     effects

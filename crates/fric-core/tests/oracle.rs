@@ -55,7 +55,7 @@ pub struct Effects {
     pub mass_window_s: f64,
     pub ripple: [f64; 3],
     pub compliance_m_per_n: f64,
-    pub stretch_window_s: f64,
+    pub stretch_play_n: f64,
 }
 
 impl Effects {
@@ -74,7 +74,7 @@ impl Effects {
         mass_window_s: 0.002,
         ripple: [0.0, 0.0, 0.1],
         compliance_m_per_n: 0.0,
-        stretch_window_s: 0.05,
+        stretch_play_n: 0.0,
     };
 }
 
@@ -83,7 +83,8 @@ impl Effects {
 pub struct Memory {
     cycles: u32,
     slow_speed: f64,
-    slow_tension_n: f64,
+    settled_n: f64,
+    friction_n: f64,
 }
 
 const CYCLE_S: f64 = 0.001;
@@ -152,16 +153,18 @@ impl Cable {
         let wraps_rad: Vec<f64> = self.wraps_rad.iter().map(|wrap| wrap.unwrap_or(pose_wrap_rad)).collect();
         let sensor_n = (shown_n - effects.sensor_offset_n - effects.sensor_drift_n_per_s * time_s) / effects.gain;
 
-        let straight_n = self.frictionless(sensor_n, &wraps_rad);
+        // What the platform feels, with the friction of the cycle before.
+        let shown_straight_n = self.frictionless(shown_n, &wraps_rad);
+        let tension_n = (shown_straight_n + self.memory.friction_n).max(0.0);
         if self.memory.cycles == 0 {
-            (self.memory.slow_speed, self.memory.slow_tension_n) = (speed, straight_n);
+            (self.memory.slow_speed, self.memory.settled_n) = (speed, tension_n);
         }
+        let settled_n =
+            self.memory.settled_n.clamp(tension_n - effects.stretch_play_n, tension_n + effects.stretch_play_n);
+        let stretch_m = effects.compliance_m_per_n * (settled_n - self.memory.settled_n);
         let low_pass = |slow: f64, now: f64, window_s: f64| (window_s * slow + CYCLE_S * now) / (window_s + CYCLE_S);
-        let slow_tension_n = low_pass(self.memory.slow_tension_n, straight_n, effects.stretch_window_s);
-        let stretch_m = effects.compliance_m_per_n * (slow_tension_n - self.memory.slow_tension_n);
         let slow_speed = low_pass(self.memory.slow_speed, speed, effects.mass_window_s);
         let inertia_n = effects.mass_kg * (slow_speed - self.memory.slow_speed) / CYCLE_S;
-        self.memory = Memory { cycles: self.memory.cycles + 1, slow_speed, slow_tension_n };
 
         let motion = Motion { displacement_m, stretch_m, speed, inertia_n };
         let chain_n = if self.lumped {
@@ -171,7 +174,10 @@ impl Cable {
         };
         let [sin, cos, period_m] = effects.ripple;
         let angle = std::f64::consts::TAU * (length_m / period_m);
-        chain_n * (1.0 + sin * angle.sin() + cos * angle.cos()) + self.offset_n
+        let force_n = chain_n * (1.0 + sin * angle.sin() + cos * angle.cos());
+        let friction_n = force_n - shown_straight_n;
+        self.memory = Memory { cycles: self.memory.cycles + 1, slow_speed, settled_n, friction_n };
+        force_n + self.offset_n
     }
 
     fn lumped(&mut self, mu: f64, sensor_n: f64, motion: Motion, wraps_rad: &[f64]) -> f64 {
