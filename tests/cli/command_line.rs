@@ -39,7 +39,7 @@ fn effects_that_are_none_are_told() {
         ("stribeck:ratio=-1", &["`ratio`", "-1"]),
         ("stribeck:ratio=1e999", &["`ratio`", "inf"]),
         ("stribeck:ratio=0.5,ratio=0.6", &["`ratio`", "twice"]),
-        ("time_delay:delay_s=-0.001", &["`delay_s`", "-0.001"]),
+        ("time_delay:delay_s=-1.5", &["`delay_s`", "-1.5"]),
     ] {
         let run = simulate(&place, "--effect", effect).fails(2, &["--effect"]);
         run.fails(2, words);
