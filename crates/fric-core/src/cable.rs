@@ -240,7 +240,7 @@ pub fn cable_cycle<T: Scalar>(
     };
     let no_tension = sensor_force_n.le(zero);
     let bearing = Bearing::new(model, acting, signals, moment, cable);
-    let stretch_m = stretch(acting, shown_n + cable.held_friction_n(), signals, cable);
+    let stretch_m = stretch(acting, frictionless_n + cable.held_friction_n(), signals, cable);
     let displacement_m = signals.displacement_m;
     let chain = Chain { model, features, bearing, sensor_force_n, displacement_m, stretch_m };
     let mut chain_n = frictionless_n;

@@ -154,8 +154,8 @@ impl Cable {
         let sensor_n = (shown_n - effects.sensor_offset_n - effects.sensor_drift_n_per_s * time_s) / effects.gain;
 
         // What the platform feels, with the friction of the cycle before.
-        let shown_straight_n = self.frictionless(shown_n, &wraps_rad);
-        let tension_n = (shown_straight_n + self.memory.friction_n).max(0.0);
+        let straight_n = self.frictionless(sensor_n, &wraps_rad);
+        let tension_n = (straight_n + self.memory.friction_n).max(0.0);
         if self.memory.cycles == 0 {
             (self.memory.slow_speed, self.memory.settled_n) = (speed, tension_n);
         }
@@ -175,7 +175,7 @@ impl Cable {
         let [sin, cos, period_m] = effects.ripple;
         let angle = std::f64::consts::TAU * (length_m / period_m);
         let force_n = chain_n * (1.0 + sin * angle.sin() + cos * angle.cos());
-        let friction_n = force_n - shown_straight_n;
+        let friction_n = force_n - straight_n;
         self.memory = Memory { cycles: self.memory.cycles + 1, slow_speed, settled_n, friction_n };
         force_n + self.offset_n
     }
