@@ -4,6 +4,7 @@ use fric_core::LANES;
 use fric_core::parameters::{MU, SIGMA, Values};
 use std::panic::resume_unwind;
 use std::rc::Rc;
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::thread;
 
@@ -168,7 +169,7 @@ pub fn residuals_n(measurements: &Measurements<'_>, fits: &[CableFit]) -> Vec<Ve
         seat: None,
     };
     let values: Vec<Values> = fits.iter().map(|fit| fit.values).collect();
-    let of_cable = |(member, forces): (&Member<'_>, &Forces)| {
+    let of_cable = |(member, forces): (&Member<'_>, &Arc<Forces>)| {
         let rows = member.record.rows.iter().enumerate();
         rows.map(|(cycle, row)| forces.at(cycle).0 - row.reference_n).collect()
     };

@@ -104,9 +104,17 @@ impl Triangle {
         Self { jacobian, residuals }
     }
 
+    /// What to subtract from the parameters to reach the minimum, were the residuals linear in them; `None` where some have no
+    /// effect.
+    pub fn step(&self) -> Option<Vec<f64>> {
+        let count = self.jacobian.ncols();
+        let step = self.jacobian.rows(0, count).solve_upper_triangular(&self.residuals.rows(0, count))?;
+        Some(step.iter().copied().collect())
+    }
+
     /// By which share of itself the sum of squares would fall at most, were the residuals linear in the parameters.
     pub fn reducible_ratio(&self) -> f64 {
-        let left = self.residuals.iter().last().map_or(f64::NAN, |left| left * left);
+        let left = self.residuals.iter().next_back().map_or(f64::NAN, |left| left * left);
         let squares = self.residuals.norm_squared();
         (squares - left) / squares
     }

@@ -6,6 +6,7 @@
 
 use std::ops::Range;
 use std::rc::Rc;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use fric_core::parameters::{SIGMA, Values};
@@ -261,15 +262,22 @@ impl Assembly {
 
 impl<'a> Problem<'a> {
     /// Forces of every cable in every cycle, without derivatives; `None` when stopped.
-    pub fn forces(&self, values: &[Values]) -> Option<Vec<Forces>> {
+    pub fn forces(&self, values: &[Values]) -> Option<Vec<Arc<Forces>>> {
         let parts: Vec<Part<'_>> =
             self.members.iter().zip(values).map(|(member, values)| member.part(values, false)).collect();
         if let (Some(seat), [part]) = (&self.seat, parts.as_slice()) {
-            return seat.forces(part).map(|forces| vec![(*forces).clone()]);
+            return seat.forces(part).map(|forces| vec![forces]);
         }
-        let of_lanes: Option<Vec<Vec<Forces>>> =
-            parts.par_chunks(LANES).map(|parts| all_forces::<0>(parts, self.stop)).collect();
-        of_lanes.map(|forces| forces.into_iter().flatten().collect())
+        let of_parts = |parts: &[Part<'_>]| all_forces::<0>(parts, vec![Forces::default(); parts.len()], self.stop);
+        let of_lanes: Option<Vec<Vec<Forces>>> = parts.par_chunks(LANES).map(of_parts).collect();
+        of_lanes.map(|forces| forces.into_iter().flatten().map(Arc::new).collect())
+    }
+
+    /// Goes from values that were evaluated last to others by the derivatives there.
+    pub fn step(&self, at: &[Values], to: &[Values]) {
+        if let (Some(seat), [member], [at], [to]) = (&self.seat, self.members.as_slice(), at, to) {
+            seat.step(&member.part(at, true), to);
+        }
     }
 
     /// Evaluates all samples that count, with the derivatives by the free parameters or without; false when stopped.
@@ -286,7 +294,7 @@ impl<'a> Problem<'a> {
             }
             return true;
         }
-        let most = parts.iter().map(|part| part.free.len()).max().unwrap_or(0);
+        let most = parts.iter().map(Part::carried).max().unwrap_or(0);
         with_room_for!(most, visit_chunks(self, &parts, derivatives, visit))
     }
 }
@@ -303,6 +311,7 @@ fn visit_chunks<const N: usize>(
     let mut assembly = Assembly::default();
     let mut passes: Vec<LanePass<'_, N>> =
         parts.chunks(LANES).map(|parts| LanePass::new(parts.iter().cloned())).collect();
+    let mut forces = vec![Forces::default(); parts.len()];
     for (start, log) in first.record.logs() {
         passes.iter_mut().for_each(LanePass::rest);
         let end = start + log.len();
@@ -311,7 +320,9 @@ fn visit_chunks<const N: usize>(
                 return false;
             }
             let to = (from + CHUNK).min(end);
-            let mut forces: Vec<Forces> = parts.iter().map(|_| Forces::new(N, CHUNK)).collect();
+            for (forces, part) in forces.iter_mut().zip(parts) {
+                forces.clear(part.free.len(), CHUNK);
+            }
             passes
                 .par_iter_mut()
                 .zip(forces.par_chunks_mut(LANES))

@@ -1,5 +1,7 @@
 //! From a problem and a start to values with their covariance: search, outliers, what is not determined.
 
+use std::sync::Arc;
+
 use fric_core::parameters::{OFFSET, Values};
 use nalgebra::DMatrix;
 
@@ -24,9 +26,6 @@ const DEVIATION_PER_MEDIAN: f64 = 1.482_602_218_505_602;
 const COMPARABLE_RATIO: f64 = 0.01;
 /// A given value that raises the sum of squares by more than this share contradicts the samples.
 const CONTRADICTION_RATIO: f64 = 0.01;
-/// A search has arrived where no parameter, and no combination of them, is further from the minimum than this many of its
-/// standard errors, as they were if residuals did not remember: true ones are no smaller.
-const NEAR_ERRORS: f64 = 0.01;
 /// Rounds of search and new look at the deviations.
 const ROUNDS: usize = 3;
 
@@ -175,7 +174,7 @@ fn squares(problem: &Problem<'_>, values: &[Values]) -> f64 {
 /// What matters for each cable of a problem.
 fn yardsticks(problem: &Problem<'_>, values: &[Values]) -> Vec<Yardstick> {
     let forces = problem.forces(values).unwrap_or_default();
-    let of = |((member, values), forces): ((&Member<'_>, &Values), &Forces)| {
+    let of = |((member, values), forces): ((&Member<'_>, &Values), &Arc<Forces>)| {
         let gain = member.record.params.frictionless_gain();
         let (mut friction, mut tension) = (Deviation::default(), Deviation::default());
         for (cycle, row) in member.record.rows.iter().enumerate().filter(|(_, row)| row.is_sound()) {
@@ -210,19 +209,6 @@ fn hold(problem: &mut Problem<'_>, unknown: Unknown, values: &mut [Values], give
 
 /// The minimum from a start.
 pub(super) fn search(problem: &Problem<'_>, start: &[Values], cycle_s: f64) -> (Vec<Values>, Minimum) {
-    search_near(problem, start, cycle_s, NEAR_ERRORS)
-}
-
-/// A place no more than `near_errors` standard errors from the minimum. With n residuals, δ standard errors in any direction
-/// raise the sum of squares by δ²/n of itself.
-pub(super) fn search_near(
-    problem: &Problem<'_>,
-    start: &[Values],
-    cycle_s: f64,
-    near_errors: f64,
-) -> (Vec<Values>, Minimum) {
-    #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
-    let negligible_ratio = near_errors * near_errors / problem.residual_count() as f64;
     let unknowns = unknowns(problem);
     let coordinates: Vec<Coordinate> =
         unknowns.iter().map(|unknown| Coordinate::of(&unknown.parameter, cycle_s)).collect();
@@ -245,7 +231,11 @@ pub(super) fn search_near(
             slopes,
         )
     };
-    let minimum = optimizer::minimize(&at_start, negligible_ratio, |places| {
+    let is_straight = |from: &[f64], to: &[f64]| {
+        let mut of_each = coordinates.iter().zip(from).zip(to);
+        of_each.all(|((coordinate, from), to)| coordinate.is_straight(*from, *to))
+    };
+    let minimum = optimizer::minimize(&at_start, problem.residual_count(), is_straight, |places| {
         let (values, slopes) = values_at(places);
         let gram: Gram = problem.gram(&values)?;
         let (mut matrix, mut gradient, squares) = gram.normal_equations();
@@ -256,7 +246,11 @@ pub(super) fn search_near(
         }
         Some(Triangle::new(&matrix, &gradient, squares))
     });
-    (values_at(&minimum.coordinates).0, minimum)
+    let (values, _) = values_at(&minimum.coordinates);
+    if minimum.coordinates != minimum.evaluated {
+        problem.step(&values_at(&minimum.evaluated).0, &values);
+    }
+    (values, minimum)
 }
 
 /// Covariance of what a problem varies, infinite where the samples say nothing; and by how much each moves for residuals of
