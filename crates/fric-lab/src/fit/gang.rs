@@ -33,7 +33,7 @@ enum State<'a> {
     Busy,
     /// Waits for a pass, with the room for it.
     Waiting(Part<'a>, Forces),
-    /// Its pass is done; `None` when stopped.
+    /// Its pass is done, `None` when stopped, and it has yet to notice.
     Served(Option<Forces>),
     /// Ended.
     Gone,
@@ -101,7 +101,7 @@ impl<'a> Seat<'a> {
                 Some(State::Waiting(..)) => {}
                 _ => return None,
             }
-            if seats.iter().any(|seat| matches!(seat, State::Busy)) {
+            if seats.iter().any(|seat| matches!(seat, State::Busy | State::Served(_))) {
                 seats = self.gang.turn.wait(seats).unwrap_or_else(PoisonError::into_inner);
             } else {
                 serve(&mut seats, self.gang.stop);
@@ -120,21 +120,21 @@ impl Drop for Seat<'_> {
     }
 }
 
-/// Runs the passes of all that wait, those with as many derivatives and cycles together. Nobody else has anything to do meanwhile.
+/// Runs the passes of those that wait for the fewest cycles, with as many derivatives, together; the others wait on, for these may
+/// join them. Nobody else has anything to do meanwhile.
 fn serve(seats: &mut [State<'_>], stop: &AtomicBool) {
-    let waits = |seat: &State<'_>| match seat {
-        State::Waiting(part, _) => Some((room_for(part.carried()), part.record.rows.len())),
+    let wish = |seat: &State<'_>| match seat {
+        State::Waiting(part, _) => Some((part.record.rows.len(), room_for(part.carried()))),
         _ => None,
     };
-    while let Some(alike) = seats.iter().find_map(waits) {
-        let mut together = Vec::with_capacity(seats.len());
-        for seat in seats.iter_mut().filter(|seat| waits(seat) == Some(alike)) {
-            if let State::Waiting(part, room) = std::mem::replace(seat, State::Served(None)) {
-                together.push((seat, (part, room)));
-            }
+    let Some(least) = seats.iter().filter_map(wish).min() else { return };
+    let mut together = Vec::with_capacity(seats.len());
+    for seat in seats.iter_mut().filter(|seat| wish(seat) == Some(least)) {
+        if let State::Waiting(part, room) = std::mem::replace(seat, State::Served(None)) {
+            together.push((seat, (part, room)));
         }
-        with_room_for!(alike.0, serve_together(together, stop));
     }
+    with_room_for!(least.1, serve_together(together, stop));
 }
 
 fn serve_together<const N: usize>(waiting: Vec<(&mut State<'_>, (Part<'_>, Forces))>, stop: &AtomicBool) {

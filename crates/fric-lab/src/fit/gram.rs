@@ -31,12 +31,7 @@ impl Gram {
     /// Takes in one row: the derivatives of a residual, then the residual.
     #[inline]
     pub fn add(&mut self, row: &[f64]) {
-        let mut places = self.block.iter_mut();
-        for (column, right) in row.iter().enumerate() {
-            for (left, place) in row.iter().take(column + 1).zip(&mut places) {
-                *place += left * right;
-            }
-        }
+        add_products(&mut self.block, row);
         self.in_block += 1;
         if self.in_block == BLOCK {
             self.close_block();
@@ -60,6 +55,29 @@ impl Gram {
         let count = self.columns - 1;
         let matrix = DMatrix::from_fn(count, count, entry);
         (matrix, DVector::from_fn(count, |row, _| entry(row, count)), entry(count, count))
+    }
+}
+
+/// Adds the products of all pairs of numbers to a triangle of sums, column by column.
+#[inline]
+pub fn add_products(sums: &mut [f64], numbers: &[f64]) {
+    // Four parameters, with and without a residual, are what nearly every fit has: of known length, loops unroll.
+    match (sums, numbers) {
+        (sums @ &mut [_, _, _, _, _, _, _, _, _, _], numbers @ &[_, _, _, _]) => add_pairs(sums, numbers),
+        (sums @ &mut [_, _, _, _, _, _, _, _, _, _, _, _, _, _, _], numbers @ &[_, _, _, _, _]) => {
+            add_pairs(sums, numbers)
+        }
+        (sums, numbers) => add_pairs(sums, numbers),
+    }
+}
+
+#[inline(always)]
+fn add_pairs(sums: &mut [f64], numbers: &[f64]) {
+    let mut places = sums.iter_mut();
+    for (column, right) in numbers.iter().enumerate() {
+        for (left, place) in numbers.iter().take(column + 1).zip(&mut places) {
+            *place += left * right;
+        }
     }
 }
 

@@ -237,9 +237,12 @@ impl Assembly {
             let (force_n, gradient) = of_cable.at(cycle);
             let reference_n = member.record.rows.get(place).map_or(f64::NAN, |row| row.reference_n);
             let (root, slope) = problem.loss.root(force_n - reference_n);
-            rows.clear();
-            rows.extend(gradient.iter().take(if derivatives { member.free.len() } else { 0 }).map(|part| slope * part));
-            rows.push(root);
+            let count = if derivatives { member.free.len() } else { 0 };
+            rows.resize(count + 1, root);
+            for (entry, part) in rows.iter_mut().zip(gradient.iter().take(count)) {
+                *entry = slope * part;
+            }
+            rows.last_mut().into_iter().for_each(|entry| *entry = root);
             return;
         }
         forces_n.clear();
