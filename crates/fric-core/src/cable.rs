@@ -14,7 +14,6 @@ use crate::places::{Places, START_WRAP_FACTOR};
 use crate::pulley;
 use crate::robot::{CableParams, Presliding};
 use crate::scalar::{Mask, Scalar};
-use crate::signals::Conditioned;
 
 /// Parameters of a cable as the cycle uses them.
 #[derive(Clone, Copy, Debug)]
@@ -77,23 +76,16 @@ impl CableParams {
     }
 }
 
-/// One pulley of a cable. All zero is a pulley that is not there.
-#[derive(Clone, Copy, Debug)]
-pub struct Pulley<T> {
-    /// `2 sin(α/2)` of its wrap.
-    pub wrap_factor: T,
-    /// F_pv, N s/m.
-    pub viscous_n_s_per_m: T,
-}
-
 /// A cable, or several in lanes: its pulleys in order from the winch, its effects, and what it remembers.
 ///
 /// Pulley 0 is the sensor pulley; a sensor in line with the cable is a sensor pulley without wrap.
 pub trait Cable<T: Scalar> {
     /// How many pulleys, at least 1.
     fn count(&self) -> usize;
-    /// The pulley at a place.
-    fn pulley(&self, place: usize) -> Pulley<T>;
+    /// `2 sin(α/2)` of the wrap of the pulley at a place; 0 where there is none.
+    fn wrap_factor(&self, place: usize) -> T;
+    /// Its viscous friction `F_pv·v` at a speed, N; 0 where there is none.
+    fn viscous_n(&self, place: usize, speed_m_per_s: T) -> T;
     /// `e^{μ_p α}` there, the tension ratio at which the cable slips; beyond
     /// [`NO_LIMIT_RATIO`](pulley::NO_LIMIT_RATIO) where it cannot.
     fn traction_ratio(&self, place: usize) -> T;
@@ -178,19 +170,19 @@ pub struct CableForces<T: Scalar> {
 
 /// One cycle of one cable (or of several in lanes) on conditioned signals.
 ///
-/// While a signal is faulty ([`Conditioned::hold`]) the stored friction follows the motion with the last good force, and
+/// While a signal is faulty (`hold`, see [`Conditioned::hold`](crate::signals::Conditioned::hold)) the stored friction follows the motion with the last good force, and
 /// the output holds the last good friction, which takes no cable below zero tension. Slack releases the stored friction.
 #[inline(always)]
 pub fn cable_cycle<T: Scalar>(
     model: &CableModel<T>,
     features: Features,
-    conditioned: &Conditioned<T>,
+    signals: &CableSignals<T>,
+    hold: T::Mask,
     cable: &mut impl Cable<T>,
 ) -> CableForces<T> {
     let held_friction_n = cable.held_friction_n();
-    let forces = cable_step(model, features, &conditioned.signals(), cable);
-    let no_tension = conditioned.sensor_force_n.le(T::splat(0.0));
-    let hold = conditioned.hold();
+    let forces = cable_step(model, features, signals, cable);
+    let no_tension = signals.sensor_force_n.le(T::splat(0.0));
     cable.set_held_friction_n(T::select(hold, held_friction_n, forces.friction_n));
     let held_n = held_friction_n.max(-forces.frictionless_n).keep(no_tension.not());
     CableForces {
@@ -265,9 +257,8 @@ fn pulley_chain<T: Scalar>(
     let mut tension_n = zero;
     let mut slip = T::Mask::NONE;
     for place in 0..cable.count() {
-        let pulley = cable.pulley(place);
         let stored_n = cable.pulley_friction_n(place);
-        let viscous_n = pulley.viscous_n_s_per_m * signals.speed_m_per_s;
+        let viscous_n = cable.viscous_n(place, signals.speed_m_per_s);
         let sensed = |friction_n: T| {
             (signals.sensor_force_n - (friction_n + viscous_n).scale(model.sensor_cos)).scale(model.frictionless_gain)
         };
@@ -277,7 +268,7 @@ fn pulley_chain<T: Scalar>(
         } else {
             (tension_n, tension_n + stored_n + viscous_n)
         };
-        let sliding_n = pulley::sliding_friction(mu, pulley.wrap_factor, upstream_n, downstream_n);
+        let sliding_n = pulley::sliding_friction(mu, cable.wrap_factor(place), upstream_n, downstream_n);
         let mut friction_n = dahl_step(stored_n, sliding_n, model.sigma_n_per_m, signals.displacement_m);
         let mut behind_n = if place == 0 { sensed(friction_n) } else { tension_n + friction_n + viscous_n };
         if features.traction {
@@ -315,16 +306,16 @@ fn lumped_chain<T: Scalar>(
     let mut coulomb_n = zero;
     let mut viscous_n = zero;
     for place in 0..cable.count() {
-        let pulley = cable.pulley(place);
-        let drag_n = pulley.viscous_n_s_per_m * signals.speed_m_per_s;
+        let wrap_factor = cable.wrap_factor(place);
+        let drag_n = cable.viscous_n(place, signals.speed_m_per_s);
         if place == 0 {
-            let (gain, viscous_gain) = pulley::sensor_gains(direction, mu, pulley.wrap_factor, model.sensor_cos);
+            let (gain, viscous_gain) = pulley::sensor_gains(direction, mu, wrap_factor, model.sensor_cos);
             coulomb_n = signals.sensor_force_n * gain;
             viscous_n = drag_n * viscous_gain;
             if features.traction {
                 let traction_ratio = cable.traction_ratio(place);
                 // [P] 10 the other way round: the tension on the winch side from the one behind.
-                let (inverse_gain, inverse_viscous) = pulley::sliding_gains(-direction, mu, pulley.wrap_factor);
+                let (inverse_gain, inverse_viscous) = pulley::sliding_gains(-direction, mu, wrap_factor);
                 let behind_n = coulomb_n + viscous_n;
                 let before_n = behind_n * inverse_gain - drag_n * inverse_viscous;
                 let (_, slips) = pulley::limit_traction(before_n, behind_n, traction_ratio);
@@ -336,7 +327,7 @@ fn lumped_chain<T: Scalar>(
             }
             continue;
         }
-        let (gain, viscous_gain) = pulley::sliding_gains(direction, mu, pulley.wrap_factor);
+        let (gain, viscous_gain) = pulley::sliding_gains(direction, mu, wrap_factor);
         let before_n = coulomb_n + viscous_n;
         let (next_coulomb_n, next_viscous_n) = (coulomb_n * gain, viscous_n * gain + drag_n * viscous_gain);
         if features.traction {

@@ -303,10 +303,10 @@ impl<const CABLES: usize> Compensator<CABLES> {
         }
         let model = self.params.model(block);
         let mut cable = BlockOfCables::new(&self.params, columns, block, self.place_count);
-        let forces = cable_cycle(&model, self.features, &conditioned, &mut cable);
+        let (hold, sensor_fault) = (conditioned.hold(), conditioned.sensor_fault());
+        let forces = cable_cycle(&model, self.features, &conditioned.signals(), hold, &mut cable);
 
         let Conditioned { sensor_force_n, speed_m_per_s, sensor_finite, frozen, jump, motion_finite, .. } = conditioned;
-        let (hold, sensor_fault) = (conditioned.hold(), conditioned.sensor_fault());
         let out_of_range = sensor_force_n
             .lt(Lanes::load(&self.params.least_force_n, block))
             .or(Lanes::load(&self.params.greatest_force_n, block).lt(sensor_force_n))

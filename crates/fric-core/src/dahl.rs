@@ -35,7 +35,7 @@ use crate::scalar::Scalar;
 pub fn dahl_step<T: Scalar>(friction_n: T, sliding_n: T, sigma_n_per_m: T, displacement_m: T) -> T {
     let target_n = sliding_n.scale(displacement_m.sign());
     let softness = T::splat(SMALLEST_SLIDING_N).max(sliding_n);
-    let decay = (-(sigma_n_per_m * displacement_m.abs() / softness)).exp_negative();
+    let decay = (-(sigma_n_per_m * displacement_m.abs()) / softness).exp_negative();
     // At rest the target is 0 and the decay 1: the state comes out as it went in, without a case of its own. Past the
     // decay's last bit the state is the bound itself, so that |f| ≤ f_c holds exactly.
     target_n + (friction_n - target_n) * decay.keep(T::splat(VANISHED).lt(decay))

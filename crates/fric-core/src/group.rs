@@ -4,7 +4,7 @@
 //! the [`Compensator`](crate::Compensator) gives it, whatever the type and whichever cables stand beside it. Signals come conditioned ([`condition`](crate::signals::condition)), the wrap of a last
 //! pulley that follows the pose as [`PoseWrap`].
 
-use crate::cable::{Cable, CableForces, CableModel, Features, Pulley, cable_cycle};
+use crate::cable::{Cable, CableForces, CableModel, CableSignals, Features, cable_cycle};
 use crate::effects::time_delay::{DELAY, Delay, DelayLine};
 use crate::lanes::LANES;
 use crate::parameters::{VISCOUS, Values};
@@ -142,21 +142,12 @@ impl<T: Scalar> CableGroup<T> {
             displacement_m = shift(&mut delayed.displacement_m, displacement_m, &delayed.delays);
             speed_m_per_s = shift(&mut delayed.speed_m_per_s, speed_m_per_s, &delayed.delays);
         }
-        let mask = |of: fn(&Conditioned<f64>) -> bool| {
-            T::splat(0.0).lt(T::from_lanes(|lane| f64::from(of(cycle(lane).signals))))
-        };
-        let conditioned = Conditioned {
-            sensor_force_n: number(|signals| signals.sensor_force_n),
-            displacement_m,
-            speed_m_per_s,
-            sensor_finite: mask(|signals| signals.sensor_finite),
-            frozen: mask(|signals| signals.frozen),
-            jump: mask(|signals| signals.jump),
-            motion_finite: mask(|signals| signals.motion_finite),
-        };
+        let sensor_force_n = number(|signals| signals.sensor_force_n);
+        let signals = CableSignals { sensor_force_n, displacement_m, speed_m_per_s };
+        let hold = T::splat(0.0).lt(T::from_lanes(|lane| f64::from(cycle(lane).signals.hold())));
         self.state.pose_wrap_factor = T::from_lanes(|lane| cycle(lane).pose_wrap.wrap_factor);
         self.state.pose_traction_ratio = T::from_lanes(|lane| cycle(lane).pose_wrap.traction_ratio);
-        cable_cycle(&self.model, self.features, &conditioned, &mut self.state)
+        cable_cycle(&self.model, self.features, &signals, hold, &mut self.state)
     }
 }
 
@@ -194,12 +185,13 @@ impl<T: Scalar> Cable<T> for State<T> {
         self.count
     }
     #[inline(always)]
-    fn pulley(&self, place: usize) -> Pulley<T> {
+    fn wrap_factor(&self, place: usize) -> T {
+        self.posed(place, self.pose_wrap_factor, &self.wrap_factor)
+    }
+    #[inline(always)]
+    fn viscous_n(&self, place: usize, speed_m_per_s: T) -> T {
         let has_pulley = self.has_pulley.get(place).copied().unwrap_or(T::splat(0.0));
-        Pulley {
-            wrap_factor: self.posed(place, self.pose_wrap_factor, &self.wrap_factor),
-            viscous_n_s_per_m: self.values[VISCOUS] * has_pulley,
-        }
+        (self.values[VISCOUS] * speed_m_per_s).scale(has_pulley)
     }
     #[inline(always)]
     fn traction_ratio(&self, place: usize) -> T {

@@ -61,18 +61,25 @@ impl Gram {
 /// Adds the products of all pairs of numbers to a triangle of sums, column by column.
 #[inline]
 pub fn add_products(sums: &mut [f64], numbers: &[f64]) {
-    // Four parameters, with and without a residual, are what nearly every fit has: of known length, loops unroll.
-    match (sums, numbers) {
-        (sums @ &mut [_, _, _, _, _, _, _, _, _, _], numbers @ &[_, _, _, _]) => add_pairs(sums, numbers),
-        (sums @ &mut [_, _, _, _, _, _, _, _, _, _, _, _, _, _, _], numbers @ &[_, _, _, _, _]) => {
-            add_pairs(sums, numbers)
-        }
-        (sums, numbers) => add_pairs(sums, numbers),
+    // Nearly every fit has four parameters, and a residual with them.
+    match numbers.len() {
+        4 => add_products_of::<4>(sums, numbers),
+        5 => add_products_of::<5>(sums, numbers),
+        _ => add_products_each(sums, numbers),
+    }
+}
+
+/// With as many numbers as are known beforehand, loops unroll.
+#[inline]
+fn add_products_of<const COUNT: usize>(sums: &mut [f64], numbers: &[f64]) {
+    if let (Some(sums), Some(numbers)) = (sums.get_mut(..COUNT * (COUNT + 1) / 2), numbers.first_chunk::<COUNT>()) {
+        add_products_each(sums, numbers);
     }
 }
 
 #[inline(always)]
-fn add_pairs(sums: &mut [f64], numbers: &[f64]) {
+#[expect(clippy::inline_always, reason = "for the number of numbers to be known")]
+fn add_products_each(sums: &mut [f64], numbers: &[f64]) {
     let mut places = sums.iter_mut();
     for (column, right) in numbers.iter().enumerate() {
         for (left, place) in numbers.iter().take(column + 1).zip(&mut places) {

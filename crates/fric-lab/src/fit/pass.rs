@@ -143,17 +143,17 @@ impl<'a, const N: usize> LanePass<'a, N> {
             self.parts.get(lane.min(last)).and_then(|part| part.record.rows.get(from..to)).unwrap_or_default()
         });
         let [first, second, third, fourth] = rows;
+        // The force, its derivatives, and 1.
+        let mut numbers = [[1.0; LANES]; MOST_PARAMETERS + 2];
         for (((first, second), third), fourth) in first.iter().zip(second).zip(third).zip(fourth) {
             let rows = [first, second, third, fourth];
             let force = group.step(|lane| cycle(rows[lane % LANES])).platform_force_n;
-            let (value, gradient) = (force.value.to_array(), force.gradient.map(Lanes::to_array));
+            numbers[0] = force.value.to_array();
+            for (number, part) in numbers.iter_mut().skip(1).zip(force.gradient) {
+                *number = part.to_array();
+            }
             for (lane, (forces, columns)) in forces.iter_mut().zip(&self.columns).enumerate() {
-                let number = |column: &usize| match *column {
-                    0 => value[lane],
-                    carried if carried <= N => gradient[carried - 1][lane],
-                    _ => 1.0,
-                };
-                forces.numbers.extend(columns.iter().map(number));
+                forces.numbers.extend(columns.iter().map(|column| numbers[*column][lane]));
             }
         }
     }

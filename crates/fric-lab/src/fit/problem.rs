@@ -232,19 +232,6 @@ impl Assembly {
     /// Rows of a sample from the forces of all cables with their derivatives; without derivatives, residuals alone.
     fn assemble(&mut self, problem: &Problem<'_>, place: usize, forces: &[Forces], cycle: usize, derivatives: bool) {
         let Self { forces_n, residuals, levers, rows } = self;
-        if let (Comparison::Forces, [member], [of_cable]) = (&problem.comparison, problem.members.as_slice(), forces) {
-            // What follows, for a single cable and a single residual.
-            let (force_n, gradient) = of_cable.at(cycle);
-            let reference_n = member.record.rows.get(place).map_or(f64::NAN, |row| row.reference_n);
-            let (root, slope) = problem.loss.root(force_n - reference_n);
-            let count = if derivatives { member.free.len() } else { 0 };
-            rows.resize(count + 1, root);
-            for (entry, part) in rows.iter_mut().zip(gradient.iter().take(count)) {
-                *entry = slope * part;
-            }
-            rows.last_mut().into_iter().for_each(|entry| *entry = root);
-            return;
-        }
         forces_n.clear();
         forces_n.extend(forces.iter().map(|of_cable| of_cable.at(cycle).0));
         problem.compare(place, forces_n, residuals);
@@ -284,21 +271,32 @@ impl<'a> Problem<'a> {
     }
 
     /// Evaluates all samples that count, with the derivatives by the free parameters or without; false when stopped.
-    fn visit(&self, values: &[Values], derivatives: bool, mut visit: impl FnMut(usize, Rows<'_>)) -> bool {
+    fn visit(&self, values: &[Values], derivatives: bool, visit: impl FnMut(usize, Rows<'_>)) -> bool {
         let parts: Vec<Part<'a>> =
             self.members.iter().zip(values).map(|(member, values)| member.part(values, derivatives)).collect();
         if let (Some(seat), [part]) = (&self.seat, parts.as_slice()) {
             let Some(forces) = seat.forces(part) else { return false };
-            let width = 1 + if derivatives { self.parameter_count() } else { 0 };
-            let mut assembly = Assembly::default();
-            for (place, _) in self.used.iter().enumerate().filter(|(_, used)| **used) {
-                assembly.assemble(self, place, std::slice::from_ref(&*forces), place, derivatives);
-                visit(place, assembly.rows.chunks_exact(width));
-            }
+            self.visit_single(part, &forces, visit);
             return true;
         }
         let most = parts.iter().map(Part::carried).max().unwrap_or(0);
         with_room_for!(most, visit_chunks(self, &parts, derivatives, visit))
+    }
+}
+
+impl Problem<'_> {
+    /// Evaluates a single cable by forces at hand, of which a row is all but made.
+    fn visit_single(&self, part: &Part<'_>, forces: &Forces, mut visit: impl FnMut(usize, Rows<'_>)) {
+        let mut of_sample = vec![0.0; part.free.len() + 1];
+        for (place, (row, _)) in part.record.rows.iter().zip(&self.used).enumerate().filter(|(_, (_, used))| **used) {
+            let (force_n, gradient) = forces.at(place);
+            let (root, slope) = self.loss.root(force_n - row.reference_n);
+            for (entry, part) in of_sample.iter_mut().zip(gradient) {
+                *entry = slope * part;
+            }
+            of_sample.last_mut().into_iter().for_each(|entry| *entry = root);
+            visit(place, of_sample.chunks_exact(of_sample.len()));
+        }
     }
 }
 

@@ -29,7 +29,7 @@ const FAST_M_PER_S: f64 = 1.0;
 /// Way since the last reversal in which a cable may preslide, m.
 const PRESLIDING_M: Range<f64> = 1e-5..1e-2;
 /// Cycles that are enough for a linear step.
-const ENOUGH_SLIDING: usize = 4096;
+const ENOUGH_SLIDING: usize = 1024;
 /// Cycles over which σ is looked for.
 const STRETCH: usize = 8192;
 /// A refined start further than this factor from the coarse one has lost its way.
