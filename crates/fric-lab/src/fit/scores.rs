@@ -99,10 +99,10 @@ impl Level {
     fn add(&mut self, block: &mut [f64]) -> bool {
         self.count += 1;
         add_products(&mut self.squares, block);
-        if !self.is_waiting {
-            self.half.copy_from_slice(block);
-        } else {
+        if self.is_waiting {
             block.iter_mut().zip(&self.half).for_each(|(part, half)| *part += half);
+        } else {
+            self.half.copy_from_slice(block);
         }
         self.is_waiting = !self.is_waiting;
         !self.is_waiting

@@ -14,8 +14,10 @@ use super::selection::Standing;
 use super::vector::{Coordinate, Parameter, with};
 use crate::replay::Deviation;
 
-/// Deviations beyond this many standard deviations are no measurements.
+/// Deviations beyond this many standard deviations that their neighbours do not share are no measurements.
 const OUTLIER_RATIO: f64 = 8.0;
+/// So many samples to either side are neighbours: of what is shorter than them it cannot be told that it lasts.
+const NEIGHBOURS: usize = 2;
 /// More outliers than this share of the samples are no outliers: the model does not describe them.
 const MOST_OUTLIERS_RATIO: f64 = 0.02;
 /// Huber's bound in standard deviations: 95 % efficient for normal noise.
@@ -294,26 +296,33 @@ fn look_again(problem: &mut Problem<'_>, values: &[Values], weighing: Weighing, 
             before.push(place);
         }
     }
-    let mut deviations: Vec<(usize, f64)> = Vec::new();
+    let mut places = Vec::new();
+    // One of a cable's force, six of a wrench.
+    let mut series: Vec<Vec<f64>> = Vec::new();
     problem.residuals(values, |place, residuals| {
-        let most = residuals.iter().fold(0.0, |most: f64, residual| most.max(residual.abs()));
-        deviations.push((place, most));
+        series.resize_with(residuals.len(), Vec::new);
+        series.iter_mut().zip(residuals).for_each(|(series, residual)| series.push(*residual));
+        places.push(place);
     });
-    let mut magnitudes: Vec<f64> = deviations.iter().map(|(_, deviation)| *deviation).collect();
-    let middle = magnitudes.len() / 2;
+    let most =
+        |sample: usize| series.iter().filter_map(|of| of.get(sample)).fold(0.0, |most: f64, of| most.max(of.abs()));
+    let mut magnitudes: Vec<f64> = (0..places.len()).map(most).collect();
     if magnitudes.is_empty() {
         return false;
     }
+    let middle = magnitudes.len() / 2;
     let (_, median, _) = magnitudes.select_nth_unstable_by(middle, f64::total_cmp);
     let deviation = *median * DEVIATION_PER_MEDIAN;
     if weighing == Weighing::Huber {
         problem.loss = Loss::Huber(HUBER_RATIO * deviation);
         return true;
     }
-    let far = deviations.iter().filter(|(_, far)| *far > OUTLIER_RATIO * deviation);
-    let mut outliers: Vec<usize> = far.map(|(place, _)| *place).collect();
+    let is_spike =
+        |sample: usize| series.iter().any(|residuals| is_spike(residuals, sample, OUTLIER_RATIO * deviation));
+    let spikes = places.iter().enumerate().filter(|(sample, _)| is_spike(*sample));
+    let mut outliers: Vec<usize> = spikes.map(|(_, place)| *place).collect();
     #[expect(clippy::cast_precision_loss, reason = "counts of samples")]
-    let few = outliers.len() as f64 <= MOST_OUTLIERS_RATIO * deviations.len() as f64;
+    let few = outliers.len() as f64 <= MOST_OUTLIERS_RATIO * places.len() as f64;
     if !few {
         outliers.clear();
     }
@@ -323,4 +332,35 @@ fn look_again(problem: &mut Problem<'_>, values: &[Values], weighing: Weighing, 
         }
     }
     outliers != before
+}
+
+/// Whether a residual is far out, and its neighbours are not: less than half as far, by their median. What lasts is no spike but
+/// something that the model misses, and the samples have a right to be fitted.
+fn is_spike(residuals: &[f64], place: usize, far: f64) -> bool {
+    let Some(residual) = residuals.get(place).filter(|residual| residual.abs() > far) else { return false };
+    let around = residuals.iter().skip(place.saturating_sub(NEIGHBOURS)).take(NEIGHBOURS + place.min(NEIGHBOURS) + 1);
+    let mut shares: Vec<f64> = around.map(|other| other / residual).collect();
+    let middle = shares.len() / 2;
+    let (_, median, _) = shares.select_nth_unstable_by(middle, f64::total_cmp);
+    *median < 0.5
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_spike;
+
+    #[test]
+    fn a_spike_is_alone_and_an_excursion_is_not() {
+        let is_found = |residuals: &[f64]| -> Vec<usize> {
+            (0..residuals.len()).filter(|place| is_spike(residuals, *place, 8.0)).collect()
+        };
+        assert_eq!(is_found(&[0.1, -0.2, 0.1, 50.0, 0.3, -0.1, 0.2]), [3]);
+        assert_eq!(is_found(&[0.1, -0.2, 0.1, -50.0, -40.0, -0.1, 0.2, 0.1]), [3, 4]);
+        assert_eq!(is_found(&[50.0, 0.1, 0.2, 0.1, -0.1, 50.0]), [0, 5]);
+        // A step, a pulse of three samples, the top of a triangle, and a spike on an excursion.
+        assert!(is_found(&[0.1, 0.0, 0.1, 9.0, 9.2, 9.1, 9.0]).is_empty());
+        assert!(is_found(&[0.1, 0.0, 0.1, 9.0, 9.2, 9.1, 0.1, 0.0]).is_empty());
+        assert!(is_found(&[0.0, 3.0, 6.0, 9.0, 12.0, 9.0, 6.0, 3.0, 0.0]).is_empty());
+        assert_eq!(is_found(&[9.0, 9.1, 9.2, 60.0, 9.1, 9.2, 9.1]), [3]);
+    }
 }
