@@ -27,13 +27,14 @@ const REMAINDER: f64 = 0.05;
 pub fn discover_cable(record: &CableRecord<'_>, progress: &Progress) -> CableDiscovery {
     let stop = progress.stop_flag();
     let faults = faulty_stretches(record);
-    let mut sound = vec![true; record.rows.len()];
-    leave_out(&faults, record.cycle_s, &mut sound);
-    let (paper, standings) = engine::identify(record, &sound, stop);
-    let counts = engine::used(&standings);
+    let mut standings = engine::prepared(record);
+    leave_out(&faults, record.cycle_s, &mut standings);
+    let gang = engine::Gang::new(1, stop);
+    let paper = engine::Search::run(record, standings, &FitOptions::default(), stop, gang.seat(0));
+    let counts = engine::used(&paper.standings);
     let blocks = split(record);
     let conditions = conditions(record);
-    let start = given_model(record, &paper);
+    let start = given_model(record, &paper.solution);
 
     // What hums is no matter of friction: it comes off the reference.
     let bench = Workbench { record: *record, blocks: &blocks, counts: &counts, stop };
@@ -53,7 +54,7 @@ pub fn discover_cable(record: &CableRecord<'_>, progress: &Progress) -> CableDis
             }
         }
     }
-    case.report(&outcome, &counts, engine::count(&standings), &conditions, Foreign { faults, hum, stretch })
+    case.report(&outcome, &counts, engine::count(&paper.standings), &conditions, Foreign { faults, hum, stretch })
 }
 
 /// The given model, with start values from the data for what it has of its own: of friction what acts, the offset, and the
