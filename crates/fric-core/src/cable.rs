@@ -101,7 +101,7 @@ pub trait Cable<T: Scalar> {
     /// The pulley at a place.
     fn pulley(&self, place: usize) -> Pulley<T>;
     /// `e^{μ_p α}` there, the tension ratio at which the cable slips; beyond
-    /// [`NO_LIMIT_RATIO`](pulley::NO_LIMIT_RATIO) where it cannot.
+    /// [`NO_LIMIT_RATIO`](crate::pulley::NO_LIMIT_RATIO) where it cannot.
     fn traction_ratio(&self, place: usize) -> T;
     /// 1 where there is a pulley, else 0.
     fn present(&self, place: usize) -> T;

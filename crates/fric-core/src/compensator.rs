@@ -2,7 +2,7 @@
 //!
 //! For: force at the platform and wrench from the winch-side signals, every cycle, in bounded time, without allocation,
 //! without panic, for every input there is. It does not read clocks, files or buses. Non-finite input is flagged
-//! ([`CableStatus`]) and never reaches another cable. Size: about 700 bytes a cable, and 1 kB more a cable for the delay
+//! ([`CableStatus`]) and never reaches another cable. Size: about 1 kB a cable, and 1 kB more a cable for the delay
 //! lines.
 
 use crate::cable::{Features, Moment, cable_cycle};
