@@ -51,6 +51,8 @@ fn fit_cable<'a>(
     seat: Seat<'a>,
 ) -> Vec<CableFit> {
     let search = Search::run(record, prepared(record), options, progress.stop_flag(), seat);
+    // Errors are those that a replay finds.
+    search.problem.forget_step();
     cable_fits(&search.problem, &[record.params.values()], &search.solution, &search.standings)
 }
 
