@@ -1,6 +1,7 @@
 //! Pages for people, each one file without network access, for light and dark screens and for paper.
 
 mod chart;
+pub mod discovery;
 pub mod errors;
 pub mod preview;
 mod run;

@@ -33,6 +33,9 @@ pub struct Place {
     pub to: f64,
     /// The condition's unit.
     pub unit: &'static str,
+    /// Least and greatest value that the condition has.
+    #[serde(skip)]
+    pub range: [f64; 2],
     /// Share of the excess in this range.
     pub share_of_excess: f64,
     /// Share of the samples in this range.
@@ -96,6 +99,7 @@ impl Excess<'_> {
             from: *bins.edges.get(range.start)?,
             to: *bins.edges.get(range.end)?,
             unit: condition.unit,
+            range: [*bins.edges.first()?, *bins.edges.last()?],
             share_of_excess,
             share_of_samples: count_inside / count,
             explains: explains / total,
@@ -174,8 +178,7 @@ impl Excess<'_> {
             if !wanted(cycle) {
                 continue;
             }
-            #[expect(clippy::cast_precision_loss, reason = "a count of cycles")]
-            let time_s = cycle as f64 * self.record.cycle_s;
+            let time_s = self.record.time_s(cycle);
             match found.last_mut().filter(|(range, _)| time_s - range.end < MERGED_S) {
                 Some((range, excess)) => (range.end, *excess) = (time_s, *excess + self.of(*residual_n)),
                 None => found.push((time_s..time_s, self.of(*residual_n))),
@@ -199,12 +202,14 @@ pub fn sum_and_error(numbers: &[f64]) -> (f64, f64) {
 }
 
 /// Bins of a condition that hold as many samples each.
-struct Bins {
-    edges: Vec<f64>,
+pub struct Bins {
+    /// One more than there are bins.
+    pub edges: Vec<f64>,
 }
 
 impl Bins {
-    fn new(condition: &Condition, residual_n: &[f64]) -> Option<Self> {
+    /// Over the samples that have both; `None` where all are the same.
+    pub fn new(condition: &Condition, residual_n: &[f64]) -> Option<Self> {
         let mut sorted: Vec<f64> = condition
             .values
             .iter()
@@ -224,11 +229,13 @@ impl Bins {
         (edges.len() > 2).then_some(Self { edges })
     }
 
-    fn count(&self) -> usize {
+    /// How many.
+    pub fn count(&self) -> usize {
         self.edges.len() - 1
     }
 
-    fn of(&self, value: f64) -> Option<usize> {
+    /// The bin of a value.
+    pub fn of(&self, value: f64) -> Option<usize> {
         let inside = value.is_finite() && value <= *self.edges.last()?;
         let place = self.edges.partition_point(|edge| *edge <= value);
         (inside && place > 0).then(|| (place - 1).min(self.count() - 1))

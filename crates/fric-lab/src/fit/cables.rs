@@ -126,7 +126,7 @@ fn warm_up_was_misjudged(
 }
 
 /// Standing of each sample before anything is known about the friction.
-pub(super) fn prepared(record: &CableRecord<'_>) -> Vec<Standing> {
+pub fn prepared(record: &CableRecord<'_>) -> Vec<Standing> {
     let mut standings = selection::first_look(record, |_, row| row.reference_n.is_finite());
     selection::leave_out_still_references(record, &mut standings);
     standings
