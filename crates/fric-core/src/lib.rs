@@ -34,7 +34,9 @@
 #[cfg(feature = "robot-file")]
 extern crate std;
 
+mod bearing;
 pub mod cable;
+mod chain;
 mod columns;
 mod compensator;
 mod cycle;

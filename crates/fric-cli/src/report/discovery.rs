@@ -264,8 +264,13 @@ fn sizes(cable: &DiscoverCableResult, profile: &Profile) -> String {
     let mut extent = Extent { least: 0.0, greatest: cable.noise_floor_n.unwrap_or(0.0) };
     traces.iter().flat_map(|(_, values)| values).for_each(|value| extent.add(*value));
     extent.greatest *= 1.08;
-    let mut chart =
-        Chart::in_steps(&edges(profile), profile.unit, Span { least: 0.0, greatest: extent.greatest, unit: "N" }, HALF, 240.0);
+    let mut chart = Chart::in_steps(
+        &edges(profile),
+        profile.unit,
+        Span { least: 0.0, greatest: extent.greatest, unit: "N" },
+        HALF,
+        240.0,
+    );
     for (class, values) in &traces {
         chart.line(&format!("trace {class}"), steps(values));
     }

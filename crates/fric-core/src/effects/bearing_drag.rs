@@ -45,10 +45,4 @@ impl<T: Scalar> BearingDrag<T> {
     pub fn of(value: impl Fn(usize) -> T) -> Self {
         Self { drag_n: value(DRAG) }
     }
-
-    /// Sliding friction of a pulley with it; `present` is 1 where there is a pulley, else 0.
-    #[inline(always)]
-    pub fn add_to(&self, sliding_n: T, present: T) -> T {
-        sliding_n + self.drag_n * present
-    }
 }

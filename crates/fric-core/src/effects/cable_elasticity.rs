@@ -71,10 +71,10 @@ impl<T: Scalar> CableElasticity<T> {
     }
 
     /// Stretch at the last pulley in this cycle, m, and the low pass of the tension for the next; `filtered_n` is the last
-    /// cycle's, NaN before the first; `step_s` the time since.
+    /// cycle's, infinite before the first; `step_s` the time since.
     #[inline(always)]
     pub fn stretch_m(&self, tension_n: T, filtered_n: T, step_s: T) -> (T, T) {
-        let known = filtered_n.eq(filtered_n);
+        let known = filtered_n.within(f64::MAX);
         let before_n = T::select(known, filtered_n, tension_n);
         let step_n = (tension_n - before_n) * (step_s / (self.window_s + step_s));
         (self.compliance_m_per_n * step_n, before_n + step_n)

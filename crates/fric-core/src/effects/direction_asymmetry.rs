@@ -62,10 +62,15 @@ impl<T: Scalar> DirectionAsymmetry<T> {
         Self { coulomb_ratio: value(COULOMB), viscous_ratio: value(VISCOUS) }
     }
 
-    /// Factors on μ and on F_pv, by the signs (−1, 0, +1) of displacement and speed.
+    /// Factor on μ for a direction of the displacement (−1, 0, +1).
     #[inline(always)]
-    pub fn factors(&self, direction: T, speed_direction: T) -> (T, T) {
-        let one = T::splat(1.0);
-        (one + direction * self.coulomb_ratio, one + speed_direction * self.viscous_ratio)
+    pub fn coulomb_factor(&self, direction: T) -> T {
+        T::splat(1.0) + self.coulomb_ratio.scale(direction)
+    }
+
+    /// Factor on F_pv for a direction of the speed (−1, 0, +1).
+    #[inline(always)]
+    pub fn viscous_factor(&self, direction: T) -> T {
+        T::splat(1.0) + self.viscous_ratio.scale(direction)
     }
 }

@@ -22,7 +22,7 @@ pub mod time_delay;
 
 use core::ops::Range;
 
-use crate::parameters::{self, FRICTION_COUNT, ParameterRow, Values};
+use crate::parameters::{self, FRICTION_COUNT, ParameterRow};
 use crate::robot::{ParamError, check};
 
 /// One effect of the catalogue.
@@ -174,6 +174,9 @@ const fn neutral() -> [f64; EFFECT_PARAMETER_COUNT] {
 pub(crate) struct Acting(u32);
 
 impl Acting {
+    /// No effect.
+    pub const NONE: Self = Self(0);
+
     /// The effect of a name. For constants: it compares texts.
     const fn only(kind: &str) -> Self {
         let mut effect = 0;
@@ -183,10 +186,11 @@ impl Acting {
             }
             effect += 1;
         }
-        Self(0)
+        Self::NONE
     }
 
-    /// The effects of which a parameter is `active`, asked by its row and its place in [`Values`].
+    /// The effects of which a parameter is `active`, asked by its row and its place in
+    /// [`Values`](parameters::Values).
     pub fn of(active: impl Fn(&ParameterRow, usize) -> bool) -> Self {
         let mut place = FRICTION_COUNT;
         let mut bits = 0;
@@ -199,15 +203,16 @@ impl Acting {
         Self(bits)
     }
 
-    /// Those that are not at their neutral values.
-    pub fn at(values: &Values) -> Self {
-        Self::of(|row, place| values.get(place).is_some_and(|value| value.to_bits() != row.neutral.to_bits()))
-    }
-
     /// These and those.
     #[inline(always)]
     pub const fn and(self, other: Self) -> Self {
         Self(self.0 | other.0)
+    }
+
+    /// These but for those.
+    #[inline(always)]
+    pub const fn without(self, other: Self) -> Self {
+        Self(self.0 & !other.0)
     }
 
     /// Whether one of those is among these.

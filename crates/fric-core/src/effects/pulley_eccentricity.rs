@@ -76,10 +76,11 @@ impl<T: Scalar> PulleyEccentricity<T> {
         Self { sin_ratio: value(SIN), cos_ratio: value(COS), period_m: value(PERIOD) }
     }
 
-    /// Factor on the tension at a cable length (m).
+    /// Factor on the tension at a cable length (m); 1 where it is NaN, before the first.
     #[inline(always)]
     pub fn factor(&self, length_m: T) -> T {
         let [sin, cos] = (length_m / self.period_m).sin_cos_turns();
-        T::splat(1.0) + self.sin_ratio * sin + self.cos_ratio * cos
+        let one = T::splat(1.0);
+        T::select(length_m.eq(length_m), one + self.sin_ratio * sin + self.cos_ratio * cos, one)
     }
 }

@@ -66,10 +66,10 @@ impl<T: Scalar> PulleyInertia<T> {
     }
 
     /// Force that accelerates one pulley, N, and the low pass of the speed for the next cycle; `filtered_m_per_s` is the
-    /// last cycle's, NaN before the first; `step_s` the time since.
+    /// last cycle's, infinite before the first; `step_s` the time since.
     #[inline(always)]
     pub fn force_n(&self, speed_m_per_s: T, filtered_m_per_s: T, step_s: T) -> (T, T) {
-        let known = filtered_m_per_s.eq(filtered_m_per_s);
+        let known = filtered_m_per_s.within(f64::MAX);
         let before_m_per_s = T::select(known, filtered_m_per_s, speed_m_per_s);
         let acceleration = (speed_m_per_s - before_m_per_s) / (self.window_s + step_s);
         (self.mass_kg * acceleration, before_m_per_s + acceleration.scale(step_s))

@@ -268,6 +268,15 @@ impl CableParams {
             .map_or(Ok(()), |wrap_rad| check_sensor_wrap(wrap_rad, greatest_mu).map_err(|error| error.at_pulley(0)))
     }
 
+    /// The greatest μ that leaves the sensor pulley a third of the tension that it would feel without friction.
+    pub(crate) fn greatest_mu(&self) -> f64 {
+        self.sensor_wrap_rad.map_or(GREATEST_MU, |wrap_rad| {
+            let (factor, cos) = (wrap_factor(wrap_rad), libm::cos(wrap_rad));
+            // At 180° (cos = −1) friction takes nothing from the sensor: no bound, an infinite one.
+            GREATEST_MU.min(4.0 / 3.0 * (1.0 - cos) / (factor * (1.0 + cos)))
+        })
+    }
+
     /// Pulleys, the sensor pulley included.
     #[must_use]
     pub fn pulley_count(&self) -> usize {

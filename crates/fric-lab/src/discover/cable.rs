@@ -227,7 +227,7 @@ impl<'a> Case<'a> {
         tried.sort_by(|one, other| one.delta_bic.total_cmp(&other.delta_bic));
         let after = model(&naming.model);
         let clean_n = bench.residuals_n(&base.values);
-        let places = self.excess(&clean_n, *noise_n).places(conditions);
+        let places = self.excess(&clean_n, *noise_n).concentrations(conditions);
         let places = if self.excess_share(&clean_n, *noise_n) > WORTH { places } else { Vec::new() };
         let is_foreign = !foreign.faults.is_empty() || !foreign.hum.is_empty() || foreign.stretch.is_some();
         let unexplained = (is_foreign || !outcome.rest_is_noise).then(|| {

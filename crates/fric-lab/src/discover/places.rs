@@ -2,8 +2,9 @@
 //!
 //! Two questions are asked of every condition. How much of the excess is a function of it, told apart by the direction of
 //! motion: means over bins of the samples learned from, tried on those held out, so that chance gains nothing. And in
-//! which range of it the excess is densest. The scatter of the gain over the blocks of the log gives its significance, which
-//! holds for residuals that remember no longer than a block.
+//! which range of it the excess is densest, by the samples learned from, and how much more of it than its share those held
+//! out have there. The scatter of either over the blocks of the log gives its significance, which holds for residuals that
+//! remember no longer than a block.
 
 use std::ops::Range;
 
@@ -15,6 +16,8 @@ use crate::fit::CableRecord;
 
 /// A gain of less than this many standard errors is chance.
 const LEAST_SIGNIFICANCE: f64 = 4.0;
+/// And a concentration of less than this many.
+const LEAST_CONCENTRATION: f64 = 3.0;
 /// Bins beside the densest one belong to it down to this share of its density.
 const SHOULDER: f64 = 0.4;
 /// Intervals in time that are worth a look.
@@ -79,12 +82,56 @@ impl Excess<'_> {
         places
     }
 
+    /// In which conditions it is concentrated, the most concentrated first. The significance is that of the concentration.
+    pub fn concentrations(&self, conditions: &[Condition]) -> Vec<Place> {
+        let mut places: Vec<Place> = conditions
+            .iter()
+            .filter_map(|condition| {
+                Some(Place { significance: self.concentration(condition)?, ..self.place(condition)? })
+            })
+            .filter(|place| place.significance >= LEAST_CONCENTRATION)
+            .collect();
+        let more = |place: &Place| place.share_of_excess - place.share_of_samples;
+        places.sort_by(|one, other| more(other).total_cmp(&more(one)));
+        places
+    }
+
+    /// How many standard errors the excess in the densest range is above what its share of the samples would have.
+    fn concentration(&self, condition: &Condition) -> Option<f64> {
+        let bins = Bins::new(condition, self.residual_n)?;
+        let range = self.densest(&bins, condition, |block| !block.held_out)?;
+        let sums: Vec<[f64; 4]> = self
+            .blocks
+            .iter()
+            .filter(|block| block.held_out)
+            .map(|block| {
+                let [mut inside, mut count_inside, mut all, mut count] = [0.0; 4];
+                for cycle in block.cycles.clone() {
+                    let value = condition.values.get(cycle).copied().unwrap_or(f64::NAN);
+                    let residual_n = self.residual_n.get(cycle).copied().unwrap_or(f64::NAN);
+                    let Some(bin) = bins.of(value).filter(|_| residual_n.is_finite()) else { continue };
+                    let excess = self.of(residual_n);
+                    (all, count) = (all + excess, count + 1.0);
+                    if range.contains(&bin) {
+                        (inside, count_inside) = (inside + excess, count_inside + 1.0);
+                    }
+                }
+                [inside, count_inside, all, count]
+            })
+            .collect();
+        let total = |place: usize| sums.iter().map(|sums| sums[place]).sum::<f64>();
+        let share_of_samples = total(1) / total(3);
+        let more: Vec<f64> = sums.iter().map(|[inside, _, all, _]| inside - share_of_samples * all).collect();
+        let (sum, error) = sum_and_error(&more);
+        Some(sum / error).filter(|significance| significance.is_finite())
+    }
+
     /// Where it sits in one condition; `None` where there is nothing to compare.
     pub fn place(&self, condition: &Condition) -> Option<Place> {
         let bins = Bins::new(condition, self.residual_n)?;
         let total = self.sum();
         let (explains, significance) = self.explained(&bins, condition);
-        let range = self.densest(&bins, condition)?;
+        let range = self.densest(&bins, condition, |_| true)?;
         let inside = |value: f64| bins.of(value).is_some_and(|bin| range.contains(&bin));
         let (mut share_of_excess, mut count_inside, mut count) = (0.0, 0.0, 0.0);
         for (value, residual_n) in self.samples(condition) {
@@ -150,11 +197,13 @@ impl Excess<'_> {
         (sum * if held_out > 0.0 { all / held_out } else { 0.0 }, if error > 0.0 { sum / error } else { 0.0 })
     }
 
-    /// The contiguous bins about the one with most excess a sample.
-    fn densest(&self, bins: &Bins, condition: &Condition) -> Option<Range<usize>> {
+    /// The contiguous bins about the one with most excess a sample, in some blocks.
+    fn densest(&self, bins: &Bins, condition: &Condition, of: impl Fn(&Block) -> bool) -> Option<Range<usize>> {
         let mut sums = vec![(0.0, 0.0); bins.count()];
-        for (value, residual_n) in self.samples(condition) {
-            if let Some((sum, count)) = bins.of(value).and_then(|bin| sums.get_mut(bin)) {
+        for cycle in self.blocks.iter().filter(|block| of(block)).flat_map(|block| block.cycles.clone()) {
+            let bin = condition.values.get(cycle).and_then(|value| bins.of(*value));
+            let residual_n = self.residual_n.get(cycle).copied().filter(|number| number.is_finite());
+            if let (Some((sum, count)), Some(residual_n)) = (bin.and_then(|bin| sums.get_mut(bin)), residual_n) {
                 (*sum, *count) = (*sum + self.of(residual_n), *count + 1.0);
             }
         }

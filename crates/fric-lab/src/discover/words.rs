@@ -134,7 +134,9 @@ impl DiscoverCableResult {
             return format!("Nothing can be told: {}. {}", missing.cause, missing.advice);
         }
         let kinds: Vec<&str> = self.effects.iter().map(|effect| effect.kind).collect();
+        let wander_n = self.wander_n.filter(|wander_n| *wander_n > 0.0).map(newtons);
         let mut text = match (self.verdict, kinds.as_slice()) {
+            ("complete", _) if wander_n.is_some() => "No effect of the catalogue is missing.".to_owned(),
             ("complete", _) => {
                 "Nothing is missing: with values fitted to the log, the model agrees with it to the noise.".to_owned()
             }
@@ -148,8 +150,10 @@ impl DiscoverCableResult {
         if kinds.len() > 1 {
             text = text.replace("with it,", "with them,");
         }
-        if let Some(wander_n) = self.wander_n.filter(|wander_n| *wander_n > 0.0) {
-            text += &format!(" The sensors wander slowly, by {}, whatever the cable does.", newtons(wander_n));
+        if let Some(wander) = wander_n {
+            text += &format!(
+                " Beside white noise a slow wander of {wander} is left that goes with nothing the cable does."
+            );
         }
         text
     }

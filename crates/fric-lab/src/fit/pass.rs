@@ -129,7 +129,7 @@ impl<'a, const N: usize> LanePass<'a, N> {
 }
 
 fn cycle(row: &Row) -> CableCycle<'_> {
-    CableCycle { signals: &row.signals, pose_wrap: row.pose_wrap }
+    CableCycle { signals: &row.signals, pose_wrap: row.pose_wrap, cycle: row.cycle }
 }
 
 /// Forces of one cable in consecutive cycles, begun at rest, for the values in each lane.

@@ -1,12 +1,12 @@
 //! What a log holds for an identification: the signals of each cable as the cycle takes them, sample by sample.
 //!
-//! A log is conditioned once ([`fric_core::signals`]) and then evaluated many times. Memory: 64 bytes a sample and cable,
+//! A log is conditioned once ([`fric_core::signals`]) and then evaluated many times. Memory: 80 bytes a sample and cable,
 //! and 8 a sample; for a fit to the wrench 48 bytes more for each cable and 150 for the platform.
 
 use std::ops::Range;
 
 use fric_core::robot::RobotParams;
-use fric_core::signals::{Conditioned, RawSignals, SignalState, condition};
+use fric_core::signals::{BEFORE_FIRST, Conditioned, RawSignals, SignalState, condition, next_cycle};
 use fric_core::{CableInput, CableParams, Pose, PoseWrap, Sample, Wrench};
 use nalgebra::Vector6;
 
@@ -47,6 +47,8 @@ pub struct Row {
     pub reference_n: f64,
     /// No pose that can be used, for a cable that needs one.
     pub pose_fault: bool,
+    /// Cycles since the first of its log.
+    pub cycle: f64,
 }
 
 impl Row {
@@ -79,6 +81,7 @@ pub struct Measurements<'a> {
     times_s: Vec<f64>,
     log_start: LogStart,
     clock: Clock,
+    cycle: f64,
     signals: Vec<SignalState<f64>>,
     pose_wraps: Vec<PoseWrap>,
 }
@@ -104,6 +107,7 @@ impl<'a> Measurements<'a> {
             times_s: Vec::new(),
             log_start: LogStart::default(),
             clock: Clock::new(robot.cycle_s()),
+            cycle: BEFORE_FIRST,
             signals: vec![SignalState::start(); count],
             pose_wraps: vec![PoseWrap::START; count],
         }
@@ -112,6 +116,7 @@ impl<'a> Measurements<'a> {
     /// The samples that follow are of another log: what a cable remembers does not go over.
     pub fn start_log(&mut self) {
         self.clock = Clock::new(self.robot.cycle_s());
+        self.cycle = BEFORE_FIRST;
         self.signals.fill(SignalState::start());
         self.pose_wraps.fill(PoseWrap::START);
         let time_s = self.times_s.last().map_or(0.0, |last_s| last_s + self.robot.cycle_s());
@@ -131,6 +136,7 @@ impl<'a> Measurements<'a> {
         #[expect(clippy::cast_precision_loss, reason = "a duration")]
         let since_start_s = sample.stamp_nanos.saturating_sub(first_nanos) as f64 * 1e-9;
         self.times_s.push(self.log_start.time_s + since_start_s);
+        self.cycle = next_cycle(self.cycle, elapsed_cycles);
         let pose = sample.pose.filter(Pose::is_usable);
         let limits = self.robot.monitor().limits();
         let states = self.signals.iter_mut().zip(&mut self.pose_wraps);
@@ -144,7 +150,7 @@ impl<'a> Measurements<'a> {
             *wrap = pose_wrap.unwrap_or(*wrap);
             let reference_n = sample.reference_force_n.get(index).copied().unwrap_or(f64::NAN);
             let pose_fault = params.needs_pose() && pose_wrap.is_none();
-            rows.push(Row { signals, pose_wrap: *wrap, reference_n, pose_fault });
+            rows.push(Row { signals, pose_wrap: *wrap, reference_n, pose_fault, cycle: self.cycle });
             if self.reference == Reference::Wrench {
                 let column = pose.as_ref().and_then(|pose| params.structure_column(pose));
                 self.platform.structure.push(column.unwrap_or_else(|| Vector6::repeat(f64::NAN)));
