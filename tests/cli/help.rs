@@ -28,7 +28,7 @@ fn each_command_has_an_example_that_runs() {
     place.write("examples/mini-ipanema.toml", slow_robot());
     place.write("examples/mini-ipanema.mcap", platform_log());
     let commands = commands(&place);
-    for expected in ["replay", "fit", "info", "simulate", "excite", "hysteresis"] {
+    for expected in ["replay", "fit", "discover", "info", "simulate", "excite", "hysteresis"] {
         assert!(commands.iter().any(|command| command == expected), "{commands:?}");
     }
     for command in commands {
@@ -51,7 +51,9 @@ fn each_command_has_an_example_that_runs() {
             "by-wrench.toml",
             "compensated.mcap",
             "crossing.mcap",
+            "discovery.html",
             "examples",
+            "extended.toml",
             "fitted.toml",
             "gentle.csv",
             "run.csv",

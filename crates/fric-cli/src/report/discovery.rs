@@ -1,7 +1,7 @@
 //! The page of `discover --report`: the verdicts, then for each cable what was found, where, and how sure it is.
 
 use fric_lab::discover::result::{Candidate, DiscoverCableResult, DiscoverResult, EffectResult, WhereResult};
-use fric_lab::discover::words::{condition, intervals, name_of, newtons, percent};
+use fric_lab::discover::words::{condition, evidence, intervals, name_of, newtons, percent};
 use fric_lab::discover::{CableDiscovery, Model, Profile, ProfileCell};
 use fric_lab::fit::{HALF_INTERVAL, Parameter};
 use fric_lab::text::quantity;
@@ -36,7 +36,7 @@ pub fn page(result: &DiscoverResult, discoveries: &[CableDiscovery]) -> String {
         }
         @for (place, (cable, found)) in result.cables.iter().zip(discoveries).enumerate() {
             section.cable id=(format!("cable-{place}")) {
-                h2 { (cable.name) ": " span.verdict class=(cable.verdict) { (cable.verdict) } }
+                h2 { (cable.name) ": " span class={ "verdict " (cable.verdict) } { (cable.verdict) } }
                 p { (cable.verdict_in_words()) }
                 @if cable.before.is_some() { (details(cable, found)) }
             }
@@ -60,7 +60,7 @@ fn overview(result: &DiscoverResult) -> Markup {
                 @for (place, cable) in result.cables.iter().enumerate() {
                     tr {
                         td { a href=(format!("#cable-{place}")) { (cable.name) } }
-                        td.words.verdict class=(cable.verdict) { (cable.verdict) }
+                        td class={ "words verdict " (cable.verdict) } { (cable.verdict) }
                         td.words {
                             @if cable.effects.is_empty() { "–" }
                             (cable.effects.iter().map(|effect| effect.kind).collect::<Vec<_>>().join(", "))
@@ -100,7 +100,10 @@ fn details(cable: &DiscoverCableResult, found: &CableDiscovery) -> Markup {
         }
         @for profile in &found.profiles { (over_condition(cable, profile)) }
         (places("Where the given model disagrees", &cable.places))
-        @if let Some(rest) = &cable.unexplained { (places("Where the rest lies", &rest.places)) }
+        // Without an effect the rest is all of the gap.
+        @if let Some(rest) = cable.unexplained.as_ref().filter(|_| !cable.effects.is_empty() || cable.places.is_empty()) {
+            (places("Where the rest lies", &rest.places))
+        }
         (candidates(cable))
         (parameters(found))
     }
@@ -147,11 +150,8 @@ fn time_keys(cable: &DiscoverCableResult) -> Markup {
     html! {
         p {
             "Least and greatest in each interval:"
-            @if cable.effects.is_empty() {
-                (key("after", "given model"))
-            } @else {
-                (key("before", "given model")) (key("after", "extended model"))
-            }
+            (key("before", "given model"))
+            @if !cable.effects.is_empty() { (key("after", "extended model")) }
             @if !looked_at(cable).is_empty() { (key("flag", "where to look")) }
             (key("soft", "along the foot: samples held out"))
         }
@@ -187,10 +187,10 @@ fn over_time(cable: &DiscoverCableResult, found: &CableDiscovery) -> String {
         let more = (0.5 * (2e-3 * end_s - (to_s - from_s))).max(0.0);
         chart.stretch("look", from_s - more, to_s + more, "");
     }
+    chart.bars("before solid", before.into_iter());
     if !cable.effects.is_empty() {
-        chart.bars("before", before.into_iter());
+        chart.bars("after solid", after.into_iter());
     }
-    chart.bars("after", after.into_iter());
     for [from_s, to_s] in &cable.held_out_s {
         chart.strip("held", *from_s, *to_s);
     }
@@ -222,8 +222,8 @@ fn over_condition(cable: &DiscoverCableResult, profile: &Profile) -> Markup {
         figure {
             h3 { "Residual against the " (condition(profile.signal)) }
             p {
-                @if is_extended { (key("before", "given model")) }
-                (key("after", if is_extended { "extended model" } else { "given model" }))
+                (key("before", "given model"))
+                @if is_extended { (key("after", "extended model")) }
                 "Each step holds as many samples; means dashed while the cable is reeled in, solid while it is paid out."
             }
             div.views {
@@ -256,7 +256,7 @@ fn edges(profile: &Profile) -> Vec<f64> {
 fn traces(profile: &Profile, is_extended: bool, pick: impl Fn(&ProfileCell) -> f64) -> Vec<(&'static str, Vec<f64>)> {
     let before: Vec<f64> = profile.bins.iter().map(|bin| pick(&bin.before)).collect();
     let after: Vec<f64> = profile.bins.iter().map(|bin| pick(&bin.after)).collect();
-    if is_extended { vec![("before", before), ("after", after)] } else { vec![("after", after)] }
+    if is_extended { vec![("before", before), ("after", after)] } else { vec![("before", before)] }
 }
 
 fn sizes(cable: &DiscoverCableResult, profile: &Profile) -> String {
@@ -317,15 +317,14 @@ fn places(title: &str, places: &[WhereResult]) -> Markup {
                 }
             }
             p.soft {
-                "Told by it: the share of the gap that is a function of this condition and of the direction of motion; its \
-                 significance in standard errors."
+                "Told by it: the share of the gap that is a function of this condition and of the direction of motion. \
+                 Significance of either share, in standard errors; below 3 σ it may be chance."
             }
         }
     }
 }
 
 fn candidates(cable: &DiscoverCableResult) -> Markup {
-    let evidence = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.0}"));
     let is_found = |of: &Candidate| cable.effects.iter().any(|effect| effect.kind == of.kind);
     html! {
         @if !cable.candidates.is_empty() {

@@ -44,7 +44,7 @@ svg .even { fill: none; } svg .odd { fill: var(--line); opacity: .35; }
 svg .trace { stroke-width: 1.8; stroke-linejoin: round; } svg .trace.before, svg .trace.after { fill: none; stroke-width: 1.8; }
 svg .back { stroke-dasharray: 6 4; } svg .floor { stroke: var(--text); stroke-width: 1.2; stroke-dasharray: 2 3; fill: none; }
 svg .look { fill: var(--flag); opacity: .16; } svg .held { fill: var(--soft); opacity: .75; }
-svg rect.before, svg rect.after { stroke: none; }
+svg rect.before, svg rect.after { stroke: none; } svg .solid { stroke-width: 1.15; }
 nav { position: sticky; top: 0; background: var(--page); border-bottom: 1px solid var(--line); padding: .45rem 0;
   display: flex; flex-wrap: wrap; gap: .2rem 1.1rem; z-index: 1; }
 a { color: var(--after); text-decoration: none; } a:hover { text-decoration: underline; }

@@ -16,8 +16,12 @@ use crate::fit::CableRecord;
 
 /// A gain of less than this many standard errors is chance.
 const LEAST_SIGNIFICANCE: f64 = 4.0;
-/// And a concentration of less than this many.
-const LEAST_CONCENTRATION: f64 = 3.0;
+/// A concentration of less than this many may be chance.
+pub const LEAST_CONCENTRATION: f64 = 3.0;
+/// More of the excess than of the samples, as shares, that makes a range worth telling.
+const LEAST_MORE: f64 = 0.1;
+/// A range with this share of the samples is no place.
+const WHOLE: f64 = 0.995;
 /// Bins beside the densest one belong to it down to this share of its density.
 const SHOULDER: f64 = 0.4;
 /// Intervals in time that are worth a look.
@@ -82,17 +86,21 @@ impl Excess<'_> {
         places
     }
 
-    /// In which conditions it is concentrated, the most concentrated first. The significance is that of the concentration.
+    /// Where the excess sits for people: conditions in a range of which it is concentrated, or that it is a function of; those
+    /// beyond chance first, then the most concentrated. The significance is the greater of the two.
     pub fn concentrations(&self, conditions: &[Condition]) -> Vec<Place> {
+        let more = |place: &Place| place.share_of_excess - place.share_of_samples;
+        let is_sure = |place: &Place| place.significance >= LEAST_CONCENTRATION;
         let mut places: Vec<Place> = conditions
             .iter()
             .filter_map(|condition| {
-                Some(Place { significance: self.concentration(condition)?, ..self.place(condition)? })
+                let place = self.place(condition)?;
+                let concentration = self.concentration(condition).unwrap_or(0.0);
+                Some(Place { significance: place.significance.max(concentration), ..place })
             })
-            .filter(|place| place.significance >= LEAST_CONCENTRATION)
+            .filter(|place| place.share_of_samples < WHOLE && (is_sure(place) || more(place) >= LEAST_MORE))
             .collect();
-        let more = |place: &Place| place.share_of_excess - place.share_of_samples;
-        places.sort_by(|one, other| more(other).total_cmp(&more(one)));
+        places.sort_by(|one, other| is_sure(other).cmp(&is_sure(one)).then(more(other).total_cmp(&more(one))));
         places
     }
 

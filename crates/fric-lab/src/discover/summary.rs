@@ -28,10 +28,11 @@ pub(super) fn describe(result: &DiscoverResult) -> String {
         text += "\n";
         text += &wrapped("", &format!("{}: {}", listed(&quiet), first.verdict_in_words()));
     }
+    let mut told = Vec::new();
     for cable in result.cables.iter().filter(|cable| !is_quiet(cable)) {
         text += "\n";
         text += &wrapped("", &format!("{}: {}", cable.name, cable.verdict_in_words()));
-        text += &details(cable);
+        text += &details(cable, &mut told);
     }
     text
 }
@@ -60,7 +61,8 @@ fn line(label: &str, text: &str) -> String {
     wrapped(&format!("  {label:<LABEL$} "), text)
 }
 
-fn details(cable: &DiscoverCableResult) -> String {
+/// What was found on a cable; cause and remedy of an effect are told once.
+fn details(cable: &DiscoverCableResult, told: &mut Vec<&'static str>) -> String {
     let mut text = String::new();
     if let Some(gap) = cable.gap_in_words().filter(|_| cable.verdict != "complete") {
         text += &line("gap", &gap);
@@ -70,7 +72,8 @@ fn details(cable: &DiscoverCableResult) -> String {
         text += &line(if count == 0 { "where" } else { "" }, &place.in_words("the gap"));
     }
     for effect in &cable.effects {
-        text += &of_effect(effect);
+        text += &of_effect(effect, told.contains(&effect.kind));
+        told.push(effect.kind);
     }
     if let Some(rest) = &cable.unexplained {
         for (count, sentence) in rest.in_words().iter().enumerate() {
@@ -80,10 +83,12 @@ fn details(cable: &DiscoverCableResult) -> String {
     text
 }
 
-fn of_effect(effect: &EffectResult) -> String {
+fn of_effect(effect: &EffectResult, is_told: bool) -> String {
     let mut text = wrapped(&format!("  {}: ", effect.kind), &effect.values_in_words());
-    text += &line("  cause", effect.row.cause);
-    text += &line("  remedy", effect.row.remedy);
+    if !is_told {
+        text += &line("  cause", effect.row.cause);
+        text += &line("  remedy", effect.row.remedy);
+    }
     if let Some(alternative) = effect.alternative_in_words() {
         text += &line("  else", &alternative);
     }

@@ -2,6 +2,7 @@
 
 use fric_core::effects::EffectRow;
 
+use super::places::LEAST_CONCENTRATION;
 use super::result::{
     CommonEffect, CommonParameter, DiscoverCableResult, EffectResult, FaultResult, RunnerUpResult, UnexplainedResult,
     WhereResult,
@@ -32,6 +33,12 @@ pub fn percent(share: f64) -> String {
 #[must_use]
 pub fn newtons(force_n: f64) -> String {
     format!("{force_n:.4} N")
+}
+
+/// A difference of Schwarz's criterion.
+#[must_use]
+pub fn evidence(delta_bic: Option<f64>) -> String {
+    delta_bic.map_or_else(|| "–".to_owned(), |number| format!("{number:.0}").replace('-', "−"))
 }
 
 /// Stretches of time.
@@ -94,6 +101,9 @@ impl WhereResult {
         };
         if let Some(share) = self.share_of_samples.filter(|share| *share < 0.995) {
             text += &format!(", {} of the samples", percent(share));
+        }
+        if self.significance.is_some_and(|significance| significance < LEAST_CONCENTRATION) {
+            text += ", which may be chance";
         }
         if !self.intervals_s.is_empty() {
             text += &format!("; look at {}", intervals(&self.intervals_s));
@@ -202,7 +212,6 @@ impl EffectResult {
                 excitation([self.row, row])
             ));
         }
-        let evidence = |number: Option<f64>| number.map_or_else(|| "–".to_owned(), |number| format!("{number:.0}"));
         let own = self.evidence.held_out_rms_n.map(newtons)?;
         Some(if delta_bic.is_some_and(|number| number < 0.0) {
             format!(
@@ -268,7 +277,10 @@ impl CommonEffect {
     #[must_use]
     pub fn in_words(&self, cable_count: usize) -> String {
         let on = if self.cables.len() == cable_count {
-            format!("all {} cables", counted(cable_count))
+            match cable_count {
+                2 => "both cables".to_owned(),
+                count => format!("all {} cables", counted(count)),
+            }
         } else {
             listed(&self.cables)
         };
