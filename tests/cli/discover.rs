@@ -199,7 +199,7 @@ fn names_are_text_and_no_markup() {
     let robot =
         two_cables().replace("'winch'", r#"'<b>&"w<script>alert(1)</script>'"#).replace("'bench'", "'<i>rig</i>'");
     place.write("robot.toml", robot);
-    place.run(&["simulate", "--model", "robot.toml", "-o", "<u>&.mcap", "--duration", "9"]).succeeds();
+    place.run(&["simulate", "--model", "robot.toml", "-o", "<u>&.mcap", "--duration", "12"]).succeeds();
     place.run(&["discover", "<u>&.mcap", "-o", "extended.toml", "--report", "report.html"]).succeeds();
     let page = String::from_utf8(place.read("report.html")).unwrap();
     assert_self_contained(&page.replace("href=\"#", ""));

@@ -67,7 +67,8 @@ pub fn quantity(value: f64, half_interval: Option<f64>, unit: &str) -> String {
 }
 
 /// Factor to, and name of, the unit in which a value reads well.
-fn scaled_unit<'a>(value: f64, unit: &'a str) -> (f64, &'a str) {
+#[must_use]
+pub fn scaled_unit<'a>(value: f64, unit: &'a str) -> (f64, &'a str) {
     let small = value.abs() < 0.1;
     match unit {
         "s" if small => (1e3, "ms"),
@@ -113,7 +114,8 @@ pub fn wrapped(start: &str, text: &str) -> String {
     let (mut lines, mut line) = (String::new(), start.to_owned());
     let mut is_empty = true;
     for word in text.split_whitespace() {
-        if !is_empty && line.chars().count() + 1 + word.chars().count() > WIDTH {
+        // A per cent sign stays with its number.
+        if !is_empty && word != "%" && line.chars().count() + 1 + word.chars().count() + ROOM > WIDTH {
             lines += line.trim_end();
             lines.push('\n');
             line = " ".repeat(indent);
@@ -130,3 +132,5 @@ pub fn wrapped(start: &str, text: &str) -> String {
 
 /// Letters of a line on a terminal.
 pub const WIDTH: usize = 80;
+/// Kept for a per cent sign behind the last word.
+const ROOM: usize = 3;

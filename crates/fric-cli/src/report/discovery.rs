@@ -4,7 +4,7 @@ use fric_lab::discover::result::{Candidate, DiscoverCableResult, DiscoverResult,
 use fric_lab::discover::words::{condition, evidence, intervals, name_of, newtons, percent};
 use fric_lab::discover::{CableDiscovery, Model, Profile, ProfileCell};
 use fric_lab::fit::{HALF_INTERVAL, Parameter};
-use fric_lab::text::quantity;
+use fric_lab::text::{quantity, scaled_unit};
 use maud::{Markup, PreEscaped, html};
 
 use super::chart::{Chart, Span};
@@ -89,9 +89,11 @@ fn details(cable: &DiscoverCableResult, found: &CableDiscovery) -> Markup {
             h3 { "Unexplained" }
             ul { @for sentence in rest.in_words() { li { (sentence) } } }
         }
-        figure {
-            h3 { "Gap" }
-            (PreEscaped(ladder(cable)))
+        @if cable.verdict != "complete" {
+            figure {
+                h3 { "Gap" }
+                (PreEscaped(ladder(cable)))
+            }
         }
         figure {
             h3 { "Residual over time" }
@@ -104,8 +106,10 @@ fn details(cable: &DiscoverCableResult, found: &CableDiscovery) -> Markup {
         @if let Some(rest) = cable.unexplained.as_ref().filter(|_| !cable.effects.is_empty() || cable.places.is_empty()) {
             (places("Where the rest lies", &rest.places))
         }
-        (candidates(cable))
-        (parameters(found))
+        div.views {
+            (candidates(cable))
+            (parameters(found))
+        }
     }
 }
 
@@ -224,8 +228,8 @@ fn over_condition(cable: &DiscoverCableResult, profile: &Profile) -> Markup {
             p {
                 (key("before", "given model"))
                 @if is_extended { (key("after", "extended model")) }
-                "Each step holds as many samples; means dashed while the cable is reeled in, solid while it is paid out."
             }
+            p.soft { "Each step holds as many samples. Means are dashed while the cable is reeled in, solid while it is paid out." }
             div.views {
                 figure {
                     p.soft { "root mean square, dotted the noise" }
@@ -247,9 +251,14 @@ fn steps(values: &[f64]) -> impl Iterator<Item = [f64; 2]> {
     values.iter().enumerate().flat_map(move |(step, value)| [[edge(step), *value], [edge(step + 1), *value]])
 }
 
-fn edges(profile: &Profile) -> Vec<f64> {
-    let first = profile.bins.first().map(|bin| bin.from);
-    first.into_iter().chain(profile.bins.iter().map(|bin| bin.to)).collect()
+/// Edges of a profile's bins in a unit that suits them, and the unit.
+fn edges(profile: &Profile) -> (Vec<f64>, &'static str) {
+    let edges = profile.bins.first().map(|bin| bin.from).into_iter().chain(profile.bins.iter().map(|bin| bin.to));
+    let greatest = edges.clone().map(f64::abs).fold(0.0, f64::max);
+    let (factor, unit) = scaled_unit(greatest, profile.unit);
+    // What is nothing beside the rest is written as such.
+    let shown = |edge: f64| if edge.abs() < 1e-4 * greatest { 0.0 } else { edge * factor };
+    (edges.map(shown).collect(), if unit == "1" { "" } else { unit })
 }
 
 /// What is drawn of a profile: the class of each model with what is taken of its cells.
@@ -264,13 +273,9 @@ fn sizes(cable: &DiscoverCableResult, profile: &Profile) -> String {
     let mut extent = Extent { least: 0.0, greatest: cable.noise_floor_n.unwrap_or(0.0) };
     traces.iter().flat_map(|(_, values)| values).for_each(|value| extent.add(*value));
     extent.greatest *= 1.08;
-    let mut chart = Chart::in_steps(
-        &edges(profile),
-        profile.unit,
-        Span { least: 0.0, greatest: extent.greatest, unit: "N" },
-        HALF,
-        240.0,
-    );
+    let (edges, unit) = edges(profile);
+    let mut chart =
+        Chart::in_steps(&edges, unit, Span { least: 0.0, greatest: extent.greatest, unit: "N" }, HALF, 240.0);
     for (class, values) in &traces {
         chart.line(&format!("trace {class}"), steps(values));
     }
@@ -283,7 +288,8 @@ fn means(is_extended: bool, profile: &Profile) -> String {
     let back = traces(profile, is_extended, |cell| cell.reeling_in_n);
     let mut extent = Extent { least: 0.0, greatest: 0.0 };
     out.iter().chain(&back).flat_map(|(_, values)| values).for_each(|value| extent.add(*value));
-    let mut chart = Chart::in_steps(&edges(profile), profile.unit, Span::with_margin(extent, 0.08, "N"), HALF, 240.0);
+    let (edges, unit) = edges(profile);
+    let mut chart = Chart::in_steps(&edges, unit, Span::with_margin(extent, 0.08, "N"), HALF, 240.0);
     for ((class, out), (_, back)) in out.iter().zip(&back) {
         chart.line(&format!("trace back {class}"), steps(back));
         chart.line(&format!("trace {class}"), steps(out));
@@ -351,6 +357,7 @@ fn parameters(found: &CableDiscovery) -> Markup {
     let of_finding =
         |parameter: &Parameter| found.findings.iter().any(|finding| finding.row.places().contains(&parameter.place()));
     let shown = Parameter::all().filter(|parameter| found.after.fitted.contains(parameter) || of_finding(parameter));
+    let is_extended = !found.findings.is_empty();
     let value = |model: &Model, parameter: &Parameter| {
         let half = model.standard_error(parameter).map(|error| HALF_INTERVAL * error);
         quantity(model.values[parameter.place()], half, parameter.row().unit)
@@ -359,12 +366,15 @@ fn parameters(found: &CableDiscovery) -> Markup {
         figure {
             h3 { "Parameters" }
             table {
-                tr { th { "parameter" } th { "given model" } th { "extended model" } }
+                tr {
+                    th { "parameter" } th { "given model" }
+                    @if is_extended { th { "extended model" } }
+                }
                 @for parameter in shown {
                     tr {
                         td { @if let Some(kind) = parameter.effect() { (kind) ": " } (name_of(parameter.row().key)) }
                         td { @if of_finding(&parameter) { "–" } @else { (value(&found.before, &parameter)) } }
-                        td { (value(&found.after, &parameter)) }
+                        @if is_extended { td { (value(&found.after, &parameter)) } }
                     }
                 }
             }

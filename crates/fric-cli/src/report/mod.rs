@@ -40,7 +40,7 @@ svg .box { stroke: var(--soft); stroke-width: 1.2; stroke-dasharray: 5 4; fill: 
 svg .base { fill: var(--before); }
 svg .bound { stroke: var(--flag); stroke-width: 1.2; stroke-dasharray: 5 4; fill: none; }
 svg .even { fill: none; } svg .odd { fill: var(--line); opacity: .35; }
-.views { display: flex; gap: 1rem; flex-wrap: wrap; } .views section { flex: 1 1 24rem; }
+.views { display: flex; gap: 1rem; flex-wrap: wrap; } .views section, .views figure { flex: 1 1 24rem; }
 svg .trace { stroke-width: 1.8; stroke-linejoin: round; } svg .trace.before, svg .trace.after { fill: none; stroke-width: 1.8; }
 svg .back { stroke-dasharray: 6 4; } svg .floor { stroke: var(--text); stroke-width: 1.2; stroke-dasharray: 2 3; fill: none; }
 svg .look { fill: var(--flag); opacity: .16; } svg .held { fill: var(--soft); opacity: .75; }

@@ -26,7 +26,10 @@ const WHOLE: f64 = 0.995;
 const SHOULDER: f64 = 0.4;
 /// Intervals in time that are worth a look.
 const MOST_INTERVALS: usize = 5;
-/// Two intervals with less than this between them are one, s.
+/// They are made of windows of this length, s, at least this loud beside the loudest.
+const WINDOW_S: f64 = 0.5;
+const LOUD: f64 = 0.25;
+/// Two with less than this between them are one, s.
 const MERGED_S: f64 = 0.25;
 
 /// A range of a condition in which the excess sits.
@@ -95,10 +98,11 @@ impl Excess<'_> {
             .iter()
             .filter_map(|condition| {
                 let place = self.place(condition)?;
+                let is_function = place.significance >= LEAST_SIGNIFICANCE && place.share_of_samples < WHOLE;
                 let concentration = self.concentration(condition).unwrap_or(0.0);
-                Some(Place { significance: place.significance.max(concentration), ..place })
+                let place = Place { significance: place.significance.max(concentration), ..place };
+                (is_function || more(&place) >= LEAST_MORE).then_some(place)
             })
-            .filter(|place| place.share_of_samples < WHOLE && (is_sure(place) || more(place) >= LEAST_MORE))
             .collect();
         places.sort_by(|one, other| is_sure(other).cmp(&is_sure(one)).then(more(other).total_cmp(&more(one))));
         places
@@ -228,23 +232,33 @@ impl Excess<'_> {
         Some(from..to)
     }
 
-    /// The stretches of time in which samples are wanted, those with most excess, in the order of time.
+    /// The stretches of time in which wanted samples have most excess, in the order of time.
     pub fn intervals_s(&self, wanted: impl Fn(usize) -> bool) -> Vec<[f64; 2]> {
-        let mut found: Vec<(Range<f64>, f64)> = Vec::new();
+        let mut windows: Vec<(Range<f64>, f64)> = Vec::new();
         for (cycle, residual_n) in self.residual_n.iter().enumerate().filter(|(_, number)| number.is_finite()) {
             if !wanted(cycle) {
                 continue;
             }
             let time_s = self.record.time_s(cycle);
-            match found.last_mut().filter(|(range, _)| time_s - range.end < MERGED_S) {
+            let window = (time_s / WINDOW_S).floor();
+            match windows.last_mut().filter(|(range, _)| (range.start / WINDOW_S).floor() >= window) {
                 Some((range, excess)) => (range.end, *excess) = (time_s, *excess + self.of(*residual_n)),
-                None => found.push((time_s..time_s, self.of(*residual_n))),
+                None => windows.push((time_s..time_s, self.of(*residual_n))),
             }
         }
-        found.sort_by(|one, other| other.1.total_cmp(&one.1));
-        found.truncate(MOST_INTERVALS);
-        found.sort_by(|one, other| one.0.start.total_cmp(&other.0.start));
-        found.into_iter().map(|(range, _)| [range.start, range.end]).collect()
+        windows.sort_by(|one, other| other.1.total_cmp(&one.1));
+        let loudest = windows.first().map_or(0.0, |(_, excess)| *excess);
+        windows.retain(|(_, excess)| *excess > LOUD * loudest);
+        windows.truncate(MOST_INTERVALS);
+        windows.sort_by(|one, other| one.0.start.total_cmp(&other.0.start));
+        let mut found: Vec<[f64; 2]> = Vec::new();
+        for (range, _) in windows {
+            match found.last_mut().filter(|[_, end_s]| range.start - *end_s < MERGED_S) {
+                Some([_, end_s]) => *end_s = range.end,
+                None => found.push([range.start, range.end]),
+            }
+        }
+        found
     }
 }
 

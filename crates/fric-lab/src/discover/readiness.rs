@@ -60,7 +60,7 @@ pub fn lack_of(record: &CableRecord<'_>) -> Option<Lack> {
     }
     let sound_s = seconds(sound, record.cycle_s);
     if sound_s < LEAST_S {
-        let cause = format!("{sound_s:.1} s of samples with a reference are too few: {LEAST_S} s are needed");
+        let cause = format!("{sound_s:.1} s of samples with a reference are too few, {LEAST_S} s are needed");
         return Some(Lack::new(cause, LONGER));
     }
     if motion.reversals < FEWEST_REVERSALS {
@@ -85,13 +85,17 @@ pub fn lack_of_samples(counts: &SampleCounts, cycle_s: f64) -> Option<Lack> {
     if used_s >= LEAST_S {
         return None;
     }
-    let most = flagged.max(without_reference).max(outliers);
-    if warm_up > most {
+    let warm_up_is_most = warm_up > flagged.max(without_reference).max(outliers);
+    if warm_up_is_most && used == 0 {
+        return Some(Lack::new("it moves too little to forget the friction stored in it when the log began", RUN));
+    }
+    if warm_up_is_most {
         let cause = format!(
-            "it moves too little to forget the friction stored in it when the log began: {used_s:.1} s of samples are \
-             left, {LEAST_S} s are needed"
+            "{used_s:.1} s of samples are too few, {LEAST_S} s are needed: before them, {:.1} s of motion pass until it has \
+             forgotten the friction stored in it when the log began",
+            seconds(warm_up, cycle_s)
         );
-        return Some(Lack::new(cause, RUN));
+        return Some(Lack::new(cause, LONGER));
     }
     let advice = if without_reference >= flagged {
         "Look at the reference with `fric-cli info`: where it stands still, it measures nothing."

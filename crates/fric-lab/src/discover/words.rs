@@ -14,6 +14,9 @@ use crate::text::{listed, quantity, significant};
 const UNITS: [&str; 11] =
     ["_n_s_per_m", "_m_per_s", "_n_per_m", "_n_per_s", "_m_per_n", "_per_s", "_kg", "_nm", "_s", "_n", "_m"];
 
+/// As a share of the other end of a range, the beginning is zero below this.
+const NO_MORE_THAN_ZERO: f64 = 0.01;
+
 /// A parameter's key without its unit.
 #[must_use]
 pub fn name_of(key: &str) -> String {
@@ -58,7 +61,9 @@ impl WhereResult {
     #[must_use]
     pub fn range_in_words(&self) -> String {
         let [least, greatest] = self.range;
-        let (first, last) = (self.from <= least, self.to >= greatest);
+        // A magnitude begins at 0, whatever noise makes of it.
+        let from_zero = least >= 0.0 && self.from < NO_MORE_THAN_ZERO * self.to;
+        let (first, last) = (self.from <= least || from_zero, self.to >= greatest);
         let value = |number: f64| {
             if matches!(self.unit, "m" | "m/s") {
                 quantity(number, None, self.unit)
