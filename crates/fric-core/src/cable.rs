@@ -101,7 +101,7 @@ pub trait Cable<T: Scalar> {
     /// The pulley at a place.
     fn pulley(&self, place: usize) -> Pulley<T>;
     /// `e^{μ_p α}` there, the tension ratio at which the cable slips; beyond
-    /// [`NO_LIMIT_RATIO`](pulley::NO_LIMIT_RATIO) where it cannot.
+    /// [`NO_LIMIT_RATIO`](crate::pulley::NO_LIMIT_RATIO) where it cannot.
     fn traction_ratio(&self, place: usize) -> T;
     /// 1 where there is a pulley, else 0.
     fn present(&self, place: usize) -> T;
@@ -133,7 +133,7 @@ pub trait Cable<T: Scalar> {
 pub const MEMORY: usize = 2;
 /// Stands for a number that is not known yet; equal to itself, as a snapshot has to be.
 pub const UNKNOWN: f64 = f64::INFINITY;
-/// Low pass of the tension, of `cable_elasticity`, N.
+/// Middle of the play of the tension, of `cable_elasticity`, N.
 const TENSION: usize = 0;
 /// Low pass of the speed, of `pulley_inertia`, m/s.
 pub(crate) const SPEED: usize = 1;
@@ -240,7 +240,7 @@ pub fn cable_cycle<T: Scalar>(
     };
     let no_tension = sensor_force_n.le(zero);
     let bearing = Bearing::new(model, acting, signals, moment, cable);
-    let stretch_m = stretch(acting, frictionless_n, signals, moment, cable);
+    let stretch_m = stretch(acting, frictionless_n + cable.held_friction_n(), signals, cable);
     let displacement_m = signals.displacement_m;
     let chain = Chain { model, features, bearing, sensor_force_n, displacement_m, stretch_m };
     let mut chain_n = frictionless_n;
@@ -304,20 +304,14 @@ fn corrected_sensor<T: Scalar>(acting: Acting, shown_n: T, moment: &Moment<T>, c
 
 /// By how much the whole cable has stretched in this cycle, m; a sensor that tells nothing tells of no stretch.
 #[inline(always)]
-fn stretch<T: Scalar>(
-    acting: Acting,
-    tension_n: T,
-    signals: &Conditioned<T>,
-    moment: &Moment<T>,
-    cable: &mut impl Cable<T>,
-) -> T {
+fn stretch<T: Scalar>(acting: Acting, tension_n: T, signals: &Conditioned<T>, cable: &mut impl Cable<T>) -> T {
     if !acting.has(cable_elasticity::ACTS) {
         return T::splat(0.0);
     }
     let elasticity = CableElasticity::of(|place| cable.effect(place));
-    let filtered_n = cable.memory(TENSION);
-    let (stretch_m, next_n) = elasticity.stretch_m(tension_n.max(T::splat(0.0)), filtered_n, moment.step_s);
+    let middle_n = cable.memory(TENSION);
+    let (stretch_m, next_n) = elasticity.stretch_m(tension_n.max(T::splat(0.0)), middle_n);
     let known = signals.sensor_fault().not();
-    cable.set_memory(TENSION, T::select(known, next_n, filtered_n));
+    cable.set_memory(TENSION, T::select(known, next_n, middle_n));
     stretch_m.keep(known)
 }

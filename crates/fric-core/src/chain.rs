@@ -108,8 +108,10 @@ impl<T: Scalar> Chain<'_, T> {
             let pulley = cable.pulley(place);
             let added_n = bearing.viscous_n(&pulley, place, cable);
             let drag_n = bearing.drag_n(place, cable).map(|drag_n| drag_n.scale(direction));
+            let resisting_n = drag_n.map_or(added_n, |drag_n| added_n + drag_n);
             if place == 0 {
-                let (mu, gain, viscous_gain) = self.sensor_pulley(pulley.wrap_factor, direction, frictionless_n);
+                let (mu, gain, viscous_gain) =
+                    self.sensor_pulley(pulley.wrap_factor, direction, frictionless_n, resisting_n);
                 coulomb_n = sensor_force_n * gain;
                 if let Some(drag_n) = drag_n {
                     coulomb_n = coulomb_n + drag_n * viscous_gain;
@@ -120,7 +122,6 @@ impl<T: Scalar> Chain<'_, T> {
                     // [P] 10 the other way round: the tension on the winch side from the one behind.
                     let (inverse_gain, inverse_viscous) = pulley::sliding_gains(-direction, mu, pulley.wrap_factor);
                     let behind_n = coulomb_n + viscous_n;
-                    let resisting_n = drag_n.map_or(added_n, |drag_n| added_n + drag_n);
                     let before_n = behind_n * inverse_gain - resisting_n * inverse_viscous;
                     let (_, slips) = pulley::limit_traction(before_n, behind_n, traction_ratio);
                     let tensions = (before_n, behind_n);
@@ -132,7 +133,7 @@ impl<T: Scalar> Chain<'_, T> {
                 continue;
             }
             let before_n = coulomb_n + viscous_n;
-            let (gain, viscous_gain) = self.guide_pulley(pulley.wrap_factor, direction, before_n);
+            let (gain, viscous_gain) = self.guide_pulley(pulley.wrap_factor, direction, before_n, resisting_n);
             let mut next_coulomb_n = coulomb_n * gain;
             if let Some(drag_n) = drag_n {
                 next_coulomb_n = next_coulomb_n + drag_n * viscous_gain;
@@ -162,29 +163,43 @@ impl<T: Scalar> Chain<'_, T> {
 
     /// μ, gain and viscous share of the sensor pulley in steady sliding ([`pulley::sensor_gains`]).
     ///
-    /// Where μ depends on the load it is first that of the frictionless tension, then that of the tensions which that gives.
+    /// Where μ depends on the load it is first that of the frictionless tension, then that of the tensions which this gives.
     #[inline(always)]
-    fn sensor_pulley(&self, wrap_factor: T, direction: T, frictionless_n: T) -> (T, T, T) {
-        let sensor_cos = self.model.sensor_cos;
-        let mut mu = self.bearing.mu_at(wrap_factor, (frictionless_n, frictionless_n), direction);
+    fn sensor_pulley(&self, wrap_factor: T, direction: T, frictionless_n: T, resisting_n: T) -> (T, T, T) {
+        let gains = |tensions| {
+            let mu = self.bearing.mu_at(wrap_factor, tensions, direction);
+            let (gain, viscous_gain) = pulley::sensor_gains(direction, mu, wrap_factor, self.model.sensor_cos);
+            (mu, gain, viscous_gain)
+        };
+        let mut sliding = gains((frictionless_n, frictionless_n));
         if self.bearing.depends_on_load() {
-            let (gain, _) = pulley::sensor_gains(direction, mu, wrap_factor, sensor_cos);
-            let (inverse_gain, _) = pulley::sliding_gains(-direction, mu, wrap_factor);
-            let behind_n = self.sensor_force_n * gain;
-            mu = self.bearing.mu_at(wrap_factor, (behind_n * inverse_gain, behind_n), direction);
+            for _ in 0..LOAD_STEPS {
+                let (mu, gain, viscous_gain) = sliding;
+                let (inverse_gain, inverse_viscous) = pulley::sliding_gains(-direction, mu, wrap_factor);
+                let behind_n = self.sensor_force_n * gain + resisting_n * viscous_gain;
+                sliding = gains((behind_n * inverse_gain - resisting_n * inverse_viscous, behind_n));
+            }
         }
-        let (gain, viscous_gain) = pulley::sensor_gains(direction, mu, wrap_factor, sensor_cos);
-        (mu, gain, viscous_gain)
+        sliding
     }
 
     /// Gain and viscous share of another pulley in steady sliding ([`pulley::sliding_gains`]), μ likewise.
     #[inline(always)]
-    fn guide_pulley(&self, wrap_factor: T, direction: T, before_n: T) -> (T, T) {
-        let mut mu = self.bearing.mu_at(wrap_factor, (before_n, before_n), direction);
+    fn guide_pulley(&self, wrap_factor: T, direction: T, before_n: T, resisting_n: T) -> (T, T) {
+        let gains = |tensions| {
+            let mu = self.bearing.mu_at(wrap_factor, tensions, direction);
+            pulley::sliding_gains(direction, mu, wrap_factor)
+        };
+        let mut sliding = gains((before_n, before_n));
         if self.bearing.depends_on_load() {
-            let (gain, _) = pulley::sliding_gains(direction, mu, wrap_factor);
-            mu = self.bearing.mu_at(wrap_factor, (before_n, before_n * gain), direction);
+            for _ in 0..LOAD_STEPS {
+                let (gain, viscous_gain) = sliding;
+                sliding = gains((before_n, before_n * gain + resisting_n * viscous_gain));
+            }
         }
-        pulley::sliding_gains(direction, mu, wrap_factor)
+        sliding
     }
 }
+
+/// How often μ and the load that it depends on are worked out from each other; each time the error becomes smaller by some `μ/2`.
+const LOAD_STEPS: usize = 2;

@@ -2,7 +2,7 @@
 //!
 //! For: force at the platform and wrench from the winch-side signals, every cycle, in bounded time, without allocation,
 //! without panic, for every input there is. It does not read clocks, files or buses. Non-finite input is flagged
-//! ([`CableStatus`]) and never reaches another cable. Size: about 700 bytes a cable, and 1 kB more a cable for the delay
+//! ([`CableStatus`]) and never reaches another cable. Size: about 1 kB a cable, and 1 kB more a cable for the delay
 //! lines.
 
 use crate::cable::{Features, Moment, cable_cycle};
@@ -394,8 +394,8 @@ fn shift_block<const CABLES: usize>(
     delays: [Delay; LANES],
 ) -> Lanes {
     let mut values = values.to_array();
-    let lanes = lines.iter_mut().skip(first).zip(&mut values).zip(delays);
-    for (lane, ((line, value), delay)) in lanes.enumerate() {
+    let of_lanes = lines.iter_mut().skip(first).zip(&mut values).zip(delays);
+    for (lane, ((line, value), delay)) in of_lanes.enumerate() {
         *value = line.shift(*value, in_order >> lane & 1 == 1, delay);
     }
     Lanes::new(values)

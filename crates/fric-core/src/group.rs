@@ -5,6 +5,7 @@
 //! pulley that follows the pose as [`PoseWrap`].
 
 use crate::cable::{Cable, CableForces, CableModel, Features, MEMORY, Moment, Pulley, UNKNOWN, cable_cycle};
+use crate::effects::cable_elasticity::COMPLIANCE;
 use crate::effects::time_delay::{self, DELAY, Delay, DelayLine};
 use crate::lanes::LANES;
 use crate::parameters::{ParameterRow, VISCOUS, Values};
@@ -57,6 +58,11 @@ pub struct CableGroup<T: Scalar> {
     last_cycle: T,
     state: State<T>,
 }
+
+/// What stands for 0 in a delay and in a compliance that vary. At 0 a cable at rest does not move, so that it cannot be
+/// told which way a change of these would move it; this far from it, it can, and no force changes by anything that counts.
+const LEAST_DELAY_S: f64 = 1e-12;
+const LEAST_COMPLIANCE_M_PER_N: f64 = 1e-15;
 
 /// What the delay of set points remembers, lane by lane.
 #[derive(Clone, Debug)]
@@ -117,17 +123,23 @@ impl<T: Scalar> CableGroup<T> {
         let at = |column: fn(&Places) -> &[f64; PLACES]| {
             core::array::from_fn(|place| T::from_lanes(|lane| column(&places[lane.min(LANES - 1)])[place]))
         };
+        let zero = T::splat(0.0);
         let is_active = |row: &ParameterRow, place: usize| {
             let differs = |lane| values[place].lane(lane).to_bits() != row.neutral.to_bits();
             varies(place) || (0..T::COUNT).any(differs)
         };
         let features = cables.iter().fold(Features::default(), |features, params| features.with(params));
         let features = features.and_acting(is_active);
+        let mut values = *values;
+        for (place, least) in [(DELAY, LEAST_DELAY_S), (COMPLIANCE, LEAST_COMPLIANCE_M_PER_N)] {
+            if varies(place) {
+                values[place] = values[place] + T::splat(least).keep(values[place].eq(zero));
+            }
+        }
         let delay = values[DELAY] / T::splat(cycle_s);
         let delayed = features.acting.has(time_delay::ACTS);
-        let zero = T::splat(0.0);
         Some(Self {
-            model: CableModel::new(of_lane, values),
+            model: CableModel::new(of_lane, &values),
             features,
             delay: delayed.then(|| Delayed {
                 delays: core::array::from_fn(|lane| Delay::from_cycles(delay, delay.lane(lane))),
@@ -138,7 +150,7 @@ impl<T: Scalar> CableGroup<T> {
             cycle_s,
             last_cycle: T::splat(f64::NAN),
             state: State {
-                values: *values,
+                values,
                 wrap_factor: at(|places| &places.wrap_factor),
                 has_pulley: at(|places| &places.has_pulley),
                 stretch_ratio: at(|places| &places.stretch_ratio),

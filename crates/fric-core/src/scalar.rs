@@ -62,8 +62,9 @@ pub trait Scalar:
     #[inline(always)]
     #[must_use]
     fn exp(self) -> Self {
-        let fall = (-self.abs()).exp_negative();
-        Self::select(self.lt(Self::splat(0.0)), fall, Self::splat(1.0) / fall)
+        let falls = self.lt(Self::splat(0.0));
+        let fall = Self::select(falls, self, -self).exp_negative();
+        Self::select(falls, fall, Self::splat(1.0) / fall)
     }
     /// A positive number to a power; 1 for the power 0.
     #[inline(always)]

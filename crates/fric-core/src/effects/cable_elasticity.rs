@@ -5,11 +5,13 @@
 //! does (\[P\]'s open question: an outside force reverses the friction at the far pulleys while the winch rests). The one
 //! state of `lumped` presliding moves by the mean of its pulleys, `(n + 1)/(2n)` of the stretch.
 //!
-//! ΔF is the change of the frictionless tension behind a low pass of the time constant `window_s`. Without it the noise of
-//! the sensor would shake the stored friction loose: noise δ (rms) moves the cable there and back by some
-//! `compliance·δ/window_s` a second, and friction at rest is forgotten over a way of `f_c/σ`. Taken from the sensor, not from the
-//! computed force at the platform, there is no feedback that could swing. Only presliding and its direction follow the
-//! stretch; viscous friction and what depends on speed follow the winch, since the rate of a tension is mostly noise.
+//! ΔF is how far the tension at the platform, with the friction of the last cycle, pushes the edge of a play of ± `play_n`: noise
+//! within it moves nothing, and a tension that goes on changing is followed without delay. Without it the noise of the
+//! sensor would shake the stored friction loose; with one and a half times the noise of the sensor, as cable tension, next
+//! to nothing of it is left. (A low pass would delay the stretch: on a simulated log it leaves a third more of the noise than the play
+//! does.) Friction that follows a tension it adds to is stable while `compliance·σ·(n + 1)/(2n) < 1`, as it is for a cable far
+//! stiffer than its presliding; beyond, friction jumps to its Coulomb bound and no further. Only presliding and its direction follow
+//! the stretch; viscous friction and what depends on speed follow the winch, since the rate of a tension is mostly noise.
 //! Neutral: `compliance_m_per_n = 0`.
 //!
 //! Cause: the cable is an elastic spring between winch and platform.
@@ -36,11 +38,11 @@ pub const ROW: EffectRow = EffectRow {
             excitation: EXCITATION,
         },
         ParameterRow {
-            key: "window_s",
-            unit: "s",
-            neutral: 0.05,
+            key: "play_n",
+            unit: "N",
+            neutral: 0.0,
             min: 0.0,
-            max: 1.0,
+            max: 1e6,
             fitted: false,
             excitation: EXCITATION,
         },
@@ -51,32 +53,33 @@ pub const ROW: EffectRow = EffectRow {
 pub(crate) const ACTS: Acting = Acting::only(ROW.kind);
 /// Place of `compliance_m_per_n` in [`Values`](crate::parameters::Values).
 pub const COMPLIANCE: usize = first_place(ROW.kind);
-/// Place of `window_s`.
-pub const WINDOW: usize = COMPLIANCE + 1;
+/// Place of `play_n`.
+pub const PLAY: usize = COMPLIANCE + 1;
 
 /// The effect's parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CableElasticity<T> {
     /// Stretch of the cable from the winch to its last pulley, m/N.
     pub compliance_m_per_n: T,
-    /// Time constant of the tension, s.
-    pub window_s: T,
+    /// Half the change of tension that moves nothing, N.
+    pub play_n: T,
 }
 
 impl<T: Scalar> CableElasticity<T> {
     /// From a cable's parameter values, by their place.
     #[inline(always)]
     pub fn of(value: impl Fn(usize) -> T) -> Self {
-        Self { compliance_m_per_n: value(COMPLIANCE), window_s: value(WINDOW) }
+        Self { compliance_m_per_n: value(COMPLIANCE), play_n: value(PLAY) }
     }
 
-    /// Stretch at the last pulley in this cycle, m, and the low pass of the tension for the next; `filtered_n` is the last
-    /// cycle's, infinite before the first; `step_s` the time since.
+    /// Stretch at the last pulley in this cycle, m, and the middle of the play for the next, N; `middle_n` is the last
+    /// cycle's, infinite before the first.
     #[inline(always)]
-    pub fn stretch_m(&self, tension_n: T, filtered_n: T, step_s: T) -> (T, T) {
-        let known = filtered_n.within(f64::MAX);
-        let before_n = T::select(known, filtered_n, tension_n);
-        let step_n = (tension_n - before_n) * (step_s / (self.window_s + step_s));
+    pub fn stretch_m(&self, tension_n: T, middle_n: T) -> (T, T) {
+        let known = middle_n.within(f64::MAX);
+        let before_n = T::select(known, middle_n, tension_n);
+        let change_n = tension_n - before_n;
+        let step_n = change_n.sign() * (change_n.abs() - self.play_n).max(T::splat(0.0));
         (self.compliance_m_per_n * step_n, before_n + step_n)
     }
 }

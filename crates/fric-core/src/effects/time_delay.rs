@@ -6,7 +6,7 @@
 //! signals by `1 + 2τ/dt`. Neutral: `delay_s = 0`.
 //!
 //! After a cycle without motion to be believed, or a pause, the change from one cycle to the next is not the motion's:
-//! nothing is extrapolated until [`BELIEVED`] cycles have been in order.
+//! nothing is extrapolated until three cycles have been in order.
 //!
 //! Cause: set points are used where the drive still follows (\[P\], section IV A), or the two signals take different ways
 //! through the bus. Deviation from the paper: the set points are shifted, not the friction computed from them, so that

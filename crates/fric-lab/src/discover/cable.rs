@@ -142,7 +142,7 @@ impl<'a> Case<'a> {
         let base = bench.try_one(start);
         let residual_n = bench.residuals_n(&base.values);
         let noise_n = white_noise(&residual_n).unwrap_or(0.0);
-        let naming = Search::new(&bench, noise_n, self.scale(&base), &base).run();
+        let naming = Search::new(&bench, noise_n, self.scale(&base, noise_n), &base).run();
         let rest_n = bench.residuals_n(&naming.model.values);
         let noise_n = white_noise(&rest_n).unwrap_or(noise_n);
         let excess = self.excess(&rest_n, noise_n);
@@ -166,7 +166,7 @@ impl<'a> Case<'a> {
         deviation(residual_n).rms().map_or(0.0, |rms_n| (rms_n / noise_n).powi(2) - 1.0)
     }
 
-    fn scale(&self, base: &Trial) -> Scale {
+    fn scale(&self, base: &Trial, noise_n: f64) -> Scale {
         let gain = self.record.params.frictionless_gain();
         let (mut tension, mut speed) = (Deviation::default(), Deviation::default());
         for row in self.record.rows.iter().filter(|row| row.is_sound()) {
@@ -178,6 +178,7 @@ impl<'a> Case<'a> {
         let tension_n = tension.rms().unwrap_or(1.0);
         Scale {
             tension_n,
+            noise_n,
             friction_n: base.values[MU] * tension_n,
             speed_m_per_s: speed.rms().unwrap_or(0.1).max(1e-4),
             periods_m: Vec::new(),
@@ -210,7 +211,7 @@ impl<'a> Case<'a> {
             held_out_n: held_out_of(&trial.values),
         };
         let bench = self.bench(counts);
-        let search = Search::new(&bench, *noise_n, self.scale(base), base);
+        let search = Search::new(&bench, *noise_n, self.scale(base, *noise_n), base);
         let findings = naming.named.iter().zip(naming.ladder.iter().skip(1));
         let findings: Vec<Finding> =
             findings.map(|(named, step)| finding(&search, &naming.model, named, held_out_of(&step.values))).collect();

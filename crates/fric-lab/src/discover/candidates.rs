@@ -15,7 +15,7 @@ const TYPICAL_MU: f64 = 0.02;
 /// Presliding distances that a model without presliding starts from, m.
 const PRESLIDING_M: [f64; 4] = [3e-5, 2e-4, 1e-3, 6e-3];
 /// Speeds at which friction may change, as shares of the speed at which the cable moves for the most part.
-const SPEED_SHARES: [f64; 3] = [0.03, 0.15, 0.6];
+const SPEED_SHARES: [f64; 2] = [0.04, 0.25];
 /// Periods of a ripple that are looked for, and the strongest of them that are tried.
 const PERIODS: usize = 512;
 const MOST_PERIODS: usize = 2;
@@ -25,7 +25,9 @@ const MOST_PERIODS: usize = 2;
 pub struct Scale {
     /// Root mean square of the cable tension, N.
     pub tension_n: f64,
-    /// The same of the friction found so far, N.
+    /// Standard deviation of the noise, N.
+    pub noise_n: f64,
+    /// Root mean square of the friction found so far, N.
     pub friction_n: f64,
     /// The same of the speed while it moves, m/s.
     pub speed_m_per_s: f64,
@@ -84,13 +86,16 @@ pub fn starts(row: &EffectRow, current: &Values, scale: &Scale, record: &CableRe
         "load_nonlinearity" => vec![set(&[("reference_n", scale.tension_n)])],
         "time_delay" => [-4.0, 4.0].map(|cycles| set(&[("delay_s", cycles * record.cycle_s)])).to_vec(),
         "pulley_inertia" => {
-            [0.0, 5.0, 20.0].map(|cycles| set(&[("mass_kg", 0.01), ("window_s", cycles * record.cycle_s)])).to_vec()
+            [0.0, 10.0].map(|cycles| set(&[("mass_kg", 0.01), ("window_s", cycles * record.cycle_s)])).to_vec()
         }
         "pulley_eccentricity" => {
             let of_period = |period_m: &f64| set(&[("sin_ratio", 1e-3), ("cos_ratio", 1e-3), ("period_m", *period_m)]);
             scale.periods_m.iter().map(of_period).collect()
         }
-        "cable_elasticity" => [2e-5, 1e-4, 5e-4].map(|compliance| set(&[("compliance_m_per_n", compliance)])).to_vec(),
+        // Twice the noise of the sensor; that of the reference is in what is known of it too.
+        "cable_elasticity" => [(1e-4, 1.0), (1e-4, 1.6)]
+            .map(|(compliance, plays)| set(&[("compliance_m_per_n", compliance), ("play_n", plays * scale.noise_n)]))
+            .to_vec(),
         _ => vec![*current],
     }
 }

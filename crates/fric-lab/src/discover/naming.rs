@@ -18,14 +18,19 @@ use crate::fit::Parameter;
 
 /// Most effects of one cable.
 const MOST_EFFECTS: usize = 4;
-/// Of the squares above the noise, a candidate has to take away this share to enter.
+/// Of the squares above the noise, a candidate has to take away this share to enter: of those that are left,
 const LEAST_GAIN: f64 = 0.02;
+/// and of those that the given model leaves. Real friction is never quite that of an equation, and what the equation of a strong
+/// effect leaves must not be taken for a weak one.
+const LEAST_GAIN_OF_ALL: f64 = 0.01;
 /// And of the noise itself this share: the rms falls by half of it.
 const LEAST_SIZE: f64 = 0.002;
 /// What is left above the noise, as a share of it, from which on no further name is sought: the rms is half of it above.
 const NEGLIGIBLE: f64 = 0.01;
 /// Evidence that an effect has to have to stay, and names have to have over each other to be told apart.
 pub const STRONG_BIC: f64 = 10.0;
+/// The named model is brought this near to its minimum, in standard errors.
+const AT_MINIMUM: f64 = 0.01;
 /// Rounds of entering and exchanging.
 const ROUNDS: usize = 4;
 
@@ -88,6 +93,7 @@ impl<'b, 'a> Search<'b, 'a> {
             }
         }
         let named = self.justify(&mut rows);
+        self.polish(&rows);
         let ladder = (0..=rows.len()).map(|count| self.fit(rows.get(..count).unwrap_or_default())).collect();
         Naming { model: self.fit(&rows), named, ladder, first_round }
     }
@@ -119,8 +125,9 @@ impl<'b, 'a> Search<'b, 'a> {
     /// Whether a candidate is let in.
     fn enters(&self, before: &Trial, after: &Trial) -> bool {
         let gain = before.held_out - after.held_out;
-        let gap = (before.held_out - self.noise_squares).max(0.0);
-        gain > LEAST_GAIN * gap && gain > LEAST_SIZE * self.noise_squares
+        let gap = |trial: &Trial| (trial.held_out - self.noise_squares).max(0.0);
+        let all = self.fits.get(&Kinds::new()).map_or(0.0, gap);
+        gain > LEAST_GAIN * gap(before) && gain > LEAST_GAIN_OF_ALL * all && gain > LEAST_SIZE * self.noise_squares
     }
 
     /// Each candidate that a model lacks, fitted beside all that it has; the ladder of friction comes before everything else.
@@ -195,6 +202,12 @@ impl<'b, 'a> Search<'b, 'a> {
         let trial = self.bench.try_one(&model);
         self.fits.insert(set, trial.clone());
         trial
+    }
+
+    /// Brings the model with a set of effects to its minimum.
+    fn polish(&mut self, rows: &[&'static EffectRow]) {
+        let Trial { values, free, .. } = self.fit(rows);
+        self.fits.insert(kinds(rows), self.bench.fit(&Model { values, free }, AT_MINIMUM));
     }
 
     /// Tries all other effects in the place of each.

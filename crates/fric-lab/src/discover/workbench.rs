@@ -13,8 +13,8 @@ use super::split::Block;
 use crate::fit::engine::{Comparison, Gang, Loss, Member, Problem, Seat, search_near};
 use crate::fit::{CableRecord, Parameter};
 
-/// A model is judged this near to its minimum, in standard errors: it changes the sum of squares by next to nothing.
-const NEAR_ERRORS: f64 = 0.1;
+/// A model is judged this near to its minimum, in standard errors: the sum of squares changes by less than noise does.
+const NEAR_ERRORS: f64 = 0.5;
 
 /// A model to try: where its search starts, and what it varies.
 #[derive(Clone, Debug)]
@@ -32,9 +32,7 @@ pub struct Trial {
     pub values: Values,
     /// What was varied.
     pub free: Vec<Parameter>,
-    /// Sum of squares of the residuals in each block, N²; of those that count.
-    pub squares: Vec<f64>,
-    /// Their sum over the blocks learned from.
+    /// Sum of squares of the residuals over the samples learned from, N².
     pub training: f64,
     /// And over those held out.
     pub held_out: f64,
@@ -93,8 +91,13 @@ impl<'a> Workbench<'a> {
 
     /// Fits one model.
     pub fn try_one(&self, model: &Model) -> Trial {
+        self.fit(model, NEAR_ERRORS)
+    }
+
+    /// Fits one model as near to its minimum as asked for, in standard errors.
+    pub fn fit(&self, model: &Model, near_errors: f64) -> Trial {
         let gang = Gang::new(1, self.stop);
-        self.try_on(model, gang.seat(0))
+        self.try_on(model, gang.seat(0), near_errors)
     }
 
     fn try_together(&self, models: &[Model]) -> Vec<Trial> {
@@ -105,14 +108,14 @@ impl<'a> Workbench<'a> {
                 .enumerate()
                 .map(|(place, model)| {
                     let seat = gang.seat(place);
-                    scope.spawn(|| self.try_on(model, seat))
+                    scope.spawn(|| self.try_on(model, seat, NEAR_ERRORS))
                 })
                 .collect();
             searches.into_iter().map(|search| search.join().unwrap_or_else(|panic| resume_unwind(panic))).collect()
         })
     }
 
-    fn try_on<'b>(&'b self, model: &Model, seat: Seat<'b>) -> Trial
+    fn try_on<'b>(&'b self, model: &Model, seat: Seat<'b>, near_errors: f64) -> Trial
     where
         'a: 'b,
     {
@@ -120,24 +123,17 @@ impl<'a> Workbench<'a> {
         let problem = bench.problem(&model.free, Some(Rc::new(seat)));
         let mut values = model.values;
         if !model.free.is_empty() {
-            let (found, _) = search_near(&problem, &[model.values], self.record.cycle_s, NEAR_ERRORS);
+            let (found, _) = search_near(&problem, &[model.values], self.record.cycle_s, near_errors);
             values = found.first().copied().unwrap_or(values);
         }
         let residuals_n = bench.residuals_with(&problem, &values);
-        let squares: Vec<f64> = self
-            .blocks
-            .iter()
-            .map(|block| {
-                let of_block = residuals_n.get(block.cycles.clone()).unwrap_or_default();
-                of_block.iter().filter(|number| number.is_finite()).map(|number| number * number).sum()
-            })
-            .collect();
         let sum = |held_out: bool| {
-            let blocks = self.blocks.iter().zip(&squares).filter(|(block, _)| block.held_out == held_out);
-            blocks.map(|(_, squares)| squares).sum()
+            let blocks = self.blocks.iter().filter(|block| block.held_out == held_out);
+            let of_blocks = blocks.flat_map(|block| residuals_n.get(block.cycles.clone()).unwrap_or_default());
+            of_blocks.filter(|number| number.is_finite()).map(|number| number * number).sum()
         };
         let (training, held_out) = (sum(false), sum(true));
-        Trial { values, free: model.free.clone(), squares, training, held_out }
+        Trial { values, free: model.free.clone(), training, held_out }
     }
 
     /// Force of the model less the reference in each cycle, N; NaN where a sample does not count.

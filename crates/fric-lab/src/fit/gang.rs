@@ -31,7 +31,7 @@ enum State<'a> {
     /// On its own.
     Busy,
     /// Waits for a pass.
-    Waiting(Part<'a>),
+    Waiting(Box<Part<'a>>),
     /// Its pass is done; `None` when stopped.
     Served(Option<Forces>),
     /// Ended.
@@ -79,7 +79,7 @@ impl<'a> Seat<'a> {
     fn pass(&self, part: &Part<'a>) -> Option<Forces> {
         let mut seats = self.gang.lock();
         if let Some(seat) = seats.get_mut(self.place) {
-            *seat = State::Waiting(part.clone());
+            *seat = State::Waiting(Box::new(part.clone()));
         }
         loop {
             match seats.get_mut(self.place) {
@@ -119,7 +119,7 @@ fn serve(seats: &mut [State<'_>], stop: &AtomicBool) {
         let mut together = Vec::with_capacity(seats.len());
         for seat in seats.iter_mut().filter(|seat| waits(seat) == Some(alike)) {
             if let State::Waiting(part) = std::mem::replace(seat, State::Served(None)) {
-                together.push((seat, part));
+                together.push((seat, *part));
             }
         }
         with_room_for!(alike.0, serve_together(together, stop));

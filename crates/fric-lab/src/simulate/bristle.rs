@@ -210,7 +210,8 @@ impl Bristle {
             let normal_n = libm::sqrt(squared.max(0.0));
             let sliding_n = mu * effects.load_factor(normal_n) * normal_n + drag_n;
             let last_m = deflection_m;
-            deflection_m = presliding::stage(base_m, travel_m, self.stiffness_n_per_m, sliding_n, self.exponent);
+            deflection_m =
+                presliding::stage(base_m, travel_m, self.stiffness_n_per_m, sliding_n, self.exponent, last_m);
             if (deflection_m - last_m).abs() * self.stiffness_n_per_m <= SETTLED_SHARE * force_n {
                 break;
             }
@@ -256,3 +257,7 @@ impl Span {
 #[cfg(test)]
 #[path = "bristle_tests.rs"]
 mod tests;
+
+#[cfg(test)]
+#[path = "bristle_effect_tests.rs"]
+mod effect_tests;

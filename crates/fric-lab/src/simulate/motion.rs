@@ -19,7 +19,7 @@ const BENCH_LENGTH_M: f64 = 1.0;
 /// Half of the longest movement of a cable without geometry, m.
 const BENCH_HALF_M: f64 = 0.2;
 /// Speeds this long before and after give the acceleration between, s: short beside every ramp of a run.
-const APART_S: f64 = 1e-4;
+const APART_S: f64 = 1e-5;
 
 /// Length of a cable and its rate.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -457,3 +457,31 @@ fn chain(table: &CableTable, options: &SimulationOptions, cable: usize, effects:
     let sigma_n_per_m = table.friction.sigma_n_per_m.unwrap_or(STIFF_N_PER_M);
     BristleChain::new(&pulleys, sigma_n_per_m, sensor_pulley, effects)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A cable by itself is pulled, moved and read as it is among all.
+    #[test]
+    fn one_cable_of_a_robot_is_that_of_the_whole() -> Result<(), Box<dyn core::error::Error>> {
+        let robot = RobotFile::parse(include_str!("../../../../examples/mini-ipanema.toml"), "example")?;
+        let options = SimulationOptions {
+            duration_s: Some(2.0),
+            mu_spread_ratio: 0.1,
+            hand_n: 2.0,
+            sensor_wander_n: 0.01,
+            disturbances: vec!["hum:amplitude_n=0.1".parse()?],
+            ..SimulationOptions::default()
+        };
+        let mut whole = Simulation::new(&robot, &options)?;
+        let mut one = Simulation::of(&robot, &options, 5..6)?;
+        while let Some(all) = whole.next_cycle() {
+            let alone = one.next_cycle().ok_or("too short")?;
+            assert_eq!((alone.cables, alone.reference_force_n), (&all.cables[5..6], &all.reference_force_n[5..6]));
+            assert_eq!((alone.stamp_nanos, alone.pose), (all.stamp_nanos, all.pose));
+        }
+        assert!(one.next_cycle().is_none());
+        Ok(())
+    }
+}

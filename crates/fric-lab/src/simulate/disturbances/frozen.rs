@@ -12,6 +12,7 @@ pub const ROW: DisturbanceRow = DisturbanceRow {
 };
 
 #[derive(Debug)]
+#[expect(clippy::struct_field_names, reason = "the unit")]
 struct Lost {
     first_s: f64,
     interval_s: f64,

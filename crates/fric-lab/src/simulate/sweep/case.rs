@@ -82,7 +82,7 @@ impl Case {
             sigma_n_per_m: uniform(random, 600.0, 1250.0),
             viscous_n_s_per_m: uniform(random, 0.08, 0.4),
         };
-        let mass_kg = uniform(random, 0.41, 0.75);
+        let mass_kg = uniform(random, 0.41, 0.6);
         let cables = f64::from(u32::try_from(CABLE_COUNT).unwrap_or(1));
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below 8")]
         let cable = (uniform(random, 0.0, cables) as usize).min(CABLE_COUNT - 1);

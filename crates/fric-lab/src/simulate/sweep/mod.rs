@@ -208,7 +208,10 @@ impl Case {
         }
         let ratios = [("×", self.strength_ratio), ("noise ×", self.noise_ratio)];
         words.extend(
-            ratios.into_iter().filter(|(_, ratio)| *ratio != 1.0).map(|(word, ratio)| format!("{word}{ratio}")),
+            ratios
+                .into_iter()
+                .filter(|(_, ratio)| (*ratio - 1.0).abs() > 0.0)
+                .map(|(word, ratio)| format!("{word}{ratio}")),
         );
         let wanders = [("sensor wander", self.sensor_wander_n), ("reference wander", self.reference_wander_n)];
         words.extend(wanders.into_iter().filter(|(_, n)| *n > 0.0).map(|(word, n)| format!("{word} {n} N")));

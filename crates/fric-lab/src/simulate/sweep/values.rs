@@ -2,8 +2,6 @@
 
 use core::f64::consts::TAU;
 
-use fric_core::effects;
-
 use crate::simulate::disturbances::Disturbance;
 use crate::simulate::error::HiddenError;
 use crate::simulate::hidden::HiddenEffect;
@@ -60,11 +58,10 @@ impl Scale<'_> {
             "sensor_gain" => vec![("gain", 1.0 + self.either(0.03))],
             "sensor_offset" => vec![("offset_n", self.either(0.3))],
             "sensor_drift" => vec![("rate_n_per_s", self.either(0.005))],
+            // A loop cannot know much of the motion to come.
             "time_delay" => {
-                let either_s = self.either(0.008);
-                let is_signed =
-                    effects::row(kind).is_some_and(|row| row.parameters.iter().any(|delay| delay.min < 0.0));
-                vec![("delay_s", if is_signed { either_s } else { either_s.abs() })]
+                let delay_s = self.either(0.008);
+                vec![("delay_s", if delay_s < 0.0 { 0.375 * delay_s } else { delay_s })]
             }
             "pulley_inertia" => vec![("mass_kg", self.about(0.05))],
             "pulley_eccentricity" => {
@@ -89,7 +86,7 @@ impl Scale<'_> {
             }
             "frozen" => vec![("interval_s", 10.0), ("length_s", self.about(0.6))],
             // The sensor at 180° feels the cable twice; the fuller the strength, the more is cut off.
-            "clipped" => vec![("greatest_n", 2.0 * self.tension_n * (1.35 - self.about(0.2)))],
+            "clipped" => vec![("greatest_n", 2.0 * self.tension_n * (1.6 - self.about(0.25)))],
             "step" => vec![("shift_n", self.either(0.3))],
             "quantised" => vec![("resolution_n", self.about(0.3))],
             "warming" => vec![("amplitude_n", self.about(0.1)), ("period_s", uniform(self.random, 15.0, 25.0))],
