@@ -154,8 +154,7 @@ fn pulleys_move_with_the_stretch() {
     let winch = [SENSOR_180, GUIDE_90, GUIDE_90, GUIDE_90];
     let (compliance, sigma) = (2e-6, 1e3);
     let play_n = 0.1;
-    let elastic =
-        [("cable_elasticity", "compliance_m_per_n", compliance), ("cable_elasticity", "play_n", play_n)];
+    let elastic = [("cable_elasticity", "compliance_m_per_n", compliance), ("cable_elasticity", "play_n", play_n)];
     let friction = FrictionOptions { mu: 0.1, sigma_n_per_m: Some(sigma), ..DRY };
     let mut compensator = robot(&winch, Presliding::PerPulley, friction, &elastic);
     let mut last_n = feed(&mut compensator, 100.0, 1.0, 0.0);

@@ -137,7 +137,7 @@ impl Chart {
         for (tick, text) in ticks {
             let at = self.at_x(tick);
             // The unit stands at the end.
-            let text = if at > right - 16.0 { String::new() } else { text };
+            let text = if at + 0.5 * width_of(&text) > right - 9.0 { String::new() } else { text };
             let _ = write!(
                 self.svg,
                 "<path class=\"axis\" d=\"M{at:.1} {bottom:.1}v4\"/><text x=\"{at:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{text}</text>",

@@ -255,7 +255,8 @@ fn steps(values: &[f64]) -> impl Iterator<Item = [f64; 2]> {
 fn edges(profile: &Profile) -> (Vec<f64>, &'static str) {
     let edges = profile.bins.first().map(|bin| bin.from).into_iter().chain(profile.bins.iter().map(|bin| bin.to));
     let greatest = edges.clone().map(f64::abs).fold(0.0, f64::max);
-    let (factor, unit) = scaled_unit(greatest, profile.unit);
+    let middle = profile.bins.get(profile.bins.len() / 2).map_or(greatest, |bin| bin.from);
+    let (factor, unit) = scaled_unit(middle, profile.unit);
     // What is nothing beside the rest is written as such.
     let shown = |edge: f64| if edge.abs() < 1e-4 * greatest { 0.0 } else { edge * factor };
     (edges.map(shown).collect(), if unit == "1" { "" } else { unit })

@@ -56,7 +56,8 @@ h3 { font-size: 1rem; margin: 1.4rem 0 .3rem; } figure { margin: 0; break-inside
 dl { display: grid; grid-template-columns: max-content 1fr; gap: .15rem 1rem; margin: .4rem 0; }
 dt { color: var(--soft); } dd { margin: 0; } ul { margin: .4rem 0; padding-left: 1.2rem; }
 @media print { nav { display: none; } section.cable { break-inside: auto; } section.cable + section.cable { break-before: page; }
-  h3 { break-after: avoid; } a { color: inherit; } }
+  h3 { break-after: avoid; margin-top: .9rem; } a { color: inherit; } html, body { font-size: 12px; }
+  .views section, .views figure { flex: 1 1 16rem; } }
 @media print { body { max-width: none; margin: 0; } section { break-inside: avoid; } }
 ";
 

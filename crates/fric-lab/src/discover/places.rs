@@ -18,6 +18,8 @@ use crate::fit::CableRecord;
 const LEAST_SIGNIFICANCE: f64 = 4.0;
 /// A concentration of less than this many may be chance.
 pub const LEAST_CONCENTRATION: f64 = 3.0;
+/// And one of less than this many is not even told.
+const WORTH_TELLING: f64 = 1.0;
 /// More of the excess than of the samples, as shares, that makes a range worth telling.
 const LEAST_MORE: f64 = 0.1;
 /// A range with this share of the samples is no place.
@@ -89,22 +91,21 @@ impl Excess<'_> {
         places
     }
 
-    /// Where the excess sits for people: conditions in a range of which it is concentrated, or that it is a function of; those
-    /// beyond chance first, then the most concentrated. The significance is the greater of the two.
+    /// Where the excess sits for people: conditions in a range of which it is concentrated, or that it is a function of, the
+    /// surest first. The significance is the greater of the two.
     pub fn concentrations(&self, conditions: &[Condition]) -> Vec<Place> {
-        let more = |place: &Place| place.share_of_excess - place.share_of_samples;
-        let is_sure = |place: &Place| place.significance >= LEAST_CONCENTRATION;
         let mut places: Vec<Place> = conditions
             .iter()
             .filter_map(|condition| {
                 let place = self.place(condition)?;
                 let is_function = place.significance >= LEAST_SIGNIFICANCE && place.share_of_samples < WHOLE;
+                let is_dense = place.share_of_excess - place.share_of_samples >= LEAST_MORE;
                 let concentration = self.concentration(condition).unwrap_or(0.0);
-                let place = Place { significance: place.significance.max(concentration), ..place };
-                (is_function || more(&place) >= LEAST_MORE).then_some(place)
+                let significance = place.significance.max(concentration);
+                (is_function || is_dense && significance >= WORTH_TELLING).then_some(Place { significance, ..place })
             })
             .collect();
-        places.sort_by(|one, other| is_sure(other).cmp(&is_sure(one)).then(more(other).total_cmp(&more(one))));
+        places.sort_by(|one, other| other.significance.total_cmp(&one.significance));
         places
     }
 
