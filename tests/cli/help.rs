@@ -61,7 +61,8 @@ fn each_command_has_an_example_that_runs() {
             "gentle.csv",
             "run.csv",
             "run.html",
-            "simulated.mcap"
+            "simulated.mcap",
+            "spoilt.mcap"
         ]
     );
 }

@@ -68,7 +68,7 @@ pub fn quantity(value: f64, half_interval: Option<f64>, unit: &str) -> String {
 
 /// Factor to, and name of, the unit in which a value reads well.
 #[must_use]
-pub fn scaled_unit<'a>(value: f64, unit: &'a str) -> (f64, &'a str) {
+pub fn scaled_unit(value: f64, unit: &str) -> (f64, &str) {
     let small = value.abs() < 0.1;
     match unit {
         "s" if small => (1e3, "ms"),

@@ -207,13 +207,11 @@ fn envelope(times_s: &[f64], residual_n: &[f64], end_s: f64) -> Vec<(f64, Extent
     let width_s = end_s / INTERVALS as f64;
     let mut all: Vec<(f64, Extent)> = Vec::with_capacity(INTERVALS + 1);
     for (time_s, number) in times_s.iter().zip(residual_n) {
-        match all.last_mut().filter(|(start_s, _)| time_s - start_s < width_s) {
-            Some((_, extent)) => extent.add(*number),
-            None => {
-                let mut extent = Extent::NOTHING;
-                extent.add(*number);
-                all.push((*time_s, extent));
-            }
+        if all.last().is_none_or(|(start_s, _)| time_s - start_s >= width_s) {
+            all.push((*time_s, Extent::NOTHING));
+        }
+        if let Some((_, extent)) = all.last_mut() {
+            extent.add(*number);
         }
     }
     all

@@ -46,7 +46,7 @@ pub struct ProfileCell {
 struct Sums {
     /// Paying out, reeling in, any direction.
     counts: [f64; 3],
-    sums: [f64; 2],
+    totals: [f64; 2],
     squares: f64,
 }
 
@@ -55,7 +55,7 @@ impl Sums {
         let place = if direction > 0.0 { Some(0) } else { (direction < 0.0).then_some(1) };
         if let Some(place) = place {
             self.counts[place] += 1.0;
-            self.sums[place] += residual_n;
+            self.totals[place] += residual_n;
         }
         self.counts[2] += 1.0;
         self.squares += residual_n * residual_n;
@@ -64,8 +64,8 @@ impl Sums {
     fn cell(&self) -> ProfileCell {
         let [out, back, all] = self.counts;
         ProfileCell {
-            paying_out_n: self.sums[0] / out,
-            reeling_in_n: self.sums[1] / back,
+            paying_out_n: self.totals[0] / out,
+            reeling_in_n: self.totals[1] / back,
             rms_n: (self.squares / all).sqrt(),
         }
     }

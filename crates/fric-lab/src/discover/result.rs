@@ -344,7 +344,7 @@ fn cable_result(name: &str, found: &CableDiscovery, lack: Option<(String, &'stat
         effects: found.findings.iter().map(|finding| effect_result(found, finding)).collect(),
         candidates: found.tried.iter().map(Candidate::of).collect(),
         parameters: parameters(found),
-        standard_errors: errors(&found.after, Parameter::all(), |parameter| parameter.to_string()),
+        standard_errors: errors(&found.after, Parameter::all(), ToString::to_string),
         unexplained: found.unexplained.as_ref().map(|rest| unexplained(rest, gap[1])),
     }
 }

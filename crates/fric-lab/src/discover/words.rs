@@ -1,5 +1,7 @@
 //! The parts of a result in words, for the terminal and for pages.
 
+use std::fmt::Write as _;
+
 use fric_core::effects::EffectRow;
 
 use super::places::LEAST_CONCENTRATION;
@@ -63,7 +65,7 @@ impl WhereResult {
         let [least, greatest] = self.range;
         // A magnitude begins at 0, whatever noise makes of it.
         let from_zero = least >= 0.0 && self.from < NO_MORE_THAN_ZERO * self.to;
-        let (first, last) = (self.from <= least || from_zero, self.to >= greatest);
+        let [is_first, is_last] = [self.from <= least || from_zero, self.to >= greatest];
         let value = |number: f64| {
             if matches!(self.unit, "m" | "m/s") {
                 quantity(number, None, self.unit)
@@ -79,7 +81,7 @@ impl WhereResult {
             "standstill" | "direction" => return "throughout".to_owned(),
             "frequency" => return format!("at {:.2} Hz", self.from),
             "way_since_reversal" => {
-                return match (first, last) {
+                return match (is_first, is_last) {
                     (true, true) => "throughout".to_owned(),
                     (true, false) => format!("within {} after a reversal", value(self.to)),
                     (false, true) => format!("more than {} after a reversal", value(self.from)),
@@ -89,7 +91,7 @@ impl WhereResult {
             _ => {}
         }
         let noun = plural(self.signal);
-        match (first, last) {
+        match (is_first, is_last) {
             (true, true) => format!("at all {noun}"),
             (true, false) => format!("at {noun} below {}", value(self.to)),
             (false, true) => format!("at {noun} above {}", value(self.from)),
@@ -100,18 +102,19 @@ impl WhereResult {
     /// How much sits there, as a sentence without its full stop; `of` names what is shared out.
     #[must_use]
     pub fn in_words(&self, of: &str) -> String {
+        // Writing to a String cannot fail.
         let mut text = match self.share_of_excess {
             Some(share) => format!("{} of {of} sits {}", percent(share), self.range_in_words()),
             None => format!("{of} sits {}", self.range_in_words()),
         };
         if let Some(share) = self.share_of_samples.filter(|share| *share < 0.995) {
-            text += &format!(", {} of the samples", percent(share));
+            let _ = write!(text, ", {} of the samples", percent(share));
         }
         if self.significance.is_some_and(|significance| significance < LEAST_CONCENTRATION) {
             text += ", which may be chance";
         }
         if !self.intervals_s.is_empty() {
-            text += &format!("; look at {}", intervals(&self.intervals_s));
+            let _ = write!(text, "; look at {}", intervals(&self.intervals_s));
         }
         text
     }
@@ -166,9 +169,9 @@ impl DiscoverCableResult {
             text = text.replace("with it,", "with them,");
         }
         if let Some(wander) = wander_n {
-            text += &format!(
-                " Beside white noise a slow wander of {wander} is left that goes with nothing the cable does."
-            );
+            text += " Beside white noise a slow wander of ";
+            text += &wander;
+            text += " is left that goes with nothing the cable does.";
         }
         text
     }
