@@ -6,8 +6,8 @@ use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use fric_lab::simulate::DISTURBANCES;
 
-/// Friction compensation for cable-driven robots: identify friction, replay logs, look into them, simulate and excite
-/// robots.
+/// Friction compensation for cable-driven robots: identify friction, find what the model lacks, replay logs, look into
+/// them, simulate and excite robots.
 #[derive(Debug, Parser)]
 #[command(version, arg_required_else_help = true)]
 pub struct Arguments {
@@ -24,6 +24,11 @@ pub enum Command {
     #[command(after_help = "Examples:\n  fric-cli fit examples/mini-ipanema.mcap -o fitted.toml\n  \
                       fric-cli fit examples/mini-ipanema.mcap --reference wrench -o by-wrench.toml")]
     Fit(FitArguments),
+    /// Find where the model and the measurement disagree, name the effect that is missing, and add it to the robot file
+    #[command(
+        after_help = "Example:\n  fric-cli discover examples/mini-ipanema.mcap -o extended.toml --report discovery.html"
+    )]
+    Discover(DiscoverArguments),
     /// Show what is in a log, what each signal maps to, and what is missing for which step
     #[command(after_help = "Example:\n  fric-cli info examples/mini-ipanema.mcap")]
     Info(InfoArguments),
@@ -94,6 +99,24 @@ pub struct FitArguments {
     /// Weigh deviations that are far out less (Huber's loss) instead of leaving out what cannot be a measurement
     #[arg(long)]
     pub huber: bool,
+    #[command(flatten)]
+    pub result: ResultArguments,
+}
+
+#[derive(Debug, Args)]
+pub struct DiscoverArguments {
+    /// MCAP log with forces at the platform; several are runs of the same robot, looked at together
+    #[arg(required = true, value_name = "LOG")]
+    pub logs: Vec<PathBuf>,
+    /// Robot file; without it the one attached to the first log that has one
+    #[arg(long, value_name = "M.toml")]
+    pub model: Option<PathBuf>,
+    /// Write the robot file with what was found, and with values fitted to the log, to this file
+    #[arg(short, long, value_name = "EXTENDED.toml", required = true, value_parser = a_file())]
+    pub output: PathBuf,
+    /// Write a page with figures of what was found to this HTML file
+    #[arg(long, value_name = "R.html", value_parser = a_file())]
+    pub report: Option<PathBuf>,
     #[command(flatten)]
     pub result: ResultArguments,
 }

@@ -12,6 +12,8 @@ use super::lines::{Line, lines};
 use super::naming::{Named, Naming, STRONG_BIC, Search};
 use super::noise::white_noise;
 use super::places::{Excess, Place};
+use super::profile::profile;
+use super::readiness::{lack_of, lack_of_samples};
 use super::report::{CableDiscovery, Finding, Model, RunnerUp, Tried, Unexplained, Verdict};
 use super::rest::{WORTH, is_wander, stretch_of_cable};
 use super::split::{Block, split};
@@ -26,11 +28,18 @@ const REMAINDER: f64 = 0.05;
 /// Looks at one cable.
 pub fn discover_cable(record: &CableRecord<'_>, progress: &Progress) -> CableDiscovery {
     let stop = progress.stop_flag();
+    if let Some(lack) = lack_of(record) {
+        return CableDiscovery::untold(record, engine::count(&engine::prepared(record)), lack);
+    }
     let faults = faulty_stretches(record);
     let mut standings = engine::prepared(record);
     leave_out(&faults, record.cycle_s, &mut standings);
     let gang = engine::Gang::new(1, stop);
     let paper = engine::Search::run(record, standings, &FitOptions::default(), stop, gang.seat(0));
+    let samples = engine::count(&paper.standings);
+    if let Some(lack) = lack_of_samples(&samples, record.cycle_s) {
+        return CableDiscovery::untold(record, samples, lack);
+    }
     let counts = engine::used(&paper.standings);
     let blocks = split(record);
     let conditions = conditions(record);
@@ -54,7 +63,7 @@ pub fn discover_cable(record: &CableRecord<'_>, progress: &Progress) -> CableDis
             }
         }
     }
-    case.report(&outcome, &counts, engine::count(&paper.standings), &conditions, Foreign { faults, hum, stretch })
+    case.report(&outcome, &counts, samples, &conditions, Foreign { faults, hum, stretch })
 }
 
 /// The given model, with start values from the data for what it has of its own: of friction what acts, the offset, and the
@@ -219,9 +228,9 @@ impl<'a> Case<'a> {
             .collect();
         tried.sort_by(|one, other| one.delta_bic.total_cmp(&other.delta_bic));
         let after = model(&naming.model);
-        let residual_before_n = bench.residuals_n(&base.values);
-        let places = self.excess(&residual_before_n, *noise_n).places(conditions);
-        let worth_telling = self.excess_share(&residual_before_n, *noise_n) > WORTH;
+        let clean_n = bench.residuals_n(&base.values);
+        let places = self.excess(&clean_n, *noise_n).concentrations(conditions);
+        let places = if self.excess_share(&clean_n, *noise_n) > WORTH { places } else { Vec::new() };
         let is_foreign = !foreign.faults.is_empty() || !foreign.hum.is_empty() || foreign.stretch.is_some();
         let unexplained = (is_foreign || !outcome.rest_is_noise).then(|| {
             let rms_n = after.held_out_n.rms().unwrap_or(f64::NAN);
@@ -232,6 +241,16 @@ impl<'a> Case<'a> {
             (None, true) => Verdict::Complete,
             (None, false) => Verdict::Extended,
         };
+        // What tells most of the given model, and of what is left.
+        let told = [places.first(), unexplained.as_ref().and_then(|rest: &Unexplained| rest.places.first())];
+        let mut signals: Vec<&str> = told.into_iter().flatten().map(|place| place.signal).collect();
+        signals.dedup();
+        let (residual_before_n, residual_after_n) =
+            (raw.residuals_n(&base.values), raw.residuals_n(&naming.model.values));
+        let profiles = signals.into_iter().filter_map(|signal| {
+            let condition = conditions.iter().find(|condition| condition.signal == signal)?;
+            profile(&self.record, condition, &residual_before_n, &residual_after_n)
+        });
         CableDiscovery {
             samples,
             held_out: super::rest::ranges(held_out.iter().copied())
@@ -245,10 +264,13 @@ impl<'a> Case<'a> {
             after,
             findings,
             tried,
-            places: if worth_telling { places } else { Vec::new() },
+            places,
             unexplained,
-            residual_before_n: raw.residuals_n(&base.values),
-            residual_after_n: raw.residuals_n(&naming.model.values),
+            lack: None,
+            profiles: profiles.collect(),
+            times_s: (0..self.record.rows.len()).map(|cycle| self.record.time_s(cycle)).collect(),
+            residual_before_n,
+            residual_after_n,
         }
     }
 
@@ -258,8 +280,7 @@ impl<'a> Case<'a> {
 
     fn unexplained(&self, outcome: &Outcome, rms_n: f64, foreign: Foreign) -> Unexplained {
         let Foreign { faults, hum, stretch } = foreign;
-        #[expect(clippy::cast_precision_loss, reason = "a count of cycles")]
-        let time_s = |cycle: usize| cycle as f64 * self.record.cycle_s;
+        let time_s = |cycle: usize| self.record.time_s(cycle);
         let faults =
             faults.into_iter().map(|Stretch { fault, cycles }| (fault, [time_s(cycles.start), time_s(cycles.end)]));
         let rest = if outcome.rest_is_noise { Vec::new() } else { outcome.rest_places.clone() };

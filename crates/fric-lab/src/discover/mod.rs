@@ -16,23 +16,32 @@ mod cable;
 mod candidates;
 mod conditions;
 mod evidence;
+mod extended;
 mod foreign;
 mod lines;
 mod naming;
 mod noise;
 mod places;
+mod profile;
+mod readiness;
 mod report;
 mod rest;
+pub mod result;
 mod split;
+mod summary;
+pub mod words;
 mod workbench;
 
 use rayon::prelude::*;
 
 use crate::fit::{CableRecord, Measurements, Progress};
 
+pub use extended::extended;
 pub use foreign::Fault;
 pub use lines::Line;
 pub use places::Place;
+pub use profile::{Profile, ProfileBin, ProfileCell};
+pub use readiness::Lack;
 pub use report::{CableDiscovery, Finding, Model, RunnerUp, Tried, Unexplained, Verdict};
 
 /// Looks at every cable that has a reference.

@@ -2,8 +2,9 @@
 //!
 //! Two questions are asked of every condition. How much of the excess is a function of it, told apart by the direction of
 //! motion: means over bins of the samples learned from, tried on those held out, so that chance gains nothing. And in
-//! which range of it the excess is densest. The scatter of the gain over the blocks of the log gives its significance, which
-//! holds for residuals that remember no longer than a block.
+//! which range of it the excess is densest, by the samples learned from, and how much more of it than its share those held
+//! out have there. The scatter of either over the blocks of the log gives its significance, which holds for residuals that
+//! remember no longer than a block.
 
 use std::ops::Range;
 
@@ -15,13 +16,24 @@ use crate::fit::CableRecord;
 
 /// A gain of less than this many standard errors is chance.
 const LEAST_SIGNIFICANCE: f64 = 4.0;
+/// A concentration of less than this many may be chance.
+pub const LEAST_CONCENTRATION: f64 = 3.0;
+/// And one of less than this many is not even told.
+const WORTH_TELLING: f64 = 1.0;
+/// More of the excess than of the samples, as shares, that makes a range worth telling.
+const LEAST_MORE: f64 = 0.1;
+/// A range with this share of the samples is no place.
+const WHOLE: f64 = 0.995;
 /// Bins beside the densest one belong to it down to this share of its density.
 const SHOULDER: f64 = 0.4;
 /// A bin with fewer samples tells nothing.
 const FEWEST_SAMPLES: f64 = 50.0;
 /// Intervals in time that are worth a look.
 const MOST_INTERVALS: usize = 5;
-/// Two intervals with less than this between them are one, s.
+/// They are made of windows of this length, s, at least this loud beside the loudest.
+const WINDOW_S: f64 = 0.5;
+const LOUD: f64 = 0.25;
+/// Two with less than this between them are one, s.
 const MERGED_S: f64 = 0.25;
 
 /// A range of a condition in which the excess sits.
@@ -35,6 +47,9 @@ pub struct Place {
     pub to: f64,
     /// The condition's unit.
     pub unit: &'static str,
+    /// Least and greatest value that the condition has.
+    #[serde(skip)]
+    pub range: [f64; 2],
     /// Share of the excess in this range.
     pub share_of_excess: f64,
     /// Share of the samples in this range.
@@ -78,12 +93,60 @@ impl Excess<'_> {
         places
     }
 
+    /// Where the excess sits for people: conditions in a range of which it is concentrated, or that it is a function of, the
+    /// surest first. The significance is the greater of the two.
+    pub fn concentrations(&self, conditions: &[Condition]) -> Vec<Place> {
+        let mut places: Vec<Place> = conditions
+            .iter()
+            .filter_map(|condition| {
+                let place = self.place(condition)?;
+                let is_function = place.significance >= LEAST_SIGNIFICANCE && place.share_of_samples < WHOLE;
+                let is_dense = place.share_of_excess - place.share_of_samples >= LEAST_MORE;
+                let concentration = self.concentration(condition).unwrap_or(0.0);
+                let significance = place.significance.max(concentration);
+                (is_function || is_dense && significance >= WORTH_TELLING).then_some(Place { significance, ..place })
+            })
+            .collect();
+        places.sort_by(|one, other| other.significance.total_cmp(&one.significance));
+        places
+    }
+
+    /// How many standard errors the excess in the densest range is above what its share of the samples would have.
+    fn concentration(&self, condition: &Condition) -> Option<f64> {
+        let bins = Bins::new(condition, self.residual_n)?;
+        let range = self.densest(&bins, condition, |block| !block.held_out)?;
+        let sums: Vec<[f64; 4]> = self
+            .blocks
+            .iter()
+            .filter(|block| block.held_out)
+            .map(|block| {
+                let [mut inside, mut count_inside, mut all, mut count] = [0.0; 4];
+                for cycle in block.cycles.clone() {
+                    let value = condition.values.get(cycle).copied().unwrap_or(f64::NAN);
+                    let residual_n = self.residual_n.get(cycle).copied().unwrap_or(f64::NAN);
+                    let Some(bin) = bins.of(value).filter(|_| residual_n.is_finite()) else { continue };
+                    let excess = self.of(residual_n);
+                    (all, count) = (all + excess, count + 1.0);
+                    if range.contains(&bin) {
+                        (inside, count_inside) = (inside + excess, count_inside + 1.0);
+                    }
+                }
+                [inside, count_inside, all, count]
+            })
+            .collect();
+        let total = |place: usize| sums.iter().map(|sums| sums[place]).sum::<f64>();
+        let share_of_samples = total(1) / total(3);
+        let more: Vec<f64> = sums.iter().map(|[inside, _, all, _]| inside - share_of_samples * all).collect();
+        let (sum, error) = sum_and_error(&more);
+        Some(sum / error).filter(|significance| significance.is_finite())
+    }
+
     /// Where it sits in one condition; `None` where there is nothing to compare.
     pub fn place(&self, condition: &Condition) -> Option<Place> {
         let bins = Bins::new(condition, self.residual_n)?;
         let total = self.sum();
         let (explains, significance) = self.explained(&bins, condition);
-        let range = self.densest(&bins, condition)?;
+        let range = self.densest(&bins, condition, |_| true)?;
         let inside = |value: f64| bins.of(value).is_some_and(|bin| range.contains(&bin));
         let (mut share_of_excess, mut count_inside, mut count) = (0.0, 0.0, 0.0);
         for (value, residual_n) in self.samples(condition) {
@@ -98,6 +161,7 @@ impl Excess<'_> {
             from: *bins.edges.get(range.start)?,
             to: *bins.edges.get(range.end)?,
             unit: condition.unit,
+            range: [*bins.edges.first()?, *bins.edges.last()?],
             share_of_excess,
             share_of_samples: count_inside / count,
             explains: explains / total,
@@ -148,11 +212,13 @@ impl Excess<'_> {
         (sum * if held_out > 0.0 { all / held_out } else { 0.0 }, if error > 0.0 { sum / error } else { 0.0 })
     }
 
-    /// The contiguous bins about the one with most excess a sample.
-    fn densest(&self, bins: &Bins, condition: &Condition) -> Option<Range<usize>> {
+    /// The contiguous bins about the one with most excess a sample, in some blocks.
+    fn densest(&self, bins: &Bins, condition: &Condition, of: impl Fn(&Block) -> bool) -> Option<Range<usize>> {
         let mut sums = vec![(0.0, 0.0); bins.count()];
-        for (value, residual_n) in self.samples(condition) {
-            if let Some((sum, count)) = bins.of(value).and_then(|bin| sums.get_mut(bin)) {
+        for cycle in self.blocks.iter().filter(|block| of(block)).flat_map(|block| block.cycles.clone()) {
+            let bin = condition.values.get(cycle).and_then(|value| bins.of(*value));
+            let residual_n = self.residual_n.get(cycle).copied().filter(|number| number.is_finite());
+            if let (Some((sum, count)), Some(residual_n)) = (bin.and_then(|bin| sums.get_mut(bin)), residual_n) {
                 (*sum, *count) = (*sum + self.of(residual_n), *count + 1.0);
             }
         }
@@ -172,24 +238,33 @@ impl Excess<'_> {
         Some(from..to)
     }
 
-    /// The stretches of time in which samples are wanted, those with most excess, in the order of time.
+    /// The stretches of time in which wanted samples have most excess, in the order of time.
     pub fn intervals_s(&self, wanted: impl Fn(usize) -> bool) -> Vec<[f64; 2]> {
-        let mut found: Vec<(Range<f64>, f64)> = Vec::new();
+        let mut windows: Vec<(Range<f64>, f64)> = Vec::new();
         for (cycle, residual_n) in self.residual_n.iter().enumerate().filter(|(_, number)| number.is_finite()) {
             if !wanted(cycle) {
                 continue;
             }
-            #[expect(clippy::cast_precision_loss, reason = "a count of cycles")]
-            let time_s = cycle as f64 * self.record.cycle_s;
-            match found.last_mut().filter(|(range, _)| time_s - range.end < MERGED_S) {
+            let time_s = self.record.time_s(cycle);
+            let window = (time_s / WINDOW_S).floor();
+            match windows.last_mut().filter(|(range, _)| (range.start / WINDOW_S).floor() >= window) {
                 Some((range, excess)) => (range.end, *excess) = (time_s, *excess + self.of(*residual_n)),
-                None => found.push((time_s..time_s, self.of(*residual_n))),
+                None => windows.push((time_s..time_s, self.of(*residual_n))),
             }
         }
-        found.sort_by(|one, other| other.1.total_cmp(&one.1));
-        found.truncate(MOST_INTERVALS);
-        found.sort_by(|one, other| one.0.start.total_cmp(&other.0.start));
-        found.into_iter().map(|(range, _)| [range.start, range.end]).collect()
+        windows.sort_by(|one, other| other.1.total_cmp(&one.1));
+        let loudest = windows.first().map_or(0.0, |(_, excess)| *excess);
+        windows.retain(|(_, excess)| *excess > LOUD * loudest);
+        windows.truncate(MOST_INTERVALS);
+        windows.sort_by(|one, other| one.0.start.total_cmp(&other.0.start));
+        let mut found: Vec<[f64; 2]> = Vec::new();
+        for (range, _) in windows {
+            match found.last_mut().filter(|[_, end_s]| range.start - *end_s < MERGED_S) {
+                Some([_, end_s]) => *end_s = range.end,
+                None => found.push([range.start, range.end]),
+            }
+        }
+        found
     }
 }
 
@@ -204,12 +279,14 @@ pub fn sum_and_error(numbers: &[f64]) -> (f64, f64) {
 }
 
 /// Bins of a condition that hold as many samples each.
-struct Bins {
-    edges: Vec<f64>,
+pub struct Bins {
+    /// One more than there are bins.
+    pub edges: Vec<f64>,
 }
 
 impl Bins {
-    fn new(condition: &Condition, residual_n: &[f64]) -> Option<Self> {
+    /// Over the samples that have both; `None` where all are the same.
+    pub fn new(condition: &Condition, residual_n: &[f64]) -> Option<Self> {
         let mut sorted: Vec<f64> = condition
             .values
             .iter()
@@ -235,11 +312,13 @@ impl Bins {
         (edges.len() > 2).then_some(Self { edges })
     }
 
-    fn count(&self) -> usize {
+    /// How many.
+    pub fn count(&self) -> usize {
         self.edges.len() - 1
     }
 
-    fn of(&self, value: f64) -> Option<usize> {
+    /// The bin of a value.
+    pub fn of(&self, value: f64) -> Option<usize> {
         let inside = value.is_finite() && value <= *self.edges.last()?;
         let place = self.edges.partition_point(|edge| *edge <= value);
         (inside && place > 0).then(|| (place - 1).min(self.count() - 1))

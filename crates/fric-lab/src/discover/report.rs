@@ -7,7 +7,9 @@ use nalgebra::DMatrix;
 use super::foreign::Fault;
 use super::lines::Line;
 use super::places::Place;
-use crate::fit::{Parameter, SampleCounts};
+use super::profile::Profile;
+use super::readiness::Lack;
+use crate::fit::{CableRecord, Parameter, SampleCounts};
 use crate::replay::Deviation;
 
 /// Whether something is missing.
@@ -113,8 +115,53 @@ pub struct CableDiscovery {
     pub places: Vec<Place>,
     /// What no effect accounts for.
     pub unexplained: Option<Unexplained>,
+    /// Why nothing can be told.
+    pub lack: Option<Lack>,
+    /// The residuals over the condition that tells most, of the given model and of what is left.
+    pub profiles: Vec<Profile>,
+    /// When each cycle is, s since the first sample; several logs one after the other.
+    pub times_s: Vec<f64>,
     /// Residual of the given model in each cycle, N; NaN where a sample does not count.
     pub residual_before_n: Vec<f64>,
     /// And of the extended one.
     pub residual_after_n: Vec<f64>,
+}
+
+impl Model {
+    /// Standard error of a parameter, in its unit; `None` where it was not fitted.
+    #[must_use]
+    pub fn standard_error(&self, parameter: &Parameter) -> Option<f64> {
+        let place = self.fitted.iter().position(|fitted| fitted == parameter)?;
+        Some(self.covariance.get((place, place))?.sqrt())
+    }
+}
+
+impl CableDiscovery {
+    /// A cable of which nothing can be told.
+    pub(super) fn untold(record: &CableRecord<'_>, samples: SampleCounts, lack: Lack) -> Self {
+        let model = Model {
+            values: record.params.values(),
+            fitted: Vec::new(),
+            covariance: DMatrix::zeros(0, 0),
+            held_out_n: Deviation::default(),
+        };
+        Self {
+            samples,
+            held_out: Vec::new(),
+            noise_floor_n: f64::NAN,
+            wander_n: f64::NAN,
+            verdict: Verdict::Untold,
+            before: model.clone(),
+            after: model,
+            findings: Vec::new(),
+            tried: Vec::new(),
+            places: Vec::new(),
+            unexplained: None,
+            lack: Some(lack),
+            profiles: Vec::new(),
+            times_s: Vec::new(),
+            residual_before_n: Vec::new(),
+            residual_after_n: Vec::new(),
+        }
+    }
 }

@@ -42,6 +42,7 @@ pub(crate) mod engine {
     pub use super::cables::{Search, prepared, used};
     pub use super::gang::{Gang, Seat};
     pub use super::problem::{Comparison, Loss, Member, Problem};
+    pub use super::rewritten::{NewValues, with_values};
     pub use super::selection::{Standing, count};
     pub use super::solve::{Solution, covariance, search_near};
 }

@@ -1,7 +1,7 @@
 //! What a log holds for an identification: the signals of each cable as the cycle takes them, sample by sample.
 //!
-//! A log is conditioned once ([`fric_core::signals`]) and then evaluated many times. Memory: 80 bytes a sample and cable;
-//! for a fit to the wrench 48 bytes more for each cable and 150 for the platform.
+//! A log is conditioned once ([`fric_core::signals`]) and then evaluated many times. Memory: 80 bytes a sample and cable,
+//! and 8 a sample; for a fit to the wrench 48 bytes more for each cable and 150 for the platform.
 
 use std::ops::Range;
 
@@ -78,10 +78,19 @@ pub struct Measurements<'a> {
     cables: Vec<Vec<Row>>,
     platform: PlatformRecord,
     starts: Vec<usize>,
+    times_s: Vec<f64>,
+    log_start: LogStart,
     clock: Clock,
     cycle: f64,
     signals: Vec<SignalState<f64>>,
     pose_wraps: Vec<PoseWrap>,
+}
+
+/// Where the time of the present log begins.
+#[derive(Clone, Copy, Debug, Default)]
+struct LogStart {
+    first_nanos: Option<i64>,
+    time_s: f64,
 }
 
 impl<'a> Measurements<'a> {
@@ -95,6 +104,8 @@ impl<'a> Measurements<'a> {
             cables: vec![Vec::new(); count],
             platform: PlatformRecord::default(),
             starts: Vec::new(),
+            times_s: Vec::new(),
+            log_start: LogStart::default(),
             clock: Clock::new(robot.cycle_s()),
             cycle: BEFORE_FIRST,
             signals: vec![SignalState::start(); count],
@@ -108,6 +119,8 @@ impl<'a> Measurements<'a> {
         self.cycle = BEFORE_FIRST;
         self.signals.fill(SignalState::start());
         self.pose_wraps.fill(PoseWrap::START);
+        let time_s = self.times_s.last().map_or(0.0, |last_s| last_s + self.robot.cycle_s());
+        self.log_start = LogStart { first_nanos: None, time_s };
         if self.starts.last() != Some(&self.len()) {
             self.starts.push(self.len());
         }
@@ -119,6 +132,10 @@ impl<'a> Measurements<'a> {
             self.start_log();
         }
         let elapsed_cycles = self.clock.elapsed_cycles(sample.stamp_nanos);
+        let first_nanos = *self.log_start.first_nanos.get_or_insert(sample.stamp_nanos);
+        #[expect(clippy::cast_precision_loss, reason = "a duration")]
+        let since_start_s = sample.stamp_nanos.saturating_sub(first_nanos) as f64 * 1e-9;
+        self.times_s.push(self.log_start.time_s + since_start_s);
         self.cycle = next_cycle(self.cycle, elapsed_cycles);
         let pose = sample.pose.filter(Pose::is_usable);
         let limits = self.robot.monitor().limits();
@@ -169,11 +186,18 @@ impl<'a> Measurements<'a> {
         self.len() == 0
     }
 
+    /// When each log begins, s: several logs are one after the other.
+    #[must_use]
+    pub fn log_starts_s(&self) -> Vec<f64> {
+        self.starts.iter().map(|start| self.times_s.get(*start).copied().unwrap_or(0.0)).collect()
+    }
+
     /// A cable's parameters and its cycles; `None` past the robot's cables.
     #[must_use]
     pub fn cable(&self, index: usize) -> Option<CableRecord<'_>> {
         let (params, rows) = (self.robot.cables().get(index)?, self.cables.get(index)?);
-        Some(CableRecord { params, rows, starts: &self.starts, cycle_s: self.robot.cycle_s() })
+        let (starts, times_s) = (self.starts.as_slice(), self.times_s.as_slice());
+        Some(CableRecord { params, rows, starts, times_s, cycle_s: self.robot.cycle_s() })
     }
 
     /// All cables in order.
@@ -202,6 +226,7 @@ pub struct CableRecord<'a> {
     /// Its cycles, one log after the other.
     pub rows: &'a [Row],
     pub(super) starts: &'a [usize],
+    pub(super) times_s: &'a [f64],
     /// Duration of a cycle, s.
     pub cycle_s: f64,
 }
@@ -209,7 +234,8 @@ pub struct CableRecord<'a> {
 impl<'a> CableRecord<'a> {
     /// A stretch of its cycles, as a log of its own.
     pub(super) fn stretch(&self, cycles: &Range<usize>) -> Self {
-        Self { rows: self.rows.get(cycles.clone()).unwrap_or_default(), starts: &[0], ..*self }
+        let rows = self.rows.get(cycles.clone()).unwrap_or_default();
+        Self { rows, starts: &[0], times_s: self.times_s.get(cycles.clone()).unwrap_or_default(), ..*self }
     }
 
     /// Other cycles of the same cable, as one log.
@@ -217,7 +243,7 @@ impl<'a> CableRecord<'a> {
     where
         'a: 'b,
     {
-        CableRecord { params: self.params, rows, starts: &[0], cycle_s: self.cycle_s }
+        CableRecord { params: self.params, rows, starts: &[0], times_s: &[], cycle_s: self.cycle_s }
     }
 
     /// The same cycles with other signals.
@@ -225,7 +251,19 @@ impl<'a> CableRecord<'a> {
     where
         'a: 'b,
     {
-        CableRecord { params: self.params, rows, starts: self.starts, cycle_s: self.cycle_s }
+        CableRecord { rows, ..*self }
+    }
+
+    /// When a cycle is, s since the first sample; several logs one after the other.
+    #[must_use]
+    pub fn time_s(&self, cycle: usize) -> f64 {
+        let (past, last_s) = match self.times_s {
+            [] => (cycle, 0.0),
+            [.., last_s] => (cycle.saturating_sub(self.times_s.len() - 1), *last_s),
+        };
+        #[expect(clippy::cast_precision_loss, reason = "a count of cycles")]
+        let without_pause_s = last_s + past as f64 * self.cycle_s;
+        self.times_s.get(cycle).copied().unwrap_or(without_pause_s)
     }
 
     /// The cycles of each log, with the place of the first.

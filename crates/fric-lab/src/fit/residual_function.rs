@@ -121,6 +121,12 @@ impl Cable {
     }
 
     fn record(&self) -> CableRecord<'_> {
-        CableRecord { params: &self.params, rows: &self.rows, starts: &self.starts, cycle_s: self.cycle_s }
+        CableRecord {
+            params: &self.params,
+            rows: &self.rows,
+            starts: &self.starts,
+            times_s: &[],
+            cycle_s: self.cycle_s,
+        }
     }
 }
