@@ -33,7 +33,7 @@ enum State<'a> {
     /// On its own.
     Busy,
     /// Waits for a pass, with the room for it.
-    Waiting(Part<'a>, Forces),
+    Waiting(Box<Part<'a>>, Forces),
     /// Its pass is done, `None` when stopped, and it has yet to notice.
     Served(Option<Forces>),
     /// Ended.
@@ -107,7 +107,7 @@ impl<'a> Seat<'a> {
     fn pass(&self, part: &Part<'a>, room: Forces) -> Option<Forces> {
         let mut seats = self.gang.lock();
         if let Some(seat) = seats.get_mut(self.place) {
-            *seat = State::Waiting(part.clone(), room);
+            *seat = State::Waiting(Box::new(part.clone()), room);
         }
         loop {
             match seats.get_mut(self.place) {
@@ -148,7 +148,7 @@ fn serve(seats: &mut [State<'_>], stop: &AtomicBool) {
     let mut together = Vec::with_capacity(seats.len());
     for seat in seats.iter_mut().filter(|seat| wish(seat) == Some(least)) {
         if let State::Waiting(part, room) = std::mem::replace(seat, State::Served(None)) {
-            together.push((seat, (part, room)));
+            together.push((seat, (*part, room)));
         }
     }
     with_room_for!(least.1, serve_together(together, stop));
