@@ -65,7 +65,7 @@ impl<T: Scalar> LoadNonlinearity<T> {
     }
 
     /// Factor on μ at a normal force (N); at a millionth of the reference, and below, that of a millionth.
-    #[inline(always)]
+    #[inline(never)]
     pub fn factor(&self, normal_n: T) -> T {
         let relative = (normal_n / self.reference_n).max(T::splat(LEAST_RELATIVE));
         relative.pow(self.exponent - T::splat(1.0))

@@ -53,7 +53,7 @@ impl<T: Scalar> PreslidingShape<T> {
     }
 
     /// Friction force after a displacement, see [`dahl_step`](crate::dahl::dahl_step) for the arguments.
-    #[inline(always)]
+    #[inline(never)]
     pub fn step(&self, friction_n: T, sliding_n: T, sigma_n_per_m: T, displacement_m: T) -> T {
         dahl_step_over(friction_n, sliding_n, sigma_n_per_m, displacement_m, |way, left| {
             self.exponential_way(way, left)
@@ -61,7 +61,7 @@ impl<T: Scalar> PreslidingShape<T> {
     }
 
     /// The way, in units of `f_c/σ`, over which the exponential law comes as far as this one over `way`, from `left = |u|`.
-    #[inline(always)]
+    #[inline(never)]
     fn exponential_way(&self, way: T, left: T) -> T {
         let beyond = self.exponent - T::splat(1.0);
         let scaled_way = way * left.max(T::splat(LEAST_LEFT)).pow(beyond);

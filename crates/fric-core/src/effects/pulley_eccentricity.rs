@@ -77,7 +77,7 @@ impl<T: Scalar> PulleyEccentricity<T> {
     }
 
     /// Factor on the tension at a cable length (m); 1 where it is NaN, before the first.
-    #[inline(always)]
+    #[inline(never)]
     pub fn factor(&self, length_m: T) -> T {
         let [sin, cos] = (length_m / self.period_m).sin_cos_turns();
         let one = T::splat(1.0);

@@ -62,7 +62,7 @@ impl<T: Scalar> Stribeck<T> {
     }
 
     /// Factor on μ at a speed.
-    #[inline(always)]
+    #[inline(never)]
     pub fn factor(&self, speed_m_per_s: T) -> T {
         let relative = speed_m_per_s / self.velocity_m_per_s;
         let fall = (-(relative * relative)).exp_negative();

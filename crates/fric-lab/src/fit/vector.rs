@@ -9,7 +9,7 @@ use std::fmt;
 
 use fric_core::effects::EffectRow;
 use fric_core::effects::time_delay::{DELAY, delay_range_s};
-use fric_core::parameters::{self, FRICTION_COUNT, PARAMETER_COUNT, ParameterRow, Values};
+use fric_core::parameters::{self, FRICTION_COUNT, ParameterRow, Values};
 use fric_core::robot::unknown_name;
 
 /// One parameter of a cable: its place in [`Values`] with its row.
@@ -186,8 +186,6 @@ pub fn with(values: &Values, free: &[Parameter], changed: impl IntoIterator<Item
     }
     values
 }
-
-const _: () = assert!(PARAMETER_COUNT <= super::pass::MOST_PARAMETERS);
 
 #[cfg(test)]
 mod tests {
