@@ -32,17 +32,18 @@ pub fn discover_cable(record: &CableRecord<'_>, progress: &Progress) -> CableDis
         return CableDiscovery::untold(record, engine::count(&engine::prepared(record)), lack);
     }
     let faults = faulty_stretches(record);
-    let mut sound = vec![true; record.rows.len()];
-    leave_out(&faults, record.cycle_s, &mut sound);
-    let (paper, standings) = engine::identify(record, &sound, stop);
-    let samples = engine::count(&standings);
+    let mut standings = engine::prepared(record);
+    leave_out(&faults, record.cycle_s, &mut standings);
+    let gang = engine::Gang::new(1, stop);
+    let paper = engine::Search::run(record, standings, &FitOptions::default(), stop, gang.seat(0));
+    let samples = engine::count(&paper.standings);
     if let Some(lack) = lack_of_samples(&samples, record.cycle_s) {
         return CableDiscovery::untold(record, samples, lack);
     }
-    let counts = engine::used(&standings);
+    let counts = engine::used(&paper.standings);
     let blocks = split(record);
     let conditions = conditions(record);
-    let start = given_model(record, &paper);
+    let start = given_model(record, &paper.solution);
 
     // What hums is no matter of friction: it comes off the reference.
     let bench = Workbench { record: *record, blocks: &blocks, counts: &counts, stop };

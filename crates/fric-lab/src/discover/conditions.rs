@@ -1,12 +1,24 @@
 //! The operating conditions of every cycle, in which a disagreement may sit.
 
 use crate::fit::{CableRecord, Row};
+use crate::replay::Deviation;
 
 /// Cycles over which rates are taken.
 const RATE_CYCLES: usize = 20;
 /// Most bins of a condition, and of the length, along which a defect is narrow.
 const BINS: usize = 16;
-const LENGTH_BINS: usize = 96;
+const LENGTH_BINS: usize = 64;
+/// A cable slower than this share of its usual speed rests: where it does is a matter of the run.
+const RESTING_RATIO: f64 = 0.02;
+
+/// How a condition is divided into bins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Spacing {
+    /// So many with as many samples each.
+    Crowds(usize),
+    /// So many of the same width.
+    Widths(usize),
+}
 
 /// One operating condition over all cycles.
 #[derive(Clone, Debug)]
@@ -17,8 +29,8 @@ pub struct Condition {
     pub unit: &'static str,
     /// Its value in each cycle; NaN where it has none.
     pub values: Vec<f64>,
-    /// How many bins to look at it in.
-    pub bins: usize,
+    /// How to look at it.
+    pub bins: Spacing,
 }
 
 /// All conditions of a cable that its record tells.
@@ -36,25 +48,36 @@ pub fn conditions(record: &CableRecord<'_>) -> Vec<Condition> {
     let rows_to = |value: fn(&Row) -> f64| move |rows: &[Row]| rows.iter().map(value).collect::<Vec<f64>>();
     let cycle_s = record.cycle_s;
     let standstill = |row: &Row| f64::from(u8::from(row.signals.displacement_m.abs() <= 0.0));
-    add("standstill", "1", 2, &rows_to(standstill));
-    add("direction", "1", 3, &rows_to(|row| sign(row.signals.displacement_m)));
-    add("way_since_reversal", "m", BINS, &ways_since_reversal_m);
-    add("speed", "m/s", BINS, &rows_to(|row| row.signals.speed_m_per_s.abs()));
-    add("acceleration", "m/s²", BINS, &|rows| {
+    add("standstill", "1", Spacing::Crowds(2), &rows_to(standstill));
+    add("direction", "1", Spacing::Crowds(3), &rows_to(|row| sign(row.signals.displacement_m)));
+    add("way_since_reversal", "m", Spacing::Crowds(BINS), &ways_since_reversal_m);
+    add("speed", "m/s", Spacing::Crowds(BINS), &rows_to(|row| row.signals.speed_m_per_s.abs()));
+    add("acceleration", "m/s²", Spacing::Crowds(BINS), &|rows| {
         rates(rows, cycle_s, |row| row.signals.speed_m_per_s).into_iter().map(f64::abs).collect()
     });
-    add("sensor_force", "N", BINS, &rows_to(|row| row.signals.sensor_force_n));
-    add("force_rate", "N/s", BINS, &|rows| rates(rows, cycle_s, |row| row.signals.sensor_force_n));
-    add("length", "m", LENGTH_BINS, &rows_to(|row| row.signals.length_m));
+    add("sensor_force", "N", Spacing::Crowds(BINS), &rows_to(|row| row.signals.sensor_force_n));
+    add("force_rate", "N/s", Spacing::Crowds(BINS), &|rows| rates(rows, cycle_s, |row| row.signals.sensor_force_n));
+    let moving_m_per_s = RESTING_RATIO * usual_speed_m_per_s(record);
+    add("length", "m", Spacing::Widths(LENGTH_BINS), &move |rows| {
+        let moves = |row: &Row| row.signals.speed_m_per_s.abs() > moving_m_per_s;
+        rows.iter().map(|row| if moves(row) { row.signals.length_m } else { f64::NAN }).collect()
+    });
     if record.params.needs_pose() {
-        add("wrap", "deg", BINS, &rows_to(|row| row.pose_wrap.wrap_rad().to_degrees()));
+        add("wrap", "deg", Spacing::Crowds(BINS), &rows_to(|row| row.pose_wrap.wrap_rad().to_degrees()));
     }
     if let Some(radius_m) = record.params.pose_pulley_radius_m() {
-        add("pulley_angle", "deg", BINS, &move |rows| {
+        add("pulley_angle", "deg", Spacing::Crowds(BINS), &move |rows| {
             rows.iter().map(|row| (row.signals.length_m / radius_m).to_degrees().rem_euclid(360.0)).collect()
         });
     }
     conditions
+}
+
+/// Root mean square of the speed, m/s.
+fn usual_speed_m_per_s(record: &CableRecord<'_>) -> f64 {
+    let mut speed = Deviation::default();
+    record.rows.iter().filter(|row| row.is_sound()).for_each(|row| speed.add(row.signals.speed_m_per_s));
+    speed.rms().unwrap_or(0.0)
 }
 
 /// −1, 0 or 1.

@@ -5,6 +5,7 @@
 use std::ops::Range;
 
 use crate::fit::CableRecord;
+use crate::fit::engine::Standing;
 
 /// Samples in a row with the same force, to the last bit, from which on a sensor stands still.
 const FEWEST_STILL: usize = 20;
@@ -102,13 +103,13 @@ fn merged(stretches: Vec<Stretch>, cycle_s: f64) -> Vec<Stretch> {
 }
 
 /// Leaves such stretches, and the moment after each, out of what counts.
-pub fn leave_out(stretches: &[Stretch], cycle_s: f64, counts: &mut [bool]) {
+pub fn leave_out(stretches: &[Stretch], cycle_s: f64, standings: &mut [Standing]) {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
     let after = (AFTER_S / cycle_s) as usize;
     for stretch in stretches {
-        let end = (stretch.cycles.end + after).min(counts.len());
-        if let Some(counts) = counts.get_mut(stretch.cycles.start..end) {
-            counts.fill(false);
+        let end = (stretch.cycles.end + after).min(standings.len());
+        if let Some(standings) = standings.get_mut(stretch.cycles.start..end) {
+            standings.fill(Standing::Flagged);
         }
     }
 }

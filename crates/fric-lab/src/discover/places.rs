@@ -10,7 +10,7 @@ use std::ops::Range;
 
 use serde::Serialize;
 
-use super::conditions::{Condition, sign};
+use super::conditions::{Condition, Spacing, sign};
 use super::split::Block;
 use crate::fit::CableRecord;
 
@@ -26,6 +26,8 @@ const LEAST_MORE: f64 = 0.1;
 const WHOLE: f64 = 0.995;
 /// Bins beside the densest one belong to it down to this share of its density.
 const SHOULDER: f64 = 0.4;
+/// A bin with fewer samples tells nothing.
+const FEWEST_SAMPLES: f64 = 50.0;
 /// Intervals in time that are worth a look.
 const MOST_INTERVALS: usize = 5;
 /// They are made of windows of this length, s, at least this loud beside the loudest.
@@ -220,7 +222,10 @@ impl Excess<'_> {
                 (*sum, *count) = (*sum + self.of(residual_n), *count + 1.0);
             }
         }
-        let density = |bin: usize| sums.get(bin).map_or(f64::NEG_INFINITY, |(sum, count)| sum / f64::max(*count, 1.0));
+        let density = |bin: usize| {
+            let of_bin = sums.get(bin).filter(|(_, count)| *count >= FEWEST_SAMPLES);
+            of_bin.map_or(f64::NEG_INFINITY, |(sum, count)| sum / count)
+        };
         let best = (0..bins.count()).max_by(|one, other| density(*one).total_cmp(&density(*other)))?;
         let belongs = |bin: usize| density(bin) >= SHOULDER * density(best);
         let (mut from, mut to) = (best, best + 1);
@@ -290,13 +295,19 @@ impl Bins {
             .map(|(value, _)| *value)
             .collect();
         sorted.sort_by(f64::total_cmp);
-        let last = sorted.len().checked_sub(1)?;
-        let quantiles = (0..=condition.bins).filter_map(|bin| sorted.get(bin * last / condition.bins).copied());
-        let mut edges: Vec<f64> = quantiles.collect();
+        let (first, last) = (*sorted.first()?, sorted.len().checked_sub(1)?);
+        let mut edges: Vec<f64> = match condition.bins {
+            Spacing::Crowds(count) => (0..=count).filter_map(|bin| sorted.get(bin * last / count).copied()).collect(),
+            #[expect(clippy::cast_precision_loss, reason = "small counts")]
+            Spacing::Widths(count) => {
+                let width = (sorted.get(last)? - first) / count as f64;
+                (0..=count).map(|bin| first + bin as f64 * width).collect()
+            }
+        };
         edges.dedup_by(|one, other| one.to_bits() == other.to_bits());
-        if edges.len() == 2 && condition.bins <= 3 {
+        if let ([low, high], Spacing::Crowds(2 | 3)) = (edges.as_slice(), condition.bins) {
             // Two values: each a bin of its own.
-            edges.insert(1, f64::midpoint(edges[0], edges[1]));
+            edges = vec![*low, f64::midpoint(*low, *high), *high];
         }
         (edges.len() > 2).then_some(Self { edges })
     }

@@ -12,6 +12,9 @@ use super::places::{Excess, Place};
 const MOST_EXPLAINED: f64 = 0.12;
 /// And no more than this share lies in a tenth of the log.
 const MOST_IN_TENTH: f64 = 0.6;
+/// Nor is more than this share still there in the mean over this part of the log: noise forgets, a level does not.
+const MOST_LASTING: f64 = 0.6;
+const LASTING_PARTS: usize = 16;
 /// A narrow stretch of cable holds at most this share of the samples and at least that of the excess.
 const NARROW: f64 = 0.2;
 const MOST_OF_IT: f64 = 0.5;
@@ -20,7 +23,22 @@ pub const WORTH: f64 = 0.06;
 
 /// Whether an excess is a wander of the sensors.
 pub fn is_wander(excess: &Excess<'_>, places: &[Place]) -> bool {
-    places.iter().all(|place| place.explains < MOST_EXPLAINED) && share_of_tenth(excess) < MOST_IN_TENTH
+    places.iter().all(|place| place.explains < MOST_EXPLAINED)
+        && share_of_tenth(excess) < MOST_IN_TENTH
+        && lasting_share(excess) < MOST_LASTING
+}
+
+/// Share of the excess that is in the means over equal parts of the log.
+fn lasting_share(excess: &Excess<'_>) -> f64 {
+    let length = excess.residual_n.len().div_ceil(LASTING_PARTS).max(1);
+    let of_part = |part: &[f64]| -> f64 {
+        let (sum, count) = part
+            .iter()
+            .filter(|number| number.is_finite())
+            .fold((0.0, 0.0), |(sum, count), number| (sum + number, count + 1.0));
+        if count > 0.0 { sum * sum / count - excess.noise_n * excess.noise_n } else { 0.0 }
+    };
+    excess.residual_n.chunks(length).map(of_part).sum::<f64>() / excess.sum()
 }
 
 /// Share of the excess in the tenth of the blocks that have most of it.

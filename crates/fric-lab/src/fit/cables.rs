@@ -4,6 +4,7 @@ use fric_core::LANES;
 use fric_core::parameters::{MU, SIGMA, Values};
 use std::panic::resume_unwind;
 use std::rc::Rc;
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::thread;
 
@@ -49,61 +50,58 @@ fn fit_cable<'a>(
     progress: &'a Progress,
     seat: Seat<'a>,
 ) -> Vec<CableFit> {
-    let seat = Rc::new(seat);
-    let problem = problem(record, options, progress.stop_flag(), &seat);
-    let (solution, standings) = identified(&problem, options, prepared(record));
-    cable_fits(&problem, &[record.params.values()], &solution, &standings)
+    let search = Search::run(record, prepared(record), options, progress.stop_flag(), seat);
+    cable_fits(&search.problem, &[record.params.values()], &search.solution, &search.standings)
 }
 
-/// Friction and effects of a cable by itself, with the standing of each sample; those that are not `sound` count as flagged.
-pub fn identify<'a>(record: &CableRecord<'a>, sound: &[bool], stop: &'a AtomicBool) -> (Solution, Vec<Standing>) {
-    let gang = Gang::new(1, stop);
-    let seat = Rc::new(gang.seat(0));
-    let mut standings = prepared(record);
-    for (standing, _) in standings.iter_mut().zip(sound).filter(|(_, sound)| !**sound) {
-        *standing = Standing::Flagged;
-    }
-    let options = FitOptions::default();
-    identified(&problem(record, &options, stop, &seat), &options, standings)
+/// The whole search for the parameters of a cable.
+#[derive(Debug)]
+pub struct Search<'a> {
+    /// The problem with all samples that have something to compare with.
+    problem: Problem<'a>,
+    /// Where it began.
+    pub start: Values,
+    /// What it found.
+    pub solution: Solution,
+    /// And what it made of each sample.
+    pub standings: Vec<Standing>,
 }
 
-/// The problem of a cable by itself; which samples count is not said.
-fn problem<'a>(
-    record: &CableRecord<'a>,
-    options: &FitOptions,
-    stop: &'a AtomicBool,
-    seat: &Rc<Seat<'a>>,
-) -> Problem<'a> {
-    Problem {
-        members: vec![Member { record: *record, free: options.free(record.params) }],
-        comparison: Comparison::Forces,
-        loss: Loss::Squares,
-        used: Vec::new(),
-        stop,
-        seat: Some(Rc::clone(seat)),
+impl<'a> Search<'a> {
+    /// `all` are the standings before anything is known about the friction, see [`prepared`].
+    pub fn run(
+        record: &CableRecord<'a>,
+        all: Vec<Standing>,
+        options: &FitOptions,
+        stop: &'a AtomicBool,
+        seat: Seat<'a>,
+    ) -> Self {
+        let given = record.params.values();
+        let problem = Problem {
+            members: vec![Member { record: *record, free: options.free(record.params) }],
+            comparison: Comparison::Forces,
+            loss: Loss::Squares,
+            used: used(&all),
+            stop,
+            seat: Some(Rc::new(seat)),
+        };
+        let starts = start::starts(&problem, &[given], record.cycle_s);
+        let start = starts.first().and_then(|start| start.first()).copied().unwrap_or(given);
+        let solve_without_warm_up = |starts: Vec<Vec<Values>>| {
+            let mut standings = all.clone();
+            leave_out_warm_up(&problem, &starts, &mut standings);
+            let mut problem = Problem { used: used(&standings), ..problem.clone() };
+            let solution = solve(&mut problem, starts, &[given], record.cycle_s, options.weighing, &mut standings, &[]);
+            (solution, standings)
+        };
+        let (mut solution, mut standings) = solve_without_warm_up(starts);
+        if warm_up_was_misjudged(record, &solution, &all, &standings) {
+            let evaluation_count = solution.evaluation_count;
+            (solution, standings) = solve_without_warm_up(vec![solution.values]);
+            solution.evaluation_count += evaluation_count;
+        }
+        Self { problem, start, solution, standings }
     }
-}
-
-/// Solves it; `all` are the standings before anything is known about the friction.
-fn identified(problem: &Problem<'_>, options: &FitOptions, all: Vec<Standing>) -> (Solution, Vec<Standing>) {
-    let Some(record) = problem.members.first().map(|member| member.record) else { unreachable!() };
-    let given = record.params.values();
-    let of = |standings: &[Standing]| Problem { used: used(standings), ..problem.clone() };
-    let starts = start::starts(&of(&all), &[given], record.cycle_s);
-    let solve_without_warm_up = |starts: Vec<Vec<Values>>| {
-        let mut standings = all.clone();
-        leave_out_warm_up(&of(&all), &starts, &mut standings);
-        let solution =
-            solve(&mut of(&standings), starts, &[given], record.cycle_s, options.weighing, &mut standings, &[]);
-        (solution, standings)
-    };
-    let (mut solution, mut standings) = solve_without_warm_up(starts);
-    if warm_up_was_misjudged(&record, &solution, &all, &standings) {
-        let evaluation_count = solution.evaluation_count;
-        (solution, standings) = solve_without_warm_up(vec![solution.values]);
-        solution.evaluation_count += evaluation_count;
-    }
-    (solution, standings)
 }
 
 /// Whether the fitted values, as far as they can be trusted, give another warm-up than the start did.
@@ -197,7 +195,7 @@ pub fn residuals_n(measurements: &Measurements<'_>, fits: &[CableFit]) -> Vec<Ve
         seat: None,
     };
     let values: Vec<Values> = fits.iter().map(|fit| fit.values).collect();
-    let of_cable = |(member, forces): (&Member<'_>, &Forces)| {
+    let of_cable = |(member, forces): (&Member<'_>, &Arc<Forces>)| {
         let rows = member.record.rows.iter().enumerate();
         rows.map(|(cycle, row)| forces.at(cycle).0 - row.reference_n).collect()
     };

@@ -11,6 +11,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
 use fric_core::LANES;
+use fric_core::parameters::Values;
 
 use super::pass::{Forces, LanePass, Part, room_for, with_room_for};
 
@@ -30,9 +31,9 @@ pub struct Gang<'a> {
 enum State<'a> {
     /// On its own.
     Busy,
-    /// Waits for a pass.
-    Waiting(Box<Part<'a>>),
-    /// Its pass is done; `None` when stopped.
+    /// Waits for a pass, with the room for it.
+    Waiting(Part<'a>, Forces),
+    /// Its pass is done, `None` when stopped, and it has yet to notice.
     Served(Option<Forces>),
     /// Ended.
     Gone,
@@ -71,15 +72,25 @@ impl<'a> Seat<'a> {
         if let Some((_, forces)) = self.last.borrow().as_ref().filter(|(last, _)| last.serves(part)) {
             return Some(Arc::clone(forces));
         }
-        let forces = Arc::new(self.pass(part)?);
+        let before = self.last.take().and_then(|(_, forces)| Arc::into_inner(forces)).unwrap_or_default();
+        let forces = Arc::new(self.pass(part, before)?);
         *self.last.borrow_mut() = Some((part.clone(), Arc::clone(&forces)));
         Some(forces)
     }
 
-    fn pass(&self, part: &Part<'a>) -> Option<Forces> {
+    /// Moves the forces of the last pass by their derivatives, should they be those `at`, to what they are for other `values`.
+    pub fn step(&self, at: &Part<'a>, values: &Values) {
+        if let Some((part, forces)) = self.last.borrow_mut().as_mut().filter(|(last, _)| last.serves(at)) {
+            let by: Vec<f64> = part.free.iter().map(|of| values[of.place()] - part.values[of.place()]).collect();
+            Arc::make_mut(forces).step(&by);
+            part.values = *values;
+        }
+    }
+
+    fn pass(&self, part: &Part<'a>, room: Forces) -> Option<Forces> {
         let mut seats = self.gang.lock();
         if let Some(seat) = seats.get_mut(self.place) {
-            *seat = State::Waiting(Box::new(part.clone()));
+            *seat = State::Waiting(part.clone(), room);
         }
         loop {
             match seats.get_mut(self.place) {
@@ -87,10 +98,10 @@ impl<'a> Seat<'a> {
                     let State::Served(forces) = std::mem::replace(seat, State::Busy) else { return None };
                     return forces;
                 }
-                Some(State::Waiting(_)) => {}
+                Some(State::Waiting(..)) => {}
                 _ => return None,
             }
-            if seats.iter().any(|seat| matches!(seat, State::Busy)) {
+            if seats.iter().any(|seat| matches!(seat, State::Busy | State::Served(_))) {
                 seats = self.gang.turn.wait(seats).unwrap_or_else(PoisonError::into_inner);
             } else {
                 serve(&mut seats, self.gang.stop);
@@ -109,37 +120,44 @@ impl Drop for Seat<'_> {
     }
 }
 
-/// Runs the passes of all that wait, those with as many derivatives and cycles together. Nobody else has anything to do meanwhile.
+/// Runs the passes of those that wait for the fewest cycles, with as many derivatives, together; the others wait on, for these may
+/// join them. Nobody else has anything to do meanwhile.
 fn serve(seats: &mut [State<'_>], stop: &AtomicBool) {
-    let waits = |seat: &State<'_>| match seat {
-        State::Waiting(part) => Some((room_for(part.free.len()), part.record.rows.len())),
+    let wish = |seat: &State<'_>| match seat {
+        State::Waiting(part, _) => Some((part.record.rows.len(), room_for(part.carried()))),
         _ => None,
     };
-    while let Some(alike) = seats.iter().find_map(waits) {
-        let mut together = Vec::with_capacity(seats.len());
-        for seat in seats.iter_mut().filter(|seat| waits(seat) == Some(alike)) {
-            if let State::Waiting(part) = std::mem::replace(seat, State::Served(None)) {
-                together.push((seat, *part));
-            }
+    let Some(least) = seats.iter().filter_map(wish).min() else { return };
+    let mut together = Vec::with_capacity(seats.len());
+    for seat in seats.iter_mut().filter(|seat| wish(seat) == Some(least)) {
+        if let State::Waiting(part, room) = std::mem::replace(seat, State::Served(None)) {
+            together.push((seat, (part, room)));
         }
-        with_room_for!(alike.0, serve_together(together, stop));
     }
+    with_room_for!(least.1, serve_together(together, stop));
 }
 
-fn serve_together<const N: usize>(waiting: Vec<(&mut State<'_>, Part<'_>)>, stop: &AtomicBool) {
-    let (seats, parts): (Vec<_>, Vec<_>) = waiting.into_iter().unzip();
-    if let Some(forces) = all_forces::<N>(&parts, stop) {
+fn serve_together<const N: usize>(waiting: Vec<(&mut State<'_>, (Part<'_>, Forces))>, stop: &AtomicBool) {
+    let (seats, waiting): (Vec<_>, Vec<_>) = waiting.into_iter().unzip();
+    let (parts, rooms): (Vec<_>, Vec<_>) = waiting.into_iter().unzip();
+    if let Some(forces) = all_forces::<N>(&parts, rooms, stop) {
         for (seat, forces) in seats.into_iter().zip(forces) {
             *seat = State::Served(Some(forces));
         }
     }
 }
 
-/// Forces of up to [`LANES`] cables in every cycle; `None` when stopped.
-pub fn all_forces<const N: usize>(parts: &[Part<'_>], stop: &AtomicBool) -> Option<Vec<Forces>> {
+/// Forces of up to [`LANES`] cables in every cycle, in the room given for each; `None` when stopped.
+pub fn all_forces<const N: usize>(
+    parts: &[Part<'_>],
+    mut forces: Vec<Forces>,
+    stop: &AtomicBool,
+) -> Option<Vec<Forces>> {
     let mut pass = LanePass::<N>::new(parts.iter().cloned());
     let cycles = parts.first().map_or(0, |part| part.record.rows.len());
-    let mut forces: Vec<Forces> = parts.iter().take(LANES).map(|_| Forces::new(N, cycles)).collect();
+    for (forces, part) in forces.iter_mut().zip(parts) {
+        forces.clear(part.free.len(), cycles);
+    }
     for (start, rows) in parts.first().iter().flat_map(|part| part.record.logs()) {
         pass.rest();
         let end = start + rows.len();

@@ -13,7 +13,7 @@ use nalgebra::DMatrix;
 use super::gram::Gram;
 use super::problem::{Comparison, Member, Problem};
 use super::record::Row;
-use super::solve::search_near;
+use super::solve::search;
 use super::vector::{Coordinate, Parameter, with};
 
 /// μ about which friction is linearised.
@@ -29,13 +29,11 @@ const FAST_M_PER_S: f64 = 1.0;
 /// Way since the last reversal in which a cable may preslide, m.
 const PRESLIDING_M: Range<f64> = 1e-5..1e-2;
 /// Cycles that are enough for a linear step.
-const ENOUGH_SLIDING: usize = 4096;
+const ENOUGH_SLIDING: usize = 1024;
 /// Cycles over which σ is looked for.
 const STRETCH: usize = 8192;
 /// A refined start further than this factor from the coarse one has lost its way.
 const REFINEMENT: f64 = 3.0;
-/// Standard errors within which the minimum over the stretch is looked for; the whole log's are smaller.
-const NEAR_ERRORS: f64 = 0.3;
 /// A valley whose sum of squares is above this multiple of the least is no start.
 const SHALLOW: f64 = 1.5;
 
@@ -44,7 +42,7 @@ pub fn starts(problem: &Problem<'_>, given: &[Values], cycle_s: f64) -> Vec<Vec<
     let coarse = valleys(problem, given, cycle_s);
     let Some(stretch) = stretch_of(problem) else { return coarse };
     let refine = |start: Vec<Values>| {
-        let (refined, _) = search_near(&stretch, &start, cycle_s, NEAR_ERRORS);
+        let (refined, _) = search(&stretch, &start, cycle_s);
         let near = |one: &Values, other: &Values| {
             [MU, SIGMA].into_iter().all(|place| (1.0 / REFINEMENT..=REFINEMENT).contains(&(one[place] / other[place])))
         };

@@ -120,6 +120,8 @@ const WIDE_RATIO: f64 = 1e3;
 const FAR: f64 = 1e3;
 /// Starts keep this share of a range's width away from its ends, where the coordinate has no slope.
 const MARGIN_RATIO: f64 = 1e-9;
+/// How far slopes may part over a step that counts as straight: a thousandth of a standard error is too little to matter.
+const STRAIGHT_RATIO: f64 = 1e-3;
 
 impl Coordinate {
     /// Of a parameter at a cycle time.
@@ -151,6 +153,12 @@ impl Coordinate {
                 2.0 * share.sqrt().asin()
             }
         }
+    }
+
+    /// Whether the value follows the coordinate in proportion from one place to another, to [`STRAIGHT_RATIO`].
+    pub fn is_straight(self, from: f64, to: f64) -> bool {
+        let (before, after) = (self.value_at(from).1, self.value_at(to).1);
+        (after - before).abs() <= STRAIGHT_RATIO * before.abs()
     }
 
     /// The value at a coordinate, and its slope.
