@@ -1,6 +1,6 @@
 //! Times the identification of a robot's cables from a log, and prints what it finds: for `benches/peers/fit/run.sh`.
 //!
-//! `fit LOG ROBOT` prints `cable NAME mu sigma F_pv offset samples evaluations` for each cable, then
+//! `fit LOG ROBOT` prints `cable NAME mu sigma F_pv offset samples warm-up evaluations` for each cable, then
 //! `seconds`, the median, and `processor_seconds`, the mean, of the fit of all cables alone, without reading. Processor time is
 //! the kernel's (Linux), of all threads together: what others do on the machine disturbs it less.
 
@@ -65,7 +65,10 @@ fn main() {
     let processor_seconds = (processor_ticks() - processor) / TICKS_PER_SECOND / RUNS as f64;
     for (name, CableFit { values, samples, evaluation_count, .. }) in robot.cable_names().iter().zip(&fits) {
         let [mu, sigma, viscous, offset] = [MU, SIGMA, VISCOUS, OFFSET].map(|place| values[place]);
-        println!("cable {name} {mu} {sigma} {viscous} {offset} {} {evaluation_count}", samples.used);
+        println!(
+            "cable {name} {mu} {sigma} {viscous} {offset} {} {} {evaluation_count}",
+            samples.used, samples.warm_up
+        );
     }
     println!("seconds {:.6}", median(times));
     println!("processor_seconds {processor_seconds:.6}");

@@ -35,7 +35,7 @@ pub fn discover_cable(record: &CableRecord<'_>, progress: &Progress) -> CableDis
     let mut standings = engine::prepared(record);
     leave_out(&faults, record.cycle_s, &mut standings);
     let gang = engine::Gang::new(1, stop);
-    let paper = engine::Search::run(record, standings, &FitOptions::default(), stop, gang.seat(0));
+    let paper = engine::Search::run(record, &standings, &FitOptions::default(), stop, gang.seat(0));
     let samples = engine::count(&paper.standings);
     if let Some(lack) = lack_of_samples(&samples, record.cycle_s) {
         return CableDiscovery::untold(record, samples, lack);
@@ -147,7 +147,7 @@ impl<'a> Case<'a> {
         let rest_n = bench.residuals_n(&naming.model.values);
         let noise_n = white_noise(&rest_n).unwrap_or(noise_n);
         let excess = self.excess(&rest_n, noise_n);
-        let (share, before) = (self.excess_share(&rest_n, noise_n), self.excess_share(&residual_n, noise_n));
+        let (share, before) = (excess_share(&rest_n, noise_n), excess_share(&residual_n, noise_n));
         let is_small = share <= WORTH.max(REMAINDER * if naming.named.is_empty() { 0.0 } else { before });
         let rest_places = excess.places(conditions);
         let is_wander = !is_small && is_wander(&excess, &rest_places);
@@ -160,11 +160,6 @@ impl<'a> Case<'a> {
             rest_places,
             rest_n,
         }
-    }
-
-    /// Mean square above the noise's as a share of it.
-    fn excess_share(&self, residual_n: &[f64], noise_n: f64) -> f64 {
-        deviation(residual_n).rms().map_or(0.0, |rms_n| (rms_n / noise_n).powi(2) - 1.0)
     }
 
     fn scale(&self, base: &Trial, noise_n: f64) -> Scale {
@@ -230,7 +225,7 @@ impl<'a> Case<'a> {
         let after = model(&naming.model);
         let clean_n = bench.residuals_n(&base.values);
         let places = self.excess(&clean_n, *noise_n).concentrations(conditions);
-        let places = if self.excess_share(&clean_n, *noise_n) > WORTH { places } else { Vec::new() };
+        let places = if excess_share(&clean_n, *noise_n) > WORTH { places } else { Vec::new() };
         let is_foreign = !foreign.faults.is_empty() || !foreign.hum.is_empty() || foreign.stretch.is_some();
         let unexplained = (is_foreign || !outcome.rest_is_noise).then(|| {
             let rms_n = after.held_out_n.rms().unwrap_or(f64::NAN);
@@ -309,6 +304,11 @@ fn finding(search: &Search<'_, '_>, model: &Trial, named: &Named, held_out_n: De
         }
     });
     Finding { row: named.row, held_out_n, delta_bic, runner_up }
+}
+
+/// Mean square above the noise's as a share of it.
+fn excess_share(residual_n: &[f64], noise_n: f64) -> f64 {
+    deviation(residual_n).rms().map_or(0.0, |rms_n| (rms_n / noise_n).powi(2) - 1.0)
 }
 
 fn deviation(residual_n: &[f64]) -> Deviation {

@@ -20,6 +20,16 @@ pub enum Spacing {
     Widths(usize),
 }
 
+impl Spacing {
+    /// The same with no more than so many bins.
+    pub fn at_most(self, most: usize) -> Self {
+        match self {
+            Self::Crowds(count) => Self::Crowds(count.min(most)),
+            Self::Widths(count) => Self::Widths(count.min(most)),
+        }
+    }
+}
+
 /// One operating condition over all cycles.
 #[derive(Clone, Debug)]
 pub struct Condition {

@@ -38,20 +38,20 @@ pub struct Stretch {
 
 /// Stretches of a cable's log with a faulty sensor, in the order of time.
 pub fn faulty_stretches(record: &CableRecord<'_>) -> Vec<Stretch> {
-    let forces_n: Vec<f64> = record.rows.iter().map(|row| row.signals.sensor_force_n).collect();
-    let runs: Vec<Range<usize>> = forces_n
+    let shown: Vec<f64> = record.rows.iter().map(|row| row.signals.sensor_force_n).collect();
+    let runs: Vec<Range<usize>> = shown
         .chunk_by(|one, next| one.to_bits() == next.to_bits())
         .scan(0, |start, run| {
             *start += run.len();
             Some(*start - run.len()..*start)
         })
         .collect();
-    let usual = usual_length(&runs, forces_n.len());
+    let usual = usual_length(&runs, shown.len());
     let mut stretches = Vec::new();
-    let ends = ends_of_range(&forces_n, usual);
+    let ends = ends_of_range(&shown, usual);
     let is_end = |force_n: f64| ends.iter().any(|end| end.to_bits() == force_n.to_bits());
     for run in runs {
-        let Some(force_n) = forces_n.get(run.start) else { continue };
+        let Some(force_n) = shown.get(run.start) else { continue };
         if is_end(*force_n) {
             stretches.push(Stretch { fault: Fault::Clipped, cycles: run });
         } else if run.len() >= FEWEST_STILL.max(STILL_RATIO * usual) {

@@ -35,11 +35,13 @@ pub struct Line {
 
 impl Line {
     /// Half its height from peak to peak.
+    #[must_use]
     pub fn amplitude(&self) -> f64 {
         self.sine.hypot(self.cosine)
     }
 
     /// Its value in a cycle.
+    #[must_use]
     pub fn at(&self, cycle: usize, cycle_s: f64) -> f64 {
         let (sin, cos) = phase(self.frequency_hz, cycle, cycle_s).sin_cos();
         self.sine * sin + self.cosine * cos

@@ -4,6 +4,9 @@ use super::conditions::{Condition, Spacing, sign};
 use super::places::Bins;
 use crate::fit::CableRecord;
 
+/// Most bins of a figure.
+const MOST_BINS: usize = 32;
+
 /// Two residuals over one condition.
 #[derive(Clone, Debug)]
 pub struct Profile {
@@ -72,6 +75,7 @@ impl Sums {
 
 /// Both residuals, N, NaN where a sample does not count, over a condition; `None` where it is the same all along.
 pub fn profile(record: &CableRecord<'_>, condition: &Condition, before_n: &[f64], after_n: &[f64]) -> Option<Profile> {
+    let condition = &Condition { bins: condition.bins.at_most(MOST_BINS), ..condition.clone() };
     let bins = Bins::new(condition, before_n)?;
     let mut sums = vec![[Sums::default(); 2]; bins.count()];
     let samples = condition.values.iter().zip(record.rows).zip(before_n.iter().zip(after_n));

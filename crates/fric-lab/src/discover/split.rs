@@ -28,12 +28,12 @@ pub fn split(record: &CableRecord<'_>) -> Vec<Block> {
 }
 
 /// Blocks of one log.
-fn cut(cycles: Range<usize>, cycle_s: f64, draw: &mut u32) -> Vec<Block> {
+fn cut(log: Range<usize>, cycle_s: f64, draw: &mut u32) -> Vec<Block> {
     #[expect(clippy::cast_precision_loss, reason = "a count of cycles")]
-    let longest = (cycles.len() as f64 * cycle_s / SHORTEST_S).floor();
+    let longest = (log.len() as f64 * cycle_s / SHORTEST_S).floor();
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to a small count")]
     let count = longest.clamp(2.0, MOST_BLOCKS) as usize & !1;
-    let edge = |place: usize| cycles.start + place * cycles.len() / count;
+    let edge = |place: usize| log.start + place * log.len() / count;
     let mut first_held_out = false;
     let block = |place: usize| {
         if place.is_multiple_of(2) {

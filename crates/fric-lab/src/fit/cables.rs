@@ -50,7 +50,9 @@ fn fit_cable<'a>(
     progress: &'a Progress,
     seat: Seat<'a>,
 ) -> Vec<CableFit> {
-    let search = Search::run(record, prepared(record), options, progress.stop_flag(), seat);
+    let search = Search::run(record, &prepared(record), options, progress.stop_flag(), seat);
+    // Errors are those that a replay finds.
+    search.problem.forget_step();
     cable_fits(&search.problem, &[record.params.values()], &search.solution, &search.standings)
 }
 
@@ -71,7 +73,7 @@ impl<'a> Search<'a> {
     /// `all` are the standings before anything is known about the friction, see [`prepared`].
     pub fn run(
         record: &CableRecord<'a>,
-        all: Vec<Standing>,
+        all: &[Standing],
         options: &FitOptions,
         stop: &'a AtomicBool,
         seat: Seat<'a>,
@@ -81,21 +83,21 @@ impl<'a> Search<'a> {
             members: vec![Member { record: *record, free: options.free(record.params) }],
             comparison: Comparison::Forces,
             loss: Loss::Squares,
-            used: used(&all),
+            used: used(all),
             stop,
             seat: Some(Rc::new(seat)),
         };
         let starts = start::starts(&problem, &[given], record.cycle_s);
         let start = starts.first().and_then(|start| start.first()).copied().unwrap_or(given);
         let solve_without_warm_up = |starts: Vec<Vec<Values>>| {
-            let mut standings = all.clone();
+            let mut standings = all.to_vec();
             leave_out_warm_up(&problem, &starts, &mut standings);
             let mut problem = Problem { used: used(&standings), ..problem.clone() };
             let solution = solve(&mut problem, starts, &[given], record.cycle_s, options.weighing, &mut standings, &[]);
             (solution, standings)
         };
         let (mut solution, mut standings) = solve_without_warm_up(starts);
-        if warm_up_was_misjudged(record, &solution, &all, &standings) {
+        if warm_up_was_misjudged(record, &solution, all, &standings) {
             let evaluation_count = solution.evaluation_count;
             (solution, standings) = solve_without_warm_up(vec![solution.values]);
             solution.evaluation_count += evaluation_count;

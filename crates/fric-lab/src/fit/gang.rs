@@ -14,6 +14,7 @@ use fric_core::LANES;
 use fric_core::parameters::Values;
 
 use super::pass::{Forces, LanePass, Part, room_for, with_room_for};
+use super::vector::Parameter;
 
 /// Samples between two looks at the request to stop.
 const CHUNK: usize = 2048;
@@ -32,7 +33,7 @@ enum State<'a> {
     /// On its own.
     Busy,
     /// Waits for a pass, with the room for it.
-    Waiting(Part<'a>, Forces),
+    Waiting(Box<Part<'a>>, Forces),
     /// Its pass is done, `None` when stopped, and it has yet to notice.
     Served(Option<Forces>),
     /// Ended.
@@ -44,7 +45,16 @@ enum State<'a> {
 pub struct Seat<'a> {
     gang: &'a Gang<'a>,
     place: usize,
-    last: RefCell<Option<(Part<'a>, Arc<Forces>)>>,
+    last: RefCell<Option<Last<'a>>>,
+}
+
+/// What was asked for last, and what came out.
+#[derive(Debug)]
+struct Last<'a> {
+    part: Part<'a>,
+    forces: Arc<Forces>,
+    /// Whether they were moved from where they came out.
+    moved: bool,
 }
 
 impl<'a> Gang<'a> {
@@ -69,28 +79,35 @@ impl<'a> Seat<'a> {
     /// Forces of a cable in every cycle, with the derivatives that its part asks for, or more; `None` when stopped. Those of the
     /// last pass are at hand.
     pub fn forces(&self, part: &Part<'a>) -> Option<Arc<Forces>> {
-        if let Some((_, forces)) = self.last.borrow().as_ref().filter(|(last, _)| last.serves(part)) {
-            return Some(Arc::clone(forces));
+        if let Some(last) = self.last.borrow().as_ref().filter(|last| last.part.serves(part)) {
+            return Some(Arc::clone(&last.forces));
         }
-        let before = self.last.take().and_then(|(_, forces)| Arc::into_inner(forces)).unwrap_or_default();
-        let forces = Arc::new(self.pass(part, before)?);
-        *self.last.borrow_mut() = Some((part.clone(), Arc::clone(&forces)));
+        let room = self.last.take().and_then(|last| Arc::into_inner(last.forces)).unwrap_or_default();
+        let forces = Arc::new(self.pass(part, room)?);
+        *self.last.borrow_mut() = Some(Last { part: part.clone(), forces: Arc::clone(&forces), moved: false });
         Some(forces)
     }
 
     /// Moves the forces of the last pass by their derivatives, should they be those `at`, to what they are for other `values`.
     pub fn step(&self, at: &Part<'a>, values: &Values) {
-        if let Some((part, forces)) = self.last.borrow_mut().as_mut().filter(|(last, _)| last.serves(at)) {
-            let by: Vec<f64> = part.free.iter().map(|of| values[of.place()] - part.values[of.place()]).collect();
-            Arc::make_mut(forces).step(&by);
-            part.values = *values;
+        if let Some(last) = self.last.borrow_mut().as_mut().filter(|last| last.part.serves(at)) {
+            let change = |of: &Parameter| values[of.place()] - last.part.values[of.place()];
+            let by: Vec<f64> = last.part.free.iter().map(change).collect();
+            Arc::make_mut(&mut last.forces).step(&by);
+            last.part.values = *values;
+            last.moved = true;
         }
+    }
+
+    /// Forgets forces that were moved: the next are those of a pass, to the last bit.
+    pub fn forget_moved(&self) {
+        self.last.borrow_mut().take_if(|last| last.moved);
     }
 
     fn pass(&self, part: &Part<'a>, room: Forces) -> Option<Forces> {
         let mut seats = self.gang.lock();
         if let Some(seat) = seats.get_mut(self.place) {
-            *seat = State::Waiting(part.clone(), room);
+            *seat = State::Waiting(Box::new(part.clone()), room);
         }
         loop {
             match seats.get_mut(self.place) {
@@ -131,7 +148,7 @@ fn serve(seats: &mut [State<'_>], stop: &AtomicBool) {
     let mut together = Vec::with_capacity(seats.len());
     for seat in seats.iter_mut().filter(|seat| wish(seat) == Some(least)) {
         if let State::Waiting(part, room) = std::mem::replace(seat, State::Served(None)) {
-            together.push((seat, (part, room)));
+            together.push((seat, (*part, room)));
         }
     }
     with_room_for!(least.1, serve_together(together, stop));

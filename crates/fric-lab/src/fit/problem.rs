@@ -263,6 +263,11 @@ impl<'a> Problem<'a> {
         of_lanes.map(|forces| forces.into_iter().flatten().map(Arc::new).collect())
     }
 
+    /// Lets the next forces be those of a pass again, after [`step`](Self::step).
+    pub fn forget_step(&self) {
+        self.seat.iter().for_each(|seat| seat.forget_moved());
+    }
+
     /// Goes from values that were evaluated last to others by the derivatives there.
     pub fn step(&self, at: &[Values], to: &[Values]) {
         if let (Some(seat), [member], [at], [to]) = (&self.seat, self.members.as_slice(), at, to) {

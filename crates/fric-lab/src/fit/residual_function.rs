@@ -35,7 +35,7 @@ impl ResidualFunction {
         let free = options.free(record.params);
         let stop = AtomicBool::new(false);
         let gang = Gang::new(1, &stop);
-        let Search { start, standings, .. } = Search::run(record, prepared(record), options, &stop, gang.seat(0));
+        let Search { start, standings, .. } = Search::run(record, &prepared(record), options, &stop, gang.seat(0));
         let counts = |standing: &Standing| [Standing::Used, Standing::Outlier].contains(standing);
         let used = standings.iter().map(counts).collect();
         Self { cable: Arc::new(Cable::of(record)), free, given, start, used }

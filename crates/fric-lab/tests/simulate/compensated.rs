@@ -84,10 +84,10 @@ fn every_effect_is_the_same_physics_to_both() {
     }
 }
 
-/// A loop only knows the tension of the past, and smooths its noise: the lag is what is left.
+/// A loop only knows the tension of the past, and a play keeps its noise out: the little that both are late is what is left.
 #[test]
 fn the_stretch_of_a_cable_under_a_slow_load_is_the_same_to_both() {
-    let stretching = "{ kind = \"cable_elasticity\", compliance_m_per_n = 0.00025 }";
+    let stretching = "{ kind = \"cable_elasticity\", compliance_m_per_n = 0.00025, play_n = 0.02 }";
     let robot = bench_with(BENCH_PULLEYS, BENCH_FRICTION, &format!("effects = [{stretching}]"));
     let effects = vec![HiddenEffect::parse("cable_elasticity:compliance_m_per_n=0.00025").unwrap()];
     let pushed = SimulationOptions { hand_n: 1.5, ..SimulationOptions::default() };
@@ -95,7 +95,7 @@ fn the_stretch_of_a_cable_under_a_slow_load_is_the_same_to_both() {
     let without = SimulationOptions { effects, ..pushed };
     let (_, without_n) = rms_n(&bench(BENCH_PULLEYS, BENCH_FRICTION), &without)[0];
     println!("{:.4} of the noise, {:.4} without the effect", after_n / FLOOR_N, without_n / FLOOR_N);
-    assert!(after_n < 1.5 * FLOOR_N && without_n > 3.0 * FLOOR_N);
+    assert!(after_n < 1.2 * FLOOR_N && without_n > 3.0 * FLOOR_N);
 }
 
 #[test]
