@@ -81,7 +81,9 @@ impl Chart {
         let ticks = edges.iter().enumerate().step_by(every);
         #[expect(clippy::cast_precision_loss, reason = "a small count")]
         let ticks: Vec<(f64, String)> = ticks.map(|(place, edge)| (place as f64, significant(*edge))).collect();
-        chart.draw_x_ticks(ticks.into_iter());
+        let is_repeated = |place: usize| place > 0 && ticks[place].1 == ticks[place - 1].1;
+        let distinct = ticks.iter().enumerate().filter(|(place, _)| !is_repeated(*place));
+        chart.draw_x_ticks(distinct.map(|(_, tick)| tick.clone()));
         chart
     }
 
@@ -137,7 +139,8 @@ impl Chart {
         for (tick, text) in ticks {
             let at = self.at_x(tick);
             // The unit stands at the end.
-            let text = if at + 0.5 * width_of(&text) > right - 9.0 { String::new() } else { text };
+            let is_far_right = at + 0.5 * width_of(&text) > right + 2.0 - width_of(self.x.unit);
+            let text = if is_far_right { String::new() } else { text };
             let _ = write!(
                 self.svg,
                 "<path class=\"axis\" d=\"M{at:.1} {bottom:.1}v4\"/><text x=\"{at:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{text}</text>",

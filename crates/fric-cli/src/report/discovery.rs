@@ -227,7 +227,10 @@ fn over_condition(cable: &DiscoverCableResult, profile: &Profile) -> Markup {
                 (key("before", "given model"))
                 @if is_extended { (key("after", "extended model")) }
             }
-            p.soft { "Each step holds as many samples. Means are dashed while the cable is reeled in, solid while it is paid out." }
+            p.soft {
+                (if profile.are_even { "Each step is as wide." } else { "Each step holds as many samples." })
+                " Means are dashed while the cable is reeled in, solid while it is paid out."
+            }
             div.views {
                 figure {
                     p.soft { "root mean square, dotted the noise" }

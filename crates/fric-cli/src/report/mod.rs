@@ -52,7 +52,7 @@ section.cable { scroll-margin-top: 3rem; border-top: 2px solid var(--line); marg
 h3 { font-size: 1rem; margin: 1.4rem 0 .3rem; } figure { margin: 0; break-inside: avoid; }
 .verdict { font-weight: 600; } .complete { color: var(--good); } .extended { color: var(--after); }
 .unexplained { color: var(--flag); } .untold { color: var(--soft); }
-.wide { overflow-x: auto; } td.words, th.words { text-align: left; } tr.found td { font-weight: 600; }
+.wide { overflow-x: auto; } .views td { white-space: nowrap; } td.words, th.words { text-align: left; } tr.found td { font-weight: 600; }
 dl { display: grid; grid-template-columns: max-content 1fr; gap: .15rem 1rem; margin: .4rem 0; }
 dt { color: var(--soft); } dd { margin: 0; } ul { margin: .4rem 0; padding-left: 1.2rem; }
 @media print { nav { display: none; } section.cable { break-inside: auto; } section.cable + section.cable { break-before: page; }

@@ -93,8 +93,8 @@ impl Excess<'_> {
         places
     }
 
-    /// Where the excess sits for people: conditions in a range of which it is concentrated, or that it is a function of, the
-    /// surest first. The significance is the greater of the two.
+    /// Where the excess sits for people: conditions in a range of which it is concentrated, or that it is a function of,
+    /// what is sure and much first. The significance is the greater of the two.
     pub fn concentrations(&self, conditions: &[Condition]) -> Vec<Place> {
         let mut places: Vec<Place> = conditions
             .iter()
@@ -107,7 +107,8 @@ impl Excess<'_> {
                 (is_function || is_dense && significance >= WORTH_TELLING).then_some(Place { significance, ..place })
             })
             .collect();
-        places.sort_by(|one, other| other.significance.total_cmp(&one.significance));
+        let tells = |place: &Place| place.significance * (place.share_of_excess - place.share_of_samples);
+        places.sort_by(|one, other| tells(other).total_cmp(&tells(one)));
         places
     }
 

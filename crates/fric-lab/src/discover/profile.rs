@@ -1,13 +1,13 @@
 //! A residual over one operating condition, before and after: what a figure shows of a place.
 
-use super::conditions::{Condition, sign};
+use super::conditions::{Condition, Spacing, sign};
 use super::places::Bins;
 use crate::fit::CableRecord;
 
 /// Most bins of a figure.
 const MOST_BINS: usize = 32;
 
-/// Two residuals over one condition, in bins of as many samples each.
+/// Two residuals over one condition.
 #[derive(Clone, Debug)]
 pub struct Profile {
     /// The condition.
@@ -16,6 +16,8 @@ pub struct Profile {
     pub unit: &'static str,
     /// In the order of the condition.
     pub bins: Vec<ProfileBin>,
+    /// The bins are as wide as each other; otherwise they hold as many samples.
+    pub are_even: bool,
 }
 
 /// One bin of the condition.
@@ -91,5 +93,6 @@ pub fn profile(record: &CableRecord<'_>, condition: &Condition, before_n: &[f64]
         let [from, to] = *edges else { return None };
         Some(ProfileBin { from, to, before: before.cell(), after: after.cell() })
     });
-    Some(Profile { signal: condition.signal, unit: condition.unit, bins: bins.collect() })
+    let are_even = matches!(condition.bins, Spacing::Widths(_));
+    Some(Profile { signal: condition.signal, unit: condition.unit, bins: bins.collect(), are_even })
 }
