@@ -3,8 +3,8 @@
 //! Two questions are asked of every condition. How much of the excess is a function of it, told apart by the direction of
 //! motion: means over bins of the samples learned from, tried on those held out, so that chance gains nothing. And in
 //! which range of it the excess is densest, by the samples learned from, and how much more of it than its share those held
-//! out have there. The scatter of either over the blocks of the log gives its significance, which holds for residuals that
-//! remember no longer than a block.
+//! out have there. What chance would gain by the means is seen when the signs of the blocks' residuals are drawn at random; the
+//! scatter over the blocks tells how sure the density is. Both hold for residuals that remember no longer than a block.
 
 use std::ops::Range;
 
@@ -26,6 +26,8 @@ const LEAST_MORE: f64 = 0.1;
 const WHOLE: f64 = 0.995;
 /// Bins beside the densest one belong to it down to this share of its density.
 const SHOULDER: f64 = 0.4;
+/// Draws of signs for the blocks that show what chance would gain.
+const FLIPS: u64 = 40;
 /// A bin with fewer samples tells nothing.
 const FEWEST_SAMPLES: f64 = 50.0;
 /// Intervals in time that are worth a look.
@@ -179,38 +181,51 @@ impl Excess<'_> {
 
     /// How much of the squares of all samples a function of the condition and of the direction takes away, and its significance.
     fn explained(&self, bins: &Bins, condition: &Condition) -> (f64, f64) {
-        let cell_of = |cycle: usize| -> Option<usize> {
-            let bin = bins.of(*condition.values.get(cycle)?)?;
-            let direction = sign(self.record.rows.get(cycle)?.signals.displacement_m);
-            Some(3 * bin + if direction > 0.0 { 2 } else { usize::from(direction < 0.0) })
-        };
-        let residual = |cycle: usize| self.residual_n.get(cycle).copied().filter(|number| number.is_finite());
-        let mut means = vec![(0.0_f64, 0.0_f64); 3 * bins.count()];
-        for cycle in self.blocks.iter().filter(|block| !block.held_out).flat_map(|block| block.cycles.clone()) {
-            let (Some(cell), Some(residual_n)) = (cell_of(cycle), residual(cycle)) else { continue };
-            if let Some((sum, count)) = means.get_mut(cell) {
-                (*sum, *count) = (*sum + residual_n, *count + 1.0);
-            }
-        }
-        let mut gains = Vec::new();
-        let (mut held_out, mut all) = (0.0, 0.0);
-        for block in self.blocks {
-            let mut gain = 0.0;
+        let cells = 3 * bins.count();
+        let mut sums = vec![(0.0_f64, 0.0_f64); cells * self.blocks.len()];
+        for (place, block) in self.blocks.iter().enumerate() {
             for cycle in block.cycles.clone() {
-                let (Some(cell), Some(residual_n)) = (cell_of(cycle), residual(cycle)) else { continue };
-                all += 1.0;
-                if let Some((sum, count)) = means.get(cell).filter(|(_, count)| block.held_out && *count > 0.0) {
-                    held_out += 1.0;
-                    let mean_n = sum / count;
-                    gain += 2.0 * residual_n * mean_n - mean_n * mean_n;
+                let residual_n = self.residual_n.get(cycle).copied().filter(|number| number.is_finite());
+                let bin = condition.values.get(cycle).and_then(|value| bins.of(*value));
+                let (Some(residual_n), Some(bin)) = (residual_n, bin) else { continue };
+                let direction = self.record.rows.get(cycle).map_or(0.0, |row| sign(row.signals.displacement_m));
+                let cell = 3 * bin + if direction > 0.0 { 2 } else { usize::from(direction < 0.0) };
+                if let Some((sum, count)) = sums.get_mut(place * cells + cell) {
+                    (*sum, *count) = (*sum + residual_n, *count + 1.0);
                 }
             }
-            if block.held_out {
-                gains.push(gain);
+        }
+        let gain = |flip: &dyn Fn(usize) -> f64| self.gain_of_means(&sums, cells, flip);
+        let chances: Vec<f64> =
+            (1..=FLIPS).map(|draw| gain(&|block| if scattered(draw, block) { 1.0 } else { -1.0 })).collect();
+        #[expect(clippy::cast_precision_loss, reason = "a small count")]
+        let count = chances.len() as f64;
+        let mean = chances.iter().sum::<f64>() / count;
+        let scatter = (chances.iter().map(|chance| (chance - mean).powi(2)).sum::<f64>() / (count - 1.0)).sqrt();
+        let found = gain(&|_| 1.0);
+        (found, if scatter > 0.0 { (found - mean) / scatter } else { 0.0 })
+    }
+
+    /// What the means over cells of the samples learned from take away of the squares of those held out, in proportion to all; the
+    /// residuals of each block times `flip`. `sums` are those of the residuals and the counts, block by block.
+    fn gain_of_means(&self, sums: &[(f64, f64)], cells: usize, flip: &dyn Fn(usize) -> f64) -> f64 {
+        let mut means = vec![(0.0, 0.0); cells];
+        let blocks = || self.blocks.iter().zip(sums.chunks_exact(cells)).enumerate();
+        for (place, (_, of_block)) in blocks().filter(|(_, (block, _))| !block.held_out) {
+            for (mean, (sum, count)) in means.iter_mut().zip(of_block) {
+                *mean = (mean.0 + flip(place) * sum, mean.1 + count);
             }
         }
-        let (sum, error) = sum_and_error(&gains);
-        (sum * if held_out > 0.0 { all / held_out } else { 0.0 }, if error > 0.0 { sum / error } else { 0.0 })
+        let (mut gain, mut held_out) = (0.0, 0.0);
+        for (place, (_, of_block)) in blocks().filter(|(_, (block, _))| block.held_out) {
+            for ((total, known), (sum, count)) in means.iter().zip(of_block).filter(|((_, known), _)| *known > 0.0) {
+                let mean_n = total / known;
+                gain += 2.0 * flip(place) * sum * mean_n - count * mean_n * mean_n;
+                held_out += count;
+            }
+        }
+        let all: f64 = sums.iter().map(|(_, count)| count).sum();
+        if held_out > 0.0 { gain * all / held_out } else { 0.0 }
     }
 
     /// The contiguous bins about the one with most excess a sample, in some blocks.
@@ -267,6 +282,14 @@ impl Excess<'_> {
         }
         found
     }
+}
+
+/// One bit for a draw and a block, without a pattern that a run could have (`SplitMix64`).
+fn scattered(draw: u64, block: usize) -> bool {
+    let mut bits = (draw << 32 | block as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    (bits ^ (bits >> 31)) & 1 == 1
 }
 
 /// Sum of numbers, and its standard error by their scatter.
