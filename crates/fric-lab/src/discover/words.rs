@@ -159,11 +159,17 @@ impl DiscoverCableResult {
                 "Nothing is missing: with values fitted to the log, the model agrees with it to the noise.".to_owned()
             }
             ("extended", kinds) => format!("The model lacks {}; with it, what is left is noise.", listed(kinds)),
-            (_, []) => "Something is missing that no effect of the catalogue accounts for.".to_owned(),
-            (_, kinds) => format!(
-                "The model lacks {}, and something remains that no effect of the catalogue accounts for.",
-                listed(kinds)
-            ),
+            (_, kinds) => {
+                let lacks =
+                    if kinds.is_empty() { String::new() } else { format!("The model lacks {}. ", listed(kinds)) };
+                let rest = match &self.unexplained {
+                    Some(rest) if rest.is_of_the_log() => {
+                        "The log has trouble of its own that is no matter of friction."
+                    }
+                    _ => "Something remains that no effect of the catalogue accounts for.",
+                };
+                lacks + rest
+            }
         };
         if kinds.len() > 1 {
             text = text.replace("with it,", "with them,");
@@ -252,6 +258,12 @@ impl FaultResult {
 }
 
 impl UnexplainedResult {
+    /// Whether a hum and faults of the sensor are all.
+    fn is_of_the_log(&self) -> bool {
+        let is_named = !self.faults.is_empty() || !self.frequency_hz.is_empty();
+        is_named && self.intervals_s.is_empty() && self.places.iter().all(|place| place.signal == "frequency")
+    }
+
     /// Where the rest lies, sentences without their full stops.
     #[must_use]
     pub fn in_words(&self) -> Vec<String> {
