@@ -188,8 +188,7 @@ fn print_sizes(outcomes: &[Outcome]) {
         "| error of a parameter / its size | {} |",
         quantiles(right.iter().flat_map(|outcome| outcome.errors.clone()).collect())
     );
-    let is_white =
-        |outcome: &&&Outcome| outcome.case.sensor_wander_n <= 0.0 && outcome.case.reference_wander_n <= 0.0;
+    let is_white = |outcome: &&&Outcome| outcome.case.sensor_wander_n <= 0.0 && outcome.case.reference_wander_n <= 0.0;
     println!(
         "| rms after / true noise | {} |",
         quantiles(right.iter().filter(is_white).map(|outcome| outcome.after_ratio).collect())
