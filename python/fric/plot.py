@@ -161,7 +161,7 @@ def gap_ladder(result: DiscoverResult, cable: str, *, ax: _Axes | None = None) -
     errors_n = [np.nan if error_n is None else error_n for _, error_n, _ in steps]
     bars = ax.barh(range(len(steps)), errors_n, color=[_MEASURED] + [_MODEL] * len(found.effects), height=0.62)
     ends = [f"{error_n:.4f} N" for error_n in errors_n]
-    closed = ["" if share is None else f", {_percent(share)} of the gap closed" for *_, share in steps]
+    closed = ["" if share is None else f", {100 * _share(share):.0f} % of the gap closed" for *_, share in steps]
     ax.bar_label(bars, [end + share for end, share in zip(ends, closed)], padding=4, fontsize="small")
     _noise(ax, found)
     _rows(ax, [name for name, *_ in steps], cable)
@@ -179,12 +179,11 @@ def where(result: DiscoverResult, cable: str, *, ax: _Axes | None = None) -> _Ax
     if ax is None:
         ax = _figure(1, (7.0, 1.6 + 0.4 * max(1, len(places))))[0]
     rows = np.arange(len(places))
-    for share, color, offset, label in (
-        ("share_of_excess", _MEASURED, -0.19, "of the gap"),
-        ("share_of_samples", _REFERENCE, 0.19, "of the samples"),
-    ):
-        percents = [100 * max(0.0, min(1.0, place.get(share) or 0.0)) for place in places]
-        ax.barh(rows + offset, percents, height=0.36, color=color, label=label)
+    of_gap = [100 * _share(place["share_of_excess"]) for place in places]
+    of_samples = [100 * _share(place["share_of_samples"]) for place in places]
+    if places:
+        ax.barh(rows - 0.19, of_gap, height=0.36, color=_MEASURED, label="of the gap")
+        ax.barh(rows + 0.19, of_samples, height=0.36, color=_REFERENCE, label="of the samples")
     _rows(ax, found.where_in_words, cable, or_else="the model agrees to the noise")
     ax.set(xlabel="share [%]", xlim=(0, 100))
     return ax
@@ -201,15 +200,18 @@ def candidates(result: DiscoverResult, cable: str, *, ax: _Axes | None = None) -
     kinds = {effect["kind"] for effect in found.effects}
     errors_n = [np.nan if of["held_out_rms_n"] is None else of["held_out_rms_n"] for of in tried]
     colors = [_MODEL if of["kind"] in kinds else _BAND for of in tried]
-    bars = ax.barh(range(len(tried)), errors_n, color=colors, height=0.7)
-    deltas = ["" if of["delta_bic"] is None else f"ΔBIC {of['delta_bic']:.0f}".replace("-", "−") for of in tried]
-    ax.bar_label(bars, deltas, padding=4, fontsize="small")
+    ax.barh(range(len(tried)), errors_n, color=colors, height=0.7)
+    for row, of in enumerate(tried):
+        if of["delta_bic"] is not None:
+            text = f"ΔBIC {of['delta_bic']:.0f}".replace("-", "−")
+            ax.text(0.99, row, text, transform=ax.get_yaxis_transform(), ha="right", va="center", fontsize="small")
     limits_n = [error_n for error_n in errors_n if np.isfinite(error_n)]
     if found.before is not None:
         ax.axvline(found.before.rms_n, color=_MEASURED, linewidth=1.2, label="given model")
         limits_n.append(found.before.rms_n)
     _noise(ax, found)
     _rows(ax, [of["kind"] for of in tried], cable, or_else="nothing was tried")
+    # Room for the evidence behind the longest bar.
     ax.set_xlim(0, 1.35 * max(limits_n))
     ax.set_xlabel("rms on samples held out [N]")
     return ax
@@ -233,8 +235,9 @@ def _told(result: DiscoverResult, cable: str) -> CableDiscovery:
     return found
 
 
-def _percent(share: float) -> str:
-    return f"{100 * max(0.0, min(1.0, share)):.0f} %"
+def _share(share: float | None) -> float:
+    """A share within what one can be; 0 where it is not known."""
+    return 0.0 if share is None else max(0.0, min(1.0, share))
 
 
 def _noise(ax: _Axes, found: CableDiscovery) -> None:
@@ -285,7 +288,8 @@ def _figure(count: int, size: tuple[float, float], *, heights: Sequence[float] |
 
 def _dress(ax: _Axes, cable: str) -> None:
     """The legend above the data, the cable's name beside it."""
-    ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, frameon=False, borderaxespad=0.2)
+    if ax.get_legend_handles_labels()[0]:
+        ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, frameon=False, borderaxespad=0.2)
     ax.set_title(cable, loc="right", fontsize="medium")
     ax.grid(color="#e6e6e6", linewidth=0.8)
     ax.set_axisbelow(True)

@@ -239,7 +239,7 @@ impl DiscoverResult {
 /// ... pulleys = [{ wrap_deg = 180.0, sensor = true }, { wrap_deg = 90.0 }]
 /// ... friction = { mu = 0.02, sigma_n_per_m = 900.0, viscous_n_s_per_m = 0.3 }
 /// ... ''')
-/// >>> log = simulate(robot, duration_s=20.0, effects=["sensor_gain:ratio=0.05"])
+/// >>> log = simulate(robot, duration_s=20.0, effects=["sensor_gain:gain=1.05"])
 /// >>> result = discover(robot, log)
 /// >>> winch = result.cable("winch")
 /// >>> winch.verdict, [effect["kind"] for effect in winch.effects]
