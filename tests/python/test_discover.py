@@ -161,7 +161,7 @@ def test_a_cable_without_reference_has_no_verdict():
     log = without_reference(fric.simulate(robot, duration_s=20.0), 1)
     result = fric.discover(robot, log)
     other = result.cable("other")
-    assert (result.cable("winch").verdict, other.verdict, other.before) == ("complete", "untold", None)
+    assert (result.cable("winch").verdict, other.verdict, other.before) == ("complete", None, None)
     assert "no reference forces on /reference_forces of other" in other.missing["cause"]
     assert other.residual_after_n.size == 0 and result.to_dict()["log"] == ["log 1"]
     with pytest.raises(fric.FitError, match=r"nothing can be told of other: .* of other\. Name their topic as"):

@@ -106,11 +106,11 @@ impl CableDiscovery {
         self.result.gap_closed
     }
 
-    /// "complete", "extended" by an effect with which what is left is noise, "unexplained", or "untold" where the log does
-    /// not allow to tell.
+    /// "complete", "extended" by an effect with which what is left is noise, "unexplained", or None where the log does not
+    /// allow to tell.
     #[getter]
-    fn verdict(&self) -> &str {
-        self.result.verdict
+    fn verdict(&self) -> Option<&str> {
+        Some(self.result.verdict).filter(|_| self.result.missing.is_none())
     }
 
     /// What the log lacks for a verdict, cause and advice; None if nothing.

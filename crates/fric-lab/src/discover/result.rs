@@ -59,7 +59,8 @@ pub struct DiscoverCableResult {
     pub after: Option<ForceError>,
     /// Share of the gap that the extended model has closed.
     pub gap_closed: Option<f64>,
-    /// `complete`, `extended`, `unexplained`; `untold` where the log does not allow to tell.
+    /// `complete`, `extended`, `unexplained`; `untold` where the log does not allow to tell, `null` in JSON.
+    #[serde(serialize_with = "verdict_or_null")]
     pub verdict: &'static str,
     /// What the log lacks for a verdict.
     pub missing: Option<Missing>,
@@ -256,6 +257,11 @@ impl Fault {
             Self::Clipped => "clipped",
         }
     }
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde calls it")]
+fn verdict_or_null<S: serde::Serializer>(verdict: &&'static str, serializer: S) -> Result<S::Ok, S::Error> {
+    Some(*verdict).filter(|verdict| *verdict != Verdict::Untold.name()).serialize(serializer)
 }
 
 impl DiscoverResult {

@@ -46,8 +46,11 @@ fn naive_standard_errors(log: &Log, robot: &RobotFile, values: &[f64; 4]) -> [f6
 }
 
 const LOGS: u64 = 200;
-/// 95 of 100, with a wander 90 (see the module `scores`), less what chance takes from 200 logs in one of twenty cases.
-const COVERED: RangeInclusive<u32> = 172..=198;
+/// 90 to 99 of 100.
+const COVERED: RangeInclusive<u32> = 180..=198;
+/// With a wander the intervals are promised to cover 90 (see the module `scores`), less what chance takes from 200 logs in one of
+/// twenty cases.
+const COVERED_WITH_WANDER: RangeInclusive<u32> = 172..=198;
 
 /// In how many of [`LOGS`] each parameter's interval covers its truth: by the fit's standard errors, and by naive ones.
 fn covered(wander_n: f64) -> ([u32; 4], [u32; 4]) {
@@ -84,7 +87,7 @@ fn white_noise() {
 #[test]
 fn wandering_reference() {
     let (by_fit, by_naive) = covered(0.02);
-    assert!(by_fit.iter().all(|count| COVERED.contains(count)), "{by_fit:?}");
+    assert!(by_fit.iter().all(|count| COVERED_WITH_WANDER.contains(count)), "{by_fit:?}");
     // Errors that took the residuals for independent would be too small by several times.
     assert!(by_naive[0] < 150 && by_naive[3] < 150, "{by_naive:?}");
 }
