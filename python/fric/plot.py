@@ -148,8 +148,8 @@ def parameters(fit_result: Fitted, *, ax: Sequence[_Axes] | None = None) -> tupl
 
 
 def gap_ladder(result: DiscoverResult, cable: str, *, ax: _Axes | None = None) -> _Axes:
-    """Draws how the error on the samples held out comes down to the noise: a bar for the given model, fitted, and one for
-    each effect that was found, with the share of the gap that it and those above it close."""
+    """Draws how the error on the samples held out comes down to the noise: a bar for the given model, fitted, and one
+    for each effect that was found, with the share of the gap that it and those above it close."""
     found = _told(result, cable)
     if ax is None:
         ax = _figure(1, (7.0, 1.4 + 0.4 * (1 + len(found.effects))))[0]
@@ -190,9 +190,9 @@ def where(result: DiscoverResult, cable: str, *, ax: _Axes | None = None) -> _Ax
 
 
 def candidates(result: DiscoverResult, cable: str, *, ax: _Axes | None = None) -> _Axes:
-    """Draws the effects that were tried, each by itself beside the given model, the best first: the error on the samples
-    held out, with the difference of Schwarz's criterion (below zero speaks for the effect, -10 strongly). Those that were
-    found are filled; an effect may be found for what it does beside another."""
+    """Draws the effects that were tried, each by itself beside the given model, the best first: the error on the
+    samples held out, with the difference of Schwarz's criterion (below zero speaks for the effect, -10 strongly). Those
+    that were found are darker; an effect may be found for what it does beside another."""
     found = _told(result, cable)
     tried = found.candidates
     if ax is None:

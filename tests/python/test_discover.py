@@ -151,7 +151,8 @@ def test_what_a_log_lacks_is_told(robot, log):
     lacks = r"no reference forces on /reference_forces\. .* force sensors at the platform\."
     with pytest.raises(fric.FitError, match=lacks):
         fric.discover(robot, without_reference(log, 0))
-    with pytest.raises(fric.FitError, match=r"tells nothing of winch: .* too few, 8 s are needed\. Record a longer run"):
+    lacks = r"tells nothing of winch: .* too few, 8 s are needed\. Record a longer run"
+    with pytest.raises(fric.FitError, match=lacks):
         fric.discover(robot, fric.simulate(robot, duration_s=2.0))
 
 
