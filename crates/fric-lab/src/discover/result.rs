@@ -259,7 +259,6 @@ impl Fault {
     }
 }
 
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde calls it")]
 fn verdict_or_null<S: serde::Serializer>(verdict: &&'static str, serializer: S) -> Result<S::Ok, S::Error> {
     Some(*verdict).filter(|verdict| *verdict != Verdict::Untold.name()).serialize(serializer)
 }
