@@ -63,9 +63,10 @@ impl WhereResult {
     #[must_use]
     pub fn range_in_words(&self) -> String {
         let [least, greatest] = self.range;
+        let is_last = self.to >= greatest;
         // A magnitude begins at 0, whatever noise makes of it.
-        let from_zero = least >= 0.0 && self.from < NO_MORE_THAN_ZERO * self.to;
-        let [is_first, is_last] = [self.from <= least || from_zero, self.to >= greatest];
+        let from_zero = least >= 0.0 && self.from < NO_MORE_THAN_ZERO * self.to && !is_last;
+        let is_first = self.from <= least || from_zero;
         let value = |number: f64| {
             if matches!(self.unit, "m" | "m/s") {
                 quantity(number, None, self.unit)
