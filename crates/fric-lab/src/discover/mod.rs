@@ -2,12 +2,12 @@
 //!
 //! For one cable at a time, from [`Measurements`] with reference forces:
 //!
-//! 1. *Gap.* The given model is fitted to half of the log, in blocks; the other half judges ([`split`]). The noise is
-//!    estimated from the residual alone ([`noise`]).
-//! 2. *Where.* Which operating conditions carry what is above the noise ([`places`]).
-//! 3. *Name.* Candidates of the catalogue enter, are exchanged and justify themselves ([`naming`]).
-//! 4. *Rest.* What is wrong with the log itself has its own names: lines in the spectrum ([`lines`]), a sensor that stands still
-//!    or is at the end of its range ([`foreign`]), a stretch of cable or of time ([`rest`]). Left out, the rest is
+//! 1. *Gap.* The given model is fitted to half of the log, in blocks; the other half judges (`split`). The noise is
+//!    estimated from the residual alone (`noise`).
+//! 2. *Where.* Which operating conditions carry what is above the noise (`places`).
+//! 3. *Name.* Candidates of the catalogue enter, are exchanged and justify themselves (`naming`).
+//! 4. *Rest.* What is wrong with the log itself has its own names: lines in the spectrum (`lines`), a sensor that stands still
+//!    or is at the end of its range (`foreign`), a stretch of cable or of time (`rest`). Left out, the rest is
 //!    judged once more. A wander of the sensors that has nothing to do with the motion is noise.
 //!
 //! The model is the control cycle's own; what is found runs in it as it is.
