@@ -20,7 +20,7 @@ use crate::parameters::{MU, OFFSET, ParameterRow, SIGMA, Values};
 use crate::places::{Places, START_WRAP_FACTOR};
 use crate::robot::{CableParams, Presliding};
 use crate::scalar::{Mask, Scalar};
-use crate::signals::Conditioned;
+use crate::signals::CableSignals;
 
 /// Parameters of a cable as the cycle uses them.
 #[derive(Clone, Copy, Debug)]
@@ -83,23 +83,16 @@ impl CableParams {
     }
 }
 
-/// One pulley of a cable. All zero is a pulley that is not there.
-#[derive(Clone, Copy, Debug)]
-pub struct Pulley<T> {
-    /// `2 sin(α/2)` of its wrap.
-    pub wrap_factor: T,
-    /// F_pv, N s/m.
-    pub viscous_n_s_per_m: T,
-}
-
 /// A cable, or several in lanes: its pulleys in order from the winch, its effects, and what it remembers.
 ///
 /// Pulley 0 is the sensor pulley; a sensor in line with the cable is a sensor pulley without wrap.
 pub trait Cable<T: Scalar> {
     /// How many pulleys, at least 1.
     fn count(&self) -> usize;
-    /// The pulley at a place.
-    fn pulley(&self, place: usize) -> Pulley<T>;
+    /// `2 sin(α/2)` of the wrap of the pulley at a place; 0 where there is none.
+    fn wrap_factor(&self, place: usize) -> T;
+    /// Its viscous friction `F_pv·v` at a speed, N; 0 where there is none.
+    fn viscous_n(&self, place: usize, speed_m_per_s: T) -> T;
     /// `e^{μ_p α}` there, the tension ratio at which the cable slips; beyond
     /// [`NO_LIMIT_RATIO`](crate::pulley::NO_LIMIT_RATIO) where it cannot.
     fn traction_ratio(&self, place: usize) -> T;
@@ -215,7 +208,7 @@ pub struct CableForces<T: Scalar> {
 
 /// One cycle of one cable (or of several in lanes) on conditioned signals.
 ///
-/// While a signal is faulty ([`Conditioned::hold`]) the stored friction follows the motion with the last good force, and
+/// While a signal is faulty ([`hold`](CableSignals::hold)) the stored friction follows the motion with the last good force, and
 /// the output holds the last good friction, which takes no cable below zero tension. Slack releases the stored friction.
 ///
 /// Viscous friction and inertia stay outside the Dahl state in both forms: they need no presliding distance (deviation from
@@ -225,7 +218,7 @@ pub struct CableForces<T: Scalar> {
 pub fn cable_cycle<T: Scalar>(
     model: &CableModel<T>,
     features: Features,
-    signals: &Conditioned<T>,
+    signals: &CableSignals<T>,
     moment: &Moment<T>,
     cable: &mut impl Cable<T>,
 ) -> CableForces<T> {
@@ -267,7 +260,7 @@ pub fn cable_cycle<T: Scalar>(
     let moving_n = T::select(no_tension, frictionless_n, pulled_n) + model.offset_n;
     let friction_n = moving_n - model.offset_n - frictionless_n;
 
-    let hold = signals.hold();
+    let hold = signals.hold;
     let held_friction_n = cable.held_friction_n();
     cable.set_held_friction_n(T::select(hold, held_friction_n, friction_n));
     let held_n = held_friction_n.max(-frictionless_n).keep(no_tension.not());
@@ -304,14 +297,14 @@ fn corrected_sensor<T: Scalar>(acting: Acting, shown_n: T, moment: &Moment<T>, c
 
 /// By how much the whole cable has stretched in this cycle, m; a sensor that tells nothing tells of no stretch.
 #[inline(always)]
-fn stretch<T: Scalar>(acting: Acting, tension_n: T, signals: &Conditioned<T>, cable: &mut impl Cable<T>) -> T {
+fn stretch<T: Scalar>(acting: Acting, tension_n: T, signals: &CableSignals<T>, cable: &mut impl Cable<T>) -> T {
     if !acting.has(cable_elasticity::ACTS) {
         return T::splat(0.0);
     }
     let elasticity = CableElasticity::of(|place| cable.effect(place));
     let middle_n = cable.memory(TENSION);
     let (stretch_m, next_n) = elasticity.stretch_m(tension_n.max(T::splat(0.0)), middle_n);
-    let known = signals.sensor_fault().not();
+    let known = signals.sensor_fault.not();
     cable.set_memory(TENSION, T::select(known, next_n, middle_n));
     stretch_m.keep(known)
 }

@@ -29,13 +29,13 @@ impl<T: Scalar> Chain<'_, T> {
     /// `F_j = F_{j−1} + f_j + F_pv v`. In steady sliding this is \[P\] 10. Gives the tension behind the last pulley, and slip.
     #[inline(always)]
     pub fn per_pulley(&self, release: T::Mask, cable: &mut impl Cable<T>) -> (T, T::Mask) {
-        let Self { model, features, bearing, sensor_force_n, .. } = *self;
+        let Self { model, features, bearing, sensor_force_n, .. } = self;
+        let sensor_force_n = *sensor_force_n;
         let mut tension_n = T::splat(0.0);
         let mut slip = T::Mask::NONE;
         for place in 0..cable.count() {
-            let pulley = cable.pulley(place);
             let stored_n = cable.pulley_friction_n(place);
-            let viscous_n = bearing.viscous_n(&pulley, place, cable);
+            let viscous_n = bearing.viscous_n(place, cable);
             let sensed = |friction_n: T| {
                 (sensor_force_n - (friction_n + viscous_n).scale(model.sensor_cos)).scale(model.frictionless_gain)
             };
@@ -46,8 +46,7 @@ impl<T: Scalar> Chain<'_, T> {
                 (tension_n, tension_n + stored_n + viscous_n)
             };
             let displacement_m = self.displacement_at(place, cable);
-            let drag_n = bearing.drag_n(place, cable);
-            let mut friction_n = bearing.move_pulley(&pulley, (stored_n, tensions), displacement_m, drag_n);
+            let mut friction_n = bearing.move_pulley(place, (stored_n, tensions), displacement_m, cable);
             let mut behind_n = if place == 0 { sensed(friction_n) } else { tension_n + friction_n + viscous_n };
             if features.traction {
                 let traction_ratio = cable.traction_ratio(place);
@@ -96,7 +95,8 @@ impl<T: Scalar> Chain<'_, T> {
     /// behind the last pulley, the friction stored, and slip.
     #[inline(always)]
     pub fn lumped(&self, cable: &impl Cable<T>) -> (T, T, T::Mask) {
-        let Self { model, features, bearing, sensor_force_n, .. } = *self;
+        let Self { model, features, bearing, sensor_force_n, .. } = self;
+        let sensor_force_n = *sensor_force_n;
         let zero = T::splat(0.0);
         let displacement_m = self.mean_displacement(cable);
         let direction = displacement_m.sign();
@@ -105,13 +105,12 @@ impl<T: Scalar> Chain<'_, T> {
         let mut coulomb_n = zero;
         let mut viscous_n = zero;
         for place in 0..cable.count() {
-            let pulley = cable.pulley(place);
-            let added_n = bearing.viscous_n(&pulley, place, cable);
+            let wrap_factor = cable.wrap_factor(place);
+            let added_n = bearing.viscous_n(place, cable);
             let drag_n = bearing.drag_n(place, cable).map(|drag_n| drag_n.scale(direction));
             let resisting_n = drag_n.map_or(added_n, |drag_n| added_n + drag_n);
             if place == 0 {
-                let (mu, gain, viscous_gain) =
-                    self.sensor_pulley(pulley.wrap_factor, direction, frictionless_n, resisting_n);
+                let (mu, gain, viscous_gain) = self.sensor_pulley(direction, (frictionless_n, resisting_n), cable);
                 coulomb_n = sensor_force_n * gain;
                 if let Some(drag_n) = drag_n {
                     coulomb_n = coulomb_n + drag_n * viscous_gain;
@@ -120,7 +119,7 @@ impl<T: Scalar> Chain<'_, T> {
                 if features.traction {
                     let traction_ratio = cable.traction_ratio(place);
                     // [P] 10 the other way round: the tension on the winch side from the one behind.
-                    let (inverse_gain, inverse_viscous) = pulley::sliding_gains(-direction, mu, pulley.wrap_factor);
+                    let (inverse_gain, inverse_viscous) = pulley::sliding_gains(-direction, mu, wrap_factor);
                     let behind_n = coulomb_n + viscous_n;
                     let before_n = behind_n * inverse_gain - resisting_n * inverse_viscous;
                     let (_, slips) = pulley::limit_traction(before_n, behind_n, traction_ratio);
@@ -133,7 +132,7 @@ impl<T: Scalar> Chain<'_, T> {
                 continue;
             }
             let before_n = coulomb_n + viscous_n;
-            let (gain, viscous_gain) = self.guide_pulley(pulley.wrap_factor, direction, before_n, resisting_n);
+            let (gain, viscous_gain) = self.guide_pulley(place, direction, (before_n, resisting_n), cable);
             let mut next_coulomb_n = coulomb_n * gain;
             if let Some(drag_n) = drag_n {
                 next_coulomb_n = next_coulomb_n + drag_n * viscous_gain;
@@ -157,7 +156,7 @@ impl<T: Scalar> Chain<'_, T> {
         // outweighs the others: its friction lowers the tension behind it.
         let distance_m = displacement_m.abs();
         let toward_m = T::select(sliding_n.lt(zero), -distance_m, distance_m);
-        let moved_n = bearing.preslide(cable.lumped_friction_n(), sliding_n.abs(), toward_m);
+        let moved_n = bearing.preslide(cable.lumped_friction_n(), sliding_n.abs(), toward_m, cable);
         (frictionless_n + moved_n + viscous_n, moved_n, slip)
     }
 
@@ -165,9 +164,10 @@ impl<T: Scalar> Chain<'_, T> {
     ///
     /// Where μ depends on the load it is first that of the frictionless tension, then that of the tensions which this gives.
     #[inline(always)]
-    fn sensor_pulley(&self, wrap_factor: T, direction: T, frictionless_n: T, resisting_n: T) -> (T, T, T) {
+    fn sensor_pulley(&self, direction: T, (frictionless_n, resisting_n): (T, T), cable: &impl Cable<T>) -> (T, T, T) {
+        let wrap_factor = cable.wrap_factor(0);
         let gains = |tensions| {
-            let mu = self.bearing.mu_at(wrap_factor, tensions, direction);
+            let mu = self.bearing.mu_at(wrap_factor, tensions, direction, cable);
             let (gain, viscous_gain) = pulley::sensor_gains(direction, mu, wrap_factor, self.model.sensor_cos);
             (mu, gain, viscous_gain)
         };
@@ -185,9 +185,16 @@ impl<T: Scalar> Chain<'_, T> {
 
     /// Gain and viscous share of another pulley in steady sliding ([`pulley::sliding_gains`]), μ likewise.
     #[inline(always)]
-    fn guide_pulley(&self, wrap_factor: T, direction: T, before_n: T, resisting_n: T) -> (T, T) {
+    fn guide_pulley(
+        &self,
+        place: usize,
+        direction: T,
+        (before_n, resisting_n): (T, T),
+        cable: &impl Cable<T>,
+    ) -> (T, T) {
+        let wrap_factor = cable.wrap_factor(place);
         let gains = |tensions| {
-            let mu = self.bearing.mu_at(wrap_factor, tensions, direction);
+            let mu = self.bearing.mu_at(wrap_factor, tensions, direction, cable);
             pulley::sliding_gains(direction, mu, wrap_factor)
         };
         let mut sliding = gains((before_n, before_n));

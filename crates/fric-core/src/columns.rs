@@ -2,7 +2,7 @@
 //!
 //! Private to the crate: the structure-of-arrays behind [`Compensator`](crate::Compensator).
 
-use crate::cable::{Cable, CableModel, MEMORY, Pulley, UNKNOWN};
+use crate::cable::{Cable, CableModel, MEMORY, UNKNOWN};
 use crate::effects::EFFECT_PARAMETER_COUNT;
 use crate::effects::time_delay::{self, Delay, DelayLine};
 use crate::lanes::{Lanes, LanesMask};
@@ -288,11 +288,12 @@ impl<const CABLES: usize> Cable<Lanes> for BlockOfCables<'_, CABLES> {
         self.count
     }
     #[inline(always)]
-    fn pulley(&self, place: usize) -> Pulley<Lanes> {
-        Pulley {
-            wrap_factor: self.posed(place, &self.state.pose_wrap_factor, &self.params.wrap_factor),
-            viscous_n_s_per_m: self.column(&self.params.viscous_n_s_per_m, place),
-        }
+    fn wrap_factor(&self, place: usize) -> Lanes {
+        self.posed(place, &self.state.pose_wrap_factor, &self.params.wrap_factor)
+    }
+    #[inline(always)]
+    fn viscous_n(&self, place: usize, speed_m_per_s: Lanes) -> Lanes {
+        self.column(&self.params.viscous_n_s_per_m, place) * speed_m_per_s
     }
     #[inline(always)]
     fn traction_ratio(&self, place: usize) -> Lanes {

@@ -16,7 +16,7 @@ use crate::platform::{self, Pose, Wrench};
 use crate::pulley::traction_ratio;
 use crate::robot::{MAX_PULLEYS, ParamError, ParamProblem, RobotParams};
 use crate::scalar::{Mask, Scalar};
-use crate::signals::{BEFORE_FIRST, Conditioned, RawSignals, SignalLimits, condition, next_cycle};
+use crate::signals::{BEFORE_FIRST, CableSignals, Conditioned, RawSignals, SignalLimits, condition, next_cycle};
 use crate::status::CableStatus;
 use crate::swivel;
 use nalgebra::{Matrix3, SMatrix, Vector3};
@@ -326,7 +326,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
         columns.set_signals(block, &signals);
         let moment = Moment::new(Lanes::splat(self.state.cycle), Lanes::splat(self.state.last_cycle), self.cycle_s);
         if self.features.acting.has(time_delay::ACTS) {
-            let moves = conditioned.motion_finite.and(conditioned.jump.not()).bits();
+            let moves = conditioned.moves().bits();
             let in_order = if input.elapsed_cycles > 1.0 { 0 } else { moves };
             let delay: [_; LANES] =
                 core::array::from_fn(|lane| self.params.delay.get(first + lane).copied().unwrap_or_default());
@@ -340,10 +340,11 @@ impl<const CABLES: usize> Compensator<CABLES> {
         }
         let model = self.params.model(block);
         let mut cable = BlockOfCables::new(&self.params, columns, block, self.place_count);
-        let forces = cable_cycle(&model, self.features.limited_to::<EFFECTS>(), &conditioned, &moment, &mut cable);
+        let signals = conditioned.signals();
+        let forces = cable_cycle(&model, self.features.limited_to::<EFFECTS>(), &signals, &moment, &mut cable);
 
         let Conditioned { sensor_force_n, speed_m_per_s, sensor_finite, frozen, jump, motion_finite, .. } = conditioned;
-        let (hold, sensor_fault) = (conditioned.hold(), conditioned.sensor_fault());
+        let CableSignals { hold, sensor_fault, .. } = signals;
         let out_of_range = sensor_force_n
             .lt(Lanes::load(&self.params.least_force_n, block))
             .or(Lanes::load(&self.params.greatest_force_n, block).lt(sensor_force_n))

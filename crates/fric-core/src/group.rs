@@ -4,7 +4,7 @@
 //! the [`Compensator`](crate::Compensator) gives it, whatever the type and whichever cables stand beside it. Signals come conditioned ([`condition`](crate::signals::condition)), the wrap of a last
 //! pulley that follows the pose as [`PoseWrap`].
 
-use crate::cable::{Cable, CableForces, CableModel, Features, MEMORY, Moment, Pulley, UNKNOWN, cable_cycle};
+use crate::cable::{Cable, CableForces, CableModel, Features, MEMORY, Moment, UNKNOWN, cable_cycle};
 use crate::effects::cable_elasticity::COMPLIANCE;
 use crate::effects::time_delay::{self, DELAY, Delay, DelayLine};
 use crate::lanes::LANES;
@@ -14,7 +14,7 @@ use crate::platform::Pose;
 use crate::pulley::traction_ratio;
 use crate::robot::CableParams;
 use crate::scalar::Scalar;
-use crate::signals::Conditioned;
+use crate::signals::{CableSignals, Conditioned};
 use crate::swivel;
 
 /// What the pose means for the last pulley of a cable.
@@ -55,7 +55,7 @@ pub struct CableGroup<T: Scalar> {
     features: Features,
     delay: Option<Delayed<T>>,
     cycle_s: f64,
-    last_cycle: T,
+    last_cycle: [f64; LANES],
     state: State<T>,
 }
 
@@ -148,7 +148,7 @@ impl<T: Scalar> CableGroup<T> {
                 lag_m: zero,
             }),
             cycle_s,
-            last_cycle: T::splat(f64::NAN),
+            last_cycle: [f64::NAN; LANES],
             state: State {
                 values,
                 wrap_factor: at(|places| &places.wrap_factor),
@@ -186,13 +186,13 @@ impl<T: Scalar> CableGroup<T> {
         let mut displacement_m = number(|signals| signals.displacement_m);
         let mut speed_m_per_s = number(|signals| signals.speed_m_per_s);
         let mut length_m = number(|signals| signals.length_m);
-        let count = T::from_lanes(|lane| cycle(lane).cycle);
+        let count: [f64; LANES] = core::array::from_fn(|lane| if lane < T::COUNT { cycle(lane).cycle } else { 0.0 });
         let last = core::mem::replace(&mut self.last_cycle, count);
         if let Some(delayed) = &mut self.delay {
             let in_order = |lane: usize| {
                 let signals = cycle(lane).signals;
-                let pause = count.lane(lane) - last.lane(lane) > 1.0;
-                signals.motion_finite && !signals.jump && !pause
+                let pause = count[lane % LANES] - last[lane % LANES] > 1.0;
+                signals.moves() && !pause
             };
             let known_m = displacement_m;
             displacement_m = shift(&mut delayed.displacement_m, known_m, in_order, &delayed.delays);
@@ -200,23 +200,23 @@ impl<T: Scalar> CableGroup<T> {
             delayed.lag_m = delayed.lag_m + (known_m - displacement_m);
             length_m = length_m - delayed.lag_m;
         }
-        let moment = Moment::new(count, last, self.cycle_s);
+        let of_lanes = |cycles: [f64; LANES]| T::from_lanes(|lane| cycles[lane % LANES]);
+        let moment = Moment::new(of_lanes(count), of_lanes(last), self.cycle_s);
         let mask = |of: fn(&Conditioned<f64>) -> bool| {
             T::splat(0.0).lt(T::from_lanes(|lane| f64::from(of(cycle(lane).signals))))
         };
-        let conditioned = Conditioned {
+        let signals = CableSignals {
             sensor_force_n: number(|signals| signals.sensor_force_n),
             displacement_m,
             speed_m_per_s,
             length_m,
-            sensor_finite: mask(|signals| signals.sensor_finite),
-            frozen: mask(|signals| signals.frozen),
-            jump: mask(|signals| signals.jump),
-            motion_finite: mask(|signals| signals.motion_finite),
+            hold: mask(Conditioned::hold),
+            sensor_fault: mask(Conditioned::sensor_fault),
+            moves: mask(Conditioned::moves),
         };
         self.state.pose_wrap_factor = T::from_lanes(|lane| cycle(lane).pose_wrap.wrap_factor);
         self.state.pose_traction_ratio = T::from_lanes(|lane| cycle(lane).pose_wrap.traction_ratio);
-        cable_cycle(&self.model, self.features.limited_to::<EFFECTS>(), &conditioned, &moment, &mut self.state)
+        cable_cycle(&self.model, self.features.limited_to::<EFFECTS>(), &signals, &moment, &mut self.state)
     }
 }
 
@@ -259,11 +259,12 @@ impl<T: Scalar> Cable<T> for State<T> {
         self.count
     }
     #[inline(always)]
-    fn pulley(&self, place: usize) -> Pulley<T> {
-        Pulley {
-            wrap_factor: self.posed(place, self.pose_wrap_factor, &self.wrap_factor),
-            viscous_n_s_per_m: self.values[VISCOUS] * self.present(place),
-        }
+    fn wrap_factor(&self, place: usize) -> T {
+        self.posed(place, self.pose_wrap_factor, &self.wrap_factor)
+    }
+    #[inline(always)]
+    fn viscous_n(&self, place: usize, speed_m_per_s: T) -> T {
+        (self.values[VISCOUS] * speed_m_per_s).scale(self.present(place))
     }
     #[inline(always)]
     fn traction_ratio(&self, place: usize) -> T {

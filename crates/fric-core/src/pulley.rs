@@ -67,7 +67,7 @@ pub fn sensor_gains<T: Scalar>(direction: T, mu: T, wrap_factor: T, sensor_cos: 
 /// Never negative: where a tension computed with large viscous friction falls below zero, the bearing carries nothing.
 #[inline(always)]
 pub fn sliding_friction<T: Scalar>(mu: T, wrap_factor: T, upstream_n: T, downstream_n: T) -> T {
-    (mu.scale(wrap_factor).scale(T::splat(0.5)) * (upstream_n + downstream_n)).max(T::splat(0.0))
+    (mu.scale(T::splat(0.5)).scale(wrap_factor) * (upstream_n + downstream_n)).max(T::splat(0.0))
 }
 
 /// Tension ratio at which the cable slips on a pulley: `e^{μ_p α}` (\[P\] 4, Eytelwein), with the friction coefficient

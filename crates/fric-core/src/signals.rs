@@ -79,7 +79,46 @@ pub struct Conditioned<T: Scalar> {
     pub motion_finite: T::Mask,
 }
 
+/// What friction is computed from.
+#[derive(Clone, Copy, Debug)]
+pub struct CableSignals<T: Scalar> {
+    /// Sensor force, the last good one where there is none, N.
+    pub sensor_force_n: T,
+    /// Change of length that counts as motion, m.
+    pub displacement_m: T,
+    /// Speed; 0 where the motion is not to be believed, m/s.
+    pub speed_m_per_s: T,
+    /// Last finite length, m; NaN before the first.
+    pub length_m: T,
+    /// See [`Conditioned::hold`].
+    pub hold: T::Mask,
+    /// See [`Conditioned::sensor_fault`].
+    pub sensor_fault: T::Mask,
+    /// See [`Conditioned::moves`].
+    pub moves: T::Mask,
+}
+
 impl<T: Scalar> Conditioned<T> {
+    /// Length and speed are to be believed.
+    #[inline(always)]
+    pub fn moves(&self) -> T::Mask {
+        self.motion_finite.and(self.jump.not())
+    }
+
+    /// What friction is computed from.
+    #[inline(always)]
+    pub fn signals(&self) -> CableSignals<T> {
+        CableSignals {
+            sensor_force_n: self.sensor_force_n,
+            displacement_m: self.displacement_m,
+            speed_m_per_s: self.speed_m_per_s,
+            length_m: self.length_m,
+            hold: self.hold(),
+            sensor_fault: self.sensor_fault(),
+            moves: self.moves(),
+        }
+    }
+
     /// The sensor tells nothing.
     #[inline(always)]
     pub fn sensor_fault(&self) -> T::Mask {
@@ -89,7 +128,7 @@ impl<T: Scalar> Conditioned<T> {
     /// The friction cannot be told from these signals: hold the last.
     #[inline(always)]
     pub fn hold(&self) -> T::Mask {
-        self.sensor_fault().or(self.jump).or(self.motion_finite.not())
+        self.sensor_fault().or(self.moves().not())
     }
 }
 
