@@ -82,20 +82,15 @@ pub fn starts(row: &EffectRow, current: &Values, scale: &Scale, record: &CableRe
             let of_share = |share: f64| set(&[("ratio", 0.3), ("velocity_m_per_s", share * scale.speed_m_per_s)]);
             SPEED_SHARES.map(of_share).to_vec()
         }
-        "bearing_drag" => vec![set(&[("drag_n", tenth_n)])],
         "load_nonlinearity" => vec![set(&[("reference_n", scale.tension_n)])],
         "time_delay" => [-4.0, 4.0].map(|cycles| set(&[("delay_s", cycles * record.cycle_s)])).to_vec(),
-        "pulley_inertia" => {
-            [0.0, 10.0].map(|cycles| set(&[("mass_kg", 0.01), ("window_s", cycles * record.cycle_s)])).to_vec()
-        }
+        "pulley_inertia" => [0.0, 10.0].map(|cycles| set(&[("window_s", cycles * record.cycle_s)])).to_vec(),
         "pulley_eccentricity" => {
             let of_period = |period_m: &f64| set(&[("sin_ratio", 1e-3), ("cos_ratio", 1e-3), ("period_m", *period_m)]);
             scale.periods_m.iter().map(of_period).collect()
         }
         // Twice the noise of the sensor; that of the reference is in what is known of it too.
-        "cable_elasticity" => [(1e-4, 1.0), (1e-4, 1.6)]
-            .map(|(compliance, plays)| set(&[("compliance_m_per_n", compliance), ("play_n", plays * scale.noise_n)]))
-            .to_vec(),
+        "cable_elasticity" => [1.0, 1.6].map(|plays| set(&[("play_n", plays * scale.noise_n)])).to_vec(),
         _ => vec![*current],
     }
 }

@@ -13,7 +13,7 @@ use fric_core::parameters::MU;
 
 use super::candidates::{self, Scale, fitted, has, is_friction, starts};
 use super::evidence::inflation;
-use super::workbench::{Model, Trial, Workbench};
+use super::workbench::{Model, NEAR_ERRORS, Trial, Workbench};
 use crate::fit::Parameter;
 
 /// Most effects of one cable.
@@ -27,6 +27,8 @@ const LEAST_GAIN_OF_ALL: f64 = 0.01;
 const LEAST_SIZE: f64 = 0.002;
 /// What is left above the noise, as a share of it, from which on no further name is sought: the rms is half of it above.
 const NEGLIGIBLE: f64 = 0.01;
+/// Candidates are first brought so near to their minima that what is left to gain is this part of what a candidate needs to enter.
+const UNDECIDED: f64 = 0.5;
 /// Evidence that an effect has to have to stay, and names have to have over each other to be told apart.
 pub const STRONG_BIC: f64 = 10.0;
 /// The named model is brought this near to its minimum, in standard errors.
@@ -124,10 +126,14 @@ impl<'b, 'a> Search<'b, 'a> {
 
     /// Whether a candidate is let in.
     fn enters(&self, before: &Trial, after: &Trial) -> bool {
-        let gain = before.held_out - after.held_out;
+        before.held_out - after.held_out > self.least_gain(before)
+    }
+
+    /// By how much the squares of the samples held out have to fall for a candidate to be let in, N².
+    fn least_gain(&self, before: &Trial) -> f64 {
         let gap = |trial: &Trial| (trial.held_out - self.noise_squares).max(0.0);
         let all = self.fits.get(&Kinds::new()).map_or(0.0, gap);
-        gain > LEAST_GAIN * gap(before) && gain > LEAST_GAIN_OF_ALL * all && gain > LEAST_SIZE * self.noise_squares
+        (LEAST_GAIN * gap(before)).max(LEAST_GAIN_OF_ALL * all).max(LEAST_SIZE * self.noise_squares)
     }
 
     /// Each candidate that a model lacks, fitted beside all that it has; the ladder of friction comes before everything else.
@@ -170,18 +176,39 @@ impl<'b, 'a> Search<'b, 'a> {
                 owners.push(with(&row));
             }
         }
-        for (owner, trial) in owners.into_iter().zip(self.bench.try_all(&models)) {
+        #[expect(clippy::cast_precision_loss, reason = "counts of samples")]
+        let [learned, held_out] = [false, true].map(|held_out| self.bench.count(held_out) as f64);
+        let needed = self.least_gain(&model) * learned / held_out;
+        let near_errors = (UNDECIDED * needed * learned / model.training).sqrt().max(NEAR_ERRORS);
+        for (owner, trial) in owners.into_iter().zip(self.bench.try_all(&models, near_errors)) {
             let is_better = self.fits.get(&owner).is_none_or(|other| trial.training < other.training);
             if trial.training.is_finite() && is_better {
                 self.fits.insert(owner, trial);
             }
         }
+        // Those that may enter, and may be the best, come to their minima.
+        let trained = |row: &&'static EffectRow| self.fits.get(&with(row)).map(|trial| trial.training);
+        let enough = model.training - UNDECIDED * needed;
+        let bound = candidates.iter().filter_map(trained).fold(enough, |least, training| least.min(training + needed));
+        let contenders: Vec<&'static EffectRow> =
+            candidates.iter().copied().filter(|row| trained(row).is_some_and(|training| training < bound)).collect();
+        self.refine(contenders.iter().map(with));
         candidates.iter().filter_map(|row| Some((*row, self.fits.get(&with(row))?.clone()))).collect()
+    }
+
+    /// Brings the models with some sets of effects to their minima.
+    fn refine(&mut self, sets: impl Iterator<Item = Kinds>) {
+        let coarse: Vec<Kinds> =
+            sets.filter(|set| self.fits.get(set).is_some_and(|trial| trial.near_errors > NEAR_ERRORS)).collect();
+        let models: Vec<Model> = coarse.iter().filter_map(|set| self.fits.get(set)).map(Trial::model).collect();
+        let fits = self.bench.try_all(&models, NEAR_ERRORS);
+        self.fits.extend(coarse.into_iter().zip(fits));
     }
 
     /// The model with a set of effects. One that has not been tried yet is fitted from the best that has one more.
     fn fit(&mut self, rows: &[&'static EffectRow]) -> Trial {
         let set = kinds(rows);
+        self.refine(std::iter::once(set.clone()));
         if let Some(trial) = self.fits.get(&set) {
             return trial.clone();
         }
@@ -191,7 +218,7 @@ impl<'b, 'a> Search<'b, 'a> {
             .filter(|(kinds, _)| kinds.len() == set.len() + 1 && set.iter().all(|kind| kinds.contains(kind)))
             .min_by(|(_, one), (_, other)| one.training.total_cmp(&other.training));
         let Some((larger, of_larger)) = larger else { return self.fit(&[]) };
-        let mut model = Model { values: of_larger.values, free: of_larger.free.clone() };
+        let mut model = of_larger.model();
         for row in effects::named().filter(|row| larger.contains(&row.kind) && !set.contains(&row.kind)) {
             for parameter in Parameter::of_row(row) {
                 model.values[parameter.place()] = parameter.row().neutral;
@@ -206,8 +233,8 @@ impl<'b, 'a> Search<'b, 'a> {
 
     /// Brings the model with a set of effects to its minimum.
     fn polish(&mut self, rows: &[&'static EffectRow]) {
-        let Trial { values, free, .. } = self.fit(rows);
-        self.fits.insert(kinds(rows), self.bench.fit(&Model { values, free }, AT_MINIMUM));
+        let model = self.fit(rows).model();
+        self.fits.insert(kinds(rows), self.bench.fit(&model, AT_MINIMUM));
     }
 
     /// Tries all other effects in the place of each.

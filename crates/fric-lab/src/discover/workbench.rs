@@ -10,11 +10,11 @@ use fric_core::parameters::Values;
 use rayon::prelude::*;
 
 use super::split::Block;
-use crate::fit::engine::{Comparison, Gang, Loss, Member, Problem, Seat, search_near};
+use crate::fit::engine::{Comparison, Gang, Loss, Member, Problem, Seat, Triangle, search_near};
 use crate::fit::{CableRecord, Parameter};
 
 /// A model is judged this near to its minimum, in standard errors: the sum of squares changes by less than noise does.
-const NEAR_ERRORS: f64 = 0.5;
+pub const NEAR_ERRORS: f64 = 0.5;
 
 /// A model to try: where its search starts, and what it varies.
 #[derive(Clone, Debug)]
@@ -36,6 +36,15 @@ pub struct Trial {
     pub training: f64,
     /// And over those held out.
     pub held_out: f64,
+    /// How near to its minimum the search came, in standard errors.
+    pub near_errors: f64,
+}
+
+impl Trial {
+    /// The model, to be searched on from here.
+    pub fn model(&self) -> Model {
+        Model { values: self.values, free: self.free.clone() }
+    }
 }
 
 /// One cable with its samples.
@@ -83,9 +92,11 @@ impl<'a> Workbench<'a> {
         }
     }
 
-    /// Fits several models, as many side by side as there are lanes; in the order given.
-    pub fn try_all(&self, models: &[Model]) -> Vec<Trial> {
-        let groups: Vec<Vec<Trial>> = models.par_chunks(LANES).map(|models| self.try_together(models)).collect();
+    /// Fits several models, as many side by side as there are lanes, each as near to its minimum as asked for, in standard errors; in
+    /// the order given.
+    pub fn try_all(&self, models: &[Model], near_errors: f64) -> Vec<Trial> {
+        let together = |models: &[Model]| self.try_together(models, near_errors);
+        let groups: Vec<Vec<Trial>> = models.par_chunks(LANES).map(together).collect();
         groups.into_iter().flatten().collect()
     }
 
@@ -100,7 +111,7 @@ impl<'a> Workbench<'a> {
         self.try_on(model, gang.seat(0), near_errors)
     }
 
-    fn try_together(&self, models: &[Model]) -> Vec<Trial> {
+    fn try_together(&self, models: &[Model], near_errors: f64) -> Vec<Trial> {
         let gang = Gang::new(models.len(), self.stop);
         thread::scope(|scope| {
             let searches: Vec<_> = models
@@ -108,7 +119,7 @@ impl<'a> Workbench<'a> {
                 .enumerate()
                 .map(|(place, model)| {
                     let seat = gang.seat(place);
-                    scope.spawn(|| self.try_on(model, seat, NEAR_ERRORS))
+                    scope.spawn(|| self.try_on(model, seat, near_errors))
                 })
                 .collect();
             searches.into_iter().map(|search| search.join().unwrap_or_else(|panic| resume_unwind(panic))).collect()
@@ -120,10 +131,11 @@ impl<'a> Workbench<'a> {
         'a: 'b,
     {
         let bench: &Workbench<'b> = self;
-        let problem = bench.problem(&model.free, Some(Rc::new(seat)));
+        let mut problem = bench.problem(&model.free, Some(Rc::new(seat)));
         let mut values = model.values;
         if !model.free.is_empty() {
-            let (found, _) = search_near(&problem, &[model.values], self.record.cycle_s, near_errors);
+            let start = within_bounds(&mut problem, model.values);
+            let (found, _) = search_near(&problem, &[start], self.record.cycle_s, near_errors);
             values = found.first().copied().unwrap_or(values);
         }
         let residuals_n = bench.residuals_with(&problem, &values);
@@ -133,7 +145,7 @@ impl<'a> Workbench<'a> {
             of_blocks.filter(|number| number.is_finite()).map(|number| number * number).sum()
         };
         let (training, held_out) = (sum(false), sum(true));
-        Trial { values, free: model.free.clone(), training, held_out }
+        Trial { values, free: model.free.clone(), training, held_out, near_errors }
     }
 
     /// Force of the model less the reference in each cycle, N; NaN where a sample does not count.
@@ -147,4 +159,27 @@ impl<'a> Workbench<'a> {
         let rows = self.record.rows.iter().zip(self.counts).enumerate();
         rows.map(|(cycle, (row, counts))| if *counts { force_n(cycle) - row.reference_n } else { f64::NAN }).collect()
     }
+}
+
+/// Takes parameters away from the least values they can have, where the coordinates of a search have no slope: to the minimum, were the
+/// forces linear in all that varies. Those for which that is out of range stay where they are.
+fn within_bounds(problem: &mut Problem<'_>, values: Values) -> Values {
+    let Some(free) = problem.members.first().map(|member| member.free.clone()) else { return values };
+    let is_least = |parameter: &Parameter| values[parameter.place()] <= parameter.row().min;
+    if !free.iter().any(is_least) {
+        return values;
+    }
+    let triangle = problem.gram(&[values]).map(|gram| {
+        let (matrix, gradient, squares) = gram.normal_equations();
+        Triangle::new(&matrix, &gradient, squares)
+    });
+    let step = triangle.and_then(|triangle| triangle.step()).unwrap_or_default();
+    let mut start = values;
+    for (parameter, step) in free.iter().zip(step).filter(|(parameter, _)| is_least(parameter)) {
+        start[parameter.place()] = (values[parameter.place()] - step).clamp(parameter.row().min, parameter.row().max);
+    }
+    for member in &mut problem.members {
+        member.free.retain(|parameter| start[parameter.place()] > parameter.row().min);
+    }
+    start
 }

@@ -41,6 +41,7 @@ mod wrench;
 pub(crate) mod engine {
     pub use super::cables::{Search, prepared, used};
     pub use super::gang::{Gang, Seat};
+    pub use super::gram::Triangle;
     pub use super::problem::{Comparison, Loss, Member, Problem};
     pub use super::rewritten::{NewValues, with_values};
     pub use super::selection::{Standing, count};
