@@ -2,12 +2,12 @@
 
 use std::sync::atomic::AtomicBool;
 
-use fric_core::parameters::{MU, NO_PRESLIDING_N_PER_M, SIGMA, VISCOUS, Values};
+use fric_core::parameters::{MU, NO_PRESLIDING_N_PER_M, OFFSET, SIGMA, VISCOUS, Values};
 use nalgebra::DMatrix;
 
 use super::candidates::Scale;
 use super::conditions::{Condition, conditions};
-use super::foreign::{Stretch, faulty_stretches, leave_out};
+use super::foreign::{FaultyStretch, faulty_stretches, leave_out};
 use super::lines::{Line, lines};
 use super::naming::{Named, Naming, STRONG_BIC, Search};
 use super::noise::white_noise;
@@ -15,15 +15,16 @@ use super::places::{Excess, Place};
 use super::profile::profile;
 use super::readiness::{lack_of, lack_of_samples};
 use super::report::{CableDiscovery, Finding, Model, RunnerUp, Tried, Unexplained, Verdict};
-use super::rest::{WORTH, is_wander, stretch_of_cable};
+use super::rest::{WORTH, is_wander};
 use super::split::{Block, split};
+use super::stretch::{Stretch, stretch_of_cable};
 use super::workbench::{self, Trial, Workbench};
 use crate::fit::engine;
 use crate::fit::{CableRecord, FitOptions, Parameter, Progress, Row, SampleCounts};
 use crate::replay::Deviation;
 
 /// What is left of a gap when its cause is known is not worth a further name below this share.
-const REMAINDER: f64 = 0.05;
+const REMAINDER: f64 = 0.02;
 
 /// Looks at one cable.
 pub fn discover_cable(record: &CableRecord<'_>, progress: &Progress) -> CableDiscovery {
@@ -43,7 +44,7 @@ pub fn discover_cable(record: &CableRecord<'_>, progress: &Progress) -> CableDis
     let counts = engine::used(&paper.standings);
     let blocks = split(record);
     let conditions = conditions(record);
-    let start = given_model(record, &paper.solution);
+    let (mut start, held) = given_model(record, &paper.solution);
 
     // What hums is no matter of friction: it comes off the reference.
     let bench = Workbench { record: *record, blocks: &blocks, counts: &counts, stop };
@@ -51,41 +52,43 @@ pub fn discover_cable(record: &CableRecord<'_>, progress: &Progress) -> CableDis
     let rows = without_lines(record, &hum);
     let case = Case { record: record.with_signals(&rows), raw: *record, blocks: &blocks, stop };
     let mut outcome = case.look(&counts, &start, &conditions);
+    let told = case.told(&counts, &outcome.naming, &held);
+    if !told.is_empty() {
+        start.free.extend(told);
+        outcome = case.look(&counts, &start, &conditions);
+    }
     let mut stretch = None;
-    if !outcome.rest_is_noise {
-        // A narrow stretch with trouble of its own may hide what else there is.
-        if let Some(found) = stretch_of_cable(&case.excess(&outcome.rest_n, outcome.noise_n), &conditions) {
-            let masked: Vec<bool> =
-                counts.iter().zip(&found.cycles).map(|(counts, inside)| *counts && !inside).collect();
-            let again = case.look(&masked, &start, &conditions);
-            if again.rest_is_noise || !again.naming.named.is_empty() {
-                (outcome, stretch) = (again, Some(found.place));
-            }
+    // A narrow stretch with trouble of its own may hide what else there is, or be taken for it.
+    if let Some(found) = outcome.stretch.take() {
+        let outside: Vec<bool> = counts.iter().zip(&found.cycles).map(|(counts, inside)| *counts && !inside).collect();
+        let again = case.look(&outside, &start, &conditions);
+        if again.rest_is_noise || again.naming.named.len() > outcome.naming.named.len() {
+            (outcome, stretch) = (again, Some(found.place));
         }
     }
     case.report(&outcome, &counts, samples, &conditions, Foreign { faults, hum, stretch })
 }
 
-/// The given model, with start values from the data for what it has of its own: of friction what acts, the offset, and the
-/// parameters of its effects; without what the log does not determine.
-fn given_model(record: &CableRecord<'_>, paper: &engine::Solution) -> workbench::Model {
+/// The given model, with start values from the data for what it has of its own: of friction what acts, an offset if it has one (a
+/// sensor that was not tared is to be found, not to be fitted away), and the parameters of its effects; without what the log does not determine, which comes beside it.
+fn given_model(record: &CableRecord<'_>, paper: &engine::Solution) -> (workbench::Model, Vec<Parameter>) {
     let given = record.params.values();
     let undetermined = |parameter: &Parameter| paper.undetermined.iter().any(|unknown| unknown.parameter == *parameter);
     let acts = |parameter: &Parameter| match parameter.place() {
         MU | VISCOUS => given[parameter.place()] > 0.0,
+        OFFSET => given[OFFSET].abs() > 0.0,
         SIGMA => given[MU] > 0.0 && given[SIGMA] < NO_PRESLIDING_N_PER_M,
         _ => true,
     };
     let all = FitOptions::default().free(record.params);
-    let free: Vec<Parameter> =
-        all.into_iter().filter(|parameter| acts(parameter) && !undetermined(parameter)).collect();
+    let (held, free): (Vec<Parameter>, Vec<Parameter>) = all.into_iter().filter(acts).partition(undetermined);
     let mut values = given;
     if let Some(found) = paper.values.first() {
         for parameter in &free {
             values[parameter.place()] = found[parameter.place()];
         }
     }
-    workbench::Model { values, free }
+    (workbench::Model { values, free }, held)
 }
 
 /// The rows with lines taken off the reference.
@@ -99,7 +102,7 @@ fn without_lines(record: &CableRecord<'_>, lines: &[Line]) -> Vec<Row> {
 
 /// What is wrong with the log itself.
 struct Foreign {
-    faults: Vec<Stretch>,
+    faults: Vec<FaultyStretch>,
     hum: Vec<Line>,
     stretch: Option<Place>,
 }
@@ -123,6 +126,7 @@ struct Outcome {
     rest_n: Vec<f64>,
     rest_is_noise: bool,
     rest_places: Vec<Place>,
+    stretch: Option<Stretch>,
 }
 
 impl<'a> Case<'a> {
@@ -147,10 +151,11 @@ impl<'a> Case<'a> {
         let rest_n = bench.residuals_n(&naming.model.values);
         let noise_n = white_noise(&rest_n).unwrap_or(noise_n);
         let excess = self.excess(&rest_n, noise_n);
-        let (share, before) = (excess_share(&rest_n, noise_n), excess_share(&residual_n, noise_n));
+        let (share, before) = (excess.share(), self.excess(&residual_n, noise_n).share());
         let is_small = share <= WORTH.max(REMAINDER * if naming.named.is_empty() { 0.0 } else { before });
         let rest_places = excess.places(conditions);
-        let is_wander = !is_small && is_wander(&excess, &rest_places);
+        let stretch = if is_small { None } else { stretch_of_cable(&excess, conditions) };
+        let is_wander = !is_small && stretch.is_none() && is_wander(&excess, &rest_places);
         Outcome {
             base,
             naming,
@@ -158,8 +163,23 @@ impl<'a> Case<'a> {
             wander_n: if is_wander { noise_n * share.sqrt() } else { 0.0 },
             rest_is_noise: is_small || is_wander,
             rest_places,
+            stretch,
             rest_n,
         }
+    }
+
+    /// Which of the held parameters the log determines when the model has what it lacked.
+    fn told(&self, counts: &[bool], naming: &Naming, held: &[Parameter]) -> Vec<Parameter> {
+        if held.is_empty() || naming.named.is_empty() {
+            return Vec::new();
+        }
+        let bench = self.bench(counts);
+        let mut with_all = naming.model.model();
+        with_all.free.extend(held);
+        let trial = bench.try_one(&with_all);
+        let (_, all) = engine::vagueness(&bench.problem(&trial.free, None), &[trial.values]);
+        let is_told = |(vagueness, of): &(f64, engine::Unknown)| *vagueness <= 1.0 && held.contains(&of.parameter);
+        all.into_iter().filter(is_told).map(|(_, of)| of.parameter).collect()
     }
 
     fn scale(&self, base: &Trial, noise_n: f64) -> Scale {
@@ -225,7 +245,7 @@ impl<'a> Case<'a> {
         let after = model(&naming.model);
         let clean_n = bench.residuals_n(&base.values);
         let places = self.excess(&clean_n, *noise_n).concentrations(conditions);
-        let places = if excess_share(&clean_n, *noise_n) > WORTH { places } else { Vec::new() };
+        let places = if self.excess(&clean_n, *noise_n).share() > WORTH { places } else { Vec::new() };
         let is_foreign = !foreign.faults.is_empty() || !foreign.hum.is_empty() || foreign.stretch.is_some();
         let unexplained = (is_foreign || !outcome.rest_is_noise).then(|| {
             let rms_n = after.held_out_n.rms().unwrap_or(f64::NAN);
@@ -276,8 +296,9 @@ impl<'a> Case<'a> {
     fn unexplained(&self, outcome: &Outcome, rms_n: f64, foreign: Foreign) -> Unexplained {
         let Foreign { faults, hum, stretch } = foreign;
         let time_s = |cycle: usize| self.record.time_s(cycle);
-        let faults =
-            faults.into_iter().map(|Stretch { fault, cycles }| (fault, [time_s(cycles.start), time_s(cycles.end)]));
+        let faults = faults
+            .into_iter()
+            .map(|FaultyStretch { fault, cycles }| (fault, [time_s(cycles.start), time_s(cycles.end)]));
         let rest = if outcome.rest_is_noise { Vec::new() } else { outcome.rest_places.clone() };
         let excess = self.excess(&outcome.rest_n, outcome.noise_n);
         let loud = |cycle: usize| outcome.rest_n.get(cycle).is_some_and(|number| number.abs() > 4.0 * outcome.noise_n);
@@ -304,16 +325,4 @@ fn finding(search: &Search<'_, '_>, model: &Trial, named: &Named, held_out_n: De
         }
     });
     Finding { row: named.row, held_out_n, delta_bic, runner_up }
-}
-
-/// Mean square above the noise's as a share of it.
-fn excess_share(residual_n: &[f64], noise_n: f64) -> f64 {
-    deviation(residual_n).rms().map_or(0.0, |rms_n| (rms_n / noise_n).powi(2) - 1.0)
-}
-
-fn deviation(residual_n: &[f64]) -> Deviation {
-    residual_n.iter().fold(Deviation::default(), |mut sum, number| {
-        sum.add(*number);
-        sum
-    })
 }

@@ -3,8 +3,6 @@
 //! An effect whose parameters say nothing at their neutral values, or whose sum of squares has several valleys, is started
 //! from several places; the data tell which.
 
-use std::f64::consts::TAU;
-
 use fric_core::effects::{CATALOGUE, EffectRow};
 use fric_core::parameters::{MU, NO_PRESLIDING_N_PER_M, SIGMA, VISCOUS, Values};
 
@@ -16,9 +14,8 @@ const TYPICAL_MU: f64 = 0.02;
 const PRESLIDING_M: [f64; 4] = [3e-5, 2e-4, 1e-3, 6e-3];
 /// Speeds at which friction may change, as shares of the speed at which the cable moves for the most part.
 const SPEED_SHARES: [f64; 2] = [0.04, 0.25];
-/// Periods of a ripple that are looked for, and the strongest of them that are tried.
-const PERIODS: usize = 512;
-const MOST_PERIODS: usize = 2;
+/// Time constants with which the acceleration is taken, in cycles: the noisier the speed, the longer.
+const INERTIA_WINDOWS: [f64; 4] = [0.0, 1.0, 4.0, 16.0];
 
 /// What the starts of a cable are made of.
 #[derive(Clone, Debug)]
@@ -84,7 +81,7 @@ pub fn starts(row: &EffectRow, current: &Values, scale: &Scale, record: &CableRe
         }
         "load_nonlinearity" => vec![set(&[("reference_n", scale.tension_n)])],
         "time_delay" => [-4.0, 4.0].map(|cycles| set(&[("delay_s", cycles * record.cycle_s)])).to_vec(),
-        "pulley_inertia" => [0.0, 10.0].map(|cycles| set(&[("window_s", cycles * record.cycle_s)])).to_vec(),
+        "pulley_inertia" => INERTIA_WINDOWS.map(|cycles| set(&[("window_s", cycles * record.cycle_s)])).to_vec(),
         "pulley_eccentricity" => {
             let of_period = |period_m: &f64| set(&[("sin_ratio", 1e-3), ("cos_ratio", 1e-3), ("period_m", *period_m)]);
             scale.periods_m.iter().map(of_period).collect()
@@ -93,51 +90,4 @@ pub fn starts(row: &EffectRow, current: &Values, scale: &Scale, record: &CableRe
         "cable_elasticity" => [1.0, 1.6].map(|plays| set(&[("play_n", plays * scale.noise_n)])).to_vec(),
         _ => vec![*current],
     }
-}
-
-/// The periods in the cable's length at which a residual ripples in proportion to the tension, the strongest first.
-pub fn periods_m(record: &CableRecord<'_>, residual_n: &[f64]) -> Vec<f64> {
-    /// Samples that are enough.
-    const ENOUGH: usize = 6000;
-    let moving = record.rows.iter().zip(residual_n).filter(|(row, residual_n)| {
-        residual_n.is_finite() && row.signals.displacement_m.abs() > 0.0 && row.signals.sensor_force_n > 0.0
-    });
-    let samples: Vec<(f64, f64)> =
-        moving.map(|(row, residual_n)| (row.signals.length_m, residual_n / row.signals.sensor_force_n)).collect();
-    let (least_m, greatest_m) =
-        samples.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), (length_m, _)| {
-            (least.min(*length_m), most.max(*length_m))
-        });
-    let range_m = greatest_m - least_m;
-    if samples.len() < ENOUGH / 10 || range_m <= 0.0 {
-        return Vec::new();
-    }
-    let few: Vec<(f64, f64)> = samples.iter().step_by(samples.len() / ENOUGH + 1).copied().collect();
-    let powers: Vec<(f64, f64)> = (3..PERIODS)
-        .map(|half_turns| {
-            #[expect(clippy::cast_precision_loss, reason = "a small count")]
-            let period_m = 2.0 * range_m / half_turns as f64;
-            (period_m, ripple_power(&few, period_m))
-        })
-        .collect();
-    let mut peaks: Vec<(f64, f64)> = powers
-        .windows(3)
-        .filter(|three| three[1].1 > three[0].1 && three[1].1 >= three[2].1)
-        .map(|three| three[1])
-        .collect();
-    peaks.sort_by(|one, other| other.1.total_cmp(&one.1));
-    peaks.into_iter().take(MOST_PERIODS).map(|(period_m, _)| period_m).collect()
-}
-
-/// How much of the squares a sine of a period takes away, beside a constant.
-fn ripple_power(samples: &[(f64, f64)], period_m: f64) -> f64 {
-    let (mut matrix, mut right) = (nalgebra::Matrix3::<f64>::zeros(), nalgebra::Vector3::<f64>::zeros());
-    for (length_m, ratio) in samples {
-        let (sin, cos) = (TAU * length_m / period_m).sin_cos();
-        let row = nalgebra::Vector3::new(1.0, sin, cos);
-        matrix += row * row.transpose();
-        right += row * *ratio;
-    }
-    let constant = right[0] * right[0] / matrix[(0, 0)];
-    matrix.cholesky().map_or(0.0, |factor| factor.solve(&right).dot(&right) - constant)
 }

@@ -29,7 +29,7 @@ pub enum Fault {
 
 /// Cycles in which the sensor is not to be believed.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Stretch {
+pub struct FaultyStretch {
     /// Why not.
     pub fault: Fault,
     /// When.
@@ -37,7 +37,7 @@ pub struct Stretch {
 }
 
 /// Stretches of a cable's log with a faulty sensor, in the order of time.
-pub fn faulty_stretches(record: &CableRecord<'_>) -> Vec<Stretch> {
+pub fn faulty_stretches(record: &CableRecord<'_>) -> Vec<FaultyStretch> {
     let shown: Vec<f64> = record.rows.iter().map(|row| row.signals.sensor_force_n).collect();
     let runs: Vec<Range<usize>> = shown
         .chunk_by(|one, next| one.to_bits() == next.to_bits())
@@ -53,9 +53,9 @@ pub fn faulty_stretches(record: &CableRecord<'_>) -> Vec<Stretch> {
     for run in runs {
         let Some(force_n) = shown.get(run.start) else { continue };
         if is_end(*force_n) {
-            stretches.push(Stretch { fault: Fault::Clipped, cycles: run });
+            stretches.push(FaultyStretch { fault: Fault::Clipped, cycles: run });
         } else if run.len() >= FEWEST_STILL.max(STILL_RATIO * usual) {
-            stretches.push(Stretch { fault: Fault::Frozen, cycles: run });
+            stretches.push(FaultyStretch { fault: Fault::Frozen, cycles: run });
         }
     }
     merged(stretches, record.cycle_s)
@@ -88,12 +88,12 @@ fn ends_of_range(forces_n: &[f64], usual: usize) -> Vec<f64> {
     ends
 }
 
-fn merged(stretches: Vec<Stretch>, cycle_s: f64) -> Vec<Stretch> {
-    let mut merged: Vec<Stretch> = Vec::new();
+fn merged(stretches: Vec<FaultyStretch>, cycle_s: f64) -> Vec<FaultyStretch> {
+    let mut merged: Vec<FaultyStretch> = Vec::new();
     for stretch in stretches {
         #[expect(clippy::cast_precision_loss, reason = "a count of cycles")]
         let is_near =
-            |last: &Stretch| (stretch.cycles.start.saturating_sub(last.cycles.end)) as f64 * cycle_s < MERGED_S;
+            |last: &FaultyStretch| (stretch.cycles.start.saturating_sub(last.cycles.end)) as f64 * cycle_s < MERGED_S;
         match merged.last_mut() {
             Some(last) if last.fault == stretch.fault && is_near(last) => last.cycles.end = stretch.cycles.end,
             _ => merged.push(stretch),
@@ -103,7 +103,7 @@ fn merged(stretches: Vec<Stretch>, cycle_s: f64) -> Vec<Stretch> {
 }
 
 /// Leaves such stretches, and the moment after each, out of what counts.
-pub fn leave_out(stretches: &[Stretch], cycle_s: f64, standings: &mut [Standing]) {
+pub fn leave_out(stretches: &[FaultyStretch], cycle_s: f64, standings: &mut [Standing]) {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
     let after = (AFTER_S / cycle_s) as usize;
     for stretch in stretches {

@@ -8,11 +8,14 @@
 
 use std::collections::BTreeMap;
 
-use fric_core::effects::{self, EffectRow};
+use fric_core::effects::time_delay::DELAY;
+use fric_core::effects::{self, EffectRow, pulley_inertia, time_delay};
 use fric_core::parameters::MU;
 
-use super::candidates::{self, Scale, fitted, has, is_friction, starts};
+use super::candidates::{Scale, fitted, has, is_friction, starts};
 use super::evidence::inflation;
+use super::noise::white_noise_throughout;
+use super::ripple::periods_m;
 use super::workbench::{Model, NEAR_ERRORS, Trial, Workbench};
 use crate::fit::Parameter;
 
@@ -22,13 +25,15 @@ const MOST_EFFECTS: usize = 4;
 const LEAST_GAIN: f64 = 0.02;
 /// and of those that the given model leaves. Real friction is never quite that of an equation, and what the equation of a strong
 /// effect leaves must not be taken for a weak one.
-const LEAST_GAIN_OF_ALL: f64 = 0.01;
+const LEAST_GAIN_OF_ALL: f64 = 0.004;
 /// And of the noise itself this share: the rms falls by half of it.
 const LEAST_SIZE: f64 = 0.002;
 /// What is left above the noise, as a share of it, from which on no further name is sought: the rms is half of it above.
 const NEGLIGIBLE: f64 = 0.01;
 /// Candidates are first brought so near to their minima that what is left to gain is this part of what a candidate needs to enter.
 const UNDECIDED: f64 = 0.5;
+/// A delay of less than this many cycles is the lag of an acceleration that is taken from differences, not one of its own.
+const LAG_CYCLES: f64 = 1.0;
 /// Evidence that an effect has to have to stay, and names have to have over each other to be told apart.
 pub const STRONG_BIC: f64 = 10.0;
 /// The named model is brought this near to its minimum, in standard errors.
@@ -112,6 +117,14 @@ impl<'b, 'a> Search<'b, 'a> {
         trial.held_out / self.noise_squares - 1.0
     }
 
+    /// What the white noise of a model's residual has of the squares held out, where it is loud too, N².
+    fn noise_squares_throughout(&self, model: &Trial) -> f64 {
+        #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
+        let count = self.bench.count(true) as f64;
+        let noise_n = white_noise_throughout(&self.bench.residuals_n(&model.values)).unwrap_or(0.0);
+        (count * noise_n * noise_n).max(self.noise_squares)
+    }
+
     /// Lets the best candidates in as long as they help.
     fn enter(&mut self, rows: &mut Vec<&'static EffectRow>) {
         while rows.len() < MOST_EFFECTS {
@@ -165,7 +178,7 @@ impl<'b, 'a> Search<'b, 'a> {
             candidates.iter().copied().filter(|row| !self.fits.contains_key(&with(row))).collect();
         if unknown.iter().any(|row| row.kind == "pulley_eccentricity") {
             let residuals_n = self.bench.residuals_n(&model.values);
-            self.scale.periods_m = candidates::periods_m(&self.bench.record, &residuals_n);
+            self.scale.periods_m = periods_m(&self.bench.record, &residuals_n);
         }
         let (mut models, mut owners) = (Vec::new(), Vec::new());
         for row in unknown {
@@ -273,11 +286,14 @@ impl<'b, 'a> Search<'b, 'a> {
                     inflation: inflation(self.bench, &model, &fitted(row)),
                 });
             }
-            let remains = (model.held_out - self.noise_squares).max(0.0);
+            let remains = (model.held_out - self.noise_squares_throughout(&model)).max(0.0);
             let gain = |named: &Named| named.without.held_out - model.held_out;
             let fails = |named: &&Named| {
                 let strong = self.delta_bic(&named.without, &model, named.inflation) < -STRONG_BIC;
-                !(strong && gain(named) > LEAST_SIZE * self.noise_squares && gain(named) > remains)
+                let is_lag = named.row.kind == time_delay::ROW.kind
+                    && contains(rows, &pulley_inertia::ROW)
+                    && model.values[DELAY].abs() < LAG_CYCLES * self.bench.record.cycle_s;
+                is_lag || !(strong && gain(named) > LEAST_SIZE * self.noise_squares && gain(named) > remains)
             };
             let weakest = named.iter().filter(fails).min_by(|one, other| gain(one).total_cmp(&gain(other)));
             let Some(weakest) = weakest.map(|named| named.row.kind) else { return named };

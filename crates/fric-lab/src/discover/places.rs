@@ -83,6 +83,13 @@ impl Excess<'_> {
         self.residual_n.iter().filter(|number| number.is_finite()).map(|number| self.of(*number)).sum()
     }
 
+    /// That sum as a share of the noise's squares: of the mean square, how much is above the noise's.
+    pub fn share(&self) -> f64 {
+        #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
+        let count = self.residual_n.iter().filter(|number| number.is_finite()).count() as f64;
+        self.sum() / (count * self.noise_n * self.noise_n)
+    }
+
     fn of(&self, residual_n: f64) -> f64 {
         residual_n * residual_n - self.noise_n * self.noise_n
     }
@@ -147,9 +154,14 @@ impl Excess<'_> {
     /// Where it sits in one condition; `None` where there is nothing to compare.
     pub fn place(&self, condition: &Condition) -> Option<Place> {
         let bins = Bins::new(condition, self.residual_n)?;
-        let total = self.sum();
-        let (explains, significance) = self.explained(&bins, condition);
         let range = self.densest(&bins, condition, |_| true)?;
+        self.place_in(condition, &bins, range)
+    }
+
+    /// The same for a range of bins.
+    pub fn place_in(&self, condition: &Condition, bins: &Bins, range: Range<usize>) -> Option<Place> {
+        let total = self.sum();
+        let (explains, significance) = self.explained(bins, condition);
         let inside = |value: f64| bins.of(value).is_some_and(|bin| range.contains(&bin));
         let (mut share_of_excess, mut count_inside, mut count) = (0.0, 0.0, 0.0);
         for (value, residual_n) in self.samples(condition) {
@@ -196,14 +208,8 @@ impl Excess<'_> {
             }
         }
         let gain = |flip: &dyn Fn(usize) -> f64| self.gain_of_means(&sums, cells, flip);
-        let chances: Vec<f64> =
-            (1..=FLIPS).map(|draw| gain(&|block| if scattered(draw, block) { 1.0 } else { -1.0 })).collect();
-        #[expect(clippy::cast_precision_loss, reason = "a small count")]
-        let count = chances.len() as f64;
-        let mean = chances.iter().sum::<f64>() / count;
-        let scatter = (chances.iter().map(|chance| (chance - mean).powi(2)).sum::<f64>() / (count - 1.0)).sqrt();
         let found = gain(&|_| 1.0);
-        (found, if scatter > 0.0 { (found - mean) / scatter } else { 0.0 })
+        (found, significance(found, gain))
     }
 
     /// What the means over cells of the samples learned from take away of the squares of those held out, in proportion to all; the
@@ -284,12 +290,23 @@ impl Excess<'_> {
     }
 }
 
-/// One bit for a draw and a block, without a pattern that a run could have (`SplitMix64`).
-fn scattered(draw: u64, block: usize) -> bool {
+/// How many standard errors what was found is above what chance gains: `gain` for the signs of the blocks, drawn at random.
+fn significance(found: f64, gain: impl Fn(&dyn Fn(usize) -> f64) -> f64) -> f64 {
+    let of_draw = |draw: u64| gain(&|block| random_sign(draw, block));
+    let chances: Vec<f64> = (1..=FLIPS).map(of_draw).collect();
+    #[expect(clippy::cast_precision_loss, reason = "a small count")]
+    let count = chances.len() as f64;
+    let mean = chances.iter().sum::<f64>() / count;
+    let scatter = (chances.iter().map(|chance| (chance - mean).powi(2)).sum::<f64>() / (count - 1.0)).sqrt();
+    if scatter > 0.0 { (found - mean) / scatter } else { 0.0 }
+}
+
+/// 1 or −1 for a draw and a block, without a pattern that a run could have (`SplitMix64`).
+pub fn random_sign(draw: u64, block: usize) -> f64 {
     let mut bits = (draw << 32 | block as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    (bits ^ (bits >> 31)) & 1 == 1
+    if (bits ^ (bits >> 31)) & 1 == 1 { 1.0 } else { -1.0 }
 }
 
 /// Sum of numbers, and its standard error by their scatter.

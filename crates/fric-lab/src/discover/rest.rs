@@ -1,44 +1,55 @@
 //! What is left when all names are given: noise that wanders, or something that has no name.
 //!
 //! A sensor's wander is noise: it has nothing to do with what the cable does and is spread over the log. What is a
-//! function of a condition, or sits in a narrow stretch of the cable or of time, is not.
+//! function of a condition, or sits in a narrow stretch of time, or is many times the noise, is not.
 
 use std::ops::Range;
 
-use super::conditions::Condition;
 use super::places::{Excess, Place};
+use super::ripple::ripple_power;
 
 /// Of a wander, no more than this share is a function of any condition.
 const MOST_EXPLAINED: f64 = 0.12;
 /// And no more than this share lies in a tenth of the log.
 const MOST_IN_TENTH: f64 = 0.6;
-/// Nor is more than this share still there in the mean over this part of the log: noise forgets, a level does not.
-const MOST_LASTING: f64 = 0.6;
-const LASTING_PARTS: usize = 16;
-/// A narrow stretch of cable holds at most this share of the samples and at least that of the excess.
-const NARROW: f64 = 0.2;
-const MOST_OF_IT: f64 = 0.5;
+/// Nor is more than this share one level and one wave, of a period above this, s, seen by means over this time: noise forgets.
+const MOST_WAVE: f64 = 0.7;
+const QUICKEST_S: f64 = 4.0;
+const WINDOW_S: f64 = 0.25;
+/// And it is no more than this many times the noise: what is greater needs another cause.
+const MOST_WANDER: f64 = 2.0;
 /// An excess above this share of the noise's mean square is worth an explanation: the rms is 3 % above the floor.
 pub const WORTH: f64 = 0.06;
 
 /// Whether an excess is a wander of the sensors.
 pub fn is_wander(excess: &Excess<'_>, places: &[Place]) -> bool {
-    places.iter().all(|place| place.explains < MOST_EXPLAINED)
+    excess.share() < MOST_WANDER * MOST_WANDER
+        && places.iter().all(|place| place.explains < MOST_EXPLAINED)
         && share_of_tenth(excess) < MOST_IN_TENTH
-        && lasting_share(excess) < MOST_LASTING
+        && share_of_wave(excess) < MOST_WAVE
 }
 
-/// Share of the excess that is in the means over equal parts of the log.
-fn lasting_share(excess: &Excess<'_>) -> f64 {
-    let length = excess.residual_n.len().div_ceil(LASTING_PARTS).max(1);
-    let of_part = |part: &[f64]| -> f64 {
-        let (sum, count) = part
-            .iter()
-            .filter(|number| number.is_finite())
-            .fold((0.0, 0.0), |(sum, count), number| (sum + number, count + 1.0));
-        if count > 0.0 { sum * sum / count - excess.noise_n * excess.noise_n } else { 0.0 }
+/// Share of the excess that is one level and one slow wave.
+fn share_of_wave(excess: &Excess<'_>) -> f64 {
+    let cycle_s = excess.record.cycle_s;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
+    let length = (WINDOW_S / cycle_s).ceil().max(1.0) as usize;
+    let mean = |(window, numbers): (usize, &[f64])| {
+        let finite = || numbers.iter().filter(|number| number.is_finite());
+        #[expect(clippy::cast_precision_loss, reason = "counts")]
+        let (count, time_s) = (finite().count() as f64, (window * length) as f64 * cycle_s);
+        (count > 0.0).then(|| (time_s, finite().sum::<f64>() / count))
     };
-    excess.residual_n.chunks(length).map(of_part).sum::<f64>() / excess.sum()
+    let means: Vec<(f64, f64)> = excess.residual_n.chunks(length).enumerate().filter_map(mean).collect();
+    #[expect(clippy::cast_precision_loss, reason = "counts")]
+    let (count, length) = (means.len() as f64, length as f64);
+    let level_n = means.iter().map(|(_, mean_n)| mean_n).sum::<f64>() / count;
+    let duration_s = count * WINDOW_S;
+    let half_waves = std::iter::successors(Some(1.0), |half_waves| Some(half_waves + 0.5));
+    let periods_s =
+        half_waves.map(|half_waves| 2.0 * duration_s / half_waves).take_while(|period_s| *period_s > QUICKEST_S);
+    let wave = periods_s.map(|period_s| ripple_power(&means, period_s)).fold(0.0, f64::max);
+    length * (count * level_n * level_n + wave) / excess.sum()
 }
 
 /// Share of the excess in the tenth of the blocks that have most of it.
@@ -55,24 +66,6 @@ fn share_of_tenth(excess: &Excess<'_>) -> f64 {
     sums.sort_by(|one: &f64, other| other.total_cmp(one));
     let tenth = sums.len().div_ceil(10);
     sums.iter().take(tenth).sum::<f64>() / excess.sum()
-}
-
-/// A narrow stretch of cable or of time that holds most of an excess: cycles to leave out, and where it is.
-#[derive(Clone, Debug)]
-pub struct Stretch {
-    /// Which cycles.
-    pub cycles: Vec<bool>,
-    /// Where.
-    pub place: Place,
-}
-
-/// The stretch of cable in which most of an excess sits, if it is narrow.
-pub fn stretch_of_cable(excess: &Excess<'_>, conditions: &[Condition]) -> Option<Stretch> {
-    let length = conditions.iter().find(|condition| condition.signal == "length")?;
-    let place = excess.place(length)?;
-    let is_narrow = place.share_of_samples < NARROW && place.share_of_excess > MOST_OF_IT;
-    let range = place.from..=place.to;
-    is_narrow.then(|| Stretch { cycles: length.values.iter().map(|value| range.contains(value)).collect(), place })
 }
 
 /// Cycles as stretches, for results.

@@ -149,7 +149,9 @@ impl Solution {
 }
 
 /// Covariance of what a problem varies at some values, and how vague each is, in the order of the covariance.
-pub(super) fn vagueness(problem: &Problem<'_>, values: &[Values]) -> (DMatrix<f64>, Vec<(f64, Unknown)>) {
+/// Covariance of what a problem varies, and how vague each parameter is, above 1 where the samples do not determine it, see
+/// [`Yardstick`].
+pub fn vagueness(problem: &Problem<'_>, values: &[Values]) -> (DMatrix<f64>, Vec<(f64, Unknown)>) {
     let (covariance, leverages) = covariance(problem, values);
     let sticks = yardsticks(problem, values);
     let of = |(place, unknown): (usize, Unknown)| {
