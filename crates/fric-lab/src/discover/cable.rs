@@ -308,6 +308,7 @@ impl<'a> Case<'a> {
             faults: faults.collect(),
             places: stretch.into_iter().chain(rest).collect(),
             intervals_s: if outcome.rest_is_noise { Vec::new() } else { excess.intervals_s(loud) },
+            neighbours: Vec::new(),
         }
     }
 }

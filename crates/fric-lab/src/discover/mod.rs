@@ -7,8 +7,8 @@
 //! 2. *Where.* Which operating conditions carry what is above the noise (`places`).
 //! 3. *Name.* Candidates of the catalogue enter, are exchanged and justify themselves (`naming`).
 //! 4. *Rest.* What is wrong with the log itself has its own names: lines in the spectrum (`lines`), a sensor that stands still
-//!    or is at the end of its range (`foreign`), a stretch of cable or of time (`rest`). Left out, the rest is
-//!    judged once more. A wander of the sensors that has nothing to do with the motion is noise.
+//!    or is at the end of its range (`foreign`), a stretch of cable (`stretch`) or of time (`rest`). Left out, the rest is
+//!    judged once more; signals of other cables that it goes with are told (`neighbours`). A wander of the sensors that has nothing to do with the motion is noise.
 //!
 //! The model is the control cycle's own; what is found runs in it as it is.
 
@@ -20,6 +20,7 @@ mod extended;
 mod foreign;
 mod lines;
 mod naming;
+mod neighbours;
 mod noise;
 mod places;
 mod profile;
@@ -41,6 +42,7 @@ use crate::fit::{CableRecord, Measurements, Progress};
 pub use extended::extended;
 pub use foreign::Fault;
 pub use lines::Line;
+pub use neighbours::Neighbour;
 pub use places::Place;
 pub use profile::{Profile, ProfileBin, ProfileCell};
 pub use readiness::Lack;
@@ -51,12 +53,12 @@ pub use report::{CableDiscovery, Finding, Model, RunnerUp, Tried, Unexplained, V
 pub fn discover(measurements: &Measurements<'_>, progress: &Progress) -> Vec<CableDiscovery> {
     let records: Vec<CableRecord<'_>> = measurements.cables().collect();
     progress.begin(records.len());
-    records
-        .par_iter()
-        .map(|record| {
-            let found = cable::discover_cable(record, progress);
-            progress.finish_one();
-            found
-        })
-        .collect()
+    let of_cable = |record: &CableRecord<'_>| {
+        let found = cable::discover_cable(record, progress);
+        progress.finish_one();
+        found
+    };
+    let mut cables: Vec<CableDiscovery> = records.par_iter().map(of_cable).collect();
+    neighbours::find_neighbours(&records, &mut cables);
+    cables
 }

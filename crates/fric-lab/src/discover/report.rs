@@ -6,6 +6,7 @@ use nalgebra::DMatrix;
 
 use super::foreign::Fault;
 use super::lines::Line;
+use super::neighbours::Neighbour;
 use super::places::Place;
 use super::profile::Profile;
 use super::readiness::Lack;
@@ -88,6 +89,8 @@ pub struct Unexplained {
     pub places: Vec<Place>,
     /// When, s since the first sample.
     pub intervals_s: Vec<[f64; 2]>,
+    /// Signals of other cables that it goes with, the closest first.
+    pub neighbours: Vec<Neighbour>,
 }
 
 /// One cable.

@@ -11,6 +11,7 @@ use serde::Serialize;
 
 use super::foreign::Fault;
 use super::lines::Line;
+use super::neighbours::Neighbour;
 use super::places::Place;
 use super::report::{CableDiscovery, Finding, Model, Tried, Unexplained, Verdict};
 use super::summary;
@@ -186,8 +187,9 @@ pub struct UnexplainedResult {
     pub places: Vec<WhereResult>,
     /// When it is loud, s since the first sample.
     pub intervals_s: Vec<[f64; 2]>,
-    /// What it goes with: conditions that it is a function of, what tells most first.
-    pub goes_with: Vec<&'static str>,
+    /// What it goes with: conditions that it is a function of, what tells most first; then signals of other cables, as
+    /// `cable2 sensor_force`.
+    pub goes_with: Vec<String>,
 }
 
 /// A fault of the sensor.
@@ -275,11 +277,12 @@ impl DiscoverResult {
         readiness: &Readiness,
         discoveries: &[CableDiscovery],
     ) -> Self {
-        let cables = robot.cable_names().into_iter().zip(discoveries).enumerate();
+        let names = robot.cable_names();
+        let cables = discoveries.iter().take(names.len()).enumerate();
         let cables: Vec<DiscoverCableResult> = cables
-            .map(|(place, (name, found))| {
+            .map(|(place, found)| {
                 let lack = readiness.lack_of(place).map(|lack| (lack.cause.clone(), lack.advice));
-                cable_result(name, found, lack)
+                cable_result(place, &names, found, lack)
             })
             .collect();
         Self {
@@ -316,7 +319,12 @@ fn finite(number: f64) -> Option<f64> {
     number.is_finite().then_some(number)
 }
 
-fn cable_result(name: &str, found: &CableDiscovery, lack: Option<(String, &'static str)>) -> DiscoverCableResult {
+fn cable_result(
+    place: usize,
+    names: &[&str],
+    found: &CableDiscovery,
+    lack: Option<(String, &'static str)>,
+) -> DiscoverCableResult {
     let samples = found.samples;
     let (before, after) = (ForceError::of(&found.before.held_out_n), ForceError::of(&found.after.held_out_n));
     let share = |rms_n: f64| gap_closed(found, rms_n);
@@ -328,7 +336,7 @@ fn cable_result(name: &str, found: &CableDiscovery, lack: Option<(String, &'stat
     let mut places: Vec<WhereResult> = found.places.iter().map(WhereResult::of).collect();
     places.extend(hum.iter().map(|line| WhereResult::of_line(line, gap[0])));
     DiscoverCableResult {
-        name: name.to_owned(),
+        name: names.get(place).copied().unwrap_or_default().to_owned(),
         samples: samples.used,
         left_out: LeftOut {
             flagged: samples.flagged,
@@ -350,7 +358,7 @@ fn cable_result(name: &str, found: &CableDiscovery, lack: Option<(String, &'stat
         candidates: found.tried.iter().map(Candidate::of).collect(),
         parameters: parameters(found),
         standard_errors: errors(&found.after, Parameter::all(), ToString::to_string),
-        unexplained: found.unexplained.as_ref().map(|rest| unexplained(rest, gap[1])),
+        unexplained: found.unexplained.as_ref().map(|rest| unexplained(rest, gap[1], names)),
     }
 }
 
@@ -450,8 +458,13 @@ impl WhereResult {
     }
 }
 
-fn unexplained(rest: &Unexplained, excess: f64) -> UnexplainedResult {
+fn unexplained(rest: &Unexplained, excess: f64, names: &[&str]) -> UnexplainedResult {
     let lines = rest.lines.iter().map(|line| WhereResult::of_line(line, excess));
+    let of_cable = rest.places.iter().map(|place| place.signal.to_owned());
+    let of_others = rest.neighbours.iter().map(|Neighbour { cable, signal, .. }| {
+        let name = names.get(*cable).copied().unwrap_or_default();
+        format!("{name} {signal}")
+    });
     UnexplainedResult {
         rms_n: finite(rest.rms_n),
         frequency_hz: rest.lines.iter().map(|line| line.frequency_hz).collect(),
@@ -463,7 +476,7 @@ fn unexplained(rest: &Unexplained, excess: f64) -> UnexplainedResult {
             .collect(),
         places: lines.chain(rest.places.iter().map(WhereResult::of)).collect(),
         intervals_s: rest.intervals_s.clone(),
-        goes_with: rest.places.iter().map(|place| place.signal).collect(),
+        goes_with: of_cable.chain(of_others).collect(),
     }
 }
 

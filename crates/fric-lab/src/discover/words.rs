@@ -283,6 +283,10 @@ impl UnexplainedResult {
         }
         let places = self.places.iter().filter(|place| place.signal != "frequency");
         sentences.extend(places.take(2).map(|place| place.in_words("the rest")));
+        let neighbours: Vec<String> = self.goes_with.iter().filter(|signal| signal.contains(' ')).cloned().collect();
+        if !neighbours.is_empty() {
+            sentences.push(format!("it goes with signals of other cables: {}", listed(&neighbours)));
+        }
         if !self.intervals_s.is_empty() {
             sentences.push(format!("it is loud at {}", intervals(&self.intervals_s)));
         }

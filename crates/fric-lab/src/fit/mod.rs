@@ -45,7 +45,7 @@ pub(crate) mod engine {
     pub use super::problem::{Comparison, Loss, Member, Problem};
     pub use super::rewritten::{NewValues, with_values};
     pub use super::selection::{Standing, count};
-    pub use super::solve::{Solution, Unknown, covariance, search_near, vagueness};
+    pub use super::solve::{Solution, Unknown, covariance, inverse_of_normal, search_near, vagueness};
 }
 
 pub use cables::{fit_cables, residuals_n};

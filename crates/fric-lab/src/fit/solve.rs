@@ -271,15 +271,7 @@ pub fn covariance(problem: &Problem<'_>, values: &[Values]) -> (DMatrix<f64>, Ve
     let unknown = || (DMatrix::from_diagonal_element(count, count, f64::INFINITY), vec![f64::INFINITY; count]);
     let Some((gram, scores)) = problem.gram_and_scores(values) else { return unknown() };
     let (matrix, ..) = gram.normal_equations();
-    let scale: Vec<f64> = matrix.diagonal().iter().map(|square| 1.0 / square.max(f64::MIN_POSITIVE).sqrt()).collect();
-    let scaled = DMatrix::from_fn(count, count, |row, column| {
-        // What has no effect at all gets an all but infinite variance of its own.
-        let vanishing = if row == column { 1e-12 } else { 0.0 };
-        matrix[(row, column)] * scale[row] * scale[column] + vanishing
-    });
-    let Some(factor) = scaled.cholesky() else { return unknown() };
-    let inverse = factor.inverse();
-    let inverse = DMatrix::from_fn(count, count, |row, column| inverse[(row, column)] * scale[row] * scale[column]);
+    let Some(inverse) = inverse_of_normal(&matrix) else { return unknown() };
     let covariance = scores.covariance(&inverse);
     let silent = |place: usize| matrix[(place, place)] <= 0.0;
     let finite = |row, column| if row == column && silent(row) { f64::INFINITY } else { covariance[(row, column)] };
@@ -291,6 +283,19 @@ pub fn covariance(problem: &Problem<'_>, values: &[Values]) -> (DMatrix<f64>, Ve
     };
     let leverages = inverse.diagonal().iter().map(|variance| (samples * variance).sqrt()).collect();
     (DMatrix::from_fn(count, count, finite), leverages)
+}
+
+/// Inverse of a matrix `JᵀJ`, scaled meanwhile; what has no effect at all gets an all but infinite variance of its own. `None` where
+/// the matrix is not of numbers.
+pub fn inverse_of_normal(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    let count = matrix.nrows();
+    let scale: Vec<f64> = matrix.diagonal().iter().map(|square| 1.0 / square.max(f64::MIN_POSITIVE).sqrt()).collect();
+    let scaled = DMatrix::from_fn(count, count, |row, column| {
+        let vanishing = if row == column { 1e-12 } else { 0.0 };
+        matrix[(row, column)] * scale[row] * scale[column] + vanishing
+    });
+    let inverse = scaled.cholesky()?.inverse();
+    Some(DMatrix::from_fn(count, count, |row, column| inverse[(row, column)] * scale[row] * scale[column]))
 }
 
 /// Looks at the deviations anew: leaves out what cannot be a measurement, or sets Huber's bound. Whether something has
