@@ -4,7 +4,13 @@ PYTHON ?= python3
 VENV := .venv
 PIP := $(VENV)/bin/python -m pip --quiet --disable-pip-version-check
 
-.PHONY: test format lint test-rust docs test-python bench
+# Where `make install` puts libfric; packages are built with DESTDIR. PROFILE=dev is what the tests install.
+PREFIX ?= /usr/local
+DESTDIR ?=
+PROFILE ?= release
+TARGET := $(or $(CARGO_TARGET_DIR),target)
+
+.PHONY: test format lint test-rust docs test-python bench install
 
 test: format lint test-rust docs test-python
 
@@ -30,6 +36,10 @@ $(VENV)/ready: tests/python/requirements.txt
 	$(PYTHON) -m venv $(VENV)
 	$(PIP) install -r tests/python/requirements.txt
 	touch $@
+
+install:
+	$(CARGO) build --quiet --profile $(PROFILE) -p fric-capi
+	PREFIX="$(PREFIX)" DESTDIR="$(DESTDIR)" crates/fric-capi/packaging/install.sh "$(TARGET)/$(if $(filter dev,$(PROFILE)),debug,$(PROFILE))"
 
 bench:
 	$(CARGO) bench

@@ -23,7 +23,8 @@
 //!
 //! # Features
 //!
-//! `robot-file` reads and writes the TOML robot file ([`robot::file`]); it needs `std` and is off by default.
+//! Both are off by default: `alloc` is for robots whose number of cables is known only at run time (`AnyCompensator`);
+//! `robot-file` reads and writes the TOML robot file ([`robot::file`]) and needs `std`.
 #![no_std]
 #![allow(
     clippy::inline_always,
@@ -31,9 +32,13 @@
 )]
 #![allow(clippy::doc_markdown, reason = "symbols of equations are no code items")]
 
+#[cfg(feature = "alloc")]
+extern crate alloc;
 #[cfg(feature = "robot-file")]
 extern crate std;
 
+#[cfg(feature = "alloc")]
+mod any;
 mod bearing;
 pub mod cable;
 mod chain;
@@ -56,6 +61,8 @@ pub mod signals;
 mod status;
 pub mod swivel;
 
+#[cfg(feature = "alloc")]
+pub use any::{AnyCompensator, AnySnapshot, SnapshotMismatch};
 pub use compensator::{Compensator, Snapshot};
 pub use cycle::{CableInput, CableOutput, CycleInput, CycleOutput};
 pub use group::{CableCycle, CableGroup, PoseWrap};

@@ -1,13 +1,17 @@
 //! A compensator for a robot whose number of cables is known only at run time.
+//!
+//! For: programs that read a robot file and take the robot as it comes. Set-up allocates once; the cycle does not.
+//! Behaviour with non-finite input and state are those of [`Compensator`]. Needs the feature `alloc`.
 
-use std::any::Any;
+use alloc::boxed::Box;
+use core::any::Any;
+use core::fmt;
 
-use fric_core::robot::MAX_PULLEYS;
-use fric_core::{
-    CableInput, CableOutput, CableStatus, Compensator, CycleInput, CycleOutput, ParamError, Pose, RobotParams,
-    Snapshot, Wrench,
-};
-use thiserror::Error;
+use crate::compensator::{Compensator, Snapshot};
+use crate::cycle::{CableInput, CableOutput, CycleInput, CycleOutput};
+use crate::platform::{Pose, Wrench};
+use crate::robot::{MAX_PULLEYS, ParamError, RobotParams};
+use crate::status::CableStatus;
 
 /// [`Compensator`] for any number of cables up to [`AnyCompensator::MOST_CABLES`]: the smallest of a few sizes that
 /// holds the robot. The size does not change a bit of the result.
@@ -22,14 +26,22 @@ pub struct AnySnapshot {
 }
 
 /// A snapshot that was taken of a robot with another number of cables.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error("the snapshot is of a robot with {found} cables, this one has {expected}")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SnapshotMismatch {
     /// How many cables the robot has.
     pub expected: usize,
     /// How many that of the snapshot had.
     pub found: usize,
 }
+
+impl fmt::Display for SnapshotMismatch {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { expected, found } = self;
+        write!(formatter, "the snapshot is of a robot with {found} cables, this one has {expected}")
+    }
+}
+
+impl core::error::Error for SnapshotMismatch {}
 
 impl AnyCompensator {
     /// The largest robot.
@@ -98,6 +110,12 @@ impl AnyCompensator {
         self.0.wrench_status()
     }
 
+    /// The outside wrench of the last cycle less gravity, see [`CycleOutput::applied_wrench`].
+    #[must_use]
+    pub fn applied_wrench(&self) -> Option<Wrench> {
+        self.0.applied_wrench()
+    }
+
     /// Outcome of the last cycle for the robot's cables.
     #[must_use]
     pub fn outputs(&self) -> &[CableOutput] {
@@ -112,7 +130,7 @@ impl AnyCompensator {
     }
 }
 
-trait Cycle: Send + Sync + std::fmt::Debug {
+trait Cycle: Send + Sync + fmt::Debug {
     fn reset(&mut self);
     fn snapshot(&self) -> Box<dyn Any + Send + Sync>;
     /// Whether the snapshot is one of this size.
@@ -122,6 +140,7 @@ trait Cycle: Send + Sync + std::fmt::Debug {
     fn step(&mut self) -> Option<Wrench>;
     fn outputs(&self) -> &[CableOutput];
     fn wrench_status(&self) -> CableStatus;
+    fn applied_wrench(&self) -> Option<Wrench>;
     fn outside_wrench_of(&self, forces_n: &mut dyn Iterator<Item = f64>) -> Option<Wrench>;
 }
 
@@ -165,7 +184,7 @@ impl<const CABLES: usize> Cycle for Fixed<CABLES> {
     }
 
     fn set_input(&mut self, cables: &[CableInput], pose: Option<Pose>, elapsed_cycles: f64) {
-        let signals = cables.iter().copied().chain(std::iter::repeat(NOTHING));
+        let signals = cables.iter().copied().chain(core::iter::repeat(NOTHING));
         for (place, signal) in self.input.cables.iter_mut().zip(signals) {
             *place = signal;
         }
@@ -180,6 +199,10 @@ impl<const CABLES: usize> Cycle for Fixed<CABLES> {
 
     fn wrench_status(&self) -> CableStatus {
         self.output.wrench_status
+    }
+
+    fn applied_wrench(&self) -> Option<Wrench> {
+        self.output.applied_wrench
     }
 
     fn outputs(&self) -> &[CableOutput] {
