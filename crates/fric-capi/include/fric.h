@@ -53,13 +53,16 @@ typedef enum fric_result {
   FRIC_RESULT_WRONG_SIZE = 2,
   /// The robot file cannot be read, or something in it is wrong; the error text says what, where and what is allowed.
   FRIC_RESULT_ROBOT_FILE = 3,
+  /// The parameters given before have not been taken over yet; try again when their blend is over.
+  FRIC_RESULT_BUSY = 4,
   /// A mistake inside of the library, caught; please report it.
-  FRIC_RESULT_INTERNAL = 4,
+  FRIC_RESULT_INTERNAL = 5,
 } fric_result;
 
 /// Friction compensation of one robot: made by fric_load_file or fric_load_text, given back by fric_free.
 ///
-/// One thread at a time may use it; several compensators are independent of each other.
+/// One thread at a time may step or reset it. Others may ask for names and numbers and change parameters meanwhile. Several
+/// compensators are independent of each other.
 typedef struct fric_compensator fric_compensator;
 
 /// Signals of one cable.
@@ -138,6 +141,33 @@ typedef struct fric_output {
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
+
+/// Changes to the parameters of another robot file while a thread steps: without stopping it, without a lock in the step, and without a
+/// jump in the output.
+///
+/// The steps after it take the parameters over: within `blend_s` seconds (0…3600; one cycle at least) the output goes over from
+/// the old parameters to the new ones, and a step takes twice as long. The file is that of the same robot: friction,
+/// effects, geometry, masses and limits may differ, cycle time, number of cables and their pulleys not. FRIC_RESULT_BUSY
+/// where a change given before is not over. `error` is as in fric_load_file. Not for the cycle: it reads a file and allocates.
+///
+/// # Safety
+/// `compensator` is null or a compensator that has not been given back and is not while this runs; `path` is null or a
+/// string that ends with zero; `error` is null or `error_size` bytes may be written to there.
+enum fric_result fric_change_file(const struct fric_compensator *compensator,
+                                  const char *path,
+                                  double blend_s,
+                                  char *error,
+                                  size_t error_size);
+
+/// The same with the text of a robot file.
+///
+/// # Safety
+/// `toml` is null or a string that ends with zero; the rest as for fric_change_file.
+enum fric_result fric_change_text(const struct fric_compensator *compensator,
+                                  const char *toml,
+                                  double blend_s,
+                                  char *error,
+                                  size_t error_size);
 
 /// One cycle: for the inside of the control loop. It does not allocate, lock or wait, and takes any numbers, NaN
 /// included.

@@ -60,7 +60,8 @@ struct Output {
     std::uint32_t wrench_status = FRIC_STATUS_OK;
 };
 
-/// Friction compensation of one robot. It can be moved, not copied; one thread at a time may use it.
+/// Friction compensation of one robot. It can be moved, not copied. One thread at a time may step or reset it;
+/// others may ask and change parameters meanwhile.
 class Compensator {
 public:
     /// For the robot of a robot file. Throws Error.
@@ -92,6 +93,17 @@ public:
 
     /// Back to the state after set-up.
     Result reset() noexcept { return ::fric_reset(handle_.get()); }
+
+    /// Changes to the parameters of another robot file of the same robot within `blend_s` seconds, from any thread, while
+    /// another one steps. Gives false where a change given before is not over. Throws Error.
+    [[nodiscard]] bool change_to_file(const std::string& path, double blend_s) const {
+        return change(::fric_change_file, path, blend_s);
+    }
+
+    /// The same with the text of a robot file.
+    [[nodiscard]] bool change_to_text(const std::string& toml, double blend_s) const {
+        return change(::fric_change_text, toml, blend_s);
+    }
 
     /// How many cables the robot has; 0 once moved from.
     [[nodiscard]] std::size_t cable_count() const noexcept { return ::fric_cable_count(handle_.get()); }
@@ -135,6 +147,16 @@ private:
             throw Error(result, error);
         }
         return Compensator(handle);
+    }
+
+    template <typename Change>
+    bool change(Change change, const std::string& source, double blend_s) const {
+        char error[1024] = "";
+        const Result result = change(handle_.get(), source.c_str(), blend_s, error, sizeof error);
+        if (result != FRIC_RESULT_OK && result != FRIC_RESULT_BUSY) {
+            throw Error(result, error);
+        }
+        return result == FRIC_RESULT_OK;
     }
 
     static std::string text(const char* text) { return text == nullptr ? std::string() : std::string(text); }

@@ -177,6 +177,7 @@ pub unsafe extern "C" fn fric_step(
 impl Cycle {
     fn step(&mut self, pose: Option<PlatformPose>, elapsed_cycles: f64) -> Option<Wrench> {
         let pose = pose.and_then(|pose| Pose::from_parts(pose.position_m, pose.orientation_xyzw));
+        self.parameters.deliver_to(&mut self.compensator);
         self.compensator.set_input(&self.signals, pose, elapsed_cycles);
         self.compensator.step()
     }

@@ -2,15 +2,19 @@
 
 use std::ffi::{CString, NulError, c_char};
 use std::ptr;
+use std::sync::Mutex;
 
 use fric_core::robot::file::RobotFile;
-use fric_core::{AnyCompensator, CableInput, ParamError};
+use fric_core::{AnyCompensator, CableInput, ParamError, ParameterReceiver, ParameterSender, parameter_exchange};
 
 /// Friction compensation of one robot: made by fric_load_file or fric_load_text, given back by fric_free.
 ///
-/// One thread at a time may use it; several compensators are independent of each other.
+/// One thread at a time may step or reset it. Others may ask for names and numbers and change parameters meanwhile. Several
+/// compensators are independent of each other.
 pub struct Handle {
     pub(crate) cycle: Cycle,
+    /// The end of those who change parameters, among whom the lock is; a step never looks at it.
+    pub(crate) parameters: Mutex<ParameterSender>,
     description: Description,
 }
 
@@ -19,6 +23,7 @@ pub(crate) struct Cycle {
     pub compensator: AnyCompensator,
     /// The signals of a cycle, as many as the robot has cables.
     pub signals: Vec<CableInput>,
+    pub parameters: ParameterReceiver,
 }
 
 /// What does not change after set-up.
@@ -42,13 +47,16 @@ impl Handle {
     /// # Errors
     /// [`Unfit`] if the library or C cannot take the robot.
     pub(crate) fn new(robot: &RobotFile) -> Result<Self, Unfit> {
-        let compensator = AnyCompensator::new(&robot.params()).map_err(Unfit::Robot)?;
+        let params = robot.params();
+        let compensator = AnyCompensator::new(&params).map_err(Unfit::Robot)?;
+        let (sender, receiver) = parameter_exchange(&params).map_err(Unfit::Robot)?;
         let name = |name: &str| CString::new(name).map_err(Unfit::Name);
         let cable_names = robot.cable_names().into_iter().map(name).collect::<Result<Vec<_>, _>>()?;
         let signals = vec![CableInput::default(); cable_names.len()];
         let options = robot.options();
         let description = Description { robot_name: name(&options.name)?, cable_names, cycle_s: options.cycle_s };
-        Ok(Self { cycle: Cycle { compensator, signals }, description })
+        let cycle = Cycle { compensator, signals, parameters: receiver };
+        Ok(Self { cycle, parameters: Mutex::new(sender), description })
     }
 }
 

@@ -15,6 +15,7 @@
 #![allow(clippy::doc_markdown, reason = "the documentation is for C, where names stand bare")]
 
 mod abi;
+mod change;
 mod cycle;
 mod error_text;
 mod handle;
@@ -23,6 +24,7 @@ mod outcome;
 mod status;
 
 pub use abi::FRIC_ABI_VERSION;
+pub use change::{fric_change_file, fric_change_text};
 pub use cycle::{
     CableResult, CableSignals, CycleResult, CycleSignals, PlatformPose, PlatformWrench, fric_reset, fric_step,
 };

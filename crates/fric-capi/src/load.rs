@@ -54,7 +54,7 @@ pub unsafe extern "C" fn fric_load_text(
 }
 
 /// What went wrong, and its causes.
-fn message(error: impl std::error::Error) -> String {
+pub(crate) fn message(error: impl std::error::Error) -> String {
     let mut text = error.to_string();
     let mut cause = error.source();
     while let Some(error) = cause {
@@ -69,7 +69,7 @@ fn message(error: impl std::error::Error) -> String {
 ///
 /// # Safety
 /// `pointer` is null or a string that ends with zero and stays as it is while the text is used.
-unsafe fn text<'a>(pointer: *const c_char, name: &str) -> Result<&'a str, (Outcome, String)> {
+pub(crate) unsafe fn text<'a>(pointer: *const c_char, name: &str) -> Result<&'a str, (Outcome, String)> {
     if pointer.is_null() {
         return Err((Outcome::BadPointer, format!("`{name}` is a null pointer")));
     }
@@ -102,10 +102,7 @@ unsafe fn load(
             }
         })
     };
-    // Nothing outlives a panic but the text of the caller's, which is only read.
-    let made = catch_unwind(AssertUnwindSafe(set_up));
-    let internal = || (Outcome::Internal, "a mistake inside of fric; please report it with the robot file".to_owned());
-    let (outcome, handle) = match made.unwrap_or_else(|_| Err(internal())) {
+    let (outcome, handle) = match guarded(set_up) {
         Ok(handle) => (Outcome::Ok, Box::into_raw(Box::new(handle))),
         Err((outcome, text)) => {
             error.write(&text);
@@ -115,4 +112,12 @@ unsafe fn load(
     // SAFETY: neither null nor misaligned, so it may be written to by the caller's promise.
     unsafe { compensator.write(handle) };
     outcome
+}
+
+/// A call that may fail, and in which a mistake of ours becomes a code.
+pub(crate) fn guarded<T>(work: impl FnOnce() -> Result<T, (Outcome, String)>) -> Result<T, (Outcome, String)> {
+    // What a panic leaves behind is not looked at again: it was on its way to the caller, or is behind a lock that tells.
+    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| {
+        Err((Outcome::Internal, "a mistake inside of fric; please report it with the robot file".to_owned()))
+    })
 }

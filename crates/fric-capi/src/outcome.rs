@@ -17,8 +17,10 @@ pub enum Outcome {
     WrongSize = 2,
     /// The robot file cannot be read, or something in it is wrong; the error text says what, where and what is allowed.
     RobotFile = 3,
+    /// The parameters given before have not been taken over yet; try again when their blend is over.
+    Busy = 4,
     /// A mistake inside of the library, caught; please report it.
-    Internal = 4,
+    Internal = 5,
 }
 
 /// Version of the interface that this library has; FRIC_ABI_VERSION of the header that it goes with.

@@ -12,6 +12,7 @@ use crate::cycle::{CableInput, CableOutput, CycleInput, CycleOutput};
 use crate::platform::{Pose, Wrench};
 use crate::robot::{MAX_PULLEYS, ParamError, RobotParams};
 use crate::status::CableStatus;
+use crate::tunable::TunableCompensator;
 
 /// [`Compensator`] for any number of cables up to [`AnyCompensator::MOST_CABLES`]: the smallest of a few sizes that
 /// holds the robot. The size does not change a bit of the result.
@@ -87,6 +88,28 @@ impl AnyCompensator {
         if is_restored { Ok(()) } else { Err(SnapshotMismatch { expected, found }) }
     }
 
+    /// Whether the parameters of `next` can take over, see [`Compensator::check_exchange`].
+    ///
+    /// # Errors
+    /// [`ParamError`] as there.
+    pub fn check_exchange(&self, next: &Self) -> Result<(), ParamError> {
+        self.0.check_exchange(next.0.as_any())
+    }
+
+    /// Takes over the parameters of `next` in the course of the next `blend_cycles`, see [`TunableCompensator::change`].
+    ///
+    /// # Errors
+    /// [`ParamError`] as there.
+    pub fn change(&mut self, next: &Self, blend_cycles: u32) -> Result<(), ParamError> {
+        self.0.change(next.0.as_any(), blend_cycles)
+    }
+
+    /// Whether the output is still on its way from old parameters to new ones.
+    #[must_use]
+    pub fn is_changing(&self) -> bool {
+        self.0.is_changing()
+    }
+
     /// Friction stored at each pulley of a cable, see [`Compensator::pulley_friction_n`].
     #[must_use]
     pub fn pulley_friction_n(&self, cable: usize) -> [f64; MAX_PULLEYS] {
@@ -135,6 +158,10 @@ trait Cycle: Send + Sync + fmt::Debug {
     fn snapshot(&self) -> Box<dyn Any + Send + Sync>;
     /// Whether the snapshot is one of this size.
     fn restore(&mut self, state: &(dyn Any + Send + Sync)) -> bool;
+    fn as_any(&self) -> &dyn Any;
+    fn check_exchange(&self, next: &dyn Any) -> Result<(), ParamError>;
+    fn change(&mut self, next: &dyn Any, blend_cycles: u32) -> Result<(), ParamError>;
+    fn is_changing(&self) -> bool;
     fn pulley_friction_n(&self, cable: usize) -> [f64; MAX_PULLEYS];
     fn set_input(&mut self, cables: &[CableInput], pose: Option<Pose>, elapsed_cycles: f64);
     fn step(&mut self) -> Option<Wrench>;
@@ -146,7 +173,7 @@ trait Cycle: Send + Sync + fmt::Debug {
 
 #[derive(Debug)]
 struct Fixed<const CABLES: usize> {
-    compensator: Compensator<CABLES>,
+    compensator: TunableCompensator<CABLES>,
     input: CycleInput<CABLES>,
     output: CycleOutput<CABLES>,
 }
@@ -155,9 +182,15 @@ const NOTHING: CableInput = CableInput { sensor_force_n: f64::NAN, length_m: f64
 
 impl<const CABLES: usize> Fixed<CABLES> {
     fn boxed(robot: &RobotParams<'_>) -> Result<Box<dyn Cycle>, ParamError> {
-        let compensator = Compensator::new(robot)?;
+        let compensator = TunableCompensator::new(Compensator::new(robot)?);
         Ok(Box::new(Self { compensator, input: CycleInput::default(), output: CycleOutput::default() }))
     }
+}
+
+/// The compensator in a [`Fixed`] of the same size; robots of different sizes differ in their number of cables.
+fn of_size<const CABLES: usize>(next: &dyn Any) -> Result<&Compensator<CABLES>, ParamError> {
+    let fixed = next.downcast_ref::<Fixed<CABLES>>().map(|fixed| fixed.compensator.compensator());
+    fixed.ok_or(ParamError::conflict("cable", "differ in number from those of the robot that runs"))
 }
 
 impl<const CABLES: usize> Cycle for Fixed<CABLES> {
@@ -167,7 +200,7 @@ impl<const CABLES: usize> Cycle for Fixed<CABLES> {
     }
 
     fn snapshot(&self) -> Box<dyn Any + Send + Sync> {
-        Box::new((self.compensator.snapshot(), self.output))
+        Box::new((self.compensator.compensator().snapshot(), self.output))
     }
 
     fn restore(&mut self, state: &(dyn Any + Send + Sync)) -> bool {
@@ -179,8 +212,24 @@ impl<const CABLES: usize> Cycle for Fixed<CABLES> {
         true
     }
 
+    fn as_any(&self) -> &dyn Any {
+        self
+    }
+
+    fn check_exchange(&self, next: &dyn Any) -> Result<(), ParamError> {
+        self.compensator.compensator().check_exchange(of_size(next)?)
+    }
+
+    fn change(&mut self, next: &dyn Any, blend_cycles: u32) -> Result<(), ParamError> {
+        self.compensator.change(of_size(next)?, blend_cycles)
+    }
+
+    fn is_changing(&self) -> bool {
+        self.compensator.is_changing()
+    }
+
     fn pulley_friction_n(&self, cable: usize) -> [f64; MAX_PULLEYS] {
-        self.compensator.pulley_friction_n(cable)
+        self.compensator.compensator().pulley_friction_n(cable)
     }
 
     fn set_input(&mut self, cables: &[CableInput], pose: Option<Pose>, elapsed_cycles: f64) {
@@ -206,11 +255,11 @@ impl<const CABLES: usize> Cycle for Fixed<CABLES> {
     }
 
     fn outputs(&self) -> &[CableOutput] {
-        self.output.cables.get(..self.compensator.cable_count()).unwrap_or_default()
+        self.output.cables.get(..self.compensator.compensator().cable_count()).unwrap_or_default()
     }
 
     fn outside_wrench_of(&self, forces_n: &mut dyn Iterator<Item = f64>) -> Option<Wrench> {
-        let matrix = self.compensator.structure_matrix()?;
+        let matrix = self.compensator.compensator().structure_matrix()?;
         let mut wrench = Wrench::default();
         for (column, force_n) in matrix.column_iter().zip(forces_n) {
             wrench.force_n -= column.fixed_rows::<3>(0) * force_n;

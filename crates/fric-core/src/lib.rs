@@ -47,6 +47,8 @@ mod compensator;
 mod cycle;
 pub mod dahl;
 pub mod effects;
+#[cfg(feature = "alloc")]
+mod exchange;
 mod functions;
 mod group;
 mod lanes;
@@ -60,11 +62,14 @@ pub mod scalar;
 pub mod signals;
 mod status;
 pub mod swivel;
+mod tunable;
 
 #[cfg(feature = "alloc")]
 pub use any::{AnyCompensator, AnySnapshot, SnapshotMismatch};
 pub use compensator::{Compensator, Snapshot};
 pub use cycle::{CableInput, CableOutput, CycleInput, CycleOutput};
+#[cfg(feature = "alloc")]
+pub use exchange::{ParameterReceiver, ParameterSender, SendError, parameter_exchange};
 pub use group::{CableCycle, CableGroup, PoseWrap};
 pub use lanes::{LANES, Lanes};
 pub use platform::{Pose, Wrench};
@@ -72,6 +77,7 @@ pub use robot::{CableParams, ParamError, RobotParams};
 pub use sample::Sample;
 
 pub use status::CableStatus;
+pub use tunable::TunableCompensator;
 
 /// Compiles the example of the README.
 #[cfg(all(doctest, feature = "robot-file"))]

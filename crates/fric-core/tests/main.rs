@@ -33,3 +33,4 @@ mod status;
 mod support;
 #[cfg(test)]
 mod swivel;
+mod tunable;

@@ -3,10 +3,10 @@
 use std::hint::black_box;
 
 use fric_core::robot::{
-    CableOptions, FrictionOptions, GeometryOptions, MonitorOptions, PlatformOptions, Presliding, PulleyOptions,
-    MAX_PULLEYS,
+    CableOptions, FrictionOptions, GeometryOptions, MAX_PULLEYS, MonitorOptions, PlatformOptions, Presliding,
+    PulleyOptions,
 };
-use fric_core::{CableParams, Compensator, CycleInput, CycleOutput, Pose, RobotParams, Snapshot};
+use fric_core::{CableParams, Compensator, CycleInput, CycleOutput, Pose, RobotParams, Snapshot, TunableCompensator};
 use no_panic::no_panic;
 
 macro_rules! cycle_of {
@@ -51,6 +51,22 @@ macro_rules! cycle_of {
                 compensator.pulley_friction_n(cable)
             }
 
+            #[no_panic]
+            #[inline(never)]
+            pub fn tunable_step(
+                tunable: &mut TunableCompensator<$cables>,
+                input: &CycleInput<$cables>,
+                output: &mut CycleOutput<$cables>,
+            ) {
+                tunable.step_into(input, output);
+            }
+
+            #[no_panic]
+            #[inline(never)]
+            pub fn change(tunable: &mut TunableCompensator<$cables>, next: &Compensator<$cables>) -> bool {
+                tunable.change(next, 7).is_ok()
+            }
+
             /// Calls all of them with values that the optimiser does not know.
             pub fn run(robot: &RobotParams<'_>) {
                 let Ok(mut compensator) = Compensator::<$cables>::new(robot) else { return };
@@ -61,6 +77,9 @@ macro_rules! cycle_of {
                 let state = snapshot(black_box(&compensator));
                 restore(black_box(&mut compensator), black_box(&state));
                 black_box(friction(black_box(&compensator), black_box(2)));
+                let mut tunable = TunableCompensator::new(compensator.clone());
+                black_box(change(black_box(&mut tunable), black_box(&compensator)));
+                tunable_step(black_box(&mut tunable), black_box(&input), black_box(&mut output));
             }
         }
     };
