@@ -37,6 +37,7 @@ extern crate alloc;
 #[cfg(feature = "robot-file")]
 extern crate std;
 
+pub mod admittance;
 #[cfg(feature = "alloc")]
 mod any;
 mod bearing;

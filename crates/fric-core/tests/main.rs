@@ -4,8 +4,9 @@
 #![allow(clippy::float_cmp, reason = "bit for bit is what many of these tests are about")]
 
 #[cfg(test)]
-mod builds;
+mod admittance;
 #[cfg(test)]
+mod builds;
 mod chain;
 #[cfg(test)]
 mod cycle;
