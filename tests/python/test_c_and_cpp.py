@@ -155,6 +155,16 @@ def test_after_set_up_nothing_allocates(examples, few_rows, tmp_path):
     assert "malloc" in allocating(seen("fric_load_file")), "the check does not see allocations"
 
 
+def test_the_control_loop_takes_no_page_and_no_memory(examples, few_rows):
+    done = subprocess.run([examples["cpp"] / "control_loop", ROBOT, few_rows, "1"], capture_output=True, text=True, check=False)
+    assert done.stderr == "" and "1000 cycles, 0 flagged" in done.stdout, done
+    assert re.search(r"wake-up +[\d.]+ .*\nstep +[\d.]+", done.stdout)
+    taken = re.search(r"(\d+) minor and (\d+) major page faults, (-?\d+) bytes", done.stdout)
+    if "memory is not locked" not in done.stdout:
+        assert taken.groups() == ("0", "0", "0") and done.returncode == 0, done
+    assert taken[3] == "0"
+
+
 def test_pkg_config_finds_the_library(prefix, tmp_path):
     """The C example without CMake, with the shared library."""
     environment = {**os.environ, "PKG_CONFIG_PATH": str(prefix / "lib" / "pkgconfig")}
