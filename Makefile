@@ -4,9 +4,19 @@ PYTHON ?= python3
 VENV := .venv
 PIP := $(VENV)/bin/python -m pip --quiet --disable-pip-version-check
 
-.PHONY: test format lint test-rust docs test-python bench
+# Where `make install` puts libfric; packages are built with DESTDIR. PROFILE=dev is what the tests install.
+PREFIX ?= /usr/local
+DESTDIR ?=
+PROFILE ?= release
+TARGET := $(or $(CARGO_TARGET_DIR),target)
 
-test: format lint test-rust docs test-python
+# A machine without operating system, and one that Miri can interpret: x86_64's roots are assembly to it.
+BARE_METAL := thumbv7em-none-eabihf
+MIRI_TARGET := riscv64gc-unknown-linux-gnu
+
+.PHONY: test format lint test-rust docs test-python bare-metal miri bench install
+
+test: format lint test-rust docs test-python bare-metal miri
 
 format:
 	$(CARGO) fmt --all --check
@@ -30,6 +40,22 @@ $(VENV)/ready: tests/python/requirements.txt
 	$(PYTHON) -m venv $(VENV)
 	$(PIP) install -r tests/python/requirements.txt
 	touch $@
+
+bare-metal:
+	@if rustup target add $(BARE_METAL) >/dev/null 2>&1; then \
+		$(CARGO) build --quiet --release -p fric-core --target $(BARE_METAL) && \
+		$(CARGO) build --quiet --release -p fric-core --features alloc --target $(BARE_METAL) && \
+		echo "fric-core builds for $(BARE_METAL)"; \
+	else echo "not checked: fric-core on bare metal; rustup cannot add $(BARE_METAL)"; fi
+
+miri:
+	@if rustup component add miri rust-src --toolchain nightly >/dev/null 2>&1; then \
+		$(CARGO) +nightly miri test --quiet -p fric-capi --test main --target $(MIRI_TARGET); \
+	else echo "not checked: the C interface under Miri; rustup cannot add miri and rust-src to the nightly toolchain"; fi
+
+install:
+	$(CARGO) build --quiet --profile $(PROFILE) -p fric-capi
+	PREFIX="$(PREFIX)" DESTDIR="$(DESTDIR)" crates/fric-capi/packaging/install.sh "$(TARGET)/$(if $(filter dev,$(PROFILE)),debug,$(PROFILE))"
 
 bench:
 	$(CARGO) bench

@@ -5,6 +5,8 @@
 //! ([`CableStatus`]) and never reaches another cable. Size: about 1 kB a cable, and 1 kB more a cable for the delay
 //! lines.
 
+mod takeover;
+
 use crate::cable::{Features, Moment, cable_cycle};
 use crate::columns::{BlockOfCables, ParamColumns, StateColumns};
 use crate::cycle::{CableInput, CableOutput, CycleInput, CycleOutput};

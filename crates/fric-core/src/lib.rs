@@ -23,7 +23,8 @@
 //!
 //! # Features
 //!
-//! `robot-file` reads and writes the TOML robot file ([`robot::file`]); it needs `std` and is off by default.
+//! Both are off by default: `alloc` is for robots whose number of cables is known only at run time (`AnyCompensator`);
+//! `robot-file` reads and writes the TOML robot file ([`robot::file`]) and needs `std`.
 #![no_std]
 #![allow(
     clippy::inline_always,
@@ -31,9 +32,14 @@
 )]
 #![allow(clippy::doc_markdown, reason = "symbols of equations are no code items")]
 
+#[cfg(feature = "alloc")]
+extern crate alloc;
 #[cfg(feature = "robot-file")]
 extern crate std;
 
+pub mod admittance;
+#[cfg(feature = "alloc")]
+mod any;
 mod bearing;
 pub mod cable;
 mod chain;
@@ -42,6 +48,8 @@ mod compensator;
 mod cycle;
 pub mod dahl;
 pub mod effects;
+#[cfg(feature = "alloc")]
+mod exchange;
 mod functions;
 mod group;
 mod lanes;
@@ -55,9 +63,14 @@ pub mod scalar;
 pub mod signals;
 mod status;
 pub mod swivel;
+mod tunable;
 
+#[cfg(feature = "alloc")]
+pub use any::{AnyCompensator, AnySnapshot, SnapshotMismatch};
 pub use compensator::{Compensator, Snapshot};
 pub use cycle::{CableInput, CableOutput, CycleInput, CycleOutput};
+#[cfg(feature = "alloc")]
+pub use exchange::{ParameterReceiver, ParameterSender, SendError, parameter_exchange};
 pub use group::{CableCycle, CableGroup, PoseWrap};
 pub use lanes::{LANES, Lanes};
 pub use platform::{Pose, Wrench};
@@ -65,6 +78,7 @@ pub use robot::{CableParams, ParamError, RobotParams};
 pub use sample::Sample;
 
 pub use status::CableStatus;
+pub use tunable::TunableCompensator;
 
 /// Compiles the example of the README.
 #[cfg(all(doctest, feature = "robot-file"))]

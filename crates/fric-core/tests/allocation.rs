@@ -6,7 +6,7 @@ use fric_core::effects::CATALOGUE;
 use fric_core::robot::{
     CableOptions, FrictionOptions, GeometryOptions, MonitorOptions, PlatformOptions, Presliding, PulleyOptions,
 };
-use fric_core::{CableInput, CableParams, Compensator, CycleInput, CycleOutput, Pose, RobotParams};
+use fric_core::{CableInput, CableParams, Compensator, CycleInput, CycleOutput, Pose, RobotParams, TunableCompensator};
 
 const PULLEYS: [PulleyOptions; 3] = [
     PulleyOptions::Fixed { wrap_rad: std::f64::consts::PI, sensor: true },
@@ -80,6 +80,16 @@ fn the_cycle_does_not_allocate() {
                 compensator.reset();
                 compensator.restore(&snapshot);
             }
+        }
+    });
+    assert_eq!(counted.count_total, 0);
+    let (mut tunable, next) = (TunableCompensator::new(compensator.clone()), everything_on());
+    let counted = measure(|| {
+        for cycle in 0..200 {
+            if cycle % 40 == 0 {
+                tunable.change(&next, 20).unwrap();
+            }
+            tunable.step_into(&input(cycle), &mut output);
         }
     });
     assert_eq!(counted.count_total, 0);

@@ -4,8 +4,9 @@
 #![allow(clippy::float_cmp, reason = "bit for bit is what many of these tests are about")]
 
 #[cfg(test)]
-mod builds;
+mod admittance;
 #[cfg(test)]
+mod builds;
 mod chain;
 #[cfg(test)]
 mod cycle;
@@ -33,3 +34,4 @@ mod status;
 mod support;
 #[cfg(test)]
 mod swivel;
+mod tunable;

@@ -1,8 +1,7 @@
 //! `Compensator`: the control loop's cycle, one at a time or over arrays.
 
-use fric_core::{CableInput, Pose};
+use fric_core::{AnyCompensator, AnySnapshot, CableInput, Pose};
 use fric_lab::columns::OutputColumns;
-use fric_lab::replay::{AnyCompensator, AnySnapshot};
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
 

@@ -1,9 +1,8 @@
 //! Errors of the crates below as the exceptions of `fric._errors`.
 
-use fric_core::ParamError;
 use fric_core::robot::file::RobotFileError;
+use fric_core::{ParamError, SnapshotMismatch};
 use fric_lab::hysteresis::HysteresisError;
-use fric_lab::replay::SnapshotMismatch;
 use fric_lab::simulate::{HiddenError, SimulationError};
 use fric_log::output;
 use fric_log::recording::RecordingError;

@@ -4,15 +4,13 @@
 //! rubbed) and after (compensated). It keeps sums only: memory does not grow with the log. Samples without a reference
 //! count for nothing in the errors; flagged ones count as all others, since the control loop has to live with them.
 
-mod compensator;
 mod error;
 mod warnings;
 
-use fric_core::{CableOutput, CableStatus, ParamError, RobotParams, Sample, Wrench};
+use fric_core::{AnyCompensator, CableOutput, CableStatus, ParamError, RobotParams, Sample, Wrench};
 
 use crate::clock::Clock;
 
-pub use compensator::{AnyCompensator, AnySnapshot, SnapshotMismatch};
 pub use error::Deviation;
 
 /// What has been accumulated for a cable.

@@ -100,7 +100,7 @@ struct SimulatedCable {
 
 /// What a seeded stream of random numbers is for; streams of one seed do not depend on each other.
 #[derive(Clone, Copy)]
-enum Purpose {
+pub enum Purpose {
     Spread,
     Micro,
     Load,
@@ -114,7 +114,7 @@ enum Purpose {
     Disturbance,
 }
 
-fn random(seed: u64, purpose: Purpose, cable: usize) -> ChaCha8Rng {
+pub fn random(seed: u64, purpose: Purpose, cable: usize) -> ChaCha8Rng {
     random_of(seed, purpose as u64, cable)
 }
 
@@ -441,7 +441,7 @@ impl SimulatedCable {
 }
 
 /// The cable's pulleys with their own μ.
-fn chain(table: &CableTable, options: &SimulationOptions, cable: usize, effects: TruthEffects) -> BristleChain {
+pub fn chain(table: &CableTable, options: &SimulationOptions, cable: usize, effects: TruthEffects) -> BristleChain {
     let spread = &mut random(options.seed, Purpose::Spread, cable);
     let ratio = options.mu_spread_ratio;
     let pulleys: Vec<PulleyTruth> = table

@@ -1,7 +1,6 @@
 //! A compensator of any size against one of a fixed size.
 
-use fric_core::{CableOutput, Compensator, CycleInput, RobotParams};
-use fric_lab::replay::AnyCompensator;
+use fric_core::{AnyCompensator, CableOutput, Compensator, CycleInput, RobotParams};
 use fric_lab::simulate::SimulationOptions;
 
 use crate::simulate::robots::{bench, eight_cables, simulate};

@@ -1,5 +1,6 @@
 mod compensated;
 mod effects;
+mod idle;
 pub mod robots;
 mod shapes;
 mod stream;

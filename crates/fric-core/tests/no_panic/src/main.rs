@@ -2,12 +2,19 @@
 
 use std::hint::black_box;
 
+use fric_core::admittance::{Admittance, AdmittanceOptions, SetPoint};
 use fric_core::robot::{
-    CableOptions, FrictionOptions, GeometryOptions, MonitorOptions, PlatformOptions, Presliding, PulleyOptions,
-    MAX_PULLEYS,
+    CableOptions, FrictionOptions, GeometryOptions, MAX_PULLEYS, MonitorOptions, PlatformOptions, Presliding,
+    PulleyOptions,
 };
-use fric_core::{CableParams, Compensator, CycleInput, CycleOutput, Pose, RobotParams, Snapshot};
+use fric_core::{CableParams, Compensator, CycleInput, CycleOutput, Pose, RobotParams, Snapshot, TunableCompensator, Wrench};
 use no_panic::no_panic;
+
+#[no_panic]
+#[inline(never)]
+fn admit(admittance: &mut Admittance, wrench: Option<&Wrench>) -> SetPoint {
+    admittance.step(wrench)
+}
 
 macro_rules! cycle_of {
     ($module:ident, $cables:literal) => {
@@ -51,6 +58,22 @@ macro_rules! cycle_of {
                 compensator.pulley_friction_n(cable)
             }
 
+            #[no_panic]
+            #[inline(never)]
+            pub fn tunable_step(
+                tunable: &mut TunableCompensator<$cables>,
+                input: &CycleInput<$cables>,
+                output: &mut CycleOutput<$cables>,
+            ) {
+                tunable.step_into(input, output);
+            }
+
+            #[no_panic]
+            #[inline(never)]
+            pub fn change(tunable: &mut TunableCompensator<$cables>, next: &Compensator<$cables>) -> bool {
+                tunable.change(next, 7).is_ok()
+            }
+
             /// Calls all of them with values that the optimiser does not know.
             pub fn run(robot: &RobotParams<'_>) {
                 let Ok(mut compensator) = Compensator::<$cables>::new(robot) else { return };
@@ -61,6 +84,9 @@ macro_rules! cycle_of {
                 let state = snapshot(black_box(&compensator));
                 restore(black_box(&mut compensator), black_box(&state));
                 black_box(friction(black_box(&compensator), black_box(2)));
+                let mut tunable = TunableCompensator::new(compensator.clone());
+                black_box(change(black_box(&mut tunable), black_box(&compensator)));
+                tunable_step(black_box(&mut tunable), black_box(&input), black_box(&mut output));
             }
         }
     };
@@ -72,6 +98,18 @@ cycle_of!(eight, 8);
 cycle_of!(seventeen, 17);
 
 fn main() {
+    let body = AdmittanceOptions {
+        mass_kg: black_box([2.0; 3]),
+        damping_n_s_per_m: [40.0; 3],
+        stiffness_n_per_m: [100.0; 3],
+        reach_m: 0.2,
+        inertia_kg_m2: [0.01; 3],
+        damping_nm_s_per_rad: [0.2; 3],
+        stiffness_nm_per_rad: [0.5; 3],
+        reach_rad: 0.3,
+    };
+    let mut admittance = Admittance::new(&body, 0.001, &Pose::identity()).unwrap();
+    black_box(admit(black_box(&mut admittance), black_box(Some(&Wrench::default()))));
     let pulleys = [
         PulleyOptions::Fixed { wrap_rad: core::f64::consts::PI, sensor: true },
         PulleyOptions::Swivel { radius_m: 0.01, axis: [0.0, 0.0, 1.0] },

@@ -1,13 +1,18 @@
 //! A compensator for a robot whose number of cables is known only at run time.
+//!
+//! For: programs that read a robot file and take the robot as it comes. Set-up allocates once; the cycle does not.
+//! Behaviour with non-finite input and state are those of [`Compensator`]. Needs the feature `alloc`.
 
-use std::any::Any;
+use alloc::boxed::Box;
+use core::any::Any;
+use core::fmt;
 
-use fric_core::robot::MAX_PULLEYS;
-use fric_core::{
-    CableInput, CableOutput, CableStatus, Compensator, CycleInput, CycleOutput, ParamError, Pose, RobotParams,
-    Snapshot, Wrench,
-};
-use thiserror::Error;
+use crate::compensator::{Compensator, Snapshot};
+use crate::cycle::{CableInput, CableOutput, CycleInput, CycleOutput};
+use crate::platform::{Pose, Wrench};
+use crate::robot::{MAX_PULLEYS, ParamError, RobotParams};
+use crate::status::CableStatus;
+use crate::tunable::TunableCompensator;
 
 /// [`Compensator`] for any number of cables up to [`AnyCompensator::MOST_CABLES`]: the smallest of a few sizes that
 /// holds the robot. The size does not change a bit of the result.
@@ -22,14 +27,22 @@ pub struct AnySnapshot {
 }
 
 /// A snapshot that was taken of a robot with another number of cables.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error("the snapshot is of a robot with {found} cables, this one has {expected}")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SnapshotMismatch {
     /// How many cables the robot has.
     pub expected: usize,
     /// How many that of the snapshot had.
     pub found: usize,
 }
+
+impl fmt::Display for SnapshotMismatch {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { expected, found } = self;
+        write!(formatter, "the snapshot is of a robot with {found} cables, this one has {expected}")
+    }
+}
+
+impl core::error::Error for SnapshotMismatch {}
 
 impl AnyCompensator {
     /// The largest robot.
@@ -75,6 +88,28 @@ impl AnyCompensator {
         if is_restored { Ok(()) } else { Err(SnapshotMismatch { expected, found }) }
     }
 
+    /// Whether the parameters of `next` can take over, see [`Compensator::check_exchange`].
+    ///
+    /// # Errors
+    /// [`ParamError`] as there.
+    pub fn check_exchange(&self, next: &Self) -> Result<(), ParamError> {
+        self.0.check_exchange(next.0.as_any())
+    }
+
+    /// Takes over the parameters of `next` in the course of the next `blend_cycles`, see [`TunableCompensator::change`].
+    ///
+    /// # Errors
+    /// [`ParamError`] as there.
+    pub fn change(&mut self, next: &Self, blend_cycles: u32) -> Result<(), ParamError> {
+        self.0.change(next.0.as_any(), blend_cycles)
+    }
+
+    /// Whether the output is still on its way from old parameters to new ones.
+    #[must_use]
+    pub fn is_changing(&self) -> bool {
+        self.0.is_changing()
+    }
+
     /// Friction stored at each pulley of a cable, see [`Compensator::pulley_friction_n`].
     #[must_use]
     pub fn pulley_friction_n(&self, cable: usize) -> [f64; MAX_PULLEYS] {
@@ -98,6 +133,12 @@ impl AnyCompensator {
         self.0.wrench_status()
     }
 
+    /// The outside wrench of the last cycle less gravity, see [`CycleOutput::applied_wrench`].
+    #[must_use]
+    pub fn applied_wrench(&self) -> Option<Wrench> {
+        self.0.applied_wrench()
+    }
+
     /// Outcome of the last cycle for the robot's cables.
     #[must_use]
     pub fn outputs(&self) -> &[CableOutput] {
@@ -112,22 +153,27 @@ impl AnyCompensator {
     }
 }
 
-trait Cycle: Send + Sync + std::fmt::Debug {
+trait Cycle: Send + Sync + fmt::Debug {
     fn reset(&mut self);
     fn snapshot(&self) -> Box<dyn Any + Send + Sync>;
     /// Whether the snapshot is one of this size.
     fn restore(&mut self, state: &(dyn Any + Send + Sync)) -> bool;
+    fn as_any(&self) -> &dyn Any;
+    fn check_exchange(&self, next: &dyn Any) -> Result<(), ParamError>;
+    fn change(&mut self, next: &dyn Any, blend_cycles: u32) -> Result<(), ParamError>;
+    fn is_changing(&self) -> bool;
     fn pulley_friction_n(&self, cable: usize) -> [f64; MAX_PULLEYS];
     fn set_input(&mut self, cables: &[CableInput], pose: Option<Pose>, elapsed_cycles: f64);
     fn step(&mut self) -> Option<Wrench>;
     fn outputs(&self) -> &[CableOutput];
     fn wrench_status(&self) -> CableStatus;
+    fn applied_wrench(&self) -> Option<Wrench>;
     fn outside_wrench_of(&self, forces_n: &mut dyn Iterator<Item = f64>) -> Option<Wrench>;
 }
 
 #[derive(Debug)]
 struct Fixed<const CABLES: usize> {
-    compensator: Compensator<CABLES>,
+    compensator: TunableCompensator<CABLES>,
     input: CycleInput<CABLES>,
     output: CycleOutput<CABLES>,
 }
@@ -136,9 +182,15 @@ const NOTHING: CableInput = CableInput { sensor_force_n: f64::NAN, length_m: f64
 
 impl<const CABLES: usize> Fixed<CABLES> {
     fn boxed(robot: &RobotParams<'_>) -> Result<Box<dyn Cycle>, ParamError> {
-        let compensator = Compensator::new(robot)?;
+        let compensator = TunableCompensator::new(Compensator::new(robot)?);
         Ok(Box::new(Self { compensator, input: CycleInput::default(), output: CycleOutput::default() }))
     }
+}
+
+/// The compensator in a [`Fixed`] of the same size; robots of different sizes differ in their number of cables.
+fn of_size<const CABLES: usize>(next: &dyn Any) -> Result<&Compensator<CABLES>, ParamError> {
+    let fixed = next.downcast_ref::<Fixed<CABLES>>().map(|fixed| fixed.compensator.compensator());
+    fixed.ok_or(ParamError::conflict("cable", "differ in number from those of the robot that runs"))
 }
 
 impl<const CABLES: usize> Cycle for Fixed<CABLES> {
@@ -148,7 +200,7 @@ impl<const CABLES: usize> Cycle for Fixed<CABLES> {
     }
 
     fn snapshot(&self) -> Box<dyn Any + Send + Sync> {
-        Box::new((self.compensator.snapshot(), self.output))
+        Box::new((self.compensator.compensator().snapshot(), self.output))
     }
 
     fn restore(&mut self, state: &(dyn Any + Send + Sync)) -> bool {
@@ -160,12 +212,28 @@ impl<const CABLES: usize> Cycle for Fixed<CABLES> {
         true
     }
 
+    fn as_any(&self) -> &dyn Any {
+        self
+    }
+
+    fn check_exchange(&self, next: &dyn Any) -> Result<(), ParamError> {
+        self.compensator.compensator().check_exchange(of_size(next)?)
+    }
+
+    fn change(&mut self, next: &dyn Any, blend_cycles: u32) -> Result<(), ParamError> {
+        self.compensator.change(of_size(next)?, blend_cycles)
+    }
+
+    fn is_changing(&self) -> bool {
+        self.compensator.is_changing()
+    }
+
     fn pulley_friction_n(&self, cable: usize) -> [f64; MAX_PULLEYS] {
-        self.compensator.pulley_friction_n(cable)
+        self.compensator.compensator().pulley_friction_n(cable)
     }
 
     fn set_input(&mut self, cables: &[CableInput], pose: Option<Pose>, elapsed_cycles: f64) {
-        let signals = cables.iter().copied().chain(std::iter::repeat(NOTHING));
+        let signals = cables.iter().copied().chain(core::iter::repeat(NOTHING));
         for (place, signal) in self.input.cables.iter_mut().zip(signals) {
             *place = signal;
         }
@@ -182,12 +250,16 @@ impl<const CABLES: usize> Cycle for Fixed<CABLES> {
         self.output.wrench_status
     }
 
+    fn applied_wrench(&self) -> Option<Wrench> {
+        self.output.applied_wrench
+    }
+
     fn outputs(&self) -> &[CableOutput] {
-        self.output.cables.get(..self.compensator.cable_count()).unwrap_or_default()
+        self.output.cables.get(..self.compensator.compensator().cable_count()).unwrap_or_default()
     }
 
     fn outside_wrench_of(&self, forces_n: &mut dyn Iterator<Item = f64>) -> Option<Wrench> {
-        let matrix = self.compensator.structure_matrix()?;
+        let matrix = self.compensator.compensator().structure_matrix()?;
         let mut wrench = Wrench::default();
         for (column, force_n) in matrix.column_iter().zip(forces_n) {
             wrench.force_n -= column.fixed_rows::<3>(0) * force_n;

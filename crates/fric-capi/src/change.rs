@@ -1,0 +1,96 @@
+//! New parameters while another thread steps.
+
+use std::ffi::c_char;
+use std::path::Path;
+use std::sync::PoisonError;
+
+use fric_core::SendError;
+use fric_core::robot::file::RobotFile;
+
+use crate::error_text::ErrorText;
+use crate::handle::Handle;
+use crate::load::{guarded, message, text};
+use crate::outcome::Outcome;
+
+/// Changes to the parameters of another robot file while a thread steps: without stopping it, without a lock in the step, and without a
+/// jump in the output.
+///
+/// The steps after it take the parameters over: within `blend_s` seconds (0…3600; one cycle at least) the output goes over from
+/// the old parameters to the new ones, and a step takes twice as long. The file is that of the same robot: friction,
+/// effects, geometry, masses and limits may differ, cycle time, number of cables and their pulleys not. FRIC_RESULT_BUSY
+/// where a change given before is not over. `error` is as in fric_load_file. Not for the cycle: it reads a file and allocates.
+///
+/// # Safety
+/// `compensator` is null or a compensator that has not been given back and is not while this runs; `path` is null or a
+/// string that ends with zero; `error` is null or `error_size` bytes may be written to there.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fric_change_file(
+    compensator: *const Handle,
+    path: *const c_char,
+    blend_s: f64,
+    error: *mut c_char,
+    error_size: usize,
+) -> Outcome {
+    // SAFETY: the same is promised here.
+    let error = unsafe { ErrorText::new(error, error_size) };
+    // SAFETY: the same is promised here.
+    let path = unsafe { text(path, "path") };
+    // SAFETY: the same is promised here.
+    unsafe { change(compensator, path, |path| RobotFile::read(Path::new(path)).map_err(message), blend_s, error) }
+}
+
+/// The same with the text of a robot file.
+///
+/// # Safety
+/// `toml` is null or a string that ends with zero; the rest as for fric_change_file.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fric_change_text(
+    compensator: *const Handle,
+    toml: *const c_char,
+    blend_s: f64,
+    error: *mut c_char,
+    error_size: usize,
+) -> Outcome {
+    // SAFETY: the same is promised here.
+    let error = unsafe { ErrorText::new(error, error_size) };
+    // SAFETY: the same is promised here.
+    let toml = unsafe { text(toml, "toml") };
+    // SAFETY: the same is promised here.
+    unsafe { change(compensator, toml, |toml| RobotFile::parse(toml, "robot file").map_err(message), blend_s, error) }
+}
+
+/// Sends parameters, or gives a code and a text.
+///
+/// # Safety
+/// `compensator` is null or a compensator that has not been given back and is not while this runs.
+unsafe fn change(
+    compensator: *const Handle,
+    source: Result<&str, (Outcome, String)>,
+    read: impl FnOnce(&str) -> Result<RobotFile, String>,
+    blend_s: f64,
+    error: ErrorText,
+) -> Outcome {
+    error.write("");
+    if compensator.is_null() || !compensator.is_aligned() {
+        error.write("`compensator` is a null pointer or not aligned");
+        return Outcome::BadPointer;
+    }
+    // SAFETY: a handle that lives; the step looks at other fields only, and no reference to those is made here.
+    let parameters = unsafe { &(*compensator).parameters };
+    let sent = guarded(|| {
+        let robot = read(source?).map_err(|text| (Outcome::RobotFile, text))?;
+        // After a panic the two rings are whole all the same.
+        let mut sender = parameters.lock().unwrap_or_else(PoisonError::into_inner);
+        sender.send(&robot.params(), blend_s).map_err(|refused| {
+            let outcome = if refused == SendError::Busy { Outcome::Busy } else { Outcome::RobotFile };
+            (outcome, refused.to_string())
+        })
+    });
+    match sent {
+        Ok(()) => Outcome::Ok,
+        Err((outcome, text)) => {
+            error.write(&text);
+            outcome
+        }
+    }
+}

@@ -1,0 +1,34 @@
+//! `libfric`: the compensator of `fric-core` for C and C++.
+//!
+//! For: control loops that are not written in Rust. Nothing is computed here; a cycle has the bits of
+//! [`fric_core::Compensator`]. What a C programmer reads is `include/fric.h`, made from these sources by cbindgen; the
+//! C++ interface is `include/fric.hpp`.
+//!
+//! - **Set-up** may fail: it gives a code and one sentence. What fails in a way that it should not is caught
+//!   (`catch_unwind`), so that a mistake of ours at set-up costs no machine.
+//! - **The cycle** ([`fric_step`]) does not allocate, lock, or fail on any signal. A wrong pointer or size is a code. It has
+//!   no panic to unwind; and were there one, a function of `extern "C"` ends the process and never unwinds into C.
+//!   That is why the cycle needs no `catch_unwind`, and the release profile no `panic = "abort"`, which would take
+//!   Python its exceptions.
+//!
+//! Non-finite input is flagged as in [`fric_core::CableStatus`]; no number that comes out is non-finite.
+#![allow(clippy::doc_markdown, reason = "the documentation is for C, where names stand bare")]
+
+mod abi;
+mod change;
+mod cycle;
+mod error_text;
+mod handle;
+mod load;
+mod outcome;
+mod status;
+
+pub use abi::FRIC_ABI_VERSION;
+pub use change::{fric_change_file, fric_change_text};
+pub use cycle::{
+    CableResult, CableSignals, CycleResult, CycleSignals, PlatformPose, PlatformWrench, fric_reset, fric_step,
+};
+pub use handle::{Handle, fric_cable_count, fric_cable_name, fric_cycle_s, fric_free, fric_robot_name};
+pub use load::{fric_load_file, fric_load_text};
+pub use outcome::{Outcome, fric_abi_version, fric_version};
+pub use status::*;

@@ -1,0 +1,183 @@
+//! A change of parameters against two compensators that know nothing of it.
+
+use fric_core::robot::{CableOptions, FrictionOptions, MonitorOptions, PlatformOptions, Presliding, PulleyOptions};
+use fric_core::{AnyCompensator, CableParams, RobotParams, SendError};
+use fric_core::{
+    CableInput, CableOutput, Compensator, CycleInput, CycleOutput, Pose, TunableCompensator, Wrench, parameter_exchange,
+};
+
+use crate::support::{compensator, corner_cable};
+
+const CABLES: usize = 5;
+const BLEND_CYCLES: u32 = 40;
+const MONITOR: MonitorOptions = MonitorOptions { frozen_cycles: 10, length_jump_m: 0.01, length_noise_m: 0.0 };
+
+fn options(mu: f64, sigma_n_per_m: f64, offset_n: f64) -> [CableOptions<'static>; CABLES] {
+    core::array::from_fn(|index| CableOptions {
+        friction: FrictionOptions { mu, sigma_n_per_m: Some(sigma_n_per_m), viscous_n_s_per_m: 0.3, offset_n },
+        ..corner_cable(index, if index % 2 == 0 { Presliding::PerPulley } else { Presliding::Lumped })
+    })
+}
+
+fn old() -> Compensator<CABLES> {
+    compensator(&options(0.02, 1000.0, 0.0), MONITOR)
+}
+
+fn new() -> Compensator<CABLES> {
+    compensator(&options(0.04, 700.0, 0.2), MONITOR)
+}
+
+/// To and fro by centimetres, each cable in its own rhythm; one cable's sensor is silent now and then.
+fn input(cycle: u32) -> CycleInput<CABLES> {
+    let t = f64::from(cycle) * 1e-3;
+    let cables = core::array::from_fn(|cable| {
+        let rate = [9.0, 11.0, 13.0, 15.0, 17.0][cable];
+        let silent = cable == 3 && cycle % 50 < 5;
+        CableInput {
+            sensor_force_n: if silent { f64::NAN } else { 20.0 + (3.0 * rate * t).sin() },
+            length_m: 0.02 * (rate * t).cos(),
+            speed_m_per_s: -0.02 * rate * (rate * t).sin(),
+        }
+    });
+    let pose = Pose::from_parts([0.1, 0.05 * t.sin(), -0.1], [0.0, 0.0, 0.0, 1.0]);
+    CycleInput { cables, pose, ..CycleInput::default() }
+}
+
+/// Every number of an output.
+fn numbers(output: &CycleOutput<CABLES>) -> Vec<f64> {
+    let of_cable = |cable: &CableOutput| [cable.force_at_platform_n, cable.friction_n, cable.frictionless_n];
+    let of_wrench =
+        |wrench: &Option<Wrench>| wrench.unwrap_or_default().to_vector().iter().copied().collect::<Vec<_>>();
+    let wrenches = [of_wrench(&output.outside_wrench), of_wrench(&output.applied_wrench)].concat();
+    output.cables.iter().flat_map(of_cable).chain(wrenches).collect()
+}
+
+#[test]
+fn the_output_goes_over_without_a_step() {
+    for change_at in [1, 137, 300, 731] {
+        let (mut tunable, mut old) = (TunableCompensator::new(old()), old());
+        let mut output = CycleOutput::default();
+        for cycle in 0..change_at {
+            tunable.step_into(&input(cycle), &mut output);
+            assert_eq!(output, old.step(&input(cycle)));
+        }
+        let mut new = new();
+        tunable.change(&new, BLEND_CYCLES).unwrap();
+        new.restore(&old.snapshot());
+        let mut last = [numbers(&output), numbers(&output), numbers(&output)];
+        let mut last_new = None;
+        for done in 1..=BLEND_CYCLES {
+            assert!(tunable.is_changing());
+            let input = input(change_at + done - 1);
+            tunable.step_into(&input, &mut output);
+            let (of_old, of_new) = (old.step(&input), new.step(&input));
+            let now = [numbers(&output), numbers(&of_old), numbers(&of_new)];
+            for place in 0..now[0].len() {
+                let [value, old, new] = [0, 1, 2].map(|which| now[which][place]);
+                let share = f64::from(done) / f64::from(BLEND_CYCLES);
+                assert!((value - (old + share * (new - old))).abs() < 1e-11, "cycle {done}: {value} of {old}, {new}");
+                let change = |which: usize| (now[which][place] - last[which][place]).abs();
+                // In the first cycle the new one has no cycle of its own before it.
+                let steepest = change(1).max(if last_new.is_some() { change(2) } else { 0.0 });
+                let bound = steepest + (new - old).abs() / f64::from(BLEND_CYCLES);
+                assert!(change(0) <= bound + 1e-11, "cycle {done}: a step of {} where {bound} is allowed", change(0));
+            }
+            for ((cable, old), new) in output.cables.iter().zip(&of_old.cables).zip(&of_new.cables) {
+                assert_eq!(cable.status, if done < BLEND_CYCLES { old.status | new.status } else { new.status });
+            }
+            last = now;
+            last_new = Some(());
+        }
+        assert!(!tunable.is_changing());
+        for cycle in change_at + BLEND_CYCLES..change_at + 1000 {
+            tunable.step_into(&input(cycle), &mut output);
+            assert_eq!(output, new.step(&input(cycle)));
+        }
+    }
+}
+
+#[test]
+fn it_arrives_where_a_compensator_of_the_new_parameters_is() {
+    let (mut tunable, mut built) = (TunableCompensator::new(old()), new());
+    let mut output = CycleOutput::default();
+    for cycle in 0..1500 {
+        if cycle == 400 {
+            tunable.change(&new(), BLEND_CYCLES).unwrap();
+        }
+        tunable.step_into(&input(cycle), &mut output);
+        let expected = built.step(&input(cycle));
+        let (ours, theirs) = (numbers(&output), numbers(&expected));
+        let farthest = ours.iter().zip(&theirs).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max);
+        assert!(!(10..400).contains(&cycle) || farthest > 1e-2, "the parameters make no difference: {farthest}");
+        assert!(cycle < 1000 || farthest < 1e-9, "cycle {cycle}: {farthest}");
+    }
+}
+
+#[test]
+fn a_change_of_the_robot_is_refused_and_changes_nothing() {
+    let mut tunable = TunableCompensator::new(old());
+    let fewer = compensator::<CABLES>(&options(0.02, 1000.0, 0.0)[..4], MONITOR);
+    let mut others = options(0.02, 1000.0, 0.0);
+    others[2].geometry = None;
+    others[2].pulleys = &[PulleyOptions::Fixed { wrap_rad: 3.0, sensor: true }];
+    let other_pulleys = compensator::<CABLES>(&others, MONITOR);
+    for (next, word) in [(&fewer, "`cable`"), (&other_pulleys, "`pulleys`")] {
+        let error = tunable.change(next, 5).unwrap_err().to_string();
+        assert!(error.starts_with(word), "{error}");
+        assert!(!tunable.is_changing());
+    }
+    tunable.change(&new(), 100).unwrap();
+    tunable.reset();
+    let (mut output, mut fresh) = (CycleOutput::default(), new());
+    tunable.step_into(&input(0), &mut output);
+    assert_eq!(output, fresh.step(&input(0)));
+}
+
+/// A robot's parameters live as long as the closure.
+#[expect(clippy::unwrap_used, reason = "a test")]
+fn with_robot<T>(mu: f64, work: impl FnOnce(&RobotParams<'_>) -> T) -> T {
+    let cables = options(mu, 1000.0, 0.0).map(|options| CableParams::new(&options).unwrap());
+    work(&RobotParams::new(0.001, &PlatformOptions::default(), MONITOR, &cables).unwrap())
+}
+
+#[test]
+fn parameters_arrive_from_another_thread() {
+    let mut running = with_robot(0.02, AnyCompensator::new).unwrap();
+    let (mut sender, mut receiver) = with_robot(0.02, parameter_exchange).unwrap();
+    let mut step = |cycle: u32, running: &mut AnyCompensator| {
+        let input = input(cycle);
+        receiver.deliver_to(running);
+        running.set_input(&input.cables, input.pose, 1.0);
+        running.step();
+    };
+    step(0, &mut running);
+    std::thread::scope(|scope| {
+        let sent = scope.spawn(|| {
+            let sent = with_robot(0.05, |robot| sender.send(robot, 0.02));
+            // The loop stands still: the second has to wait.
+            (sent, with_robot(0.06, |robot| sender.send(robot, 0.02)))
+        });
+        assert_eq!(sent.join().unwrap(), (Ok(()), Err(SendError::Busy)));
+    });
+    for cycle in 1..=20 {
+        assert_eq!(running.is_changing(), cycle > 1);
+        step(cycle, &mut running);
+    }
+    assert!(!running.is_changing());
+    let mut built = with_robot(0.05, AnyCompensator::new).unwrap();
+    for cycle in 0..1000 {
+        let input = input(cycle);
+        built.set_input(&input.cables, input.pose, 1.0);
+        built.step();
+        if cycle > 20 {
+            step(cycle, &mut running);
+        }
+    }
+    for (ours, theirs) in running.outputs().iter().zip(built.outputs()) {
+        assert!((ours.force_at_platform_n - theirs.force_at_platform_n).abs() < 1e-9);
+    }
+    for blend_s in [f64::NAN, -1.0, 1e4] {
+        let refused = with_robot(0.06, |robot| sender.send(robot, blend_s)).unwrap_err();
+        assert!(refused.to_string().starts_with("`blend_s` is "), "{refused}");
+    }
+}

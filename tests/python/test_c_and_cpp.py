@@ -1,0 +1,197 @@
+"""libfric as a user has it: `make install`, CMake and pkg-config, the examples, and the bits of `fric-cli replay`."""
+
+import os
+import re
+import shutil
+import subprocess
+
+import numpy as np
+import pandas as pd
+import pytest
+from mcap.reader import make_reader
+from mcap_ros2.decoder import DecoderFactory
+from support import LOG, ROBOT, ROOT, run
+
+import fric
+
+WARNINGS = "-Wall -Wextra -Wpedantic -Wshadow -Werror"
+ROW_COUNT = 6000
+
+
+def tool(name, package):
+    """A program of the system."""
+    assert shutil.which(name), f"{name} is missing: apt-get install {package}"
+    return name
+
+
+def call(*command, **options):
+    """What a command prints; fails with all of it."""
+    done = subprocess.run(command, capture_output=True, text=True, check=False, **options)
+    assert done.returncode == 0, f"{command}\n{done.stdout}\n{done.stderr}"
+    return done.stdout
+
+
+@pytest.fixture(scope="module")
+def prefix(tmp_path_factory):
+    """Where `make install` has put the library, away from this repository."""
+    prefix = tmp_path_factory.mktemp("prefix") / "usr"
+    call("make", "--no-print-directory", "-C", ROOT, "install", "PROFILE=dev", f"PREFIX={prefix}")
+    return prefix
+
+
+@pytest.fixture(scope="module")
+def examples(prefix, tmp_path_factory):
+    """The built programs of `examples/c` and `examples/cpp`, each from a folder of its own."""
+    tool("c++", "g++")
+    programs = {}
+    for language in ["c", "cpp"]:
+        folder = tmp_path_factory.mktemp(language)
+        source = shutil.copytree(ROOT / "examples" / language, folder / "source")
+        flags = [f"-DCMAKE_{compiler}_FLAGS={WARNINGS}" for compiler in ["C", "CXX"]]
+        call(tool("cmake", "cmake"), "-S", source, "-B", folder / "build", f"-DCMAKE_PREFIX_PATH={prefix}", *flags)
+        call("cmake", "--build", folder / "build")
+        programs[language] = folder / "build"
+    return programs
+
+
+@pytest.fixture(scope="module")
+def rows(tmp_path_factory):
+    """The first rows of the example log as CSV."""
+    path = tmp_path_factory.mktemp("rows") / "rows.csv"
+    table = fric.read_log(LOG).to_pandas().iloc[:ROW_COUNT]
+    table.to_csv(path, index=False)
+    return path
+
+
+@pytest.fixture(scope="module")
+def few_rows(rows):
+    """The first of them, for runs in slow motion."""
+    path = rows.with_name("few.csv")
+    path.write_text("".join(rows.read_text(encoding="utf-8").splitlines(keepends=True)[:300]), encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="module")
+def outcome(examples, rows, tmp_path_factory):
+    """What the C++ example makes of the rows."""
+    path = tmp_path_factory.mktemp("outcome") / "out.csv"
+    call(examples["cpp"] / "replay", ROBOT, rows, path)
+    return numbers(path)
+
+
+def numbers(path):
+    """A table as written, to the last bit, whichever version of pandas reads it."""
+    table = pd.read_csv(path, dtype=str)
+    return table.astype({name: np.int64 if name == "stamp_nanos" else float for name in table})
+
+
+def test_the_c_example_agrees_with_python(examples):
+    text = call(examples["c"] / "cycle", ROBOT)
+    compensator = fric.Compensator(fric.Robot.read(ROBOT))
+    pose = {"position_m": np.zeros(3), "orientation_xyzw": np.array([0.0, 0.0, 0.0, 1.0])}
+    for cycle in range(1000):
+        force_n, length_m = 15.0 + 1e-3 * (cycle % 10), 0.05 * 0.001 * cycle
+        last = compensator.step(np.full(8, force_n), np.full(8, length_m), np.full(8, 0.05), **pose)
+    forces_n = [float(value) for value in re.findall(r"([\d.]+) N at the platform", text)]
+    assert text.startswith("mini-ipanema\n") and text.count("status 0\n") == 8
+    assert np.allclose(forces_n, last.force_at_platform_n, rtol=0, atol=5.01e-5)
+    assert "applied force" in text
+
+
+def test_the_cpp_example_has_the_bits_of_the_command_line(outcome, tmp_path):
+    replayed = tmp_path / "replayed.mcap"
+    run("replay", LOG, "-o", replayed)
+    efforts = {"/fric/cable_forces": [], "/fric/friction": []}
+    wrenches = []
+    with open(replayed, "rb") as file:
+        for _, channel, _, message in make_reader(file, decoder_factories=[DecoderFactory()]).iter_decoded_messages():
+            if channel.topic in efforts and len(efforts[channel.topic]) < ROW_COUNT:
+                efforts[channel.topic].append(list(message.effort))
+            elif channel.topic == "/fric/wrench" and len(wrenches) < ROW_COUNT:
+                stamp = message.header.stamp
+                force, torque = message.wrench.force, message.wrench.torque
+                six = [force.x, force.y, force.z, torque.x, torque.y, torque.z]
+                wrenches.append([stamp.sec * 1_000_000_000 + stamp.nanosec, *six])
+    for column, topic in [("force_at_platform_n", "/fric/cable_forces"), ("friction_n", "/fric/friction")]:
+        ours = outcome[[f"{column}.cable{number}" for number in range(1, 9)]].to_numpy()
+        assert np.array_equal(ours.view(np.int64), np.array(efforts[topic]).view(np.int64))
+    columns = ["force_n.x", "force_n.y", "force_n.z", "torque_nm.x", "torque_nm.y", "torque_nm.z"]
+    ours = outcome.set_index("stamp_nanos")[columns]
+    both = [(ours.loc[stamp].to_numpy(), np.array(six)) for stamp, *six in wrenches if stamp in ours.index]
+    assert len(both) > ROW_COUNT - 10
+    assert all(np.array_equal(one.view(np.int64), other.view(np.int64)) for one, other in both)
+
+
+def test_under_valgrind_there_is_no_error_and_no_leak(examples, few_rows, outcome, tmp_path):
+    arguments = [ROBOT, few_rows, tmp_path / "out.csv"]
+    checks = ["--error-exitcode=9", "--leak-check=full", "--errors-for-leak-kinds=definite,indirect,possible"]
+    for program in [[examples["cpp"] / "replay", *arguments], [examples["c"] / "cycle", ROBOT]]:
+        call(tool("valgrind", "valgrind"), "--quiet", *checks, *program)
+    under_valgrind = numbers(tmp_path / "out.csv")
+    assert under_valgrind.equals(outcome.iloc[: len(under_valgrind)])
+
+
+def functions(profile):
+    """Names of the functions that callgrind has seen running."""
+    return set(re.findall(r"^c?fn=\(\d+\) (.+)$", profile.read_text(encoding="utf-8"), re.MULTILINE))
+
+
+def test_after_set_up_nothing_allocates(examples, few_rows, tmp_path):
+    """Every function that runs between the first cycle and the last, by callgrind; `malloc` and the kernel are not there."""
+
+    def seen(start):
+        profile = tmp_path / f"{start}.out"
+        options = ["--tool=callgrind", f"--toggle-collect={start}", f"--callgrind-out-file={profile}"]
+        call(tool("valgrind", "valgrind"), *options, examples["cpp"] / "replay", ROBOT, few_rows, tmp_path / "out.csv")
+        return functions(profile)
+
+    def allocating(names):
+        plain = r"_*(malloc|calloc|realloc|free|posix_memalign|aligned_alloc|mmap|munmap|s?brk)"
+        return {name for name in names if re.match(rf"({plain}$|operator (new|delete)|.*__rust_(alloc|realloc))", name)}
+
+    cycle = seen("run_cycles*")
+    assert any("fric_step" in name for name in cycle) and any("step_into" in name for name in cycle)
+    assert allocating(cycle) == set()
+    assert "malloc" in allocating(seen("fric_load_file")), "the check does not see allocations"
+
+
+def test_the_control_loop_takes_no_page_and_no_memory(examples, few_rows):
+    done = subprocess.run([examples["cpp"] / "control_loop", ROBOT, few_rows, "1"], capture_output=True, text=True, check=False)
+    assert done.stderr == "" and "1000 cycles, 0 flagged" in done.stdout, done
+    assert re.search(r"wake-up +[\d.]+ .*\nstep +[\d.]+", done.stdout)
+    taken = re.search(r"(\d+) minor and (\d+) major page faults, (-?\d+) bytes", done.stdout)
+    if "memory is not locked" not in done.stdout:
+        assert taken.groups() == ("0", "0", "0") and done.returncode == 0, done
+    assert taken[3] == "0"
+
+
+def test_pkg_config_finds_the_library(prefix, tmp_path):
+    """The C example without CMake, with the shared library."""
+    environment = {**os.environ, "PKG_CONFIG_PATH": str(prefix / "lib" / "pkgconfig")}
+    flags = call(tool("pkg-config", "pkg-config"), "--cflags", "--libs", "fric", env=environment).split()
+    program = tmp_path / "cycle"
+    call("cc", "-std=c11", ROOT / "examples" / "c" / "cycle.c", *flags, f"-Wl,-rpath,{prefix / 'lib'}", "-o", program)
+    assert call(program, ROBOT).startswith("mini-ipanema\n")
+    assert call("pkg-config", "--modversion", "fric", env=environment).strip() == fric.__version__
+
+
+def test_mistakes_are_told_in_a_sentence(examples, rows, tmp_path):
+    def refused(*arguments):
+        done = subprocess.run([examples["cpp"] / "replay", *arguments], capture_output=True, text=True, check=False)
+        assert done.returncode == 1 and done.stderr.count("\n") == 1, done
+        return done.stderr
+
+    assert "no-such.toml" in refused("no-such.toml", rows, tmp_path / "out.csv")
+    broken = tmp_path / "robot.toml"
+    broken.write_text(ROBOT.read_text(encoding="utf-8").replace("mu = 0.016", "mu = 7.0"), encoding="utf-8")
+    assert re.search(r"robot.toml.*line \d+.*cable1.*`mu` is 7; allowed is 0 to 0.9", refused(broken, rows, "out"))
+    lacking = tmp_path / "rows.csv"
+    lacking.write_text("stamp_nanos,sensor_force_n.cable1\n", encoding="utf-8")
+    assert "no column 'length_m.cable1'" in refused(ROBOT, lacking, tmp_path / "out.csv")
+
+
+def test_destdir_is_respected(tmp_path):
+    call("make", "--no-print-directory", "-C", ROOT, "install", "PROFILE=dev", "PREFIX=/opt/fric", f"DESTDIR={tmp_path}")
+    root = tmp_path / "opt" / "fric"
+    assert (root / "include" / "fric.hpp").is_file() and (root / "lib" / "libfric.so").is_symlink()
+    assert not any(str(tmp_path) in path.read_text() for path in root.rglob("*.cmake"))
