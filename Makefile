@@ -14,9 +14,22 @@ TARGET := $(or $(CARGO_TARGET_DIR),target)
 BARE_METAL := thumbv7em-none-eabihf
 MIRI_TARGET := riscv64gc-unknown-linux-gnu
 
-.PHONY: test format lint test-rust docs test-python bare-metal miri bench install
+# Commands of the system that tests run, each with the Debian package that has it.
+TOOLS := c++=g++ cmake=cmake pkg-config=pkg-config valgrind=valgrind
+
+.PHONY: test format lint test-rust docs test-python bare-metal miri bench install tools
 
 test: format lint test-rust docs test-python bare-metal miri
+
+tools:
+	@missing=; for tool in $(TOOLS); do \
+		command -v "$${tool%%=*}" >/dev/null || missing="$$missing $${tool#*=}"; \
+	done; \
+	if [ -n "$$missing" ]; then \
+		echo "installing$$missing"; \
+		$$([ "$$(id -u)" = 0 ] || echo sudo) sh -c "apt-get update -qq && apt-get install -y -qq --no-install-recommends$$missing" \
+			|| { echo "missing, and apt-get cannot install them:$$missing" >&2; exit 1; }; \
+	fi
 
 format:
 	$(CARGO) fmt --all --check
@@ -30,7 +43,7 @@ test-rust:
 docs:
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --workspace --no-deps --quiet
 
-test-python: $(VENV)/ready
+test-python: tools $(VENV)/ready
 	$(CARGO) build --quiet -p fric-cli
 	# As `pip install .` does, but with what has been built for the other tests.
 	PATH="$(CURDIR)/$(VENV)/bin:$$PATH" MATURIN_PEP517_ARGS="--profile dev" $(PIP) install --no-build-isolation --no-deps .
