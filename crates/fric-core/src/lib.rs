@@ -37,6 +37,7 @@ extern crate std;
 pub mod cable;
 mod columns;
 mod compensator;
+pub mod continuum;
 mod cycle;
 pub mod dahl;
 pub mod effects;

@@ -8,6 +8,8 @@ mod builds;
 #[cfg(test)]
 mod chain;
 #[cfg(test)]
+mod continuum;
+#[cfg(test)]
 mod cycle;
 #[cfg(test)]
 mod dahl;
