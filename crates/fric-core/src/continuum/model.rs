@@ -2,7 +2,7 @@
 
 use super::friction::Friction;
 use super::load::positions;
-use super::newton::{Contacts, Law, Newton, Point, Target, chords, passages, travel_m};
+use super::newton::{Contacts, Law, Newton, Point, Target, chords, passages, travels_m};
 use super::params::{ManipulatorError, ManipulatorParams, Tendon, count_error};
 use super::shape::{Shape, ShapeStatus};
 
@@ -180,7 +180,7 @@ impl<const DISKS: usize> StaticModel<DISKS> {
     /// A manipulator whose holes have come to an equilibrium: their friction is the difference of the tensions.
     fn past(&self, point: &Point<DISKS>, base_tension_n: [f64; 2]) -> Past<DISKS> {
         let contacts =
-            Contacts { friction_n: frictions(point, base_tension_n), travel_m: travel_m(&self.params, point) };
+            Contacts { friction_n: frictions(point, base_tension_n), travel_m: travels_m(&self.params, point) };
         Past { point: *point, base_tension_n, contacts }
     }
 

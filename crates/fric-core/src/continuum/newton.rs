@@ -79,20 +79,32 @@ pub fn chords<const DISKS: usize>(params: &ManipulatorParams, bend_rad: &[f64; D
     [0, 1].map(|tendon| bend_rad.map(|bend_rad| Chord::new(params.pitch_m, hole_m(params, tendon), bend_rad)))
 }
 
-/// How far each tendon has come through each hole towards the base: what the chords beyond have lost in length and the
-/// tendon there has gained by its stretch.
-pub fn travel_m<const DISKS: usize>(params: &ManipulatorParams, point: &Point<DISKS>) -> [[f64; DISKS]; 2] {
-    let mut travel_m = [[0.0; DISKS]; 2];
-    let parts = travel_m.iter_mut().zip(chords(params, &point.bend_rad)).zip(&point.tension_n).zip(&params.tendons);
-    for (((travel_m, chords), tension_n), tendon) in parts {
-        let mut sum_m = 0.0;
-        let segments = travel_m.iter_mut().zip(chords).zip(tension_n).take(params.disk_count);
-        for ((travel_m, chord), tension_n) in segments.rev() {
-            sum_m += chord.length_m * (tension_n / tendon.axial_stiffness_n - 1.0);
-            *travel_m = sum_m;
-        }
+/// How far a tendon has come through each hole towards the base: what the chords beyond have lost in length and the tendon
+/// there has gained by its stretch.
+fn travel_m<const DISKS: usize>(
+    chords: &[Chord; DISKS],
+    tension_n: &[f64; DISKS],
+    axial_stiffness_n: f64,
+    count: usize,
+) -> [f64; DISKS] {
+    let mut travel_m = [0.0; DISKS];
+    let flexibility = 1.0 / axial_stiffness_n;
+    let mut sum_m = 0.0;
+    for ((travel_m, chord), tension_n) in travel_m.iter_mut().zip(chords).zip(tension_n).take(count).rev() {
+        sum_m += chord.length_m * (tension_n * flexibility - 1.0);
+        *travel_m = sum_m;
     }
     travel_m
+}
+
+/// The same of both tendons at a point.
+pub fn travels_m<const DISKS: usize>(params: &ManipulatorParams, point: &Point<DISKS>) -> [[f64; DISKS]; 2] {
+    let [first_chords, second_chords] = chords(params, &point.bend_rad);
+    let ([first_n, second_n], [first, second]) = (&point.tension_n, &params.tendons);
+    [
+        travel_m(&first_chords, first_n, first.axial_stiffness_n, params.disk_count),
+        travel_m(&second_chords, second_n, second.axial_stiffness_n, params.disk_count),
+    ]
 }
 
 /// What each hole of a tendon sees; motion is left at 0.
@@ -285,7 +297,11 @@ impl<'a, const DISKS: usize> Problem<'a, DISKS> {
         let chords = tendon.of(chords);
         let tension_n = tendon.of(&point.tension_n);
         let params = tendon.of(&self.params.tendons);
-        let travel_m = travel_m(self.params, point);
+        let flexibility = 1.0 / params.axial_stiffness_n;
+        let travel_m = match self.law {
+            Law::Presliding(_) => travel_m(chords, tension_n, params.axial_stiffness_n, count),
+            _ => [0.0; DISKS],
+        };
         let per_unit = 1.0 / self.unit_n;
         let (mut squares, mut work_nm) = (0.0, 0.0);
         let holes = params.holes().zip(passages(point, tendon, *tendon.of(&self.target.base_tension_n)));
@@ -296,9 +312,9 @@ impl<'a, const DISKS: usize> Problem<'a, DISKS> {
                     hole.sliding(&passage, (*direction == Direction::Pulling) == (tendon == Tendon::Agonist))
                 }
                 Law::Presliding(contacts) => {
-                    let at = |all: &[[f64; DISKS]; 2]| tendon.of(all).get(place).copied().unwrap_or(0.0);
-                    passage.motion_m = at(&travel_m) - at(&contacts.travel_m);
-                    hole.presliding(&passage, at(&contacts.friction_n))
+                    let at = |all: &[f64; DISKS]| all.get(place).copied().unwrap_or(0.0);
+                    passage.motion_m = at(&travel_m) - at(tendon.of(&contacts.travel_m));
+                    hole.presliding(&passage, at(tendon.of(&contacts.friction_n)))
                 }
             };
             let [base_slope, tip_slope, wrap_slope, motion_slope] = match friction.slopes {
@@ -319,8 +335,8 @@ impl<'a, const DISKS: usize> Problem<'a, DISKS> {
                 let changes = step.bend_rad.iter().zip(tendon.of(&step.tension_n));
                 let beyond = chords.iter().zip(tension_n).zip(changes).enumerate().take(count).skip(place);
                 for (beyond, ((chord, tension_n), (change_rad, change_n))) in beyond {
-                    let by_bend_m = chord.arm_m * (1.0 - tension_n / params.axial_stiffness_n);
-                    let by_tension = chord.length_m / params.axial_stiffness_n;
+                    let by_bend_m = chord.arm_m * (1.0 - tension_n * flexibility);
+                    let by_tension = chord.length_m * flexibility;
                     rows.add(row, beyond, -motion_slope * by_bend_m * per_unit);
                     rows.add(row, first + beyond, -motion_slope * by_tension * per_unit);
                     work_nm -= left_n * (by_bend_m * change_rad + by_tension * change_n);
@@ -364,6 +380,9 @@ impl<const DISKS: usize> Newton<DISKS> {
             let trial_error = problem.write(&trial, &step, self.room()).error;
             let next = if trial_error <= 0.5 * error {
                 Some((trial, trial_error))
+            } else if error <= STALLED {
+                // Rounding, which stiff contacts enlarge.
+                break;
             } else if let Law::Presliding(_) = law {
                 self.least_energy(&mut problem, &point)
             } else {

@@ -32,3 +32,4 @@ pub use error::{HiddenEffectError, SimulationError};
 pub use hidden::HiddenEffect;
 pub use options::{Run, SimulationOptions};
 pub use stream::{Imbalance, START_NANOS, Simulation};
+pub(crate) use waves::uniform;
