@@ -10,6 +10,8 @@ mod chain;
 #[cfg(test)]
 mod continuum;
 #[cfg(test)]
+mod continuum_file;
+#[cfg(test)]
 mod cycle;
 #[cfg(test)]
 mod dahl;

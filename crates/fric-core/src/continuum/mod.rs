@@ -34,6 +34,8 @@
 //! ```
 
 mod arc;
+#[cfg(feature = "robot-file")]
+pub mod file;
 mod friction;
 mod linear;
 mod load;

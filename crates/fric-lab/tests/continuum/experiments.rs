@@ -23,7 +23,6 @@ fn all_errors(params: &ManipulatorParams, run: &SimulatedRun, chosen: &[usize]) 
     let calibration = Calibration::fit_all(&run.calibration).unwrap();
     Way::ALL.map(|way| {
         let errors = shape_errors(params, &run.samples, way, &calibration, |place| chosen.contains(&place)).unwrap();
-        println!("  {:9} max {:6.2} mm, mean {:6.2} mm", way.name(), errors.max_mm, errors.mean_mm().unwrap());
         assert_eq!(errors.missing_count, 0);
         errors
     })
@@ -50,7 +49,6 @@ fn one_way_the_order_is_the_papers() {
     for seed in 0..3 {
         let run = run(Experiment::OneWay, seed);
         let shapes = spread(&run, 6, |_| true);
-        println!("seed {seed}, to {:.0}°", run.truth.last().unwrap().bend_rad.to_degrees());
         let [none, coulomb, measured, history] = all_errors(&published(), &run, &shapes).map(|e| e.mean_mm().unwrap());
         assert!(none > 3.0 * coulomb.max(measured));
         assert!(coulomb < 3.0 * measured);
@@ -64,12 +62,10 @@ fn in_mixed_directions_only_the_history_does_without_gratings() {
     for seed in 0..3 {
         let run = run(Experiment::Mixed, seed);
         let mixed = spread(&run, 4, |place| run.truth[place].is_mixed() && run.samples[place].tension_base_n < 1.0);
-        println!("seed {seed}, at {mixed:?}");
         let [none, coulomb, measured, history] = all_errors(&published(), &run, &mixed).map(|e| e.mean_mm().unwrap());
         assert!(coulomb > none && none > measured, "coulomb {coulomb}, none {none}, measured {measured}");
         assert!(history <= coulomb / 5.0);
         let directions = right_directions(&published(), &run);
-        println!("  directions right at {:.1} %", 100.0 * directions);
         assert!(directions >= 0.95, "{directions}");
 
         // With what the holes really have.
@@ -80,7 +76,6 @@ fn in_mixed_directions_only_the_history_does_without_gratings() {
         let own =
             shape_errors(&known, &run.samples, Way::History, &calibration, |place| mixed.contains(&place)).unwrap();
         let own = own.mean_mm().unwrap();
-        println!("  history with the holes' own μ: mean {own:.2} mm");
         assert!(own <= 1.5 * measured, "{own} {measured}");
     }
 }

@@ -19,7 +19,6 @@ fn deviation(options: &ManipulatorOptions<'_>, tension_n: [f64; 2], links: usize
 fn without_weight_the_shape_is_the_elasticas_to_two_thousandths() {
     for (tension_n, expected_deg) in [(0.3125, 30.0), (0.619, 60.0), (0.922, 90.0), (1.170, 115.0), (2.0, 200.0)] {
         let (share, bend_deg) = deviation(&ManipulatorOptions::published(), [tension_n, 0.0], 40);
-        println!("{bend_deg:.1}°: {:.4} % of the length", 100.0 * share);
         assert!((bend_deg - expected_deg).abs() < 3.0, "{bend_deg}");
         assert!(share < 0.002, "{share} at {bend_deg}°");
     }
@@ -36,7 +35,6 @@ fn with_weight_and_load_to_five_thousandths() {
         };
         for tension_n in [[0.3, 0.0], [0.62, 0.1], [0.9, 0.0], [1.4, 0.2]] {
             let (share, bend_deg) = deviation(&options, tension_n, 40);
-            println!("{gravity:?} {tension_n:?} {bend_deg:.1}°: {:.4} % of the length", 100.0 * share);
             assert!(share < 0.005, "{share} at {bend_deg}°");
         }
     }
@@ -59,7 +57,6 @@ fn refinement_converges_with_the_square() {
         deviation(&options, [0.8, 0.0], links).0
     };
     let errors: Vec<f64> = [(4, 200), (8, 200), (16, 100), (32, 50)].map(|(disks, links)| of(disks, links)).to_vec();
-    println!("{errors:?}");
     for pair in errors.windows(2) {
         let order = (pair[0] / pair[1]).log2();
         assert!((1.7..2.3).contains(&order), "order {order} of {errors:?}");

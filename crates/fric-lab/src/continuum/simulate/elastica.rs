@@ -294,6 +294,7 @@ fn normal(angle_rad: f64) -> Vector2<f64> {
 }
 
 #[cfg(test)]
+#[allow(clippy::cast_precision_loss, reason = "small numbers")]
 mod tests {
     use fric_core::continuum::ManipulatorOptions;
 
