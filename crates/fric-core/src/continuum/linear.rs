@@ -1,4 +1,6 @@
 //! Small dense systems of linear equations, in place.
+//!
+//! `stride.max(1)` tells the compiler at every place that rows are not empty, without which it keeps a panic.
 
 /// Solves by elimination with row pivoting. `rows` holds `count` rows of `count` coefficients and the right side, which becomes the
 /// solution, row by row in its last place. `false` where the matrix is singular or not finite.
@@ -6,7 +8,7 @@ pub fn solve(rows: &mut [f64], count: usize) -> bool {
     let stride = count + 1;
     for column in 0..count {
         let mut pivot = (column, 0.0_f64);
-        for (place, row) in rows.chunks_exact(stride).enumerate().take(count).skip(column) {
+        for (place, row) in rows.chunks_exact(stride.max(1)).enumerate().take(count).skip(column) {
             let size = row.get(column).map_or(0.0, |value| value.abs());
             if size > pivot.1 {
                 pivot = (place, size);
@@ -18,13 +20,13 @@ pub fn solve(rows: &mut [f64], count: usize) -> bool {
         let Some((done, below)) = rows.split_at_mut_checked((column + 1) * stride) else { return false };
         let Some(pivot_row) = done.get_mut(column * stride..) else { return false };
         if pivot.0 > column {
-            let Some(other) = below.chunks_exact_mut(stride).nth(pivot.0 - column - 1) else { return false };
+            let Some(other) = below.chunks_exact_mut(stride.max(1)).nth(pivot.0 - column - 1) else { return false };
             pivot_row.swap_with_slice_checked(other);
         }
         let Some((&mut lead, pivot_tail)) = pivot_row.get_mut(column..).and_then(<[f64]>::split_first_mut) else {
             return false;
         };
-        for row in below.chunks_exact_mut(stride) {
+        for row in below.chunks_exact_mut(stride.max(1)) {
             let Some((first, tail)) = row.get_mut(column..).and_then(<[f64]>::split_first_mut) else { return false };
             if *first != 0.0 {
                 let factor = *first / lead;
@@ -50,7 +52,7 @@ fn back_substitute(rows: &mut [f64], count: usize) -> bool {
             return false;
         }
         let solution = *right;
-        for row in above.chunks_exact_mut(stride) {
+        for row in above.chunks_exact_mut(stride.max(1)) {
             let factor = row.get(column).copied().unwrap_or(0.0);
             if let Some(right) = row.last_mut() {
                 *right -= factor * solution;
@@ -71,7 +73,7 @@ pub fn is_positive_definite(rows: &mut [f64], count: usize) -> bool {
         if !(lead > 0.0 && lead < f64::INFINITY) {
             return false;
         }
-        for row in below.chunks_exact_mut(stride) {
+        for row in below.chunks_exact_mut(stride.max(1)) {
             let Some((first, tail)) = row.get_mut(column..).and_then(<[f64]>::split_first_mut) else { return false };
             let factor = *first / lead;
             for (value, above) in tail.iter_mut().zip(pivot_tail) {

@@ -439,7 +439,7 @@ impl<const DISKS: usize> Newton<DISKS> {
                 break;
             }
             let between = near - near_nm * (far - near) / (far_nm - near_nm);
-            share = between.clamp(near + 0.02 * (far - near), far - 0.02 * (far - near));
+            share = between.min(far - 0.02 * (far - near)).max(near + 0.02 * (far - near));
             trial = moved(point, &step, share);
             distance = problem.write(&trial, &step, self.room());
             if distance.work_nm > 0.0 {
@@ -466,7 +466,7 @@ impl<const DISKS: usize> Newton<DISKS> {
         let rows = self.room.as_flattened().as_flattened();
         let part = |first: usize| {
             let mut part = [0.0; DISKS];
-            let values = rows.chunks_exact(stride).skip(first).filter_map(<[f64]>::last);
+            let values = rows.chunks_exact(stride.max(1)).skip(first).filter_map(<[f64]>::last);
             for (part, value) in part.iter_mut().zip(values).take(unknowns.count) {
                 *part = *value;
             }
@@ -486,7 +486,8 @@ fn moved<const DISKS: usize>(point: &Point<DISKS>, step: &Point<DISKS>, share: f
     let add = |from: &[f64; DISKS], change: &[f64; DISKS], most: f64| {
         let mut sum = *from;
         for (sum, change) in sum.iter_mut().zip(change) {
-            *sum = (*sum + share * change).clamp(-most, most);
+            // Not `clamp`, which has a panic for bounds in the wrong order.
+            *sum = (*sum + share * change).min(most).max(-most);
         }
         sum
     };
