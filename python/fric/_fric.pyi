@@ -1,6 +1,6 @@
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from os import PathLike
-from typing import Any, Final, Literal, final
+from typing import Any, Final, Literal, TypedDict, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -8,10 +8,12 @@ from numpy.typing import ArrayLike, NDArray
 __all__ = [
     "AxisHysteresis",
     "Cable",
+    "CableDiscovery",
     "CableErrors",
     "CableFit",
     "Compensation",
     "Compensator",
+    "DiscoverResult",
     "FitResult",
     "ForceError",
     "Friction",
@@ -28,6 +30,7 @@ __all__ = [
     "Width",
     "WrenchError",
     "__version__",
+    "discover",
     "fit",
     "hysteresis",
     "read_log",
@@ -324,6 +327,143 @@ class FitResult:
     def to_json(self) -> str: ...
     def to_dict(self) -> dict[str, Any]: ...
 
+class _LeftOut(TypedDict):
+    flagged: int
+    without_reference: int
+    warm_up: int
+    outliers: int
+
+class _Missing(TypedDict):
+    cause: str
+    advice: str
+
+# `from` is a keyword, so that its declaration is no class.
+_Where = TypedDict(
+    "_Where",
+    {
+        "signal": str,
+        "from": float,
+        "to": float,
+        "unit": str,
+        "share_of_excess": float | None,
+        "share_of_samples": float | None,
+        "explains": float | None,
+        "significance": float | None,
+        "intervals_s": list[list[float]],
+    },
+)
+
+class _Evidence(TypedDict):
+    delta_bic: float | None
+    held_out_rms_n: float | None
+
+class _Candidate(_Evidence):
+    kind: str
+
+class _RunnerUp(_Candidate):
+    as_good: bool
+
+class _Effect(TypedDict):
+    kind: str
+    parameters: dict[str, float]
+    standard_errors: dict[str, float]
+    gap_closed: float | None
+    evidence: _Evidence
+    runner_up: _RunnerUp | None
+
+class _Fault(TypedDict):
+    fault: Literal["frozen", "clipped"]
+    from_s: float
+    to_s: float
+
+_Unexplained = TypedDict(
+    "_Unexplained",
+    {
+        "rms_n": float | None,
+        "frequency_hz": list[float],
+        "amplitude_n": list[float],
+        "faults": list[_Fault],
+        "where": list[_Where],
+        "intervals_s": list[list[float]],
+        "goes_with": list[str],
+    },
+)
+
+class _CommonParameter(TypedDict):
+    key: str
+    unit: str
+    mean: float
+    standard_error: float
+    differs: bool
+    least: float
+    greatest: float
+
+class _CommonEffect(TypedDict):
+    kind: str
+    cables: list[str]
+    parameters: list[_CommonParameter]
+
+@final
+class CableDiscovery:
+    @property
+    def name(self) -> str: ...
+    @property
+    def samples(self) -> int: ...
+    @property
+    def left_out(self) -> _LeftOut: ...
+    @property
+    def held_out_samples(self) -> list[list[int]]: ...
+    @property
+    def held_out_s(self) -> list[list[float]]: ...
+    @property
+    def noise_floor_n(self) -> float | None: ...
+    @property
+    def wander_n(self) -> float | None: ...
+    @property
+    def before(self) -> ForceError | None: ...
+    @property
+    def after(self) -> ForceError | None: ...
+    @property
+    def gap_closed(self) -> float | None: ...
+    @property
+    def verdict(self) -> Literal["complete", "extended", "unexplained"] | None: ...
+    @property
+    def missing(self) -> _Missing | None: ...
+    @property
+    def where(self) -> list[_Where]: ...
+    @property
+    def where_in_words(self) -> list[str]: ...
+    @property
+    def effects(self) -> list[_Effect]: ...
+    @property
+    def candidates(self) -> list[_Candidate]: ...
+    @property
+    def parameters(self) -> dict[str, float]: ...
+    @property
+    def standard_errors(self) -> dict[str, float]: ...
+    @property
+    def unexplained(self) -> _Unexplained | None: ...
+    @property
+    def time_s(self) -> NDArray[np.float64]: ...
+    @property
+    def residual_before_n(self) -> NDArray[np.float64]: ...
+    @property
+    def residual_after_n(self) -> NDArray[np.float64]: ...
+
+@final
+class DiscoverResult:
+    @property
+    def robot(self) -> Robot: ...
+    @property
+    def cables(self) -> tuple[CableDiscovery, ...]: ...
+    @property
+    def common_effects(self) -> list[_CommonEffect]: ...
+    def cable(self, name: str) -> CableDiscovery: ...
+    def plot(self, cable: str) -> Any: ...
+    def summary(self) -> str: ...
+    def to_json(self) -> str: ...
+    def to_dict(self) -> dict[str, Any]: ...
+
 @final
 class ResidualFunction:
     @property
@@ -373,6 +513,9 @@ class HysteresisResult:
     def to_json(self) -> str: ...
     def to_dict(self) -> dict[str, Any]: ...
 
+def discover(
+    robot: Robot, log: Log | _Path | Sequence[Log | _Path], *, progress: _Progress = False
+) -> DiscoverResult: ...
 def fit(
     robot: Robot,
     log: Log | _Path | Sequence[Log | _Path],
@@ -409,8 +552,15 @@ def simulate(
     seed: int = 0,
     duration_s: float | None = None,
     effects: Iterable[str | Mapping[str, Any]] = (),
+    disturbances: Iterable[str | Mapping[str, Any]] = (),
     sensor_noise_n: float = 0.02,
     reference_noise_n: float = 0.01,
     mu_spread_ratio: float = 0.0,
+    sensor_wander_n: float = 0.0,
+    reference_wander_n: float = 0.0,
+    wander_s: float = 2.0,
+    hand_n: float = 0.0,
+    length_noise_m: float = 0.0,
+    length_resolution_m: float = 0.0,
     progress: _Progress = False,
 ) -> Log: ...

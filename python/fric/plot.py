@@ -13,16 +13,16 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ._errors import ConfigError, ShapeError
+from ._errors import ConfigError, FitError, ShapeError
 from ._fric import FitResult
 
 if TYPE_CHECKING:
     # Whoever checks types without matplotlib takes axes as they come.
     from matplotlib.axes import Axes as _Axes  # type: ignore[import-not-found, unused-ignore]
 
-    from ._fric import Compensation, Log, ReplayResult
+    from ._fric import CableDiscovery, Compensation, DiscoverResult, Log, ReplayResult
 
-__all__ = ["forces", "friction_loop", "parameters", "residuals"]
+__all__ = ["candidates", "forces", "friction_loop", "gap_ladder", "parameters", "residuals", "where"]
 
 _MEASURED, _MODEL, _REFERENCE, _BAND = "#d55e00", "#0072b2", "#9a9a9a", "#c6dbef"
 # Two-sided 95 % of a normal distribution.
@@ -147,6 +147,115 @@ def parameters(fit_result: Fitted, *, ax: Sequence[_Axes] | None = None) -> tupl
     return tuple(panels)
 
 
+def gap_ladder(result: DiscoverResult, cable: str, *, ax: _Axes | None = None) -> _Axes:
+    """Draws how the error on the samples held out comes down to the noise: a bar for the given model, fitted, and one
+    for each effect that was found, with the share of the gap that it and those above it close."""
+    found = _told(result, cable)
+    if ax is None:
+        ax = _figure(1, (7.0, 1.4 + 0.4 * (1 + len(found.effects))))[0]
+    steps: list[tuple[str, float | None, float | None]] = [
+        ("given model", found.before.rms_n if found.before else None, None)
+    ]
+    for effect in found.effects:
+        steps.append((f"+ {effect['kind']}", effect["evidence"]["held_out_rms_n"], effect["gap_closed"]))
+    errors_n = [np.nan if error_n is None else error_n for _, error_n, _ in steps]
+    bars = ax.barh(range(len(steps)), errors_n, color=[_MEASURED] + [_MODEL] * len(found.effects), height=0.62)
+    ends = [f"{error_n:.4f} N" for error_n in errors_n]
+    closed = ["" if share is None else f", {100 * _share(share):.0f} % of the gap closed" for *_, share in steps]
+    ax.bar_label(bars, [end + share for end, share in zip(ends, closed)], padding=4, fontsize="small")
+    _noise(ax, found)
+    _rows(ax, [name for name, *_ in steps], cable)
+    # Room for the words behind the longest bar.
+    ax.set_xlim(0, 1.6 * max(np.nanmax(errors_n), found.noise_floor_n or 0.0))
+    ax.set_xlabel("rms on samples held out [N]")
+    return ax
+
+
+def where(result: DiscoverResult, cable: str, *, ax: _Axes | None = None) -> _Axes:
+    """Draws where the given model disagrees, what tells most first: the share of what is above the noise that sits in a
+    range of a condition, beside the share of the samples there."""
+    found = _told(result, cable)
+    places = found.where
+    if ax is None:
+        ax = _figure(1, (7.0, 1.6 + 0.4 * max(1, len(places))))[0]
+    rows = np.arange(len(places))
+    of_gap = [100 * _share(place["share_of_excess"]) for place in places]
+    of_samples = [100 * _share(place["share_of_samples"]) for place in places]
+    if places:
+        ax.barh(rows - 0.19, of_gap, height=0.36, color=_MEASURED, label="of the gap")
+        ax.barh(rows + 0.19, of_samples, height=0.36, color=_REFERENCE, label="of the samples")
+    _rows(ax, found.where_in_words, cable, or_else="the model agrees to the noise")
+    ax.set(xlabel="share [%]", xlim=(0, 100))
+    return ax
+
+
+def candidates(result: DiscoverResult, cable: str, *, ax: _Axes | None = None) -> _Axes:
+    """Draws the effects that were tried, each by itself beside the given model, the best first: the error on the
+    samples held out, with the difference of Schwarz's criterion (below zero speaks for the effect, -10 strongly). Those
+    that were found are darker; an effect may be found for what it does beside another."""
+    found = _told(result, cable)
+    tried = found.candidates
+    if ax is None:
+        ax = _figure(1, (7.0, 1.6 + 0.28 * max(1, len(tried))))[0]
+    kinds = {effect["kind"] for effect in found.effects}
+    errors_n = [np.nan if of["held_out_rms_n"] is None else of["held_out_rms_n"] for of in tried]
+    colors = [_MODEL if of["kind"] in kinds else _BAND for of in tried]
+    ax.barh(range(len(tried)), errors_n, color=colors, height=0.7)
+    for row, of in enumerate(tried):
+        if of["delta_bic"] is not None:
+            text = f"ΔBIC {of['delta_bic']:.0f}".replace("-", "−")
+            ax.text(0.99, row, text, transform=ax.get_yaxis_transform(), ha="right", va="center", fontsize="small")
+    limits_n = [error_n for error_n in errors_n if np.isfinite(error_n)]
+    if found.before is not None:
+        ax.axvline(found.before.rms_n, color=_MEASURED, linewidth=1.2, label="given model")
+        limits_n.append(found.before.rms_n)
+    _noise(ax, found)
+    _rows(ax, [of["kind"] for of in tried], cable, or_else="nothing was tried")
+    # Room for the evidence behind the longest bar.
+    ax.set_xlim(0, 1.35 * max(limits_n))
+    ax.set_xlabel("rms on samples held out [N]")
+    return ax
+
+
+def _discovery(result: DiscoverResult, cable: str) -> Any:
+    """The figure of `DiscoverResult.plot`."""
+    found = _told(result, cable)
+    heights = [1.4 + 0.4 * len(found.effects), 1.2 + 0.4 * len(found.where), 1.2 + 0.24 * len(found.candidates)]
+    axes = _figure(3, (7.5, 0.6 + sum(heights)), heights=heights)
+    for draw, ax in zip((gap_ladder, where, candidates), axes):
+        draw(result, cable, ax=ax)
+    return axes[0].figure
+
+
+def _told(result: DiscoverResult, cable: str) -> CableDiscovery:
+    """What was found for a cable, if anything can be told of it."""
+    found = result.cable(cable)
+    if found.missing is not None:
+        raise FitError(f"nothing can be told of {cable}: {found.missing['cause']}. {found.missing['advice']}")
+    return found
+
+
+def _share(share: float | None) -> float:
+    """A share within what one can be; 0 where it is not known."""
+    return 0.0 if share is None else max(0.0, min(1.0, share))
+
+
+def _noise(ax: _Axes, found: CableDiscovery) -> None:
+    """The noise as a line that no model comes below."""
+    if found.noise_floor_n is not None:
+        ax.axvline(found.noise_floor_n, color="black", linestyle=":", linewidth=1.2, label="noise")
+
+
+def _rows(ax: _Axes, names: Sequence[str], cable: str, *, or_else: str = "") -> None:
+    """Names of the rows of bars, the first on top; a word in the middle where there is none."""
+    _dress(ax, cable)
+    ax.grid(axis="y", visible=False)
+    ax.set_yticks(range(len(names)), names)
+    ax.set_ylim(max(1, len(names)) - 0.5, -0.5)
+    if not names:
+        ax.text(0.5, 0.5, or_else, transform=ax.transAxes, ha="center", va="center")
+
+
 def _autocorrelation(signal: NDArray[np.float64], lag_count: int) -> NDArray[np.float64]:
     """The autocorrelation at lags 1 to `lag_count`; zeros for a signal that is zero."""
     spectrum = np.fft.rfft(signal, 2 * signal.size)
@@ -163,19 +272,24 @@ def _column(log: Log, result: ReplayResult | Compensation, cable: str) -> int:
     return log.cable_names.index(cable)
 
 
-def _figure(count: int, size: tuple[float, float]) -> Sequence[Any]:
-    """A figure with axes side by side."""
+def _figure(count: int, size: tuple[float, float], *, heights: Sequence[float] | None = None) -> Sequence[Any]:
+    """A figure with axes side by side, or one below the other with these heights."""
     try:
         pyplot = import_module("matplotlib.pyplot")
     except ImportError as error:
         raise ImportError("fric.plot needs matplotlib; install it with `pip install fric[plot]`") from error
-    figure, axes = pyplot.subplots(1, count, figsize=size, layout="constrained", squeeze=False)
-    return list(axes[0])
+    if heights is None:
+        _, axes = pyplot.subplots(1, count, figsize=size, layout="constrained", squeeze=False)
+    else:
+        ratios = {"height_ratios": heights}
+        _, axes = pyplot.subplots(count, 1, figsize=size, layout="constrained", squeeze=False, gridspec_kw=ratios)
+    return list(axes.flat)
 
 
 def _dress(ax: _Axes, cable: str) -> None:
     """The legend above the data, the cable's name beside it."""
-    ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, frameon=False, borderaxespad=0.2)
+    if ax.get_legend_handles_labels()[0]:
+        ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, frameon=False, borderaxespad=0.2)
     ax.set_title(cable, loc="right", fontsize="medium")
     ax.grid(color="#e6e6e6", linewidth=0.8)
     ax.set_axisbelow(True)

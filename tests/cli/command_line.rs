@@ -39,7 +39,7 @@ fn effects_that_are_none_are_told() {
         ("stribeck:ratio=-1", &["`ratio`", "-1"]),
         ("stribeck:ratio=1e999", &["`ratio`", "inf"]),
         ("stribeck:ratio=0.5,ratio=0.6", &["`ratio`", "twice"]),
-        ("time_delay:delay_s=-0.001", &["`delay_s`", "-0.001"]),
+        ("time_delay:delay_s=-1.5", &["`delay_s`", "-1.5"]),
     ] {
         let run = simulate(&place, "--effect", effect).fails(2, &["--effect"]);
         run.fails(2, words);
@@ -50,6 +50,23 @@ fn effects_that_are_none_are_told() {
 }
 
 #[test]
+fn disturbances_that_are_none_are_told() {
+    let place = Place::with_log();
+    for (disturbance, words) in [
+        ("hmu:amplitude_n=0.1", &["`hmu`", "`hum`", "`backlash`"][..]),
+        ("hum", &["hum", "`amplitude_n`"]),
+        ("hum:amplitude=0.1", &["`amplitude`", "`amplitude_n`", "`frequency_hz`"]),
+        ("hum:amplitude_n=-1", &["`amplitude_n`", "-1", "0 to 1000 N"]),
+    ] {
+        let run = simulate(&place, "--disturbance", disturbance).fails(2, &["--disturbance"]);
+        run.fails(2, words);
+    }
+    let twice = ["--disturbance", "hum:amplitude_n=0.1", "--disturbance", "hum:amplitude_n=0.2"];
+    let start = ["simulate", "--model", "robot.toml", "-o", "new.mcap"];
+    place.run_in_vain(&[&start[..], &twice].concat()).fails(2, &["--disturbance", "`hum`", "twice"]);
+}
+
+#[test]
 fn numbers_out_of_range_are_told() {
     let place = Place::with_log();
     for value in ["-1", "0", "nan", "inf", "1e300", "1e-9"] {
@@ -57,11 +74,21 @@ fn numbers_out_of_range_are_told() {
     }
     let joined = ["simulate", "--model", "robot.toml", "-o", "new.mcap", "--duration=-inf"];
     place.run_in_vain(&joined).fails(2, &["--duration is -inf"]);
-    for option in ["--sensor-noise-n", "--reference-noise-n", "--mu-spread-ratio"] {
+    for option in [
+        "--sensor-noise-n",
+        "--reference-noise-n",
+        "--mu-spread-ratio",
+        "--sensor-wander-n",
+        "--reference-wander-n",
+        "--hand-n",
+        "--length-noise-m",
+        "--length-resolution-m",
+    ] {
         for value in ["-1", "nan", "inf"] {
             simulate(&place, option, value).fails(2, &[option, "allowed is 0 to"]);
         }
     }
+    simulate(&place, "--wander-s", "0").fails(2, &["--wander-s is 0.0", "allowed is 0.001 to"]);
     simulate(&place, "--mu-spread-ratio", "1.01").fails(2, &["--mu-spread-ratio", "1.01"]);
     for option in ["--duration", "--sensor-noise-n", "--reference-noise-n", "--mu-spread-ratio"] {
         for value in ["1s", "1,5", "", "x"] {

@@ -1,6 +1,6 @@
 //! `--help`: each command has an example, and the example runs.
 
-use super::fit::platform_log;
+use super::fit::platform_robot;
 use super::support::{Place, slow_robot};
 
 /// The commands that the program names.
@@ -26,9 +26,12 @@ fn each_command_has_an_example_that_runs() {
     // What stands in examples/, but at a slow pace, to keep the tests short.
     std::fs::create_dir(place.path("examples")).unwrap();
     place.write("examples/mini-ipanema.toml", slow_robot());
-    place.write("examples/mini-ipanema.mcap", platform_log());
+    // Long enough for a discovery.
+    place.write("examples/platform.toml", platform_robot());
+    let log = ["-o", "examples/mini-ipanema.mcap", "--duration", "14", "--seed", "3"];
+    place.run(&[&["simulate", "--model", "examples/platform.toml"], &log[..]].concat()).succeeds();
     let commands = commands(&place);
-    for expected in ["replay", "fit", "info", "simulate", "excite", "hysteresis"] {
+    for expected in ["replay", "fit", "discover", "info", "simulate", "excite", "hysteresis"] {
         assert!(commands.iter().any(|command| command == expected), "{commands:?}");
     }
     for command in commands {
@@ -51,12 +54,15 @@ fn each_command_has_an_example_that_runs() {
             "by-wrench.toml",
             "compensated.mcap",
             "crossing.mcap",
+            "discovery.html",
             "examples",
+            "extended.toml",
             "fitted.toml",
             "gentle.csv",
             "run.csv",
             "run.html",
-            "simulated.mcap"
+            "simulated.mcap",
+            "spoilt.mcap"
         ]
     );
 }

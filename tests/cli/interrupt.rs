@@ -66,3 +66,13 @@ fn a_fit_interrupted_in_its_search_leaves_nothing() {
     let arguments = ["fit", log.to_str().unwrap(), "--reference", "wrench", "-o", "out.toml", "--json", "out.json"];
     interrupt_after(&arguments, "-INT", Duration::from_secs(1));
 }
+
+/// The same, in the search for what is missing.
+#[test]
+fn an_interrupted_discovery_leaves_nothing() {
+    let log = root().join("examples/mini-ipanema.mcap");
+    let outputs = ["-o", "out.toml", "--report", "out.html", "--json", "out.json"];
+    let arguments = [&["discover", log.to_str().unwrap()], &outputs[..]].concat();
+    interrupt(&arguments, "-INT");
+    interrupt_after(&arguments, "-TERM", Duration::from_secs(1));
+}

@@ -10,6 +10,7 @@ mod cdr;
 mod closed_stdout;
 mod command_line;
 mod damage;
+mod discover;
 mod excite;
 mod fit;
 mod fit_inputs;

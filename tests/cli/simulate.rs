@@ -61,6 +61,33 @@ fn hidden_effects_are_in_the_log_and_not_in_its_robot() {
 }
 
 #[test]
+fn what_spoils_a_log_is_in_it_and_told() {
+    let place = Place::empty();
+    place.write("robot.toml", bench_robot());
+    let options = ["--duration", "6", "--sensor-noise-n", "0", "--reference-noise-n", "0"];
+    let plain = simulated(&place, &options);
+    let plain_error_n = error_after(&place);
+    for spoilt in [
+        ["--disturbance", "hum:amplitude_n=0.12,frequency_hz=50"],
+        ["--disturbance", "backlash:play_m=0.001"],
+        ["--sensor-wander-n", "0.02"],
+        ["--reference-wander-n", "0.02"],
+        ["--length-noise-m", "1e-5"],
+        ["--length-resolution-m", "1e-4"],
+    ] {
+        assert!(simulated(&place, &[&options[..], &spoilt].concat()) != plain, "{spoilt:?}");
+        let error_n = error_after(&place);
+        assert!(error_n > 2.0 * plain_error_n, "{spoilt:?}: {error_n} N, without it {plain_error_n} N");
+    }
+    // A hand alone is no disagreement of the model.
+    assert!(simulated(&place, &[&options[..], &["--hand-n", "1"]].concat()) != plain);
+    assert!(error_after(&place) < 2.0 * plain_error_n);
+    let start = ["simulate", "--model", "robot.toml", "-o", "told.mcap", "--duration", "0.01"];
+    let run = place.run(&[&start[..], &["--disturbance", "hum:amplitude_n=0.12"]].concat());
+    assert!(run.stdout.contains("hidden: hum:amplitude_n=0.12"), "{run:#?}");
+}
+
+#[test]
 fn simulated_noise_is_what_is_left() {
     let place = Place::empty();
     place.write("robot.toml", example_robot());

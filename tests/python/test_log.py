@@ -129,6 +129,30 @@ def test_a_simulation_has_the_bits_of_the_command_line(tmp_path, robot):
     assert not np.array_equal(fric.simulate(robot, **options).sensor_force_n, read.sensor_force_n)
 
 
+def test_what_spoils_a_simulated_log_is_that_of_the_command_line(tmp_path, robot):
+    path = tmp_path / "log.mcap"
+    numbers = {
+        "sensor_wander_n": 0.05,
+        "reference_wander_n": 0.03,
+        "wander_s": 0.5,
+        "hand_n": 2.0,
+        "length_noise_m": 1e-6,
+        "length_resolution_m": 2e-6,
+    }
+    cli = [text for key, value in numbers.items() for text in ("--" + key.replace("_", "-"), str(value))]
+    run("simulate", "--model", ROBOT, "-o", path, "--duration", "1", "--disturbance", "hum:amplitude_n=0.1", *cli)
+    read = fric.read_log(path)
+    for disturbance in ["hum:amplitude_n=0.1", {"kind": "hum", "amplitude_n": 0.1}]:
+        ours = fric.simulate(robot, duration_s=1.0, disturbances=[disturbance], **numbers)
+        for name in ARRAYS[:5]:
+            assert np.array_equal(of_bits(getattr(ours, name)), of_bits(getattr(read, name))), name
+    for left_out in ["disturbances", *numbers]:
+        options = numbers | {"disturbances": [disturbance]}
+        del options[left_out]
+        other = fric.simulate(robot, duration_s=1.0, **options)
+        assert any(not np.array_equal(getattr(ours, name), getattr(other, name)) for name in ARRAYS[1:5]), left_out
+
+
 def test_simulated_crossing_runs_are_those_of_the_command_line(tmp_path, robot):
     path = tmp_path / "log.mcap"
     run("simulate", "--model", ROBOT, "-o", path, "--run", "crossing", "--duration", "3")
@@ -173,6 +197,12 @@ def test_what_no_robot_could_do_is_told_as_by_the_command_line(tmp_path):
         ({"effects": [{"kind": "stribeck", "ratio": "much"}]}, "`ratio` of an effect is no number"),
         ({"effects": [{"ratio": 0.5}]}, "an effect is a dict such as"),
         ({"effects": [3]}, "an effect is a dict such as"),
+        ({"disturbances": [3]}, "a disturbance is a dict such as {\"kind\": \"hum\", \"amplitude_n\": 0.1}, or a text"),
+        ({"disturbances": [{"kind": "hum", "amplitude_n": "much"}]}, "`amplitude_n` of a disturbance is no number"),
+        ({"disturbances": ["hmu"]}, "there is no disturbance `hmu`; known are `hum`"),
+        ({"disturbances": ["hum:amplitude_n=0.1"] * 2}, "the disturbance `hum` is hidden twice; give each"),
+        ({"wander_s": 0.0}, "`wander_s` is 0; allowed is 0.001 to"),
+        ({"length_resolution_m": -1e-6}, "`length_resolution_m` is -0.000001; allowed is 0 to 1"),
     ],
 )
 def test_options_out_of_range_are_told(robot, options, told):

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # The identification beside scipy and numba: same log, values that agree, then the time of the fits alone.
 # Usage: benches/peers/fit/run.sh [LOG.mcap ROBOT.toml]    by default a simulated run of examples/mini-ipanema.toml, about
-# 50 s, with one guess for all cables in the robot file. Exits 1 if the values differ. Ours starts from the data, scipy
-# from the robot file.
+# 50 s, with one guess for all cables in the robot file. Exits 1 if the values differ. Both get the same robot file: scipy starts
+# from its values, ours from the data.
 set -euo pipefail
 if [ $# -ne 0 ] && [ $# -ne 2 ]; then
     echo "usage: $0 [LOG.mcap ROBOT.toml]" >&2
@@ -33,49 +33,48 @@ fi
 
 # BLAS threads gain nothing on four columns, and would make one worker more than one thread.
 export OPENBLAS_NUM_THREADS=1
-ours() { RAYON_NUM_THREADS=$1 "$target/release/examples/fit" "$log" "$robot" > "$build/ours-$2.txt"; }
-theirs() { "$build/venv/bin/python" benches/peers/fit/scipy_fit.py "$log" "$robot" "$1" > "$build/scipy.txt"; }
+ours() { "${@:2}" "$target/release/examples/fit" "$log" "$robot" > "$build/ours-$1.txt"; }
 cables() { grep '^cable ' "$1" | sort -k 2,2; }
 seconds() { awk -v key="$2" '$1 == key { print $2 }' "$1"; }
 
+# Ours before and after: how far the two are apart tells how noisy the machine is.
+ours before
+ours one-core taskset -c 0
+"$build/venv/bin/python" benches/peers/fit/scipy_fit.py "$log" "$robot" "$build/ours-before.txt" > "$build/scipy.txt"
+ours after
+grep -E '^(scipy|ours)' "$build/scipy.txt"
 status=0
-threads=1
-while :; do
-    # Ours before and after: how far the two are apart tells how noisy the machine is.
-    ours "$threads" before
-    theirs "$threads"
-    ours "$threads" after
-    if [ "$threads" -eq 1 ]; then
-        join -j 2 <(cables "$build/ours-before.txt") <(cables "$build/scipy.txt") | awk '
-            function relative(a, b) { return (a > b ? a - b : b - a) / (b > 0 ? b : -b) }
-            function most(a, b) { return a > b ? a : b }
-            {
-                mu = relative($3, $10)
-                sigma = relative($4, $11)
-                viscous = relative($5, $12)
-                good += mu <= 0.001 && sigma <= 0.005 && viscous <= 0.005
-                worst_mu = most(worst_mu, mu)
-                worst_sigma = most(worst_sigma, sigma)
-                worst_viscous = most(worst_viscous, viscous)
-                evaluations += $8
-                passes += $15
-            }
-            END {
-                printf "%d cables: mu agrees to %.3f %%, sigma to %.3f %%, F_pv to %.3f %%\n",
-                    NR, 100 * worst_mu, 100 * worst_sigma, 100 * worst_viscous
-                printf "evaluations: ours %d with derivatives (last searches), scipy %d without\n", evaluations, passes
-                exit !(NR > 0 && good == NR) }' || status=1
-    fi
-    for clock in seconds processor_seconds; do
-        before=$(seconds "$build/ours-before.txt" $clock) after=$(seconds "$build/ours-after.txt" $clock)
-        awk -v threads="$threads" -v clock=$clock -v before="$before" -v after="$after" \
-            -v scipy="$(seconds "$build/scipy.txt" $clock)" 'BEGIN {
-                printf "threads %d: %s: ours %.3f and %.3f, scipy %.3f; ours/scipy %.2f\n",
-                    threads, clock, before, after, scipy, (before + after) / 2 / scipy }'
-    done
-    if [ "$threads" -eq "$(nproc)" ]; then break; fi
-    threads=$(nproc)
+join -j 2 <(cables "$build/ours-before.txt") <(cables "$build/scipy.txt") | awk '
+    function relative(a, b) { return (a > b ? a - b : b - a) / (b > 0 ? b : -b) }
+    function most(a, b) { return a > b ? a : b }
+    {
+        mu = relative($3, $11)
+        sigma = relative($4, $12)
+        viscous = relative($5, $13)
+        good += mu <= 0.001 && sigma <= 0.005 && viscous <= 0.005
+        worst_mu = most(worst_mu, mu)
+        worst_sigma = most(worst_sigma, sigma)
+        worst_viscous = most(worst_viscous, viscous)
+        evaluations += $9
+    }
+    END {
+        printf "%d cables, ours without the warm-up: mu agrees to %.3f %%, sigma to %.3f %%, F_pv to %.3f %%\n",
+            NR, 100 * worst_mu, 100 * worst_sigma, 100 * worst_viscous
+        printf "ours: %d evaluations of all samples, with derivatives\n", evaluations
+        exit !(NR > 0 && good == NR) }' || status=1
+compare() {
+    awk -v what="$1" -v ours="$2" -v scipy="$3" 'BEGIN {
+        printf "%s: ours %.3f s, scipy %.3f s; ours/scipy %.2f\n", what, ours, scipy, ours / scipy }'
+}
+of_scipy() { seconds "$build/scipy.txt" "$1"; }
+echo "with the fastest of scipy that has ended near the minimum:"
+for run in before after; do
+    compare "$(nproc) cores, scipy as it comes, $run" "$(seconds "$build/ours-$run.txt" seconds)" "$(of_scipy seconds)"
 done
-echo "scipy: one pass over all samples of a cable: $(seconds "$build/scipy.txt" pass_seconds) s"
+compare "processor time" "$(seconds "$build/ours-after.txt" processor_seconds)" "$(of_scipy processor_seconds)"
+compare "one core" "$(seconds "$build/ours-one-core.txt" seconds)" "$(of_scipy seconds)"
+compare "$(nproc) cores, scipy with as many cables at once" "$(seconds "$build/ours-after.txt" seconds)" \
+    "$(of_scipy all_cores_seconds)"
+echo "scipy: one pass over all samples of a cable: $(of_scipy pass_seconds) s"
 if [ $status -ne 0 ]; then echo "the values differ by more than 0.1 % (mu) or 0.5 % (sigma, F_pv)" >&2; fi
 exit $status

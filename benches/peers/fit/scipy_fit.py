@@ -1,16 +1,22 @@
 """Identification with scipy and numba, as one writes it without fric: μ, σ, F_pv and offset of every cable of a log.
 
 The model is `per_pulley`: one Dahl state on each pulley's bearing, compiled by numba, one pass over all samples of a
-cable. `scipy.optimize.least_squares` gets residuals only and differentiates by itself. Start: the robot file's values.
+cable. `scipy.optimize.least_squares` gets residuals only and differentiates by itself. Start: the robot file's values,
+tolerances: scipy's own.
 
-Usage: scipy_fit.py LOG.mcap ROBOT.toml [WORKERS]    cables fitted at once, 1 if not given
+Usage: scipy_fit.py LOG.mcap ROBOT.toml OURS    OURS is what the example `fit` printed
 
-Prints `cable NAME mu sigma F_pv offset samples passes` for each cable, then `seconds` and `processor_seconds`: the fits of
-all cables alone, without reading and compiling, median of three, and `pass_seconds`: the model once over all samples of
-one cable, processor time.
+Prints the time of all cables alone, without reading and compiling, for each of scipy's methods and scalings with and
+without numba's `fastmath`, one cable after the other; how far each has ended from the least cost that any has found, of the
+cable where that is most, in standard errors of independent residuals; then how far our values are from scipy's minimum over
+the same samples, and for `run.sh` the lines `cable NAME mu sigma F_pv offset samples passes`, `seconds` and
+`processor_seconds` of the fastest that has ended near, `all_cores_seconds` with as many cables at once as there are
+cores, and `pass_seconds`, processor time of the model once over all samples of one cable.
 """
 
+import functools
 import math
+import os
 import statistics
 import sys
 import time
@@ -29,7 +35,6 @@ SMALLEST_SCALE = np.array([1e-3, 1.0, 1e-2, 1e-2])
 RUNS = 3
 
 
-@njit(nogil=True, fastmath=True)
 def deviations(parameters, fixed_wrap_factors, last_wrap_factor, sensor_cos, force, displacement, speed, reference, used):
     """Force at the platform less its reference, for the samples used."""
     mu, sigma, viscous, offset = parameters
@@ -64,6 +69,16 @@ def deviations(parameters, fixed_wrap_factors, last_wrap_factor, sensor_cos, for
             out[place] = max(tension, 0.0) + offset - reference[i]
             place += 1
     return out
+
+
+KERNELS = {
+    "fastmath": njit(nogil=True, fastmath=True, error_model="numpy")(deviations),
+    "exact": njit(nogil=True, error_model="numpy")(deviations),
+}
+# Scipy's default first; "size": the size of the start values.
+METHODS = [("trf", 1.0), ("trf", "jac"), ("dogbox", "jac"), ("lm", "jac"), ("lm", "size")]
+# A search that has ended further from the minimum than this many standard errors has ended early.
+NEAR_ERRORS = 0.1
 
 
 def read(path, topics):
@@ -136,22 +151,24 @@ def load(log, robot):
     return cables
 
 
-def fit(cable):
-    """The parameters of one cable and the passes over its samples."""
+def fit(cable, method, scale, kernel, **tolerances):
+    """The parameters of one cable, twice the cost there and the passes over its samples."""
     _, start, data = cable
     passes = 0
 
     def residuals(parameters):
         nonlocal passes
         passes += 1
-        return deviations(parameters, *data)
+        return KERNELS[kernel](parameters, *data)
 
-    # MINPACK has the least to do beside the passes; all of scipy's methods and scalings need the same number of them to
-    # within 5 %. Tolerances are scipy's own, 1e-8.
-    scale = np.maximum(np.abs(start), SMALLEST_SCALE)
-    found = least_squares(residuals, start, method="lm", jac="2-point", x_scale=scale)
-    assert found.success, found.message
-    return found.x, passes
+    scale = np.maximum(np.abs(start), SMALLEST_SCALE) if scale == "size" else scale
+    found = least_squares(residuals, start, method=method, x_scale=scale, **tolerances)
+    return found.x, 2.0 * found.cost, passes
+
+
+def errors_from(least, squares, count):
+    """How many standard errors of independent residuals raise the least sum of squares to `squares`."""
+    return math.sqrt(max(squares / least - 1.0, 0.0) * count)
 
 
 def seconds_of(work):
@@ -164,19 +181,57 @@ def seconds_of(work):
     return *map(statistics.median, zip(*times)), result
 
 
-def main(log, robot_file, workers="1"):
+def ours(path, cables):
+    """How far our values are from scipy's minimum over the samples that we have used, of each cable."""
+    lines = [line.split() for line in open(path, encoding="utf-8") if line.startswith("cable ")]
+    values = {name: ([float(number) for number in numbers[:4]], int(numbers[5])) for _, name, *numbers in lines}
+    for name, _, (*signals, used) in cables:
+        found, warm_up = values[name]
+        used = used.copy()
+        used[np.flatnonzero(used)[:warm_up]] = False
+        data = (*signals, used)
+        squares = np.sum(KERNELS["exact"](np.array(found), *data) ** 2)
+        _, least, _ = fit((name, np.array(found), data), "lm", "size", "exact", xtol=1e-14, ftol=1e-14)
+        yield errors_from(least, squares, used.sum())
+
+
+def main(log, robot_file, ours_file):
     with open(robot_file, "rb") as file:
         robot = tomllib.load(file)
     cables = load(log, robot)
     _, start, data = cables[0]
-    deviations(start, *data)  # compiles
-    with ThreadPoolExecutor(int(workers)) as pool:
-        seconds, processor_seconds, fits = seconds_of(lambda: list(pool.map(fit, cables)))
-    _, pass_seconds, _ = seconds_of(lambda: deviations(start, *data))
-    for (name, _, data), (values, passes) in zip(cables, fits):
+    for kernel in KERNELS.values():
+        kernel(start, *data)  # compiles
+    runs = {}
+    for method, scale in METHODS:
+        for kernel in KERNELS:
+            run = functools.partial(fit, method=method, scale=scale, kernel=kernel)
+            runs[method, scale, kernel] = *seconds_of(lambda: list(map(run, cables))), run
+    least = [min(squares) for squares in zip(*([squares for _, squares, _ in fits] for _, _, fits, _ in runs.values()))]
+    fastest = None
+    for (method, scale, kernel), (seconds, processor_seconds, fits, run) in runs.items():
+        errors = max(
+            errors_from(low, squares, data[-1].sum())
+            for low, (_, squares, _), (_, _, data) in zip(least, fits, cables)
+        )
+        cost, passes = sum(squares for _, squares, _ in fits) / 2, sum(passes for _, _, passes in fits)
+        print(
+            f"scipy {method:6} x_scale {scale!s:4} {kernel:8} {seconds:.3f} s, {passes} passes, cost {cost:.6f} N², "
+            f"{errors:.3f} standard errors from the minimum"
+        )
+        if errors <= NEAR_ERRORS and (fastest is None or seconds < fastest[0]):
+            fastest = seconds, processor_seconds, fits, run
+    print("ours: at most {:.3f} standard errors from scipy's minimum over the same samples".format(
+        max(ours(ours_file, cables))))
+    seconds, processor_seconds, fits, run = fastest
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        all_cores_seconds, *_ = seconds_of(lambda: list(pool.map(run, cables)))
+    _, pass_seconds, _ = seconds_of(lambda: KERNELS["fastmath"](start, *data))
+    for (name, _, data), (values, _, passes) in zip(cables, fits):
         print("cable", name, *(f"{value:.9g}" for value in values), data[-1].sum(), passes)
     print(f"seconds {seconds:.6f}")
     print(f"processor_seconds {processor_seconds:.6f}")
+    print(f"all_cores_seconds {all_cores_seconds:.6f}")
     print(f"pass_seconds {pass_seconds:.6f}")
 
 

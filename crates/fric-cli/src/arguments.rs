@@ -4,9 +4,10 @@ use std::path::PathBuf;
 
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use fric_lab::simulate::DISTURBANCES;
 
-/// Friction compensation for cable-driven robots: identify friction, replay logs, look into them, simulate and excite
-/// robots.
+/// Friction compensation for cable-driven robots: identify friction, find what the model lacks, replay logs, look into
+/// them, simulate and excite robots.
 #[derive(Debug, Parser)]
 #[command(version, arg_required_else_help = true)]
 pub struct Arguments {
@@ -23,12 +24,19 @@ pub enum Command {
     #[command(after_help = "Examples:\n  fric-cli fit examples/mini-ipanema.mcap -o fitted.toml\n  \
                       fric-cli fit examples/mini-ipanema.mcap --reference wrench -o by-wrench.toml")]
     Fit(FitArguments),
+    /// Find where the model and the measurement disagree, name the effect that is missing, and add it to the robot file
+    #[command(
+        after_help = "Example:\n  fric-cli discover examples/mini-ipanema.mcap -o extended.toml --report discovery.html"
+    )]
+    Discover(DiscoverArguments),
     /// Show what is in a log, what each signal maps to, and what is missing for which step
     #[command(after_help = "Example:\n  fric-cli info examples/mini-ipanema.mcap")]
     Info(InfoArguments),
     /// Write the log of a simulated robot, with effects hidden in it on request
     #[command(after_help = "Examples:\n  fric-cli simulate --model examples/mini-ipanema.toml -o simulated.mcap \
                       --effect stribeck:ratio=0.5,velocity_m_per_s=0.02 --seed 7\n  \
+                      fric-cli simulate --model examples/mini-ipanema.toml -o spoilt.mcap \
+                      --disturbance hum:amplitude_n=0.12,frequency_hz=50 --hand-n 3 --reference-wander-n 0.01\n  \
                       fric-cli simulate --model examples/mini-ipanema.toml --run crossing -o crossing.mcap")]
     Simulate(SimulateArguments),
     /// Write the identification run as set points for a robot's controller
@@ -95,6 +103,24 @@ pub struct FitArguments {
     pub result: ResultArguments,
 }
 
+#[derive(Debug, Args)]
+pub struct DiscoverArguments {
+    /// MCAP log with forces at the platform; several are runs of the same robot, looked at together
+    #[arg(required = true, value_name = "LOG")]
+    pub logs: Vec<PathBuf>,
+    /// Robot file; without it the one attached to the first log that has one
+    #[arg(long, value_name = "M.toml")]
+    pub model: Option<PathBuf>,
+    /// Write the robot file with what was found, and with values fitted to the log, to this file
+    #[arg(short, long, value_name = "EXTENDED.toml", required = true, value_parser = a_file())]
+    pub output: PathBuf,
+    /// Write a page with figures of what was found to this HTML file
+    #[arg(long, value_name = "R.html", value_parser = a_file())]
+    pub report: Option<PathBuf>,
+    #[command(flatten)]
+    pub result: ResultArguments,
+}
+
 /// What a fit compares the model with.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub enum ReferenceName {
@@ -124,8 +150,11 @@ pub struct SimulateArguments {
     #[arg(long, value_name = "RUN", value_enum, default_value_t)]
     pub run: RunName,
     /// Hide an effect of the catalogue in all cables; may be given several times
-    #[arg(long = "effect", value_name = "kind:key=value,…")]
+    #[arg(long = "effect", value_name = "kind:key=value,…", long_help = effects_help())]
     pub effects: Vec<String>,
+    /// Spoil the log by something that is in no catalogue; may be given several times
+    #[arg(long = "disturbance", value_name = "kind:key=value,…", long_help = disturbances_help())]
+    pub disturbances: Vec<String>,
     /// Seed of noise and micro motion
     #[arg(long, value_name = "S", default_value_t = 0, allow_negative_numbers = true, value_parser = a_seed)]
     pub seed: u64,
@@ -141,9 +170,52 @@ pub struct SimulateArguments {
     /// Spread of μ over the pulleys of a cable, as a share of μ
     #[arg(long, value_name = "RATIO", default_value_t = 0.0, allow_negative_numbers = true, value_parser = a_number)]
     pub mu_spread_ratio: f64,
+    /// Standard deviation by which each sensor's zero wanders, N
+    #[arg(long, value_name = "N", default_value_t = 0.0, allow_negative_numbers = true, value_parser = a_number)]
+    pub sensor_wander_n: f64,
+    /// Standard deviation by which each reference force wanders, N
+    #[arg(long, value_name = "N", default_value_t = 0.0, allow_negative_numbers = true, value_parser = a_number)]
+    pub reference_wander_n: f64,
+    /// Correlation time of what wanders, s
+    #[arg(long, value_name = "S", default_value_t = 2.0, allow_negative_numbers = true, value_parser = a_number)]
+    pub wander_s: f64,
+    /// Let a hand push the platform slowly to and fro, by so much at most along each axis, N; a cable on a test bench along
+    /// itself
+    #[arg(long, value_name = "N", default_value_t = 0.0, allow_negative_numbers = true, value_parser = a_number)]
+    pub hand_n: f64,
+    /// Standard deviation of the noise of the lengths, m; the speed is then their difference over a cycle
+    #[arg(long, value_name = "M", default_value_t = 0.0, allow_negative_numbers = true, value_parser = a_number)]
+    pub length_noise_m: f64,
+    /// Step of the encoder's lengths, m; the speed is then their difference over a cycle
+    #[arg(long, value_name = "M", default_value_t = 0.0, allow_negative_numbers = true, value_parser = a_number)]
+    pub length_resolution_m: f64,
     /// Replace the output if it exists
     #[arg(long)]
     pub force: bool,
+}
+
+/// What `--effect` can hide.
+fn effects_help() -> String {
+    let effects = fric_core::effects::CATALOGUE.iter().map(|row| {
+        let keys = row.parameters.iter().map(|parameter| parameter.key);
+        (row.kind, keys.collect::<Vec<_>>(), row.cause)
+    });
+    kinds_help("Hide an effect of the catalogue in all cables; may be given several times:", effects)
+}
+
+/// What `--disturbance` can hide.
+fn disturbances_help() -> String {
+    let disturbances = DISTURBANCES.iter().map(|row| {
+        let keys = row.parameters.iter().map(|parameter| parameter.key);
+        (row.kind, keys.collect::<Vec<_>>(), row.cause)
+    });
+    kinds_help("Spoil the log by something that is in no catalogue; may be given several times:", disturbances)
+}
+
+fn kinds_help<'a>(what: &str, kinds: impl Iterator<Item = (&'a str, Vec<&'a str>, &'a str)>) -> String {
+    let line = |(kind, keys, cause): (&str, Vec<&str>, &str)| format!("\n  {kind} ({}): {cause}", keys.join(", "));
+    let lines: String = kinds.map(line).collect();
+    format!("{what}{lines}")
 }
 
 #[derive(Debug, Args)]

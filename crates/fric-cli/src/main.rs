@@ -4,6 +4,7 @@ mod arguments;
 mod commands;
 mod failure;
 mod interrupt;
+mod measurements;
 mod model;
 mod output;
 mod progress;
@@ -23,6 +24,7 @@ fn main() -> ExitCode {
     interrupt::listen();
     let result = match &arguments.command {
         Command::Fit(arguments) => commands::fit::run(arguments),
+        Command::Discover(arguments) => commands::discover::run(arguments),
         Command::Replay(arguments) => commands::replay::run(arguments),
         Command::Info(arguments) => commands::info::run(arguments),
         Command::Simulate(arguments) => commands::simulate::run(arguments),

@@ -15,9 +15,9 @@ pub fn cycles(total: u64) -> ProgressBar {
     bar(total, "{bar:40} {human_pos}/{human_len} cycles {eta}")
 }
 
-/// A bar of steps, whose number is not known yet.
-pub fn steps() -> ProgressBar {
-    bar(0, "{bar:40} {pos}/{len} fitted {elapsed}")
+/// A bar of steps, whose number is not known yet, and what they are when `done`.
+pub fn steps(done: &'static str) -> ProgressBar {
+    bar(0, &format!("{{bar:40}} {{pos}}/{{len}} {done} {{elapsed}}"))
 }
 
 fn bar(total: u64, template: &str) -> ProgressBar {

@@ -3,15 +3,21 @@
 //! For: sensor force and displacement in, force at the platform out ([`cable_cycle`]). Generic over [`Scalar`], so the
 //! control cycle (four cables at once) and a fit that carries derivatives run the very same code. It does not judge
 //! signals: [`condition`](crate::signals::condition) sees to it that they are finite. State: one number per pulley, or
-//! one per cable, kept by the caller behind [`Cable`].
+//! one per cable, and [`MEMORY`] of effects, kept by the caller behind [`Cable`].
 //!
-//! Symbols and sign convention are those of [`pulley`].
+//! Symbols and sign convention are those of [`pulley`](crate::pulley).
 
-use crate::dahl::dahl_step;
-use crate::effects::stribeck::{self, Stribeck};
-use crate::parameters::{MU, OFFSET, SIGMA, Values};
+use crate::bearing::Bearing;
+use crate::chain::Chain;
+use crate::effects::Acting;
+use crate::effects::cable_elasticity::{self, CableElasticity};
+use crate::effects::pulley_eccentricity::{self, PulleyEccentricity};
+use crate::effects::sensor_drift::{self, SensorDrift};
+use crate::effects::sensor_gain::{self, SensorGain};
+use crate::effects::sensor_offset::{self, SensorOffset};
+use crate::effects::time_delay;
+use crate::parameters::{MU, OFFSET, ParameterRow, SIGMA, Values};
 use crate::places::{Places, START_WRAP_FACTOR};
-use crate::pulley;
 use crate::robot::{CableParams, Presliding};
 use crate::scalar::{Mask, Scalar};
 use crate::signals::Conditioned;
@@ -95,10 +101,20 @@ pub trait Cable<T: Scalar> {
     /// The pulley at a place.
     fn pulley(&self, place: usize) -> Pulley<T>;
     /// `e^{μ_p α}` there, the tension ratio at which the cable slips; beyond
-    /// [`NO_LIMIT_RATIO`](pulley::NO_LIMIT_RATIO) where it cannot.
+    /// [`NO_LIMIT_RATIO`](crate::pulley::NO_LIMIT_RATIO) where it cannot.
     fn traction_ratio(&self, place: usize) -> T;
+    /// 1 where there is a pulley, else 0.
+    fn present(&self, place: usize) -> T;
+    /// How much of the cable's stretch lies between the winch and there, 0…1: `j/n` at pulley j of n.
+    fn stretch_ratio(&self, place: usize) -> T;
+    /// The greatest μ that the sensor pulley bears, see [`CableParams`].
+    fn greatest_mu(&self) -> T;
     /// A parameter of an effect, by its place in [`Values`].
     fn effect(&self, place: usize) -> T;
+    /// What an effect remembers, by its place in [`MEMORY`]; [`UNKNOWN`] before the first cycle.
+    fn memory(&self, place: usize) -> T;
+    /// Keeps it.
+    fn set_memory(&mut self, place: usize, value: T);
     /// Coulomb friction stored at a pulley (`per_pulley`), N.
     fn pulley_friction_n(&self, place: usize) -> T;
     /// Stores it.
@@ -113,9 +129,17 @@ pub trait Cable<T: Scalar> {
     fn set_held_friction_n(&mut self, friction_n: T);
 }
 
+/// Numbers that effects remember.
+pub const MEMORY: usize = 2;
+/// Stands for a number that is not known yet; equal to itself, as a snapshot has to be.
+pub const UNKNOWN: f64 = f64::INFINITY;
+/// Middle of the play of the tension, of `cable_elasticity`, N.
+const TENSION: usize = 0;
+/// Low pass of the speed, of `pulley_inertia`, m/s.
+pub(crate) const SPEED: usize = 1;
+
 /// What may differ between robots but not between the lanes of one: decided once a cycle, outside the arithmetic.
 #[derive(Clone, Copy, Debug, Default)]
-#[expect(clippy::struct_excessive_bools, reason = "independent switches, each read on its own")]
 pub struct Features {
     /// Some cable has one Dahl state per pulley.
     pub per_pulley: bool,
@@ -123,42 +147,54 @@ pub struct Features {
     pub lumped: bool,
     /// Some cable has a slip limit.
     pub traction: bool,
-    /// Some cable has the Stribeck effect.
-    pub stribeck: bool,
+    /// Effects that some cable has.
+    pub(crate) acting: Acting,
 }
 
 impl Features {
-    /// These and what a cable needs.
+    /// Whether the cycle has anything to do with effects; the delay is in its signals already.
+    #[inline(always)]
+    pub(crate) fn has_effects(self) -> bool {
+        self.acting.without(time_delay::ACTS) != Acting::NONE
+    }
+
+    /// These; if not `EFFECTS` without any, which the compiler then leaves out.
+    #[inline(always)]
+    pub(crate) fn limited_to<const EFFECTS: bool>(self) -> Self {
+        if EFFECTS { self } else { Self { acting: Acting::NONE, ..self } }
+    }
+
+    /// These and what a cable needs, but for its effects.
     pub(crate) fn with(mut self, params: &CableParams) -> Self {
         self.per_pulley |= params.presliding == Presliding::PerPulley;
         self.lumped |= params.presliding == Presliding::Lumped;
         self.traction |= params.traction_mu.is_some();
-        self.stribeck |= params.effects.get("stribeck", "ratio").is_some_and(|ratio| ratio.abs() > 0.0);
         self
     }
 
-    /// These and the effects that act at values other than the cable's own.
-    pub(crate) fn and_acting(mut self, value: impl Fn(usize) -> f64) -> Self {
-        self.stribeck |= value(stribeck::RATIO).abs() > 0.0;
-        self
-    }
-
-    /// These and the effects of which a parameter varies, see [`Values`].
-    pub(crate) fn and_varying(mut self, varies: impl Fn(usize) -> bool) -> Self {
-        self.stribeck |= varies(stribeck::RATIO) || varies(stribeck::VELOCITY);
+    /// These and the effects of which a parameter is `active`: not neutral, or varied.
+    pub(crate) fn and_acting(mut self, active: impl Fn(&ParameterRow, usize) -> bool) -> Self {
+        self.acting = self.acting.and(Acting::of(active));
         self
     }
 }
 
-/// Signals of one cable in one cycle, all finite.
+/// Where the run stands.
 #[derive(Clone, Copy, Debug)]
-pub struct CableSignals<T> {
-    /// Sensor force, N.
-    pub sensor_force_n: T,
-    /// Change of length since the last cycle, m.
-    pub displacement_m: T,
-    /// Speed, m/s.
-    pub speed_m_per_s: T,
+pub struct Moment<T> {
+    /// Time since its first cycle, s.
+    pub time_s: T,
+    /// Time since the cycle before, s; the cycle time in the first.
+    pub step_s: T,
+}
+
+impl<T: Scalar> Moment<T> {
+    /// The moment `cycle` cycles after the first, where the cycle before was `last`; NaN if that is not known.
+    #[inline(always)]
+    pub fn new(cycle: T, last: T, cycle_s: f64) -> Self {
+        let elapsed = T::select(last.lt(cycle), cycle - last, T::splat(1.0));
+        Self { time_s: cycle * T::splat(cycle_s), step_s: elapsed * T::splat(cycle_s) }
+    }
 }
 
 /// Outcome of one cycle for one cable.
@@ -166,9 +202,10 @@ pub struct CableSignals<T> {
 pub struct CableForces<T: Scalar> {
     /// Force at the platform, N, the offset ε included.
     pub platform_force_n: T,
-    /// Friction: force at the platform less the frictionless one, without ε, N.
+    /// Friction: force at the platform less the frictionless one, without ε, N. With it all that effects add: inertia,
+    /// ripple, what is corrected of the sensor.
     pub friction_n: T,
-    /// Sensor force turned into cable tension as if nothing rubbed, N.
+    /// Sensor force as it is shown, turned into cable tension as if nothing rubbed, N.
     pub frictionless_n: T,
     /// The cable carries no tension at the platform, or none at all.
     pub slack: T::Mask,
@@ -180,55 +217,41 @@ pub struct CableForces<T: Scalar> {
 ///
 /// While a signal is faulty ([`Conditioned::hold`]) the stored friction follows the motion with the last good force, and
 /// the output holds the last good friction, which takes no cable below zero tension. Slack releases the stored friction.
+///
+/// Viscous friction and inertia stay outside the Dahl state in both forms: they need no presliding distance (deviation from
+/// \[P\] 15, where viscous friction is inside). The macroscopic friction is taken from the frictionless cable,
+/// `F_f = F_n − F_s/(1 − c)`, so that presliding covers the sensor pulley too (deviation from \[P\] 15: `F_n − F_1`).
 #[inline(always)]
 pub fn cable_cycle<T: Scalar>(
     model: &CableModel<T>,
     features: Features,
-    conditioned: &Conditioned<T>,
-    cable: &mut impl Cable<T>,
-) -> CableForces<T> {
-    let held_friction_n = cable.held_friction_n();
-    let forces = cable_step(model, features, &conditioned.signals(), cable);
-    let no_tension = conditioned.sensor_force_n.le(T::splat(0.0));
-    let hold = conditioned.hold();
-    cable.set_held_friction_n(T::select(hold, held_friction_n, forces.friction_n));
-    let held_n = held_friction_n.max(-forces.frictionless_n).keep(no_tension.not());
-    CableForces {
-        platform_force_n: T::select(hold, forces.frictionless_n + held_n + model.offset_n, forces.platform_force_n),
-        friction_n: T::select(hold, held_n, forces.friction_n),
-        slip: forces.slip.and(hold.not()),
-        ..forces
-    }
-}
-
-/// One cycle of one cable on signals that may be believed.
-///
-/// Viscous friction stays outside the Dahl state in both forms: it needs no presliding distance (deviation from \[P\] 15,
-/// where it is inside). The macroscopic friction is taken from the frictionless cable, `F_f = F_n − F_s/(1 − c)`, so that
-/// presliding covers the sensor pulley too (deviation from \[P\] 15: `F_n − F_1`).
-#[inline(always)]
-fn cable_step<T: Scalar>(
-    model: &CableModel<T>,
-    features: Features,
-    signals: &CableSignals<T>,
+    signals: &Conditioned<T>,
+    moment: &Moment<T>,
     cable: &mut impl Cable<T>,
 ) -> CableForces<T> {
     let zero = T::splat(0.0);
-    let frictionless_n = signals.sensor_force_n.scale(model.frictionless_gain);
-    let no_tension = signals.sensor_force_n.le(zero);
-    let mut mu = model.mu;
-    if features.stribeck {
-        mu = mu * Stribeck::of(|place| cable.effect(place)).factor(signals.speed_m_per_s);
-    }
+    let acting = features.acting;
+    let shown_n = signals.sensor_force_n.scale(model.frictionless_gain);
+    let (sensor_force_n, frictionless_n) = if acting.has(SENSOR) {
+        let sensor_force_n = corrected_sensor(acting, signals.sensor_force_n, moment, cable);
+        (sensor_force_n, sensor_force_n.scale(model.frictionless_gain))
+    } else {
+        (signals.sensor_force_n, shown_n)
+    };
+    let no_tension = sensor_force_n.le(zero);
+    let bearing = Bearing::new(model, acting, signals, moment, cable);
+    let stretch_m = stretch(acting, frictionless_n + cable.held_friction_n(), signals, cable);
+    let displacement_m = signals.displacement_m;
+    let chain = Chain { model, features, bearing, sensor_force_n, displacement_m, stretch_m };
     let mut chain_n = frictionless_n;
     let mut slip = T::Mask::NONE;
     if features.lumped {
-        let (platform_n, friction_n, slips) = lumped_chain(model, features, mu, signals, cable);
+        let (platform_n, friction_n, slips) = chain.lumped(cable);
         cable.set_lumped_friction_n(friction_n.keep(no_tension.not()));
         (chain_n, slip) = (platform_n, slips);
     }
     if features.per_pulley {
-        let (platform_n, slips) = pulley_chain(model, features, mu, signals, no_tension.or(model.lumped), cable);
+        let (platform_n, slips) = chain.per_pulley(no_tension.or(model.lumped), cable);
         if features.lumped {
             chain_n = T::select(model.lumped, chain_n, platform_n);
             slip = model.lumped.and(slip).or(model.lumped.not().and(slips));
@@ -236,128 +259,59 @@ fn cable_step<T: Scalar>(
             (chain_n, slip) = (platform_n, slips);
         }
     }
+    if acting.has(pulley_eccentricity::ACTS) {
+        chain_n = chain_n * PulleyEccentricity::of(|place| cable.effect(place)).factor(signals.length_m);
+    }
     let slack = no_tension.or(chain_n.lt(zero));
     let pulled_n = chain_n.max(zero);
-    let platform_force_n = T::select(no_tension, frictionless_n, pulled_n) + model.offset_n;
+    let moving_n = T::select(no_tension, frictionless_n, pulled_n) + model.offset_n;
+    let friction_n = moving_n - model.offset_n - frictionless_n;
+
+    let hold = signals.hold();
+    let held_friction_n = cable.held_friction_n();
+    cable.set_held_friction_n(T::select(hold, held_friction_n, friction_n));
+    let held_n = held_friction_n.max(-frictionless_n).keep(no_tension.not());
+    let platform_force_n = T::select(hold, frictionless_n + held_n + model.offset_n, moving_n);
+    let friction_n = T::select(hold, held_n, friction_n);
     CableForces {
         platform_force_n,
-        friction_n: platform_force_n - model.offset_n - frictionless_n,
-        frictionless_n,
+        friction_n: if acting.has(SENSOR) { platform_force_n - model.offset_n - shown_n } else { friction_n },
+        frictionless_n: shown_n,
         slack,
-        slip: slip.and(slack.not()),
+        slip: slip.and(slack.not()).and(hold.not()),
     }
 }
 
-/// `per_pulley`: one Dahl state on each bearing; its normal force includes the friction it has stored.
-///
-/// With the stored Coulomb friction `f_j`: `F_1 = (F_s − c(f_1 + F_pv v))/(1 − c)` (\[P\] 11), then
-/// `F_j = F_{j−1} + f_j + F_pv v`. In steady sliding this is \[P\] 10.
+/// Effects of the force sensor.
+const SENSOR: Acting = sensor_offset::ACTS.and(sensor_drift::ACTS).and(sensor_gain::ACTS);
+
+/// The sensor force there is for the one shown, N: `(F_shown − offset − rate·t)/gain`.
 #[inline(always)]
-fn pulley_chain<T: Scalar>(
-    model: &CableModel<T>,
-    features: Features,
-    mu: T,
-    signals: &CableSignals<T>,
-    release: T::Mask,
-    cable: &mut impl Cable<T>,
-) -> (T, T::Mask) {
-    let zero = T::splat(0.0);
-    let mut tension_n = zero;
-    let mut slip = T::Mask::NONE;
-    for place in 0..cable.count() {
-        let pulley = cable.pulley(place);
-        let stored_n = cable.pulley_friction_n(place);
-        let viscous_n = pulley.viscous_n_s_per_m * signals.speed_m_per_s;
-        let sensed = |friction_n: T| {
-            (signals.sensor_force_n - (friction_n + viscous_n).scale(model.sensor_cos)).scale(model.frictionless_gain)
-        };
-        let (upstream_n, downstream_n) = if place == 0 {
-            let behind_n = sensed(stored_n);
-            (behind_n - stored_n - viscous_n, behind_n)
-        } else {
-            (tension_n, tension_n + stored_n + viscous_n)
-        };
-        let sliding_n = pulley::sliding_friction(mu, pulley.wrap_factor, upstream_n, downstream_n);
-        let mut friction_n = dahl_step(stored_n, sliding_n, model.sigma_n_per_m, signals.displacement_m);
-        let mut behind_n = if place == 0 { sensed(friction_n) } else { tension_n + friction_n + viscous_n };
-        if features.traction {
-            let traction_ratio = cable.traction_ratio(place);
-            let before_n = if place == 0 { behind_n - friction_n - viscous_n } else { tension_n };
-            let (limited_n, slips) = pulley::limit_traction(before_n, behind_n, traction_ratio);
-            let (held_before_n, held_n) = if place == 0 {
-                let unlimited = (before_n, behind_n);
-                pulley::slipping_sensor(signals.sensor_force_n, model.sensor_cos, unlimited, traction_ratio)
-            } else {
-                (before_n, limited_n)
-            };
-            behind_n = T::select(slips, held_n, behind_n);
-            friction_n = T::select(slips, held_n - held_before_n - viscous_n, friction_n);
-            slip = slip.or(slips);
-        }
-        cable.set_pulley_friction_n(place, friction_n.keep(release.not()));
-        tension_n = behind_n;
+fn corrected_sensor<T: Scalar>(acting: Acting, shown_n: T, moment: &Moment<T>, cable: &impl Cable<T>) -> T {
+    let value = |place| cable.effect(place);
+    let mut force_n = shown_n;
+    if acting.has(sensor_offset::ACTS) {
+        force_n = SensorOffset::of(value).undo(force_n);
     }
-    (tension_n, slip)
+    if acting.has(sensor_drift::ACTS) {
+        force_n = SensorDrift::of(value).undo(force_n, moment.time_s);
+    }
+    if acting.has(sensor_gain::ACTS) {
+        force_n = SensorGain::of(value).undo(force_n);
+    }
+    force_n
 }
 
-/// `lumped`: one Dahl state for the whole cable on the macroscopic Coulomb friction, as the paper has it.
+/// By how much the whole cable has stretched in this cycle, m; a sensor that tells nothing tells of no stretch.
 #[inline(always)]
-fn lumped_chain<T: Scalar>(
-    model: &CableModel<T>,
-    features: Features,
-    mu: T,
-    signals: &CableSignals<T>,
-    cable: &impl Cable<T>,
-) -> (T, T, T::Mask) {
-    let zero = T::splat(0.0);
-    let direction = signals.displacement_m.sign();
-    let mut slip = T::Mask::NONE;
-    let mut coulomb_n = zero;
-    let mut viscous_n = zero;
-    for place in 0..cable.count() {
-        let pulley = cable.pulley(place);
-        let drag_n = pulley.viscous_n_s_per_m * signals.speed_m_per_s;
-        if place == 0 {
-            let (gain, viscous_gain) = pulley::sensor_gains(direction, mu, pulley.wrap_factor, model.sensor_cos);
-            coulomb_n = signals.sensor_force_n * gain;
-            viscous_n = drag_n * viscous_gain;
-            if features.traction {
-                let traction_ratio = cable.traction_ratio(place);
-                // [P] 10 the other way round: the tension on the winch side from the one behind.
-                let (inverse_gain, inverse_viscous) = pulley::sliding_gains(-direction, mu, pulley.wrap_factor);
-                let behind_n = coulomb_n + viscous_n;
-                let before_n = behind_n * inverse_gain - drag_n * inverse_viscous;
-                let (_, slips) = pulley::limit_traction(before_n, behind_n, traction_ratio);
-                let tensions = (before_n, behind_n);
-                let (_, held_n) =
-                    pulley::slipping_sensor(signals.sensor_force_n, model.sensor_cos, tensions, traction_ratio);
-                coulomb_n = T::select(slips, held_n - viscous_n, coulomb_n);
-                slip = slips;
-            }
-            continue;
-        }
-        let (gain, viscous_gain) = pulley::sliding_gains(direction, mu, pulley.wrap_factor);
-        let before_n = coulomb_n + viscous_n;
-        let (next_coulomb_n, next_viscous_n) = (coulomb_n * gain, viscous_n * gain + drag_n * viscous_gain);
-        if features.traction {
-            let traction_ratio = cable.traction_ratio(place);
-            let behind_n = next_coulomb_n + next_viscous_n;
-            let (limited_n, slips) = pulley::limit_traction(before_n, behind_n, traction_ratio);
-            slip = slip.or(slips);
-            // The slip limit holds the sum; what it takes away is Coulomb friction.
-            coulomb_n = T::select(slips, limited_n - next_viscous_n, next_coulomb_n);
-            viscous_n = next_viscous_n;
-        } else {
-            coulomb_n = next_coulomb_n;
-            viscous_n = next_viscous_n;
-        }
+fn stretch<T: Scalar>(acting: Acting, tension_n: T, signals: &Conditioned<T>, cable: &mut impl Cable<T>) -> T {
+    if !acting.has(cable_elasticity::ACTS) {
+        return T::splat(0.0);
     }
-    let frictionless_n = signals.sensor_force_n.scale(model.frictionless_gain);
-    let sliding_n = coulomb_n - frictionless_n;
-    // Sliding this way leads to `sliding_n`, whose sign is not the motion's where a sensor pulley of less than 90°
-    // outweighs the others: its friction lowers the tension behind it.
-    let distance_m = signals.displacement_m.abs();
-    let toward_m = T::select(sliding_n.lt(zero), -distance_m, distance_m);
-    let moved_n = dahl_step(cable.lumped_friction_n(), sliding_n.abs(), model.sigma_n_per_m, toward_m);
-    (frictionless_n + moved_n + viscous_n, moved_n, slip)
+    let elasticity = CableElasticity::of(|place| cable.effect(place));
+    let middle_n = cable.memory(TENSION);
+    let (stretch_m, next_n) = elasticity.stretch_m(tension_n.max(T::splat(0.0)), middle_n);
+    let known = signals.sensor_fault().not();
+    cable.set_memory(TENSION, T::select(known, next_n, middle_n));
+    stretch_m.keep(known)
 }

@@ -2,7 +2,7 @@
 //!
 //! Private to the crate: the structure-of-arrays behind [`Compensator`](crate::Compensator).
 
-use crate::cable::{Cable, CableModel, Pulley};
+use crate::cable::{Cable, CableModel, MEMORY, Pulley, UNKNOWN};
 use crate::effects::EFFECT_PARAMETER_COUNT;
 use crate::effects::time_delay::{self, Delay, DelayLine};
 use crate::lanes::{Lanes, LanesMask};
@@ -22,10 +22,13 @@ pub struct ParamColumns<const CABLES: usize> {
     sensor_cos: [f64; CABLES],
     frictionless_gain: [f64; CABLES],
     lumped: [f64; CABLES],
+    greatest_mu: [f64; CABLES],
     effects: [[f64; CABLES]; EFFECT_PARAMETER_COUNT],
     wrap_factor: [[f64; CABLES]; PLACES],
     viscous_n_s_per_m: [[f64; CABLES]; PLACES],
     traction_ratio: [[f64; CABLES]; PLACES],
+    present: [[f64; CABLES]; PLACES],
+    stretch_ratio: [[f64; CABLES]; PLACES],
     /// 1 where the pulley at the last place follows the pose.
     follows_pose: [f64; CABLES],
     pub traction_mu: [f64; CABLES],
@@ -51,16 +54,19 @@ impl<const CABLES: usize> ParamColumns<CABLES> {
         sensor_cos: [0.0; CABLES],
         frictionless_gain: [1.0; CABLES],
         lumped: [0.0; CABLES],
+        greatest_mu: [0.0; CABLES],
         effects: [[1.0; CABLES]; EFFECT_PARAMETER_COUNT],
         wrap_factor: [[0.0; CABLES]; PLACES],
         viscous_n_s_per_m: [[0.0; CABLES]; PLACES],
         traction_ratio: [[NO_SLIP; CABLES]; PLACES],
+        present: [[0.0; CABLES]; PLACES],
+        stretch_ratio: [[0.0; CABLES]; PLACES],
         follows_pose: [0.0; CABLES],
         traction_mu: [0.0; CABLES],
         least_force_n: [-f64::MAX; CABLES],
         greatest_force_n: [f64::MAX; CABLES],
         greatest_speed_m_per_s: [f64::MAX; CABLES],
-        delay: [Delay { cycles: 0, fraction: 0.0 }; CABLES],
+        delay: [Delay { cycles: 0, fraction: 0.0, leads: false }; CABLES],
         entry_m: [[0.0; CABLES]; 3],
         axis: [[0.0; CABLES], [0.0; CABLES], [1.0; CABLES]],
         radius_m: [0.0; CABLES],
@@ -81,6 +87,7 @@ impl<const CABLES: usize> ParamColumns<CABLES> {
         put(&mut self.sensor_cos, cable, model.sensor_cos);
         put(&mut self.frictionless_gain, cable, model.frictionless_gain);
         put(&mut self.lumped, cable, f64::from(model.lumped));
+        put(&mut self.greatest_mu, cable, params.greatest_mu());
         for (column, value) in self.effects.iter_mut().zip(values.iter().skip(FRICTION_COUNT)) {
             put(column, cable, *value);
         }
@@ -94,11 +101,16 @@ impl<const CABLES: usize> ParamColumns<CABLES> {
         for (place, viscous) in self.viscous_n_s_per_m.iter_mut().enumerate() {
             put(viscous, cable, params.friction.viscous_n_s_per_m * places.has_pulley[place]);
         }
-        for (column, factor) in self.wrap_factor.iter_mut().zip(places.wrap_factor) {
-            put(column, cable, factor);
-        }
-        for (column, ratio) in self.traction_ratio.iter_mut().zip(places.traction_ratio) {
-            put(column, cable, ratio);
+        let columns = [
+            (&mut self.wrap_factor, places.wrap_factor),
+            (&mut self.traction_ratio, places.traction_ratio),
+            (&mut self.present, places.has_pulley),
+            (&mut self.stretch_ratio, places.stretch_ratio),
+        ];
+        for (columns, values) in columns {
+            for (column, value) in columns.iter_mut().zip(values) {
+                put(column, cable, value);
+            }
         }
         put(&mut self.follows_pose, cable, f64::from(params.needs_pose()));
         put(&mut self.pulley_place, cable, places.of_pulley);
@@ -177,6 +189,8 @@ pub struct StateColumns<const CABLES: usize> {
     pub lumped_friction_n: [f64; CABLES],
     /// Dahl states of the `per_pulley` form, N.
     pub pulley_friction_n: [[f64; CABLES]; PLACES],
+    /// What effects remember.
+    pub memory: [[f64; CABLES]; MEMORY],
     /// Wrap factor and traction ratio of the pulley that follows the pose.
     pub pose_wrap_factor: [f64; CABLES],
     pub pose_traction_ratio: [f64; CABLES],
@@ -187,6 +201,8 @@ pub struct StateColumns<const CABLES: usize> {
     pub moment_arm_m: [[f64; CABLES]; 3],
     pub delayed_displacement_m: [DelayLine; CABLES],
     pub delayed_speed_m_per_s: [DelayLine; CABLES],
+    /// How far the delayed motion lags behind, m.
+    pub lag_m: [f64; CABLES],
 }
 
 impl<const CABLES: usize> StateColumns<CABLES> {
@@ -219,6 +235,7 @@ impl<const CABLES: usize> StateColumns<CABLES> {
         friction_n: [0.0; CABLES],
         lumped_friction_n: [0.0; CABLES],
         pulley_friction_n: [[0.0; CABLES]; PLACES],
+        memory: [[UNKNOWN; CABLES]; MEMORY],
         pose_wrap_factor: [START_WRAP_FACTOR; CABLES],
         pose_traction_ratio: [NO_SLIP; CABLES],
         direction_known: [0.0; CABLES],
@@ -226,6 +243,7 @@ impl<const CABLES: usize> StateColumns<CABLES> {
         moment_arm_m: [[0.0; CABLES]; 3],
         delayed_displacement_m: [DelayLine::EMPTY; CABLES],
         delayed_speed_m_per_s: [DelayLine::EMPTY; CABLES],
+        lag_m: [0.0; CABLES],
     };
 }
 
@@ -281,8 +299,30 @@ impl<const CABLES: usize> Cable<Lanes> for BlockOfCables<'_, CABLES> {
         self.posed(place, &self.state.pose_traction_ratio, &self.params.traction_ratio)
     }
     #[inline(always)]
+    fn present(&self, place: usize) -> Lanes {
+        self.column(&self.params.present, place)
+    }
+    #[inline(always)]
+    fn stretch_ratio(&self, place: usize) -> Lanes {
+        self.column(&self.params.stretch_ratio, place)
+    }
+    #[inline(always)]
+    fn greatest_mu(&self) -> Lanes {
+        Lanes::load(&self.params.greatest_mu, self.block)
+    }
+    #[inline(always)]
     fn effect(&self, place: usize) -> Lanes {
         self.column(&self.params.effects, place - FRICTION_COUNT)
+    }
+    #[inline(always)]
+    fn memory(&self, place: usize) -> Lanes {
+        self.column(&self.state.memory, place)
+    }
+    #[inline(always)]
+    fn set_memory(&mut self, place: usize, value: Lanes) {
+        if let Some(column) = self.state.memory.get_mut(place) {
+            value.store(column, self.block);
+        }
     }
     #[inline(always)]
     fn pulley_friction_n(&self, place: usize) -> Lanes {

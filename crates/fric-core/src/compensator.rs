@@ -2,20 +2,21 @@
 //!
 //! For: force at the platform and wrench from the winch-side signals, every cycle, in bounded time, without allocation,
 //! without panic, for every input there is. It does not read clocks, files or buses. Non-finite input is flagged
-//! ([`CableStatus`]) and never reaches another cable. Size: about 700 bytes a cable, and 1 kB more a cable for the delay
+//! ([`CableStatus`]) and never reaches another cable. Size: about 1 kB a cable, and 1 kB more a cable for the delay
 //! lines.
 
-use crate::cable::{Features, cable_cycle};
+use crate::cable::{Features, Moment, cable_cycle};
 use crate::columns::{BlockOfCables, ParamColumns, StateColumns};
 use crate::cycle::{CableInput, CableOutput, CycleInput, CycleOutput};
 use crate::effects::time_delay::{self, Delay, DelayLine};
 use crate::lanes::{LANES, Lanes, LanesMask};
+use crate::parameters::ParameterRow;
 use crate::places::{PLACES, Places};
 use crate::platform::{self, Pose, Wrench};
 use crate::pulley::traction_ratio;
 use crate::robot::{MAX_PULLEYS, ParamError, ParamProblem, RobotParams};
 use crate::scalar::{Mask, Scalar};
-use crate::signals::{Conditioned, RawSignals, SignalLimits, condition};
+use crate::signals::{BEFORE_FIRST, Conditioned, RawSignals, SignalLimits, condition, next_cycle};
 use crate::status::CableStatus;
 use crate::swivel;
 use nalgebra::{Matrix3, SMatrix, Vector3};
@@ -58,12 +59,12 @@ pub struct Compensator<const CABLES: usize> {
     params: ParamColumns<CABLES>,
     state: State<CABLES>,
     features: Features,
-    any_delay: bool,
     any_geometry: bool,
     all_geometry: bool,
     cable_count: usize,
     place_count: usize,
     limits: SignalLimits,
+    cycle_s: f64,
     gravity_n: Vector3<f64>,
     center_of_mass_m: Vector3<f64>,
 }
@@ -76,6 +77,9 @@ struct State<const CABLES: usize> {
     directions_known: bool,
     /// Wrench of gravity at the last pose since then.
     gravity: Option<Wrench>,
+    /// The cycle, from the first, and the one before.
+    cycle: f64,
+    last_cycle: f64,
 }
 
 /// The state of a [`Compensator`] at one moment, for [`Compensator::restore`].
@@ -83,7 +87,13 @@ struct State<const CABLES: usize> {
 pub struct Snapshot<const CABLES: usize>(State<CABLES>);
 
 impl<const CABLES: usize> Compensator<CABLES> {
-    const START: State<CABLES> = State { columns: StateColumns::START, directions_known: false, gravity: None };
+    const START: State<CABLES> = State {
+        columns: StateColumns::START,
+        directions_known: false,
+        gravity: None,
+        cycle: BEFORE_FIRST,
+        last_cycle: BEFORE_FIRST,
+    };
 
     /// Set-up from checked parameters.
     ///
@@ -93,13 +103,15 @@ impl<const CABLES: usize> Compensator<CABLES> {
         let cable_count = robot.cables.len();
         if cable_count > CABLES {
             let problem = ParamProblem::Count { count: cable_count, min: 1, max: CABLES };
-            return Err(ParamError { key: "cable", pulley: None, problem });
+            return Err(ParamError { key: "cable", pulley: None, effect: None, problem });
         }
         let mut params = ParamColumns::EMPTY;
         let mut features = Features::default();
         let mut place_count = 1;
         for cable in robot.cables {
-            features = features.with(cable);
+            let values = cable.values();
+            let is_active = |row: &ParameterRow, place: usize| values[place].to_bits() != row.neutral.to_bits();
+            features = features.with(cable).and_acting(is_active);
             place_count = place_count.max(Places::needed(cable));
         }
         for (place, cable) in robot.cables.iter().enumerate() {
@@ -109,12 +121,12 @@ impl<const CABLES: usize> Compensator<CABLES> {
             params,
             state: Self::START,
             features,
-            any_delay: robot.cables.iter().any(|cable| cable.values()[time_delay::DELAY] > 0.0),
             any_geometry: robot.cables.iter().any(|cable| cable.geometry.is_some()),
             all_geometry: robot.cables.iter().all(|cable| cable.geometry.is_some()),
             cable_count,
             place_count,
             limits: robot.monitor.limits(),
+            cycle_s: robot.cycle_s,
             gravity_n: robot.gravity_m_per_s2 * robot.mass_kg,
             center_of_mass_m: robot.center_of_mass_m,
         })
@@ -156,13 +168,19 @@ impl<const CABLES: usize> Compensator<CABLES> {
         let rotation = pose.map(|pose| pose.orientation.to_rotation_matrix().into_inner());
         let mut forces_n = [0.0; CABLES];
         let mut wrench_status = CableStatus::OK;
+        self.state.last_cycle = self.state.cycle;
+        self.state.cycle = next_cycle(self.state.last_cycle, input.elapsed_cycles);
         let blocks = CABLES.div_ceil(LANES).min(self.cable_count.div_ceil(LANES));
         for block in 0..blocks {
             let pose_flags = match (pose, &rotation) {
                 (Some(pose), Some(rotation)) if self.any_geometry => self.follow_pose(block, pose, rotation),
                 _ => PoseFlags { missing: self.misses_pose(block).bits(), unreachable: 0 },
             };
-            let (platform_n, status) = self.step_block(block, input, output, pose_flags);
+            let (platform_n, status) = if self.features.has_effects() {
+                self.step_block_with_effects(block, input, output, pose_flags)
+            } else {
+                self.step_block::<false>(block, input, output, pose_flags)
+            };
             platform_n.store(&mut forces_n, block);
             wrench_status = wrench_status | status;
         }
@@ -273,9 +291,21 @@ impl<const CABLES: usize> Compensator<CABLES> {
         PoseFlags { missing: 0, unreachable: with_geometry.and(exit.reachable.not()).bits() }
     }
 
+    /// [`step_block`](Self::step_block) with effects: a function of its own, so that the cycle without does not pay for it.
+    #[inline(never)]
+    fn step_block_with_effects(
+        &mut self,
+        block: usize,
+        input: &CycleInput<CABLES>,
+        output: &mut CycleOutput<CABLES>,
+        pose_flags: PoseFlags,
+    ) -> (Lanes, CableStatus) {
+        self.step_block::<true>(block, input, output, pose_flags)
+    }
+
     /// Signals, friction and status of a block's cables; gives their forces at the platform and every flag of any of them.
     #[inline(always)]
-    fn step_block(
+    fn step_block<const EFFECTS: bool>(
         &mut self,
         block: usize,
         input: &CycleInput<CABLES>,
@@ -294,16 +324,23 @@ impl<const CABLES: usize> Compensator<CABLES> {
         let mut signals = columns.signals(block);
         let mut conditioned = condition(&self.limits, &mut signals, &raw, input.elapsed_cycles);
         columns.set_signals(block, &signals);
-        if self.any_delay {
+        let moment = Moment::new(Lanes::splat(self.state.cycle), Lanes::splat(self.state.last_cycle), self.cycle_s);
+        if self.features.acting.has(time_delay::ACTS) {
+            let moves = conditioned.motion_finite.and(conditioned.jump.not()).bits();
+            let in_order = if input.elapsed_cycles > 1.0 { 0 } else { moves };
             let delay: [_; LANES] =
                 core::array::from_fn(|lane| self.params.delay.get(first + lane).copied().unwrap_or_default());
-            let Conditioned { displacement_m, speed_m_per_s, .. } = &mut conditioned;
-            *displacement_m = shift_block(&mut columns.delayed_displacement_m, first, *displacement_m, delay);
-            *speed_m_per_s = shift_block(&mut columns.delayed_speed_m_per_s, first, *speed_m_per_s, delay);
+            let Conditioned { displacement_m, speed_m_per_s, length_m, .. } = &mut conditioned;
+            let known_m = *displacement_m;
+            *displacement_m = shift_block(&mut columns.delayed_displacement_m, first, known_m, in_order, delay);
+            *speed_m_per_s = shift_block(&mut columns.delayed_speed_m_per_s, first, *speed_m_per_s, in_order, delay);
+            let lag_m = Lanes::load(&columns.lag_m, block) + (known_m - *displacement_m);
+            lag_m.store(&mut columns.lag_m, block);
+            *length_m = *length_m - lag_m;
         }
         let model = self.params.model(block);
         let mut cable = BlockOfCables::new(&self.params, columns, block, self.place_count);
-        let forces = cable_cycle(&model, self.features, &conditioned, &mut cable);
+        let forces = cable_cycle(&model, self.features.limited_to::<EFFECTS>(), &conditioned, &moment, &mut cable);
 
         let Conditioned { sensor_force_n, speed_m_per_s, sensor_finite, frozen, jump, motion_finite, .. } = conditioned;
         let (hold, sensor_fault) = (conditioned.hold(), conditioned.sensor_fault());
@@ -353,11 +390,13 @@ fn shift_block<const CABLES: usize>(
     lines: &mut [DelayLine; CABLES],
     first: usize,
     values: Lanes,
+    in_order: u32,
     delays: [Delay; LANES],
 ) -> Lanes {
     let mut values = values.to_array();
-    for ((line, value), delay) in lines.iter_mut().skip(first).zip(&mut values).zip(delays) {
-        *value = line.shift(*value, delay);
+    let of_lanes = lines.iter_mut().skip(first).zip(&mut values).zip(delays);
+    for (lane, ((line, value), delay)) in of_lanes.enumerate() {
+        *value = line.shift(*value, in_order >> lane & 1 == 1, delay);
     }
     Lanes::new(values)
 }

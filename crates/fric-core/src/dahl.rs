@@ -33,9 +33,23 @@ use crate::scalar::Scalar;
 /// ```
 #[inline(always)]
 pub fn dahl_step<T: Scalar>(friction_n: T, sliding_n: T, sigma_n_per_m: T, displacement_m: T) -> T {
+    dahl_step_over(friction_n, sliding_n, sigma_n_per_m, displacement_m, |way, _| way)
+}
+
+/// [`dahl_step`] for another law: `exponential_way` gives, for a way in units of `f_c/σ` and `|1 − s·f/f_c|` before it, the way over
+/// which the exponential comes as far.
+#[inline(always)]
+pub(crate) fn dahl_step_over<T: Scalar>(
+    friction_n: T,
+    sliding_n: T,
+    sigma_n_per_m: T,
+    displacement_m: T,
+    exponential_way: impl FnOnce(T, T) -> T,
+) -> T {
     let target_n = sliding_n.scale(displacement_m.sign());
     let softness = T::splat(SMALLEST_SLIDING_N).max(sliding_n);
-    let decay = (-(sigma_n_per_m * displacement_m.abs() / softness)).exp_negative();
+    let way = sigma_n_per_m * displacement_m.abs() / softness;
+    let decay = (-exponential_way(way, (friction_n - target_n).abs() / softness)).exp_negative();
     // At rest the target is 0 and the decay 1: the state comes out as it went in, without a case of its own. Past the
     // decay's last bit the state is the bound itself, so that |f| ≤ f_c holds exactly.
     target_n + (friction_n - target_n) * decay.keep(T::splat(VANISHED).lt(decay))

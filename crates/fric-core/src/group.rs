@@ -4,10 +4,11 @@
 //! the [`Compensator`](crate::Compensator) gives it, whatever the type and whichever cables stand beside it. Signals come conditioned ([`condition`](crate::signals::condition)), the wrap of a last
 //! pulley that follows the pose as [`PoseWrap`].
 
-use crate::cable::{Cable, CableForces, CableModel, Features, Pulley, cable_cycle};
-use crate::effects::time_delay::{DELAY, Delay, DelayLine};
+use crate::cable::{Cable, CableForces, CableModel, Features, MEMORY, Moment, Pulley, UNKNOWN, cable_cycle};
+use crate::effects::cable_elasticity::COMPLIANCE;
+use crate::effects::time_delay::{self, DELAY, Delay, DelayLine};
 use crate::lanes::LANES;
-use crate::parameters::{VISCOUS, Values};
+use crate::parameters::{ParameterRow, VISCOUS, Values};
 use crate::places::{NO_SLIP, PLACES, Places, START_WRAP_FACTOR};
 use crate::platform::Pose;
 use crate::pulley::traction_ratio;
@@ -26,6 +27,12 @@ pub struct PoseWrap {
 }
 
 impl PoseWrap {
+    /// The wrap, rad.
+    #[must_use]
+    pub fn wrap_rad(&self) -> f64 {
+        2.0 * libm::asin((0.5 * self.wrap_factor).min(1.0))
+    }
+
     /// Before the first pose: 90°, no slip.
     pub const START: Self = Self { wrap_factor: START_WRAP_FACTOR, traction_ratio: NO_SLIP };
 
@@ -47,8 +54,15 @@ pub struct CableGroup<T: Scalar> {
     model: CableModel<T>,
     features: Features,
     delay: Option<Delayed<T>>,
+    cycle_s: f64,
+    last_cycle: T,
     state: State<T>,
 }
+
+/// What stands for 0 in a delay and in a compliance that vary. At 0 a cable at rest does not move, so that it cannot be
+/// told which way a change of these would move it; this far from it, it can, and no force changes by anything that counts.
+const LEAST_DELAY_S: f64 = 1e-12;
+const LEAST_COMPLIANCE_M_PER_N: f64 = 1e-15;
 
 /// What the delay of set points remembers, lane by lane.
 #[derive(Clone, Debug)]
@@ -56,6 +70,8 @@ struct Delayed<T> {
     delays: [Delay<T>; LANES],
     displacement_m: [DelayLine; LANES],
     speed_m_per_s: [DelayLine; LANES],
+    /// How far the delayed motion lags behind, m.
+    lag_m: T,
 }
 
 #[derive(Clone, Debug)]
@@ -63,6 +79,8 @@ struct State<T: Scalar> {
     values: Values<T>,
     wrap_factor: [T; PLACES],
     has_pulley: [T; PLACES],
+    stretch_ratio: [T; PLACES],
+    greatest_mu: T,
     traction_ratio: [T; PLACES],
     /// Where the pulley at the last place follows the pose.
     follows_pose: T::Mask,
@@ -72,6 +90,7 @@ struct State<T: Scalar> {
     pulley_friction_n: [T; PLACES],
     lumped_friction_n: T,
     held_friction_n: T,
+    memory: [T; MEMORY],
 }
 
 /// What a cable of a group is fed in one cycle.
@@ -81,6 +100,8 @@ pub struct CableCycle<'a> {
     pub signals: &'a Conditioned<f64>,
     /// Wrap at the last pose there was.
     pub pose_wrap: PoseWrap,
+    /// Cycles since the first of the run, see [`next_cycle`](crate::signals::next_cycle).
+    pub cycle: f64,
 }
 
 impl<T: Scalar> CableGroup<T> {
@@ -102,24 +123,38 @@ impl<T: Scalar> CableGroup<T> {
         let at = |column: fn(&Places) -> &[f64; PLACES]| {
             core::array::from_fn(|place| T::from_lanes(|lane| column(&places[lane.min(LANES - 1)])[place]))
         };
-        let greatest =
-            |place: usize| (0..T::COUNT).fold(0.0, |most: f64, lane| most.max(values[place].lane(lane).abs()));
-        let features = cables.iter().fold(Features::default(), |features, params| features.with(params));
-        let delay = values[DELAY] / T::splat(cycle_s);
-        let delayed = varies(DELAY) || greatest(DELAY) > 0.0;
         let zero = T::splat(0.0);
+        let is_active = |row: &ParameterRow, place: usize| {
+            let differs = |lane| values[place].lane(lane).to_bits() != row.neutral.to_bits();
+            varies(place) || (0..T::COUNT).any(differs)
+        };
+        let features = cables.iter().fold(Features::default(), |features, params| features.with(params));
+        let features = features.and_acting(is_active);
+        let mut values = *values;
+        for (place, least) in [(DELAY, LEAST_DELAY_S), (COMPLIANCE, LEAST_COMPLIANCE_M_PER_N)] {
+            if varies(place) {
+                values[place] = values[place] + T::splat(least).keep(values[place].eq(zero));
+            }
+        }
+        let delay = values[DELAY] / T::splat(cycle_s);
+        let delayed = features.acting.has(time_delay::ACTS);
         Some(Self {
-            model: CableModel::new(of_lane, values),
-            features: features.and_acting(greatest).and_varying(&varies),
+            model: CableModel::new(of_lane, &values),
+            features,
             delay: delayed.then(|| Delayed {
                 delays: core::array::from_fn(|lane| Delay::from_cycles(delay, delay.lane(lane))),
                 displacement_m: [DelayLine::EMPTY; LANES],
                 speed_m_per_s: [DelayLine::EMPTY; LANES],
+                lag_m: zero,
             }),
+            cycle_s,
+            last_cycle: T::splat(f64::NAN),
             state: State {
-                values: *values,
+                values,
                 wrap_factor: at(|places| &places.wrap_factor),
                 has_pulley: at(|places| &places.has_pulley),
+                stretch_ratio: at(|places| &places.stretch_ratio),
+                greatest_mu: T::from_lanes(|lane| of_lane(lane).greatest_mu()),
                 traction_ratio: at(|places| &places.traction_ratio),
                 follows_pose: zero.lt(T::from_lanes(|lane| f64::from(of_lane(lane).needs_pose()))),
                 pose_wrap_factor: zero,
@@ -128,6 +163,7 @@ impl<T: Scalar> CableGroup<T> {
                 pulley_friction_n: [zero; PLACES],
                 lumped_friction_n: zero,
                 held_friction_n: zero,
+                memory: [T::splat(UNKNOWN); MEMORY],
             },
         })
     }
@@ -135,13 +171,36 @@ impl<T: Scalar> CableGroup<T> {
     /// One cycle; `cycle` gives what the cable of a lane is fed.
     #[inline(always)]
     pub fn step<'a>(&mut self, cycle: impl Fn(usize) -> CableCycle<'a>) -> CableForces<T> {
+        if self.features.has_effects() { self.step_with_effects(cycle) } else { self.step_as::<false>(cycle) }
+    }
+
+    /// A function of its own, so that the cycle without effects does not pay for it.
+    #[inline(never)]
+    fn step_with_effects<'a>(&mut self, cycle: impl Fn(usize) -> CableCycle<'a>) -> CableForces<T> {
+        self.step_as::<true>(cycle)
+    }
+
+    #[inline(always)]
+    fn step_as<'a, const EFFECTS: bool>(&mut self, cycle: impl Fn(usize) -> CableCycle<'a>) -> CableForces<T> {
         let number = |of: fn(&Conditioned<f64>) -> f64| T::from_lanes(|lane| of(cycle(lane).signals));
-        let (mut displacement_m, mut speed_m_per_s) =
-            (number(|signals| signals.displacement_m), number(|signals| signals.speed_m_per_s));
+        let mut displacement_m = number(|signals| signals.displacement_m);
+        let mut speed_m_per_s = number(|signals| signals.speed_m_per_s);
+        let mut length_m = number(|signals| signals.length_m);
+        let count = T::from_lanes(|lane| cycle(lane).cycle);
+        let last = core::mem::replace(&mut self.last_cycle, count);
         if let Some(delayed) = &mut self.delay {
-            displacement_m = shift(&mut delayed.displacement_m, displacement_m, &delayed.delays);
-            speed_m_per_s = shift(&mut delayed.speed_m_per_s, speed_m_per_s, &delayed.delays);
+            let in_order = |lane: usize| {
+                let signals = cycle(lane).signals;
+                let pause = count.lane(lane) - last.lane(lane) > 1.0;
+                signals.motion_finite && !signals.jump && !pause
+            };
+            let known_m = displacement_m;
+            displacement_m = shift(&mut delayed.displacement_m, known_m, in_order, &delayed.delays);
+            speed_m_per_s = shift(&mut delayed.speed_m_per_s, speed_m_per_s, in_order, &delayed.delays);
+            delayed.lag_m = delayed.lag_m + (known_m - displacement_m);
+            length_m = length_m - delayed.lag_m;
         }
+        let moment = Moment::new(count, last, self.cycle_s);
         let mask = |of: fn(&Conditioned<f64>) -> bool| {
             T::splat(0.0).lt(T::from_lanes(|lane| f64::from(of(cycle(lane).signals))))
         };
@@ -149,6 +208,7 @@ impl<T: Scalar> CableGroup<T> {
             sensor_force_n: number(|signals| signals.sensor_force_n),
             displacement_m,
             speed_m_per_s,
+            length_m,
             sensor_finite: mask(|signals| signals.sensor_finite),
             frozen: mask(|signals| signals.frozen),
             jump: mask(|signals| signals.jump),
@@ -156,16 +216,21 @@ impl<T: Scalar> CableGroup<T> {
         };
         self.state.pose_wrap_factor = T::from_lanes(|lane| cycle(lane).pose_wrap.wrap_factor);
         self.state.pose_traction_ratio = T::from_lanes(|lane| cycle(lane).pose_wrap.traction_ratio);
-        cable_cycle(&self.model, self.features, &conditioned, &mut self.state)
+        cable_cycle(&self.model, self.features.limited_to::<EFFECTS>(), &conditioned, &moment, &mut self.state)
     }
 }
 
 /// One cycle of the delay lines of all lanes.
-fn shift<T: Scalar>(lines: &mut [DelayLine; LANES], values: T, delays: &[Delay<T>; LANES]) -> T {
+fn shift<T: Scalar>(
+    lines: &mut [DelayLine; LANES],
+    values: T,
+    in_order: impl Fn(usize) -> bool,
+    delays: &[Delay<T>; LANES],
+) -> T {
     let mut ends = [[0.0; 2]; LANES];
     for ((lane, line), ends) in lines.iter_mut().enumerate().take(T::COUNT).zip(&mut ends) {
-        line.push(values.lane(lane));
-        *ends = delays.get(lane).map_or([0.0; 2], |delay| line.around(delay.cycles));
+        line.push(values.lane(lane), in_order(lane));
+        *ends = delays.get(lane).map_or([0.0; 2], |delay| line.around(delay.cycles, delay.leads));
     }
     let [first, ..] = delays;
     let end = |which: usize| T::from_lanes(|lane| ends.get(lane).map_or(0.0, |ends| ends[which]));
@@ -195,10 +260,9 @@ impl<T: Scalar> Cable<T> for State<T> {
     }
     #[inline(always)]
     fn pulley(&self, place: usize) -> Pulley<T> {
-        let has_pulley = self.has_pulley.get(place).copied().unwrap_or(T::splat(0.0));
         Pulley {
             wrap_factor: self.posed(place, self.pose_wrap_factor, &self.wrap_factor),
-            viscous_n_s_per_m: self.values[VISCOUS] * has_pulley,
+            viscous_n_s_per_m: self.values[VISCOUS] * self.present(place),
         }
     }
     #[inline(always)]
@@ -206,8 +270,30 @@ impl<T: Scalar> Cable<T> for State<T> {
         self.posed(place, self.pose_traction_ratio, &self.traction_ratio)
     }
     #[inline(always)]
+    fn present(&self, place: usize) -> T {
+        self.has_pulley.get(place).copied().unwrap_or(T::splat(0.0))
+    }
+    #[inline(always)]
+    fn stretch_ratio(&self, place: usize) -> T {
+        self.stretch_ratio.get(place).copied().unwrap_or(T::splat(0.0))
+    }
+    #[inline(always)]
+    fn greatest_mu(&self) -> T {
+        self.greatest_mu
+    }
+    #[inline(always)]
     fn effect(&self, place: usize) -> T {
         self.values[place]
+    }
+    #[inline(always)]
+    fn memory(&self, place: usize) -> T {
+        self.memory.get(place).copied().unwrap_or(T::splat(0.0))
+    }
+    #[inline(always)]
+    fn set_memory(&mut self, place: usize, value: T) {
+        if let Some(entry) = self.memory.get_mut(place) {
+            *entry = value;
+        }
     }
     #[inline(always)]
     fn pulley_friction_n(&self, place: usize) -> T {

@@ -7,6 +7,7 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use wide::{f64x4, i64x4};
 
+use crate::functions;
 use crate::scalar::{EXP_LOWEST, Mask, Scalar, exp_parts};
 
 /// Cables that one set of instructions handles together.
@@ -221,6 +222,14 @@ impl Scalar for Lanes {
         let bits: i64x4 = i64x4::new(exponent_bits.to_array().map(|value| value.to_bits().cast_signed()));
         let scale: i64x4 = (bits + i64x4::splat(1023)) << 52_i32;
         fraction * Self::new(scale.to_array().map(|value| f64::from_bits(value.cast_unsigned())))
+    }
+    #[inline]
+    fn ln(self) -> Self {
+        Self::new(self.to_array().map(libm::log))
+    }
+    #[inline]
+    fn sin_cos_turns(self) -> [Self; 2] {
+        functions::sin_cos_turns(self)
     }
 }
 

@@ -34,13 +34,16 @@
 #[cfg(feature = "robot-file")]
 extern crate std;
 
+mod bearing;
 pub mod cable;
+mod chain;
 mod columns;
 mod compensator;
 pub mod continuum;
 mod cycle;
 pub mod dahl;
 pub mod effects;
+mod functions;
 mod group;
 mod lanes;
 pub mod parameters;

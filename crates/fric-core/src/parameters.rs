@@ -20,6 +20,8 @@ pub struct ParameterRow {
     pub min: f64,
     /// Greatest value.
     pub max: f64,
+    /// Whether an identification varies it unless told otherwise; if not it is a setting, or has to be found by other means.
+    pub fitted: bool,
     /// What a log has to hold for it to be identified.
     pub excitation: &'static str,
 }
@@ -37,6 +39,7 @@ pub const FRICTION: [ParameterRow; FRICTION_COUNT] = [
         neutral: 0.0,
         min: 0.0,
         max: GREATEST_MU,
+        fitted: true,
         excitation: "motion of the cable in both directions, each time much further than its presliding distance",
     },
     ParameterRow {
@@ -45,6 +48,7 @@ pub const FRICTION: [ParameterRow; FRICTION_COUNT] = [
         neutral: NO_PRESLIDING_N_PER_M,
         min: 1e-3,
         max: 1e12,
+        fitted: true,
         excitation: "small movements that reverse: steps of 0.25 … 10 mm there and back, with breaks",
     },
     ParameterRow {
@@ -53,6 +57,7 @@ pub const FRICTION: [ParameterRow; FRICTION_COUNT] = [
         neutral: 0.0,
         min: 0.0,
         max: 1e6,
+        fitted: true,
         excitation: "fast motion beside slow: strokes at several speeds up to the highest",
     },
     ParameterRow {
@@ -61,6 +66,7 @@ pub const FRICTION: [ParameterRow; FRICTION_COUNT] = [
         neutral: 0.0,
         min: -1e6,
         max: 1e6,
+        fitted: true,
         excitation: "a long run with a force sensor at the platform, or with poses throughout the workspace",
     },
 ];

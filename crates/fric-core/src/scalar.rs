@@ -5,10 +5,12 @@
 //! carries derivatives along. Choices that depend on data are [`select`](Scalar::select)s, not branches: all lanes take the
 //! same path, and the time that the equations take does not depend on what the cables do.
 //!
-//! Only operations that IEEE 754 rounds exactly are used (`+ − × ÷ √` and comparisons); the one transcendental
-//! function, [`exp_negative`], is built from them here. So results do not depend on the platform's `libm`.
+//! Only operations that IEEE 754 rounds exactly are used (`+ − × ÷ √` and comparisons); transcendental functions, above
+//! all [`exp_negative`], are built from them, the logarithm by the `libm` crate. So results do not depend on the platform.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
+
+use crate::functions;
 
 /// A real number, or several side by side, with comparison masks instead of branches.
 pub trait Scalar:
@@ -49,6 +51,33 @@ pub trait Scalar:
     /// Exponential for arguments ≤ 0, see [`exp_negative`].
     #[must_use]
     fn exp_negative(self) -> Self;
+    /// Natural logarithm of a positive number, lane after lane: for effects, which alone pay for it.
+    #[must_use]
+    fn ln(self) -> Self;
+    /// Sine and cosine of `2π·self`, for magnitudes below 2⁴⁹.
+    #[must_use]
+    fn sin_cos_turns(self) -> [Self; 2];
+
+    /// Exponential; arguments beyond ±708 count as that.
+    #[inline(always)]
+    #[must_use]
+    fn exp(self) -> Self {
+        let falls = self.lt(Self::splat(0.0));
+        let fall = Self::select(falls, self, -self).exp_negative();
+        Self::select(falls, fall, Self::splat(1.0) / fall)
+    }
+    /// A positive number to a power; 1 for the power 0.
+    #[inline(always)]
+    #[must_use]
+    fn pow(self, exponent: Self) -> Self {
+        (exponent * self.ln()).exp()
+    }
+    /// `ln(1 + self)/self`, 1 at 0 and smooth there; 1000 where there is no logarithm.
+    #[inline(always)]
+    #[must_use]
+    fn ln_1p_ratio(self) -> Self {
+        functions::ln_1p_ratio(self)
+    }
 
     /// The greater of the two; `other` where `self` is NaN.
     #[inline(always)]
@@ -165,6 +194,14 @@ impl Scalar for f64 {
     fn exp_negative(self) -> Self {
         let (fraction, exponent_bits) = exp_parts(self.max(EXP_LOWEST));
         fraction * f64::from_bits(exponent_bits.to_bits().wrapping_add(1023) << 52)
+    }
+    #[inline]
+    fn ln(self) -> Self {
+        libm::log(self)
+    }
+    #[inline]
+    fn sin_cos_turns(self) -> [Self; 2] {
+        functions::sin_cos_turns(self)
     }
 }
 

@@ -3,7 +3,6 @@
 //! For: raw signals of one cycle in, finite ones and their faults out ([`condition`]). It knows no friction and no
 //! parameters of it, so that a log can be conditioned once and fitted many times. State: four numbers a cable.
 
-use crate::cable::CableSignals;
 use crate::scalar::{Mask, Scalar};
 
 /// Sensor forces beyond this are no forces, N.
@@ -59,7 +58,7 @@ pub struct RawSignals<T> {
     pub speed_m_per_s: T,
 }
 
-/// Signals of one cycle, all finite, and what is the matter with them.
+/// Signals of one cycle, all finite but the length before its first, and what is the matter with them.
 #[derive(Clone, Copy, Debug)]
 pub struct Conditioned<T: Scalar> {
     /// Sensor force, the last good one where there is none, N.
@@ -68,6 +67,8 @@ pub struct Conditioned<T: Scalar> {
     pub displacement_m: T,
     /// Speed; 0 where the motion is not to be believed, m/s.
     pub speed_m_per_s: T,
+    /// Last finite length, m; NaN before the first.
+    pub length_m: T,
     /// The sensor force is a number.
     pub sensor_finite: T::Mask,
     /// The sensor repeats itself.
@@ -90,16 +91,23 @@ impl<T: Scalar> Conditioned<T> {
     pub fn hold(&self) -> T::Mask {
         self.sensor_fault().or(self.jump).or(self.motion_finite.not())
     }
+}
 
-    /// What the friction is computed from.
-    #[inline(always)]
-    pub fn signals(&self) -> CableSignals<T> {
-        CableSignals {
-            sensor_force_n: self.sensor_force_n,
-            displacement_m: self.displacement_m,
-            speed_m_per_s: self.speed_m_per_s,
-        }
-    }
+/// Cycles that count as elapsed since the last: 1 at least, for NaN too, and no more than a pause can have.
+#[inline(always)]
+#[must_use]
+pub fn bounded_elapsed(elapsed_cycles: f64) -> f64 {
+    Scalar::min(Scalar::max(elapsed_cycles, 1.0), GREATEST_ELAPSED)
+}
+
+/// The count of cycles before the first of a run.
+pub const BEFORE_FIRST: f64 = -1.0;
+
+/// Cycles since the first of a run, 0 there, from those in the cycle before, [`BEFORE_FIRST`] if there was none.
+#[inline(always)]
+#[must_use]
+pub fn next_cycle(last: f64, elapsed_cycles: f64) -> f64 {
+    if last < 0.0 { 0.0 } else { last + bounded_elapsed(elapsed_cycles) }
 }
 
 /// Checks the signals of one cycle, `elapsed_cycles` after the last (less than 1 and NaN count as 1).
@@ -114,8 +122,7 @@ pub fn condition<T: Scalar>(
     // Motion: what may be taken for a displacement of the cable.
     let motion_finite = raw.length_m.within(GREATEST_MOTION).and(raw.speed_m_per_s.within(GREATEST_MOTION));
     let change_m = raw.length_m - state.length_m;
-    let elapsed_cycles = Scalar::min(Scalar::max(elapsed_cycles, 1.0), GREATEST_ELAPSED);
-    let length_jump_m = T::splat(limits.length_jump_m * elapsed_cycles);
+    let length_jump_m = T::splat(limits.length_jump_m * bounded_elapsed(elapsed_cycles));
     let jump = motion_finite.and(length_jump_m.lt(change_m.abs()));
     // NaN before the first length compares false: no motion, no flag.
     let moves = motion_finite.and(change_m.abs().le(length_jump_m));
@@ -141,5 +148,6 @@ pub fn condition<T: Scalar>(
     let far = T::splat(FROZEN_TRAVEL_M).le(state.frozen_travel_m.abs());
     let stuck = T::splat(limits.frozen_cycles).le(state.frozen_count).and(far);
     let frozen = stuck.and(sensor_finite);
-    Conditioned { sensor_force_n, displacement_m, speed_m_per_s, sensor_finite, frozen, jump, motion_finite }
+    let length_m = state.length_m;
+    Conditioned { sensor_force_n, displacement_m, speed_m_per_s, length_m, sensor_finite, frozen, jump, motion_finite }
 }

@@ -20,6 +20,8 @@ mod delay;
 #[cfg(test)]
 mod edit;
 #[cfg(test)]
+mod effects;
+#[cfg(test)]
 mod oracle;
 #[cfg(test)]
 mod platform;

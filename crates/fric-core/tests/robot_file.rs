@@ -197,7 +197,7 @@ fn bad_files() -> Vec<Bad> {
             "kind = \"stribeck\", ratio = 0.5, velocity_m_per_s = 0.02",
             "kind = \"time_delay\", delay_s = 0.5",
             27,
-            &["`delay_s`", "is 0.5;", "0 to 0.063", "cable1"],
+            &["`delay_s`", "is 0.5;", "-0.02 to 0.063", "cable1"],
         ),
         bad("effects =", "traction_mu = 5.0 #", 27, &["`traction_mu`", "is 5;", "0.01 to 2", "cable1"]),
         bad(

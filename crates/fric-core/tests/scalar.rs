@@ -1,7 +1,7 @@
 //! The exponential and the sum of lanes.
 
 use fric_core::Lanes;
-use fric_core::scalar::exp_negative;
+use fric_core::scalar::{Scalar, exp_negative};
 
 use crate::support::Random;
 
@@ -78,4 +78,35 @@ fn lanes_carry_the_bits_of_plain_numbers() {
             assert_eq!(lane.to_bits(), exp_negative(value).to_bits());
         }
     }
+}
+
+/// Each function against the platform's, and the lanes against one number.
+#[test]
+fn functions_of_effects_are_the_platforms_to_rounding() {
+    let mut random = Random::new(77);
+    let mut numbers: Vec<f64> = vec![0.0, -0.0, 0.25, -0.25, 0.249, -0.999_999, 1e-300, -1e-300, 1e8, 1e300];
+    numbers.extend((0..20_000).map(|_| random.range(-1.0, 3.0)));
+    numbers.extend((0..20_000).map(|_| 10_f64.powf(random.range(-20.0, 20.0))));
+    for x in numbers {
+        let expected = if x == 0.0 { 1.0 } else { x.ln_1p() / x };
+        assert!((x.ln_1p_ratio() / expected - 1.0).abs() < 4e-15, "ln(1 + x)/x at {x:e}");
+        let lanes = Lanes::new([x, 0.0, 1.0, x]);
+        assert_eq!(lanes.ln_1p_ratio().lane(3).to_bits(), x.ln_1p_ratio().to_bits());
+        assert_eq!(lanes.sin_cos_turns().map(|part| part.lane(0).to_bits()), x.sin_cos_turns().map(f64::to_bits));
+        // Whole turns are exact, so the platform's functions see the rest only.
+        let turns = if x.abs() < 1e10 { x } else { continue };
+        let angle = std::f64::consts::TAU * (turns - turns.round());
+        let [sin, cos] = turns.sin_cos_turns();
+        assert!((sin - angle.sin()).abs() < 1e-15 && (cos - angle.cos()).abs() < 1e-15, "{turns}");
+    }
+    assert_eq!(
+        [0.0, 0.25, 0.5, -0.25, 7.75].map(|turns: f64| turns.sin_cos_turns()),
+        [[0.0, 1.0], [1.0, 0.0], [0.0, -1.0], [-1.0, 0.0], [-1.0, 0.0]]
+    );
+    assert_eq!([1e-6_f64, 0.3, 1.0, 700.0].map(|base| Scalar::pow(base, 0.0)), [1.0; 4]);
+    for (base, exponent) in [(1e-6_f64, 0.4), (3.0, -2.0), (700.0, 1.7)] {
+        assert!((Scalar::pow(base, exponent) / base.powf(exponent) - 1.0).abs() < 1e-14);
+    }
+    // Where there is no logarithm.
+    assert_eq!([-1.0_f64, -2.0, f64::NEG_INFINITY, f64::NAN].map(Scalar::ln_1p_ratio), [1e3; 4]);
 }

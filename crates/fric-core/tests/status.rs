@@ -19,11 +19,11 @@ struct Bench {
 
 impl Bench {
     fn new(presliding: Presliding) -> Self {
-        Self::with(CableOptions { presliding, friction: FRICTION, ..CableOptions::new(&PULLEYS) })
+        Self::with(&CableOptions { presliding, friction: FRICTION, ..CableOptions::new(&PULLEYS) })
     }
 
-    fn with(options: CableOptions<'_>) -> Self {
-        Self { compensator: compensator(&[options], MONITOR), cycle: 0 }
+    fn with(options: &CableOptions<'_>) -> Self {
+        Self { compensator: compensator(&[*options], MONITOR), cycle: 0 }
     }
 
     fn signals(&self) -> CableInput {
@@ -81,7 +81,7 @@ fn slack_shows_the_sensors_own_force_and_releases_the_friction() {
 fn viscous_friction_beyond_the_tension_is_slack_too() {
     for presliding in FORMS {
         let friction = FrictionOptions { viscous_n_s_per_m: 100.0, ..FRICTION };
-        let mut bench = Bench::with(CableOptions { presliding, friction, ..CableOptions::new(&PULLEYS) });
+        let mut bench = Bench::with(&CableOptions { presliding, friction, ..CableOptions::new(&PULLEYS) });
         bench.run(100);
         let output = bench.step(|signals| signals.speed_m_per_s = -1.0);
         assert_eq!(output.status, CableStatus::SLACK);
@@ -294,7 +294,7 @@ fn outside_the_range_of_identification_it_is_computed_as_usual() {
     for presliding in FORMS {
         let validated = ValidatedRange { force_n: [5.0, 21.0], speed_m_per_s: 0.15 };
         let mut bench =
-            Bench::with(CableOptions { presliding, friction: FRICTION, validated, ..CableOptions::new(&PULLEYS) });
+            Bench::with(&CableOptions { presliding, friction: FRICTION, validated, ..CableOptions::new(&PULLEYS) });
         let mut plain = Bench::new(presliding);
         let changes: [(Change, bool); 6] = [
             (|_| (), false),

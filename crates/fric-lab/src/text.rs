@@ -22,3 +22,115 @@ pub fn table(header: &[&str], left: usize, rows: &[impl AsRef<[String]>]) -> Str
 pub fn to_millimetre(part_m: f64) -> f64 {
     (part_m * 1e3).round() / 1e3 + 0.0
 }
+
+/// A number, without the sign of nothing.
+#[must_use]
+pub fn number(value: f64, digits: usize) -> String {
+    let text = format!("{value:.digits$}");
+    match text.strip_prefix('-') {
+        Some(magnitude) if magnitude.chars().all(|digit| matches!(digit, '0' | '.')) => magnitude.to_owned(),
+        _ => text,
+    }
+}
+
+/// Digits behind the point that show two of an error.
+#[must_use]
+pub fn digits_of(error: f64) -> usize {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within 0 and 12")]
+    let digits = (1.0 - error.log10().floor()).clamp(0.0, 12.0) as usize;
+    digits
+}
+
+/// A standard error with two digits that count, without an exponent where that can be read.
+#[must_use]
+pub fn plain(error: f64) -> String {
+    if (1e-7..1e7).contains(&error) { number(error, digits_of(error)) } else { format!("{error:.1e}") }
+}
+
+/// A value with half its interval, in a unit that suits its size; a unit of `1` is not written.
+///
+/// ```
+/// use fric_lab::text::quantity;
+/// assert_eq!(quantity(0.006_104, Some(0.000_11), "s"), "6.10 ± 0.11 ms");
+/// assert_eq!(quantity(0.48, Some(0.021), "1"), "0.480 ± 0.021");
+/// assert_eq!(quantity(1010.0, None, "N/m"), "1.01 N/mm");
+/// ```
+#[must_use]
+pub fn quantity(value: f64, half_interval: Option<f64>, unit: &str) -> String {
+    let (factor, unit) = scaled_unit(value, unit);
+    let value = value * factor;
+    let text = match half_interval.map(|half| half * factor).filter(|half| half.is_finite() && *half > 0.0) {
+        Some(half) => format!("{} ± {}", number(value, digits_of(half)), plain(half)),
+        None => significant(value),
+    };
+    if unit == "1" { text } else { format!("{text} {unit}") }
+}
+
+/// Factor to, and name of, the unit in which a value reads well.
+#[must_use]
+pub fn scaled_unit(value: f64, unit: &str) -> (f64, &str) {
+    let small = value.abs() < 0.1;
+    match unit {
+        "s" if small => (1e3, "ms"),
+        "m" if small => (1e3, "mm"),
+        "m/s" if small => (1e3, "mm/s"),
+        "kg" if small => (1e3, "g"),
+        "N" | "N/s" if value.abs() < 1e-3 => (1e3, if unit == "N" { "mN" } else { "mN/s" }),
+        "m/N" => (1e6, "µm/N"),
+        "N/m" if value.abs() >= 100.0 => (1e-3, "N/mm"),
+        _ => (1.0, unit),
+    }
+}
+
+/// Three digits that count, without an exponent where that can be read.
+#[must_use]
+pub fn significant(value: f64) -> String {
+    let magnitude = value.abs();
+    if magnitude > 0.0 && !(1e-5..1e6).contains(&magnitude) {
+        return format!("{value:.2e}");
+    }
+    let digits = if magnitude > 0.0 { digits_of(magnitude) + 1 } else { 0 };
+    let text = number(value, digits);
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+/// Names as one phrase.
+#[must_use]
+pub fn listed(names: &[impl AsRef<str>]) -> String {
+    match names {
+        [] => String::new(),
+        [one] => one.as_ref().to_owned(),
+        [first @ .., last] => {
+            let first: Vec<&str> = first.iter().map(AsRef::as_ref).collect();
+            format!("{} and {}", first.join(", "), last.as_ref())
+        }
+    }
+}
+
+/// A text in lines of at most [`WIDTH`] letters; the first begins with `start`, the others below the text.
+#[must_use]
+pub fn wrapped(start: &str, text: &str) -> String {
+    let indent = start.chars().count();
+    let (mut lines, mut line) = (String::new(), start.to_owned());
+    let mut is_empty = true;
+    for word in text.split_whitespace() {
+        // A per cent sign stays with its number.
+        if !is_empty && word != "%" && line.chars().count() + 1 + word.chars().count() + ROOM > WIDTH {
+            lines += line.trim_end();
+            lines.push('\n');
+            line = " ".repeat(indent);
+            is_empty = true;
+        }
+        if !is_empty {
+            line.push(' ');
+        }
+        line += word;
+        is_empty = false;
+    }
+    lines + line.trim_end() + "\n"
+}
+
+/// Letters of a line on a terminal.
+pub const WIDTH: usize = 80;
+/// Kept for a per cent sign behind the last word.
+const ROOM: usize = 3;

@@ -4,7 +4,7 @@ use fric_core::ParamError;
 use fric_core::robot::file::RobotFileError;
 use fric_lab::hysteresis::HysteresisError;
 use fric_lab::replay::SnapshotMismatch;
-use fric_lab::simulate::{HiddenEffectError, SimulationError};
+use fric_lab::simulate::{HiddenError, SimulationError};
 use fric_log::output;
 use fric_log::recording::RecordingError;
 use fric_log::robot::{AttachedRobotError, SignalPathError};
@@ -91,7 +91,7 @@ fault_from!(
     ParamError => config,
     RobotFileError => config,
     SimulationError => config,
-    HiddenEffectError => config,
+    HiddenError => config,
     SignalPathError => config,
     RecordingError => log,
     SignalError => log,

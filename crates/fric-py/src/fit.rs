@@ -1,7 +1,7 @@
 //! `fit`: the parameters of the friction model from logs.
 
 use fric_lab::fit::readiness;
-use fric_lab::fit::result::{self, FitCableResult, Fits, LeftOut, Numbers};
+use fric_lab::fit::result::{self, FitCableResult, Fits, Numbers};
 use fric_lab::fit::{
     self as lab, FitOptions, Measurements, Reference, Weighing, fit_cables, fit_wrench, residuals_n, rewritten,
 };
@@ -18,7 +18,7 @@ use crate::runs::{Runs, named_parameters};
 use crate::watch::Watch;
 
 /// Where the robot is from, in what is said about it.
-const ORIGIN: &str = "the robot";
+pub const ORIGIN: &str = "the robot";
 
 /// What a fit found for a cable.
 #[pyclass(module = "fric", frozen)]
@@ -61,19 +61,8 @@ impl CableFit {
 
     /// Samples that were not learned from, by the reason.
     #[getter]
-    fn left_out<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let LeftOut { flagged, without_reference, warm_up, outliers } = self.result.left_out;
-        let all = [
-            ("flagged", flagged),
-            ("without_reference", without_reference),
-            ("warm_up", warm_up),
-            ("outliers", outliers),
-        ];
-        let dict = PyDict::new(py);
-        for (name, count) in all {
-            dict.set_item(name, count)?;
-        }
-        Ok(dict)
+    fn left_out<'py>(&self, py: Python<'py>) -> Outcome<Bound<'py, PyAny>> {
+        log::plain(py, &self.result.left_out)
     }
 
     /// Why the search has ended: "converged", or why not.
@@ -146,9 +135,7 @@ impl FitResult {
 
     /// What was found for the cable of a name.
     fn cable(&self, py: Python<'_>, name: &str) -> Outcome<Py<CableFit>> {
-        let place = self.robot.borrow(py).cable_index(name)?;
-        let cable = self.cables.get(place).map(|cable| cable.clone_ref(py));
-        cable.ok_or_else(|| Fault::config(format!("there is no fit of cable `{name}`")))
+        of_cable(py, &self.robot, &self.cables, name)
     }
 
     /// Error of the wrench before and after; None in a fit to forces.
@@ -169,7 +156,7 @@ impl FitResult {
 
     /// The same as a dict.
     fn to_dict<'py>(&self, py: Python<'py>) -> Outcome<Bound<'py, PyAny>> {
-        Ok(py.import("json")?.call_method1("loads", (self.to_json()?,))?)
+        log::plain(py, &self.result)
     }
 
     fn __repr__(&self) -> String {
@@ -178,7 +165,15 @@ impl FitResult {
     }
 }
 
-fn dict<'py>(py: Python<'py>, numbers: &Numbers) -> PyResult<Bound<'py, PyDict>> {
+/// What was found for the cable of a name.
+pub fn of_cable<T>(py: Python<'_>, robot: &Py<Robot>, cables: &[Py<T>], name: &str) -> Outcome<Py<T>> {
+    let place = robot.borrow(py).cable_index(name)?;
+    let cable = cables.get(place).map(|cable| cable.clone_ref(py));
+    cable.ok_or_else(|| Fault::config(format!("there is no result for cable `{name}`")))
+}
+
+/// Numbers by name.
+pub fn dict<'py>(py: Python<'py>, numbers: &Numbers) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     for (name, value) in &numbers.0 {
         dict.set_item(name, value)?;

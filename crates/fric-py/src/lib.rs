@@ -9,6 +9,7 @@
 
 mod arrays;
 mod compensator;
+mod discover;
 mod errors;
 mod fit;
 mod hysteresis;
@@ -29,6 +30,8 @@ mod _fric {
 
     #[pymodule_export]
     use crate::compensator::{Compensation, Compensator, Snapshot};
+    #[pymodule_export]
+    use crate::discover::{CableDiscovery, DiscoverResult, discover};
     #[pymodule_export]
     use crate::fit::{CableFit, FitResult, fit};
     #[pymodule_export]

@@ -311,6 +311,11 @@ pub fn json(result: &impl Serialize) -> Outcome<String> {
     text.map(|text| text + "\n").map_err(|error| Fault::output(format!("cannot write the result as JSON: {error}")))
 }
 
+/// The same as Python has it: dicts, lists and numbers.
+pub fn plain<'py>(py: Python<'py>, result: &impl Serialize) -> Outcome<Bound<'py, PyAny>> {
+    Ok(py.import("json")?.call_method1("loads", (json(result)?,))?)
+}
+
 fn check_names(names: &[String]) -> Outcome {
     let is_repeated = |(place, name)| names.iter().take(place).any(|other| other == name);
     match names.iter().enumerate().find(|place| is_repeated(*place)) {

@@ -63,7 +63,13 @@ pub struct ReplayResult {
 
 impl ForceError {
     pub fn new(deviation: &Deviation) -> Option<Self> {
-        errors::ForceError::of(deviation).map(|errors::ForceError { rms_n, mae_n }| Self { rms_n, mae_n })
+        errors::ForceError::of(deviation).map(Self::from)
+    }
+}
+
+impl From<errors::ForceError> for ForceError {
+    fn from(errors::ForceError { rms_n, mae_n }: errors::ForceError) -> Self {
+        Self { rms_n, mae_n }
     }
 }
 

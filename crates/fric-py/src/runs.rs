@@ -1,4 +1,4 @@
-//! The logs that a fit learns from.
+//! The logs that a fit or a discovery learns from.
 
 use fric_lab::fit::readiness::Holdings;
 use fric_lab::fit::{Measurements, Parameter, Reference};
@@ -41,11 +41,7 @@ impl<'py> Runs<'py> {
     /// Makes sure that no sample counts twice.
     fn check_given_once(&self) -> Outcome {
         let files = |item: &Bound<'_, PyAny>| -> Vec<PathBuf> {
-            let paths = match item.cast::<Log>() {
-                Ok(log) => log.get().sources.clone(),
-                Err(_) => item.extract().into_iter().collect(),
-            };
-            paths.iter().filter_map(|path: &PathBuf| Path::canonicalize(path).ok()).collect()
+            sources(item).iter().filter_map(|path| Path::canonicalize(path).ok()).collect()
         };
         for (count, item) in self.0.iter().enumerate() {
             let own = files(item);
@@ -57,6 +53,16 @@ impl<'py> Runs<'py> {
             }
         }
         Ok(())
+    }
+
+    /// Names for people: the path, or the number of a log that is no file.
+    pub fn names(&self) -> Vec<String> {
+        let name = |(place, item): (usize, &Bound<'_, PyAny>)| {
+            let sources = sources(item);
+            let names: Vec<String> = sources.iter().map(|path| path.display().to_string()).collect();
+            if names.is_empty() { format!("log {}", place + 1) } else { names.join(", ") }
+        };
+        self.0.iter().enumerate().map(name).collect()
     }
 
     /// Reads all of them into the measurements, with one more part left to be watched.
@@ -93,6 +99,14 @@ impl<'py> Runs<'py> {
         }
         watch.part(self.0.len() as u64, self.0.len() as u64 + 1);
         Ok(all)
+    }
+}
+
+/// The files of a log.
+fn sources(item: &Bound<'_, PyAny>) -> Vec<PathBuf> {
+    match item.cast::<Log>() {
+        Ok(log) => log.get().sources.clone(),
+        Err(_) => item.extract().into_iter().collect(),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use fric_core::robot::unknown_name;
 use fric_lab::columns::SampleColumns;
-use fric_lab::simulate::{HiddenEffect, Run, Simulation, SimulationOptions};
+use fric_lab::simulate::{Disturbance, HiddenEffect, HiddenError, Run, Simulation, SimulationOptions};
 use pyo3::prelude::*;
 use pyo3::types::PyString;
 
@@ -14,10 +14,12 @@ use crate::watch::{STRIDE, Watch};
 /// The log of a simulated robot; its friction is the robot file's, computed in another way than the compensator's.
 ///
 /// `run` is what the platform does, `"identification"` or `"crossing"`: one position crossed along and about all axes, for
-/// the hysteresis of the wrench. `effects` are hidden in all cables, each a dict as in the robot file or a text as for `fric-cli simulate`. The
-/// same `seed` gives the same bits, which are those of `fric-cli simulate`, except that this log has pose and wrench in
-/// every row, where the file has them every 4 ms. Without `duration_s` it is one run. What of it no real robot could do is
-/// told as LogWarning.
+/// the hysteresis of the wrench. `effects` are hidden in all cables, each a dict as in the robot file or a text as for
+/// `fric-cli simulate`; `disturbances`, which are in no catalogue of effects, are stated likewise. Noise is white, what
+/// wanders does so with the correlation time `wander_s`; a hand pushes the platform by `hand_n` at most. With
+/// `length_noise_m` or `length_resolution_m` the speed is the difference of two lengths. The same `seed` gives the same bits,
+/// which are those of `fric-cli simulate`, except that this log has pose and wrench in every row, where the file has them
+/// every 4 ms. Without `duration_s` it is one run. What of it no real robot could do is told as LogWarning.
 ///
 /// >>> robot = Robot.read("examples/mini-ipanema.toml")
 /// >>> log = simulate(robot, seed=7, duration_s=0.5, effects=[{"kind": "stribeck", "ratio": 0.5}])
@@ -25,8 +27,8 @@ use crate::watch::{STRIDE, Watch};
 /// (500, (500, 8))
 #[pyfunction]
 #[pyo3(
-    signature = (robot, *, run="identification", seed=0, duration_s=None, effects=None, sensor_noise_n=0.02, reference_noise_n=0.01, mu_spread_ratio=0.0, progress=None),
-    text_signature = "(robot, *, run=\"identification\", seed=0, duration_s=None, effects=(), sensor_noise_n=0.02, reference_noise_n=0.01, mu_spread_ratio=0.0, progress=False)"
+    signature = (robot, *, run="identification", seed=0, duration_s=None, effects=None, disturbances=None, sensor_noise_n=0.02, reference_noise_n=0.01, mu_spread_ratio=0.0, sensor_wander_n=0.0, reference_wander_n=0.0, wander_s=2.0, hand_n=0.0, length_noise_m=0.0, length_resolution_m=0.0, progress=None),
+    text_signature = "(robot, *, run=\"identification\", seed=0, duration_s=None, effects=(), disturbances=(), sensor_noise_n=0.02, reference_noise_n=0.01, mu_spread_ratio=0.0, sensor_wander_n=0.0, reference_wander_n=0.0, wander_s=2.0, hand_n=0.0, length_noise_m=0.0, length_resolution_m=0.0, progress=False)"
 )]
 pub fn simulate(
     robot: &Bound<'_, Robot>,
@@ -34,19 +36,38 @@ pub fn simulate(
     seed: u64,
     duration_s: Option<f64>,
     effects: Option<&Bound<'_, PyAny>>,
+    disturbances: Option<&Bound<'_, PyAny>>,
     sensor_noise_n: f64,
     reference_noise_n: f64,
     mu_spread_ratio: f64,
+    sensor_wander_n: f64,
+    reference_wander_n: f64,
+    wander_s: f64,
+    hand_n: f64,
+    length_noise_m: f64,
+    length_resolution_m: f64,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> Outcome<Log> {
     let py = robot.py();
-    let effects = match effects {
-        None => Vec::new(),
-        Some(effects) => effects.try_iter()?.map(|effect| hidden(&effect?)).collect::<Outcome<Vec<_>>>()?,
-    };
+    let effects = all_hidden(effects, &EFFECT)?;
+    let disturbances = all_hidden(disturbances, &DISTURBANCE)?;
     let run = named(run)?;
-    let options =
-        SimulationOptions { run, seed, duration_s, sensor_noise_n, reference_noise_n, mu_spread_ratio, effects };
+    let options = SimulationOptions {
+        run,
+        seed,
+        duration_s,
+        sensor_noise_n,
+        reference_noise_n,
+        mu_spread_ratio,
+        sensor_wander_n,
+        reference_wander_n,
+        wander_s,
+        hand_n,
+        length_noise_m,
+        length_resolution_m,
+        effects,
+        disturbances,
+    };
     let robot = robot.borrow().clone();
     let file = robot.file.clone();
     let mut simulation = py.detach(|| Simulation::new(&file, &options))?;
@@ -78,24 +99,56 @@ fn named(name: &str) -> Outcome<Run> {
         .ok_or_else(|| Fault::config(unknown_name("run", name, known().map(Run::name))))
 }
 
-/// An effect as a dict of the robot file, or as text.
-fn hidden(effect: &Bound<'_, PyAny>) -> Outcome<HiddenEffect> {
-    if let Ok(text) = effect.cast::<PyString>() {
-        return Ok(HiddenEffect::parse(text.to_str()?)?);
+/// Makes one from its name and values by key.
+type New<T> = fn(&str, &[(&str, f64)]) -> Result<T, HiddenError>;
+
+/// Something that can be hidden in a log.
+struct Kind<T> {
+    /// With its article.
+    noun: &'static str,
+    /// As a dict.
+    example: &'static str,
+    parse: fn(&str) -> Result<T, HiddenError>,
+    new: New<T>,
+}
+
+const EFFECT: Kind<HiddenEffect> = Kind {
+    noun: "an effect",
+    example: "{\"kind\": \"stribeck\", \"ratio\": 0.5}",
+    parse: HiddenEffect::parse,
+    new: HiddenEffect::new,
+};
+
+const DISTURBANCE: Kind<Disturbance> = Kind {
+    noun: "a disturbance",
+    example: "{\"kind\": \"hum\", \"amplitude_n\": 0.1}",
+    parse: Disturbance::parse,
+    new: Disturbance::new,
+};
+
+fn all_hidden<T>(given: Option<&Bound<'_, PyAny>>, kind: &Kind<T>) -> Outcome<Vec<T>> {
+    let Some(given) = given else { return Ok(Vec::new()) };
+    given.try_iter()?.map(|item| hidden(&item?, kind)).collect()
+}
+
+/// One of them as a dict, an effect as in the robot file, or as text.
+fn hidden<T>(item: &Bound<'_, PyAny>, kind: &Kind<T>) -> Outcome<T> {
+    let Kind { noun, example, parse, new } = kind;
+    if let Ok(text) = item.cast::<PyString>() {
+        return Ok(parse(text.to_str()?)?);
     }
-    let malformed = || Fault::config("an effect is a dict such as {\"kind\": \"stribeck\", \"ratio\": 0.5}, or a text");
-    let items = effect.cast::<pyo3::types::PyMapping>().map_err(|_| malformed())?.items()?;
-    let (mut kind, mut values) = (None, Vec::new());
+    let malformed = || Fault::config(format!("{noun} is a dict such as {example}, or a text"));
+    let items = item.cast::<pyo3::types::PyMapping>().map_err(|_| malformed())?.items()?;
+    let (mut name, mut values) = (None, Vec::new());
     for item in items {
         let (key, value): (String, Bound<'_, PyAny>) = item.extract()?;
         if key == "kind" {
-            kind = Some(value.extract::<String>().map_err(|_| malformed())?);
+            name = Some(value.extract::<String>().map_err(|_| malformed())?);
         } else {
             let number = value.extract::<f64>();
-            values
-                .push((key.clone(), number.map_err(|_| Fault::config(format!("`{key}` of an effect is no number")))?));
+            values.push((key.clone(), number.map_err(|_| Fault::config(format!("`{key}` of {noun} is no number")))?));
         }
     }
     let values: Vec<(&str, f64)> = values.iter().map(|(key, value)| (key.as_str(), *value)).collect();
-    Ok(HiddenEffect::new(&kind.ok_or_else(malformed)?, &values)?)
+    Ok(new(&name.ok_or_else(malformed)?, &values)?)
 }

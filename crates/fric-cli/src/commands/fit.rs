@@ -1,28 +1,15 @@
 //! `fit`: the parameters of the friction model from the log of an identification run.
 
-use std::path::{Path, PathBuf};
-use std::thread;
-use std::time::Duration;
-
-use fric_lab::fit::readiness::{self, Holdings};
+use fric_lab::fit::readiness;
 use fric_lab::fit::result::{FitResult, Fits};
-use fric_lab::fit::{
-    FitOptions, Measurements, Parameter, Progress, Reference, Weighing, fit_cables, fit_wrench, rewritten,
-};
+use fric_lab::fit::{FitOptions, Parameter, Reference, Weighing, fit_cables, fit_wrench, rewritten};
 use fric_log::output::OutputFile;
-use fric_log::recording::Recording;
-use fric_log::signals::{Role, SignalReader};
 
 use crate::arguments::{FitArguments, ReferenceName};
 use crate::failure::{Failure, Outcome};
-use crate::interrupt;
-use crate::model::{self, Model};
+use crate::measurements::{check_named_once, find_model, read, watched};
 use crate::output::{self, JsonTarget};
-use crate::progress::{self, STRIDE};
-use crate::warnings::{warn, warn_all};
-
-/// How often the bar moves and Ctrl-C is looked at while all cores compute.
-const WATCH_INTERVAL: Duration = Duration::from_millis(20);
+use crate::warnings::warn_all;
 
 /// Runs the command.
 pub fn run(arguments: &FitArguments) -> Outcome {
@@ -45,7 +32,7 @@ pub fn run(arguments: &FitArguments) -> Outcome {
             let (measurements, holdings) = read(logs, &model, Reference::Forces)?;
             let readiness = readiness::by_forces(&model.robot, &holdings);
             warn_all(&readiness.check()?);
-            (Fits::Forces(watched(|progress| fit_cables(&measurements, &options, progress))?), readiness)
+            (Fits::Forces(watched("fitted", |progress| fit_cables(&measurements, &options, progress))?), readiness)
         }
         ReferenceName::Wrench => {
             // The robot file alone can rule it out.
@@ -53,7 +40,7 @@ pub fn run(arguments: &FitArguments) -> Outcome {
             let (measurements, holdings) = read(logs, &model, Reference::Wrench)?;
             let readiness = readiness::by_wrench(&model.robot, &model.origin, &holdings);
             warn_all(&readiness.check()?);
-            (Fits::Wrench(watched(|progress| fit_wrench(&measurements, &options, progress))?), readiness)
+            (Fits::Wrench(watched("fitted", |progress| fit_wrench(&measurements, &options, progress))?), readiness)
         }
     };
     let outcome = FitResult::new(&model.robot, &fits);
@@ -65,108 +52,8 @@ pub fn run(arguments: &FitArguments) -> Outcome {
     json.write(&outcome)
 }
 
-/// Makes sure that no sample counts twice.
-fn check_named_once(logs: &[PathBuf]) -> Outcome {
-    for (count, log) in logs.iter().enumerate() {
-        let is_same =
-            |other: &PathBuf| log.canonicalize().is_ok_and(|path| other.canonicalize().is_ok_and(|of| of == path));
-        if logs.iter().take(count).any(is_same) {
-            return Err(Failure::usage(format!("{} is named twice, and its samples would count twice", log.display()))
-                .advise("Name each log once."));
-        }
-    }
-    Ok(())
-}
-
 /// The parameters that the command line names.
 fn named(names: &[String]) -> Outcome<Vec<Parameter>> {
     Parameter::all_named(names.iter().map(|name| name.trim()))
         .map_err(|problem| Failure::usage(format!("--parameters: {problem}")))
-}
-
-/// The robot file named, or else the first that is attached to a log.
-fn find_model(named: Option<&Path>, logs: &[PathBuf]) -> Outcome<Model> {
-    for log in logs {
-        if let Some(model) = Model::find(named, &Recording::open(&[log])?)? {
-            return Ok(model);
-        }
-    }
-    Err(model::missing())
-}
-
-/// Reads all logs, each by itself.
-fn read<'a>(logs: &[PathBuf], model: &'a Model, reference: Reference) -> Outcome<(Measurements<'a>, Holdings)> {
-    // What is not compared with is not even read.
-    let (unread, compared) = match reference {
-        Reference::Forces => (Role::Wrench, Role::Reference),
-        Reference::Wrench => (Role::Reference, Role::Wrench),
-    };
-    let paths = model.signal_paths()?.with(unread, None);
-    warn_all(&model.robot.warnings());
-    let names = model.robot.cable_names();
-    let mut measurements = Measurements::new(&model.robot.params(), reference);
-    let mut all: Option<Holdings> = None;
-    for log in logs {
-        measurements.start_log();
-        let mut reader = SignalReader::new(Recording::open(&[log])?, paths.clone(), &names);
-        let holdings = read_one(&mut reader, &mut measurements, names.len())?;
-        warn_all(reader.cycle_warning(&model.robot).as_slice());
-        let has_compared = holdings.has_reference() || holdings.wrenched > 0;
-        match &mut all {
-            Some(all) => all.join(&holdings),
-            None => all = Some(holdings),
-        }
-        if logs.len() > 1 && !has_compared {
-            let (log, key) = (log.display(), compared.key());
-            warn(&format!("`{log}` has nothing to compare with on the signal `{key}`"));
-        }
-    }
-    let holdings = all.unwrap_or_else(|| Holdings::new(names.len()));
-    Ok((measurements, holdings))
-}
-
-fn read_one(reader: &mut SignalReader, measurements: &mut Measurements<'_>, cable_count: usize) -> Outcome<Holdings> {
-    let mut holdings = Holdings::new(cable_count);
-    let bar = progress::bytes(reader.recording().total_bytes());
-    let end = loop {
-        if holdings.rows.is_multiple_of(STRIDE) {
-            interrupt::check()?;
-            bar.set_position(reader.recording().bytes_read());
-        }
-        match reader.next_row() {
-            Ok(Some(sample)) => {
-                holdings.add(&sample);
-                measurements.add(&sample);
-            }
-            Ok(None) => break Ok(()),
-            Err(error) => break Err(error),
-        }
-    };
-    bar.finish_and_clear();
-    warn_all(&reader.recording().warnings());
-    end?;
-    warn_all(&reader.warnings());
-    Ok(holdings)
-}
-
-/// Runs a fit beside a bar, until it is done or Ctrl-C is pressed.
-fn watched<T: Send>(fit: impl FnOnce(&Progress) -> T + Send) -> Outcome<T> {
-    let progress = Progress::new();
-    let bar = progress::steps();
-    let fitted = thread::scope(|scope| {
-        let worker = scope.spawn(|| fit(&progress));
-        while !worker.is_finished() {
-            if interrupt::check().is_err() {
-                progress.stop();
-            }
-            let (done, total) = progress.steps();
-            bar.set_length(total as u64);
-            bar.set_position(done as u64);
-            thread::sleep(WATCH_INTERVAL);
-        }
-        worker.join()
-    });
-    bar.finish_and_clear();
-    interrupt::check()?;
-    fitted.map_err(|_| Failure::new("the fit broke off: this is a defect of fric; please report it with the log"))
 }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use fric_core::Sample;
-use fric_lab::simulate::{HiddenEffect, Run, Simulation, SimulationError, SimulationOptions};
+use fric_lab::simulate::{Disturbance, HiddenEffect, Run, Simulation, SimulationError, SimulationOptions};
 use fric_log::path::MessagePath;
 use fric_log::signals::{Role, SignalPaths};
 use fric_log::write::{JointState, JointStateChannel, LogWriter, PoseChannel, WrenchChannel};
@@ -27,6 +27,12 @@ pub fn run(arguments: &SimulateArguments) -> Outcome {
         .map(|text| HiddenEffect::parse(text))
         .collect::<Result<Vec<_>, _>>()
         .map_err(|error| Failure::usage(format!("--effect: {error}")))?;
+    let disturbances = arguments
+        .disturbances
+        .iter()
+        .map(|text| Disturbance::parse(text))
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(|error| Failure::usage(format!("--disturbance: {error}")))?;
     let model = Model::read(&arguments.model)?;
     let options = SimulationOptions {
         run: match arguments.run {
@@ -38,7 +44,14 @@ pub fn run(arguments: &SimulateArguments) -> Outcome {
         sensor_noise_n: arguments.sensor_noise_n,
         reference_noise_n: arguments.reference_noise_n,
         mu_spread_ratio: arguments.mu_spread_ratio,
+        sensor_wander_n: arguments.sensor_wander_n,
+        reference_wander_n: arguments.reference_wander_n,
+        wander_s: arguments.wander_s,
+        hand_n: arguments.hand_n,
+        length_noise_m: arguments.length_noise_m,
+        length_resolution_m: arguments.length_resolution_m,
         effects,
+        disturbances,
     };
     let mut simulation = Simulation::new(&model.robot, &options).map_err(refused)?;
     let mut log = SimulatedLog::create(arguments, &model)?;
@@ -58,7 +71,8 @@ pub fn run(arguments: &SimulateArguments) -> Outcome {
     bar.finish_and_clear();
     warn_all(&simulation.warnings());
     log.writer.finish()?;
-    let hidden: Vec<String> = options.effects.iter().map(ToString::to_string).collect();
+    let effects = options.effects.iter().map(ToString::to_string);
+    let hidden: Vec<String> = effects.chain(options.disturbances.iter().map(ToString::to_string)).collect();
     JsonTarget::Nowhere.show(&format!(
         "{}: {done_cycles} cycles, seed {}, {}\n",
         arguments.output.display(),
@@ -75,6 +89,7 @@ fn refused(error: SimulationError) -> Failure {
             Failure::usage(format!("--{option} is {value:?}; allowed is {min} to {max}"))
         }
         SimulationError::RepeatedEffect { .. } => Failure::usage(format!("--effect: {error}")),
+        SimulationError::RepeatedDisturbance { .. } => Failure::usage(format!("--disturbance: {error}")),
         error => Failure::from(error),
     }
 }

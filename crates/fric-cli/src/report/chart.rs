@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use fric_lab::text::significant;
 use maud::html;
 
 use super::series::Extent;
@@ -10,6 +11,8 @@ const LEFT: f64 = 52.0;
 const RIGHT: f64 = 8.0;
 const TOP: f64 = 8.0;
 const BOTTOM: f64 = 24.0;
+/// Height of a row.
+const ROW: f64 = 30.0;
 /// Least distance between ticks on the axes.
 const TICK_X: f64 = 56.0;
 const TICK_Y: f64 = 34.0;
@@ -47,10 +50,47 @@ pub struct Chart {
 impl Chart {
     /// Of a given size in pixels of its own, shown as wide as the page.
     pub fn new(x: Span, y: Span, width: f64, height: f64) -> Self {
-        let frame = [LEFT, width - RIGHT, TOP, height - BOTTOM];
-        let mut chart = Self { svg: format!("<svg viewBox=\"0 0 {width} {height:.0}\" role=\"img\">"), x, y, frame };
-        chart.draw_axes();
+        let mut chart = Self::empty(x, y, LEFT, width, height);
+        chart.draw_y_axis();
+        chart.draw_x_axis();
         chart
+    }
+
+    /// With a row for each name, one below the other, of heights 1 from y = 0 on.
+    pub fn in_rows(x: Span, names: &[&str], width: f64) -> Self {
+        let count = count_of(names);
+        let rows = Span { least: -count, greatest: 0.0, unit: "" };
+        let longest = names.iter().map(|name| width_of(name)).fold(0.0, f64::max);
+        let mut chart = Self::empty(x, rows, longest + 14.0, width, count * ROW + TOP + BOTTOM);
+        chart.draw_x_axis();
+        for (row, name) in names.iter().enumerate() {
+            let (x, y) = (chart.frame[0] - 6.0, chart.at_y(middle_of(row)) + 4.0);
+            chart.text(x, y, "end", name);
+        }
+        chart
+    }
+
+    /// With steps of width 1 from x = 0 on, whose edges have these values.
+    pub fn in_steps(edges: &[f64], unit: &'static str, y: Span, width: f64, height: f64) -> Self {
+        let steps = Span { least: 0.0, greatest: count_of(edges) - 1.0, unit };
+        let mut chart = Self::empty(steps, y, LEFT, width, height);
+        chart.draw_y_axis();
+        let most = ((width - LEFT - RIGHT) / TICK_X).max(1.0);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
+        let every = (steps.greatest / most).ceil().max(1.0) as usize;
+        let ticks = edges.iter().enumerate().step_by(every);
+        #[expect(clippy::cast_precision_loss, reason = "a small count")]
+        let ticks: Vec<(f64, String)> = ticks.map(|(place, edge)| (place as f64, significant(*edge))).collect();
+        let is_repeated = |place: usize| place > 0 && ticks[place].1 == ticks[place - 1].1;
+        let distinct = ticks.iter().enumerate().filter(|(place, _)| !is_repeated(*place));
+        chart.draw_x_ticks(distinct.map(|(_, tick)| tick.clone()));
+        chart
+    }
+
+    /// Without anything in it.
+    fn empty(x: Span, y: Span, left: f64, width: f64, height: f64) -> Self {
+        let frame = [left, width - RIGHT, TOP, height - BOTTOM];
+        Self { svg: format!("<svg viewBox=\"0 0 {width} {height:.0}\" role=\"img\">"), x, y, frame }
     }
 
     /// With both axes in the same scale, at most so high; what is left of the width shows more of x.
@@ -72,40 +112,48 @@ impl Chart {
         top + (self.y.greatest - value) / self.y.length() * (bottom - top)
     }
 
-    fn draw_axes(&mut self) {
+    fn draw_y_axis(&mut self) {
         let [left, right, top, bottom] = self.frame;
-        let mut svg = std::mem::take(&mut self.svg);
         // Writing to a String cannot fail, here and below.
         for tick in ticks(self.y.least, self.y.greatest, (bottom - top) / TICK_Y) {
             let at = self.at_y(tick);
             let _ = write!(
-                svg,
+                self.svg,
                 "<path class=\"axis\" d=\"M{left} {at:.1}H{right:.1}\"/><text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>",
                 left - 6.0,
                 at + 4.0,
                 label(tick)
             );
         }
-        for tick in ticks(self.x.least, self.x.greatest, (right - left) / TICK_X) {
+        let _ = write!(self.svg, "<text x=\"4\" y=\"{:.1}\">{}</text>", top + 8.0, self.y.unit);
+    }
+
+    fn draw_x_axis(&mut self) {
+        let [left, right, ..] = self.frame;
+        let all = ticks(self.x.least, self.x.greatest, (right - left) / TICK_X);
+        self.draw_x_ticks(all.map(|tick| (tick, label(tick))));
+    }
+
+    fn draw_x_ticks(&mut self, ticks: impl Iterator<Item = (f64, String)>) {
+        let [_, right, _, bottom] = self.frame;
+        for (tick, text) in ticks {
             let at = self.at_x(tick);
             // The unit stands at the end.
-            let text = if at > right - 16.0 { String::new() } else { label(tick) };
+            let is_far_right = at + 0.5 * width_of(&text) > right + 2.0 - width_of(self.x.unit);
+            let text = if is_far_right { String::new() } else { text };
             let _ = write!(
-                svg,
+                self.svg,
                 "<path class=\"axis\" d=\"M{at:.1} {bottom:.1}v4\"/><text x=\"{at:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{text}</text>",
                 bottom + 18.0,
             );
         }
         let _ = write!(
-            svg,
-            "<text x=\"4\" y=\"{:.1}\">{}</text><text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>",
-            top + 8.0,
-            self.y.unit,
+            self.svg,
+            "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>",
             right + 6.0,
             bottom + 18.0,
             self.x.unit
         );
-        self.svg = svg;
     }
 
     /// An upright bar for each extent; those with nothing in them are left out.
@@ -119,11 +167,16 @@ impl Chart {
         let _ = write!(self.svg, "<path class=\"{class}\" d=\"{path}\"/>");
     }
 
-    /// A line through points.
+    /// A line through points, broken where one is not finite.
     pub fn line(&mut self, class: &str, points: impl Iterator<Item = [f64; 2]>) {
+        let mut command = 'M';
         let path = points.fold(String::new(), |mut path, [x, y]| {
-            let command = if path.is_empty() { 'M' } else { 'L' };
-            let _ = write!(path, "{command}{:.1} {:.1}", self.at_x(x), self.at_y(y));
+            if x.is_finite() && y.is_finite() {
+                let _ = write!(path, "{command}{:.1} {:.1}", self.at_x(x), self.at_y(y));
+                command = 'L';
+            } else {
+                command = 'M';
+            }
             path
         });
         let _ = write!(self.svg, "<path class=\"{class}\" d=\"{path}\"/>");
@@ -135,6 +188,39 @@ impl Chart {
         let at = self.at_y(y);
         let _ = write!(self.svg, "<path class=\"{class}\" d=\"M{left} {at:.1}H{right:.1}\"/>");
         self.text(right - 4.0, if is_above { at - 4.0 } else { at + 14.0 }, "end", text);
+    }
+
+    /// An upright line from top to bottom, with a word at its foot.
+    pub fn upright(&mut self, class: &str, x: f64, text: &str) {
+        let [_, right, top, bottom] = self.frame;
+        let at = self.at_x(x);
+        let _ = write!(self.svg, "<path class=\"{class}\" d=\"M{at:.1} {top}V{bottom:.1}\"/>");
+        let is_far_right = at + 6.0 + width_of(text) > right;
+        let (x, anchor) = if is_far_right { (at - 4.0, "end") } else { (at + 4.0, "start") };
+        self.text(x, bottom - 4.0, anchor, text);
+    }
+
+    /// A bar along a row of [`Self::in_rows`] from x = 0 on, with a word behind it.
+    pub fn bar(&mut self, class: &str, row: usize, x: f64, text: &str) {
+        let (from, to, at) = (self.at_x(0.0), self.at_x(x), self.at_y(middle_of(row)));
+        let (top, height) = (at - 0.32 * ROW, 0.64 * ROW);
+        let width = (to - from).max(0.0);
+        let _ = write!(
+            self.svg,
+            "<rect class=\"{class}\" x=\"{from:.1}\" y=\"{top:.1}\" width=\"{width:.1}\" height=\"{height:.1}\"/>"
+        );
+        self.text(to + 6.0, at + 4.0, "start", text);
+    }
+
+    /// A stretch of x as a strip along the foot.
+    pub fn strip(&mut self, class: &str, from: f64, to: f64) {
+        let [.., bottom] = self.frame;
+        let (start, end) = (self.at_x(from), self.at_x(to));
+        let (top, width) = (bottom - 5.0, (end - start).max(0.5));
+        let _ = write!(
+            self.svg,
+            "<rect class=\"{class}\" x=\"{start:.1}\" y=\"{top:.1}\" width=\"{width:.1}\" height=\"5\"/>"
+        );
     }
 
     /// A rectangle from one corner to the other.
@@ -162,9 +248,7 @@ impl Chart {
             end - start,
             bottom - top
         );
-        #[expect(clippy::cast_precision_loss, reason = "a word")]
-        let width = text.chars().count() as f64 * 6.5;
-        if width < end - start {
+        if width_of(text) < end - start {
             self.text(0.5 * (start + end), top + 12.0, "middle", text);
         }
     }
@@ -183,6 +267,26 @@ impl Chart {
     pub fn into_svg(self) -> String {
         self.svg + "</svg>"
     }
+}
+
+/// About as wide as a text is drawn.
+fn width_of(text: &str) -> f64 {
+    #[expect(clippy::cast_precision_loss, reason = "a word")]
+    let letters = text.chars().count() as f64;
+    letters * 6.5
+}
+
+fn count_of<T>(items: &[T]) -> f64 {
+    #[expect(clippy::cast_precision_loss, reason = "a small count")]
+    let count = items.len() as f64;
+    count
+}
+
+/// The y of a row's middle.
+fn middle_of(row: usize) -> f64 {
+    #[expect(clippy::cast_precision_loss, reason = "a small count")]
+    let row = row as f64;
+    -row - 0.5
 }
 
 /// Round numbers between two bounds, at most about `most` of them.

@@ -1,6 +1,7 @@
 //! Pages for people, each one file without network access, for light and dark screens and for paper.
 
 mod chart;
+pub mod discovery;
 pub mod errors;
 pub mod preview;
 mod run;
@@ -13,9 +14,9 @@ pub use series::Series;
 
 const STYLE: &str = "
 :root { color-scheme: light dark; --text: #1b1f24; --soft: #5d6773; --line: #c9d0d8; --page: #ffffff;
-  --before: #d9822b; --after: #1664c0; --flag: #e0405e; }
+  --before: #d9822b; --after: #1664c0; --flag: #e0405e; --good: #1d7d4f; }
 @media (prefers-color-scheme: dark) { :root { --text: #e6e9ed; --soft: #9aa5b1; --line: #3a434d; --page: #14181d;
-  --before: #f0a35c; --after: #6db1ff; --flag: #ff7b93; } }
+  --before: #f0a35c; --after: #6db1ff; --flag: #ff7b93; --good: #58c793; } }
 body { font: 16px/1.5 system-ui, sans-serif; color: var(--text); background: var(--page); max-width: 62rem;
   margin: 2rem auto; padding: 0 1rem; }
 h1 { font-size: 1.5rem; } h2 { font-size: 1.15rem; margin: 2rem 0 .3rem; }
@@ -39,7 +40,24 @@ svg .box { stroke: var(--soft); stroke-width: 1.2; stroke-dasharray: 5 4; fill: 
 svg .base { fill: var(--before); }
 svg .bound { stroke: var(--flag); stroke-width: 1.2; stroke-dasharray: 5 4; fill: none; }
 svg .even { fill: none; } svg .odd { fill: var(--line); opacity: .35; }
-.views { display: flex; gap: 1rem; flex-wrap: wrap; } .views section { flex: 1 1 24rem; }
+.views { display: flex; gap: 1rem; flex-wrap: wrap; } .views section, .views figure { flex: 1 1 24rem; }
+svg .trace { stroke-width: 1.8; stroke-linejoin: round; } svg .trace.before, svg .trace.after { fill: none; stroke-width: 1.8; }
+svg .back { stroke-dasharray: 6 4; } svg .floor { stroke: var(--text); stroke-width: 1.2; stroke-dasharray: 2 3; fill: none; }
+svg .look { fill: var(--flag); opacity: .16; } svg .held { fill: var(--soft); opacity: .75; }
+svg rect.before, svg rect.after { stroke: none; } svg .solid { stroke-width: 1.15; }
+nav { position: sticky; top: 0; background: var(--page); border-bottom: 1px solid var(--line); padding: .45rem 0;
+  display: flex; flex-wrap: wrap; gap: .2rem 1.1rem; z-index: 1; }
+a { color: var(--after); text-decoration: none; } a:hover { text-decoration: underline; }
+section.cable { scroll-margin-top: 3rem; border-top: 2px solid var(--line); margin-top: 2.2rem; }
+h3 { font-size: 1rem; margin: 1.4rem 0 .3rem; } figure { margin: 0; break-inside: avoid; }
+.verdict { font-weight: 600; } .complete { color: var(--good); } .extended { color: var(--after); }
+.unexplained { color: var(--flag); } .untold { color: var(--soft); }
+.wide { overflow-x: auto; } .views td { white-space: nowrap; } td.words, th.words { text-align: left; } tr.found td { font-weight: 600; }
+dl { display: grid; grid-template-columns: max-content 1fr; gap: .15rem 1rem; margin: .4rem 0; }
+dt { color: var(--soft); } dd { margin: 0; } ul { margin: .4rem 0; padding-left: 1.2rem; }
+@media print { nav { display: none; } section.cable { break-inside: auto; } section.cable + section.cable { break-before: page; }
+  h3 { break-after: avoid; margin-top: .9rem; } a { color: inherit; } html, body { font-size: 12px; }
+  .views section, .views figure { flex: 1 1 16rem; } }
 @media print { body { max-width: none; margin: 0; } section { break-inside: avoid; } }
 ";
 

@@ -2,12 +2,27 @@
 //!
 //! A row states the name of the robot file, the parameters with unit, range and neutral value, the physical cause and
 //! what to do about it on the machine. Everything that deals with effects reads the rows: the robot file, the
-//! identification, the simulation, the command line, the documentation.
+//! identification, the simulation, the command line, the documentation. [`named`] lists them together with the friction
+//! that every model has.
 
+pub mod bearing_drag;
+pub mod cable_elasticity;
+pub mod direction_asymmetry;
+pub mod friction;
+pub mod friction_drift;
+pub mod load_nonlinearity;
+pub mod presliding_shape;
+pub mod pulley_eccentricity;
+pub mod pulley_inertia;
+pub mod sensor_drift;
+pub mod sensor_gain;
+pub mod sensor_offset;
 pub mod stribeck;
 pub mod time_delay;
 
-use crate::parameters::{FRICTION_COUNT, ParameterRow};
+use core::ops::Range;
+
+use crate::parameters::{self, FRICTION_COUNT, ParameterRow};
 use crate::robot::{ParamError, check};
 
 /// One effect of the catalogue.
@@ -24,8 +39,41 @@ pub struct EffectRow {
     pub parameters: &'static [ParameterRow],
 }
 
-/// Every effect there is.
-pub const CATALOGUE: &[EffectRow] = &[stribeck::ROW, time_delay::ROW];
+/// Every effect that a cable of a robot file can have.
+pub const CATALOGUE: &[EffectRow] = &[
+    stribeck::ROW,
+    direction_asymmetry::ROW,
+    bearing_drag::ROW,
+    load_nonlinearity::ROW,
+    friction_drift::ROW,
+    presliding_shape::ROW,
+    sensor_gain::ROW,
+    sensor_offset::ROW,
+    sensor_drift::ROW,
+    time_delay::ROW,
+    pulley_inertia::ROW,
+    pulley_eccentricity::ROW,
+    cable_elasticity::ROW,
+];
+
+/// Everything that has a name in the friction of a cable: what every model has, then the catalogue.
+pub fn named() -> impl Iterator<Item = &'static EffectRow> {
+    [friction::COULOMB_ROW, friction::VISCOUS_ROW, friction::PRESLIDING_ROW].iter().chain(CATALOGUE)
+}
+
+impl EffectRow {
+    /// Places of its parameters in [`Values`](parameters::Values).
+    #[must_use]
+    pub fn places(&self) -> Range<usize> {
+        let first = match self.kind {
+            "coulomb" => parameters::MU,
+            "viscous" => parameters::VISCOUS,
+            "presliding" => parameters::SIGMA,
+            kind => first_place(kind),
+        };
+        first..first + self.parameters.len()
+    }
+}
 
 /// Parameters of all effects together.
 pub const EFFECT_PARAMETER_COUNT: usize = count(CATALOGUE);
@@ -64,7 +112,7 @@ impl EffectParams {
     pub fn set(&mut self, kind: &str, key: &str, value: f64) -> Result<(), ParamError> {
         for ((row, parameter), place) in parameters().zip(&mut self.0) {
             if row.kind == kind && parameter.key == key {
-                *place = check(parameter.key, value, parameter.min, parameter.max)?;
+                *place = check_parameter(row, parameter, value)?;
                 return Ok(());
             }
         }
@@ -82,11 +130,15 @@ impl EffectParams {
     /// # Errors
     /// [`ParamError`] names the first that is out of its row's range.
     pub fn from_values(values: [f64; EFFECT_PARAMETER_COUNT]) -> Result<Self, ParamError> {
-        for ((_, parameter), value) in parameters().zip(values) {
-            check(parameter.key, value, parameter.min, parameter.max)?;
+        for ((row, parameter), value) in parameters().zip(values) {
+            check_parameter(row, parameter, value)?;
         }
         Ok(Self(values))
     }
+}
+
+fn check_parameter(row: &EffectRow, parameter: &ParameterRow, value: f64) -> Result<f64, ParamError> {
+    check(parameter.key, value, parameter.min, parameter.max).map_err(|error| error.of_effect(row.kind))
 }
 
 impl Default for EffectParams {
@@ -115,6 +167,59 @@ const fn neutral() -> [f64; EFFECT_PARAMETER_COUNT] {
         effect += 1;
     }
     values
+}
+
+/// A set of effects, one bit each.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Acting(u32);
+
+impl Acting {
+    /// No effect.
+    pub const NONE: Self = Self(0);
+
+    /// The effect of a name. For constants: it compares texts.
+    const fn only(kind: &str) -> Self {
+        let mut effect = 0;
+        while effect < CATALOGUE.len() {
+            if same(CATALOGUE[effect].kind.as_bytes(), kind.as_bytes()) {
+                return Self(1 << effect);
+            }
+            effect += 1;
+        }
+        Self::NONE
+    }
+
+    /// The effects of which a parameter is `active`, asked by its row and its place in
+    /// [`Values`](parameters::Values).
+    pub fn of(active: impl Fn(&ParameterRow, usize) -> bool) -> Self {
+        let mut place = FRICTION_COUNT;
+        let mut bits = 0;
+        for (effect, row) in CATALOGUE.iter().enumerate() {
+            for parameter in row.parameters {
+                bits |= u32::from(active(parameter, place)) << effect;
+                place += 1;
+            }
+        }
+        Self(bits)
+    }
+
+    /// These and those.
+    #[inline(always)]
+    pub const fn and(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// These but for those.
+    #[inline(always)]
+    pub const fn without(self, other: Self) -> Self {
+        Self(self.0 & !other.0)
+    }
+
+    /// Whether one of those is among these.
+    #[inline(always)]
+    pub const fn has(self, other: Self) -> bool {
+        self.0 & other.0 != 0
+    }
 }
 
 /// Where an effect's parameters begin among all of a cable, see [`crate::parameters`]. Evaluated by the compiler, which

@@ -5,7 +5,7 @@
 //!
 //! Cause: at low speed the lubricant film in the bearing has not formed and the surfaces touch.
 
-use super::{EffectRow, first_place};
+use super::{Acting, EffectRow, first_place};
 use crate::parameters::ParameterRow;
 use crate::scalar::Scalar;
 
@@ -17,18 +17,29 @@ pub const ROW: EffectRow = EffectRow {
     cause: "at low speed the lubricant film of a bearing has not formed yet, so friction is higher near standstill",
     remedy: "check the grease of the pulley bearings: too little of it, or too stiff for the temperature",
     parameters: &[
-        ParameterRow { key: "ratio", unit: "1", neutral: 0.0, min: -0.9, max: 5.0, excitation: EXCITATION },
+        ParameterRow {
+            key: "ratio",
+            unit: "1",
+            neutral: 0.0,
+            min: -0.9,
+            max: 5.0,
+            fitted: true,
+            excitation: EXCITATION,
+        },
         ParameterRow {
             key: "velocity_m_per_s",
             unit: "m/s",
             neutral: 0.02,
             min: 1e-4,
             max: 10.0,
+            fitted: true,
             excitation: EXCITATION,
         },
     ],
 };
 
+/// The effect by itself, to ask whether it acts.
+pub(crate) const ACTS: Acting = Acting::only(ROW.kind);
 /// Place of `ratio` in [`Values`](crate::parameters::Values).
 pub const RATIO: usize = first_place(ROW.kind);
 /// Place of `velocity_m_per_s`.
@@ -51,7 +62,7 @@ impl<T: Scalar> Stribeck<T> {
     }
 
     /// Factor on μ at a speed.
-    #[inline(always)]
+    #[inline(never)]
     pub fn factor(&self, speed_m_per_s: T) -> T {
         let relative = speed_m_per_s / self.velocity_m_per_s;
         let fall = (-(relative * relative)).exp_negative();

@@ -10,6 +10,8 @@ pub struct ParamError {
     pub key: &'static str,
     /// Which pulley, from the winch, where it is one's.
     pub pulley: Option<usize>,
+    /// Which effect, where it is one's.
+    pub effect: Option<&'static str>,
     /// What is wrong with it.
     pub problem: ParamProblem,
 }
@@ -46,11 +48,15 @@ impl ParamError {
         Self::conflict("effects", "names an effect or a parameter that the catalogue does not have");
 
     pub(crate) const fn conflict(key: &'static str, reason: &'static str) -> Self {
-        Self { key, pulley: None, problem: ParamProblem::Conflict(reason) }
+        Self { key, pulley: None, effect: None, problem: ParamProblem::Conflict(reason) }
     }
 
     pub(crate) const fn at_pulley(self, place: usize) -> Self {
         Self { pulley: Some(place), ..self }
+    }
+
+    pub(crate) const fn of_effect(self, kind: &'static str) -> Self {
+        Self { effect: Some(kind), ..self }
     }
 }
 
@@ -62,16 +68,19 @@ pub(crate) fn check(key: &'static str, value: f64, min: f64, max: f64) -> Result
     if (min..=max).contains(&value) && value.is_finite() {
         Ok(value)
     } else {
-        Err(ParamError { key, pulley: None, problem: ParamProblem::OutOfRange { value, min, max } })
+        Err(ParamError { key, pulley: None, effect: None, problem: ParamProblem::OutOfRange { value, min, max } })
     }
 }
 
 impl fmt::Display for ParamError {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { key, pulley, problem } = self;
+        let Self { key, pulley, effect, problem } = self;
         write!(formatter, "`{key}`")?;
         if let Some(place) = pulley {
             write!(formatter, " of pulley {}", place + 1)?;
+        }
+        if let Some(kind) = effect {
+            write!(formatter, " of effect `{kind}`")?;
         }
         write!(formatter, " {problem}")
     }

@@ -7,7 +7,8 @@ use nalgebra::Vector3;
 
 use super::error::{ParamError, ParamProblem, check};
 use crate::effects::EffectParams;
-use crate::effects::time_delay::MAX_DELAY_CYCLES;
+use crate::effects::time_delay::delay_range_s;
+use crate::effects::{direction_asymmetry, stribeck, time_delay};
 use crate::parameters::{FRICTION, GREATEST_MU};
 use crate::pulley::wrap_factor;
 use crate::signals::SignalLimits;
@@ -160,6 +161,12 @@ fn check_point(key: &'static str, point: [f64; 3]) -> Result<Vector3<f64>, Param
 }
 
 impl CableParams {
+    /// Radius of the pulley that follows the pose, m; `None` without one.
+    #[must_use]
+    pub fn pose_pulley_radius_m(&self) -> Option<f64> {
+        self.geometry.map(|geometry| geometry.radius_m).filter(|radius_m| *radius_m > 0.0 && self.needs_pose())
+    }
+
     /// Checks a cable.
     ///
     /// # Errors
@@ -168,7 +175,7 @@ impl CableParams {
         let count = options.pulleys.len();
         if count == 0 || count > MAX_PULLEYS {
             let problem = ParamProblem::Count { count, min: 1, max: MAX_PULLEYS };
-            return Err(ParamError { key: "pulleys", pulley: None, problem });
+            return Err(ParamError { key: "pulleys", pulley: None, effect: None, problem });
         }
         if let Some(traction_mu) = options.traction_mu {
             check("traction_mu", traction_mu, 0.01, 2.0)?;
@@ -246,14 +253,28 @@ impl CableParams {
         for (row, value) in FRICTION.iter().zip(stated) {
             value.map(|value| check(row.key, value, row.min, row.max)).transpose()?;
         }
-        let ratio = self.effects.get("stribeck", "ratio").unwrap_or(0.0);
-        let greatest_mu = mu * (1.0 + ratio.max(0.0));
-        if greatest_mu > GREATEST_MU {
+        let values = self.values();
+        let mu_at_rest = mu * (1.0 + values[stribeck::RATIO].max(0.0));
+        if mu_at_rest > GREATEST_MU {
             let reason = "raises the friction at rest, `mu`·(1 + `ratio`), beyond 0.9; lower it, or `mu`";
-            return Err(ParamError::conflict("ratio", reason));
+            return Err(ParamError::conflict("ratio", reason).of_effect(stribeck::ROW.kind));
+        }
+        let greatest_mu = mu_at_rest * (1.0 + values[direction_asymmetry::COULOMB].abs());
+        if greatest_mu > GREATEST_MU {
+            let reason = "raises the friction one way, `mu`·(1 + `coulomb_ratio`), beyond 0.9; lower it, or `mu`";
+            return Err(ParamError::conflict("coulomb_ratio", reason).of_effect(direction_asymmetry::ROW.kind));
         }
         self.sensor_wrap_rad
             .map_or(Ok(()), |wrap_rad| check_sensor_wrap(wrap_rad, greatest_mu).map_err(|error| error.at_pulley(0)))
+    }
+
+    /// The greatest μ that leaves the sensor pulley a third of the tension that it would feel without friction.
+    pub(crate) fn greatest_mu(&self) -> f64 {
+        self.sensor_wrap_rad.map_or(GREATEST_MU, |wrap_rad| {
+            let (factor, cos) = (wrap_factor(wrap_rad), libm::cos(wrap_rad));
+            // At 180° (cos = −1) friction takes nothing from the sensor: no bound, an infinite one.
+            GREATEST_MU.min(4.0 / 3.0 * (1.0 - cos) / (factor * (1.0 + cos)))
+        })
     }
 
     /// Pulleys, the sensor pulley included.
@@ -411,14 +432,13 @@ impl<'a> RobotParams<'a> {
     ) -> Result<Self, ParamError> {
         if cables.is_empty() {
             let problem = ParamProblem::Count { count: 0, min: 1, max: usize::MAX };
-            return Err(ParamError { key: "cable", pulley: None, problem });
+            return Err(ParamError { key: "cable", pulley: None, effect: None, problem });
         }
         check("cycle_s", cycle_s, 1e-6, 10.0)?;
-        #[expect(clippy::cast_precision_loss, reason = "a small constant")]
-        let longest_delay_s = (MAX_DELAY_CYCLES - 1) as f64 * cycle_s;
+        let (earliest_s, latest_s) = delay_range_s(cycle_s);
         for cable in cables {
-            let delay_s = cable.effects.get("time_delay", "delay_s").unwrap_or(0.0);
-            check("delay_s", delay_s, 0.0, longest_delay_s)?;
+            check("delay_s", cable.values()[time_delay::DELAY], earliest_s, latest_s)
+                .map_err(|error| error.of_effect(time_delay::ROW.kind))?;
         }
         Ok(Self {
             cycle_s,

@@ -57,12 +57,10 @@ impl CableTable {
 
     /// Where a refused parameter stands in this cable's table: in one of its effects, or in the table itself.
     pub(super) fn name_parameter(&self, error: ParamError) -> OptionsError {
-        for (index, effect) in self.effects.iter().enumerate() {
-            let of_effect = effects::row(&effect.kind).filter(|_| effect.parameters.contains_key(error.key));
-            if let Some(row) = of_effect {
-                let path = [Step::Key("effects"), Step::Index(index), Step::Key(error.key)];
-                return OptionsError::new(&path, error.key, format!("of effect `{}` {}", row.kind, error.problem));
-            }
+        let Some(kind) = error.effect else { return OptionsError::from(error) };
+        if let Some(index) = self.effects.iter().position(|effect| effect.kind == kind) {
+            let path = [Step::Key("effects"), Step::Index(index), Step::Key(error.key)];
+            return OptionsError::new(&path, error.key, format!("of effect `{kind}` {}", error.problem));
         }
         OptionsError::from(error)
     }

@@ -4,6 +4,7 @@ use fric_core::LANES;
 use fric_core::parameters::{MU, SIGMA, Values};
 use std::panic::resume_unwind;
 use std::rc::Rc;
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::thread;
 
@@ -49,32 +50,60 @@ fn fit_cable<'a>(
     progress: &'a Progress,
     seat: Seat<'a>,
 ) -> Vec<CableFit> {
-    let seat = Rc::new(seat);
-    let given = record.params.values();
-    let all = prepared(record);
-    let problem = |standings: &[Standing]| Problem {
-        members: vec![Member { record: *record, free: options.free(record.params) }],
-        comparison: Comparison::Forces,
-        loss: Loss::Squares,
-        used: used(standings),
-        stop: progress.stop_flag(),
-        seat: Some(Rc::clone(&seat)),
-    };
-    let starts = start::starts(&problem(&all), &[given], record.cycle_s);
-    let solve_without_warm_up = |starts: Vec<Vec<Values>>| {
-        let mut standings = all.clone();
-        leave_out_warm_up(&problem(&all), &starts, &mut standings);
-        let solution =
-            solve(&mut problem(&standings), starts, &[given], record.cycle_s, options.weighing, &mut standings, &[]);
-        (solution, standings)
-    };
-    let (mut solution, mut standings) = solve_without_warm_up(starts);
-    if warm_up_was_misjudged(record, &solution, &all, &standings) {
-        let evaluation_count = solution.evaluation_count;
-        (solution, standings) = solve_without_warm_up(vec![solution.values]);
-        solution.evaluation_count += evaluation_count;
+    let search = Search::run(record, &prepared(record), options, progress.stop_flag(), seat);
+    // Errors are those that a replay finds.
+    search.problem.forget_step();
+    cable_fits(&search.problem, &[record.params.values()], &search.solution, &search.standings)
+}
+
+/// The whole search for the parameters of a cable.
+#[derive(Debug)]
+pub struct Search<'a> {
+    /// The problem with all samples that have something to compare with.
+    problem: Problem<'a>,
+    /// Where it began.
+    pub start: Values,
+    /// What it found.
+    pub solution: Solution,
+    /// And what it made of each sample.
+    pub standings: Vec<Standing>,
+}
+
+impl<'a> Search<'a> {
+    /// `all` are the standings before anything is known about the friction, see [`prepared`].
+    pub fn run(
+        record: &CableRecord<'a>,
+        all: &[Standing],
+        options: &FitOptions,
+        stop: &'a AtomicBool,
+        seat: Seat<'a>,
+    ) -> Self {
+        let given = record.params.values();
+        let problem = Problem {
+            members: vec![Member { record: *record, free: options.free(record.params) }],
+            comparison: Comparison::Forces,
+            loss: Loss::Squares,
+            used: used(all),
+            stop,
+            seat: Some(Rc::new(seat)),
+        };
+        let starts = start::starts(&problem, &[given], record.cycle_s);
+        let start = starts.first().and_then(|start| start.first()).copied().unwrap_or(given);
+        let solve_without_warm_up = |starts: Vec<Vec<Values>>| {
+            let mut standings = all.to_vec();
+            leave_out_warm_up(&problem, &starts, &mut standings);
+            let mut problem = Problem { used: used(&standings), ..problem.clone() };
+            let solution = solve(&mut problem, starts, &[given], record.cycle_s, options.weighing, &mut standings, &[]);
+            (solution, standings)
+        };
+        let (mut solution, mut standings) = solve_without_warm_up(starts);
+        if warm_up_was_misjudged(record, &solution, all, &standings) {
+            let evaluation_count = solution.evaluation_count;
+            (solution, standings) = solve_without_warm_up(vec![solution.values]);
+            solution.evaluation_count += evaluation_count;
+        }
+        Self { problem, start, solution, standings }
     }
-    cable_fits(&problem(&all), &[given], &solution, &standings)
 }
 
 /// Whether the fitted values, as far as they can be trusted, give another warm-up than the start did.
@@ -97,14 +126,14 @@ fn warm_up_was_misjudged(
 }
 
 /// Standing of each sample before anything is known about the friction.
-pub(super) fn prepared(record: &CableRecord<'_>) -> Vec<Standing> {
+pub fn prepared(record: &CableRecord<'_>) -> Vec<Standing> {
     let mut standings = selection::first_look(record, |_, row| row.reference_n.is_finite());
     selection::leave_out_still_references(record, &mut standings);
     standings
 }
 
 /// Which samples count.
-pub(super) fn used(standings: &[Standing]) -> Vec<bool> {
+pub fn used(standings: &[Standing]) -> Vec<bool> {
     standings.iter().map(|standing| *standing == Standing::Used).collect()
 }
 
@@ -168,7 +197,7 @@ pub fn residuals_n(measurements: &Measurements<'_>, fits: &[CableFit]) -> Vec<Ve
         seat: None,
     };
     let values: Vec<Values> = fits.iter().map(|fit| fit.values).collect();
-    let of_cable = |(member, forces): (&Member<'_>, &Forces)| {
+    let of_cable = |(member, forces): (&Member<'_>, &Arc<Forces>)| {
         let rows = member.record.rows.iter().enumerate();
         rows.map(|(cycle, row)| forces.at(cycle).0 - row.reference_n).collect()
     };

@@ -2,7 +2,7 @@
 //!
 //! `value + Σ gradient_k·ε_k` with `ε_j·ε_k = 0`: every operation follows the chain rule exactly, so a result holds the
 //! derivatives of what the equations computed, to rounding. Comparisons look at the value alone; at a kink the derivative is
-//! that of the branch taken.
+//! that of the branch taken, and that of a magnitude at 0 is 0.
 #![allow(clippy::inline_always, reason = "a call in the cycle's equations would pass the derivatives through memory")]
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -125,7 +125,7 @@ impl<V: Scalar, const N: usize> Scalar for Dual<V, N> {
     }
     #[inline(always)]
     fn abs(self) -> Self {
-        self.chain(self.value.abs(), V::select(self.value.lt(V::splat(0.0)), V::splat(-1.0), V::splat(1.0)))
+        self.chain(self.value.abs(), self.value.sign())
     }
     #[inline(always)]
     fn sign(self) -> Self {
@@ -141,6 +141,16 @@ impl<V: Scalar, const N: usize> Scalar for Dual<V, N> {
         let power = self.value.exp_negative();
         self.chain(power, power)
     }
+    #[inline]
+    fn ln(self) -> Self {
+        self.chain(self.value.ln(), V::splat(1.0) / self.value)
+    }
+    #[inline]
+    fn sin_cos_turns(self) -> [Self; 2] {
+        let [sin, cos] = self.value.sin_cos_turns();
+        let turn = V::splat(std::f64::consts::TAU);
+        [self.chain(sin, turn * cos), self.chain(cos, -(turn * sin))]
+    }
 }
 
 #[cfg(test)]
@@ -150,7 +160,7 @@ mod tests {
     /// Each operation against the central difference of the same expression in plain numbers.
     #[test]
     fn every_operation_follows_the_chain_rule() {
-        fn expression<T: Scalar>(x: T, y: T) -> [T; 9] {
+        fn expression<T: Scalar>(x: T, y: T) -> [T; 14] {
             let half = T::splat(0.5);
             [
                 x + half * y,
@@ -162,6 +172,11 @@ mod tests {
                 (x * x + y).sqrt(),
                 (-(x * y)).exp_negative(),
                 x.max(y) * x.min(y).sign(),
+                x.pow(y - half),
+                (x - y).exp(),
+                x.sin_cos_turns()[0] * y.sin_cos_turns()[1],
+                (half * (x - y)).ln_1p_ratio(),
+                (half * half * half * (x - y)).ln_1p_ratio(),
             ]
         }
         for (x, y) in [(0.7, 1.3), (2.5, 0.4), (0.1, 3.0)] {
@@ -180,6 +195,36 @@ mod tests {
                         "{place}: {derivative} {numeric}"
                     );
                 }
+            }
+        }
+    }
+
+    /// The exponent of Dahl's law by its closed form near 1, where the form itself is no use:
+    /// `ln(u'/u) = −w·g(b·w)` with `w = k·e^{bL}`, `L = ln u`, as a series in `b = a − 1`.
+    #[test]
+    fn the_exponent_of_presliding_has_its_derivative_at_one() {
+        use fric_core::effects::presliding_shape::PreslidingShape;
+        for (start_n, displacement_m) in [(-0.9, 1e-4), (0.0, 3e-4), (0.3, 1e-3), (0.8, -2e-4), (0.999, 1e-4)] {
+            let (sliding_n, sigma) = (0.7_f64, 2e3_f64);
+            let s = f64::signum(displacement_m);
+            let u = 1.0 - s * start_n / sliding_n;
+            let (k, log) = (sigma * f64::abs(displacement_m) / sliding_n, u.abs().ln());
+            for beyond in [0.0, 1e-12, -1e-12, 1e-9, -1e-9, 1e-7, -1e-7, 1e-5, -1e-5] {
+                // −w g(bw) = −k[1 + b(L − k/2) + b²(L²/2 − kL + k²/3) + …].
+                let first = log - 0.5 * k;
+                let second = 0.5 * log * log - k * log + k * k / 3.0;
+                let power = -k * (1.0 + beyond * first + beyond * beyond * second);
+                let slope = -k * (first + 2.0 * beyond * second);
+                let left = u * power.exp();
+                let exponent = Dual { value: 1.0 + beyond, gradient: [1.0] };
+                let constant = Dual::<f64, 1>::constant;
+                let [start, sliding, sigma] = [start_n, sliding_n, sigma].map(constant);
+                let stepped = PreslidingShape { exponent }.step(start, sliding, sigma, constant(displacement_m));
+                // What the series leaves out is of the third order in b, and of the second in the derivative.
+                let rest = 50.0 * beyond * beyond + 1e-12;
+                assert!((stepped.value - s * sliding_n * (1.0 - left)).abs() < rest, "{start_n} {beyond:e}");
+                let derivative = -s * sliding_n * left * slope;
+                assert!((stepped.gradient[0] - derivative).abs() < rest, "{start_n} {beyond:e}: {derivative}");
             }
         }
     }

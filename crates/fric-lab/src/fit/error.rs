@@ -17,7 +17,7 @@ pub struct FitError {
 }
 
 impl FitError {
-    pub(super) fn new(cause: impl Into<String>, advice: &'static str) -> Self {
+    pub(crate) fn new(cause: impl Into<String>, advice: &'static str) -> Self {
         Self { cause: cause.into(), advice, instead: None }
     }
 

@@ -11,8 +11,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
 use fric_core::LANES;
+use fric_core::parameters::Values;
 
 use super::pass::{Forces, LanePass, Part, room_for, with_room_for};
+use super::vector::Parameter;
 
 /// Samples between two looks at the request to stop.
 const CHUNK: usize = 2048;
@@ -30,9 +32,9 @@ pub struct Gang<'a> {
 enum State<'a> {
     /// On its own.
     Busy,
-    /// Waits for a pass.
-    Waiting(Part<'a>),
-    /// Its pass is done; `None` when stopped.
+    /// Waits for a pass, with the room for it.
+    Waiting(Box<Part<'a>>, Forces),
+    /// Its pass is done, `None` when stopped, and it has yet to notice.
     Served(Option<Forces>),
     /// Ended.
     Gone,
@@ -43,7 +45,16 @@ enum State<'a> {
 pub struct Seat<'a> {
     gang: &'a Gang<'a>,
     place: usize,
-    last: RefCell<Option<(Part<'a>, Arc<Forces>)>>,
+    last: RefCell<Option<Last<'a>>>,
+}
+
+/// What was asked for last, and what came out.
+#[derive(Debug)]
+struct Last<'a> {
+    part: Part<'a>,
+    forces: Arc<Forces>,
+    /// Whether they were moved from where they came out.
+    moved: bool,
 }
 
 impl<'a> Gang<'a> {
@@ -68,18 +79,35 @@ impl<'a> Seat<'a> {
     /// Forces of a cable in every cycle, with the derivatives that its part asks for, or more; `None` when stopped. Those of the
     /// last pass are at hand.
     pub fn forces(&self, part: &Part<'a>) -> Option<Arc<Forces>> {
-        if let Some((_, forces)) = self.last.borrow().as_ref().filter(|(last, _)| last.serves(part)) {
-            return Some(Arc::clone(forces));
+        if let Some(last) = self.last.borrow().as_ref().filter(|last| last.part.serves(part)) {
+            return Some(Arc::clone(&last.forces));
         }
-        let forces = Arc::new(self.pass(part)?);
-        *self.last.borrow_mut() = Some((part.clone(), Arc::clone(&forces)));
+        let room = self.last.take().and_then(|last| Arc::into_inner(last.forces)).unwrap_or_default();
+        let forces = Arc::new(self.pass(part, room)?);
+        *self.last.borrow_mut() = Some(Last { part: part.clone(), forces: Arc::clone(&forces), moved: false });
         Some(forces)
     }
 
-    fn pass(&self, part: &Part<'a>) -> Option<Forces> {
+    /// Moves the forces of the last pass by their derivatives, should they be those `at`, to what they are for other `values`.
+    pub fn step(&self, at: &Part<'a>, values: &Values) {
+        if let Some(last) = self.last.borrow_mut().as_mut().filter(|last| last.part.serves(at)) {
+            let change = |of: &Parameter| values[of.place()] - last.part.values[of.place()];
+            let by: Vec<f64> = last.part.free.iter().map(change).collect();
+            Arc::make_mut(&mut last.forces).step(&by);
+            last.part.values = *values;
+            last.moved = true;
+        }
+    }
+
+    /// Forgets forces that were moved: the next are those of a pass, to the last bit.
+    pub fn forget_moved(&self) {
+        self.last.borrow_mut().take_if(|last| last.moved);
+    }
+
+    fn pass(&self, part: &Part<'a>, room: Forces) -> Option<Forces> {
         let mut seats = self.gang.lock();
         if let Some(seat) = seats.get_mut(self.place) {
-            *seat = State::Waiting(part.clone());
+            *seat = State::Waiting(Box::new(part.clone()), room);
         }
         loop {
             match seats.get_mut(self.place) {
@@ -87,10 +115,10 @@ impl<'a> Seat<'a> {
                     let State::Served(forces) = std::mem::replace(seat, State::Busy) else { return None };
                     return forces;
                 }
-                Some(State::Waiting(_)) => {}
+                Some(State::Waiting(..)) => {}
                 _ => return None,
             }
-            if seats.iter().any(|seat| matches!(seat, State::Busy)) {
+            if seats.iter().any(|seat| matches!(seat, State::Busy | State::Served(_))) {
                 seats = self.gang.turn.wait(seats).unwrap_or_else(PoisonError::into_inner);
             } else {
                 serve(&mut seats, self.gang.stop);
@@ -109,37 +137,44 @@ impl Drop for Seat<'_> {
     }
 }
 
-/// Runs the passes of all that wait, those with as many derivatives and cycles together. Nobody else has anything to do meanwhile.
+/// Runs the passes of those that wait for the fewest cycles, with as many derivatives, together; the others wait on, for these may
+/// join them. Nobody else has anything to do meanwhile.
 fn serve(seats: &mut [State<'_>], stop: &AtomicBool) {
-    let waits = |seat: &State<'_>| match seat {
-        State::Waiting(part) => Some((room_for(part.free.len()), part.record.rows.len())),
+    let wish = |seat: &State<'_>| match seat {
+        State::Waiting(part, _) => Some((part.record.rows.len(), room_for(part.carried()))),
         _ => None,
     };
-    while let Some(alike) = seats.iter().find_map(waits) {
-        let mut together = Vec::with_capacity(seats.len());
-        for seat in seats.iter_mut().filter(|seat| waits(seat) == Some(alike)) {
-            if let State::Waiting(part) = std::mem::replace(seat, State::Served(None)) {
-                together.push((seat, part));
-            }
+    let Some(least) = seats.iter().filter_map(wish).min() else { return };
+    let mut together = Vec::with_capacity(seats.len());
+    for seat in seats.iter_mut().filter(|seat| wish(seat) == Some(least)) {
+        if let State::Waiting(part, room) = std::mem::replace(seat, State::Served(None)) {
+            together.push((seat, (*part, room)));
         }
-        with_room_for!(alike.0, serve_together(together, stop));
     }
+    with_room_for!(least.1, serve_together(together, stop));
 }
 
-fn serve_together<const N: usize>(waiting: Vec<(&mut State<'_>, Part<'_>)>, stop: &AtomicBool) {
-    let (seats, parts): (Vec<_>, Vec<_>) = waiting.into_iter().unzip();
-    if let Some(forces) = all_forces::<N>(&parts, stop) {
+fn serve_together<const N: usize>(waiting: Vec<(&mut State<'_>, (Part<'_>, Forces))>, stop: &AtomicBool) {
+    let (seats, waiting): (Vec<_>, Vec<_>) = waiting.into_iter().unzip();
+    let (parts, rooms): (Vec<_>, Vec<_>) = waiting.into_iter().unzip();
+    if let Some(forces) = all_forces::<N>(&parts, rooms, stop) {
         for (seat, forces) in seats.into_iter().zip(forces) {
             *seat = State::Served(Some(forces));
         }
     }
 }
 
-/// Forces of up to [`LANES`] cables in every cycle; `None` when stopped.
-pub fn all_forces<const N: usize>(parts: &[Part<'_>], stop: &AtomicBool) -> Option<Vec<Forces>> {
+/// Forces of up to [`LANES`] cables in every cycle, in the room given for each; `None` when stopped.
+pub fn all_forces<const N: usize>(
+    parts: &[Part<'_>],
+    mut forces: Vec<Forces>,
+    stop: &AtomicBool,
+) -> Option<Vec<Forces>> {
     let mut pass = LanePass::<N>::new(parts.iter().cloned());
     let cycles = parts.first().map_or(0, |part| part.record.rows.len());
-    let mut forces: Vec<Forces> = parts.iter().take(LANES).map(|_| Forces::new(N, cycles)).collect();
+    for (forces, part) in forces.iter_mut().zip(parts) {
+        forces.clear(part.free.len(), cycles);
+    }
     for (start, rows) in parts.first().iter().flat_map(|part| part.record.logs()) {
         pass.rest();
         let end = start + rows.len();

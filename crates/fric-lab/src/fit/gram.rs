@@ -31,12 +31,7 @@ impl Gram {
     /// Takes in one row: the derivatives of a residual, then the residual.
     #[inline]
     pub fn add(&mut self, row: &[f64]) {
-        let mut places = self.block.iter_mut();
-        for (column, right) in row.iter().enumerate() {
-            for (left, place) in row.iter().take(column + 1).zip(&mut places) {
-                *place += left * right;
-            }
-        }
+        add_products(&mut self.block, row);
         self.in_block += 1;
         if self.in_block == BLOCK {
             self.close_block();
@@ -60,6 +55,36 @@ impl Gram {
         let count = self.columns - 1;
         let matrix = DMatrix::from_fn(count, count, entry);
         (matrix, DVector::from_fn(count, |row, _| entry(row, count)), entry(count, count))
+    }
+}
+
+/// Adds the products of all pairs of numbers to a triangle of sums, column by column.
+#[inline]
+pub fn add_products(sums: &mut [f64], numbers: &[f64]) {
+    // Nearly every fit has four parameters, and a residual with them.
+    match numbers.len() {
+        4 => add_products_of::<4>(sums, numbers),
+        5 => add_products_of::<5>(sums, numbers),
+        _ => add_products_each(sums, numbers),
+    }
+}
+
+/// With as many numbers as are known beforehand, loops unroll.
+#[inline]
+fn add_products_of<const COUNT: usize>(sums: &mut [f64], numbers: &[f64]) {
+    if let (Some(sums), Some(numbers)) = (sums.get_mut(..COUNT * (COUNT + 1) / 2), numbers.first_chunk::<COUNT>()) {
+        add_products_each(sums, numbers);
+    }
+}
+
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "for the number of numbers to be known")]
+fn add_products_each(sums: &mut [f64], numbers: &[f64]) {
+    let mut places = sums.iter_mut();
+    for (column, right) in numbers.iter().enumerate() {
+        for (left, place) in numbers.iter().take(column + 1).zip(&mut places) {
+            *place += left * right;
+        }
     }
 }
 
@@ -102,6 +127,21 @@ impl Triangle {
             column *= *scale;
         }
         Self { jacobian, residuals }
+    }
+
+    /// What to subtract from the parameters to reach the minimum, were the residuals linear in them; `None` where some have no
+    /// effect.
+    pub fn step(&self) -> Option<Vec<f64>> {
+        let count = self.jacobian.ncols();
+        let step = self.jacobian.rows(0, count).solve_upper_triangular(&self.residuals.rows(0, count))?;
+        Some(step.iter().copied().collect())
+    }
+
+    /// By which share of itself the sum of squares would fall at most, were the residuals linear in the parameters.
+    pub fn reducible_ratio(&self) -> f64 {
+        let left = self.residuals.iter().next_back().map_or(f64::NAN, |left| left * left);
+        let squares = self.residuals.norm_squared();
+        (squares - left) / squares
     }
 }
 

@@ -37,6 +37,16 @@ mod vector;
 mod weight;
 mod wrench;
 
+/// What other searches on the same records are made of.
+pub(crate) mod engine {
+    pub use super::cables::{Search, prepared, used};
+    pub use super::gang::{Gang, Seat};
+    pub use super::problem::{Comparison, Loss, Member, Problem};
+    pub use super::rewritten::{NewValues, with_values};
+    pub use super::selection::{Standing, count};
+    pub use super::solve::{Solution, covariance, search_near};
+}
+
 pub use cables::{fit_cables, residuals_n};
 pub use determined::HALF_INTERVAL;
 pub use dual::Dual;

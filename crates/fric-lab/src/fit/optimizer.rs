@@ -9,10 +9,9 @@ use nalgebra_of_optimizer::{DMatrix, DVector, Dyn};
 
 use super::gram::Triangle;
 
-/// Relative reduction of the sum of squares at which the search ends. With n samples a parameter is then at most `√(1e-8·n)`
-/// standard errors from the minimum, 0.02 for a minute at 1 kHz; the last step, which is taken all the same, brings it nearer by far.
+/// Relative reduction of the sum of squares at which a search ends in any case.
 const SQUARES_TOLERANCE: f64 = 1e-10;
-/// And relative change of the parameters. They have standard errors of 1e-4 of their value and more.
+/// And relative change of the coordinates. They have standard errors of 1e-4 of their value and more.
 const STEP_TOLERANCE: f64 = 1e-8;
 /// Evaluations per parameter before giving up.
 const PATIENCE: usize = 20;
@@ -52,6 +51,8 @@ impl Termination {
 pub struct Minimum {
     /// The coordinates.
     pub coordinates: Vec<f64>,
+    /// Those of the last evaluation, from which a short step led there.
+    pub evaluated: Vec<f64>,
     /// Why there.
     pub termination: Termination,
     /// How often the model was evaluated.
@@ -61,49 +62,96 @@ pub struct Minimum {
 }
 
 /// Minimises the sum of squares of `evaluate`, which gives `None` to stop.
-pub fn minimize(start: &[f64], evaluate: impl FnMut(&[f64]) -> Option<Triangle>) -> Minimum {
+///
+/// `residual_count` is that of the long problem: δ standard errors away from the minimum, in any direction, the sum of squares is
+/// greater by δ² of so many parts of it. The search has arrived where δ is no more than `near_errors`; errors as they would be if
+/// residuals did not remember: true ones are no smaller. Within one standard error a step that `is_straight`, over which a coordinate and its
+/// parameter are all but proportional, is the last: what it misses the minimum by goes with its square, and is not evaluated any
+/// more.
+pub fn minimize(
+    start: &[f64],
+    residual_count: usize,
+    near_errors: f64,
+    is_straight: impl Fn(&[f64], &[f64]) -> bool,
+    evaluate: impl FnMut(&[f64]) -> Option<Triangle>,
+) -> Minimum {
     if start.is_empty() {
         let termination = Termination::NothingToFit;
-        return Minimum { coordinates: Vec::new(), termination, evaluation_count: 0, squares: f64::NAN };
+        return Minimum {
+            coordinates: Vec::new(),
+            evaluated: Vec::new(),
+            termination,
+            evaluation_count: 0,
+            squares: f64::NAN,
+        };
     }
-    let mut adapter = Adapter { evaluate, coordinates: DVector::from_row_slice(start), current: None };
+    let mut adapter = Adapter {
+        evaluate,
+        coordinates: DVector::from_row_slice(start),
+        current: None,
+        is_straight,
+        residual_count,
+        near_errors,
+    };
     adapter.update();
     let (adapter, report) = LevenbergMarquardt::new()
         .with_ftol(SQUARES_TOLERANCE)
         .with_xtol(STEP_TOLERANCE)
-        .with_gtol(STEP_TOLERANCE)
         .with_patience(PATIENCE)
         .minimize(adapter);
+    let arrival = adapter.arrival();
     let termination = match report.termination {
         TerminationReason::ResidualsZero
         | TerminationReason::Orthogonal
         | TerminationReason::Converged { .. }
         | TerminationReason::NoImprovementPossible(_) => Termination::Converged,
         TerminationReason::LostPatience => Termination::OutOfPatience,
+        TerminationReason::User(_) if arrival.is_some() => Termination::Converged,
         TerminationReason::User(_) => Termination::Stopped,
         _ => Termination::Stalled,
     };
+    let evaluated: Vec<f64> = adapter.coordinates.iter().copied().collect();
     Minimum {
-        coordinates: adapter.coordinates.iter().copied().collect(),
+        coordinates: arrival.unwrap_or_else(|| evaluated.clone()),
+        evaluated,
         termination,
         evaluation_count: report.number_of_evaluations,
         squares: 2.0 * report.objective_function,
     }
 }
 
-struct Adapter<E> {
+struct Adapter<E, S> {
     evaluate: E,
     coordinates: DVector<f64>,
     current: Option<Triangle>,
+    residual_count: usize,
+    near_errors: f64,
+    is_straight: S,
 }
 
-impl<E: FnMut(&[f64]) -> Option<Triangle>> Adapter<E> {
+impl<E: FnMut(&[f64]) -> Option<Triangle>, S: Fn(&[f64], &[f64]) -> bool> Adapter<E, S> {
     fn update(&mut self) {
         self.current = (self.evaluate)(self.coordinates.as_slice());
     }
+
+    /// The minimum where it is near, or here where hardly anything is to be gained; `None` where it is far.
+    fn arrival(&self) -> Option<Vec<f64>> {
+        let triangle = self.current.as_ref()?;
+        #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
+        let errors = (triangle.reducible_ratio() * self.residual_count as f64).sqrt();
+        let here = self.coordinates.as_slice();
+        let step = triangle.step().filter(|_| errors <= 1.0);
+        let there = step.map(|step| here.iter().zip(step).map(|(coordinate, step)| coordinate - step).collect());
+        let there = there.filter(|there: &Vec<f64>| (self.is_straight)(here, there));
+        there.or_else(|| (errors <= self.near_errors).then(|| here.to_vec()))
+    }
 }
 
-impl<E: FnMut(&[f64]) -> Option<Triangle>> LeastSquaresProblem<f64, Dyn, Dyn> for Adapter<E> {
+impl<E, S> LeastSquaresProblem<f64, Dyn, Dyn> for Adapter<E, S>
+where
+    E: FnMut(&[f64]) -> Option<Triangle>,
+    S: Fn(&[f64], &[f64]) -> bool,
+{
     type ResidualStorage = Owned<f64, Dyn>;
     type JacobianStorage = Owned<f64, Dyn, Dyn>;
     type ParameterStorage = Owned<f64, Dyn>;
@@ -123,7 +171,11 @@ impl<E: FnMut(&[f64]) -> Option<Triangle>> LeastSquaresProblem<f64, Dyn, Dyn> fo
         self.current.as_ref().map(|triangle| DVector::from_row_slice(triangle.residuals.as_slice()))
     }
 
+    /// None where the search has arrived: that ends it.
     fn jacobian(&self) -> Option<DMatrix<f64>> {
+        if self.arrival().is_some() {
+            return None;
+        }
         let jacobian = &self.current.as_ref()?.jacobian;
         Some(DMatrix::from_column_slice(jacobian.nrows(), jacobian.ncols(), jacobian.as_slice()))
     }

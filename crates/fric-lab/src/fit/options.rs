@@ -10,7 +10,8 @@ use super::vector::Parameter;
 /// How to fit.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FitOptions {
-    /// What to vary, of every cable; if not given, μ, σ, F_pv, ε and the parameters of each effect that the cable has.
+    /// What to vary, of every cable; if not given, μ, σ, F_pv, ε and the parameters of each effect that the cable has, but for
+    /// those that are settings.
     pub parameters: Option<Vec<Parameter>>,
     /// How to weigh deviations that are far out.
     pub weighing: Weighing,
@@ -18,7 +19,7 @@ pub struct FitOptions {
 
 impl FitOptions {
     /// What to vary of a cable.
-    pub(super) fn free(&self, params: &CableParams) -> Vec<Parameter> {
+    pub(crate) fn free(&self, params: &CableParams) -> Vec<Parameter> {
         self.parameters.clone().unwrap_or_else(|| {
             let values = params.values();
             let acts = |kind: &str| {
@@ -29,7 +30,7 @@ impl FitOptions {
             let free = |parameter: &Parameter| {
                 parameter.place() < FRICTION_COUNT || parameter.effect().is_some_and(|kind| acting.contains(&kind))
             };
-            Parameter::all().filter(free).collect()
+            Parameter::all().filter(|parameter| parameter.row().fitted).filter(free).collect()
         })
     }
 }

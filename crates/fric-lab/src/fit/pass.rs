@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use fric_core::parameters::Values;
+use fric_core::parameters::{OFFSET, Values};
 use fric_core::scalar::Scalar;
 use fric_core::{CableCycle, CableGroup, CableParams, LANES, Lanes};
 
@@ -10,29 +10,25 @@ use super::dual::Dual;
 use super::record::{CableRecord, Row};
 use super::vector::Parameter;
 
-/// The most parameters that a cable's forces can be differentiated by.
-pub const MOST_PARAMETERS: usize = 32;
-
-/// Runs `$run::<N>` with room for `$count` derivatives: the smallest of a few sizes that holds them.
+/// Runs `$run::<N>` with the number of derivatives, of few, that one group of cables carries along where there are `$count` in
+/// all. The compiler writes the whole cycle for each: more than the greatest take several groups.
 macro_rules! with_room_for {
     ($count:expr, $run:ident($($argument:expr),* $(,)?)) => {
         match $count {
             0 => $run::<0>($($argument),*),
-            1..=4 => $run::<4>($($argument),*),
-            5..=8 => $run::<8>($($argument),*),
-            9..=16 => $run::<16>($($argument),*),
-            _ => $run::<{ crate::fit::pass::MOST_PARAMETERS }>($($argument),*),
+            1..=3 => $run::<3>($($argument),*),
+            _ => $run::<6>($($argument),*),
         }
     };
 }
 pub(super) use with_room_for;
 
-/// The room that [`with_room_for`] takes for a number of derivatives.
+/// The derivatives that all groups together have room for.
 pub fn room_for(count: usize) -> usize {
-    fn room<const N: usize>() -> usize {
-        N
+    fn room<const N: usize>(count: usize) -> usize {
+        N * count.div_ceil(N.max(1))
     }
-    with_room_for!(count, room())
+    with_room_for!(count, room(count))
 }
 
 /// One cable's part in a pass.
@@ -45,6 +41,11 @@ pub struct Part<'a> {
 }
 
 impl Part<'_> {
+    /// How many derivatives its pass has to carry along: none for the offset, by which every force has the derivative 1.
+    pub fn carried(&self) -> usize {
+        carried(&self.free).count()
+    }
+
     /// Whether the forces of this part are those of the other, with its derivatives or more.
     pub fn serves(&self, other: &Self) -> bool {
         let bits = |part: &Self| part.values.map(f64::to_bits);
@@ -52,6 +53,10 @@ impl Part<'_> {
             && bits(self) == bits(other)
             && (other.free.is_empty() || self.free == other.free)
     }
+}
+
+fn carried(free: &[Parameter]) -> impl Iterator<Item = &Parameter> {
+    free.iter().filter(|parameter| parameter.place() != OFFSET)
 }
 
 /// Forces of one cable at the platform with their derivatives, cycle by cycle.
@@ -62,9 +67,20 @@ pub struct Forces {
 }
 
 impl Forces {
-    /// None yet, with so many derivatives, and room for so many cycles.
-    pub fn new(derivative_count: usize, cycles: usize) -> Self {
-        Self { derivative_count, numbers: Vec::with_capacity(cycles * (derivative_count + 1)) }
+    /// None any more, with so many derivatives and room for so many cycles.
+    pub fn clear(&mut self, derivative_count: usize, cycles: usize) {
+        self.derivative_count = derivative_count;
+        self.numbers.clear();
+        self.numbers.reserve(cycles * (derivative_count + 1));
+    }
+
+    /// What they are, by their derivatives, where each parameter is greater by a little.
+    pub fn step(&mut self, by: &[f64]) {
+        for numbers in self.numbers.chunks_exact_mut(self.derivative_count + 1) {
+            if let Some((force_n, derivatives)) = numbers.split_first_mut() {
+                *force_n += derivatives.iter().zip(by).map(|(derivative, step)| derivative * step).sum::<f64>();
+            }
+        }
     }
 
     /// Force in N and derivatives in a cycle; NaN past the end.
@@ -80,8 +96,11 @@ impl Forces {
 #[derive(Debug)]
 pub struct LanePass<'a, const N: usize> {
     parts: Vec<Part<'a>>,
-    at_rest: Option<CableGroup<Dual<Lanes, N>>>,
-    group: Option<CableGroup<Dual<Lanes, N>>>,
+    /// Of each part, which number of a cycle goes where in its forces: the force, what is carried, and 1.
+    columns: Vec<Vec<usize>>,
+    /// Each carries `N` of the derivatives.
+    at_rest: Vec<CableGroup<Dual<Lanes, N>>>,
+    groups: Vec<CableGroup<Dual<Lanes, N>>>,
 }
 
 impl<'a, const N: usize> LanePass<'a, N> {
@@ -89,47 +108,65 @@ impl<'a, const N: usize> LanePass<'a, N> {
     pub fn new(parts: impl IntoIterator<Item = Part<'a>>) -> Self {
         let parts: Vec<Part<'a>> = parts.into_iter().take(LANES).collect();
         let of_lane = |lane: usize| parts.get(lane).or(parts.last());
-        let value = |place: usize| Dual {
+        let value = |first: usize, place: usize| Dual {
             value: Lanes::from_lanes(|lane| of_lane(lane).map_or(f64::NAN, |part| part.values[place])),
             gradient: std::array::from_fn(|derivative| {
-                let is_it = |part: &Part<'_>| part.free.get(derivative).is_some_and(|of| of.place() == place);
+                let is_it =
+                    |part: &Part<'_>| carried(&part.free).nth(first + derivative).is_some_and(|of| of.place() == place);
                 Lanes::from_lanes(|lane| f64::from(u8::from(of_lane(lane).is_some_and(is_it))))
             }),
         };
+        let most = parts.iter().map(Part::carried).max().unwrap_or(0);
+        let room = N * most.div_ceil(N.max(1));
+        let columns = |part: &Part<'_>| {
+            let mut carried = 1..;
+            let of = |parameter: &Parameter| if parameter.place() == OFFSET { Some(room + 1) } else { carried.next() };
+            std::iter::once(0).chain(part.free.iter().filter_map(of)).collect()
+        };
+        let columns = parts.iter().map(columns).collect();
         let varies = |place: usize| parts.iter().any(|part| part.free.iter().any(|of| of.place() == place));
         let params: Vec<&CableParams> = parts.iter().map(|part| part.record.params).collect();
         let cycle_s = parts.first().map_or(f64::NAN, |part| part.record.cycle_s);
-        let at_rest = CableGroup::new(&params, &std::array::from_fn(value), cycle_s, varies);
-        Self { at_rest, group: None, parts }
+        let of_first =
+            |first: usize| CableGroup::new(&params, &std::array::from_fn(|place| value(first, place)), cycle_s, varies);
+        let at_rest = (0..room.max(1)).step_by(N.max(1)).filter_map(of_first).collect();
+        Self { at_rest, groups: Vec::new(), columns, parts }
     }
 
     /// Starts a log: nothing is remembered.
     pub fn rest(&mut self) {
-        self.group.clone_from(&self.at_rest);
+        self.groups.clone_from(&self.at_rest);
     }
 
     /// The cycles `from..to`; the forces of each part go to the end of `forces`.
     pub fn advance(&mut self, from: usize, to: usize, forces: &mut [Forces]) {
-        let (Some(group), Some(last)) = (&mut self.group, self.parts.len().checked_sub(1)) else { return };
+        let Some(last) = self.parts.len().checked_sub(1) else { return };
         let rows: [&[Row]; LANES] = std::array::from_fn(|lane| {
             self.parts.get(lane.min(last)).and_then(|part| part.record.rows.get(from..to)).unwrap_or_default()
         });
         let [first, second, third, fourth] = rows;
+        // The force, its derivatives, and 1.
+        let mut numbers = vec![[1.0; LANES]; N * self.groups.len() + 2];
         for (((first, second), third), fourth) in first.iter().zip(second).zip(third).zip(fourth) {
             let rows = [first, second, third, fourth];
-            let force = group.step(|lane| cycle(rows[lane % LANES])).platform_force_n;
-            let gradient = force.gradient.map(Lanes::to_array);
-            let values = force.value.to_array();
-            for (lane, forces) in forces.iter_mut().enumerate().take(last + 1) {
-                forces.numbers.push(values[lane]);
-                forces.numbers.extend(gradient.iter().map(|part| part[lane]));
+            let mut derivatives = 1;
+            for group in &mut self.groups {
+                let force = group.step(|lane| cycle(rows[lane % LANES])).platform_force_n;
+                numbers[0] = force.value.to_array();
+                for (number, part) in numbers.iter_mut().skip(derivatives).zip(force.gradient) {
+                    *number = part.to_array();
+                }
+                derivatives += N;
+            }
+            for (lane, (forces, columns)) in forces.iter_mut().zip(&self.columns).enumerate() {
+                forces.numbers.extend(columns.iter().map(|column| numbers[*column][lane]));
             }
         }
     }
 }
 
 fn cycle(row: &Row) -> CableCycle<'_> {
-    CableCycle { signals: &row.signals, pose_wrap: row.pose_wrap }
+    CableCycle { signals: &row.signals, pose_wrap: row.pose_wrap, cycle: row.cycle }
 }
 
 /// Forces of one cable in consecutive cycles, begun at rest, for the values in each lane.

@@ -6,6 +6,7 @@
 
 use std::ops::Range;
 use std::rc::Rc;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use fric_core::parameters::{SIGMA, Values};
@@ -99,6 +100,15 @@ impl Problem<'_> {
     /// How many parameters vary, of all cables.
     pub fn parameter_count(&self) -> usize {
         self.members.iter().map(|member| member.free.len()).sum()
+    }
+
+    /// How many residuals count.
+    pub fn residual_count(&self) -> usize {
+        let of_sample = match self.comparison {
+            Comparison::Forces => 1,
+            Comparison::Wrench { .. } => 6,
+        };
+        self.used.iter().filter(|used| **used).count() * of_sample
     }
 
     /// Residuals and Jacobian at the values of each cable, reduced; `None` when stopped.
@@ -222,16 +232,6 @@ impl Assembly {
     /// Rows of a sample from the forces of all cables with their derivatives; without derivatives, residuals alone.
     fn assemble(&mut self, problem: &Problem<'_>, place: usize, forces: &[Forces], cycle: usize, derivatives: bool) {
         let Self { forces_n, residuals, levers, rows } = self;
-        if let (Comparison::Forces, [member], [of_cable]) = (&problem.comparison, problem.members.as_slice(), forces) {
-            // What follows, for a single cable and a single residual.
-            let (force_n, gradient) = of_cable.at(cycle);
-            let reference_n = member.record.rows.get(place).map_or(f64::NAN, |row| row.reference_n);
-            let (root, slope) = problem.loss.root(force_n - reference_n);
-            rows.clear();
-            rows.extend(gradient.iter().take(if derivatives { member.free.len() } else { 0 }).map(|part| slope * part));
-            rows.push(root);
-            return;
-        }
         forces_n.clear();
         forces_n.extend(forces.iter().map(|of_cable| of_cable.at(cycle).0));
         problem.compare(place, forces_n, residuals);
@@ -252,33 +252,56 @@ impl Assembly {
 
 impl<'a> Problem<'a> {
     /// Forces of every cable in every cycle, without derivatives; `None` when stopped.
-    pub fn forces(&self, values: &[Values]) -> Option<Vec<Forces>> {
+    pub fn forces(&self, values: &[Values]) -> Option<Vec<Arc<Forces>>> {
         let parts: Vec<Part<'_>> =
             self.members.iter().zip(values).map(|(member, values)| member.part(values, false)).collect();
         if let (Some(seat), [part]) = (&self.seat, parts.as_slice()) {
-            return seat.forces(part).map(|forces| vec![(*forces).clone()]);
+            return seat.forces(part).map(|forces| vec![forces]);
         }
-        let of_lanes: Option<Vec<Vec<Forces>>> =
-            parts.par_chunks(LANES).map(|parts| all_forces::<0>(parts, self.stop)).collect();
-        of_lanes.map(|forces| forces.into_iter().flatten().collect())
+        let of_parts = |parts: &[Part<'_>]| all_forces::<0>(parts, vec![Forces::default(); parts.len()], self.stop);
+        let of_lanes: Option<Vec<Vec<Forces>>> = parts.par_chunks(LANES).map(of_parts).collect();
+        of_lanes.map(|forces| forces.into_iter().flatten().map(Arc::new).collect())
+    }
+
+    /// Lets the next forces be those of a pass again, after [`step`](Self::step).
+    pub fn forget_step(&self) {
+        self.seat.iter().for_each(|seat| seat.forget_moved());
+    }
+
+    /// Goes from values that were evaluated last to others by the derivatives there.
+    pub fn step(&self, at: &[Values], to: &[Values]) {
+        if let (Some(seat), [member], [at], [to]) = (&self.seat, self.members.as_slice(), at, to) {
+            seat.step(&member.part(at, true), to);
+        }
     }
 
     /// Evaluates all samples that count, with the derivatives by the free parameters or without; false when stopped.
-    fn visit(&self, values: &[Values], derivatives: bool, mut visit: impl FnMut(usize, Rows<'_>)) -> bool {
+    fn visit(&self, values: &[Values], derivatives: bool, visit: impl FnMut(usize, Rows<'_>)) -> bool {
         let parts: Vec<Part<'a>> =
             self.members.iter().zip(values).map(|(member, values)| member.part(values, derivatives)).collect();
         if let (Some(seat), [part]) = (&self.seat, parts.as_slice()) {
             let Some(forces) = seat.forces(part) else { return false };
-            let width = 1 + if derivatives { self.parameter_count() } else { 0 };
-            let mut assembly = Assembly::default();
-            for (place, _) in self.used.iter().enumerate().filter(|(_, used)| **used) {
-                assembly.assemble(self, place, std::slice::from_ref(&*forces), place, derivatives);
-                visit(place, assembly.rows.chunks_exact(width));
-            }
+            self.visit_single(part, &forces, visit);
             return true;
         }
-        let most = parts.iter().map(|part| part.free.len()).max().unwrap_or(0);
+        let most = parts.iter().map(Part::carried).max().unwrap_or(0);
         with_room_for!(most, visit_chunks(self, &parts, derivatives, visit))
+    }
+}
+
+impl Problem<'_> {
+    /// Evaluates a single cable by forces at hand, of which a row is all but made.
+    fn visit_single(&self, part: &Part<'_>, forces: &Forces, mut visit: impl FnMut(usize, Rows<'_>)) {
+        let mut of_sample = vec![0.0; part.free.len() + 1];
+        for (place, (row, _)) in part.record.rows.iter().zip(&self.used).enumerate().filter(|(_, (_, used))| **used) {
+            let (force_n, gradient) = forces.at(place);
+            let (root, slope) = self.loss.root(force_n - row.reference_n);
+            for (entry, part) in of_sample.iter_mut().zip(gradient) {
+                *entry = slope * part;
+            }
+            of_sample.last_mut().into_iter().for_each(|entry| *entry = root);
+            visit(place, of_sample.chunks_exact(of_sample.len()));
+        }
     }
 }
 
@@ -294,6 +317,7 @@ fn visit_chunks<const N: usize>(
     let mut assembly = Assembly::default();
     let mut passes: Vec<LanePass<'_, N>> =
         parts.chunks(LANES).map(|parts| LanePass::new(parts.iter().cloned())).collect();
+    let mut forces = vec![Forces::default(); parts.len()];
     for (start, log) in first.record.logs() {
         passes.iter_mut().for_each(LanePass::rest);
         let end = start + log.len();
@@ -302,7 +326,9 @@ fn visit_chunks<const N: usize>(
                 return false;
             }
             let to = (from + CHUNK).min(end);
-            let mut forces: Vec<Forces> = parts.iter().map(|_| Forces::new(N, CHUNK)).collect();
+            for (forces, part) in forces.iter_mut().zip(parts) {
+                forces.clear(part.free.len(), CHUNK);
+            }
             passes
                 .par_iter_mut()
                 .zip(forces.par_chunks_mut(LANES))

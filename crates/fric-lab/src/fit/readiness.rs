@@ -67,7 +67,8 @@ impl Holdings {
 pub struct Lack {
     /// In one sentence, without its full stop.
     pub cause: String,
-    advice: &'static str,
+    /// What to do, a sentence; it ends without a full stop where there is another reference to fit to.
+    pub advice: &'static str,
     /// The other reference, with which it would not be missing.
     instead: Option<Reference>,
     /// The cables that cannot be identified without it, by place.
@@ -135,6 +136,19 @@ const POSE_ADVICE: &str = "Name the topic of the poses as `pose` under `[log]` i
 /// What is missing to identify each cable from its force at the platform.
 #[must_use]
 pub fn by_forces(robot: &RobotFile, holdings: &Holdings) -> Readiness {
+    let advice = "Name their topic as `reference` under `[log]` in the robot file, or fit without them";
+    of_forces(robot, holdings, advice, Some(Reference::Wrench))
+}
+
+/// What is missing to look for what a model lacks.
+#[must_use]
+pub fn to_discover(robot: &RobotFile, holdings: &Holdings) -> Readiness {
+    let advice = "Name their topic as `reference` under `[log]` in the robot file, or record with force sensors at the \
+                  platform.";
+    of_forces(robot, holdings, advice, None)
+}
+
+fn of_forces(robot: &RobotFile, holdings: &Holdings, advice: &'static str, instead: Option<Reference>) -> Readiness {
     let log = &robot.options().log;
     let (names, params) = (robot.cable_names(), robot.params());
     let mut readiness = Readiness { lacks: silent(&names, holdings), cable_count: names.len() };
@@ -145,8 +159,8 @@ pub fn by_forces(robot: &RobotFile, holdings: &Holdings) -> Readiness {
     if !cables.is_empty() {
         readiness.lacks.push(Lack {
             cause: format!("the log has no reference forces on {}{}", log.reference, of(&names, &cables)),
-            advice: "Name their topic as `reference` under `[log]` in the robot file, or fit without them",
-            instead: Some(Reference::Wrench),
+            advice,
+            instead,
             cables,
         });
     }

@@ -1,12 +1,12 @@
 //! What a log holds for an identification: the signals of each cable as the cycle takes them, sample by sample.
 //!
-//! A log is conditioned once ([`fric_core::signals`]) and then evaluated many times. Memory: 64 bytes a sample and cable;
-//! for a fit to the wrench 48 bytes more for each cable and 150 for the platform.
+//! A log is conditioned once ([`fric_core::signals`]) and then evaluated many times. Memory: 80 bytes a sample and cable,
+//! and 8 a sample; for a fit to the wrench 48 bytes more for each cable and 150 for the platform.
 
 use std::ops::Range;
 
 use fric_core::robot::RobotParams;
-use fric_core::signals::{Conditioned, RawSignals, SignalState, condition};
+use fric_core::signals::{BEFORE_FIRST, Conditioned, RawSignals, SignalState, condition, next_cycle};
 use fric_core::{CableInput, CableParams, Pose, PoseWrap, Sample, Wrench};
 use nalgebra::Vector6;
 
@@ -47,6 +47,8 @@ pub struct Row {
     pub reference_n: f64,
     /// No pose that can be used, for a cable that needs one.
     pub pose_fault: bool,
+    /// Cycles since the first of its log.
+    pub cycle: f64,
 }
 
 impl Row {
@@ -76,9 +78,19 @@ pub struct Measurements<'a> {
     cables: Vec<Vec<Row>>,
     platform: PlatformRecord,
     starts: Vec<usize>,
+    times_s: Vec<f64>,
+    log_start: LogStart,
     clock: Clock,
+    cycle: f64,
     signals: Vec<SignalState<f64>>,
     pose_wraps: Vec<PoseWrap>,
+}
+
+/// Where the time of the present log begins.
+#[derive(Clone, Copy, Debug, Default)]
+struct LogStart {
+    first_nanos: Option<i64>,
+    time_s: f64,
 }
 
 impl<'a> Measurements<'a> {
@@ -92,7 +104,10 @@ impl<'a> Measurements<'a> {
             cables: vec![Vec::new(); count],
             platform: PlatformRecord::default(),
             starts: Vec::new(),
+            times_s: Vec::new(),
+            log_start: LogStart::default(),
             clock: Clock::new(robot.cycle_s()),
+            cycle: BEFORE_FIRST,
             signals: vec![SignalState::start(); count],
             pose_wraps: vec![PoseWrap::START; count],
         }
@@ -101,8 +116,11 @@ impl<'a> Measurements<'a> {
     /// The samples that follow are of another log: what a cable remembers does not go over.
     pub fn start_log(&mut self) {
         self.clock = Clock::new(self.robot.cycle_s());
+        self.cycle = BEFORE_FIRST;
         self.signals.fill(SignalState::start());
         self.pose_wraps.fill(PoseWrap::START);
+        let time_s = self.times_s.last().map_or(0.0, |last_s| last_s + self.robot.cycle_s());
+        self.log_start = LogStart { first_nanos: None, time_s };
         if self.starts.last() != Some(&self.len()) {
             self.starts.push(self.len());
         }
@@ -114,6 +132,11 @@ impl<'a> Measurements<'a> {
             self.start_log();
         }
         let elapsed_cycles = self.clock.elapsed_cycles(sample.stamp_nanos);
+        let first_nanos = *self.log_start.first_nanos.get_or_insert(sample.stamp_nanos);
+        #[expect(clippy::cast_precision_loss, reason = "a duration")]
+        let since_start_s = sample.stamp_nanos.saturating_sub(first_nanos) as f64 * 1e-9;
+        self.times_s.push(self.log_start.time_s + since_start_s);
+        self.cycle = next_cycle(self.cycle, elapsed_cycles);
         let pose = sample.pose.filter(Pose::is_usable);
         let limits = self.robot.monitor().limits();
         let states = self.signals.iter_mut().zip(&mut self.pose_wraps);
@@ -127,7 +150,7 @@ impl<'a> Measurements<'a> {
             *wrap = pose_wrap.unwrap_or(*wrap);
             let reference_n = sample.reference_force_n.get(index).copied().unwrap_or(f64::NAN);
             let pose_fault = params.needs_pose() && pose_wrap.is_none();
-            rows.push(Row { signals, pose_wrap: *wrap, reference_n, pose_fault });
+            rows.push(Row { signals, pose_wrap: *wrap, reference_n, pose_fault, cycle: self.cycle });
             if self.reference == Reference::Wrench {
                 let column = pose.as_ref().and_then(|pose| params.structure_column(pose));
                 self.platform.structure.push(column.unwrap_or_else(|| Vector6::repeat(f64::NAN)));
@@ -163,11 +186,18 @@ impl<'a> Measurements<'a> {
         self.len() == 0
     }
 
+    /// When each log begins, s: several logs are one after the other.
+    #[must_use]
+    pub fn log_starts_s(&self) -> Vec<f64> {
+        self.starts.iter().map(|start| self.times_s.get(*start).copied().unwrap_or(0.0)).collect()
+    }
+
     /// A cable's parameters and its cycles; `None` past the robot's cables.
     #[must_use]
     pub fn cable(&self, index: usize) -> Option<CableRecord<'_>> {
         let (params, rows) = (self.robot.cables().get(index)?, self.cables.get(index)?);
-        Some(CableRecord { params, rows, starts: &self.starts, cycle_s: self.robot.cycle_s() })
+        let (starts, times_s) = (self.starts.as_slice(), self.times_s.as_slice());
+        Some(CableRecord { params, rows, starts, times_s, cycle_s: self.robot.cycle_s() })
     }
 
     /// All cables in order.
@@ -196,21 +226,44 @@ pub struct CableRecord<'a> {
     /// Its cycles, one log after the other.
     pub rows: &'a [Row],
     pub(super) starts: &'a [usize],
-    pub(super) cycle_s: f64,
+    pub(super) times_s: &'a [f64],
+    /// Duration of a cycle, s.
+    pub cycle_s: f64,
 }
 
 impl<'a> CableRecord<'a> {
     /// A stretch of its cycles, as a log of its own.
     pub(super) fn stretch(&self, cycles: &Range<usize>) -> Self {
-        Self { rows: self.rows.get(cycles.clone()).unwrap_or_default(), starts: &[0], ..*self }
+        let rows = self.rows.get(cycles.clone()).unwrap_or_default();
+        Self { rows, starts: &[0], times_s: self.times_s.get(cycles.clone()).unwrap_or_default(), ..*self }
     }
 
     /// Other cycles of the same cable, as one log.
-    pub(super) fn with_rows<'b>(&self, rows: &'b [Row]) -> CableRecord<'b>
+    pub(super) fn as_one_log<'b>(&self, rows: &'b [Row]) -> CableRecord<'b>
     where
         'a: 'b,
     {
-        CableRecord { params: self.params, rows, starts: &[0], cycle_s: self.cycle_s }
+        CableRecord { params: self.params, rows, starts: &[0], times_s: &[], cycle_s: self.cycle_s }
+    }
+
+    /// The same cycles with other signals.
+    pub(crate) fn with_signals<'b>(&self, rows: &'b [Row]) -> CableRecord<'b>
+    where
+        'a: 'b,
+    {
+        CableRecord { rows, ..*self }
+    }
+
+    /// When a cycle is, s since the first sample; several logs one after the other.
+    #[must_use]
+    pub fn time_s(&self, cycle: usize) -> f64 {
+        let (past, last_s) = match self.times_s {
+            [] => (cycle, 0.0),
+            [.., last_s] => (cycle.saturating_sub(self.times_s.len() - 1), *last_s),
+        };
+        #[expect(clippy::cast_precision_loss, reason = "a count of cycles")]
+        let without_pause_s = last_s + past as f64 * self.cycle_s;
+        self.times_s.get(cycle).copied().unwrap_or(without_pause_s)
     }
 
     /// The cycles of each log, with the place of the first.

@@ -7,16 +7,17 @@ use fric_core::CableParams;
 use fric_core::parameters::Values;
 
 use super::FitOptions;
-use super::cables::{leave_out_warm_up, prepared, used};
+use super::cables::{Search, prepared};
+use super::gang::Gang;
 use super::problem::{Comparison, Loss, Member, Problem};
 use super::record::{CableRecord, Row};
-use super::start;
+use super::selection::Standing;
 use super::vector::{Coordinate, Parameter, with};
 
 /// Residuals `f(p) − f_ref` in N of a cable's sound samples, and their derivatives, as functions of its free parameters.
 ///
-/// Samples are those that [`fit_cables`](super::fit_cables) starts with: flagged ones, those without a reference and the
-/// warm-up are left out, outliers are not. It keeps them itself; copies share them.
+/// Samples are those that [`fit_cables`](super::fit_cables) ends with: flagged ones, those without a reference and the warm-up,
+/// which follows from the friction that was found, are left out. Outliers are not. It keeps them itself; copies share them.
 #[derive(Clone, Debug)]
 pub struct ResidualFunction {
     cable: Arc<Cable>,
@@ -32,20 +33,12 @@ impl ResidualFunction {
     pub fn new(record: &CableRecord<'_>, options: &FitOptions) -> Self {
         let given = record.params.values();
         let free = options.free(record.params);
-        let mut standings = prepared(record);
         let stop = AtomicBool::new(false);
-        let problem = Problem {
-            members: vec![Member { record: *record, free: free.clone() }],
-            comparison: Comparison::Forces,
-            loss: Loss::Squares,
-            used: used(&standings),
-            stop: &stop,
-            seat: None,
-        };
-        let starts = start::starts(&problem, &[given], record.cycle_s);
-        leave_out_warm_up(&problem, &starts, &mut standings);
-        let start = starts.first().and_then(|start| start.first()).copied().unwrap_or(given);
-        Self { cable: Arc::new(Cable::of(record)), free, given, start, used: used(&standings) }
+        let gang = Gang::new(1, &stop);
+        let Search { start, standings, .. } = Search::run(record, &prepared(record), options, &stop, gang.seat(0));
+        let counts = |standing: &Standing| [Standing::Used, Standing::Outlier].contains(standing);
+        let used = standings.iter().map(counts).collect();
+        Self { cable: Arc::new(Cable::of(record)), free, given, start, used }
     }
 
     /// What varies, in the order of the arguments.
@@ -128,6 +121,12 @@ impl Cable {
     }
 
     fn record(&self) -> CableRecord<'_> {
-        CableRecord { params: &self.params, rows: &self.rows, starts: &self.starts, cycle_s: self.cycle_s }
+        CableRecord {
+            params: &self.params,
+            rows: &self.rows,
+            starts: &self.starts,
+            times_s: &[],
+            cycle_s: self.cycle_s,
+        }
     }
 }

@@ -1,10 +1,11 @@
 //! The robot file with what was found.
 
-use fric_core::parameters::{MU, NO_PRESLIDING_N_PER_M, OFFSET, SIGMA, VISCOUS};
+use fric_core::parameters::{MU, NO_PRESLIDING_N_PER_M, OFFSET, SIGMA, VISCOUS, Values};
 use fric_core::robot::edit::{CableEdit, EffectEdit, FrictionEdit, rewrite};
 use fric_core::robot::file::{RobotFile, RobotFileError};
 
 use super::report::CableFit;
+use super::vector::Parameter;
 
 /// The text of a robot file with the fitted values of its cables, in order; everything else stays as it is written.
 /// `origin` says where it is from, for errors.
@@ -12,9 +13,25 @@ use super::report::CableFit;
 /// # Errors
 /// [`RobotFileError`] as [`rewrite`].
 pub fn rewritten(text: &str, origin: &str, fits: &[CableFit]) -> Result<String, RobotFileError> {
+    let new: Vec<NewValues<'_>> =
+        fits.iter().map(|fit| NewValues { values: &fit.values, parameters: fit.fitted.clone() }).collect();
+    with_values(text, origin, &new)
+}
+
+/// What is new of a cable.
+#[derive(Clone, Debug)]
+pub struct NewValues<'a> {
+    /// All values.
+    pub values: &'a Values,
+    /// Those to write.
+    pub parameters: Vec<Parameter>,
+}
+
+/// The text of a robot file with new values of its cables, in order; see [`rewritten`].
+pub fn with_values(text: &str, origin: &str, cables: &[NewValues<'_>]) -> Result<String, RobotFileError> {
     let robot = RobotFile::parse(text, origin)?;
     let names = robot.cable_names();
-    let effects: Vec<EffectValues> = fits.iter().map(effects_of).collect();
+    let effects: Vec<EffectValues> = cables.iter().map(effects_of).collect();
     let effect_edits: Vec<Vec<EffectEdit<'_>>> = effects
         .iter()
         .map(|of_cable| {
@@ -24,17 +41,17 @@ pub fn rewritten(text: &str, origin: &str, fits: &[CableFit]) -> Result<String, 
         .collect();
     let edits: Vec<CableEdit<'_>> = names
         .into_iter()
-        .zip(fits)
+        .zip(cables)
         .zip(&effect_edits)
-        .map(|((name, fit), effects)| {
-            let fitted = |place: usize| {
-                fit.fitted.iter().any(|parameter| parameter.place() == place).then_some(fit.values[place])
+        .map(|((name, new), effects)| {
+            let written = |place: usize| {
+                new.parameters.iter().any(|parameter| parameter.place() == place).then_some(new.values[place])
             };
             let friction = FrictionEdit {
-                mu: fitted(MU),
-                sigma_n_per_m: fitted(SIGMA).filter(|sigma_n_per_m| *sigma_n_per_m < NO_PRESLIDING_N_PER_M),
-                viscous_n_s_per_m: fitted(VISCOUS),
-                offset_n: fitted(OFFSET),
+                mu: written(MU),
+                sigma_n_per_m: written(SIGMA).filter(|sigma_n_per_m| *sigma_n_per_m < NO_PRESLIDING_N_PER_M),
+                viscous_n_s_per_m: written(VISCOUS),
+                offset_n: written(OFFSET),
             };
             CableEdit { name, friction, effects }
         })
@@ -45,12 +62,12 @@ pub fn rewritten(text: &str, origin: &str, fits: &[CableFit]) -> Result<String, 
 /// Parameters of effects, by kind and key.
 type EffectValues = Vec<(&'static str, Vec<(&'static str, f64)>)>;
 
-/// Fitted parameters of each effect.
-fn effects_of(fit: &CableFit) -> EffectValues {
+/// Parameters of each effect that are to be written.
+fn effects_of(new: &NewValues<'_>) -> EffectValues {
     let mut effects = EffectValues::new();
-    for parameter in &fit.fitted {
+    for parameter in &new.parameters {
         let Some(kind) = parameter.effect() else { continue };
-        let number = (parameter.row().key, fit.values[parameter.place()]);
+        let number = (parameter.row().key, new.values[parameter.place()]);
         match effects.iter_mut().find(|(of, _)| *of == kind) {
             Some((_, numbers)) => numbers.push(number),
             None => effects.push((kind, vec![number])),

@@ -10,6 +10,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::gram::add_products;
+
 /// Fewer blocks say too little about their scatter.
 const FEWEST_BLOCKS: usize = 16;
 
@@ -18,12 +20,15 @@ const FEWEST_BLOCKS: usize = 16;
 pub struct Scores {
     levels: Vec<Level>,
     parameters: usize,
+    /// The block that is on its way through the levels.
+    block: Vec<f64>,
 }
 
 #[derive(Clone, Debug)]
 struct Level {
-    /// First half of a block of the next length.
-    waiting: Option<Vec<f64>>,
+    /// First half of a block of the next length, should one be waiting.
+    half: Vec<f64>,
+    is_waiting: bool,
     /// `Σ g gᵀ` of the blocks, upper triangle column by column.
     squares: Vec<f64>,
     count: usize,
@@ -32,36 +37,25 @@ struct Level {
 impl Scores {
     /// None yet.
     pub fn new(parameters: usize) -> Self {
-        Self { levels: Vec::new(), parameters }
+        Self { levels: Vec::new(), parameters, block: vec![0.0; parameters] }
     }
 
     /// Takes in the score of the next sample.
     pub fn add(&mut self, score: &[f64]) {
-        let mut sum = score.to_vec();
-        let mut depth = 0;
-        loop {
-            if depth == self.levels.len() {
-                let squares = vec![0.0; self.parameters * (self.parameters + 1) / 2];
-                self.levels.push(Level { waiting: None, squares, count: 0 });
-            }
-            let Some(level) = self.levels.get_mut(depth) else { return };
-            level.count += 1;
-            let mut places = level.squares.iter_mut();
-            for (column, right) in sum.iter().enumerate() {
-                for (left, place) in sum.iter().take(column + 1).zip(&mut places) {
-                    *place += left * right;
-                }
-            }
-            let Some(mut block) = level.waiting.take() else {
-                level.waiting = Some(sum);
+        self.block.copy_from_slice(score);
+        for level in &mut self.levels {
+            if !level.add(&mut self.block) {
                 return;
-            };
-            for (part, other) in block.iter_mut().zip(&sum) {
-                *part += other;
             }
-            sum = block;
-            depth += 1;
         }
+        let mut level = Level {
+            half: vec![0.0; self.parameters],
+            is_waiting: false,
+            squares: vec![0.0; self.parameters * (self.parameters + 1) / 2],
+            count: 0,
+        };
+        level.add(&mut self.block);
+        self.levels.push(level);
     }
 
     /// Covariance of the estimate, from the inverse of `JᵀJ`.
@@ -97,6 +91,21 @@ impl Scores {
         DMatrix::from_fn(self.parameters, self.parameters, |row, column| {
             factors[row] * factors[column] * most[(row, column)]
         })
+    }
+}
+
+impl Level {
+    /// Takes in a block; with every second one it becomes one of the next length, else false.
+    fn add(&mut self, block: &mut [f64]) -> bool {
+        self.count += 1;
+        add_products(&mut self.squares, block);
+        if self.is_waiting {
+            block.iter_mut().zip(&self.half).for_each(|(part, half)| *part += half);
+        } else {
+            self.half.copy_from_slice(block);
+        }
+        self.is_waiting = !self.is_waiting;
+        !self.is_waiting
     }
 }
 

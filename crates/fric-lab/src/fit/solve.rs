@@ -1,5 +1,7 @@
 //! From a problem and a start to values with their covariance: search, outliers, what is not determined.
 
+use std::sync::Arc;
+
 use fric_core::parameters::{OFFSET, Values};
 use nalgebra::DMatrix;
 
@@ -12,8 +14,10 @@ use super::selection::Standing;
 use super::vector::{Coordinate, Parameter, with};
 use crate::replay::Deviation;
 
-/// Deviations beyond this many standard deviations are no measurements.
+/// Deviations beyond this many standard deviations that their neighbours do not share are no measurements.
 const OUTLIER_RATIO: f64 = 8.0;
+/// So many samples to either side are neighbours: of what is shorter than them it cannot be told that it lasts.
+const NEIGHBOURS: usize = 2;
 /// More outliers than this share of the samples are no outliers: the model does not describe them.
 const MOST_OUTLIERS_RATIO: f64 = 0.02;
 /// Huber's bound in standard deviations: 95 % efficient for normal noise.
@@ -24,6 +28,8 @@ const DEVIATION_PER_MEDIAN: f64 = 1.482_602_218_505_602;
 const COMPARABLE_RATIO: f64 = 0.01;
 /// A given value that raises the sum of squares by more than this share contradicts the samples.
 const CONTRADICTION_RATIO: f64 = 0.01;
+/// A search goes on to within so many standard errors of the minimum.
+const NEAR_ERRORS: f64 = 0.01;
 /// Rounds of search and new look at the deviations.
 const ROUNDS: usize = 3;
 
@@ -172,7 +178,7 @@ fn squares(problem: &Problem<'_>, values: &[Values]) -> f64 {
 /// What matters for each cable of a problem.
 fn yardsticks(problem: &Problem<'_>, values: &[Values]) -> Vec<Yardstick> {
     let forces = problem.forces(values).unwrap_or_default();
-    let of = |((member, values), forces): ((&Member<'_>, &Values), &Forces)| {
+    let of = |((member, values), forces): ((&Member<'_>, &Values), &Arc<Forces>)| {
         let gain = member.record.params.frictionless_gain();
         let (mut friction, mut tension) = (Deviation::default(), Deviation::default());
         for (cycle, row) in member.record.rows.iter().enumerate().filter(|(_, row)| row.is_sound()) {
@@ -207,6 +213,11 @@ fn hold(problem: &mut Problem<'_>, unknown: Unknown, values: &mut [Values], give
 
 /// The minimum from a start.
 pub(super) fn search(problem: &Problem<'_>, start: &[Values], cycle_s: f64) -> (Vec<Values>, Minimum) {
+    search_near(problem, start, cycle_s, NEAR_ERRORS)
+}
+
+/// A place no further from the minimum than so many standard errors, see [`optimizer::minimize`].
+pub fn search_near(problem: &Problem<'_>, start: &[Values], cycle_s: f64, near_errors: f64) -> (Vec<Values>, Minimum) {
     let unknowns = unknowns(problem);
     let coordinates: Vec<Coordinate> =
         unknowns.iter().map(|unknown| Coordinate::of(&unknown.parameter, cycle_s)).collect();
@@ -229,7 +240,11 @@ pub(super) fn search(problem: &Problem<'_>, start: &[Values], cycle_s: f64) -> (
             slopes,
         )
     };
-    let minimum = optimizer::minimize(&at_start, |places| {
+    let is_straight = |from: &[f64], to: &[f64]| {
+        let mut of_each = coordinates.iter().zip(from).zip(to);
+        of_each.all(|((coordinate, from), to)| coordinate.is_straight(*from, *to))
+    };
+    let minimum = optimizer::minimize(&at_start, problem.residual_count(), near_errors, is_straight, |places| {
         let (values, slopes) = values_at(places);
         let gram: Gram = problem.gram(&values)?;
         let (mut matrix, mut gradient, squares) = gram.normal_equations();
@@ -240,12 +255,16 @@ pub(super) fn search(problem: &Problem<'_>, start: &[Values], cycle_s: f64) -> (
         }
         Some(Triangle::new(&matrix, &gradient, squares))
     });
-    (values_at(&minimum.coordinates).0, minimum)
+    let (values, _) = values_at(&minimum.coordinates);
+    if minimum.coordinates != minimum.evaluated {
+        problem.step(&values_at(&minimum.evaluated).0, &values);
+    }
+    (values, minimum)
 }
 
 /// Covariance of what a problem varies, infinite where the samples say nothing; and by how much each moves for residuals of
 /// 1 N in every sample, at worst.
-fn covariance(problem: &Problem<'_>, values: &[Values]) -> (DMatrix<f64>, Vec<f64>) {
+pub fn covariance(problem: &Problem<'_>, values: &[Values]) -> (DMatrix<f64>, Vec<f64>) {
     let count = problem.parameter_count();
     let unknown = || (DMatrix::from_diagonal_element(count, count, f64::INFINITY), vec![f64::INFINITY; count]);
     let Some((gram, scores)) = problem.gram_and_scores(values) else { return unknown() };
@@ -284,26 +303,33 @@ fn look_again(problem: &mut Problem<'_>, values: &[Values], weighing: Weighing, 
             before.push(place);
         }
     }
-    let mut deviations: Vec<(usize, f64)> = Vec::new();
+    let mut places = Vec::new();
+    // One of a cable's force, six of a wrench.
+    let mut series: Vec<Vec<f64>> = Vec::new();
     problem.residuals(values, |place, residuals| {
-        let most = residuals.iter().fold(0.0, |most: f64, residual| most.max(residual.abs()));
-        deviations.push((place, most));
+        series.resize_with(residuals.len(), Vec::new);
+        series.iter_mut().zip(residuals).for_each(|(series, residual)| series.push(*residual));
+        places.push(place);
     });
-    let mut magnitudes: Vec<f64> = deviations.iter().map(|(_, deviation)| *deviation).collect();
-    let middle = magnitudes.len() / 2;
+    let most =
+        |sample: usize| series.iter().filter_map(|of| of.get(sample)).fold(0.0, |most: f64, of| most.max(of.abs()));
+    let mut magnitudes: Vec<f64> = (0..places.len()).map(most).collect();
     if magnitudes.is_empty() {
         return false;
     }
+    let middle = magnitudes.len() / 2;
     let (_, median, _) = magnitudes.select_nth_unstable_by(middle, f64::total_cmp);
     let deviation = *median * DEVIATION_PER_MEDIAN;
     if weighing == Weighing::Huber {
         problem.loss = Loss::Huber(HUBER_RATIO * deviation);
         return true;
     }
-    let far = deviations.iter().filter(|(_, far)| *far > OUTLIER_RATIO * deviation);
-    let mut outliers: Vec<usize> = far.map(|(place, _)| *place).collect();
+    let is_spike =
+        |sample: usize| series.iter().any(|residuals| is_spike(residuals, sample, OUTLIER_RATIO * deviation));
+    let spikes = places.iter().enumerate().filter(|(sample, _)| is_spike(*sample));
+    let mut outliers: Vec<usize> = spikes.map(|(_, place)| *place).collect();
     #[expect(clippy::cast_precision_loss, reason = "counts of samples")]
-    let few = outliers.len() as f64 <= MOST_OUTLIERS_RATIO * deviations.len() as f64;
+    let few = outliers.len() as f64 <= MOST_OUTLIERS_RATIO * places.len() as f64;
     if !few {
         outliers.clear();
     }
@@ -313,4 +339,35 @@ fn look_again(problem: &mut Problem<'_>, values: &[Values], weighing: Weighing, 
         }
     }
     outliers != before
+}
+
+/// Whether a residual is far out, and its neighbours are not: less than half as far, by their median. What lasts is no spike but
+/// something that the model misses, and the samples have a right to be fitted.
+fn is_spike(residuals: &[f64], place: usize, far: f64) -> bool {
+    let Some(residual) = residuals.get(place).filter(|residual| residual.abs() > far) else { return false };
+    let around = residuals.iter().skip(place.saturating_sub(NEIGHBOURS)).take(NEIGHBOURS + place.min(NEIGHBOURS) + 1);
+    let mut shares: Vec<f64> = around.map(|other| other / residual).collect();
+    let middle = shares.len() / 2;
+    let (_, median, _) = shares.select_nth_unstable_by(middle, f64::total_cmp);
+    *median < 0.5
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_spike;
+
+    #[test]
+    fn a_spike_is_alone_and_an_excursion_is_not() {
+        let is_found = |residuals: &[f64]| -> Vec<usize> {
+            (0..residuals.len()).filter(|place| is_spike(residuals, *place, 8.0)).collect()
+        };
+        assert_eq!(is_found(&[0.1, -0.2, 0.1, 50.0, 0.3, -0.1, 0.2]), [3]);
+        assert_eq!(is_found(&[0.1, -0.2, 0.1, -50.0, -40.0, -0.1, 0.2, 0.1]), [3, 4]);
+        assert_eq!(is_found(&[50.0, 0.1, 0.2, 0.1, -0.1, 50.0]), [0, 5]);
+        // A step, a pulse of three samples, the top of a triangle, and a spike on an excursion.
+        assert!(is_found(&[0.1, 0.0, 0.1, 9.0, 9.2, 9.1, 9.0]).is_empty());
+        assert!(is_found(&[0.1, 0.0, 0.1, 9.0, 9.2, 9.1, 0.1, 0.0]).is_empty());
+        assert!(is_found(&[0.0, 3.0, 6.0, 9.0, 12.0, 9.0, 6.0, 3.0, 0.0]).is_empty());
+        assert_eq!(is_found(&[9.0, 9.1, 9.2, 60.0, 9.1, 9.2, 9.1]), [3]);
+    }
 }

@@ -29,7 +29,7 @@ const FAST_M_PER_S: f64 = 1.0;
 /// Way since the last reversal in which a cable may preslide, m.
 const PRESLIDING_M: Range<f64> = 1e-5..1e-2;
 /// Cycles that are enough for a linear step.
-const ENOUGH_SLIDING: usize = 4096;
+const ENOUGH_SLIDING: usize = 1024;
 /// Cycles over which σ is looked for.
 const STRETCH: usize = 8192;
 /// A refined start further than this factor from the coarse one has lost its way.
@@ -39,8 +39,10 @@ const SHALLOW: f64 = 1.5;
 
 /// Values for each cable to start from; the most promising first.
 pub fn starts(problem: &Problem<'_>, given: &[Values], cycle_s: f64) -> Vec<Vec<Values>> {
-    let coarse = valleys(problem, given, cycle_s);
-    let Some(stretch) = stretch_of(problem) else { return coarse };
+    let searched = if is_simple(problem) { most_presliding(problem) } else { longest_log(problem) };
+    let stretch = stretch_of(problem, &searched);
+    let coarse = valleys(problem, given, cycle_s, &searched, stretch.is_none());
+    let Some(stretch) = stretch else { return coarse };
     let refine = |start: Vec<Values>| {
         let (refined, _) = search(&stretch, &start, cycle_s);
         let near = |one: &Values, other: &Values| {
@@ -53,39 +55,49 @@ pub fn starts(problem: &Problem<'_>, given: &[Values], cycle_s: f64) -> Vec<Vec<
 
 /// μ and σ of a single cable on the stretch where it preslides most: a few evaluations of it bring a start near enough that the
 /// whole log needs fewer. `None` where there is nothing to gain.
-fn stretch_of<'a>(problem: &Problem<'a>) -> Option<Problem<'a>> {
+fn stretch_of<'a>(problem: &Problem<'a>, cycles: &Range<usize>) -> Option<Problem<'a>> {
     let (Comparison::Forces, [member]) = (&problem.comparison, problem.members.as_slice()) else { return None };
-    let cycles = most_presliding(problem);
     let mut used = problem.used.get(cycles.clone())?.to_vec();
     used.iter_mut().take(cycles.len() / 8).for_each(|used| *used = false);
     let short = is_simple(problem) && cycles.len() * 4 < problem.used.len() && used.contains(&true);
     let free: Vec<Parameter> =
         member.free.iter().copied().filter(|parameter| [MU, SIGMA].contains(&parameter.place())).collect();
     short.then(|| Problem {
-        members: vec![Member { record: member.record.stretch(&cycles), free }],
+        members: vec![Member { record: member.record.stretch(cycles), free }],
         used,
         ..problem.clone()
     })
 }
 
-/// The valleys of the sum of squares over the presliding distance; the deepest first.
-fn valleys(problem: &Problem<'_>, given: &[Values], cycle_s: f64) -> Vec<Vec<Values>> {
+/// The valleys that the sum of squares over some cycles has over the presliding distance; the deepest first, and on request once
+/// more and closer.
+fn valleys(
+    problem: &Problem<'_>,
+    given: &[Values],
+    cycle_s: f64,
+    searched: &Range<usize>,
+    closer: bool,
+) -> Vec<Vec<Values>> {
     let sliding = slide(problem, given, cycle_s);
     if !problem.members.iter().any(|member| varies(member, SIGMA)) {
         return vec![sliding];
     }
-    let of_distance = |distance_m: f64| -> Vec<f64> {
-        let sigma_of = |(member, values): (&Member<'_>, &Values)| {
-            let tension_n = mean(member.record.rows.iter().map(|row| row.signals.sensor_force_n.max(0.0)));
-            let sigma_n_per_m = member.record.params.memory_m_per_n(values[MU].max(1e-4), 1.0) * tension_n / distance_m;
-            if varies(member, SIGMA) { sigma_n_per_m.clamp(1e-2, 1e11) } else { values[SIGMA] }
-        };
-        problem.members.iter().zip(&sliding).map(sigma_of).collect()
+    // What each cable's friction is that is stored over the distance; none for one whose σ is held.
+    let stored_n = |(member, values): (&Member<'_>, &Values)| {
+        let tension_n = mean(member.record.rows.iter().map(|row| row.signals.sensor_force_n.max(0.0)));
+        let stored_n = member.record.params.memory_m_per_n(values[MU].max(1e-4), 1.0) * tension_n;
+        varies(member, SIGMA).then_some(stored_n)
     };
-    let stretch = if is_simple(problem) { most_presliding(problem) } else { longest_log(problem) };
+    let stored_n: Vec<Option<f64>> = problem.members.iter().zip(&sliding).map(stored_n).collect();
+    let of_distance = |distance_m: f64| -> Vec<f64> {
+        let sigma_of = |(stored_n, values): (&Option<f64>, &Values)| {
+            stored_n.map_or(values[SIGMA], |stored_n| (stored_n / distance_m).clamp(1e-2, 1e11))
+        };
+        stored_n.iter().zip(&sliding).map(sigma_of).collect()
+    };
     let tried = |distances_m: [f64; 4]| {
         let sigmas = distances_m.map(of_distance);
-        let losses = problem.losses_by_sigma(&sliding, &sigmas, &stretch);
+        let losses = problem.losses_by_sigma(&sliding, &sigmas, searched);
         sigmas.into_iter().zip(losses)
     };
     let candidates: Vec<(Vec<f64>, f64)> = DISTANCES_M.into_iter().flat_map(tried).collect();
@@ -102,8 +114,8 @@ fn valleys(problem: &Problem<'_>, given: &[Values], cycle_s: f64) -> Vec<Vec<Val
         .map(|(_, ((sigmas, loss), distance_m))| (sigmas.clone(), *loss, distance_m))
         .collect();
     valleys.sort_by(|one, other| one.1.total_cmp(&other.1));
-    if let Some((sigmas, loss, distance_m)) = valleys.first_mut() {
-        // The deepest once more and closer, for how long a cable remembers follows from it.
+    if let Some((sigmas, loss, distance_m)) = valleys.first_mut().filter(|_| closer) {
+        // How long a cable remembers follows from it.
         let closer = tried(CLOSER.map(|factor| factor * *distance_m)).filter(|(_, other)| *other < *loss);
         if let Some(best) = closer.min_by(|(_, one), (_, other)| one.total_cmp(other)) {
             (*sigmas, *loss) = best;
@@ -175,7 +187,7 @@ fn sliding_gram(problem: &Problem<'_>, values: &[Values]) -> Option<Gram> {
     let used = member.record.rows.iter().zip(&problem.used).filter(|(_, used)| **used).map(|(row, _)| *row);
     let rows: Vec<Row> = used.step_by(counted / ENOUGH_SLIDING + 1).collect();
     let reduced = Problem {
-        members: vec![Member { record: member.record.with_rows(&rows), free: member.free.clone() }],
+        members: vec![Member { record: member.record.as_one_log(&rows), free: member.free.clone() }],
         comparison: Comparison::Forces,
         loss: problem.loss,
         used: vec![true; rows.len()],

@@ -7,7 +7,7 @@ use fric_core::parameters::{FRICTION_COUNT, MU, OFFSET, SIGMA, VISCOUS};
 
 use super::result::{FitCableResult, FitResult, Numbers};
 use super::vector::Parameter;
-use crate::text::table;
+use crate::text::{digits_of, number, plain, table};
 
 /// \[P\] table I, how sure it is, and what the log does not tell.
 pub(super) fn describe(result: &FitResult) -> String {
@@ -32,15 +32,6 @@ pub(super) fn describe(result: &FitResult) -> String {
     }
     text += &undetermined(result);
     text
-}
-
-/// A number, without the sign of nothing.
-fn number(value: f64, digits: usize) -> String {
-    let text = format!("{value:.digits$}");
-    match text.strip_prefix('-') {
-        Some(magnitude) if magnitude.chars().all(|digit| matches!(digit, '0' | '.')) => magnitude.to_owned(),
-        _ => text,
-    }
 }
 
 /// A cell that may be empty.
@@ -241,18 +232,6 @@ fn sample_table(result: &FitResult) -> String {
     let rows = names.zip(cells).map(|(name, cells)| std::iter::once(name.to_owned()).chain(cells).collect());
     let rows: Vec<Vec<String>> = rows.take(if is_same { 1 } else { usize::MAX }).collect();
     table(&header, 1, &rows)
-}
-
-/// Digits behind the point that show two of an error.
-fn digits_of(error: f64) -> usize {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within 0 and 12")]
-    let digits = (1.0 - error.log10().floor()).clamp(0.0, 12.0) as usize;
-    digits
-}
-
-/// A standard error with two digits that count, without an exponent where that can be read.
-fn plain(error: f64) -> String {
-    if (1e-7..1e7).contains(&error) { number(error, digits_of(error)) } else { format!("{error:.1e}") }
 }
 
 /// What the log cannot determine, and what to record for it.

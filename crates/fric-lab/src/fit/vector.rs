@@ -7,8 +7,9 @@
 
 use std::fmt;
 
-use fric_core::effects::time_delay::{DELAY, MAX_DELAY_CYCLES};
-use fric_core::parameters::{self, FRICTION_COUNT, PARAMETER_COUNT, ParameterRow, Values};
+use fric_core::effects::EffectRow;
+use fric_core::effects::time_delay::{DELAY, delay_range_s};
+use fric_core::parameters::{self, FRICTION_COUNT, ParameterRow, Values};
 use fric_core::robot::unknown_name;
 
 /// One parameter of a cable: its place in [`Values`] with its row.
@@ -23,6 +24,11 @@ impl Parameter {
     /// Every parameter there is, in the order of [`Values`].
     pub fn all() -> impl Iterator<Item = Self> {
         parameters::parameters().enumerate().map(|(place, (effect, row))| Self { place, effect, row })
+    }
+
+    /// Those of a row of the catalogue, or of the friction that every model has.
+    pub fn of_row(row: &EffectRow) -> impl Iterator<Item = Self> {
+        Self::all().skip(row.places().start).take(row.places().len())
     }
 
     /// The parameter of a name: a key of the robot file's `friction`, or `effect.key`.
@@ -114,14 +120,14 @@ const WIDE_RATIO: f64 = 1e3;
 const FAR: f64 = 1e3;
 /// Starts keep this share of a range's width away from its ends, where the coordinate has no slope.
 const MARGIN_RATIO: f64 = 1e-9;
+/// How far slopes may part over a step that counts as straight: a thousandth of a standard error is too little to matter.
+const STRAIGHT_RATIO: f64 = 1e-3;
 
 impl Coordinate {
     /// Of a parameter at a cycle time.
     pub fn of(parameter: &Parameter, cycle_s: f64) -> Self {
         let ParameterRow { min, max, .. } = *parameter.row;
-        #[expect(clippy::cast_precision_loss, reason = "a small constant")]
-        let longest_s = (MAX_DELAY_CYCLES - 1) as f64 * cycle_s;
-        let max = if parameter.place == DELAY { longest_s } else { max };
+        let (min, max) = if parameter.place == DELAY { delay_range_s(cycle_s) } else { (min, max) };
         let shape = if min > 0.0 && max / min > WIDE_RATIO {
             Shape::Logarithmic
         } else if min < -FAR && max > FAR {
@@ -149,6 +155,12 @@ impl Coordinate {
         }
     }
 
+    /// Whether the value follows the coordinate in proportion from one place to another, to [`STRAIGHT_RATIO`].
+    pub fn is_straight(self, from: f64, to: f64) -> bool {
+        let (before, after) = (self.value_at(from).1, self.value_at(to).1);
+        (after - before).abs() <= STRAIGHT_RATIO * before.abs()
+    }
+
     /// The value at a coordinate, and its slope.
     pub fn value_at(self, coordinate: f64) -> (f64, f64) {
         match self.shape {
@@ -174,8 +186,6 @@ pub fn with(values: &Values, free: &[Parameter], changed: impl IntoIterator<Item
     }
     values
 }
-
-const _: () = assert!(PARAMETER_COUNT <= super::pass::MOST_PARAMETERS);
 
 #[cfg(test)]
 mod tests {

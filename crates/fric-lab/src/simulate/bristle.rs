@@ -3,11 +3,16 @@
 //! A bearing sticks through an elastic bristle of stiffness `σ/n`. Its deflection z follows the cable and gives way as
 //! its force approaches what the bearing can hold, `f_c = μ·F_N`:
 //!
-//! `dz/dt = v − |v|·(σ/n)·z/f_c`, friction force `f = (σ/n)·z` (\[P\] 16 with exponent 1, for the deflection instead of the
-//! force), with the *exact* normal force `F_N = √(F_{j−1}² − 2F_{j−1}F_j cos α + F_j²)` (\[P\] 7).
+//! `dz/dt = v·g(u)`, `u = 1 − sgn(v)·(σ/n)·z/f_c`, `g(u) = sgn(u)·|u|^a`, friction force `f = (σ/n)·z` (\[P\] 16 for the
+//! deflection instead of the force; its exponent a is 1 unless an effect says otherwise), with the *exact* normal force
+//! `F_N = √(F_{j−1}² − 2F_{j−1}F_j cos α + F_j²)` (\[P\] 7). [Effects](super::effects) change what `f_c` is made of.
 //!
-//! The tension is given at the platform, so the chain is solved from there to the winch: `F_{j−1} = F_j − f_j − F_pv·v`
-//! (\[P\] 5, 6), and the sensor shows `F_s = F_1 − F_0 cos α₁` (\[P\] 11), or `F_0` where it is in line with the cable.
+//! The tension is given at the platform, so the chain is solved from there to the winch: `F_{j−1} = F_j − f_j − F_pv·v −
+//! m·dv/dt` (\[P\] 5, 6, and Newton for a pulley with mass), and the sensor shows `F_s = F_1 − F_0 cos α₁` (\[P\] 11), or
+//! `F_0` where it is in line with the cable.
+//!
+//! A cable that stretches moves over its pulleys also when the winch rests: over pulley j of n with the winch's speed and
+//! `(j/n)·c·dF_n/dt`, c its compliance from the winch to the platform.
 //!
 //! Nothing here is the compensator's: not the unknown (deflection, not force), not the normal force (exact, not its
 //! approximation \[P\] 8), not the direction (platform to winch), not the integration: the two-stage, L-stable,
@@ -18,7 +23,8 @@
 
 use core::f64::consts::SQRT_2;
 
-use super::effects::{TruthEffect, TruthEffects};
+use super::effects::{Contact, TruthEffect, TruthEffects};
+use super::presliding;
 
 /// Stiffness that stands for "no presliding", N/m: friction reverses within nanometres.
 pub const STIFF_N_PER_M: f64 = 1e9;
@@ -40,8 +46,14 @@ pub struct Moment {
     pub length_m: f64,
     /// Its rate, m/s.
     pub speed_m_per_s: f64,
+    /// Its second derivative, m/s².
+    pub acceleration_m_per_s2: f64,
+    /// Rate of the tension, N/s.
+    pub force_n_per_s: f64,
     /// cos α of the pulley whose wrap follows the pose.
     pub pose_cos: f64,
+    /// Since the start, s.
+    pub time_s: f64,
 }
 
 /// A pulley as nature has it.
@@ -69,15 +81,42 @@ struct Bristle {
     pulley: PulleyTruth,
     stiffness_n_per_m: f64,
     deflection_m: f64,
+    /// Exponent of the presliding, 1.
+    exponent: f64,
+    /// Mass at the rim, kg.
+    mass_kg: f64,
+    /// Stretch of the cable from the winch to here per tension, m/N.
+    compliance_m_per_n: f64,
+    /// The pulley nearest to the platform.
+    is_last: bool,
 }
 
 impl BristleChain {
     /// At rest with all bristles relaxed; `sigma_n_per_m` is the whole cable's, shared evenly.
     pub fn new(pulleys: &[PulleyTruth], sigma_n_per_m: f64, sensor_pulley: bool, effects: TruthEffects) -> Self {
         #[expect(clippy::cast_precision_loss, reason = "a number of pulleys")]
-        let stiffness_n_per_m = sigma_n_per_m / pulleys.len().max(1) as f64;
-        let pulleys = pulleys.iter().map(|&pulley| Bristle { pulley, stiffness_n_per_m, deflection_m: 0.0 }).collect();
+        let [count, places] = [pulleys.len(), pulleys.len().max(1)].map(|count| count as f64);
+        let bristle = |(place, &pulley): (f64, &PulleyTruth)| Bristle {
+            pulley,
+            stiffness_n_per_m: sigma_n_per_m / places,
+            deflection_m: 0.0,
+            exponent: effects.presliding_exponent(),
+            mass_kg: effects.pulley_mass_kg(),
+            compliance_m_per_n: effects.compliance_m_per_n() * place / places,
+            is_last: place >= count,
+        };
+        let pulleys = (1_u32..).map(f64::from).zip(pulleys).map(bristle).collect();
         Self { pulleys, sensor_pulley, effects }
+    }
+
+    /// What acts on the cable.
+    pub fn effects(&self) -> &TruthEffects {
+        &self.effects
+    }
+
+    /// Whether the pulleys have mass.
+    pub fn has_mass(&self) -> bool {
+        self.effects.pulley_mass_kg().abs() > 0.0
     }
 
     /// From one cycle to the next. In between, force and wrap change linearly and speed as the parabola that has both
@@ -89,7 +128,7 @@ impl BristleChain {
             let start = f64::from(part) * step;
             // Stage times of the Runge-Kutta method; the second one is the end of the step.
             let stages = [span.at(start + GAMMA * step), span.at(start + step)];
-            let mut forces_n = stages.map(|stage| stage.force_n);
+            let mut forces_n = stages.map(|stage| self.chain_end_n(&stage));
             for bristle in self.pulleys.iter_mut().rev() {
                 bristle.step(&stages, &mut forces_n, step * cycle_s, &self.effects);
             }
@@ -98,16 +137,21 @@ impl BristleChain {
 
     /// What the sensor feels, N.
     pub fn sensor_force_n(&self, at: &Moment) -> f64 {
-        let mut downstream_n = at.force_n;
-        let mut upstream_n = at.force_n;
+        let mut downstream_n = self.chain_end_n(at);
+        let mut upstream_n = downstream_n;
         for bristle in self.pulleys.iter().rev() {
             downstream_n = upstream_n;
-            upstream_n = bristle.upstream_n(downstream_n, bristle.deflection_m, at);
+            upstream_n = bristle.upstream_n(downstream_n, bristle.deflection_m, at, &self.effects);
         }
         match self.pulleys.first() {
             Some(bristle) if self.sensor_pulley => downstream_n - upstream_n * bristle.cos_wrap(at),
             _ => upstream_n,
         }
+    }
+
+    /// Tension behind the last pulley, N: that at the platform, but for what ripples in between.
+    fn chain_end_n(&self, at: &Moment) -> f64 {
+        at.force_n / self.effects.platform_factor(at.length_m)
     }
 
     /// Force of each bristle, N, from the winch.
@@ -122,9 +166,16 @@ impl Bristle {
         self.pulley.cos_wrap.unwrap_or(at.pose_cos)
     }
 
-    fn upstream_n(&self, downstream_n: f64, deflection_m: f64, at: &Moment) -> f64 {
-        let viscous_n = self.pulley.viscous_n_s_per_m * at.speed_m_per_s;
-        (downstream_n - self.stiffness_n_per_m * deflection_m - viscous_n).max(0.0)
+    /// How fast the cable runs over this pulley, m/s.
+    fn speed_m_per_s(&self, at: &Moment) -> f64 {
+        at.speed_m_per_s + self.compliance_m_per_n * at.force_n_per_s
+    }
+
+    fn upstream_n(&self, downstream_n: f64, deflection_m: f64, at: &Moment, effects: &TruthEffects) -> f64 {
+        let speed_m_per_s = self.speed_m_per_s(at);
+        let viscous_n = self.pulley.viscous_n_s_per_m * effects.viscous_factor(speed_m_per_s) * speed_m_per_s;
+        let inertia_n = self.mass_kg * at.acceleration_m_per_s2;
+        (downstream_n - self.stiffness_n_per_m * deflection_m - viscous_n - inertia_n).max(0.0)
     }
 
     /// One step; `forces_n` are the tensions behind the pulley at the stages, on return those before it.
@@ -136,28 +187,31 @@ impl Bristle {
         let first_m_per_s = (first_m - begin_m) / own_s;
         let base_m = begin_m + (1.0 - GAMMA) * step_s * first_m_per_s;
         let second_m = self.stage(base_m, own_s, second, forces_n[1], first_m, effects);
-        forces_n[0] = self.upstream_n(forces_n[0], first_m, first);
-        forces_n[1] = self.upstream_n(forces_n[1], second_m, second);
+        forces_n[0] = self.upstream_n(forces_n[0], first_m, first, effects);
+        forces_n[1] = self.upstream_n(forces_n[1], second_m, second, effects);
         self.deflection_m = second_m;
     }
 
-    /// Solves `z = base + h·(v − |v|·σ·z/f_c(z))` for z.
+    /// Solves `z = base + h·v·g(1 − sgn(v)·σ·z/f_c(z))` for z.
     fn stage(&self, base_m: f64, h_s: f64, at: &Moment, force_n: f64, guess_m: f64, effects: &TruthEffects) -> f64 {
-        let travel_m = h_s * at.speed_m_per_s;
+        let speed_m_per_s = self.speed_m_per_s(at);
+        let travel_m = h_s * speed_m_per_s;
         if travel_m.abs() <= 0.0 {
             return base_m;
         }
-        let mu = self.pulley.mu * effects.mu_factor(at.speed_m_per_s);
+        let contact = Contact { speed_m_per_s, length_m: at.length_m, time_s: at.time_s, is_last_pulley: self.is_last };
+        let mu = self.pulley.mu * effects.mu_factor(&contact);
+        let drag_n = effects.drag_n(&contact);
         let cos = self.cos_wrap(at);
-        let give_n = travel_m.abs() * self.stiffness_n_per_m;
         let mut deflection_m = guess_m;
         for _ in 0..MOST_ROUNDS {
-            let upstream_n = self.upstream_n(force_n, deflection_m, at);
+            let upstream_n = self.upstream_n(force_n, deflection_m, at, effects);
             let squared = upstream_n * upstream_n - 2.0 * upstream_n * force_n * cos + force_n * force_n;
-            let sliding_n = mu * libm::sqrt(squared.max(0.0));
+            let normal_n = libm::sqrt(squared.max(0.0));
+            let sliding_n = mu * effects.load_factor(normal_n) * normal_n + drag_n;
             let last_m = deflection_m;
-            // Multiplied by f_c, so that a bearing without load, whose bristle relaxes at once, is no division by zero.
-            deflection_m = sliding_n * (base_m + travel_m) / (sliding_n + give_n);
+            deflection_m =
+                presliding::stage(base_m, travel_m, self.stiffness_n_per_m, sliding_n, self.exponent, last_m);
             if (deflection_m - last_m).abs() * self.stiffness_n_per_m <= SETTLED_SHARE * force_n {
                 break;
             }
@@ -192,7 +246,10 @@ impl Span {
             length_m: from.length_m + mean_m_per_s * share * self.cycle_s,
             speed_m_per_s: between(from.speed_m_per_s, to.speed_m_per_s)
                 + 6.0 * share * (1.0 - share) * self.excess_m_per_s,
+            acceleration_m_per_s2: between(from.acceleration_m_per_s2, to.acceleration_m_per_s2),
+            force_n_per_s: (to.force_n - from.force_n) / self.cycle_s,
             pose_cos: between(from.pose_cos, to.pose_cos),
+            time_s: between(from.time_s, to.time_s),
         }
     }
 }
@@ -200,3 +257,7 @@ impl Span {
 #[cfg(test)]
 #[path = "bristle_tests.rs"]
 mod tests;
+
+#[cfg(test)]
+#[path = "bristle_effect_tests.rs"]
+mod effect_tests;

@@ -10,7 +10,15 @@ fn pulley(mu: f64, wrap_rad: f64, viscous_n_s_per_m: f64) -> PulleyTruth {
 }
 
 fn moment(force_n: f64, length_m: f64, speed_m_per_s: f64) -> Moment {
-    Moment { force_n, length_m, speed_m_per_s, pose_cos: 1.0 }
+    Moment {
+        force_n,
+        length_m,
+        speed_m_per_s,
+        acceleration_m_per_s2: 0.0,
+        force_n_per_s: 0.0,
+        pose_cos: 1.0,
+        time_s: 0.0,
+    }
 }
 
 /// Moves at constant speed and tension.
@@ -126,10 +134,8 @@ fn integration_is_of_second_order() {
     let truth =
         [pulley(0.03, PI, 0.2), pulley(0.02, FRAC_PI_2, 0.1), PulleyTruth { cos_wrap: None, ..pulley(0.02, 0.0, 0.1) }];
     let at = |time_s: f64| Moment {
-        force_n: 8.0 + 3.0 * (9.0 * time_s).sin(),
-        length_m: 0.02 * time_s + 0.1 * time_s * time_s,
-        speed_m_per_s: 0.02 + 0.2 * time_s,
         pose_cos: 0.3 * (5.0 * time_s).cos(),
+        ..moment(8.0 + 3.0 * (9.0 * time_s).sin(), 0.02 * time_s + 0.1 * time_s * time_s, 0.02 + 0.2 * time_s)
     };
     let run = |substeps| {
         let mut chain = BristleChain::new(&truth, 900.0, true, no_effects());

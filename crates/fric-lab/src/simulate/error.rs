@@ -6,6 +6,7 @@ use thiserror::Error;
 /// What to do, each the end of a sentence.
 mod advice {
     pub const EFFECT: &str = "give each effect once, with all its parameters";
+    pub const DISTURBANCE: &str = "give each disturbance once, with all its parameters";
     pub const GEOMETRY: &str = "check `base_m`, `platform_m`, `radius_m` and `axis`, above all the unit m";
     pub const PLATFORM: &str = "give every cable both, or simulate the identification run";
 }
@@ -30,6 +31,12 @@ pub enum SimulationError {
     #[error("the effect `{kind}` is hidden twice; {}", advice::EFFECT)]
     RepeatedEffect {
         /// Its name in the catalogue.
+        kind: &'static str,
+    },
+    /// Two disturbances of one kind.
+    #[error("the disturbance `{kind}` is hidden twice; {}", advice::DISTURBANCE)]
+    RepeatedDisturbance {
+        /// Its name.
         kind: &'static str,
     },
     /// An effect of the catalogue that the simulated robot cannot have.
@@ -64,28 +71,33 @@ impl SimulationError {
         match self {
             Self::OptionOutOfRange { .. } | Self::UnsupportedEffect { .. } | Self::Robot(_) => None,
             Self::RepeatedEffect { .. } => Some(advice::EFFECT),
+            Self::RepeatedDisturbance { .. } => Some(advice::DISTURBANCE),
             Self::NoWorkspace => Some(advice::GEOMETRY),
             Self::NoPlatform { .. } => Some(advice::PLATFORM),
         }
     }
 }
 
-/// Why the text of a [`HiddenEffect`](super::HiddenEffect) was refused.
+/// Why what is to be hidden, a [`HiddenEffect`](super::HiddenEffect) or a [`Disturbance`](super::Disturbance), was refused.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
-pub enum HiddenEffectError {
-    /// The catalogue has no such effect.
-    #[error("there is no effect `{kind}`; known are {known}")]
+pub enum HiddenError {
+    /// The catalogue has nothing of that name.
+    #[error("there is no {noun} `{kind}`; known are {known}")]
     UnknownKind {
+        /// `effect` or `disturbance`.
+        noun: &'static str,
         /// The name given.
         kind: String,
         /// All names, as a list.
         known: String,
     },
-    /// The effect has no such parameter.
-    #[error("the effect `{kind}` has no parameter `{key}`; it has {known}")]
+    /// It has no such parameter.
+    #[error("the {noun} `{kind}` has no parameter `{key}`; it has {known}")]
     UnknownKey {
-        /// The effect.
+        /// `effect` or `disturbance`.
+        noun: &'static str,
+        /// Its name.
         kind: &'static str,
         /// The key given.
         key: String,
@@ -93,25 +105,31 @@ pub enum HiddenEffectError {
         known: String,
     },
     /// A parameter that is given twice.
-    #[error("the effect `{kind}` has the parameter `{key}` twice")]
+    #[error("the {noun} `{kind}` has the parameter `{key}` twice")]
     RepeatedKey {
-        /// The effect.
+        /// `effect` or `disturbance`.
+        noun: &'static str,
+        /// Its name.
         kind: &'static str,
         /// The key.
         key: &'static str,
     },
     /// No parameter at all, so that nothing would be hidden.
-    #[error("the effect `{kind}` has no value, which would hide nothing; write `{kind}:key=value` with {known}")]
+    #[error("the {noun} `{kind}` has no value, which would hide nothing; write `{kind}:key=value` with {known}")]
     NoParameter {
-        /// The effect.
+        /// `effect` or `disturbance`.
+        noun: &'static str,
+        /// Its name.
         kind: &'static str,
         /// All keys with unit and range, as a list.
         known: String,
     },
     /// Something that is not `key=value`.
-    #[error("`{text}` is not `key=value` with a number; the effect `{kind}` has {known}")]
+    #[error("`{text}` is not `key=value` with a number; the {noun} `{kind}` has {known}")]
     NotAValue {
-        /// The effect.
+        /// `effect` or `disturbance`.
+        noun: &'static str,
+        /// Its name.
         kind: &'static str,
         /// The text given.
         text: String,
@@ -119,9 +137,11 @@ pub enum HiddenEffectError {
         known: String,
     },
     /// A value that is not finite or out of range.
-    #[error("`{key}` of the effect `{kind}` is {value}; allowed is {min} to {max}{}", with_unit(unit))]
+    #[error("`{key}` of the {noun} `{kind}` is {value}; allowed is {min} to {max}{}", with_unit(unit))]
     OutOfRange {
-        /// The effect.
+        /// `effect` or `disturbance`.
+        noun: &'static str,
+        /// Its name.
         kind: &'static str,
         /// The parameter.
         key: &'static str,

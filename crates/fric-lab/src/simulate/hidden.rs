@@ -3,10 +3,11 @@
 use std::fmt;
 use std::str::FromStr;
 
-use fric_core::effects::{self, EffectParams, EffectRow};
+use fric_core::effects::{self, EffectParams};
 use fric_core::parameters::ParameterRow;
 
-use super::error::{HiddenEffectError, with_unit};
+use super::error::HiddenError;
+use super::stated::{self, Allowed, Kind};
 
 /// An effect of the catalogue with values, checked against its row.
 ///
@@ -14,7 +15,7 @@ use super::error::{HiddenEffectError, with_unit};
 ///
 /// ```
 /// use fric_lab::simulate::HiddenEffect;
-/// # fn main() -> Result<(), fric_lab::simulate::HiddenEffectError> {
+/// # fn main() -> Result<(), fric_lab::simulate::HiddenError> {
 /// let effect = HiddenEffect::parse("stribeck:ratio=0.5,velocity_m_per_s=0.02")?;
 /// assert_eq!(effect.kind(), "stribeck");
 /// assert_eq!(effect.params().get("stribeck", "ratio"), Some(0.5));
@@ -34,51 +35,30 @@ impl HiddenEffect {
     /// Reads `kind:key=value,key=value`.
     ///
     /// # Errors
-    /// [`HiddenEffectError`] names what is wrong and what is known or allowed.
-    pub fn parse(text: &str) -> Result<Self, HiddenEffectError> {
-        let (kind, list) = text.split_once(':').unwrap_or((text, ""));
-        let row = find_row(kind.trim())?;
-        let mut values = Vec::new();
-        for entry in list.split(',').map(str::trim).filter(|entry| !entry.is_empty()) {
-            let value = entry.split_once('=').and_then(|(key, value)| Some((key.trim(), value.trim().parse().ok()?)));
-            let Some(value) = value else {
-                return Err(HiddenEffectError::NotAValue { kind: row.kind, text: entry.to_owned(), known: keys(row) });
-            };
-            values.push(value);
-        }
-        Self::new(row.kind, &values)
+    /// [`HiddenError`] names what is wrong and what is known or allowed.
+    pub fn parse(text: &str) -> Result<Self, HiddenError> {
+        let (kind, entries) = stated::split(text);
+        let kind = find(kind)?;
+        let values = kind.read(entries)?;
+        Self::of(&kind, &values)
     }
 
     /// An effect from its name and values by key.
     ///
     /// # Errors
-    /// [`HiddenEffectError`] names what is wrong and what is known or allowed.
-    pub fn new(kind: &str, values: &[(&str, f64)]) -> Result<Self, HiddenEffectError> {
-        let row = find_row(kind)?;
-        let kind = row.kind;
-        if values.is_empty() {
-            return Err(HiddenEffectError::NoParameter { kind, known: keys(row) });
+    /// [`HiddenError`] names what is wrong and what is known or allowed.
+    pub fn new(kind: &str, values: &[(&str, f64)]) -> Result<Self, HiddenError> {
+        Self::of(&find(kind)?, values)
+    }
+
+    fn of(kind: &Kind, values: &[(&str, f64)]) -> Result<Self, HiddenError> {
+        let values = kind.check(values)?;
+        let mut params = EffectParams::NEUTRAL;
+        for &(key, value) in &values {
+            // Checked against the same row.
+            let _ = params.set(kind.name, key, value);
         }
-        let mut effect = Self { kind, values: Vec::with_capacity(values.len()), params: EffectParams::NEUTRAL };
-        for &(key, value) in values {
-            let parameter = row.parameters.iter().find(|parameter| parameter.key == key);
-            let Some(&ParameterRow { key, unit, min, max, .. }) = parameter else {
-                return Err(HiddenEffectError::UnknownKey { kind, key: key.to_owned(), known: keys(row) });
-            };
-            if effect.values.iter().any(|(other, _)| *other == key) {
-                return Err(HiddenEffectError::RepeatedKey { kind, key });
-            }
-            effect.params.set(kind, key, value).map_err(|_| HiddenEffectError::OutOfRange {
-                kind,
-                key,
-                value,
-                min,
-                max,
-                unit,
-            })?;
-            effect.values.push((key, value));
-        }
-        Ok(effect)
+        Ok(Self { kind: kind.name, values, params })
     }
 
     /// Its name in the catalogue.
@@ -101,7 +81,7 @@ impl HiddenEffect {
 }
 
 impl FromStr for HiddenEffect {
-    type Err = HiddenEffectError;
+    type Err = HiddenError;
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         Self::parse(text)
     }
@@ -110,27 +90,16 @@ impl FromStr for HiddenEffect {
 /// As [`HiddenEffect::parse`] reads it.
 impl fmt::Display for HiddenEffect {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(formatter, "{}:", self.kind)?;
-        for (place, (key, value)) in self.values.iter().enumerate() {
-            write!(formatter, "{}{key}={value}", if place > 0 { "," } else { "" })?;
-        }
-        Ok(())
+        stated::write(formatter, self.kind, &self.values)
     }
 }
 
-fn find_row(kind: &str) -> Result<&'static EffectRow, HiddenEffectError> {
-    effects::row(kind).ok_or_else(|| HiddenEffectError::UnknownKind {
-        kind: kind.to_owned(),
-        known: list(effects::CATALOGUE.iter().map(|row| format!("`{}`", row.kind))),
-    })
-}
-
-fn keys(row: &EffectRow) -> String {
-    list(
-        row.parameters
-            .iter()
-            .map(|ParameterRow { key, unit, min, max, .. }| format!("`{key}` ({min} to {max}{})", with_unit(unit))),
-    )
+fn find(kind: &str) -> Result<Kind, HiddenError> {
+    const NOUN: &str = "effect";
+    let row =
+        effects::row(kind).ok_or_else(|| stated::unknown(NOUN, kind, effects::CATALOGUE.iter().map(|row| row.kind)))?;
+    let allowed = |&ParameterRow { key, unit, min, max, .. }: &ParameterRow| Allowed { key, unit, min, max };
+    Ok(Kind { noun: NOUN, name: row.kind, parameters: row.parameters.iter().map(allowed).collect() })
 }
 
 /// With commas between.

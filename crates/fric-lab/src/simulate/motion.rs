@@ -18,6 +18,8 @@ const MICRO: [(f64, f64); 3] = [(10e-6, 0.35), (6e-6, 0.9), (4e-6, 2.1)];
 const BENCH_LENGTH_M: f64 = 1.0;
 /// Half of the longest movement of a cable without geometry, m.
 const BENCH_HALF_M: f64 = 0.2;
+/// Speeds this long before and after give the acceleration between, s: short beside every ramp of a run.
+const APART_S: f64 = 1e-5;
 
 /// Length of a cable and its rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -93,9 +95,42 @@ impl Winch {
         })
     }
 
+    /// Its second derivative, m/s²; 0 where the cable cannot leave its last pulley.
+    pub fn acceleration_m_per_s2(&self, motion: &Motion, time_s: f64) -> f64 {
+        let speed_m_per_s = |time_s| Some(self.motion(motion, motion.platform(time_s).as_ref(), time_s)?.speed_m_per_s);
+        let [before, after] = [time_s - APART_S, time_s + APART_S].map(speed_m_per_s);
+        before.zip(after).map_or(0.0, |(before, after)| (after - before) / (2.0 * APART_S))
+    }
+
     /// cos of the wrap that follows the pose; 1, no wrap, where none does.
     pub fn pose_cos(&self, platform: Option<&SetPoint>) -> f64 {
         let wrap_rad = platform.and_then(|set_point| self.params.pose_wrap_rad(&set_point.pose()));
         wrap_rad.map_or(1.0, libm::cos)
+    }
+}
+
+/// Play between winch and cable: the cable stays where it is until the winch has turned through it.
+#[derive(Clone, Debug)]
+pub struct Play {
+    half_m: f64,
+    cable_m: Option<f64>,
+}
+
+impl Play {
+    /// With the winch in the middle of its play at the start.
+    pub fn new(play_m: f64) -> Self {
+        Self { half_m: 0.5 * play_m, cable_m: None }
+    }
+
+    /// The cable's motion behind the winch's.
+    pub fn follow(&mut self, winch: CableMotion) -> CableMotion {
+        if self.half_m <= 0.0 {
+            return winch;
+        }
+        let before_m = self.cable_m.unwrap_or(winch.length_m);
+        let length_m = before_m.clamp(winch.length_m - self.half_m, winch.length_m + self.half_m);
+        self.cable_m = Some(length_m);
+        let is_driven = (length_m - before_m) * winch.speed_m_per_s > 0.0;
+        CableMotion { length_m, speed_m_per_s: if is_driven { winch.speed_m_per_s } else { 0.0 } }
     }
 }

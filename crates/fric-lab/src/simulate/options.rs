@@ -1,5 +1,6 @@
 //! What a simulation can be told.
 
+use super::disturbances::Disturbance;
 use super::error::SimulationError;
 use super::hidden::HiddenEffect;
 
@@ -7,6 +8,8 @@ use super::hidden::HiddenEffect;
 const LONGEST_S: f64 = 8.64e6;
 /// Most noise, N.
 const LOUDEST_N: f64 = 1e6;
+/// Most noise and coarsest step of an encoder, m.
+const COARSEST_M: f64 = 1.0;
 
 /// What the platform does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -56,13 +59,29 @@ pub struct SimulationOptions {
     pub reference_noise_n: f64,
     /// How far each pulley's μ is from the cable's at most, as a share of it: uniform in `±mu_spread_ratio`, 0…1.
     pub mu_spread_ratio: f64,
+    /// Standard deviation by which each sensor's zero wanders to and fro, N.
+    pub sensor_wander_n: f64,
+    /// Standard deviation by which each reference force wanders, N.
+    pub reference_wander_n: f64,
+    /// Correlation time of both, s.
+    pub wander_s: f64,
+    /// How hard a hand pushes, slowly and at random, also while the winches rest: the platform along each base axis, each
+    /// cable of a test bench along itself, N at most.
+    pub hand_n: f64,
+    /// Standard deviation of the white Gaussian noise of each logged length, m. With it or a resolution the logged speed is
+    /// the difference of two logged lengths over a cycle, as an encoder alone gives it.
+    pub length_noise_m: f64,
+    /// Step of the logged length, m; 0: none.
+    pub length_resolution_m: f64,
     /// Effects that act on every cable beside those in the robot file.
     pub effects: Vec<HiddenEffect>,
+    /// What else spoils the log of every cable, in no catalogue of effects.
+    pub disturbances: Vec<Disturbance>,
 }
 
 impl Default for SimulationOptions {
-    /// One identification run with 0.02 N of noise at the sensor and 0.01 N at the reference, all pulleys of a cable alike, nothing
-    /// hidden.
+    /// One identification run with 0.02 N of noise at the sensor and 0.01 N at the reference, all pulleys of a cable alike,
+    /// exact lengths, nobody near, nothing hidden.
     fn default() -> Self {
         Self {
             run: Run::default(),
@@ -71,7 +90,14 @@ impl Default for SimulationOptions {
             sensor_noise_n: 0.02,
             reference_noise_n: 0.01,
             mu_spread_ratio: 0.0,
+            sensor_wander_n: 0.0,
+            reference_wander_n: 0.0,
+            wander_s: 2.0,
+            hand_n: 0.0,
+            length_noise_m: 0.0,
+            length_resolution_m: 0.0,
             effects: Vec::new(),
+            disturbances: Vec::new(),
         }
     }
 }
@@ -84,6 +110,12 @@ impl SimulationOptions {
             ("sensor_noise_n", self.sensor_noise_n, 0.0, LOUDEST_N),
             ("reference_noise_n", self.reference_noise_n, 0.0, LOUDEST_N),
             ("mu_spread_ratio", self.mu_spread_ratio, 0.0, 1.0),
+            ("sensor_wander_n", self.sensor_wander_n, 0.0, LOUDEST_N),
+            ("reference_wander_n", self.reference_wander_n, 0.0, LOUDEST_N),
+            ("wander_s", self.wander_s, cycle_s, LONGEST_S),
+            ("hand_n", self.hand_n, 0.0, LOUDEST_N),
+            ("length_noise_m", self.length_noise_m, 0.0, COARSEST_M),
+            ("length_resolution_m", self.length_resolution_m, 0.0, COARSEST_M),
         ];
         for (key, value, min, max) in ranges {
             if !(min..=max).contains(&value) {
@@ -93,6 +125,11 @@ impl SimulationOptions {
         for (place, effect) in self.effects.iter().enumerate() {
             if self.effects.iter().take(place).any(|other| other.kind() == effect.kind()) {
                 return Err(SimulationError::RepeatedEffect { kind: effect.kind() });
+            }
+        }
+        for (place, disturbance) in self.disturbances.iter().enumerate() {
+            if self.disturbances.iter().take(place).any(|other| other.kind() == disturbance.kind()) {
+                return Err(SimulationError::RepeatedDisturbance { kind: disturbance.kind() });
             }
         }
         Ok(())

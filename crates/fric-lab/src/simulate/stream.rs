@@ -1,7 +1,9 @@
 //! The simulated robot as a stream of cycles.
 
+use core::ops::Range;
+
 use fric_core::robot::file::{CableTable, RobotFile};
-use fric_core::{CableInput, Sample};
+use fric_core::{CableInput, CableParams, Sample};
 use nalgebra::{Vector3, Vector6};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -9,12 +11,14 @@ use rand_distr::{Distribution as _, StandardNormal};
 
 use super::bristle::{BristleChain, Moment, PulleyTruth, STIFF_N_PER_M, SUBSTEPS};
 use super::distribution::Distribution;
-use super::effects::{TruthEffect, TruthEffects};
+use super::effects::{CableCause, TruthEffect, TruthEffects};
+use super::encoder::Encoder;
 use super::error::SimulationError;
-use super::motion::{CableMotion, Motion, Winch};
+use super::motion::{CableMotion, Motion, Play, Winch};
 use super::options::{Run, SimulationOptions};
 use super::platform::{Platform, balanced_wrench};
 use super::tension::{TensionLevel, Variation};
+use super::wander::Wander;
 use super::waves::uniform;
 use super::workspace::{SHORT_SHARE, Workspace};
 use crate::trajectory::{Limits, SetPoint, Trajectory};
@@ -31,6 +35,13 @@ pub struct Simulation {
     motion: Motion,
     platform: Platform,
     tension: Tension,
+    /// How the tension of each cable varies by itself.
+    variations: Vec<Variation>,
+    /// A hand on the platform, along each axis, or on each cable of a test bench.
+    pushes: Vec<Variation>,
+    hand_n: f64,
+    /// The first of the cables that are simulated; the forces are those of all.
+    first_cable: usize,
     cables: Vec<SimulatedCable>,
     sensor_noise_n: f64,
     reference_noise_n: f64,
@@ -74,13 +85,17 @@ enum Tension {
 #[derive(Debug)]
 struct SimulatedCable {
     winch: Winch,
-    variation: Variation,
+    play: Play,
     chain: BristleChain,
     lead_s: f64,
     offset_n: f64,
     noise: ChaCha8Rng,
+    sensor_wander: Wander,
+    reference_wander: Wander,
+    encoder: Encoder,
     moment: Option<Moment>,
-    logged: CableMotion,
+    wound: CableMotion,
+    reading_n: Option<f64>,
 }
 
 /// What a seeded stream of random numbers is for; streams of one seed do not depend on each other.
@@ -91,11 +106,21 @@ enum Purpose {
     Load,
     Noise,
     Prestress,
+    SensorWander,
+    ReferenceWander,
+    Hand,
+    Encoder,
+    /// And those after it: of the disturbances one after the other.
+    Disturbance,
 }
 
 fn random(seed: u64, purpose: Purpose, cable: usize) -> ChaCha8Rng {
+    random_of(seed, purpose as u64, cable)
+}
+
+fn random_of(seed: u64, purpose: u64, cable: usize) -> ChaCha8Rng {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
-    random.set_stream(((cable as u64) << 8) | purpose as u64);
+    random.set_stream(((cable as u64) << 8) | purpose);
     random
 }
 
@@ -111,6 +136,15 @@ impl Simulation {
     /// [`SimulationError`] for an option out of range, an effect that cannot be simulated, a robot without a place where
     /// all its cables can run, and a crossing run without a platform.
     pub fn new(robot: &RobotFile, options: &SimulationOptions) -> Result<Self, SimulationError> {
+        Self::of(robot, options, 0..robot.options().cable.len())
+    }
+
+    /// The log of some of the robot's cables, which pull as they do with all the others, but without the others' friction.
+    pub(super) fn of(
+        robot: &RobotFile,
+        options: &SimulationOptions,
+        range: Range<usize>,
+    ) -> Result<Self, SimulationError> {
         let params = robot.params();
         let cycle_s = params.cycle_s();
         options.check(cycle_s)?;
@@ -142,24 +176,19 @@ impl Simulation {
             },
             None => Tension::Bench { level: TensionLevel::of_bench(platform.weight_n(), tables) },
         };
+        let variation = |cable| {
+            let load = &mut random(options.seed, Purpose::Load, cable);
+            if held.is_some() { Variation::own(load) } else { Variation::load(load) }
+        };
+        let push_count = if held.is_some() { 3 } else { tables.len() };
+        let push = |place| Variation::pushes(&mut random(options.seed, Purpose::Hand, place));
         let cables = tables
             .iter()
             .zip(params.cables())
             .enumerate()
-            .map(|(cable, (table, params))| {
-                let load = &mut random(options.seed, Purpose::Load, cable);
-                let effects = TruthEffects::new(&table.effects, &options.effects)?;
-                Ok(SimulatedCable {
-                    winch: Winch::new(params, &mut random(options.seed, Purpose::Micro, cable)),
-                    variation: if held.is_some() { Variation::own(load) } else { Variation::load(load) },
-                    lead_s: effects.motion_lead_s(),
-                    chain: chain(table, options, cable, effects),
-                    offset_n: table.friction.offset_n,
-                    noise: random(options.seed, Purpose::Noise, cable),
-                    moment: None,
-                    logged: CableMotion { length_m: 0.0, speed_m_per_s: 0.0 },
-                })
-            })
+            .skip(range.start)
+            .take(range.len())
+            .map(|(cable, (table, params))| SimulatedCable::new(cable, table, params, options, cycle_s, &motion))
             .collect::<Result<Vec<_>, SimulationError>>()?;
         let duration_s = options.duration_s.unwrap_or_else(|| motion.trajectory().duration_s());
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "checked: 1 to 10¹³")]
@@ -171,8 +200,12 @@ impl Simulation {
             motion,
             platform,
             tension,
-            columns: Vec::with_capacity(cables.len()),
-            forces_n: vec![0.0; cables.len()],
+            variations: (0..tables.len()).map(variation).collect(),
+            pushes: (0..push_count).map(push).collect(),
+            hand_n: options.hand_n,
+            first_cable: range.start,
+            columns: Vec::with_capacity(tables.len()),
+            forces_n: vec![0.0; tables.len()],
             inputs: vec![CableInput::default(); cables.len()],
             references_n: vec![0.0; cables.len()],
             is_among_anchors: workspace.is_some_and(|workspace| workspace.among_anchors),
@@ -256,18 +289,23 @@ impl Simulation {
         let platform = self.motion.platform(time_s);
         self.set_tensions(platform.as_ref(), time_s);
         let signals = self.inputs.iter_mut().zip(&mut self.references_n);
-        for ((cable, force_n), (input, reference_n)) in self.cables.iter_mut().zip(&self.forces_n).zip(signals) {
+        let forces_n = self.forces_n.iter().skip(self.first_cable);
+        for ((cable, force_n), (input, reference_n)) in self.cables.iter_mut().zip(forces_n).zip(signals) {
             let sensor_force_n = cable.advance(&self.motion, platform.as_ref(), time_s, *force_n, self.cycle_s);
             let mut noise = || -> f64 { StandardNormal.sample(&mut cable.noise) };
             let (sensor_noise, reference_noise) = (noise(), noise());
+            let sensor_noise_n = self.sensor_noise_n * sensor_noise + cable.sensor_wander.advance();
+            let CableMotion { length_m, speed_m_per_s } = cable.logged(&self.motion, time_s, self.cycle_s);
             *input = CableInput {
-                sensor_force_n: sensor_force_n + self.sensor_noise_n * sensor_noise,
-                length_m: cable.logged.length_m,
-                speed_m_per_s: cable.logged.speed_m_per_s,
+                sensor_force_n: cable.reading_n(sensor_force_n, sensor_noise_n, time_s),
+                length_m,
+                speed_m_per_s,
             };
-            *reference_n = force_n + cable.offset_n + self.reference_noise_n * reference_noise;
+            let reference_noise_n = self.reference_noise_n * reference_noise + cable.reference_wander.advance();
+            *reference_n = force_n + cable.offset_n + reference_noise_n;
         }
-        let outside_wrench = matches!(self.tension, Tension::Platform { .. })
+        let is_whole = self.cables.len() == self.forces_n.len();
+        let outside_wrench = (is_whole && matches!(self.tension, Tension::Platform { .. }))
             .then(|| balanced_wrench(&self.columns, self.forces_n.iter().copied()));
         #[expect(clippy::cast_possible_truncation, reason = "at most 100 days")]
         let since_start_nanos = libm::round(time_s * 1e9) as i64;
@@ -287,14 +325,23 @@ impl Simulation {
             Tension::Platform { level, common, .. } => (level.mean_n, common.share(time_s), true),
             Tension::Bench { level } => (level.mean_n, 0.0, true),
         };
-        for (force_n, cable) in self.forces_n.iter_mut().zip(&self.cables) {
-            let own_share = if wanders { cable.variation.share(time_s) } else { 0.0 };
+        for (force_n, variation) in self.forces_n.iter_mut().zip(&self.variations) {
+            let own_share = if wanders { variation.share(time_s) } else { 0.0 };
             *force_n = mean_n * (1.0 + common_share + own_share);
+        }
+        let pushed_n = |push: &Variation| if self.hand_n > 0.0 { self.hand_n * push.share(time_s) } else { 0.0 };
+        if let Tension::Bench { level } = &self.tension {
+            for (force_n, push) in self.forces_n.iter_mut().zip(&self.pushes).filter(|_| self.hand_n > 0.0) {
+                *force_n = (*force_n + pushed_n(push)).max(level.least_n);
+            }
         }
         if let (Tension::Platform { level, distribution, .. }, Some(set_point)) = (&mut self.tension, platform) {
             let pose = set_point.pose();
             self.platform.structure(&pose, &mut self.columns);
-            let wrench = self.platform.outside_wrench(&set_point.orientation, &set_point.acceleration_m_per_s2);
+            let mut wrench = self.platform.outside_wrench(&set_point.orientation, &set_point.acceleration_m_per_s2);
+            for (axis_n, push) in wrench.iter_mut().zip(&self.pushes) {
+                *axis_n += pushed_n(push);
+            }
             let missing_n = distribution.solve(&self.columns, &wrench, &mut self.forces_n).residual_n;
             if missing_n > SHORT_SHARE * level.mean_n {
                 let here = Imbalance { cycle_count: 0, missing_n, time_s, position_m: pose.position_m };
@@ -307,7 +354,40 @@ impl Simulation {
 }
 
 impl SimulatedCable {
-    /// Moves on to a time; gives the force that the sensor feels.
+    fn new(
+        cable: usize,
+        table: &CableTable,
+        params: &CableParams,
+        options: &SimulationOptions,
+        cycle_s: f64,
+        motion: &Motion,
+    ) -> Result<Self, SimulationError> {
+        let of = |purpose| random(options.seed, purpose, cable);
+        let start = motion.of_cable(params, motion.platform(0.0).as_ref(), 0.0);
+        let cause = CableCause {
+            start_length_m: start.map_or(0.0, |start| start.length_m),
+            random: &|place| random_of(options.seed, Purpose::Disturbance as u64 + place as u64, cable),
+        };
+        let effects = TruthEffects::new(&table.effects, &options.effects, &options.disturbances, &cause)?;
+        let wander =
+            |standard_deviation_n, purpose| Wander::new(standard_deviation_n, options.wander_s, cycle_s, of(purpose));
+        Ok(Self {
+            winch: Winch::new(params, &mut of(Purpose::Micro)),
+            play: Play::new(effects.winch_play_m()),
+            lead_s: effects.motion_lead_s(),
+            chain: chain(table, options, cable, effects),
+            offset_n: table.friction.offset_n,
+            noise: of(Purpose::Noise),
+            sensor_wander: wander(options.sensor_wander_n, Purpose::SensorWander),
+            reference_wander: wander(options.reference_wander_n, Purpose::ReferenceWander),
+            encoder: Encoder::new(options.length_resolution_m, options.length_noise_m, of(Purpose::Encoder)),
+            moment: None,
+            wound: CableMotion { length_m: 0.0, speed_m_per_s: 0.0 },
+            reading_n: None,
+        })
+    }
+
+    /// Moves on to a time; gives the force at the sensor.
     fn advance(
         &mut self,
         motion: &Motion,
@@ -317,20 +397,46 @@ impl SimulatedCable {
         cycle_s: f64,
     ) -> f64 {
         // The workspace has been tried: only a place between those tried could have no way out, and holds the cable.
-        let held = self.moment.map_or(self.logged, |last| CableMotion { length_m: last.length_m, speed_m_per_s: 0.0 });
-        let CableMotion { length_m, speed_m_per_s } = self.winch.motion(motion, platform, time_s).unwrap_or(held);
-        let moment = Moment { force_n, length_m, speed_m_per_s, pose_cos: self.winch.pose_cos(platform) };
+        let held = CableMotion { length_m: self.wound.length_m, speed_m_per_s: 0.0 };
+        self.wound = self.winch.motion(motion, platform, time_s).unwrap_or(held);
+        let CableMotion { length_m, speed_m_per_s } = self.play.follow(self.wound);
+        let is_sped_up = self.chain.has_mass() && speed_m_per_s.abs() > 0.0;
+        let moment = Moment {
+            force_n,
+            length_m,
+            speed_m_per_s,
+            acceleration_m_per_s2: if is_sped_up { self.winch.acceleration_m_per_s2(motion, time_s) } else { 0.0 },
+            force_n_per_s: self.moment.map_or(0.0, |last| (force_n - last.force_n) / cycle_s),
+            pose_cos: self.winch.pose_cos(platform),
+            time_s,
+        };
         if let Some(last) = self.moment {
             self.chain.advance(&last, &moment, cycle_s, SUBSTEPS);
         }
         self.moment = Some(moment);
-        self.logged = if self.lead_s > 0.0 {
-            let later_s = time_s + self.lead_s;
-            self.winch.motion(motion, motion.platform(later_s).as_ref(), later_s).unwrap_or(self.logged)
-        } else {
-            CableMotion { length_m, speed_m_per_s }
-        };
         self.chain.sensor_force_n(&moment)
+    }
+
+    /// The motion in the log.
+    fn logged(&mut self, motion: &Motion, time_s: f64, cycle_s: f64) -> CableMotion {
+        let mut wound = self.wound;
+        if self.lead_s.abs() > 0.0 {
+            let other_s = time_s + self.lead_s;
+            wound = self.winch.motion(motion, motion.platform(other_s).as_ref(), other_s).unwrap_or(wound);
+        }
+        self.encoder.read(wound, cycle_s)
+    }
+
+    /// The force in the log.
+    fn reading_n(&mut self, sensor_force_n: f64, noise_n: f64, time_s: f64) -> f64 {
+        let effects = self.chain.effects();
+        let shown_n = effects.sensor_gain() * sensor_force_n + effects.sensor_offset_n(time_s) + noise_n;
+        let reading_n = match self.reading_n {
+            Some(last_n) if effects.is_frozen(time_s) => last_n,
+            _ => effects.reading_n(shown_n),
+        };
+        self.reading_n = Some(reading_n);
+        reading_n
     }
 }
 
@@ -350,4 +456,32 @@ fn chain(table: &CableTable, options: &SimulationOptions, cable: usize, effects:
     let sensor_pulley = table.pulleys.first().is_some_and(|pulley| pulley.sensor == Some(true));
     let sigma_n_per_m = table.friction.sigma_n_per_m.unwrap_or(STIFF_N_PER_M);
     BristleChain::new(&pulleys, sigma_n_per_m, sensor_pulley, effects)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A cable by itself is pulled, moved and read as it is among all.
+    #[test]
+    fn one_cable_of_a_robot_is_that_of_the_whole() -> Result<(), Box<dyn core::error::Error>> {
+        let robot = RobotFile::parse(include_str!("../../../../examples/mini-ipanema.toml"), "example")?;
+        let options = SimulationOptions {
+            duration_s: Some(2.0),
+            mu_spread_ratio: 0.1,
+            hand_n: 2.0,
+            sensor_wander_n: 0.01,
+            disturbances: vec!["hum:amplitude_n=0.1".parse()?],
+            ..SimulationOptions::default()
+        };
+        let mut whole = Simulation::new(&robot, &options)?;
+        let mut one = Simulation::of(&robot, &options, 5..6)?;
+        while let Some(all) = whole.next_cycle() {
+            let alone = one.next_cycle().ok_or("too short")?;
+            assert_eq!((alone.cables, alone.reference_force_n), (&all.cables[5..6], &all.reference_force_n[5..6]));
+            assert_eq!((alone.stamp_nanos, alone.pose), (all.stamp_nanos, all.pose));
+        }
+        assert!(one.next_cycle().is_none());
+        Ok(())
+    }
 }

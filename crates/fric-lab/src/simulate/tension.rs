@@ -23,6 +23,8 @@ const OWN: [(f64, f64); 2] = [(0.06, 0.17), (0.04, 0.53)];
 /// Load of a test bench: slow waves, and steps.
 const LOAD: [(f64, f64); 2] = [(0.25, 0.07), (0.1, 0.23)];
 const LOAD_STEPS: [(f64, f64); 2] = [(0.1, 0.11), (0.07, 0.19)];
+/// Pushes of a hand, as shares of the hardest.
+const PUSHES: [(f64, f64); 3] = [(0.5, 0.22), (0.3, 0.55), (0.2, 1.2)];
 
 /// Mean and least tension at the platform.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -87,6 +89,11 @@ impl Variation {
     /// The load of a cable on a test bench.
     pub fn load(random: &mut ChaCha8Rng) -> Self {
         Self { waves: Waves::new(&LOAD, random), steps: Waves::new(&LOAD_STEPS, random) }
+    }
+
+    /// A hand that pushes to and fro, as a share of its hardest push.
+    pub fn pushes(random: &mut ChaCha8Rng) -> Self {
+        Self { waves: Waves::new(&PUSHES, random), steps: Waves::new(&[], random) }
     }
 
     /// Share of the mean tension by which the tension differs from it.

@@ -4,6 +4,8 @@
 //! the scatter of the block sums makes intervals some per cent too wide rather than too narrow (see the module
 //! `scores`).
 
+use std::ops::RangeInclusive;
+
 use fric_core::robot::file::RobotFile;
 use fric_lab::fit::{FitOptions, HALF_INTERVAL, Reference, ResidualFunction};
 use nalgebra::DMatrix;
@@ -43,8 +45,15 @@ fn naive_standard_errors(log: &Log, robot: &RobotFile, values: &[f64; 4]) -> [f6
     std::array::from_fn(|place| (variance * inverse[(place, place)]).sqrt())
 }
 
-/// In how many of the logs each parameter's interval covers its truth: by the fit's standard errors, and by naive ones.
-fn covered(logs: u64, wander_n: f64) -> ([u32; 4], [u32; 4]) {
+const LOGS: u64 = 200;
+/// 90 to 99 of 100.
+const COVERED: RangeInclusive<u32> = 180..=198;
+/// With a wander the intervals are promised to cover 90 (see the module `scores`), less what chance takes from 200 logs in one of
+/// twenty cases.
+const COVERED_WITH_WANDER: RangeInclusive<u32> = 172..=198;
+
+/// In how many of [`LOGS`] each parameter's interval covers its truth: by the fit's standard errors, and by naive ones.
+fn covered(wander_n: f64) -> ([u32; 4], [u32; 4]) {
     let robot = bench(PULLEYS, "mu = 0.05, sigma_n_per_m = 300.0");
     let truth = Bench::default().truth();
     let of_log = |seed: u64| {
@@ -61,37 +70,24 @@ fn covered(logs: u64, wander_n: f64) -> ([u32; 4], [u32; 4]) {
         (by_fit, by_naive)
     };
     let add = |one: [u32; 4], other: [u32; 4]| std::array::from_fn(|place| one[place] + other[place]);
-    let (by_fit, by_naive) = (0..logs)
+    let (by_fit, by_naive) = (0..LOGS)
         .into_par_iter()
         .map(of_log)
         .reduce(|| ([0; 4], [0; 4]), |one, other| (add(one.0, other.0), add(one.1, other.1)));
-    println!("{logs} logs, wander {wander_n} N: {by_fit:?} covered, {by_naive:?} by naive errors");
+    println!("{LOGS} logs, wander {wander_n} N: {by_fit:?} covered, {by_naive:?} by naive errors");
     (by_fit, by_naive)
 }
 
-/// Of 40 logs 38 on average; 33 and fewer come about once in 300 times.
-const FEWEST_OF_40: u32 = 34;
-
 #[test]
 fn white_noise() {
-    let (by_fit, _) = covered(40, 0.0);
-    assert!(by_fit.into_iter().all(|count| count >= FEWEST_OF_40), "{by_fit:?}");
+    let (by_fit, _) = covered(0.0);
+    assert!(by_fit.iter().all(|count| COVERED.contains(count)), "{by_fit:?}");
 }
 
 #[test]
 fn wandering_reference() {
-    let (by_fit, by_naive) = covered(40, 0.02);
-    assert!(by_fit.into_iter().all(|count| count >= FEWEST_OF_40), "{by_fit:?}");
+    let (by_fit, by_naive) = covered(0.02);
+    assert!(by_fit.iter().all(|count| COVERED_WITH_WANDER.contains(count)), "{by_fit:?}");
     // Errors that took the residuals for independent would be too small by several times.
-    assert!(by_naive[0] < 30 && by_naive[3] < 30, "{by_naive:?}");
-}
-
-/// 200 logs of each kind: 90 to 99 % of them are covered, for each parameter.
-#[test]
-#[ignore = "takes minutes"]
-fn two_hundred_logs() {
-    for wander_n in [0.0, 0.02] {
-        let (by_fit, _) = covered(200, wander_n);
-        assert!(by_fit.into_iter().all(|count| (180..=198).contains(&count)), "{by_fit:?}");
-    }
+    assert!(by_naive[0] < 150 && by_naive[3] < 150, "{by_naive:?}");
 }

@@ -1,6 +1,7 @@
 //! References and signals that are none are counted as what they are and leave the estimates unharmed.
 
-use fric_lab::fit::{CableFit, FitOptions, Weighing};
+use fric_lab::fit::{CableFit, FitOptions, Reference, Weighing, residuals_n};
+use fric_lab::simulate::{HiddenEffect, SimulationOptions};
 
 use super::logs::{FRICTION, Log, assert_near, parameter, value};
 use super::oracle::{Bench, PULLEYS, strokes, wandering};
@@ -47,6 +48,30 @@ fn references_that_are_none() {
     assert_eq!(fit.samples.outliers, 40);
     assert_eq!(fit.samples.flagged, 0);
     assert_unharmed(&fit, &clean);
+}
+
+/// What the model misses is there for as long as the cable feels it, and stays in; spikes on top of it do not.
+#[test]
+fn a_delay_that_nobody_knows_of_is_no_outlier() {
+    let truth = bench(PULLEYS, "mu = 0.02, sigma_n_per_m = 1000.0, viscous_n_s_per_m = 0.2, offset_n = 0.1");
+    let effects = vec![HiddenEffect::parse("time_delay:delay_s=0.015").unwrap()];
+    let mut log = Log::record(&truth, &SimulationOptions { effects, ..SimulationOptions::default() });
+    let missed = fit(&log, Weighing::LeastSquares);
+    let residuals_n = residuals_n(&log.measured(&truth, Reference::Forces), std::slice::from_ref(&missed)).remove(0);
+    let mut magnitudes_n: Vec<f64> = residuals_n.iter().map(|residual_n| residual_n.abs()).collect();
+    magnitudes_n.sort_by(f64::total_cmp);
+    let deviation_n = 1.4826 * magnitudes_n[magnitudes_n.len() / 2];
+    let far = magnitudes_n.iter().filter(|magnitude_n| **magnitude_n > 8.0 * deviation_n).count();
+    println!("{:?}, {far} samples beyond 8 standard deviations of {deviation_n:.4} N", missed.samples);
+    assert!(far > 100);
+    assert_eq!(missed.samples.outliers, 0);
+    for cycle in log.0[3_000..].iter_mut().step_by(500) {
+        cycle.reference_force_n[0] += 20.0;
+    }
+    let spikes = log.0[3_000..].iter().step_by(500).count();
+    let fit = fit(&log, Weighing::LeastSquares);
+    println!("{:?}", fit.samples);
+    assert_eq!(fit.samples.outliers, spikes);
 }
 
 /// Huber's loss leaves the spikes in and bounds what they can do.

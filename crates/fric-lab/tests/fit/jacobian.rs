@@ -4,6 +4,7 @@
 //! brings through zero, a cable about to slacken. At a kink the differences to both sides disagree by what does not
 //! vanish with the step; such points are left out, and counted.
 
+use fric_core::effects::CATALOGUE;
 use fric_core::robot::file::RobotFile;
 use fric_core::{CableInput, Sample};
 use fric_lab::fit::{CableRecord, FitOptions, Measurements, Parameter, Reference, ResidualFunction};
@@ -30,13 +31,13 @@ fn log_uniform(random: &mut ChaCha8Rng, min: f64, max: f64) -> f64 {
     uniform(random, min.ln(), max.ln()).exp()
 }
 
-/// One cable with both effects, so that all their parameters vary.
-fn robot(presliding: &str, pulleys: &str) -> RobotFile {
+/// One cable with effects, of which all parameters vary.
+fn robot(presliding: &str, pulleys: &str, effects: &str) -> RobotFile {
     let text = format!(
         "format = \"fric-robot/1\"\nname = \"bench\"\ncycle_s = 0.001\n[[cable]]\nname = \"winch\"\n\
          presliding = \"{presliding}\"\npulleys = [{pulleys}]\n\
          friction = {{ mu = 0.02, sigma_n_per_m = 1000.0 }}\n\
-         effects = [{{ kind = \"stribeck\", ratio = 0.3 }}, {{ kind = \"time_delay\", delay_s = 0.004 }}]\n"
+         effects = [{effects}]\n"
     );
     RobotFile::parse(&text, "bench").unwrap()
 }
@@ -83,11 +84,28 @@ fn value_and_step(parameter: &Parameter, random: &mut ChaCha8Rng) -> (f64, f64) 
         "stribeck.ratio" => (uniform(random, -0.7, 2.0), 1e-5),
         "stribeck.velocity_m_per_s" => relative(log_uniform(random, 0.01, 1.0)),
         "time_delay.delay_s" => (uniform(random, 1e-5, 0.02), 1e-9),
+        "direction_asymmetry.coulomb_ratio" | "direction_asymmetry.viscous_ratio" | "sensor_offset.offset_n" => {
+            (uniform(random, -0.5, 0.5), 1e-5)
+        }
+        "bearing_drag.drag_n" => (uniform(random, 0.0, 2.0), 1e-6),
+        "load_nonlinearity.exponent" => (uniform(random, 0.7, 1.3), 1e-5),
+        "friction_drift.rate_per_s" => (uniform(random, -2.0, 2.0), 1e-5),
+        "presliding_shape.exponent" => (uniform(random, 1.0, 2.5), 1e-5),
+        "sensor_gain.gain" => (uniform(random, 0.8, 1.2), 1e-5),
+        "sensor_drift.rate_n_per_s" => (uniform(random, -1.0, 1.0), 1e-5),
+        "pulley_inertia.mass_kg" => (uniform(random, 0.0, 0.001), 1e-7),
+        "pulley_eccentricity.sin_ratio" | "pulley_eccentricity.cos_ratio" => (uniform(random, -0.1, 0.1), 1e-6),
+        "pulley_eccentricity.period_m" => (uniform(random, 0.05, 0.5), 1e-7),
+        "cable_elasticity.compliance_m_per_n" => (log_uniform(random, 1e-8, 1e-6), 1e-10),
+        "load_nonlinearity.reference_n" => relative(log_uniform(random, 3.0, 300.0)),
+        "pulley_inertia.window_s" => (uniform(random, 0.002, 0.01), 1e-7),
+        // The edges of a play are kinks; at 0 there are none.
+        "cable_elasticity.play_n" => (0.0, 1e-7),
         other => panic!("no range for {other}"),
     }
 }
 
-/// Of each parameter: whether the two one-sided differences part, and how far the central one is from the derivative.
+/// Of each parameter: whether it is at a kink, where the two one-sided differences part or central ones of two steps disagree, and how far the central one is from the derivative.
 fn check(record: &CableRecord<'_>, function: &ResidualFunction, values: &[f64], steps: &[f64]) -> Vec<(bool, f64)> {
     let width = values.len();
     let jacobian = function.jacobian(values);
@@ -96,9 +114,9 @@ fn check(record: &CableRecord<'_>, function: &ResidualFunction, values: &[f64], 
     // The sensor's force is near enough: residuals are far smaller than what they are differences of.
     let greatest_n = record.rows.iter().fold(0.0, |most: f64, row| most.max(row.signals.sensor_force_n));
     let of_parameter = |(column, step): (usize, &f64)| {
-        let moved = |sign: f64| {
+        let moved = |steps: f64| {
             let mut values = values.to_vec();
-            values[column] += sign * step;
+            values[column] += steps * step;
             function.residuals(&values)
         };
         let (plus, minus) = (moved(1.0), moved(-1.0));
@@ -110,10 +128,18 @@ fn check(record: &CableRecord<'_>, function: &ResidualFunction, values: &[f64], 
             parting = parting.max((plus - 2.0 * middle + minus).abs() / step / (scale + rounding / KINK));
             error = error.max(((plus - minus) / (2.0 * step) - derivative).abs() / (scale + rounding / AGREEMENT));
         }
-        (parting > KINK, error)
+        // A kink of little weight shows where half the step gives another difference.
+        let disagree = || {
+            let halves = moved(0.5).into_iter().zip(moved(-0.5)).map(|(plus, minus)| (plus - minus) / step);
+            let whole = plus.iter().zip(&minus).map(|(plus, minus)| (plus - minus) / (2.0 * step));
+            halves.zip(whole).any(|(half, whole)| (half - whole).abs() > AGREEMENT * (scale + rounding / AGREEMENT))
+        };
+        (parting > KINK || error >= AGREEMENT && disagree(), error)
     };
     steps.iter().enumerate().map(of_parameter).collect()
 }
+
+const BOTH: &str = "{ kind = \"stribeck\", ratio = 0.3 }, { kind = \"time_delay\", delay_s = 0.004 }";
 
 #[test]
 fn jacobian_is_the_central_difference_at_a_thousand_points() {
@@ -126,7 +152,7 @@ fn jacobian_is_the_central_difference_at_a_thousand_points() {
     let mut random = ChaCha8Rng::seed_from_u64(1);
     let (mut points, mut left_out, mut worst) = (0, 0, 0.0_f64);
     for (presliding, pulleys, gain) in robots {
-        let robot = robot(presliding, pulleys);
+        let robot = robot(presliding, pulleys, BOTH);
         let mut of_robot = 0;
         while of_robot < POINTS {
             let measurements = random_record(&robot, gain, &mut random);
@@ -154,4 +180,100 @@ fn jacobian_is_the_central_difference_at_a_thousand_points() {
     println!("{points} points, {left_out} at a kink; worst of the others {worst:e}");
     assert_eq!(points, 1000);
     assert!(left_out <= 30, "{left_out}");
+}
+
+/// Every parameter of the catalogue, the settings too, all effects acting at once; then each effect by itself at its neutral
+/// value, where a search begins.
+#[test]
+fn every_effect_has_its_derivatives() {
+    let robots = [
+        ("per_pulley", "{ wrap_deg = 180.0, sensor = true }, { wrap_deg = 90.0 }, { wrap_deg = 60.0 }", 0.5),
+        ("per_pulley", "{ wrap_deg = 90.0 }, { wrap_deg = 120.0 }", 1.0),
+        ("lumped", "{ wrap_deg = 180.0, sensor = true }, { wrap_deg = 90.0 }, { wrap_deg = 60.0 }", 0.5),
+    ];
+    let mut random = ChaCha8Rng::seed_from_u64(3);
+    let (mut points, mut left_out, mut worst) = (0, 0, 0.0_f64);
+    let all: Vec<Parameter> = Parameter::all().collect();
+    for (presliding, pulleys, gain) in robots {
+        let robot = robot(presliding, pulleys, "");
+        let mut round = 0;
+        while round < 26 {
+            let measurements = random_record(&robot, gain, &mut random);
+            let record = measurements.cable(0).unwrap();
+            // Every other one all parameters at drawn values; else one effect, neutral, beside drawn friction.
+            let row = &CATALOGUE[round / 2 % CATALOGUE.len()];
+            let chosen: Vec<Parameter> = all
+                .iter()
+                .filter(|parameter| round % 2 == 0 || parameter.is_friction() || parameter.effect() == Some(row.kind))
+                .copied()
+                .collect();
+            let options = FitOptions { parameters: Some(chosen), ..FitOptions::default() };
+            let function = ResidualFunction::new(&record, &options);
+            if function.count() < 40 {
+                continue;
+            }
+            let (mut values, mut steps) = (Vec::new(), Vec::new());
+            for parameter in function.parameters() {
+                let (drawn, step) = value_and_step(parameter, &mut random);
+                let neutral = round % 2 == 1 && !parameter.is_friction();
+                // At 0 a delay is at a kink: it interpolates above and extrapolates below (see the next test).
+                let nearly = if parameter.to_string() == "time_delay.delay_s" { 10.0 * step } else { 0.0 };
+                values.push(if neutral { parameter.row().neutral + nearly } else { drawn });
+                steps.push(step);
+            }
+            (points, round) = (points + 1, round + 1);
+            for (parameter, (kink, error)) in
+                function.parameters().iter().zip(check(&record, &function, &values, &steps))
+            {
+                if kink {
+                    left_out += 1;
+                    continue;
+                }
+                worst = worst.max(error);
+                assert!(error < AGREEMENT, "{presliding} {} {parameter} at {values:?}: {error:e}", row.kind);
+            }
+        }
+    }
+    println!("{points} points, {left_out} derivatives at a kink; worst of the others {worst:e}");
+    assert_eq!(points, 78);
+    assert!(left_out <= points, "{left_out} of {points}");
+}
+
+/// At 0 the sign of a compliance, and that of a delay, decide which way a cable at rest moves: the derivative is that to the
+/// side on which a search goes on, where there is a motion at all.
+#[test]
+fn derivatives_at_rest_are_those_of_growing_values() {
+    let mut random = ChaCha8Rng::seed_from_u64(4);
+    let pulleys = "{ wrap_deg = 180.0, sensor = true }, { wrap_deg = 90.0 }";
+    for (presliding, name, step) in [
+        ("per_pulley", "cable_elasticity.compliance_m_per_n", 1e-9),
+        ("lumped", "cable_elasticity.compliance_m_per_n", 1e-9),
+        ("per_pulley", "time_delay.delay_s", 1e-8),
+        ("lumped", "time_delay.delay_s", 1e-8),
+    ] {
+        let robot = robot(presliding, pulleys, "");
+        let (mut checked, mut seen) = (0, 0.0_f64);
+        while checked < 20 {
+            let measurements = random_record(&robot, 0.5, &mut random);
+            let record = measurements.cable(0).unwrap();
+            let parameters = Some(vec![Parameter::named(name).unwrap()]);
+            let function = ResidualFunction::new(&record, &FitOptions { parameters, ..FitOptions::default() });
+            if function.count() < 40 {
+                continue;
+            }
+            checked += 1;
+            let (jacobian, at, beyond) =
+                (function.jacobian(&[0.0]), function.residuals(&[0.0]), function.residuals(&[step]));
+            let scale = jacobian.iter().fold(0.0, |most: f64, derivative| most.max(derivative.abs()));
+            seen = seen.max(scale);
+            for ((derivative, at), beyond) in jacobian.iter().zip(at).zip(beyond) {
+                let difference = (beyond - at) / step;
+                assert!(
+                    (derivative - difference).abs() <= 2e-3 * scale,
+                    "{presliding} {name}: {derivative} {difference}"
+                );
+            }
+        }
+        assert!(seen > 1.0, "{name} has no derivative");
+    }
 }

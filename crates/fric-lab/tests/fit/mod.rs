@@ -10,6 +10,7 @@ mod jacobian;
 mod logs;
 mod oracle;
 mod published;
+mod residual_function;
 mod together;
 mod undetermined;
 mod winch;

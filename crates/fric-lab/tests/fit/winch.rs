@@ -3,24 +3,19 @@
 use fric_core::robot::file::RobotFile;
 use fric_lab::fit::{CableFit, FitOptions, Reference};
 use fric_lab::replay::Replay;
-use fric_lab::simulate::{Run, SimulationOptions};
+use fric_lab::simulate::SimulationOptions;
 
 use super::logs::{FRICTION, Log, assert_near, value};
 use fric_core::Sample;
 
 /// μ, σ = 36.6 N/mm and F_pv = 74.5 Ns/m as published, the last that of the whole cable and shared by its pulleys.
 const TRUTH: [f64; 4] = [0.013, 36_600.0, 74.5 / 3.0, 0.0];
-/// Noise of sensor and reference, N: 0.2 % of the load.
-const NOISE: SimulationOptions = SimulationOptions {
-    run: Run::Identification,
-    seed: 0,
-    duration_s: None,
-    sensor_noise_n: 4.0,
-    reference_noise_n: 2.0,
-    mu_spread_ratio: 0.0,
-    effects: Vec::new(),
-};
 const FLOOR_N: f64 = 2.828_427_124_746_19;
+
+/// Noise of sensor and reference is 0.2 % of the load.
+fn noisy() -> SimulationOptions {
+    SimulationOptions { sensor_noise_n: 4.0, reference_noise_n: 2.0, ..SimulationOptions::default() }
+}
 
 /// The winch with a sensor pulley and two at the ceiling.
 fn winch(load_kg: f64, [mu, sigma, viscous, offset]: [f64; 4]) -> RobotFile {
@@ -59,7 +54,7 @@ fn verify(log: &Log, load_kg: f64, fit: &CableFit) -> (f64, f64, f64) {
 #[test]
 fn identified_under_one_load_and_verified_under_the_other() {
     let loads_kg = [210.0, 50.0];
-    let logs = loads_kg.map(|load_kg| Log::record(&winch(load_kg, TRUTH), &NOISE));
+    let logs = loads_kg.map(|load_kg| Log::record(&winch(load_kg, TRUTH), &noisy()));
     for (here, there) in [(0, 1), (1, 0)] {
         let fit = fit(&logs[here], loads_kg[here]);
         assert!(fit.undetermined.is_empty());

@@ -85,7 +85,7 @@ fn a_wrong_mass() {
 
 /// A hand that pushes with a slow force of ±1 N that nobody has measured.
 #[test]
-#[ignore = "takes minutes: one parameter after the other turns out to be undetermined"]
+#[ignore = "takes two minutes: one parameter after the other turns out to be undetermined"]
 fn a_hand() {
     let mut pushed = forty_seconds();
     for (cycle, t) in pushed.0.iter_mut().zip(0_u32..) {

@@ -3,3 +3,5 @@ mod effects;
 pub mod robots;
 mod shapes;
 mod stream;
+mod sweep;
+mod truths;

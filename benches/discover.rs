@@ -1,0 +1,204 @@
+//! Hides effects in hundreds of simulated logs, lets the discovery find them, and counts what it finds: `discover [OFFSET] [WORDS]`.
+//!
+//! The cases are those of [`fric_lab::simulate::sweep`]; OFFSET moves their seeds, so that a run is one that nothing was tuned to; WORDS,
+//! divided by commas, keeps the cases in whose names one of them is. Each case is printed as it ends; then the tables of
+//! `docs/discovery.md`.
+
+#![allow(missing_docs, clippy::print_stdout, clippy::expect_used)]
+
+use std::collections::BTreeMap;
+
+use fric_lab::discover::{CableDiscovery, Verdict, discover};
+use fric_lab::fit::{Measurements, Progress, Reference};
+use fric_lab::simulate::sweep::{self, Case, CaseTruth, Group};
+use rayon::prelude::*;
+
+/// What became of a case.
+struct Outcome {
+    case: Case,
+    /// Names found, in the order of the alphabet.
+    found: Vec<&'static str>,
+    /// Name that entered first.
+    first: Option<&'static str>,
+    verdict: Verdict,
+    /// Errors of the effects' main parameters as shares of their size.
+    errors: Vec<f64>,
+    /// Root mean square after, and the floor found, as multiples of the true floor.
+    after_ratio: f64,
+    floor_ratio: f64,
+}
+
+impl Outcome {
+    fn new(case: Case, truth: &CaseTruth, cable: &CableDiscovery) -> Self {
+        let mut found: Vec<&'static str> = cable.findings.iter().map(|finding| finding.row.kind).collect();
+        let first = found.first().copied();
+        found.sort_unstable();
+        let rms_n = cable.after.held_out_n.rms().unwrap_or(f64::NAN);
+        Self {
+            errors: errors(truth, cable),
+            found,
+            first,
+            verdict: cable.verdict,
+            after_ratio: rms_n / truth.floor_n,
+            floor_ratio: cable.noise_floor_n / truth.floor_n,
+            case,
+        }
+    }
+
+    /// What there is to be found, in the order of the alphabet.
+    fn hidden(&self) -> Vec<&'static str> {
+        let mut hidden = self.case.effects.clone();
+        hidden.sort_unstable();
+        hidden
+    }
+
+    /// Found what is hidden, all of it and nothing else, with the verdict that goes with it.
+    fn is_right(&self) -> bool {
+        let verdict = match (self.case.disturbance, self.case.effects.is_empty()) {
+            (Some(_), _) => Verdict::Unexplained,
+            (None, true) => Verdict::Complete,
+            (None, false) => Verdict::Extended,
+        };
+        self.found == self.hidden() && self.verdict == verdict
+    }
+}
+
+/// Relative errors of the parameters that were hidden and fitted; of those with a neutral value, of the distance from it.
+fn errors(truth: &CaseTruth, cable: &CableDiscovery) -> Vec<f64> {
+    let mut errors = Vec::new();
+    for effect in &truth.effects {
+        for (key, value) in effect.values() {
+            let name = format!("{}.{key}", effect.kind());
+            let fitted = cable.after.fitted.iter().find(|parameter| parameter.to_string() == name);
+            if let Some(parameter) = fitted {
+                let found = cable.after.values[parameter.place()];
+                errors.push(((found - value) / (value - parameter.row().neutral)).abs());
+            }
+        }
+    }
+    errors
+}
+
+fn run(case: Case) -> Option<Outcome> {
+    let mut log = case.log().expect("a case of the sweep makes a log");
+    let params = log.robot.params();
+    let mut measurements = Measurements::new(&params, Reference::Forces);
+    measurements.start_log();
+    while let Some(sample) = log.simulation.next_cycle() {
+        measurements.add(&sample);
+    }
+    let cable = discover(&measurements, &Progress::new()).into_iter().next()?;
+    let outcome = Outcome::new(case, &log.truth, &cable);
+    let mark = if outcome.is_right() { "right" } else { "WRONG" };
+    println!(
+        "{mark} {}: {:?} {:?}, rms after {:.3}, floor {:.3}",
+        outcome.case.name(),
+        outcome.verdict,
+        outcome.found,
+        outcome.after_ratio,
+        outcome.floor_ratio
+    );
+    Some(outcome)
+}
+
+fn main() {
+    let mut arguments = std::env::args().skip(1).filter(|argument| argument != "--bench");
+    let offset: u64 = arguments.next().map_or(0, |text| text.parse().expect("OFFSET is a whole number"));
+    let words = arguments.next().unwrap_or_default();
+    let wanted = |case: &Case| words.is_empty() || words.split(',').any(|word| case.name().contains(word));
+    let cases: Vec<Case> = sweep::cases()
+        .into_iter()
+        .filter(wanted)
+        .map(|case| Case { seed: case.seed + offset * 10_000, ..case })
+        .collect();
+    let outcomes: Vec<Outcome> = cases.into_par_iter().filter_map(run).collect();
+    print_groups(&outcomes);
+    print_strengths(&outcomes);
+    print_confusions(&outcomes);
+    print_sizes(&outcomes);
+}
+
+fn share(of: &[&Outcome], is: impl Fn(&Outcome) -> bool) -> String {
+    format!("{}/{}", of.iter().filter(|outcome| is(outcome)).count(), of.len())
+}
+
+/// Each group with how many cases are right.
+fn print_groups(outcomes: &[Outcome]) {
+    let mut groups: BTreeMap<Group, Vec<&Outcome>> = BTreeMap::new();
+    for outcome in outcomes {
+        groups.entry(outcome.case.group).or_default().push(outcome);
+    }
+    println!("\n| group | exactly right | names right | nothing named that is not there |\n|---|---|---|---|");
+    for (group, of) in groups {
+        let invented = |outcome: &Outcome| outcome.found.iter().any(|kind| !outcome.case.effects.contains(kind));
+        println!(
+            "| {} | {} | {} | {} |",
+            group.name(),
+            share(&of, Outcome::is_right),
+            share(&of, |outcome| outcome.found == outcome.hidden()),
+            share(&of, |outcome| !invented(outcome))
+        );
+    }
+}
+
+/// Single effects by strength.
+fn print_strengths(outcomes: &[Outcome]) {
+    println!("\n| single effect at strength | named first and alone |\n|---|---|");
+    for strength_ratio in [1.0_f64, 0.5, 0.25] {
+        let is_it = |outcome: &&Outcome| {
+            outcome.case.group == Group::Single && outcome.case.strength_ratio.to_bits() == strength_ratio.to_bits()
+        };
+        let of: Vec<&Outcome> = outcomes.iter().filter(is_it).collect();
+        println!("| {strength_ratio} | {} |", share(&of, |outcome| outcome.found == outcome.hidden()));
+    }
+}
+
+/// What single effects and disturbances were taken for.
+fn print_confusions(outcomes: &[Outcome]) {
+    println!("\n| hidden | named |\n|---|---|");
+    let mut taken_for: BTreeMap<&str, BTreeMap<String, u32>> = BTreeMap::new();
+    for outcome in outcomes {
+        let hidden = match (outcome.case.group, outcome.case.disturbance) {
+            (Group::Single, _) => outcome.case.effects.first().copied().unwrap_or_default(),
+            (Group::Outside, Some(disturbance)) => disturbance,
+            (Group::Nothing | Group::Wander | Group::Hand, _) => outcome.case.group.name(),
+            _ => continue,
+        };
+        let named = if outcome.found.is_empty() { "—".to_owned() } else { outcome.found.join(" + ") };
+        let named = if outcome.verdict == Verdict::Unexplained { format!("{named}, unexplained") } else { named };
+        *taken_for.entry(hidden).or_default().entry(named).or_default() += 1;
+    }
+    for (hidden, named) in taken_for {
+        let listed: Vec<String> = named.into_iter().map(|(named, count)| format!("{named} {count}×")).collect();
+        println!("| {hidden} | {} |", listed.join(", "));
+    }
+}
+
+/// Errors of parameters, of the floor, and what is left.
+fn print_sizes(outcomes: &[Outcome]) {
+    let right: Vec<&Outcome> =
+        outcomes.iter().filter(|outcome| outcome.is_right() && outcome.case.disturbance.is_none()).collect();
+    let quantiles = |mut numbers: Vec<f64>| {
+        numbers.sort_by(f64::total_cmp);
+        let at = |share: usize| numbers.get(numbers.len().saturating_sub(1) * share / 100).copied().unwrap_or(f64::NAN);
+        format!("{:.3} | {:.3} | {:.3}", at(50), at(95), at(100))
+    };
+    println!("\n| of the cases that are right | median | 95 % | most |\n|---|---|---|---|");
+    println!(
+        "| error of a parameter / its size | {} |",
+        quantiles(right.iter().flat_map(|outcome| outcome.errors.clone()).collect())
+    );
+    let is_white = |outcome: &&&Outcome| outcome.case.sensor_wander_n <= 0.0 && outcome.case.reference_wander_n <= 0.0;
+    println!(
+        "| rms after / true noise | {} |",
+        quantiles(right.iter().filter(is_white).map(|outcome| outcome.after_ratio).collect())
+    );
+    println!(
+        "| error of the noise floor / it | {} |",
+        quantiles(outcomes.iter().map(|outcome| (outcome.floor_ratio - 1.0).abs()).collect())
+    );
+    let named_first = outcomes.iter().filter(|outcome| !outcome.case.effects.is_empty());
+    let named_first: Vec<&Outcome> = named_first.collect();
+    let is_there = |outcome: &Outcome| outcome.first.is_some_and(|kind| outcome.case.effects.contains(&kind));
+    println!("\nOf the cases with effects, the first named is one of them in {}.", share(&named_first, is_there));
+}

@@ -1,0 +1,44 @@
+//! `discover`: where the model and a log disagree, which effect is missing, and the robot file with it.
+
+use fric_lab::discover::result::DiscoverResult;
+use fric_lab::discover::{discover, extended};
+use fric_lab::fit::Reference;
+use fric_lab::fit::readiness;
+use fric_log::output::OutputFile;
+
+use crate::arguments::DiscoverArguments;
+use crate::failure::Outcome;
+use crate::measurements::{check_named_once, find_model, read, watched};
+use crate::output::{self, JsonTarget};
+use crate::report;
+
+/// Runs the command.
+pub fn run(arguments: &DiscoverArguments) -> Outcome {
+    let DiscoverArguments { logs, model, output, report, result } = arguments;
+    let json_file = result.json.as_deref().filter(|path| !output::is_stdout(path));
+    output::check_distinct(&[Some(output), report.as_deref(), json_file])?;
+    check_named_once(logs)?;
+    let mut inputs = logs.clone();
+    inputs.extend(model.clone());
+    let model = find_model(model.as_deref(), logs)?;
+    let json = JsonTarget::prepare(result.json.as_deref(), &inputs, result.force)?;
+    let report = report.as_ref().map(|path| OutputFile::create(path, &inputs, result.force)).transpose()?;
+    let extended_file = OutputFile::create(output, &inputs, result.force)?;
+
+    let (measurements, holdings) = read(logs, &model, Reference::Forces)?;
+    let readiness = readiness::to_discover(&model.robot, &holdings);
+    // What is missing for some cables only stands beside their verdicts.
+    readiness.check()?;
+    let discoveries = watched("cables looked at", |progress| discover(&measurements, progress))?;
+
+    let names = logs.iter().map(|log| log.display().to_string());
+    let logs: Vec<(String, f64)> = names.zip(measurements.log_starts_s()).collect();
+    let outcome = DiscoverResult::new(&model.robot, &logs, &readiness, &discoveries);
+    outcome.check_told()?;
+    extended_file.finish_with(&extended(&model.text, &model.origin, &discoveries)?)?;
+    if let Some(report) = report {
+        report.finish_with(&report::discovery::page(&outcome, &discoveries))?;
+    }
+    json.show(&outcome.summary())?;
+    json.write(&outcome)
+}

@@ -1,0 +1,119 @@
+//! The samples of logs for what works on all of them at once, and the watch over such work.
+
+use std::path::{Path, PathBuf};
+use std::thread;
+use std::time::Duration;
+
+use fric_lab::fit::readiness::Holdings;
+use fric_lab::fit::{Measurements, Progress, Reference};
+use fric_log::recording::Recording;
+use fric_log::signals::{Role, SignalReader};
+
+use crate::failure::{Failure, Outcome};
+use crate::interrupt;
+use crate::model::{self, Model};
+use crate::progress::{self, STRIDE};
+use crate::warnings::{warn, warn_all};
+
+/// How often the bar moves and Ctrl-C is looked at while all cores compute.
+const WATCH_INTERVAL: Duration = Duration::from_millis(20);
+
+/// Makes sure that no sample counts twice.
+pub fn check_named_once(logs: &[PathBuf]) -> Outcome {
+    for (count, log) in logs.iter().enumerate() {
+        let is_same =
+            |other: &PathBuf| log.canonicalize().is_ok_and(|path| other.canonicalize().is_ok_and(|of| of == path));
+        if logs.iter().take(count).any(is_same) {
+            return Err(Failure::usage(format!("{} is named twice, and its samples would count twice", log.display()))
+                .advise("Name each log once."));
+        }
+    }
+    Ok(())
+}
+
+/// The robot file named, or else the first that is attached to a log.
+pub fn find_model(named: Option<&Path>, logs: &[PathBuf]) -> Outcome<Model> {
+    for log in logs {
+        if let Some(model) = Model::find(named, &Recording::open(&[log])?)? {
+            return Ok(model);
+        }
+    }
+    Err(model::missing())
+}
+
+/// Reads all logs, each by itself.
+pub fn read<'a>(logs: &[PathBuf], model: &'a Model, reference: Reference) -> Outcome<(Measurements<'a>, Holdings)> {
+    // What is not compared with is not even read.
+    let (unread, compared) = match reference {
+        Reference::Forces => (Role::Wrench, Role::Reference),
+        Reference::Wrench => (Role::Reference, Role::Wrench),
+    };
+    let paths = model.signal_paths()?.with(unread, None);
+    warn_all(&model.robot.warnings());
+    let names = model.robot.cable_names();
+    let mut measurements = Measurements::new(&model.robot.params(), reference);
+    let mut all: Option<Holdings> = None;
+    for log in logs {
+        measurements.start_log();
+        let mut reader = SignalReader::new(Recording::open(&[log])?, paths.clone(), &names);
+        let holdings = read_one(&mut reader, &mut measurements, names.len())?;
+        warn_all(reader.cycle_warning(&model.robot).as_slice());
+        let has_compared = holdings.has_reference() || holdings.wrenched > 0;
+        match &mut all {
+            Some(all) => all.join(&holdings),
+            None => all = Some(holdings),
+        }
+        if logs.len() > 1 && !has_compared {
+            let (log, key) = (log.display(), compared.key());
+            warn(&format!("`{log}` has nothing to compare with on the signal `{key}`"));
+        }
+    }
+    let holdings = all.unwrap_or_else(|| Holdings::new(names.len()));
+    Ok((measurements, holdings))
+}
+
+fn read_one(reader: &mut SignalReader, measurements: &mut Measurements<'_>, cable_count: usize) -> Outcome<Holdings> {
+    let mut holdings = Holdings::new(cable_count);
+    let bar = progress::bytes(reader.recording().total_bytes());
+    let end = loop {
+        if holdings.rows.is_multiple_of(STRIDE) {
+            interrupt::check()?;
+            bar.set_position(reader.recording().bytes_read());
+        }
+        match reader.next_row() {
+            Ok(Some(sample)) => {
+                holdings.add(&sample);
+                measurements.add(&sample);
+            }
+            Ok(None) => break Ok(()),
+            Err(error) => break Err(error),
+        }
+    };
+    bar.finish_and_clear();
+    warn_all(&reader.recording().warnings());
+    end?;
+    warn_all(&reader.warnings());
+    Ok(holdings)
+}
+
+/// Runs work beside a bar, until it is done or Ctrl-C is pressed; the bar counts what is `done`.
+pub fn watched<T: Send>(done: &'static str, work: impl FnOnce(&Progress) -> T + Send) -> Outcome<T> {
+    let progress = Progress::new();
+    let bar = progress::steps(done);
+    let result = thread::scope(|scope| {
+        let worker = scope.spawn(|| work(&progress));
+        while !worker.is_finished() {
+            if interrupt::check().is_err() {
+                progress.stop();
+            }
+            let (done, total) = progress.steps();
+            bar.set_length(total as u64);
+            bar.set_position(done as u64);
+            thread::sleep(WATCH_INTERVAL);
+        }
+        worker.join()
+    });
+    bar.finish_and_clear();
+    interrupt::check()?;
+    result.map_err(|_| Failure::new("the work broke off: this is a defect of fric; please report it with the log"))
+}

@@ -1,0 +1,386 @@
+//! The page of `discover --report`: the verdicts, then for each cable what was found, where, and how sure it is.
+
+use fric_lab::discover::result::{Candidate, DiscoverCableResult, DiscoverResult, EffectResult, WhereResult};
+use fric_lab::discover::words::{condition, evidence, intervals, name_of, newtons, percent};
+use fric_lab::discover::{CableDiscovery, Model, Profile, ProfileCell};
+use fric_lab::fit::{HALF_INTERVAL, Parameter};
+use fric_lab::text::{quantity, scaled_unit};
+use maud::{Markup, PreEscaped, html};
+
+use super::chart::{Chart, Span};
+use super::series::Extent;
+
+/// As many intervals of time as a chart has pixels to show.
+const INTERVALS: usize = 900;
+/// Widths of a chart that is alone, and of one of two.
+const WIDE: f64 = 960.0;
+const HALF: f64 = 470.0;
+/// Candidates that are shown.
+const MOST_CANDIDATES: usize = 16;
+
+/// The page.
+pub fn page(result: &DiscoverResult, discoveries: &[CableDiscovery]) -> String {
+    let title = format!("{}: what the model lacks", result.robot);
+    let content = html! {
+        p.soft { (result.log.join(", ")) }
+        @if result.cables.len() > 1 {
+            nav {
+                @for (place, cable) in result.cables.iter().enumerate() {
+                    a href=(format!("#cable-{place}")) { span class=(cable.verdict) { "● " } (cable.name) }
+                }
+            }
+        }
+        (overview(result))
+        @for effect in &result.common_effects {
+            p { (effect.in_words(result.cables.len())) "." }
+        }
+        @for (place, (cable, found)) in result.cables.iter().zip(discoveries).enumerate() {
+            section.cable id=(format!("cable-{place}")) {
+                h2 { (cable.name) ": " span class={ "verdict " (cable.verdict) } { (cable.verdict) } }
+                p { (cable.verdict_in_words()) }
+                @if cable.before.is_some() { (details(cable, found)) }
+            }
+        }
+    };
+    super::shell(&title, &content)
+}
+
+fn number(value: Option<f64>) -> String {
+    value.map_or_else(|| "–".to_owned(), |value| format!("{value:.4}"))
+}
+
+fn overview(result: &DiscoverResult) -> Markup {
+    html! {
+        div.wide {
+            table {
+                tr {
+                    th { "cable" } th.words { "verdict" } th.words { "found" } th { "noise [N]" } th { "rms before [N]" }
+                    th { "after [N]" } th { "gap closed" }
+                }
+                @for (place, cable) in result.cables.iter().enumerate() {
+                    tr {
+                        td { a href=(format!("#cable-{place}")) { (cable.name) } }
+                        td class={ "words verdict " (cable.verdict) } { (cable.verdict) }
+                        td.words {
+                            @if cable.effects.is_empty() { "–" }
+                            (cable.effects.iter().map(|effect| effect.kind).collect::<Vec<_>>().join(", "))
+                        }
+                        td { (number(cable.noise_floor_n)) }
+                        td { (number(cable.before.map(|error| error.rms_n))) }
+                        td { (number(cable.after.map(|error| error.rms_n))) }
+                        td {
+                            (cable.gap_closed.filter(|_| !cable.effects.is_empty()).map_or_else(|| "–".to_owned(), percent))
+                        }
+                    }
+                }
+            }
+        }
+        p.soft {
+            "Root mean squares over samples that no fit has seen: before, of the given model fitted to the others; after, of \
+             the extended one."
+        }
+    }
+}
+
+fn details(cable: &DiscoverCableResult, found: &CableDiscovery) -> Markup {
+    html! {
+        @for effect in &cable.effects { (effect_in_words(effect)) }
+        @if let Some(rest) = &cable.unexplained {
+            h3 { "Unexplained" }
+            ul { @for sentence in rest.in_words() { li { (sentence) } } }
+        }
+        @if cable.verdict != "complete" {
+            figure {
+                h3 { "Gap" }
+                (PreEscaped(ladder(cable)))
+            }
+        }
+        figure {
+            h3 { "Residual over time" }
+            (time_keys(cable))
+            (PreEscaped(over_time(cable, found)))
+        }
+        @for profile in &found.profiles { (over_condition(cable, profile)) }
+        (places("Where the given model disagrees", &cable.places))
+        // Without an effect the rest is all of the gap.
+        @if let Some(rest) = cable.unexplained.as_ref().filter(|_| !cable.effects.is_empty() || cable.places.is_empty()) {
+            (places("Where the rest lies", &rest.places))
+        }
+        div.views {
+            (candidates(cable))
+            (parameters(found))
+        }
+    }
+}
+
+fn effect_in_words(effect: &EffectResult) -> Markup {
+    html! {
+        h3 { (effect.kind) }
+        dl {
+            dt { "values" } dd { (effect.values_in_words()) " (95 %)" }
+            dt { "cause" } dd { (effect.row.cause) }
+            dt { "remedy" } dd { (effect.row.remedy) }
+            @if let Some(alternative) = effect.alternative_in_words() { dt { "else" } dd { (alternative) } }
+        }
+    }
+}
+
+fn key(color: &str, text: &str) -> Markup {
+    html! { span.keys { span.key style=(format!("background: var(--{color})")) {} (text) } " " }
+}
+
+/// A step for each effect that entered.
+fn ladder(cable: &DiscoverCableResult) -> String {
+    let rms_n = |error: Option<f64>| error.unwrap_or(f64::NAN);
+    let mut steps = vec![("given model".to_owned(), rms_n(cable.before.map(|error| error.rms_n)), None)];
+    for effect in &cable.effects {
+        steps.push((format!("+ {}", effect.kind), rms_n(effect.evidence.held_out_rms_n), effect.gap_closed));
+    }
+    let names: Vec<&str> = steps.iter().map(|(name, ..)| name.as_str()).collect();
+    let floor_n = cable.noise_floor_n.unwrap_or(0.0);
+    let greatest = steps.iter().map(|(_, rms_n, _)| *rms_n).fold(floor_n, f64::max);
+    // Room for the words behind the longest bar.
+    let x = Span { least: 0.0, greatest: 1.35 * greatest.max(1e-9), unit: "N" };
+    let mut chart = Chart::in_rows(x, &names, WIDE);
+    for (row, (_, rms_n, closed)) in steps.iter().enumerate() {
+        let closed = closed.map_or_else(String::new, |share| format!(", {} of the gap closed", percent(share)));
+        chart.bar(if row == 0 { "before" } else { "after" }, row, *rms_n, &format!("{}{closed}", newtons(*rms_n)));
+    }
+    chart.upright("floor", floor_n, "");
+    chart.into_svg() + &html! { p.soft { "Dotted: the noise, " (newtons(floor_n)) "." } }.into_string()
+}
+
+fn time_keys(cable: &DiscoverCableResult) -> Markup {
+    html! {
+        p {
+            "Least and greatest in each interval:"
+            (key("before", "given model"))
+            @if !cable.effects.is_empty() { (key("after", "extended model")) }
+            @if !looked_at(cable).is_empty() { (key("flag", "where to look")) }
+            (key("soft", "along the foot: samples held out"))
+        }
+    }
+}
+
+/// The intervals to look at: of the rest where there is one, else of the condition that tells most.
+fn looked_at(cable: &DiscoverCableResult) -> Vec<[f64; 2]> {
+    let mut all = Vec::new();
+    if let Some(rest) = &cable.unexplained {
+        all.extend(rest.faults.iter().map(|fault| [fault.from_s, fault.to_s]));
+        all.extend_from_slice(&rest.intervals_s);
+        all.extend(rest.places.first().into_iter().flat_map(|place| place.intervals_s.clone()));
+    }
+    if all.is_empty() {
+        all.extend(cable.places.first().into_iter().flat_map(|place| place.intervals_s.clone()));
+    }
+    all
+}
+
+fn over_time(cable: &DiscoverCableResult, found: &CableDiscovery) -> String {
+    let end_s = found.times_s.last().copied().unwrap_or(0.0).max(1e-9);
+    let mut all = Extent { least: 0.0, greatest: 0.0 };
+    let [before, after] = [&found.residual_before_n, &found.residual_after_n]
+        .map(|residual_n| envelope(&found.times_s, residual_n, end_s));
+    for (_, extent) in before.iter().chain(&after) {
+        all.merge(*extent);
+    }
+    let time = Span { least: 0.0, greatest: end_s, unit: "s" };
+    let mut chart = Chart::new(time, Span::with_margin(all, 0.08, "N"), WIDE, 240.0);
+    for [from_s, to_s] in looked_at(cable) {
+        // As wide as can be seen.
+        let more = (0.5 * (2e-3 * end_s - (to_s - from_s))).max(0.0);
+        chart.stretch("look", from_s - more, to_s + more, "");
+    }
+    chart.bars("before solid", before.into_iter());
+    if !cable.effects.is_empty() {
+        chart.bars("after solid", after.into_iter());
+    }
+    for [from_s, to_s] in &cable.held_out_s {
+        chart.strip("held", *from_s, *to_s);
+    }
+    chart.into_svg()
+}
+
+/// Least and greatest of a residual in each of some intervals of time.
+fn envelope(times_s: &[f64], residual_n: &[f64], end_s: f64) -> Vec<(f64, Extent)> {
+    #[expect(clippy::cast_precision_loss, reason = "a small constant")]
+    let width_s = end_s / INTERVALS as f64;
+    let mut all: Vec<(f64, Extent)> = Vec::with_capacity(INTERVALS + 1);
+    for (time_s, number) in times_s.iter().zip(residual_n) {
+        if all.last().is_none_or(|(start_s, _)| time_s - start_s >= width_s) {
+            all.push((*time_s, Extent::NOTHING));
+        }
+        if let Some((_, extent)) = all.last_mut() {
+            extent.add(*number);
+        }
+    }
+    all
+}
+
+/// The residuals over a condition: how large, and in which direction.
+fn over_condition(cable: &DiscoverCableResult, profile: &Profile) -> Markup {
+    let is_extended = !cable.effects.is_empty();
+    html! {
+        figure {
+            h3 { "Residual against the " (condition(profile.signal)) }
+            p {
+                (key("before", "given model"))
+                @if is_extended { (key("after", "extended model")) }
+            }
+            p.soft {
+                (if profile.are_even { "Each step is as wide." } else { "Each step holds as many samples." })
+                " Means are dashed while the cable is reeled in, solid while it is paid out."
+            }
+            div.views {
+                figure {
+                    p.soft { "root mean square, dotted the noise" }
+                    (PreEscaped(sizes(cable, profile)))
+                }
+                figure {
+                    p.soft { "mean by direction" }
+                    (PreEscaped(means(is_extended, profile)))
+                }
+            }
+        }
+    }
+}
+
+/// Corners of a flight of steps.
+fn steps(values: &[f64]) -> impl Iterator<Item = [f64; 2]> {
+    #[expect(clippy::cast_precision_loss, reason = "a small count")]
+    let edge = |step: usize| step as f64;
+    values.iter().enumerate().flat_map(move |(step, value)| [[edge(step), *value], [edge(step + 1), *value]])
+}
+
+/// Edges of a profile's bins in a unit that suits them, and the unit.
+fn edges(profile: &Profile) -> (Vec<f64>, &'static str) {
+    let edges = profile.bins.first().map(|bin| bin.from).into_iter().chain(profile.bins.iter().map(|bin| bin.to));
+    let greatest = edges.clone().map(f64::abs).fold(0.0, f64::max);
+    let middle = profile.bins.get(profile.bins.len() / 2).map_or(greatest, |bin| bin.from);
+    let (factor, unit) = scaled_unit(middle, profile.unit);
+    // What is nothing beside the rest is written as such.
+    let shown = |edge: f64| if edge.abs() < 1e-4 * greatest { 0.0 } else { edge * factor };
+    (edges.map(shown).collect(), if unit == "1" { "" } else { unit })
+}
+
+/// What is drawn of a profile: the class of each model with what is taken of its cells.
+fn traces(profile: &Profile, is_extended: bool, pick: impl Fn(&ProfileCell) -> f64) -> Vec<(&'static str, Vec<f64>)> {
+    let before: Vec<f64> = profile.bins.iter().map(|bin| pick(&bin.before)).collect();
+    let after: Vec<f64> = profile.bins.iter().map(|bin| pick(&bin.after)).collect();
+    if is_extended { vec![("before", before), ("after", after)] } else { vec![("before", before)] }
+}
+
+fn sizes(cable: &DiscoverCableResult, profile: &Profile) -> String {
+    let traces = traces(profile, !cable.effects.is_empty(), |cell| cell.rms_n);
+    let mut extent = Extent { least: 0.0, greatest: cable.noise_floor_n.unwrap_or(0.0) };
+    traces.iter().flat_map(|(_, values)| values).for_each(|value| extent.add(*value));
+    extent.greatest *= 1.08;
+    let (edges, unit) = edges(profile);
+    let mut chart =
+        Chart::in_steps(&edges, unit, Span { least: 0.0, greatest: extent.greatest, unit: "N" }, HALF, 240.0);
+    for (class, values) in &traces {
+        chart.line(&format!("trace {class}"), steps(values));
+    }
+    chart.level("floor", cable.noise_floor_n.unwrap_or(0.0), "", true);
+    chart.into_svg()
+}
+
+fn means(is_extended: bool, profile: &Profile) -> String {
+    let out = traces(profile, is_extended, |cell| cell.paying_out_n);
+    let back = traces(profile, is_extended, |cell| cell.reeling_in_n);
+    let mut extent = Extent { least: 0.0, greatest: 0.0 };
+    out.iter().chain(&back).flat_map(|(_, values)| values).for_each(|value| extent.add(*value));
+    let (edges, unit) = edges(profile);
+    let mut chart = Chart::in_steps(&edges, unit, Span::with_margin(extent, 0.08, "N"), HALF, 240.0);
+    for ((class, out), (_, back)) in out.iter().zip(&back) {
+        chart.line(&format!("trace back {class}"), steps(back));
+        chart.line(&format!("trace {class}"), steps(out));
+    }
+    chart.into_svg()
+}
+
+fn places(title: &str, places: &[WhereResult]) -> Markup {
+    let share = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), percent);
+    html! {
+        @if !places.is_empty() {
+            h3 { (title) }
+            div.wide {
+                table {
+                    tr {
+                        th { "condition" } th.words { "range" } th { "of the gap" } th { "of the samples" } th { "told by it" }
+                        th { "significance" } th.words { "look at" }
+                    }
+                    @for place in places {
+                        tr {
+                            td { (condition(place.signal)) }
+                            td.words { (place.range_in_words()) }
+                            td { (share(place.share_of_excess)) } td { (share(place.share_of_samples)) }
+                            td { (share(place.explains)) }
+                            td { (place.significance.map_or_else(|| "–".to_owned(), |of| format!("{of:.0} σ"))) }
+                            td.words {
+                                @if place.intervals_s.is_empty() { "–" } @else { (intervals(&place.intervals_s)) }
+                            }
+                        }
+                    }
+                }
+            }
+            p.soft {
+                "Told by it: the share of the gap that is a function of this condition and of the direction of motion. \
+                 Significance of either share, in standard errors; below 3 σ it may be chance."
+            }
+        }
+    }
+}
+
+fn candidates(cable: &DiscoverCableResult) -> Markup {
+    let is_found = |of: &Candidate| cable.effects.iter().any(|effect| effect.kind == of.kind);
+    html! {
+        @if !cable.candidates.is_empty() {
+            figure {
+                h3 { "Candidates" }
+                table {
+                    tr { th { "effect" } th { "ΔBIC" } th { "rms held out [N]" } }
+                    @for candidate in cable.candidates.iter().take(MOST_CANDIDATES) {
+                        tr class=[is_found(candidate).then_some("found")] {
+                            td { (candidate.kind) } td { (evidence(candidate.delta_bic)) }
+                            td { (number(candidate.held_out_rms_n)) }
+                        }
+                    }
+                }
+                p.soft {
+                    "Each by itself beside the given model; below zero the evidence speaks for it, −10 is strong. Bold: found."
+                }
+            }
+        }
+    }
+}
+
+fn parameters(found: &CableDiscovery) -> Markup {
+    let of_finding =
+        |parameter: &Parameter| found.findings.iter().any(|finding| finding.row.places().contains(&parameter.place()));
+    let shown = Parameter::all().filter(|parameter| found.after.fitted.contains(parameter) || of_finding(parameter));
+    let is_extended = !found.findings.is_empty();
+    let value = |model: &Model, parameter: &Parameter| {
+        let half = model.standard_error(parameter).map(|error| HALF_INTERVAL * error);
+        quantity(model.values[parameter.place()], half, parameter.row().unit)
+    };
+    html! {
+        figure {
+            h3 { "Parameters" }
+            table {
+                tr {
+                    th { "parameter" } th { "given model" }
+                    @if is_extended { th { "extended model" } }
+                }
+                @for parameter in shown {
+                    tr {
+                        td { @if let Some(kind) = parameter.effect() { (kind) ": " } (name_of(parameter.row().key)) }
+                        td { @if of_finding(&parameter) { "–" } @else { (value(&found.before, &parameter)) } }
+                        @if is_extended { td { (value(&found.after, &parameter)) } }
+                    }
+                }
+            }
+            p.soft { "Fitted, ± 95 %; without ± it is a setting." }
+        }
+    }
+}

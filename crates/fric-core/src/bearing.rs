@@ -1,0 +1,147 @@
+//! What rubs at a cable's bearings in one cycle: the law of friction with every effect that changes it.
+//!
+//! Worked out once a cycle for all pulleys, as far as it is the same for all. Which effects act is looked at outside the
+//! arithmetic: those that do not cost nothing.
+
+use crate::cable::{Cable, CableModel, Moment, Pulley, SPEED, UNKNOWN};
+use crate::dahl::dahl_step;
+use crate::effects::Acting;
+use crate::effects::bearing_drag::{self, BearingDrag};
+use crate::effects::direction_asymmetry::{self, DirectionAsymmetry};
+use crate::effects::friction_drift::{self, FrictionDrift};
+use crate::effects::load_nonlinearity::{self, LoadNonlinearity};
+use crate::effects::presliding_shape::{self, PreslidingShape};
+use crate::effects::pulley_inertia::{self, PulleyInertia};
+use crate::effects::stribeck::{self, Stribeck};
+use crate::pulley::sliding_friction;
+use crate::scalar::{Mask, Scalar};
+use crate::signals::Conditioned;
+
+/// Effects that can take μ beyond what the sensor pulley bears.
+const RAISES_MU: Acting =
+    stribeck::ACTS.and(direction_asymmetry::ACTS).and(friction_drift::ACTS).and(load_nonlinearity::ACTS);
+
+/// The friction law of a cable's bearings in one cycle.
+#[derive(Clone, Copy, Debug)]
+pub struct Bearing<T: Scalar> {
+    acting: Acting,
+    /// μ at the present speed and time, 1.
+    mu: T,
+    greatest_mu: T,
+    sigma_n_per_m: T,
+    speed_m_per_s: T,
+    /// What one pulley takes to be accelerated, N.
+    accelerating_n: T,
+    asymmetry: DirectionAsymmetry<T>,
+    drag: BearingDrag<T>,
+    load: LoadNonlinearity<T>,
+    shape: PreslidingShape<T>,
+}
+
+impl<T: Scalar> Bearing<T> {
+    /// The law for the signals of a cycle.
+    #[inline(always)]
+    pub fn new(
+        model: &CableModel<T>,
+        acting: Acting,
+        signals: &Conditioned<T>,
+        moment: &Moment<T>,
+        cable: &mut impl Cable<T>,
+    ) -> Self {
+        let mut accelerating_n = T::splat(0.0);
+        if acting.has(pulley_inertia::ACTS) {
+            let inertia = PulleyInertia::of(|place| cable.effect(place));
+            let (force_n, next_m_per_s) = inertia.force_n(signals.speed_m_per_s, cable.memory(SPEED), moment.step_s);
+            // After a motion that is not to be believed the low pass begins anew: no bump.
+            let moves = signals.motion_finite.and(signals.jump.not());
+            cable.set_memory(SPEED, T::select(moves, next_m_per_s, T::splat(UNKNOWN)));
+            accelerating_n = force_n.keep(moves);
+        }
+        let value = |place| cable.effect(place);
+        let mut mu = model.mu;
+        if acting.has(stribeck::ACTS) {
+            mu = mu * Stribeck::of(value).factor(signals.speed_m_per_s);
+        }
+        if acting.has(friction_drift::ACTS) {
+            mu = mu * FrictionDrift::of(value).factor(moment.time_s);
+        }
+        Self {
+            acting,
+            mu,
+            greatest_mu: if acting.has(RAISES_MU) { cable.greatest_mu() } else { mu },
+            sigma_n_per_m: model.sigma_n_per_m,
+            speed_m_per_s: signals.speed_m_per_s,
+            accelerating_n,
+            asymmetry: DirectionAsymmetry::of(value),
+            drag: BearingDrag::of(value),
+            load: LoadNonlinearity::of(value),
+            shape: PreslidingShape::of(value),
+        }
+    }
+
+    /// What a pulley adds to the tension without a presliding distance, N: viscous friction and inertia.
+    #[inline(always)]
+    pub fn viscous_n(&self, pulley: &Pulley<T>, place: usize, cable: &impl Cable<T>) -> T {
+        let mut viscous_n = pulley.viscous_n_s_per_m * self.speed_m_per_s;
+        if self.acting.has(direction_asymmetry::ACTS) {
+            viscous_n = viscous_n * self.asymmetry.viscous_factor(self.speed_m_per_s.sign());
+        }
+        if self.acting.has(pulley_inertia::ACTS) {
+            viscous_n = viscous_n + self.accelerating_n.scale(cable.present(place));
+        }
+        viscous_n
+    }
+
+    /// μ of a pulley between two tensions, moving in a direction (−1, 0, +1), 1.
+    #[inline(always)]
+    pub fn mu_at(&self, wrap_factor: T, (upstream_n, downstream_n): (T, T), direction: T) -> T {
+        let mut mu = self.mu;
+        if self.acting.has(direction_asymmetry::ACTS) {
+            mu = mu * self.asymmetry.coulomb_factor(direction);
+        }
+        if self.acting.has(load_nonlinearity::ACTS) {
+            let normal_n = (upstream_n + downstream_n).scale(wrap_factor).scale(T::splat(0.5));
+            mu = mu * self.load.factor(normal_n);
+        }
+        if self.acting.has(RAISES_MU) { mu.min(self.greatest_mu) } else { mu }
+    }
+
+    /// Whether μ depends on the load, so that [`mu_at`](Self::mu_at) has to be asked again.
+    #[inline(always)]
+    pub fn depends_on_load(&self) -> bool {
+        self.acting.has(load_nonlinearity::ACTS)
+    }
+
+    /// Friction of the pulley at a place that does not depend on its load, N; `None` where no cable has any.
+    #[inline(always)]
+    pub fn drag_n(&self, place: usize, cable: &impl Cable<T>) -> Option<T> {
+        self.acting.has(bearing_drag::ACTS).then(|| self.drag.drag_n.scale(cable.present(place)))
+    }
+
+    /// Friction stored by the bearing of a pulley after a displacement, between two tensions, N.
+    #[inline(always)]
+    pub fn move_pulley(
+        &self,
+        pulley: &Pulley<T>,
+        (stored_n, tensions): (T, (T, T)),
+        displacement_m: T,
+        drag_n: Option<T>,
+    ) -> T {
+        let mu = self.mu_at(pulley.wrap_factor, tensions, displacement_m.sign());
+        let mut sliding_n = sliding_friction(mu, pulley.wrap_factor, tensions.0, tensions.1);
+        if let Some(drag_n) = drag_n {
+            sliding_n = sliding_n + drag_n;
+        }
+        self.preslide(stored_n, sliding_n, displacement_m)
+    }
+
+    /// Friction stored after a displacement, N.
+    #[inline(always)]
+    pub fn preslide(&self, friction_n: T, sliding_n: T, displacement_m: T) -> T {
+        if self.acting.has(presliding_shape::ACTS) {
+            self.shape.step(friction_n, sliding_n, self.sigma_n_per_m, displacement_m)
+        } else {
+            dahl_step(friction_n, sliding_n, self.sigma_n_per_m, displacement_m)
+        }
+    }
+}

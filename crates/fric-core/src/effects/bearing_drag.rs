@@ -1,0 +1,48 @@
+//! `bearing_drag`: friction of each bearing that does not depend on its load.
+//!
+//! Equation: `f_c = μ·F_N + drag_n` at every pulley. Neutral: `drag_n = 0`; below 0 it would push, so an identification is
+//! kept from there, and a friction that falls off at low load is left to `load_nonlinearity`.
+//!
+//! Cause: preload of the bearing, its seals and its grease resist however little the cable pulls.
+
+use super::{Acting, EffectRow, first_place};
+use crate::parameters::ParameterRow;
+use crate::scalar::Scalar;
+
+const EXCITATION: &str = "long movements in both directions at cable forces that differ by a factor of two and more";
+
+/// The catalogue row.
+pub const ROW: EffectRow = EffectRow {
+    kind: "bearing_drag",
+    cause: "preload, seals or grease of the bearings resist independently of the cable force",
+    remedy: "use bearings with less preload, or without contact seals; less or thinner grease",
+    parameters: &[ParameterRow {
+        key: "drag_n",
+        unit: "N",
+        neutral: 0.0,
+        min: 0.0,
+        max: 1e4,
+        fitted: true,
+        excitation: EXCITATION,
+    }],
+};
+
+/// The effect by itself, to ask whether it acts.
+pub(crate) const ACTS: Acting = Acting::only(ROW.kind);
+/// Place of `drag_n` in [`Values`](crate::parameters::Values).
+pub const DRAG: usize = first_place(ROW.kind);
+
+/// The effect's parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BearingDrag<T> {
+    /// Friction of each pulley without load, N.
+    pub drag_n: T,
+}
+
+impl<T: Scalar> BearingDrag<T> {
+    /// From a cable's parameter values, by their place.
+    #[inline(always)]
+    pub fn of(value: impl Fn(usize) -> T) -> Self {
+        Self { drag_n: value(DRAG) }
+    }
+}

@@ -1,0 +1,85 @@
+//! `cable_elasticity`: pulleys that move with the stretch of the cable.
+//!
+//! Equation: at pulley j of n, counted from the winch, the cable moves by `Δl + (j/n)·compliance_m_per_n·ΔF`: what lies between
+//! winch and pulley stretches, and a tension that grows (ΔF > 0) moves the cable there towards the platform, as paying out
+//! does (\[P\]'s open question: an outside force reverses the friction at the far pulleys while the winch rests). The one
+//! state of `lumped` presliding moves by the mean of its pulleys, `(n + 1)/(2n)` of the stretch.
+//!
+//! ΔF is how far the tension at the platform, with the friction of the last cycle, pushes the edge of a play of ± `play_n`: noise
+//! within it moves nothing, and a tension that goes on changing is followed without delay. Without it the noise of the
+//! sensor would shake the stored friction loose; with one and a half times the noise of the sensor, as cable tension, next
+//! to nothing of it is left. (A low pass would delay the stretch: on a simulated log it leaves a third more of the noise than the play
+//! does.) Friction that follows a tension it adds to is stable while `compliance·σ·(n + 1)/(2n) < 1`, as it is for a cable far
+//! stiffer than its presliding; beyond, friction jumps to its Coulomb bound and no further. Only presliding and its direction follow
+//! the stretch; viscous friction and what depends on speed follow the winch, since the rate of a tension is mostly noise.
+//! Neutral: `compliance_m_per_n = 0`.
+//!
+//! Cause: the cable is an elastic spring between winch and platform.
+
+use super::{Acting, EffectRow, first_place};
+use crate::parameters::ParameterRow;
+use crate::scalar::Scalar;
+
+const EXCITATION: &str = "an outside force on the resting platform that rises and falls, beside the usual run";
+
+/// The catalogue row.
+pub const ROW: EffectRow = EffectRow {
+    kind: "cable_elasticity",
+    cause: "the cable stretches, so that a change of force moves the far pulleys while the winch rests",
+    remedy: "a stiffer cable, or a shorter way between winch and platform; else keep the compliance",
+    parameters: &[
+        ParameterRow {
+            key: "compliance_m_per_n",
+            unit: "m/N",
+            neutral: 0.0,
+            min: 0.0,
+            max: 1.0,
+            fitted: true,
+            excitation: EXCITATION,
+        },
+        ParameterRow {
+            key: "play_n",
+            unit: "N",
+            neutral: 0.0,
+            min: 0.0,
+            max: 1e6,
+            fitted: false,
+            excitation: EXCITATION,
+        },
+    ],
+};
+
+/// The effect by itself, to ask whether it acts.
+pub(crate) const ACTS: Acting = Acting::only(ROW.kind);
+/// Place of `compliance_m_per_n` in [`Values`](crate::parameters::Values).
+pub const COMPLIANCE: usize = first_place(ROW.kind);
+/// Place of `play_n`.
+pub const PLAY: usize = COMPLIANCE + 1;
+
+/// The effect's parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CableElasticity<T> {
+    /// Stretch of the cable from the winch to its last pulley, m/N.
+    pub compliance_m_per_n: T,
+    /// Half the change of tension that moves nothing, N.
+    pub play_n: T,
+}
+
+impl<T: Scalar> CableElasticity<T> {
+    /// From a cable's parameter values, by their place.
+    #[inline(always)]
+    pub fn of(value: impl Fn(usize) -> T) -> Self {
+        Self { compliance_m_per_n: value(COMPLIANCE), play_n: value(PLAY) }
+    }
+
+    /// Stretch at the last pulley in this cycle, m, and the middle of the play for the next, N; `middle_n` is the last
+    /// cycle's, infinite before the first.
+    #[inline(always)]
+    pub fn stretch_m(&self, tension_n: T, middle_n: T) -> (T, T) {
+        let known = middle_n.within(f64::MAX);
+        let before_n = T::select(known, middle_n, tension_n);
+        let change_n = tension_n - before_n;
+        let step_n = change_n.sign() * (change_n.abs() - self.play_n).max(T::splat(0.0));
+        (self.compliance_m_per_n * step_n, before_n + step_n)
+    }
+}

@@ -1,0 +1,54 @@
+//! `friction_drift`: friction that changes over the run.
+//!
+//! Equation: `μ(t) = μ·(1 + rate_per_s·t)`, t from the start of the run; never below 0, and the cycle holds μ where the sensor
+//! pulley still tells the tension. It describes one run: without a run's end the line leads nowhere. Neutral: `rate_per_s = 0`.
+//!
+//! Cause: bearings and grease warm up, or dirt gets in.
+
+use super::{Acting, EffectRow, first_place};
+use crate::parameters::ParameterRow;
+use crate::scalar::Scalar;
+
+const EXCITATION: &str = "a long run with the same movements at its beginning and its end";
+
+/// The catalogue row.
+pub const ROW: EffectRow = EffectRow {
+    kind: "friction_drift",
+    cause: "bearings and grease warm up during the run, so friction falls or rises",
+    remedy: "let the robot run warm before work, or renew the grease",
+    parameters: &[ParameterRow {
+        key: "rate_per_s",
+        unit: "1/s",
+        neutral: 0.0,
+        min: -1.0,
+        max: 1.0,
+        fitted: true,
+        excitation: EXCITATION,
+    }],
+};
+
+/// The effect by itself, to ask whether it acts.
+pub(crate) const ACTS: Acting = Acting::only(ROW.kind);
+/// Place of `rate_per_s` in [`Values`](crate::parameters::Values).
+pub const RATE: usize = first_place(ROW.kind);
+
+/// The effect's parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrictionDrift<T> {
+    /// Relative change of μ per second, 1/s.
+    pub rate_per_s: T,
+}
+
+impl<T: Scalar> FrictionDrift<T> {
+    /// From a cable's parameter values, by their place.
+    #[inline(always)]
+    pub fn of(value: impl Fn(usize) -> T) -> Self {
+        Self { rate_per_s: value(RATE) }
+    }
+
+    /// Factor on μ at a time (s) since the start.
+    #[inline(always)]
+    pub fn factor(&self, time_s: T) -> T {
+        (T::splat(1.0) + self.rate_per_s.scale(time_s)).max(T::splat(0.0))
+    }
+}

@@ -1,0 +1,77 @@
+//! `pulley_inertia`: pulleys that have to be set in motion.
+//!
+//! Equation: `F_j = F_{j−1} + … + mass_kg·a` with the acceleration a of the cable, positive paying out, and `mass_kg = J/r²` of each
+//! pulley; it needs no presliding distance and stays outside the Dahl state. The acceleration is the difference between
+//! the speed and its low pass: `a = (v − v_f)/(T + dt)`, `v_f ← v_f + a·dt`, `T = window_s`. It lags by T; with `T = 0` it is
+//! the backward difference. Noise δ of the speed makes a noise of some `δ/(T + dt)` in it: 1 mm/s, one step of an encoder
+//! of 1 µm read every millisecond, 0.3 m/s² with the 2 ms that stand for a window not given. Set points bear 0; a coarser
+//! encoder wants more. Neutral: `mass_kg = 0`.
+//!
+//! Cause: heavy pulleys, or pulleys of large radius, at high acceleration.
+
+use super::{Acting, EffectRow, first_place};
+use crate::parameters::ParameterRow;
+use crate::scalar::Scalar;
+
+const EXCITATION: &str = "strokes there and back with high acceleration";
+
+/// The catalogue row.
+pub const ROW: EffectRow = EffectRow {
+    kind: "pulley_inertia",
+    cause: "the pulleys take a force to be accelerated",
+    remedy: "lighter pulleys, or gentler acceleration",
+    parameters: &[
+        ParameterRow {
+            key: "mass_kg",
+            unit: "kg",
+            neutral: 0.0,
+            min: 0.0,
+            max: 1e4,
+            fitted: true,
+            excitation: EXCITATION,
+        },
+        ParameterRow {
+            key: "window_s",
+            unit: "s",
+            neutral: 0.002,
+            min: 0.0,
+            max: 0.1,
+            fitted: false,
+            excitation: EXCITATION,
+        },
+    ],
+};
+
+/// The effect by itself, to ask whether it acts.
+pub(crate) const ACTS: Acting = Acting::only(ROW.kind);
+/// Place of `mass_kg` in [`Values`](crate::parameters::Values).
+pub const MASS: usize = first_place(ROW.kind);
+/// Place of `window_s`.
+pub const WINDOW: usize = MASS + 1;
+
+/// The effect's parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PulleyInertia<T> {
+    /// Moment of inertia of each pulley by its squared radius, kg.
+    pub mass_kg: T,
+    /// Time constant of the acceleration, s.
+    pub window_s: T,
+}
+
+impl<T: Scalar> PulleyInertia<T> {
+    /// From a cable's parameter values, by their place.
+    #[inline(always)]
+    pub fn of(value: impl Fn(usize) -> T) -> Self {
+        Self { mass_kg: value(MASS), window_s: value(WINDOW) }
+    }
+
+    /// Force that accelerates one pulley, N, and the low pass of the speed for the next cycle; `filtered_m_per_s` is the
+    /// last cycle's, infinite before the first; `step_s` the time since.
+    #[inline(always)]
+    pub fn force_n(&self, speed_m_per_s: T, filtered_m_per_s: T, step_s: T) -> (T, T) {
+        let known = filtered_m_per_s.within(f64::MAX);
+        let before_m_per_s = T::select(known, filtered_m_per_s, speed_m_per_s);
+        let acceleration = (speed_m_per_s - before_m_per_s) / (self.window_s + step_s);
+        (self.mass_kg * acceleration, before_m_per_s + acceleration.scale(step_s))
+    }
+}

@@ -1,0 +1,55 @@
+//! `sensor_offset`: a force sensor whose zero is not at zero.
+//!
+//! Equation: `F_shown = F_s + offset_n`, so that the cycle takes `F_shown − offset_n`. Unlike `offset_n` of `friction`, which is added at
+//! the platform, it acts before the pulleys: halved by a sensor pulley of 180°, and part of the load on the bearings. In the newtons that
+//! the sensor shows, as `sensor_drift`. Neutral: 0.
+//!
+//! Cause: the sensor was not tared, or its zero has moved since.
+
+use super::{Acting, EffectRow, first_place};
+use crate::parameters::ParameterRow;
+use crate::scalar::Scalar;
+
+const EXCITATION: &str = "long movements at cable forces that differ by a factor of two and more";
+
+/// The catalogue row.
+pub const ROW: EffectRow = EffectRow {
+    kind: "sensor_offset",
+    cause: "the force sensor was not tared",
+    remedy: "tare the force sensor at the winch without load",
+    parameters: &[ParameterRow {
+        key: "offset_n",
+        unit: "N",
+        neutral: 0.0,
+        min: -1e6,
+        max: 1e6,
+        fitted: true,
+        excitation: EXCITATION,
+    }],
+};
+
+/// The effect by itself, to ask whether it acts.
+pub(crate) const ACTS: Acting = Acting::only(ROW.kind);
+/// Place of `offset_n` in [`Values`](crate::parameters::Values).
+pub const OFFSET: usize = first_place(ROW.kind);
+
+/// The effect's parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SensorOffset<T> {
+    /// What the sensor shows without load, N.
+    pub offset_n: T,
+}
+
+impl<T: Scalar> SensorOffset<T> {
+    /// From a cable's parameter values, by their place.
+    #[inline(always)]
+    pub fn of(value: impl Fn(usize) -> T) -> Self {
+        Self { offset_n: value(OFFSET) }
+    }
+
+    /// The force there is for the one shown, N.
+    #[inline(always)]
+    pub fn undo(&self, shown_n: T) -> T {
+        shown_n - self.offset_n
+    }
+}

@@ -1,0 +1,58 @@
+//! Functions of [`Scalar`]s that few effects need, built like the rest from exactly rounded operations.
+
+use crate::scalar::{Mask, Scalar};
+
+/// 1.5·2⁵²: adding it rounds to an integer.
+const ROUND: f64 = 6_755_399_441_055_744.0;
+/// Up to here `ln(1 + x)/x` is a series, beyond it the logarithm itself.
+const SERIES: f64 = 0.25;
+/// `ln(1 + x)/x` where there is no logarithm.
+const BEYOND: f64 = 1e3;
+
+/// The nearest integer, for magnitudes below 2⁵¹.
+#[inline(always)]
+fn round<T: Scalar>(x: T) -> T {
+    (x + T::splat(ROUND)) - T::splat(ROUND)
+}
+
+/// `ln(1 + x)/x`, 1 at 0: `2/(2 + x)·(1 + z²/3 + z⁴/5 + …)` with `z = x/(2 + x)` where it is small.
+#[inline(always)]
+pub fn ln_1p_ratio<T: Scalar>(x: T) -> T {
+    let (one, two) = (T::splat(1.0), T::splat(2.0));
+    let inverse = one / (two + x);
+    let z = x * inverse;
+    let z2 = z * z;
+    // |z| ≤ 1/7: the first term left out is 1/21·7⁻²⁰.
+    let odd = [19.0, 17.0, 15.0, 13.0, 11.0, 9.0, 7.0, 5.0, 3.0, 1.0];
+    let sum = odd.into_iter().fold(T::splat(0.0), |sum, divisor| sum * z2 + T::splat(1.0 / divisor));
+    let near = two * inverse * sum;
+    let far = (one + x).ln() / x;
+    let exists = T::splat(-1.0).lt(x);
+    T::select(x.within(SERIES), near, T::select(exists, far, T::splat(BEYOND)))
+}
+
+/// Sine and cosine of `2π·turns`, `|turns| < 2⁴⁹`; the Taylor polynomials on an eighth of a turn to both sides, whose remainders are
+/// below 2⁻⁵⁸.
+#[inline(always)]
+pub fn sin_cos_turns<T: Scalar>(turns: T) -> [T; 2] {
+    let zero = T::splat(0.0);
+    let turns = turns - round(turns);
+    let quarters = round(turns * T::splat(4.0));
+    let angle = (turns - quarters * T::splat(0.25)) * T::splat(core::f64::consts::TAU);
+    let square = angle * angle;
+    let polynomial =
+        |divisors: [f64; 8]| divisors.into_iter().fold(zero, |sum, divisor| (sum + T::splat(1.0 / divisor)) * square);
+    let sin_divisors =
+        [355_687_428_096_000.0, -1_307_674_368_000.0, 6_227_020_800.0, -39_916_800.0, 362_880.0, -5_040.0, 120.0, -6.0];
+    let cos_divisors =
+        [20_922_789_888_000.0, -87_178_291_200.0, 479_001_600.0, -3_628_800.0, 40_320.0, -720.0, 24.0, -2.0];
+    let sin = angle + angle * polynomial(sin_divisors);
+    let cos = T::splat(1.0) + polynomial(cos_divisors);
+    // `quarters` is −2, −1, 0, 1 or 2.
+    let odd = quarters.abs().eq(T::splat(1.0));
+    let sin_falls = quarters.lt(zero).and(odd).or(T::splat(1.0).lt(quarters.abs()));
+    let cos_falls = zero.lt(quarters);
+    let (first, second) = (T::select(odd, cos, sin), T::select(odd, sin, cos));
+    let cos_falls = cos_falls.or(quarters.lt(T::splat(-1.0)));
+    [T::select(sin_falls, -first, first), T::select(cos_falls, -second, second)]
+}

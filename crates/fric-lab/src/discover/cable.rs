@@ -1,0 +1,319 @@
+//! The discovery on one cable, from its record to what was found.
+
+use std::sync::atomic::AtomicBool;
+
+use fric_core::parameters::{MU, NO_PRESLIDING_N_PER_M, SIGMA, VISCOUS, Values};
+use nalgebra::DMatrix;
+
+use super::candidates::Scale;
+use super::conditions::{Condition, conditions};
+use super::foreign::{Stretch, faulty_stretches, leave_out};
+use super::lines::{Line, lines};
+use super::naming::{Named, Naming, STRONG_BIC, Search};
+use super::noise::white_noise;
+use super::places::{Excess, Place};
+use super::profile::profile;
+use super::readiness::{lack_of, lack_of_samples};
+use super::report::{CableDiscovery, Finding, Model, RunnerUp, Tried, Unexplained, Verdict};
+use super::rest::{WORTH, is_wander, stretch_of_cable};
+use super::split::{Block, split};
+use super::workbench::{self, Trial, Workbench};
+use crate::fit::engine;
+use crate::fit::{CableRecord, FitOptions, Parameter, Progress, Row, SampleCounts};
+use crate::replay::Deviation;
+
+/// What is left of a gap when its cause is known is not worth a further name below this share.
+const REMAINDER: f64 = 0.05;
+
+/// Looks at one cable.
+pub fn discover_cable(record: &CableRecord<'_>, progress: &Progress) -> CableDiscovery {
+    let stop = progress.stop_flag();
+    if let Some(lack) = lack_of(record) {
+        return CableDiscovery::untold(record, engine::count(&engine::prepared(record)), lack);
+    }
+    let faults = faulty_stretches(record);
+    let mut standings = engine::prepared(record);
+    leave_out(&faults, record.cycle_s, &mut standings);
+    let gang = engine::Gang::new(1, stop);
+    let paper = engine::Search::run(record, &standings, &FitOptions::default(), stop, gang.seat(0));
+    let samples = engine::count(&paper.standings);
+    if let Some(lack) = lack_of_samples(&samples, record.cycle_s) {
+        return CableDiscovery::untold(record, samples, lack);
+    }
+    let counts = engine::used(&paper.standings);
+    let blocks = split(record);
+    let conditions = conditions(record);
+    let start = given_model(record, &paper.solution);
+
+    // What hums is no matter of friction: it comes off the reference.
+    let bench = Workbench { record: *record, blocks: &blocks, counts: &counts, stop };
+    let hum = lines(&bench.residuals_n(&bench.try_one(&start).values), record.cycle_s);
+    let rows = without_lines(record, &hum);
+    let case = Case { record: record.with_signals(&rows), raw: *record, blocks: &blocks, stop };
+    let mut outcome = case.look(&counts, &start, &conditions);
+    let mut stretch = None;
+    if !outcome.rest_is_noise {
+        // A narrow stretch with trouble of its own may hide what else there is.
+        if let Some(found) = stretch_of_cable(&case.excess(&outcome.rest_n, outcome.noise_n), &conditions) {
+            let masked: Vec<bool> =
+                counts.iter().zip(&found.cycles).map(|(counts, inside)| *counts && !inside).collect();
+            let again = case.look(&masked, &start, &conditions);
+            if again.rest_is_noise || !again.naming.named.is_empty() {
+                (outcome, stretch) = (again, Some(found.place));
+            }
+        }
+    }
+    case.report(&outcome, &counts, samples, &conditions, Foreign { faults, hum, stretch })
+}
+
+/// The given model, with start values from the data for what it has of its own: of friction what acts, the offset, and the
+/// parameters of its effects; without what the log does not determine.
+fn given_model(record: &CableRecord<'_>, paper: &engine::Solution) -> workbench::Model {
+    let given = record.params.values();
+    let undetermined = |parameter: &Parameter| paper.undetermined.iter().any(|unknown| unknown.parameter == *parameter);
+    let acts = |parameter: &Parameter| match parameter.place() {
+        MU | VISCOUS => given[parameter.place()] > 0.0,
+        SIGMA => given[MU] > 0.0 && given[SIGMA] < NO_PRESLIDING_N_PER_M,
+        _ => true,
+    };
+    let all = FitOptions::default().free(record.params);
+    let free: Vec<Parameter> =
+        all.into_iter().filter(|parameter| acts(parameter) && !undetermined(parameter)).collect();
+    let mut values = given;
+    if let Some(found) = paper.values.first() {
+        for parameter in &free {
+            values[parameter.place()] = found[parameter.place()];
+        }
+    }
+    workbench::Model { values, free }
+}
+
+/// The rows with lines taken off the reference.
+fn without_lines(record: &CableRecord<'_>, lines: &[Line]) -> Vec<Row> {
+    let clean = |(cycle, row): (usize, &Row)| {
+        let hum_n: f64 = lines.iter().map(|line| line.at(cycle, record.cycle_s)).sum();
+        Row { reference_n: row.reference_n + hum_n, ..*row }
+    };
+    record.rows.iter().enumerate().map(clean).collect()
+}
+
+/// What is wrong with the log itself.
+struct Foreign {
+    faults: Vec<Stretch>,
+    hum: Vec<Line>,
+    stretch: Option<Place>,
+}
+
+/// A cable with its log.
+struct Case<'a> {
+    /// Without hum.
+    record: CableRecord<'a>,
+    /// As it is.
+    raw: CableRecord<'a>,
+    blocks: &'a [Block],
+    stop: &'a AtomicBool,
+}
+
+/// One look at it.
+struct Outcome {
+    base: Trial,
+    naming: Naming,
+    noise_n: f64,
+    wander_n: f64,
+    rest_n: Vec<f64>,
+    rest_is_noise: bool,
+    rest_places: Vec<Place>,
+}
+
+impl<'a> Case<'a> {
+    fn bench<'b>(&self, counts: &'b [bool]) -> Workbench<'b>
+    where
+        'a: 'b,
+    {
+        Workbench { record: self.record, blocks: self.blocks, counts, stop: self.stop }
+    }
+
+    fn excess<'b>(&'b self, residual_n: &'b [f64], noise_n: f64) -> Excess<'b> {
+        Excess { record: &self.record, blocks: self.blocks, residual_n, noise_n }
+    }
+
+    /// Fits, names, and judges the rest.
+    fn look(&self, counts: &[bool], start: &workbench::Model, conditions: &[Condition]) -> Outcome {
+        let bench = self.bench(counts);
+        let base = bench.try_one(start);
+        let residual_n = bench.residuals_n(&base.values);
+        let noise_n = white_noise(&residual_n).unwrap_or(0.0);
+        let naming = Search::new(&bench, noise_n, self.scale(&base, noise_n), &base).run();
+        let rest_n = bench.residuals_n(&naming.model.values);
+        let noise_n = white_noise(&rest_n).unwrap_or(noise_n);
+        let excess = self.excess(&rest_n, noise_n);
+        let (share, before) = (excess_share(&rest_n, noise_n), excess_share(&residual_n, noise_n));
+        let is_small = share <= WORTH.max(REMAINDER * if naming.named.is_empty() { 0.0 } else { before });
+        let rest_places = excess.places(conditions);
+        let is_wander = !is_small && is_wander(&excess, &rest_places);
+        Outcome {
+            base,
+            naming,
+            noise_n,
+            wander_n: if is_wander { noise_n * share.sqrt() } else { 0.0 },
+            rest_is_noise: is_small || is_wander,
+            rest_places,
+            rest_n,
+        }
+    }
+
+    fn scale(&self, base: &Trial, noise_n: f64) -> Scale {
+        let gain = self.record.params.frictionless_gain();
+        let (mut tension, mut speed) = (Deviation::default(), Deviation::default());
+        for row in self.record.rows.iter().filter(|row| row.is_sound()) {
+            tension.add(row.signals.sensor_force_n * gain);
+            if row.signals.displacement_m.abs() > 0.0 {
+                speed.add(row.signals.speed_m_per_s);
+            }
+        }
+        let tension_n = tension.rms().unwrap_or(1.0);
+        Scale {
+            tension_n,
+            noise_n,
+            friction_n: base.values[MU] * tension_n,
+            speed_m_per_s: speed.rms().unwrap_or(0.1).max(1e-4),
+            periods_m: Vec::new(),
+        }
+    }
+
+    fn report(
+        &self,
+        outcome: &Outcome,
+        counts: &[bool],
+        samples: SampleCounts,
+        conditions: &[Condition],
+        foreign: Foreign,
+    ) -> CableDiscovery {
+        let Outcome { base, naming, noise_n, .. } = outcome;
+        let raw = Workbench { record: self.raw, ..self.bench(counts) };
+        let held_out = raw.used(true);
+        let held_out_of = |values: &Values| {
+            let residual_n = raw.residuals_n(values);
+            let judged = residual_n.iter().zip(&held_out).filter(|(_, held_out)| **held_out);
+            judged.fold(Deviation::default(), |mut sum, (number, _)| {
+                sum.add(*number);
+                sum
+            })
+        };
+        let model = |trial: &Trial| Model {
+            values: trial.values,
+            fitted: trial.free.clone(),
+            covariance: self.covariance(counts, trial),
+            held_out_n: held_out_of(&trial.values),
+        };
+        let bench = self.bench(counts);
+        let search = Search::new(&bench, *noise_n, self.scale(base, *noise_n), base);
+        let findings = naming.named.iter().zip(naming.ladder.iter().skip(1));
+        let findings: Vec<Finding> =
+            findings.map(|(named, step)| finding(&search, &naming.model, named, held_out_of(&step.values))).collect();
+        let rms_n = |trial: &Trial| held_out_of(&trial.values).rms().unwrap_or(f64::NAN);
+        let mut tried: Vec<Tried> = naming
+            .first_round
+            .iter()
+            .map(|(row, trial)| Tried {
+                row,
+                delta_bic: search.delta_bic(base, trial, 1.0),
+                held_out_rms_n: rms_n(trial),
+            })
+            .collect();
+        tried.sort_by(|one, other| one.delta_bic.total_cmp(&other.delta_bic));
+        let after = model(&naming.model);
+        let clean_n = bench.residuals_n(&base.values);
+        let places = self.excess(&clean_n, *noise_n).concentrations(conditions);
+        let places = if excess_share(&clean_n, *noise_n) > WORTH { places } else { Vec::new() };
+        let is_foreign = !foreign.faults.is_empty() || !foreign.hum.is_empty() || foreign.stretch.is_some();
+        let unexplained = (is_foreign || !outcome.rest_is_noise).then(|| {
+            let rms_n = after.held_out_n.rms().unwrap_or(f64::NAN);
+            self.unexplained(outcome, (rms_n * rms_n - noise_n * noise_n).max(0.0).sqrt(), foreign)
+        });
+        let verdict = match (&unexplained, findings.is_empty()) {
+            (Some(_), _) => Verdict::Unexplained,
+            (None, true) => Verdict::Complete,
+            (None, false) => Verdict::Extended,
+        };
+        // What tells most of the given model, and of what is left.
+        let told = [places.first(), unexplained.as_ref().and_then(|rest: &Unexplained| rest.places.first())];
+        let mut signals: Vec<&str> = told.into_iter().flatten().map(|place| place.signal).collect();
+        signals.dedup();
+        let (residual_before_n, residual_after_n) =
+            (raw.residuals_n(&base.values), raw.residuals_n(&naming.model.values));
+        let profiles = signals.into_iter().filter_map(|signal| {
+            let condition = conditions.iter().find(|condition| condition.signal == signal)?;
+            profile(&self.record, condition, &residual_before_n, &residual_after_n)
+        });
+        CableDiscovery {
+            samples,
+            held_out: super::rest::ranges(held_out.iter().copied())
+                .into_iter()
+                .map(|range| [range.start, range.end])
+                .collect(),
+            noise_floor_n: *noise_n,
+            wander_n: outcome.wander_n,
+            verdict,
+            before: model(base),
+            after,
+            findings,
+            tried,
+            places,
+            unexplained,
+            lack: None,
+            profiles: profiles.collect(),
+            times_s: (0..self.record.rows.len()).map(|cycle| self.record.time_s(cycle)).collect(),
+            residual_before_n,
+            residual_after_n,
+        }
+    }
+
+    fn covariance(&self, counts: &[bool], trial: &Trial) -> DMatrix<f64> {
+        engine::covariance(&self.bench(counts).problem(&trial.free, None), &[trial.values]).0
+    }
+
+    fn unexplained(&self, outcome: &Outcome, rms_n: f64, foreign: Foreign) -> Unexplained {
+        let Foreign { faults, hum, stretch } = foreign;
+        let time_s = |cycle: usize| self.record.time_s(cycle);
+        let faults =
+            faults.into_iter().map(|Stretch { fault, cycles }| (fault, [time_s(cycles.start), time_s(cycles.end)]));
+        let rest = if outcome.rest_is_noise { Vec::new() } else { outcome.rest_places.clone() };
+        let excess = self.excess(&outcome.rest_n, outcome.noise_n);
+        let loud = |cycle: usize| outcome.rest_n.get(cycle).is_some_and(|number| number.abs() > 4.0 * outcome.noise_n);
+        Unexplained {
+            rms_n,
+            lines: hum,
+            faults: faults.collect(),
+            places: stretch.into_iter().chain(rest).collect(),
+            intervals_s: if outcome.rest_is_noise { Vec::new() } else { excess.intervals_s(loud) },
+        }
+    }
+}
+
+fn finding(search: &Search<'_, '_>, model: &Trial, named: &Named, held_out_n: Deviation) -> Finding {
+    let bic = |trial: &Trial| search.delta_bic(&named.without, trial, named.inflation);
+    let delta_bic = bic(model);
+    let runner_up = named.runner_up.as_ref().map(|(row, trial)| {
+        let other_bic = bic(trial);
+        RunnerUp {
+            row,
+            delta_bic: other_bic,
+            held_out_squares: trial.held_out,
+            is_as_good: other_bic - delta_bic < STRONG_BIC,
+        }
+    });
+    Finding { row: named.row, held_out_n, delta_bic, runner_up }
+}
+
+/// Mean square above the noise's as a share of it.
+fn excess_share(residual_n: &[f64], noise_n: f64) -> f64 {
+    deviation(residual_n).rms().map_or(0.0, |rms_n| (rms_n / noise_n).powi(2) - 1.0)
+}
+
+fn deviation(residual_n: &[f64]) -> Deviation {
+    residual_n.iter().fold(Deviation::default(), |mut sum, number| {
+        sum.add(*number);
+        sum
+    })
+}

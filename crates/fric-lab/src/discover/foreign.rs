@@ -1,0 +1,115 @@
+//! What is wrong with a log itself and no matter of friction: a sensor that stands still or is at the end of its range.
+//!
+//! Such stretches have a name and a place of their own; left out, the rest can be judged.
+
+use std::ops::Range;
+
+use crate::fit::CableRecord;
+use crate::fit::engine::Standing;
+
+/// Samples in a row with the same force, to the last bit, from which on a sensor stands still.
+const FEWEST_STILL: usize = 20;
+/// And this many times the length of the runs that happen all the time, for sensors of few digits.
+const STILL_RATIO: usize = 8;
+/// Samples at the greatest or the least force of a log from which on it is the end of the sensor's range.
+const FEWEST_AT_END: usize = 20;
+/// What is left out after a stretch, s: the friction in the model has to find back.
+const AFTER_S: f64 = 0.1;
+/// Two stretches with less than this between them are one, s.
+const MERGED_S: f64 = 0.1;
+
+/// What is the matter with the sensor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fault {
+    /// It repeats itself.
+    Frozen,
+    /// It is at the end of its range.
+    Clipped,
+}
+
+/// Cycles in which the sensor is not to be believed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Stretch {
+    /// Why not.
+    pub fault: Fault,
+    /// When.
+    pub cycles: Range<usize>,
+}
+
+/// Stretches of a cable's log with a faulty sensor, in the order of time.
+pub fn faulty_stretches(record: &CableRecord<'_>) -> Vec<Stretch> {
+    let shown: Vec<f64> = record.rows.iter().map(|row| row.signals.sensor_force_n).collect();
+    let runs: Vec<Range<usize>> = shown
+        .chunk_by(|one, next| one.to_bits() == next.to_bits())
+        .scan(0, |start, run| {
+            *start += run.len();
+            Some(*start - run.len()..*start)
+        })
+        .collect();
+    let usual = usual_length(&runs, shown.len());
+    let mut stretches = Vec::new();
+    let ends = ends_of_range(&shown, usual);
+    let is_end = |force_n: f64| ends.iter().any(|end| end.to_bits() == force_n.to_bits());
+    for run in runs {
+        let Some(force_n) = shown.get(run.start) else { continue };
+        if is_end(*force_n) {
+            stretches.push(Stretch { fault: Fault::Clipped, cycles: run });
+        } else if run.len() >= FEWEST_STILL.max(STILL_RATIO * usual) {
+            stretches.push(Stretch { fault: Fault::Frozen, cycles: run });
+        }
+    }
+    merged(stretches, record.cycle_s)
+}
+
+/// Length of the runs that half of the samples are in.
+fn usual_length(runs: &[Range<usize>], samples: usize) -> usize {
+    let mut lengths: Vec<usize> = runs.iter().map(Range::len).collect();
+    lengths.sort_unstable();
+    let mut seen = 0;
+    for length in lengths {
+        seen += length;
+        if 2 * seen >= samples {
+            return length;
+        }
+    }
+    1
+}
+
+/// The greatest and the least force, where the sensor stays at it as no signal with noise would.
+fn ends_of_range(forces_n: &[f64], usual: usize) -> Vec<f64> {
+    let mut ends = Vec::new();
+    for pick in [f64::max as fn(f64, f64) -> f64, f64::min] {
+        let Some(end) = forces_n.iter().copied().filter(|force_n| force_n.is_finite()).reduce(pick) else { continue };
+        let at_end = forces_n.iter().filter(|force_n| force_n.to_bits() == end.to_bits()).count();
+        if at_end >= FEWEST_AT_END.max(STILL_RATIO * usual) {
+            ends.push(end);
+        }
+    }
+    ends
+}
+
+fn merged(stretches: Vec<Stretch>, cycle_s: f64) -> Vec<Stretch> {
+    let mut merged: Vec<Stretch> = Vec::new();
+    for stretch in stretches {
+        #[expect(clippy::cast_precision_loss, reason = "a count of cycles")]
+        let is_near =
+            |last: &Stretch| (stretch.cycles.start.saturating_sub(last.cycles.end)) as f64 * cycle_s < MERGED_S;
+        match merged.last_mut() {
+            Some(last) if last.fault == stretch.fault && is_near(last) => last.cycles.end = stretch.cycles.end,
+            _ => merged.push(stretch),
+        }
+    }
+    merged
+}
+
+/// Leaves such stretches, and the moment after each, out of what counts.
+pub fn leave_out(stretches: &[Stretch], cycle_s: f64, standings: &mut [Standing]) {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
+    let after = (AFTER_S / cycle_s) as usize;
+    for stretch in stretches {
+        let end = (stretch.cycles.end + after).min(standings.len());
+        if let Some(standings) = standings.get_mut(stretch.cycles.start..end) {
+            standings.fill(Standing::Flagged);
+        }
+    }
+}

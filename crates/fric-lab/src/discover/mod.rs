@@ -1,0 +1,60 @@
+//! Discovery: where a model and a log disagree, which physical effect is missing, and how much smaller the gap is with it.
+//!
+//! For one cable at a time, from [`Measurements`] with reference forces:
+//!
+//! 1. *Gap.* The given model is fitted to half of the log, in blocks; the other half judges (`split`). The noise is
+//!    estimated from the residual alone (`noise`).
+//! 2. *Where.* Which operating conditions carry what is above the noise (`places`).
+//! 3. *Name.* Candidates of the catalogue enter, are exchanged and justify themselves (`naming`).
+//! 4. *Rest.* What is wrong with the log itself has its own names: lines in the spectrum (`lines`), a sensor that stands still
+//!    or is at the end of its range (`foreign`), a stretch of cable or of time (`rest`). Left out, the rest is
+//!    judged once more. A wander of the sensors that has nothing to do with the motion is noise.
+//!
+//! The model is the control cycle's own; what is found runs in it as it is.
+
+mod cable;
+mod candidates;
+mod conditions;
+mod evidence;
+mod extended;
+mod foreign;
+mod lines;
+mod naming;
+mod noise;
+mod places;
+mod profile;
+mod readiness;
+mod report;
+mod rest;
+pub mod result;
+mod split;
+mod summary;
+pub mod words;
+mod workbench;
+
+use rayon::prelude::*;
+
+use crate::fit::{CableRecord, Measurements, Progress};
+
+pub use extended::extended;
+pub use foreign::Fault;
+pub use lines::Line;
+pub use places::Place;
+pub use profile::{Profile, ProfileBin, ProfileCell};
+pub use readiness::Lack;
+pub use report::{CableDiscovery, Finding, Model, RunnerUp, Tried, Unexplained, Verdict};
+
+/// Looks at every cable that has a reference.
+#[must_use]
+pub fn discover(measurements: &Measurements<'_>, progress: &Progress) -> Vec<CableDiscovery> {
+    let records: Vec<CableRecord<'_>> = measurements.cables().collect();
+    progress.begin(records.len());
+    records
+        .par_iter()
+        .map(|record| {
+            let found = cable::discover_cable(record, progress);
+            progress.finish_one();
+            found
+        })
+        .collect()
+}

@@ -1,0 +1,275 @@
+//! Which effects are missing: candidates enter, are exchanged, and have to justify themselves.
+//!
+//! 1. *Enter.* Every candidate is fitted together with all that the model has. The best on the samples learned from
+//!    enters if it also helps on those held out; leniently, for what is still missing colours the residual.
+//! 2. *Exchange.* For every effect that has entered, all others are tried in its place.
+//! 3. *Leave.* An effect stays if the evidence for it is strong, if it is large enough to matter, and if it explains more than
+//!    what remains unexplained: a name that leaves most of the gap open is not the name.
+
+use std::collections::BTreeMap;
+
+use fric_core::effects::{self, EffectRow};
+use fric_core::parameters::MU;
+
+use super::candidates::{self, Scale, fitted, has, is_friction, starts};
+use super::evidence::inflation;
+use super::workbench::{Model, Trial, Workbench};
+use crate::fit::Parameter;
+
+/// Most effects of one cable.
+const MOST_EFFECTS: usize = 4;
+/// Of the squares above the noise, a candidate has to take away this share to enter: of those that are left,
+const LEAST_GAIN: f64 = 0.02;
+/// and of those that the given model leaves. Real friction is never quite that of an equation, and what the equation of a strong
+/// effect leaves must not be taken for a weak one.
+const LEAST_GAIN_OF_ALL: f64 = 0.01;
+/// And of the noise itself this share: the rms falls by half of it.
+const LEAST_SIZE: f64 = 0.002;
+/// What is left above the noise, as a share of it, from which on no further name is sought: the rms is half of it above.
+const NEGLIGIBLE: f64 = 0.01;
+/// Evidence that an effect has to have to stay, and names have to have over each other to be told apart.
+pub const STRONG_BIC: f64 = 10.0;
+/// The named model is brought this near to its minimum, in standard errors.
+const AT_MINIMUM: f64 = 0.01;
+/// Rounds of entering and exchanging.
+const ROUNDS: usize = 4;
+
+/// Names of effects in the order of the alphabet.
+type Kinds = Vec<&'static str>;
+
+/// An effect in a model with what speaks for it.
+#[derive(Clone, Debug)]
+pub struct Named {
+    /// Its row.
+    pub row: &'static EffectRow,
+    /// The model without it, fitted anew.
+    pub without: Trial,
+    /// The best other effect in its place.
+    pub runner_up: Option<(&'static EffectRow, Trial)>,
+    /// By how much memory in the residual weakens the evidence, at least 1.
+    pub inflation: f64,
+}
+
+/// What came out.
+#[derive(Clone, Debug)]
+pub struct Naming {
+    /// The model with all that was found.
+    pub model: Trial,
+    /// What was found, in the order in which it entered.
+    pub named: Vec<Named>,
+    /// The models on the way from the first to the last, one more than effects.
+    pub ladder: Vec<Trial>,
+    /// Every candidate's first fit beside the given model.
+    pub first_round: Vec<(&'static EffectRow, Trial)>,
+}
+
+/// The search on one cable. Every set of effects is fitted once.
+pub struct Search<'b, 'a> {
+    bench: &'b Workbench<'a>,
+    noise_squares: f64,
+    scale: Scale,
+    fits: BTreeMap<Kinds, Trial>,
+}
+
+impl<'b, 'a> Search<'b, 'a> {
+    /// From the given model, fitted; `noise_n` is the standard deviation of the noise.
+    pub fn new(bench: &'b Workbench<'a>, noise_n: f64, scale: Scale, base: &Trial) -> Self {
+        #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
+        let noise_squares = bench.count(true) as f64 * noise_n * noise_n;
+        Self { bench, noise_squares, scale, fits: BTreeMap::from([(Kinds::new(), base.clone())]) }
+    }
+
+    /// Names what the model lacks.
+    pub fn run(&mut self) -> Naming {
+        let mut rows: Vec<&'static EffectRow> = Vec::new();
+        let base = self.fit(&rows);
+        let first_round = if self.excess(&base) > NEGLIGIBLE { self.round(&rows) } else { Vec::new() };
+        for _ in 0..ROUNDS {
+            let before = rows.clone();
+            self.enter(&mut rows);
+            self.exchange(&mut rows);
+            if kinds(&rows) == kinds(&before) {
+                break;
+            }
+        }
+        let named = self.justify(&mut rows);
+        self.polish(&rows);
+        let ladder = (0..=rows.len()).map(|count| self.fit(rows.get(..count).unwrap_or_default())).collect();
+        Naming { model: self.fit(&rows), named, ladder, first_round }
+    }
+
+    /// Difference of Schwarz's criterion from one model to another over the samples learned from; negative speaks for the other.
+    pub fn delta_bic(&self, from: &Trial, to: &Trial, inflation: f64) -> f64 {
+        #[expect(clippy::cast_precision_loss, reason = "counts")]
+        let (count, more) = (self.bench.count(false) as f64 / inflation, to.free.len() as f64 - from.free.len() as f64);
+        count * (to.training / from.training).ln() + more * count.ln()
+    }
+
+    /// Mean square above the noise of the samples held out, as a share of the noise's.
+    fn excess(&self, trial: &Trial) -> f64 {
+        trial.held_out / self.noise_squares - 1.0
+    }
+
+    /// Lets the best candidates in as long as they help.
+    fn enter(&mut self, rows: &mut Vec<&'static EffectRow>) {
+        while rows.len() < MOST_EFFECTS {
+            let model = self.fit(rows);
+            if self.excess(&model) <= NEGLIGIBLE {
+                break;
+            }
+            let Some((row, _)) = best(self.round(rows)).filter(|(_, trial)| self.enters(&model, trial)) else { break };
+            rows.push(row);
+        }
+    }
+
+    /// Whether a candidate is let in.
+    fn enters(&self, before: &Trial, after: &Trial) -> bool {
+        let gain = before.held_out - after.held_out;
+        let gap = |trial: &Trial| (trial.held_out - self.noise_squares).max(0.0);
+        let all = self.fits.get(&Kinds::new()).map_or(0.0, gap);
+        gain > LEAST_GAIN * gap(before) && gain > LEAST_GAIN_OF_ALL * all && gain > LEAST_SIZE * self.noise_squares
+    }
+
+    /// Each candidate that a model lacks, fitted beside all that it has; the ladder of friction comes before everything else.
+    fn round(&mut self, rows: &[&'static EffectRow]) -> Vec<(&'static EffectRow, Trial)> {
+        let model = self.fit(rows);
+        let lacking = |friction: bool| -> Vec<&'static EffectRow> {
+            let slides = model.values[MU] > 0.0;
+            effects::named()
+                .filter(|row| is_friction(row) == friction && !has(row, &model.values) && !contains(rows, row))
+                .filter(|row| row.kind != "presliding" || slides)
+                .collect()
+        };
+        let friction = self.beside(rows, &lacking(true));
+        if friction.iter().any(|(_, trial)| self.enters(&model, trial)) {
+            return friction;
+        }
+        self.beside(rows, &lacking(false))
+    }
+
+    /// The model with one more effect, for each of several.
+    fn beside(
+        &mut self,
+        rows: &[&'static EffectRow],
+        candidates: &[&'static EffectRow],
+    ) -> Vec<(&'static EffectRow, Trial)> {
+        let with = |row: &&'static EffectRow| kinds(&[rows, &[*row]].concat());
+        let model = self.fit(rows);
+        let unknown: Vec<&'static EffectRow> =
+            candidates.iter().copied().filter(|row| !self.fits.contains_key(&with(row))).collect();
+        if unknown.iter().any(|row| row.kind == "pulley_eccentricity") {
+            let residuals_n = self.bench.residuals_n(&model.values);
+            self.scale.periods_m = candidates::periods_m(&self.bench.record, &residuals_n);
+        }
+        let (mut models, mut owners) = (Vec::new(), Vec::new());
+        for row in unknown {
+            for values in starts(row, &model.values, &self.scale, &self.bench.record) {
+                let mut free = model.free.clone();
+                free.extend(fitted(row).into_iter().filter(|parameter| !model.free.contains(parameter)));
+                models.push(Model { values, free });
+                owners.push(with(&row));
+            }
+        }
+        for (owner, trial) in owners.into_iter().zip(self.bench.try_all(&models)) {
+            let is_better = self.fits.get(&owner).is_none_or(|other| trial.training < other.training);
+            if trial.training.is_finite() && is_better {
+                self.fits.insert(owner, trial);
+            }
+        }
+        candidates.iter().filter_map(|row| Some((*row, self.fits.get(&with(row))?.clone()))).collect()
+    }
+
+    /// The model with a set of effects. One that has not been tried yet is fitted from the best that has one more.
+    fn fit(&mut self, rows: &[&'static EffectRow]) -> Trial {
+        let set = kinds(rows);
+        if let Some(trial) = self.fits.get(&set) {
+            return trial.clone();
+        }
+        let larger = self
+            .fits
+            .iter()
+            .filter(|(kinds, _)| kinds.len() == set.len() + 1 && set.iter().all(|kind| kinds.contains(kind)))
+            .min_by(|(_, one), (_, other)| one.training.total_cmp(&other.training));
+        let Some((larger, of_larger)) = larger else { return self.fit(&[]) };
+        let mut model = Model { values: of_larger.values, free: of_larger.free.clone() };
+        for row in effects::named().filter(|row| larger.contains(&row.kind) && !set.contains(&row.kind)) {
+            for parameter in Parameter::of_row(row) {
+                model.values[parameter.place()] = parameter.row().neutral;
+            }
+            let of_row = fitted(row);
+            model.free.retain(|parameter| !of_row.contains(parameter));
+        }
+        let trial = self.bench.try_one(&model);
+        self.fits.insert(set, trial.clone());
+        trial
+    }
+
+    /// Brings the model with a set of effects to its minimum.
+    fn polish(&mut self, rows: &[&'static EffectRow]) {
+        let Trial { values, free, .. } = self.fit(rows);
+        self.fits.insert(kinds(rows), self.bench.fit(&Model { values, free }, AT_MINIMUM));
+    }
+
+    /// Tries all other effects in the place of each.
+    fn exchange(&mut self, rows: &mut [&'static EffectRow]) {
+        for place in 0..rows.len() {
+            let Some((other, trial)) = self.alternative(rows, place) else { continue };
+            let model = self.fit(rows);
+            if trial.training < model.training && trial.held_out < model.held_out {
+                rows[place] = other;
+            }
+        }
+    }
+
+    /// The best other effect in the place of one; friction that every model has stays.
+    fn alternative(&mut self, rows: &[&'static EffectRow], place: usize) -> Option<(&'static EffectRow, Trial)> {
+        let row = *rows.get(place)?;
+        if is_friction(row) {
+            return None;
+        }
+        let others: Vec<&'static EffectRow> = rows.iter().copied().filter(|other| other.kind != row.kind).collect();
+        best(self.round(&others).into_iter().filter(|(other, _)| other.kind != row.kind))
+    }
+
+    /// Takes away what cannot justify itself, the weakest first.
+    fn justify(&mut self, rows: &mut Vec<&'static EffectRow>) -> Vec<Named> {
+        loop {
+            let model = self.fit(rows);
+            let mut named = Vec::new();
+            for (place, row) in rows.clone().into_iter().enumerate() {
+                let others: Vec<&'static EffectRow> =
+                    rows.iter().copied().filter(|other| other.kind != row.kind).collect();
+                named.push(Named {
+                    row,
+                    without: self.fit(&others),
+                    runner_up: self.alternative(rows, place),
+                    inflation: inflation(self.bench, &model, &fitted(row)),
+                });
+            }
+            let remains = (model.held_out - self.noise_squares).max(0.0);
+            let gain = |named: &Named| named.without.held_out - model.held_out;
+            let fails = |named: &&Named| {
+                let strong = self.delta_bic(&named.without, &model, named.inflation) < -STRONG_BIC;
+                !(strong && gain(named) > LEAST_SIZE * self.noise_squares && gain(named) > remains)
+            };
+            let weakest = named.iter().filter(fails).min_by(|one, other| gain(one).total_cmp(&gain(other)));
+            let Some(weakest) = weakest.map(|named| named.row.kind) else { return named };
+            rows.retain(|row| row.kind != weakest);
+        }
+    }
+}
+
+/// The best on the samples learned from.
+fn best(tried: impl IntoIterator<Item = (&'static EffectRow, Trial)>) -> Option<(&'static EffectRow, Trial)> {
+    tried.into_iter().min_by(|(_, one), (_, other)| one.training.total_cmp(&other.training))
+}
+
+fn contains(rows: &[&'static EffectRow], row: &EffectRow) -> bool {
+    rows.iter().any(|of| of.kind == row.kind)
+}
+
+fn kinds(rows: &[&'static EffectRow]) -> Kinds {
+    let mut kinds: Kinds = rows.iter().map(|row| row.kind).collect();
+    kinds.sort_unstable();
+    kinds
+}

@@ -1,0 +1,66 @@
+//! The noise of sensor and reference together, from the residual alone.
+//!
+//! Differences of fourth order, `(r₀ − 4r₁ + 6r₂ − 4r₃ + r₄)/√70`, leave white noise as it is and all but remove what changes
+//! slowly: whatever the model misses. Their mean square is taken over short blocks, and the median of these, so that a few
+//! stretches with more do not count. Noise that remembers is not seen by it.
+
+/// Samples of a block.
+const BLOCK: usize = 200;
+/// Binomial coefficients of the difference, and the root of the sum of their squares.
+const COEFFICIENTS: [f64; 5] = [1.0, -4.0, 6.0, -4.0, 1.0];
+const NORM: f64 = 8.366_600_265_340_756;
+/// The mean of a χ² distribution over its median, for the 200 overlapping differences of a block: they are worth some 60 that
+/// do not depend on each other, `(1 − 2/(9·60))⁻³`.
+const MEAN_PER_MEDIAN: f64 = 1.0112;
+
+/// Standard deviation of the white noise in a residual, in its unit; NaN samples divide it into stretches. `None` where no
+/// stretch is long enough.
+pub fn white_noise(residual: &[f64]) -> Option<f64> {
+    let mut squares: Vec<f64> = Vec::new();
+    for stretch in residual.split(|number| !number.is_finite()) {
+        let differences: Vec<f64> = stretch
+            .windows(COEFFICIENTS.len())
+            .map(|window| window.iter().zip(COEFFICIENTS).map(|(number, factor)| number * factor).sum::<f64>() / NORM)
+            .collect();
+        #[expect(clippy::cast_precision_loss, reason = "a small constant")]
+        squares.extend(
+            differences.chunks_exact(BLOCK).map(|block| block.iter().map(|d| d * d).sum::<f64>() / BLOCK as f64),
+        );
+    }
+    let middle = squares.len() / 2;
+    if squares.is_empty() {
+        return None;
+    }
+    let (_, median, _) = squares.select_nth_unstable_by(middle, f64::total_cmp);
+    Some((*median * MEAN_PER_MEDIAN).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::SeedableRng;
+    use rand_distr::{Distribution, StandardNormal};
+
+    use super::*;
+
+    #[test]
+    fn sees_white_noise_below_what_changes_slowly() {
+        let mut random = ChaCha8Rng::seed_from_u64(1);
+        for slow_n in [0.0, 0.1, 1.0] {
+            let residual: Vec<f64> = (0..50_000)
+                .map(|k| {
+                    let noise: f64 = StandardNormal.sample(&mut random);
+                    let gap = if k % 7000 == 0 { f64::NAN } else { 0.0 };
+                    0.0141 * noise + slow_n * (f64::from(k) * 0.006).sin() + gap
+                })
+                .collect();
+            let found = white_noise(&residual).unwrap();
+            assert!((found / 0.0141 - 1.0).abs() < 0.015, "{slow_n}: {found}");
+        }
+    }
+
+    #[test]
+    fn a_residual_too_short_has_none() {
+        assert_eq!(white_noise(&[0.1; 150]), None);
+    }
+}

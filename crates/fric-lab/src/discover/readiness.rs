@@ -1,0 +1,206 @@
+//! What a log lacks for a discovery: a cable of which it tells too little gets a reason instead of a verdict.
+//!
+//! All that decides is asked of the record before anything is fitted, but for the warm-up, which depends on the friction.
+
+use crate::fit::{CableRecord, Row, SampleCounts};
+
+/// Least time with samples that count, s: half of it judges, and has to hold some reversals.
+const LEAST_S: f64 = 8.0;
+/// A cable whose length changes by less in all does not move: as much as a winch needs to hold a force, m.
+const LEAST_RANGE_M: f64 = 1e-4;
+/// A way back shorter than this is no reversal, for friction would hardly turn round, m.
+const STROKE_M: f64 = 1e-4;
+/// Reversals without which friction cannot be told from an offset, neither in what is learned from nor in what judges.
+const FEWEST_REVERSALS: usize = 2;
+/// Speeds are looked at over this time, s: shorter than any stroke, long enough for the steps of an encoder.
+const SPEED_OVER_S: f64 = 0.1;
+/// The cable moves where it does so at more than this share of its high speed.
+const MOVES_RATIO: f64 = 0.05;
+/// High and low speed, as the quantiles of 90 % and 10 %, are the same below this ratio: no effect of speed can show.
+const ONE_SPEED_RATIO: f64 = 1.25;
+
+/// Why nothing can be told of a cable, and what to do.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Lack {
+    /// In one sentence, without its full stop.
+    pub cause: String,
+    /// What to do, a sentence.
+    pub advice: &'static str,
+}
+
+impl Lack {
+    fn new(cause: impl Into<String>, advice: &'static str) -> Self {
+        Self { cause: cause.into(), advice }
+    }
+}
+
+const RUN: &str = "Record longer strokes at several speeds in both directions, best the run of `fric-cli excite`.";
+const LONGER: &str = "Record a longer run, best that of `fric-cli excite`.";
+
+/// What a cable's record lacks.
+pub fn lack_of(record: &CableRecord<'_>) -> Option<Lack> {
+    let with_reference = record.rows.iter().filter(|row| row.reference_n.is_finite()).count();
+    if with_reference == 0 {
+        return Some(Lack::new(
+            "the log has no reference force of it, or none that is a number",
+            "Record the force of the cable at the platform beside its other signals.",
+        ));
+    }
+    let counts = |row: &Row| row.is_sound() && row.reference_n.is_finite();
+    let sound = record.rows.iter().filter(|row| counts(row)).count();
+    if sound == 0 {
+        return Some(Lack::new(
+            "each sample is flagged, or has no tension on the cable",
+            "See the flags with `fric-cli replay`.",
+        ));
+    }
+    let motion = Motion::of(record);
+    if motion.range_m < LEAST_RANGE_M {
+        return Some(Lack::new(format!("it rests: its length changes by {:.3} mm in all", motion.range_m * 1e3), RUN));
+    }
+    let sound_s = seconds(sound, record.cycle_s);
+    if sound_s < LEAST_S {
+        let cause = format!("{sound_s:.1} s of samples with a reference are too few, {LEAST_S} s are needed");
+        return Some(Lack::new(cause, LONGER));
+    }
+    if motion.reversals < FEWEST_REVERSALS {
+        let times = if motion.reversals == 0 { "never" } else { "only once" };
+        return Some(Lack::new(
+            format!("it {times} reverses, so that friction cannot be told from an offset of the sensors"),
+            RUN,
+        ));
+    }
+    if motion.speed_ratio < ONE_SPEED_RATIO {
+        let cause =
+            format!("it has one speed only, {:.3} m/s, so that no effect of speed can show", motion.speed_m_per_s);
+        return Some(Lack::new(cause, RUN));
+    }
+    None
+}
+
+/// What is lacking once it is known which samples count.
+pub fn lack_of_samples(counts: &SampleCounts, cycle_s: f64) -> Option<Lack> {
+    let SampleCounts { used, flagged, without_reference, warm_up, outliers } = *counts;
+    let used_s = seconds(used, cycle_s);
+    if used_s >= LEAST_S {
+        return None;
+    }
+    let warm_up_is_most = warm_up > flagged.max(without_reference).max(outliers);
+    if warm_up_is_most && used == 0 {
+        return Some(Lack::new("it moves too little to forget the friction stored in it when the log began", RUN));
+    }
+    if warm_up_is_most {
+        let cause = format!(
+            "{used_s:.1} s of samples are too few, {LEAST_S} s are needed: before them, {:.1} s of motion pass until it has \
+             forgotten the friction stored in it when the log began",
+            seconds(warm_up, cycle_s)
+        );
+        return Some(Lack::new(cause, LONGER));
+    }
+    let advice = if without_reference >= flagged {
+        "Look at the reference with `fric-cli info`: where it stands still, it measures nothing."
+    } else {
+        "See the flags with `fric-cli replay`."
+    };
+    Some(Lack::new(format!("only {used_s:.1} s of its samples can be used: {LEAST_S} s are needed"), advice))
+}
+
+fn seconds(samples: usize, cycle_s: f64) -> f64 {
+    #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
+    let seconds = samples as f64 * cycle_s;
+    seconds
+}
+
+/// How a cable moves.
+#[derive(Clone, Copy, Debug)]
+struct Motion {
+    /// Greatest length less the least, m.
+    range_m: f64,
+    reversals: usize,
+    /// High speed by low speed; 1 where there is one speed.
+    speed_ratio: f64,
+    /// The high one, m/s.
+    speed_m_per_s: f64,
+}
+
+impl Motion {
+    fn of(record: &CableRecord<'_>) -> Self {
+        let mut motion = Self { range_m: 0.0, reversals: 0, speed_ratio: 1.0, speed_m_per_s: 0.0 };
+        let mut speeds = Vec::new();
+        for (_, rows) in record.logs() {
+            let mut turns = Turns::default();
+            let (mut length_m, mut least_m, mut greatest_m) = (0.0_f64, 0.0_f64, 0.0_f64);
+            for row in rows {
+                length_m += row.signals.displacement_m;
+                (least_m, greatest_m) = (least_m.min(length_m), greatest_m.max(length_m));
+                motion.reversals += usize::from(turns.at(length_m));
+            }
+            motion.range_m = motion.range_m.max(greatest_m - least_m);
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
+            let stretch = ((SPEED_OVER_S / record.cycle_s) as usize).max(1);
+            speeds.extend(rows.chunks_exact(stretch).map(|rows| {
+                let way_m: f64 = rows.iter().map(|row| row.signals.displacement_m).sum();
+                way_m.abs() / seconds(stretch, record.cycle_s)
+            }));
+        }
+        speeds.sort_by(f64::total_cmp);
+        let high = quantile(&speeds, 0.9);
+        let first = speeds.partition_point(|speed| *speed <= MOVES_RATIO * high);
+        let moving = speeds.get(first..).unwrap_or_default();
+        let (low, high) = (quantile(moving, 0.1), quantile(moving, 0.9));
+        if low > 0.0 {
+            (motion.speed_ratio, motion.speed_m_per_s) = (high / low, high);
+        }
+        motion
+    }
+}
+
+/// The number below which a share of sorted ones lies; 0 of none.
+fn quantile(sorted: &[f64], share: f64) -> f64 {
+    #[expect(clippy::cast_precision_loss, reason = "a count")]
+    let place = share * sorted.len().saturating_sub(1) as f64;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a place")]
+    sorted.get(place as usize).copied().unwrap_or(0.0)
+}
+
+/// Follows a length and tells where it turns round for good.
+#[derive(Clone, Copy, Debug, Default)]
+struct Turns {
+    extreme_m: f64,
+    /// 0 until it is known.
+    direction: f64,
+}
+
+impl Turns {
+    fn at(&mut self, length_m: f64) -> bool {
+        let way_m = length_m - self.extreme_m;
+        if self.direction * way_m > 0.0 {
+            self.extreme_m = length_m;
+        }
+        if way_m.abs() < STROKE_M || self.direction * way_m > 0.0 {
+            return false;
+        }
+        let is_turn = self.direction != 0.0;
+        (self.extreme_m, self.direction) = (length_m, way_m.signum());
+        is_turn
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn reversals(lengths_m: impl IntoIterator<Item = f64>) -> usize {
+        let mut turns = Turns::default();
+        lengths_m.into_iter().filter(|length_m| turns.at(*length_m)).count()
+    }
+
+    #[test]
+    fn a_reversal_is_one_that_friction_follows() {
+        let ramp = |count: i32| (0..count).map(|k| f64::from(k) * 1e-4);
+        assert_eq!(reversals(ramp(1000)), 0);
+        assert_eq!(reversals(ramp(1000).map(|way_m| way_m + 5e-5 * (way_m * 3e4).sin())), 0);
+        assert_eq!(reversals(ramp(1000).chain(ramp(1000).map(|way_m| 0.1 - way_m))), 1);
+        assert_eq!(reversals((0..10_000).map(|k| 0.01 * (f64::from(k) * std::f64::consts::TAU / 2000.0).sin())), 10);
+    }
+}

@@ -1,0 +1,540 @@
+//! The result of a discovery for machines, `format = "fric-discover/1"`, with what is to be told beside it.
+//!
+//! `before`, `after` and everything `held_out` are over the same samples: those of `held_out_samples`. A share of the gap
+//! closed is `1 − (error − floor)/(before − floor)` with root mean squares; that of an effect counts it and all above it
+//! in the list. Where nothing is missing there is no gap to close, and the share is null.
+
+use fric_core::effects::EffectRow;
+use fric_core::parameters::NO_PRESLIDING_N_PER_M;
+use fric_core::robot::file::RobotFile;
+use serde::Serialize;
+
+use super::foreign::Fault;
+use super::lines::Line;
+use super::places::Place;
+use super::report::{CableDiscovery, Finding, Model, Tried, Unexplained, Verdict};
+use super::summary;
+use crate::errors::ForceError;
+use crate::fit::readiness::Readiness;
+use crate::fit::result::{LeftOut, Numbers};
+use crate::fit::{FitError, Parameter};
+
+/// All of a discovery.
+#[derive(Clone, Debug, Serialize)]
+pub struct DiscoverResult {
+    /// Name and version of the form.
+    pub format: &'static str,
+    /// The logs, in order.
+    pub log: Vec<String>,
+    /// When each begins, s: several logs are one after the other.
+    pub log_start_s: Vec<f64>,
+    /// Name of the robot.
+    pub robot: String,
+    /// The cables in the robot's order.
+    pub cables: Vec<DiscoverCableResult>,
+    /// Effects that several cables have.
+    pub common_effects: Vec<CommonEffect>,
+}
+
+/// One cable.
+#[derive(Clone, Debug, Serialize)]
+pub struct DiscoverCableResult {
+    /// Its name.
+    pub name: String,
+    /// Samples that count.
+    pub samples: usize,
+    /// Those that do not.
+    pub left_out: LeftOut,
+    /// Those that judge, `from..to`, counted over all rows of all logs.
+    pub held_out_samples: Vec<[usize; 2]>,
+    /// When they are, s since the first sample.
+    pub held_out_s: Vec<[f64; 2]>,
+    /// Standard deviation of the white noise, N.
+    pub noise_floor_n: Option<f64>,
+    /// Standard deviation of slow noise of the sensors, N.
+    pub wander_n: Option<f64>,
+    /// Error of the given model, fitted.
+    pub before: Option<ForceError>,
+    /// Error of the extended one.
+    pub after: Option<ForceError>,
+    /// Share of the gap that the extended model has closed.
+    pub gap_closed: Option<f64>,
+    /// `complete`, `extended`, `unexplained`; `untold` where the log does not allow to tell, `null` in JSON.
+    #[serde(serialize_with = "verdict_or_null")]
+    pub verdict: &'static str,
+    /// What the log lacks for a verdict.
+    pub missing: Option<Missing>,
+    /// Where the given model disagrees, what tells most first.
+    #[serde(rename = "where")]
+    pub places: Vec<WhereResult>,
+    /// What was found, in the order in which it entered.
+    pub effects: Vec<EffectResult>,
+    /// Every candidate by itself beside the given model, the best first.
+    pub candidates: Vec<Candidate>,
+    /// Values of the extended model, as the robot file's `friction`, and `effect.key`.
+    pub parameters: Numbers,
+    /// Standard errors of those fitted.
+    pub standard_errors: Numbers,
+    /// What no effect accounts for.
+    pub unexplained: Option<UnexplainedResult>,
+}
+
+/// Why there is no verdict.
+#[derive(Clone, Debug, Serialize)]
+pub struct Missing {
+    /// In one sentence, without its full stop.
+    pub cause: String,
+    /// What to do, a sentence.
+    pub advice: &'static str,
+}
+
+/// A range of a condition in which the disagreement sits.
+#[derive(Clone, Debug, Serialize)]
+pub struct WhereResult {
+    /// The condition.
+    pub signal: &'static str,
+    /// Where the range begins, in `unit`.
+    pub from: f64,
+    /// Where it ends.
+    pub to: f64,
+    /// Its unit.
+    pub unit: &'static str,
+    /// Share of what is above the noise in this range.
+    pub share_of_excess: Option<f64>,
+    /// Share of the samples in this range.
+    pub share_of_samples: Option<f64>,
+    /// Share of what is above the noise that is a function of this condition and of the direction of motion.
+    pub explains: Option<f64>,
+    /// How many standard errors that is above chance.
+    pub significance: Option<f64>,
+    /// When to look, s since the first sample.
+    pub intervals_s: Vec<[f64; 2]>,
+    /// Least and greatest value of the condition.
+    #[serde(skip)]
+    pub range: [f64; 2],
+}
+
+/// An effect that was found.
+#[derive(Clone, Debug, Serialize)]
+pub struct EffectResult {
+    /// Its name in the catalogue.
+    pub kind: &'static str,
+    /// Its parameters by key, settings too.
+    pub parameters: Numbers,
+    /// Standard errors of those fitted.
+    pub standard_errors: Numbers,
+    /// Share of the gap closed with it and all before it.
+    pub gap_closed: Option<f64>,
+    /// What speaks for it.
+    pub evidence: Evidence,
+    /// The best other effect in its place.
+    pub runner_up: Option<RunnerUpResult>,
+    /// Its row of the catalogue.
+    #[serde(skip)]
+    pub row: &'static EffectRow,
+}
+
+/// What speaks for an effect.
+#[derive(Clone, Debug, Serialize)]
+pub struct Evidence {
+    /// Schwarz's criterion with it less without it.
+    pub delta_bic: Option<f64>,
+    /// Error with it and all before it, N.
+    pub held_out_rms_n: Option<f64>,
+}
+
+/// Another effect that might have been it.
+#[derive(Clone, Debug, Serialize)]
+pub struct RunnerUpResult {
+    /// Its name in the catalogue.
+    pub kind: &'static str,
+    /// Schwarz's criterion with it less without it.
+    pub delta_bic: Option<f64>,
+    /// Error with it in the other's place, N.
+    pub held_out_rms_n: Option<f64>,
+    /// The log cannot tell the two apart.
+    pub as_good: bool,
+    /// Its row of the catalogue.
+    #[serde(skip)]
+    pub row: &'static EffectRow,
+}
+
+/// An effect that was tried.
+#[derive(Clone, Debug, Serialize)]
+pub struct Candidate {
+    /// Its name in the catalogue.
+    pub kind: &'static str,
+    /// Schwarz's criterion with it less without it.
+    pub delta_bic: Option<f64>,
+    /// Error with it, N.
+    pub held_out_rms_n: Option<f64>,
+}
+
+/// What no effect accounts for.
+#[derive(Clone, Debug, Serialize)]
+pub struct UnexplainedResult {
+    /// Error above the noise, N.
+    pub rms_n: Option<f64>,
+    /// Frequencies of lines in the spectrum, the strongest first.
+    pub frequency_hz: Vec<f64>,
+    /// Their amplitudes, N.
+    pub amplitude_n: Vec<f64>,
+    /// When the sensor is not to be believed.
+    pub faults: Vec<FaultResult>,
+    /// Where it lies.
+    #[serde(rename = "where")]
+    pub places: Vec<WhereResult>,
+    /// When it is loud, s since the first sample.
+    pub intervals_s: Vec<[f64; 2]>,
+    /// What it goes with: conditions that it is a function of, what tells most first.
+    pub goes_with: Vec<&'static str>,
+}
+
+/// A fault of the sensor.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct FaultResult {
+    /// `frozen` or `clipped`.
+    pub fault: &'static str,
+    /// Where it begins, s since the first sample.
+    pub from_s: f64,
+    /// Where it ends.
+    pub to_s: f64,
+}
+
+/// An effect that several cables have.
+#[derive(Clone, Debug, Serialize)]
+pub struct CommonEffect {
+    /// Its name in the catalogue.
+    pub kind: &'static str,
+    /// The cables that have it.
+    pub cables: Vec<String>,
+    /// Its fitted parameters over these cables.
+    pub parameters: Vec<CommonParameter>,
+}
+
+/// One of its parameters.
+#[derive(Clone, Debug, Serialize)]
+pub struct CommonParameter {
+    /// Its key.
+    pub key: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// Mean over the cables, by how sure each is; the plain mean where they differ.
+    pub mean: f64,
+    /// Standard error of the mean; where the cables differ, by their scatter.
+    pub standard_error: f64,
+    /// The cables differ by more than their errors.
+    pub differs: bool,
+    /// Least of the cables.
+    pub least: f64,
+    /// Greatest of them.
+    pub greatest: f64,
+}
+
+/// The cables differ where the sum of squares, in standard errors, is beyond what chance gives by so many of its own
+/// standard deviations; what a fit takes for errors is not that sure.
+const DIFFERS: f64 = 5.0;
+
+impl Verdict {
+    /// Its name in results.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Complete => "complete",
+            Self::Extended => "extended",
+            Self::Unexplained => "unexplained",
+            Self::Untold => "untold",
+        }
+    }
+}
+
+impl Fault {
+    /// Its name in results.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Frozen => "frozen",
+            Self::Clipped => "clipped",
+        }
+    }
+}
+
+fn verdict_or_null<S: serde::Serializer>(verdict: &&'static str, serializer: S) -> Result<S::Ok, S::Error> {
+    Some(*verdict).filter(|verdict| *verdict != Verdict::Untold.name()).serialize(serializer)
+}
+
+impl DiscoverResult {
+    /// Name and version of the form.
+    pub const FORMAT: &str = "fric-discover/1";
+
+    /// Of a robot's cables; `logs` are names with the beginning of each, s.
+    #[must_use]
+    pub fn new(
+        robot: &RobotFile,
+        logs: &[(String, f64)],
+        readiness: &Readiness,
+        discoveries: &[CableDiscovery],
+    ) -> Self {
+        let cables = robot.cable_names().into_iter().zip(discoveries).enumerate();
+        let cables: Vec<DiscoverCableResult> = cables
+            .map(|(place, (name, found))| {
+                let lack = readiness.lack_of(place).map(|lack| (lack.cause.clone(), lack.advice));
+                cable_result(name, found, lack)
+            })
+            .collect();
+        Self {
+            format: Self::FORMAT,
+            log: logs.iter().map(|(name, _)| name.clone()).collect(),
+            log_start_s: logs.iter().map(|(_, start_s)| *start_s).collect(),
+            robot: robot.options().name.clone(),
+            common_effects: common_effects(&cables),
+            cables,
+        }
+    }
+
+    /// For people: the verdicts, then what was found.
+    #[must_use]
+    pub fn summary(&self) -> String {
+        summary::describe(self)
+    }
+
+    /// Makes sure that there is a verdict of at least one cable.
+    ///
+    /// # Errors
+    /// [`FitError`] with what is missing.
+    pub fn check_told(&self) -> Result<(), FitError> {
+        let missing: Vec<&Missing> = self.cables.iter().filter_map(|cable| cable.missing.as_ref()).collect();
+        let (Some(first), true) = (missing.first(), missing.len() == self.cables.len()) else { return Ok(()) };
+        let name = self.cables.first().map_or("", |cable| cable.name.as_str());
+        let others = if self.cables.len() > 1 { ", and nothing of the others" } else { "" };
+        Err(FitError::new(format!("the log tells nothing of {name}{others}: {}", first.cause), first.advice))
+    }
+}
+
+/// A number, if it is one.
+fn finite(number: f64) -> Option<f64> {
+    number.is_finite().then_some(number)
+}
+
+fn cable_result(name: &str, found: &CableDiscovery, lack: Option<(String, &'static str)>) -> DiscoverCableResult {
+    let samples = found.samples;
+    let (before, after) = (ForceError::of(&found.before.held_out_n), ForceError::of(&found.after.held_out_n));
+    let share = |rms_n: f64| gap_closed(found, rms_n);
+    let told = found.lack.as_ref().map(|lack| (lack.cause.clone(), lack.advice));
+    let missing = told.map(|told| lack.unwrap_or(told)).map(|(cause, advice)| Missing { cause, advice });
+    let time_s = |sample: usize| found.times_s.get(sample).or(found.times_s.last()).copied().unwrap_or(0.0);
+    let gap = [&found.before, &found.after].map(|model| excess(model, found.noise_floor_n));
+    let hum = found.unexplained.as_ref().map_or(&[][..], |rest| &rest.lines);
+    let mut places: Vec<WhereResult> = found.places.iter().map(WhereResult::of).collect();
+    places.extend(hum.iter().map(|line| WhereResult::of_line(line, gap[0])));
+    DiscoverCableResult {
+        name: name.to_owned(),
+        samples: samples.used,
+        left_out: LeftOut {
+            flagged: samples.flagged,
+            without_reference: samples.without_reference,
+            warm_up: samples.warm_up,
+            outliers: samples.outliers,
+        },
+        held_out_samples: found.held_out.clone(),
+        held_out_s: found.held_out.iter().map(|range| range.map(time_s)).collect(),
+        noise_floor_n: finite(found.noise_floor_n),
+        wander_n: finite(found.wander_n),
+        before,
+        after,
+        gap_closed: after.and_then(|after| share(after.rms_n)),
+        verdict: found.verdict.name(),
+        missing,
+        places,
+        effects: found.findings.iter().map(|finding| effect_result(found, finding)).collect(),
+        candidates: found.tried.iter().map(Candidate::of).collect(),
+        parameters: parameters(found),
+        standard_errors: errors(&found.after, Parameter::all(), ToString::to_string),
+        unexplained: found.unexplained.as_ref().map(|rest| unexplained(rest, gap[1])),
+    }
+}
+
+/// Share of the gap closed where this error is left; `None` where there is no gap.
+fn gap_closed(found: &CableDiscovery, rms_n: f64) -> Option<f64> {
+    let gap_n = found.before.held_out_n.rms()? - found.noise_floor_n;
+    (found.verdict != Verdict::Complete && gap_n > 0.0)
+        .then(|| 1.0 - (rms_n - found.noise_floor_n) / gap_n)
+        .and_then(finite)
+}
+
+/// Mean square above the noise, N².
+fn excess(model: &Model, noise_n: f64) -> f64 {
+    model.held_out_n.rms().map_or(f64::NAN, |rms_n| rms_n * rms_n - noise_n * noise_n)
+}
+
+/// Values of the extended model: friction, what was fitted, and all of each effect that was found.
+fn parameters(found: &CableDiscovery) -> Numbers {
+    let model = &found.after;
+    let of_finding =
+        |parameter: &Parameter| found.findings.iter().any(|finding| finding.row.places().contains(&parameter.place()));
+    let shown = |parameter: Parameter| {
+        let value = model.values[parameter.place()];
+        let relevant = parameter.is_friction() || model.fitted.contains(&parameter) || of_finding(&parameter);
+        (relevant && value < NO_PRESLIDING_N_PER_M).then(|| (parameter.to_string(), value))
+    };
+    Numbers(Parameter::all().filter_map(shown).collect())
+}
+
+/// Standard errors of those fitted among some parameters, by name.
+fn errors(model: &Model, of: impl Iterator<Item = Parameter>, name: impl Fn(&Parameter) -> String) -> Numbers {
+    Numbers(of.filter_map(|parameter| Some((name(&parameter), finite(model.standard_error(&parameter)?)?))).collect())
+}
+
+fn effect_result(found: &CableDiscovery, finding: &Finding) -> EffectResult {
+    let key = |parameter: &Parameter| parameter.row().key.to_owned();
+    let values = &found.after.values;
+    let held_out_rms_n = finding.held_out_n.rms();
+    #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
+    let count = finding.held_out_n.count() as f64;
+    EffectResult {
+        kind: finding.row.kind,
+        parameters: Numbers(
+            Parameter::of_row(finding.row).map(|parameter| (key(&parameter), values[parameter.place()])).collect(),
+        ),
+        standard_errors: errors(&found.after, Parameter::of_row(finding.row), key),
+        gap_closed: held_out_rms_n.and_then(|rms_n| gap_closed(found, rms_n)),
+        evidence: Evidence { delta_bic: finite(finding.delta_bic), held_out_rms_n },
+        runner_up: finding.runner_up.as_ref().map(|other| RunnerUpResult {
+            kind: other.row.kind,
+            delta_bic: finite(other.delta_bic),
+            held_out_rms_n: finite((other.held_out_squares / count).sqrt()),
+            as_good: other.is_as_good,
+            row: other.row,
+        }),
+        row: finding.row,
+    }
+}
+
+impl Candidate {
+    fn of(tried: &Tried) -> Self {
+        Self { kind: tried.row.kind, delta_bic: finite(tried.delta_bic), held_out_rms_n: finite(tried.held_out_rms_n) }
+    }
+}
+
+impl WhereResult {
+    fn of(place: &Place) -> Self {
+        Self {
+            signal: place.signal,
+            from: place.from,
+            to: place.to,
+            unit: place.unit,
+            share_of_excess: finite(place.share_of_excess),
+            share_of_samples: finite(place.share_of_samples),
+            explains: finite(place.explains),
+            significance: finite(place.significance),
+            intervals_s: place.intervals_s.clone(),
+            range: place.range,
+        }
+    }
+
+    /// A line in the spectrum, of a mean square above the noise.
+    fn of_line(line: &Line, excess: f64) -> Self {
+        let share = finite((0.5 * line.amplitude().powi(2) / excess).clamp(0.0, 1.0));
+        Self {
+            signal: "frequency",
+            from: line.frequency_hz,
+            to: line.frequency_hz,
+            unit: "Hz",
+            share_of_excess: share,
+            share_of_samples: Some(1.0),
+            explains: share,
+            significance: None,
+            intervals_s: Vec::new(),
+            range: [f64::NAN; 2],
+        }
+    }
+}
+
+fn unexplained(rest: &Unexplained, excess: f64) -> UnexplainedResult {
+    let lines = rest.lines.iter().map(|line| WhereResult::of_line(line, excess));
+    UnexplainedResult {
+        rms_n: finite(rest.rms_n),
+        frequency_hz: rest.lines.iter().map(|line| line.frequency_hz).collect(),
+        amplitude_n: rest.lines.iter().map(Line::amplitude).collect(),
+        faults: rest
+            .faults
+            .iter()
+            .map(|(fault, [from_s, to_s])| FaultResult { fault: fault.name(), from_s: *from_s, to_s: *to_s })
+            .collect(),
+        places: lines.chain(rest.places.iter().map(WhereResult::of)).collect(),
+        intervals_s: rest.intervals_s.clone(),
+        goes_with: rest.places.iter().map(|place| place.signal).collect(),
+    }
+}
+
+fn common_effects(cables: &[DiscoverCableResult]) -> Vec<CommonEffect> {
+    let mut kinds: Vec<&'static str> = Vec::new();
+    for effect in cables.iter().flat_map(|cable| &cable.effects) {
+        if !kinds.contains(&effect.kind) {
+            kinds.push(effect.kind);
+        }
+    }
+    kinds.into_iter().filter_map(|kind| common_effect(kind, cables)).collect()
+}
+
+/// An effect over the cables that have it, if they are several.
+fn common_effect(kind: &'static str, cables: &[DiscoverCableResult]) -> Option<CommonEffect> {
+    let with: Vec<(&str, &EffectResult)> = cables
+        .iter()
+        .filter_map(|cable| Some((cable.name.as_str(), cable.effects.iter().find(|effect| effect.kind == kind)?)))
+        .collect();
+    let parameters = with.first()?.1.row.parameters.iter().filter_map(|parameter| {
+        let of_cable = |(_, effect): &(&str, &EffectResult)| {
+            Some((effect.parameters.get(parameter.key)?, effect.standard_errors.get(parameter.key)?))
+        };
+        let numbers: Vec<(f64, f64)> = with.iter().filter_map(of_cable).collect();
+        CommonParameter::of(parameter.key, parameter.unit, &numbers)
+    });
+    (with.len() > 1).then(|| CommonEffect {
+        kind,
+        cables: with.iter().map(|(name, _)| (*name).to_owned()).collect(),
+        parameters: parameters.collect(),
+    })
+}
+
+impl CommonParameter {
+    /// Of values with their standard errors.
+    fn of(key: &'static str, unit: &'static str, numbers: &[(f64, f64)]) -> Option<Self> {
+        let numbers: Vec<(f64, f64)> = numbers.iter().copied().filter(|(_, error)| *error > 0.0).collect();
+        #[expect(clippy::cast_precision_loss, reason = "a count of cables")]
+        let count = numbers.len() as f64;
+        if count < 2.0 {
+            return None;
+        }
+        let weights: f64 = numbers.iter().map(|(_, error)| error.powi(-2)).sum();
+        let weighted = numbers.iter().map(|(value, error)| value * error.powi(-2)).sum::<f64>() / weights;
+        let squares: f64 = numbers.iter().map(|(value, error)| ((value - weighted) / error).powi(2)).sum();
+        let freedom = count - 1.0;
+        let differs = squares > freedom + DIFFERS * (2.0 * freedom).sqrt();
+        let plain = numbers.iter().map(|(value, _)| value).sum::<f64>() / count;
+        let scatter: f64 = numbers.iter().map(|(value, _)| (value - plain).powi(2)).sum();
+        let (mean, standard_error) =
+            if differs { (plain, (scatter / freedom / count).sqrt()) } else { (weighted, weights.sqrt().recip()) };
+        let ends = numbers.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, greatest), (value, _)| {
+            (least.min(*value), greatest.max(*value))
+        });
+        Some(Self { key, unit, mean, standard_error, differs, least: ends.0, greatest: ends.1 })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mean_over_cables_says_when_they_differ() {
+        let of = |numbers: &[(f64, f64)]| CommonParameter::of("delay_s", "s", numbers).unwrap();
+        let same = of(&[(6.0e-3, 1e-4), (6.2e-3, 1e-4), (6.1e-3, 2e-4), (6.1e-3, 2e-4)]);
+        assert!(!same.differs && (same.mean - 6.1e-3).abs() < 1e-12, "{same:?}");
+        assert!((same.standard_error - 1.0 / (2e8_f64 + 0.5e8).sqrt()).abs() < 1e-12, "{same:?}");
+        let other = of(&[(2e-3, 1e-5), (6e-3, 1e-4)]);
+        assert!(other.differs && (other.mean - 4e-3).abs() < 1e-12, "{other:?}");
+        assert!((other.standard_error - 2e-3).abs() < 1e-12 && other.greatest - other.least > 3.9e-3, "{other:?}");
+        assert!(CommonParameter::of("delay_s", "s", &[(1.0, 1.0), (1.0, 0.0)]).is_none());
+    }
+}

@@ -1,0 +1,69 @@
+//! Which samples are learned from, and which are held out to judge by.
+//!
+//! The log is cut into blocks of equal length; of each two neighbours one is learned from and the other held out, by a
+//! fixed draw, so that no rhythm of the run falls in step with it. The model runs through all of them, for friction
+//! remembers; only what is compared differs.
+
+use std::ops::Range;
+
+use crate::fit::CableRecord;
+
+/// Most blocks of a log, and what they last at least, s.
+const MOST_BLOCKS: f64 = 48.0;
+const SHORTEST_S: f64 = 0.25;
+
+/// A stretch of the log.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Block {
+    /// Its cycles.
+    pub cycles: Range<usize>,
+    /// Held out from the fit.
+    pub held_out: bool,
+}
+
+/// Blocks of all logs of a cable, in order.
+pub fn split(record: &CableRecord<'_>) -> Vec<Block> {
+    let mut draw = 0x9e37_79b9_u32;
+    record.logs().flat_map(|(start, rows)| cut(start..start + rows.len(), record.cycle_s, &mut draw)).collect()
+}
+
+/// Blocks of one log.
+fn cut(log: Range<usize>, cycle_s: f64, draw: &mut u32) -> Vec<Block> {
+    #[expect(clippy::cast_precision_loss, reason = "a count of cycles")]
+    let longest = (log.len() as f64 * cycle_s / SHORTEST_S).floor();
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to a small count")]
+    let count = longest.clamp(2.0, MOST_BLOCKS) as usize & !1;
+    let edge = |place: usize| log.start + place * log.len() / count;
+    let mut first_held_out = false;
+    let block = |place: usize| {
+        if place.is_multiple_of(2) {
+            // xorshift: one bit a pair.
+            *draw ^= *draw << 13;
+            *draw ^= *draw >> 17;
+            *draw ^= *draw << 5;
+            first_held_out = *draw & 1 == 1;
+        }
+        Block { cycles: edge(place)..edge(place + 1), held_out: place.is_multiple_of(2) == first_held_out }
+    };
+    (0..count).map(block).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_of_each_two_neighbours_is_held_out() {
+        let mut first_of_pair = [0, 0];
+        let blocks = cut(0..51_561, 1e-3, &mut 0x9e37_79b9);
+        assert_eq!(blocks.len(), 48);
+        for pair in blocks.chunks(2) {
+            assert_ne!(pair[0].held_out, pair[1].held_out);
+            first_of_pair[usize::from(pair[0].held_out)] += 1;
+        }
+        assert!(first_of_pair.iter().all(|count| *count >= 6), "{first_of_pair:?}");
+        assert_eq!(blocks.first().map(|block| block.cycles.start), Some(0));
+        assert_eq!(blocks.last().map(|block| block.cycles.end), Some(51_561));
+        assert!(blocks.windows(2).all(|pair| pair[0].cycles.end == pair[1].cycles.start));
+    }
+}

@@ -1,0 +1,96 @@
+//! The result of a discovery for people: the verdicts of all cables, then what was found on each.
+
+use super::result::{DiscoverCableResult, DiscoverResult, EffectResult};
+use crate::text::{listed, table, wrapped};
+
+/// Columns of the words before a text.
+const LABEL: usize = 11;
+/// Places that are told.
+const MOST_PLACES: usize = 2;
+
+/// All of it.
+pub(super) fn describe(result: &DiscoverResult) -> String {
+    let mut text = format!("{}: what the model lacks\n\n", result.robot);
+    text += &overview(result);
+    if result.cables.iter().any(|cable| cable.before.is_some()) {
+        text += "\nrms in N over samples that no fit has seen, of the given model fitted to the\nothers, and of the \
+                 extended one.\n";
+    }
+    for effect in &result.common_effects {
+        text += "\n";
+        text += &wrapped("", &effect.in_words(result.cables.len()));
+    }
+    let is_quiet = |cable: &&DiscoverCableResult| {
+        cable.verdict == "complete" && cable.wander_n.is_none_or(|wander_n| wander_n <= 0.0)
+    };
+    let quiet: Vec<&str> = result.cables.iter().filter(is_quiet).map(|cable| cable.name.as_str()).collect();
+    if let Some(first) = result.cables.iter().find(is_quiet) {
+        text += "\n";
+        text += &wrapped("", &format!("{}: {}", listed(&quiet), first.verdict_in_words()));
+    }
+    let mut told = Vec::new();
+    for cable in result.cables.iter().filter(|cable| !is_quiet(cable)) {
+        text += "\n";
+        text += &wrapped("", &format!("{}: {}", cable.name, cable.verdict_in_words()));
+        text += &details(cable, &mut told);
+    }
+    text
+}
+
+/// One line a cable.
+fn overview(result: &DiscoverResult) -> String {
+    let number = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.4}"));
+    let row = |cable: &DiscoverCableResult| {
+        let kinds: Vec<&str> = cable.effects.iter().map(|effect| effect.kind).collect();
+        let closed = cable.gap_closed.filter(|_| !cable.effects.is_empty());
+        [
+            cable.name.clone(),
+            cable.verdict.to_owned(),
+            if kinds.is_empty() { "–".to_owned() } else { kinds.join("\n") },
+            number(cable.noise_floor_n),
+            number(cable.before.map(|error| error.rms_n)),
+            number(cable.after.map(|error| error.rms_n)),
+            closed.map_or_else(|| "–".to_owned(), super::words::percent),
+        ]
+    };
+    let rows: Vec<_> = result.cables.iter().map(row).collect();
+    table(&["cable", "verdict", "found", "noise", "before", "after", "closed"], 3, &rows)
+}
+
+fn line(label: &str, text: &str) -> String {
+    wrapped(&format!("  {label:<LABEL$} "), text)
+}
+
+/// What was found on a cable; cause and remedy of an effect are told once.
+fn details(cable: &DiscoverCableResult, told: &mut Vec<&'static str>) -> String {
+    let mut text = String::new();
+    if let Some(gap) = cable.gap_in_words().filter(|_| cable.verdict != "complete") {
+        text += &line("gap", &gap);
+    }
+    for (count, place) in cable.places.iter().filter(|place| place.signal != "frequency").take(MOST_PLACES).enumerate()
+    {
+        text += &line(if count == 0 { "where" } else { "" }, &place.in_words("the gap"));
+    }
+    for effect in &cable.effects {
+        text += &of_effect(effect, told.contains(&effect.kind));
+        told.push(effect.kind);
+    }
+    if let Some(rest) = &cable.unexplained {
+        for (count, sentence) in rest.in_words().iter().enumerate() {
+            text += &line(if count == 0 { "unexplained" } else { "" }, sentence);
+        }
+    }
+    text
+}
+
+fn of_effect(effect: &EffectResult, is_told: bool) -> String {
+    let mut text = wrapped(&format!("  {}: ", effect.kind), &effect.values_in_words());
+    if !is_told {
+        text += &line("  cause", effect.row.cause);
+        text += &line("  remedy", effect.row.remedy);
+    }
+    if let Some(alternative) = effect.alternative_in_words() {
+        text += &line("  else", &alternative);
+    }
+    text
+}

@@ -1,0 +1,330 @@
+//! The parts of a result in words, for the terminal and for pages.
+
+use std::fmt::Write as _;
+
+use fric_core::effects::EffectRow;
+
+use super::places::LEAST_CONCENTRATION;
+use super::result::{
+    CommonEffect, CommonParameter, DiscoverCableResult, EffectResult, FaultResult, RunnerUpResult, UnexplainedResult,
+    WhereResult,
+};
+use crate::fit::HALF_INTERVAL;
+use crate::text::{listed, quantity, significant};
+
+/// Units at the end of keys; the longer ones first.
+const UNITS: [&str; 11] =
+    ["_n_s_per_m", "_m_per_s", "_n_per_m", "_n_per_s", "_m_per_n", "_per_s", "_kg", "_nm", "_s", "_n", "_m"];
+
+/// As a share of the other end of a range, the beginning is zero below this.
+const NO_MORE_THAN_ZERO: f64 = 0.01;
+
+/// A parameter's key without its unit.
+#[must_use]
+pub fn name_of(key: &str) -> String {
+    let name = UNITS.iter().find_map(|unit| key.strip_suffix(unit)).unwrap_or(key);
+    name.replace('_', " ")
+}
+
+/// A share in per cent, within what one can be.
+#[must_use]
+pub fn percent(share: f64) -> String {
+    let percent = 100.0 * share.clamp(0.0, 1.0);
+    // All but a rest that shows is not all.
+    if percent > 99.0 && percent < 99.95 { format!("{percent:.1} %") } else { format!("{percent:.0} %") }
+}
+
+/// A force.
+#[must_use]
+pub fn newtons(force_n: f64) -> String {
+    format!("{force_n:.4} N")
+}
+
+/// A difference of Schwarz's criterion.
+#[must_use]
+pub fn evidence(delta_bic: Option<f64>) -> String {
+    delta_bic.map_or_else(|| "–".to_owned(), |number| format!("{number:.0}").replace('-', "−"))
+}
+
+/// Stretches of time.
+#[must_use]
+pub fn intervals(intervals_s: &[[f64; 2]]) -> String {
+    let one = |[from_s, to_s]: &[f64; 2]| {
+        let digits = if to_s - from_s < 0.2 { 2 } else { 1 };
+        let (from, to) = (format!("{from_s:.digits$}"), format!("{to_s:.digits$}"));
+        if from == to { from } else { format!("{from}…{to}") }
+    };
+    let all: Vec<String> = intervals_s.iter().map(one).collect();
+    format!("{} s", all.join(", "))
+}
+
+impl WhereResult {
+    /// The range, as what follows "it sits".
+    #[must_use]
+    pub fn range_in_words(&self) -> String {
+        let [least, greatest] = self.range;
+        let is_last = self.to >= greatest;
+        // A magnitude begins at 0, whatever noise makes of it.
+        let from_zero = least >= 0.0 && self.from < NO_MORE_THAN_ZERO * self.to && !is_last;
+        let is_first = self.from <= least || from_zero;
+        let value = |number: f64| {
+            if matches!(self.unit, "m" | "m/s") {
+                quantity(number, None, self.unit)
+            } else {
+                with_unit(number, self.unit)
+            }
+        };
+        match self.signal {
+            "standstill" if self.from >= 0.5 => return "while the cable rests".to_owned(),
+            "standstill" if self.to <= 0.5 => return "while the cable moves".to_owned(),
+            "direction" if self.to <= 0.0 => return "while the cable is reeled in".to_owned(),
+            "direction" if self.from >= 0.0 => return "while the cable is paid out".to_owned(),
+            "standstill" | "direction" => return "throughout".to_owned(),
+            "frequency" => return format!("at {:.2} Hz", self.from),
+            "way_since_reversal" => {
+                return match (is_first, is_last) {
+                    (true, true) => "throughout".to_owned(),
+                    (true, false) => format!("within {} after a reversal", value(self.to)),
+                    (false, true) => format!("more than {} after a reversal", value(self.from)),
+                    (false, false) => format!("{} to {} after a reversal", value(self.from), value(self.to)),
+                };
+            }
+            _ => {}
+        }
+        let noun = plural(self.signal);
+        match (is_first, is_last) {
+            (true, true) => format!("at all {noun}"),
+            (true, false) => format!("at {noun} below {}", value(self.to)),
+            (false, true) => format!("at {noun} above {}", value(self.from)),
+            (false, false) => format!("at {noun} of {} to {}", value(self.from), value(self.to)),
+        }
+    }
+
+    /// How much sits there, as a sentence without its full stop; `of` names what is shared out.
+    #[must_use]
+    pub fn in_words(&self, of: &str) -> String {
+        // Writing to a String cannot fail.
+        let mut text = match self.share_of_excess {
+            Some(share) => format!("{} of {of} sits {}", percent(share), self.range_in_words()),
+            None => format!("{of} sits {}", self.range_in_words()),
+        };
+        if let Some(share) = self.share_of_samples.filter(|share| *share < 0.995) {
+            let _ = write!(text, ", {} of the samples", percent(share));
+        }
+        if self.significance.is_some_and(|significance| significance < LEAST_CONCENTRATION) {
+            text += ", which may be chance";
+        }
+        if !self.intervals_s.is_empty() {
+            let _ = write!(text, "; look at {}", intervals(&self.intervals_s));
+        }
+        text
+    }
+}
+
+/// A condition's name in words.
+#[must_use]
+pub fn condition(signal: &str) -> String {
+    match signal {
+        "length" => "cable length".to_owned(),
+        "way_since_reversal" => "way since the last reversal".to_owned(),
+        "force_rate" => "rate of the sensor force".to_owned(),
+        "wrap" => "wrap angle".to_owned(),
+        _ => signal.replace('_', " "),
+    }
+}
+
+fn plural(signal: &str) -> String {
+    match signal {
+        "force_rate" => "rates of the sensor force".to_owned(),
+        _ => condition(signal) + "s",
+    }
+}
+
+fn with_unit(number: f64, unit: &str) -> String {
+    let text = significant(number);
+    if unit == "1" { text } else { format!("{text} {unit}") }
+}
+
+impl DiscoverCableResult {
+    /// What is to be said of the cable before everything else, in sentences.
+    #[must_use]
+    pub fn verdict_in_words(&self) -> String {
+        if let Some(missing) = &self.missing {
+            return format!("Nothing can be told: {}. {}", missing.cause, missing.advice);
+        }
+        let kinds: Vec<&str> = self.effects.iter().map(|effect| effect.kind).collect();
+        let wander_n = self.wander_n.filter(|wander_n| *wander_n > 0.0).map(newtons);
+        let mut text = match (self.verdict, kinds.as_slice()) {
+            ("complete", _) if wander_n.is_some() => "No effect of the catalogue is missing.".to_owned(),
+            ("complete", _) => {
+                "Nothing is missing: with values fitted to the log, the model agrees with it to the noise.".to_owned()
+            }
+            ("extended", kinds) => format!("The model lacks {}; with it, what is left is noise.", listed(kinds)),
+            (_, kinds) => {
+                let lacks =
+                    if kinds.is_empty() { String::new() } else { format!("The model lacks {}. ", listed(kinds)) };
+                let rest = match &self.unexplained {
+                    Some(rest) if rest.is_of_the_log() => {
+                        "The log has trouble of its own that is no matter of friction."
+                    }
+                    _ => "Something remains that no effect of the catalogue accounts for.",
+                };
+                lacks + rest
+            }
+        };
+        if kinds.len() > 1 {
+            text = text.replace("with it,", "with them,");
+        }
+        if let Some(wander) = wander_n {
+            text += " Beside white noise a slow wander of ";
+            text += &wander;
+            text += " is left that goes with nothing the cable does.";
+        }
+        text
+    }
+
+    /// The gap before and after, as a sentence without its full stop.
+    #[must_use]
+    pub fn gap_in_words(&self) -> Option<String> {
+        let (before, after, floor_n) = (self.before?, self.after?, self.noise_floor_n?);
+        let ends = format!(
+            "rms {} before, {} after; the noise is {}",
+            newtons(before.rms_n),
+            newtons(after.rms_n),
+            newtons(floor_n)
+        );
+        Some(match self.gap_closed.filter(|_| !self.effects.is_empty()) {
+            Some(share) => format!("{ends}: {} of the gap closed", percent(share)),
+            None if self.verdict == "complete" => {
+                format!("rms {} with fitted values; the noise is {}", newtons(after.rms_n), newtons(floor_n))
+            }
+            None => ends,
+        })
+    }
+}
+
+impl EffectResult {
+    /// Its parameters with their 95 % intervals.
+    #[must_use]
+    pub fn values_in_words(&self) -> String {
+        let one = |parameter: &fric_core::parameters::ParameterRow| {
+            let value = self.parameters.get(parameter.key)?;
+            let half = self.standard_errors.get(parameter.key).map(|error| HALF_INTERVAL * error);
+            Some(format!("{} {}", name_of(parameter.key), quantity(value, half, parameter.unit)))
+        };
+        let all: Vec<String> = self.row.parameters.iter().filter_map(one).collect();
+        all.join(", ")
+    }
+
+    /// What else it could have been, as a sentence without its full stop.
+    #[must_use]
+    pub fn alternative_in_words(&self) -> Option<String> {
+        let RunnerUpResult { kind, delta_bic, held_out_rms_n, as_good, row } = self.runner_up.as_ref()?;
+        let rms = held_out_rms_n.map(newtons)?;
+        if *as_good {
+            return Some(format!(
+                "the log cannot tell it from {kind} (rms {rms}); to tell them apart record {}",
+                excitation([self.row, row])
+            ));
+        }
+        let own = self.evidence.held_out_rms_n.map(newtons)?;
+        Some(if delta_bic.is_some_and(|number| number < 0.0) {
+            format!(
+                "next best would be {kind}, rms {rms} against {own} (ΔBIC {} against {})",
+                evidence(*delta_bic),
+                evidence(self.evidence.delta_bic)
+            )
+        } else {
+            "nothing else in the catalogue helps".to_owned()
+        })
+    }
+}
+
+/// What to record to tell effects apart.
+fn excitation(rows: [&EffectRow; 2]) -> String {
+    let mut all: Vec<&str> = rows.into_iter().filter_map(|row| Some(row.parameters.first()?.excitation)).collect();
+    all.dedup();
+    all.join("; and ")
+}
+
+impl FaultResult {
+    /// What the sensor does.
+    #[must_use]
+    pub fn in_words(&self) -> &'static str {
+        match self.fault {
+            "frozen" => "the force sensor stands still",
+            _ => "the force sensor is at the end of its range",
+        }
+    }
+}
+
+impl UnexplainedResult {
+    /// Whether a hum and faults of the sensor are all.
+    fn is_of_the_log(&self) -> bool {
+        let is_named = !self.faults.is_empty() || !self.frequency_hz.is_empty();
+        is_named && self.intervals_s.is_empty() && self.places.iter().all(|place| place.signal == "frequency")
+    }
+
+    /// Where the rest lies, sentences without their full stops.
+    #[must_use]
+    pub fn in_words(&self) -> Vec<String> {
+        let mut sentences = Vec::new();
+        for (frequency_hz, amplitude_n) in self.frequency_hz.iter().zip(&self.amplitude_n) {
+            sentences.push(format!(
+                "it hums at {frequency_hz:.2} Hz with an amplitude of {}: no friction does; look at wiring and amplifiers",
+                newtons(*amplitude_n)
+            ));
+        }
+        for fault in ["frozen", "clipped"] {
+            let of_kind: Vec<&FaultResult> = self.faults.iter().filter(|of| of.fault == fault).collect();
+            let Some(first) = of_kind.first() else { continue };
+            let when: Vec<[f64; 2]> = of_kind.iter().map(|fault| [fault.from_s, fault.to_s]).collect();
+            sentences.push(format!("{} at {}: left out of all the rest", first.in_words(), intervals(&when)));
+        }
+        let places = self.places.iter().filter(|place| place.signal != "frequency");
+        sentences.extend(places.take(2).map(|place| place.in_words("the rest")));
+        if !self.intervals_s.is_empty() {
+            sentences.push(format!("it is loud at {}", intervals(&self.intervals_s)));
+        }
+        if sentences.is_empty() {
+            sentences.push("it is spread over the whole log and goes with no condition".to_owned());
+        }
+        sentences
+    }
+}
+
+impl CommonEffect {
+    /// On how many of all cables, and its parameters over them.
+    #[must_use]
+    pub fn in_words(&self, cable_count: usize) -> String {
+        let on = if self.cables.len() == cable_count {
+            match cable_count {
+                2 => "both cables".to_owned(),
+                count => format!("all {} cables", counted(count)),
+            }
+        } else {
+            listed(&self.cables)
+        };
+        let values: Vec<String> = self.parameters.iter().map(CommonParameter::in_words).collect();
+        format!("{} on {on}: {}", self.kind, values.join(", "))
+    }
+}
+
+impl CommonParameter {
+    /// Its mean with the 95 % interval, or that the cables differ.
+    #[must_use]
+    pub fn in_words(&self) -> String {
+        let name = name_of(self.key);
+        if self.differs {
+            let [least, greatest] = [self.least, self.greatest].map(|value| quantity(value, None, self.unit));
+            return format!("{name} {least} to {greatest}, which is more than the errors");
+        }
+        format!("{name} {}", quantity(self.mean, Some(HALF_INTERVAL * self.standard_error), self.unit))
+    }
+}
+
+fn counted(count: usize) -> String {
+    const WORDS: [&str; 13] =
+        ["no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve"];
+    WORDS.get(count).map_or_else(|| count.to_string(), |word| (*word).to_owned())
+}

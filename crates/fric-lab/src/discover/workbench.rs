@@ -1,0 +1,150 @@
+//! Models tried on one cable: fitted to the samples learned from, judged on those held out.
+
+use std::panic::resume_unwind;
+use std::rc::Rc;
+use std::sync::atomic::AtomicBool;
+use std::thread;
+
+use fric_core::LANES;
+use fric_core::parameters::Values;
+use rayon::prelude::*;
+
+use super::split::Block;
+use crate::fit::engine::{Comparison, Gang, Loss, Member, Problem, Seat, search_near};
+use crate::fit::{CableRecord, Parameter};
+
+/// A model is judged this near to its minimum, in standard errors: the sum of squares changes by less than noise does.
+const NEAR_ERRORS: f64 = 0.5;
+
+/// A model to try: where its search starts, and what it varies.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// Start values.
+    pub values: Values,
+    /// What is varied.
+    pub free: Vec<Parameter>,
+}
+
+/// A model that was fitted.
+#[derive(Clone, Debug)]
+pub struct Trial {
+    /// Fitted values.
+    pub values: Values,
+    /// What was varied.
+    pub free: Vec<Parameter>,
+    /// Sum of squares of the residuals over the samples learned from, N².
+    pub training: f64,
+    /// And over those held out.
+    pub held_out: f64,
+}
+
+/// One cable with its samples.
+#[derive(Clone, Debug)]
+pub struct Workbench<'a> {
+    /// Its cycles; the reference is cleaned of what is no matter of friction.
+    pub record: CableRecord<'a>,
+    /// Blocks of the log.
+    pub blocks: &'a [Block],
+    /// Which samples count.
+    pub counts: &'a [bool],
+    /// Set to end every search.
+    pub stop: &'a AtomicBool,
+}
+
+impl<'a> Workbench<'a> {
+    /// Samples that count and are learned from, or held out.
+    pub fn used(&self, held_out: bool) -> Vec<bool> {
+        let mut used = vec![false; self.counts.len()];
+        for block in self.blocks.iter().filter(|block| block.held_out == held_out) {
+            let (Some(used), Some(counts)) =
+                (used.get_mut(block.cycles.clone()), self.counts.get(block.cycles.clone()))
+            else {
+                continue;
+            };
+            used.copy_from_slice(counts);
+        }
+        used
+    }
+
+    /// How many samples are held out, or learned from.
+    pub fn count(&self, held_out: bool) -> usize {
+        self.used(held_out).into_iter().filter(|used| *used).count()
+    }
+
+    /// The least-squares problem over the samples learned from.
+    pub fn problem(&self, free: &[Parameter], seat: Option<Rc<Seat<'a>>>) -> Problem<'a> {
+        Problem {
+            members: vec![Member { record: self.record, free: free.to_vec() }],
+            comparison: Comparison::Forces,
+            loss: Loss::Squares,
+            used: self.used(false),
+            stop: self.stop,
+            seat,
+        }
+    }
+
+    /// Fits several models, as many side by side as there are lanes; in the order given.
+    pub fn try_all(&self, models: &[Model]) -> Vec<Trial> {
+        let groups: Vec<Vec<Trial>> = models.par_chunks(LANES).map(|models| self.try_together(models)).collect();
+        groups.into_iter().flatten().collect()
+    }
+
+    /// Fits one model.
+    pub fn try_one(&self, model: &Model) -> Trial {
+        self.fit(model, NEAR_ERRORS)
+    }
+
+    /// Fits one model as near to its minimum as asked for, in standard errors.
+    pub fn fit(&self, model: &Model, near_errors: f64) -> Trial {
+        let gang = Gang::new(1, self.stop);
+        self.try_on(model, gang.seat(0), near_errors)
+    }
+
+    fn try_together(&self, models: &[Model]) -> Vec<Trial> {
+        let gang = Gang::new(models.len(), self.stop);
+        thread::scope(|scope| {
+            let searches: Vec<_> = models
+                .iter()
+                .enumerate()
+                .map(|(place, model)| {
+                    let seat = gang.seat(place);
+                    scope.spawn(|| self.try_on(model, seat, NEAR_ERRORS))
+                })
+                .collect();
+            searches.into_iter().map(|search| search.join().unwrap_or_else(|panic| resume_unwind(panic))).collect()
+        })
+    }
+
+    fn try_on<'b>(&'b self, model: &Model, seat: Seat<'b>, near_errors: f64) -> Trial
+    where
+        'a: 'b,
+    {
+        let bench: &Workbench<'b> = self;
+        let problem = bench.problem(&model.free, Some(Rc::new(seat)));
+        let mut values = model.values;
+        if !model.free.is_empty() {
+            let (found, _) = search_near(&problem, &[model.values], self.record.cycle_s, near_errors);
+            values = found.first().copied().unwrap_or(values);
+        }
+        let residuals_n = bench.residuals_with(&problem, &values);
+        let sum = |held_out: bool| {
+            let blocks = self.blocks.iter().filter(|block| block.held_out == held_out);
+            let of_blocks = blocks.flat_map(|block| residuals_n.get(block.cycles.clone()).unwrap_or_default());
+            of_blocks.filter(|number| number.is_finite()).map(|number| number * number).sum()
+        };
+        let (training, held_out) = (sum(false), sum(true));
+        Trial { values, free: model.free.clone(), training, held_out }
+    }
+
+    /// Force of the model less the reference in each cycle, N; NaN where a sample does not count.
+    pub fn residuals_n(&self, values: &Values) -> Vec<f64> {
+        self.residuals_with(&self.problem(&[], None), values)
+    }
+
+    fn residuals_with(&self, problem: &Problem<'_>, values: &Values) -> Vec<f64> {
+        let forces = problem.forces(&[*values]).unwrap_or_default();
+        let force_n = |cycle: usize| forces.first().map_or(f64::NAN, |forces| forces.at(cycle).0);
+        let rows = self.record.rows.iter().zip(self.counts).enumerate();
+        rows.map(|(cycle, (row, counts))| if *counts { force_n(cycle) - row.reference_n } else { f64::NAN }).collect()
+    }
+}

@@ -1,0 +1,189 @@
+//! What spoils a log and is in no catalogue of friction effects: faults of sensor, amplifier, winch and cable.
+//!
+//! For: logs whose disagreement with the model must be found and placed without being given a wrong name. To add one: a file
+//! here that implements [`TruthEffect`], and its row in [`DISTURBANCES`].
+
+mod backlash;
+mod clipped;
+mod frozen;
+mod hum;
+mod local_defect;
+mod quantised;
+mod step;
+mod warming;
+
+use std::fmt;
+use std::str::FromStr;
+
+use rand_chacha::ChaCha8Rng;
+
+use super::effects::{Build, Cause, TruthEffect};
+use super::error::HiddenError;
+use super::stated::{self, Allowed, Kind};
+
+/// A kind of disturbance.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct DisturbanceRow {
+    /// Its name.
+    pub kind: &'static str,
+    /// What happens, in one sentence.
+    pub cause: &'static str,
+    /// Its parameters.
+    pub parameters: &'static [DisturbanceParameter],
+    build: Build,
+}
+
+/// A parameter of a disturbance.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct DisturbanceParameter {
+    /// Its key, with unit.
+    pub key: &'static str,
+    /// Its unit; `1` for a ratio.
+    pub unit: &'static str,
+    /// Value where it is not given.
+    pub usual: f64,
+    /// Least value.
+    pub min: f64,
+    /// Greatest value.
+    pub max: f64,
+}
+
+/// Every disturbance there is.
+pub const DISTURBANCES: &[DisturbanceRow] =
+    &[hum::ROW, frozen::ROW, clipped::ROW, step::ROW, quantised::ROW, warming::ROW, local_defect::ROW, backlash::ROW];
+
+/// A disturbance with values, checked against its row.
+///
+/// ```
+/// use fric_lab::simulate::Disturbance;
+/// # fn main() -> Result<(), fric_lab::simulate::HiddenError> {
+/// let hum = Disturbance::parse("hum:amplitude_n=0.12")?;
+/// assert_eq!(hum.kind(), "hum");
+/// assert_eq!(hum.value("frequency_hz"), Some(50.0));
+/// let problem = Disturbance::parse("hum:amplitude_n=-1").map_err(|error| error.to_string());
+/// assert_eq!(problem, Err("`amplitude_n` of the disturbance `hum` is -1; allowed is 0 to 1000 N".to_owned()));
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Disturbance {
+    kind: &'static str,
+    values: Vec<(&'static str, f64)>,
+}
+
+impl Disturbance {
+    /// Reads `kind:key=value,key=value`. A parameter that is not given has its usual value.
+    ///
+    /// # Errors
+    /// [`HiddenError`] names what is wrong and what is known or allowed.
+    pub fn parse(text: &str) -> Result<Self, HiddenError> {
+        let (kind, entries) = stated::split(text);
+        let kind = find(kind)?;
+        let values = kind.check(&kind.read(entries)?)?;
+        Ok(Self { kind: kind.name, values })
+    }
+
+    /// A disturbance from its name and values by key.
+    ///
+    /// # Errors
+    /// [`HiddenError`] names what is wrong and what is known or allowed.
+    pub fn new(kind: &str, values: &[(&str, f64)]) -> Result<Self, HiddenError> {
+        let kind = find(kind)?;
+        Ok(Self { kind: kind.name, values: kind.check(values)? })
+    }
+
+    /// Its name in [`DISTURBANCES`].
+    #[must_use]
+    pub fn kind(&self) -> &'static str {
+        self.kind
+    }
+
+    /// The values given, by key.
+    #[must_use]
+    pub fn values(&self) -> &[(&'static str, f64)] {
+        &self.values
+    }
+
+    /// A parameter, given or usual; `None` for a key that it does not have.
+    #[must_use]
+    pub fn value(&self, key: &str) -> Option<f64> {
+        let given = self.values.iter().find(|(other, _)| *other == key).map(|(_, value)| *value);
+        given.or_else(|| Some(row(self.kind)?.parameters.iter().find(|parameter| parameter.key == key)?.usual))
+    }
+
+    /// At work on a cable.
+    pub(super) fn build(&self, start_length_m: f64, random: &mut ChaCha8Rng) -> Box<dyn TruthEffect> {
+        let value = |key: &str| self.value(key).unwrap_or_default();
+        let mut cause = Cause { value: &value, start_length_m, random };
+        row(self.kind).map_or_else(|| Box::new(Nothing) as Box<dyn TruthEffect>, |row| (row.build)(&mut cause))
+    }
+}
+
+impl FromStr for Disturbance {
+    type Err = HiddenError;
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        Self::parse(text)
+    }
+}
+
+/// As [`Disturbance::parse`] reads it.
+impl fmt::Display for Disturbance {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        stated::write(formatter, self.kind, &self.values)
+    }
+}
+
+/// What a kind without a row would be; there is none.
+#[derive(Debug)]
+struct Nothing;
+
+impl TruthEffect for Nothing {}
+
+fn row(kind: &str) -> Option<&'static DisturbanceRow> {
+    DISTURBANCES.iter().find(|row| row.kind == kind)
+}
+
+fn find(kind: &str) -> Result<Kind, HiddenError> {
+    const NOUN: &str = "disturbance";
+    let row = row(kind).ok_or_else(|| stated::unknown(NOUN, kind, DISTURBANCES.iter().map(|row| row.kind)))?;
+    let allowed =
+        |&DisturbanceParameter { key, unit, min, max, .. }: &DisturbanceParameter| Allowed { key, unit, min, max };
+    Ok(Kind { noun: NOUN, name: row.kind, parameters: row.parameters.iter().map(allowed).collect() })
+}
+
+/// A row of parameters, shorter.
+const fn parameter(key: &'static str, unit: &'static str, usual: f64, [min, max]: [f64; 2]) -> DisturbanceParameter {
+    DisturbanceParameter { key, unit, usual, min, max }
+}
+
+/// Whether a time lies in one of the stretches of `length_s` that begin every `interval_s`, the first after `first_s`.
+fn in_stretch(time_s: f64, first_s: f64, interval_s: f64, length_s: f64) -> bool {
+    let since_s = time_s - first_s;
+    since_s >= 0.0 && since_s - interval_s * libm::floor(since_s / interval_s) < length_s
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn usual_values_are_allowed_and_kinds_and_keys_are_there_once() {
+        for (place, row) in DISTURBANCES.iter().enumerate() {
+            assert!(DISTURBANCES.iter().skip(place + 1).all(|other| other.kind != row.kind));
+            assert!(fric_core::effects::row(row.kind).is_none(), "{} is in the catalogue", row.kind);
+            assert!(!row.cause.is_empty());
+            for parameter in row.parameters {
+                assert!((parameter.min..=parameter.max).contains(&parameter.usual), "{}", parameter.key);
+                assert!(parameter.unit == "1" || parameter.key.contains('_'), "{}", parameter.key);
+            }
+        }
+    }
+
+    #[test]
+    fn stretches_begin_at_intervals() {
+        let within = [0.9, 1.0, 1.19, 1.21, 2.99, 3.0, 3.1, 5.05].map(|time_s| in_stretch(time_s, 1.0, 2.0, 0.2));
+        assert_eq!(within, [false, true, true, false, false, true, true, true]);
+    }
+}

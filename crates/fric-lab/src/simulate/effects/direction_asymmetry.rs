@@ -1,0 +1,27 @@
+//! `direction_asymmetry` in the simulated robot: bearings that run harder one way round, tilted rollers for one.
+//!
+//! Paying out, both kinds of friction are larger by their shares; reeling in, smaller by the same. The direction is that
+//! of the cable over the pulley at the instant.
+
+use super::{Cause, Contact, TruthEffect};
+
+#[derive(Debug)]
+struct Tilted {
+    coulomb_ratio: f64,
+    viscous_ratio: f64,
+}
+
+pub fn build(cause: &mut Cause<'_>) -> Box<dyn TruthEffect> {
+    let [coulomb_ratio, viscous_ratio] = ["coulomb_ratio", "viscous_ratio"].map(cause.value);
+    Box::new(Tilted { coulomb_ratio, viscous_ratio })
+}
+
+impl TruthEffect for Tilted {
+    fn mu_factor(&self, contact: &Contact) -> f64 {
+        if contact.speed_m_per_s < 0.0 { 1.0 - self.coulomb_ratio } else { 1.0 + self.coulomb_ratio }
+    }
+
+    fn viscous_factor(&self, speed_m_per_s: f64) -> f64 {
+        if speed_m_per_s < 0.0 { 1.0 - self.viscous_ratio } else { 1.0 + self.viscous_ratio }
+    }
+}

@@ -1,0 +1,23 @@
+//! `load_nonlinearity` in the simulated robot: contacts that flatten under load, so that friction is no straight line.
+//!
+//! Sliding friction is `μ·F_ref·(F_N/F_ref)^p`, with the exact normal force of the instant.
+
+use super::{Cause, TruthEffect};
+
+#[derive(Debug)]
+struct Flattening {
+    exponent: f64,
+    reference_n: f64,
+}
+
+pub fn build(cause: &mut Cause<'_>) -> Box<dyn TruthEffect> {
+    let [exponent, reference_n] = ["exponent", "reference_n"].map(cause.value);
+    Box::new(Flattening { exponent, reference_n })
+}
+
+impl TruthEffect for Flattening {
+    fn load_factor(&self, normal_force_n: f64) -> f64 {
+        // A bearing without load holds nothing; the power alone would be infinite there for an exponent below 1.
+        if normal_force_n > 0.0 { libm::pow(normal_force_n / self.reference_n, self.exponent - 1.0) } else { 0.0 }
+    }
+}

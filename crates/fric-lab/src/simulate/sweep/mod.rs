@@ -1,0 +1,242 @@
+//! Many logs at random with known effects hidden in them: what a search for missing effects is tried on.
+//!
+//! [`cases`] lists what is tried: nothing hidden, each effect in three strengths under three levels of noise, pairs and
+//! triples that can be told apart, other laws of presliding, noise that wanders, a hand on the platform, disturbances
+//! outside the catalogue alone and beside an effect, a drive on a test bench. [`Case::log`] makes the log of one, with the
+//! robot file that a user would have: without the effect, and with friction values that are guesses.
+//!
+//! A case is a description and a seed; both together decide every bit of its log. Friction, tension, which of the eight
+//! cables of a small robot is looked at, and the sign and exact size of effects come from the seed.
+//!
+//! ```
+//! use fric_lab::simulate::sweep;
+//! # fn main() -> Result<(), fric_lab::simulate::sweep::SweepError> {
+//! let cases = sweep::cases();
+//! assert!(cases.len() >= 300);
+//! let mut log = cases[0].log()?;
+//! assert_eq!(log.robot.cable_names().len(), 1);
+//! assert!(log.simulation.next_cycle().is_some_and(|sample| sample.cables.len() == 1));
+//! # Ok(())
+//! # }
+//! ```
+
+mod case;
+mod robots;
+mod values;
+
+pub use case::{CaseLog, CaseTruth, SweepError};
+
+use super::disturbances::DISTURBANCES;
+
+/// What a case is there to try.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[non_exhaustive]
+pub enum Group {
+    /// Nothing is hidden.
+    Nothing,
+    /// Nothing is hidden, but the noise is not white.
+    Wander,
+    /// Nothing is hidden, but a hand pushes the platform.
+    Hand,
+    /// One effect.
+    Single,
+    /// Other exponents of the presliding than those of [`Group::Single`].
+    Law,
+    /// Two effects.
+    Pair,
+    /// Three effects.
+    Triple,
+    /// A disturbance that is in no catalogue.
+    Outside,
+    /// Such a disturbance and one effect.
+    Mixed,
+    /// One drive on a test bench: no pose, 25 s, speeds from an encoder.
+    Bench,
+}
+
+impl Group {
+    /// In one word.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Nothing => "nothing",
+            Self::Wander => "wander",
+            Self::Hand => "hand",
+            Self::Single => "single",
+            Self::Law => "law",
+            Self::Pair => "pair",
+            Self::Triple => "triple",
+            Self::Outside => "outside",
+            Self::Mixed => "mixed",
+            Self::Bench => "bench",
+        }
+    }
+}
+
+/// One log of a sweep, described.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Case {
+    /// What it is there to try.
+    pub group: Group,
+    /// Effects to hide, by the catalogue's names: what is to be found.
+    pub effects: Vec<&'static str>,
+    /// What else to spoil it with, by the name in [`DISTURBANCES`].
+    pub disturbance: Option<&'static str>,
+    /// How strong both are; 1 is plain to see. Below 0, an exponent of presliding is below 1.
+    pub strength_ratio: f64,
+    /// White noise as a multiple of 0.02 N at the sensor and 0.01 N at the reference.
+    pub noise_ratio: f64,
+    /// Standard deviation by which the sensor wanders, N.
+    pub sensor_wander_n: f64,
+    /// Standard deviation by which the reference wanders, N.
+    pub reference_wander_n: f64,
+    /// Hardest push of a hand along each base axis, N.
+    pub hand_n: f64,
+    /// Decides the rest.
+    pub seed: u64,
+}
+
+/// Effects that pairs and triples are made of: one constant offset beside another, the fitted one at the platform, is too weak.
+const COMBINED: [&str; 12] = [
+    "stribeck",
+    "direction_asymmetry",
+    "bearing_drag",
+    "load_nonlinearity",
+    "friction_drift",
+    "presliding_shape",
+    "sensor_gain",
+    "sensor_drift",
+    "time_delay",
+    "pulley_inertia",
+    "pulley_eccentricity",
+    "cable_elasticity",
+];
+
+/// Pairs that look alike, so that both together say little about a search.
+const ALIKE: [(&str, &str); 4] = [
+    ("bearing_drag", "load_nonlinearity"),
+    ("time_delay", "pulley_inertia"),
+    ("stribeck", "friction_drift"),
+    ("sensor_gain", "direction_asymmetry"),
+];
+
+/// Effects beside a disturbance.
+const MIXED: [&str; 4] = ["stribeck", "direction_asymmetry", "sensor_gain", "time_delay"];
+const STRENGTHS: [f64; 3] = [1.0, 0.5, 0.25];
+const NOISES: [f64; 3] = [1.0, 0.5, 2.0];
+/// Exponents of the presliding as shares of 0.8 above 1: 0.6, 0.8, 1.25, 1.5, 2.2, 2.6.
+const LAWS: [f64; 6] = [-0.5, -0.25, 0.3125, 0.625, 1.5, 2.0];
+/// Every so many of the triples that there are.
+const TRIPLE_STRIDE: usize = 9;
+/// How hard the hand pushes, N along each axis: about 1.5 N in a cable.
+const HAND_N: f64 = 3.0;
+
+/// All cases; each has a seed of its own.
+#[must_use]
+pub fn cases() -> Vec<Case> {
+    let mut cases = Vec::new();
+    for _ in 0..8 {
+        cases.extend(NOISES.map(|noise_ratio| Case { noise_ratio, ..Case::of(Group::Nothing) }));
+    }
+    for wander_n in [0.005, 0.01, 0.02] {
+        for _ in 0..2 {
+            cases.push(Case { reference_wander_n: wander_n, ..Case::of(Group::Wander) });
+            cases.push(Case { sensor_wander_n: wander_n, ..Case::of(Group::Wander) });
+        }
+    }
+    cases.extend((0..8).map(|_| Case { hand_n: HAND_N, ..Case::of(Group::Hand) }));
+    for effect in COMBINED.into_iter().chain(["sensor_offset"]) {
+        for strength_ratio in STRENGTHS {
+            let single = |noise_ratio| Case { strength_ratio, noise_ratio, ..Case::hiding(Group::Single, &[effect]) };
+            cases.extend(NOISES.map(single));
+        }
+    }
+    let law = |strength_ratio| Case { strength_ratio, ..Case::hiding(Group::Law, &["presliding_shape"]) };
+    cases.extend(LAWS.map(law));
+    cases.extend(pairs().map(|pair| Case::hiding(Group::Pair, &pair)));
+    cases.extend(triples().step_by(TRIPLE_STRIDE).map(|triple| Case::hiding(Group::Triple, &triple)));
+    for row in DISTURBANCES {
+        let spoilt =
+            |group, effects: &[&'static str]| Case { disturbance: Some(row.kind), ..Case::hiding(group, effects) };
+        for strength_ratio in [1.0, 0.5] {
+            let outside = |noise_ratio| Case { strength_ratio, noise_ratio, ..spoilt(Group::Outside, &[]) };
+            cases.extend([1.0, 0.5].map(outside));
+        }
+        cases.extend(MIXED.map(|effect| spoilt(Group::Mixed, &[effect])));
+    }
+    cases.extend(NOISES.map(|noise_ratio| Case { noise_ratio, ..Case::of(Group::Bench) }));
+    for effect in ["stribeck", "direction_asymmetry", "presliding_shape", "sensor_gain", "friction_drift"] {
+        cases.push(Case::hiding(Group::Bench, &[effect]));
+    }
+    cases.extend(["hum", "backlash"].map(|kind| Case { disturbance: Some(kind), ..Case::of(Group::Bench) }));
+    for (seed, case) in (1..).zip(&mut cases) {
+        case.seed = seed;
+    }
+    cases
+}
+
+impl Case {
+    /// Nothing hidden, usual noise, seed 0.
+    #[must_use]
+    pub fn of(group: Group) -> Self {
+        Self::hiding(group, &[])
+    }
+
+    /// Effects at full strength, usual noise, seed 0, and a hand where nothing would be seen of an elastic cable without.
+    #[must_use]
+    pub fn hiding(group: Group, effects: &[&'static str]) -> Self {
+        Self {
+            group,
+            effects: effects.to_vec(),
+            disturbance: None,
+            strength_ratio: 1.0,
+            noise_ratio: 1.0,
+            sensor_wander_n: 0.0,
+            reference_wander_n: 0.0,
+            hand_n: if effects.contains(&"cable_elasticity") { HAND_N } else { 0.0 },
+            seed: 0,
+        }
+    }
+
+    /// In a few words: group, what is hidden, strength and noise where they are not 1, seed.
+    #[must_use]
+    pub fn name(&self) -> String {
+        let mut words = vec![self.group.name().to_owned()];
+        let hidden: Vec<&str> = self.effects.iter().copied().chain(self.disturbance).collect();
+        if !hidden.is_empty() {
+            words.push(hidden.join("+"));
+        }
+        let ratios = [("×", self.strength_ratio), ("noise ×", self.noise_ratio)];
+        words.extend(
+            ratios
+                .into_iter()
+                .filter(|(_, ratio)| (*ratio - 1.0).abs() > 0.0)
+                .map(|(word, ratio)| format!("{word}{ratio}")),
+        );
+        let wanders = [("sensor wander", self.sensor_wander_n), ("reference wander", self.reference_wander_n)];
+        words.extend(wanders.into_iter().filter(|(_, n)| *n > 0.0).map(|(word, n)| format!("{word} {n} N")));
+        words.push(format!("#{}", self.seed));
+        words.join(" ")
+    }
+}
+
+fn is_alike(one: &str, other: &str) -> bool {
+    ALIKE.contains(&(one, other)) || ALIKE.contains(&(other, one))
+}
+
+fn pairs() -> impl Iterator<Item = [&'static str; 2]> {
+    let from = |place: usize| COMBINED.into_iter().skip(place);
+    (0..COMBINED.len())
+        .flat_map(move |place| from(place).take(1).flat_map(move |one| from(place + 1).map(move |other| [one, other])))
+        .filter(|[one, other]| !is_alike(one, other))
+}
+
+fn triples() -> impl Iterator<Item = [&'static str; 3]> {
+    let place = |kind: &str| COMBINED.iter().position(|other| *other == kind).unwrap_or_default();
+    pairs().flat_map(move |[one, other]| {
+        let third = COMBINED.into_iter().skip(place(other) + 1);
+        third
+            .filter(move |third| !is_alike(one, third) && !is_alike(other, third))
+            .map(move |third| [one, other, third])
+    })
+}

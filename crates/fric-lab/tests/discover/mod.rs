@@ -1,0 +1,75 @@
+//! Discovery on logs with known effects hidden in them; the whole sweep is `benches/discover.rs`.
+
+use fric_lab::discover::{CableDiscovery, Verdict, discover};
+use fric_lab::fit::{Measurements, Progress, Reference};
+use fric_lab::simulate::sweep::{Case, CaseTruth, Group};
+
+/// Looks at the one cable of a case's log.
+fn look(case: &Case) -> (CableDiscovery, CaseTruth) {
+    let mut log = case.log().unwrap();
+    let params = log.robot.params();
+    let mut measurements = Measurements::new(&params, Reference::Forces);
+    measurements.start_log();
+    while let Some(sample) = log.simulation.next_cycle() {
+        measurements.add(&sample);
+    }
+    (discover(&measurements, &Progress::new()).remove(0), log.truth)
+}
+
+/// Looks at a case and makes sure of the verdict, of the names, and of the noise floor.
+fn assert_found(case: &Case, verdict: Verdict) -> (CableDiscovery, CaseTruth) {
+    let (found, truth) = look(case);
+    let mut kinds: Vec<&str> = found.findings.iter().map(|finding| finding.row.kind).collect();
+    kinds.sort_unstable();
+    let mut hidden = case.effects.clone();
+    hidden.sort_unstable();
+    assert_eq!((kinds, found.verdict), (hidden, verdict), "{}", case.name());
+    let floor_ratio = found.noise_floor_n / truth.floor_n;
+    assert!((floor_ratio - 1.0).abs() < 0.05, "{}: floor {floor_ratio}", case.name());
+    (found, truth)
+}
+
+/// The error that is left, as a multiple of the noise there is.
+fn left_ratio(found: &CableDiscovery, truth: &CaseTruth) -> f64 {
+    found.after.held_out_n.rms().unwrap() / truth.floor_n
+}
+
+#[test]
+fn nothing_is_named_where_nothing_is_hidden() {
+    assert_found(&Case { seed: 70_001, ..Case::of(Group::Nothing) }, Verdict::Complete);
+}
+
+#[test]
+fn a_wander_of_the_reference_gets_no_name() {
+    let case = Case { reference_wander_n: 0.01, seed: 70_002, ..Case::of(Group::Wander) };
+    let (found, _) = assert_found(&case, Verdict::Complete);
+    assert!((found.wander_n - 0.01).abs() < 0.003, "{}", found.wander_n);
+}
+
+#[test]
+fn a_quarter_of_an_effect_is_named_alone() {
+    let case = Case { strength_ratio: 0.25, seed: 70_003, ..Case::hiding(Group::Single, &["direction_asymmetry"]) };
+    let (found, truth) = assert_found(&case, Verdict::Extended);
+    assert!(left_ratio(&found, &truth) < 1.05);
+    assert!(found.findings[0].delta_bic < -100.0);
+}
+
+#[test]
+fn two_effects_are_named_together() {
+    let case = Case { seed: 70_004, ..Case::hiding(Group::Pair, &["stribeck", "sensor_gain"]) };
+    let (found, truth) = assert_found(&case, Verdict::Extended);
+    assert!(left_ratio(&found, &truth) < 1.05);
+    // A sensor that shows too much: its gain to a thousandth.
+    let (_, gain) = truth.effects.iter().find(|effect| effect.kind() == "sensor_gain").unwrap().values()[0];
+    let place = fric_lab::fit::Parameter::named("sensor_gain.gain").unwrap().place();
+    assert!((found.after.values[place] - gain).abs() < 1e-3, "{} {gain}", found.after.values[place]);
+}
+
+#[test]
+fn hum_is_placed_by_its_frequency_and_hides_no_effect() {
+    let case = Case { disturbance: Some("hum"), seed: 70_005, ..Case::hiding(Group::Mixed, &["sensor_gain"]) };
+    let (found, truth) = assert_found(&case, Verdict::Unexplained);
+    let hum = found.unexplained.unwrap().lines[0].frequency_hz;
+    let (_, frequency_hz) = truth.disturbances[0].values()[1];
+    assert!((hum - frequency_hz).abs() < 0.05, "{hum} {frequency_hz}");
+}

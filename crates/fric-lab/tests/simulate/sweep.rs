@@ -1,0 +1,99 @@
+//! The logs that a search for missing effects is tried on.
+
+use std::collections::BTreeSet;
+
+use fric_core::effects::CATALOGUE;
+use fric_lab::simulate::sweep::{Case, Group, SweepError, cases};
+use fric_lab::simulate::{DISTURBANCES, HiddenError};
+
+fn bits(case: &Case, cycles: usize) -> Vec<u64> {
+    let mut log = case.log().unwrap();
+    let mut bits = Vec::new();
+    for _ in 0..cycles {
+        let sample = log.simulation.next_cycle().unwrap();
+        let cable = sample.cables[0];
+        bits.extend(
+            [cable.sensor_force_n, cable.length_m, cable.speed_m_per_s, sample.reference_force_n[0]].map(f64::to_bits),
+        );
+    }
+    bits
+}
+
+#[test]
+fn there_are_enough_of_each_kind() {
+    let cases = cases();
+    assert!(cases.len() >= 300, "{}", cases.len());
+    let names: BTreeSet<String> = cases.iter().map(Case::name).collect();
+    assert_eq!(names.len(), cases.len());
+    for row in CATALOGUE {
+        let single = |case: &&Case| case.group == Group::Single && case.effects == [row.kind];
+        assert_eq!(cases.iter().filter(single).count(), 9, "{}", row.kind);
+    }
+    for row in DISTURBANCES {
+        let with =
+            |group| cases.iter().filter(|case| case.group == group && case.disturbance == Some(row.kind)).count();
+        assert!(with(Group::Outside) >= 4 && with(Group::Mixed) >= 4, "{}", row.kind);
+    }
+    for case in &cases {
+        let expected = match case.group {
+            Group::Pair => 2,
+            Group::Triple => 3,
+            Group::Single | Group::Law | Group::Mixed => 1,
+            Group::Bench => case.effects.len().min(1),
+            _ => 0,
+        };
+        assert_eq!(case.effects.len(), expected, "{}", case.name());
+        assert!(case.effects.iter().collect::<BTreeSet<_>>().len() == expected, "{}", case.name());
+    }
+}
+
+#[test]
+fn every_case_has_a_log_and_a_robot_that_does_not_know() {
+    for case in cases() {
+        let log = case.log().unwrap_or_else(|error| panic!("{}: {error}", case.name()));
+        let kinds: Vec<_> = log.truth.effects.iter().map(fric_lab::simulate::HiddenEffect::kind).collect();
+        assert_eq!(kinds, case.effects);
+        let [guess, truth] = [&log.robot, &log.truth.robot].map(|robot| robot.options().cable.clone());
+        assert_eq!((guess.len(), truth.len()), (1, 1));
+        assert!(guess[0].effects.is_empty() && guess[0].friction != truth[0].friction);
+        assert_eq!((&guess[0].pulleys, guess[0].base_m), (&truth[0].pulleys, truth[0].base_m));
+        assert!((0.011..=0.025).contains(&truth[0].friction.mu));
+        assert!(log.simulation.is_balanced() != (case.group == Group::Bench), "{}", case.name());
+        assert_eq!(guess[0].base_m.is_none(), case.group == Group::Bench);
+    }
+}
+
+#[test]
+fn the_seed_decides_every_bit() {
+    let case = Case { seed: 5, ..Case::hiding(Group::Pair, &["stribeck", "cable_elasticity"]) };
+    let other = Case { seed: 6, ..case.clone() };
+    assert_eq!(bits(&case, 300), bits(&case, 300));
+    assert_ne!(bits(&case, 300), bits(&other, 300));
+}
+
+#[test]
+fn a_log_is_as_long_as_a_run_and_loaded_as_a_small_robot() {
+    for (case, cycles) in [(Case::of(Group::Nothing), 50_000..55_000), (Case::of(Group::Bench), 25_000..25_001)] {
+        let mut log = case.log().unwrap();
+        assert!(cycles.contains(&log.simulation.total_cycles()));
+        let mut mean_n = 0.0;
+        let mut count = 0.0;
+        while let Some(sample) = log.simulation.next_cycle() {
+            assert_eq!((sample.cables.len(), sample.reference_force_n.len()), (1, 1));
+            assert_eq!(sample.pose.is_some(), case.group != Group::Bench);
+            assert!(sample.outside_wrench.is_none());
+            assert!(sample.reference_force_n[0] > 0.3 && sample.reference_force_n[0] < 25.0);
+            mean_n += sample.reference_force_n[0];
+            count += 1.0;
+        }
+        assert!((3.0..10.0).contains(&(mean_n / count)), "{}", mean_n / count);
+    }
+}
+
+#[test]
+fn a_case_that_names_nothing_is_refused() {
+    let error = Case::hiding(Group::Single, &["rust"]).log().unwrap_err();
+    assert!(matches!(error, SweepError::Hidden(HiddenError::UnknownKind { noun: "effect", .. })), "{error}");
+    let error = Case { disturbance: Some("rust"), ..Case::of(Group::Outside) }.log().unwrap_err();
+    assert!(matches!(error, SweepError::Hidden(HiddenError::UnknownKind { noun: "disturbance", .. })), "{error}");
+}
