@@ -112,4 +112,12 @@ impl Scalar for Tangent {
         let power = self.value.exp_negative();
         self.map(power, power)
     }
+    fn ln(self) -> Self {
+        self.map(Scalar::ln(self.value), 1.0 / self.value)
+    }
+    fn sin_cos_turns(self) -> [Self; 2] {
+        let [sin, cos] = self.value.sin_cos_turns();
+        let turn = core::f64::consts::TAU;
+        [self.map(sin, turn * cos), self.map(cos, -turn * sin)]
+    }
 }
