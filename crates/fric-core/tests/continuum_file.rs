@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use fric_core::continuum::file::ManipulatorFile;
+use fric_core::continuum::gratings::with_calibration;
 use fric_core::continuum::{ManipulatorOptions, ManipulatorParams, Tendon};
 
 const PROTOTYPE: &str = include_str!("../../../examples/tendon-prototype.toml");
@@ -66,4 +67,47 @@ fn every_mistake_gets_its_sentence() {
     assert_eq!(tip.to_string(), "arm.toml, line 26: `mass_kg` is -1; allowed is 0 to 1000");
     let missing = ManipulatorFile::read(Path::new("no-such.toml")).unwrap_err().to_string();
     assert!(missing.starts_with("cannot read the manipulator file no-such.toml: "));
+}
+
+const GRATINGS: &str = "\n[gratings]\nwavelength_nm = 1550.0\nphotoelastic_ratio = 0.22\n";
+
+#[test]
+fn gratings_are_checked() {
+    let said = |lines: &str| {
+        let text = PROTOTYPE.to_owned() + "\n[gratings]\n" + lines;
+        ManipulatorFile::parse(&text, "arm.toml").unwrap_err().to_string()
+    };
+    assert!(ManipulatorFile::parse(&(PROTOTYPE.to_owned() + GRATINGS), "arm.toml").is_ok());
+    assert!(said("").starts_with("arm.toml, line 25: no tension follows from these gratings; give `newton_per_nm`"));
+    assert_eq!(
+        said("newton_per_nm = [11.0, 11.0]\n"),
+        "arm.toml, line 26: `newton_per_nm` has 2 entries; 8 are needed, one for each segment"
+    );
+    let zero = said("newton_per_nm = [11, 11, 0, 11, 11, 11, 11, 11]\n");
+    assert!(zero.contains("`newton_per_nm` of grating 3 is 0"), "{zero}");
+    let not_finite = said("newton_per_nm = [11, nan, 11, 11, 11, 11, 11, 11]\n");
+    assert!(not_finite.starts_with("arm.toml, line 26: `newton_per_nm` is NaN"), "{not_finite}");
+    assert!(said("newton_per_n = [1.0]\n").contains("did you mean `newton_per_nm`?"));
+    assert!(
+        said("wavelength_nm = 1550.0\nphotoelastic_ratio = 0.22\nlength_m = 0.004\n").contains("give both or none")
+    );
+}
+
+#[test]
+fn a_calibration_goes_into_the_file_and_nothing_else_changes() {
+    let lines: Vec<[f64; 3]> = (0..8).map(|place| [11.0 + 0.1 * f64::from(place), -0.01, 0.005]).collect();
+    let text = with_calibration(PROTOTYPE, "arm.toml", &lines).unwrap();
+    assert!(text.starts_with(PROTOTYPE), "{text}");
+    let read = ManipulatorFile::parse(&text, "arm.toml").unwrap();
+    let gratings = read.tables().gratings.clone().unwrap();
+    assert_eq!(gratings.newton_per_nm, lines.iter().map(|line| line[0]).collect::<Vec<_>>());
+    assert_eq!((gratings.offset_n.len(), gratings.standard_error_n[7]), (8, 0.005));
+    // A second calibration replaces the first; what else is known of the gratings stays.
+    let stated = PROTOTYPE.to_owned() + GRATINGS;
+    let again =
+        with_calibration(&with_calibration(&stated, "arm.toml", &lines[..]).unwrap(), "arm.toml", &lines).unwrap();
+    assert_eq!(again.matches("newton_per_nm").count(), 1);
+    assert!(again.contains("photoelastic_ratio = 0.22"));
+    assert!(with_calibration(PROTOTYPE, "arm.toml", &lines[..3]).unwrap_err().to_string().contains("8 are needed"));
+    assert!(with_calibration("gratings = 3", "arm.toml", &lines).is_err());
 }

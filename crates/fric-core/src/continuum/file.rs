@@ -15,6 +15,7 @@ use serde::de::{self, Deserializer, SeqAccess, Visitor};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use super::gratings::GratingsTable;
 use super::params::{
     ManipulatorError, ManipulatorOptions, ManipulatorParams, Tendon, TendonOptions, rectangle_bending_stiffness_n_m2,
 };
@@ -57,6 +58,9 @@ pub struct ManipulatorTables {
     /// The one on the side of −y; like the first if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub antagonist: Option<TendonTable>,
+    /// The gratings of the first tendon.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gratings: Option<GratingsTable>,
 }
 
 /// `[backbone]`: a strip that bends about its wide side.
@@ -193,6 +197,12 @@ pub struct TablesError {
     problem: String,
 }
 
+impl TablesError {
+    pub(super) fn new(path: Vec<Step>, problem: String) -> Self {
+        Self { path, problem }
+    }
+}
+
 impl ManipulatorFile {
     /// Reads and checks a file.
     ///
@@ -248,6 +258,9 @@ impl ManipulatorFile {
             tendons: [tendon, tables.antagonist.as_ref().map_or(tendon, TendonTable::options)],
         })
         .map_err(|error| locate(&error))?;
+        if let Some(gratings) = &tables.gratings {
+            gratings.check(tables.disk_count)?;
+        }
         Ok(Self { tables, params })
     }
 

@@ -37,6 +37,8 @@ mod arc;
 #[cfg(feature = "robot-file")]
 pub mod file;
 mod friction;
+#[cfg(feature = "robot-file")]
+pub mod gratings;
 mod linear;
 mod load;
 mod model;

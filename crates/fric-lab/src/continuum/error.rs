@@ -1,5 +1,6 @@
 //! What can be wrong with the data of a manipulator.
 
+use fric_core::continuum::{ManipulatorError, ShapeStatus};
 use thiserror::Error;
 
 /// Why work on a manipulator's data was refused.
@@ -29,24 +30,123 @@ pub enum ContinuumError {
         /// Tension at the base, N.
         tension_base_n: f64,
     },
+    /// A column that means nothing here; with the nearest that does.
+    #[error("{0}")]
+    UnknownColumn(String),
+    /// A column that is needed, by itself or beside others of its group.
+    #[error(
+        "column `{column}` is missing{}; add it, with empty cells where there is no value",
+        beside.as_ref().map_or_else(String::new, |beside| format!(" beside `{beside}`"))
+    )]
+    MissingColumn {
+        /// Its name.
+        column: String,
+        /// One of its group that is there.
+        beside: Option<String>,
+    },
+    /// Columns of different length.
+    #[error("column `{column}` has {count} values, the first column {needed}; make them equally long")]
+    UnequalColumns {
+        /// Its name.
+        column: String,
+        /// How many it has.
+        count: usize,
+        /// How many the first has.
+        needed: usize,
+    },
+    /// A cell that is no number where one is needed.
+    #[error("`{column}` is {value} in row {row}; it must be a finite number, mend the row or take it out")]
+    NotFinite {
+        /// Its column.
+        column: String,
+        /// The row below the header, from 1.
+        row: usize,
+        /// What stands there.
+        value: f64,
+    },
+    /// A time that is none.
+    #[error("`time_s` of sample {row} is {time_s}; give every sample its time in seconds, or take it out")]
+    NoTime {
+        /// The sample, from 1.
+        row: usize,
+        /// What stands there, s.
+        time_s: f64,
+    },
     /// Time stands still or goes back.
-    #[error("time goes from {before_s} s to {time_s} s; sort the run and take out repeated samples")]
+    #[error(
+        "time goes from {before_s} s to {time_s} s at sample {row}; sort the run by `time_s` and take out repeated samples"
+    )]
     TimeNotRising {
-        /// The time in question, s.
+        /// The sample in question, from 1.
+        row: usize,
+        /// Its time, s.
         time_s: f64,
         /// The one before, s.
         before_s: f64,
     },
-    /// A number that cannot be.
-    #[error("`{what}` is {value} at {time_s} s; it must be finite and not negative")]
-    NotFinite {
-        /// Which.
-        what: &'static str,
-        /// Its value.
-        value: f64,
+    /// A tension that cannot be.
+    #[error(
+        "`tension_base_n` is {tension_n} at {time_s} s (sample {row}); it must be finite and not negative, take the sample out or mend it"
+    )]
+    NoTension {
+        /// The sample, from 1.
+        row: usize,
+        /// What stands there, N.
+        tension_n: f64,
         /// When, s.
         time_s: f64,
     },
+    /// A tension at which the tendon may break.
+    #[error(
+        "`tension_base_n` is {tension_n} N at {time_s} s (sample {row}), above the tendon's capacity of {capacity_n} N; check the \
+         unit of the column, or `capacity_n` in the manipulator file"
+    )]
+    OverCapacity {
+        /// The sample, from 1.
+        row: usize,
+        /// When, s.
+        time_s: f64,
+        /// The tension, N.
+        tension_n: f64,
+        /// What the tendon bears, N.
+        capacity_n: f64,
+    },
+    /// A bend for which no way of friction has a shape.
+    #[error(
+        "the bend at {time_s} s (sample {row}, {tension_n} N) is beyond the model by every way of friction ({status}); check \
+         the tension, and stiffness and weight in the manipulator file"
+    )]
+    BeyondModel {
+        /// The sample, from 1.
+        row: usize,
+        /// When, s.
+        time_s: f64,
+        /// Tension at the base, N.
+        tension_n: f64,
+        /// What the model says.
+        status: ShapeStatus,
+    },
+    /// A group of columns that the work needs.
+    #[error("the run has no {what}: {consequence}; record {remedy}")]
+    MissingGroup {
+        /// Which.
+        what: &'static str,
+        /// What is impossible.
+        consequence: &'static str,
+        /// What to record.
+        remedy: &'static str,
+    },
+    /// Shifts that nothing turns into tensions.
+    #[error(
+        "the manipulator file has no `[gratings]`, without which shifts are no tensions; write them with a calibration"
+    )]
+    NoGratings,
+    /// The manipulator is refused.
+    #[error("{0}; correct the manipulator file")]
+    Params(#[from] ManipulatorError),
+    /// Every grating is dead.
+    #[error("no grating follows the tension in any sample; check the demodulator and the columns")]
+    AllDead,
     /// A list of the wrong length.
     #[error("there are {count} {what}; {needed} are needed")]
     WrongCount {

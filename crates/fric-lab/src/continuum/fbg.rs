@@ -33,6 +33,8 @@ pub struct Calibration {
     /// Middle of the shifts, nm, and what the uncertainty of the line grows by per distance from it: `var = noise²(1/n + (Δλ − mean)²/spread)`.
     mean_nm: f64,
     spread_nm2: f64,
+    /// Least and greatest shift of the load steps, nm.
+    range_nm: [f64; 2],
     count: usize,
 }
 
@@ -46,19 +48,27 @@ pub struct Tension {
 }
 
 impl Calibration {
-    /// A line that is known, without uncertainty.
+    /// A line that is known, with the standard error of a tension from one shift.
     #[must_use]
-    pub fn exact(newton_per_nm: f64, offset_n: f64) -> Self {
+    pub fn known(newton_per_nm: f64, offset_n: f64, standard_error_n: f64) -> Self {
         Self {
             newton_per_nm,
             offset_n,
             residual_ratio: Vec::new(),
             left_out_ratio: Vec::new(),
-            noise_n: 0.0,
+            noise_n: standard_error_n,
             mean_nm: 0.0,
-            spread_nm2: 1.0,
+            spread_nm2: f64::INFINITY,
+            range_nm: [0.0; 2],
             count: 0,
         }
+    }
+
+    /// Greatest standard error of a tension over the shifts of the load steps, N.
+    #[must_use]
+    pub fn largest_standard_error_n(&self) -> f64 {
+        let far_nm = self.range_nm.iter().map(|shift_nm| self.tension(*shift_nm).standard_error_n);
+        far_nm.fold(self.noise_n, f64::max)
     }
 
     /// Fits the lines of all gratings.
@@ -122,6 +132,9 @@ impl Calibration {
             noise_n: libm::sqrt(squares / (count - 2.0)),
             mean_nm,
             spread_nm2,
+            range_nm: points
+                .iter()
+                .fold([mean_nm; 2], |[least, most], (shift, _)| [least.min(*shift), most.max(*shift)]),
             count: points.len(),
         })
     }
@@ -164,10 +177,8 @@ pub struct StrainForm {
     pub wavelength_nm: f64,
     /// Effective photoelastic coefficient P_e, 1; 0.22 for silica.
     pub photoelastic_ratio: f64,
-    /// Young's modulus E_f of the fibre, Pa.
-    pub youngs_modulus_pa: f64,
-    /// Cross-section A_f of the fibre, m².
-    pub cross_section_m2: f64,
+    /// Axial stiffness E_f·A_f of the fibre, N.
+    pub axial_stiffness_n: f64,
 }
 
 impl StrainForm {
@@ -179,8 +190,7 @@ impl StrainForm {
         let ranges = [
             ("wavelength_nm", self.wavelength_nm, 100.0, 1e4),
             ("photoelastic_ratio", self.photoelastic_ratio, 0.0, 0.9),
-            ("youngs_modulus_pa", self.youngs_modulus_pa, 1e6, 1e13),
-            ("cross_section_m2", self.cross_section_m2, 1e-12, 1e-2),
+            ("axial_stiffness_n", self.axial_stiffness_n, 1.0, 1e9),
         ];
         for (key, value, min, max) in ranges {
             if !(min..=max).contains(&value) {
@@ -188,7 +198,7 @@ impl StrainForm {
             }
         }
         let strain_per_nm = 1.0 / (self.wavelength_nm * (1.0 - self.photoelastic_ratio));
-        Ok(Calibration::exact(strain_per_nm * self.youngs_modulus_pa * self.cross_section_m2, 0.0))
+        Ok(Calibration::known(strain_per_nm * self.axial_stiffness_n, 0.0, 0.0))
     }
 }
 
@@ -209,7 +219,7 @@ pub fn without_temperature(
 }
 
 /// Tensions with dead gratings bridged: what is not finite is put on the line between its neighbours (at the tip, the last one;
-/// before the first, the tension at the base). Which ones were, stands beside. Without any live grating all are the
+/// before the first, the tension at the base, if that is known). Which ones were, stands beside. Without any live grating all are the
 /// tension at the base.
 #[must_use]
 pub fn bridged(tension_base_n: f64, tension_n: &[f64]) -> (Vec<f64>, Vec<bool>) {
@@ -223,6 +233,9 @@ pub fn bridged(tension_base_n: f64, tension_n: &[f64]) -> (Vec<f64>, Vec<bool>) 
             break;
         };
         let after_n = whole[live];
+        if !before_n.is_finite() {
+            before_n = after_n;
+        }
         #[expect(clippy::cast_precision_loss, reason = "a number of gratings")]
         let part_n = (after_n - before_n) / (live - place + 1) as f64;
         for gap in &mut whole[place..live] {

@@ -1,17 +1,25 @@
 //! Offline work on the runs of a continuum manipulator ([`fric_core::continuum`]).
 //!
-//! [`fbg`] turns the shifts of gratings into tensions, [`friction`] tensions into the friction at every hole and into the μ of
-//! a single one. [`shape_errors`] compares computed shapes with markers, by the four ways of friction. [`simulate`] is a
-//! manipulator whose truth is another one than the model's.
+//! A run comes as named [`columns`] and becomes a checked [`Run`]. [`fbg`] turns the shifts of gratings into tensions,
+//! [`gratings`] does so for a whole run and finds those that are dead; [`friction`] turns tensions into the friction at every hole
+//! and into the μ of a single one. [`comparison`] computes shapes by the four ways of friction, [`shape_errors`] says how far
+//! they are from markers. [`result`] is all that for machines and people. [`simulate`] is a manipulator whose truth is another
+//! one than the model's.
 //!
 //! \[C\] is the paper that [`fric_core::continuum`] names.
 
+pub mod columns;
+pub mod comparison;
 mod error;
 pub mod fbg;
 pub mod friction;
+pub mod gratings;
+mod loads;
+pub mod result;
 mod run;
 pub mod shape_errors;
 pub mod simulate;
 
 pub use error::ContinuumError;
-pub use run::{RunSample, check_run};
+pub use loads::{hole_loads, load_steps};
+pub use run::{Run, RunSample};

@@ -4,7 +4,7 @@ use fric_core::continuum::{
     Direction, Friction, MAX_DISKS, ManipulatorError, ManipulatorParams, ShapeStatus, StaticModel, Tendon,
 };
 
-use super::fbg::{Calibration, bridged};
+use super::gratings::GratingSample;
 use super::run::RunSample;
 
 /// A way to find the friction, by name.
@@ -49,11 +49,12 @@ pub struct ComputedShape {
     pub friction_n: Vec<f64>,
     /// What each hole can hold, N.
     pub bound_n: Vec<f64>,
-    /// Gratings that were bridged; empty where none are used.
-    pub bridged: Vec<bool>,
+    /// Bend of the whole manipulator, rad.
+    pub bend_rad: f64,
 }
 
-/// Shapes of a whole run by one way. [`Way::Measured`] without calibration, or for samples without shifts, takes all gratings for dead.
+/// Shapes of a whole run by one way. `measured` holds what the gratings say, sample by sample; [`Way::Measured`] alone looks at it,
+/// and takes it for the tensions at the base where these were not measured.
 ///
 /// # Errors
 /// None for parameters that have been checked; the model's constructor has one.
@@ -61,39 +62,40 @@ pub fn shapes(
     params: &ManipulatorParams,
     samples: &[RunSample],
     way: Way,
-    calibration: &[Calibration],
+    measured: &[GratingSample],
 ) -> Result<Vec<ComputedShape>, ManipulatorError> {
     let mut model = Box::new(StaticModel::<MAX_DISKS>::new(params)?);
-    let mut computed = Vec::with_capacity(samples.len());
-    for sample in samples {
+    let mut measured = measured.iter();
+    let mut tension_n = Vec::with_capacity(params.disk_count());
+    let computed = samples.iter().map(|sample| {
         let base_n = [sample.tension_base_n, 0.0];
-        let mut flagged = Vec::new();
         let status = match way {
             Way::None => model.solve(base_n, Friction::None),
             Way::Coulomb => model.solve(base_n, Friction::Coulomb(Direction::Pulling)),
             Way::History => model.solve(base_n, Friction::History),
             Way::Measured => {
-                let mut tension_n = vec![f64::NAN; params.disk_count()];
-                let gratings = sample.shift_nm.iter().zip(calibration);
-                for (tension_n, (shift_nm, line)) in tension_n.iter_mut().zip(gratings) {
-                    *tension_n = line.tension(*shift_nm).value_n;
-                }
-                let (tension_n, is_dead) = bridged(sample.tension_base_n, &tension_n);
-                flagged = is_dead;
-                model.solve(base_n, Friction::Measured([&tension_n, &[]]))
+                let gratings = measured.next();
+                tension_n.clear();
+                tension_n.extend(gratings.iter().flat_map(|gratings| &gratings.tension).map(|tension| tension.value_n));
+                let first_n = tension_n.first().copied().unwrap_or(f64::NAN).max(0.0);
+                let base_n = if base_n[0].is_nan() { [first_n, 0.0] } else { base_n };
+                // Without a grating there is nothing measured; an empty list would be a slack tendon.
+                let no_tension = [f64::NAN; MAX_DISKS];
+                let given_n = if tension_n.is_empty() { &no_tension[..params.disk_count()] } else { &tension_n[..] };
+                model.solve(base_n, Friction::Measured([given_n, &[]]))
             }
         };
         let shape = model.shape();
-        computed.push(ComputedShape {
+        ComputedShape {
             status,
+            bend_rad: shape.bend_rad(),
             disk_position_m: shape.disk_position_m().to_vec(),
             tension_n: shape.tension_n(Tendon::Agonist).to_vec(),
             friction_n: shape.friction_n(Tendon::Agonist).to_vec(),
             bound_n: shape.bound_n(Tendon::Agonist).to_vec(),
-            bridged: flagged,
-        });
-    }
-    Ok(computed)
+        }
+    });
+    Ok(computed.collect())
 }
 
 /// Distances between disks and their markers.
@@ -112,6 +114,14 @@ pub struct ShapeErrors {
 }
 
 impl ShapeErrors {
+    /// Of one shape.
+    #[must_use]
+    pub fn of(shape: &ComputedShape, marker_m: &[[f64; 2]]) -> Self {
+        let mut errors = Self::default();
+        errors.add(shape, marker_m);
+        errors
+    }
+
     /// Mean over all disks and shapes, mm; `None` without any.
     #[must_use]
     pub fn mean_mm(&self) -> Option<f64> {
@@ -119,13 +129,13 @@ impl ShapeErrors {
         (self.disk_count > 0).then(|| self.sum_mm / self.disk_count as f64)
     }
 
-    /// Adds a shape. Markers that are not finite are left out, and so is a shape that was not found.
+    /// Adds a shape. Markers that are not finite are left out, and so is a shape that was not found, or has no marker.
     pub fn add(&mut self, shape: &ComputedShape, marker_m: &[[f64; 2]]) {
         if !shape.status.has_shape() {
             self.missing_count += 1;
             return;
         }
-        self.shape_count += 1;
+        self.shape_count += usize::from(!marker_m.is_empty());
         for ([x, y], [marker_x, marker_y]) in shape.disk_position_m.iter().zip(marker_m) {
             let distance_mm = 1e3 * libm::hypot(x - marker_x, y - marker_y);
             if distance_mm.is_finite() {
@@ -135,24 +145,4 @@ impl ShapeErrors {
             }
         }
     }
-}
-
-/// Errors of one way over chosen samples of a run. The whole run is computed all the same: history needs it.
-///
-/// # Errors
-/// As [`shapes`].
-pub fn shape_errors(
-    params: &ManipulatorParams,
-    samples: &[RunSample],
-    way: Way,
-    calibration: &[Calibration],
-    mut chosen: impl FnMut(usize) -> bool,
-) -> Result<ShapeErrors, ManipulatorError> {
-    let mut errors = ShapeErrors::default();
-    for (place, (shape, sample)) in shapes(params, samples, way, calibration)?.iter().zip(samples).enumerate() {
-        if chosen(place) {
-            errors.add(shape, &sample.marker_m);
-        }
-    }
-    Ok(errors)
 }

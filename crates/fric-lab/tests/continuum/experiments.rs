@@ -1,8 +1,11 @@
 //! The two experiments of the paper on its geometry, simulated: friction one way, and in mixed directions.
 
 use fric_core::continuum::{ManipulatorOptions, ManipulatorParams, TendonOptions};
+use fric_lab::continuum::Run;
+use fric_lab::continuum::comparison::{WayShapes, compare, spread};
 use fric_lab::continuum::fbg::Calibration;
-use fric_lab::continuum::shape_errors::{ShapeErrors, Way, shape_errors, shapes};
+use fric_lab::continuum::gratings::Gratings;
+use fric_lab::continuum::shape_errors::{ShapeErrors, Way, shapes};
 use fric_lab::continuum::simulate::{Experiment, SimulatedRun, TendonSimulationOptions, simulate};
 
 fn published() -> ManipulatorParams {
@@ -13,19 +16,25 @@ fn run(experiment: Experiment, seed: u64) -> SimulatedRun {
     simulate(&published(), &TendonSimulationOptions { experiment, seed, ..TendonSimulationOptions::default() }).unwrap()
 }
 
-/// So many samples of those that are right, spread evenly.
-fn spread(run: &SimulatedRun, count: usize, is_right: impl Fn(usize) -> bool) -> Vec<usize> {
-    let right: Vec<usize> = (0..run.samples.len()).filter(|&place| is_right(place)).collect();
-    (1..=count).map(|part| right[part * (right.len() - 1) / count]).collect()
+fn all_ways(params: &ManipulatorParams, run: &SimulatedRun) -> Vec<WayShapes> {
+    let gratings = Gratings::new(Calibration::fit_all(&run.calibration).unwrap());
+    let samples = Run::new(run.samples.clone(), 8).unwrap();
+    let measured = gratings.read(&samples).unwrap();
+    assert!(measured.iter().all(|sample| sample.is_bridged == [false; 8]), "a live grating is taken for dead");
+    compare(params, &samples, Some(&measured)).unwrap()
 }
 
-fn all_errors(params: &ManipulatorParams, run: &SimulatedRun, chosen: &[usize]) -> [ShapeErrors; 4] {
-    let calibration = Calibration::fit_all(&run.calibration).unwrap();
-    Way::ALL.map(|way| {
-        let errors = shape_errors(params, &run.samples, way, &calibration, |place| chosen.contains(&place)).unwrap();
+/// Mean errors of all ways over chosen samples, mm.
+fn means(params: &ManipulatorParams, run: &SimulatedRun, chosen: &[usize]) -> Vec<f64> {
+    let mean = |way: &WayShapes| {
+        let mut errors = ShapeErrors::default();
+        for &place in chosen {
+            errors.add(&way.shapes[place], &run.samples[place].marker_m);
+        }
         assert_eq!(errors.missing_count, 0);
-        errors
-    })
+        errors.mean_mm().unwrap()
+    };
+    all_ways(params, run).iter().map(mean).collect()
 }
 
 /// Share of the holes with the right direction, among those whose friction exceeds a tenth of its bound.
@@ -48,8 +57,9 @@ fn right_directions(params: &ManipulatorParams, run: &SimulatedRun) -> f64 {
 fn one_way_the_order_is_the_papers() {
     for seed in 0..3 {
         let run = run(Experiment::OneWay, seed);
-        let shapes = spread(&run, 6, |_| true);
-        let [none, coulomb, measured, history] = all_errors(&published(), &run, &shapes).map(|e| e.mean_mm().unwrap());
+        let shapes = spread(run.samples.len(), 6, |_| true);
+        let means = means(&published(), &run, &shapes);
+        let [none, coulomb, measured, history] = means[..] else { panic!("four ways") };
         assert!(none > 3.0 * coulomb.max(measured));
         assert!(coulomb < 3.0 * measured);
         assert!(history <= 1.001 * coulomb);
@@ -61,8 +71,10 @@ fn one_way_the_order_is_the_papers() {
 fn in_mixed_directions_only_the_history_does_without_gratings() {
     for seed in 0..3 {
         let run = run(Experiment::Mixed, seed);
-        let mixed = spread(&run, 4, |place| run.truth[place].is_mixed() && run.samples[place].tension_base_n < 1.0);
-        let [none, coulomb, measured, history] = all_errors(&published(), &run, &mixed).map(|e| e.mean_mm().unwrap());
+        let is_right = |place: usize| run.truth[place].is_mixed() && run.samples[place].tension_base_n < 1.0;
+        let mixed = spread(run.samples.len(), 4, is_right);
+        let found = means(&published(), &run, &mixed);
+        let [none, coulomb, measured, history] = found[..] else { panic!("four ways") };
         assert!(coulomb > none && none > measured, "coulomb {coulomb}, none {none}, measured {measured}");
         assert!(history <= coulomb / 5.0);
         let directions = right_directions(&published(), &run);
@@ -72,10 +84,7 @@ fn in_mixed_directions_only_the_history_does_without_gratings() {
         let tendon = TendonOptions { mu: &run.mu, ..TendonOptions::published() };
         let options = ManipulatorOptions { tendons: [tendon; 2], ..ManipulatorOptions::published() };
         let known = ManipulatorParams::new(&options).unwrap();
-        let calibration = Calibration::fit_all(&run.calibration).unwrap();
-        let own =
-            shape_errors(&known, &run.samples, Way::History, &calibration, |place| mixed.contains(&place)).unwrap();
-        let own = own.mean_mm().unwrap();
+        let own = means(&known, &run, &mixed)[3];
         assert!(own <= 1.5 * measured, "{own} {measured}");
     }
 }
@@ -91,5 +100,6 @@ fn the_truth_is_an_equilibrium_of_sticking_and_slipping_holes() {
         }
     }
     assert!(run.truth.iter().filter(|truth| truth.is_mixed()).count() > 20);
-    assert_eq!(run, self::run(Experiment::Mixed, 7));
+    // As text, for a grating without load is NaN.
+    assert!(format!("{run:?}") == format!("{:?}", self::run(Experiment::Mixed, 7)));
 }

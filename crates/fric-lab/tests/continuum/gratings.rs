@@ -1,12 +1,12 @@
 //! Shifts to tensions to frictions.
 
 use fric_core::continuum::{ManipulatorOptions, ManipulatorParams};
+use fric_lab::continuum::ContinuumError;
 use fric_lab::continuum::fbg::{
     Calibration, GratingPlace, LoadStep, StrainForm, Tension, bridged, check_travel, without_temperature,
 };
 use fric_lab::continuum::friction::{FrictionDistribution, HoleLoad, hole_coefficient};
 use fric_lab::continuum::simulate::{Experiment, TendonSimulationOptions, simulate};
-use fric_lab::continuum::{ContinuumError, RunSample, check_run};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
@@ -89,12 +89,11 @@ fn the_strain_form_is_the_fibres() {
     let fibre = StrainForm {
         wavelength_nm: 1550.0,
         photoelastic_ratio: 0.22,
-        youngs_modulus_pa: 70e9,
-        cross_section_m2: core::f64::consts::PI * 0.25e-3_f64.powi(2),
+        axial_stiffness_n: 70e9 * core::f64::consts::PI * 0.25e-3_f64.powi(2),
     };
     let line = fibre.calibration().unwrap();
     let strain = 1.0 / 1550.0 / 0.78;
-    assert!((line.tension(1.0).value_n - strain * 70e9 * fibre.cross_section_m2).abs() < 1e-9);
+    assert!((line.tension(1.0).value_n - strain * fibre.axial_stiffness_n).abs() < 1e-9);
     assert!((line.shift_nm(line.tension(0.3).value_n) - 0.3).abs() < 1e-15);
     let wrong = StrainForm { photoelastic_ratio: f64::NAN, ..fibre };
     assert!(wrong.calibration().unwrap_err().to_string().starts_with("`photoelastic_ratio` is NaN"));
@@ -175,14 +174,4 @@ fn bad_data_get_their_sentence() {
         step.shift_nm[1] = if place % 2 == 0 { 0.001 } else { -0.001 };
     }
     assert_eq!(Calibration::fit_all(&good), Err(ContinuumError::DeadGrating { grating: 2 }));
-    let sample = |time_s: f64, tension_base_n: f64| RunSample { time_s, tension_base_n, ..RunSample::default() };
-    assert!(check_run(&[sample(0.0, 1.0), sample(0.1, 1.0)], 8).is_ok());
-    let said = |samples: &[RunSample]| check_run(samples, 8).unwrap_err().to_string();
-    assert_eq!(
-        said(&[sample(0.1, 1.0), sample(0.1, 1.0)]),
-        "time goes from 0.1 s to 0.1 s; sort the run and take out repeated samples"
-    );
-    assert!(said(&[sample(0.0, -1.0)]).starts_with("`tension_base_n` is -1 at 0 s"));
-    let short = RunSample { shift_nm: vec![0.0; 7], ..sample(0.0, 1.0) };
-    assert_eq!(said(&[short]), "there are 7 shifts; 8 are needed");
 }

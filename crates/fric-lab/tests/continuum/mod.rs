@@ -2,4 +2,5 @@
 
 mod experiments;
 mod gratings;
+mod runs;
 mod shapes;

@@ -144,7 +144,7 @@ pub fn simulate(params: &ManipulatorParams, options: &TendonSimulationOptions) -
     // Gratings of silica fibre differ by some per cent, and hang in their holders by some millinewton.
     let gratings: Vec<Calibration> = mu
         .iter()
-        .map(|_| Calibration::exact(uniform(&mut random, 10.5, 12.2), uniform(&mut random, -0.03, 0.03)))
+        .map(|_| Calibration::known(uniform(&mut random, 10.5, 12.2), uniform(&mut random, -0.03, 0.03), 0.0))
         .collect();
     let mut noise = |size: f64| -> f64 {
         let deviate: f64 = StandardNormal.sample(&mut random);
@@ -166,16 +166,15 @@ pub fn simulate(params: &ManipulatorParams, options: &TendonSimulationOptions) -
     let mut rubbing = Rubbing::new(elastica, mu.clone()).map_err(|_| no_shape(0.0, 0.0))?;
     let tensions_n = options.experiment.tensions(options.greatest_tension_n);
     let (mut samples, mut truth) = (Vec::with_capacity(tensions_n.len()), Vec::with_capacity(tensions_n.len()));
-    let mut time_s = 0.0;
     for (place, tension_base_n) in (0_u32..).zip(tensions_n) {
-        time_s = if place == 0 { 0.0 } else { time_s + 1.0 / SAMPLES_PER_S };
+        let time_s = f64::from(place) / SAMPLES_PER_S;
         rubbing.step(tension_base_n).map_err(|_| no_shape(time_s, tension_base_n))?;
         let shift_nm = shifts(rubbing.tension_n(), &mut noise);
         let mut marker_m = rubbing.elastica().disk_position_m();
         for coordinate_m in marker_m.iter_mut().flatten() {
             *coordinate_m += noise(options.marker_noise_m);
         }
-        samples.push(RunSample { time_s, tension_base_n, shift_nm, marker_m });
+        samples.push(RunSample { time_s, tension_base_n, shift_nm, marker_m, ..RunSample::default() });
         truth.push(TendonTruth {
             tension_n: rubbing.tension_n().to_vec(),
             friction_n: rubbing.friction_n().to_vec(),
