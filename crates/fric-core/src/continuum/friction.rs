@@ -1,8 +1,13 @@
 //! One hole: what a tendon can lose in it, and the four ways to say what it does lose.
+//!
+//! A hole is a pulley's bearing that the tendon itself slides on, and takes its contact from [`crate::pulley`]: `f_c = μ·F_N` with
+//! `F_N = (T_{i−1} + T_i)·sin(α/2)` for the angle α by which the tendon turns. That is the part of the vector sum of both tensions (\[C\] 12)
+//! that presses on the hole, as \[C\] 16 has it where μ is measured; many holes tend to the capstan's `e^{−μθ}`. Deviation: the
+//! magnitude of the whole sum would count the friction itself as load, 1/√(1 − μ²) times as much (1.6 % at μ = 0.1753).
 
 use super::tangent::Tangent;
 use crate::dahl::dahl_step;
-use crate::pulley::wrap_factor;
+use crate::pulley::{sliding_friction, sliding_gains, wrap_factor};
 use crate::scalar::Scalar;
 
 /// Which way the tendons slide.
@@ -35,37 +40,6 @@ pub enum Friction<'a> {
     /// A Dahl contact at every hole remembers how the tendon has moved through it. Needs every step of the run of base tensions, from
     /// a relaxed tendon on, and no sensor within the manipulator.
     History,
-}
-
-/// Load on the contact in a hole: the vector sum of the tensions on both sides, \[C\] 12.
-///
-/// `F_N = |T_{i−1} + T_i| = √((T_{i−1} − T_i)² + T_{i−1}T_i k²)`, `k = 2 sin(α/2)` with the angle α by which the tendon turns
-/// in the hole. In N; `base_side_n`, `tip_side_n` ≥ 0. Without any tension it is 10⁻¹² N, so that it has a derivative.
-#[must_use]
-pub fn contact_load<T: Scalar>(base_side_n: T, tip_side_n: T, wrap_factor: T) -> T {
-    let difference_n = base_side_n - tip_side_n;
-    let across = base_side_n * tip_side_n * wrap_factor * wrap_factor;
-    (difference_n * difference_n + across.max(T::splat(0.0)) + T::splat(1e-24)).sqrt()
-}
-
-/// `T_i/T_{i−1}` of a hole through which the tendon slides towards the base, \[C\] 11–13 solved.
-///
-/// From `T_{i−1} − T_i = μ·F_N` with [`contact_load`]: `x = 1 + g²/2 − g√(1 + g²/4)`, `g = μk/√(1 − μ²)`. Sliding towards the
-/// tip it is `1/x`. For many holes it tends to `e^{−μ'θ}` with the sum θ of their angles and `μ' = μ/√(1 − μ²)`: the load of
-/// \[C\] 12 is the whole force on the hole, friction included. That is the capstan's `e^{−μθ}` but for a share of `μ³θ/2`. `mu` in 0…0.9.
-///
-/// ```
-/// use fric_core::continuum::{contact_load, sliding_ratio};
-/// let ratio = sliding_ratio(0.2, 0.3);
-/// assert!((1.0 - ratio - 0.2 * contact_load(1.0, ratio, 0.3)).abs() < 1e-15);
-/// ```
-#[must_use]
-pub fn sliding_ratio<T: Scalar>(mu: T, wrap_factor: T) -> T {
-    let one = T::splat(1.0);
-    let half = T::splat(0.5);
-    let g = mu * wrap_factor / (one - mu * mu).sqrt();
-    let half_g = half * g;
-    one + half * g * g - g * (one + half_g * half_g).sqrt()
 }
 
 /// A contact: what one hole needs to know of itself.
@@ -112,16 +86,15 @@ impl Hole {
     /// Greatest friction, `μ·F_N`, \[C\] 13.
     pub fn bound_n(&self, passage: &Passage) -> f64 {
         let factor = wrap_factor(passage.wrap_rad.abs());
-        self.mu * contact_load(passage.base_side_n.max(0.0), passage.tip_side_n.max(0.0), factor)
+        sliding_friction(self.mu, factor, passage.base_side_n.max(0.0), passage.tip_side_n.max(0.0))
     }
 
     /// Sliding, \[C\] 11–13; `towards_base` is the direction.
     pub fn sliding(&self, passage: &Passage, towards_base: bool) -> HoleFriction {
         let (base_side, _, factor, _) = passage.tangents();
-        let one = Tangent::constant(1.0);
-        let ratio = sliding_ratio(Tangent::constant(self.mu), factor);
-        let ratio = if towards_base { ratio } else { one / ratio };
-        let Tangent { value: friction_n, slopes } = base_side * (one - ratio);
+        let direction = Tangent::constant(if towards_base { -1.0 } else { 1.0 });
+        let (gain, _) = sliding_gains(direction, Tangent::constant(self.mu), factor);
+        let Tangent { value: friction_n, slopes } = base_side * (Tangent::constant(1.0) - gain);
         HoleFriction { friction_n, slopes }
     }
 
@@ -132,7 +105,7 @@ impl Hole {
     pub fn presliding(&self, passage: &Passage, stored_n: f64) -> HoleFriction {
         let (base_side, tip_side, factor, motion) = passage.tangents();
         let zero = Tangent::constant(0.0);
-        let sliding = Tangent::constant(self.mu) * contact_load(base_side.max(zero), tip_side.max(zero), factor);
+        let sliding = sliding_friction(Tangent::constant(self.mu), factor, base_side.max(zero), tip_side.max(zero));
         let sigma = Tangent::constant(self.sigma_n_per_m);
         let held = Tangent::constant(stored_n).min(sliding).max(-sliding);
         let Tangent { value: friction_n, mut slopes } = dahl_step(held, sliding, sigma, motion);

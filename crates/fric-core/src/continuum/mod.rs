@@ -47,7 +47,7 @@ mod params;
 mod shape;
 mod tangent;
 
-pub use friction::{Direction, Friction, contact_load, sliding_ratio};
+pub use friction::{Direction, Friction};
 pub use model::StaticModel;
 pub use params::rectangle_bending_stiffness_n_m2;
 pub use params::{MAX_DISKS, ManipulatorError, ManipulatorOptions, ManipulatorParams, Tendon, TendonOptions};
