@@ -1,7 +1,9 @@
 //! Errors of the crates below as the exceptions of `fric._errors`.
 
 use fric_core::ParamError;
+use fric_core::continuum::file::ManipulatorFileError;
 use fric_core::robot::file::RobotFileError;
+use fric_lab::continuum::ContinuumError;
 use fric_lab::hysteresis::HysteresisError;
 use fric_lab::replay::SnapshotMismatch;
 use fric_lab::simulate::{HiddenError, SimulationError};
@@ -9,6 +11,7 @@ use fric_log::output;
 use fric_log::recording::RecordingError;
 use fric_log::robot::{AttachedRobotError, SignalPathError};
 use fric_log::signals::SignalError;
+use fric_log::table::TableError;
 use fric_log::write::WriteError;
 use fric_log::{in_full, reason};
 use numpy::AsSliceError;
@@ -93,8 +96,10 @@ fault_from!(
     SimulationError => config,
     HiddenError => config,
     SignalPathError => config,
+    ManipulatorFileError => config,
     RecordingError => log,
     SignalError => log,
+    TableError => log,
     SnapshotMismatch => shape,
 );
 
@@ -102,6 +107,24 @@ impl From<fric_lab::fit::FitError> for Fault {
     fn from(error: fric_lab::fit::FitError) -> Self {
         let advice = error.advice(|reference| format!("reference=\"{}\"", reference.name()));
         Self::fit(advice.map_or_else(|| error.cause.clone(), |advice| format!("{}. {advice}", error.cause)))
+    }
+}
+
+impl From<ContinuumError> for Fault {
+    fn from(error: ContinuumError) -> Self {
+        let text = in_full(&error);
+        match error {
+            ContinuumError::OptionOutOfRange { .. }
+            | ContinuumError::Params(_)
+            | ContinuumError::NotWithinRun { .. }
+            | ContinuumError::NoGratings
+            | ContinuumError::TravelTooLong { .. } => Self::config(text),
+            ContinuumError::WrongCount { .. } => Self::shape(text),
+            ContinuumError::TooFewLoads { .. }
+            | ContinuumError::DeadGrating { .. }
+            | ContinuumError::NoCoefficient(_) => Self::fit(text),
+            _ => Self::log(text),
+        }
     }
 }
 

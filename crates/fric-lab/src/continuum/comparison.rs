@@ -3,6 +3,7 @@
 use fric_core::continuum::{ManipulatorParams, ShapeStatus, Tendon};
 
 use super::error::ContinuumError;
+use super::friction::distributions;
 use super::gratings::GratingSample;
 use super::run::Run;
 use super::shape_errors::{ComputedShape, ShapeErrors, Way, shapes};
@@ -79,4 +80,52 @@ pub fn spread(sample_count: usize, count: usize, is_right: impl Fn(usize) -> boo
         (1..=count).filter_map(|part| right.get(part * last / count.max(1)).copied()).collect();
     places.dedup();
     places
+}
+
+/// Which shapes of a run to show.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Selection {
+    /// So many, spread over the run.
+    Spread(usize),
+    /// So many of those in which the gratings show friction of both directions beyond doubt.
+    Mixed(usize),
+    /// Those nearest to these times, s.
+    At(Vec<f64>),
+}
+
+impl Selection {
+    /// Places of the samples.
+    ///
+    /// # Errors
+    /// [`ContinuumError::NotWithinRun`] for a time before or behind the run; [`ContinuumError::MissingGroup`] where the gratings would be needed.
+    pub fn places(&self, run: &Run, measured: Option<&[GratingSample]>) -> Result<Vec<usize>, ContinuumError> {
+        let samples = run.samples();
+        match self {
+            Self::Spread(count) => Ok(spread(samples.len(), *count, |_| true)),
+            Self::Mixed(count) => {
+                let measured = measured.ok_or(ContinuumError::MissingGroup {
+                    what: "calibrated gratings",
+                    consequence: "it is not known where directions differ",
+                    remedy: "them, or name times",
+                })?;
+                let differ: Vec<bool> = distributions(run, measured).map(|one| one.directions_differ).collect();
+                Ok(spread(samples.len(), *count, |place| differ.get(place) == Some(&true)))
+            }
+            Self::At(times_s) => times_s.iter().map(|time_s| nearest(run, *time_s)).collect(),
+        }
+    }
+}
+
+/// The sample nearest to a time within the run.
+fn nearest(run: &Run, time_s: f64) -> Result<usize, ContinuumError> {
+    let samples = run.samples();
+    let ends = samples.first().zip(samples.last());
+    let (from_s, to_s) = ends.map_or((f64::NAN, f64::NAN), |(first, last)| (first.time_s, last.time_s));
+    if !(from_s..=to_s).contains(&time_s) {
+        return Err(ContinuumError::NotWithinRun { time_s, from_s, to_s });
+    }
+    let behind = samples.partition_point(|sample| sample.time_s < time_s);
+    let distance_s = |place: usize| samples.get(place).map_or(f64::INFINITY, |one| (one.time_s - time_s).abs());
+    let before = behind.saturating_sub(1);
+    Ok(if distance_s(before) < distance_s(behind) { before } else { behind })
 }

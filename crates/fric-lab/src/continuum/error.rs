@@ -136,6 +136,16 @@ pub enum ContinuumError {
         /// What to record.
         remedy: &'static str,
     },
+    /// A time that the run does not have.
+    #[error("{time_s} s is not within the run, {from_s} … {to_s} s; name another time")]
+    NotWithinRun {
+        /// The time, s.
+        time_s: f64,
+        /// Where the run begins, s.
+        from_s: f64,
+        /// Where it ends, s.
+        to_s: f64,
+    },
     /// Shifts that nothing turns into tensions.
     #[error(
         "the manipulator file has no `[gratings]`, without which shifts are no tensions; write them with a calibration"

@@ -2,6 +2,8 @@
 
 use super::error::ContinuumError;
 use super::fbg::Tension;
+use super::gratings::GratingSample;
+use super::run::Run;
 
 /// Friction at one hole with its standard error.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,6 +48,17 @@ impl FrictionDistribution {
         let directions_differ = has(1) && has(-1);
         Self { holes, directions_differ }
     }
+}
+
+/// Friction at every hole over a run, from what the gratings say; the tension at the base is taken as exact.
+pub fn distributions<'a>(
+    run: &'a Run,
+    measured: &'a [GratingSample],
+) -> impl Iterator<Item = FrictionDistribution> + 'a {
+    run.samples().iter().zip(measured).map(|(sample, gratings)| {
+        let base = Tension { value_n: sample.tension_base_n, standard_error_n: 0.0 };
+        FrictionDistribution::new(base, &gratings.tension)
+    })
 }
 
 /// One load on a single hole: the tensions on both sides and the angles between them and the normal force.

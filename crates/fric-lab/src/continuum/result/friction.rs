@@ -5,8 +5,7 @@ use std::fmt::Write as _;
 use serde::Serialize;
 
 use super::{intervals_s, intervals_text};
-use crate::continuum::fbg::Tension;
-use crate::continuum::friction::{FrictionDistribution, MeasuredFriction};
+use crate::continuum::friction::{FrictionDistribution, MeasuredFriction, distributions};
 use crate::continuum::gratings::GratingSample;
 use crate::continuum::run::Run;
 use crate::text::table;
@@ -112,15 +111,7 @@ impl FrictionResult {
     /// From what the gratings say; the tension at the base is taken as exact.
     #[must_use]
     pub fn new(manipulator: &str, run: &Run, measured: &[GratingSample]) -> Self {
-        let distributions: Vec<FrictionDistribution> = run
-            .samples()
-            .iter()
-            .zip(measured)
-            .map(|(sample, gratings)| {
-                let base = Tension { value_n: sample.tension_base_n, standard_error_n: 0.0 };
-                FrictionDistribution::new(base, &gratings.tension)
-            })
-            .collect();
+        let distributions: Vec<FrictionDistribution> = distributions(run, measured).collect();
         let time_s: Vec<f64> = run.samples().iter().map(|sample| sample.time_s).collect();
         let differ: Vec<bool> = distributions.iter().map(|one| one.directions_differ).collect();
         let each = |of: fn(&MeasuredFriction) -> f64| -> Vec<Vec<f64>> {

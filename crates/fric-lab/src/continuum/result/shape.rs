@@ -181,6 +181,13 @@ impl ShapeResult {
         }
     }
 
+    /// Greatest bend of the last way, which is the nearest to the truth, rad.
+    #[must_use]
+    pub fn greatest_bend_rad(&self) -> f64 {
+        let last = self.series.last().map_or(&[][..], |way| &way.bend_rad);
+        last.iter().fold(0.0, |most, bend_rad| bend_rad.abs().max(most))
+    }
+
     /// What is out of the ordinary, a sentence each.
     #[must_use]
     pub fn warnings(&self, ways: &[WayShapes]) -> Vec<String> {

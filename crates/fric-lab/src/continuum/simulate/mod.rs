@@ -38,6 +38,18 @@ pub enum Experiment {
 }
 
 impl Experiment {
+    /// All there are.
+    pub const ALL: [Self; 2] = [Self::OneWay, Self::Mixed];
+
+    /// In one word.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::OneWay => "one_way",
+            Self::Mixed => "mixed",
+        }
+    }
+
     /// Turning points of the base tension, as shares of the greatest.
     fn turns(self) -> &'static [f64] {
         match self {
