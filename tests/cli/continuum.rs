@@ -344,6 +344,34 @@ fn command_lines_are_checked() {
 }
 
 #[test]
+fn discovery_names_the_memory_of_the_holes() {
+    let place = place();
+    let text = text("cal.toml");
+    let plain: Vec<&str> = text.lines().filter(|line| !line.starts_with("sigma_n_per_m")).collect();
+    place.write("plain.toml", plain.join("\n"));
+    let discover =
+        ["discover", "mixed.csv", "--model", "plain.toml", "-o", "new.toml", "--json", "d.json", "--report", "d.html"];
+    let run = place.run(&discover).succeeds();
+    assert!(run.stdout.contains("presliding: sigma_n_per_m = 20000"), "{run:#?}");
+    let result = place.json("d.json");
+    assert_eq!((&result["format"], &result["robot"]), (&"fric-discover/1".into(), &"tendon-prototype".into()));
+    let tendon = &result["cables"][0];
+    assert_eq!((&tendon["verdict"], &tendon["effects"][0]["kind"]), (&"extended".into(), &"presliding".into()));
+    let rms = |when: &str| tendon[when]["rms_n"].as_f64().unwrap();
+    let floor = tendon["noise_floor_n"].as_f64().unwrap();
+    assert_close(tendon["gap_closed"].as_f64().unwrap(), 1.0 - (rms("after") - floor) / (rms("before") - floor));
+    assert!(tendon["effects"][0]["evidence"]["delta_bic"].as_f64().unwrap() < -10.0);
+    assert_self_contained(&String::from_utf8(place.read("d.html")).unwrap());
+    let again = ["discover", "mixed.csv", "--model", "new.toml", "-o", "again.toml"];
+    let again = place.run(&again).succeeds();
+    assert!(again.stdout.contains("complete"), "{again:#?}");
+    let two = ["discover", "mixed.csv", "loads.csv", "--model", "plain.toml", "-o", "x.toml"];
+    place.run_in_vain(&two).fails(2, &["one by one"]);
+    let uncalibrated = ["discover", "mixed.csv", "--model", "arm.toml", "-o", "x.toml"];
+    place.run_in_vain(&uncalibrated).fails(1, &["mixed.csv", "[gratings]"]);
+}
+
+#[test]
 fn pages_escape_what_files_say() {
     let place = place();
     place.write("arm<b>.toml", text("cal.toml").replace("\"tendon-prototype\"", "\"<script>alert(1)</script>\""));

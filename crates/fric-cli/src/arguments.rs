@@ -116,13 +116,14 @@ pub struct FitArguments {
 
 #[derive(Debug, Args)]
 pub struct DiscoverArguments {
-    /// MCAP log with forces at the platform; several are runs of the same robot, looked at together
+    /// MCAP log with forces at the platform; several are runs of the same robot, looked at together. With a manipulator file,
+    /// the run of a manipulator with gratings
     #[arg(required = true, value_name = "LOG")]
     pub logs: Vec<PathBuf>,
-    /// Robot file; without it the one attached to the first log that has one
+    /// Robot or manipulator file; without it the robot file attached to the first log that has one
     #[arg(long, value_name = "M.toml")]
     pub model: Option<PathBuf>,
-    /// Write the robot file with what was found, and with values fitted to the log, to this file
+    /// Write the file with what was found, and with values fitted to the log, to this file
     #[arg(short, long, value_name = "EXTENDED.toml", required = true, value_parser = a_file())]
     pub output: PathBuf,
     /// Write a page with figures of what was found to this HTML file

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
+use fric_core::continuum::edit::{ManipulatorEdit, rewrite};
 use fric_core::continuum::file::ManipulatorFile;
-use fric_core::continuum::gratings::with_calibration;
 use fric_core::continuum::{ManipulatorOptions, ManipulatorParams, Tendon};
 
 const PROTOTYPE: &str = include_str!("../../../examples/tendon-prototype.toml");
@@ -95,6 +95,9 @@ fn gratings_are_checked() {
 
 #[test]
 fn a_calibration_goes_into_the_file_and_nothing_else_changes() {
+    let with_calibration = |text: &str, origin: &str, lines: &[[f64; 3]]| {
+        rewrite(text, origin, &ManipulatorEdit { lines: lines.to_vec(), ..ManipulatorEdit::default() })
+    };
     let lines: Vec<[f64; 3]> = (0..8).map(|place| [11.0 + 0.1 * f64::from(place), -0.01, 0.005]).collect();
     let text = with_calibration(PROTOTYPE, "arm.toml", &lines).unwrap();
     assert!(text.starts_with(PROTOTYPE), "{text}");

@@ -6,7 +6,6 @@ use std::fs::File;
 use std::io::Read as _;
 use std::path::Path;
 
-use fric_core::continuum::file::FORMAT;
 use fric_lab::continuum::columns::TIME;
 use fric_lab::fit::readiness::{self, Holdings, Readiness};
 use fric_lab::text::table;
@@ -148,7 +147,7 @@ fn is_run_of_manipulator(log: &Path, model: Option<&Path>) -> bool {
         String::from_utf8(start).ok()
     };
     match model {
-        Some(model) => std::fs::read_to_string(model).is_ok_and(|text| text.contains(FORMAT)),
+        Some(_) => continuum::is_manipulator(model),
         None => begins(log, 4096).is_some_and(|text| text.lines().next().is_some_and(|header| header.contains(TIME))),
     }
 }

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use fric_lab::continuum::Run;
 use fric_lab::continuum::comparison::{WayShapes, spread};
+use fric_lab::continuum::discover::TendonDiscovery;
 use fric_lab::continuum::result::{CalibrationResult, FrictionResult, PickedShape, ShapeResult, WayShape};
 use fric_lab::continuum::shape_errors::{ShapeErrors, Way};
 use maud::{Markup, PreEscaped, html};
@@ -126,6 +127,66 @@ pub fn shape(result: &ShapeResult, run: &Run, ways: &[WayShapes], path: &Path) -
         }
     };
     super::shell(&format!("{}: shapes by four ways of friction", result.manipulator), &content)
+}
+
+/// The page of `discover` with a manipulator.
+pub fn discovery(found: &TendonDiscovery) -> String {
+    let result = &found.result;
+    let percent = |share: Option<f64>| share.map_or_else(|| "–".to_owned(), |share| format!("{:.0} %", 100.0 * share));
+    let content = html! {
+        p.soft { (result.log.join(", ")) }
+        @for tendon in &result.cables {
+            p { "Verdict: " span class=(format!("verdict {}", tendon.verdict)) { (tendon.verdict) } }
+            dl {
+                dt { "samples" } dd { (tendon.samples) }
+                dt { "noise" } dd { (format!("{:.4} N", tendon.noise_floor_n)) }
+                @if let (Some(before), Some(after)) = (tendon.before, tendon.after) {
+                    dt { "rms before, held out" } dd { (format!("{:.4} N", before.rms_n)) }
+                    dt { "rms after" } dd { (format!("{:.4} N", after.rms_n)) }
+                }
+                dt { "gap closed" } dd { (percent(tendon.gap_closed)) }
+            }
+            @for effect in &tendon.effects {
+                h3 { (effect.kind) }
+                p {
+                    @for (name, value) in &effect.parameters.0 { (name) " = " (fric_lab::text::significant(*value)) ". " }
+                    (effect.words.join(" "))
+                }
+            }
+            @if let Some(rest) = &tendon.unexplained {
+                p.unexplained { (format!("{:.4} N above the noise are not accounted for by any effect.", rest.rms_n)) }
+            }
+        }
+        p {
+            "Gratings less model in each segment over time:"
+            (key("before", "given model, fitted")) (key("after", "extended"))
+        }
+        @for segment in 0..found.residual_before_n.first().map_or(0, Vec::len) {
+            section { h2 { "Grating " (segment + 1) } (PreEscaped(residuals(found, segment))) }
+        }
+    };
+    super::shell(&format!("{}: what the model lacks", result.robot), &content)
+}
+
+/// Residuals of one segment before and after.
+fn residuals(found: &TendonDiscovery, segment: usize) -> String {
+    let line = |rows: &[Vec<f64>]| -> Vec<[f64; 2]> {
+        let values = rows.iter().map(|row| row.get(segment).copied().unwrap_or(f64::NAN));
+        found.time_s.iter().copied().zip(values).map(|(time_s, value)| [time_s, value]).collect()
+    };
+    let lines = [("trace before", line(&found.residual_before_n)), ("trace after", line(&found.residual_after_n))];
+    let mut extents = [Extent::NOTHING; 2];
+    extents[1].add(0.0);
+    for [time_s, value] in lines.iter().flat_map(|(_, points)| points) {
+        extents[0].add(*time_s);
+        extents[1].add(*value);
+    }
+    let [time, value] = [Span::with_margin(extents[0], 0.0, "s"), Span::with_margin(extents[1], 0.05, "N")];
+    let mut chart = Chart::new(time, value, 960.0, 160.0);
+    for (class, points) in lines {
+        chart.line(class, points.into_iter());
+    }
+    chart.into_svg()
 }
 
 fn newtons(value: f64) -> String {

@@ -26,6 +26,9 @@ use crate::robot::read::exactly;
 /// The only value of `format` that this version reads.
 pub const FORMAT: &str = "fric-continuum/1";
 
+/// Presliding stiffness of a hole where none is stated, N/m: friction of 0.05 N builds up within 2.5 μm.
+pub const USUAL_SIGMA_N_PER_M: f64 = 20_000.0;
+
 /// A manipulator file as written.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -95,8 +98,10 @@ pub struct TipTable {
 pub struct TendonTable {
     /// Friction coefficient: one for all holes, or a list with one for each from the base plate.
     pub mu: OneOrEach,
-    /// Presliding stiffness of a hole, N/m: one for all, or a list.
-    pub sigma_n_per_m: OneOrEach,
+    /// Presliding stiffness of a hole, N/m: one for all, or a list. Left out, the tendon is stated to slide one way, as Coulomb's
+    /// friction has it; [`Friction::History`](super::Friction::History) then takes [`USUAL_SIGMA_N_PER_M`].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sigma_n_per_m: Option<OneOrEach>,
     /// Axial stiffness E·A, N.
     pub axial_stiffness_n: f64,
     /// Tension that the tendon can bear, N.
@@ -289,7 +294,7 @@ impl TendonTable {
     fn options(&self) -> TendonOptions<'_> {
         TendonOptions {
             mu: self.mu.as_slice(),
-            sigma_n_per_m: self.sigma_n_per_m.as_slice(),
+            sigma_n_per_m: self.sigma_n_per_m.as_ref().map_or(&[USUAL_SIGMA_N_PER_M], OneOrEach::as_slice),
             axial_stiffness_n: self.axial_stiffness_n,
             capacity_n: self.capacity_n,
         }

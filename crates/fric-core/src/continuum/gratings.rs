@@ -2,13 +2,12 @@
 
 use std::borrow::ToOwned;
 use std::format;
-use std::string::{String, ToString};
+use std::string::String;
 use std::vec::Vec;
 
 use serde::{Deserialize, Serialize};
-use toml_edit::{Array, DocumentMut, Item, Table};
 
-use super::file::{FORMAT, ManipulatorFile, ManipulatorFileError, OneOrEach, TablesError};
+use super::file::{OneOrEach, TablesError};
 use crate::robot::check;
 use crate::robot::locate::Step;
 
@@ -28,6 +27,9 @@ pub struct GratingsTable {
     /// Standard error of a tension from one shift, N; 0 if left out.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub standard_error_n: Vec<f64>,
+    /// Drift of the shift with the time of a run, nm/s, such as that of a fibre that warms up; 0 if left out.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub drift_nm_per_s: Vec<f64>,
     /// Bragg wavelength λ_B, nm: for the strain form, and to take the temperature off.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub wavelength_nm: Option<OneOrEach>,
@@ -54,10 +56,11 @@ impl GratingsTable {
         };
         let one = |value: &Option<f64>| value.iter().copied().collect::<Vec<f64>>();
         let each = |values: &Option<OneOrEach>| values.iter().flat_map(|all| all.as_slice().to_vec()).collect();
-        let lists: [(&'static str, Vec<f64>, f64, f64); 8] = [
+        let lists: [(&'static str, Vec<f64>, f64, f64); 9] = [
             ("newton_per_nm", self.newton_per_nm.clone(), -1e6, 1e6),
             ("offset_n", self.offset_n.clone(), -1e6, 1e6),
             ("standard_error_n", self.standard_error_n.clone(), 0.0, 1e6),
+            ("drift_nm_per_s", self.drift_nm_per_s.clone(), -1e3, 1e3),
             ("wavelength_nm", each(&self.wavelength_nm), 100.0, 1e4),
             ("reference_wavelength_nm", one(&self.reference_wavelength_nm), 100.0, 1e4),
             ("photoelastic_ratio", one(&self.photoelastic_ratio), 0.0, 0.9),
@@ -65,7 +68,7 @@ impl GratingsTable {
             ("length_m", each(&self.length_m), 0.0, 10.0),
         ];
         for (key, values, min, max) in &lists {
-            let may_be_one = !["newton_per_nm", "offset_n", "standard_error_n"].contains(key);
+            let may_be_one = !["newton_per_nm", "offset_n", "standard_error_n", "drift_nm_per_s"].contains(key);
             if !(values.is_empty() || values.len() == disk_count || may_be_one && values.len() == 1) {
                 let text =
                     format!("`{key}` has {} entries; {disk_count} are needed, one for each segment", values.len());
@@ -93,32 +96,4 @@ impl GratingsTable {
         }
         Ok(())
     }
-}
-
-/// The text of a manipulator file with the coefficients of a calibration; all else stays, comments included.
-///
-/// `lines` holds for each grating the slope, N/nm, the offset, N, and the standard error of a tension, N. `origin` says
-/// where the text is from, for errors.
-///
-/// # Errors
-/// [`ManipulatorFileError::Invalid`] if the text is not right, before or with the new values.
-pub fn with_calibration(text: &str, origin: &str, lines: &[[f64; 3]]) -> Result<String, ManipulatorFileError> {
-    ManipulatorFile::parse(text, origin)?;
-    let invalid = |problem: String| ManipulatorFileError::Invalid { origin: origin.to_owned(), line: None, problem };
-    let mut document: DocumentMut = text.parse().map_err(|error: toml_edit::TomlError| invalid(error.to_string()))?;
-    let gratings = document.entry("gratings").or_insert_with(|| {
-        let mut table = Table::new();
-        table.decor_mut().set_prefix("\n");
-        Item::Table(table)
-    });
-    let Some(gratings) = gratings.as_table_like_mut() else {
-        return Err(invalid(format!("`gratings` is no table; see {FORMAT}")));
-    };
-    for (place, key) in ["newton_per_nm", "offset_n", "standard_error_n"].into_iter().enumerate() {
-        let values: Array = lines.iter().filter_map(|line| line.get(place)).copied().collect();
-        gratings.insert(key, toml_edit::value(values));
-    }
-    let text = document.to_string();
-    ManipulatorFile::parse(&text, &format!("{origin} with the calibration"))?;
-    Ok(text)
 }

@@ -35,6 +35,8 @@
 
 mod arc;
 #[cfg(feature = "robot-file")]
+pub mod edit;
+#[cfg(feature = "robot-file")]
 pub mod file;
 mod friction;
 #[cfg(feature = "robot-file")]

@@ -146,6 +146,14 @@ pub enum ContinuumError {
         /// Where it ends, s.
         to_s: f64,
     },
+    /// A run with too little in it.
+    #[error("the run has {count} samples, {needed} are needed to hold some out; record a longer one")]
+    TooShort {
+        /// How many there are.
+        count: usize,
+        /// How many are needed.
+        needed: usize,
+    },
     /// Shifts that nothing turns into tensions.
     #[error(
         "the manipulator file has no `[gratings]`, without which shifts are no tensions; write them with a calibration"

@@ -23,6 +23,8 @@ const FAR_ERRORS: f64 = 8.0;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gratings {
     lines: Vec<Calibration>,
+    /// Drift of each shift with the time of the run, nm/s.
+    drift_nm_per_s: Vec<f64>,
     /// Bragg wavelengths and that of the reference, nm.
     wavelength_nm: Option<(Vec<f64>, f64)>,
     places: Option<Vec<GratingPlace>>,
@@ -41,7 +43,7 @@ impl Gratings {
     /// From calibrations alone.
     #[must_use]
     pub fn new(lines: Vec<Calibration>) -> Self {
-        Self { lines, wavelength_nm: None, places: None }
+        Self { drift_nm_per_s: vec![0.0; lines.len()], lines, wavelength_nm: None, places: None }
     }
 
     /// Those of a manipulator file; `None` where it has none.
@@ -84,6 +86,9 @@ impl Gratings {
         };
         Ok(Some(Self {
             lines: (0..count).map(line).collect::<Result<_, _>>()?,
+            drift_nm_per_s: (0..count)
+                .map(|grating| table.drift_nm_per_s.get(grating).copied().unwrap_or(0.0))
+                .collect(),
             wavelength_nm,
             places: (0..count).map(place).collect(),
         }))
@@ -109,9 +114,10 @@ impl Gratings {
         self.places.as_ref().map_or(Ok(()), |places| check_travel(params, places, greatest_bend_rad))
     }
 
-    /// Tensions of one sample as the lines give them, the temperature taken off where a reference and wavelengths are there.
+    /// Tensions of one sample as the lines give them, drift since the run's first sample and, where a reference and wavelengths
+    /// are there, temperature taken off.
     #[must_use]
-    pub fn tensions(&self, sample: &RunSample) -> Vec<Tension> {
+    pub fn tensions(&self, sample: &RunSample, elapsed_s: f64) -> Vec<Tension> {
         let reference_nm = sample.shift_reference_nm;
         let shift_nm = match &self.wavelength_nm {
             Some((all, reference)) if reference_nm.is_finite() => {
@@ -119,7 +125,9 @@ impl Gratings {
             }
             _ => sample.shift_nm.clone(),
         };
-        self.lines.iter().zip(shift_nm).map(|(line, shift_nm)| line.tension(shift_nm)).collect()
+        let drift_nm = self.drift_nm_per_s.iter().map(|drift_nm_per_s| drift_nm_per_s * elapsed_s);
+        let lines = self.lines.iter().zip(shift_nm).zip(drift_nm);
+        lines.map(|((line, shift_nm), drift_nm)| line.tension(shift_nm - drift_nm)).collect()
     }
 
     /// Tensions of a whole run with dead gratings bridged.
@@ -127,12 +135,28 @@ impl Gratings {
     /// # Errors
     /// [`ContinuumError::WrongCount`] for a run with another number of gratings, [`ContinuumError::AllDead`] if none is alive in any sample.
     pub fn read(&self, run: &Run) -> Result<Vec<GratingSample>, ContinuumError> {
+        let tensions = self.unbridged(run)?;
+        let base_n = run.samples().iter().map(|sample| sample.tension_base_n);
+        let greatest_n = base_n.clone().chain(tensions.iter().map(|all| middle(all))).fold(0.0, f64::max);
+        let whole: Vec<GratingSample> =
+            tensions.into_iter().zip(base_n).map(|(tension, base_n)| judged(tension, base_n, greatest_n)).collect();
+        let is_alive = |sample: &GratingSample| sample.is_bridged.iter().any(|is_bridged| !is_bridged);
+        if whole.iter().any(is_alive) { Ok(whole) } else { Err(ContinuumError::AllDead) }
+    }
+
+    /// Tensions of a whole run as they are; NaN where a grating is silent or stands still.
+    ///
+    /// # Errors
+    /// [`ContinuumError::WrongCount`] for a run with another number of gratings.
+    pub fn unbridged(&self, run: &Run) -> Result<Vec<Vec<Tension>>, ContinuumError> {
         let count = self.lines.len();
         if count != run.disk_count() {
             return Err(ContinuumError::WrongCount { what: "gratings", count, needed: run.disk_count() });
         }
         let samples = run.samples();
-        let mut tensions: Vec<Vec<Tension>> = samples.iter().map(|sample| self.tensions(sample)).collect();
+        let start_s = samples.first().map_or(0.0, |first| first.time_s);
+        let mut tensions: Vec<Vec<Tension>> =
+            samples.iter().map(|sample| self.tensions(sample, sample.time_s - start_s)).collect();
         for grating in 0..count {
             for place in frozen(samples, &tensions, grating) {
                 if let Some(tension) = tensions.get_mut(place).and_then(|sample| sample.get_mut(grating)) {
@@ -140,12 +164,7 @@ impl Gratings {
                 }
             }
         }
-        let base_n = samples.iter().map(|sample| sample.tension_base_n);
-        let greatest_n = base_n.clone().chain(tensions.iter().map(|all| middle(all))).fold(0.0, f64::max);
-        let whole: Vec<GratingSample> =
-            tensions.into_iter().zip(base_n).map(|(tension, base_n)| judged(tension, base_n, greatest_n)).collect();
-        let is_alive = |sample: &GratingSample| sample.is_bridged.iter().any(|is_bridged| !is_bridged);
-        if whole.iter().any(is_alive) { Ok(whole) } else { Err(ContinuumError::AllDead) }
+        Ok(tensions)
     }
 }
 

@@ -10,6 +10,7 @@
 
 pub mod columns;
 pub mod comparison;
+pub mod discover;
 mod error;
 pub mod fbg;
 pub mod friction;

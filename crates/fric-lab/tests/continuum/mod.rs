@@ -1,5 +1,6 @@
 //! The model of a manipulator against a truth that is not the model, and what gratings tell.
 
+mod discover;
 mod experiments;
 mod gratings;
 mod runs;

@@ -1,6 +1,6 @@
 //! `calibrate`: load steps to the lines of the gratings.
 
-use fric_core::continuum::gratings::with_calibration;
+use fric_core::continuum::edit::{ManipulatorEdit, rewrite};
 use fric_lab::continuum::fbg::{Calibration, LoadStep};
 use fric_lab::continuum::result;
 use numpy::PyArray1;
@@ -102,6 +102,7 @@ pub fn continuum_calibrate(
         rows.map(|(load_n, shift_nm)| LoadStep { load_n: *load_n, shift_nm: shift_nm.to_vec() }).collect();
     let lines = Calibration::fit_all(&steps)?;
     let result = result::CalibrationResult::new(&manipulator.file.tables().name, &steps, &lines);
-    let text = with_calibration(&manipulator.text, "manipulator", &result.lines())?;
+    let edit = ManipulatorEdit { lines: result.lines(), ..ManipulatorEdit::default() };
+    let text = rewrite(&manipulator.text, "manipulator", &edit)?;
     Ok(CalibrationResult { manipulator: Py::new(py, Manipulator::parse(text, "manipulator")?)?, result })
 }

@@ -1,6 +1,6 @@
 //! `continuum calibrate`: load steps to the lines of the gratings.
 
-use fric_core::continuum::gratings::with_calibration;
+use fric_core::continuum::edit::{ManipulatorEdit, rewrite};
 use fric_lab::continuum::fbg::Calibration;
 use fric_lab::continuum::gratings::Gratings;
 use fric_lab::continuum::result::CalibrationResult;
@@ -25,6 +25,7 @@ pub fn run(arguments: &CalibrateArguments) -> Outcome {
     let steps = load_steps(&table, model.disk_count(), wavelengths_nm).map_err(|error| about(loads, error))?;
     let lines = Calibration::fit_all(&steps).map_err(|error| about(loads, error))?;
     let result = CalibrationResult::new(model.name(), &steps, &lines);
-    file.finish_with(&with_calibration(&model.text, &model.origin, &result.lines())?)?;
+    let edit = ManipulatorEdit { lines: result.lines(), ..ManipulatorEdit::default() };
+    file.finish_with(&rewrite(&model.text, &model.origin, &edit)?)?;
     outputs.finish(&result, &result.summary(), || continuum::calibration(&result, loads))
 }

@@ -1,6 +1,7 @@
 //! `continuum`: one file per subcommand, and what they share.
 
 mod calibrate;
+pub mod discover;
 mod friction;
 mod hole;
 pub mod info;
@@ -9,7 +10,7 @@ mod simulate;
 
 use std::path::{Path, PathBuf};
 
-use fric_core::continuum::file::ManipulatorFile;
+use fric_core::continuum::file::{FORMAT, ManipulatorFile};
 use fric_lab::continuum::gratings::{GratingSample, Gratings};
 use fric_lab::continuum::{ContinuumError, Run, columns};
 use fric_log::output::OutputFile;
@@ -29,6 +30,11 @@ pub fn run(command: &ContinuumCommand) -> Outcome {
         ContinuumCommand::Shape(arguments) => shape::run(arguments),
         ContinuumCommand::Simulate(arguments) => simulate::run(arguments),
     }
+}
+
+/// Whether a model is a manipulator file rather than a robot's.
+pub fn is_manipulator(model: Option<&Path>) -> bool {
+    model.is_some_and(|model| std::fs::read_to_string(model).is_ok_and(|text| text.contains(FORMAT)))
 }
 
 /// A manipulator and the text it was read from.
