@@ -10,7 +10,7 @@ Numbers are SI, with the unit in the name, as in the robot file. Whatever is wro
 (needs matplotlib: `pip install fric[plot]`).
 """
 
-from . import plot
+from . import continuum, plot
 from ._errors import ConfigError, FitError, FricError, LogError, LogWarning, OutputError, ShapeError
 from ._fric import (
     AxisHysteresis,
@@ -78,6 +78,7 @@ __all__ = [
     "Width",
     "WrenchError",
     "__version__",
+    "continuum",
     "discover",
     "fit",
     "hysteresis",

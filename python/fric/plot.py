@@ -20,10 +20,11 @@ if TYPE_CHECKING:
     # Whoever checks types without matplotlib takes axes as they come.
     from matplotlib.axes import Axes as _Axes  # type: ignore[import-not-found, unused-ignore]
 
-    from ._fric import CableDiscovery, Compensation, DiscoverResult, Log, ReplayResult
+    from ._fric import CableDiscovery, Compensation, DiscoverResult, Log, ReplayResult, ShapeResult
 
-__all__ = ["candidates", "forces", "friction_loop", "gap_ladder", "parameters", "residuals", "where"]
+__all__ = ["candidates", "forces", "friction_loop", "gap_ladder", "parameters", "residuals", "tendon_friction", "tendon_shape", "where"]
 
+_WAYS = {"none": "#9a9a9a", "coulomb": "#d55e00", "measured": "#009e73", "history": "#0072b2"}
 _MEASURED, _MODEL, _REFERENCE, _BAND = "#d55e00", "#0072b2", "#9a9a9a", "#c6dbef"
 # Two-sided 95 % of a normal distribution.
 _SIGMAS = 1.96
@@ -215,6 +216,48 @@ def candidates(result: DiscoverResult, cable: str, *, ax: _Axes | None = None) -
     ax.set_xlim(0, 1.35 * max(limits_n))
     ax.set_xlabel("rms on samples held out [N]")
     return ax
+
+
+def tendon_shape(result: ShapeResult, place: int = 0, *, ax: _Axes | None = None) -> _Axes:
+    """Draws one of the shapes that were picked, to scale: the disks by each way of friction, and the markers."""
+    shape = _picked(result, place)
+    if ax is None:
+        ax = _figure(1, (6.5, 5.0))[0]
+    for way in shape["ways"]:
+        disks_m = np.vstack([[0.0, 0.0], way["disk_position_m"]])
+        ax.plot(disks_m[:, 0], disks_m[:, 1], color=_WAYS[way["way"]], linewidth=1.4, label=way["way"])
+    if shape["marker_m"]:
+        marker_m = np.array(shape["marker_m"], dtype=float)
+        ax.plot(marker_m[:, 0], marker_m[:, 1], "ko", markersize=4, fillstyle="none", label="markers")
+    ax.set(xlabel="x [m]", ylabel="y [m]")
+    ax.set_aspect("equal", adjustable="datalim")
+    _dress(ax, f"{shape['time_s']:g} s")
+    return ax
+
+
+def tendon_friction(result: ShapeResult, place: int = 0, *, ax: _Axes | None = None) -> _Axes:
+    """Draws the friction at every hole of one of the shapes that were picked, as signed bars for each way; positive where
+    the base side is tighter."""
+    shape = _picked(result, place)
+    if ax is None:
+        ax = _figure(1, (8.0, 4.0))[0]
+    ways = [way for way in shape["ways"] if way["way"] != "none"]
+    width = 0.8 / len(ways) if ways else 0.8
+    for index, way in enumerate(ways):
+        holes = np.arange(1, len(way["friction_n"]) + 1) + (index - 0.5 * (len(ways) - 1)) * width
+        friction_n = np.array(way["friction_n"], dtype=float)
+        ax.bar(holes, friction_n, width=0.9 * width, color=_WAYS[way["way"]], label=way["way"])
+    ax.axhline(0.0, color="black", linewidth=0.8)
+    ax.set(xlabel="hole", ylabel="friction [N]")
+    _dress(ax, f"{shape['time_s']:g} s")
+    return ax
+
+
+def _picked(result: ShapeResult, place: int) -> dict[str, Any]:
+    shapes = result.shapes
+    if not -len(shapes) <= place < len(shapes):
+        raise ConfigError(f"there is no shape {place}; the result has {len(shapes)}")
+    return shapes[place]
 
 
 def _discovery(result: DiscoverResult, cable: str) -> Any:

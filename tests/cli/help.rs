@@ -26,12 +26,14 @@ fn each_command_has_an_example_that_runs() {
     // What stands in examples/, but at a slow pace, to keep the tests short.
     std::fs::create_dir(place.path("examples")).unwrap();
     place.write("examples/mini-ipanema.toml", slow_robot());
+    let manipulator = std::fs::read(super::support::root().join("examples/tendon-prototype.toml")).unwrap();
+    place.write("examples/tendon-prototype.toml", manipulator);
     // Long enough for a discovery.
     place.write("examples/platform.toml", platform_robot());
     let log = ["-o", "examples/mini-ipanema.mcap", "--duration", "14", "--seed", "3"];
     place.run(&[&["simulate", "--model", "examples/platform.toml"], &log[..]].concat()).succeeds();
     let commands = commands(&place);
-    for expected in ["replay", "fit", "discover", "info", "simulate", "excite", "hysteresis"] {
+    for expected in ["replay", "fit", "discover", "info", "simulate", "excite", "hysteresis", "continuum"] {
         assert!(commands.iter().any(|command| command == expected), "{commands:?}");
     }
     for command in commands {
@@ -52,6 +54,7 @@ fn each_command_has_an_example_that_runs() {
         place.names(),
         [
             "by-wrench.toml",
+            "calibrated.toml",
             "compensated.mcap",
             "crossing.mcap",
             "discovery.html",
@@ -59,8 +62,11 @@ fn each_command_has_an_example_that_runs() {
             "extended.toml",
             "fitted.toml",
             "gentle.csv",
+            "loads.csv",
+            "pull.csv",
             "run.csv",
             "run.html",
+            "shapes.html",
             "simulated.mcap",
             "spoilt.mcap"
         ]
@@ -70,7 +76,7 @@ fn each_command_has_an_example_that_runs() {
 #[test]
 fn the_examples_name_files_that_are_there() {
     let root = super::support::root();
-    for name in ["examples/mini-ipanema.mcap", "examples/mini-ipanema.toml"] {
+    for name in ["examples/mini-ipanema.mcap", "examples/mini-ipanema.toml", "examples/tendon-prototype.toml"] {
         assert!(root.join(name).is_file(), "{name}");
     }
 }

@@ -9,6 +9,7 @@
 mod cdr;
 mod closed_stdout;
 mod command_line;
+mod continuum;
 mod damage;
 mod discover;
 mod excite;

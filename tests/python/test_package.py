@@ -23,7 +23,13 @@ def test_what_is_public_is_documented_and_examples_are_right(monkeypatch):
     names = {name: getattr(fric, name) for name in fric.__all__}
     assert [name for name, value in names.items() if not isinstance(value, str) and not inspect.getdoc(value)] == []
     runner = doctest.DocTestRunner()
-    for test in doctest.DocTestFinder().find(fric, "fric", module=False, globs=names):
+    continuum = {name: getattr(fric.continuum, name) for name in fric.continuum.__all__}
+    assert [name for name, value in continuum.items() if not inspect.getdoc(value)] == []
+    finder = doctest.DocTestFinder()
+    found = finder.find(fric, "fric", module=False, globs=names)
+    for name, value in {"fric.continuum": fric.continuum, **continuum}.items():
+        found += finder.find(value, name, module=False, globs=names)
+    for test in found:
         runner.run(test, clear_globs=False)
     assert runner.summarize(verbose=False).failed == 0
     assert runner.tries > 20

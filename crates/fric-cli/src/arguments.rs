@@ -1,5 +1,7 @@
 //! The command line.
 
+pub mod continuum;
+
 use std::path::PathBuf;
 
 use clap::builder::{PathBufValueParser, TypedValueParser};
@@ -7,7 +9,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use fric_lab::simulate::DISTURBANCES;
 
 /// Friction compensation for cable-driven robots: identify friction, find what the model lacks, replay logs, look into
-/// them, simulate and excite robots.
+/// them, simulate and excite robots; tendons of continuum manipulators.
 #[derive(Debug, Parser)]
 #[command(version, arg_required_else_help = true)]
 pub struct Arguments {
@@ -51,6 +53,15 @@ pub enum Command {
     /// The platform has to cross a position to and fro along an axis; `simulate --run crossing` makes such a log.
     #[command(after_help = "Example:\n  fric-cli hysteresis crossing.mcap")]
     Hysteresis(HysteresisArguments),
+    /// Tendons through disks: calibrate gratings, measure friction, compute shapes of a continuum manipulator
+    #[command(
+        subcommand,
+        after_help = "Examples:\n  fric-cli continuum simulate --model examples/tendon-prototype.toml -o pull.csv --calibration \
+                      loads.csv\n  fric-cli continuum calibrate loads.csv --model examples/tendon-prototype.toml -o \
+                      calibrated.toml\n  fric-cli continuum friction pull.csv --model calibrated.toml\n  fric-cli continuum shape \
+                      pull.csv --model calibrated.toml --report shapes.html"
+    )]
+    Continuum(continuum::ContinuumCommand),
 }
 
 /// The log and its robot.
@@ -105,13 +116,14 @@ pub struct FitArguments {
 
 #[derive(Debug, Args)]
 pub struct DiscoverArguments {
-    /// MCAP log with forces at the platform; several are runs of the same robot, looked at together
+    /// MCAP log with forces at the platform; several are runs of the same robot, looked at together. With a manipulator file,
+    /// the run of a manipulator with gratings
     #[arg(required = true, value_name = "LOG")]
     pub logs: Vec<PathBuf>,
-    /// Robot file; without it the one attached to the first log that has one
+    /// Robot or manipulator file; without it the robot file attached to the first log that has one
     #[arg(long, value_name = "M.toml")]
     pub model: Option<PathBuf>,
-    /// Write the robot file with what was found, and with values fitted to the log, to this file
+    /// Write the file with what was found, and with values fitted to the log, to this file
     #[arg(short, long, value_name = "EXTENDED.toml", required = true, value_parser = a_file())]
     pub output: PathBuf,
     /// Write a page with figures of what was found to this HTML file

@@ -6,7 +6,9 @@ use std::io::{self, ErrorKind, Write as _};
 use std::path::Path;
 
 use fric_core::ParamError;
+use fric_core::continuum::file::ManipulatorFileError;
 use fric_core::robot::file::RobotFileError;
+use fric_lab::continuum::ContinuumError;
 use fric_lab::excite::ExcitationError;
 use fric_lab::fit::FitError;
 use fric_lab::hysteresis::HysteresisError;
@@ -14,6 +16,7 @@ use fric_lab::simulate::SimulationError;
 use fric_log::output::{OutputError, directory_of};
 use fric_log::recording::RecordingError;
 use fric_log::signals::SignalError;
+use fric_log::table::TableError;
 use fric_log::write::WriteError;
 use fric_log::{in_full, reason, with_sources};
 
@@ -54,6 +57,12 @@ impl Failure {
         self
     }
 
+    /// Says in which file.
+    pub fn in_file(mut self, path: &Path) -> Self {
+        self.cause = format!("{}: {}", path.display(), self.cause);
+        self
+    }
+
     pub fn exit_code(&self) -> u8 {
         if self.is_usage { 2 } else { 1 }
     }
@@ -87,6 +96,39 @@ impl From<FitError> for Failure {
         match advice {
             Some(advice) => failure.advise(advice),
             None => failure,
+        }
+    }
+}
+
+/// The failure of an error whose sentence ends with what to do, behind its last semicolon.
+fn with_own_advice(error: &dyn Error) -> Failure {
+    let sentence = in_full(error);
+    let Some((cause, advice)) = sentence.rsplit_once("; ") else { return Failure::new(sentence) };
+    let mut letters = advice.chars();
+    let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
+    Failure::new(cause).advise(format!("{first}{}.", letters.as_str().trim_end_matches('.')))
+}
+
+impl From<ContinuumError> for Failure {
+    fn from(error: ContinuumError) -> Self {
+        with_own_advice(&error)
+    }
+}
+
+impl From<TableError> for Failure {
+    fn from(error: TableError) -> Self {
+        match error {
+            TableError::Recording(error) => error.into(),
+            error => with_own_advice(&error),
+        }
+    }
+}
+
+impl From<ManipulatorFileError> for Failure {
+    fn from(error: ManipulatorFileError) -> Self {
+        match error {
+            ManipulatorFileError::Read { .. } => with_own_advice(&error),
+            error => Self::new(error).advise("Correct the manipulator file, or name another one with --model."),
         }
     }
 }

@@ -30,6 +30,7 @@ fn main() -> ExitCode {
         Command::Simulate(arguments) => commands::simulate::run(arguments),
         Command::Excite(arguments) => commands::excite::run(arguments),
         Command::Hysteresis(arguments) => commands::hysteresis::run(arguments),
+        Command::Continuum(command) => commands::continuum::run(command),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

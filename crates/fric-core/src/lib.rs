@@ -45,6 +45,7 @@ pub mod cable;
 mod chain;
 mod columns;
 mod compensator;
+pub mod continuum;
 mod cycle;
 pub mod dahl;
 pub mod effects;

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test")]
 
 use allocation_counter::measure;
+use fric_core::continuum::{Direction, Friction, ManipulatorOptions, ManipulatorParams, StaticModel};
 use fric_core::effects::CATALOGUE;
 use fric_core::robot::{
     CableOptions, FrictionOptions, GeometryOptions, MonitorOptions, PlatformOptions, Presliding, PulleyOptions,
@@ -95,4 +96,28 @@ fn the_cycle_does_not_allocate() {
     assert_eq!(counted.count_total, 0);
     assert!(flagged > 1000, "{flagged} flagged cycles are too few to mean anything");
     assert!(measure(|| drop(std::hint::black_box(vec![1.0, 2.0]))).count_total > 0, "the counter does not count");
+}
+
+#[test]
+fn the_static_model_does_not_allocate() {
+    let options = ManipulatorOptions { gravity_m_per_s2: [0.0, -9.81], ..ManipulatorOptions::published() };
+    let params = ManipulatorParams::new(&options).unwrap();
+    let measured = [0.7; 8];
+    let counted = measure(|| {
+        let mut model = StaticModel::<8>::new(&params).unwrap();
+        for step in 0..200 {
+            let base_n = [0.8 + 0.5 * (0.1 * f64::from(step)).sin(), 0.2];
+            let ways = [
+                Friction::None,
+                Friction::Coulomb(Direction::Releasing),
+                Friction::Measured([&measured, &[]]),
+                Friction::History,
+            ];
+            for friction in ways {
+                assert!(model.solve(base_n, friction).is_ok());
+            }
+            assert!(!model.solve([f64::NAN, 0.0], Friction::History).has_shape());
+        }
+    });
+    assert_eq!(counted.count_total, 0);
 }

@@ -9,6 +9,10 @@ mod admittance;
 mod builds;
 mod chain;
 #[cfg(test)]
+mod continuum;
+#[cfg(test)]
+mod continuum_file;
+#[cfg(test)]
 mod cycle;
 #[cfg(test)]
 mod dahl;

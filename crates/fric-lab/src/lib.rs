@@ -16,6 +16,7 @@
 mod axis;
 mod clock;
 pub mod columns;
+pub mod continuum;
 pub mod discover;
 pub mod errors;
 pub mod excite;

@@ -7,6 +7,7 @@ pub mod recording;
 pub mod robot;
 pub mod schema;
 pub mod signals;
+pub mod table;
 mod warnings;
 pub mod write;
 

@@ -10,4 +10,5 @@ mod path;
 mod recording;
 mod schema;
 mod signals;
+mod table;
 mod write;

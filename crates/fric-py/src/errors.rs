@@ -1,13 +1,16 @@
 //! Errors of the crates below as the exceptions of `fric._errors`.
 
+use fric_core::continuum::file::ManipulatorFileError;
 use fric_core::robot::file::RobotFileError;
 use fric_core::{ParamError, SnapshotMismatch};
+use fric_lab::continuum::ContinuumError;
 use fric_lab::hysteresis::HysteresisError;
 use fric_lab::simulate::{HiddenError, SimulationError};
 use fric_log::output;
 use fric_log::recording::RecordingError;
 use fric_log::robot::{AttachedRobotError, SignalPathError};
 use fric_log::signals::SignalError;
+use fric_log::table::TableError;
 use fric_log::write::WriteError;
 use fric_log::{in_full, reason};
 use numpy::AsSliceError;
@@ -92,8 +95,10 @@ fault_from!(
     SimulationError => config,
     HiddenError => config,
     SignalPathError => config,
+    ManipulatorFileError => config,
     RecordingError => log,
     SignalError => log,
+    TableError => log,
     SnapshotMismatch => shape,
 );
 
@@ -101,6 +106,24 @@ impl From<fric_lab::fit::FitError> for Fault {
     fn from(error: fric_lab::fit::FitError) -> Self {
         let advice = error.advice(|reference| format!("reference=\"{}\"", reference.name()));
         Self::fit(advice.map_or_else(|| error.cause.clone(), |advice| format!("{}. {advice}", error.cause)))
+    }
+}
+
+impl From<ContinuumError> for Fault {
+    fn from(error: ContinuumError) -> Self {
+        let text = in_full(&error);
+        match error {
+            ContinuumError::OptionOutOfRange { .. }
+            | ContinuumError::Params(_)
+            | ContinuumError::NotWithinRun { .. }
+            | ContinuumError::NoGratings
+            | ContinuumError::TravelTooLong { .. } => Self::config(text),
+            ContinuumError::WrongCount { .. } => Self::shape(text),
+            ContinuumError::TooFewLoads { .. }
+            | ContinuumError::DeadGrating { .. }
+            | ContinuumError::NoCoefficient(_) => Self::fit(text),
+            _ => Self::log(text),
+        }
     }
 }
 

@@ -9,6 +9,7 @@
 
 mod arrays;
 mod compensator;
+mod continuum;
 mod discover;
 mod errors;
 mod fit;
@@ -30,6 +31,12 @@ mod _fric {
 
     #[pymodule_export]
     use crate::compensator::{Compensation, Compensator, Snapshot};
+    #[pymodule_export]
+    use crate::continuum::{
+        CalibrationResult, FrictionResult, HoleResult, Manipulator, ShapeResult, SimulatedTendon, TendonRun,
+        continuum_calibrate, continuum_friction, continuum_hole, continuum_read_loads, continuum_read_run,
+        continuum_shape, continuum_simulate,
+    };
     #[pymodule_export]
     use crate::discover::{CableDiscovery, DiscoverResult, discover};
     #[pymodule_export]

@@ -6,6 +6,7 @@ use fric_lab::fit::Reference;
 use fric_lab::fit::readiness;
 use fric_log::output::OutputFile;
 
+use super::continuum;
 use crate::arguments::DiscoverArguments;
 use crate::failure::Outcome;
 use crate::measurements::{check_named_once, find_model, read, watched};
@@ -15,6 +16,9 @@ use crate::report;
 /// Runs the command.
 pub fn run(arguments: &DiscoverArguments) -> Outcome {
     let DiscoverArguments { logs, model, output, report, result } = arguments;
+    if continuum::is_manipulator(model.as_deref()) {
+        return continuum::discover::run(arguments);
+    }
     let json_file = result.json.as_deref().filter(|path| !output::is_stdout(path));
     output::check_distinct(&[Some(output), report.as_deref(), json_file])?;
     check_named_once(logs)?;

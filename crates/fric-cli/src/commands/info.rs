@@ -2,13 +2,18 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
+use std::fs::File;
+use std::io::Read as _;
+use std::path::Path;
 
+use fric_lab::continuum::columns::TIME;
 use fric_lab::fit::readiness::{self, Holdings, Readiness};
 use fric_lab::text::table;
 use fric_log::recording::Recording;
 use fric_log::signals::{Role, SignalPaths, SignalReader};
 use serde::Serialize;
 
+use super::continuum;
 use crate::arguments::InfoArguments;
 use crate::failure::Outcome;
 use crate::interrupt;
@@ -105,6 +110,11 @@ pub fn run(arguments: &InfoArguments) -> Outcome {
     let mut inputs = log.logs.clone();
     inputs.extend(log.model.clone());
     let json = JsonTarget::prepare(result.json.as_deref(), &inputs, result.force)?;
+    if let [only] = log.logs.as_slice()
+        && is_run_of_manipulator(only, log.model.as_deref())
+    {
+        return continuum::info::run(only, log.model.as_deref(), json);
+    }
     let mut recording = Recording::open(&log.logs)?;
     let model = Model::find(log.model.as_deref(), &recording)?;
     let topics = read_topics(&mut recording)?;
@@ -126,6 +136,20 @@ pub fn run(arguments: &InfoArguments) -> Outcome {
     };
     json.show(&describe(&outcome, model.as_ref(), &attachments))?;
     json.write(&outcome)
+}
+
+/// Whether the model is a manipulator file, or the log is no MCAP but has a header with a column of a manipulator's run.
+fn is_run_of_manipulator(log: &Path, model: Option<&Path>) -> bool {
+    let begins = |path: &Path, bytes: usize| {
+        let mut start = Vec::new();
+        let file = File::open(path).ok()?;
+        file.take(u64::try_from(bytes).ok()?).read_to_end(&mut start).ok()?;
+        String::from_utf8(start).ok()
+    };
+    match model {
+        Some(_) => continuum::is_manipulator(model),
+        None => begins(log, 4096).is_some_and(|text| text.lines().next().is_some_and(|header| header.contains(TIME))),
+    }
 }
 
 fn read_topics(recording: &mut Recording) -> Outcome<Vec<TopicResult>> {

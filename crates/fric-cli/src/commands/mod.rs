@@ -1,5 +1,6 @@
 //! One file per command.
 
+pub mod continuum;
 pub mod discover;
 pub mod excite;
 pub mod fit;

@@ -1,6 +1,7 @@
 //! Pages for people, each one file without network access, for light and dark screens and for paper.
 
 mod chart;
+pub mod continuum;
 pub mod discovery;
 pub mod errors;
 pub mod preview;
@@ -14,7 +15,8 @@ pub use series::Series;
 
 const STYLE: &str = "
 :root { color-scheme: light dark; --text: #1b1f24; --soft: #5d6773; --line: #c9d0d8; --page: #ffffff;
-  --before: #d9822b; --after: #1664c0; --flag: #e0405e; --good: #1d7d4f; }
+  --before: #d9822b; --after: #1664c0; --flag: #e0405e; --good: #1d7d4f;
+  --none: #8a94a0; --coulomb: var(--before); --measured: var(--good); --history: var(--after); --marker: var(--flag); }
 @media (prefers-color-scheme: dark) { :root { --text: #e6e9ed; --soft: #9aa5b1; --line: #3a434d; --page: #14181d;
   --before: #f0a35c; --after: #6db1ff; --flag: #ff7b93; --good: #58c793; } }
 body { font: 16px/1.5 system-ui, sans-serif; color: var(--text); background: var(--page); max-width: 62rem;
@@ -45,6 +47,10 @@ svg .trace { stroke-width: 1.8; stroke-linejoin: round; } svg .trace.before, svg
 svg .back { stroke-dasharray: 6 4; } svg .floor { stroke: var(--text); stroke-width: 1.2; stroke-dasharray: 2 3; fill: none; }
 svg .look { fill: var(--flag); opacity: .16; } svg .held { fill: var(--soft); opacity: .75; }
 svg rect.before, svg rect.after { stroke: none; } svg .solid { stroke-width: 1.15; }
+svg .none { stroke: var(--none); } svg .coulomb { stroke: var(--coulomb); } svg .measured { stroke: var(--measured); }
+svg .history { stroke: var(--history); } svg .trace { fill: none; } svg .marker { fill: var(--marker); }
+svg .bar { stroke: none; print-color-adjust: exact; } svg .bar.coulomb { fill: var(--coulomb); }
+svg .bar.measured { fill: var(--measured); } svg .bar.history { fill: var(--history); }
 nav { position: sticky; top: 0; background: var(--page); border-bottom: 1px solid var(--line); padding: .45rem 0;
   display: flex; flex-wrap: wrap; gap: .2rem 1.1rem; z-index: 1; }
 a { color: var(--after); text-decoration: none; } a:hover { text-decoration: underline; }

@@ -15,7 +15,7 @@ use std::vec::Vec;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::locate::{Step, describe, line_of};
+use super::locate::{Line, Step, describe, error_line, line_of};
 use super::read::{exactly, exactly_if_given};
 use super::{CableParams, MonitorOptions, ParamError, ParamProblem, PlatformOptions, RobotParams};
 
@@ -242,14 +242,6 @@ pub enum RobotFileError {
     },
 }
 
-struct Line(Option<usize>);
-
-impl fmt::Display for Line {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.0.map_or(Ok(()), |line| write!(formatter, ", line {line}"))
-    }
-}
-
 impl RobotFile {
     /// Reads and checks a file.
     ///
@@ -267,10 +259,8 @@ impl RobotFile {
     /// [`RobotFileError::Invalid`] for the first thing that is not right.
     pub fn parse(text: &str, origin: &str) -> Result<Self, RobotFileError> {
         let invalid = |line, problem| RobotFileError::Invalid { origin: origin.to_owned(), line, problem };
-        let options: RobotOptions = toml::from_str(text).map_err(|error| {
-            let line = error.span().map(|span| text.get(..span.start).unwrap_or(text).matches('\n').count() + 1);
-            invalid(line, describe(text, &error))
-        })?;
+        let options: RobotOptions =
+            toml::from_str(text).map_err(|error| invalid(error_line(text, &error), describe(text, &error, FORMAT)))?;
         Self::check(options).map_err(|fault| invalid(line_of(text, &fault.path), fault.to_string()))
     }
 

@@ -1,13 +1,12 @@
 //! Where in a TOML text something stands, and what a misspelt key may have meant.
 
+use core::fmt;
 use std::borrow::ToOwned;
 use std::format;
 use std::string::String;
 use std::vec::Vec;
 
 use toml::de::{DeTable, DeValue};
-
-use super::file::FORMAT;
 
 /// One step into a TOML document.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,6 +15,15 @@ pub enum Step {
     Key(&'static str),
     /// Into an array.
     Index(usize),
+}
+
+/// A line in a sentence, where it is known.
+pub struct Line(pub Option<usize>);
+
+impl fmt::Display for Line {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.map_or(Ok(()), |line| write!(formatter, ", line {line}"))
+    }
 }
 
 /// The line (from 1) of the innermost thing on a path that the text has.
@@ -42,8 +50,14 @@ pub fn line_of(text: &str, path: &[Step]) -> Option<usize> {
     Some(before.matches('\n').count() + 1)
 }
 
-/// What is wrong with a text that did not become options, in one line and in the words of the file.
-pub fn describe(text: &str, error: &toml::de::Error) -> String {
+/// The line (from 1) in which an error of the parser stands.
+pub fn error_line(text: &str, error: &toml::de::Error) -> Option<usize> {
+    error.span().map(|span| text.get(..span.start).unwrap_or(text).matches('\n').count() + 1)
+}
+
+/// What is wrong with a text that did not become options, in one line and in the words of the file; `format` is what the file's
+/// `format` should be.
+pub fn describe(text: &str, error: &toml::de::Error, format: &str) -> String {
     let message = error.message().trim().replace('\n', "; ");
     let Ok(root) = DeTable::parse(text) else { return format!("is not valid TOML: {message}") };
     let start = error.span().map_or(0, |span| span.start);
@@ -59,7 +73,7 @@ pub fn describe(text: &str, error: &toml::de::Error) -> String {
     }
     if let ("missing field", Some(missing)) = (first_words(&message), names.first()) {
         return match (*missing, keys.last()) {
-            ("format", _) => format!("`format` is missing; write format = \"{FORMAT}\""),
+            ("format", _) => format!("`format` is missing; write format = \"{format}\""),
             ("cable", _) => "`cable` is missing; give each cable a table [[cable]]".to_owned(),
             // What the root lacks is reported at the start of the text.
             _ if start == 0 => format!("`{missing}` is missing"),
@@ -102,7 +116,7 @@ fn plain_value(found: &str) -> String {
 fn plain_words(expected: &str) -> &str {
     match expected {
         "f64" => "a number",
-        "u32" => "a whole number, 0 or greater",
+        "u32" | "usize" => "a whole number, 0 or greater",
         "a string" => "text in quotes",
         "a boolean" => "true or false",
         "an array of length 2" => "2 numbers in brackets",

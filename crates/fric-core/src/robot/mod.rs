@@ -9,9 +9,9 @@ pub mod edit;
 #[cfg(feature = "robot-file")]
 pub mod file;
 #[cfg(feature = "robot-file")]
-mod locate;
+pub(crate) mod locate;
 #[cfg(feature = "robot-file")]
-mod read;
+pub(crate) mod read;
 #[cfg(feature = "robot-file")]
 mod splice;
 #[cfg(feature = "robot-file")]

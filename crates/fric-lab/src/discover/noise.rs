@@ -9,33 +9,44 @@ const BLOCK: usize = 200;
 /// Binomial coefficients of the difference, and the root of the sum of their squares.
 const COEFFICIENTS: [f64; 5] = [1.0, -4.0, 6.0, -4.0, 1.0];
 const NORM: f64 = 8.366_600_265_340_756;
-/// The mean of a χ² distribution over its median, for the 200 overlapping differences of a block: they are worth some 60 that
-/// do not depend on each other, `(1 − 2/(9·60))⁻³`.
-const MEAN_PER_MEDIAN: f64 = 1.0112;
+/// How many differences that do not depend on each other the overlapping ones of a block are worth, each.
+const INDEPENDENT_RATIO: f64 = 0.3;
+
+/// The mean of a χ² distribution over its median, for the overlapping differences of a block: `(1 − 2/(9·n))⁻³`.
+fn mean_per_median(block: usize) -> f64 {
+    #[expect(clippy::cast_precision_loss, reason = "a small count")]
+    let count = INDEPENDENT_RATIO * block as f64;
+    (1.0 - 2.0 / (9.0 * count)).powi(-3)
+}
 
 /// Standard deviation of the white noise in a residual, in its unit; NaN samples divide it into stretches. `None` where no
 /// stretch is long enough.
 pub fn white_noise(residual: &[f64]) -> Option<f64> {
-    let mut squares = block_squares(residual);
+    white_noise_in(residual, BLOCK)
+}
+
+/// The same over blocks of so many samples, for residuals that are short.
+pub(crate) fn white_noise_in(residual: &[f64], block: usize) -> Option<f64> {
+    let mut squares = block_squares(residual, block);
     if squares.is_empty() {
         return None;
     }
     let middle = squares.len() / 2;
     let (_, median, _) = squares.select_nth_unstable_by(middle, f64::total_cmp);
-    Some((*median * MEAN_PER_MEDIAN).sqrt())
+    Some((*median * mean_per_median(block)).sqrt())
 }
 
 /// The same with the stretches that have more: root mean square over all blocks. An encoder's steps, for one, make noise of a model's
 /// accelerations while the cable moves.
 pub fn white_noise_throughout(residual: &[f64]) -> Option<f64> {
-    let squares = block_squares(residual);
+    let squares = block_squares(residual, BLOCK);
     #[expect(clippy::cast_precision_loss, reason = "a count of blocks")]
     let count = squares.len() as f64;
     (count > 0.0).then(|| (squares.iter().sum::<f64>() / count).sqrt())
 }
 
-/// Mean square of the differences in each block.
-fn block_squares(residual: &[f64]) -> Vec<f64> {
+/// Mean square of the differences in each block of so many samples.
+fn block_squares(residual: &[f64], block: usize) -> Vec<f64> {
     let mut squares = Vec::new();
     for stretch in residual.split(|number| !number.is_finite()) {
         let differences: Vec<f64> = stretch
@@ -43,9 +54,8 @@ fn block_squares(residual: &[f64]) -> Vec<f64> {
             .map(|window| window.iter().zip(COEFFICIENTS).map(|(number, factor)| number * factor).sum::<f64>() / NORM)
             .collect();
         #[expect(clippy::cast_precision_loss, reason = "a small constant")]
-        squares.extend(
-            differences.chunks_exact(BLOCK).map(|block| block.iter().map(|d| d * d).sum::<f64>() / BLOCK as f64),
-        );
+        squares
+            .extend(differences.chunks_exact(block).map(|part| part.iter().map(|d| d * d).sum::<f64>() / block as f64));
     }
     squares
 }

@@ -23,12 +23,15 @@ pub struct Block {
 
 /// Blocks of all logs of a cable, in order.
 pub fn split(record: &CableRecord<'_>) -> Vec<Block> {
-    let mut draw = 0x9e37_79b9_u32;
+    let mut draw = DRAW;
     record.logs().flat_map(|(start, rows)| cut(start..start + rows.len(), record.cycle_s, &mut draw)).collect()
 }
 
+/// Where the draw begins.
+pub(crate) const DRAW: u32 = 0x9e37_79b9;
+
 /// Blocks of one log.
-fn cut(log: Range<usize>, cycle_s: f64, draw: &mut u32) -> Vec<Block> {
+pub(crate) fn cut(log: Range<usize>, cycle_s: f64, draw: &mut u32) -> Vec<Block> {
     #[expect(clippy::cast_precision_loss, reason = "a count of cycles")]
     let longest = (log.len() as f64 * cycle_s / SHORTEST_S).floor();
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to a small count")]

@@ -43,3 +43,4 @@ pub use hidden::HiddenEffect;
 pub use idle::{IdleError, IdleMotion, IdleOptions, idle};
 pub use options::{Run, SimulationOptions};
 pub use stream::{Imbalance, START_NANOS, Simulation};
+pub(crate) use waves::uniform;

@@ -40,14 +40,14 @@ impl From<SchemaError> for Unfit {
 }
 
 /// A message type and a message of it.
-pub(super) struct Probe<'a> {
+pub(crate) struct Probe<'a> {
     pub message_type: &'a MessageType,
     pub message: &'a [u8],
 }
 
 impl Probe<'_> {
     /// Whether there is a field to be read as wanted, with several elements or one.
-    fn has(&self, wanted: Wanted, kind: FieldKind) -> bool {
+    pub(crate) fn has(&self, wanted: Wanted, kind: FieldKind) -> bool {
         match self.message_type.field(&wanted.path) {
             Ok(field) if field.kind == FieldKind::Unknown => {
                 let decoder = self.message_type.decoder(&[wanted]);
@@ -174,7 +174,7 @@ struct Vectors {
 }
 
 /// Where an object may have its stamp.
-const STAMPS: [&[&str]; 3] = [&["header", "stamp"], &["stamp"], &["timestamp"]];
+pub(crate) const STAMPS: [&[&str]; 3] = [&["header", "stamp"], &["stamp"], &["timestamp"]];
 
 const QUATERNION: &[&str] = &["x", "y", "z", "w"];
 const AXES: &[&str] = &["x", "y", "z"];

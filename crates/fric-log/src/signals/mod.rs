@@ -45,6 +45,7 @@ mod speed;
 mod track;
 
 pub use error::SignalError;
+pub(crate) use layout::{Probe, STAMPS};
 pub use reader::SignalReader;
 pub use speed::LastLength;
 pub use track::CLOCK_STEP_MESSAGES;

@@ -56,6 +56,21 @@ pub(super) fn cable_status(bits: &[(&str, u32)]) -> Result<String, WriteError> {
     Ok(join(&fields, &[]))
 }
 
+/// The definition of a message of numbers, one field each.
+pub(super) fn numbers(fields: &[String]) -> Result<String, WriteError> {
+    let mut text = String::from("std_msgs/Header header\n");
+    for name in fields {
+        let is_field = name.starts_with(|c: char| c.is_ascii_lowercase())
+            && name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
+        if !is_field {
+            return Err(WriteError::FieldName { name: name.clone() });
+        }
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "float64 {name}");
+    }
+    Ok(join(&text, &[]))
+}
+
 fn join(fields: &str, parts: &[&str]) -> String {
     let separator = format!("{}\n", "=".repeat(80));
     let mut text = fields.to_owned();

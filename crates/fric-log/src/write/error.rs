@@ -43,7 +43,7 @@ pub enum WriteError {
         /// The stamp.
         stamp_nanos: i64,
     },
-    /// An array that does not have one element per name.
+    /// Not one number per name.
     #[error("topic `{topic}`: {found} elements of `{field}` for {expected} names")]
     Length {
         /// The topic.
@@ -60,6 +60,12 @@ pub enum WriteError {
         "flag name `{name}` cannot be a constant in a message definition; use letters, digits and `_`, a letter first"
     )]
     FlagName {
+        /// The name.
+        name: String,
+    },
+    /// A name that cannot be a field in a message definition.
+    #[error("`{name}` cannot be a field of a message; use lower-case letters, digits and `_`, a letter first")]
+    FieldName {
         /// The name.
         name: String,
     },

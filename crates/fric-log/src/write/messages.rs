@@ -36,6 +36,10 @@ pub struct JointState<'a> {
     pub effort: &'a [f64],
 }
 
+/// A channel of messages with one number for each of some fields.
+#[derive(Debug)]
+pub struct NumbersChannel(Channel);
+
 #[derive(Debug)]
 struct Channel {
     id: u16,
@@ -92,6 +96,34 @@ impl LogWriter {
         let names = owned(names);
         let schema = definitions::cable_status(bits)?;
         self.add(topic, definitions::CABLE_STATUS, &schema, frame_id, Some(&names)).map(CableStatusChannel)
+    }
+
+    /// Adds a topic of messages of the type `name`, such as `fric_msgs/msg/TendonRun`, with a header and a `float64` for each field.
+    ///
+    /// # Errors
+    /// Where the topic is taken, a field's name is none, or the file cannot be written.
+    pub fn add_numbers(&mut self, topic: &str, name: &str, fields: &[String]) -> Result<NumbersChannel, WriteError> {
+        let schema = definitions::numbers(fields)?;
+        let channel = self.add(topic, name, &schema, "", None)?;
+        Ok(NumbersChannel(Channel { names: fields.len(), ..channel }))
+    }
+
+    /// Writes one number for each field; stamp, log time and publish time are `stamp_nanos` since 1970.
+    ///
+    /// # Errors
+    /// Where there is not one number per field, the stamp is too late, or the file cannot be written.
+    pub fn write_numbers(
+        &mut self,
+        channel: &NumbersChannel,
+        stamp_nanos: u64,
+        numbers: &[f64],
+    ) -> Result<(), WriteError> {
+        channel.0.check_length("numbers", numbers.len())?;
+        self.write(&channel.0, stamp_nanos, |payload| {
+            for number in numbers {
+                payload.f64(*number);
+            }
+        })
     }
 
     /// Writes one joint state; stamp, log time and publish time are `stamp_nanos` since 1970.

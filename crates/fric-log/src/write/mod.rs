@@ -21,7 +21,7 @@ use mcap::{Attachment, Compression, McapError, WriteOptions};
 
 use crate::output::{OutputError, OutputFile};
 pub use error::WriteError;
-pub use messages::{CableStatusChannel, JointState, JointStateChannel, PoseChannel, WrenchChannel};
+pub use messages::{CableStatusChannel, JointState, JointStateChannel, NumbersChannel, PoseChannel, WrenchChannel};
 use payload::Payload;
 pub use replayed::ReplayedLog;
 

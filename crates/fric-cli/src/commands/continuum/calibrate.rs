@@ -1,0 +1,31 @@
+//! `continuum calibrate`: load steps to the lines of the gratings.
+
+use fric_core::continuum::edit::{ManipulatorEdit, rewrite};
+use fric_lab::continuum::fbg::Calibration;
+use fric_lab::continuum::gratings::Gratings;
+use fric_lab::continuum::result::CalibrationResult;
+use fric_lab::continuum::{columns, load_steps};
+use fric_log::output::OutputFile;
+
+use super::{Model, Outputs, about, read_table};
+use crate::arguments::continuum::CalibrateArguments;
+use crate::failure::Outcome;
+use crate::report::continuum;
+
+/// Runs the command.
+pub fn run(arguments: &CalibrateArguments) -> Outcome {
+    let CalibrateArguments { loads, model, output, page } = arguments;
+    let inputs = [loads.clone(), model.clone()];
+    let model = Model::read(model)?;
+    let outputs = Outputs::prepare(page, &inputs, Some(output))?;
+    let file = OutputFile::create(output, &inputs, page.result.force)?;
+    let table = read_table(loads, &columns::of_calibration(model.disk_count()))?;
+    let stated = Gratings::from_file(&model.file)?;
+    let wavelengths_nm = stated.as_ref().and_then(Gratings::wavelengths_nm);
+    let steps = load_steps(&table, model.disk_count(), wavelengths_nm).map_err(|error| about(loads, error))?;
+    let lines = Calibration::fit_all(&steps).map_err(|error| about(loads, error))?;
+    let result = CalibrationResult::new(model.name(), &steps, &lines);
+    let edit = ManipulatorEdit { lines: result.lines(), ..ManipulatorEdit::default() };
+    file.finish_with(&rewrite(&model.text, &model.origin, &edit)?)?;
+    outputs.finish(&result, &result.summary(), || continuum::calibration(&result, loads))
+}

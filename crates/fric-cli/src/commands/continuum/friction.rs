@@ -1,0 +1,37 @@
+//! `continuum friction`: what the gratings say about every hole.
+
+use fric_core::continuum::Tendon;
+use fric_lab::continuum::ContinuumError;
+use fric_lab::continuum::result::FrictionResult;
+
+use super::{Outputs, about, read_gratings, read_run};
+use crate::arguments::continuum::FrictionArguments;
+use crate::failure::Outcome;
+use crate::report::continuum;
+use crate::warnings::{warn, warn_all};
+
+/// Runs the command.
+pub fn run(arguments: &FrictionArguments) -> Outcome {
+    let FrictionArguments { run: paths, page } = arguments;
+    let outputs = Outputs::prepare(page, &[paths.run.clone(), paths.model.clone()], None)?;
+    let (model, run) = read_run(paths)?;
+    if !run.has_shifts() {
+        return Err(about(
+            &paths.run,
+            ContinuumError::MissingGroup {
+                what: "gratings",
+                consequence: "friction cannot be measured",
+                remedy: "`shift_1_nm` and so on; `continuum shape` predicts friction from the tension at the base",
+            },
+        ));
+    }
+    run.check_capacity(model.file.params().capacity_n(Tendon::Agonist)).map_err(|error| about(&paths.run, error))?;
+    let measured =
+        read_gratings(&paths.run, &model, &run)?.ok_or_else(|| about(&paths.model, ContinuumError::NoGratings))?;
+    let result = FrictionResult::new(model.name(), &run, &measured);
+    warn_all(&result.bridged.iter().map(|one| one.warning(result.samples)).collect::<Vec<_>>());
+    if !run.has_tension() {
+        warn("the run has no `tension_base_n`: friction at hole 1 is not known");
+    }
+    outputs.finish(&result, &result.summary(), || continuum::friction(&result, &paths.run))
+}

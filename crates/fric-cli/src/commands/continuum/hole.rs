@@ -1,0 +1,22 @@
+//! `continuum hole`: μ of a single hole.
+
+use fric_lab::continuum::friction::hole_coefficient;
+use fric_lab::continuum::result::HoleResult;
+use fric_lab::continuum::{columns, hole_loads};
+
+use super::{about, read_table};
+use crate::arguments::continuum::HoleArguments;
+use crate::failure::Outcome;
+use crate::output::JsonTarget;
+
+/// Runs the command.
+pub fn run(arguments: &HoleArguments) -> Outcome {
+    let HoleArguments { loads, result } = arguments;
+    let json = JsonTarget::prepare(result.json.as_deref(), std::slice::from_ref(loads), result.force)?;
+    let table = read_table(loads, &columns::of_hole())?;
+    let steps = hole_loads(&table).map_err(|error| about(loads, error))?;
+    let found = hole_coefficient(&steps).map_err(|error| about(loads, error))?;
+    let outcome = HoleResult::new(&found);
+    json.show(&outcome.summary())?;
+    json.write(&outcome)
+}

@@ -1,0 +1,129 @@
+//! `continuum`: one file per subcommand, and what they share.
+
+mod calibrate;
+pub mod discover;
+mod friction;
+mod hole;
+pub mod info;
+mod shape;
+mod simulate;
+
+use std::path::{Path, PathBuf};
+
+use fric_core::continuum::file::{FORMAT, ManipulatorFile};
+use fric_lab::continuum::gratings::{GratingSample, Gratings};
+use fric_lab::continuum::{ContinuumError, Run, columns};
+use fric_log::output::OutputFile;
+use fric_log::table::NumberTable;
+
+use crate::arguments::continuum::{ContinuumCommand, ReportArguments, RunArguments};
+use crate::failure::{Failure, Outcome};
+use crate::output::{self, JsonTarget};
+use crate::warnings::warn_all;
+
+/// Runs the command.
+pub fn run(command: &ContinuumCommand) -> Outcome {
+    match command {
+        ContinuumCommand::Calibrate(arguments) => calibrate::run(arguments),
+        ContinuumCommand::Friction(arguments) => friction::run(arguments),
+        ContinuumCommand::Hole(arguments) => hole::run(arguments),
+        ContinuumCommand::Shape(arguments) => shape::run(arguments),
+        ContinuumCommand::Simulate(arguments) => simulate::run(arguments),
+    }
+}
+
+/// Whether a model is a manipulator file rather than a robot's.
+pub fn is_manipulator(model: Option<&Path>) -> bool {
+    model.is_some_and(|model| std::fs::read_to_string(model).is_ok_and(|text| text.contains(FORMAT)))
+}
+
+/// A manipulator and the text it was read from.
+pub struct Model {
+    pub file: ManipulatorFile,
+    pub text: String,
+    pub origin: String,
+}
+
+impl Model {
+    /// The manipulator file at a path.
+    pub fn read(path: &Path) -> Outcome<Self> {
+        let origin = path.display().to_string();
+        let text = std::fs::read_to_string(path).map_err(|error| {
+            Failure::new(format!("cannot read the manipulator file {origin}: {error}"))
+                .advise("Check the path given with --model.")
+        })?;
+        let file = ManipulatorFile::parse(&text, &origin)?;
+        Ok(Self { file, text, origin })
+    }
+
+    pub fn name(&self) -> &str {
+        &self.file.tables().name
+    }
+
+    pub fn disk_count(&self) -> usize {
+        self.file.params().disk_count()
+    }
+}
+
+/// The columns of a file, after warnings about it.
+pub fn read_table(path: &Path, wanted: &[String]) -> Outcome<Vec<(String, Vec<f64>)>> {
+    let table = NumberTable::read(path, wanted)?;
+    warn_all(&table.warnings);
+    Ok(table.columns)
+}
+
+/// A failure that begins with the file it is about.
+fn about(path: &Path, error: ContinuumError) -> Failure {
+    Failure::from(error).in_file(path)
+}
+
+/// A run and its manipulator.
+fn read_run(arguments: &RunArguments) -> Outcome<(Model, Run)> {
+    let model = Model::read(&arguments.model)?;
+    let columns = read_table(&arguments.run, &columns::of_run(model.disk_count()))?;
+    let run = Run::from_columns(&columns, model.disk_count()).map_err(|error| about(&arguments.run, error))?;
+    Ok((model, run))
+}
+
+/// What the gratings say in a run; `None` where it has no shifts, or the file no gratings.
+fn read_gratings(path: &Path, model: &Model, run: &Run) -> Outcome<Option<Vec<GratingSample>>> {
+    let gratings = Gratings::from_file(&model.file)?;
+    match gratings {
+        Some(gratings) if run.has_shifts() => {
+            if run.has_reference() && gratings.wavelengths_nm().is_none() {
+                warn_all(&["the temperature stays in the shifts: there is a reference, but no `wavelength_nm` under \
+                            `[gratings]` in the manipulator file"
+                    .to_owned()]);
+            }
+            Ok(Some(gratings.read(run).map_err(|error| about(path, error))?))
+        }
+        _ => Ok(None),
+    }
+}
+
+/// Outputs besides the table.
+struct Outputs {
+    json: JsonTarget,
+    report: Option<OutputFile>,
+}
+
+impl Outputs {
+    /// Checks the places of all outputs; `also` is a further one of the command.
+    fn prepare(page: &ReportArguments, inputs: &[PathBuf], also: Option<&Path>) -> Outcome<Self> {
+        let ReportArguments { report, result } = page;
+        let json_file = result.json.as_deref().filter(|path| !output::is_stdout(path));
+        output::check_distinct(&[also, json_file, report.as_deref()])?;
+        let json = JsonTarget::prepare(result.json.as_deref(), inputs, result.force)?;
+        let report = report.as_ref().map(|path| OutputFile::create(path, inputs, result.force)).transpose()?;
+        Ok(Self { json, report })
+    }
+
+    /// Writes page, table and JSON.
+    fn finish(self, result: &impl serde::Serialize, summary: &str, page: impl FnOnce() -> String) -> Outcome {
+        if let Some(report) = self.report {
+            report.finish_with(&page())?;
+        }
+        self.json.show(summary)?;
+        self.json.write(result)
+    }
+}

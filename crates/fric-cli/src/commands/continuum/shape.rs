@@ -1,0 +1,51 @@
+//! `continuum shape`: shapes by four ways of friction against the markers.
+
+use fric_core::continuum::Tendon;
+use fric_lab::continuum::ContinuumError;
+use fric_lab::continuum::comparison::{Selection, compare};
+use fric_lab::continuum::gratings::Gratings;
+use fric_lab::continuum::result::ShapeResult;
+
+use super::{Outputs, about, read_gratings, read_run};
+use crate::arguments::continuum::ShapeArguments;
+use crate::failure::{Failure, Outcome};
+use crate::report::continuum;
+use crate::warnings::{warn, warn_all};
+
+/// Runs the command.
+pub fn run(arguments: &ShapeArguments) -> Outcome {
+    let ShapeArguments { run: paths, shapes, at_s, mixed, page } = arguments;
+    let outputs = Outputs::prepare(page, &[paths.run.clone(), paths.model.clone()], None)?;
+    let (model, run) = read_run(paths)?;
+    let params = model.file.params();
+    run.check_capacity(params.capacity_n(Tendon::Agonist)).map_err(|error| about(&paths.run, error))?;
+    let measured = read_gratings(&paths.run, &model, &run)?;
+    match (&measured, run.has_shifts()) {
+        (None, true) => warn(&format!("the way `measured` is left out: {}", ContinuumError::NoGratings)),
+        (None, false) => warn("the way `measured` is left out: the run has no gratings"),
+        (Some(_), _) if !run.has_tension() => {
+            warn("the run has no `tension_base_n`: the ways `none`, `coulomb` and `history` are left out");
+        }
+        _ => {}
+    }
+    let ways = compare(params, &run, measured.as_deref()).map_err(|error| about(&paths.run, error))?;
+    let selection = match at_s {
+        Some(times_s) => Selection::At(times_s.clone()),
+        None if *mixed => Selection::Mixed(usize::from(*shapes)),
+        None => Selection::Spread(usize::from(*shapes)),
+    };
+    let picked = selection.places(&run, measured.as_deref()).map_err(|error| match error {
+        ContinuumError::NotWithinRun { .. } => Failure::usage(format!("--at-s: {error}")),
+        error => about(&paths.run, error),
+    })?;
+    if picked.is_empty() {
+        warn("no sample has friction of both directions beyond doubt: no shape is shown");
+    }
+    let result = ShapeResult::new(model.name(), &run, measured.as_deref(), &ways, &picked);
+    warn_all(&result.warnings(&ways));
+    let greatest_rad = result.greatest_bend_rad();
+    if let Some(Err(error)) = Gratings::from_file(&model.file)?.map(|one| one.check_travel(params, greatest_rad)) {
+        return Err(about(&paths.run, error));
+    }
+    outputs.finish(&result, &result.summary(), || continuum::shape(&result, &run, &ways, &paths.run))
+}

@@ -1,0 +1,322 @@
+//! Pages of `continuum`: calibration, friction at the holes, shapes to scale.
+
+use std::path::Path;
+
+use fric_lab::continuum::Run;
+use fric_lab::continuum::comparison::{WayShapes, spread};
+use fric_lab::continuum::discover::TendonDiscovery;
+use fric_lab::continuum::result::{CalibrationResult, FrictionResult, PickedShape, ShapeResult, WayShape};
+use fric_lab::continuum::shape_errors::{ShapeErrors, Way};
+use maud::{Markup, PreEscaped, html};
+
+use super::chart::{Chart, Span};
+use super::series::Extent;
+
+/// Most points of a line over time.
+const MOST_POINTS: usize = 1200;
+/// Shapes of a friction page.
+const SHOWN_TIMES: usize = 6;
+
+/// The page of `continuum calibrate`.
+pub fn calibration(result: &CalibrationResult, loads: &Path) -> String {
+    let count = result.gratings.len();
+    let most =
+        result.gratings.iter().flat_map(|one| &one.residual_ratio).fold(0.01_f64, |most, one| most.max(one.abs()));
+    let mut chart = Chart::new(
+        holes(count, "grating"),
+        Span { least: -110.0 * most, greatest: 110.0 * most, unit: "%" },
+        960.0,
+        260.0,
+    );
+    for (place, grating) in result.gratings.iter().enumerate() {
+        let steps = grating.residual_ratio.len().max(1);
+        for (step, ratio) in grating.residual_ratio.iter().enumerate() {
+            let [from, to] = bar_edges(place, step, steps);
+            chart.rectangle("bar history", [from, 0.0], [to, 100.0 * ratio]);
+        }
+    }
+    let content = html! {
+        p.soft { (loads.display().to_string()) ", " (result.load_n.len()) " loads" }
+        table {
+            tr {
+                th { "grating" } th { "a [N/nm]" } th { "b [N]" } th { "± T [N]" } th { "largest residual [%]" } th { "left out [%]" }
+            }
+            @for one in &result.gratings {
+                tr {
+                    td { (one.grating) } td { (format!("{:.4}", one.newton_per_nm)) } td { (format!("{:.4}", one.offset_n)) }
+                    td { (format!("{:.4}", one.standard_error_n)) }
+                    td { (format!("{:.2}", 100.0 * one.largest_residual_ratio)) }
+                    td { (format!("{:.2}", 100.0 * one.largest_left_out_ratio)) }
+                }
+            }
+        }
+        section { h2 { "Residuals in per cent of the greatest load, load by load" } (PreEscaped(chart.into_svg())) }
+    };
+    super::shell(&format!("{}: calibration of the gratings", result.manipulator), &content)
+}
+
+/// The page of `continuum friction`.
+pub fn friction(result: &FrictionResult, run: &Path) -> String {
+    let series = &result.series;
+    let places = spread(series.time_s.len(), SHOWN_TIMES, |_| true);
+    let shown = places.iter().filter_map(|place| Some((series.time_s.get(*place)?, series.friction_n.get(*place)?)));
+    let content = html! {
+        p.soft { (run.display().to_string()) ", " (result.samples) " samples. Friction is positive where the base side is tighter." }
+        (bridged(result.bridged.iter().map(|one| one.warning(result.samples))))
+        table {
+            tr {
+                th { "hole" } th { "mean [N]" } th { "least [N]" } th { "greatest [N]" } th { "± [N]" } th { "positive" } th { "negative" }
+            }
+            @for hole in &result.holes {
+                tr {
+                    td { (hole.hole) } td { (newtons(hole.mean_n)) } td { (newtons(hole.least_n)) } td { (newtons(hole.greatest_n)) }
+                    td { (newtons(hole.standard_error_n)) }
+                    td { (format!("{:.0} %", 100.0 * hole.positive_ratio)) } td { (format!("{:.0} %", 100.0 * hole.negative_ratio)) }
+                }
+            }
+        }
+        p { "Directions differ along the tendon in " (result.directions_differ_samples) " of " (result.samples) " samples." }
+        div.views {
+            @for (time_s, friction_n) in shown {
+                section {
+                    h2 { (format!("{time_s:.2} s")) }
+                    (PreEscaped(bars(&[("measured", friction_n.as_slice(), &[])], 470.0)))
+                }
+            }
+        }
+    };
+    super::shell(&format!("{}: friction at the holes", result.manipulator), &content)
+}
+
+/// The page of `continuum shape`.
+pub fn shape(result: &ShapeResult, run: &Run, ways: &[WayShapes], path: &Path) -> String {
+    let has_markers = result.ways.iter().any(|way| way.all.mean_mm.is_some());
+    let content = html! {
+        p.soft { (path.display().to_string()) ", " (result.samples) " samples." }
+        (bridged(result.bridged.iter().map(|one| one.warning(result.samples))))
+        p { (keys(result.ways.iter().map(|way| way.way))) @if has_markers { (key("marker", "markers")) } }
+        table {
+            tr { th { "way" } th { "max, shown [mm]" } th { "mean [mm]" } th { "max, all [mm]" } th { "mean [mm]" } th { "missing" } }
+            @for way in &result.ways {
+                tr {
+                    td { (way.way) }
+                    td { (millimetres(way.picked.max_mm)) } td { (millimetres(way.picked.mean_mm)) }
+                    td { (millimetres(way.all.max_mm)) } td { (millimetres(way.all.mean_mm)) } td { (way.missing) }
+                }
+            }
+        }
+        @if has_markers {
+            section { h2 { "Mean distance between disks and markers over time" } (PreEscaped(errors(run, ways))) }
+        }
+        @for (place, shape) in result.shapes.iter().enumerate() {
+            section {
+                h2 { (format!("Shape {}: {:.2} s", place + 1, shape.time_s)) }
+                p.soft {
+                    @if shape.tension_base_n.is_finite() { (format!("{:.3} N at the base. ", shape.tension_base_n)) }
+                    @for way in &shape.ways {
+                        @if let (Some(max_mm), Some(mean_mm)) = (way.errors.max_mm, way.errors.mean_mm) {
+                            (format!("{}: max {max_mm:.2}, mean {mean_mm:.2} mm. ", way.way))
+                        }
+                    }
+                }
+                div.views {
+                    figure { (PreEscaped(drawn(shape))) }
+                    figure { (PreEscaped(frictions(shape))) }
+                }
+            }
+        }
+    };
+    super::shell(&format!("{}: shapes by four ways of friction", result.manipulator), &content)
+}
+
+/// The page of `discover` with a manipulator.
+pub fn discovery(found: &TendonDiscovery) -> String {
+    let result = &found.result;
+    let percent = |share: Option<f64>| share.map_or_else(|| "–".to_owned(), |share| format!("{:.0} %", 100.0 * share));
+    let content = html! {
+        p.soft { (result.log.join(", ")) }
+        @for tendon in &result.cables {
+            p { "Verdict: " span class=(format!("verdict {}", tendon.verdict)) { (tendon.verdict) } }
+            dl {
+                dt { "samples" } dd { (tendon.samples) }
+                dt { "noise" } dd { (format!("{:.4} N", tendon.noise_floor_n)) }
+                @if let (Some(before), Some(after)) = (tendon.before, tendon.after) {
+                    dt { "rms before, held out" } dd { (format!("{:.4} N", before.rms_n)) }
+                    dt { "rms after" } dd { (format!("{:.4} N", after.rms_n)) }
+                }
+                dt { "gap closed" } dd { (percent(tendon.gap_closed)) }
+            }
+            @for effect in &tendon.effects {
+                h3 { (effect.kind) }
+                p {
+                    @for (name, value) in &effect.parameters.0 { (name) " = " (fric_lab::text::significant(*value)) ". " }
+                    (effect.words.join(" "))
+                }
+            }
+            @if let Some(rest) = &tendon.unexplained {
+                p.unexplained { (format!("{:.4} N above the noise are not accounted for by any effect.", rest.rms_n)) }
+            }
+        }
+        p {
+            "Gratings less model in each segment over time:"
+            (key("before", "given model, fitted")) (key("after", "extended"))
+        }
+        @for segment in 0..found.residual_before_n.first().map_or(0, Vec::len) {
+            section { h2 { "Grating " (segment + 1) } (PreEscaped(residuals(found, segment))) }
+        }
+    };
+    super::shell(&format!("{}: what the model lacks", result.robot), &content)
+}
+
+/// Residuals of one segment before and after.
+fn residuals(found: &TendonDiscovery, segment: usize) -> String {
+    let line = |rows: &[Vec<f64>]| -> Vec<[f64; 2]> {
+        let values = rows.iter().map(|row| row.get(segment).copied().unwrap_or(f64::NAN));
+        found.time_s.iter().copied().zip(values).map(|(time_s, value)| [time_s, value]).collect()
+    };
+    let lines = [("trace before", line(&found.residual_before_n)), ("trace after", line(&found.residual_after_n))];
+    let mut extents = [Extent::NOTHING; 2];
+    extents[1].add(0.0);
+    for [time_s, value] in lines.iter().flat_map(|(_, points)| points) {
+        extents[0].add(*time_s);
+        extents[1].add(*value);
+    }
+    let [time, value] = [Span::with_margin(extents[0], 0.0, "s"), Span::with_margin(extents[1], 0.05, "N")];
+    let mut chart = Chart::new(time, value, 960.0, 160.0);
+    for (class, points) in lines {
+        chart.line(class, points.into_iter());
+    }
+    chart.into_svg()
+}
+
+fn newtons(value: f64) -> String {
+    if value.is_finite() { format!("{value:.4}") } else { "–".to_owned() }
+}
+
+fn millimetres(value: Option<f64>) -> String {
+    value.map_or_else(|| "–".to_owned(), |value| format!("{value:.2}"))
+}
+
+fn bridged(warnings: impl Iterator<Item = String>) -> Markup {
+    html! { @for warning in warnings { p.unexplained { (warning) } } }
+}
+
+fn key(class: &str, name: &str) -> Markup {
+    html! { span.keys { span.key style=(format!("background: var(--{class})")) {} (name) } " " }
+}
+
+fn keys<'a>(names: impl Iterator<Item = &'a str>) -> Markup {
+    html! { @for name in names { (key(name, name)) } }
+}
+
+/// An axis of holes or gratings, 1 to count.
+fn holes(count: usize, unit: &'static str) -> Span {
+    Span { least: 0.4, greatest: number(count) + 0.6, unit }
+}
+
+fn number(count: usize) -> f64 {
+    #[expect(clippy::cast_precision_loss, reason = "a small count")]
+    let number = count as f64;
+    number
+}
+
+/// The edges of one of `count` bars side by side at a place of an axis.
+fn bar_edges(place: usize, bar: usize, count: usize) -> [f64; 2] {
+    let width = 0.8 / number(count);
+    let from = number(place) + 0.6 + width * number(bar);
+    [from, from + 0.9 * width]
+}
+
+/// Friction at each hole as signed bars side by side, with what the hole can hold as a line on both sides.
+fn bars(ways: &[(&'static str, &[f64], &[f64])], width: f64) -> String {
+    let mut extent = Extent::NOTHING;
+    extent.add(0.0);
+    for (_, friction_n, bound_n) in ways {
+        friction_n.iter().for_each(|value| extent.add(*value));
+        for bound_n in *bound_n {
+            extent.add(*bound_n);
+            extent.add(-bound_n);
+        }
+    }
+    let count = ways.iter().map(|(_, friction_n, _)| friction_n.len()).max().unwrap_or(0);
+    let mut chart = Chart::new(holes(count, "hole"), Span::with_margin(extent, 0.08, "N"), width, 240.0);
+    for (bar, (way, friction_n, bound_n)) in ways.iter().enumerate() {
+        for (place, friction_n) in friction_n.iter().enumerate().filter(|(_, value)| value.is_finite()) {
+            let [from, to] = bar_edges(place, bar, ways.len());
+            chart.rectangle(&format!("bar {way}"), [from, 0.0], [to, *friction_n]);
+        }
+        for (place, bound_n) in bound_n.iter().enumerate() {
+            let [from, to] = [number(place) + 0.6, number(place) + 1.4];
+            for side_n in [*bound_n, -bound_n] {
+                chart.line("bound", [[from, side_n], [to, side_n]].into_iter());
+            }
+        }
+    }
+    chart.into_svg()
+}
+
+fn frictions(shape: &PickedShape) -> String {
+    let with_friction = shape.ways.iter().filter(|way| way.way != Way::None.name());
+    let ways: Vec<(&'static str, &[f64], &[f64])> = with_friction
+        .map(|WayShape { way, friction_n, bound_n, .. }| {
+            let bound_n: &[f64] = if *way == Way::History.name() { bound_n } else { &[] };
+            (*way, friction_n.as_slice(), bound_n)
+        })
+        .collect();
+    bars(&ways, 470.0)
+}
+
+/// A shape to scale, x along the straight manipulator.
+fn drawn(shape: &PickedShape) -> String {
+    let finite = |places: &[[f64; 2]]| {
+        places.iter().filter(|place| place.iter().all(|one| one.is_finite())).copied().collect::<Vec<_>>()
+    };
+    let mut extents = [Extent::NOTHING; 2];
+    let lines: Vec<(&str, Vec<[f64; 2]>)> = shape
+        .ways
+        .iter()
+        .map(|way| (way.way, std::iter::once([0.0; 2]).chain(way.disk_position_m.iter().copied()).collect()))
+        .collect();
+    let markers = finite(&shape.marker_m);
+    for [x, y] in lines.iter().flat_map(|(_, places)| places).chain(&markers) {
+        extents[0].add(*x);
+        extents[1].add(*y);
+    }
+    let [x, y] = extents.map(|extent| Span::with_margin(extent, 0.08, "m"));
+    let mut chart = Chart::to_scale(x, y, 470.0, 420.0);
+    for (way, places) in lines {
+        chart.line(&format!("trace {way}"), places.into_iter());
+    }
+    for marker in markers {
+        chart.dot("marker", marker, "");
+    }
+    chart.into_svg()
+}
+
+/// Mean distance of each way over time.
+fn errors(run: &Run, ways: &[WayShapes]) -> String {
+    let samples = run.samples();
+    let stride = samples.len().div_ceil(MOST_POINTS).max(1);
+    let lines: Vec<(&str, Vec<[f64; 2]>)> = ways
+        .iter()
+        .map(|way| {
+            let pairs = samples.iter().zip(&way.shapes).step_by(stride);
+            let mean_mm = |(sample, shape): (&fric_lab::continuum::RunSample, _)| {
+                [sample.time_s, ShapeErrors::of(shape, &sample.marker_m).mean_mm().unwrap_or(f64::NAN)]
+            };
+            (way.way.name(), pairs.map(mean_mm).collect())
+        })
+        .collect();
+    let mut extents = [Extent::NOTHING; 2];
+    extents[1].add(0.0);
+    for [time_s, mean_mm] in lines.iter().flat_map(|(_, points)| points) {
+        extents[0].add(*time_s);
+        extents[1].add(*mean_mm);
+    }
+    let [time, mean] = [Span::with_margin(extents[0], 0.0, "s"), Span::with_margin(extents[1], 0.05, "mm")];
+    let mut chart = Chart::new(time, mean, 960.0, 240.0);
+    for (way, points) in lines {
+        chart.line(&format!("trace {way}"), points.into_iter());
+    }
+    chart.into_svg()
+}

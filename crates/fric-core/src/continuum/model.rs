@@ -1,0 +1,236 @@
+//! The manipulator: base tensions in, shape out.
+
+use super::friction::Friction;
+use super::load::positions;
+use super::newton::{Contacts, Law, Newton, Point, Target, chords, passages, travels_m};
+use super::params::{ManipulatorError, ManipulatorParams, Tendon, count_error};
+use super::shape::{Shape, ShapeStatus};
+
+/// Load steps from the straight, unloaded manipulator, where the last shape is no good start.
+const LOAD_STEPS: u32 = 32;
+/// Halvings of a step of the base tensions, where the holes' equations find no solution at once.
+const MOST_PARTS: u32 = 48;
+
+/// Static model of a manipulator of up to `DISKS` disks, [`MAX_DISKS`](super::MAX_DISKS) at most.
+///
+/// [`solve`](Self::solve) is total and bounded. One solution takes the last shape for its start, and goes up from the unloaded
+/// manipulator in load steps where that fails.
+///
+/// **[`Friction::History`].** Each hole has a Dahl state ([`crate::dahl`]), driven by the way of the tendon through that hole:
+/// what the chords beyond it shorten and the tendon beyond it stretches. All holes and the shape are solved together at
+/// the end of the step, so that a step may be as long as the tension moves one way; a reversal belongs to the end of a step.
+/// The first step is taken as pulled from the unloaded tendon. Holes are as many states as there are, and nothing else is
+/// remembered: the other ways may be solved in between and leave the holes as they are.
+#[derive(Clone, Debug)]
+pub struct StaticModel<const DISKS: usize> {
+    params: ManipulatorParams,
+    newton: Newton<DISKS>,
+    shape: Shape<DISKS>,
+    /// Where the last history step ended; `None` before the first.
+    history: Option<Past<DISKS>>,
+}
+
+/// The manipulator at the end of a history step.
+#[derive(Clone, Copy, Debug)]
+struct Past<const DISKS: usize> {
+    point: Point<DISKS>,
+    base_tension_n: [f64; 2],
+    contacts: Contacts<DISKS>,
+}
+
+impl<const DISKS: usize> StaticModel<DISKS> {
+    /// Straight, without tension, with relaxed holes.
+    ///
+    /// # Errors
+    /// [`ManipulatorError`] if there are more than `DISKS` disks.
+    pub fn new(params: &ManipulatorParams) -> Result<Self, ManipulatorError> {
+        let count = params.disk_count;
+        if count > DISKS {
+            return Err(count_error("disk_count", count, 1, DISKS));
+        }
+        let shape = Shape::straight(count, params.pitch_m);
+        Ok(Self { params: *params, newton: Newton::new(), shape, history: None })
+    }
+
+    /// The parameters.
+    #[must_use]
+    pub fn params(&self) -> &ManipulatorParams {
+        &self.params
+    }
+
+    /// The last shape that was right; straight before the first.
+    #[must_use]
+    pub fn shape(&self) -> &Shape<DISKS> {
+        &self.shape
+    }
+
+    /// Forgets the holes' history and the last shape.
+    pub fn reset(&mut self) {
+        self.shape = Shape::straight(self.params.disk_count, self.params.pitch_m);
+        self.history = None;
+    }
+
+    /// Finds the shape for the tensions at the base, N, of the first and the second tendon.
+    ///
+    /// Tension 0 is a slack tendon. With [`Friction::Measured`] the tensions at the base count for the friction at hole 1 alone.
+    /// With [`Friction::History`] this is one step of the run.
+    pub fn solve(&mut self, base_tension_n: [f64; 2], friction: Friction<'_>) -> ShapeStatus {
+        let is_tension = |tension_n: &f64| (0.0..1e9).contains(tension_n);
+        if !base_tension_n.iter().all(is_tension) {
+            return ShapeStatus::NOT_FINITE;
+        }
+        let found = match friction {
+            Friction::None => {
+                self.statics(base_tension_n, base_tension_n.map(|tension_n| [tension_n; DISKS]), &Law::Given)
+            }
+            Friction::Coulomb(direction) => {
+                let tension_n = base_tension_n.map(|tension_n| [tension_n; DISKS]);
+                self.statics(base_tension_n, tension_n, &Law::Sliding(direction))
+            }
+            Friction::Measured(given_n) => {
+                let mut tension_n = [[0.0; DISKS]; 2];
+                for (tension_n, given_n) in tension_n.iter_mut().zip(given_n) {
+                    let is_right = given_n.is_empty() || given_n.len() == self.params.disk_count;
+                    // Noise may make the tension of a slack segment slightly negative.
+                    if !is_right || !given_n.iter().all(|tension_n| tension_n.abs() < 1e9) {
+                        return ShapeStatus::NOT_FINITE;
+                    }
+                    for (tension_n, given_n) in tension_n.iter_mut().zip(given_n) {
+                        *tension_n = *given_n;
+                    }
+                }
+                self.statics(base_tension_n, tension_n, &Law::Given)
+            }
+            Friction::History => self.advance(base_tension_n),
+        };
+        let Some(mut point) = found else { return ShapeStatus::NOT_CONVERGED };
+        for tension_n in &mut point.tension_n {
+            for beyond in tension_n.iter_mut().skip(self.params.disk_count) {
+                *beyond = 0.0;
+            }
+        }
+        if !self.newton.is_stable(&self.params, &point, &Target { base_tension_n, load_share: 1.0 }) {
+            return ShapeStatus::UNSTABLE;
+        }
+        if let Friction::History = friction {
+            self.remember(&point, base_tension_n);
+        }
+        self.show(&point, base_tension_n)
+    }
+
+    /// An equilibrium without memory: from the last shape, else in load steps from none.
+    fn statics(
+        &mut self,
+        base_tension_n: [f64; 2],
+        tension_n: [[f64; DISKS]; 2],
+        law: &Law<'_, DISKS>,
+    ) -> Option<Point<DISKS>> {
+        let start = Point { bend_rad: self.shape.bend_rad, tension_n };
+        let target = Target { base_tension_n, load_share: 1.0 };
+        if let Some(point) = self.newton.solve(&self.params, &start, &target, law) {
+            return Some(point);
+        }
+        let mut point = Point::ZERO;
+        for step in 1..=LOAD_STEPS {
+            let share = f64::from(step) / f64::from(LOAD_STEPS);
+            let target =
+                Target { base_tension_n: base_tension_n.map(|tension_n| share * tension_n), load_share: share };
+            point.tension_n = tension_n.map(|tendon| tendon.map(|tension_n| share * tension_n));
+            point = self.newton.solve(&self.params, &point, &target, law)?;
+        }
+        Some(point)
+    }
+
+    /// One step of the history: whole, or in parts where it finds no solution. The memory is the caller's to move on.
+    fn advance(&mut self, base_tension_n: [f64; 2]) -> Option<Point<DISKS>> {
+        let mut past = match self.history {
+            Some(past) => past,
+            None => self.relaxed()?,
+        };
+        let [from_first_n, from_second_n] = past.base_tension_n;
+        let [to_first_n, to_second_n] = base_tension_n;
+        let (mut done, mut piece) = (0.0_f64, 1.0_f64);
+        for _ in 0..MOST_PARTS {
+            let share = (done + piece).min(1.0);
+            let between = |from_n: f64, to_n: f64| if share < 1.0 { from_n + share * (to_n - from_n) } else { to_n };
+            let target = Target {
+                base_tension_n: [between(from_first_n, to_first_n), between(from_second_n, to_second_n)],
+                load_share: 1.0,
+            };
+            let solved = self.newton.solve(&self.params, &past.point, &target, &Law::Presliding(&past.contacts));
+            let Some(point) = solved else {
+                piece *= 0.5;
+                continue;
+            };
+            if share >= 1.0 {
+                return Some(point);
+            }
+            past = self.past(&point, target.base_tension_n);
+            done = share;
+        }
+        None
+    }
+
+    /// Before the first step: the tendons lie in their holes without tension.
+    fn relaxed(&mut self) -> Option<Past<DISKS>> {
+        let point = self.statics([0.0; 2], [[0.0; DISKS]; 2], &Law::Given)?;
+        Some(self.past(&point, [0.0; 2]))
+    }
+
+    /// A manipulator whose holes have come to an equilibrium: their friction is the difference of the tensions.
+    fn past(&self, point: &Point<DISKS>, base_tension_n: [f64; 2]) -> Past<DISKS> {
+        let contacts =
+            Contacts { friction_n: frictions(point, base_tension_n), travel_m: travels_m(&self.params, point) };
+        Past { point: *point, base_tension_n, contacts }
+    }
+
+    fn remember(&mut self, point: &Point<DISKS>, base_tension_n: [f64; 2]) {
+        self.history = Some(self.past(point, base_tension_n));
+    }
+
+    /// Keeps a point as the shape, and says what is out of the ordinary about it.
+    fn show(&mut self, point: &Point<DISKS>, base_tension_n: [f64; 2]) -> ShapeStatus {
+        let count = self.params.disk_count;
+        let mut bound_n = [[0.0; DISKS]; 2];
+        let mut status = ShapeStatus::OK;
+        let chords = chords(&self.params, &point.bend_rad);
+        let parts = Tendon::BOTH.into_iter().zip(&mut bound_n).zip(base_tension_n);
+        for ((tendon, bound_n), base_tension_n) in parts {
+            let params = tendon.of(&self.params.tendons);
+            let holes = params.holes().zip(passages(point, tendon, base_tension_n));
+            for (bound_n, (hole, passage)) in bound_n.iter_mut().zip(holes).take(count) {
+                *bound_n = hole.bound_n(&passage);
+                if passage.base_side_n.max(passage.tip_side_n) > params.capacity_n {
+                    status = status | ShapeStatus::OVER_CAPACITY;
+                }
+            }
+            let mut segments = tendon.of(&chords).iter().take(count);
+            if segments.any(|chord| chord.length_m <= self.params.disk_thickness_m) {
+                status = status | ShapeStatus::DISKS_TOUCH;
+            }
+        }
+        self.shape = Shape {
+            count,
+            bend_rad: point.bend_rad,
+            position_m: positions(self.params.pitch_m, &point.bend_rad),
+            base_tension_n,
+            tension_n: point.tension_n,
+            friction_n: frictions(point, base_tension_n),
+            bound_n,
+        };
+        status
+    }
+}
+
+/// `T_{i−1} − T_i`.
+fn frictions<const DISKS: usize>(point: &Point<DISKS>, base_tension_n: [f64; 2]) -> [[f64; DISKS]; 2] {
+    let mut friction_n = point.tension_n;
+    for (friction_n, mut base_side_n) in friction_n.iter_mut().zip(base_tension_n) {
+        for value in friction_n {
+            let tip_side_n = *value;
+            *value = base_side_n - tip_side_n;
+            base_side_n = tip_side_n;
+        }
+    }
+    friction_n
+}

@@ -1,0 +1,94 @@
+//! Named columns of numbers, as they stand in runs and on load benches.
+
+use fric_core::robot::unknown_name;
+
+use super::error::ContinuumError;
+
+/// Time, s.
+pub const TIME: &str = "time_s";
+/// Tension of the tendon at the base, N.
+pub const TENSION_BASE: &str = "tension_base_n";
+/// Shift of the grating without load, nm.
+pub const SHIFT_REFERENCE: &str = "shift_reference_nm";
+/// Load of a calibration, g on a hook, and N.
+pub const LOADS: [&str; 2] = ["load_g", "load_n"];
+/// A load on a single hole: tensions on both sides, and the angles between them and the normal force (\[C\] 16).
+pub const HOLE: [&str; 4] = ["tension_1_n", "tension_2_n", "angle_1_rad", "angle_2_rad"];
+
+/// `shift_1_nm` …
+#[must_use]
+pub fn shifts(disk_count: usize) -> Vec<String> {
+    (1..=disk_count).map(|place| format!("shift_{place}_nm")).collect()
+}
+
+/// `marker_1_x_m`, `marker_1_y_m` …
+#[must_use]
+pub fn markers(disk_count: usize) -> Vec<String> {
+    (1..=disk_count).flat_map(|place| [format!("marker_{place}_x_m"), format!("marker_{place}_y_m")]).collect()
+}
+
+/// All columns that a run may have.
+#[must_use]
+pub fn of_run(disk_count: usize) -> Vec<String> {
+    let first = [TENSION_BASE, TIME, SHIFT_REFERENCE].map(ToOwned::to_owned);
+    first.into_iter().chain(shifts(disk_count)).chain(markers(disk_count)).collect()
+}
+
+/// All columns that a calibration may have.
+#[must_use]
+pub fn of_calibration(disk_count: usize) -> Vec<String> {
+    LOADS.into_iter().chain([SHIFT_REFERENCE]).map(ToOwned::to_owned).chain(shifts(disk_count)).collect()
+}
+
+/// All columns of loads on a single hole.
+#[must_use]
+pub fn of_hole() -> Vec<String> {
+    HOLE.map(ToOwned::to_owned).to_vec()
+}
+
+/// Columns of equal length whose names are all known.
+#[derive(Clone, Debug)]
+pub(super) struct Columns<'a> {
+    columns: &'a [(String, Vec<f64>)],
+}
+
+impl<'a> Columns<'a> {
+    /// Checks names and lengths.
+    pub fn new(columns: &'a [(String, Vec<f64>)], known: &[String]) -> Result<Self, ContinuumError> {
+        for (name, _) in columns {
+            if !known.contains(name) {
+                let sentence = unknown_name("column", name, known.iter().map(String::as_str));
+                return Err(ContinuumError::UnknownColumn(sentence));
+            }
+        }
+        let count = columns.first().map_or(0, |(_, numbers)| numbers.len());
+        match columns.iter().find(|(_, numbers)| numbers.len() != count) {
+            Some((name, numbers)) => {
+                Err(ContinuumError::UnequalColumns { column: name.clone(), count: numbers.len(), needed: count })
+            }
+            None => Ok(Self { columns }),
+        }
+    }
+
+    pub fn row_count(&self) -> usize {
+        self.columns.first().map_or(0, |(_, numbers)| numbers.len())
+    }
+
+    pub fn get(&self, name: &str) -> Option<&'a [f64]> {
+        self.columns.iter().find(|(other, _)| other == name).map(|(_, numbers)| numbers.as_slice())
+    }
+
+    pub fn required(&self, name: &str) -> Result<&'a [f64], ContinuumError> {
+        self.get(name).ok_or_else(|| ContinuumError::MissingColumn { column: name.to_owned(), beside: None })
+    }
+
+    /// All columns of a group; `None` where there is none of them.
+    pub fn group(&self, names: &[String]) -> Result<Option<Vec<&'a [f64]>>, ContinuumError> {
+        let Some(beside) = names.iter().find(|name| self.get(name).is_some()) else { return Ok(None) };
+        let column = |name: &String| {
+            self.get(name)
+                .ok_or_else(|| ContinuumError::MissingColumn { column: name.clone(), beside: Some(beside.clone()) })
+        };
+        names.iter().map(column).collect::<Result<_, _>>().map(Some)
+    }
+}

@@ -1,0 +1,173 @@
+//! A run prepared for the search: thinned, split into what is learned from and what is held out.
+
+use fric_core::continuum::file::{ManipulatorFile, OneOrEach};
+use fric_core::continuum::{ManipulatorParams, Tendon};
+
+use super::model::Model;
+use crate::continuum::error::ContinuumError;
+use crate::continuum::gratings::Gratings;
+use crate::continuum::run::{Run, RunSample};
+use crate::continuum::shape_errors::{Way, shapes};
+use crate::discover::noise::white_noise_in;
+use crate::discover::split::{DRAW, cut};
+use crate::replay::Deviation;
+
+/// Samples compared at most; the history may take long steps while the tension moves one way.
+const MOST_SAMPLES: usize = 800;
+/// Least samples, of which half are held out.
+const LEAST_SAMPLES: usize = 40;
+/// Turning points of the tension beyond this share of the greatest one are kept.
+const TURN_RATIO: f64 = 0.005;
+/// Samples of a block of the noise's estimate.
+const NOISE_BLOCK: usize = 40;
+
+/// A run and what was measured in it.
+pub struct Case<'a> {
+    pub file: &'a ManipulatorFile,
+    pub samples: Vec<RunSample>,
+    /// Tension in each segment, N; NaN where there is none.
+    pub observed_n: Vec<Vec<f64>>,
+    pub held_out: Vec<bool>,
+    /// N/nm of each grating.
+    pub newton_per_nm: Vec<f64>,
+    pub greatest_n: f64,
+    /// Mean standard error of a tension from one shift, N, as the file states it.
+    pub standard_error_n: f64,
+    pub run_samples: usize,
+}
+
+/// Residuals of a model: gratings less model, N, and their sums.
+#[derive(Clone, Debug)]
+pub struct Fit {
+    pub model: Model,
+    pub residual_n: Vec<Vec<f64>>,
+    /// Sum of squares over what is learned from, N².
+    pub squares: f64,
+    /// Over what is held out.
+    pub held_out_n: Deviation,
+}
+
+impl<'a> Case<'a> {
+    pub fn new(file: &'a ManipulatorFile, run: &Run, gratings: &Gratings) -> Result<Self, ContinuumError> {
+        let tensions = gratings.unbridged(run)?;
+        let kept = thinned(run.samples());
+        if kept.len() < LEAST_SAMPLES {
+            return Err(ContinuumError::TooShort { count: kept.len(), needed: LEAST_SAMPLES });
+        }
+        let samples: Vec<RunSample> = kept.iter().filter_map(|place| run.samples().get(*place)).cloned().collect();
+        let row = |place: &usize| Some(tensions.get(*place)?.iter().map(|tension| tension.value_n).collect());
+        let span_s = samples.last().map_or(0.0, |last| last.time_s) - samples.first().map_or(0.0, |first| first.time_s);
+        #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
+        let cycle_s = span_s / samples.len() as f64;
+        let mut held_out = vec![false; samples.len()];
+        for block in cut(0..samples.len(), cycle_s, &mut { DRAW }) {
+            held_out[block.cycles].fill(block.held_out);
+        }
+        Ok(Self {
+            file,
+            observed_n: kept.iter().filter_map(row).collect(),
+            greatest_n: samples.iter().map(|sample| sample.tension_base_n).fold(0.0, f64::max),
+            samples,
+            held_out,
+            standard_error_n: mean(gratings.lines().iter().map(|line| line.noise_n)),
+            newton_per_nm: gratings.lines().iter().map(|line| line.newton_per_nm).collect(),
+            run_samples: run.samples().len(),
+        })
+    }
+
+    /// The model that the file states.
+    pub fn given(&self) -> Model {
+        let mu = self.file.params().mu(Tendon::Agonist).to_vec();
+        let way = if mu.iter().all(|mu| *mu == 0.0) {
+            Way::None
+        } else if self.file.tables().tendon.sigma_n_per_m.is_none() {
+            Way::Coulomb
+        } else {
+            Way::History
+        };
+        let count = mu.len();
+        Model { way, mu, is_own: vec![false; count], drifts: vec![false; count], drift_n_per_s: vec![0.0; count] }
+    }
+
+    fn params(&self, mu: &[f64]) -> Option<ManipulatorParams> {
+        let mut tables = self.file.tables().clone();
+        tables.tendon.mu = OneOrEach::Each(mu.to_vec());
+        // A tendon like the first stays as it was; it is slack.
+        ManipulatorFile::check(tables).ok().map(|file| *file.params())
+    }
+
+    /// A model with its residuals; `None` where it has no shapes.
+    pub fn fit(&self, model: &Model) -> Option<Fit> {
+        let computed = shapes(&self.params(&model.mu)?, &self.samples, model.way, &[]).ok()?;
+        let start_s = self.samples.first()?.time_s;
+        let mut residual_n = Vec::with_capacity(computed.len());
+        let (mut squares, mut held_out_n) = (0.0, Deviation::default());
+        let rows = computed.iter().zip(&self.observed_n).zip(self.samples.iter().zip(&self.held_out));
+        for ((shape, observed_n), (sample, held_out)) in rows {
+            let elapsed_s = sample.time_s - start_s;
+            let has_shape = shape.status.has_shape();
+            let segments = observed_n.iter().zip(&shape.tension_n).zip(&model.drift_n_per_s);
+            let row: Vec<f64> = segments
+                .map(
+                    |((observed_n, tension_n), drift_n_per_s)| {
+                        if has_shape { observed_n - tension_n - drift_n_per_s * elapsed_s } else { f64::NAN }
+                    },
+                )
+                .collect();
+            for residual_n in row.iter().filter(|residual_n| residual_n.is_finite()) {
+                if *held_out {
+                    held_out_n.add(*residual_n);
+                } else {
+                    squares += residual_n * residual_n;
+                }
+            }
+            residual_n.push(row);
+        }
+        (squares > 0.0).then(|| Fit { model: model.clone(), residual_n, squares, held_out_n })
+    }
+
+    /// Samples that are learned from: what the evidence counts. Gratings of one sample share their error.
+    pub fn learned_count(&self) -> f64 {
+        #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
+        let count = self.held_out.iter().filter(|held_out| !**held_out).count() as f64;
+        count
+    }
+
+    /// Standard deviation of the gratings' noise, N, from a residual.
+    pub fn noise_n(&self, fit: &Fit) -> f64 {
+        let mut series = Vec::new();
+        for grating in 0..self.newton_per_nm.len() {
+            series.extend(fit.residual_n.iter().filter_map(|row| row.get(grating)).copied());
+            series.push(f64::NAN);
+        }
+        white_noise_in(&series, NOISE_BLOCK.min(self.samples.len() / 2)).unwrap_or(0.0)
+    }
+}
+
+fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
+    #[expect(clippy::cast_precision_loss, reason = "a small count")]
+    let count = values.len().max(1) as f64;
+    values.sum::<f64>() / count
+}
+
+/// Places of samples: some, evenly, and all turning points of the tension.
+fn thinned(samples: &[RunSample]) -> Vec<usize> {
+    let stride = samples.len().div_ceil(MOST_SAMPLES).max(1);
+    let greatest_n = samples.iter().map(|sample| sample.tension_base_n).fold(0.0, f64::max);
+    let band_n = TURN_RATIO * greatest_n;
+    let mut turns = Vec::new();
+    let (mut extreme, mut rises) = (0_usize, true);
+    let tension_n = |place: usize| samples.get(place).map_or(0.0, |sample| sample.tension_base_n);
+    for place in 0..samples.len() {
+        let ahead_n = if rises { tension_n(place) - tension_n(extreme) } else { tension_n(extreme) - tension_n(place) };
+        if ahead_n >= 0.0 {
+            extreme = place;
+        } else if ahead_n < -band_n {
+            turns.push(extreme);
+            (extreme, rises) = (place, !rises);
+        }
+    }
+    let last = samples.len().saturating_sub(1);
+    let is_kept = |place: &usize| place.is_multiple_of(stride) || *place == last || turns.binary_search(place).is_ok();
+    (0..samples.len()).filter(is_kept).collect()
+}

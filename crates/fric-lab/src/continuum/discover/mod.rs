@@ -1,0 +1,66 @@
+//! Discovery on a manipulator: what of the tendon's friction, or of its gratings, a manipulator file lacks.
+//!
+//! The workflow is that of [`crate::discover`]: the given model, fitted to half of the run in blocks, leaves a gap above the noise on
+//! the other half; candidates enter one after the other where they help on the samples held out; what is left is noise, or
+//! unexplained. The residual is that of the tensions in the segments: gratings less model.
+//!
+//! | effect | the file has | what it names |
+//! |---|---|---|
+//! | `coulomb` | `mu = 0` | friction at the holes at all |
+//! | `presliding` | no `sigma_n_per_m` | holes remember: their friction follows from the history, not from one direction |
+//! | `sensor_drift` | | the shift of a grating drifts with time, as one that warms up |
+//! | `hole_friction` | | a hole has a μ of its own |
+//!
+//! A spread of μ by ±10 % over the holes, which every manipulator has, counts as noise: 0.25 % of the greatest tension.
+
+mod case;
+mod fitting;
+mod model;
+mod naming;
+mod result;
+
+use fric_core::continuum::Tendon;
+use fric_core::continuum::edit::ManipulatorEdit;
+use fric_core::continuum::file::ManipulatorFile;
+
+use self::case::Case;
+use super::error::ContinuumError;
+use super::gratings::Gratings;
+use super::run::Run;
+
+pub use result::{TendonDiscoverResult, TendonEffect, TendonResult};
+
+/// What a discovery found.
+#[derive(Clone, Debug)]
+pub struct TendonDiscovery {
+    /// For machines and people.
+    pub result: TendonDiscoverResult,
+    /// What to change in the manipulator file.
+    pub edit: ManipulatorEdit,
+    /// Times that were compared, s.
+    pub time_s: Vec<f64>,
+    /// Residual of the given model, fitted, in each segment, N; NaN where nothing was measured.
+    pub residual_before_n: Vec<Vec<f64>>,
+    /// And of the extended one.
+    pub residual_after_n: Vec<Vec<f64>>,
+}
+
+/// Looks for what a manipulator file lacks; `log` is the name of the run.
+///
+/// # Errors
+/// [`ContinuumError::MissingGroup`] without the tension at the base or gratings, [`ContinuumError::NoGratings`] if the file does not say how shifts become
+/// tensions, [`ContinuumError::TooShort`] for a run with too few samples to hold any out, [`ContinuumError::OverCapacity`].
+pub fn discover(file: &ManipulatorFile, run: &Run, log: &str) -> Result<TendonDiscovery, ContinuumError> {
+    let lack = |what, remedy| ContinuumError::MissingGroup { what, consequence: "there is nothing to compare", remedy };
+    if !run.has_tension() {
+        return Err(lack("tension at the base", "`tension_base_n`"));
+    }
+    if !run.has_shifts() {
+        return Err(lack("gratings", "`shift_1_nm` and so on"));
+    }
+    run.check_capacity(file.params().capacity_n(Tendon::Agonist))?;
+    let gratings = Gratings::from_file(file)?.ok_or(ContinuumError::NoGratings)?;
+    let case = Case::new(file, run, &gratings)?;
+    let outcome = naming::name(&case);
+    Ok(result::told(&case, &outcome, log))
+}

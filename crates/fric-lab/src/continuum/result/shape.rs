@@ -1,0 +1,256 @@
+//! Shapes by the four ways of friction beside the markers, as figures 10 to 15 of \[C\].
+
+use std::fmt::Write as _;
+
+use fric_core::continuum::ShapeStatus;
+use serde::Serialize;
+
+use super::{BridgedGrating, millimetres};
+use crate::continuum::comparison::{WayShapes, is_beyond};
+use crate::continuum::gratings::GratingSample;
+use crate::continuum::run::Run;
+use crate::continuum::shape_errors::{ShapeErrors, Way};
+use crate::text::table;
+
+/// Published errors, mm: what they are of, and max and mean of none, Coulomb and measured.
+const PUBLISHED: [(&str, [[f64; 2]; 3]); 2] = [
+    ("[C] fig. 12, one way", [[9.37, 5.03], [3.06, 2.21], [2.84, 2.03]]),
+    ("[C] fig. 15, mixed", [[15.1, 10.56], [19.11, 16.47], [2.87, 1.75]]),
+];
+
+/// `fric-continuum-shape/1`. Distances are absent where there are no markers.
+#[derive(Clone, Debug, Serialize)]
+pub struct ShapeResult {
+    /// Name and version of the form.
+    pub format: &'static str,
+    /// Name of the manipulator.
+    pub manipulator: String,
+    /// How many samples.
+    pub samples: usize,
+    /// Each way over the shapes that were picked, and over all samples.
+    pub ways: Vec<WayErrors>,
+    /// The shapes that were picked.
+    pub shapes: Vec<PickedShape>,
+    /// Gratings that were dead in some samples.
+    pub bridged: Vec<BridgedGrating>,
+    /// Times of all samples, s.
+    pub time_s: Vec<f64>,
+    /// Each way at all samples.
+    pub series: Vec<WaySeries>,
+}
+
+/// Errors of a way.
+#[derive(Clone, Debug, Serialize)]
+pub struct WayErrors {
+    /// Its name.
+    pub way: &'static str,
+    /// Of the shapes that were picked.
+    pub picked: ErrorResult,
+    /// Of all samples.
+    pub all: ErrorResult,
+    /// Samples for which the model has no shape.
+    pub missing: usize,
+}
+
+/// Distances between disks and markers.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct ErrorResult {
+    /// Greatest, mm.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub max_mm: Option<f64>,
+    /// Mean over disks and shapes, mm.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mean_mm: Option<f64>,
+}
+
+/// One shape by all ways.
+#[derive(Clone, Debug, Serialize)]
+pub struct PickedShape {
+    /// Its place among the samples, from 0.
+    pub sample: usize,
+    /// Time, s.
+    pub time_s: f64,
+    /// Tension at the base, N; null where it was not measured.
+    pub tension_base_n: f64,
+    /// Centres of the disks as measured, m; empty without markers.
+    pub marker_m: Vec<[f64; 2]>,
+    /// By each way.
+    pub ways: Vec<WayShape>,
+}
+
+/// One shape by one way.
+#[derive(Clone, Debug, Serialize)]
+pub struct WayShape {
+    /// Its name.
+    pub way: &'static str,
+    /// Distances.
+    #[serde(flatten)]
+    pub errors: ErrorResult,
+    /// Bend of the manipulator, rad.
+    pub bend_rad: f64,
+    /// Centres of the disks, m.
+    pub disk_position_m: Vec<[f64; 2]>,
+    /// Tension in each segment, N.
+    pub tension_n: Vec<f64>,
+    /// Friction at each hole, N.
+    pub friction_n: Vec<f64>,
+    /// What each hole can hold, N.
+    pub bound_n: Vec<f64>,
+}
+
+/// A way over the run, one entry for each sample.
+#[derive(Clone, Debug, Serialize)]
+pub struct WaySeries {
+    /// Its name.
+    pub way: &'static str,
+    /// What the model had to say.
+    pub status: Vec<String>,
+    /// Bend of the manipulator, rad.
+    pub bend_rad: Vec<f64>,
+    /// Friction at each hole, N.
+    pub friction_n: Vec<Vec<f64>>,
+}
+
+impl From<&ShapeErrors> for ErrorResult {
+    fn from(errors: &ShapeErrors) -> Self {
+        let mean_mm = errors.mean_mm();
+        Self { max_mm: mean_mm.map(|_| errors.max_mm), mean_mm }
+    }
+}
+
+impl ShapeResult {
+    /// Name and version of the form.
+    pub const FORMAT: &str = "fric-continuum-shape/1";
+
+    /// Of a run that has been computed; `picked` are places of samples.
+    #[must_use]
+    pub fn new(
+        manipulator: &str,
+        run: &Run,
+        measured: Option<&[GratingSample]>,
+        ways: &[WayShapes],
+        picked: &[usize],
+    ) -> Self {
+        let shape = |place: &usize| {
+            let sample = run.samples().get(*place)?;
+            let by = |way: &WayShapes| {
+                let shape = way.shapes.get(*place)?.clone();
+                Some(WayShape {
+                    way: way.way.name(),
+                    errors: ErrorResult::from(&ShapeErrors::of(&shape, &sample.marker_m)),
+                    bend_rad: shape.bend_rad,
+                    disk_position_m: shape.disk_position_m,
+                    tension_n: shape.tension_n,
+                    friction_n: shape.friction_n,
+                    bound_n: shape.bound_n,
+                })
+            };
+            Some(PickedShape {
+                sample: *place,
+                time_s: sample.time_s,
+                tension_base_n: sample.tension_base_n,
+                marker_m: sample.marker_m.clone(),
+                ways: ways.iter().filter_map(by).collect(),
+            })
+        };
+        let errors = |way: &WayShapes| {
+            let mut errors = ShapeErrors::default();
+            for (place, sample) in run.samples().iter().enumerate().filter(|(place, _)| picked.contains(place)) {
+                if let Some(shape) = way.shapes.get(place) {
+                    errors.add(shape, &sample.marker_m);
+                }
+            }
+            let missing = way.errors.missing_count;
+            WayErrors { way: way.way.name(), picked: (&errors).into(), all: (&way.errors).into(), missing }
+        };
+        let series = |way: &WayShapes| WaySeries {
+            way: way.way.name(),
+            status: way.shapes.iter().map(|shape| shape.status.to_string()).collect(),
+            bend_rad: way.shapes.iter().map(|shape| shape.bend_rad).collect(),
+            friction_n: way.shapes.iter().map(|shape| shape.friction_n.clone()).collect(),
+        };
+        Self {
+            format: Self::FORMAT,
+            manipulator: manipulator.to_owned(),
+            samples: run.samples().len(),
+            ways: ways.iter().map(errors).collect(),
+            shapes: picked.iter().filter_map(shape).collect(),
+            bridged: measured.map(|measured| BridgedGrating::all(run, measured)).unwrap_or_default(),
+            time_s: run.samples().iter().map(|sample| sample.time_s).collect(),
+            series: ways.iter().map(series).collect(),
+        }
+    }
+
+    /// Greatest bend of the last way, which is the nearest to the truth, rad.
+    #[must_use]
+    pub fn greatest_bend_rad(&self) -> f64 {
+        let last = self.series.last().map_or(&[][..], |way| &way.bend_rad);
+        last.iter().fold(0.0, |most, bend_rad| bend_rad.abs().max(most))
+    }
+
+    /// What is out of the ordinary, a sentence each.
+    #[must_use]
+    pub fn warnings(&self, ways: &[WayShapes]) -> Vec<String> {
+        let mut warnings: Vec<String> = self.bridged.iter().map(|one| one.warning(self.samples)).collect();
+        for way in ways {
+            let name = way.way.name();
+            let beyond: Vec<ShapeStatus> =
+                way.shapes.iter().map(|shape| shape.status).filter(|status| is_beyond(*status)).collect();
+            if let Some(status) = beyond.first() {
+                warnings.push(format!(
+                    "by `{name}` the bend of {} samples is beyond the model ({status}); those without a shape are left out",
+                    beyond.len()
+                ));
+            }
+        }
+        warnings
+    }
+
+    /// For people.
+    #[must_use]
+    pub fn summary(&self) -> String {
+        let cells = |errors: ErrorResult| [millimetres(errors.max_mm), millimetres(errors.mean_mm)];
+        let mut header = vec![String::new(), "time [s]".to_owned(), "T_0 [N]".to_owned(), "bend [°]".to_owned()];
+        header.extend(self.ways.iter().flat_map(|way| [format!("{} max", way.way), "mean".to_owned()]));
+        let mut rows: Vec<Vec<String>> = Vec::new();
+        for (place, shape) in self.shapes.iter().enumerate() {
+            let bend_rad = shape.ways.iter().rev().find(|way| way.way != Way::Coulomb.name()).map(|way| way.bend_rad);
+            let tension =
+                if shape.tension_base_n.is_nan() { "–".to_owned() } else { format!("{:.3}", shape.tension_base_n) };
+            let mut row = vec![
+                format!("shape {}", place + 1),
+                format!("{:.2}", shape.time_s),
+                tension,
+                bend_rad.map_or_else(|| "–".to_owned(), |bend_rad| format!("{:.1}", bend_rad.to_degrees())),
+            ];
+            row.extend(shape.ways.iter().flat_map(|way| cells(way.errors)));
+            rows.push(row);
+        }
+        let mut sum = |name: String, of: &dyn Fn(&WayErrors) -> [String; 2]| {
+            let mut row = vec![name, String::new(), String::new(), String::new()];
+            row.extend(self.ways.iter().flat_map(of));
+            rows.push(row);
+        };
+        let has_markers = self.ways.iter().any(|way| way.all.mean_mm.is_some());
+        if has_markers {
+            sum(format!("these {}", self.shapes.len()), &|way| cells(way.picked));
+            sum(format!("all {}", self.samples), &|way| cells(way.all));
+            for (name, published) in PUBLISHED {
+                sum(name.to_owned(), &|way| {
+                    let place = Way::ALL.iter().position(|other| other.name() == way.way);
+                    let found = place.and_then(|place| published.get(place));
+                    [0, 1].map(|end| millimetres(found.map(|pair| pair[end])))
+                });
+            }
+        }
+        let columns: Vec<&str> = header.iter().map(String::as_str).collect();
+        let mut text = format!("{}: {} samples", self.manipulator, self.samples);
+        // Writing to a String cannot fail.
+        let _ = if has_markers {
+            writeln!(text, ", distance between disks and markers in mm\n\n{}", table(&columns, 1, &rows))
+        } else {
+            writeln!(text, "\n\n{}\nNo markers to compare with.", table(&columns, 1, &rows))
+        };
+        text
+    }
+}

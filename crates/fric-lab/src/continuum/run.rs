@@ -1,0 +1,155 @@
+//! A run of a manipulator: what was measured, sample by sample.
+
+use super::columns::{self, Columns};
+use super::error::ContinuumError;
+
+/// What was measured at one time. A list that was not measured is empty.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RunSample {
+    /// Time, s.
+    pub time_s: f64,
+    /// Tension of the tendon at the base, N; NaN where it was not measured.
+    pub tension_base_n: f64,
+    /// Wavelength shift of the grating in each segment, nm; NaN where a grating is dead.
+    pub shift_nm: Vec<f64>,
+    /// Shift of a grating without load, nm; NaN without one.
+    pub shift_reference_nm: f64,
+    /// Centre of each disk, base frame, m; NaN where a marker is hidden.
+    pub marker_m: Vec<[f64; 2]>,
+}
+
+impl Default for RunSample {
+    fn default() -> Self {
+        let nan = f64::NAN;
+        Self { time_s: 0.0, tension_base_n: nan, shift_nm: Vec::new(), shift_reference_nm: nan, marker_m: Vec::new() }
+    }
+}
+
+/// A run that has been checked: time rises, tensions are finite and not negative, and every group of columns is whole or not there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Run {
+    samples: Vec<RunSample>,
+    disk_count: usize,
+    has_tension: bool,
+}
+
+impl Run {
+    /// From named columns, of which any group but the time may be missing: `time_s`, `tension_base_n`, `shift_1_nm …`,
+    /// `shift_reference_nm`, `marker_1_x_m, marker_1_y_m …`.
+    ///
+    /// # Errors
+    /// [`ContinuumError`] names the first column that is unknown, missing in its group or of another length, and the first sample
+    /// that is not right.
+    pub fn from_columns(columns: &[(String, Vec<f64>)], disk_count: usize) -> Result<Self, ContinuumError> {
+        let all = Columns::new(columns, &columns::of_run(disk_count))?;
+        let time_s = all.required(columns::TIME)?;
+        let tension_n = all.get(columns::TENSION_BASE);
+        let reference_nm = all.get(columns::SHIFT_REFERENCE);
+        let shift_nm = all.group(&columns::shifts(disk_count))?.unwrap_or_default();
+        let marker_m = all.group(&columns::markers(disk_count))?.unwrap_or_default();
+        let of = |column: Option<&[f64]>, row: usize| column.and_then(|column| column.get(row)).copied();
+        let samples = time_s
+            .iter()
+            .enumerate()
+            .map(|(row, time_s)| {
+                let numbers = |group: &[&[f64]]| -> Vec<f64> {
+                    group.iter().map(|column| of(Some(column), row).unwrap_or(f64::NAN)).collect()
+                };
+                RunSample {
+                    time_s: *time_s,
+                    tension_base_n: of(tension_n, row).unwrap_or(f64::NAN),
+                    shift_nm: numbers(&shift_nm),
+                    shift_reference_nm: of(reference_nm, row).unwrap_or(f64::NAN),
+                    marker_m: numbers(&marker_m).as_chunks().0.to_vec(),
+                }
+            })
+            .collect();
+        Self::checked(samples, disk_count, tension_n.is_some())
+    }
+
+    /// From samples; the base tension counts as measured where any of them has one.
+    ///
+    /// # Errors
+    /// [`ContinuumError`] names the first sample that is not right.
+    pub fn new(samples: Vec<RunSample>, disk_count: usize) -> Result<Self, ContinuumError> {
+        let has_tension = samples.iter().any(|sample| !sample.tension_base_n.is_nan());
+        Self::checked(samples, disk_count, has_tension)
+    }
+
+    fn checked(samples: Vec<RunSample>, disk_count: usize, has_tension: bool) -> Result<Self, ContinuumError> {
+        let mut before_s = f64::NEG_INFINITY;
+        for (place, sample) in samples.iter().enumerate() {
+            let (time_s, row) = (sample.time_s, place + 1);
+            if !time_s.is_finite() {
+                return Err(ContinuumError::NoTime { row, time_s });
+            }
+            if time_s <= before_s {
+                return Err(ContinuumError::TimeNotRising { row, time_s, before_s });
+            }
+            before_s = time_s;
+            let tension_n = sample.tension_base_n;
+            if has_tension && !(tension_n.is_finite() && tension_n >= 0.0) {
+                return Err(ContinuumError::NoTension { row, tension_n, time_s });
+            }
+            for (what, count) in [("shifts", sample.shift_nm.len()), ("markers", sample.marker_m.len())] {
+                if count != 0 && count != disk_count {
+                    return Err(ContinuumError::WrongCount { what, count, needed: disk_count });
+                }
+            }
+        }
+        Ok(Self { samples, disk_count, has_tension })
+    }
+
+    /// The samples in the order of time.
+    #[must_use]
+    pub fn samples(&self) -> &[RunSample] {
+        &self.samples
+    }
+
+    /// Disks of the manipulator.
+    #[must_use]
+    pub fn disk_count(&self) -> usize {
+        self.disk_count
+    }
+
+    /// Whether the tension at the base was measured.
+    #[must_use]
+    pub fn has_tension(&self) -> bool {
+        self.has_tension
+    }
+
+    /// Whether there are gratings.
+    #[must_use]
+    pub fn has_shifts(&self) -> bool {
+        self.samples.iter().any(|sample| !sample.shift_nm.is_empty())
+    }
+
+    /// Whether there is a grating without load, in every sample.
+    #[must_use]
+    pub fn has_reference(&self) -> bool {
+        !self.samples.is_empty() && self.samples.iter().all(|sample| sample.shift_reference_nm.is_finite())
+    }
+
+    /// Whether there are markers.
+    #[must_use]
+    pub fn has_markers(&self) -> bool {
+        self.samples.iter().any(|sample| !sample.marker_m.is_empty())
+    }
+
+    /// The first tension at the base above a capacity.
+    ///
+    /// # Errors
+    /// [`ContinuumError::OverCapacity`] names it.
+    pub fn check_capacity(&self, capacity_n: f64) -> Result<(), ContinuumError> {
+        let over = self.samples.iter().position(|sample| sample.tension_base_n > capacity_n);
+        match over.and_then(|place| Some((place, self.samples.get(place)?))) {
+            Some((place, RunSample { time_s, tension_base_n, .. })) => Err(ContinuumError::OverCapacity {
+                row: place + 1,
+                time_s: *time_s,
+                tension_n: *tension_base_n,
+                capacity_n,
+            }),
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! What is hidden in a simulated run is named, and nothing else.
+
+use fric_core::continuum::edit::{ManipulatorEdit, rewrite};
+use fric_core::continuum::file::ManipulatorFile;
+use fric_lab::continuum::discover::{TendonDiscovery, discover};
+use fric_lab::continuum::fbg::Calibration;
+use fric_lab::continuum::simulate::{Experiment, TendonSimulationOptions, simulate};
+use fric_lab::continuum::{ContinuumError, Run, RunSample};
+
+const PROTOTYPE: &str = include_str!("../../../../examples/tendon-prototype.toml");
+
+/// The text of the calibrated prototype, and a run of it with these μ.
+fn measured(experiment: Experiment, seed: u64, mu: &[f64]) -> (String, Vec<RunSample>) {
+    let edit = ManipulatorEdit { mu: mu.to_vec(), ..ManipulatorEdit::default() };
+    let truth = ManipulatorFile::parse(&rewrite(PROTOTYPE, "truth", &edit).unwrap(), "truth").unwrap();
+    let options = TendonSimulationOptions { experiment, seed, ..TendonSimulationOptions::default() };
+    let run = simulate(truth.params(), &options).unwrap();
+    let line = |line: Calibration| [line.newton_per_nm, line.offset_n, line.largest_standard_error_n()];
+    let lines = Calibration::fit_all(&run.calibration).unwrap().into_iter().map(line).collect();
+    let edit = ManipulatorEdit { lines, ..ManipulatorEdit::default() };
+    (rewrite(PROTOTYPE, "arm", &edit).unwrap(), run.samples)
+}
+
+fn found(text: &str, samples: &[RunSample]) -> TendonDiscovery {
+    let run = Run::new(samples.to_vec(), 8).unwrap();
+    discover(&ManipulatorFile::parse(text, "arm").unwrap(), &run, "run").unwrap()
+}
+
+/// The verdict and the names of what was found.
+fn told(discovery: &TendonDiscovery) -> (&'static str, Vec<&'static str>) {
+    let tendon = &discovery.result.cables[0];
+    (tendon.verdict, tendon.effects.iter().map(|effect| effect.kind).collect())
+}
+
+fn without_sigma(text: &str) -> String {
+    text.lines().filter(|line| !line.starts_with("sigma_n_per_m")).map(|line| line.to_owned() + "\n").collect()
+}
+
+#[test]
+fn a_spread_of_friction_is_nothing_missing() {
+    for (experiment, seed) in [(Experiment::OneWay, 1), (Experiment::Mixed, 2), (Experiment::Mixed, 3)] {
+        let (text, samples) = measured(experiment, seed, &[0.1753]);
+        assert_eq!(told(&found(&text, &samples)), ("complete", Vec::new()), "{experiment:?} {seed}");
+    }
+    // Pulled one way, nothing tells the history from Coulomb's friction.
+    let (text, samples) = measured(Experiment::OneWay, 4, &[0.1753]);
+    assert_eq!(told(&found(&without_sigma(&text), &samples)), ("complete", Vec::new()));
+}
+
+#[test]
+fn friction_and_its_memory_are_named() {
+    let none = |text: &str| text.replace("mu = 0.1753 ", "mu = 0.0 ");
+    let (text, samples) = measured(Experiment::OneWay, 5, &[0.1753]);
+    let discovery = found(&none(&text), &samples);
+    assert_eq!(told(&discovery), ("extended", vec!["coulomb"]));
+    let mu = discovery.result.cables[0].effects[0].parameters.get("mu").unwrap();
+    assert!((mu / 0.1753 - 1.0).abs() < 0.1, "{mu}");
+    assert!(discovery.result.cables[0].gap_closed.unwrap() > 0.95);
+
+    let (text, samples) = measured(Experiment::Mixed, 6, &[0.1753]);
+    assert_eq!(told(&found(&none(&text), &samples)), ("extended", vec!["coulomb", "presliding"]));
+    let discovery = found(&without_sigma(&text), &samples);
+    assert_eq!(told(&discovery), ("extended", vec!["presliding"]));
+    // With what was found in the file nothing is missing.
+    let extended = rewrite(&without_sigma(&text), "arm", &discovery.edit).unwrap();
+    assert_eq!(told(&found(&extended, &samples)), ("complete", Vec::new()));
+}
+
+#[test]
+fn a_hole_of_its_own_is_named() {
+    let mut mu = [0.1753; 8];
+    mu[3] = 0.35;
+    for experiment in [Experiment::OneWay, Experiment::Mixed] {
+        let (text, samples) = measured(experiment, 1, &mu);
+        let discovery = found(&text, &samples);
+        assert_eq!(told(&discovery), ("extended", vec!["hole_friction"]), "{experiment:?}");
+        let effect = &discovery.result.cables[0].effects[0];
+        assert_eq!(effect.parameters.get("hole"), Some(4.0));
+        assert!((effect.parameters.get("mu").unwrap() / 0.35 - 1.0).abs() < 0.15);
+        assert_eq!(discovery.edit.mu.len(), 8);
+    }
+}
+
+#[test]
+fn a_drifting_grating_is_named_and_another_fault_is_not() {
+    let (text, samples) = measured(Experiment::Mixed, 7, &[0.1753]);
+    let mut warm = samples.clone();
+    for sample in &mut warm {
+        sample.shift_nm[2] += 0.002 * sample.time_s;
+    }
+    let discovery = found(&text, &warm);
+    assert_eq!(told(&discovery), ("extended", vec!["sensor_drift"]));
+    let effect = &discovery.result.cables[0].effects[0];
+    assert_eq!(effect.parameters.get("grating"), Some(3.0));
+    assert!((effect.parameters.get("drift_nm_per_s").unwrap() / 0.002 - 1.0).abs() < 0.1);
+    let extended = rewrite(&text, "arm", &discovery.edit).unwrap();
+    assert_eq!(told(&found(&extended, &warm)), ("complete", Vec::new()));
+
+    let mut humming = samples;
+    for sample in &mut humming {
+        sample.shift_nm[4] += 0.01 * (5.0 * sample.time_s).sin();
+    }
+    let discovery = found(&text, &humming);
+    assert_eq!(told(&discovery), ("unexplained", Vec::new()));
+    let rest = discovery.result.cables[0].unexplained.as_ref().unwrap();
+    assert_eq!(rest.places[0].from, 5);
+}
+
+#[test]
+fn runs_that_tell_nothing_are_refused() {
+    let (text, samples) = measured(Experiment::OneWay, 8, &[0.1753]);
+    let file = ManipulatorFile::parse(&text, "arm").unwrap();
+    let refused = |samples: Vec<RunSample>, file: &ManipulatorFile| {
+        discover(file, &Run::new(samples, 8).unwrap(), "run").unwrap_err()
+    };
+    assert!(matches!(refused(samples[..20].to_vec(), &file), ContinuumError::TooShort { count: 20, .. }));
+    let blind = samples.iter().map(|sample| RunSample { shift_nm: Vec::new(), ..sample.clone() }).collect();
+    assert!(refused(blind, &file).to_string().starts_with("the run has no gratings"));
+    assert_eq!(refused(samples, &ManipulatorFile::parse(PROTOTYPE, "arm").unwrap()), ContinuumError::NoGratings);
+}

@@ -1,0 +1,7 @@
+//! The model of a manipulator against a truth that is not the model, and what gratings tell.
+
+mod discover;
+mod experiments;
+mod gratings;
+mod runs;
+mod shapes;

@@ -1,0 +1,114 @@
+//! What can be wrong with a table.
+
+use std::io;
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+use crate::recording::RecordingError;
+use crate::schema::SchemaError;
+
+/// Why a table was refused.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum TableError {
+    /// The operating system does not hand it over.
+    #[error("cannot read {}: {source}; check the path", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// There is nothing in it.
+    #[error("{} has no row of numbers below its header; record again", path.display())]
+    Empty {
+        /// The file.
+        path: PathBuf,
+    },
+    /// It is no text.
+    #[error("{} is neither CSV nor MCAP: line {line} is no UTF-8 text; name another file", path.display())]
+    NotText {
+        /// The file.
+        path: PathBuf,
+        /// The line, from 1.
+        line: u64,
+    },
+    /// It is CSV with something else between the columns than commas.
+    #[error("{}: the header holds `{separator}` and no comma; put commas between the columns", path.display())]
+    Separator {
+        /// The file.
+        path: PathBuf,
+        /// What was found.
+        separator: char,
+    },
+    /// A column twice.
+    #[error("{}: column `{column}` stands there twice; take one of the two out", path.display())]
+    Repeated {
+        /// The file.
+        path: PathBuf,
+        /// Its name.
+        column: String,
+    },
+    /// A row with too many cells, or too few.
+    #[error("{}, line {line}: {found} cells under a header of {expected}; complete the row or take it out", path.display())]
+    Length {
+        /// The file.
+        path: PathBuf,
+        /// The line, from 1.
+        line: u64,
+        /// Cells of the row.
+        found: u64,
+        /// Columns of the header.
+        expected: u64,
+    },
+    /// A cell that is no number.
+    #[error(
+        "{}, line {line}, column `{column}`: `{text}` is no number; write digits with a point, or leave the cell empty \
+         where there is no value", path.display()
+    )]
+    Cell {
+        /// The file.
+        path: PathBuf,
+        /// The line, from 1.
+        line: u64,
+        /// The column.
+        column: String,
+        /// What stands there.
+        text: String,
+    },
+    /// A log without the wanted fields.
+    #[error(
+        "{}: no topic has messages with a field `{example}` or another column of a run (topics: {topics}); record one \
+         message a sample, with the columns as its fields", path.display()
+    )]
+    NoTopic {
+        /// The file.
+        path: PathBuf,
+        /// A wanted field.
+        example: String,
+        /// What there is.
+        topics: String,
+    },
+    /// Several topics with wanted fields.
+    #[error("{}: columns of a run are on several topics ({topics}); put them into the messages of one", path.display())]
+    SeveralTopics {
+        /// The file.
+        path: PathBuf,
+        /// Their names.
+        topics: String,
+    },
+    /// The log cannot be read.
+    #[error(transparent)]
+    Recording(#[from] RecordingError),
+    /// A wanted field is no number.
+    #[error("{}, topic `{topic}`: {source}; record numbers", path.display())]
+    Schema {
+        /// The file.
+        path: PathBuf,
+        /// The topic.
+        topic: String,
+        /// What is wrong.
+        source: Box<SchemaError>,
+    },
+}

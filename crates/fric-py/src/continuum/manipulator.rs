@@ -1,0 +1,90 @@
+//! `Manipulator`: a manipulator file.
+
+use std::path::PathBuf;
+
+use fric_core::continuum::Tendon;
+use fric_core::continuum::file::{ManipulatorFile, ManipulatorFileError};
+use fric_log::output::OutputFile;
+use numpy::PyArray1;
+use pyo3::prelude::*;
+
+use crate::arrays::fixed;
+use crate::errors::Outcome;
+
+/// A continuum manipulator: what its manipulator file says.
+///
+/// >>> arm = continuum.Manipulator.read("examples/tendon-prototype.toml")
+/// >>> arm.name, arm.disk_count, arm.has_gratings
+/// ('tendon-prototype', 8, False)
+/// >>> continuum.Manipulator.from_toml(arm.to_toml().replace("mu = 0.1753", "mu = 1.5"))
+/// Traceback (most recent call last):
+/// ...
+/// fric.ConfigError: text, line 20: `mu` of the tendon at place 1 is 1.5; allowed is 0 to 0.9
+#[pyclass(module = "fric.continuum", frozen)]
+pub struct Manipulator {
+    pub file: ManipulatorFile,
+    pub text: String,
+}
+
+impl Manipulator {
+    pub fn parse(text: String, origin: &str) -> Outcome<Self> {
+        Ok(Self { file: ManipulatorFile::parse(&text, origin)?, text })
+    }
+}
+
+#[pymethods]
+impl Manipulator {
+    /// The manipulator of a manipulator file.
+    #[staticmethod]
+    fn read(path: PathBuf) -> Outcome<Self> {
+        let text = std::fs::read_to_string(&path)
+            .map_err(|source| ManipulatorFileError::Read { path: path.clone(), source })?;
+        Self::parse(text, &path.display().to_string())
+    }
+
+    /// The manipulator of a manipulator file's text.
+    #[staticmethod]
+    fn from_toml(text: &str) -> Outcome<Self> {
+        Self::parse(text.to_owned(), "text")
+    }
+
+    /// The text of the file, comments included.
+    fn to_toml(&self) -> &str {
+        &self.text
+    }
+
+    /// Writes the manipulator file, whole or not at all; an existing file is replaced only with `force`.
+    #[pyo3(signature = (path, *, force = false))]
+    fn write(&self, path: PathBuf, force: bool) -> Outcome {
+        let inputs: [PathBuf; 0] = [];
+        Ok(OutputFile::create(&path, &inputs, force)?.finish_with(&self.text)?)
+    }
+
+    /// Name of the manipulator.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.file.tables().name
+    }
+
+    /// Disks beyond the base plate; as many segments and holes.
+    #[getter]
+    fn disk_count(&self) -> usize {
+        self.file.params().disk_count()
+    }
+
+    /// Friction coefficient of each hole of the first tendon.
+    #[getter]
+    fn mu(&self, py: Python<'_>) -> Py<PyArray1<f64>> {
+        fixed(py, self.file.params().mu(Tendon::Agonist).to_vec())
+    }
+
+    /// Whether the file says how shifts become tensions.
+    #[getter]
+    fn has_gratings(&self) -> bool {
+        self.file.tables().gratings.is_some()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<Manipulator {:?}: {} disks>", self.name(), self.disk_count())
+    }
+}

@@ -1,0 +1,43 @@
+//! `fric.continuum`: tendons through disks. Functions have the prefix here that the Python module then takes off.
+
+mod calibration;
+mod friction;
+mod manipulator;
+mod run;
+mod shape;
+mod simulate;
+
+pub use calibration::{CalibrationResult, continuum_calibrate};
+pub use friction::{FrictionResult, HoleResult, continuum_friction, continuum_hole};
+pub use manipulator::Manipulator;
+pub use run::{TendonRun, continuum_read_loads, continuum_read_run};
+pub use shape::{ShapeResult, continuum_shape};
+pub use simulate::{SimulatedTendon, continuum_simulate};
+
+use fric_lab::continuum::gratings::{GratingSample, Gratings};
+use fric_lab::continuum::{ContinuumError, Run};
+
+use crate::errors::Outcome;
+
+/// What the gratings of a manipulator say in a run; `None` where either has none.
+fn measured(manipulator: &Manipulator, run: &Run) -> Result<Option<Vec<GratingSample>>, ContinuumError> {
+    match Gratings::from_file(&manipulator.file)? {
+        Some(gratings) if run.has_shifts() => gratings.read(run).map(Some),
+        _ => Ok(None),
+    }
+}
+
+/// Rows one after the other.
+fn flat(rows: &[Vec<f64>]) -> Vec<f64> {
+    rows.iter().flatten().copied().collect()
+}
+
+/// A run that belongs to a manipulator.
+fn check_disks(manipulator: &Manipulator, run: &Run) -> Outcome {
+    let (count, needed) = (run.disk_count(), manipulator.file.params().disk_count());
+    if count == needed {
+        Ok(())
+    } else {
+        Err(ContinuumError::WrongCount { what: "disks in the run", count, needed }.into())
+    }
+}

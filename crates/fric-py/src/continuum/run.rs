@@ -1,0 +1,149 @@
+//! `TendonRun`: what was measured on a manipulator; `read_run`, `read_loads`.
+
+use std::path::PathBuf;
+
+use fric_lab::continuum::gratings::Gratings;
+use fric_lab::continuum::{Run, RunSample, columns, load_steps};
+use fric_log::table::NumberTable;
+use numpy::{PyArray1, PyArray2, PyArrayDyn};
+use pyo3::prelude::*;
+
+use super::Manipulator;
+use crate::arrays::{Axis, Wanted, array, fixed, fixed_rows, numbers};
+use crate::errors::Outcome;
+use crate::log;
+
+/// The run of a manipulator, sample by sample. Groups that were not measured are None.
+///
+/// >>> import numpy as np
+/// >>> arm = continuum.Manipulator.read("examples/tendon-prototype.toml")
+/// >>> run = continuum.TendonRun.from_arrays(arm, time_s=np.arange(3) * 0.1, tension_base_n=[0.0, 0.5, 1.0])
+/// >>> len(run), run.shift_nm is None
+/// (3, True)
+#[pyclass(module = "fric.continuum", frozen)]
+pub struct TendonRun {
+    pub run: Run,
+}
+
+#[pymethods]
+impl TendonRun {
+    /// A run from arrays: `shift_nm` (N, disks), NaN where a grating is dead; `marker_m` (N, disks, 2), centres of the disks in the
+    /// base frame; `shift_reference_nm` (N,) of a grating without load. Any but the time may be left out.
+    #[staticmethod]
+    #[pyo3(signature = (manipulator, *, time_s, tension_base_n=None, shift_nm=None, shift_reference_nm=None, marker_m=None))]
+    fn from_arrays(
+        manipulator: &Manipulator,
+        time_s: &Bound<'_, PyAny>,
+        tension_base_n: Option<&Bound<'_, PyAny>>,
+        shift_nm: Option<&Bound<'_, PyAny>>,
+        shift_reference_nm: Option<&Bound<'_, PyAny>>,
+        marker_m: Option<&Bound<'_, PyAny>>,
+    ) -> Outcome<Self> {
+        let count = manipulator.file.params().disk_count();
+        let one = |name, entries| Wanted { name, shape: &[Axis::Rows], entries };
+        let time_s = numbers(&one("time_s", "one time a sample"), time_s)?;
+        let rows = Axis::Exactly(time_s.len());
+        let column = |name: &'static str, value: Option<&Bound<'_, PyAny>>| {
+            let wanted = Wanted { name, shape: &[rows], entries: "one number a sample" };
+            value.map(|value| numbers(&wanted, value)).transpose()
+        };
+        let tension_n = column("tension_base_n", tension_base_n)?;
+        let reference_nm = column("shift_reference_nm", shift_reference_nm)?;
+        let shift_shape = [rows, Axis::Exactly(count)];
+        let wanted = Wanted { name: "shift_nm", shape: &shift_shape, entries: "one shift for each grating" };
+        let shift_nm = shift_nm.map(|value| numbers(&wanted, value)).transpose()?;
+        let marker_shape = [rows, Axis::Exactly(count), Axis::Exactly(2)];
+        let wanted = Wanted { name: "marker_m", shape: &marker_shape, entries: "x and y of each disk" };
+        let marker_m = marker_m.map(|value| numbers(&wanted, value)).transpose()?;
+        let row_of = |all: &Option<Vec<f64>>, width: usize, row: usize| -> Vec<f64> {
+            all.as_ref().and_then(|all| all.get(row * width..(row + 1) * width)).unwrap_or_default().to_vec()
+        };
+        let of =
+            |all: &Option<Vec<f64>>, row: usize| all.as_ref().and_then(|all| all.get(row)).copied().unwrap_or(f64::NAN);
+        let sample = |(row, time_s): (usize, &f64)| RunSample {
+            time_s: *time_s,
+            tension_base_n: of(&tension_n, row),
+            shift_nm: row_of(&shift_nm, count, row),
+            shift_reference_nm: of(&reference_nm, row),
+            marker_m: row_of(&marker_m, 2 * count, row).as_chunks().0.to_vec(),
+        };
+        let samples = time_s.iter().enumerate().map(sample).collect();
+        Ok(Self { run: Run::new(samples, count)? })
+    }
+
+    /// Time, s, (N,).
+    #[getter]
+    fn time_s(&self, py: Python<'_>) -> Py<PyArray1<f64>> {
+        self.column(py, |sample| sample.time_s)
+    }
+
+    /// Tension of the tendon at the base, N, (N,).
+    #[getter]
+    fn tension_base_n(&self, py: Python<'_>) -> Option<Py<PyArray1<f64>>> {
+        self.run.has_tension().then(|| self.column(py, |sample| sample.tension_base_n))
+    }
+
+    /// Wavelength shift of the grating in each segment, nm, (N, disks).
+    #[getter]
+    fn shift_nm(&self, py: Python<'_>) -> Outcome<Option<Py<PyArray2<f64>>>> {
+        let all = || self.run.samples().iter().flat_map(|sample| &sample.shift_nm).copied().collect();
+        self.run.has_shifts().then(|| fixed_rows(py, all(), self.run.disk_count())).transpose()
+    }
+
+    /// Shift of the grating without load, nm, (N,).
+    #[getter]
+    fn shift_reference_nm(&self, py: Python<'_>) -> Option<Py<PyArray1<f64>>> {
+        self.run.has_reference().then(|| self.column(py, |sample| sample.shift_reference_nm))
+    }
+
+    /// Centre of each disk in the base frame, m, (N, disks, 2).
+    #[getter]
+    fn marker_m(&self, py: Python<'_>) -> Outcome<Option<Py<PyArrayDyn<f64>>>> {
+        let all = || self.run.samples().iter().flat_map(|sample| sample.marker_m.as_flattened()).copied().collect();
+        let shape = [self.run.samples().len(), self.run.disk_count(), 2];
+        self.run.has_markers().then(|| array(py, all(), &shape)).transpose()
+    }
+
+    fn __len__(&self) -> usize {
+        self.run.samples().len()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<TendonRun of {} samples>", self.run.samples().len())
+    }
+}
+
+impl TendonRun {
+    fn column(&self, py: Python<'_>, of: fn(&RunSample) -> f64) -> Py<PyArray1<f64>> {
+        fixed(py, self.run.samples().iter().map(of).collect())
+    }
+}
+
+/// Reads a run: CSV, or MCAP with a message for each sample. What is out of the ordinary in the file is a LogWarning.
+///
+/// The columns are `time_s`, `tension_base_n`, `shift_1_nm` …, `shift_reference_nm`, `marker_1_x_m`, `marker_1_y_m` …; any group but the time may be missing.
+#[pyfunction]
+pub fn continuum_read_run(py: Python<'_>, path: PathBuf, manipulator: &Manipulator) -> Outcome<TendonRun> {
+    let count = manipulator.file.params().disk_count();
+    let table = py.detach(|| NumberTable::read(&path, &columns::of_run(count)))?;
+    log::warn(py, &table.warnings)?;
+    Ok(TendonRun { run: Run::from_columns(&table.columns, count)? })
+}
+
+/// Reads load steps for `calibrate`: loads, N, (N,), and shifts, nm, (N, disks), the temperature taken off where the file has
+/// `shift_reference_nm` and the manipulator the wavelengths. The columns are `load_g` or `load_n`, `shift_1_nm` …
+#[pyfunction]
+#[expect(clippy::type_complexity, reason = "a pair of arrays")]
+pub fn continuum_read_loads(
+    py: Python<'_>,
+    path: PathBuf,
+    manipulator: &Manipulator,
+) -> Outcome<(Py<PyArray1<f64>>, Py<PyArray2<f64>>)> {
+    let count = manipulator.file.params().disk_count();
+    let table = py.detach(|| NumberTable::read(&path, &columns::of_calibration(count)))?;
+    log::warn(py, &table.warnings)?;
+    let gratings = Gratings::from_file(&manipulator.file)?;
+    let steps = load_steps(&table.columns, count, gratings.as_ref().and_then(Gratings::wavelengths_nm))?;
+    let shift_nm = steps.iter().flat_map(|step| &step.shift_nm).copied().collect();
+    Ok((fixed(py, steps.iter().map(|step| step.load_n).collect()), fixed_rows(py, shift_nm, count)?))
+}
