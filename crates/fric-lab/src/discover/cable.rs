@@ -26,6 +26,9 @@ use crate::replay::Deviation;
 /// What is left of a gap when its cause is known is not worth a further name below this share.
 const REMAINDER: f64 = 0.02;
 
+/// No model is believed to less than this share of the tension, however little noise there is.
+const BELIEVED_RATIO: f64 = 1e-5;
+
 /// Looks at one cable.
 pub fn discover_cable(record: &CableRecord<'_>, progress: &Progress) -> CableDiscovery {
     let stop = progress.stop_flag();
@@ -119,6 +122,8 @@ struct Case<'a> {
 
 /// One look at it.
 struct Outcome {
+    /// The samples that it was of.
+    counts: Vec<bool>,
     base: Trial,
     naming: Naming,
     noise_n: f64,
@@ -146,10 +151,11 @@ impl<'a> Case<'a> {
         let bench = self.bench(counts);
         let base = bench.try_one(start);
         let residual_n = bench.residuals_n(&base.values);
-        let noise_n = white_noise(&residual_n).unwrap_or(0.0);
+        let least_n = BELIEVED_RATIO * self.scale(&base, 0.0).tension_n;
+        let noise_n = white_noise(&residual_n).unwrap_or(0.0).max(least_n);
         let naming = Search::new(&bench, noise_n, self.scale(&base, noise_n), &base).run();
         let rest_n = bench.residuals_n(&naming.model.values);
-        let noise_n = white_noise(&rest_n).unwrap_or(noise_n);
+        let noise_n = white_noise(&rest_n).unwrap_or(0.0).max(least_n);
         let excess = self.excess(&rest_n, noise_n);
         let (share, before) = (excess.share(), self.excess(&residual_n, noise_n).share());
         let is_small = share <= WORTH.max(REMAINDER * if naming.named.is_empty() { 0.0 } else { before });
@@ -157,6 +163,7 @@ impl<'a> Case<'a> {
         let stretch = if is_small { None } else { stretch_of_cable(&excess, conditions) };
         let is_wander = !is_small && stretch.is_none() && is_wander(&excess, &rest_places);
         Outcome {
+            counts: counts.to_vec(),
             base,
             naming,
             noise_n,
@@ -223,10 +230,10 @@ impl<'a> Case<'a> {
         let model = |trial: &Trial| Model {
             values: trial.values,
             fitted: trial.free.clone(),
-            covariance: self.covariance(counts, trial),
+            covariance: self.covariance(&outcome.counts, trial),
             held_out_n: held_out_of(&trial.values),
         };
-        let bench = self.bench(counts);
+        let bench = self.bench(&outcome.counts);
         let search = Search::new(&bench, *noise_n, self.scale(base, *noise_n), base);
         let findings = naming.named.iter().zip(naming.ladder.iter().skip(1));
         let findings: Vec<Finding> =
@@ -243,7 +250,7 @@ impl<'a> Case<'a> {
             .collect();
         tried.sort_by(|one, other| one.delta_bic.total_cmp(&other.delta_bic));
         let after = model(&naming.model);
-        let clean_n = bench.residuals_n(&base.values);
+        let clean_n = self.bench(counts).residuals_n(&base.values);
         let places = self.excess(&clean_n, *noise_n).concentrations(conditions);
         let places = if self.excess(&clean_n, *noise_n).share() > WORTH { places } else { Vec::new() };
         let is_foreign = !foreign.faults.is_empty() || !foreign.hum.is_empty() || foreign.stretch.is_some();

@@ -17,5 +17,5 @@ pub fn inflation(bench: &Workbench<'_>, model: &Trial, of: &[Parameter]) -> f64 
     let places = model.free.iter().enumerate().filter(|(_, parameter)| of.contains(parameter));
     places
         .map(|(place, _)| covariance[(place, place)] / (variance * inverse[(place, place)]))
-        .fold(1.0, |most, ratio| if ratio.is_finite() { most.max(ratio) } else { most })
+        .fold(1.0, |most, ratio| if ratio.is_finite() { most.max(ratio) } else { f64::INFINITY })
 }

@@ -109,7 +109,7 @@ impl<'b, 'a> Search<'b, 'a> {
     pub fn delta_bic(&self, from: &Trial, to: &Trial, inflation: f64) -> f64 {
         #[expect(clippy::cast_precision_loss, reason = "counts")]
         let (count, more) = (self.bench.count(false) as f64 / inflation, to.free.len() as f64 - from.free.len() as f64);
-        count * (to.training / from.training).ln() + more * count.ln()
+        delta_bic(count, to.training / from.training, more)
     }
 
     /// Mean square above the noise of the samples held out, as a share of the noise's.
@@ -302,6 +302,12 @@ impl<'b, 'a> Search<'b, 'a> {
     }
 }
 
+/// Difference of Schwarz's criterion for so many samples that do not depend on each other, a ratio of the sums of squares, and so many
+/// more parameters; of less than two samples there is no evidence.
+fn delta_bic(count: f64, squares_ratio: f64, more: f64) -> f64 {
+    if count < 2.0 { f64::INFINITY } else { count * squares_ratio.ln() + more * count.ln() }
+}
+
 /// The best on the samples learned from.
 fn best(tried: impl IntoIterator<Item = (&'static EffectRow, Trial)>) -> Option<(&'static EffectRow, Trial)> {
     tried.into_iter().min_by(|(_, one), (_, other)| one.training.total_cmp(&other.training))
@@ -315,4 +321,16 @@ fn kinds(rows: &[&'static EffectRow]) -> Kinds {
     let mut kinds: Kinds = rows.iter().map(|row| row.kind).collect();
     kinds.sort_unstable();
     kinds
+}
+
+#[cfg(test)]
+mod tests {
+    use super::delta_bic;
+
+    #[test]
+    fn what_nothing_is_known_of_is_no_evidence() {
+        let few = delta_bic(10.0, 0.5, 1.0);
+        assert!((few - (10.0 * 0.5_f64.ln() + 10.0_f64.ln())).abs() < 1e-12);
+        assert!(delta_bic(0.0, 0.5, 1.0) > 0.0 && delta_bic(1.5, 0.01, 1.0) > 0.0);
+    }
 }

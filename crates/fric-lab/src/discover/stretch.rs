@@ -101,7 +101,7 @@ fn best_of(blocks: &[(bool, Sums)], flip: impl Fn(usize) -> f64) -> Option<Found
             }
         }
     }
-    let (_, from, to) = best?;
+    let (_, from, to) = best.filter(|_| samples(0) > 0.0 && samples(1) > 0.0)?;
     let ((sum, count), (other_sum, other_count)) = (within(0, from, to), within(1, from, to));
     let mean_n = if count > 0.0 { sum / count } else { 0.0 };
     let gain = (2.0 * other_sum * mean_n - other_count * mean_n * mean_n) * (samples(0) + samples(1)) / samples(1);
