@@ -1,12 +1,12 @@
 //! A change of parameters against two compensators that know nothing of it.
 
 use fric_core::robot::{CableOptions, FrictionOptions, MonitorOptions, PlatformOptions, Presliding, PulleyOptions};
-use fric_core::{AnyCompensator, CableParams, RobotParams, SendError};
+use fric_core::{AnyCompensator, CableParams, CableStatus, RobotParams, SendError};
 use fric_core::{
     CableInput, CableOutput, Compensator, CycleInput, CycleOutput, Pose, TunableCompensator, Wrench, parameter_exchange,
 };
 
-use crate::support::{compensator, corner_cable};
+use crate::support::{FRICTION, compensator, corner_cable, smooth_input};
 
 const CABLES: usize = 5;
 const BLEND_CYCLES: u32 = 40;
@@ -179,5 +179,42 @@ fn parameters_arrive_from_another_thread() {
     for blend_s in [f64::NAN, -1.0, 1e4] {
         let refused = with_robot(0.06, |robot| sender.send(robot, blend_s)).unwrap_err();
         assert!(refused.to_string().starts_with("`blend_s` is "), "{refused}");
+    }
+}
+
+/// Of two cables with a slip limit the second loses its own.
+#[test]
+fn a_slip_limit_that_is_dropped_is_gone() {
+    let robot = |limits: [Option<f64>; 2]| {
+        let cables: Vec<_> = (0..2)
+            .map(|index| CableOptions {
+                traction_mu: limits[index],
+                friction: FrictionOptions { mu: 0.05, sigma_n_per_m: Some(1e4), ..FRICTION },
+                ..corner_cable(index, Presliding::PerPulley)
+            })
+            .collect();
+        compensator::<2>(&cables, MONITOR)
+    };
+    let slipping = Some(0.01);
+    for with_pose in [true, false] {
+        let mut tunable = TunableCompensator::new(robot([slipping; 2]));
+        let mut free = robot([slipping, None]);
+        let mut output = CycleOutput::default();
+        let mut slipped = false;
+        for cycle in 0..2500 {
+            let mut input = smooth_input::<2>(cycle);
+            if cycle == 400 {
+                tunable.change(&free, 10).unwrap();
+            }
+            if cycle >= 400 && !with_pose {
+                input.pose = None;
+            }
+            tunable.step_into(&input, &mut output);
+            let expected = free.step(&input).cables[1];
+            slipped |= cycle < 400 && output.cables[1].status.contains(CableStatus::SLIP);
+            let gap_n = (output.cables[1].force_at_platform_n - expected.force_at_platform_n).abs();
+            assert!(cycle < 2300 || gap_n < 1e-9, "cycle {cycle}: {gap_n} N");
+        }
+        assert!(slipped);
     }
 }

@@ -2,6 +2,7 @@
 
 use super::Compensator;
 use crate::lanes::{LANES, LanesMask};
+use crate::places::NO_SLIP;
 use crate::robot::{ParamError, ParamProblem};
 
 impl<const CABLES: usize> Compensator<CABLES> {
@@ -29,8 +30,23 @@ impl<const CABLES: usize> Compensator<CABLES> {
         Ok(())
     }
 
-    /// Everything of `next` but its state.
+    /// Everything of `next` but its state, which is made to go with them.
     pub(crate) fn take_parameters(&mut self, next: &Self) {
+        self.hand_over(next);
+        self.assign_parameters(next);
+    }
+
+    /// The state as the parameters of `next` can start from it.
+    fn hand_over(&mut self, next: &Self) {
+        let columns = &mut self.state.columns;
+        for (ratio, traction_mu) in columns.pose_traction_ratio.iter_mut().zip(&next.params.traction_mu) {
+            if *traction_mu <= 0.0 {
+                *ratio = NO_SLIP;
+            }
+        }
+    }
+
+    fn assign_parameters(&mut self, next: &Self) {
         // Named one by one, so that none that is added can be forgotten; assigned one by one, so that none passes the stack.
         let Self {
             params,
@@ -59,7 +75,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
 
     /// Parameters and state of `other`.
     pub(crate) fn copy_from(&mut self, other: &Self) {
-        self.take_parameters(other);
+        self.assign_parameters(other);
         self.state = other.state;
     }
 }
