@@ -21,7 +21,7 @@ pub struct ParamColumns<const CABLES: usize> {
     offset_n: [f64; CABLES],
     sensor_cos: [f64; CABLES],
     frictionless_gain: [f64; CABLES],
-    lumped: [f64; CABLES],
+    pub lumped: [f64; CABLES],
     greatest_mu: [f64; CABLES],
     effects: [[f64; CABLES]; EFFECT_PARAMETER_COUNT],
     wrap_factor: [[f64; CABLES]; PLACES],
@@ -157,6 +157,20 @@ impl<const CABLES: usize> ParamColumns<CABLES> {
     #[inline(always)]
     pub fn platform_m(&self, block: usize) -> [Lanes; 3] {
         self.platform_m.each_ref().map(|column| Lanes::load(column, block))
+    }
+
+    /// How the friction stored at a place tells at the platform, 1: that of the sensor pulley is seen by the sensor, too
+    /// (\[P\] 11).
+    pub fn platform_share(&self, cable: usize, place: usize) -> f64 {
+        let at = |column: &[f64; CABLES]| column.get(cable).copied().unwrap_or(0.0);
+        if place == 0 { -at(&self.sensor_cos) * at(&self.frictionless_gain) } else { 1.0 }
+    }
+
+    /// `2 sin(α/2)` of the wrap at a place, with `by_pose` that of a wrap which follows the pose.
+    pub fn wrap_factor_of(&self, cable: usize, place: usize, place_count: usize, by_pose: f64) -> f64 {
+        let at = |column: &[f64; CABLES]| column.get(cable).copied().unwrap_or(0.0);
+        let is_posed = place + 1 == place_count && at(&self.follows_pose) > 0.0;
+        if is_posed { by_pose } else { self.wrap_factor.get(place).map_or(0.0, at) }
     }
 
     /// Which cables of a block have an attachment.
