@@ -19,7 +19,8 @@ impl<const CABLES: usize> Compensator<CABLES> {
     /// robot, and what is stored at a pulley of one has no place in the other.
     pub fn check_exchange(&self, next: &Self) -> Result<(), ParamError> {
         if self.cycle_s.to_bits() != next.cycle_s.to_bits() {
-            return Err(ParamError::conflict("cycle_s", "cannot change while running"));
+            let problem = ParamProblem::Fixed { value: next.cycle_s, running: self.cycle_s };
+            return Err(ParamError { key: "cycle_s", pulley: None, effect: None, problem });
         }
         if self.cable_count != next.cable_count {
             let problem = ParamProblem::Count { count: next.cable_count, min: self.cable_count, max: self.cable_count };
