@@ -4,7 +4,8 @@ PYTHON ?= python3
 VENV := .venv
 PIP := $(VENV)/bin/python -m pip --quiet --disable-pip-version-check
 
-# Where `make install` puts libfric; packages are built with DESTDIR. PROFILE=dev is what the tests install.
+# Where `make install` puts libfric: `PREFIX=$HOME/.local` needs no root, /usr/local does (`sudo --preserve-env=PATH make install
+# && sudo ldconfig`). Packages are built with DESTDIR. PROFILE=dev is what the tests install.
 PREFIX ?= /usr/local
 DESTDIR ?=
 PROFILE ?= release

@@ -13,8 +13,10 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <fric.hpp>
@@ -122,8 +124,10 @@ int main(int argc, char** argv) {
         fric::Compensator compensator = fric::Compensator::from_file(argv[1]);
         const std::vector<Row> rows = read_rows(argv[2], compensator);
         const double seconds = argc > 3 ? std::atof(argv[3]) : 60.0;
-        const auto cycle_count = static_cast<std::size_t>(seconds / compensator.cycle_s());
-        if (!(seconds > 0.0 && seconds < 1e6) || cycle_count == 0 || rows.empty()) {
+        // Checked before it becomes a whole number: NaN and what does not fit would be undefined.
+        const bool in_range = seconds >= compensator.cycle_s() && seconds < 1e6;
+        const std::size_t cycle_count = in_range ? static_cast<std::size_t>(seconds / compensator.cycle_s()) : 0;
+        if (cycle_count == 0 || rows.empty()) {
             std::fprintf(stderr, "error: there is no cycle to run: give SECONDS and a file with rows\n");
             return 2;
         }
@@ -132,7 +136,7 @@ int main(int argc, char** argv) {
         loop.wake_up.nanos.assign(cycle_count, 0);
         loop.step.nanos.assign(cycle_count, 0);
         become_real_time();
-        if (!loop.run(compensator, rows, output, static_cast<std::int64_t>(compensator.cycle_s() * 1e9))) {
+        if (!loop.run(compensator, rows, output, std::llround(compensator.cycle_s() * 1e9))) {
             std::fprintf(stderr, "error: a buffer has the wrong size\n");
             return 1;
         }

@@ -6,6 +6,7 @@
 #include <exception>
 #include <fric.hpp>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -26,7 +27,7 @@ static bool run_cycles(fric::Compensator& compensator, const std::vector<Row>& r
 static void write(const std::string& path, const fric::Compensator& compensator, const std::vector<Row>& rows,
                   const std::vector<fric::Output>& outputs) {
     const auto close = [](std::FILE* file) { std::fclose(file); };
-    const std::unique_ptr<std::FILE, decltype(close)> file(std::fopen(path.c_str(), "w"), close);
+    std::unique_ptr<std::FILE, decltype(close)> file(std::fopen(path.c_str(), "w"), close);
     if (!file) {
         throw std::runtime_error(path + ": cannot be written");
     }
@@ -57,6 +58,11 @@ static void write(const std::string& path, const fric::Compensator& compensator,
         } else {
             std::fputs(",,,,,,\n", file.get());
         }
+    }
+    // Closing writes what is left: a full disk may show no sooner.
+    const bool is_written = std::ferror(file.get()) == 0;
+    if (std::fclose(file.release()) != 0 || !is_written) {
+        throw std::runtime_error(path + ": cannot be written");
     }
 }
 

@@ -84,7 +84,12 @@ fn what_is_refused_is_told() {
         assert!(outcome == expected && text.contains(word), "{outcome:?} {text}");
     };
     is_refused(&ROBOT.replace("mu = 0.02", "mu = 2.0"), 0.1, Outcome::RobotFile, "`mu` is 2; allowed is 0 to 0.9");
-    is_refused(&ROBOT.replace("cycle_s = 0.001", "cycle_s = 0.002"), 0.1, Outcome::RobotFile, "`cycle_s`");
+    is_refused(
+        &ROBOT.replace("cycle_s = 0.001", "cycle_s = 0.002"),
+        0.1,
+        Outcome::RobotFile,
+        "`cycle_s` is 0.002; in the robot that runs it is 0.001",
+    );
     is_refused(ROBOT, f64::NAN, Outcome::RobotFile, "`blend_s` is NaN");
     assert_eq!(change(handle.0, &rougher(), 0.01).0, Outcome::Ok);
     is_refused(&rougher(), 0.1, Outcome::Busy, "not been taken over yet");

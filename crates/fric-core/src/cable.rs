@@ -127,7 +127,7 @@ pub const MEMORY: usize = 2;
 /// Stands for a number that is not known yet; equal to itself, as a snapshot has to be.
 pub const UNKNOWN: f64 = f64::INFINITY;
 /// Middle of the play of the tension, of `cable_elasticity`, N.
-const TENSION: usize = 0;
+pub(crate) const TENSION: usize = 0;
 /// Low pass of the speed, of `pulley_inertia`, m/s.
 pub(crate) const SPEED: usize = 1;
 

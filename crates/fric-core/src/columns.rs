@@ -21,7 +21,7 @@ pub struct ParamColumns<const CABLES: usize> {
     offset_n: [f64; CABLES],
     sensor_cos: [f64; CABLES],
     frictionless_gain: [f64; CABLES],
-    lumped: [f64; CABLES],
+    pub lumped: [f64; CABLES],
     greatest_mu: [f64; CABLES],
     effects: [[f64; CABLES]; EFFECT_PARAMETER_COUNT],
     wrap_factor: [[f64; CABLES]; PLACES],
@@ -159,6 +159,20 @@ impl<const CABLES: usize> ParamColumns<CABLES> {
         self.platform_m.each_ref().map(|column| Lanes::load(column, block))
     }
 
+    /// How the friction stored at a place tells at the platform, 1: that of the sensor pulley is seen by the sensor, too
+    /// (\[P\] 11).
+    pub fn platform_share(&self, cable: usize, place: usize) -> f64 {
+        let at = |column: &[f64; CABLES]| column.get(cable).copied().unwrap_or(0.0);
+        if place == 0 { -at(&self.sensor_cos) * at(&self.frictionless_gain) } else { 1.0 }
+    }
+
+    /// `2 sin(α/2)` of the wrap at a place, with `by_pose` that of a wrap which follows the pose.
+    pub fn wrap_factor_of(&self, cable: usize, place: usize, place_count: usize, by_pose: f64) -> f64 {
+        let at = |column: &[f64; CABLES]| column.get(cable).copied().unwrap_or(0.0);
+        let is_posed = place + 1 == place_count && at(&self.follows_pose) > 0.0;
+        if is_posed { by_pose } else { self.wrap_factor.get(place).map_or(0.0, at) }
+    }
+
     /// Which cables of a block have an attachment.
     #[inline(always)]
     pub fn with_geometry(&self, block: usize) -> LanesMask {
@@ -173,7 +187,7 @@ impl<const CABLES: usize> ParamColumns<CABLES> {
 }
 
 /// What a cycle leaves for the next one. Plain numbers: copying it is the snapshot.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct StateColumns<const CABLES: usize> {
     /// Last good sensor force, N.
     pub sensor_force_n: [f64; CABLES],
@@ -203,6 +217,47 @@ pub struct StateColumns<const CABLES: usize> {
     pub delayed_speed_m_per_s: [DelayLine; CABLES],
     /// How far the delayed motion lags behind, m.
     pub lag_m: [f64; CABLES],
+}
+
+impl<const CABLES: usize> PartialEq for StateColumns<CABLES> {
+    /// Lengths that are not known yet are equal to each other.
+    fn eq(&self, other: &Self) -> bool {
+        // Named one by one, so that none that is added can be forgotten.
+        let Self {
+            sensor_force_n,
+            frozen_count,
+            length_m,
+            frozen_travel_m,
+            friction_n,
+            lumped_friction_n,
+            pulley_friction_n,
+            memory,
+            pose_wrap_factor,
+            pose_traction_ratio,
+            direction_known,
+            direction,
+            moment_arm_m,
+            delayed_displacement_m,
+            delayed_speed_m_per_s,
+            lag_m,
+        } = self;
+        length_m.iter().zip(&other.length_m).all(|(one, other)| one.to_bits() == other.to_bits())
+            && *sensor_force_n == other.sensor_force_n
+            && *frozen_count == other.frozen_count
+            && *frozen_travel_m == other.frozen_travel_m
+            && *friction_n == other.friction_n
+            && *lumped_friction_n == other.lumped_friction_n
+            && *pulley_friction_n == other.pulley_friction_n
+            && *memory == other.memory
+            && *pose_wrap_factor == other.pose_wrap_factor
+            && *pose_traction_ratio == other.pose_traction_ratio
+            && *direction_known == other.direction_known
+            && *direction == other.direction
+            && *moment_arm_m == other.moment_arm_m
+            && *delayed_displacement_m == other.delayed_displacement_m
+            && *delayed_speed_m_per_s == other.delayed_speed_m_per_s
+            && *lag_m == other.lag_m
+    }
 }
 
 impl<const CABLES: usize> StateColumns<CABLES> {

@@ -13,7 +13,7 @@ use crate::cycle::{CableInput, CableOutput, CycleInput, CycleOutput};
 use crate::effects::time_delay::{self, Delay, DelayLine};
 use crate::lanes::{LANES, Lanes, LanesMask};
 use crate::parameters::ParameterRow;
-use crate::places::{PLACES, Places};
+use crate::places::{NO_SLIP, PLACES, Places};
 use crate::platform::{self, Pose, Wrench};
 use crate::pulley::traction_ratio;
 use crate::robot::{MAX_PULLEYS, ParamError, ParamProblem, RobotParams};
@@ -287,7 +287,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
                 *ratio = traction_ratio(mu, wrap_rad);
             }
             let limited = Lanes::splat(0.0).lt(Lanes::new(traction_mu));
-            let ratio = Lanes::select(limited, Lanes::new(ratio), Lanes::load(&columns.pose_traction_ratio, block));
+            let ratio = Lanes::select(limited, Lanes::new(ratio), Lanes::splat(NO_SLIP));
             keep(&mut columns.pose_traction_ratio, ratio);
         }
         PoseFlags { missing: 0, unreachable: with_geometry.and(exit.reachable.not()).bits() }

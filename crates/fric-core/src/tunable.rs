@@ -17,7 +17,10 @@ use crate::robot::ParamError;
 /// the larger of the changes of old and new, and an N-th of their difference.
 ///
 /// What the new parameters cannot know of the past they learn as any compensator does, in a few presliding distances
-/// f_c/σ of motion: the friction that is stored is the one that the old parameters have stored.
+/// f_c/σ of motion: the friction that is stored is the one that the old parameters have stored. Where a cable changes from
+/// `per_pulley` to `lumped`, it is summed up as it tells at the platform; the other way it is shared out to the pulleys in the
+/// proportion of their wrap factors `2 sin(α/2)`. Effects that the old parameters do not have start as in the first cycle: a delay with
+/// the cable at rest in its place until the delay is over, inertia without acceleration.
 #[derive(Clone, Debug)]
 pub struct TunableCompensator<const CABLES: usize> {
     running: Compensator<CABLES>,

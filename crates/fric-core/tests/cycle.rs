@@ -4,7 +4,7 @@ use fric_core::robot::{CableOptions, FrictionOptions, GeometryOptions, Preslidin
 use fric_core::{CableInput, Compensator, CycleInput, CycleOutput, Pose};
 
 use crate::oracle::{Cable, Effects, Geometry, Memory, outside_wrench};
-use crate::support::{Random, UNMONITORED, assert_near, bits, compensator, corner_robot, smooth_input};
+use crate::support::{Random, UNMONITORED, assert_near, bits, compensator, corner_cable, corner_robot, smooth_input};
 
 /// A cable with drawn parameters, as options and as oracle.
 fn draw(
@@ -177,6 +177,23 @@ fn run<const CABLES: usize>(
     cycles: std::ops::Range<usize>,
 ) -> Vec<CycleOutput<CABLES>> {
     cycles.map(|cycle| compensator.step(&smooth_input(cycle))).collect()
+}
+
+#[test]
+fn snapshots_of_a_robot_with_room_for_more_cables_compare() {
+    let cables: Vec<_> = (0..3).map(|index| corner_cable(index, Presliding::PerPulley)).collect();
+    let mut robot = compensator::<8>(&cables, UNMONITORED);
+    let start = robot.snapshot();
+    assert_eq!(robot.snapshot(), start);
+    run(&mut robot, 0..100);
+    let snapshot = robot.snapshot();
+    assert_ne!(snapshot, start);
+    run(&mut robot, 100..200);
+    assert_ne!(robot.snapshot(), snapshot);
+    robot.restore(&snapshot);
+    assert_eq!(robot.snapshot(), snapshot);
+    robot.reset();
+    assert_eq!(robot.snapshot(), start);
 }
 
 #[test]

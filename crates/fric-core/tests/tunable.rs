@@ -1,12 +1,13 @@
 //! A change of parameters against two compensators that know nothing of it.
 
+use fric_core::effects::{CATALOGUE, EffectParams};
 use fric_core::robot::{CableOptions, FrictionOptions, MonitorOptions, PlatformOptions, Presliding, PulleyOptions};
-use fric_core::{AnyCompensator, CableParams, RobotParams, SendError};
+use fric_core::{AnyCompensator, CableParams, CableStatus, RobotParams, SendError};
 use fric_core::{
     CableInput, CableOutput, Compensator, CycleInput, CycleOutput, Pose, TunableCompensator, Wrench, parameter_exchange,
 };
 
-use crate::support::{compensator, corner_cable};
+use crate::support::{FRICTION, compensator, corner_cable, smooth_input};
 
 const CABLES: usize = 5;
 const BLEND_CYCLES: u32 = 40;
@@ -179,5 +180,216 @@ fn parameters_arrive_from_another_thread() {
     for blend_s in [f64::NAN, -1.0, 1e4] {
         let refused = with_robot(0.06, |robot| sender.send(robot, blend_s)).unwrap_err();
         assert!(refused.to_string().starts_with("`blend_s` is "), "{refused}");
+    }
+}
+
+/// Of two cables with a slip limit the second loses its own.
+#[test]
+fn a_slip_limit_that_is_dropped_is_gone() {
+    let robot = |limits: [Option<f64>; 2]| {
+        let cables: Vec<_> = (0..2)
+            .map(|index| CableOptions {
+                traction_mu: limits[index],
+                friction: FrictionOptions { mu: 0.05, sigma_n_per_m: Some(1e4), ..FRICTION },
+                ..corner_cable(index, Presliding::PerPulley)
+            })
+            .collect();
+        compensator::<2>(&cables, MONITOR)
+    };
+    let slipping = Some(0.01);
+    for with_pose in [true, false] {
+        let mut tunable = TunableCompensator::new(robot([slipping; 2]));
+        let mut free = robot([slipping, None]);
+        let mut output = CycleOutput::default();
+        let mut slipped = false;
+        for cycle in 0..2500 {
+            let mut input = smooth_input::<2>(cycle);
+            if cycle == 400 {
+                tunable.change(&free, 10).unwrap();
+            }
+            if cycle >= 400 && !with_pose {
+                input.pose = None;
+            }
+            tunable.step_into(&input, &mut output);
+            let expected = free.step(&input).cables[1];
+            slipped |= cycle < 400 && output.cables[1].status.contains(CableStatus::SLIP);
+            let gap_n = (output.cables[1].force_at_platform_n - expected.force_at_platform_n).abs();
+            assert!(cycle < 2300 || gap_n < 1e-9, "cycle {cycle}: {gap_n} N");
+        }
+        assert!(slipped);
+    }
+}
+
+const FORMS: [Presliding; 2] = [Presliding::PerPulley, Presliding::Lumped];
+
+/// Three cables with some effects, each `(kind, key, value)`.
+#[expect(clippy::unwrap_used, reason = "a test")]
+fn robot_with(presliding: Presliding, effects: &[(&str, &str, f64)]) -> Compensator<3> {
+    let mut params = EffectParams::NEUTRAL;
+    for (kind, key, value) in effects {
+        params.set(kind, key, *value).unwrap();
+    }
+    let friction = FrictionOptions { sigma_n_per_m: Some(5000.0), ..FRICTION };
+    let cables: Vec<_> =
+        (0..3).map(|index| CableOptions { friction, effects: params, ..corner_cable(index, presliding) }).collect();
+    compensator(&cables, MONITOR)
+}
+
+/// To and fro within a quarter of a second, so that what is stored is soon forgotten.
+fn quick_input(cycle: u32) -> CycleInput<3> {
+    let t = f64::from(cycle) * 1e-3;
+    let cables = std::array::from_fn(|cable| {
+        let rate = [21.0, 23.0, 26.0][cable];
+        CableInput {
+            sensor_force_n: 20.0 + (3.0 * t).sin(),
+            length_m: 0.02 * (rate * t).cos(),
+            speed_m_per_s: -0.02 * rate * (rate * t).sin(),
+        }
+    });
+    CycleInput { cables, pose: Pose::from_parts([0.0; 3], [0.0, 0.0, 0.0, 1.0]), ..CycleInput::default() }
+}
+
+/// Greatest difference of a force at the platform, N.
+fn gap_n(one: &CycleOutput<3>, other: &CycleOutput<3>) -> f64 {
+    let forces = one.cables.iter().zip(&other.cables);
+    forces.map(|(one, other)| (one.force_at_platform_n - other.force_at_platform_n).abs()).fold(0.0, f64::max)
+}
+
+/// Runs a robot whose parameters change at some cycles; gives the outputs.
+#[expect(clippy::unwrap_used, reason = "a test")]
+fn run_with_changes(
+    start: Compensator<3>,
+    changes: &[(u32, &Compensator<3>)],
+    cycles: u32,
+    blend_cycles: u32,
+) -> Vec<CycleOutput<3>> {
+    let mut tunable = TunableCompensator::new(start);
+    (0..cycles)
+        .map(|cycle| {
+            if let Some((_, next)) = changes.iter().find(|(at, _)| *at == cycle) {
+                tunable.change(next, blend_cycles).unwrap();
+            }
+            let mut output = CycleOutput::default();
+            tunable.step_into(&quick_input(cycle), &mut output);
+            output
+        })
+        .collect()
+}
+
+/// Each row of the catalogue, with values that tell.
+const EFFECTS: &[&[(&str, &str, f64)]] = &[
+    &[("stribeck", "ratio", 0.5)],
+    &[("direction_asymmetry", "coulomb_ratio", 0.3)],
+    &[("bearing_drag", "drag_n", 0.1)],
+    &[("load_nonlinearity", "exponent", 0.8)],
+    &[("friction_drift", "rate_per_s", 0.05)],
+    &[("presliding_shape", "exponent", 1.3)],
+    &[("sensor_gain", "gain", 1.05)],
+    &[("sensor_offset", "offset_n", 0.3)],
+    &[("sensor_drift", "rate_n_per_s", 0.05)],
+    &[("time_delay", "delay_s", 0.02)],
+    &[("time_delay", "delay_s", -0.003)],
+    &[("pulley_inertia", "mass_kg", 0.1)],
+    &[("pulley_eccentricity", "sin_ratio", 0.02)],
+    &[("cable_elasticity", "compliance_m_per_n", 1e-6)],
+    &[("time_delay", "delay_s", 0.02), ("pulley_eccentricity", "sin_ratio", 0.02), ("pulley_inertia", "mass_kg", 0.1)],
+];
+
+/// On, off and on again is off and on: nothing of the first time comes back.
+#[test]
+fn each_effect_switched_on_again_knows_nothing_of_the_first_time() {
+    assert!(CATALOGUE.iter().all(|row| EFFECTS.iter().any(|effects| effects[0].0 == row.kind)));
+    for presliding in FORMS {
+        for effects in EFFECTS {
+            let (without, with) = (robot_with(presliding, &[]), robot_with(presliding, effects));
+            let changes = [(333, &without), (2000, &with)];
+            let again = run_with_changes(with.clone(), &changes, 2500, 10);
+            let once = run_with_changes(without.clone(), &changes, 2500, 10);
+            for cycle in 1900..2500 {
+                let gap_n = gap_n(&again[cycle], &once[cycle]);
+                assert!(gap_n < 1e-9, "{effects:?} {presliding:?}, cycle {cycle}: {gap_n} N");
+            }
+            assert!(gap_n(&again[300], &once[300]) > 1e-5, "{effects:?} makes no difference");
+        }
+    }
+}
+
+/// A blend of one cycle is a change at once: what then changes is what the effect is good for, and no leftover.
+#[test]
+fn inertia_switched_on_again_gives_no_jump() {
+    for presliding in FORMS {
+        let (without, with) =
+            (robot_with(presliding, &[]), robot_with(presliding, &[("pulley_inertia", "mass_kg", 0.1)]));
+        // Fast one way, then fast the other way.
+        let outputs = run_with_changes(with.clone(), &[(200, &without), (350, &with)], 400, 1);
+        let steepest_n = (1..400).filter(|at| ![200, 350].contains(at)).map(|at| gap_n(&outputs[at], &outputs[at - 1]));
+        let steepest_n = steepest_n.fold(0.0, f64::max);
+        let jump_n = gap_n(&outputs[350], &outputs[349]);
+        assert!(jump_n < steepest_n, "{jump_n} N where else {steepest_n} N");
+    }
+}
+
+/// The friction stored goes from one form to the other with the same force at the platform, and both ways back.
+#[test]
+fn the_form_of_presliding_changes_without_a_jump() {
+    for (first, second) in [(FORMS[0], FORMS[1]), (FORMS[1], FORMS[0])] {
+        let (start, other) = (robot_with(first, &[]), robot_with(second, &[]));
+        for at in [300, 411, 666] {
+            let (at_index, until) = (at as usize, at + 1500);
+            let outputs = run_with_changes(start.clone(), &[(at, &other)], until, 1);
+            let mut unchanged = start.clone();
+            let expected: Vec<_> = (0..=at).map(|cycle| unchanged.step(&quick_input(cycle))).collect();
+            let jump_n = gap_n(&outputs[at_index], &expected[at_index]);
+            assert!(jump_n < 0.05, "{first:?}, cycle {at}: {jump_n} N");
+            let mut built = other.clone();
+            let mut last = CycleOutput::default();
+            for cycle in 0..until {
+                built.step_into(&quick_input(cycle), &mut last);
+            }
+            assert!(gap_n(&outputs[at_index + 1499], &last) < 1e-9);
+        }
+        // At rest not even that.
+        let mut tunable = TunableCompensator::new(start.clone());
+        let mut output = CycleOutput::default();
+        let resting = |cycle: u32| {
+            let mut input = quick_input(cycle.min(300));
+            input.cables.iter_mut().for_each(|cable| cable.speed_m_per_s = 0.0);
+            input
+        };
+        for cycle in 0..310 {
+            tunable.step_into(&resting(cycle), &mut output);
+        }
+        for next in [&other, &start, &other] {
+            tunable.change(next, 1).unwrap();
+            let before = output;
+            tunable.step_into(&resting(310), &mut output);
+            assert!(gap_n(&output, &before) < 1e-12, "{} N", gap_n(&output, &before));
+        }
+    }
+}
+
+/// Where the motion is in its period does not depend on the delays that there were before.
+#[test]
+fn another_delay_leaves_no_lag_behind() {
+    let ripple = |delay_s| {
+        robot_with(
+            Presliding::PerPulley,
+            &[
+                ("time_delay", "delay_s", delay_s),
+                ("pulley_eccentricity", "sin_ratio", 0.02),
+                ("pulley_eccentricity", "period_m", 0.03),
+            ],
+        )
+    };
+    for [first_s, second_s, third_s] in [[0.01, 0.03, 0.03], [0.03, 0.01, 0.0105], [0.01, 0.0, 0.02], [0.0, 0.05, 0.01]]
+    {
+        let (second, third) = (ripple(second_s), ripple(third_s));
+        let outputs = run_with_changes(ripple(first_s), &[(300, &second), (450, &third)], 2500, 10);
+        let mut built = ripple(third_s);
+        for cycle in 0..2500_u32 {
+            let expected = built.step(&quick_input(cycle));
+            let gap_n = gap_n(&outputs[cycle as usize], &expected);
+            assert!(cycle < 2000 || gap_n < 1e-9, "{first_s} s to {third_s} s, cycle {cycle}: {gap_n} N");
+        }
     }
 }

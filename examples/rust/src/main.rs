@@ -85,12 +85,15 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
     let (robot, log, seconds) = match arguments.as_slice() {
         [robot, log] => (robot, log, 60.0),
         [robot, log, seconds] => (robot, log, seconds.parse::<f64>()?),
-        _ => return Err("usage: control_loop ROBOT.toml LOG.mcap [SECONDS]".into()),
+        _ => {
+            eprintln!("usage: control-loop ROBOT.toml LOG.mcap [SECONDS]");
+            return Ok(ExitCode::from(2));
+        }
     };
     let robot = RobotFile::read(robot.as_ref())?;
     let rows = read(&robot, log.into())?;
     let cycle_s = robot.params().cycle_s();
-    let (cycle_nanos, cycle_count) = ((cycle_s * 1e9) as i64, (seconds / cycle_s) as u64);
+    let (cycle_nanos, cycle_count) = ((cycle_s * 1e9).round() as i64, (seconds / cycle_s) as u64);
     if rows.is_empty() || cycle_count == 0 {
         return Err("there is no cycle to run: give SECONDS and a log with rows".into());
     }

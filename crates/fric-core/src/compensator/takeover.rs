@@ -1,8 +1,15 @@
 //! One compensator's parameters in the place of another's, for [`TunableCompensator`](crate::TunableCompensator).
 
 use super::Compensator;
+use crate::cable::{SPEED, TENSION, UNKNOWN};
+use crate::effects::time_delay::{self, DelayLine};
+use crate::effects::{cable_elasticity, pulley_inertia};
 use crate::lanes::{LANES, LanesMask};
+use crate::places::NO_SLIP;
 use crate::robot::{ParamError, ParamProblem};
+
+/// Shares of friction that cancel out further than this are none.
+const LEAST_OF_SIZE: f64 = 1e-3;
 
 impl<const CABLES: usize> Compensator<CABLES> {
     /// Whether the parameters of another compensator can take over while this one runs.
@@ -12,7 +19,8 @@ impl<const CABLES: usize> Compensator<CABLES> {
     /// robot, and what is stored at a pulley of one has no place in the other.
     pub fn check_exchange(&self, next: &Self) -> Result<(), ParamError> {
         if self.cycle_s.to_bits() != next.cycle_s.to_bits() {
-            return Err(ParamError::conflict("cycle_s", "cannot change while running"));
+            let problem = ParamProblem::Fixed { value: next.cycle_s, running: self.cycle_s };
+            return Err(ParamError { key: "cycle_s", pulley: None, effect: None, problem });
         }
         if self.cable_count != next.cable_count {
             let problem = ParamProblem::Count { count: next.cable_count, min: self.cable_count, max: self.cable_count };
@@ -29,8 +37,81 @@ impl<const CABLES: usize> Compensator<CABLES> {
         Ok(())
     }
 
-    /// Everything of `next` but its state.
+    /// Everything of `next` but its state, which is made to go with them.
     pub(crate) fn take_parameters(&mut self, next: &Self) {
+        self.hand_over(next);
+        self.assign_parameters(next);
+    }
+
+    /// The state as the parameters of `next` can start from it: whatever stands still while its effect, form or limit does not act
+    /// is as unknown as at the start, and friction that is stored in one form goes on in the other.
+    fn hand_over(&mut self, next: &Self) {
+        let [inertia, elasticity, delay] = [pulley_inertia::ACTS, cable_elasticity::ACTS, time_delay::ACTS]
+            .map(|effect| self.features.acting.has(effect) && next.features.acting.has(effect));
+        let columns = &mut self.state.columns;
+        for (place, acts) in [(SPEED, inertia), (TENSION, elasticity)] {
+            if let Some(memory) = columns.memory.get_mut(place).filter(|_| !acts) {
+                memory.fill(UNKNOWN);
+            }
+        }
+        if !delay {
+            columns.delayed_displacement_m.fill(DelayLine::EMPTY);
+            // The speed goes on as it is until the line knows it.
+            columns.delayed_speed_m_per_s.fill(DelayLine::UNFILLED);
+        }
+        let delays = self.params.delay.iter().zip(&next.params.delay);
+        let lines = columns.lag_m.iter_mut().zip(&columns.delayed_displacement_m);
+        for (cable, ((before, delay), (lag_m, line))) in delays.zip(lines).enumerate() {
+            if before != delay {
+                *lag_m = line.lag(*delay);
+                // Another delay is another speed, not an acceleration.
+                if let Some(speed_m_per_s) = columns.memory.get_mut(SPEED).and_then(|column| column.get_mut(cable)) {
+                    *speed_m_per_s = UNKNOWN;
+                }
+            }
+        }
+        for (ratio, traction_mu) in columns.pose_traction_ratio.iter_mut().zip(&next.params.traction_mu) {
+            if *traction_mu <= 0.0 {
+                *ratio = NO_SLIP;
+            }
+        }
+        for cable in 0..self.cable_count {
+            self.hand_friction_over(next, cable);
+        }
+    }
+
+    /// Friction stored in a cable, from the form that it has to that of `next`, with the same force at the platform: the sum over
+    /// the pulleys, or shares of it in the proportion in which pulleys rub, that of their wrap factors.
+    fn hand_friction_over(&mut self, next: &Self, cable: usize) {
+        let is_lumped = |of: &Self| of.params.lumped.get(cable).is_some_and(|lumped| *lumped > 0.0);
+        let (was_lumped, is_lumped) = (is_lumped(self), is_lumped(next));
+        let columns = &mut self.state.columns;
+        let by_pose = columns.pose_wrap_factor.get(cable).copied().unwrap_or(0.0);
+        let share = |place| next.params.platform_share(cable, place);
+        let wrap_factor = |place| next.params.wrap_factor_of(cable, place, next.place_count, by_pose);
+        let Some(lumped_n) = columns.lumped_friction_n.get_mut(cable) else { return };
+        let of_cable = columns.pulley_friction_n.iter_mut().filter_map(|column| column.get_mut(cable));
+        match (was_lumped, is_lumped) {
+            (false, true) => {
+                *lumped_n =
+                    of_cable.enumerate().map(|(place, stored_n)| share(place) * core::mem::take(stored_n)).sum();
+            }
+            (true, false) => {
+                let (sum, size) = (0..next.place_count).fold((0.0, 0.0), |(sum, size), place| {
+                    let part = share(place) * wrap_factor(place);
+                    (sum + part, size + part.abs())
+                });
+                // Where the sensor pulley outweighs what the others do, no shares would be of any sense.
+                let unit_n = if sum.abs() > LEAST_OF_SIZE * size { *lumped_n / sum } else { 0.0 };
+                *lumped_n = 0.0;
+                of_cable.enumerate().for_each(|(place, stored_n)| *stored_n = unit_n * wrap_factor(place));
+            }
+            (true, true) => of_cable.for_each(|stored_n| *stored_n = 0.0),
+            (false, false) => *lumped_n = 0.0,
+        }
+    }
+
+    fn assign_parameters(&mut self, next: &Self) {
         // Named one by one, so that none that is added can be forgotten; assigned one by one, so that none passes the stack.
         let Self {
             params,
@@ -59,7 +140,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
 
     /// Parameters and state of `other`.
     pub(crate) fn copy_from(&mut self, other: &Self) {
-        self.take_parameters(other);
+        self.assign_parameters(other);
         self.state = other.state;
     }
 }

@@ -13,6 +13,7 @@
 //! the friction is that of the present force.
 
 use super::{Acting, EffectRow, first_place};
+use crate::cable::UNKNOWN;
 use crate::parameters::ParameterRow;
 use crate::scalar::Scalar;
 
@@ -89,6 +90,9 @@ impl DelayLine {
     /// A line filled with zeros: before the start nothing moved.
     pub const EMPTY: Self = Self { values: [0.0; MAX_DELAY_CYCLES], newest: 0, in_order: 0 };
 
+    /// A line that the first value fills: before it was known, it was as it is.
+    pub(crate) const UNFILLED: Self = Self { values: [UNKNOWN; MAX_DELAY_CYCLES], newest: 0, in_order: 0 };
+
     /// Takes in this cycle's value and gives the delayed one. `in_order` says that the value is believed, and one cycle
     /// younger than the one before it.
     ///
@@ -112,10 +116,21 @@ impl DelayLine {
     #[inline]
     pub(crate) fn push(&mut self, value: f64, in_order: bool) {
         self.in_order = if in_order { (self.in_order + 1).min(BELIEVED) } else { 0 };
+        if self.values.first().is_some_and(|first| first.to_bits() == UNKNOWN.to_bits()) {
+            self.values.fill(value);
+        }
         self.newest = (self.newest + 1) % MAX_DELAY_CYCLES;
         if let Some(place) = self.values.get_mut(self.newest) {
             *place = value;
         }
+    }
+
+    /// How far the sum of all delayed values lags behind that of all values.
+    pub(crate) fn lag(&self, delay: Delay) -> f64 {
+        let between: f64 = (0..delay.cycles.min(MAX_DELAY_CYCLES - 1)).map(|age| self.around(age, false)[0]).sum();
+        let [at, _] = self.around(delay.cycles, delay.leads);
+        let stands = delay.leads && self.in_order < BELIEVED;
+        if stands { between } else { between + delay.fraction * at }
     }
 
     /// The value so many cycles ago, and the one before it; for a lead that would not be in order, the first twice.

@@ -38,6 +38,13 @@ pub enum ParamProblem {
         /// Most allowed.
         max: usize,
     },
+    /// Not what the robot that runs has, and not to be changed while it does.
+    Fixed {
+        /// The value given.
+        value: f64,
+        /// That of the robot that runs.
+        running: f64,
+    },
     /// Something that does not go together, in words.
     Conflict(&'static str),
 }
@@ -97,6 +104,10 @@ impl fmt::Display for ParamProblem {
             }
             Self::Count { count, min, max } if min == max => write!(formatter, "has {count} entries; {min} are needed"),
             Self::Count { count, min, max } => write!(formatter, "has {count} entries; allowed is {min} to {max}"),
+            Self::Fixed { value, running } => {
+                let (value, running) = (Plain(*value), Plain(*running));
+                write!(formatter, "is {value}; in the robot that runs it is {running} and cannot change")
+            }
             Self::Conflict(reason) => formatter.write_str(reason),
         }
     }
