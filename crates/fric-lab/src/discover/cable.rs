@@ -27,7 +27,7 @@ use crate::replay::Deviation;
 const REMAINDER: f64 = 0.02;
 
 /// No model is believed to less than this share of the tension, however little noise there is.
-const BELIEVED_RATIO: f64 = 1e-5;
+const BELIEVED_RATIO: f64 = 1e-4;
 
 /// Looks at one cable.
 pub fn discover_cable(record: &CableRecord<'_>, progress: &Progress) -> CableDiscovery {

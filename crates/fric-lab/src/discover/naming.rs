@@ -39,7 +39,7 @@ pub const STRONG_BIC: f64 = 10.0;
 /// The named model is brought this near to its minimum, in standard errors.
 const AT_MINIMUM: f64 = 0.01;
 /// Rounds of entering and exchanging.
-const ROUNDS: usize = 4;
+const ROUNDS: usize = 2;
 
 /// Names of effects in the order of the alphabet.
 type Kinds = Vec<&'static str>;
@@ -276,15 +276,11 @@ impl<'b, 'a> Search<'b, 'a> {
         loop {
             let model = self.fit(rows);
             let mut named = Vec::new();
-            for (place, row) in rows.clone().into_iter().enumerate() {
+            for row in rows.iter().copied() {
                 let others: Vec<&'static EffectRow> =
                     rows.iter().copied().filter(|other| other.kind != row.kind).collect();
-                named.push(Named {
-                    row,
-                    without: self.fit(&others),
-                    runner_up: self.alternative(rows, place),
-                    inflation: inflation(self.bench, &model, &fitted(row)),
-                });
+                let inflation = inflation(self.bench, &model, &fitted(row));
+                named.push(Named { row, without: self.fit(&others), runner_up: None, inflation });
             }
             let remains = (model.held_out - self.noise_squares_throughout(&model)).max(0.0);
             let gain = |named: &Named| named.without.held_out - model.held_out;
@@ -296,7 +292,12 @@ impl<'b, 'a> Search<'b, 'a> {
                 is_lag || !(strong && gain(named) > LEAST_SIZE * self.noise_squares && gain(named) > remains)
             };
             let weakest = named.iter().filter(fails).min_by(|one, other| gain(one).total_cmp(&gain(other)));
-            let Some(weakest) = weakest.map(|named| named.row.kind) else { return named };
+            let Some(weakest) = weakest.map(|named| named.row.kind) else {
+                for (place, named) in named.iter_mut().enumerate() {
+                    named.runner_up = self.alternative(rows, place);
+                }
+                return named;
+            };
             rows.retain(|row| row.kind != weakest);
         }
     }

@@ -15,6 +15,8 @@ const SQUARES_TOLERANCE: f64 = 1e-10;
 const STEP_TOLERANCE: f64 = 1e-8;
 /// Evaluations per parameter before giving up.
 const PATIENCE: usize = 20;
+/// And where a place several standard errors from the minimum would do.
+const PATIENCE_AFAR: usize = 2;
 
 /// Why a search has ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -97,7 +99,7 @@ pub fn minimize(
     let (adapter, report) = LevenbergMarquardt::new()
         .with_ftol(SQUARES_TOLERANCE)
         .with_xtol(STEP_TOLERANCE)
-        .with_patience(PATIENCE)
+        .with_patience(if near_errors > 1.0 { PATIENCE_AFAR } else { PATIENCE })
         .minimize(adapter);
     let arrival = adapter.arrival();
     let termination = match report.termination {
