@@ -3,14 +3,11 @@
 import json
 
 import fric
-import matplotlib
 import numpy as np
 import pytest
+from matplotlib import pyplot
 from fric import continuum
 from support import ROOT, run
-
-matplotlib.use("Agg")
-from matplotlib import pyplot  # noqa: E402
 
 ARM = ROOT / "examples" / "tendon-prototype.toml"
 
@@ -145,4 +142,3 @@ def test_figures_show_the_numbers(shapes):
     assert np.array_equal(heights, shapes.shapes[1]["ways"][3]["friction_n"])
     with pytest.raises(fric.ConfigError, match="no shape 4"):
         fric.plot.tendon_shape(shapes, 4)
-    pyplot.close("all")

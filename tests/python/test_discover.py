@@ -2,18 +2,12 @@
 
 import json
 import math
-import signal
-import subprocess
-import sys
 
 import fric
-import matplotlib
 import numpy as np
 import pytest
-from support import ROBOT, run
-
-matplotlib.use("Agg")
-from matplotlib import pyplot  # noqa: E402
+from matplotlib import pyplot
+from support import ROBOT, interrupted, run
 
 BENCH = """# The bench in the cellar.
 format = "fric-robot/1"
@@ -40,11 +34,6 @@ def place(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def robot(place):
-    return fric.Robot.read(place / "robot.toml")
-
-
-@pytest.fixture(scope="module")
 def log(place, robot):
     return fric.read_log(place / "hidden.mcap", robot)
 
@@ -52,12 +41,6 @@ def log(place, robot):
 @pytest.fixture(scope="module")
 def result(robot, log):
     return fric.discover(robot, log)
-
-
-@pytest.fixture(autouse=True)
-def close():
-    yield
-    pyplot.close("all")
 
 
 def by_command_line(place, *logs):
@@ -189,7 +172,6 @@ def test_progress_goes_from_nothing_to_all(robot, log):
     assert told == sorted(told) and told[0] == 0.0 and told[-1] == 1.0
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="signals are sent otherwise there")
 def test_ctrl_c_ends_a_discovery(place):
     code = f"""
 import fric
@@ -203,11 +185,7 @@ try:
 except KeyboardInterrupt:
     print(len(fric.simulate(robot, duration_s=1.0)))
 """
-    process = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    assert process.stdout.readline() == "ready\n"
-    process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=30)
-    assert (out, process.returncode) == ("250\n", 0), err
+    assert interrupted(code) == "250\n"
 
 
 def bars(ax):
@@ -243,7 +221,6 @@ def test_a_cable_is_drawn_as_a_whole_or_into_axes_given(robot, result):
         "share [%]",
         "rms on samples held out [N]",
     ]
-    pyplot.close("all")
     figure, axes = pyplot.subplots(3)
     for draw, ax in zip((fric.plot.gap_ladder, fric.plot.where, fric.plot.candidates), axes):
         assert draw(result, "winch", ax=ax) is ax

@@ -2,9 +2,7 @@
 
 import json
 import os
-import signal
 import subprocess
-import sys
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
@@ -14,7 +12,7 @@ import lmfit
 import numpy as np
 import pytest
 from scipy.optimize import least_squares
-from support import ROBOT, ROOT, run
+from support import ROBOT, ROOT, interrupted, run
 
 BENCH = """# The bench in the cellar.
 format = "fric-robot/1"
@@ -37,11 +35,6 @@ def place(tmp_path_factory):
         log = place / f"log{seed}.mcap"
         run("simulate", "--model", place / "robot.toml", "-o", log, "--duration", "10", "--seed", str(seed))
     return place
-
-
-@pytest.fixture(scope="module")
-def robot(place):
-    return fric.Robot.read(place / "robot.toml")
 
 
 @pytest.fixture(scope="module")
@@ -247,7 +240,6 @@ def test_progress_goes_from_nothing_to_all(bench):
     assert told == sorted(told) and told[0] == 0.0 and told[-1] == 1.0
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="signals are sent otherwise there")
 def test_ctrl_c_ends_a_fit(place):
     code = f"""
 import fric
@@ -261,21 +253,12 @@ try:
 except KeyboardInterrupt:
     print(len(fric.simulate(robot, duration_s=1.0)))
 """
-    process = subprocess.Popen(
-        [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
-    assert process.stdout.readline() == "ready\n"
-    process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=30)
-    assert (out, process.returncode) == ("250\n", 0), err
+    assert interrupted(code) == "250\n"
 
 
 def test_a_real_fit_can_be_drawn(robot, log):
-    matplotlib = pytest.importorskip("matplotlib")
-    matplotlib.use("Agg")
     result = fric.fit(robot, log, parameters=["mu"])
     panels = fric.plot.parameters(result)
     assert [panel.get_xlabel() for panel in panels] == list(result.cables[0].values)
     histogram, _ = fric.plot.residuals(log, result, "cable2", lag_count=20)
     assert histogram.get_xlabel() == "compensated less reference [N]"
-    matplotlib.pyplot.close("all")

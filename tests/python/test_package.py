@@ -2,14 +2,12 @@
 
 import doctest
 import inspect
-import signal
 import subprocess
 import sys
-import time
 
 import fric
 import pytest
-from support import ROBOT, ROOT
+from support import ROBOT, ROOT, interrupted
 
 
 def test_the_stubs_are_true():
@@ -40,7 +38,6 @@ def test_the_status_is_the_core_s():
     assert fric.Status(1 | 1 << 8) == fric.Status.SLACK | fric.Status.POSE_UNREACHABLE
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="signals are sent otherwise there")
 @pytest.mark.parametrize(
     "call", ["fric.simulate(robot, duration_s=1e6, progress=ready)", "replay_for_ever()", "run_for_ever()"]
 )
@@ -64,11 +61,4 @@ try:
 except KeyboardInterrupt:
     print(len(fric.simulate(robot, duration_s=0.5)))
 """
-    process = subprocess.Popen(
-        [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
-    assert process.stdout.readline() == "ready\n"
-    time.sleep(0.2)
-    process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=30)
-    assert (out, process.returncode) == ("500\n", 0), err
+    assert interrupted(code) == "500\n"

@@ -5,13 +5,10 @@ import sys
 from types import SimpleNamespace
 
 import fric
-import matplotlib
 import numpy as np
 import pytest
+from matplotlib import pyplot
 from support import ROBOT
-
-matplotlib.use("Agg")
-from matplotlib import pyplot  # noqa: E402
 
 
 @pytest.fixture(scope="module")
@@ -19,12 +16,6 @@ def run():
     robot = fric.Robot.read(ROBOT)
     log = fric.simulate(robot, seed=3, duration_s=6.0)
     return log, fric.replay(robot, log)
-
-
-@pytest.fixture(autouse=True)
-def close():
-    yield
-    pyplot.close("all")
 
 
 def lines(ax):

@@ -9,6 +9,16 @@ use fric_log::signals::SignalPaths;
 
 use crate::failure::{Failure, Outcome};
 
+/// The text of a model's file, and where it is from; `kind` is whose file it is.
+pub fn read_text(path: &Path, kind: &str) -> Outcome<(String, String)> {
+    let origin = path.display().to_string();
+    let text = std::fs::read_to_string(path).map_err(|error| {
+        Failure::new(format!("cannot read the {kind} file {origin}: {error}"))
+            .advise("Check the path given with --model.")
+    })?;
+    Ok((text, origin))
+}
+
 /// A robot and the text it was read from.
 #[derive(Debug)]
 pub struct Model {
@@ -21,11 +31,7 @@ pub struct Model {
 impl Model {
     /// The robot file at a path.
     pub fn read(path: &Path) -> Outcome<Self> {
-        let origin = path.display().to_string();
-        let text = std::fs::read_to_string(path).map_err(|error| {
-            Failure::new(format!("cannot read the robot file {origin}: {error}"))
-                .advise("Check the path given with --model.")
-        })?;
+        let (text, origin) = read_text(path, "robot")?;
         Self::parse(text, origin)
     }
 

@@ -61,12 +61,13 @@ struct SignalResult {
     remarks: Vec<String>,
 }
 
+/// Whether a log is good for a step.
 #[derive(Debug, Serialize)]
-struct StepResult {
-    step: &'static str,
-    possible: bool,
+pub struct StepResult {
+    pub step: &'static str,
+    pub possible: bool,
     /// What is missing, or what is missing for all of it.
-    reasons: Vec<String>,
+    pub reasons: Vec<String>,
 }
 
 /// Log times of a topic, accumulated.

@@ -70,7 +70,7 @@ pub struct RunnerUp {
 pub struct Tried {
     /// Its row in the catalogue.
     pub row: &'static EffectRow,
-    /// Schwarz's criterion with it less without it.
+    /// Schwarz's criterion with it less without it; of one that cannot enter an upper bound, for its search ended early.
     pub delta_bic: f64,
     /// Root mean square of the error with it on the samples held out, N.
     pub held_out_rms_n: f64,

@@ -9,6 +9,7 @@ use fric_log::table::NumberTable;
 use serde::Serialize;
 
 use super::{Model, about};
+use crate::commands::info::StepResult;
 use crate::failure::Outcome;
 use crate::output::JsonTarget;
 use crate::warnings::warn_all;
@@ -32,13 +33,6 @@ struct GroupResult {
     present: bool,
     columns: usize,
     remarks: Vec<String>,
-}
-
-#[derive(Debug, Serialize)]
-struct StepResult {
-    step: &'static str,
-    possible: bool,
-    reasons: Vec<String>,
 }
 
 /// Most disks that a file without a model is searched for.

@@ -18,6 +18,7 @@ use fric_log::table::NumberTable;
 
 use crate::arguments::continuum::{ContinuumCommand, ReportArguments, RunArguments};
 use crate::failure::{Failure, Outcome};
+use crate::model::read_text;
 use crate::output::{self, JsonTarget};
 use crate::warnings::warn_all;
 
@@ -34,7 +35,8 @@ pub fn run(command: &ContinuumCommand) -> Outcome {
 
 /// Whether a model is a manipulator file rather than a robot's.
 pub fn is_manipulator(model: Option<&Path>) -> bool {
-    model.is_some_and(|model| std::fs::read_to_string(model).is_ok_and(|text| text.contains(FORMAT)))
+    let says_so = |line: &str| line.trim_start().starts_with("format") && line.contains(FORMAT);
+    model.is_some_and(|model| std::fs::read_to_string(model).is_ok_and(|text| text.lines().any(says_so)))
 }
 
 /// A manipulator and the text it was read from.
@@ -47,11 +49,7 @@ pub struct Model {
 impl Model {
     /// The manipulator file at a path.
     pub fn read(path: &Path) -> Outcome<Self> {
-        let origin = path.display().to_string();
-        let text = std::fs::read_to_string(path).map_err(|error| {
-            Failure::new(format!("cannot read the manipulator file {origin}: {error}"))
-                .advise("Check the path given with --model.")
-        })?;
+        let (text, origin) = read_text(path, "manipulator")?;
         let file = ManipulatorFile::parse(&text, &origin)?;
         Ok(Self { file, text, origin })
     }
