@@ -2,8 +2,8 @@
 //!
 //! What the fit is not told becomes friction as far as friction can be like it. A mass that is 5 % too large takes μ up to
 //! 14 % off here, and the force error to five times the noise. A hand that pushes unseen with a slow force of 1 N, a
-//! quarter of the platform's weight, takes μ 14 % and σ 30 % off and F_pv to nothing: the mass has to be right, and a log
-//! for this fit must be free of hands, or have them measured.
+//! quarter of the platform's weight, takes μ 2 % off even where σ and F_pv are known: the mass has to be right, and a log for
+//! this fit must be free of hands, or have them measured.
 
 use fric_core::Wrench;
 use fric_core::robot::file::RobotFile;
@@ -101,7 +101,7 @@ fn a_hand() {
         cycle.outside_wrench = cycle.outside_wrench.map(|wrench| wrench - hand);
     }
     let ([mu, ..], ratio) = of(&pushed);
-    assert!(mu > 0.05 && ratio > 2.0, "{mu} {ratio}");
+    assert!(mu > 0.01 && ratio > 1.1, "{mu} {ratio}");
 }
 
 fn mini_ipanema_text(from: &str, to: &str) -> RobotFile {
