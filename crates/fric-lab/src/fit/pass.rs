@@ -169,11 +169,16 @@ fn cycle(row: &Row) -> CableCycle<'_> {
     CableCycle { signals: &row.signals, pose_wrap: row.pose_wrap, cycle: row.cycle }
 }
 
-/// Forces of one cable in consecutive cycles, begun at rest, for the values in each lane.
-pub fn candidate_forces(record: &CableRecord<'_>, values: &Values<Lanes>, cycles: Range<usize>) -> Vec<[f64; LANES]> {
-    let Some(mut group) = CableGroup::new(&[record.params], values, record.cycle_s, |_| false) else {
-        return Vec::new();
-    };
+/// Forces of one cable in consecutive cycles, begun at rest, for the values in each lane of all candidates: one cycle's after the
+/// other's.
+pub fn candidate_forces(record: &CableRecord<'_>, candidates: &[Values<Lanes>], cycles: Range<usize>) -> Vec<f64> {
+    let group = |values| CableGroup::new(&[record.params], values, record.cycle_s, |_| false);
+    let Some(mut groups) = candidates.iter().map(group).collect::<Option<Vec<_>>>() else { return Vec::new() };
     let rows = record.rows.get(cycles).unwrap_or_default();
-    rows.iter().map(|row| group.step(|_| cycle(row)).platform_force_n.to_array()).collect()
+    let mut forces = Vec::with_capacity(rows.len() * groups.len() * LANES);
+    for row in rows {
+        // Side by side: a group waits for its own last cycle most of the time.
+        forces.extend(groups.iter_mut().flat_map(|group| group.step(|_| cycle(row)).platform_force_n.to_array()));
+    }
+    forces
 }

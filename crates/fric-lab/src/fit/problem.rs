@@ -155,22 +155,22 @@ impl Problem<'_> {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// Sum of the losses for several σ at once, of all cables: `sigmas_n_per_m[candidate][cable]`; over consecutive cycles of
-    /// a log, of which the first eighth lets the cables forget that they began at rest.
-    pub fn losses_by_sigma(
-        &self,
-        values: &[Values],
-        sigmas_n_per_m: &[Vec<f64>; LANES],
-        cycles: &Range<usize>,
-    ) -> [f64; LANES] {
-        let mut forces: Vec<Vec<[f64; LANES]>> = Vec::with_capacity(self.members.len());
+    /// Sum of the losses for several σ at once, of all cables: `sigmas_n_per_m[candidate][cable]`; over consecutive cycles of a log, of which the first eighth lets the cables forget that they began at rest.
+    pub fn losses_by_sigma(&self, values: &[Values], sigmas_n_per_m: &[Vec<f64>], cycles: &Range<usize>) -> Vec<f64> {
+        let count = sigmas_n_per_m.len();
+        let mut forces: Vec<Vec<f64>> = Vec::with_capacity(self.members.len());
         for (index, (member, values)) in self.members.iter().zip(values).enumerate() {
-            let mut lanes = values.map(Lanes::splat);
-            let of_cable = |candidate: &Vec<f64>| candidate.get(index).copied().unwrap_or(values[SIGMA]);
-            lanes[SIGMA] = Lanes::new(sigmas_n_per_m.each_ref().map(of_cable));
-            forces.push(candidate_forces(&member.record, &lanes, cycles.clone()));
+            let of_candidates = |candidates: &[Vec<f64>]| {
+                let mut lanes = values.map(Lanes::splat);
+                let of = |lane: usize| candidates.get(lane).and_then(|sigmas| sigmas.get(index));
+                lanes[SIGMA] = Lanes::from_lanes(|lane| of(lane).copied().unwrap_or(values[SIGMA]));
+                lanes
+            };
+            let candidates: Vec<Values<Lanes>> = sigmas_n_per_m.chunks(LANES).map(of_candidates).collect();
+            forces.push(candidate_forces(&member.record, &candidates, cycles.clone()));
         }
-        let mut sums = [0.0; LANES];
+        let width = count.next_multiple_of(LANES);
+        let mut sums = vec![0.0; count];
         let mut of_sample = vec![0.0; self.members.len()];
         let mut residuals = Vec::new();
         for (offset, place) in cycles.clone().enumerate().skip(cycles.len() / 8) {
@@ -179,7 +179,7 @@ impl Problem<'_> {
             }
             for (candidate, sum) in sums.iter_mut().enumerate() {
                 for (force_n, of_cable) in of_sample.iter_mut().zip(&forces) {
-                    *force_n = of_cable.get(offset).map_or(f64::NAN, |lanes| lanes[candidate]);
+                    *force_n = of_cable.get(offset * width + candidate).copied().unwrap_or(f64::NAN);
                 }
                 self.compare(place, &of_sample, &mut residuals);
                 *sum += residuals.iter().map(|residual| self.loss.root(*residual).0.powi(2)).sum::<f64>();

@@ -77,37 +77,29 @@ pub fn leave_out_warm_up(record: &CableRecord<'_>, values: &Values, standings: &
     if memory_m <= 0.0 {
         return;
     }
-    let forgotten = -FORGOTTEN.ln();
     for (start, rows) in record.logs() {
-        let mut exponent = 0.0;
-        let exponents: Vec<f64> = rows
-            .iter()
-            .map(|row| {
-                let tension_n = row.signals.sensor_force_n;
-                exponent +=
-                    if tension_n > 0.0 { row.signals.displacement_m.abs() / (memory_m * tension_n) } else { 0.0 };
-                exponent
-            })
-            .collect();
-        // A log whose cable moves hardly further than it takes to forget tells nothing that could be relied on.
-        let warm_up = if exponent < LEAST_WAY_RATIO * forgotten || range_m(rows) < LEAST_RANGE_M {
-            rows.len()
-        } else {
-            exponents.partition_point(|exponent| *exponent < forgotten)
-        };
-        let of_log = standings.iter_mut().skip(start).take(warm_up);
+        let of_log = standings.iter_mut().skip(start).take(warm_up(rows, memory_m));
         of_log.filter(|standing| **standing == Standing::Used).for_each(|standing| *standing = Standing::WarmUp);
     }
 }
 
-/// Greatest length of a cable less its least, m.
-fn range_m(rows: &[Row]) -> f64 {
+/// How many cycles of a log it takes to forget; all where its cable moves hardly further than that, or rests: such a log tells
+/// nothing that could be relied on.
+fn warm_up(rows: &[Row], memory_m: f64) -> usize {
+    let forgotten = -FORGOTTEN.ln();
+    let (mut exponent, mut cycles) = (0.0, 0);
     let (mut length_m, mut least_m, mut greatest_m) = (0.0_f64, 0.0_f64, 0.0_f64);
     for row in rows {
-        length_m += row.signals.displacement_m;
+        let (tension_n, displacement_m) = (row.signals.sensor_force_n, row.signals.displacement_m);
+        exponent += if tension_n > 0.0 { displacement_m.abs() / (memory_m * tension_n) } else { 0.0 };
+        cycles += usize::from(exponent < forgotten);
+        length_m += displacement_m;
         (least_m, greatest_m) = (least_m.min(length_m), greatest_m.max(length_m));
+        if exponent >= LEAST_WAY_RATIO * forgotten && greatest_m - least_m >= LEAST_RANGE_M {
+            return cycles;
+        }
     }
-    greatest_m - least_m
+    rows.len()
 }
 
 /// Counts them.

@@ -148,9 +148,8 @@ impl Solution {
     }
 }
 
-/// Covariance of what a problem varies at some values, and how vague each is, in the order of the covariance.
-/// Covariance of what a problem varies, and how vague each parameter is, above 1 where the samples do not determine it, see
-/// [`Yardstick`].
+/// Covariance of what a problem varies at some values, and in its order how vague each parameter is: above 1 where the samples do
+/// not determine it, see [`Yardstick`].
 pub fn vagueness(problem: &Problem<'_>, values: &[Values]) -> (DMatrix<f64>, Vec<(f64, Unknown)>) {
     let (covariance, leverages) = covariance(problem, values);
     let sticks = yardsticks(problem, values);
@@ -310,11 +309,12 @@ fn look_again(problem: &mut Problem<'_>, values: &[Values], weighing: Weighing, 
             before.push(place);
         }
     }
-    let mut places = Vec::new();
+    let most = problem.used.len();
+    let mut places = Vec::with_capacity(most);
     // One of a cable's force, six of a wrench.
     let mut series: Vec<Vec<f64>> = Vec::new();
     problem.residuals(values, |place, residuals| {
-        series.resize_with(residuals.len(), Vec::new);
+        series.resize_with(residuals.len(), || Vec::with_capacity(most));
         series.iter_mut().zip(residuals).for_each(|(series, residual)| series.push(*residual));
         places.push(place);
     });

@@ -19,7 +19,7 @@ use super::vector::{Coordinate, Parameter, with};
 /// μ about which friction is linearised.
 const TYPICAL_MU: f64 = 0.02;
 /// Presliding distances that are tried, m: half an order of magnitude apart.
-const DISTANCES_M: [[f64; 4]; 2] = [[1e-5, 3e-5, 1e-4, 3e-4], [1e-3, 3e-3, 1e-2, 3e-2]];
+const DISTANCES_M: [f64; 8] = [1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2];
 /// And these multiples of the best of them: an eighth of an order of magnitude apart.
 const CLOSER: [f64; 4] = [0.56, 0.75, 1.33, 1.78];
 /// So many per cent of the moving samples are too near to their last reversal to count as sliding.
@@ -95,20 +95,19 @@ fn valleys(
         };
         stored_n.iter().zip(&sliding).map(sigma_of).collect()
     };
-    let tried = |distances_m: [f64; 4]| {
-        let sigmas = distances_m.map(of_distance);
+    let tried = |distances_m: &[f64]| -> Vec<(Vec<f64>, f64)> {
+        let sigmas: Vec<Vec<f64>> = distances_m.iter().map(|distance_m| of_distance(*distance_m)).collect();
         let losses = problem.losses_by_sigma(&sliding, &sigmas, searched);
-        sigmas.into_iter().zip(losses)
+        sigmas.into_iter().zip(losses).collect()
     };
-    let candidates: Vec<(Vec<f64>, f64)> = DISTANCES_M.into_iter().flat_map(tried).collect();
+    let candidates = tried(&DISTANCES_M);
     let loss = |place: usize| candidates.get(place).map_or(f64::INFINITY, |(_, loss)| *loss);
     let is_valley = |place: usize| {
         place.checked_sub(1).is_none_or(|left| loss(left) > loss(place)) && loss(place + 1) >= loss(place)
     };
-    let distances_m = DISTANCES_M.into_iter().flatten();
     let mut valleys: Vec<_> = candidates
         .iter()
-        .zip(distances_m)
+        .zip(DISTANCES_M)
         .enumerate()
         .filter(|(place, _)| is_valley(*place))
         .map(|(_, ((sigmas, loss), distance_m))| (sigmas.clone(), *loss, distance_m))
@@ -116,7 +115,7 @@ fn valleys(
     valleys.sort_by(|one, other| one.1.total_cmp(&other.1));
     if let Some((sigmas, loss, distance_m)) = valleys.first_mut().filter(|_| closer) {
         // How long a cable remembers follows from it.
-        let closer = tried(CLOSER.map(|factor| factor * *distance_m)).filter(|(_, other)| *other < *loss);
+        let closer = tried(&CLOSER.map(|factor| factor * *distance_m)).into_iter().filter(|(_, other)| *other < *loss);
         if let Some(best) = closer.min_by(|(_, one), (_, other)| one.total_cmp(other)) {
             (*sigmas, *loss) = best;
         }
