@@ -21,11 +21,21 @@ struct Outcome {
     /// Name that entered first.
     first: Option<&'static str>,
     verdict: Verdict,
-    /// Errors of the effects' main parameters as shares of their size.
-    errors: Vec<f64>,
+    /// How well the parameters of what was hidden came out.
+    errors: Vec<ParameterError>,
     /// Root mean square after, and the floor found, as multiples of the true floor.
     after_ratio: f64,
     floor_ratio: f64,
+}
+
+/// How far a parameter came out from what was hidden.
+struct ParameterError {
+    /// `kind.key`.
+    name: String,
+    /// As a share of its size: of the value, less the neutral one if there is one.
+    of_size: f64,
+    /// In standard errors.
+    of_errors: f64,
 }
 
 impl Outcome {
@@ -63,16 +73,18 @@ impl Outcome {
     }
 }
 
-/// Relative errors of the parameters that were hidden and fitted; of those with a neutral value, of the distance from it.
-fn errors(truth: &CaseTruth, cable: &CableDiscovery) -> Vec<f64> {
+/// Errors of the parameters that were hidden and fitted.
+fn errors(truth: &CaseTruth, cable: &CableDiscovery) -> Vec<ParameterError> {
     let mut errors = Vec::new();
     for effect in &truth.effects {
         for (key, value) in effect.values() {
             let name = format!("{}.{key}", effect.kind());
             let fitted = cable.after.fitted.iter().find(|parameter| parameter.to_string() == name);
             if let Some(parameter) = fitted {
-                let found = cable.after.values[parameter.place()];
-                errors.push(((found - value) / (value - parameter.row().neutral)).abs());
+                let error = (cable.after.values[parameter.place()] - value).abs();
+                let standard_error = cable.after.standard_error(parameter).unwrap_or(f64::NAN);
+                let of_size = error / (value - parameter.row().neutral).abs();
+                errors.push(ParameterError { name, of_size, of_errors: error / standard_error });
             }
         }
     }
@@ -178,27 +190,49 @@ fn print_confusions(outcomes: &[Outcome]) {
 fn print_sizes(outcomes: &[Outcome]) {
     let right: Vec<&Outcome> =
         outcomes.iter().filter(|outcome| outcome.is_right() && outcome.case.disturbance.is_none()).collect();
-    let quantiles = |mut numbers: Vec<f64>| {
-        numbers.sort_by(f64::total_cmp);
-        let at = |share: usize| numbers.get(numbers.len().saturating_sub(1) * share / 100).copied().unwrap_or(f64::NAN);
-        format!("{:.3} | {:.3} | {:.3}", at(50), at(95), at(100))
+    let mut of_parameters: BTreeMap<&str, Vec<&ParameterError>> = BTreeMap::new();
+    for error in right.iter().flat_map(|outcome| &outcome.errors) {
+        of_parameters.entry(&error.name).or_default().push(error);
+    }
+    println!("\n| parameter | cases | error / size: median | 95 % | error / standard error: median | 95 % |");
+    println!("|---|---|---|---|---|---|");
+    for (name, errors) in &of_parameters {
+        let [of_size, of_errors] = [|error: &&ParameterError| error.of_size, |error: &&ParameterError| error.of_errors]
+            .map(|part| quantiles(errors.iter().map(part).collect()));
+        println!(
+            "| {name} | {} | {:.3} | {:.3} | {:.1} | {:.1} |",
+            errors.len(),
+            of_size[0],
+            of_size[1],
+            of_errors[0],
+            of_errors[1]
+        );
+    }
+    let row = |numbers: Vec<f64>| {
+        let [median, most_of_them, most] = quantiles(numbers);
+        format!("{median:.3} | {most_of_them:.3} | {most:.3}")
     };
     println!("\n| of the cases that are right | median | 95 % | most |\n|---|---|---|---|");
-    println!(
-        "| error of a parameter / its size | {} |",
-        quantiles(right.iter().flat_map(|outcome| outcome.errors.clone()).collect())
-    );
+    let all = || of_parameters.values().flatten();
+    println!("| error of a parameter / its size | {} |", row(all().map(|error| error.of_size).collect()));
+    println!("| error of a parameter / its standard error | {} |", row(all().map(|error| error.of_errors).collect()));
     let is_white = |outcome: &&&Outcome| outcome.case.sensor_wander_n <= 0.0 && outcome.case.reference_wander_n <= 0.0;
     println!(
         "| rms after / true noise | {} |",
-        quantiles(right.iter().filter(is_white).map(|outcome| outcome.after_ratio).collect())
+        row(right.iter().filter(is_white).map(|outcome| outcome.after_ratio).collect())
     );
     println!(
         "| error of the noise floor / it | {} |",
-        quantiles(outcomes.iter().map(|outcome| (outcome.floor_ratio - 1.0).abs()).collect())
+        row(outcomes.iter().map(|outcome| (outcome.floor_ratio - 1.0).abs()).collect())
     );
     let named_first = outcomes.iter().filter(|outcome| !outcome.case.effects.is_empty());
     let named_first: Vec<&Outcome> = named_first.collect();
     let is_there = |outcome: &Outcome| outcome.first.is_some_and(|kind| outcome.case.effects.contains(&kind));
     println!("\nOf the cases with effects, the first named is one of them in {}.", share(&named_first, is_there));
+}
+
+/// Median, 95 % and most.
+fn quantiles(mut numbers: Vec<f64>) -> [f64; 3] {
+    numbers.sort_by(f64::total_cmp);
+    [50, 95, 100].map(|share| numbers.get(numbers.len().saturating_sub(1) * share / 100).copied().unwrap_or(f64::NAN))
 }

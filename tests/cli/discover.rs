@@ -175,6 +175,36 @@ fn a_replay_with_the_extended_file_has_the_errors_after_to_the_last_digit() {
     }
 }
 
+/// Position of the winch, and friction between winch and platform, in each cycle of one cable.
+fn hysteresis_loop(log: &[u8], cable: usize) -> Vec<[f64; 2]> {
+    let states = on_topic(log, "/cable_states", joint_state);
+    let references = on_topic(log, "/reference_forces", joint_state);
+    let points = states.iter().zip(&references);
+    points.map(|(state, reference)| [state.position[cable], state.effort[cable] - reference.effort[cable]]).collect()
+}
+
+/// The same motion and the same noise, once more with the extended file and once with the given one.
+#[test]
+fn a_simulation_with_the_extended_file_goes_through_the_hysteresis_loop_of_the_log() {
+    let (place, _, result) = found();
+    let motion = ["--duration", "25", "--seed", "3"];
+    let extended = simulated(&String::from_utf8(place.read("extended.toml")).unwrap(), &motion);
+    let given = simulated(&two_cables(), &motion);
+    for (index, cable) in cables(result).iter().enumerate() {
+        let points = hysteresis_loop(hidden_stribeck(), index);
+        let off_n = |log: &[u8]| {
+            let others = hysteresis_loop(log, index);
+            rms(points.iter().zip(&others).map(|([position_m, friction_n], [other_m, other_n])| {
+                assert_eq!(position_m.to_bits(), other_m.to_bits());
+                other_n - friction_n
+            }))
+        };
+        let (extended_n, given_n) = (off_n(&extended), off_n(&given));
+        let floor_n = cable["noise_floor_n"].as_f64().unwrap();
+        assert!(extended_n < 0.3 * floor_n && given_n > 2.0 * floor_n, "{extended_n} {given_n} {floor_n}");
+    }
+}
+
 #[test]
 fn the_page_is_self_contained() {
     let (place, _, result) = found();
