@@ -9,6 +9,16 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 ROBOT = ROOT / "examples" / "mini-ipanema.toml"
 LOG = ROOT / "examples" / "mini-ipanema.mcap"
+BENCH = """# The bench in the cellar.
+format = "fric-robot/1"
+name = "bench"
+cycle_s = 0.001
+[[cable]]
+name = "winch"  # the only one
+pulleys = [{ wrap_deg = 180.0, sensor = true }, { wrap_deg = 90.0 }]
+friction = { mu = 0.02, sigma_n_per_m = 900.0, viscous_n_s_per_m = 0.3 } # guessed
+"""
+SLOW_BENCH = BENCH.replace("cycle_s = 0.001", "cycle_s = 0.004")
 
 
 def run(*arguments):

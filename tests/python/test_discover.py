@@ -7,17 +7,8 @@ import fric
 import numpy as np
 import pytest
 from matplotlib import pyplot
-from support import ROBOT, interrupted, run
+from support import ROBOT, SLOW_BENCH, interrupted, run
 
-BENCH = """# The bench in the cellar.
-format = "fric-robot/1"
-name = "bench"
-cycle_s = 0.004
-[[cable]]
-name = "winch"  # the only one
-pulleys = [{ wrap_deg = 180.0, sensor = true }, { wrap_deg = 90.0 }]
-friction = { mu = 0.02, sigma_n_per_m = 900.0, viscous_n_s_per_m = 0.3 } # guessed
-"""
 HIDDEN = {"kind": "stribeck", "ratio": 1.0, "velocity_m_per_s": 0.03}
 
 
@@ -25,7 +16,7 @@ HIDDEN = {"kind": "stribeck", "ratio": 1.0, "velocity_m_per_s": 0.03}
 def place(tmp_path_factory):
     """A bench and logs of it with an effect that its file does not have."""
     place = tmp_path_factory.mktemp("discover")
-    (place / "robot.toml").write_text(BENCH, encoding="utf-8")
+    (place / "robot.toml").write_text(SLOW_BENCH, encoding="utf-8")
     effect = ["--effect", "stribeck:ratio=1.0,velocity_m_per_s=0.03"]
     for name in ("hidden", "again"):
         options = [*effect, "--duration", "24", "--seed", str(len(name))]
@@ -87,7 +78,7 @@ def test_the_hidden_effect_is_named_with_its_values(robot, result):
     assert effect["runner_up"]["held_out_rms_n"] > effect["evidence"]["held_out_rms_n"] == winch.after.rms_n
     assert 0.9 < winch.gap_closed < 1.1 and winch.where[0]["signal"] == "speed"
     assert len(winch.where_in_words) == len(winch.where) and "speeds below" in winch.where_in_words[0]
-    assert robot.cable("winch").effects == () and robot.to_toml() == BENCH
+    assert robot.cable("winch").effects == () and robot.to_toml() == SLOW_BENCH
     assert "The model lacks stribeck; with it, what is left is noise." in result.summary()
     assert repr(winch) == '<CableDiscovery "winch": extended, stribeck>'
     assert repr(result) == '<DiscoverResult of "bench": 1 cables, effects found on 1>'
@@ -139,8 +130,8 @@ def test_what_a_log_lacks_is_told(robot, log):
 
 
 def test_a_cable_without_reference_has_no_verdict():
-    second = BENCH[BENCH.index("[[cable]]") :].replace('"winch"', '"other"')
-    robot = fric.Robot.from_toml(BENCH + second)
+    second = SLOW_BENCH[SLOW_BENCH.index("[[cable]]") :].replace('"winch"', '"other"')
+    robot = fric.Robot.from_toml(SLOW_BENCH + second)
     log = without_reference(fric.simulate(robot, duration_s=20.0), 1)
     result = fric.discover(robot, log)
     other = result.cable("other")

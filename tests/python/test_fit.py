@@ -12,17 +12,7 @@ import lmfit
 import numpy as np
 import pytest
 from scipy.optimize import least_squares
-from support import ROBOT, ROOT, interrupted, run
-
-BENCH = """# The bench in the cellar.
-format = "fric-robot/1"
-name = "bench"
-cycle_s = 0.001
-[[cable]]
-name = "winch"  # the only one
-pulleys = [{ wrap_deg = 180.0, sensor = true }, { wrap_deg = 90.0 }]
-friction = { mu = 0.02, sigma_n_per_m = 900.0, viscous_n_s_per_m = 0.3 } # guessed
-"""
+from support import BENCH, ROBOT, ROOT, interrupted, run
 
 
 @pytest.fixture(scope="module")

@@ -1,0 +1,68 @@
+"""The pages of the command line, opened in a browser: nothing is fetched, nothing fails, everything fits and can be read."""
+
+import html
+import json
+import re
+import shutil
+import subprocess
+from urllib.parse import urlencode
+
+import pytest
+from support import LOG, ROBOT, ROOT, SLOW_BENCH, run
+
+BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+pytestmark = pytest.mark.skipif(BROWSER is None, reason="neither Chromium nor Chrome is installed")
+
+# A laptop.
+WIDTH_PX = 1280
+LOOK = (ROOT / "tests" / "python" / "look.html").as_uri()
+
+
+def browse(*arguments):
+    command = [BROWSER, "--headless=new", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--no-first-run",
+               "--host-resolver-rules=MAP * ~NOTFOUND", *arguments]
+    done = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", check=False, timeout=120)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+@pytest.fixture(scope="module")
+def pages(tmp_path_factory):
+    """One page of each kind."""
+    place = tmp_path_factory.mktemp("pages")
+    page = {name: place / f"{name}.html" for name in ("replay", "discover", "excite", "shape", "friction")}
+    run("replay", LOG, "--report", page["replay"])
+    run("excite", "--model", ROBOT, "-o", place / "run.csv", "--preview", page["excite"])
+    bench, log = place / "bench.toml", place / "log.mcap"
+    bench.write_text(SLOW_BENCH, encoding="utf-8")
+    effect = ["--effect", "stribeck:ratio=1.0,velocity_m_per_s=0.03", "--duration", "24"]
+    run("simulate", "--model", bench, "-o", log, *effect)
+    run("discover", log, "-o", place / "found.toml", "--report", page["discover"])
+    arm, pull, loads = (place / name for name in ("arm.toml", "pull.csv", "loads.csv"))
+    prototype = ROOT / "examples" / "tendon-prototype.toml"
+    run("continuum", "simulate", "--model", prototype, "-o", pull, "--calibration", loads)
+    run("continuum", "calibrate", loads, "--model", prototype, "-o", arm)
+    for name in ("shape", "friction"):
+        run("continuum", name, pull, "--model", arm, "--report", page[name])
+    return page
+
+
+@pytest.mark.parametrize("name", ["replay", "discover", "excite", "shape", "friction"])
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_a_page_can_be_read_by_day_and_by_night(pages, name, scheme):
+    look = f"{LOOK}?{urlencode({'page': pages[name].as_uri(), 'width': WIDTH_PX})}"
+    # 0 is dark, 1 light.
+    setting = f"--blink-settings=preferredColorScheme={int(scheme == 'light')}"
+    options = ["--allow-file-access-from-files", "--virtual-time-budget=5000", "--dump-dom", setting]
+    document = browse(*options, look)
+    seen = json.loads(html.unescape(re.search(r'<pre id="seen">(.*?)</pre>', document, re.S)[1]))
+    assert seen["dark"] == (scheme == "dark")
+    assert seen["fetched"] == seen["failures"] == seen["faint"] == []
+    assert seen["overflow_px"] <= 0 and seen["headings"] and seen["texts"] > 10
+    assert seen["drawings"] and all(100 < width <= WIDTH_PX for width in seen["drawings"])
+
+
+def test_the_discovery_can_be_printed(pages, tmp_path):
+    paper = tmp_path / "discovery.pdf"
+    browse(f"--print-to-pdf={paper}", pages["discover"].as_uri())
+    assert paper.read_bytes().startswith(b"%PDF-") and paper.stat().st_size > 20_000
