@@ -18,9 +18,11 @@ from ._fric import (
     Manipulator,
     ShapeResult,
     SimulatedTendon,
+    TendonDiscovery,
     TendonRun,
 )
 from ._fric import continuum_calibrate as calibrate
+from ._fric import continuum_discover as discover
 from ._fric import continuum_friction as friction
 from ._fric import continuum_hole as hole
 from ._fric import continuum_read_loads as read_loads
@@ -35,8 +37,10 @@ __all__ = [
     "Manipulator",
     "ShapeResult",
     "SimulatedTendon",
+    "TendonDiscovery",
     "TendonRun",
     "calibrate",
+    "discover",
     "friction",
     "hole",
     "read_loads",

@@ -1,6 +1,7 @@
 """Tendons through disks: what Python gives is what the command line gives, and what the truth is."""
 
 import json
+import re
 
 import fric
 import numpy as np
@@ -142,3 +143,23 @@ def test_figures_show_the_numbers(shapes):
     assert np.array_equal(heights, shapes.shapes[1]["ways"][3]["friction_n"])
     with pytest.raises(fric.ConfigError, match="no shape 4"):
         fric.plot.tendon_shape(shapes, 4)
+
+
+def test_discovery_names_what_the_file_lacks(tmp_path, calibrated, tendon):
+    files = [tmp_path / name for name in ("smooth.toml", "run.csv", "found.toml", "found.json")]
+    text = re.sub(r"(?m)^sigma_n_per_m = .*$", "", re.sub(r"(?m)^mu = .*$", "mu = 0.0", calibrated.to_toml()))
+    smooth = continuum.Manipulator.from_toml(text)
+    smooth.write(files[0])
+    run("continuum", "simulate", "--model", ARM, "-o", files[1], "--run", "mixed", "--seed", "5")
+    run("discover", files[1], "--model", files[0], "-o", files[2], "--json", files[3])
+    result = continuum.discover(smooth, continuum.read_run(files[1], smooth))
+    assert {**result.to_dict(), "log": None} == {**json.loads(files[3].read_text(encoding="utf-8")), "log": None}
+    assert result.manipulator.to_toml() == files[2].read_text(encoding="utf-8")
+    assert result.verdict == "extended" and "coulomb" in result.summary()
+    kinds = {effect["kind"]: effect for effect in result.effects}
+    assert list(kinds) == ["coulomb", "presliding"]
+    # The truth scatters from hole to hole by ±10 %.
+    mu, error = kinds["coulomb"]["parameters"]["mu"], kinds["coulomb"]["standard_errors"]["mu"]
+    assert abs(mu - tendon.mu.mean()) < 0.05 * mu and 0 < error < 0.05 * mu
+    rms_n = [np.sqrt(np.nanmean(residual**2)) for residual in (result.residual_before_n, result.residual_after_n)]
+    assert result.residual_before_n.shape == (len(result.time_s), 8) and rms_n[1] < 0.2 * rms_n[0]

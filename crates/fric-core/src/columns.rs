@@ -66,7 +66,7 @@ impl<const CABLES: usize> ParamColumns<CABLES> {
         least_force_n: [-f64::MAX; CABLES],
         greatest_force_n: [f64::MAX; CABLES],
         greatest_speed_m_per_s: [f64::MAX; CABLES],
-        delay: [Delay { cycles: 0, fraction: 0.0, leads: false }; CABLES],
+        delay: [Delay::NONE; CABLES],
         entry_m: [[0.0; CABLES]; 3],
         axis: [[0.0; CABLES], [0.0; CABLES], [1.0; CABLES]],
         radius_m: [0.0; CABLES],
@@ -96,7 +96,7 @@ impl<const CABLES: usize> ParamColumns<CABLES> {
         put(&mut self.greatest_force_n, cable, params.validated.force_n[1]);
         put(&mut self.greatest_speed_m_per_s, cable, params.validated.speed_m_per_s);
         let delay_cycles = values[time_delay::DELAY] / cycle_s;
-        put(&mut self.delay, cable, Delay::from_cycles(delay_cycles, delay_cycles));
+        put(&mut self.delay, cable, Delay::from_cycles(delay_cycles));
         let places = Places::new(params, place_count);
         for (place, viscous) in self.viscous_n_s_per_m.iter_mut().enumerate() {
             put(viscous, cable, params.friction.viscous_n_s_per_m * places.has_pulley[place]);

@@ -6,7 +6,7 @@
 
 use crate::cable::{Cable, CableForces, CableModel, Features, MEMORY, Moment, UNKNOWN, cable_cycle};
 use crate::effects::cable_elasticity::COMPLIANCE;
-use crate::effects::time_delay::{self, DELAY, Delay, DelayLine};
+use crate::effects::time_delay::{self, About, DELAY, DelayLine, Taps};
 use crate::lanes::LANES;
 use crate::parameters::{ParameterRow, VISCOUS, Values};
 use crate::places::{NO_SLIP, PLACES, Places, START_WRAP_FACTOR};
@@ -67,7 +67,8 @@ const LEAST_COMPLIANCE_M_PER_N: f64 = 1e-15;
 /// What the delay of set points remembers, lane by lane.
 #[derive(Clone, Debug)]
 struct Delayed<T> {
-    delays: [Delay<T>; LANES],
+    taps: [Taps; LANES],
+    fractions: [T; 2],
     displacement_m: [DelayLine; LANES],
     speed_m_per_s: [DelayLine; LANES],
     /// How far the delayed motion lags behind, m.
@@ -137,12 +138,14 @@ impl<T: Scalar> CableGroup<T> {
             }
         }
         let delay = values[DELAY] / T::splat(cycle_s);
+        let taps = core::array::from_fn(|lane| Taps::of_cycles(delay.lane(lane)));
         let delayed = features.acting.has(time_delay::ACTS);
         Some(Self {
             model: CableModel::new(of_lane, &values),
             features,
             delay: delayed.then(|| Delayed {
-                delays: core::array::from_fn(|lane| Delay::from_cycles(delay, delay.lane(lane))),
+                taps,
+                fractions: time_delay::fractions(delay, |lane| taps[lane % LANES]),
                 displacement_m: [DelayLine::EMPTY; LANES],
                 speed_m_per_s: [DelayLine::EMPTY; LANES],
                 lag_m: zero,
@@ -195,8 +198,9 @@ impl<T: Scalar> CableGroup<T> {
                 signals.moves() && !pause
             };
             let known_m = displacement_m;
-            displacement_m = shift(&mut delayed.displacement_m, known_m, in_order, &delayed.delays);
-            speed_m_per_s = shift(&mut delayed.speed_m_per_s, speed_m_per_s, in_order, &delayed.delays);
+            let Delayed { taps, fractions, .. } = *delayed;
+            displacement_m = shift(&mut delayed.displacement_m, known_m, in_order, taps, fractions);
+            speed_m_per_s = shift(&mut delayed.speed_m_per_s, speed_m_per_s, in_order, taps, fractions);
             delayed.lag_m = delayed.lag_m + (known_m - displacement_m);
             length_m = length_m - delayed.lag_m;
         }
@@ -225,23 +229,17 @@ fn shift<T: Scalar>(
     lines: &mut [DelayLine; LANES],
     values: T,
     in_order: impl Fn(usize) -> bool,
-    delays: &[Delay<T>; LANES],
+    taps: [Taps; LANES],
+    fractions: [T; 2],
 ) -> T {
-    let mut ends = [[0.0; 2]; LANES];
-    for ((lane, line), ends) in lines.iter_mut().enumerate().take(T::COUNT).zip(&mut ends) {
+    let mut of_lanes = [About::default(); LANES];
+    for (lane, ((line, taps), about)) in lines.iter_mut().zip(taps).zip(&mut of_lanes).enumerate().take(T::COUNT) {
         line.push(values.lane(lane), in_order(lane));
-        *ends = delays.get(lane).map_or([0.0; 2], |delay| line.around(delay.cycles, delay.leads));
+        *about = line.about(taps);
     }
-    let [first, ..] = delays;
-    let end = |which: usize| T::from_lanes(|lane| ends.get(lane).map_or(0.0, |ends| ends[which]));
-    let fraction = delays.iter().enumerate().skip(1).take(T::COUNT.saturating_sub(1)).fold(
-        first.fraction,
-        |fraction, (lane, delay)| {
-            let here = T::splat(0.5).lt(T::from_lanes(|other| f64::from(other == lane)));
-            T::select(here, delay.fraction, fraction)
-        },
-    );
-    end(0) + fraction * (end(1) - end(0))
+    let number = |of: fn(&About) -> f64| T::from_lanes(|lane| of(&of_lanes[lane % LANES]));
+    let [once, twice] = fractions;
+    number(|about| about.value) + number(|about| about.slopes[0]) * once + number(|about| about.slopes[1]) * twice
 }
 
 impl<T: Scalar> State<T> {

@@ -208,9 +208,11 @@ fn a_delayed_ripple_is_that_of_the_delayed_length() {
             let now = f64::from(cycle);
             let force_n = feed(&mut compensator, 20.0, length_m(now), 0.0);
             let late_m = if delay_cycles < 0.0 {
-                // The rise of the last cycle goes on; of the first ones it is not known.
-                let start = length_m(1.0) - length_m(0.0);
-                length_m(now) - delay_cycles * (length_m(now) - length_m(now - 1.0) - start)
+                // The parabola through now, τ ago and 2τ ago; until that is in order, the length as it is.
+                let tau = -delay_cycles;
+                let led = |now: f64| 3.0 * length_m(now) - 3.0 * length_m(now - tau) + length_m(now - 2.0 * tau);
+                let first = 2.0 * tau + 2.0;
+                if now < first { length_m(now) } else { led(now) - led(first - 1.0) + length_m(first - 1.0) }
             } else {
                 let at = |cycle: f64| length_m(cycle.max(0.0));
                 let (whole, rest) = (delay_cycles.floor(), delay_cycles.fract());

@@ -33,9 +33,9 @@ mod _fric {
     use crate::compensator::{Compensation, Compensator, Snapshot};
     #[pymodule_export]
     use crate::continuum::{
-        CalibrationResult, FrictionResult, HoleResult, Manipulator, ShapeResult, SimulatedTendon, TendonRun,
-        continuum_calibrate, continuum_friction, continuum_hole, continuum_read_loads, continuum_read_run,
-        continuum_shape, continuum_simulate,
+        CalibrationResult, FrictionResult, HoleResult, Manipulator, ShapeResult, SimulatedTendon, TendonDiscovery,
+        TendonRun, continuum_calibrate, continuum_discover, continuum_friction, continuum_hole, continuum_read_loads,
+        continuum_read_run, continuum_shape, continuum_simulate,
     };
     #[pymodule_export]
     use crate::discover::{CableDiscovery, DiscoverResult, discover};

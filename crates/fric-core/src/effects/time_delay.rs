@@ -1,12 +1,19 @@
 //! `time_delay`: the motion that the control knows runs ahead of the cable's.
 //!
 //! Equation: displacement and speed at `t` are those of `t − delay_s`; between cycles they are interpolated linearly. A
-//! negative delay is motion that is known too late: it is extrapolated by its last change,
-//! `x(t + τ) ≈ x + (x − x_before)·τ/dt`, which is wrong by its second derivative times τ²/2, and multiplies the noise of both
-//! signals by `1 + 2τ/dt`. Neutral: `delay_s = 0`.
+//! negative delay is motion that is known too late, by `τ = −delay_s`: it is extrapolated by the parabola through what it is now,
+//! was τ ago, and 2τ ago,
+//!
+//! ```text
+//! x(t + τ) ≈ 3·x(t) − 3·x(t − τ) + x(t − 2τ)
+//! ```
+//!
+//! for the displacement of a cycle, and with it for the position, and for the speed. A steady acceleration is followed exactly;
+//! what remains of a position is its third derivative times τ³, and noise is multiplied by no more than √19, however far it is
+//! led (by the last cycles alone it would be by `1 + 2τ/dt` and more). Neutral: `delay_s = 0`.
 //!
 //! After a cycle without motion to be believed, or a pause, the change from one cycle to the next is not the motion's:
-//! nothing is extrapolated until three cycles have been in order.
+//! nothing is extrapolated until all that the parabola goes through has been in order.
 //!
 //! Cause: set points are used where the drive still follows (\[P\], section IV A), or the two signals take different ways
 //! through the bus. Deviation from the paper: the set points are shifted, not the friction computed from them, so that
@@ -44,9 +51,6 @@ pub const MAX_DELAY_CYCLES: usize = 64;
 /// The longest lead, in cycles.
 pub const MAX_LEAD_CYCLES: usize = 20;
 
-/// Cycles in order before anything is extrapolated: the first of them may have made up for others.
-const BELIEVED: usize = 3;
-
 /// Least and greatest delay at a cycle time, s.
 #[must_use]
 #[expect(clippy::cast_precision_loss, reason = "small constants")]
@@ -56,25 +60,55 @@ pub fn delay_range_s(cycle_s: f64) -> (f64, f64) {
 
 /// A delay as whole cycles and the rest.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Delay<T = f64> {
-    /// Whole cycles, less than [`MAX_DELAY_CYCLES`].
-    pub cycles: usize,
-    /// The rest, 0…1; below 0 a lead in cycles.
-    pub fraction: T,
-    /// Whether it is a lead.
-    pub leads: bool,
+pub struct Delay {
+    taps: Taps,
+    fractions: [f64; 2],
 }
 
-impl<T: Scalar> Delay<T> {
-    /// A delay in cycles, of which `value` is the number itself; held within `−MAX_LEAD_CYCLES…MAX_DELAY_CYCLES − 1`.
+impl Delay {
+    /// None.
+    pub const NONE: Self = Self { taps: Taps::NONE, fractions: [0.0; 2] };
+
+    /// From cycles; held within `−MAX_LEAD_CYCLES…MAX_DELAY_CYCLES − 1`.
     #[must_use]
-    pub fn from_cycles(cycles: T, value: f64) -> Self {
-        let (earliest, longest) = delay_range_s(1.0);
-        let whole = libm::floor(Scalar::min(Scalar::max(value, 0.0), longest));
-        let fraction = cycles.max(T::splat(earliest)).min(T::splat(longest)) - T::splat(whole);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "bounded above")]
-        Self { cycles: whole as usize, fraction, leads: value < 0.0 }
+    pub fn from_cycles(cycles: f64) -> Self {
+        let taps = Taps::of_cycles(cycles);
+        Self { taps, fractions: fractions(cycles, |_| taps) }
     }
+}
+
+/// Which values of a [`DelayLine`] a delay needs, by their age: those about `t − delay_s`; of a lead those about `t − τ` and `t − 2τ`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Taps {
+    /// Whole cycles, less than [`MAX_DELAY_CYCLES`].
+    ages: [usize; 2],
+    leads: bool,
+}
+
+impl Taps {
+    const NONE: Self = Self { ages: [0; 2], leads: false };
+
+    /// Of a delay in cycles.
+    pub(crate) fn of_cycles(cycles: f64) -> Self {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "bounded by `ages`")]
+        let ages = ages(cycles).map(|age| libm::floor(age) as usize);
+        Self { ages, leads: cycles < 0.0 }
+    }
+}
+
+/// How old the values are that a delay needs, in cycles; a delay, unlike a lead, has no use for the second.
+fn ages<T: Scalar>(cycles: T) -> [T; 2] {
+    let (earliest, longest) = delay_range_s(1.0);
+    let age = cycles.max(T::splat(earliest)).min(T::splat(longest)).abs();
+    [age, age + age]
+}
+
+/// What is left of the ages beyond the whole cycles of each lane's taps.
+pub(crate) fn fractions<T: Scalar>(cycles: T, taps: impl Fn(usize) -> Taps) -> [T; 2] {
+    let [once, twice] = ages(cycles);
+    #[expect(clippy::cast_precision_loss, reason = "at most twice MAX_DELAY_CYCLES")]
+    let whole = |which: usize| T::from_lanes(|lane| taps(lane).ages[which] as f64);
+    [once - whole(0), twice - whole(1)]
 }
 
 /// The last [`MAX_DELAY_CYCLES`] values of one signal, newest at `newest`.
@@ -82,7 +116,7 @@ impl<T: Scalar> Delay<T> {
 pub struct DelayLine {
     values: [f64; MAX_DELAY_CYCLES],
     newest: usize,
-    /// Cycles in order up to now, no further than [`BELIEVED`].
+    /// Cycles in order up to now, as far as there are values.
     in_order: usize,
 }
 
@@ -98,24 +132,25 @@ impl DelayLine {
     ///
     /// ```
     /// use fric_core::effects::time_delay::{Delay, DelayLine};
-    /// let shifted = |cycles| {
+    /// let shifted = |cycles, values: [f64; 6]| {
     ///     let mut line = DelayLine::EMPTY;
-    ///     [0.0, 1.0, 2.0, 3.0].map(|value| line.shift(value, true, Delay::from_cycles(cycles, cycles)))
+    ///     values.map(|value| line.shift(value, true, Delay::from_cycles(cycles)))
     /// };
-    /// assert_eq!(shifted(1.5), [0.0, 0.0, 0.5, 1.5]);
-    /// assert_eq!(shifted(-1.5), [0.0, 1.0, 3.5, 4.5]);
+    /// assert_eq!(shifted(1.5, [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]), [0.0, 0.0, 0.5, 1.5, 2.5, 3.5]);
+    /// // The squares: what led them is known from the sixth cycle on.
+    /// assert_eq!(shifted(-1.0, [0.0, 1.0, 4.0, 9.0, 16.0, 25.0]), [0.0, 1.0, 4.0, 9.0, 25.0, 36.0]);
     /// ```
     #[inline]
     pub fn shift(&mut self, value: f64, in_order: bool, delay: Delay) -> f64 {
         self.push(value, in_order);
-        let [at, before] = self.around(delay.cycles, delay.leads);
-        at + delay.fraction * (before - at)
+        let About { value, slopes: [once, twice] } = self.about(delay.taps);
+        value + once * delay.fractions[0] + twice * delay.fractions[1]
     }
 
     /// Takes in this cycle's value.
     #[inline]
     pub(crate) fn push(&mut self, value: f64, in_order: bool) {
-        self.in_order = if in_order { (self.in_order + 1).min(BELIEVED) } else { 0 };
+        self.in_order = if in_order { (self.in_order + 1).min(MAX_DELAY_CYCLES) } else { 0 };
         if self.values.first().is_some_and(|first| first.to_bits() == UNKNOWN.to_bits()) {
             self.values.fill(value);
         }
@@ -127,20 +162,53 @@ impl DelayLine {
 
     /// How far the sum of all delayed values lags behind that of all values.
     pub(crate) fn lag(&self, delay: Delay) -> f64 {
-        let between: f64 = (0..delay.cycles.min(MAX_DELAY_CYCLES - 1)).map(|age| self.around(age, false)[0]).sum();
-        let [at, _] = self.around(delay.cycles, delay.leads);
-        let stands = delay.leads && self.in_order < BELIEVED;
-        if stands { between } else { between + delay.fraction * at }
+        let since = |which: usize| {
+            let age = delay.taps.ages[which];
+            let whole: f64 = (0..age.min(MAX_DELAY_CYCLES - 1)).map(|age| self.at(age)).sum();
+            whole + delay.fractions[which] * self.at(age)
+        };
+        match (delay.taps.leads, self.stands(delay.taps)) {
+            (false, _) => since(0),
+            (true, false) => since(1) - 3.0 * since(0),
+            (true, true) => 0.0,
+        }
     }
 
-    /// The value so many cycles ago, and the one before it; for a lead that would not be in order, the first twice.
+    /// The delayed value by whole cycles, and how it changes with the fractions.
     #[inline]
-    pub(crate) fn around(&self, cycles: usize, leads: bool) -> [f64; 2] {
-        let cycles = cycles.min(MAX_DELAY_CYCLES - 1);
-        let stands = leads && self.in_order < BELIEVED;
-        [cycles, cycles + usize::from(!stands)].map(|age| {
-            let place = (self.newest + MAX_DELAY_CYCLES - age % MAX_DELAY_CYCLES) % MAX_DELAY_CYCLES;
-            self.values.get(place).copied().unwrap_or(0.0)
-        })
+    pub(crate) fn about(&self, taps: Taps) -> About {
+        let newest = self.at(0);
+        if self.stands(taps) {
+            return About { value: newest, slopes: [0.0; 2] };
+        }
+        let [[once, before_once], [twice, before_twice]] = taps.ages.map(|age| [self.at(age), self.at(age + 1)]);
+        if taps.leads {
+            let slopes = [3.0 * (once - before_once), before_twice - twice];
+            About { value: 3.0 * (newest - once) + twice, slopes }
+        } else {
+            About { value: once, slopes: [before_once - once, 0.0] }
+        }
     }
+
+    /// Whether a lead would rest on values that are not in order: on the oldest, the one before, which it is the change from, and
+    /// the first in order, which may have made up for others.
+    #[inline]
+    fn stands(&self, taps: Taps) -> bool {
+        taps.leads && self.in_order < taps.ages[1] + 3
+    }
+
+    /// The value so many cycles ago, the oldest beyond that.
+    #[inline]
+    fn at(&self, age: usize) -> f64 {
+        let place = (self.newest + MAX_DELAY_CYCLES - age.min(MAX_DELAY_CYCLES - 1)) % MAX_DELAY_CYCLES;
+        self.values.get(place).copied().unwrap_or(0.0)
+    }
+}
+
+/// A delayed value as far as whole cycles tell.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct About {
+    pub value: f64,
+    /// What it changes by for each of [`fractions`].
+    pub slopes: [f64; 2],
 }

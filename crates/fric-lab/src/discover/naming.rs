@@ -9,7 +9,7 @@
 use std::collections::BTreeMap;
 
 use fric_core::effects::time_delay::DELAY;
-use fric_core::effects::{self, EffectRow, pulley_inertia, time_delay};
+use fric_core::effects::{self, EffectRow, pulley_eccentricity, pulley_inertia, time_delay};
 use fric_core::parameters::MU;
 
 use super::candidates::{Scale, fitted, has, is_friction, starts};
@@ -244,9 +244,13 @@ impl<'b, 'a> Search<'b, 'a> {
         trial
     }
 
-    /// Brings the model with a set of effects to its minimum.
+    /// Brings the model with a set of effects to its minimum, the period of a ripple with it: it was found by a scan.
     fn polish(&mut self, rows: &[&'static EffectRow]) {
-        let model = self.fit(rows).model();
+        let mut model = self.fit(rows).model();
+        if contains(rows, &pulley_eccentricity::ROW) {
+            let is_period = |parameter: &Parameter| parameter.place() == pulley_eccentricity::PERIOD;
+            model.free.extend(Parameter::all().find(is_period));
+        }
         self.fits.insert(kinds(rows), self.bench.fit(&model, AT_MINIMUM));
     }
 

@@ -41,9 +41,10 @@ mod wrench;
 pub(crate) mod engine {
     pub use super::cables::{Search, prepared, used};
     pub use super::gang::{Gang, Seat};
-    pub use super::gram::Triangle;
+    pub use super::gram::{Gram, Triangle};
     pub use super::problem::{Comparison, Loss, Member, Problem};
     pub use super::rewritten::{NewValues, with_values};
+    pub use super::scores::Scores;
     pub use super::selection::{Standing, count};
     pub use super::solve::{Solution, Unknown, covariance, inverse_of_normal, search_near, vagueness};
 }

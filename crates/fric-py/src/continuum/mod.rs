@@ -1,6 +1,7 @@
 //! `fric.continuum`: tendons through disks. Functions have the prefix here that the Python module then takes off.
 
 mod calibration;
+mod discover;
 mod friction;
 mod manipulator;
 mod run;
@@ -8,6 +9,7 @@ mod shape;
 mod simulate;
 
 pub use calibration::{CalibrationResult, continuum_calibrate};
+pub use discover::{TendonDiscovery, continuum_discover};
 pub use friction::{FrictionResult, HoleResult, continuum_friction, continuum_hole};
 pub use manipulator::Manipulator;
 pub use run::{TendonRun, continuum_read_loads, continuum_read_run};

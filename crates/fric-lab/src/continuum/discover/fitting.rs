@@ -5,6 +5,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::case::{Case, Fit};
 use super::model::{Model, Parameter};
+use crate::fit::engine::{Gram, Scores, inverse_of_normal};
 
 const MOST_STEPS: u32 = 8;
 const MOST_HALVINGS: u32 = 6;
@@ -40,6 +41,18 @@ pub fn fitted(case: &Case<'_>, start: &Model) -> Option<Fit> {
 
 /// The step to the minimum of the linearised problem.
 fn step(case: &Case<'_>, now: &Fit, parameters: &[Parameter]) -> Option<DVector<f64>> {
+    let (matrix, gradient, _) = linearised(case, now, parameters)?.0.normal_equations();
+    matrix.cholesky().map(|factor| factor.solve(&-gradient))
+}
+
+/// Covariance of a fitted model's parameters, under residuals that remember; `None` where the run does not determine them.
+pub fn covariance(case: &Case<'_>, fit: &Fit) -> Option<DMatrix<f64>> {
+    let (gram, scores) = linearised(case, fit, &fit.model.parameters())?;
+    Some(scores.covariance(&inverse_of_normal(&gram.normal_equations().0)?))
+}
+
+/// Residuals learned from and their slopes, reduced; the gratings of a sample belong together.
+fn linearised(case: &Case<'_>, now: &Fit, parameters: &[Parameter]) -> Option<(Gram, Scores)> {
     let start_s = case.samples.first()?.time_s;
     let slopes: Vec<Vec<Vec<f64>>> = parameters
         .iter()
@@ -61,20 +74,17 @@ fn step(case: &Case<'_>, now: &Fit, parameters: &[Parameter]) -> Option<DVector<
         })
         .collect::<Option<_>>()?;
     let count = parameters.len();
-    let (mut matrix, mut right) = (DMatrix::<f64>::zeros(count, count), DVector::<f64>::zeros(count));
+    let (mut gram, mut scores) = (Gram::new(count), Scores::new(count));
     for (sample, row) in now.residual_n.iter().enumerate().filter(|(sample, _)| !case.held_out[*sample]) {
+        let mut score = vec![0.0; count];
         for (segment, residual_n) in row.iter().enumerate() {
-            let slope: Vec<f64> = slopes.iter().map(|all| all[sample][segment]).collect();
-            if !residual_n.is_finite() || slope.iter().any(|slope| !slope.is_finite()) {
-                continue;
-            }
-            for one in 0..count {
-                right[one] -= slope[one] * residual_n;
-                for other in 0..count {
-                    matrix[(one, other)] += slope[one] * slope[other];
-                }
+            let numbers: Vec<f64> = slopes.iter().map(|all| all[sample][segment]).chain([*residual_n]).collect();
+            if numbers.iter().all(|number| number.is_finite()) {
+                gram.add(&numbers);
+                score.iter_mut().zip(&numbers).for_each(|(score, slope)| *score += slope * residual_n);
             }
         }
+        scores.add(&score);
     }
-    matrix.cholesky().map(|factor| factor.solve(&right))
+    Some((gram, scores))
 }

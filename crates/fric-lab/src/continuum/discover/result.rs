@@ -4,18 +4,21 @@ use std::fmt::Write as _;
 
 use fric_core::continuum::edit::ManipulatorEdit;
 use fric_core::continuum::file::USUAL_SIGMA_N_PER_M;
+use nalgebra::DMatrix;
 use serde::Serialize;
 
 use super::TendonDiscovery;
 use super::case::{Case, Fit};
-use super::model::{Effect, Model};
+use super::fitting::covariance;
+use super::model::{Effect, Model, Parameter};
 use super::naming::{Finding, Outcome, excess_n, rms_n};
 use crate::continuum::shape_errors::Way;
 use crate::discover::Verdict;
 use crate::discover::result::{DiscoverResult, Evidence};
 use crate::errors::ForceError;
+use crate::fit::HALF_INTERVAL;
 use crate::fit::result::Numbers;
-use crate::text::{table, wrapped};
+use crate::text::{quantity, table, wrapped};
 
 /// `fric-discover/1` of a manipulator.
 #[derive(Clone, Debug, Serialize)]
@@ -78,6 +81,8 @@ pub struct TendonEffect {
     pub kind: &'static str,
     /// Its parameters by key; `grating` and `hole` count from 1 at the base.
     pub parameters: Numbers,
+    /// Standard errors of those that were fitted, by key.
+    pub standard_errors: Numbers,
     /// Share of the gap closed with it and all before it.
     pub gap_closed: Option<f64>,
     /// What speaks for it.
@@ -115,9 +120,11 @@ pub(super) fn told(case: &Case<'_>, outcome: &Outcome, log: &str) -> TendonDisco
         let gap_n = rms_n(before) - noise_n;
         (*verdict != Verdict::Complete && gap_n > 0.0).then(|| 1.0 - (rms_n(fit) - noise_n) / gap_n)
     };
+    let covariance = covariance(case, after);
     let effect = |finding: &Finding| TendonEffect {
         kind: finding.effect.kind(),
         parameters: parameters(case, finding.effect, &after.model),
+        standard_errors: standard_errors(case, finding.effect, &after.model, covariance.as_ref()),
         gap_closed: closed(&finding.fit),
         evidence: Evidence { delta_bic: Some(finding.delta_bic), held_out_rms_n: finding.fit.held_out_n.rms() },
         runner_up: finding.runner_up.map(|(effect, delta_bic)| TendonRunnerUp { kind: effect.kind(), delta_bic }),
@@ -162,9 +169,29 @@ fn shared_mu(model: &Model) -> f64 {
     shared.map_or(0.0, |(mu, _)| *mu)
 }
 
+fn named(pairs: &[(&str, f64)]) -> Numbers {
+    Numbers(pairs.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect())
+}
+
+/// Of what an effect has that was fitted.
+fn standard_errors(case: &Case<'_>, effect: Effect, model: &Model, covariance: Option<&DMatrix<f64>>) -> Numbers {
+    let of = |parameter: Parameter| {
+        let place = model.parameters().iter().position(|fitted| *fitted == parameter)?;
+        covariance?.get((place, place)).map(|variance| variance.sqrt()).filter(|error| error.is_finite())
+    };
+    let found = match effect {
+        Effect::Coulomb => of(Parameter::SharedMu).map(|error| ("mu", error)),
+        Effect::Presliding => None,
+        Effect::SensorDrift(grating) => {
+            let newton_per_nm = case.newton_per_nm.get(grating).map_or(f64::NAN, |slope| slope.abs());
+            of(Parameter::Drift(grating)).map(|error| ("drift_nm_per_s", error / newton_per_nm))
+        }
+        Effect::HoleFriction(hole) => of(Parameter::OwnMu(hole)).map(|error| ("mu", error)),
+    };
+    named(found.as_slice())
+}
+
 fn parameters(case: &Case<'_>, effect: Effect, model: &Model) -> Numbers {
-    let named =
-        |pairs: &[(&str, f64)]| Numbers(pairs.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect());
     match effect {
         Effect::Coulomb => named(&[("mu", shared_mu(model))]),
         Effect::Presliding => named(&[("sigma_n_per_m", USUAL_SIGMA_N_PER_M)]),
@@ -258,7 +285,10 @@ impl TendonDiscoverResult {
                 .parameters
                 .0
                 .iter()
-                .map(|(name, value)| format!("{name} = {}", crate::text::significant(*value)))
+                .map(|(name, value)| {
+                    let half_interval = effect.standard_errors.get(name).map(|error| HALF_INTERVAL * error);
+                    format!("{name} = {}", quantity(*value, half_interval, "1"))
+                })
                 .collect();
             // Writing to a String cannot fail.
             let _ = writeln!(text, "\n{}: {}", effect.kind, values.join(", "));
