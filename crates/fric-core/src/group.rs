@@ -195,9 +195,12 @@ impl<T: Scalar> CableGroup<T> {
                 signals.moves() && !pause
             };
             let known_m = displacement_m;
-            displacement_m = shift(&mut delayed.displacement_m, known_m, in_order, &delayed.delays);
-            speed_m_per_s = shift(&mut delayed.speed_m_per_s, speed_m_per_s, in_order, &delayed.delays);
-            delayed.lag_m = delayed.lag_m + (known_m - displacement_m);
+            let lead_m;
+            (displacement_m, lead_m) = shift(&mut delayed.displacement_m, known_m, in_order, &delayed.delays);
+            (speed_m_per_s, _) = shift(&mut delayed.speed_m_per_s, speed_m_per_s, in_order, &delayed.delays);
+            let leads = |lane: usize| f64::from(delayed.delays.get(lane).is_some_and(|delay: &Delay<T>| delay.leads));
+            let is_lead = T::splat(0.0).lt(T::from_lanes(leads));
+            delayed.lag_m = T::select(is_lead, lead_m, delayed.lag_m + (known_m - displacement_m));
             length_m = length_m - delayed.lag_m;
         }
         let of_lanes = |cycles: [f64; LANES]| T::from_lanes(|lane| cycles[lane % LANES]);
@@ -220,16 +223,20 @@ impl<T: Scalar> CableGroup<T> {
     }
 }
 
-/// One cycle of the delay lines of all lanes.
+/// One cycle of the delay lines of all lanes: the delayed values, and how far they lag behind where they are led.
 fn shift<T: Scalar>(
     lines: &mut [DelayLine; LANES],
     values: T,
     in_order: impl Fn(usize) -> bool,
     delays: &[Delay<T>; LANES],
-) -> T {
+) -> (T, T) {
     let mut ends = [[0.0; 2]; LANES];
-    for ((lane, line), ends) in lines.iter_mut().enumerate().take(T::COUNT).zip(&mut ends) {
+    let mut leads_now = [0.0; LANES];
+    for (((lane, line), ends), leads_now) in
+        lines.iter_mut().enumerate().take(T::COUNT).zip(&mut ends).zip(&mut leads_now)
+    {
         line.push(values.lane(lane), in_order(lane));
+        *leads_now = f64::from(line.is_believed());
         *ends = delays.get(lane).map_or([0.0; 2], |delay| line.around(delay.cycles, delay.leads));
     }
     let [first, ..] = delays;
@@ -241,7 +248,8 @@ fn shift<T: Scalar>(
             T::select(here, delay.fraction, fraction)
         },
     );
-    end(0) + fraction * (end(1) - end(0))
+    let lead = (fraction * end(0)).scale(T::from_lanes(|lane| leads_now.get(lane).copied().unwrap_or(0.0)));
+    (end(0) + fraction * (end(1) - end(0)), lead)
 }
 
 impl<T: Scalar> State<T> {

@@ -208,9 +208,8 @@ fn a_delayed_ripple_is_that_of_the_delayed_length() {
             let now = f64::from(cycle);
             let force_n = feed(&mut compensator, 20.0, length_m(now), 0.0);
             let late_m = if delay_cycles < 0.0 {
-                // The rise of the last cycle goes on; of the first ones it is not known.
-                let start = length_m(1.0) - length_m(0.0);
-                length_m(now) - delay_cycles * (length_m(now) - length_m(now - 1.0) - start)
+                // The rise of the last cycle goes on.
+                length_m(now) - delay_cycles * (length_m(now) - length_m(now - 1.0))
             } else {
                 let at = |cycle: f64| length_m(cycle.max(0.0));
                 let (whole, rest) = (delay_cycles.floor(), delay_cycles.fract());

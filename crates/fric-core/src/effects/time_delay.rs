@@ -125,11 +125,17 @@ impl DelayLine {
         }
     }
 
+    /// Whether so many cycles have been in order that a lead extrapolates.
+    #[inline]
+    pub(crate) fn is_believed(&self) -> bool {
+        self.in_order >= BELIEVED
+    }
+
     /// How far the sum of all delayed values lags behind that of all values.
     pub(crate) fn lag(&self, delay: Delay) -> f64 {
         let between: f64 = (0..delay.cycles.min(MAX_DELAY_CYCLES - 1)).map(|age| self.around(age, false)[0]).sum();
         let [at, _] = self.around(delay.cycles, delay.leads);
-        let stands = delay.leads && self.in_order < BELIEVED;
+        let stands = delay.leads && !self.is_believed();
         if stands { between } else { between + delay.fraction * at }
     }
 
@@ -137,7 +143,7 @@ impl DelayLine {
     #[inline]
     pub(crate) fn around(&self, cycles: usize, leads: bool) -> [f64; 2] {
         let cycles = cycles.min(MAX_DELAY_CYCLES - 1);
-        let stands = leads && self.in_order < BELIEVED;
+        let stands = leads && !self.is_believed();
         [cycles, cycles + usize::from(!stands)].map(|age| {
             let place = (self.newest + MAX_DELAY_CYCLES - age % MAX_DELAY_CYCLES) % MAX_DELAY_CYCLES;
             self.values.get(place).copied().unwrap_or(0.0)
