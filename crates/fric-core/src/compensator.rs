@@ -337,6 +337,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
             *displacement_m = shift_block(&mut columns.delayed_displacement_m, first, known_m, in_order, delay);
             *speed_m_per_s = shift_block(&mut columns.delayed_speed_m_per_s, first, *speed_m_per_s, in_order, delay);
             let lag_m = Lanes::load(&columns.lag_m, block) + (known_m - *displacement_m);
+            let lag_m = lead_block(&columns.delayed_displacement_m, first, lag_m, delay);
             lag_m.store(&mut columns.lag_m, block);
             *length_m = *length_m - lag_m;
         }
@@ -386,6 +387,23 @@ impl<const CABLES: usize> Compensator<CABLES> {
         }
         (platform_n, of_all)
     }
+}
+
+/// How far the delayed motion lags behind, m: summed up, but for a lead, which is what is extrapolated now. Summed up,
+/// it would keep what was not extrapolated around a fault.
+fn lead_block<const CABLES: usize>(
+    lines: &[DelayLine; CABLES],
+    first: usize,
+    summed_m: Lanes,
+    delays: [Delay; LANES],
+) -> Lanes {
+    let mut lag_m = summed_m.to_array();
+    for ((lag_m, line), delay) in lag_m.iter_mut().zip(lines.iter().skip(first)).zip(delays) {
+        if delay.leads() {
+            *lag_m = line.lag(delay);
+        }
+    }
+    Lanes::new(lag_m)
 }
 
 /// One cycle of a block's delay lines.

@@ -71,7 +71,8 @@ struct Delayed<T> {
     fractions: [T; 2],
     displacement_m: [DelayLine; LANES],
     speed_m_per_s: [DelayLine; LANES],
-    /// How far the delayed motion lags behind, m.
+    /// How far the delayed motion lags behind, m: summed up, but for a lead, which is what is extrapolated now. Summed up, it
+    /// would keep what was not extrapolated around a fault.
     lag_m: T,
 }
 
@@ -202,6 +203,12 @@ impl<T: Scalar> CableGroup<T> {
             displacement_m = shift(&mut delayed.displacement_m, known_m, in_order, taps, fractions);
             speed_m_per_s = shift(&mut delayed.speed_m_per_s, speed_m_per_s, in_order, taps, fractions);
             delayed.lag_m = delayed.lag_m + (known_m - displacement_m);
+            if taps.into_iter().any(Taps::leads) {
+                let leads = T::splat(0.0).lt(T::from_lanes(|lane| f64::from(taps[lane % LANES].leads())));
+                let lines = &delayed.displacement_m;
+                let lags = core::array::from_fn(|lane| lines[lane % LANES].about_lag(taps[lane % LANES]));
+                delayed.lag_m = T::select(leads, About::of_lanes(&lags, fractions), delayed.lag_m);
+            }
             length_m = length_m - delayed.lag_m;
         }
         let of_lanes = |cycles: [f64; LANES]| T::from_lanes(|lane| cycles[lane % LANES]);
@@ -237,9 +244,7 @@ fn shift<T: Scalar>(
         line.push(values.lane(lane), in_order(lane));
         *about = line.about(taps);
     }
-    let number = |of: fn(&About) -> f64| T::from_lanes(|lane| of(&of_lanes[lane % LANES]));
-    let [once, twice] = fractions;
-    number(|about| about.value) + number(|about| about.slopes[0]) * once + number(|about| about.slopes[1]) * twice
+    About::of_lanes(&of_lanes, fractions)
 }
 
 impl<T: Scalar> State<T> {

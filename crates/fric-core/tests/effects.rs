@@ -212,7 +212,7 @@ fn a_delayed_ripple_is_that_of_the_delayed_length() {
                 let tau = -delay_cycles;
                 let led = |now: f64| 3.0 * length_m(now) - 3.0 * length_m(now - tau) + length_m(now - 2.0 * tau);
                 let first = 2.0 * tau + 2.0;
-                if now < first { length_m(now) } else { led(now) - led(first - 1.0) + length_m(first - 1.0) }
+                if now < first { length_m(now) } else { led(now) }
             } else {
                 let at = |cycle: f64| length_m(cycle.max(0.0));
                 let (whole, rest) = (delay_cycles.floor(), delay_cycles.fract());

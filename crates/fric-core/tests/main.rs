@@ -23,6 +23,8 @@ mod edit;
 #[cfg(test)]
 mod effects;
 #[cfg(test)]
+mod faults;
+#[cfg(test)]
 mod oracle;
 #[cfg(test)]
 mod platform;
@@ -32,6 +34,8 @@ mod properties;
 mod robot_file;
 #[cfg(test)]
 mod scalar;
+#[cfg(test)]
+mod soak;
 #[cfg(test)]
 mod status;
 #[cfg(test)]

@@ -353,3 +353,9 @@ fn nothing_that_is_read_panics() {
     }
     assert!(message("ö = 1").starts_with("rig.toml, line 1: "));
 }
+
+#[test]
+fn an_error_at_the_end_is_in_the_last_line_that_there_is() {
+    assert!(message("format = \"fric-robot/1\"\n'''name = 1\n\n").starts_with("rig.toml, line 2: "));
+    assert!(message("\n\n").starts_with("rig.toml, line 1: "));
+}

@@ -21,6 +21,7 @@
 
 use super::{Acting, EffectRow, first_place};
 use crate::cable::UNKNOWN;
+use crate::lanes::LANES;
 use crate::parameters::ParameterRow;
 use crate::scalar::Scalar;
 
@@ -69,6 +70,11 @@ impl Delay {
     /// None.
     pub const NONE: Self = Self { taps: Taps::NONE, fractions: [0.0; 2] };
 
+    /// Whether it is a lead.
+    pub(crate) const fn leads(self) -> bool {
+        self.taps.leads
+    }
+
     /// From cycles; held within `−MAX_LEAD_CYCLES…MAX_DELAY_CYCLES − 1`.
     #[must_use]
     pub fn from_cycles(cycles: f64) -> Self {
@@ -86,6 +92,11 @@ pub(crate) struct Taps {
 }
 
 impl Taps {
+    /// Whether it is of a lead.
+    pub(crate) const fn leads(self) -> bool {
+        self.leads
+    }
+
     const NONE: Self = Self { ages: [0; 2], leads: false };
 
     /// Of a delay in cycles.
@@ -143,8 +154,7 @@ impl DelayLine {
     #[inline]
     pub fn shift(&mut self, value: f64, in_order: bool, delay: Delay) -> f64 {
         self.push(value, in_order);
-        let About { value, slopes: [once, twice] } = self.about(delay.taps);
-        value + once * delay.fractions[0] + twice * delay.fractions[1]
+        self.about(delay.taps).at(delay.fractions)
     }
 
     /// Takes in this cycle's value.
@@ -162,15 +172,20 @@ impl DelayLine {
 
     /// How far the sum of all delayed values lags behind that of all values.
     pub(crate) fn lag(&self, delay: Delay) -> f64 {
-        let since = |which: usize| {
-            let age = delay.taps.ages[which];
-            let whole: f64 = (0..age.min(MAX_DELAY_CYCLES - 1)).map(|age| self.at(age)).sum();
-            whole + delay.fractions[which] * self.at(age)
-        };
-        match (delay.taps.leads, self.stands(delay.taps)) {
-            (false, _) => since(0),
-            (true, false) => since(1) - 3.0 * since(0),
-            (true, true) => 0.0,
+        self.about_lag(delay.taps).at(delay.fractions)
+    }
+
+    /// The same by whole cycles, and how it changes with the fractions.
+    pub(crate) fn about_lag(&self, taps: Taps) -> About {
+        if self.stands(taps) {
+            return About::default();
+        }
+        let since = |age: usize| -> f64 { (0..age.min(MAX_DELAY_CYCLES - 1)).map(|age| self.at(age)).sum() };
+        let [once, twice] = taps.ages;
+        if taps.leads {
+            About { value: since(twice) - 3.0 * since(once), slopes: [-3.0 * self.at(once), self.at(twice)] }
+        } else {
+            About { value: since(once), slopes: [self.at(once), 0.0] }
         }
     }
 
@@ -205,10 +220,22 @@ impl DelayLine {
     }
 }
 
-/// A delayed value as far as whole cycles tell.
+/// A delayed value as far as whole cycles tell, and what it changes by for each of [`fractions`].
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct About {
-    pub value: f64,
-    /// What it changes by for each of [`fractions`].
-    pub slopes: [f64; 2],
+    value: f64,
+    slopes: [f64; 2],
+}
+
+impl About {
+    fn at(self, [once, twice]: [f64; 2]) -> f64 {
+        let [of_once, of_twice] = self.slopes;
+        self.value + of_once * once + of_twice * twice
+    }
+
+    /// The values of all lanes.
+    pub(crate) fn of_lanes<T: Scalar>(lanes: &[Self; LANES], [once, twice]: [T; 2]) -> T {
+        let number = |of: fn(&Self) -> f64| T::from_lanes(|lane| of(&lanes[lane % LANES]));
+        number(|about| about.value) + number(|about| about.slopes[0]) * once + number(|about| about.slopes[1]) * twice
+    }
 }

@@ -50,9 +50,10 @@ pub fn line_of(text: &str, path: &[Step]) -> Option<usize> {
     Some(before.matches('\n').count() + 1)
 }
 
-/// The line (from 1) in which an error of the parser stands.
+/// The line (from 1) in which an error of the parser stands; one at the end of the text is in the last line with anything in it.
 pub fn error_line(text: &str, error: &toml::de::Error) -> Option<usize> {
-    error.span().map(|span| text.get(..span.start).unwrap_or(text).matches('\n').count() + 1)
+    let end = text.trim_end().len();
+    error.span().map(|span| text.get(..span.start.min(end)).unwrap_or(text).matches('\n').count() + 1)
 }
 
 /// What is wrong with a text that did not become options, in one line and in the words of the file; `format` is what the file's

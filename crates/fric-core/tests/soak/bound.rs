@@ -1,0 +1,73 @@
+//! How much friction a cable can have: from its parameters and the greatest force and speed there have been.
+//!
+//! Written from the equations' magnitudes, not from the cycle: at each pulley `f ≤ μk(T_0 + T_1)/2 + drag` and
+//! `T_1 ≤ T_0 + f + F_pv|v| + m|a|`, whatever the direction; at the sensor pulley `T_1 = (F_s − c(f + F_pv v))/(1 − c)`.
+
+use std::f64::consts::PI;
+
+use fric_core::CableParams;
+
+/// The run lasts no longer than this, s: what a drift can come to.
+const LONGEST_RUN_S: f64 = 200.0;
+
+/// An effect's parameter.
+pub fn effect(cable: &CableParams, kind: &str, key: &str) -> f64 {
+    cable.effects().get(kind, key).unwrap()
+}
+
+/// The greatest μ that stands at a pulley, but for `load_nonlinearity`.
+pub fn greatest_mu(cable: &CableParams) -> f64 {
+    cable.friction().mu
+        * (1.0 + effect(cable, "stribeck", "ratio").max(0.0))
+        * (1.0 + effect(cable, "direction_asymmetry", "coulomb_ratio").abs())
+        * (1.0 + effect(cable, "friction_drift", "rate_per_s").abs() * LONGEST_RUN_S)
+}
+
+/// cos α₁ of the sensor pulley; 0 for a sensor in line.
+pub fn sensor_cos(cable: &CableParams) -> f64 {
+    cable.sensor_wrap_rad().map_or(0.0, f64::cos)
+}
+
+/// The greatest friction of a cable, N, for forces (N, corrected) and speeds (m/s) up to these.
+pub fn friction_bound_n(cable: &CableParams, force_n: f64, speed_m_per_s: f64, cycle_s: f64) -> f64 {
+    let value = |kind, key| effect(cable, kind, key);
+    let exponent = value("load_nonlinearity", "exponent");
+    if exponent > 1.0 {
+        // Grows faster than the load: what holds it is the core's own limit of μ.
+        return f64::INFINITY;
+    }
+    let mu = greatest_mu(cable);
+    // For an exponent below 1, `μN(N/N₀)^(e−1) ≤ μ(N + N₀)`.
+    let nonlinear_n = if exponent < 1.0 { mu * value("load_nonlinearity", "reference_n") } else { 0.0 };
+    let drag_n = value("bearing_drag", "drag_n") + nonlinear_n;
+    let viscous = cable.friction().viscous_n_s_per_m * (1.0 + value("direction_asymmetry", "viscous_ratio").abs());
+    let window_s = value("pulley_inertia", "window_s") + cycle_s;
+    // Led by up to 20 cycles, a speed that turns round counts 41 times.
+    let led = if value("time_delay", "delay_s") < 0.0 { 41.0 } else { 1.0 };
+    let speed_m_per_s = led * speed_m_per_s;
+    let moved_n = speed_m_per_s * (viscous + value("pulley_inertia", "mass_kg") * 2.0 / window_s);
+    // A slip limit takes from the stored friction what viscous friction is too much, and that stays stored.
+    let stored_too_n = if cable.traction_mu().is_some() { 2.0 * moved_n } else { 0.0 };
+
+    let cos = sensor_cos(cable);
+    let gain = 1.0 / (1.0 - cos);
+    let mut tension_n = gain * force_n;
+    let mut friction_n = 0.0;
+    for (place, wrap_rad) in cable.fixed_wraps_rad().enumerate() {
+        let half = 0.5 * mu * 2.0 * (0.5 * wrap_rad.unwrap_or(PI)).sin();
+        let is_sensor = place == 0 && cable.sensor_wrap_rad().is_some();
+        let share = if is_sensor { gain * cos.abs() } else { 1.0 };
+        // Both tensions together are at most 2T + (2·share + 1)(f + moved) at the sensor pulley, 2T + f + moved behind.
+        let both = if is_sensor { 2.0 * share + 1.0 } else { 1.0 };
+        let left = 1.0 - half * both;
+        if left <= 0.05 {
+            return f64::INFINITY;
+        }
+        let stored_n = (half * (2.0 * tension_n + both * (moved_n + stored_too_n)) + drag_n) / left + stored_too_n;
+        friction_n += share * (stored_n + moved_n);
+        tension_n += share * (stored_n + moved_n);
+    }
+    let ripple = value("pulley_eccentricity", "sin_ratio").hypot(value("pulley_eccentricity", "cos_ratio"));
+    // A slack cable's friction takes all its tension away.
+    friction_n.max(gain * force_n) + ripple * tension_n
+}

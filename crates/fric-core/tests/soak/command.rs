@@ -1,0 +1,52 @@
+//! `cargo run --release -p fric-core --example soak -- CYCLES SEED [THREADS]`: see the module.
+#![allow(clippy::unwrap_used, clippy::print_stdout, clippy::print_stderr, reason = "a check, not a library")]
+#![allow(clippy::float_cmp, reason = "exact zeros")]
+
+use std::env;
+use std::process::ExitCode;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
+
+#[path = "mod.rs"]
+mod soak;
+#[path = "../support.rs"]
+#[allow(dead_code, reason = "what the tests need besides")]
+mod support;
+
+const REPORTED: u64 = 10_000_000;
+
+fn main() -> ExitCode {
+    let numbers: Vec<Option<u64>> = env::args().skip(1).map(|text| text.parse().ok()).collect();
+    let (cycles, seed, threads) = match numbers[..] {
+        [Some(cycles), Some(seed)] => (cycles, seed, 1),
+        [Some(cycles), Some(seed), Some(threads)] => (cycles, seed, usize::try_from(threads).unwrap()),
+        _ => {
+            eprintln!("usage: soak CYCLES SEED [THREADS]");
+            return ExitCode::from(2);
+        }
+    };
+    let start = Instant::now();
+    let reported = AtomicU64::new(0);
+    let progress = |done: u64| {
+        if done / REPORTED > reported.fetch_max(done / REPORTED, Ordering::Relaxed) {
+            eprintln!("{done} cycles, {:.0} s", start.elapsed().as_secs_f64());
+        }
+    };
+    match soak::soak(cycles, seed, threads, progress) {
+        Ok(tally) => {
+            println!(
+                "{} cycles in {:.0} s, seed {seed}: {} faults, {} recoveries, no broken invariant; flags seen: {}",
+                tally.cycles,
+                start.elapsed().as_secs_f64(),
+                tally.faults,
+                tally.recoveries,
+                tally.status(),
+            );
+            ExitCode::SUCCESS
+        }
+        Err(problem) => {
+            eprintln!("{problem}");
+            ExitCode::FAILURE
+        }
+    }
+}

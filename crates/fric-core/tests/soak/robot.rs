@@ -1,0 +1,147 @@
+//! Random robots: every form, every effect, parameters of machines that could be built.
+
+use fric_core::effects::CATALOGUE;
+use fric_core::robot::{
+    CableOptions, FrictionOptions, GeometryOptions, MonitorOptions, PlatformOptions, Presliding, PulleyOptions,
+    ValidatedRange,
+};
+use fric_core::{CableParams, Compensator, RobotParams};
+
+use super::episode::MOST_CABLES;
+use crate::support::Random;
+
+/// A robot and what the checks have to know of it.
+pub struct Robot {
+    pub cables: Vec<CableParams>,
+    pub cycle_s: f64,
+    pub monitor: MonitorOptions,
+}
+
+impl Robot {
+    pub fn new(random: &mut Random) -> Self {
+        let cycle_s = pick(&[1e-3, 1e-3, 1e-3, 5e-4, 4e-3], random);
+        let standard = MonitorOptions::for_cycle(cycle_s);
+        let monitor = MonitorOptions {
+            frozen_cycles: pick(&[0, 3, 20, 100], random),
+            length_noise_m: pick(&[0.0, 0.0, 0.0, 1e-6, 1e-5], random),
+            ..standard
+        };
+        let count = 1 + random.below(MOST_CABLES as u64);
+        // Every other robot has effects, a few of them.
+        let has_effects = once_in(random, 2);
+        let kinds: Vec<&str> =
+            CATALOGUE.iter().map(|row| row.kind).filter(|_| has_effects && once_in(random, 5)).collect();
+        Self { cables: (0..count).map(|_| cable(random, cycle_s, &kinds)).collect(), cycle_s, monitor }
+    }
+
+    pub fn compensator(&self) -> Compensator<MOST_CABLES> {
+        let platform = PlatformOptions { mass_kg: 2.0, center_of_mass_m: [0.01, 0.0, -0.02], ..Default::default() };
+        let robot = RobotParams::new(self.cycle_s, &platform, self.monitor, &self.cables).unwrap();
+        Compensator::new(&robot).unwrap()
+    }
+}
+
+pub fn pick<T: Copy>(values: &[T], random: &mut Random) -> T {
+    values[usize::try_from(random.below(values.len() as u64)).unwrap()]
+}
+
+/// True once in so many times.
+pub fn once_in(random: &mut Random, times: u64) -> bool {
+    random.below(times) == 0
+}
+
+/// Between two positive numbers, every order of magnitude as often.
+pub fn magnitude(random: &mut Random, least: f64, greatest: f64) -> f64 {
+    least * (greatest / least).powf(random.unit())
+}
+
+fn cable(random: &mut Random, cycle_s: f64, kinds: &[&str]) -> CableParams {
+    // What is at odds with itself, such as a sensor pulley of hardly any wrap, is drawn again.
+    loop {
+        if let Ok(cable) = any_cable(random, cycle_s, kinds) {
+            return cable;
+        }
+    }
+}
+
+fn any_cable(random: &mut Random, cycle_s: f64, kinds: &[&str]) -> Result<CableParams, fric_core::ParamError> {
+    let mut pulleys: Vec<PulleyOptions> = (0..=random.below(5)).map(|_| fixed(random)).collect();
+    if let PulleyOptions::Fixed { wrap_rad, sensor } = &mut pulleys[0]
+        && !once_in(random, 3)
+    {
+        *sensor = true;
+        *wrap_rad = pick(&[std::f64::consts::PI, std::f64::consts::FRAC_PI_2, *wrap_rad], random);
+    }
+    if once_in(random, 2) {
+        let radius_m = pick(&[0.0, 0.01, 0.05], random);
+        let swivel = PulleyOptions::Swivel { radius_m, axis: random.unit_vector() };
+        if pulleys.len() > 1 { *pulleys.last_mut().unwrap() = swivel } else { pulleys.push(swivel) }
+    }
+    let mut options = CableOptions {
+        presliding: pick(&[Presliding::PerPulley, Presliding::Lumped], random),
+        friction: FrictionOptions {
+            mu: pick(&[0.0, 0.02, random.range(0.0, 0.05), random.range(0.0, 0.2)], random),
+            sigma_n_per_m: Some(magnitude(random, 300.0, 1e5)),
+            viscous_n_s_per_m: pick(&[0.0, 0.0, random.range(0.0, 2.0)], random),
+            offset_n: pick(&[0.0, random.range(-1.0, 1.0)], random),
+        },
+        geometry: Some(GeometryOptions { base_m: random.vector(1.0), platform_m: random.vector(0.05) }),
+        traction_mu: once_in(random, 6).then(|| random.range(0.03, 1.0)),
+        ..CableOptions::new(&pulleys)
+    };
+    if once_in(random, 2) {
+        options.validated = ValidatedRange { force_n: [0.5, 80.0], speed_m_per_s: 2.0 };
+    }
+    add_effects(random, cycle_s, kinds, &mut options);
+    CableParams::new(&options)
+}
+
+fn fixed(random: &mut Random) -> PulleyOptions {
+    let wrap_rad = pick(&[0.0, std::f64::consts::FRAC_PI_2, random.range(0.0, 1.9 * std::f64::consts::PI)], random);
+    PulleyOptions::Fixed { wrap_rad, sensor: false }
+}
+
+fn add_effects(random: &mut Random, cycle_s: f64, kinds: &[&str], options: &mut CableOptions<'_>) {
+    // Friction that follows a tension it adds to is stable below 1, see `cable_elasticity`.
+    let sensor_gain = match options.pulleys[0] {
+        PulleyOptions::Fixed { wrap_rad, sensor: true } => wrap_rad.cos().abs() / (1.0 - wrap_rad.cos()),
+        _ => 0.0,
+    };
+    let stable_m_per_n = 1.0 / (options.friction.sigma_n_per_m.unwrap_or(1.0) * sensor_gain.max(1.0));
+    if kinds.is_empty() {
+        return;
+    }
+    let values: [f64; 20] = std::array::from_fn(|_| random.unit());
+    let between = |place: usize, least: f64, greatest: f64| least + (greatest - least) * values[place];
+    let effects: [(&str, &[(&str, f64)]); 13] = [
+        ("stribeck", &[("ratio", between(0, -0.5, 1.0)), ("velocity_m_per_s", between(1, 1e-3, 0.1))]),
+        ("direction_asymmetry", &[("coulomb_ratio", between(2, -0.4, 0.4)), ("viscous_ratio", between(3, -0.5, 0.5))]),
+        ("bearing_drag", &[("drag_n", between(4, 0.0, 1.0))]),
+        ("load_nonlinearity", &[("exponent", between(5, 0.5, 1.3)), ("reference_n", between(6, 20.0, 100.0))]),
+        ("friction_drift", &[("rate_per_s", between(7, -0.02, 0.02))]),
+        ("presliding_shape", &[("exponent", between(8, 0.5, 1.5))]),
+        ("sensor_gain", &[("gain", between(9, 0.5, 2.0))]),
+        ("sensor_offset", &[("offset_n", between(10, -1.0, 1.0))]),
+        ("sensor_drift", &[("rate_n_per_s", between(11, -0.02, 0.02))]),
+        ("time_delay", &[("delay_s", cycle_s * between(12, -10.0, 40.0))]),
+        ("pulley_inertia", &[("mass_kg", between(13, 0.0, 0.3)), ("window_s", between(14, 0.0, 0.01))]),
+        (
+            "pulley_eccentricity",
+            &[
+                ("sin_ratio", between(15, -0.2, 0.2)),
+                ("cos_ratio", between(16, -0.2, 0.2)),
+                ("period_m", between(17, 0.01, 1.0)),
+            ],
+        ),
+        (
+            "cable_elasticity",
+            &[("compliance_m_per_n", between(18, 0.0, 0.5) * stable_m_per_n), ("play_n", between(19, 0.0, 0.1))],
+        ),
+    ];
+    for (kind, parameters) in effects.into_iter().filter(|(kind, _)| kinds.contains(kind)) {
+        // Not all cables alike.
+        for (key, value) in parameters.iter().filter(|_| !once_in(random, 3)) {
+            options.effects.set(kind, key, *value).unwrap();
+        }
+    }
+}
