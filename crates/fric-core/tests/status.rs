@@ -177,18 +177,6 @@ fn noise_of_the_length_within_its_play_moves_nothing() {
 }
 
 #[test]
-fn a_longer_pause_allows_a_longer_way() {
-    let mut bench = Bench::new(Presliding::PerPulley);
-    bench.run(20);
-    let signals = CableInput { sensor_force_n: 20.0, length_m: 0.102, speed_m_per_s: 0.1 };
-    let mut late = bench.compensator.clone();
-    let input = CycleInput { cables: [signals], ..CycleInput::default() };
-    assert_eq!(bench.compensator.step(&input).cables[0].status, CableStatus::LENGTH_JUMP);
-    let output = late.step(&CycleInput { elapsed_cycles: 1000.0, ..input });
-    assert!(output.cables[0].status.is_ok());
-}
-
-#[test]
 fn a_rotation_that_is_none_is_no_pose() {
     let options = [fric_core::robot::CableOptions { ..crate::support::corner_cable(0, Presliding::PerPulley) }];
     let mut compensator = compensator::<1>(&options, MONITOR);
