@@ -207,8 +207,8 @@ impl<const CABLES: usize> Compensator<CABLES> {
             let known = self.state.columns.direction_known.iter().take(self.cable_count).all(|&known| known > 0.0);
             self.state.directions_known = self.all_geometry && known;
         }
-        if let Some(pose) = pose.filter(|_| self.state.directions_known) {
-            let torque_nm = (pose.orientation * self.center_of_mass_m).cross(&self.gravity_n);
+        if let Some(rotation) = rotation.filter(|_| self.state.directions_known) {
+            let torque_nm = (rotation * self.center_of_mass_m).cross(&self.gravity_n);
             self.state.gravity = Some(Wrench { force_n: self.gravity_n, torque_nm });
         }
         let columns = &self.state.columns;
