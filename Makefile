@@ -18,9 +18,9 @@ MIRI_TARGET := riscv64gc-unknown-linux-gnu
 # Commands of the system that tests run, each with the Debian package that has it.
 TOOLS := c++=g++ cmake=cmake pkg-config=pkg-config valgrind=valgrind
 
-.PHONY: test format lint test-rust docs test-python bare-metal miri bench install tools
+.PHONY: test format lint test-rust docs test-python instructions bare-metal miri bench install tools
 
-test: format lint test-rust docs test-python bare-metal miri
+test: format lint test-rust docs test-python instructions bare-metal miri
 
 tools:
 	@missing=; for tool in $(TOOLS); do \
@@ -54,6 +54,9 @@ $(VENV)/ready: tests/python/requirements.txt
 	$(PYTHON) -m venv $(VENV)
 	$(PIP) install -r tests/python/requirements.txt
 	touch $@
+
+instructions: tools
+	benches/instructions.sh
 
 bare-metal:
 	@if rustup target add $(BARE_METAL) >/dev/null 2>&1; then \

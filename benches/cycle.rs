@@ -1,4 +1,5 @@
-//! One cycle of 8 cables with 3 pulleys each, geometry and wrench included: the mean, and the worst beside it.
+//! One cycle of 8 cables with 3 pulleys each, geometry and wrench included: the mean, the worst beside it, and the mean for each of
+//! 4 to 64 cables.
 //!
 //! `cargo bench -p fric-core --bench cycle`
 
@@ -11,17 +12,18 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use criterion::Criterion;
+use fric_core::CycleOutput;
 use fric_core::robot::Presliding;
-use support::{CYCLES, compensator, inputs};
+use support::{CABLES, CYCLES, compensator, inputs};
 
 const FORMS: [(&str, Presliding); 2] = [("lumped", Presliding::Lumped), ("per_pulley", Presliding::PerPulley)];
 
 /// The mean, by Criterion; one iteration is one cycle.
 fn mean(criterion: &mut Criterion) {
-    let inputs = inputs();
+    let inputs = inputs::<CABLES>();
     let mut group = criterion.benchmark_group("cycle");
     for (name, presliding) in FORMS {
-        let mut compensator = compensator(presliding);
+        let mut compensator = compensator::<CABLES>(presliding);
         let mut order = inputs.iter().cycle();
         group.bench_function(name, |bencher| {
             bencher.iter(|| compensator.step(black_box(order.next().expect("never ends"))));
@@ -32,13 +34,13 @@ fn mean(criterion: &mut Criterion) {
 
 /// Single cycles with a clock around each: percentiles in nanoseconds, the clock's own cost taken off.
 fn worst(rounds: usize) {
-    let inputs = inputs();
+    let inputs = inputs::<CABLES>();
     let mut clock_ns: Vec<u128> = (0..10_000).map(|_| Instant::now().elapsed().as_nanos()).collect();
     clock_ns.sort_unstable();
     let clock_ns = clock_ns[clock_ns.len() / 2];
     println!("single cycles, ns (the clock's {clock_ns} ns taken off):");
     for (name, presliding) in FORMS {
-        let mut compensator = compensator(presliding);
+        let mut compensator = compensator::<CABLES>(presliding);
         let mut spans_ns: Vec<u128> = Vec::with_capacity(rounds * CYCLES);
         for _ in 0..rounds {
             for input in &inputs {
@@ -64,10 +66,44 @@ fn worst(rounds: usize) {
     }
 }
 
+/// The best mean of so many rounds over the motion, ns per cable of one cycle.
+fn per_cable_ns<const COUNT: usize>(presliding: Presliding, rounds: usize) -> f64 {
+    let inputs = inputs::<COUNT>();
+    let mut compensator = compensator::<COUNT>(presliding);
+    let mut output = CycleOutput::default();
+    let mut best_s = f64::INFINITY;
+    for _ in 0..rounds {
+        let start = Instant::now();
+        for input in &inputs {
+            compensator.step_into(black_box(input), &mut output);
+            black_box(&output);
+        }
+        best_s = best_s.min(start.elapsed().as_secs_f64());
+    }
+    best_s * 1e9 / (CYCLES * COUNT) as f64
+}
+
+/// What a cable costs among few and among many.
+fn counts(rounds: usize) {
+    println!("a cable's share of the cycle in the best of {rounds} rounds, ns, of 4, 8, 16, 32, 64 cables:");
+    for (name, presliding) in FORMS {
+        let [four, eight, sixteen, many, most] = [
+            per_cable_ns::<4>(presliding, rounds),
+            per_cable_ns::<8>(presliding, rounds),
+            per_cable_ns::<16>(presliding, rounds),
+            per_cable_ns::<32>(presliding, rounds),
+            per_cable_ns::<64>(presliding, rounds),
+        ];
+        println!("  {name}: {four:.1}, {eight:.1}, {sixteen:.1}, {many:.1}, {most:.1}");
+    }
+}
+
 fn main() {
     let mut criterion = Criterion::default().configure_from_args();
     mean(&mut criterion);
     criterion.final_summary();
     // `cargo test --benches` runs every bench once to see that it works.
-    worst(if std::env::args().any(|argument| argument == "--bench") { 50 } else { 1 });
+    let rounds = if std::env::args().any(|argument| argument == "--bench") { 50 } else { 1 };
+    worst(rounds);
+    counts(rounds);
 }

@@ -6,7 +6,7 @@ use fric_core::robot::{
 };
 use fric_core::{CableInput, Compensator, CycleInput, Pose};
 
-/// Cables of the robot.
+/// Cables of the robot that is compared with others.
 pub const CABLES: usize = 8;
 /// Cycles of the motion before it repeats.
 pub const CYCLES: usize = 4096;
@@ -19,11 +19,13 @@ const PULLEYS: [PulleyOptions; 3] = [
     PulleyOptions::Swivel { radius_m: 0.01, axis: [0.0, 0.0, 1.0] },
 ];
 
-/// A cable at each corner of a box, friction of the size that the paper publishes, every cable a little different.
-pub fn cable_options(presliding: Presliding) -> [CableOptions<'static>; CABLES] {
+/// A cable at each corner of a box, beyond eight of a larger one, friction of the size that the paper publishes, every cable a
+/// little different.
+pub fn cable_options<const COUNT: usize>(presliding: Presliding) -> [CableOptions<'static>; COUNT] {
     core::array::from_fn(|index| {
         let side = |bit: usize| if index >> bit & 1 == 0 { 1.0 } else { -1.0 };
-        let share = index as f64 / CABLES as f64;
+        let share = (index % CABLES) as f64 / CABLES as f64;
+        let larger = 1.0 + 0.05 * (index / CABLES) as f64;
         CableOptions {
             presliding,
             friction: FrictionOptions {
@@ -33,7 +35,7 @@ pub fn cable_options(presliding: Presliding) -> [CableOptions<'static>; CABLES] 
                 offset_n: 0.02 * side(0),
             },
             geometry: Some(GeometryOptions {
-                base_m: [0.55 * side(0), 0.4 * side(1), 0.5 * side(2)],
+                base_m: [0.55 * side(0), 0.4 * side(1), 0.5 * side(2)].map(|place| larger * place),
                 platform_m: [0.06 * side(0), 0.05 * side(1), -0.05 * side(2)],
             }),
             ..CableOptions::new(&PULLEYS)
@@ -42,9 +44,11 @@ pub fn cable_options(presliding: Presliding) -> [CableOptions<'static>; CABLES] 
 }
 
 /// The compensator of that robot.
-pub fn compensator(presliding: Presliding) -> Compensator<CABLES> {
-    let cables: Vec<CableParams> =
-        cable_options(presliding).iter().map(|options| CableParams::new(options).expect("good options")).collect();
+pub fn compensator<const COUNT: usize>(presliding: Presliding) -> Compensator<COUNT> {
+    let cables: Vec<CableParams> = cable_options::<COUNT>(presliding)
+        .iter()
+        .map(|options| CableParams::new(options).expect("good options"))
+        .collect();
     let platform = PlatformOptions { mass_kg: 0.41, center_of_mass_m: [0.01, -0.02, 0.005], ..Default::default() };
     let robot = RobotParams::new(CYCLE_S, &platform, MonitorOptions::for_cycle(CYCLE_S), &cables).expect("good robot");
     Compensator::new(&robot).expect("room for all cables")
@@ -62,8 +66,9 @@ fn motion(t: f64) -> ([f64; 3], [f64; 3]) {
 }
 
 /// Smooth motion with reversals; forces with a sensor's last bits in them, so that none repeats.
-pub fn inputs() -> Vec<CycleInput<CABLES>> {
-    let robot = cable_options(Presliding::Lumped).map(|options| CableParams::new(&options).expect("good options"));
+pub fn inputs<const COUNT: usize>() -> Vec<CycleInput<COUNT>> {
+    let robot =
+        cable_options::<COUNT>(Presliding::Lumped).map(|options| CableParams::new(&options).expect("good options"));
     let mut noise = 0x1234_5678_9abc_def0_u64;
     let mut draw = || {
         noise ^= noise << 13;

@@ -1,13 +1,15 @@
 // eigen run|time lumped|per_pulley INPUT ROUNDS   |   eigen output lumped|per_pulley INPUT FILE
-// INPUT is what `cycle_instructions input FILE` writes.
+// INPUT is what `cycle_instructions input FILE` writes; `time` prints nanoseconds per cycle in the best round.
 
 #include "cycle.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
+#include <limits>
 #include <string>
 
 namespace {
@@ -63,15 +65,17 @@ int work(const std::string& command, const Problem& problem, const char* last) {
         return std::fclose(file);
     }
     const long rounds = std::atol(last);
-    const auto start = std::chrono::steady_clock::now();
+    double best_ns = std::numeric_limits<double>::infinity();
     for (long round = 0; round < rounds; ++round) {
+        const auto start = std::chrono::steady_clock::now();
         for (const auto& input : problem.inputs) {
             compensator.step(input, output);
             keep(output);
         }
+        const std::chrono::duration<double, std::nano> elapsed = std::chrono::steady_clock::now() - start;
+        best_ns = std::min(best_ns, elapsed.count());
     }
-    const std::chrono::duration<double, std::nano> elapsed = std::chrono::steady_clock::now() - start;
-    if (command == "time") std::printf("%g\n", elapsed.count() / static_cast<double>(rounds * problem.inputs.size()));
+    if (command == "time") std::printf("%g\n", best_ns / static_cast<double>(problem.inputs.size()));
     return 0;
 }
 

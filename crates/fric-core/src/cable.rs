@@ -1,7 +1,7 @@
 //! Friction of one cable over one cycle: the chain of its pulleys with presliding, in the two forms that are wanted.
 //!
 //! For: sensor force and displacement in, force at the platform out ([`cable_cycle`]). Generic over [`Scalar`], so the
-//! control cycle (four cables at once) and a fit that carries derivatives run the very same code. It does not judge
+//! control cycle (several cables at once) and a fit that carries derivatives run the very same code. It does not judge
 //! signals: [`condition`](crate::signals::condition) sees to it that they are finite. State: one number per pulley, or
 //! one per cable, and [`MEMORY`] of effects, kept by the caller behind [`Cable`].
 //!

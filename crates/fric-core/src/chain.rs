@@ -97,61 +97,67 @@ impl<T: Scalar> Chain<'_, T> {
     pub fn lumped(&self, cable: &impl Cable<T>) -> (T, T, T::Mask) {
         let Self { model, features, bearing, sensor_force_n, .. } = self;
         let sensor_force_n = *sensor_force_n;
-        let zero = T::splat(0.0);
+        let (zero, one, two) = (T::splat(0.0), T::splat(1.0), T::splat(2.0));
         let displacement_m = self.mean_displacement(cable);
         let direction = displacement_m.sign();
         let frictionless_n = sensor_force_n.scale(model.frictionless_gain);
         let mut slip = T::Mask::NONE;
-        let mut coulomb_n = zero;
-        let mut viscous_n = zero;
+        // Coulomb and viscous part of the tension over a common divisor: one division for the whole cable. Only what depends on
+        // the tension at each pulley divides there, and leaves these numbers as they are: a cable's bits are not to hang on
+        // what another cable needs.
+        let needs_tensions = features.traction || bearing.depends_on_load();
+        let (mut coulomb_n, mut viscous_n, mut divisor) = (zero, zero, one);
         for place in 0..cable.count() {
             let wrap_factor = cable.wrap_factor(place);
             let added_n = bearing.viscous_n(place, cable);
             let drag_n = bearing.drag_n(place, cable).map(|drag_n| drag_n.scale(direction));
             let resisting_n = drag_n.map_or(added_n, |drag_n| added_n + drag_n);
+            let tension_n = |coulomb_n: T, viscous_n: T, divisor: T| (coulomb_n + viscous_n) / divisor;
+            let before_n = if needs_tensions { tension_n(coulomb_n, viscous_n, divisor) } else { frictionless_n };
+            let mu = if place == 0 {
+                self.mu_of_sensor_pulley(wrap_factor, direction, (frictionless_n, resisting_n), cable)
+            } else {
+                self.mu_of_guide_pulley(wrap_factor, direction, (before_n, resisting_n), cable)
+            };
+            let coupling = mu.scale(direction).scale(wrap_factor);
+            let (plus, minus) = (two + coupling, two - coupling);
+            // What a resisting force is multiplied by ([`pulley::sensor_gains`], [`pulley::sliding_gains`]).
+            let share = if place == 0 { -(two.scale(model.sensor_cos)) } else { divisor.scale(two) };
             if place == 0 {
-                let (mu, gain, viscous_gain) = self.sensor_pulley(direction, (frictionless_n, resisting_n), cable);
-                coulomb_n = sensor_force_n * gain;
-                if let Some(drag_n) = drag_n {
-                    coulomb_n = coulomb_n + drag_n * viscous_gain;
-                }
-                viscous_n = added_n * viscous_gain;
-                if features.traction {
-                    let traction_ratio = cable.traction_ratio(place);
+                coulomb_n = sensor_force_n * plus;
+                divisor = plus - minus.scale(model.sensor_cos);
+            } else {
+                coulomb_n = coulomb_n * plus;
+                viscous_n = viscous_n * plus;
+                divisor = divisor * minus;
+            }
+            viscous_n = viscous_n + added_n * share;
+            if let Some(drag_n) = drag_n {
+                coulomb_n = coulomb_n + drag_n * share;
+            }
+            if features.traction {
+                let traction_ratio = cable.traction_ratio(place);
+                let behind_n = tension_n(coulomb_n, viscous_n, divisor);
+                let (held_n, slips) = if place == 0 {
                     // [P] 10 the other way round: the tension on the winch side from the one behind.
                     let (inverse_gain, inverse_viscous) = pulley::sliding_gains(-direction, mu, wrap_factor);
-                    let behind_n = coulomb_n + viscous_n;
                     let before_n = behind_n * inverse_gain - resisting_n * inverse_viscous;
                     let (_, slips) = pulley::limit_traction(before_n, behind_n, traction_ratio);
                     let tensions = (before_n, behind_n);
                     let (_, held_n) =
                         pulley::slipping_sensor(sensor_force_n, model.sensor_cos, tensions, traction_ratio);
-                    coulomb_n = T::select(slips, held_n - viscous_n, coulomb_n);
-                    slip = slips;
-                }
-                continue;
-            }
-            let before_n = coulomb_n + viscous_n;
-            let (gain, viscous_gain) = self.guide_pulley(place, direction, (before_n, resisting_n), cable);
-            let mut next_coulomb_n = coulomb_n * gain;
-            if let Some(drag_n) = drag_n {
-                next_coulomb_n = next_coulomb_n + drag_n * viscous_gain;
-            }
-            let next_viscous_n = viscous_n * gain + added_n * viscous_gain;
-            if features.traction {
-                let traction_ratio = cable.traction_ratio(place);
-                let behind_n = next_coulomb_n + next_viscous_n;
-                let (limited_n, slips) = pulley::limit_traction(before_n, behind_n, traction_ratio);
-                slip = slip.or(slips);
+                    (held_n, slips)
+                } else {
+                    pulley::limit_traction(before_n, behind_n, traction_ratio)
+                };
                 // The slip limit holds the sum; what it takes away is Coulomb friction.
-                coulomb_n = T::select(slips, limited_n - next_viscous_n, next_coulomb_n);
-                viscous_n = next_viscous_n;
-            } else {
-                coulomb_n = next_coulomb_n;
-                viscous_n = next_viscous_n;
+                coulomb_n = T::select(slips, held_n * divisor - viscous_n, coulomb_n);
+                slip = slip.or(slips);
             }
         }
-        let sliding_n = coulomb_n - frictionless_n;
+        let inverse = one / divisor;
+        let viscous_n = viscous_n * inverse;
+        let sliding_n = coulomb_n * inverse - frictionless_n;
         // Sliding this way leads to `sliding_n`, whose sign is not the motion's where a sensor pulley of less than 90°
         // outweighs the others: its friction lowers the tension behind it.
         let distance_m = displacement_m.abs();
@@ -160,51 +166,48 @@ impl<T: Scalar> Chain<'_, T> {
         (frictionless_n + moved_n + viscous_n, moved_n, slip)
     }
 
-    /// μ, gain and viscous share of the sensor pulley in steady sliding ([`pulley::sensor_gains`]).
+    /// μ of the sensor pulley in steady sliding.
     ///
     /// Where μ depends on the load it is first that of the frictionless tension, then that of the tensions which this gives.
     #[inline(always)]
-    fn sensor_pulley(&self, direction: T, (frictionless_n, resisting_n): (T, T), cable: &impl Cable<T>) -> (T, T, T) {
-        let wrap_factor = cable.wrap_factor(0);
-        let gains = |tensions| {
-            let mu = self.bearing.mu_at(wrap_factor, tensions, direction, cable);
-            let (gain, viscous_gain) = pulley::sensor_gains(direction, mu, wrap_factor, self.model.sensor_cos);
-            (mu, gain, viscous_gain)
-        };
-        let mut sliding = gains((frictionless_n, frictionless_n));
+    fn mu_of_sensor_pulley(
+        &self,
+        wrap_factor: T,
+        direction: T,
+        (frictionless_n, resisting_n): (T, T),
+        cable: &impl Cable<T>,
+    ) -> T {
+        let mu_at = |tensions| self.bearing.mu_at(wrap_factor, tensions, direction, cable);
+        let mut mu = mu_at((frictionless_n, frictionless_n));
         if self.bearing.depends_on_load() {
             for _ in 0..LOAD_STEPS {
-                let (mu, gain, viscous_gain) = sliding;
+                let (gain, viscous_gain) = pulley::sensor_gains(direction, mu, wrap_factor, self.model.sensor_cos);
                 let (inverse_gain, inverse_viscous) = pulley::sliding_gains(-direction, mu, wrap_factor);
                 let behind_n = self.sensor_force_n * gain + resisting_n * viscous_gain;
-                sliding = gains((behind_n * inverse_gain - resisting_n * inverse_viscous, behind_n));
+                mu = mu_at((behind_n * inverse_gain - resisting_n * inverse_viscous, behind_n));
             }
         }
-        sliding
+        mu
     }
 
-    /// Gain and viscous share of another pulley in steady sliding ([`pulley::sliding_gains`]), μ likewise.
+    /// μ of another pulley in steady sliding, likewise.
     #[inline(always)]
-    fn guide_pulley(
+    fn mu_of_guide_pulley(
         &self,
-        place: usize,
+        wrap_factor: T,
         direction: T,
         (before_n, resisting_n): (T, T),
         cable: &impl Cable<T>,
-    ) -> (T, T) {
-        let wrap_factor = cable.wrap_factor(place);
-        let gains = |tensions| {
-            let mu = self.bearing.mu_at(wrap_factor, tensions, direction, cable);
-            pulley::sliding_gains(direction, mu, wrap_factor)
-        };
-        let mut sliding = gains((before_n, before_n));
+    ) -> T {
+        let mu_at = |tensions| self.bearing.mu_at(wrap_factor, tensions, direction, cable);
+        let mut mu = mu_at((before_n, before_n));
         if self.bearing.depends_on_load() {
             for _ in 0..LOAD_STEPS {
-                let (gain, viscous_gain) = sliding;
-                sliding = gains((before_n, before_n * gain + resisting_n * viscous_gain));
+                let (gain, viscous_gain) = pulley::sliding_gains(direction, mu, wrap_factor);
+                mu = mu_at((before_n, before_n * gain + resisting_n * viscous_gain));
             }
         }
-        sliding
+        mu
     }
 }
 

@@ -1,20 +1,22 @@
-//! Parameters and state of all cables, one column a quantity, so that four cables load as one.
+//! Parameters and state of all cables, one column a quantity, so that cables side by side load as one.
 //!
 //! Private to the crate: the structure-of-arrays behind [`Compensator`](crate::Compensator).
 
 use crate::cable::{Cable, CableModel, MEMORY, UNKNOWN};
 use crate::effects::EFFECT_PARAMETER_COUNT;
 use crate::effects::time_delay::{self, Delay, DelayLine};
-use crate::lanes::{Lanes, LanesMask};
+use crate::lanes::Block;
 use crate::parameters::FRICTION_COUNT;
 use crate::places::{NO_SLIP, PLACES, Places, START_WRAP_FACTOR};
 use crate::robot::{CableParams, MAX_PULLEYS};
-use crate::scalar::Scalar;
 use crate::signals::SignalState;
 use crate::swivel::Swivel;
 
 /// Parameters that do not change while running.
+///
+/// Aligned to four of them: a load can then be part of the instruction that uses it.
 #[derive(Clone, Copy, Debug)]
+#[repr(align(32))]
 pub struct ParamColumns<const CABLES: usize> {
     mu: [f64; CABLES],
     sigma_n_per_m: [f64; CABLES],
@@ -132,31 +134,31 @@ impl<const CABLES: usize> ParamColumns<CABLES> {
 
     /// Parameters of the cables of a block.
     #[inline(always)]
-    pub fn model(&self, block: usize) -> CableModel<Lanes> {
+    pub fn model<T: Block>(&self, block: usize) -> CableModel<T> {
         CableModel {
-            mu: Lanes::load(&self.mu, block),
-            sigma_n_per_m: Lanes::load(&self.sigma_n_per_m, block),
-            offset_n: Lanes::load(&self.offset_n, block),
-            sensor_cos: Lanes::load(&self.sensor_cos, block),
-            frictionless_gain: Lanes::load(&self.frictionless_gain, block),
-            lumped: Lanes::splat(0.0).lt(Lanes::load(&self.lumped, block)),
+            mu: T::load(&self.mu, block),
+            sigma_n_per_m: T::load(&self.sigma_n_per_m, block),
+            offset_n: T::load(&self.offset_n, block),
+            sensor_cos: T::load(&self.sensor_cos, block),
+            frictionless_gain: T::load(&self.frictionless_gain, block),
+            lumped: T::splat(0.0).lt(T::load(&self.lumped, block)),
         }
     }
 
     /// Last pulleys of a block.
     #[inline(always)]
-    pub fn swivel(&self, block: usize) -> Swivel<Lanes> {
+    pub fn swivel<T: Block>(&self, block: usize) -> Swivel<T> {
         Swivel {
-            entry_m: self.entry_m.each_ref().map(|column| Lanes::load(column, block)),
-            axis: self.axis.each_ref().map(|column| Lanes::load(column, block)),
-            radius_m: Lanes::load(&self.radius_m, block),
+            entry_m: self.entry_m.each_ref().map(|column| T::load(column, block)),
+            axis: self.axis.each_ref().map(|column| T::load(column, block)),
+            radius_m: T::load(&self.radius_m, block),
         }
     }
 
     /// Attachment points of a block in the platform frame, m.
     #[inline(always)]
-    pub fn platform_m(&self, block: usize) -> [Lanes; 3] {
-        self.platform_m.each_ref().map(|column| Lanes::load(column, block))
+    pub fn platform_m<T: Block>(&self, block: usize) -> [T; 3] {
+        self.platform_m.each_ref().map(|column| T::load(column, block))
     }
 
     /// How the friction stored at a place tells at the platform, 1: that of the sensor pulley is seen by the sensor, too
@@ -173,21 +175,28 @@ impl<const CABLES: usize> ParamColumns<CABLES> {
         if is_posed { by_pose } else { self.wrap_factor.get(place).map_or(0.0, at) }
     }
 
+    /// Whether both are of the same pulleys and attachments.
+    pub fn same_build(&self, other: &Self) -> bool {
+        let bits = |of: &Self| [of.follows_pose, of.has_geometry].map(|column| column.map(f64::to_bits));
+        bits(self) == bits(other) && self.pulley_place == other.pulley_place
+    }
+
     /// Which cables of a block have an attachment.
     #[inline(always)]
-    pub fn with_geometry(&self, block: usize) -> LanesMask {
-        Lanes::splat(0.0).lt(Lanes::load(&self.has_geometry, block))
+    pub fn with_geometry<T: Block>(&self, block: usize) -> T::Mask {
+        T::splat(0.0).lt(T::load(&self.has_geometry, block))
     }
 
     /// Where the last pulley's wrap follows the pose, in a block.
     #[inline(always)]
-    pub fn follows_pose(&self, block: usize) -> LanesMask {
-        Lanes::splat(0.0).lt(Lanes::load(&self.follows_pose, block))
+    pub fn follows_pose<T: Block>(&self, block: usize) -> T::Mask {
+        T::splat(0.0).lt(T::load(&self.follows_pose, block))
     }
 }
 
-/// What a cycle leaves for the next one. Plain numbers: copying it is the snapshot.
+/// What a cycle leaves for the next one. Plain numbers: copying it is the snapshot. Aligned like [`ParamColumns`].
 #[derive(Clone, Copy, Debug)]
+#[repr(align(32))]
 pub struct StateColumns<const CABLES: usize> {
     /// Last good sensor force, N.
     pub sensor_force_n: [f64; CABLES],
@@ -263,18 +272,18 @@ impl<const CABLES: usize> PartialEq for StateColumns<CABLES> {
 impl<const CABLES: usize> StateColumns<CABLES> {
     /// What is remembered of a block's signals.
     #[inline(always)]
-    pub fn signals(&self, block: usize) -> SignalState<Lanes> {
+    pub fn signals<T: Block>(&self, block: usize) -> SignalState<T> {
         SignalState {
-            sensor_force_n: Lanes::load(&self.sensor_force_n, block),
-            frozen_count: Lanes::load(&self.frozen_count, block),
-            frozen_travel_m: Lanes::load(&self.frozen_travel_m, block),
-            length_m: Lanes::load(&self.length_m, block),
+            sensor_force_n: T::load(&self.sensor_force_n, block),
+            frozen_count: T::load(&self.frozen_count, block),
+            frozen_travel_m: T::load(&self.frozen_travel_m, block),
+            length_m: T::load(&self.length_m, block),
         }
     }
 
     /// Keeps it.
     #[inline(always)]
-    pub fn set_signals(&mut self, block: usize, signals: &SignalState<Lanes>) {
+    pub fn set_signals<T: Block>(&mut self, block: usize, signals: &SignalState<T>) {
         signals.sensor_force_n.store(&mut self.sensor_force_n, block);
         signals.frozen_count.store(&mut self.frozen_count, block);
         signals.frozen_travel_m.store(&mut self.frozen_travel_m, block);
@@ -322,88 +331,88 @@ impl<'a, const CABLES: usize> BlockOfCables<'a, CABLES> {
     }
 
     #[inline(always)]
-    fn column(&self, columns: &[[f64; CABLES]], place: usize) -> Lanes {
-        columns.get(place).map_or(Lanes::splat(0.0), |column| Lanes::load(column, self.block))
+    fn column<T: Block>(&self, columns: &[[f64; CABLES]], place: usize) -> T {
+        columns.get(place).map_or(T::splat(0.0), |column| T::load(column, self.block))
     }
 
     /// What the pose gives at the last place of cables that follow it, else what is fixed.
     #[inline(always)]
-    fn posed(&self, place: usize, by_pose: &[f64; CABLES], fixed: &[[f64; CABLES]; PLACES]) -> Lanes {
-        let fixed = self.column(fixed, place);
+    fn posed<T: Block>(&self, place: usize, by_pose: &[f64; CABLES], fixed: &[[f64; CABLES]; PLACES]) -> T {
+        let fixed: T = self.column(fixed, place);
         if place + 1 < self.count {
             return fixed;
         }
-        Lanes::select(self.params.follows_pose(self.block), Lanes::load(by_pose, self.block), fixed)
+        T::select(self.params.follows_pose::<T>(self.block), T::load(by_pose, self.block), fixed)
     }
 }
 
-impl<const CABLES: usize> Cable<Lanes> for BlockOfCables<'_, CABLES> {
+impl<T: Block, const CABLES: usize> Cable<T> for BlockOfCables<'_, CABLES> {
     #[inline(always)]
     fn count(&self) -> usize {
         self.count
     }
     #[inline(always)]
-    fn wrap_factor(&self, place: usize) -> Lanes {
+    fn wrap_factor(&self, place: usize) -> T {
         self.posed(place, &self.state.pose_wrap_factor, &self.params.wrap_factor)
     }
     #[inline(always)]
-    fn viscous_n(&self, place: usize, speed_m_per_s: Lanes) -> Lanes {
-        self.column(&self.params.viscous_n_s_per_m, place) * speed_m_per_s
+    fn viscous_n(&self, place: usize, speed_m_per_s: T) -> T {
+        self.column::<T>(&self.params.viscous_n_s_per_m, place) * speed_m_per_s
     }
     #[inline(always)]
-    fn traction_ratio(&self, place: usize) -> Lanes {
+    fn traction_ratio(&self, place: usize) -> T {
         self.posed(place, &self.state.pose_traction_ratio, &self.params.traction_ratio)
     }
     #[inline(always)]
-    fn present(&self, place: usize) -> Lanes {
+    fn present(&self, place: usize) -> T {
         self.column(&self.params.present, place)
     }
     #[inline(always)]
-    fn stretch_ratio(&self, place: usize) -> Lanes {
+    fn stretch_ratio(&self, place: usize) -> T {
         self.column(&self.params.stretch_ratio, place)
     }
     #[inline(always)]
-    fn greatest_mu(&self) -> Lanes {
-        Lanes::load(&self.params.greatest_mu, self.block)
+    fn greatest_mu(&self) -> T {
+        T::load(&self.params.greatest_mu, self.block)
     }
     #[inline(always)]
-    fn effect(&self, place: usize) -> Lanes {
+    fn effect(&self, place: usize) -> T {
         self.column(&self.params.effects, place - FRICTION_COUNT)
     }
     #[inline(always)]
-    fn memory(&self, place: usize) -> Lanes {
+    fn memory(&self, place: usize) -> T {
         self.column(&self.state.memory, place)
     }
     #[inline(always)]
-    fn set_memory(&mut self, place: usize, value: Lanes) {
+    fn set_memory(&mut self, place: usize, value: T) {
         if let Some(column) = self.state.memory.get_mut(place) {
             value.store(column, self.block);
         }
     }
     #[inline(always)]
-    fn pulley_friction_n(&self, place: usize) -> Lanes {
+    fn pulley_friction_n(&self, place: usize) -> T {
         self.column(&self.state.pulley_friction_n, place)
     }
     #[inline(always)]
-    fn set_pulley_friction_n(&mut self, place: usize, friction_n: Lanes) {
+    fn set_pulley_friction_n(&mut self, place: usize, friction_n: T) {
         if let Some(column) = self.state.pulley_friction_n.get_mut(place) {
             friction_n.store(column, self.block);
         }
     }
     #[inline(always)]
-    fn lumped_friction_n(&self) -> Lanes {
-        Lanes::load(&self.state.lumped_friction_n, self.block)
+    fn lumped_friction_n(&self) -> T {
+        T::load(&self.state.lumped_friction_n, self.block)
     }
     #[inline(always)]
-    fn set_lumped_friction_n(&mut self, friction_n: Lanes) {
+    fn set_lumped_friction_n(&mut self, friction_n: T) {
         friction_n.store(&mut self.state.lumped_friction_n, self.block);
     }
     #[inline(always)]
-    fn held_friction_n(&self) -> Lanes {
-        Lanes::load(&self.state.friction_n, self.block)
+    fn held_friction_n(&self) -> T {
+        T::load(&self.state.friction_n, self.block)
     }
     #[inline(always)]
-    fn set_held_friction_n(&mut self, friction_n: Lanes) {
+    fn set_held_friction_n(&mut self, friction_n: T) {
         friction_n.store(&mut self.state.friction_n, self.block);
     }
 }

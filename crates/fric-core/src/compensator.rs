@@ -11,12 +11,12 @@ use crate::cable::{Features, Moment, cable_cycle};
 use crate::columns::{BlockOfCables, ParamColumns, StateColumns};
 use crate::cycle::{CableInput, CableOutput, CycleInput, CycleOutput};
 use crate::effects::time_delay::{self, Delay, DelayLine};
-use crate::lanes::{LANES, Lanes, LanesMask};
+use crate::lanes::{Block, CycleLanes, LANES, Lanes};
 use crate::parameters::ParameterRow;
 use crate::places::{NO_SLIP, PLACES, Places};
 use crate::platform::{self, Pose, Wrench};
 use crate::pulley::traction_ratio;
-use crate::robot::{MAX_PULLEYS, ParamError, ParamProblem, RobotParams};
+use crate::robot::{MAX_PULLEYS, ParamError, ParamProblem, RobotParams, ValidatedRange};
 use crate::scalar::{Mask, Scalar};
 use crate::signals::{BEFORE_FIRST, CableSignals, Conditioned, RawSignals, SignalLimits, condition, next_cycle};
 use crate::status::CableStatus;
@@ -63,6 +63,7 @@ pub struct Compensator<const CABLES: usize> {
     features: Features,
     any_geometry: bool,
     all_geometry: bool,
+    any_validated: bool,
     cable_count: usize,
     place_count: usize,
     limits: SignalLimits,
@@ -125,6 +126,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
             features,
             any_geometry: robot.cables.iter().any(|cable| cable.geometry.is_some()),
             all_geometry: robot.cables.iter().all(|cable| cable.geometry.is_some()),
+            any_validated: robot.cables.iter().any(|cable| cable.validated != ValidatedRange::ANY),
             cable_count,
             place_count,
             limits: robot.monitor.limits(),
@@ -172,19 +174,31 @@ impl<const CABLES: usize> Compensator<CABLES> {
         let mut wrench_status = CableStatus::OK;
         self.state.last_cycle = self.state.cycle;
         self.state.cycle = next_cycle(self.state.last_cycle, input.elapsed_cycles);
-        let blocks = CABLES.div_ceil(LANES).min(self.cable_count.div_ceil(LANES));
-        for block in 0..blocks {
-            let pose_flags = match (pose, &rotation) {
-                (Some(pose), Some(rotation)) if self.any_geometry => self.follow_pose(block, pose, rotation),
-                _ => PoseFlags { missing: self.misses_pose(block).bits(), unreachable: 0 },
-            };
-            let (platform_n, status) = if self.features.has_effects() {
-                self.step_block_with_effects(block, input, output, pose_flags)
+        let cables = CABLES.min(self.cable_count);
+        let followed = pose.zip(rotation.as_ref()).filter(|_| self.any_geometry);
+        // One bit a lane, an entry for the first cable of each block. The geometry of all blocks comes first: it hangs on
+        // nothing but the pose, so that the processor works on several blocks at a time, and so it does then on the friction.
+        let mut unreachable = [0; CABLES];
+        if let Some((pose, rotation)) = followed {
+            let mut first = 0;
+            while let Some(unreachable) = unreachable.get_mut(first).filter(|_| first < cables) {
+                (*unreachable, first) = if cables - first > LANES {
+                    (self.follow_pose::<CycleLanes>(first, pose, rotation), first + CycleLanes::COUNT)
+                } else {
+                    (self.follow_pose::<Lanes>(first, pose, rotation), first + LANES)
+                };
+            }
+        }
+        let mut first = 0;
+        while let Some(&unreachable) = unreachable.get(first).filter(|_| first < cables) {
+            let mut block = Stepped { first, has_pose: followed.is_some(), unreachable, forces_n: &mut forces_n };
+            let (status, count) = if cables - first > LANES {
+                (self.step_cables::<CycleLanes>(&mut block, input, output), CycleLanes::COUNT)
             } else {
-                self.step_block::<false>(block, input, output, pose_flags)
+                (self.step_cables::<Lanes>(&mut block, input, output), LANES)
             };
-            platform_n.store(&mut forces_n, block);
             wrench_status = wrench_status | status;
+            first += count;
         }
         for place in output.cables.iter_mut().skip(self.cable_count) {
             *place = CableOutput::default();
@@ -193,13 +207,15 @@ impl<const CABLES: usize> Compensator<CABLES> {
             let known = self.state.columns.direction_known.iter().take(self.cable_count).all(|&known| known > 0.0);
             self.state.directions_known = self.all_geometry && known;
         }
-        if let Some(pose) = pose.filter(|_| self.state.directions_known) {
-            let torque_nm = (pose.orientation * self.center_of_mass_m).cross(&self.gravity_n);
+        if let Some(rotation) = rotation.filter(|_| self.state.directions_known) {
+            let torque_nm = (rotation * self.center_of_mass_m).cross(&self.gravity_n);
             self.state.gravity = Some(Wrench { force_n: self.gravity_n, torque_nm });
         }
         let columns = &self.state.columns;
         let along = |row: &[f64; CABLES]| {
-            let products = (0..blocks).map(|block| Lanes::load(row, block) * Lanes::load(&forces_n, block));
+            // In the same order whatever the lanes of the cycle.
+            let blocks = 0..CABLES.div_ceil(LANES).min(self.cable_count.div_ceil(LANES));
+            let products = blocks.map(|block| Lanes::load(row, block) * Lanes::load(&forces_n, block));
             -products.fold(Lanes::splat(0.0), |sum, product| sum + product).sum()
         };
         output.outside_wrench = self.state.gravity.map(|_| Wrench {
@@ -238,33 +254,44 @@ impl<const CABLES: usize> Compensator<CABLES> {
     /// Which cables of a block suffer from a cycle without a pose: those whose wrap follows it, and, once there has
     /// been a wrench, all that it is made of.
     #[inline(always)]
-    fn misses_pose(&self, block: usize) -> LanesMask {
-        let stale_wrench = LanesMask::splat(self.state.gravity.is_some());
-        self.params.follows_pose(block).or(stale_wrench.and(self.params.with_geometry(block)))
+    fn misses_pose<T: Block>(&self, block: usize) -> T::Mask {
+        let stale_wrench = T::mask(self.state.gravity.is_some());
+        self.params.follows_pose::<T>(block).or(stale_wrench.and(self.params.with_geometry::<T>(block)))
     }
 }
 
-/// What a pose means for the lanes of a block.
-#[derive(Clone, Copy)]
-struct PoseFlags {
-    missing: u32,
+/// A block of cables in a cycle.
+struct Stepped<'a, const CABLES: usize> {
+    /// Its first cable, a multiple of the lanes.
+    first: usize,
+    /// There is a usable pose.
+    has_pose: bool,
+    /// Lanes whose attachment the pose puts out of reach.
     unreachable: u32,
+    /// Where the forces at the platform go, N.
+    forces_n: &'a mut [f64; CABLES],
 }
 
 impl<const CABLES: usize> Compensator<CABLES> {
-    /// Wrap, direction and moment arm of a block's cables at a pose; kept where the pose leaves a cable no way out.
-    #[inline(always)]
-    fn follow_pose(&mut self, block: usize, pose: &Pose, rotation: &Matrix3<f64>) -> PoseFlags {
-        let (attachment_m, [ax, ay, az]) = platform::attachment(pose, rotation, self.params.platform_m(block));
+    /// Wrap, direction and moment arm of a block's cables at a pose; kept where the pose leaves a cable no way out. Gives
+    /// the lanes of which this is so.
+    #[inline(never)]
+    fn follow_pose<T: Block>(&mut self, first: usize, pose: &Pose, rotation: &Matrix3<f64>) -> u32 {
+        let block = first / T::COUNT;
+        // Says once what each access to a column would have to ask.
+        if block >= CABLES.div_ceil(T::COUNT) {
+            return 0;
+        }
+        let (attachment_m, [ax, ay, az]) = platform::attachment::<T>(pose, rotation, self.params.platform_m(block));
         let exit = swivel::exit(&self.params.swivel(block), attachment_m);
-        let with_geometry = self.params.with_geometry(block);
+        let with_geometry = self.params.with_geometry::<T>(block);
         let moves = exit.reachable.and(with_geometry);
         let [ux, uy, uz] = exit.direction;
         let moment_arm_m = [ay * uz - az * uy, az * ux - ax * uz, ax * uy - ay * ux];
         let columns = &mut self.state.columns;
-        let all_move = moves.all();
-        let keep = |column: &mut [f64; CABLES], value: Lanes| {
-            let value = if all_move { value } else { Lanes::select(moves, value, Lanes::load(column, block)) };
+        let all_move = T::all(moves);
+        let keep = |column: &mut [f64; CABLES], value: T| {
+            let value = if all_move { value } else { T::select(moves, value, T::load(column, block)) };
             value.store(column, block);
         };
         for (column, value) in columns.direction.iter_mut().zip(exit.direction) {
@@ -275,149 +302,157 @@ impl<const CABLES: usize> Compensator<CABLES> {
         }
         keep(&mut columns.pose_wrap_factor, exit.wrap_factor);
         if !self.state.directions_known {
-            keep(&mut columns.direction_known, Lanes::splat(1.0));
+            keep(&mut columns.direction_known, T::splat(1.0));
         }
         if self.features.traction {
-            let traction_mu = Lanes::load(&self.params.traction_mu, block).to_array();
-            let [cos, sin] = exit.cos_sin_wrap.map(Lanes::to_array);
+            let traction_mu = T::load(&self.params.traction_mu, block);
+            let [cos, sin] = exit.cos_sin_wrap;
             // Only robots with a slip limit pay for an angle, an exponential a cable.
-            let wraps_rad = cos.into_iter().zip(sin).map(|(cos, sin)| swivel::wrap_rad([cos, sin]));
-            let mut ratio = [0.0; LANES];
-            for ((ratio, mu), wrap_rad) in ratio.iter_mut().zip(traction_mu).zip(wraps_rad) {
-                *ratio = traction_ratio(mu, wrap_rad);
-            }
-            let limited = Lanes::splat(0.0).lt(Lanes::new(traction_mu));
-            let ratio = Lanes::select(limited, Lanes::new(ratio), Lanes::splat(NO_SLIP));
+            let ratio = T::from_lanes(|lane| {
+                traction_ratio(traction_mu.lane(lane), swivel::wrap_rad([cos.lane(lane), sin.lane(lane)]))
+            });
+            let ratio = T::select(T::splat(0.0).lt(traction_mu), ratio, T::splat(NO_SLIP));
             keep(&mut columns.pose_traction_ratio, ratio);
         }
-        PoseFlags { missing: 0, unreachable: with_geometry.and(exit.reachable.not()).bits() }
+        T::bits(with_geometry.and(exit.reachable.not()))
     }
 
-    /// [`step_block`](Self::step_block) with effects: a function of its own, so that the cycle without does not pay for it.
+    /// Signals, friction and status of a block's cables; gives every flag of any of them.
+    fn step_cables<T: Block>(
+        &mut self,
+        block: &mut Stepped<'_, CABLES>,
+        input: &CycleInput<CABLES>,
+        output: &mut CycleOutput<CABLES>,
+    ) -> CableStatus {
+        if self.features.has_effects() {
+            self.step_block::<T, true>(block, input, output)
+        } else {
+            self.step_block::<T, false>(block, input, output)
+        }
+    }
+
+    /// [`step_cables`](Self::step_cables), with and without effects a function of its own, so that the cycle without does not
+    /// pay for them.
     #[inline(never)]
-    fn step_block_with_effects(
+    fn step_block<T: Block, const EFFECTS: bool>(
         &mut self,
-        block: usize,
+        stepped: &mut Stepped<'_, CABLES>,
         input: &CycleInput<CABLES>,
         output: &mut CycleOutput<CABLES>,
-        pose_flags: PoseFlags,
-    ) -> (Lanes, CableStatus) {
-        self.step_block::<true>(block, input, output, pose_flags)
-    }
-
-    /// Signals, friction and status of a block's cables; gives their forces at the platform and every flag of any of them.
-    #[inline(always)]
-    fn step_block<const EFFECTS: bool>(
-        &mut self,
-        block: usize,
-        input: &CycleInput<CABLES>,
-        output: &mut CycleOutput<CABLES>,
-        pose_flags: PoseFlags,
-    ) -> (Lanes, CableStatus) {
-        let first = block * LANES;
-        let cables: [CableInput; LANES] =
-            core::array::from_fn(|lane| input.cables.get(first + lane).copied().unwrap_or_default());
+    ) -> CableStatus {
+        let block = stepped.first / T::COUNT;
+        // Says once what each access to a column would have to ask.
+        if block >= CABLES.div_ceil(T::COUNT) {
+            return CableStatus::OK;
+        }
+        let first = block * T::COUNT;
+        let missing = if stepped.has_pose { 0 } else { T::bits(self.misses_pose::<T>(block)) };
+        let signal = |of: fn(&CableInput) -> f64| T::from_lanes(|lane| input.cables.get(first + lane).map_or(0.0, of));
         let raw = RawSignals {
-            sensor_force_n: Lanes::new(cables.map(|cable| cable.sensor_force_n)),
-            length_m: Lanes::new(cables.map(|cable| cable.length_m)),
-            speed_m_per_s: Lanes::new(cables.map(|cable| cable.speed_m_per_s)),
+            sensor_force_n: signal(|cable| cable.sensor_force_n),
+            length_m: signal(|cable| cable.length_m),
+            speed_m_per_s: signal(|cable| cable.speed_m_per_s),
         };
         let columns = &mut self.state.columns;
-        let mut signals = columns.signals(block);
+        let mut signals = columns.signals::<T>(block);
         let mut conditioned = condition(&self.limits, &mut signals, &raw, input.elapsed_cycles);
         columns.set_signals(block, &signals);
-        let moment = Moment::new(Lanes::splat(self.state.cycle), Lanes::splat(self.state.last_cycle), self.cycle_s);
+        let moment = Moment::new(T::splat(self.state.cycle), T::splat(self.state.last_cycle), self.cycle_s);
         if self.features.acting.has(time_delay::ACTS) {
-            let moves = conditioned.moves().bits();
+            let moves = T::bits(conditioned.moves());
             let in_order = if input.elapsed_cycles > 1.0 { 0 } else { moves };
-            let delay: [_; LANES] =
-                core::array::from_fn(|lane| self.params.delay.get(first + lane).copied().unwrap_or_default());
+            let delay = self.params.delay.get(first..).unwrap_or_default();
             let Conditioned { displacement_m, speed_m_per_s, length_m, .. } = &mut conditioned;
             let known_m = *displacement_m;
             *displacement_m = shift_block(&mut columns.delayed_displacement_m, first, known_m, in_order, delay);
             *speed_m_per_s = shift_block(&mut columns.delayed_speed_m_per_s, first, *speed_m_per_s, in_order, delay);
-            let lag_m = Lanes::load(&columns.lag_m, block) + (known_m - *displacement_m);
+            let lag_m = T::load(&columns.lag_m, block) + (known_m - *displacement_m);
             let lag_m = lead_block(&columns.delayed_displacement_m, first, lag_m, delay);
             lag_m.store(&mut columns.lag_m, block);
             *length_m = *length_m - lag_m;
         }
-        let model = self.params.model(block);
+        let model = self.params.model::<T>(block);
         let mut cable = BlockOfCables::new(&self.params, columns, block, self.place_count);
         let signals = conditioned.signals();
         let forces = cable_cycle(&model, self.features.limited_to::<EFFECTS>(), &signals, &moment, &mut cable);
 
         let Conditioned { sensor_force_n, speed_m_per_s, sensor_finite, frozen, jump, motion_finite, .. } = conditioned;
         let CableSignals { hold, sensor_fault, .. } = signals;
-        let out_of_range = sensor_force_n
-            .lt(Lanes::load(&self.params.least_force_n, block))
-            .or(Lanes::load(&self.params.greatest_force_n, block).lt(sensor_force_n))
-            .or(Lanes::load(&self.params.greatest_speed_m_per_s, block).lt(speed_m_per_s.abs()));
-        let any_flag =
-            hold.or(forces.slack).or(forces.slip).or(out_of_range).bits() | pose_flags.missing | pose_flags.unreachable;
+        let out_of_range = if self.any_validated {
+            let [least_n, greatest_n] =
+                [&self.params.least_force_n, &self.params.greatest_force_n].map(|column| T::load(column, block));
+            let greatest_m_per_s = T::load(&self.params.greatest_speed_m_per_s, block);
+            let beyond = sensor_force_n.lt(least_n).or(greatest_n.lt(sensor_force_n));
+            beyond.or(greatest_m_per_s.lt(speed_m_per_s.abs()))
+        } else {
+            T::Mask::NONE
+        };
+        let any_flag = T::bits(hold.or(forces.slack).or(forces.slip).or(out_of_range)) | missing | stepped.unreachable;
         let flags = || {
             [
-                (CableStatus::SLACK, forces.slack.and(sensor_fault.not()).bits()),
-                (CableStatus::SLIP, forces.slip.bits()),
-                (CableStatus::SENSOR_NOT_FINITE, sensor_finite.not().bits()),
-                (CableStatus::SENSOR_FROZEN, frozen.bits()),
-                (CableStatus::LENGTH_JUMP, jump.bits()),
-                (CableStatus::MOTION_NOT_FINITE, motion_finite.not().bits()),
-                (CableStatus::OUT_OF_RANGE, out_of_range.bits()),
-                (CableStatus::POSE_MISSING, pose_flags.missing),
-                (CableStatus::POSE_UNREACHABLE, pose_flags.unreachable),
+                (CableStatus::SLACK, T::bits(forces.slack.and(sensor_fault.not()))),
+                (CableStatus::SLIP, T::bits(forces.slip)),
+                (CableStatus::SENSOR_NOT_FINITE, T::bits(sensor_finite.not())),
+                (CableStatus::SENSOR_FROZEN, T::bits(frozen)),
+                (CableStatus::LENGTH_JUMP, T::bits(jump)),
+                (CableStatus::MOTION_NOT_FINITE, T::bits(motion_finite.not())),
+                (CableStatus::OUT_OF_RANGE, T::bits(out_of_range)),
+                (CableStatus::POSE_MISSING, missing),
+                (CableStatus::POSE_UNREACHABLE, stepped.unreachable),
             ]
         };
-        let present = self.cable_count.saturating_sub(first);
-        let mut status = [CableStatus::OK; LANES];
+        let present = self.cable_count.saturating_sub(first).min(T::COUNT);
         let mut of_all = CableStatus::OK;
+        let places = output.cables.get_mut(first..).unwrap_or_default();
+        for (lane, place) in places.iter_mut().enumerate().take(present) {
+            *place = CableOutput {
+                force_at_platform_n: forces.platform_force_n.lane(lane),
+                friction_n: forces.friction_n.lane(lane),
+                frictionless_n: forces.frictionless_n.lane(lane),
+                status: CableStatus::OK,
+            };
+        }
         if any_flag != 0 {
-            for (flag, bits) in flags() {
-                for (lane, status) in status.iter_mut().enumerate().take(present) {
-                    *status = *status | flag.if_set(bits, lane);
-                    of_all = of_all | *status;
+            let flags = flags();
+            for (lane, place) in places.iter_mut().enumerate().take(present) {
+                for (flag, bits) in flags {
+                    place.status = place.status | flag.if_set(bits, lane);
                 }
+                of_all = of_all | place.status;
             }
         }
-        let platform_n = forces.platform_force_n;
-        let values =
-            platform_n.to_array().into_iter().zip(forces.friction_n.to_array()).zip(forces.frictionless_n.to_array());
-        let places = output.cables.iter_mut().skip(first).take(present).zip(values.zip(status));
-        for (place, (((force_at_platform_n, friction_n), frictionless_n), status)) in places {
-            *place = CableOutput { force_at_platform_n, friction_n, frictionless_n, status };
-        }
-        (platform_n, of_all)
+        forces.platform_force_n.store(stepped.forces_n, block);
+        of_all
     }
 }
 
 /// How far the delayed motion lags behind, m: summed up, but for a lead, which is what is extrapolated now. Summed up,
 /// it would keep what was not extrapolated around a fault.
-fn lead_block<const CABLES: usize>(
+fn lead_block<T: Block, const CABLES: usize>(
     lines: &[DelayLine; CABLES],
     first: usize,
-    summed_m: Lanes,
-    delays: [Delay; LANES],
-) -> Lanes {
-    let mut lag_m = summed_m.to_array();
-    for ((lag_m, line), delay) in lag_m.iter_mut().zip(lines.iter().skip(first)).zip(delays) {
-        if delay.leads() {
-            *lag_m = line.lag(delay);
-        }
-    }
-    Lanes::new(lag_m)
+    summed_m: T,
+    delays: &[Delay],
+) -> T {
+    let mut of_lanes = lines.iter().skip(first).zip(delays);
+    T::from_lanes(|lane| {
+        let lag_m = |(line, delay): (&DelayLine, &Delay)| delay.leads().then(|| line.lag(*delay));
+        of_lanes.next().and_then(lag_m).unwrap_or(summed_m.lane(lane))
+    })
 }
 
 /// One cycle of a block's delay lines.
-fn shift_block<const CABLES: usize>(
+fn shift_block<T: Block, const CABLES: usize>(
     lines: &mut [DelayLine; CABLES],
     first: usize,
-    values: Lanes,
+    values: T,
     in_order: u32,
-    delays: [Delay; LANES],
-) -> Lanes {
-    let mut values = values.to_array();
-    let of_lanes = lines.iter_mut().skip(first).zip(&mut values).zip(delays);
-    for (lane, ((line, value), delay)) in of_lanes.enumerate() {
-        *value = line.shift(*value, in_order >> lane & 1 == 1, delay);
-    }
-    Lanes::new(values)
+    delays: &[Delay],
+) -> T {
+    let mut of_lanes = lines.iter_mut().skip(first).zip(delays);
+    T::from_lanes(|lane| {
+        let value = values.lane(lane);
+        let shifted = |(line, delay): (&mut DelayLine, &Delay)| line.shift(value, in_order >> lane & 1 == 1, *delay);
+        of_lanes.next().map_or(value, shifted)
+    })
 }

@@ -1,7 +1,7 @@
 //! The number type the model is written in.
 //!
 //! Every equation of this crate is generic over [`Scalar`], so that one source serves three uses: plain `f64` (one
-//! cable, one number), [`Lanes`](crate::Lanes) (four cables side by side in the control cycle), and any number that
+//! cable, one number), [`Lanes`](crate::Lanes) (cables side by side, as in the control cycle), and any number that
 //! carries derivatives along. Choices that depend on data are [`select`](Scalar::select)s, not branches: all lanes take the
 //! same path, and the time that the equations take does not depend on what the cables do.
 //!

@@ -1,7 +1,7 @@
 //! The last pulley before the platform: it swivels about the incoming cable, so its wrap follows the pose.
 //!
 //! For: from the attachment point in the base frame to the direction in which the cable leaves, and the normal-force
-//! factor of the wrap, by vector algebra alone (three square roots, three divisions, no angle); and, outside the cycle,
+//! factor of the wrap, by vector algebra alone (three square roots, a division, no angle); and, outside the cycle,
 //! wrap angle and cable length. No state. Non-finite input gives non-finite output, the caller keeps it out.
 //!
 //! In the plane through the swivel axis and the attachment B, with the tangent point A where the cable enters as origin,
@@ -51,30 +51,32 @@ const NEAR_SQUARED_M2: f64 = 1e-18;
 pub fn exit<T: Scalar>(swivel: &Swivel<T>, attachment_m: [T; 3]) -> Exit<T> {
     let (one, zero) = (T::splat(1.0), T::splat(0.0));
     let radius = swivel.radius_m;
-    let [rx, ry, rz] = sub(attachment_m, swivel.entry_m);
-    let [ax, ay, az] = swivel.axis;
-    let along = rx * ax + ry * ay + rz * az;
-    let radial = [rx - along * ax, ry - along * ay, rz - along * az];
+    let relative = sub(attachment_m, swivel.entry_m);
+    let along = dot(relative, swivel.axis);
+    let [ax, ay, az] = swivel.axis.map(|part| part * along);
+    let radial = sub(relative, [ax, ay, az]);
     let distance_squared = dot(radial, radial);
     let distance = distance_squared.sqrt();
     let from_centre = distance - radius;
     let to_centre_squared = from_centre * from_centre + along * along;
     let free_squared = to_centre_squared - radius * radius;
-    let reachable = T::splat(NEAR_SQUARED_M2).lt(free_squared);
-    let free = T::select(reachable, free_squared, one).sqrt();
-    let inverse_centre = one / T::select(reachable, to_centre_squared, one);
-    let cos = (from_centre * radius - along * free) * inverse_centre;
-    let sin = (along * radius + from_centre * free) * inverse_centre;
-    // (T − B)/free in the plane; e_x is the radial direction, which has no meaning on the axis.
-    let inverse_free = one / free;
-    let across = (radius + radius * cos - distance) * inverse_free;
-    let forward = (radius * sin - along) * inverse_free;
     let off_axis = T::splat(NEAR_SQUARED_M2).lt(distance_squared);
     // On the axis behind a pulley there is no plane to swivel into.
-    let reachable = reachable.and(off_axis.or(zero.lt(along)).or(radius.le(zero)));
-    let across = T::select(off_axis, across / distance, zero);
-    let direction =
-        [radial[0] * across + ax * forward, radial[1] * across + ay * forward, radial[2] * across + az * forward];
+    let reachable = T::splat(NEAR_SQUARED_M2).lt(free_squared).and(off_axis.or(zero.lt(along)).or(radius.le(zero)));
+    let free = T::select(reachable, free_squared, one).sqrt();
+    // Both reciprocals, of D² and of the distance from the axis, by one division.
+    let to_centre_squared = T::select(reachable, to_centre_squared, one);
+    let off_axis_distance = T::select(off_axis, distance, one);
+    let inverse_both = one / (to_centre_squared * off_axis_distance);
+    let inverse_centre = inverse_both * off_axis_distance;
+    let cos = (from_centre * radius - along * free) * inverse_centre;
+    let sin = (along * radius + from_centre * free) * inverse_centre;
+    // The cable is a tangent: (T − B)/free = (−sin, cos) in the plane; e_x is the radial direction, which has no meaning on
+    // the axis.
+    let across = (-(sin * (inverse_both * to_centre_squared))).keep(off_axis);
+    let [rx, ry, rz] = radial;
+    let [ux, uy, uz] = swivel.axis;
+    let direction = [rx * across + ux * cos, ry * across + uy * cos, rz * across + uz * cos];
     let doubled = (one + cos) * T::splat(2.0);
     Exit { direction, free_length_m: free, wrap_factor: doubled.max(zero).sqrt(), cos_sin_wrap: [-cos, sin], reachable }
 }

@@ -4,7 +4,6 @@ use super::Compensator;
 use crate::cable::{SPEED, TENSION, UNKNOWN};
 use crate::effects::time_delay::{self, DelayLine};
 use crate::effects::{cable_elasticity, pulley_inertia};
-use crate::lanes::{LANES, LanesMask};
 use crate::places::NO_SLIP;
 use crate::robot::{ParamError, ParamProblem};
 
@@ -26,10 +25,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
             let problem = ParamProblem::Count { count: next.cable_count, min: self.cable_count, max: self.cable_count };
             return Err(ParamError { key: "cable", pulley: None, effect: None, problem });
         }
-        let masks =
-            |of: &Self, block| [of.params.follows_pose(block), of.params.with_geometry(block)].map(LanesMask::bits);
-        let same_masks = (0..CABLES.div_ceil(LANES)).all(|block| masks(self, block) == masks(next, block));
-        if !same_masks || self.params.pulley_place != next.params.pulley_place {
+        if !self.params.same_build(&next.params) {
             let reason =
                 "and attachments have to be those of the robot that runs; friction, effects and geometry can change";
             return Err(ParamError::conflict("pulleys", reason));
@@ -119,6 +115,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
             features,
             any_geometry,
             all_geometry,
+            any_validated,
             cable_count,
             place_count,
             limits,
@@ -130,6 +127,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
         self.features = *features;
         self.any_geometry = *any_geometry;
         self.all_geometry = *all_geometry;
+        self.any_validated = *any_validated;
         self.cable_count = *cable_count;
         self.place_count = *place_count;
         self.limits = *limits;
