@@ -12,9 +12,8 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use criterion::Criterion;
-use fric_core::CycleOutput;
 use fric_core::robot::Presliding;
-use support::{CABLES, CYCLES, compensator, inputs};
+use support::{CABLES, CYCLES, best_ns, compensator, inputs};
 
 const FORMS: [(&str, Presliding); 2] = [("lumped", Presliding::Lumped), ("per_pulley", Presliding::PerPulley)];
 
@@ -66,21 +65,9 @@ fn worst(rounds: usize) {
     }
 }
 
-/// The best mean of so many rounds over the motion, ns per cable of one cycle.
+/// ns per cable of one cycle.
 fn per_cable_ns<const COUNT: usize>(presliding: Presliding, rounds: usize) -> f64 {
-    let inputs = inputs::<COUNT>();
-    let mut compensator = compensator::<COUNT>(presliding);
-    let mut output = CycleOutput::default();
-    let mut best_s = f64::INFINITY;
-    for _ in 0..rounds {
-        let start = Instant::now();
-        for input in &inputs {
-            compensator.step_into(black_box(input), &mut output);
-            black_box(&output);
-        }
-        best_s = best_s.min(start.elapsed().as_secs_f64());
-    }
-    best_s * 1e9 / (CYCLES * COUNT) as f64
+    best_ns::<COUNT>(presliding, rounds) / COUNT as f64
 }
 
 /// What a cable costs among few and among many.

@@ -11,12 +11,9 @@
 mod support;
 
 use std::fmt::Write as _;
-use std::hint::black_box;
-use std::time::Instant;
 
-use fric_core::CycleOutput;
 use fric_core::robot::Presliding;
-use support::{CABLES, CYCLES, cable_options, compensator, inputs};
+use support::{CABLES, CYCLES, best_ns, cable_options, compensator, inputs};
 
 fn presliding(name: &str) -> Presliding {
     match name {
@@ -26,30 +23,13 @@ fn presliding(name: &str) -> Presliding {
     }
 }
 
-/// `ROUNDS` times the whole motion; gives nanoseconds per cycle in the best of them.
-fn run<const COUNT: usize>(presliding: Presliding, rounds: usize) -> f64 {
-    let inputs = inputs::<COUNT>();
-    let mut compensator = compensator::<COUNT>(presliding);
-    let mut output = CycleOutput::default();
-    let mut best_s = f64::INFINITY;
-    for _ in 0..rounds {
-        let start = Instant::now();
-        for input in &inputs {
-            compensator.step_into(black_box(input), &mut output);
-            black_box(&output);
-        }
-        best_s = best_s.min(start.elapsed().as_secs_f64());
-    }
-    best_s * 1e9 / CYCLES as f64
-}
-
 fn run_cables(cables: &str, presliding: Presliding, rounds: usize) -> f64 {
     match cables {
-        "4" => run::<4>(presliding, rounds),
-        "8" => run::<CABLES>(presliding, rounds),
-        "16" => run::<16>(presliding, rounds),
-        "32" => run::<32>(presliding, rounds),
-        "64" => run::<64>(presliding, rounds),
+        "4" => best_ns::<4>(presliding, rounds),
+        "8" => best_ns::<CABLES>(presliding, rounds),
+        "16" => best_ns::<16>(presliding, rounds),
+        "32" => best_ns::<32>(presliding, rounds),
+        "64" => best_ns::<64>(presliding, rounds),
         other => panic!("for {other} cables it is not compiled"),
     }
 }

@@ -1,10 +1,13 @@
 //! The one place that benches and peers take their robot and their signals from.
 
+use std::hint::black_box;
+use std::time::Instant;
+
 use fric_core::robot::{
     CableOptions, CableParams, FrictionOptions, GeometryOptions, MonitorOptions, PlatformOptions, Presliding,
     PulleyOptions, RobotParams,
 };
-use fric_core::{CableInput, Compensator, CycleInput, Pose};
+use fric_core::{CableInput, Compensator, CycleInput, CycleOutput, Pose};
 
 /// Cables of the robot that is compared with others.
 pub const CABLES: usize = 8;
@@ -96,4 +99,21 @@ pub fn inputs<const COUNT: usize>() -> Vec<CycleInput<COUNT>> {
             CycleInput { cables, pose: Some(pose), ..CycleInput::default() }
         })
         .collect()
+}
+
+/// So many times the whole motion; ns per cycle in the best of them, which others on the machine have disturbed least.
+pub fn best_ns<const COUNT: usize>(presliding: Presliding, rounds: usize) -> f64 {
+    let inputs = inputs::<COUNT>();
+    let mut compensator = compensator::<COUNT>(presliding);
+    let mut output = CycleOutput::default();
+    let mut best_s = f64::INFINITY;
+    for _ in 0..rounds {
+        let start = Instant::now();
+        for input in &inputs {
+            compensator.step_into(black_box(input), &mut output);
+            black_box(&output);
+        }
+        best_s = best_s.min(start.elapsed().as_secs_f64());
+    }
+    best_s * 1e9 / CYCLES as f64
 }

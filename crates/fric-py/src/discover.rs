@@ -13,6 +13,7 @@ use crate::errors::Outcome;
 use crate::fit::{ORIGIN, dict, of_cable};
 use crate::log;
 use crate::replay::ForceError;
+use crate::results;
 use crate::robot::Robot;
 use crate::runs::Runs;
 use crate::watch::Watch;
@@ -61,7 +62,7 @@ impl CableDiscovery {
     /// Samples that do not count, by the reason.
     #[getter]
     fn left_out<'py>(&self, py: Python<'py>) -> Outcome<Bound<'py, PyAny>> {
-        log::plain(py, &self.result.left_out)
+        results::plain(py, &self.result.left_out)
     }
 
     /// Rows that judge and were not learned from, `[from, to]` without the last.
@@ -116,13 +117,13 @@ impl CableDiscovery {
     /// What the log lacks for a verdict, cause and advice; None if nothing.
     #[getter]
     fn missing<'py>(&self, py: Python<'py>) -> Outcome<Bound<'py, PyAny>> {
-        log::plain(py, &self.result.missing)
+        results::plain(py, &self.result.missing)
     }
 
     /// Ranges of the conditions in which the given model disagrees, what tells most first.
     #[getter]
     fn r#where<'py>(&self, py: Python<'py>) -> Outcome<Bound<'py, PyAny>> {
-        log::plain(py, &self.result.places)
+        results::plain(py, &self.result.places)
     }
 
     /// The same ranges in words, such as "at speeds below 20 mm/s".
@@ -135,13 +136,13 @@ impl CableDiscovery {
     /// and runner_up.
     #[getter]
     fn effects<'py>(&self, py: Python<'py>) -> Outcome<Bound<'py, PyAny>> {
-        log::plain(py, &self.result.effects)
+        results::plain(py, &self.result.effects)
     }
 
     /// Every effect by itself beside the given model, the best first.
     #[getter]
     fn candidates<'py>(&self, py: Python<'py>) -> Outcome<Bound<'py, PyAny>> {
-        log::plain(py, &self.result.candidates)
+        results::plain(py, &self.result.candidates)
     }
 
     /// Values of the extended model by the robot file's keys, those of an effect as "stribeck.ratio".
@@ -159,7 +160,7 @@ impl CableDiscovery {
     /// What no effect accounts for; None if nothing.
     #[getter]
     fn unexplained<'py>(&self, py: Python<'py>) -> Outcome<Bound<'py, PyAny>> {
-        log::plain(py, &self.result.unexplained)
+        results::plain(py, &self.result.unexplained)
     }
 
     fn __repr__(&self) -> String {
@@ -178,6 +179,8 @@ impl CableDiscovery {
     }
 }
 
+result_methods!(DiscoverResult, "discover");
+
 #[pymethods]
 impl DiscoverResult {
     /// What was found for each cable, in the robot's order.
@@ -194,27 +197,12 @@ impl DiscoverResult {
     /// Effects that several cables have, with the mean of their parameters over these.
     #[getter]
     fn common_effects<'py>(&self, py: Python<'py>) -> Outcome<Bound<'py, PyAny>> {
-        log::plain(py, &self.result.common_effects)
+        results::plain(py, &self.result.common_effects)
     }
 
     /// Draws a cable: `fric.plot.gap_ladder`, `where` and `candidates` in one figure, which it returns; needs matplotlib.
     fn plot<'py>(slf: &Bound<'py, Self>, cable: &str) -> PyResult<Bound<'py, PyAny>> {
         slf.py().import("fric.plot")?.call_method1("_discovery", (slf, cable))
-    }
-
-    /// What `fric-cli discover` prints.
-    fn summary(&self) -> String {
-        self.result.summary()
-    }
-
-    /// The text that `fric-cli discover --json` writes.
-    fn to_json(&self) -> Outcome<String> {
-        log::json(&self.result)
-    }
-
-    /// The same as a dict.
-    fn to_dict<'py>(&self, py: Python<'py>) -> Outcome<Bound<'py, PyAny>> {
-        log::plain(py, &self.result)
     }
 
     fn __repr__(&self) -> String {

@@ -13,6 +13,7 @@ use crate::arrays::{array, fixed};
 use crate::errors::{Fault, Outcome};
 use crate::log;
 use crate::replay::{ForceError, WrenchError};
+use crate::results;
 use crate::robot::Robot;
 use crate::runs::{Runs, named_parameters};
 use crate::watch::Watch;
@@ -62,7 +63,7 @@ impl CableFit {
     /// Samples that were not learned from, by the reason.
     #[getter]
     fn left_out<'py>(&self, py: Python<'py>) -> Outcome<Bound<'py, PyAny>> {
-        log::plain(py, &self.result.left_out)
+        results::plain(py, &self.result.left_out)
     }
 
     /// Why the search has ended: "converged", or why not.
@@ -119,6 +120,8 @@ impl CableFit {
     }
 }
 
+result_methods!(FitResult, "fit");
+
 #[pymethods]
 impl FitResult {
     /// What was compared with: "forces", "wrench", or "mass" where the wrench is that of the platform's mass.
@@ -142,21 +145,6 @@ impl FitResult {
     #[getter]
     fn wrench(&self, py: Python<'_>) -> Option<(Py<WrenchError>, Py<WrenchError>)> {
         self.wrench.as_ref().map(|(before, after)| (before.clone_ref(py), after.clone_ref(py)))
-    }
-
-    /// The tables that `fric-cli fit` prints.
-    fn summary(&self) -> String {
-        self.result.summary()
-    }
-
-    /// The text that `fric-cli fit --json` writes.
-    fn to_json(&self) -> Outcome<String> {
-        log::json(&self.result)
-    }
-
-    /// The same as a dict.
-    fn to_dict<'py>(&self, py: Python<'py>) -> Outcome<Bound<'py, PyAny>> {
-        log::plain(py, &self.result)
     }
 
     fn __repr__(&self) -> String {

@@ -94,6 +94,8 @@ impl AxisHysteresis {
     }
 }
 
+result_methods!(HysteresisResult, "hysteresis");
+
 #[pymethods]
 impl HysteresisResult {
     /// The axes x, y, z, a, b, c.
@@ -106,21 +108,6 @@ impl HysteresisResult {
     #[getter]
     fn position_m(&self) -> (f64, f64, f64) {
         self.result.position_m.into()
-    }
-
-    /// The table that `fric-cli hysteresis` prints.
-    fn summary(&self) -> String {
-        self.result.summary()
-    }
-
-    /// The text that `fric-cli hysteresis --json` writes.
-    fn to_json(&self) -> Outcome<String> {
-        log::json(&self.result)
-    }
-
-    /// The same as a dict.
-    fn to_dict<'py>(&self, py: Python<'py>) -> Outcome<Bound<'py, PyAny>> {
-        log::plain(py, &self.result)
     }
 
     fn __repr__(&self) -> String {

@@ -7,6 +7,10 @@
 #![allow(clippy::needless_pass_by_value, reason = "values come as the interpreter passes them")]
 #![allow(clippy::too_many_arguments, reason = "they are keywords in Python")]
 
+// Before all that use its macro.
+#[macro_use]
+mod results;
+
 mod arrays;
 mod compensator;
 mod continuum;

@@ -11,7 +11,6 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
-use serde::Serialize;
 
 use crate::arrays::{Axis, Wanted, fixed, fixed_rows, integers, numbers};
 use crate::errors::{Fault, Outcome};
@@ -303,17 +302,6 @@ pub fn warn(py: Python<'_>, texts: &[String]) -> Outcome {
         py.import("warnings")?.call_method1("warn", (text, category))?;
     }
     Ok(())
-}
-
-/// A result as the command line writes it.
-pub fn json(result: &impl Serialize) -> Outcome<String> {
-    let text = serde_json::to_string_pretty(result);
-    text.map(|text| text + "\n").map_err(|error| Fault::output(format!("cannot write the result as JSON: {error}")))
-}
-
-/// The same as Python has it: dicts, lists and numbers.
-pub fn plain<'py>(py: Python<'py>, result: &impl Serialize) -> Outcome<Bound<'py, PyAny>> {
-    Ok(py.import("json")?.call_method1("loads", (json(result)?,))?)
 }
 
 fn check_names(names: &[String]) -> Outcome {

@@ -9,7 +9,6 @@ use pyo3::prelude::*;
 use super::Manipulator;
 use crate::arrays::{Axis, Wanted, fixed, numbers};
 use crate::errors::Outcome;
-use crate::log;
 
 /// Outcome of `calibrate`: `T = a·Δλ + b` for each grating. Arrays have one entry for each grating; ratios are shares of the greatest load.
 #[pyclass(module = "fric.continuum", frozen)]
@@ -25,6 +24,8 @@ impl CalibrationResult {
         fixed(py, self.result.gratings.iter().map(of).collect())
     }
 }
+
+result_methods!(CalibrationResult, "continuum calibrate");
 
 #[pymethods]
 impl CalibrationResult {
@@ -56,21 +57,6 @@ impl CalibrationResult {
     #[getter]
     fn largest_left_out_ratio(&self, py: Python<'_>) -> Py<PyArray1<f64>> {
         self.each(py, |one| one.largest_left_out_ratio)
-    }
-
-    /// The table that `fric-cli continuum calibrate` prints.
-    fn summary(&self) -> String {
-        self.result.summary()
-    }
-
-    /// The text that `fric-cli continuum calibrate --json` writes.
-    fn to_json(&self) -> Outcome<String> {
-        log::json(&self.result)
-    }
-
-    /// The same as a dict.
-    fn to_dict<'py>(&self, py: Python<'py>) -> Outcome<Bound<'py, PyAny>> {
-        log::plain(py, &self.result)
     }
 
     fn __repr__(&self) -> String {

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use super::{Manipulator, TendonRun, check_disks, flat};
 use crate::arrays::{fixed, fixed_rows};
 use crate::errors::Outcome;
-use crate::log;
+use crate::results;
 
 /// Outcome of `discover`. Arrays have a row for each sample that was compared: the run thinned, with every turn of the tension.
 #[pyclass(module = "fric.continuum", frozen)]
@@ -28,6 +28,8 @@ pub struct TendonDiscovery {
     residual_after_n: Py<PyArray2<f64>>,
 }
 
+result_methods!(TendonDiscovery, "discover");
+
 #[pymethods]
 impl TendonDiscovery {
     /// "complete", "extended" by what was found, with which what is left is noise, or "unexplained".
@@ -39,22 +41,7 @@ impl TendonDiscovery {
     /// What was found, as dicts: kind, parameters, standard_errors, gap_closed, evidence, runner_up.
     #[getter]
     fn effects<'py>(&self, py: Python<'py>) -> Outcome<Bound<'py, PyAny>> {
-        log::plain(py, &self.result.cables.first().map(|tendon| &tendon.effects))
-    }
-
-    /// The text that `fric-cli discover` prints.
-    fn summary(&self) -> String {
-        self.result.summary()
-    }
-
-    /// The text that `fric-cli discover --json` writes.
-    fn to_json(&self) -> Outcome<String> {
-        log::json(&self.result)
-    }
-
-    /// The same as a dict.
-    fn to_dict<'py>(&self, py: Python<'py>) -> Outcome<Bound<'py, PyAny>> {
-        log::plain(py, &self.result)
+        results::plain(py, &self.result.cables.first().map(|tendon| &tendon.effects))
     }
 
     fn __repr__(&self) -> String {

@@ -18,6 +18,8 @@ pub struct FrictionResult {
     result: result::FrictionResult,
 }
 
+result_methods!(FrictionResult, "continuum friction");
+
 #[pymethods]
 impl FrictionResult {
     /// Time, s, (N,).
@@ -42,21 +44,6 @@ impl FrictionResult {
     #[getter]
     fn directions_differ(&self, py: Python<'_>) -> Py<PyArray1<bool>> {
         fixed(py, self.result.series.directions_differ.clone())
-    }
-
-    /// The table that `fric-cli continuum friction` prints.
-    fn summary(&self) -> String {
-        self.result.summary()
-    }
-
-    /// The text that `fric-cli continuum friction --json` writes.
-    fn to_json(&self) -> Outcome<String> {
-        log::json(&self.result)
-    }
-
-    /// The same as a dict.
-    fn to_dict<'py>(&self, py: Python<'py>) -> Outcome<Bound<'py, PyAny>> {
-        log::plain(py, &self.result)
     }
 
     fn __repr__(&self) -> String {

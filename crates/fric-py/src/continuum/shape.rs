@@ -12,6 +12,7 @@ use super::{Manipulator, TendonRun, check_disks, measured};
 use crate::arrays::{array, fixed, fixed_rows};
 use crate::errors::{Fault, Outcome};
 use crate::log;
+use crate::results;
 
 /// Outcome of `shape`. `ways` names the ways of friction that the run allows; arrays of a way have a row a sample.
 #[pyclass(module = "fric.continuum", frozen)]
@@ -33,6 +34,8 @@ impl ShapeResult {
     }
 }
 
+result_methods!(ShapeResult, "continuum shape");
+
 #[pymethods]
 impl ShapeResult {
     /// Names of the ways: "none", "coulomb", "measured", "history".
@@ -50,13 +53,13 @@ impl ShapeResult {
     /// The shapes that were picked, as dicts: time_s, tension_base_n, marker_m, and by each way errors, disk_position_m, friction_n …
     #[getter]
     fn shapes<'py>(&self, py: Python<'py>) -> Outcome<Bound<'py, PyAny>> {
-        log::plain(py, &self.result.shapes)
+        results::plain(py, &self.result.shapes)
     }
 
     /// Errors of each way, as dicts: way, picked and all with max_mm and mean_mm, missing.
     #[getter]
     fn errors<'py>(&self, py: Python<'py>) -> Outcome<Bound<'py, PyAny>> {
-        log::plain(py, &self.result.ways)
+        results::plain(py, &self.result.ways)
     }
 
     /// Centres of the disks by a way, base frame, m, (N, disks, 2).
@@ -81,21 +84,6 @@ impl ShapeResult {
     /// Bend of the manipulator by a way, rad, (N,).
     fn bend_rad(&self, py: Python<'_>, way: &str) -> Outcome<Py<PyArray1<f64>>> {
         Ok(fixed(py, self.way(way)?.shapes.iter().map(|shape| shape.bend_rad).collect()))
-    }
-
-    /// The table that `fric-cli continuum shape` prints.
-    fn summary(&self) -> String {
-        self.result.summary()
-    }
-
-    /// The text that `fric-cli continuum shape --json` writes.
-    fn to_json(&self) -> Outcome<String> {
-        log::json(&self.result)
-    }
-
-    /// The same as a dict.
-    fn to_dict<'py>(&self, py: Python<'py>) -> Outcome<Bound<'py, PyAny>> {
-        log::plain(py, &self.result)
     }
 
     fn __repr__(&self) -> String {
