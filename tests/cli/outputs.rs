@@ -1,6 +1,6 @@
 //! Outputs that must not or cannot be written: everything stays as it was.
 
-use super::support::Place;
+use super::support::{Place, Run};
 
 /// Options that name an output, of `replay`.
 const OPTIONS: [&str; 3] = ["-o", "--json", "--report"];
@@ -117,5 +117,22 @@ fn outputs_are_ordinary_files() {
     // The test wrote the log itself, under the same umask.
     for name in ["o.mcap", "j.json", "r.html"] {
         assert_eq!(mode(name), mode("log.mcap"), "{name}");
+    }
+}
+
+/// Files are limited to 64 KiB, less than the log would have.
+#[cfg(unix)]
+#[test]
+fn a_disk_that_fills_up_is_told_in_one_sentence_and_nothing_is_left() {
+    let place = Place::with_log();
+    let limited = "trap '' XFSZ; ulimit -f 128; exec \"$0\" \"$@\"";
+    for arguments in [
+        &["replay", "log.mcap", "-o", "out.mcap", "--report", "r.html", "--json", "j.json"][..],
+        &["simulate", "--model", "robot.toml", "-o", "out.mcap", "--duration", "3"],
+    ] {
+        let mut shell = std::process::Command::new("sh");
+        shell.current_dir(place.path("")).args(["-c", limited, super::support::PROGRAM]).args(arguments);
+        Run::new(shell.output().unwrap()).fails(1, &["cannot write out.mcap: File too large"]);
+        assert_eq!(place.names(), ["log.mcap", "robot.toml"]);
     }
 }

@@ -12,15 +12,8 @@ log=${1:+$(realpath "$1")} robot=${2:+$(realpath "$2")}
 cd "$(dirname "$0")/../../.."
 target=${CARGO_TARGET_DIR:-target}
 build=$target/peers/fit
-requirements=benches/peers/fit/requirements.txt
 mkdir -p "$build"
-python3 -c 'import tomllib, ensurepip' 2>/dev/null ||
-    { echo "Python 3.11 or newer with venv is missing: apt-get install python3-venv" >&2; exit 2; }
-if [ ! "$build/venv/ready" -nt $requirements ]; then
-    python3 -m venv "$build/venv"
-    "$build/venv/bin/python" -m pip install --quiet --disable-pip-version-check -r $requirements
-    touch "$build/venv/ready"
-fi
+. benches/peers/venv.sh
 
 cargo build --quiet --release -p fric-cli --bin fric-cli --example fit
 if [ -z "$log" ]; then
@@ -40,7 +33,7 @@ seconds() { awk -v key="$2" '$1 == key { print $2 }' "$1"; }
 # Ours before and after: how far the two are apart tells how noisy the machine is.
 ours before
 ours one-core taskset -c 0
-"$build/venv/bin/python" benches/peers/fit/scipy_fit.py "$log" "$robot" "$build/ours-before.txt" > "$build/scipy.txt"
+"$python" benches/peers/fit/scipy_fit.py "$log" "$robot" "$build/ours-before.txt" > "$build/scipy.txt"
 ours after
 grep -E '^(scipy|ours)' "$build/scipy.txt"
 status=0

@@ -1,11 +1,14 @@
 //! Writing logs: MCAP with the ROS 2 messages that fric puts out.
 //!
 //! A log appears in its place, whole, when it is finished, see [`output`](crate::output). The same calls give the same
-//! bytes: chunks of a fixed size, one compression thread, no clock.
+//! bytes: chunks of a fixed size, all written by one thread, no clock.
 //!
 //! Writes exactly the message types named here, with the `ros2msg` definitions of the ROS 2 packages they come
-//! from. NaN and infinities are written as they are. A [`LogWriter`] holds one chunk's index and one message.
+//! from. NaN and infinities are written as they are. A thread of its own frames, compresses and writes, so that a message that
+//! cannot be written may be told by a later call, at the latest by [`LogWriter::finish`]. A [`LogWriter`] holds one chunk's
+//! index and less than a megabyte of messages.
 
+mod background;
 mod definitions;
 mod error;
 mod messages;
@@ -16,10 +19,10 @@ use std::collections::BTreeMap;
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
-use mcap::records::MessageHeader;
 use mcap::{Attachment, Compression, McapError, WriteOptions};
 
 use crate::output::{OutputError, OutputFile};
+use background::BackgroundWriter;
 pub use error::WriteError;
 pub use messages::{CableStatusChannel, JointState, JointStateChannel, NumbersChannel, PoseChannel, WrenchChannel};
 use payload::Payload;
@@ -46,7 +49,7 @@ const ZSTD_LEVEL: u32 = 3;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct LogWriter {
-    writer: mcap::Writer<BufWriter<OutputFile>>,
+    writer: BackgroundWriter<BufWriter<OutputFile>>,
     path: PathBuf,
     topics: Vec<String>,
     payload: Payload,
@@ -68,6 +71,7 @@ impl LogWriter {
             .chunk_size(Some(CHUNK_BYTES))
             .create(BufWriter::new(file))
             .map_err(|source| mcap_error(path, source))?;
+        let writer = BackgroundWriter::new(writer);
         Ok(Self { writer, path: path.to_owned(), topics: Vec::new(), payload: Payload::default() })
     }
 
@@ -83,7 +87,7 @@ impl LogWriter {
             media_type: "application/toml".to_owned(),
             data: toml.as_bytes().into(),
         };
-        let result = self.writer.attach(&attachment);
+        let result = self.writer.writer().and_then(|writer| writer.attach(&attachment));
         result.map_err(|source| mcap_error(&self.path, source))
     }
 
@@ -92,7 +96,8 @@ impl LogWriter {
     /// # Errors
     /// Where the file cannot be written, or another one has appeared in its place and `force` is not set.
     pub fn finish(self) -> Result<(), WriteError> {
-        let Self { mut writer, path, .. } = self;
+        let Self { writer, path, .. } = self;
+        let mut writer = writer.into_writer().map_err(|source| mcap_error(&path, source))?;
         writer.finish().map_err(|source| mcap_error(&path, source))?;
         let file = writer.into_inner().into_inner();
         let file = file.map_err(|error| OutputError::File { path, source: error.into_error() })?;
@@ -104,17 +109,16 @@ impl LogWriter {
             return Err(WriteError::Topic { topic: topic.to_owned() });
         }
         self.topics.push(topic.to_owned());
-        let writer = &mut self.writer;
-        let id = writer
-            .add_schema(schema_name, "ros2msg", schema.as_bytes())
-            .and_then(|schema| writer.add_channel(schema, topic, "cdr", &BTreeMap::new()));
+        let id = self.writer.writer().and_then(|writer| {
+            let schema = writer.add_schema(schema_name, "ros2msg", schema.as_bytes())?;
+            writer.add_channel(schema, topic, "cdr", &BTreeMap::new())
+        });
         id.map_err(|source| mcap_error(&self.path, source))
     }
 
     /// Writes the message in `payload`.
     fn write_payload(&mut self, channel_id: u16, stamp_nanos: u64) -> Result<(), WriteError> {
-        let header = MessageHeader { channel_id, sequence: 0, log_time: stamp_nanos, publish_time: stamp_nanos };
-        let result = self.writer.write_to_known_channel(&header, self.payload.bytes());
+        let result = self.writer.write(channel_id, stamp_nanos, self.payload.bytes());
         result.map_err(|source| mcap_error(&self.path, source))
     }
 }

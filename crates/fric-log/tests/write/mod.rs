@@ -283,3 +283,38 @@ fn the_file_is_as_public_as_any_other() {
     let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode();
     assert_eq!(mode(&path), mode(&other));
 }
+
+#[test]
+fn messages_and_channels_keep_their_order_however_many_there_are() {
+    let (_directory, path) = in_directory();
+    let mut writer = LogWriter::create(&path, &NONE, false).unwrap();
+    let fields: Vec<String> = (0..32).map(|index| format!("x{index}")).collect();
+    let mut written = Vec::new();
+    // Each round is more than what waits for the thread at most.
+    for topic in ["/a", "/b", "/c"] {
+        let channel = writer.add_numbers(topic, "fric_msgs/msg/Test", &fields).unwrap();
+        for _ in 0..4096 {
+            let stamp_nanos = written.len() as u64;
+            writer.write_numbers(&channel, stamp_nanos, &[0.5; 32]).unwrap();
+            written.push((topic.to_owned(), stamp_nanos));
+        }
+        writer.attach_robot_file(topic).unwrap();
+    }
+    writer.finish().unwrap();
+    let bytes = fs::read(&path).unwrap();
+    let messages = MessageStream::new(&bytes).unwrap().map(Result::unwrap);
+    let read: Vec<_> = messages.map(|message| (message.channel.topic.clone(), message.log_time)).collect();
+    assert!(read == written);
+}
+
+#[test]
+fn of_a_log_that_is_given_up_nothing_is_left() {
+    let (directory, path) = in_directory();
+    let mut writer = LogWriter::create(&path, &NONE, false).unwrap();
+    let wrenches = writer.add_wrench("/fric/wrench", "base").unwrap();
+    for stamp_nanos in 0..10_000 {
+        writer.write_wrench(&wrenches, stamp_nanos, &Wrench::default()).unwrap();
+    }
+    drop(writer);
+    assert_eq!(files(&directory), [""; 0]);
+}
