@@ -1,7 +1,6 @@
 """What several tests need."""
 
 import os
-import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -30,12 +29,19 @@ def run(*arguments):
     return done.stderr
 
 
-def interrupted(code):
-    """Runs Python code, presses Ctrl-C as soon as it prints "ready", and gives what it prints then."""
-    command = [sys.executable, "-c", code]
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    assert process.stdout.readline() == "ready\n"
-    process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=30)
-    assert process.returncode == 0, err
-    return out
+# Presses Ctrl-C a moment after the call that it is the `progress` of has begun.
+PRESS_SOON = """
+import os, signal, threading
+seen = []
+def press_soon(fraction):
+    if not seen:
+        threading.Timer(0.05, os.kill, [os.getpid(), signal.SIGINT]).start()
+    seen.append(fraction)
+"""
+
+
+def printed(code):
+    """What Python code prints."""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False, timeout=120)
+    assert done.returncode == 0, done.stderr
+    return done.stdout

@@ -7,7 +7,7 @@ import sys
 
 import fric
 import pytest
-from support import ROBOT, ROOT, interrupted
+from support import PRESS_SOON, ROBOT, ROOT, printed
 
 
 def test_the_stubs_are_true():
@@ -39,26 +39,22 @@ def test_the_status_is_the_core_s():
 
 
 @pytest.mark.parametrize(
-    "call", ["fric.simulate(robot, duration_s=1e6, progress=ready)", "replay_for_ever()", "run_for_ever()"]
+    "call", ["fric.simulate(robot, duration_s=1e6, progress=press_soon)", "replay_for_ever()", "run_for_ever()"]
 )
 def test_ctrl_c_ends_a_long_call_and_leaves_the_interpreter_whole(call):
-    code = f"""
+    code = f"""{PRESS_SOON}
 import fric
 robot = fric.Robot.read({str(ROBOT)!r})
 log = fric.simulate(robot, duration_s=20.0)
-told = []
-def ready(fraction):
-    if not told:
-        told.append(print("ready", flush=True))
 def replay_for_ever():
     while True:
-        fric.replay(robot, log, progress=ready)
+        fric.replay(robot, log, progress=press_soon)
 def run_for_ever():
     while True:
-        fric.Compensator(robot).run(log.sensor_force_n, log.length_m, log.speed_m_per_s, progress=ready)
+        fric.Compensator(robot).run(log.sensor_force_n, log.length_m, log.speed_m_per_s, progress=press_soon)
 try:
     {call}
 except KeyboardInterrupt:
     print(len(fric.simulate(robot, duration_s=0.5)))
 """
-    assert interrupted(code) == "500\n"
+    assert printed(code) == "500\n"
