@@ -83,7 +83,9 @@ fn errors(truth: &CaseTruth, cable: &CableDiscovery) -> Vec<ParameterError> {
             if let Some(parameter) = fitted {
                 let error = (cable.after.values[parameter.place()] - value).abs();
                 let standard_error = cable.after.standard_error(parameter).unwrap_or(f64::NAN);
-                let of_size = error / (value - parameter.row().neutral).abs();
+                // What an identification does not vary by itself, a period, says nothing by its neutral value.
+                let neutral = if parameter.row().fitted { parameter.row().neutral } else { 0.0 };
+                let of_size = error / (value - neutral).abs();
                 errors.push(ParameterError { name, of_size, of_errors: error / standard_error });
             }
         }
