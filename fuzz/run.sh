@@ -2,6 +2,10 @@
 # Fuzzes targets one after the other: fuzz/run.sh SECONDS [TARGET …], all targets if none is named.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+if [ $# -eq 0 ]; then
+    echo "usage: $0 SECONDS [TARGET …]" >&2
+    exit 2
+fi
 seconds=$1
 shift
 targets=("$@")

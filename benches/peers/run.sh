@@ -7,18 +7,13 @@ set -euo pipefail
 cd "$(dirname "$0")/../.."
 target=${CARGO_TARGET_DIR:-target}
 build=$target/peers
-requirements=benches/peers/numba/requirements.txt
 mkdir -p "$build"
 for tool in g++ valgrind; do
     command -v $tool >/dev/null || { echo "$tool is missing: apt-get install g++ valgrind libeigen3-dev" >&2; exit 2; }
 done
 eigen=${EIGEN_INCLUDE:-/usr/include/eigen3}
 [ -d "$eigen/Eigen" ] || { echo "Eigen is missing: apt-get install libeigen3-dev, or set EIGEN_INCLUDE" >&2; exit 2; }
-if [ ! "$build/venv/ready" -nt $requirements ]; then
-    python3 -m venv "$build/venv" || { echo "venv is missing: apt-get install python3-venv" >&2; exit 2; }
-    "$build/venv/bin/python" -m pip install --quiet --disable-pip-version-check -r $requirements
-    touch "$build/venv/ready"
-fi
+. benches/peers/venv.sh
 
 unset CARGO_ENCODED_RUSTFLAGS
 RUSTFLAGS="" cargo build --quiet --release -p cycle-instructions
@@ -34,7 +29,7 @@ program() {
     case $1 in
         ours) "$target/release/cycle_instructions" "$2" "$3" "$4" ;;
         ours-native) "$target/native/release/cycle_instructions" "$2" "$3" "$4" ;;
-        numba) "$build/venv/bin/python" benches/peers/numba/cycle.py "$2" "$3" "$input" "$4" ;;
+        numba) "$python" benches/peers/numba/cycle.py "$2" "$3" "$input" "$4" ;;
         *) "$build/$1" "$2" "$3" "$input" "$4" ;;
     esac
 }

@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use serde_json::Value;
 
 use super::report::assert_self_contained;
-use super::support::{Place, assert_close, root};
+use super::support::{Place, assert_close, example_robot, root};
 
 /// The example manipulator.
 fn prototype() -> String {
@@ -215,6 +215,10 @@ fn a_hole_gives_its_coefficient() {
     assert_close(place.json("h.json")["mu"].as_f64().unwrap(), 0.2);
     place.write("hole.csv", "tension_1_n,tension_2_n,angle_1_rad,angle_2_rad\n1,0.9,1,1\n");
     place.run_in_vain(&["continuum", "hole", "hole.csv"]).fails(1, &["hole.csv", "fewer than three loads"]);
+    place.write("hole.csv", "tension_1_n,tension_2_n,angle_1_rad,angle_2_rad\n1,0.9,74,74\n");
+    place
+        .run_in_vain(&["continuum", "hole", "hole.csv"])
+        .fails(1, &["hole.csv", "`angle_1_rad` is 74 in row 1", "in rad"]);
 }
 
 #[test]
@@ -384,4 +388,17 @@ fn pages_escape_what_files_say() {
         assert_self_contained(&html);
         assert!(html.contains("&lt;script&gt;") && !html.contains("<script") && !html.contains("<i>"));
     }
+}
+
+#[test]
+fn a_model_of_the_other_kind_is_told() {
+    let place = place();
+    place.write("robot.toml", example_robot());
+    let shape = ["continuum", "shape", "mixed.csv", "--model", "robot.toml"];
+    place
+        .run_in_vain(&shape)
+        .fails(1, &["robot.toml is a robot file (`fric-robot/1`)"])
+        .advises(&["a manipulator file"]);
+    let simulate = ["simulate", "--model", "arm.toml", "-o", "log.mcap"];
+    place.run_in_vain(&simulate).fails(1, &["arm.toml is a manipulator file"]).advises(&["a robot file"]);
 }

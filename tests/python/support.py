@@ -31,11 +31,11 @@ def run(*arguments):
 
 # Presses Ctrl-C a moment after the call that it is the `progress` of has begun.
 PRESS_SOON = """
-import os, signal, threading
+import signal, threading
 seen = []
 def press_soon(fraction):
     if not seen:
-        threading.Timer(0.05, os.kill, [os.getpid(), signal.SIGINT]).start()
+        threading.Timer(0.05, signal.raise_signal, [signal.SIGINT]).start()
     seen.append(fraction)
 """
 

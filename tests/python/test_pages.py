@@ -19,11 +19,21 @@ LOOK = (ROOT / "tests" / "python" / "look.html").as_uri()
 
 
 def browse(*arguments):
-    command = [BROWSER, "--headless=new", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--no-first-run",
+    command = [BROWSER, "--headless=new", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--no-first-run", "--enable-logging=stderr",
                "--host-resolver-rules=MAP * ~NOTFOUND", *arguments]
     done = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", check=False, timeout=120)
     assert done.returncode == 0, done.stderr
-    return done.stdout
+    return done.stdout, [line for line in done.stderr.splitlines() if "CONSOLE" in line]
+
+
+def look(page, scheme):
+    """What is seen of a page, and what its scripts complain of."""
+    # 0 is dark, 1 light.
+    setting = f"--blink-settings=preferredColorScheme={int(scheme == 'light')}"
+    options = ["--allow-file-access-from-files", "--virtual-time-budget=5000", "--dump-dom", setting]
+    document, complaints = browse(*options, f"{LOOK}?{urlencode({'page': page.as_uri(), 'width': WIDTH_PX})}")
+    seen = json.loads(html.unescape(re.search(r'<pre id="seen">(.*?)</pre>', document, re.S)[1]))
+    return {**seen, "complaints": complaints}
 
 
 @pytest.fixture(scope="module")
@@ -50,14 +60,9 @@ def pages(tmp_path_factory):
 @pytest.mark.parametrize("name", ["replay", "discover", "excite", "shape", "friction"])
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_a_page_can_be_read_by_day_and_by_night(pages, name, scheme):
-    look = f"{LOOK}?{urlencode({'page': pages[name].as_uri(), 'width': WIDTH_PX})}"
-    # 0 is dark, 1 light.
-    setting = f"--blink-settings=preferredColorScheme={int(scheme == 'light')}"
-    options = ["--allow-file-access-from-files", "--virtual-time-budget=5000", "--dump-dom", setting]
-    document = browse(*options, look)
-    seen = json.loads(html.unescape(re.search(r'<pre id="seen">(.*?)</pre>', document, re.S)[1]))
+    seen = look(pages[name], scheme)
     assert seen["dark"] == (scheme == "dark")
-    assert seen["fetched"] == seen["failures"] == seen["faint"] == []
+    assert seen["fetched"] == seen["complaints"] == seen["faint"] == []
     assert seen["overflow_px"] <= 0 and seen["headings"] and seen["texts"] > 10
     assert seen["drawings"] and all(100 < width <= WIDTH_PX for width in seen["drawings"])
 
@@ -66,3 +71,16 @@ def test_the_discovery_can_be_printed(pages, tmp_path):
     paper = tmp_path / "discovery.pdf"
     browse(f"--print-to-pdf={paper}", pages["discover"].as_uri())
     assert paper.read_bytes().startswith(b"%PDF-") and paper.stat().st_size > 20_000
+
+
+def test_a_bad_page_is_seen_to_be_bad(tmp_path):
+    (tmp_path / "other.css").write_text("p { color: #999 }", encoding="utf-8")
+    page = tmp_path / "bad.html"
+    page.write_text(
+        "<link rel=stylesheet href=other.css><p>faint</p><div style='width: 3000px'>wide</div><script>nobody()</script>",
+        encoding="utf-8",
+    )
+    seen = look(page, "light")
+    assert [name for name, *_ in seen["faint"]] == ["P"] and seen["overflow_px"] > 1000
+    assert seen["fetched"] == [(tmp_path / "other.css").as_uri()]
+    assert "nobody is not defined" in seen["complaints"][0]

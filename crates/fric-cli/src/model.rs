@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use fric_core::robot::file::RobotFile;
+use fric_core::continuum::file::FORMAT as MANIPULATOR_FORMAT;
+use fric_core::robot::file::{FORMAT as ROBOT_FORMAT, RobotFile};
 use fric_log::recording::Recording;
 use fric_log::robot::{ATTACHED, AttachedRobot, AttachedRobotError, ROBOT_FILE};
 use fric_log::signals::SignalPaths;
@@ -16,7 +17,19 @@ pub fn read_text(path: &Path, kind: &str) -> Outcome<(String, String)> {
         Failure::new(format!("cannot read the {kind} file {origin}: {error}"))
             .advise("Check the path given with --model.")
     })?;
-    Ok((text, origin))
+    let other = [("robot", ROBOT_FORMAT), ("manipulator", MANIPULATOR_FORMAT)]
+        .into_iter()
+        .find(|(other, format)| *other != kind && has_format(&text, format));
+    match other {
+        Some((other, format)) => Err(Failure::new(format!("{origin} is a {other} file (`{format}`)"))
+            .advise(format!("Name a {kind} file with --model."))),
+        None => Ok((text, origin)),
+    }
+}
+
+/// Whether the text of a model's file says that it is of a format.
+pub fn has_format(text: &str, format: &str) -> bool {
+    text.lines().any(|line| line.trim_start().starts_with("format") && line.contains(format))
 }
 
 /// A robot and the text it was read from.

@@ -1,8 +1,8 @@
 //! Cables without a robot around them, in any number type: one in plain numbers, four in lanes.
 //!
 //! For: identification, which runs the cycle's equations with numbers that carry derivatives along. A cable has the bits that
-//! the [`Compensator`](crate::Compensator) gives it, whatever the type and whichever cables stand beside it. Signals come conditioned ([`condition`](crate::signals::condition)), the wrap of a last
-//! pulley that follows the pose as [`PoseWrap`].
+//! the [`Compensator`](crate::Compensator) gives it, whatever the type and whichever cables stand beside it. Signals come
+//! conditioned ([`condition`](crate::signals::condition)), the wrap of a last pulley that follows the pose as [`PoseWrap`].
 
 use crate::cable::{Cable, CableForces, CableModel, Features, MEMORY, Moment, UNKNOWN, cable_cycle};
 use crate::effects::cable_elasticity::COMPLIANCE;

@@ -232,7 +232,7 @@ lanes!(
     EightLanes, EightLanesMask, 8, f64x8, i64x8
 );
 
-/// The lanes of the control cycle where more than [`LANES`] cables are left: as many as two streams of the target's registers
+/// The lanes of the control cycle where more than [`LANES`] cables are left: with AVX as many as two registers
 /// hold, of which one computes while the other waits for its root or quotient.
 #[cfg(target_feature = "avx")]
 pub type CycleLanes = EightLanes;

@@ -68,6 +68,6 @@ fn nothing_is_extrapolated_around_a_cycle_out_of_order() {
     for value in [2.0, 1.0, 3.0, 4.0] {
         assert_eq!(leads(value, true), value);
     }
-    // 3·4.5 − 3·4 + 3.
-    assert_eq!(leads(4.5, true), 4.5);
+    // 3·5 − 3·4 + 3.
+    assert_eq!(leads(5.0, true), 6.0);
 }

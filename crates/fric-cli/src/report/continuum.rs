@@ -94,7 +94,8 @@ pub fn shape(result: &ShapeResult, run: &Run, ways: &[WayShapes], path: &Path) -
     let content = html! {
         p.soft { (path.display().to_string()) ", " (result.samples) " samples." }
         (bridged(result.bridged.iter().map(|one| one.warning(result.samples))))
-        p { (keys(result.ways.iter().map(|way| way.way))) @if has_markers { (key("marker", "markers")) } "Dashed: the most that a hole can hold." }
+        p { (keys(result.ways.iter().map(|way| way.way))) @if has_markers { (key("marker", "markers")) } }
+        p.soft { "Dashed over the bars: the most that a hole holds by the model's μ; what is measured may be more." }
         table {
             tr { th { "way" } th { "max, shown [mm]" } th { "mean [mm]" } th { "max, all [mm]" } th { "mean [mm]" } th { "missing" } }
             @for way in &result.ways {

@@ -11,8 +11,8 @@
 //! to nothing of it is left. (A low pass would delay the stretch: on a simulated log it leaves a third more of the noise than the play
 //! does.) Friction that follows a tension it adds to is stable while `compliance·σ·(n + 1)/(2n) < 1`, as it is for a cable far
 //! stiffer than its presliding; beyond, friction jumps to its Coulomb bound and no further. A sensor pulley with less wrap than 60° (or
-//! more than 300°) makes of the friction in it `cos α₁/(1 − cos α₁)` times as much, and the compliance has to be lower by that factor. Only presliding and its direction follow
-//! the stretch; viscous friction and what depends on speed follow the winch, since the rate of a tension is mostly noise.
+//! more than 300°) makes of the friction in it `cos α₁/(1 − cos α₁)` times as much, and the compliance has
+//! to be lower by that factor. Only presliding and its direction follow the stretch; viscous friction and what depends on speed follow the winch, since the rate of a tension is mostly noise.
 //! Neutral: `compliance_m_per_n = 0`.
 //!
 //! Cause: the cable is an elastic spring between winch and platform.

@@ -60,7 +60,7 @@ pub fn delay_range_s(cycle_s: f64) -> (f64, f64) {
 }
 
 /// A delay as whole cycles and the rest.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Delay {
     taps: Taps,
     fractions: [f64; 2],
@@ -84,9 +84,9 @@ impl Delay {
 }
 
 /// Which values of a [`DelayLine`] a delay needs, by their age: those about `t − delay_s`; of a lead those about `t − τ` and `t − 2τ`.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Taps {
-    /// Whole cycles, less than [`MAX_DELAY_CYCLES`].
+    /// Whole cycles; only a lead has a use for the second.
     ages: [usize; 2],
     leads: bool,
 }
@@ -148,7 +148,7 @@ impl DelayLine {
     ///     values.map(|value| line.shift(value, true, Delay::from_cycles(cycles)))
     /// };
     /// assert_eq!(shifted(1.5, [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]), [0.0, 0.0, 0.5, 1.5, 2.5, 3.5]);
-    /// // The squares: what led them is known from the sixth cycle on.
+    /// // The squares: what led them is known from the fifth cycle on.
     /// assert_eq!(shifted(-1.0, [0.0, 1.0, 4.0, 9.0, 16.0, 25.0]), [0.0, 1.0, 4.0, 9.0, 25.0, 36.0]);
     /// ```
     #[inline]

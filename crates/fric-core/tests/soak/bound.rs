@@ -42,8 +42,8 @@ pub fn friction_bound_n(cable: &CableParams, force_n: f64, speed_m_per_s: f64, c
     let drag_n = value("bearing_drag", "drag_n") + nonlinear_n;
     let viscous = cable.friction().viscous_n_s_per_m * (1.0 + value("direction_asymmetry", "viscous_ratio").abs());
     let window_s = value("pulley_inertia", "window_s") + cycle_s;
-    // Led by up to 20 cycles, a speed that turns round counts 41 times.
-    let led = if value("time_delay", "delay_s") < 0.0 { 41.0 } else { 1.0 };
+    // A lead takes the speed of three moments, 3, −3 and 1 times: of one that turns round 7 times.
+    let led = if value("time_delay", "delay_s") < 0.0 { 7.0 } else { 1.0 };
     let speed_m_per_s = led * speed_m_per_s;
     let moved_n = speed_m_per_s * (viscous + value("pulley_inertia", "mass_kg") * 2.0 / window_s);
     // A slip limit takes from the stored friction what viscous friction is too much, and that stays stored.

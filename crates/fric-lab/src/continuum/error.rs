@@ -64,6 +64,16 @@ pub enum ContinuumError {
         /// What stands there.
         value: f64,
     },
+    /// An angle beyond half a turn.
+    #[error("`{column}` is {value} in row {row}; angles to the normal force are in rad, within ±π")]
+    NoAngle {
+        /// Its column.
+        column: String,
+        /// The row below the header, from 1.
+        row: usize,
+        /// What stands there.
+        value: f64,
+    },
     /// A time that is none.
     #[error("`time_s` of sample {row} is {time_s}; give every sample its time in seconds, or take it out")]
     NoTime {

@@ -212,6 +212,10 @@ fn judged(mut tension: Vec<Tension>, base_n: f64, greatest_n: f64) -> GratingSam
         }
     }
     let values: Vec<f64> = tension.iter().map(|tension| tension.value_n).collect();
+    if !values.iter().any(|value| value.is_finite()) {
+        // Between nothing and nothing there is no line.
+        return GratingSample { is_bridged: vec![true; values.len()], tension };
+    }
     let (whole, is_bridged) = bridged(base_n, &values);
     for ((tension, value_n), is_bridged) in tension.iter_mut().zip(whole).zip(&is_bridged) {
         // Nothing was measured there: a tenth of the tension is more than a hole takes away at usual bends.

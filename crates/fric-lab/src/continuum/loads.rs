@@ -1,5 +1,7 @@
 //! Load benches: columns to the steps of a calibration, and to the loads on a single hole.
 
+use std::f64::consts::PI;
+
 use super::columns::{self, Columns};
 use super::error::ContinuumError;
 use super::fbg::{LoadStep, without_temperature};
@@ -50,7 +52,7 @@ pub fn load_steps(
 /// Loads on a single hole from `tension_1_n`, `tension_2_n`, `angle_1_rad` and `angle_2_rad`: F_1, F_2, θ_1 and θ_2 of \[C\] 16.
 ///
 /// # Errors
-/// [`ContinuumError`] names a column that is unknown, missing or of another length, and a cell that is no number.
+/// [`ContinuumError`] names a column that is unknown, missing or of another length, and a cell that is no number, or no angle in rad.
 pub fn hole_loads(given: &[(String, Vec<f64>)]) -> Result<Vec<HoleLoad>, ContinuumError> {
     let all = Columns::new(given, &columns::of_hole())?;
     let [first_n, second_n, first_rad, second_rad] = columns::HOLE;
@@ -62,12 +64,20 @@ pub fn hole_loads(given: &[(String, Vec<f64>)]) -> Result<Vec<HoleLoad>, Continu
             Err(ContinuumError::NotFinite { column: column.to_owned(), row: row + 1, value })
         }
     };
+    let angle = |column: &str, row: usize| {
+        let value = number(column, row)?;
+        if value.abs() <= PI {
+            Ok(value)
+        } else {
+            Err(ContinuumError::NoAngle { column: column.to_owned(), row: row + 1, value })
+        }
+    };
     let load = |row: usize| {
         Ok(HoleLoad {
             first_n: number(first_n, row)?,
             second_n: number(second_n, row)?,
-            first_rad: number(first_rad, row)?,
-            second_rad: number(second_rad, row)?,
+            first_rad: angle(first_rad, row)?,
+            second_rad: angle(second_rad, row)?,
         })
     };
     (0..all.row_count()).map(load).collect()

@@ -155,7 +155,8 @@ impl Problem<'_> {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// Sum of the losses for several σ at once, of all cables: `sigmas_n_per_m[candidate][cable]`; over consecutive cycles of a log, of which the first eighth lets the cables forget that they began at rest.
+    /// Sum of the losses for several σ at once, of all cables: `sigmas_n_per_m[candidate][cable]`; over consecutive cycles of
+    /// a log, of which the first eighth lets the cables forget that they began at rest.
     pub fn losses_by_sigma(&self, values: &[Values], sigmas_n_per_m: &[Vec<f64>], cycles: &Range<usize>) -> Vec<f64> {
         let count = sigmas_n_per_m.len();
         let mut forces: Vec<Vec<f64>> = Vec::with_capacity(self.members.len());

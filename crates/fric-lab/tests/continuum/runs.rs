@@ -6,6 +6,7 @@ use fric_lab::continuum::comparison::compare;
 use fric_lab::continuum::fbg::Calibration;
 use fric_lab::continuum::gratings::Gratings;
 use fric_lab::continuum::result::FrictionResult;
+use fric_lab::continuum::shape_errors::{Way, shapes};
 use fric_lab::continuum::simulate::{Experiment, SimulatedRun, TendonSimulationOptions, simulate};
 use fric_lab::continuum::{ContinuumError, Run, RunSample, hole_loads, load_steps};
 
@@ -118,6 +119,22 @@ fn spoilt(run: &SimulatedRun, grating: usize, spoil: impl Fn(usize, &mut f64)) -
     let measured = gratings.read(&samples).unwrap();
     let count = |place: usize| measured.iter().filter(|sample| sample.is_bridged[place]).count();
     (FrictionResult::new("arm", &samples, &measured), (0..8).map(count).collect())
+}
+
+/// Where no grating says anything nothing is made up, also not by the tension at the base.
+#[test]
+fn a_sample_without_any_grating_is_not_measured() {
+    let run = simulated();
+    let mut samples = run.samples.clone();
+    samples[50].shift_nm.fill(f64::NAN);
+    let lines = Calibration::fit_all(&run.calibration).unwrap();
+    let measured = Gratings::new(lines).read(&Run::new(samples.clone(), 8).unwrap()).unwrap();
+    assert!(
+        measured[50].tension.iter().all(|tension| tension.value_n.is_nan()) && measured[50].is_bridged == [true; 8]
+    );
+    let shapes = shapes(&published(), &samples, Way::Measured, &measured).unwrap();
+    let without: Vec<usize> = (0..shapes.len()).filter(|place| !shapes[*place].status.has_shape()).collect();
+    assert_eq!(without, [50]);
 }
 
 #[test]

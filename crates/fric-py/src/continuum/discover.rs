@@ -34,8 +34,8 @@ result_methods!(TendonDiscovery, "discover");
 impl TendonDiscovery {
     /// "complete", "extended" by what was found, with which what is left is noise, or "unexplained".
     #[getter]
-    fn verdict(&self) -> Option<&str> {
-        self.result.cables.first().map(|tendon| tendon.verdict)
+    fn verdict(&self) -> &str {
+        self.result.cables.first().map_or("", |tendon| tendon.verdict)
     }
 
     /// What was found, as dicts: kind, parameters, standard_errors, gap_closed, evidence, runner_up.
@@ -45,7 +45,7 @@ impl TendonDiscovery {
     }
 
     fn __repr__(&self) -> String {
-        format!("<TendonDiscovery: {}>", self.verdict().unwrap_or_default())
+        format!("<TendonDiscovery: {}>", self.verdict())
     }
 }
 

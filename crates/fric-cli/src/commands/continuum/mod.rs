@@ -18,7 +18,7 @@ use fric_log::table::NumberTable;
 
 use crate::arguments::continuum::{ContinuumCommand, ReportArguments, RunArguments};
 use crate::failure::{Failure, Outcome};
-use crate::model::read_text;
+use crate::model::{has_format, read_text};
 use crate::output::{self, JsonTarget};
 use crate::warnings::warn_all;
 
@@ -35,8 +35,7 @@ pub fn run(command: &ContinuumCommand) -> Outcome {
 
 /// Whether a model is a manipulator file rather than a robot's.
 pub fn is_manipulator(model: Option<&Path>) -> bool {
-    let says_so = |line: &str| line.trim_start().starts_with("format") && line.contains(FORMAT);
-    model.is_some_and(|model| std::fs::read_to_string(model).is_ok_and(|text| text.lines().any(says_so)))
+    model.is_some_and(|model| std::fs::read_to_string(model).is_ok_and(|text| has_format(&text, FORMAT)))
 }
 
 /// A manipulator and the text it was read from.

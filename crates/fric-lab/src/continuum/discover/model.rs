@@ -50,7 +50,8 @@ impl Effect {
             Self::Presliding => [
                 "After a reversal the holes near the base turn round first, those near the tip still hold: friction depends on the \
                  history of the tension.",
-                "Compute shapes with the history; pull beyond the wanted tension before small releases.",
+                "Compute shapes with the history; pull beyond the wanted tension before small releases. σ is a usual value: above it a run hardly \
+                 tells one from another.",
             ],
             Self::SensorDrift(_) => [
                 "The wavelength of a grating wanders, as with its temperature.",
