@@ -32,6 +32,8 @@ def run(*arguments):
 # Presses Ctrl-C a moment after the call that it is the `progress` of has begun.
 PRESS_SOON = """
 import signal, threading
+# What runs in the background may have been told to ignore it.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 seen = []
 def press_soon(fraction):
     if not seen:
