@@ -235,10 +235,11 @@ impl Episode {
             let is_slack = (one.status | other.status).intersects(CableStatus::SLACK);
             let is_told = self.straight[cable] && !is_slack;
             let reference_n = self.apart_n[cable].filter(|_| stroke > 0 && is_told);
-            // One contact only comes nearer. In a chain, what a pulley stores is load of those behind it and of itself.
+            // One contact only comes nearer. In a chain, what a pulley stores is load of those behind it and of itself, and counts
+            // more at a sensor pulley, the less it is wrapped.
             let (of_last, most) = match params.presliding() {
                 Presliding::Lumped => (true, 1.0 + 1e-9),
-                Presliding::PerPulley => (false, 2.0),
+                Presliding::PerPulley => (false, 2.0 * sensor_share(params)),
             };
             if reference_n.is_some_and(|reference_n| apart_n > reference_n * most + 1e-9 * scale_n) {
                 return Err(format!(
@@ -297,8 +298,11 @@ fn memory_m(cable: &CableParams, force_n: f64) -> f64 {
     #[expect(clippy::cast_precision_loss, reason = "a handful")]
     let of_drag_m = cable.pulley_count() as f64 * effect(cable, "bearing_drag", "drag_n") / sigma_n_per_m;
     let nonlinear = if acts(cable, "load_nonlinearity") { 4.0 } else { 1.0 };
-    // What rubs at a sensor pulley counts more, the less it is wrapped.
+    2.0 * sensor_share(cable) * (nonlinear * of_load_m + of_drag_m)
+}
+
+/// How often what rubs at the sensor pulley counts in the tension, at least once: the more, the less it is wrapped.
+fn sensor_share(cable: &CableParams) -> f64 {
     let cos = sensor_cos(cable);
-    let sensor = (cos.abs() / (1.0 - cos)).max(1.0);
-    2.0 * sensor * (nonlinear * of_load_m + of_drag_m)
+    (cos.abs() / (1.0 - cos)).max(1.0)
 }
