@@ -52,6 +52,7 @@ pub struct Episode {
     robot: Robot,
     random: Random,
     motions: Vec<Motion>,
+    /// The way over which each cable forgets, on the way back that has begun.
     memories_m: Vec<f64>,
     /// Which cables come back straight, see [`comes_straight`].
     straight: Vec<bool>,
@@ -72,12 +73,6 @@ impl Episode {
         let motion =
             |_: &CableParams| Motion::new(&mut random, robot.cycle_s, monitor.length_jump_m, monitor.length_noise_m);
         let motions: Vec<Motion> = robot.cables.iter().map(motion).collect();
-        let memories_m = robot
-            .cables
-            .iter()
-            .zip(&motions)
-            .map(|(cable, motion)| memory_m(cable, motion.greatest_force_n()))
-            .collect();
         let watches = robot.cables.iter().map(|cable| Watch::new(&robot, cable)).collect();
         let straight = robot.cables.iter().map(|cable| comes_straight(cable, monitor)).collect();
         let of_time = |cable: &CableParams| ["friction_drift", "sensor_drift"].iter().any(|kind| acts(cable, kind));
@@ -87,7 +82,7 @@ impl Episode {
             robot,
             random,
             motions,
-            memories_m,
+            memories_m: Vec::new(),
             straight,
             drifts,
             pose: None,
@@ -144,6 +139,9 @@ impl Episode {
             8 + self.robot.cables.iter().map(|cable| delay_cycles(cable, self.robot.cycle_s)).max().unwrap_or(0);
         for cycle in 0..cycles + settle + RECOVERY_CYCLES {
             let stroke = cycle.checked_sub(cycles + settle);
+            if stroke == Some(0) {
+                self.memories_m = self.memories_m(&spoilt.compensator);
+            }
             let input = match stroke {
                 None => self.any_input(),
                 Some(stroke) => self.stroke_input(stroke),
@@ -179,6 +177,15 @@ impl Episode {
             self.base = spoilt;
         }
         Ok(())
+    }
+
+    /// What the contacts store is tension in the chain, and so load: the more a lying sensor has made of it, the longer the way back.
+    fn memories_m(&self, spoilt: &Compensator<MOST_CABLES>) -> Vec<f64> {
+        let of_cable = |(cable, (params, motion)): (usize, (&CableParams, &Motion))| {
+            let stored_n: f64 = spoilt.pulley_friction_n(cable).iter().map(|friction_n| friction_n.abs()).sum();
+            memory_m(params, motion.greatest_force_n() + stored_n)
+        };
+        self.robot.cables.iter().zip(&self.motions).enumerate().map(of_cable).collect()
     }
 
     fn stroke_input(&mut self, stroke: u32) -> CycleInput<MOST_CABLES> {
