@@ -3,9 +3,8 @@
 //! Worked out once a cycle for all pulleys, as far as it is the same for all. Which effects act is looked at outside the
 //! arithmetic: those that do not cost nothing.
 
-use crate::cable::{Cable, CableModel, Moment, SPEED, UNKNOWN};
+use crate::cable::{Cable, CableModel, Moment};
 use crate::dahl::dahl_step;
-use crate::effects::Acting;
 use crate::effects::bearing_drag::{self, BearingDrag};
 use crate::effects::direction_asymmetry::{self, DirectionAsymmetry};
 use crate::effects::friction_drift::{self, FrictionDrift};
@@ -13,6 +12,7 @@ use crate::effects::load_nonlinearity::{self, LoadNonlinearity};
 use crate::effects::presliding_shape::{self, PreslidingShape};
 use crate::effects::pulley_inertia::{self, PulleyInertia};
 use crate::effects::stribeck::{self, Stribeck};
+use crate::effects::{Acting, SPEED, UNKNOWN};
 use crate::pulley::sliding_friction;
 use crate::scalar::Scalar;
 use crate::signals::CableSignals;

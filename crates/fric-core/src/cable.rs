@@ -1,26 +1,16 @@
-//! Friction of one cable over one cycle: the chain of its pulleys with presliding, in the two forms that are wanted.
+//! What a cable is to the equations of the cycle: its parameters, its pulleys and what it remembers.
 //!
-//! For: sensor force and displacement in, force at the platform out ([`cable_cycle`]). Generic over [`Scalar`], so the
-//! control cycle (several cables at once) and a fit that carries derivatives run the very same code. It does not judge
-//! signals: [`condition`](crate::signals::condition) sees to it that they are finite. State: one number per pulley, or
-//! one per cable, and [`MEMORY`] of effects, kept by the caller behind [`Cable`].
+//! Generic over [`Scalar`], so that the control cycle (several cables at once) and a fit that carries derivatives run the very same
+//! code. State: one number per pulley, or one per cable, and [`MEMORY`](crate::effects::MEMORY) of effects, kept by the caller
+//! behind [`Cable`].
 //!
 //! Symbols and sign convention are those of [`pulley`](crate::pulley).
 
-use crate::bearing::Bearing;
-use crate::chain::Chain;
-use crate::effects::Acting;
-use crate::effects::cable_elasticity::{self, CableElasticity};
-use crate::effects::pulley_eccentricity::{self, PulleyEccentricity};
-use crate::effects::sensor_drift::{self, SensorDrift};
-use crate::effects::sensor_gain::{self, SensorGain};
-use crate::effects::sensor_offset::{self, SensorOffset};
-use crate::effects::time_delay;
+use crate::effects::{Acting, time_delay};
 use crate::parameters::{MU, OFFSET, ParameterRow, SIGMA, Values};
 use crate::places::{Places, START_WRAP_FACTOR};
 use crate::robot::{CableParams, Presliding};
-use crate::scalar::{Mask, Scalar};
-use crate::signals::CableSignals;
+use crate::scalar::Scalar;
 
 /// Parameters of a cable as the cycle uses them.
 #[derive(Clone, Copy, Debug)]
@@ -122,15 +112,6 @@ pub trait Cable<T: Scalar> {
     fn set_held_friction_n(&mut self, friction_n: T);
 }
 
-/// Numbers that effects remember.
-pub const MEMORY: usize = 2;
-/// Stands for a number that is not known yet; equal to itself, as a snapshot has to be.
-pub const UNKNOWN: f64 = f64::INFINITY;
-/// Middle of the play of the tension, of `cable_elasticity`, N.
-pub(crate) const TENSION: usize = 0;
-/// Low pass of the speed, of `pulley_inertia`, m/s.
-pub(crate) const SPEED: usize = 1;
-
 /// What may differ between robots but not between the lanes of one: decided once a cycle, outside the arithmetic.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Features {
@@ -188,123 +169,4 @@ impl<T: Scalar> Moment<T> {
         let elapsed = T::select(last.lt(cycle), cycle - last, T::splat(1.0));
         Self { time_s: cycle * T::splat(cycle_s), step_s: elapsed * T::splat(cycle_s) }
     }
-}
-
-/// Outcome of one cycle for one cable.
-#[derive(Clone, Copy, Debug)]
-pub struct CableForces<T: Scalar> {
-    /// Force at the platform, N, the offset ε included.
-    pub platform_force_n: T,
-    /// Friction: force at the platform less the frictionless one, without ε, N. With it all that effects add: inertia,
-    /// ripple, what is corrected of the sensor.
-    pub friction_n: T,
-    /// Sensor force as it is shown, turned into cable tension as if nothing rubbed, N.
-    pub frictionless_n: T,
-    /// The cable carries no tension at the platform, or none at all.
-    pub slack: T::Mask,
-    /// Slip on a pulley.
-    pub slip: T::Mask,
-}
-
-/// One cycle of one cable (or of several in lanes) on conditioned signals.
-///
-/// While a signal is faulty ([`hold`](CableSignals::hold)) the stored friction follows the motion with the last good force, and
-/// the output holds the last good friction, which takes no cable below zero tension. Slack releases the stored friction.
-///
-/// Viscous friction and inertia stay outside the Dahl state in both forms: they need no presliding distance (deviation from
-/// \[P\] 15, where viscous friction is inside). The macroscopic friction is taken from the frictionless cable,
-/// `F_f = F_n − F_s/(1 − c)`, so that presliding covers the sensor pulley too (deviation from \[P\] 15: `F_n − F_1`).
-#[inline(always)]
-pub fn cable_cycle<T: Scalar>(
-    model: &CableModel<T>,
-    features: Features,
-    signals: &CableSignals<T>,
-    moment: &Moment<T>,
-    cable: &mut impl Cable<T>,
-) -> CableForces<T> {
-    let zero = T::splat(0.0);
-    let acting = features.acting;
-    let shown_n = signals.sensor_force_n.scale(model.frictionless_gain);
-    let (sensor_force_n, frictionless_n) = if acting.has(SENSOR) {
-        let sensor_force_n = corrected_sensor(acting, signals.sensor_force_n, moment, cable);
-        (sensor_force_n, sensor_force_n.scale(model.frictionless_gain))
-    } else {
-        (signals.sensor_force_n, shown_n)
-    };
-    let no_tension = sensor_force_n.le(zero);
-    let bearing = Bearing::new(model, acting, signals, moment, cable);
-    let stretch_m = stretch(acting, frictionless_n + cable.held_friction_n(), signals, cable);
-    let displacement_m = signals.displacement_m;
-    let chain = Chain { model, features, bearing, sensor_force_n, displacement_m, stretch_m };
-    let mut chain_n = frictionless_n;
-    let mut slip = T::Mask::NONE;
-    if features.lumped {
-        let (platform_n, friction_n, slips) = chain.lumped(cable);
-        cable.set_lumped_friction_n(friction_n.keep(no_tension.not()));
-        (chain_n, slip) = (platform_n, slips);
-    }
-    if features.per_pulley {
-        let (platform_n, slips) = chain.per_pulley(no_tension.or(model.lumped), cable);
-        if features.lumped {
-            chain_n = T::select(model.lumped, chain_n, platform_n);
-            slip = model.lumped.and(slip).or(model.lumped.not().and(slips));
-        } else {
-            (chain_n, slip) = (platform_n, slips);
-        }
-    }
-    if acting.has(pulley_eccentricity::ACTS) {
-        chain_n = chain_n * PulleyEccentricity::of(|place| cable.effect(place)).factor(signals.length_m);
-    }
-    let slack = no_tension.or(chain_n.lt(zero));
-    let pulled_n = chain_n.max(zero);
-    let moving_n = T::select(no_tension, frictionless_n, pulled_n) + model.offset_n;
-    let friction_n = moving_n - model.offset_n - frictionless_n;
-
-    let hold = signals.hold;
-    let held_friction_n = cable.held_friction_n();
-    cable.set_held_friction_n(T::select(hold, held_friction_n, friction_n));
-    let held_n = held_friction_n.max(-frictionless_n).keep(no_tension.not());
-    let platform_force_n = T::select(hold, frictionless_n + held_n + model.offset_n, moving_n);
-    let friction_n = T::select(hold, held_n, friction_n);
-    CableForces {
-        platform_force_n,
-        friction_n: if acting.has(SENSOR) { platform_force_n - model.offset_n - shown_n } else { friction_n },
-        frictionless_n: shown_n,
-        slack,
-        slip: slip.and(slack.not()).and(hold.not()),
-    }
-}
-
-/// Effects of the force sensor.
-const SENSOR: Acting = sensor_offset::ACTS.and(sensor_drift::ACTS).and(sensor_gain::ACTS);
-
-/// The sensor force there is for the one shown, N: `(F_shown − offset − rate·t)/gain`.
-#[inline(always)]
-fn corrected_sensor<T: Scalar>(acting: Acting, shown_n: T, moment: &Moment<T>, cable: &impl Cable<T>) -> T {
-    let value = |place| cable.effect(place);
-    let mut force_n = shown_n;
-    if acting.has(sensor_offset::ACTS) {
-        force_n = SensorOffset::of(value).undo(force_n);
-    }
-    if acting.has(sensor_drift::ACTS) {
-        force_n = SensorDrift::of(value).undo(force_n, moment.time_s);
-    }
-    if acting.has(sensor_gain::ACTS) {
-        force_n = SensorGain::of(value).undo(force_n);
-    }
-    force_n
-}
-
-/// By how much the whole cable has stretched in this cycle, m; a sensor that tells nothing tells of no stretch.
-#[inline(always)]
-fn stretch<T: Scalar>(acting: Acting, tension_n: T, signals: &CableSignals<T>, cable: &mut impl Cable<T>) -> T {
-    if !acting.has(cable_elasticity::ACTS) {
-        return T::splat(0.0);
-    }
-    let elasticity = CableElasticity::of(|place| cable.effect(place));
-    let middle_n = cable.memory(TENSION);
-    let (stretch_m, next_n) = elasticity.stretch_m(tension_n.max(T::splat(0.0)), middle_n);
-    let known = signals.sensor_fault.not();
-    cable.set_memory(TENSION, T::select(known, next_n, middle_n));
-    stretch_m.keep(known)
 }

@@ -2,9 +2,9 @@
 //!
 //! Private to the crate: the structure-of-arrays behind [`Compensator`](crate::Compensator).
 
-use crate::cable::{Cable, CableModel, MEMORY, UNKNOWN};
-use crate::effects::EFFECT_PARAMETER_COUNT;
+use crate::cable::{Cable, CableModel};
 use crate::effects::time_delay::{self, Delay, DelayLine};
+use crate::effects::{EFFECT_PARAMETER_COUNT, MEMORY, UNKNOWN};
 use crate::lanes::Block;
 use crate::parameters::FRICTION_COUNT;
 use crate::places::{NO_SLIP, PLACES, Places, START_WRAP_FACTOR};

@@ -7,7 +7,8 @@
 
 mod takeover;
 
-use crate::cable::{Features, Moment, cable_cycle};
+use crate::cable::{Features, Moment};
+use crate::cable_cycle::cable_cycle;
 use crate::columns::{BlockOfCables, ParamColumns, StateColumns};
 use crate::cycle::{CableInput, CableOutput, CycleInput, CycleOutput};
 use crate::effects::time_delay::{self, Delay, DelayLine};

@@ -4,9 +4,11 @@
 //! the [`Compensator`](crate::Compensator) gives it, whatever the type and whichever cables stand beside it. Signals come
 //! conditioned ([`condition`](crate::signals::condition)), the wrap of a last pulley that follows the pose as [`PoseWrap`].
 
-use crate::cable::{Cable, CableForces, CableModel, Features, MEMORY, Moment, UNKNOWN, cable_cycle};
+use crate::cable::{Cable, CableModel, Features, Moment};
+use crate::cable_cycle::{CableForces, cable_cycle};
 use crate::effects::cable_elasticity::COMPLIANCE;
 use crate::effects::time_delay::{self, About, DELAY, DelayLine, Taps};
+use crate::effects::{MEMORY, UNKNOWN};
 use crate::lanes::LANES;
 use crate::parameters::{ParameterRow, VISCOUS, Values};
 use crate::places::{NO_SLIP, PLACES, Places, START_WRAP_FACTOR};

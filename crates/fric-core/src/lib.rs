@@ -42,6 +42,7 @@ pub mod admittance;
 mod any;
 mod bearing;
 pub mod cable;
+pub mod cable_cycle;
 mod chain;
 mod columns;
 mod compensator;

@@ -1,8 +1,8 @@
 //! One compensator's parameters in the place of another's, for [`TunableCompensator`](crate::TunableCompensator).
 
 use super::Compensator;
-use crate::cable::{SPEED, TENSION, UNKNOWN};
 use crate::effects::time_delay::{self, DelayLine};
+use crate::effects::{SPEED, TENSION, UNKNOWN};
 use crate::effects::{cable_elasticity, pulley_inertia};
 use crate::places::NO_SLIP;
 use crate::robot::{ParamError, ParamProblem};

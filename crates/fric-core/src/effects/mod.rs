@@ -39,6 +39,15 @@ pub struct EffectRow {
     pub parameters: &'static [ParameterRow],
 }
 
+/// Numbers that effects remember from cycle to cycle.
+pub const MEMORY: usize = 2;
+/// Stands for a number that is not known yet; equal to itself, as a snapshot has to be.
+pub const UNKNOWN: f64 = f64::INFINITY;
+/// Middle of the play of the tension, of `cable_elasticity`, N.
+pub(crate) const TENSION: usize = 0;
+/// Low pass of the speed, of `pulley_inertia`, m/s.
+pub(crate) const SPEED: usize = 1;
+
 /// Every effect that a cable of a robot file can have.
 pub const CATALOGUE: &[EffectRow] = &[
     stribeck::ROW,

@@ -19,8 +19,7 @@
 //! through the bus. Deviation from the paper: the set points are shifted, not the friction computed from them, so that
 //! the friction is that of the present force.
 
-use super::{Acting, EffectRow, first_place};
-use crate::cable::UNKNOWN;
+use super::{Acting, EffectRow, UNKNOWN, first_place};
 use crate::lanes::LANES;
 use crate::parameters::ParameterRow;
 use crate::scalar::Scalar;
