@@ -1,7 +1,5 @@
 //! Passes of the cycle's equations over the records of cables, with the derivatives by chosen parameters.
 
-use std::ops::Range;
-
 use fric_core::parameters::{OFFSET, Values};
 use fric_core::scalar::Scalar;
 use fric_core::{CableCycle, CableGroup, CableParams, LANES, Lanes};
@@ -169,16 +167,27 @@ fn cycle(row: &Row) -> CableCycle<'_> {
     CableCycle { signals: &row.signals, pose_wrap: row.pose_wrap, cycle: row.cycle }
 }
 
-/// Forces of one cable in consecutive cycles, begun at rest, for the values in each lane of all candidates: one cycle's after the
-/// other's.
-pub fn candidate_forces(record: &CableRecord<'_>, candidates: &[Values<Lanes>], cycles: Range<usize>) -> Vec<f64> {
-    let group = |values| CableGroup::new(&[record.params], values, record.cycle_s, |_| false);
-    let Some(mut groups) = candidates.iter().map(group).collect::<Option<Vec<_>>>() else { return Vec::new() };
-    let rows = record.rows.get(cycles).unwrap_or_default();
-    let mut forces = Vec::with_capacity(rows.len() * groups.len() * LANES);
-    for row in rows {
-        // Side by side: a group waits for its own last cycle most of the time.
-        forces.extend(groups.iter_mut().flat_map(|group| group.step(|_| cycle(row)).platform_force_n.to_array()));
+/// Forces of one cable for several values side by side, without derivatives.
+#[derive(Debug)]
+pub struct CandidatePass {
+    groups: Vec<CableGroup<Lanes>>,
+}
+
+impl CandidatePass {
+    /// Begun at rest; one candidate in each lane of the values.
+    pub fn new(record: &CableRecord<'_>, candidates: &[Values<Lanes>]) -> Self {
+        let group = |values| CableGroup::new(&[record.params], values, record.cycle_s, |_| false);
+        Self { groups: candidates.iter().filter_map(group).collect() }
     }
-    forces
+
+    /// Forces in these cycles in place of what `forces` holds: those of all candidates in the first, then in the next.
+    pub fn advance(&mut self, rows: &[Row], forces: &mut Vec<f64>) {
+        forces.clear();
+        for row in rows {
+            // Side by side: a group waits for its own last cycle most of the time.
+            forces.extend(
+                self.groups.iter_mut().flat_map(|group| group.step(|_| cycle(row)).platform_force_n.to_array()),
+            );
+        }
+    }
 }

@@ -17,7 +17,7 @@ use rayon::prelude::*;
 
 use super::gang::{Seat, all_forces};
 use super::gram::Gram;
-use super::pass::{Forces, LanePass, Part, candidate_forces, with_room_for};
+use super::pass::{CandidatePass, Forces, LanePass, Part, with_room_for};
 use super::record::CableRecord;
 use super::scores::Scores;
 use super::vector::Parameter;
@@ -156,11 +156,10 @@ impl Problem<'_> {
     }
 
     /// Sum of the losses for several σ at once, of all cables: `sigmas_n_per_m[candidate][cable]`; over consecutive cycles of
-    /// a log, of which the first eighth lets the cables forget that they began at rest.
+    /// a log, of which the first eighth lets the cables forget that they began at rest; of the cycles until it is stopped.
     pub fn losses_by_sigma(&self, values: &[Values], sigmas_n_per_m: &[Vec<f64>], cycles: &Range<usize>) -> Vec<f64> {
         let count = sigmas_n_per_m.len();
-        let mut forces: Vec<Vec<f64>> = Vec::with_capacity(self.members.len());
-        for (index, (member, values)) in self.members.iter().zip(values).enumerate() {
+        let pass_of = |(index, (member, values)): (usize, (&Member<'_>, &Values))| {
             let of_candidates = |candidates: &[Vec<f64>]| {
                 let mut lanes = values.map(Lanes::splat);
                 let of = |lane: usize| candidates.get(lane).and_then(|sigmas| sigmas.get(index));
@@ -168,22 +167,34 @@ impl Problem<'_> {
                 lanes
             };
             let candidates: Vec<Values<Lanes>> = sigmas_n_per_m.chunks(LANES).map(of_candidates).collect();
-            forces.push(candidate_forces(&member.record, &candidates, cycles.clone()));
-        }
+            CandidatePass::new(&member.record, &candidates)
+        };
+        let mut passes: Vec<CandidatePass> = self.members.iter().zip(values).enumerate().map(pass_of).collect();
+        let mut forces = vec![Vec::new(); passes.len()];
         let width = count.next_multiple_of(LANES);
+        let counted_from = cycles.start + cycles.len() / 8;
         let mut sums = vec![0.0; count];
         let mut of_sample = vec![0.0; self.members.len()];
         let mut residuals = Vec::new();
-        for (offset, place) in cycles.clone().enumerate().skip(cycles.len() / 8) {
-            if !self.used.get(place).copied().unwrap_or(false) {
-                continue;
+        for from in cycles.clone().step_by(CHUNK) {
+            if self.stopped() {
+                break;
             }
-            for (candidate, sum) in sums.iter_mut().enumerate() {
-                for (force_n, of_cable) in of_sample.iter_mut().zip(&forces) {
-                    *force_n = of_cable.get(offset * width + candidate).copied().unwrap_or(f64::NAN);
+            let chunk = from..(from + CHUNK).min(cycles.end);
+            for ((pass, member), forces) in passes.iter_mut().zip(&self.members).zip(&mut forces) {
+                pass.advance(member.record.rows.get(chunk.clone()).unwrap_or_default(), forces);
+            }
+            for (offset, place) in chunk.enumerate() {
+                if place < counted_from || !self.used.get(place).copied().unwrap_or(false) {
+                    continue;
                 }
-                self.compare(place, &of_sample, &mut residuals);
-                *sum += residuals.iter().map(|residual| self.loss.root(*residual).0.powi(2)).sum::<f64>();
+                for (candidate, sum) in sums.iter_mut().enumerate() {
+                    for (force_n, of_cable) in of_sample.iter_mut().zip(&forces) {
+                        *force_n = of_cable.get(offset * width + candidate).copied().unwrap_or(f64::NAN);
+                    }
+                    self.compare(place, &of_sample, &mut residuals);
+                    *sum += residuals.iter().map(|residual| self.loss.root(*residual).0.powi(2)).sum::<f64>();
+                }
             }
         }
         sums
