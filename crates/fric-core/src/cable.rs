@@ -112,6 +112,68 @@ pub trait Cable<T: Scalar> {
     fn set_held_friction_n(&mut self, friction_n: T);
 }
 
+/// A cable whose state is looked at, and stays as it is.
+pub(crate) struct Looked<'a, C>(pub &'a C);
+
+impl<T: Scalar, C: Cable<T>> Cable<T> for Looked<'_, C> {
+    #[inline(always)]
+    fn count(&self) -> usize {
+        self.0.count()
+    }
+    #[inline(always)]
+    fn wrap_factor(&self, place: usize) -> T {
+        self.0.wrap_factor(place)
+    }
+    #[inline(always)]
+    fn viscous_n(&self, place: usize, speed_m_per_s: T) -> T {
+        self.0.viscous_n(place, speed_m_per_s)
+    }
+    #[inline(always)]
+    fn traction_ratio(&self, place: usize) -> T {
+        self.0.traction_ratio(place)
+    }
+    #[inline(always)]
+    fn present(&self, place: usize) -> T {
+        self.0.present(place)
+    }
+    #[inline(always)]
+    fn stretch_ratio(&self, place: usize) -> T {
+        self.0.stretch_ratio(place)
+    }
+    #[inline(always)]
+    fn greatest_mu(&self) -> T {
+        self.0.greatest_mu()
+    }
+    #[inline(always)]
+    fn effect(&self, place: usize) -> T {
+        self.0.effect(place)
+    }
+    #[inline(always)]
+    fn memory(&self, place: usize) -> T {
+        self.0.memory(place)
+    }
+    #[inline(always)]
+    fn set_memory(&mut self, _: usize, _: T) {}
+    #[inline(always)]
+    fn pulley_friction_n(&self, place: usize) -> T {
+        self.0.pulley_friction_n(place)
+    }
+    #[inline(always)]
+    fn set_pulley_friction_n(&mut self, _: usize, _: T) {}
+    #[inline(always)]
+    fn lumped_friction_n(&self) -> T {
+        self.0.lumped_friction_n()
+    }
+    #[inline(always)]
+    fn set_lumped_friction_n(&mut self, _: T) {}
+    #[inline(always)]
+    fn held_friction_n(&self) -> T {
+        self.0.held_friction_n()
+    }
+    #[inline(always)]
+    fn set_held_friction_n(&mut self, _: T) {}
+}
+
 /// What may differ between robots but not between the lanes of one: decided once a cycle, outside the arithmetic.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Features {
@@ -121,21 +183,23 @@ pub struct Features {
     pub lumped: bool,
     /// Some cable has a slip limit.
     pub traction: bool,
+    /// Some cable's motion is known too late, and led.
+    pub(crate) leads: bool,
     /// Effects that some cable has.
     pub(crate) acting: Acting,
 }
 
 impl Features {
-    /// Whether the cycle has anything to do with effects; the delay is in its signals already.
+    /// Whether the cycle has anything to do with effects; a delay is in its signals already.
     #[inline(always)]
     pub(crate) fn has_effects(self) -> bool {
-        self.acting.without(time_delay::ACTS) != Acting::NONE
+        self.leads || self.acting.without(time_delay::ACTS) != Acting::NONE
     }
 
     /// These; if not `EFFECTS` without any, which the compiler then leaves out.
     #[inline(always)]
     pub(crate) fn limited_to<const EFFECTS: bool>(self) -> Self {
-        if EFFECTS { self } else { Self { acting: Acting::NONE, ..self } }
+        if EFFECTS { self } else { Self { acting: Acting::NONE, leads: false, ..self } }
     }
 
     /// These and what a cable needs, but for its effects.
@@ -143,6 +207,12 @@ impl Features {
         self.per_pulley |= params.presliding == Presliding::PerPulley;
         self.lumped |= params.presliding == Presliding::Lumped;
         self.traction |= params.traction_mu.is_some();
+        self
+    }
+
+    /// These, and a lead if there is one.
+    pub(crate) fn with_lead(mut self, leads: bool) -> Self {
+        self.leads |= leads;
         self
     }
 

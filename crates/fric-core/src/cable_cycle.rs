@@ -6,7 +6,7 @@
 //! Symbols and sign convention are those of [`pulley`](crate::pulley).
 
 use crate::bearing::Bearing;
-use crate::cable::{Cable, CableModel, Features, Moment};
+use crate::cable::{Cable, CableModel, Features, Looked, Moment};
 use crate::chain::Chain;
 use crate::effects::cable_elasticity::{self, CableElasticity};
 use crate::effects::pulley_eccentricity::{self, PulleyEccentricity};
@@ -63,21 +63,14 @@ pub fn cable_cycle<T: Scalar>(
     let stretch_m = stretch(acting, frictionless_n + cable.held_friction_n(), signals, cable);
     let displacement_m = signals.displacement_m;
     let chain = Chain { model, features, bearing, sensor_force_n, displacement_m, stretch_m };
-    let mut chain_n = frictionless_n;
-    let mut slip = T::Mask::NONE;
-    if features.lumped {
-        let (platform_n, friction_n, slips) = chain.lumped(cable);
-        cable.set_lumped_friction_n(friction_n.keep(no_tension.not()));
-        (chain_n, slip) = (platform_n, slips);
-    }
-    if features.per_pulley {
-        let (platform_n, slips) = chain.per_pulley(no_tension.or(model.lumped), cable);
-        if features.lumped {
-            chain_n = T::select(model.lumped, chain_n, platform_n);
-            slip = model.lumped.and(slip).or(model.lumped.not().and(slips));
-        } else {
-            (chain_n, slip) = (platform_n, slips);
-        }
+    let (mut chain_n, mut slip) = over_pulleys(&chain, no_tension, cable);
+    if features.leads {
+        // From what is stored, a step that is not.
+        let ahead = Chain { displacement_m: signals.lead_m, stretch_m: zero, ..chain };
+        let (ahead_n, slips) = over_pulleys(&ahead, no_tension, &mut Looked(cable));
+        let leads = zero.lt(signals.lead_m.abs());
+        chain_n = T::select(leads, ahead_n, chain_n);
+        slip = leads.and(slips).or(leads.not().and(slip));
     }
     if acting.has(pulley_eccentricity::ACTS) {
         chain_n = chain_n * PulleyEccentricity::of(|place| cable.effect(place)).factor(signals.length_m);
@@ -100,6 +93,23 @@ pub fn cable_cycle<T: Scalar>(
         slack,
         slip: slip.and(slack.not()).and(hold.not()),
     }
+}
+
+/// The chain in the forms that cables have: the tension behind the last pulley, N, and slip. What is stored is moved on, and released
+/// without tension.
+#[inline(always)]
+fn over_pulleys<T: Scalar>(chain: &Chain<'_, T>, no_tension: T::Mask, cable: &mut impl Cable<T>) -> (T, T::Mask) {
+    let lumped = chain.model.lumped;
+    if !chain.features.lumped {
+        return chain.per_pulley(no_tension.or(lumped), cable);
+    }
+    let (lumped_n, friction_n, lumped_slips) = chain.lumped(cable);
+    cable.set_lumped_friction_n(friction_n.keep(no_tension.not()));
+    if !chain.features.per_pulley {
+        return (lumped_n, lumped_slips);
+    }
+    let (per_pulley_n, slips) = chain.per_pulley(no_tension.or(lumped), cable);
+    (T::select(lumped, lumped_n, per_pulley_n), lumped.and(lumped_slips).or(lumped.not().and(slips)))
 }
 
 /// Effects of the force sensor.

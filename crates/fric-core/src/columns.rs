@@ -224,7 +224,7 @@ pub struct StateColumns<const CABLES: usize> {
     pub moment_arm_m: [[f64; CABLES]; 3],
     pub delayed_displacement_m: [DelayLine; CABLES],
     pub delayed_speed_m_per_s: [DelayLine; CABLES],
-    /// How far the delayed motion lags behind, m: summed up, but for a lead, which is what is extrapolated now.
+    /// How far the delayed motion lags behind, m.
     pub lag_m: [f64; CABLES],
 }
 

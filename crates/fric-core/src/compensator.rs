@@ -11,7 +11,7 @@ use crate::cable::{Features, Moment};
 use crate::cable_cycle::cable_cycle;
 use crate::columns::{BlockOfCables, ParamColumns, StateColumns};
 use crate::cycle::{CableInput, CableOutput, CycleInput, CycleOutput};
-use crate::effects::time_delay::{self, Delay, DelayLine};
+use crate::effects::time_delay::{self, Delay, DelayLine, Shifted};
 use crate::lanes::{Block, CycleLanes, LANES, Lanes};
 use crate::parameters::ParameterRow;
 use crate::places::{NO_SLIP, PLACES, Places};
@@ -115,7 +115,8 @@ impl<const CABLES: usize> Compensator<CABLES> {
         for cable in robot.cables {
             let values = cable.values();
             let is_active = |row: &ParameterRow, place: usize| values[place].to_bits() != row.neutral.to_bits();
-            features = features.with(cable).and_acting(is_active);
+            let leads = values[time_delay::DELAY] < 0.0;
+            features = features.with(cable).with_lead(leads).and_acting(is_active);
             place_count = place_count.max(Places::needed(cable));
         }
         for (place, cable) in robot.cables.iter().enumerate() {
@@ -355,26 +356,27 @@ impl<const CABLES: usize> Compensator<CABLES> {
             speed_m_per_s: signal(|cable| cable.speed_m_per_s),
         };
         let columns = &mut self.state.columns;
-        let mut signals = columns.signals::<T>(block);
-        let mut conditioned = condition(&self.limits, &mut signals, &raw, input.elapsed_cycles);
-        columns.set_signals(block, &signals);
+        let mut remembered = columns.signals::<T>(block);
+        let conditioned = condition(&self.limits, &mut remembered, &raw, input.elapsed_cycles);
+        columns.set_signals(block, &remembered);
+        let mut signals = conditioned.signals();
         let moment = Moment::new(T::splat(self.state.cycle), T::splat(self.state.last_cycle), self.cycle_s);
         if self.features.acting.has(time_delay::ACTS) {
-            let moves = T::bits(conditioned.moves());
+            let moves = T::bits(signals.moves);
             let in_order = if input.elapsed_cycles > 1.0 { 0 } else { moves };
             let delay = self.params.delay.get(first..).unwrap_or_default();
-            let Conditioned { displacement_m, speed_m_per_s, length_m, .. } = &mut conditioned;
-            let known_m = *displacement_m;
-            *displacement_m = shift_block(&mut columns.delayed_displacement_m, first, known_m, in_order, delay);
-            *speed_m_per_s = shift_block(&mut columns.delayed_speed_m_per_s, first, *speed_m_per_s, in_order, delay);
-            let lag_m = T::load(&columns.lag_m, block) + (known_m - *displacement_m);
-            let lag_m = lead_block(&columns.delayed_displacement_m, first, lag_m, delay);
-            lag_m.store(&mut columns.lag_m, block);
-            *length_m = *length_m - lag_m;
+            let known = [signals.displacement_m, signals.speed_m_per_s];
+            let by_lines = [
+                shift_block(&mut columns.delayed_displacement_m, first, known[0], in_order, delay),
+                shift_block(&mut columns.delayed_speed_m_per_s, first, known[1], in_order, delay),
+            ];
+            let lead = lead_block(&columns.delayed_displacement_m, first, delay);
+            let shifted = Shifted::new(known, by_lines, T::load(&columns.lag_m, block), lead);
+            shifted.lag_m.store(&mut columns.lag_m, block);
+            shifted.enter(&mut signals);
         }
         let model = self.params.model::<T>(block);
         let mut cable = BlockOfCables::new(&self.params, columns, block, self.place_count);
-        let signals = conditioned.signals();
         let forces = cable_cycle(&model, self.features.limited_to::<EFFECTS>(), &signals, &moment, &mut cable);
 
         let Conditioned { sensor_force_n, speed_m_per_s, sensor_finite, frozen, jump, motion_finite, .. } = conditioned;
@@ -427,19 +429,19 @@ impl<const CABLES: usize> Compensator<CABLES> {
     }
 }
 
-/// How far the delayed motion lags behind, m: summed up, but for a lead, which is what is extrapolated now. Summed up,
-/// it would keep what was not extrapolated around a fault.
+/// Which cables of a block lead, and by how far the parabola does, m; `None` if none does.
 fn lead_block<T: Block, const CABLES: usize>(
     lines: &[DelayLine; CABLES],
     first: usize,
-    summed_m: T,
     delays: &[Delay],
-) -> T {
-    let mut of_lanes = lines.iter().skip(first).zip(delays);
-    T::from_lanes(|lane| {
-        let lag_m = |(line, delay): (&DelayLine, &Delay)| delay.leads().then(|| line.lag(*delay));
-        of_lanes.next().and_then(lag_m).unwrap_or(summed_m.lane(lane))
-    })
+) -> Option<(T::Mask, T)> {
+    if !delays.iter().take(T::COUNT).any(|delay| delay.leads()) {
+        return None;
+    }
+    let leads = T::from_lanes(|lane| f64::from(delays.get(lane).is_some_and(|delay| delay.leads())));
+    let lead_m =
+        |lane: usize| lines.get(first + lane).zip(delays.get(lane)).map_or(0.0, |(line, delay)| line.lead(*delay));
+    Some((T::splat(0.0).lt(leads), T::from_lanes(lead_m)))
 }
 
 /// One cycle of a block's delay lines.

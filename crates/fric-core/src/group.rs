@@ -7,7 +7,7 @@
 use crate::cable::{Cable, CableModel, Features, Moment};
 use crate::cable_cycle::{CableForces, cable_cycle};
 use crate::effects::cable_elasticity::COMPLIANCE;
-use crate::effects::time_delay::{self, About, DELAY, DelayLine, Taps};
+use crate::effects::time_delay::{self, About, DELAY, DelayLine, Shifted, Taps};
 use crate::effects::{MEMORY, UNKNOWN};
 use crate::lanes::LANES;
 use crate::parameters::{ParameterRow, VISCOUS, Values};
@@ -73,8 +73,7 @@ struct Delayed<T> {
     fractions: [T; 2],
     displacement_m: [DelayLine; LANES],
     speed_m_per_s: [DelayLine; LANES],
-    /// How far the delayed motion lags behind, m: summed up, but for a lead, which is what is extrapolated now. Summed up, it
-    /// would keep what was not extrapolated around a fault.
+    /// How far the delayed motion lags behind, m.
     lag_m: T,
 }
 
@@ -142,6 +141,7 @@ impl<T: Scalar> CableGroup<T> {
         }
         let delay = values[DELAY] / T::splat(cycle_s);
         let taps = core::array::from_fn(|lane| Taps::of_cycles(delay.lane(lane)));
+        let features = features.with_lead(taps.into_iter().any(Taps::leads));
         let delayed = features.acting.has(time_delay::ACTS);
         Some(Self {
             model: CableModel::new(of_lane, &values),
@@ -189,9 +189,19 @@ impl<T: Scalar> CableGroup<T> {
     #[inline(always)]
     fn step_as<'a, const EFFECTS: bool>(&mut self, cycle: impl Fn(usize) -> CableCycle<'a>) -> CableForces<T> {
         let number = |of: fn(&Conditioned<f64>) -> f64| T::from_lanes(|lane| of(cycle(lane).signals));
-        let mut displacement_m = number(|signals| signals.displacement_m);
-        let mut speed_m_per_s = number(|signals| signals.speed_m_per_s);
-        let mut length_m = number(|signals| signals.length_m);
+        let mask = |of: fn(&Conditioned<f64>) -> bool| {
+            T::splat(0.0).lt(T::from_lanes(|lane| f64::from(of(cycle(lane).signals))))
+        };
+        let mut signals = CableSignals {
+            sensor_force_n: number(|signals| signals.sensor_force_n),
+            displacement_m: number(|signals| signals.displacement_m),
+            lead_m: T::splat(0.0),
+            speed_m_per_s: number(|signals| signals.speed_m_per_s),
+            length_m: number(|signals| signals.length_m),
+            hold: mask(Conditioned::hold),
+            sensor_fault: mask(Conditioned::sensor_fault),
+            moves: mask(Conditioned::moves),
+        };
         let count: [f64; LANES] = core::array::from_fn(|lane| if lane < T::COUNT { cycle(lane).cycle } else { 0.0 });
         let last = core::mem::replace(&mut self.last_cycle, count);
         if let Some(delayed) = &mut self.delay {
@@ -200,33 +210,24 @@ impl<T: Scalar> CableGroup<T> {
                 let pause = count[lane % LANES] - last[lane % LANES] > 1.0;
                 signals.moves() && !pause
             };
-            let known_m = displacement_m;
             let Delayed { taps, fractions, .. } = *delayed;
-            displacement_m = shift(&mut delayed.displacement_m, known_m, in_order, taps, fractions);
-            speed_m_per_s = shift(&mut delayed.speed_m_per_s, speed_m_per_s, in_order, taps, fractions);
-            delayed.lag_m = delayed.lag_m + (known_m - displacement_m);
-            if taps.into_iter().any(Taps::leads) {
-                let leads = T::splat(0.0).lt(T::from_lanes(|lane| f64::from(taps[lane % LANES].leads())));
+            let known = [signals.displacement_m, signals.speed_m_per_s];
+            let by_lines = [
+                shift(&mut delayed.displacement_m, known[0], in_order, taps, fractions),
+                shift(&mut delayed.speed_m_per_s, known[1], in_order, taps, fractions),
+            ];
+            let lead = taps.into_iter().any(Taps::leads).then(|| {
+                let leads = T::from_lanes(|lane| f64::from(taps[lane % LANES].leads()));
                 let lines = &delayed.displacement_m;
-                let lags = core::array::from_fn(|lane| lines[lane % LANES].about_lag(taps[lane % LANES]));
-                delayed.lag_m = T::select(leads, About::of_lanes(&lags, fractions), delayed.lag_m);
-            }
-            length_m = length_m - delayed.lag_m;
+                let leads_m = core::array::from_fn(|lane| lines[lane % LANES].about_lead(taps[lane % LANES]));
+                (T::splat(0.0).lt(leads), About::of_lanes(&leads_m, fractions))
+            });
+            let shifted = Shifted::new(known, by_lines, delayed.lag_m, lead);
+            delayed.lag_m = shifted.lag_m;
+            shifted.enter(&mut signals);
         }
         let of_lanes = |cycles: [f64; LANES]| T::from_lanes(|lane| cycles[lane % LANES]);
         let moment = Moment::new(of_lanes(count), of_lanes(last), self.cycle_s);
-        let mask = |of: fn(&Conditioned<f64>) -> bool| {
-            T::splat(0.0).lt(T::from_lanes(|lane| f64::from(of(cycle(lane).signals))))
-        };
-        let signals = CableSignals {
-            sensor_force_n: number(|signals| signals.sensor_force_n),
-            displacement_m,
-            speed_m_per_s,
-            length_m,
-            hold: mask(Conditioned::hold),
-            sensor_fault: mask(Conditioned::sensor_fault),
-            moves: mask(Conditioned::moves),
-        };
         self.state.pose_wrap_factor = T::from_lanes(|lane| cycle(lane).pose_wrap.wrap_factor);
         self.state.pose_traction_ratio = T::from_lanes(|lane| cycle(lane).pose_wrap.traction_ratio);
         cable_cycle(&self.model, self.features.limited_to::<EFFECTS>(), &signals, &moment, &mut self.state)

@@ -86,6 +86,8 @@ pub struct CableSignals<T: Scalar> {
     pub sensor_force_n: T,
     /// Change of length that counts as motion, m.
     pub displacement_m: T,
+    /// How far the cable is ahead of all the displacements there have been, m: of motion that is known too late.
+    pub lead_m: T,
     /// Speed; 0 where the motion is not to be believed, m/s.
     pub speed_m_per_s: T,
     /// Last finite length, m; NaN before the first.
@@ -111,6 +113,7 @@ impl<T: Scalar> Conditioned<T> {
         CableSignals {
             sensor_force_n: self.sensor_force_n,
             displacement_m: self.displacement_m,
+            lead_m: T::splat(0.0),
             speed_m_per_s: self.speed_m_per_s,
             length_m: self.length_m,
             hold: self.hold(),
@@ -180,7 +183,7 @@ pub fn condition<T: Scalar>(
     let sensor_finite = raw.sensor_force_n.within(GREATEST_FORCE_N);
     let sensor_force_n = T::select(sensor_finite, raw.sensor_force_n, state.sensor_force_n);
     // A value that is none says nothing about the ones around it.
-    let unchanged = sensor_force_n.eq(state.sensor_force_n).and(zero.lt(sensor_force_n));
+    let unchanged = sensor_force_n.eq(state.sensor_force_n).and(zero.lt(sensor_force_n)).and(sensor_finite);
     state.sensor_force_n = sensor_force_n;
     state.frozen_count = (state.frozen_count + T::splat(1.0)).keep(unchanged);
     state.frozen_travel_m = (state.frozen_travel_m + displacement_m).keep(unchanged);

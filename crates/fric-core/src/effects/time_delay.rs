@@ -8,9 +8,13 @@
 //! x(t + τ) ≈ 3·x(t) − 3·x(t − τ) + x(t − 2τ)
 //! ```
 //!
-//! for the displacement of a cycle, and with it for the position, and for the speed. A steady acceleration is followed exactly;
+//! for the position and for the speed. A steady acceleration is followed exactly;
 //! what remains of a position is its third derivative times τ³, and noise is multiplied by no more than √19, however far it is
 //! led (by the last cycles alone it would be by `1 + 2τ/dt` and more). Neutral: `delay_s = 0`.
+//!
+//! Friction stores the motion that is known. The force shown is that of a step ahead from there, to where the parabola leads; what is
+//! stored does not take that step. So a parabola that goes on where a motion ends undoes no friction, and nothing of it is
+//! left as soon as the end is known. Nor does it lead against the motion that is known, or where that rests: there it is about to be wrong.
 //!
 //! After a cycle without motion to be believed, or a pause, the change from one cycle to the next is not the motion's:
 //! nothing is extrapolated until all that the parabola goes through has been in order.
@@ -23,12 +27,13 @@ use super::{Acting, EffectRow, UNKNOWN, first_place};
 use crate::lanes::LANES;
 use crate::parameters::ParameterRow;
 use crate::scalar::Scalar;
+use crate::signals::CableSignals;
 
 /// The catalogue row.
 pub const ROW: EffectRow = EffectRow {
     kind: "time_delay",
-    cause: "the winch motion is known earlier than the cable moves: set points, or a longer way of the force signal",
-    remedy: "keep the delay compensated, or bring both signals to the same time: the set points delayed by the drive's lag",
+    cause: "motion and force signal are not of the same time: the motion is known too early (set points), or too late where the delay is negative",
+    remedy: "keep the delay compensated, or bring both signals to the same time: delay the one that comes early",
     parameters: &[ParameterRow {
         key: "delay_s",
         unit: "s",
@@ -169,23 +174,33 @@ impl DelayLine {
         }
     }
 
-    /// How far the sum of all delayed values lags behind that of all values.
+    /// How far the sum of all delayed values lags behind that of all values; 0 for a lead, which delays none.
     pub(crate) fn lag(&self, delay: Delay) -> f64 {
-        self.about_lag(delay.taps).at(delay.fractions)
+        if delay.leads() {
+            0.0
+        } else {
+            About { value: self.since(delay.taps.ages[0]), slopes: [self.at(delay.taps.ages[0]), 0.0] }
+                .at(delay.fractions)
+        }
     }
 
-    /// The same by whole cycles, and how it changes with the fractions.
-    pub(crate) fn about_lag(&self, taps: Taps) -> About {
-        if self.stands(taps) {
+    /// By how far a lead is ahead of the sum of all values.
+    pub(crate) fn lead(&self, delay: Delay) -> f64 {
+        self.about_lead(delay.taps).at(delay.fractions)
+    }
+
+    /// The same by whole cycles, and how it changes with the fractions; nothing for a delay.
+    pub(crate) fn about_lead(&self, taps: Taps) -> About {
+        if !taps.leads || self.stands(taps) {
             return About::default();
         }
-        let since = |age: usize| -> f64 { (0..age.min(MAX_DELAY_CYCLES - 1)).map(|age| self.at(age)).sum() };
         let [once, twice] = taps.ages;
-        if taps.leads {
-            About { value: since(twice) - 3.0 * since(once), slopes: [-3.0 * self.at(once), self.at(twice)] }
-        } else {
-            About { value: since(once), slopes: [self.at(once), 0.0] }
-        }
+        About { value: 3.0 * self.since(once) - self.since(twice), slopes: [3.0 * self.at(once), -self.at(twice)] }
+    }
+
+    /// Sum of the last values, as many as an age.
+    fn since(&self, age: usize) -> f64 {
+        (0..age.min(MAX_DELAY_CYCLES - 1)).map(|age| self.at(age)).sum()
     }
 
     /// The delayed value by whole cycles, and how it changes with the fractions.
@@ -217,6 +232,50 @@ impl DelayLine {
         let place = (self.newest + MAX_DELAY_CYCLES - age.min(MAX_DELAY_CYCLES - 1)) % MAX_DELAY_CYCLES;
         self.values.get(place).copied().unwrap_or(0.0)
     }
+}
+
+/// Motion of a cycle as friction is to know it.
+pub(crate) struct Shifted<T> {
+    /// What it is stored over, m.
+    pub displacement_m: T,
+    /// m/s.
+    pub speed_m_per_s: T,
+    /// How far that lags behind the motion that is known, m.
+    pub lag_m: T,
+    /// How far the cable is ahead of it, m.
+    pub lead_m: T,
+}
+
+impl<T: Scalar> Shifted<T> {
+    /// Of displacement and speed that are `known` and what the lines give for them, `lag_m` behind the cycle before; `lead` tells which
+    /// lanes lead, and by how far the parabola does.
+    #[inline]
+    pub fn new(known: [T; 2], by_lines: [T; 2], lag_m: T, lead: Option<(T::Mask, T)>) -> Self {
+        let ([known_m, known_m_per_s], [mut displacement_m, mut speed_m_per_s]) = (known, by_lines);
+        let mut lead_m = T::splat(0.0);
+        if let Some((leads, parabola_m)) = lead {
+            displacement_m = T::select(leads, known_m, displacement_m);
+            speed_m_per_s = T::select(leads, never_against(known_m_per_s, speed_m_per_s), speed_m_per_s);
+            lead_m = never_against(known_m, parabola_m).keep(leads);
+        }
+        Self { displacement_m, speed_m_per_s, lag_m: lag_m + (known_m - displacement_m), lead_m }
+    }
+
+    /// Puts it in the place of the motion that is known.
+    #[inline]
+    pub fn enter(self, signals: &mut CableSignals<T>) {
+        signals.displacement_m = self.displacement_m;
+        signals.speed_m_per_s = self.speed_m_per_s;
+        signals.lead_m = self.lead_m;
+        signals.length_m = signals.length_m - self.lag_m + self.lead_m;
+    }
+}
+
+/// The motion `led`, as far as it goes the way that the `known` one goes.
+#[inline]
+fn never_against<T: Scalar>(known: T, led: T) -> T {
+    let direction = known.sign();
+    led.scale(direction).max(T::splat(0.0)).scale(direction)
 }
 
 /// A delayed value as far as whole cycles tell, and what it changes by for each of [`fractions`].

@@ -84,6 +84,19 @@ fn every_effect_is_the_same_physics_to_both() {
     }
 }
 
+/// Motion that is known too late cannot be made up for altogether; but led by the true time it is better than as it comes.
+#[test]
+fn a_lead_does_no_harm_however_long() {
+    for delay_s in [-0.002, -0.004, -0.008, -0.012, -0.02] {
+        let hidden = HiddenEffect::parse(&format!("time_delay:delay_s={delay_s}")).unwrap();
+        let late = SimulationOptions { effects: vec![hidden], hand_n: 1.0, ..SimulationOptions::default() };
+        let (_, late_n) = rms_n(&bench(BENCH_PULLEYS, BENCH_FRICTION), &late)[0];
+        let (_, led_n) = known_to_both(&format!("{{ kind = \"time_delay\", delay_s = {delay_s:?} }}"));
+        println!("{delay_s} s: {late_n:.5} N late, {led_n:.5} N led");
+        assert!(led_n < late_n, "{delay_s} s: {led_n} N led, {late_n} N late");
+    }
+}
+
 /// A loop only knows the tension of the past, and a play keeps its noise out: the little that both are late is what is left.
 #[test]
 fn the_stretch_of_a_cable_under_a_slow_load_is_the_same_to_both() {
