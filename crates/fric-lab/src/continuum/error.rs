@@ -19,6 +19,17 @@ pub enum ContinuumError {
         /// Greatest allowed.
         max: f64,
     },
+    /// A tension to simulate at which the tendon may break.
+    #[error(
+        "`greatest_tension_n` is {greatest_tension_n} N, above the tendon's capacity of {capacity_n} N; pull less, or state \
+         another `capacity_n` in the manipulator file"
+    )]
+    TooGreatTension {
+        /// The tension, N.
+        greatest_tension_n: f64,
+        /// What the tendon can bear, N.
+        capacity_n: f64,
+    },
     /// The simulated manipulator has no equilibrium.
     #[error(
         "the simulated manipulator finds no equilibrium at {time_s} s with {tension_base_n} N; check stiffness, weight and tip \
