@@ -323,6 +323,53 @@ fn a_dead_grating_is_bridged_and_flagged() {
     }
 }
 
+/// A wrong unit is told by its order of magnitude, not by its dead gratings.
+#[test]
+fn a_wrong_unit_is_told() {
+    let place = place();
+    let scaled = |csv: &str, word: &str, factor: f64| {
+        changed(csv, |name, _, cell| {
+            if name.contains(word) { (cell.parse::<f64>().unwrap() * factor).to_string() } else { cell.to_owned() }
+        })
+    };
+    let (run, loads) = (text("mixed.csv"), text("loads.csv"));
+    let calibrate = ["continuum", "calibrate", "bad.csv", "--model", "arm.toml", "-o", "bad.toml"];
+    // pm for nm, which would strain the fibre by ten per cent.
+    place.write("bad.csv", scaled(&loads, "shift", 1e3));
+    place.run_in_vain(&calibrate).fails(1, &["bad.csv: `shift_1_nm` goes up to", "likely in pm"]).advises(&["in nm"]);
+    place.write("bad.csv", scaled(&run, "shift", 1e3));
+    let of_run = [
+        &["continuum", "shape", "bad.csv", "--model", "cal.toml"][..],
+        &["continuum", "friction", "bad.csv", "--model", "cal.toml"],
+        &["discover", "bad.csv", "--model", "cal.toml", "-o", "x.toml"],
+    ];
+    for command in of_run {
+        place.run_in_vain(command).fails(1, &["bad.csv: `shift_1_nm` goes up to", "likely in pm"]);
+    }
+    // g for N.
+    place.write("bad.csv", scaled(&loads, "load_n", 1e3 / 9.80665));
+    place
+        .run_in_vain(&calibrate)
+        .fails(1, &["bad.csv: `load_n` goes up to 200", "4 N", "likely in g"])
+        .advises(&["`load_g`"]);
+    // N for g, and nm for what was calibrated in pm: the run gives it away.
+    place.write("bad.csv", loads.replacen("load_n", "load_g", 1));
+    place.run(&calibrate).succeeds();
+    let weak =
+        of_run.map(|command| command.iter().map(|word| word.replace("cal.toml", "bad.toml")).collect::<Vec<_>>());
+    place.write("bad.csv", &run);
+    for command in &weak {
+        let command: Vec<&str> = command.iter().map(String::as_str).collect();
+        let words = ["bad.csv: by `shift_1_nm`", "times `tension_base_n`", "`load_g` was in N"];
+        place.run_in_vain(&command).fails(1, &words).advises(&["calibrate again"]);
+    }
+    // Some spikes of the demodulator are no unit.
+    let spikes =
+        changed(&run, |name, row, cell| if name == "shift_3_nm" && row % 9 == 0 { "1500" } else { cell }.to_owned());
+    place.write("spikes.csv", spikes);
+    place.run(&["continuum", "friction", "spikes.csv", "--model", "cal.toml"]).warns(&["grating 3 is dead in"]);
+}
+
 #[test]
 fn bad_runs_get_their_sentence() {
     let place = place();
