@@ -348,7 +348,8 @@ fn candidates(cable: &DiscoverCableResult) -> Markup {
                     }
                 }
                 p.soft {
-                    "Each by itself beside the given model; below zero the evidence speaks for it, −10 is strong. Bold: found."
+                    "ΔBIC here is that of each by itself beside the given model, as the search began; the sentences above give that \
+                     within the extended model, which is another figure. Below zero the evidence speaks for it, −10 is strong. Bold: found."
                 }
             }
         }
