@@ -174,7 +174,7 @@ fn is_told_from_line(case: &Case<'_>, fit: &Fit, grating: usize) -> bool {
         .filter(|(_, (_, held_out))| !**held_out)
         .filter_map(|((row, observed_n), (sample, _))| {
             let (left_n, tension_n) = (*row.get(grating)?, *observed_n.get(grating)?);
-            left_n.is_finite().then(|| [left_n, tension_n, left_n + drift_n_per_s * (sample.time_s - start_s)])
+            left_n.is_finite().then_some([left_n, tension_n, left_n + drift_n_per_s * (sample.time_s - start_s)])
         })
         .collect();
     #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
