@@ -28,7 +28,7 @@ td { white-space: nowrap; }
 th:first-child, td:first-child { text-align: left; }
 th { font-weight: 600; color: var(--soft); }
 p.soft { color: var(--soft); margin: .2rem 0; }
-.keys { white-space: nowrap; }
+.keys { display: inline-block; }
 .key { display: inline-block; width: .9em; height: .9em; border-radius: .15em; vertical-align: -.1em; margin: 0 .3em 0 .8em;
   print-color-adjust: exact; }
 svg { width: 100%; height: auto; display: block; } .chart { overflow-x: auto; }
@@ -62,7 +62,7 @@ h3 { font-size: 1rem; margin: 1.4rem 0 .3rem; } figure { margin: 0; break-inside
 td.words, th.words { text-align: left; } td.words { white-space: normal; min-width: 6rem; } td.verdict { min-width: 0; } tr.found td { font-weight: 600; }
 dl { display: grid; grid-template-columns: max-content 1fr; gap: .15rem 1rem; margin: .4rem 0; }
 dt { color: var(--soft); } dd { margin: 0; } ul { margin: .4rem 0; padding-left: 1.2rem; }
-@media (max-width: 40rem) { .keys { white-space: normal; } table { font-size: .8rem; } th, td { padding-right: .5rem; } }
+@media (max-width: 40rem) { table { font-size: .8rem; } th, td { padding-right: .5rem; } }
 @media print { nav { display: none; } section.cable { break-inside: auto; } section.cable + section.cable { break-before: page; }
   h3 { break-after: avoid; margin-top: .9rem; } a { color: inherit; } html, body { font-size: 12px; }
   .views section, .views figure { flex: 1 1 16rem; } }
