@@ -27,9 +27,10 @@ tools:
 		command -v "$${tool%%=*}" >/dev/null || missing="$$missing $${tool#*=}"; \
 	done; \
 	if [ -n "$$missing" ]; then \
-		echo "installing$$missing"; \
-		$$([ "$$(id -u)" = 0 ] || echo sudo) sh -c "apt-get update -qq && apt-get install -y -qq --no-install-recommends$$missing" \
-			|| { echo "missing, and apt-get cannot install them:$$missing" >&2; exit 1; }; \
+		[ "$$(id -u)" = 0 ] && as_root= || as_root="sudo -n"; \
+		{ $$as_root true 2>/dev/null && echo "installing$$missing" \
+			&& $$as_root sh -c "apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends$$missing"; } \
+			|| { echo "the tests need packages that could not be installed here; as root: apt-get install$$missing" >&2; exit 1; }; \
 	fi
 
 format:

@@ -28,13 +28,13 @@ fn simulate(place: &Place, option: &str, value: &str) -> super::support::Run {
 fn effects_that_are_none_are_told() {
     let place = Place::with_log();
     for (effect, words) in [
-        ("stribek:ratio=0.5", &["`stribek`", "`stribeck`"][..]),
+        ("stribek:ratio=0.5", &["`stribek`; did you mean `stribeck`?", "`time_delay`"][..]),
         ("", &["--effect"]),
         ("stribeck", &["stribeck", "`ratio`"]),
         ("stribeck:", &["stribeck", "`ratio`"]),
         ("stribeck:ratio", &["`ratio`", "key=value"]),
         ("stribeck:ratio=x", &["`ratio=x`"]),
-        ("stribeck:rati=0.5", &["`rati`", "`ratio`", "`velocity_m_per_s`"]),
+        ("stribeck:rati=0.5", &["`rati`; did you mean `ratio`?", "`velocity_m_per_s`"]),
         ("stribeck:ratio=nan", &["`ratio`", "NaN"]),
         ("stribeck:ratio=-1", &["`ratio`", "-1"]),
         ("stribeck:ratio=1e999", &["`ratio`", "inf"]),
@@ -53,9 +53,9 @@ fn effects_that_are_none_are_told() {
 fn disturbances_that_are_none_are_told() {
     let place = Place::with_log();
     for (disturbance, words) in [
-        ("hmu:amplitude_n=0.1", &["`hmu`", "`hum`", "`backlash`"][..]),
+        ("hmu:amplitude_n=0.1", &["`hmu`; did you mean `hum`?", "`backlash`"][..]),
         ("hum", &["hum", "`amplitude_n`"]),
-        ("hum:amplitude=0.1", &["`amplitude`", "`amplitude_n`", "`frequency_hz`"]),
+        ("hum:amplitude=0.1", &["`amplitude`; did you mean `amplitude_n`?", "`frequency_hz`"]),
         ("hum:amplitude_n=-1", &["`amplitude_n`", "-1", "0 to 1000 N"]),
     ] {
         let run = simulate(&place, "--disturbance", disturbance).fails(2, &["--disturbance"]);

@@ -183,6 +183,15 @@ fn four_ways_are_compared_with_the_markers() {
     let html = String::from_utf8(place.read("s.html")).unwrap();
     assert_self_contained(&html);
     assert!(html.matches("<svg").count() == 9 && html.contains("class=\"marker\""));
+    assert!(run.stdout.contains("[C] fig. 12, one way") && run.stdout.contains("[C] fig. 15, mixed"), "{run:#?}");
+    // Errors measured on the paper's prototype say nothing of another manipulator.
+    for (from, to) in
+        [("pitch_m = 0.037", "pitch_m = 0.036"), ("youngs_modulus_pa = 200e9", "youngs_modulus_pa = 250e9")]
+    {
+        place.write("other.toml", text("cal.toml").replace(from, to));
+        let other = place.run(&["continuum", "shape", "mixed.csv", "--model", "other.toml"]).succeeds();
+        assert!(other.stdout.contains("all 178") && !other.stdout.contains("[C]"), "{other:#?}");
+    }
     let there = place.run(&["continuum", "shape", "mixed.csv", "--model", "cal.toml", "--at-s", "1.02,3"]).succeeds();
     assert!(there.stdout.contains("shape 1                   1.00"), "{there:#?}");
 }
@@ -200,6 +209,33 @@ fn a_log_says_the_same_as_text() {
     assert!(shape("mixed.csv", "a.json") == shape("m.mcap", "b.json"));
     let info = place.run(&["info", "m.mcap", "--model", "cal.toml"]).succeeds();
     assert!(info.stdout.contains("the run allows"), "{info:#?}");
+}
+
+#[test]
+fn a_run_cut_off_is_used_up_to_the_cut() {
+    let place = place();
+    let good = text("mixed.csv");
+    let rows = good.lines().count() - 1;
+    let last_line = good.trim_end().rfind('\n').unwrap() + 1;
+    let last_comma = good.rfind(',').unwrap();
+    // Within the line, and within its last number.
+    for cut in [last_line + 9, last_comma + 5] {
+        place.write("cut.csv", &good[..cut]);
+        for command in [
+            &["info", "cut.csv", "--model", "cal.toml", "--json", "c.json"][..],
+            &["continuum", "shape", "cut.csv", "--model", "cal.toml"],
+            &["continuum", "friction", "cut.csv", "--model", "cal.toml"],
+            &["discover", "cut.csv", "--model", "cal.toml", "-o", "found.toml", "--force"],
+        ] {
+            let run = place.run(command).warns(&["`cut.csv` is cut off", "last line", "left out"]);
+            assert_eq!(run.stderr.matches("cut off").count(), 1, "{run:#?}");
+        }
+        assert_eq!(place.json("c.json")["samples"], rows - 1);
+        std::fs::remove_file(place.path("c.json")).unwrap();
+    }
+    place.write("cut.csv", good.replacen("\n0.4,", "\n", 1));
+    let run = place.run_in_vain(&["info", "cut.csv", "--model", "cal.toml"]);
+    run.fails(1, &["cut.csv, line 6", "cells under a header"]);
 }
 
 #[test]
@@ -287,6 +323,53 @@ fn a_dead_grating_is_bridged_and_flagged() {
     }
 }
 
+/// A wrong unit is told by its order of magnitude, not by its dead gratings.
+#[test]
+fn a_wrong_unit_is_told() {
+    let place = place();
+    let scaled = |csv: &str, word: &str, factor: f64| {
+        changed(csv, |name, _, cell| {
+            if name.contains(word) { (cell.parse::<f64>().unwrap() * factor).to_string() } else { cell.to_owned() }
+        })
+    };
+    let (run, loads) = (text("mixed.csv"), text("loads.csv"));
+    let calibrate = ["continuum", "calibrate", "bad.csv", "--model", "arm.toml", "-o", "bad.toml"];
+    // pm for nm, which would strain the fibre by ten per cent.
+    place.write("bad.csv", scaled(&loads, "shift", 1e3));
+    place.run_in_vain(&calibrate).fails(1, &["bad.csv: `shift_1_nm` goes up to", "likely in pm"]).advises(&["in nm"]);
+    place.write("bad.csv", scaled(&run, "shift", 1e3));
+    let of_run = [
+        &["continuum", "shape", "bad.csv", "--model", "cal.toml"][..],
+        &["continuum", "friction", "bad.csv", "--model", "cal.toml"],
+        &["discover", "bad.csv", "--model", "cal.toml", "-o", "x.toml"],
+    ];
+    for command in of_run {
+        place.run_in_vain(command).fails(1, &["bad.csv: `shift_1_nm` goes up to", "likely in pm"]);
+    }
+    // g for N.
+    place.write("bad.csv", scaled(&loads, "load_n", 1e3 / 9.80665));
+    place
+        .run_in_vain(&calibrate)
+        .fails(1, &["bad.csv: `load_n` goes up to 200", "4 N", "likely in g"])
+        .advises(&["`load_g`"]);
+    // N for g, and nm for what was calibrated in pm: the run gives it away.
+    place.write("bad.csv", loads.replacen("load_n", "load_g", 1));
+    place.run(&calibrate).succeeds();
+    let weak =
+        of_run.map(|command| command.iter().map(|word| word.replace("cal.toml", "bad.toml")).collect::<Vec<_>>());
+    place.write("bad.csv", &run);
+    for command in &weak {
+        let command: Vec<&str> = command.iter().map(String::as_str).collect();
+        let words = ["bad.csv: by `shift_1_nm`", "times `tension_base_n`", "`load_g` was in N"];
+        place.run_in_vain(&command).fails(1, &words).advises(&["calibrate again"]);
+    }
+    // Some spikes of the demodulator are no unit.
+    let spikes =
+        changed(&run, |name, row, cell| if name == "shift_3_nm" && row % 9 == 0 { "1500" } else { cell }.to_owned());
+    place.write("spikes.csv", spikes);
+    place.run(&["continuum", "friction", "spikes.csv", "--model", "cal.toml"]).warns(&["grating 3 is dead in"]);
+}
+
 #[test]
 fn bad_runs_get_their_sentence() {
     let place = place();
@@ -341,6 +424,9 @@ fn command_lines_are_checked() {
     simulate(&["--mu-spread-ratio", "2"]).fails(2, &["--mu-spread-ratio", "0 to 1"]);
     simulate(&["--marker-noise-m", "nan"]).fails(2, &["--marker-noise-m"]);
     simulate(&["--truth", "new.csv"]).fails(2, &["two outputs"]);
+    simulate(&["--greatest-tension-n", "4.1"])
+        .fails(2, &["--greatest-tension-n is 4.1, above the tendon's capacity of 4 N"])
+        .advises(&["`capacity_n` in the manipulator file"]);
     place.write("loads.csv", "load_g,shift_1_nm\n1,2\n");
     let calibrate = ["continuum", "calibrate", "loads.csv", "--model", "arm.toml", "-o", "new.toml"];
     place.run_in_vain(&calibrate).fails(1, &["loads.csv", "`shift_2_nm` is missing"]);
@@ -371,6 +457,10 @@ fn discovery_names_the_memory_of_the_holes() {
     assert!(again.stdout.contains("complete"), "{again:#?}");
     let two = ["discover", "mixed.csv", "loads.csv", "--model", "plain.toml", "-o", "x.toml"];
     place.run_in_vain(&two).fails(2, &["one by one"]);
+    place
+        .run_in_vain(&["discover", "mixed.csv", "-o", "x.toml"])
+        .fails(2, &["mixed.csv is the run of a manipulator"])
+        .advises(&["--model"]);
     let uncalibrated = ["discover", "mixed.csv", "--model", "arm.toml", "-o", "x.toml"];
     place.run_in_vain(&uncalibrated).fails(1, &["mixed.csv", "[gratings]"]);
 }

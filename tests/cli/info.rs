@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::logs::{without, without_reference_of};
-use super::support::{Place, example_robot, short_log};
+use super::support::{Place, example_robot, short_log, slow_robot};
 
 /// Table and JSON of a log without some topics.
 fn info(topics: &[&str]) -> (String, Value) {
@@ -130,6 +130,36 @@ fn without_cables_there_is_nothing() {
         assert!(!possible && !reasons.is_empty(), "{name}: {reasons}");
     }
     assert!(step(&found, "replay: forces").1.contains("/cable_states"));
+}
+
+#[test]
+fn a_log_too_short_to_discover_is_told() {
+    let place = Place::empty();
+    place.write("robot.toml", slow_robot());
+    for (duration, possible) in [("7.9", false), ("8.1", true)] {
+        let simulate = ["simulate", "--model", "robot.toml", "-o", "log.mcap", "--force", "--duration", duration];
+        place.run(&simulate).succeeds();
+        place.run(&["info", "log.mcap", "--json", "j.json", "--force"]).succeeds();
+        let json = place.json("j.json");
+        let step = json["steps"].as_array().unwrap().iter().find(|step| step["step"] == "discover").unwrap().clone();
+        assert_eq!(step["possible"], possible, "{step}");
+        assert_eq!(step["reasons"].to_string().contains("too few, 8 s are needed"), !possible, "{step}");
+    }
+}
+
+/// As of a file without a byte, there is nothing to tell of it.
+#[test]
+fn a_log_with_nothing_in_it_is_refused() {
+    let place = Place::with_log();
+    // The magic bytes; a header that is cut off.
+    for cut in [8, 9, 30] {
+        place.write("log.mcap", &short_log()[..cut]);
+        for more in [&[][..], &["--model", "robot.toml"]] {
+            let run = place.run_in_vain(&[&["info", "log.mcap", "--json", "j.json"], more].concat());
+            assert!(run.stderr.contains("warning: `log.mcap` is cut off"), "{run:#?}");
+            run.fails(1, &["no topic, no message and no robot file"]).advises(&["complete copy"]);
+        }
+    }
 }
 
 #[test]

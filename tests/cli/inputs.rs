@@ -118,7 +118,15 @@ fn other_signals_that_are_not_there_are_warned_of() {
     let place = Place::with_log();
     place.write("other.toml", example_robot() + "\n[log]\nreference = '/reference_forces.nix'\n");
     let run = place.run(&["replay", "log.mcap", "--model", "other.toml"]);
-    run.warns(&["reference signal `/reference_forces.nix`", "no member `nix`"]).warns(&["no reference forces"]);
+    run.warns(&["reference signal `/reference_forces.nix`", "no member `nix`"])
+        .warns(&["no reference forces on /reference_forces.nix"]);
+    place.write("bare.mcap", without(short_log(), &["/reference_forces"]));
+    let run = place.run(&["replay", "bare.mcap"]);
+    run.warns(&[
+        "no reference forces on /reference_forces for these cables",
+        "columns of errors",
+        "`reference` under `[log]`",
+    ]);
     place.write("poseless.mcap", without(short_log(), &["/platform_pose"]));
     place.run(&["replay", "poseless.mcap"]).warns(&["no pose", "`pose`"]);
     place.write("cableless.mcap", without(short_log(), &["/cable_states"]));

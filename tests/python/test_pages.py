@@ -13,8 +13,9 @@ from support import LOG, ROBOT, ROOT, SLOW_BENCH, run
 BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 pytestmark = pytest.mark.skipif(BROWSER is None, reason="neither Chromium nor Chrome is installed")
 
-# A laptop.
-WIDTH_PX = 1280
+KINDS = ("replay", "discover", "excite", "calibrate", "shape", "friction", "tendon")
+# A laptop, a telephone.
+WIDTHS_PX = (1280, 360)
 LOOK = (ROOT / "tests" / "python" / "look.html").as_uri()
 
 
@@ -26,12 +27,12 @@ def browse(*arguments):
     return done.stdout, [line for line in done.stderr.splitlines() if "CONSOLE" in line]
 
 
-def look(page, scheme):
+def look(page, scheme, width_px):
     """What is seen of a page, and what its scripts complain of."""
     # 0 is dark, 1 light.
     setting = f"--blink-settings=preferredColorScheme={int(scheme == 'light')}"
     options = ["--allow-file-access-from-files", "--virtual-time-budget=5000", "--dump-dom", setting]
-    document, complaints = browse(*options, f"{LOOK}?{urlencode({'page': page.as_uri(), 'width': WIDTH_PX})}")
+    document, complaints = browse(*options, f"{LOOK}?{urlencode({'page': page.as_uri(), 'width': width_px})}")
     seen = json.loads(html.unescape(re.search(r'<pre id="seen">(.*?)</pre>', document, re.S)[1]))
     return {**seen, "complaints": complaints}
 
@@ -40,7 +41,7 @@ def look(page, scheme):
 def pages(tmp_path_factory):
     """One page of each kind."""
     place = tmp_path_factory.mktemp("pages")
-    page = {name: place / f"{name}.html" for name in ("replay", "discover", "excite", "shape", "friction")}
+    page = {name: place / f"{name}.html" for name in KINDS}
     run("replay", LOG, "--report", page["replay"])
     run("excite", "--model", ROBOT, "-o", place / "run.csv", "--preview", page["excite"])
     bench, log = place / "bench.toml", place / "log.mcap"
@@ -51,20 +52,24 @@ def pages(tmp_path_factory):
     arm, pull, loads = (place / name for name in ("arm.toml", "pull.csv", "loads.csv"))
     prototype = ROOT / "examples" / "tendon-prototype.toml"
     run("continuum", "simulate", "--model", prototype, "-o", pull, "--calibration", loads)
-    run("continuum", "calibrate", loads, "--model", prototype, "-o", arm)
+    run("continuum", "calibrate", loads, "--model", prototype, "-o", arm, "--report", page["calibrate"])
     for name in ("shape", "friction"):
         run("continuum", name, pull, "--model", arm, "--report", page[name])
+    smooth = place / "smooth.toml"
+    smooth.write_text(arm.read_text(encoding="utf-8").replace("mu = 0.1753 ", "mu = 0.0 "), encoding="utf-8")
+    run("discover", pull, "--model", smooth, "-o", place / "rubs.toml", "--report", page["tendon"])
     return page
 
 
-@pytest.mark.parametrize("name", ["replay", "discover", "excite", "shape", "friction"])
+@pytest.mark.parametrize("name", KINDS)
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_a_page_can_be_read_by_day_and_by_night(pages, name, scheme):
-    seen = look(pages[name], scheme)
+@pytest.mark.parametrize("width_px", WIDTHS_PX)
+def test_a_page_can_be_read_by_day_and_by_night(pages, name, scheme, width_px):
+    seen = look(pages[name], scheme, width_px)
     assert seen["dark"] == (scheme == "dark")
-    assert seen["fetched"] == seen["complaints"] == seen["faint"] == []
+    assert seen["fetched"] == seen["complaints"] == seen["faint"] == seen["tiny"] == seen["overlaps"] == []
     assert seen["overflow_px"] <= 0 and seen["headings"] and seen["texts"] > 10
-    assert seen["drawings"] and all(100 < width <= WIDTH_PX for width in seen["drawings"])
+    assert seen["drawings"] and all(100 < width <= WIDTHS_PX[0] for width in seen["drawings"])
 
 
 def test_the_discovery_can_be_printed(pages, tmp_path):
@@ -80,7 +85,7 @@ def test_a_bad_page_is_seen_to_be_bad(tmp_path):
         "<link rel=stylesheet href=other.css><p>faint</p><div style='width: 3000px'>wide</div><script>nobody()</script>",
         encoding="utf-8",
     )
-    seen = look(page, "light")
+    seen = look(page, "light", WIDTHS_PX[0])
     assert [name for name, *_ in seen["faint"]] == ["P"] and seen["overflow_px"] > 1000
     assert seen["fetched"] == [(tmp_path / "other.css").as_uri()]
     assert "nobody is not defined" in seen["complaints"][0]

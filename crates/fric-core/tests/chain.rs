@@ -6,7 +6,8 @@ use fric_core::pulley::{limit_traction, sensor_gains, sliding_friction, sliding_
 use fric_core::robot::{CableOptions, FrictionOptions, Presliding, PulleyOptions};
 use fric_core::{CableInput, CableStatus, Compensator, CycleInput};
 
-use crate::support::{GUIDE_90, Random, SENSOR_180, UNMONITORED, assert_near, bisect, compensator};
+use crate::random::Random;
+use crate::support::{GUIDE_90, SENSOR_180, UNMONITORED, assert_near, bisect, compensator};
 
 /// \[P\] 5, 6, 8: what the tension behind a pulley lacks to be the one before it plus bearing friction.
 fn imbalance(downstream_n: f64, upstream_n: f64, mu: f64, wrap_rad: f64, viscous: f64, speed: f64) -> f64 {

@@ -3,8 +3,10 @@
 use fric_core::robot::{CableOptions, FrictionOptions, GeometryOptions, Presliding, PulleyOptions};
 use fric_core::{CableInput, Compensator, CycleInput, CycleOutput, Pose};
 
+use crate::bits::bits;
 use crate::oracle::{Cable, Effects, Geometry, Memory, outside_wrench};
-use crate::support::{Random, UNMONITORED, assert_near, bits, compensator, corner_cable, corner_robot, smooth_input};
+use crate::random::Random;
+use crate::support::{UNMONITORED, assert_near, compensator, corner_cable, corner_robot, smooth_input};
 
 /// A cable with drawn parameters, as options and as oracle.
 fn draw(

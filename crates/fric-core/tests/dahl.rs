@@ -3,7 +3,8 @@
 use fric_core::dahl::dahl_step;
 use proptest::prelude::*;
 
-use crate::support::{Random, assert_near};
+use crate::random::Random;
+use crate::support::assert_near;
 
 /// \[P\] 16 with exponent 1, integrated by the classical Runge-Kutta rule in fine steps.
 fn integrated(friction_n: f64, sliding_n: f64, sigma_n_per_m: f64, displacement_m: f64) -> f64 {

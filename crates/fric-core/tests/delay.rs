@@ -2,7 +2,8 @@
 
 use fric_core::effects::time_delay::{Delay, DelayLine, MAX_DELAY_CYCLES, MAX_LEAD_CYCLES};
 
-use crate::support::{Random, assert_near};
+use crate::random::Random;
+use crate::support::assert_near;
 
 #[test]
 #[expect(clippy::cast_precision_loss, clippy::cast_possible_truncation, reason = "small numbers")]

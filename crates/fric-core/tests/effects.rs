@@ -7,10 +7,10 @@ use fric_core::robot::{CableOptions, FrictionOptions, Presliding, PulleyOptions}
 use fric_core::{CableInput, CableParams, Compensator, CycleInput};
 use proptest::prelude::*;
 
+use crate::bits::bits;
 use crate::properties::config;
-use crate::support::{
-    GUIDE_90, Random, SENSOR_180, UNMONITORED, assert_near, bits, compensator, corner_cable, smooth_input,
-};
+use crate::random::Random;
+use crate::support::{GUIDE_90, SENSOR_180, UNMONITORED, assert_near, compensator, corner_cable, smooth_input};
 
 const FORMS: [Presliding; 2] = [Presliding::PerPulley, Presliding::Lumped];
 

@@ -4,7 +4,8 @@
 use fric_core::robot::{CableOptions, MonitorOptions, Presliding, ValidatedRange};
 use fric_core::{CableOutput, CableStatus, Compensator, CycleInput};
 
-use crate::support::{FRICTION, assert_near, bits, compensator, corner_cable, smooth_input};
+use crate::bits::bits;
+use crate::support::{FRICTION, assert_near, compensator, corner_cable, smooth_input};
 
 const FORMS: [Presliding; 2] = [Presliding::Lumped, Presliding::PerPulley];
 const MONITOR: MonitorOptions = MonitorOptions { frozen_cycles: 10, length_jump_m: 0.01, length_noise_m: 0.0 };

@@ -6,6 +6,8 @@
 #[cfg(test)]
 mod admittance;
 #[cfg(test)]
+mod bits;
+#[cfg(test)]
 mod builds;
 mod chain;
 #[cfg(test)]
@@ -30,6 +32,8 @@ mod oracle;
 mod platform;
 #[cfg(test)]
 mod properties;
+#[cfg(test)]
+mod random;
 #[cfg(test)]
 mod robot_file;
 #[cfg(test)]

@@ -5,7 +5,8 @@ use fric_core::robot::{CableOptions, FrictionOptions, GeometryOptions, PlatformO
 use fric_core::{Compensator, Pose, RobotParams, Wrench};
 use shifted::{lengths_m, turned};
 
-use crate::support::{GUIDE_90, Random, UNMONITORED, assert_near, checked, corner_cable, platform, smooth_input};
+use crate::random::Random;
+use crate::support::{GUIDE_90, UNMONITORED, assert_near, checked, corner_cable, platform, smooth_input};
 
 /// Helpers that move a pose by hand.
 mod shifted {

@@ -12,7 +12,9 @@ use fric_core::{
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
-use crate::support::{Random, UNMONITORED, WINCH, bits, compensator, corner_cable, smooth_input};
+use crate::bits::bits;
+use crate::random::Random;
+use crate::support::{UNMONITORED, WINCH, compensator, corner_cable, smooth_input};
 
 /// The same cases every time, and nothing written beside the sources.
 pub fn config(cases: u32) -> ProptestConfig {

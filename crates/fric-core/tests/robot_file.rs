@@ -334,7 +334,7 @@ fn options_without_a_text_name_the_key_too() {
 
 #[test]
 fn nothing_that_is_read_panics() {
-    let mut random = crate::support::Random::new(71);
+    let mut random = crate::random::Random::new(71);
     let pieces: Vec<&str> = EXAMPLE.split_inclusive([' ', '\n', ',', '=']).collect();
     for _ in 0..400 {
         let mut text = String::new();

@@ -3,7 +3,7 @@
 use fric_core::Lanes;
 use fric_core::scalar::{Scalar, exp_negative};
 
-use crate::support::Random;
+use crate::random::Random;
 
 /// The same operation on lanes and on one number.
 type Both = (fn(Lanes, Lanes) -> Lanes, fn(f64, f64) -> f64);

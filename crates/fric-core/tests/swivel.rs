@@ -4,7 +4,8 @@ use std::f64::consts::{PI, TAU};
 
 use fric_core::swivel::{Swivel, cable_length_m, exit, wrap_rad};
 
-use crate::support::{Random, add, assert_near, bisect, cross, dot, norm, scale};
+use crate::random::Random;
+use crate::support::{add, assert_near, bisect, cross, dot, norm, scale};
 
 /// In the plane: rolls the cable along the circle from the entry until it points at `b`; gives wrap and exit point.
 ///

@@ -114,6 +114,7 @@ impl From<ContinuumError> for Fault {
         let text = in_full(&error);
         match error {
             ContinuumError::OptionOutOfRange { .. }
+            | ContinuumError::TooGreatTension { .. }
             | ContinuumError::Params(_)
             | ContinuumError::NotWithinRun { .. }
             | ContinuumError::NoGratings

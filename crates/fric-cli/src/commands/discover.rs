@@ -8,7 +8,7 @@ use fric_log::output::OutputFile;
 
 use super::continuum;
 use crate::arguments::DiscoverArguments;
-use crate::failure::Outcome;
+use crate::failure::{Failure, Outcome};
 use crate::measurements::{check_named_once, find_model, read, watched};
 use crate::output::{self, JsonTarget};
 use crate::report;
@@ -18,6 +18,10 @@ pub fn run(arguments: &DiscoverArguments) -> Outcome {
     let DiscoverArguments { logs, model, output, report, result } = arguments;
     if continuum::is_manipulator(model.as_deref()) {
         return continuum::discover::run(arguments);
+    }
+    if let (None, Some(run)) = (model, logs.iter().find(|log| continuum::is_text_run(log))) {
+        return Err(Failure::usage(format!("{} is the run of a manipulator, whose file is not named", run.display()))
+            .advise("Name it with --model, such as examples/tendon-prototype.toml with calibrated gratings."));
     }
     let json_file = result.json.as_deref().filter(|path| !output::is_stdout(path));
     output::check_distinct(&[Some(output), report.as_deref(), json_file])?;

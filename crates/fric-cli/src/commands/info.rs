@@ -2,20 +2,16 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
-use std::fs::File;
-use std::io::Read as _;
-use std::path::Path;
 
-use fric_lab::continuum::columns::TIME;
 use fric_lab::fit::readiness::{self, Holdings, Readiness};
 use fric_lab::text::table;
-use fric_log::recording::Recording;
+use fric_log::recording::{FileDamage, Recording};
 use fric_log::signals::{Role, SignalPaths, SignalReader};
 use serde::Serialize;
 
 use super::continuum;
 use crate::arguments::InfoArguments;
-use crate::failure::Outcome;
+use crate::failure::{Failure, Outcome};
 use crate::interrupt;
 use crate::model::Model;
 use crate::output::JsonTarget;
@@ -112,7 +108,7 @@ pub fn run(arguments: &InfoArguments) -> Outcome {
     inputs.extend(log.model.clone());
     let json = JsonTarget::prepare(result.json.as_deref(), &inputs, result.force)?;
     if let [only] = log.logs.as_slice()
-        && is_run_of_manipulator(only, log.model.as_deref())
+        && (continuum::is_manipulator(log.model.as_deref()) || log.model.is_none() && continuum::is_text_run(only))
     {
         return continuum::info::run(only, log.model.as_deref(), json);
     }
@@ -124,6 +120,11 @@ pub fn run(arguments: &InfoArguments) -> Outcome {
         warn_all(&model.robot.warnings());
     }
     let attachments: Vec<String> = recording.attachments().map(|attachment| attachment.name.clone()).collect();
+    let is_beheaded = recording.damage().files().iter().any(FileDamage::lacks_beginning);
+    if topics.is_empty() && attachments.is_empty() && !is_beheaded {
+        return Err(Failure::new("the log holds no topic, no message and no robot file, complete at least")
+            .advise("Name a complete copy of it, or record again."));
+    }
     let (signals, steps) = match &model {
         Some(model) => read_signals(model, Recording::open(&log.logs)?)?,
         None => (Vec::new(), Vec::new()),
@@ -137,20 +138,6 @@ pub fn run(arguments: &InfoArguments) -> Outcome {
     };
     json.show(&describe(&outcome, model.as_ref(), &attachments))?;
     json.write(&outcome)
-}
-
-/// Whether the model is a manipulator file, or the log is no MCAP but has a header with a column of a manipulator's run.
-fn is_run_of_manipulator(log: &Path, model: Option<&Path>) -> bool {
-    let begins = |path: &Path, bytes: usize| {
-        let mut start = Vec::new();
-        let file = File::open(path).ok()?;
-        file.take(u64::try_from(bytes).ok()?).read_to_end(&mut start).ok()?;
-        String::from_utf8(start).ok()
-    };
-    match model {
-        Some(_) => continuum::is_manipulator(model),
-        None => begins(log, 4096).is_some_and(|text| text.lines().next().is_some_and(|header| header.contains(TIME))),
-    }
 }
 
 fn read_topics(recording: &mut Recording) -> Outcome<Vec<TopicResult>> {
@@ -270,7 +257,10 @@ fn steps(model: &Model, holdings: &Holdings, problem: Option<&str>) -> Vec<StepR
     }
     let mut errors = Vec::new();
     if !holdings.has_reference() {
-        errors.push("no reference: the log has no force measured at the platform to compare with".to_owned());
+        errors.push(format!(
+            "no reference: the log has no force at the platform on {} to compare with",
+            model.robot.options().log.reference
+        ));
     } else if needs_pose && holdings.posed == 0 {
         errors.push(no_pose());
     }

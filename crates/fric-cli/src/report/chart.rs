@@ -9,10 +9,15 @@ use super::series::Extent;
 
 const LEFT: f64 = 52.0;
 const RIGHT: f64 = 8.0;
-const TOP: f64 = 8.0;
+/// Room for the unit of y, which no tick may run into.
+const TOP: f64 = 20.0;
 const BOTTOM: f64 = 24.0;
 /// Height of a row.
 const ROW: f64 = 30.0;
+/// Share of its size below which a chart is not shrunk: its letters could not be read.
+const LEAST_SCALE: f64 = 0.69;
+/// Between a bar, or a line, and the words behind it.
+const GAP: f64 = 6.0;
 /// Least distance between ticks on the axes.
 const TICK_X: f64 = 56.0;
 const TICK_Y: f64 = 34.0;
@@ -90,7 +95,10 @@ impl Chart {
     /// Without anything in it.
     fn empty(x: Span, y: Span, left: f64, width: f64, height: f64) -> Self {
         let frame = [left, width - RIGHT, TOP, height - BOTTOM];
-        Self { svg: format!("<svg viewBox=\"0 0 {width} {height:.0}\" role=\"img\">"), x, y, frame }
+        let least = LEAST_SCALE * width;
+        let open = "<div class=\"chart\"><svg";
+        let svg = format!("{open} viewBox=\"0 0 {width} {height:.0}\" style=\"min-width: {least:.0}px\" role=\"img\">");
+        Self { svg, x, y, frame }
     }
 
     /// With both axes in the same scale, at most so high; what is left of the width shows more of x.
@@ -125,7 +133,7 @@ impl Chart {
                 label(tick)
             );
         }
-        let _ = write!(self.svg, "<text x=\"4\" y=\"{:.1}\">{}</text>", top + 8.0, self.y.unit);
+        let _ = write!(self.svg, "<text x=\"4\" y=\"{:.1}\">{}</text>", top - 9.0, self.y.unit);
     }
 
     fn draw_x_axis(&mut self) {
@@ -190,18 +198,15 @@ impl Chart {
         self.text(right - 4.0, if is_above { at - 4.0 } else { at + 14.0 }, "end", text);
     }
 
-    /// An upright line from top to bottom, with a word at its foot.
-    pub fn upright(&mut self, class: &str, x: f64, text: &str) {
-        let [_, right, top, bottom] = self.frame;
+    /// An upright line from top to bottom.
+    pub fn upright(&mut self, class: &str, x: f64) {
+        let [.., top, bottom] = self.frame;
         let at = self.at_x(x);
         let _ = write!(self.svg, "<path class=\"{class}\" d=\"M{at:.1} {top}V{bottom:.1}\"/>");
-        let is_far_right = at + 6.0 + width_of(text) > right;
-        let (x, anchor) = if is_far_right { (at - 4.0, "end") } else { (at + 4.0, "start") };
-        self.text(x, bottom - 4.0, anchor, text);
     }
 
-    /// A bar along a row of [`Self::in_rows`] from x = 0 on, with a word behind it.
-    pub fn bar(&mut self, class: &str, row: usize, x: f64, text: &str) {
+    /// A bar along a row of [`Self::in_rows`] from x = 0 on, with a word behind it that an upright line at `line` does not cross.
+    pub fn bar(&mut self, class: &str, row: usize, x: f64, text: &str, line: f64) {
         let (from, to, at) = (self.at_x(0.0), self.at_x(x), self.at_y(middle_of(row)));
         let (top, height) = (at - 0.32 * ROW, 0.64 * ROW);
         let width = (to - from).max(0.0);
@@ -209,7 +214,9 @@ impl Chart {
             self.svg,
             "<rect class=\"{class}\" x=\"{from:.1}\" y=\"{top:.1}\" width=\"{width:.1}\" height=\"{height:.1}\"/>"
         );
-        self.text(to + 6.0, at + 4.0, "start", text);
+        let (words, line) = (to + GAP, self.at_x(line));
+        let is_crossed = (words - GAP..words + width_of(text)).contains(&line);
+        self.text(if is_crossed { line + GAP } else { words }, at + 4.0, "start", text);
     }
 
     /// A stretch of x as a strip along the foot.
@@ -265,7 +272,7 @@ impl Chart {
     }
 
     pub fn into_svg(self) -> String {
-        self.svg + "</svg>"
+        self.svg + "</svg></div>"
     }
 }
 

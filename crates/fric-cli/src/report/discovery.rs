@@ -51,26 +51,24 @@ fn number(value: Option<f64>) -> String {
 
 fn overview(result: &DiscoverResult) -> Markup {
     html! {
-        div.wide {
-            table {
+        table {
+            tr {
+                th { "cable" } th.words { "verdict" } th.words { "found" } th { "noise [N]" } th { "rms before [N]" }
+                th { "after [N]" } th { "gap closed" }
+            }
+            @for (place, cable) in result.cables.iter().enumerate() {
                 tr {
-                    th { "cable" } th.words { "verdict" } th.words { "found" } th { "noise [N]" } th { "rms before [N]" }
-                    th { "after [N]" } th { "gap closed" }
-                }
-                @for (place, cable) in result.cables.iter().enumerate() {
-                    tr {
-                        td { a href=(format!("#cable-{place}")) { (cable.name) } }
-                        td class={ "words verdict " (cable.verdict) } { (cable.verdict) }
-                        td.words {
-                            @if cable.effects.is_empty() { "–" }
-                            (cable.effects.iter().map(|effect| effect.kind).collect::<Vec<_>>().join(", "))
-                        }
-                        td { (number(cable.noise_floor_n)) }
-                        td { (number(cable.before.map(|error| error.rms_n))) }
-                        td { (number(cable.after.map(|error| error.rms_n))) }
-                        td {
-                            (cable.gap_closed.filter(|_| !cable.effects.is_empty()).map_or_else(|| "–".to_owned(), percent))
-                        }
+                    td { a href=(format!("#cable-{place}")) { (cable.name) } }
+                    td class={ "words verdict " (cable.verdict) } { (cable.verdict) }
+                    td.words {
+                        @if cable.effects.is_empty() { "–" }
+                        (cable.effects.iter().map(|effect| effect.kind).collect::<Vec<_>>().join(", "))
+                    }
+                    td { (number(cable.noise_floor_n)) }
+                    td { (number(cable.before.map(|error| error.rms_n))) }
+                    td { (number(cable.after.map(|error| error.rms_n))) }
+                    td {
+                        (cable.gap_closed.filter(|_| !cable.effects.is_empty()).map_or_else(|| "–".to_owned(), percent))
                     }
                 }
             }
@@ -144,9 +142,10 @@ fn ladder(cable: &DiscoverCableResult) -> String {
     let mut chart = Chart::in_rows(x, &names, WIDE);
     for (row, (_, rms_n, closed)) in steps.iter().enumerate() {
         let closed = closed.map_or_else(String::new, |share| format!(", {} of the gap closed", percent(share)));
-        chart.bar(if row == 0 { "before" } else { "after" }, row, *rms_n, &format!("{}{closed}", newtons(*rms_n)));
+        let words = format!("{}{closed}", newtons(*rms_n));
+        chart.bar(if row == 0 { "before" } else { "after" }, row, *rms_n, &words, floor_n);
     }
-    chart.upright("floor", floor_n, "");
+    chart.upright("floor", floor_n);
     chart.into_svg() + &html! { p.soft { "Dotted: the noise, " (newtons(floor_n)) "." } }.into_string()
 }
 
@@ -304,22 +303,20 @@ fn places(title: &str, places: &[WhereResult]) -> Markup {
     html! {
         @if !places.is_empty() {
             h3 { (title) }
-            div.wide {
-                table {
+            table {
+                tr {
+                    th { "condition" } th.words { "range" } th { "of the gap" } th { "of the samples" } th { "told by it" }
+                    th { "significance" } th.words { "look at" }
+                }
+                @for place in places {
                     tr {
-                        th { "condition" } th.words { "range" } th { "of the gap" } th { "of the samples" } th { "told by it" }
-                        th { "significance" } th.words { "look at" }
-                    }
-                    @for place in places {
-                        tr {
-                            td { (condition(place.signal)) }
-                            td.words { (place.range_in_words()) }
-                            td { (share(place.share_of_excess)) } td { (share(place.share_of_samples)) }
-                            td { (share(place.explains)) }
-                            td { (place.significance.map_or_else(|| "–".to_owned(), |of| format!("{of:.0} σ"))) }
-                            td.words {
-                                @if place.intervals_s.is_empty() { "–" } @else { (intervals(&place.intervals_s)) }
-                            }
+                        td { (condition(place.signal)) }
+                        td.words { (place.range_in_words()) }
+                        td { (share(place.share_of_excess)) } td { (share(place.share_of_samples)) }
+                        td { (share(place.explains)) }
+                        td { (place.significance.map_or_else(|| "–".to_owned(), |of| format!("{of:.0} σ"))) }
+                        td.words {
+                            @if place.intervals_s.is_empty() { "–" } @else { (intervals(&place.intervals_s)) }
                         }
                     }
                 }
@@ -348,7 +345,8 @@ fn candidates(cable: &DiscoverCableResult) -> Markup {
                     }
                 }
                 p.soft {
-                    "Each by itself beside the given model; below zero the evidence speaks for it, −10 is strong. Bold: found."
+                    "ΔBIC here is that of each by itself beside the given model, as the search began; the sentences above give that \
+                     within the extended model, which is another figure. Below zero the evidence speaks for it, −10 is strong. Bold: found."
                 }
             }
         }

@@ -160,18 +160,22 @@ fn keys_within(value: DeValue<'_>, offset: usize) -> Vec<String> {
 #[must_use]
 pub fn unknown_name<'a>(what: &str, unknown: &str, known: impl Iterator<Item = &'a str>) -> String {
     let known: Vec<&str> = known.collect();
-    let nearest = known
-        .iter()
-        .map(|name| (strsim::normalized_damerau_levenshtein(unknown, name), *name))
-        .max_by(|(one, _), (other, _)| one.total_cmp(other));
     if known.is_empty() {
         return format!("unknown {what} `{unknown}`: none belongs here");
     }
     let list = known.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
-    match nearest {
-        Some((likeness, name)) if likeness > 0.4 => {
-            format!("unknown {what} `{unknown}`; did you mean `{name}`? (known here: {list})")
-        }
-        _ => format!("unknown {what} `{unknown}`; known here: {list}"),
+    match nearest_name(unknown, known.iter().copied()) {
+        Some(name) => format!("unknown {what} `{unknown}`; did you mean `{name}`? (known here: {list})"),
+        None => format!("unknown {what} `{unknown}`; known here: {list}"),
     }
+}
+
+/// The name that was probably meant; `None` where none of them is like it.
+#[must_use]
+pub fn nearest_name<'a>(unknown: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    known
+        .map(|name| (strsim::normalized_damerau_levenshtein(unknown, name), name))
+        .filter(|(likeness, _)| *likeness > 0.4)
+        .max_by(|(one, _), (other, _)| one.total_cmp(other))
+        .map(|(_, name)| name)
 }

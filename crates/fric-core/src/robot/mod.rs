@@ -22,7 +22,7 @@ mod warnings;
 pub(crate) use error::check;
 pub use error::{ParamError, ParamProblem};
 #[cfg(feature = "robot-file")]
-pub use locate::unknown_name;
+pub use locate::{nearest_name, unknown_name};
 pub use params::{
     CableOptions, CableParams, FrictionOptions, GeometryOptions, MAX_PULLEYS, MonitorOptions, PlatformOptions,
     Presliding, PulleyOptions, RobotParams, ValidatedRange,

@@ -7,11 +7,12 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
+#[path = "../bits.rs"]
+mod bits;
+#[path = "../random.rs"]
+mod random;
 #[path = "mod.rs"]
 mod soak;
-#[path = "../support.rs"]
-#[allow(dead_code, reason = "what the tests need besides")]
-mod support;
 
 const REPORTED: u64 = 10_000_000;
 

@@ -9,7 +9,8 @@ use super::fault::{CycleFault, Faults};
 use super::motion::{Motion, RECOVERY_CYCLES};
 use super::robot::{Robot, once_in};
 use super::watch::{FAULTY, Watch};
-use crate::support::{Random, bits};
+use crate::bits::bits;
+use crate::random::Random;
 
 /// Cables of the largest robot.
 pub const MOST_CABLES: usize = 8;

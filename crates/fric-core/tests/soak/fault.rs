@@ -5,7 +5,7 @@ use nalgebra::{Quaternion, UnitQuaternion};
 
 use super::episode::MOST_CABLES;
 use super::robot::{magnitude, pick};
-use crate::support::Random;
+use crate::random::Random;
 
 /// A fault of one cable's signals.
 #[derive(Clone, Copy, Debug)]

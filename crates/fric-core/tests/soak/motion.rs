@@ -3,7 +3,7 @@
 use fric_core::CableInput;
 
 use super::robot::{magnitude, once_in};
-use crate::support::Random;
+use crate::random::Random;
 
 /// Cycles of one stroke on the way back from a fault.
 const STROKE_CYCLES: u32 = 100;

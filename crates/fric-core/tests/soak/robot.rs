@@ -8,7 +8,7 @@ use fric_core::robot::{
 use fric_core::{CableParams, Compensator, RobotParams};
 
 use super::episode::MOST_CABLES;
-use crate::support::Random;
+use crate::random::Random;
 
 /// A robot and what the checks have to know of it.
 pub struct Robot {

@@ -46,6 +46,27 @@ pub fn of_hole() -> Vec<String> {
     HOLE.map(ToOwned::to_owned).to_vec()
 }
 
+/// Shift per strain of a silica grating at 1550 nm, `λ_B(1 − P_e)` (\[C\] 3), nm.
+const SHIFT_NM_PER_STRAIN: f64 = 1550.0 * (1.0 - 0.22);
+/// No fibre bears the strain of 4 % that this shift stands for, nm.
+const MOST_SHIFT_NM: f64 = 50.0;
+/// Share of the values beyond which some may be spikes of the demodulator.
+const MOST_RATIO: f64 = 0.75;
+
+/// The greatest size of a column's values, the largest quarter of them left out.
+fn greatest_of_most(column: &[f64]) -> f64 {
+    let mut sizes: Vec<f64> = column.iter().map(|value| value.abs()).filter(|size| size.is_finite()).collect();
+    sizes.sort_by(f64::total_cmp);
+    #[expect(
+        clippy::cast_precision_loss,
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a place in a list"
+    )]
+    let place = (MOST_RATIO * sizes.len() as f64) as usize;
+    sizes.get(place).copied().unwrap_or(0.0)
+}
+
 /// Columns of equal length whose names are all known.
 #[derive(Clone, Debug)]
 pub(super) struct Columns<'a> {
@@ -68,6 +89,20 @@ impl<'a> Columns<'a> {
             }
             None => Ok(Self { columns }),
         }
+    }
+
+    /// All columns of shifts; `None` where there is none of them.
+    pub fn shifts(&self, disk_count: usize) -> Result<Option<Vec<&'a [f64]>>, ContinuumError> {
+        let names = shifts(disk_count);
+        let columns = self.group(&names)?;
+        for (name, column) in names.into_iter().zip(columns.iter().flatten()) {
+            let greatest_nm = greatest_of_most(column);
+            if greatest_nm > MOST_SHIFT_NM {
+                let strain_percent = 100.0 * greatest_nm / SHIFT_NM_PER_STRAIN;
+                return Err(ContinuumError::ShiftUnit { column: name, greatest_nm, strain_percent });
+            }
+        }
+        Ok(columns)
     }
 
     pub fn row_count(&self) -> usize {

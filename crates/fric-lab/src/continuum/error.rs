@@ -19,6 +19,17 @@ pub enum ContinuumError {
         /// Greatest allowed.
         max: f64,
     },
+    /// A tension to simulate at which the tendon may break.
+    #[error(
+        "`greatest_tension_n` is {greatest_tension_n} N, above the tendon's capacity of {capacity_n} N; pull less, or state \
+         another `capacity_n` in the manipulator file"
+    )]
+    TooGreatTension {
+        /// The tension, N.
+        greatest_tension_n: f64,
+        /// What the tendon can bear, N.
+        capacity_n: f64,
+    },
     /// The simulated manipulator has no equilibrium.
     #[error(
         "the simulated manipulator finds no equilibrium at {time_s} s with {tension_base_n} N; check stiffness, weight and tip \
@@ -172,6 +183,40 @@ pub enum ContinuumError {
     /// The manipulator is refused.
     #[error("{0}; correct the manipulator file")]
     Params(#[from] ManipulatorError),
+    /// Shifts that no fibre survives.
+    #[error(
+        "`{column}` goes up to {greatest_nm} nm, which would strain the fibre by {strain_percent:.0} %: it is likely in pm, or the \
+         wavelength itself; state the shift from the wavelength without load, in nm"
+    )]
+    ShiftUnit {
+        /// The column.
+        column: String,
+        /// The greatest of most of its values, nm.
+        greatest_nm: f64,
+        /// Strain of a silica fibre at usual wavelengths, %.
+        strain_percent: f64,
+    },
+    /// A calibration load that the tendon cannot bear.
+    #[error(
+        "`load_n` goes up to {greatest_n} N, above the tendon's capacity of {capacity_n} N: it is likely in g; name the column \
+         `load_g`, or state another `capacity_n` in the manipulator file"
+    )]
+    LoadUnit {
+        /// The greatest load, N.
+        greatest_n: f64,
+        /// What the tendon can bear, N.
+        capacity_n: f64,
+    },
+    /// Gratings that show another order of magnitude than the tension at the base.
+    #[error(
+        "by `shift_1_nm` and so on the tension is {ratio:.2e} times `tension_base_n`: {}; state shifts in nm and forces in N, and \
+         calibrate again",
+        unit_by(*ratio)
+    )]
+    GratingUnit {
+        /// Tension by the gratings per tension at the base.
+        ratio: f64,
+    },
     /// Every grating is dead.
     #[error("no grating follows the tension in any sample; check the demodulator and the columns")]
     AllDead,
@@ -217,4 +262,15 @@ pub enum ContinuumError {
     /// Nothing to fit a coefficient to.
     #[error("the friction coefficient cannot be fitted: {0}")]
     NoCoefficient(&'static str),
+}
+
+/// Which unit is likely wrong where the gratings show so many times the tension at the base.
+fn unit_by(ratio: f64) -> &'static str {
+    match ratio {
+        300.0..3000.0 => "they are likely in pm",
+        30.0..300.0 => "the loads that they were calibrated with were likely in g under the name `load_n`",
+        0.003..0.03 => "`tension_base_n` is likely in g, or the calibration's `load_g` was in N",
+        0.0003..0.003 => "they were likely calibrated in pm",
+        _ => "one of them is in another unit",
+    }
 }

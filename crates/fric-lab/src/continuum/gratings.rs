@@ -4,6 +4,8 @@
 //! tension changes; and where its tension is out of all proportion to that of its neighbours, which friction in a hole cannot
 //! explain.
 
+use std::ops::Range;
+
 use fric_core::continuum::file::{ManipulatorFile, OneOrEach};
 use fric_core::continuum::{ManipulatorParams, Tendon};
 
@@ -18,6 +20,11 @@ const FROZEN_SAMPLES: usize = 10;
 const FAR_RATIO: f64 = 0.3;
 const FAR_OF_GREATEST_RATIO: f64 = 0.1;
 const FAR_ERRORS: f64 = 8.0;
+
+/// Tension by the gratings per tension at the base that friction, a load and a rough calibration can explain.
+const PLAUSIBLE_SCALE: Range<f64> = 1.0 / 30.0..30.0;
+/// Share of the greatest tension above which the proportion of two tensions tells something.
+const LOADED_RATIO: f64 = 0.2;
 
 /// The gratings of the first tendon.
 #[derive(Clone, Debug, PartialEq)]
@@ -147,7 +154,8 @@ impl Gratings {
     /// Tensions of a whole run as they are; NaN where a grating is silent or stands still.
     ///
     /// # Errors
-    /// [`ContinuumError::WrongCount`] for a run with another number of gratings.
+    /// [`ContinuumError::WrongCount`] for a run with another number of gratings, [`ContinuumError::GratingUnit`] if all of them are out of
+    /// proportion to the tension at the base by a factor that no friction is.
     pub fn unbridged(&self, run: &Run) -> Result<Vec<Vec<Tension>>, ContinuumError> {
         let count = self.lines.len();
         if count != run.disk_count() {
@@ -157,6 +165,9 @@ impl Gratings {
         let start_s = samples.first().map_or(0.0, |first| first.time_s);
         let mut tensions: Vec<Vec<Tension>> =
             samples.iter().map(|sample| self.tensions(sample, sample.time_s - start_s)).collect();
+        if let Some(ratio) = scale(samples, &tensions).filter(|ratio| !PLAUSIBLE_SCALE.contains(ratio)) {
+            return Err(ContinuumError::GratingUnit { ratio });
+        }
         for grating in 0..count {
             for place in frozen(samples, &tensions, grating) {
                 if let Some(tension) = tensions.get_mut(place).and_then(|sample| sample.get_mut(grating)) {
@@ -173,6 +184,18 @@ fn middle(tensions: &[Tension]) -> f64 {
     let mut all: Vec<f64> = tensions.iter().map(|tension| tension.value_n).filter(|value| value.is_finite()).collect();
     all.sort_by(f64::total_cmp);
     all.get(all.len() / 2).copied().unwrap_or(f64::NAN)
+}
+
+/// Tension by the gratings per tension at the base; `None` unless it is much the same in most samples under load.
+fn scale(samples: &[RunSample], tensions: &[Vec<Tension>]) -> Option<f64> {
+    let greatest_n = samples.iter().map(|sample| sample.tension_base_n).fold(0.0, f64::max);
+    let loaded = samples.iter().zip(tensions).filter(|(sample, _)| sample.tension_base_n > LOADED_RATIO * greatest_n);
+    let mut ratios: Vec<f64> = loaded.map(|(sample, all)| middle(all) / sample.tension_base_n).collect();
+    ratios.retain(|ratio| ratio.is_finite());
+    ratios.sort_by(f64::total_cmp);
+    let at = |eighths: usize| ratios.get(ratios.len() * eighths / 8).copied();
+    let (least, ratio, most) = (at(1)?, at(4)?, at(7)?);
+    (least > ratio / 3.0 && most < ratio * 3.0).then_some(ratio)
 }
 
 /// Samples in which the shift of a grating stands still while the tension changes.

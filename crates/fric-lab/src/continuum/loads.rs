@@ -2,30 +2,38 @@
 
 use std::f64::consts::PI;
 
+use fric_core::continuum::{ManipulatorParams, Tendon};
+
 use super::columns::{self, Columns};
 use super::error::ContinuumError;
 use super::fbg::{LoadStep, without_temperature};
 use super::friction::HoleLoad;
 use super::simulate::STANDARD_GRAVITY_M_PER_S2;
 
-/// Steps of a calibration from `load_g` (mass on a hook, g) or `load_n`, and `shift_1_nm …`. Where `wavelengths_nm` holds the Bragg
+/// Steps of a calibration of a manipulator from `load_g` (mass on a hook, g) or `load_n`, and `shift_1_nm …`. Where `wavelengths_nm` holds the Bragg
 /// wavelengths of the gratings and of the reference, and `shift_reference_nm` is there, the temperature is taken off (\[C\] 2).
 ///
 /// # Errors
-/// [`ContinuumError`] names a column that is unknown, missing or of another length, and a load that is no number.
+/// [`ContinuumError`] names a column that is unknown, missing, of another length or likely in another unit, and a load that is no
+/// number.
 pub fn load_steps(
     given: &[(String, Vec<f64>)],
-    disk_count: usize,
+    params: &ManipulatorParams,
     wavelengths_nm: Option<(&[f64], f64)>,
 ) -> Result<Vec<LoadStep>, ContinuumError> {
+    let disk_count = params.disk_count();
     let all = Columns::new(given, &columns::of_calibration(disk_count))?;
     let [grams, newtons] = columns::LOADS;
     let (key, unit_n) =
         if all.get(newtons).is_some() { (newtons, 1.0) } else { (grams, 1e-3 * STANDARD_GRAVITY_M_PER_S2) };
     let loads = all.required(key)?;
-    let shifts = columns::shifts(disk_count);
-    let shift_nm = all.group(&shifts)?.ok_or_else(|| ContinuumError::MissingColumn {
-        column: shifts.first().cloned().unwrap_or_default(),
+    let greatest_n = loads.iter().map(|load| load.abs()).fold(0.0, f64::max);
+    let capacity_n = params.capacity_n(Tendon::Agonist);
+    if key == newtons && greatest_n > capacity_n {
+        return Err(ContinuumError::LoadUnit { greatest_n, capacity_n });
+    }
+    let shift_nm = all.shifts(disk_count)?.ok_or_else(|| ContinuumError::MissingColumn {
+        column: columns::shifts(1).concat(),
         beside: Some(key.to_owned()),
     })?;
     let reference_nm = all.get(columns::SHIFT_REFERENCE);

@@ -45,7 +45,7 @@ impl Run {
         let time_s = all.required(columns::TIME)?;
         let tension_n = all.get(columns::TENSION_BASE);
         let reference_nm = all.get(columns::SHIFT_REFERENCE);
-        let shift_nm = all.group(&columns::shifts(disk_count))?.unwrap_or_default();
+        let shift_nm = all.shifts(disk_count)?.unwrap_or_default();
         let marker_m = all.group(&columns::markers(disk_count))?.unwrap_or_default();
         let of = |column: Option<&[f64]>, row: usize| column.and_then(|column| column.get(row)).copied();
         let samples = time_s

@@ -24,7 +24,7 @@ mod neighbours;
 pub(crate) mod noise;
 mod places;
 mod profile;
-mod readiness;
+pub(crate) mod readiness;
 mod report;
 mod rest;
 pub mod result;

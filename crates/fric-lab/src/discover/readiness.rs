@@ -58,10 +58,8 @@ pub fn lack_of(record: &CableRecord<'_>) -> Option<Lack> {
     if motion.range_m < LEAST_RANGE_M {
         return Some(Lack::new(format!("it rests: its length changes by {:.3} mm in all", motion.range_m * 1e3), RUN));
     }
-    let sound_s = seconds(sound, record.cycle_s);
-    if sound_s < LEAST_S {
-        let cause = format!("{sound_s:.1} s of samples with a reference are too few, {LEAST_S} s are needed");
-        return Some(Lack::new(cause, LONGER));
+    if let Some(lack) = too_short(sound as u64, record.cycle_s) {
+        return Some(lack);
     }
     if motion.reversals < FEWEST_REVERSALS {
         let times = if motion.reversals == 0 { "never" } else { "only once" };
@@ -76,6 +74,14 @@ pub fn lack_of(record: &CableRecord<'_>) -> Option<Lack> {
         return Some(Lack::new(cause, RUN));
     }
     None
+}
+
+/// What so many samples with a reference lack.
+pub fn too_short(samples: u64, cycle_s: f64) -> Option<Lack> {
+    #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
+    let samples_s = samples as f64 * cycle_s;
+    let cause = || format!("{samples_s:.1} s of samples with a reference are too few, {LEAST_S} s are needed");
+    (samples_s < LEAST_S).then(|| Lack::new(cause(), LONGER))
 }
 
 /// What is lacking once it is known which samples count.

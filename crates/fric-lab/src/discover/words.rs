@@ -230,7 +230,7 @@ impl EffectResult {
         let own = self.evidence.held_out_rms_n.map(newtons)?;
         Some(if delta_bic.is_some_and(|number| number < 0.0) {
             format!(
-                "next best would be {kind}, rms {rms} against {own} (ΔBIC {} against {})",
+                "next best would be {kind} in its place, rms {rms} against {own} (ΔBIC within the extended model {} against {})",
                 evidence(*delta_bic),
                 evidence(self.evidence.delta_bic)
             )

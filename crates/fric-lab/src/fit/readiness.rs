@@ -5,6 +5,7 @@ use fric_core::robot::file::RobotFile;
 
 use super::error::FitError;
 use super::record::Reference;
+use crate::discover::readiness::too_short;
 
 /// How many rows of one or several logs have which signal.
 #[derive(Clone, Debug)]
@@ -145,7 +146,19 @@ pub fn by_forces(robot: &RobotFile, holdings: &Holdings) -> Readiness {
 pub fn to_discover(robot: &RobotFile, holdings: &Holdings) -> Readiness {
     let advice = "Name their topic as `reference` under `[log]` in the robot file, or record with force sensors at the \
                   platform.";
-    of_forces(robot, holdings, advice, None)
+    let mut readiness = of_forces(robot, holdings, advice, None);
+    let cycle_s = robot.options().cycle_s;
+    let referenced = |cable: usize| holdings.cables.get(cable).map_or(0, |of| of.referenced);
+    let is_short = |cable: &usize| too_short(referenced(*cable), cycle_s).is_some();
+    let cables: Vec<usize> =
+        (0..readiness.cable_count).filter(|cable| !readiness.is_lacking(*cable)).filter(is_short).collect();
+    // Of several, what the longest lacks.
+    let most = cables.iter().map(|cable| referenced(*cable)).max();
+    if let Some(lack) = most.and_then(|most| too_short(most, cycle_s)) {
+        let cause = lack.cause + &of(&robot.cable_names(), &cables);
+        readiness.lacks.push(Lack { cause, advice: lack.advice, instead: None, cables });
+    }
+    readiness
 }
 
 fn of_forces(robot: &RobotFile, holdings: &Holdings, advice: &'static str, instead: Option<Reference>) -> Readiness {

@@ -12,7 +12,11 @@ impl Replay {
     pub fn warnings(&self, robot: &RobotFile) -> Vec<String> {
         let mut warnings = robot.warnings();
         if self.cables().iter().all(|cable| cable.before_n.count() == 0) {
-            warnings.push("the log has no reference forces for these cables, so there is no error to show".to_owned());
+            warnings.push(format!(
+                "the log has no reference forces on {} for these cables, without which the columns of errors stay empty; name \
+                 their topic as `reference` under `[log]` in the robot file",
+                robot.options().log.reference
+            ));
         }
         warnings.extend(self.cable_warnings(robot));
         warnings

@@ -83,17 +83,19 @@ impl SimulationError {
 #[non_exhaustive]
 pub enum HiddenError {
     /// The catalogue has nothing of that name.
-    #[error("there is no {noun} `{kind}`; known are {known}")]
+    #[error("there is no {noun} `{kind}`; {}known are {known}", did_you_mean(*nearest))]
     UnknownKind {
         /// `effect` or `disturbance`.
         noun: &'static str,
         /// The name given.
         kind: String,
+        /// The one that was probably meant.
+        nearest: Option<&'static str>,
         /// All names, as a list.
         known: String,
     },
     /// It has no such parameter.
-    #[error("the {noun} `{kind}` has no parameter `{key}`; it has {known}")]
+    #[error("the {noun} `{kind}` has no parameter `{key}`; {}it has {known}", did_you_mean(*nearest))]
     UnknownKey {
         /// `effect` or `disturbance`.
         noun: &'static str,
@@ -101,6 +103,8 @@ pub enum HiddenError {
         kind: &'static str,
         /// The key given.
         key: String,
+        /// The one that was probably meant.
+        nearest: Option<&'static str>,
         /// All keys with unit and range, as a list.
         known: String,
     },
@@ -154,6 +158,11 @@ pub enum HiddenError {
         /// Its unit.
         unit: &'static str,
     },
+}
+
+/// A question in front of what is known; nothing where no name is like the one given.
+fn did_you_mean(nearest: Option<&str>) -> String {
+    nearest.map_or_else(String::new, |name| format!("did you mean `{name}`? "))
 }
 
 /// A unit behind a number; nothing for a ratio.

@@ -20,7 +20,7 @@ use super::stated::{self, Allowed, Kind};
 /// assert_eq!(effect.kind(), "stribeck");
 /// assert_eq!(effect.params().get("stribeck", "ratio"), Some(0.5));
 /// let problem = HiddenEffect::parse("stribek:ratio=0.5").map_err(|error| error.to_string());
-/// assert!(problem.is_err_and(|text| text.starts_with("there is no effect `stribek`; known are `stribeck`")));
+/// assert!(problem.is_err_and(|text| text.starts_with("there is no effect `stribek`; did you mean `stribeck`? known")));
 /// # Ok(())
 /// # }
 /// ```

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use fric_core::robot::nearest_name;
+
 use super::error::{HiddenError, with_unit};
 use super::hidden::list;
 
@@ -30,8 +32,13 @@ pub fn split(text: &str) -> (&str, impl Iterator<Item = &str>) {
 }
 
 /// Nothing is called that.
-pub fn unknown(noun: &'static str, kind: &str, known: impl Iterator<Item = &'static str>) -> HiddenError {
-    HiddenError::UnknownKind { noun, kind: kind.to_owned(), known: list(known.map(|name| format!("`{name}`"))) }
+pub fn unknown(noun: &'static str, kind: &str, known: impl Iterator<Item = &'static str> + Clone) -> HiddenError {
+    HiddenError::UnknownKind {
+        noun,
+        kind: kind.to_owned(),
+        nearest: nearest_name(kind, known.clone()),
+        known: list(known.map(|name| format!("`{name}`"))),
+    }
 }
 
 impl Kind {
@@ -59,7 +66,13 @@ impl Kind {
         for &(key, value) in values {
             let Some(&Allowed { key, unit, min, max }) = self.parameters.iter().find(|allowed| allowed.key == key)
             else {
-                return Err(HiddenError::UnknownKey { noun, kind, key: key.to_owned(), known: self.keys() });
+                return Err(HiddenError::UnknownKey {
+                    noun,
+                    kind,
+                    key: key.to_owned(),
+                    nearest: nearest_name(key, self.parameters.iter().map(|allowed| allowed.key)),
+                    known: self.keys(),
+                });
             };
             if checked.iter().any(|(other, _)| *other == key) {
                 return Err(HiddenError::RepeatedKey { noun, kind, key });

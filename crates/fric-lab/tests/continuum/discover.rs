@@ -96,6 +96,12 @@ fn a_drifting_grating_is_named_and_another_fault_is_not() {
     let extended = rewrite(&text, "arm", &discovery.edit).unwrap();
     assert_eq!(told(&found(&extended, &warm)), ("complete", Vec::new()));
 
+    // Beside the fault of another grating it is still a drift.
+    for sample in &mut warm {
+        sample.shift_nm[6] += 0.01 * (5.0 * sample.time_s).sin();
+    }
+    assert_eq!(told(&found(&text, &warm)), ("unexplained", vec!["sensor_drift"]));
+
     let mut humming = samples;
     for sample in &mut humming {
         sample.shift_nm[4] += 0.01 * (5.0 * sample.time_s).sin();
@@ -104,6 +110,24 @@ fn a_drifting_grating_is_named_and_another_fault_is_not() {
     assert_eq!(told(&discovery), ("unexplained", Vec::new()));
     let rest = discovery.result.cables[0].unexplained.as_ref().unwrap();
     assert_eq!(rest.places[0].from, 5);
+}
+
+/// Lines of other gratings are wrong in slope and offset, and pulled one way the tension rises with the time as a drift does.
+#[test]
+fn lines_of_other_gratings_are_no_drift() {
+    for (experiment, seed, other) in
+        [(Experiment::OneWay, 6, 7), (Experiment::OneWay, 9, 10), (Experiment::Mixed, 7, 5)]
+    {
+        let (_, samples) = measured(experiment, seed, &[0.1753]);
+        let (text, _) = measured(experiment, other, &[0.1753]);
+        assert_eq!(told(&found(&text, &samples)), ("unexplained", Vec::new()), "{experiment:?} {seed} {other}");
+    }
+    // One of them alone.
+    let (text, mut samples) = measured(Experiment::OneWay, 11, &[0.1753]);
+    for sample in &mut samples {
+        sample.shift_nm[4] *= 1.15;
+    }
+    assert_eq!(told(&found(&text, &samples)), ("unexplained", Vec::new()));
 }
 
 #[test]

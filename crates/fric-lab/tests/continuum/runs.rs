@@ -214,14 +214,19 @@ fn load_benches_are_read() {
     let column = |name: &str, values: &[f64]| (name.to_owned(), values.to_vec());
     let mut steps: Columns = vec![column("load_g", &[20.0, 100.0, 200.0])];
     steps.extend((1..=8).map(|place| column(&format!("shift_{place}_nm"), &[0.02, 0.1, 0.2])));
-    let read = load_steps(&steps, 8, None).unwrap();
+    let params = published();
+    let load_steps = |steps: &Columns| load_steps(steps, &params, None);
+    let read = load_steps(&steps).unwrap();
     assert!((read[2].load_n - 1.96133).abs() < 1e-12 && read[2].shift_nm == [0.2; 8]);
     steps[0].0 = "load_n".to_owned();
-    assert!((load_steps(&steps, 8, None).unwrap()[2].load_n - 200.0).abs() < 1e-12);
+    let in_grams = load_steps(&steps).unwrap_err().to_string();
+    assert!(in_grams.starts_with("`load_n` goes up to 200 N, above the tendon's capacity of 4 N: it is likely in g; "));
+    steps[0].1 = vec![0.2, 1.0, 2.0];
+    assert!((load_steps(&steps).unwrap()[2].load_n - 2.0).abs() < 1e-12);
     steps[0].1[1] = f64::NAN;
-    assert!(load_steps(&steps, 8, None).unwrap_err().to_string().starts_with("`load_n` is NaN in row 2; "));
+    assert!(load_steps(&steps).unwrap_err().to_string().starts_with("`load_n` is NaN in row 2; "));
     steps.remove(0);
-    assert!(load_steps(&steps, 8, None).unwrap_err().to_string().starts_with("column `load_g` is missing; "));
+    assert!(load_steps(&steps).unwrap_err().to_string().starts_with("column `load_g` is missing; "));
 
     let hole = vec![
         column("tension_1_n", &[1.0, 2.0, 3.0]),

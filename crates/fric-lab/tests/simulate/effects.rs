@@ -20,12 +20,16 @@ fn what_is_written_is_what_is_meant() {
 #[test]
 fn errors_name_what_is_known() {
     let unknown = problem("stribek:ratio=0.5");
-    assert!(unknown.starts_with("there is no effect `stribek`; known are `stribeck`, `"), "{unknown}");
-    assert!(problem("").starts_with("there is no effect ``"));
+    assert!(
+        unknown.starts_with("there is no effect `stribek`; did you mean `stribeck`? known are `stribeck`, `"),
+        "{unknown}"
+    );
+    assert!(problem("").starts_with("there is no effect ``; known are `stribeck`"));
+    assert!(problem("zzz:a=1").starts_with("there is no effect `zzz`; known are `stribeck`"));
     let key = problem("stribeck:ration=0.5");
     assert!(
         key.starts_with(
-            "the effect `stribeck` has no parameter `ration`; it has `ratio` (-0.9 to 5), \
+            "the effect `stribeck` has no parameter `ration`; did you mean `ratio`? it has `ratio` (-0.9 to 5), \
              `velocity_m_per_s` (0.0001 to 10 m/s)"
         ),
         "{key}"

@@ -400,13 +400,13 @@ fn disturbances_are_read_as_they_are_written_and_errors_name_what_is_known() {
     }
     assert_eq!(
         problem("hmu:amplitude_n=1"),
-        "there is no disturbance `hmu`; known are `hum`, `frozen`, `clipped`, `step`, `quantised`, `warming`, \
+        "there is no disturbance `hmu`; did you mean `hum`? known are `hum`, `frozen`, `clipped`, `step`, `quantised`, `warming`, \
          `local_defect`, `backlash`"
     );
     assert!(problem("hum").starts_with("the disturbance `hum` has no value, which would hide nothing"));
     assert_eq!(
         problem("hum:amplitude=1"),
-        "the disturbance `hum` has no parameter `amplitude`; it has `amplitude_n` (0 to 1000 N), \
+        "the disturbance `hum` has no parameter `amplitude`; did you mean `amplitude_n`? it has `amplitude_n` (0 to 1000 N), \
          `frequency_hz` (0.01 to 100000 Hz)"
     );
     assert!(problem("hum:amplitude_n=loud").starts_with("`amplitude_n=loud` is not `key=value` with a number"));

@@ -1,5 +1,6 @@
 //! Tables as text, RFC 4180, with a header.
 
+use std::fs;
 use std::path::Path;
 
 use csv::{ErrorKind, ReaderBuilder, StringRecord, Trim};
@@ -7,9 +8,14 @@ use csv::{ErrorKind, ReaderBuilder, StringRecord, Trim};
 use super::{NumberTable, TableError};
 
 /// Reads all columns. Blanks around cells and a byte order mark do not matter.
+///
+/// A last row without a line end is left out, with a warning, even where it has all its cells: what is missing of the last
+/// number cannot be seen.
 pub(super) fn read(path: &Path) -> Result<NumberTable, TableError> {
     let refused = |error: csv::Error| refusal(path, error);
-    let mut reader = ReaderBuilder::new().trim(Trim::All).from_path(path).map_err(refused)?;
+    let text = fs::read(path).map_err(|source| TableError::File { path: path.to_owned(), source })?;
+    let (whole, is_cut) = whole_lines(&text);
+    let mut reader = ReaderBuilder::new().trim(Trim::All).from_reader(whole);
     let names = header(path, reader.headers().map_err(refused)?)?;
     let mut columns: Vec<(String, Vec<f64>)> = names.into_iter().map(|name| (name, Vec::new())).collect();
     let mut row = StringRecord::new();
@@ -24,7 +30,22 @@ pub(super) fn read(path: &Path) -> Result<NumberTable, TableError> {
             })?);
         }
     }
-    Ok(NumberTable { columns, warnings: Vec::new() })
+    let warning = || {
+        format!(
+            "`{}` is cut off: its last line has no line end and is left out; if that line is whole, put a line end behind it",
+            path.display()
+        )
+    };
+    Ok(NumberTable { columns, warnings: is_cut.then(warning).into_iter().collect() })
+}
+
+/// The header and the lines that have their end, and whether there was something behind them.
+fn whole_lines(text: &[u8]) -> (&[u8], bool) {
+    let end = text.iter().rposition(|byte| matches!(byte, b'\n' | b'\r'));
+    match end.and_then(|end| text.split_at_checked(end + 1)) {
+        Some((whole, rest)) => (whole, !rest.trim_ascii().is_empty()),
+        None => (text, false),
+    }
 }
 
 fn header(path: &Path, row: &StringRecord) -> Result<Vec<String>, TableError> {

@@ -72,6 +72,28 @@ fn text_that_is_no_table_is_told() {
 }
 
 #[test]
+fn a_last_line_that_is_cut_off_is_left_out_and_told() {
+    let place = Place::new();
+    let whole = place.csv("a,b\n1,2\n3,4\n").unwrap();
+    assert_eq!(whole.warnings, [""; 0]);
+    // Within a cell, behind a comma, within the last number, which then looks like a number.
+    for rest in ["5", "5,", "5,6", "5,6e", "\"5", "x", "5,6,7"] {
+        for end in ["\n", "\r\n"] {
+            let lines = format!("a,b\n1,2\n3,4\n{rest}").replace('\n', end);
+            let cut = place.csv(lines).unwrap();
+            assert_eq!(cut.columns, whole.columns, "{rest}");
+            let [warning] = &cut.warnings[..] else { panic!("{cut:?}") };
+            assert!(warning.contains("t.csv` is cut off: its last line has no line end and is left out"), "{warning}");
+        }
+    }
+    // Blanks are no row.
+    assert_eq!(place.csv("a,b\n1,2\n3,4\n  ").unwrap(), whole);
+    // Damage elsewhere stays an error.
+    assert!(place.csv("a,b\n1,2\n3\n5,").unwrap_err().contains("line 3: 1 cells"));
+    assert!(place.csv("a,b\n1,").unwrap_err().contains("no row of numbers"));
+}
+
+#[test]
 fn a_log_gives_the_same_table() {
     let place = Place::new();
     let path = place.path("t.mcap");

@@ -143,7 +143,8 @@ pub fn continuum_read_loads(
     let table = py.detach(|| NumberTable::read(&path, &columns::of_calibration(count)))?;
     log::warn(py, &table.warnings)?;
     let gratings = Gratings::from_file(&manipulator.file)?;
-    let steps = load_steps(&table.columns, count, gratings.as_ref().and_then(Gratings::wavelengths_nm))?;
+    let steps =
+        load_steps(&table.columns, manipulator.file.params(), gratings.as_ref().and_then(Gratings::wavelengths_nm))?;
     let shift_nm = steps.iter().flat_map(|step| &step.shift_nm).copied().collect();
     Ok((fixed(py, steps.iter().map(|step| step.load_n).collect()), fixed_rows(py, shift_nm, count)?))
 }

@@ -129,7 +129,7 @@ pub fn continuum_shape(
     let ways = py.detach(|| compare(params, run, measured.as_deref()))?;
     let picked = selection.places(run, measured.as_deref())?;
     let name = &manipulator.file.tables().name;
-    let result = result::ShapeResult::new(name, run, measured.as_deref(), &ways, &picked);
+    let result = result::ShapeResult::new(name, params, run, measured.as_deref(), &ways, &picked);
     let greatest_rad = result.greatest_bend_rad();
     if let Some(gratings) = Gratings::from_file(&manipulator.file)? {
         gratings.check_travel(params, greatest_rad)?;

@@ -22,7 +22,7 @@ pub fn run(arguments: &CalibrateArguments) -> Outcome {
     let table = read_table(loads, &columns::of_calibration(model.disk_count()))?;
     let stated = Gratings::from_file(&model.file)?;
     let wavelengths_nm = stated.as_ref().and_then(Gratings::wavelengths_nm);
-    let steps = load_steps(&table, model.disk_count(), wavelengths_nm).map_err(|error| about(loads, error))?;
+    let steps = load_steps(&table, model.file.params(), wavelengths_nm).map_err(|error| about(loads, error))?;
     let lines = Calibration::fit_all(&steps).map_err(|error| about(loads, error))?;
     let result = CalibrationResult::new(model.name(), &steps, &lines);
     let edit = ManipulatorEdit { lines: result.lines(), ..ManipulatorEdit::default() };

@@ -8,6 +8,8 @@ pub mod info;
 mod shape;
 mod simulate;
 
+use std::fs::File;
+use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 use fric_core::continuum::file::{FORMAT, ManipulatorFile};
@@ -21,6 +23,9 @@ use crate::failure::{Failure, Outcome};
 use crate::model::{has_format, read_text};
 use crate::output::{self, JsonTarget};
 use crate::warnings::warn_all;
+
+/// Bytes in which the header of a run as text ends.
+const LONGEST_HEADER: u64 = 4096;
 
 /// Runs the command.
 pub fn run(command: &ContinuumCommand) -> Outcome {
@@ -36,6 +41,16 @@ pub fn run(command: &ContinuumCommand) -> Outcome {
 /// Whether a model is a manipulator file rather than a robot's.
 pub fn is_manipulator(model: Option<&Path>) -> bool {
     model.is_some_and(|model| std::fs::read_to_string(model).is_ok_and(|text| has_format(&text, FORMAT)))
+}
+
+/// Whether a log is text under a header with a column of a manipulator's run.
+pub fn is_text_run(log: &Path) -> bool {
+    let begin = || {
+        let mut begin = Vec::new();
+        File::open(log).ok()?.take(LONGEST_HEADER).read_to_end(&mut begin).ok()?;
+        String::from_utf8(begin).ok()
+    };
+    begin().is_some_and(|text| text.lines().next().is_some_and(|header| header.contains(columns::TIME)))
 }
 
 /// A manipulator and the text it was read from.

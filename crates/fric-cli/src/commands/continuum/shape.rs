@@ -41,7 +41,7 @@ pub fn run(arguments: &ShapeArguments) -> Outcome {
     if picked.is_empty() {
         warn("no sample has friction of both directions beyond doubt: no shape is shown");
     }
-    let result = ShapeResult::new(model.name(), &run, measured.as_deref(), &ways, &picked);
+    let result = ShapeResult::new(model.name(), params, &run, measured.as_deref(), &ways, &picked);
     warn_all(&result.warnings(&ways));
     let greatest_rad = result.greatest_bend_rad();
     if let Some(Err(error)) = Gratings::from_file(&model.file)?.map(|one| one.check_travel(params, greatest_rad)) {

@@ -83,6 +83,10 @@ fn refused(error: ContinuumError) -> Failure {
         ContinuumError::OptionOutOfRange { key, value, min, max } => {
             Failure::usage(format!("--{} is {value:?}; allowed is {min} to {max}", key.replace('_', "-")))
         }
+        ContinuumError::TooGreatTension { greatest_tension_n, capacity_n } => Failure::usage(format!(
+            "--greatest-tension-n is {greatest_tension_n}, above the tendon's capacity of {capacity_n} N in the manipulator file"
+        ))
+        .advise("Pull less, or state another `capacity_n` in the manipulator file."),
         error => error.into(),
     }
 }

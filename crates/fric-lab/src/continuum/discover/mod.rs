@@ -11,6 +11,9 @@
 //! | `sensor_drift` | | the shift of a grating drifts with time, as one that warms up |
 //! | `hole_friction` | | a hole has a μ of its own |
 //!
+//! A line of a grating that is wrong, as of another grating, has no name: a drift has to account for more than it would, and where something is
+//! left a name is put only on a grating, or a hole between two, at which nothing is.
+//!
 //! A spread of μ by ±10 % over the holes, which every manipulator has, counts as noise: 0.25 % of the greatest tension.
 
 mod case;

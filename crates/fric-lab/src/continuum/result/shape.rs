@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use fric_core::continuum::ShapeStatus;
+use fric_core::continuum::{ManipulatorOptions, ManipulatorParams, ShapeStatus};
 use serde::Serialize;
 
 use super::{BridgedGrating, millimetres};
@@ -12,7 +12,7 @@ use crate::continuum::run::Run;
 use crate::continuum::shape_errors::{ShapeErrors, Way};
 use crate::text::table;
 
-/// Published errors, mm: what they are of, and max and mean of none, Coulomb and measured.
+/// Errors that \[C\] has measured on its prototype, mm: what they are of, and max and mean of none, Coulomb and measured.
 const PUBLISHED: [(&str, [[f64; 2]; 3]); 2] = [
     ("[C] fig. 12, one way", [[9.37, 5.03], [3.06, 2.21], [2.84, 2.03]]),
     ("[C] fig. 15, mixed", [[15.1, 10.56], [19.11, 16.47], [2.87, 1.75]]),
@@ -37,6 +37,9 @@ pub struct ShapeResult {
     pub time_s: Vec<f64>,
     /// Each way at all samples.
     pub series: Vec<WaySeries>,
+    /// Whether the manipulator is the one that [`PUBLISHED`] is of.
+    #[serde(skip)]
+    is_prototype: bool,
 }
 
 /// Errors of a way.
@@ -118,14 +121,28 @@ impl From<&ShapeErrors> for ErrorResult {
     }
 }
 
+/// Whether a manipulator has what is published of the prototype of \[C\], and no load: dimensions within 1 %, the bending stiffness,
+/// of which E is not published, within 10 %.
+fn is_prototype(params: &ManipulatorParams) -> bool {
+    let published = ManipulatorOptions::published();
+    let near = |one: f64, other: f64, share: f64| (one - other).abs() <= share * other;
+    params.disk_count() == published.disk_count
+        && near(params.pitch_m(), published.pitch_m, 0.01)
+        && near(params.disk_thickness_m(), published.disk_thickness_m, 0.01)
+        && near(params.hole_radius_m(), published.hole_radius_m, 0.01)
+        && near(params.bending_stiffness_n_m2(), published.bending_stiffness_n_m2, 0.1)
+        && params.loads_n().iter().flatten().all(|load_n| load_n.abs() <= 0.0)
+}
+
 impl ShapeResult {
     /// Name and version of the form.
     pub const FORMAT: &str = "fric-continuum-shape/1";
 
-    /// Of a run that has been computed; `picked` are places of samples.
+    /// Of a run of a manipulator that has been computed; `picked` are places of samples.
     #[must_use]
     pub fn new(
         manipulator: &str,
+        params: &ManipulatorParams,
         run: &Run,
         measured: Option<&[GratingSample]>,
         ways: &[WayShapes],
@@ -178,6 +195,7 @@ impl ShapeResult {
             bridged: measured.map(|measured| BridgedGrating::all(run, measured)).unwrap_or_default(),
             time_s: run.samples().iter().map(|sample| sample.time_s).collect(),
             series: ways.iter().map(series).collect(),
+            is_prototype: is_prototype(params),
         }
     }
 
@@ -235,7 +253,7 @@ impl ShapeResult {
         if has_markers {
             sum(format!("these {}", self.shapes.len()), &|way| cells(way.picked));
             sum(format!("all {}", self.samples), &|way| cells(way.all));
-            for (name, published) in PUBLISHED {
+            for (name, published) in PUBLISHED.into_iter().filter(|_| self.is_prototype) {
                 sum(name.to_owned(), &|way| {
                     let place = Way::ALL.iter().position(|other| other.name() == way.way);
                     let found = place.and_then(|place| published.get(place));

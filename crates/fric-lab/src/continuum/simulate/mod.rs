@@ -146,9 +146,14 @@ pub struct SimulatedRun {
 /// Simulates a run of a manipulator.
 ///
 /// # Errors
-/// [`ContinuumError::OptionOutOfRange`]; [`ContinuumError::NoShape`] where the manipulator finds no equilibrium.
+/// [`ContinuumError::OptionOutOfRange`]; [`ContinuumError::TooGreatTension`] above what the tendon can bear;
+/// [`ContinuumError::NoShape`] where the manipulator finds no equilibrium.
 pub fn simulate(params: &ManipulatorParams, options: &TendonSimulationOptions) -> Result<SimulatedRun, ContinuumError> {
     options.check()?;
+    let (greatest_tension_n, capacity_n) = (options.greatest_tension_n, params.capacity_n(Tendon::Agonist));
+    if greatest_tension_n > capacity_n {
+        return Err(ContinuumError::TooGreatTension { greatest_tension_n, capacity_n });
+    }
     let mut random = ChaCha8Rng::seed_from_u64(options.seed);
     let spread = options.mu_spread_ratio;
     let mu: Vec<f64> =
