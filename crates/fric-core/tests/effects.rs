@@ -1,6 +1,8 @@
 //! Each effect against its definition: closed forms, slow integration, and what must not change.
 
+use fric_core::effects::friction_drift::FrictionDrift;
 use fric_core::effects::presliding_shape::PreslidingShape;
+use fric_core::effects::sensor_drift::SensorDrift;
 use fric_core::effects::{CATALOGUE, EffectParams, EffectRow, named};
 use fric_core::parameters::{FRICTION, MU, SIGMA, VISCOUS, parameters};
 use fric_core::robot::{CableOptions, FrictionOptions, Presliding, PulleyOptions};
@@ -472,4 +474,17 @@ fn mu_beyond_what_can_be_is_refused() {
     assert_eq!((error.effect, error.key), (Some("direction_asymmetry"), "coulomb_ratio"));
     let error = refused(&[("stribeck", "ratio", 3.0), ("direction_asymmetry", "coulomb_ratio", -0.5)]);
     assert_eq!((error.effect, error.key), (Some("stribeck"), "ratio"));
+}
+
+/// What a drift does in a loop that goes on after the run that it was found in.
+#[test]
+fn a_drift_ends_with_its_run() {
+    let sensor = |until_s| SensorDrift { rate_n_per_s: 0.5, until_s };
+    let friction = |until_s| FrictionDrift { rate_per_s: -0.01, until_s };
+    for (time_s, drifted_s) in [(0.0, 0.0), (1.0, 1.0), (20.0, 20.0), (21.0, 20.0), (1e6, 20.0)] {
+        assert_near(sensor(20.0).undo(30.0, time_s), 30.0 - 0.5 * drifted_s, 1e-12);
+        assert_near(friction(20.0).factor(time_s), 1.0 - 0.01 * drifted_s, 1e-15);
+    }
+    assert_near(sensor(0.0).undo(30.0, 1000.0), -470.0, 1e-12);
+    assert_near(friction(0.0).factor(1000.0), 0.0, 0.0);
 }

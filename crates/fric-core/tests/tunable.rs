@@ -314,6 +314,26 @@ fn each_effect_switched_on_again_knows_nothing_of_the_first_time() {
     }
 }
 
+/// What goes with the time of a run begins with the change, not with a loop that has been running for long.
+#[test]
+fn a_drift_begins_where_it_is_switched_on() {
+    let drift = [("sensor_drift", "rate_n_per_s", 0.5)];
+    for presliding in FORMS {
+        let (without, with) = (robot_with(presliding, &[]), robot_with(presliding, &drift));
+        let changed = run_with_changes(without.clone(), &[(2000, &with)], 2100, 1);
+        let unchanged = run_with_changes(without, &[], 2100, 1);
+        for cycle in 2000..2100_u32 {
+            // The sensor's newtons make as many of the cable, and some per cent of friction.
+            let drifted_n = 0.5e-3 * f64::from(cycle - 2000);
+            let gap_n = gap_n(&changed[cycle as usize], &unchanged[cycle as usize]);
+            assert!(
+                (0.3 * drifted_n..=1.5 * drifted_n + 0.001).contains(&gap_n),
+                "{presliding:?}, cycle {cycle}: {gap_n} N"
+            );
+        }
+    }
+}
+
 /// A blend of one cycle is a change at once: what then changes is what the effect is good for, and no leftover.
 #[test]
 fn inertia_switched_on_again_gives_no_jump() {

@@ -86,7 +86,8 @@ impl SignalReader {
         (!agree).then(|| {
             format!(
                 "the cable signal comes every {interval_s:.6} s, but `cycle_s` in the robot file is {cycle_s}; delays and \
-                 the check for a frozen sensor count cycles of the robot file; friction itself does not depend on the rate"
+                 the check for a frozen sensor count samples, as many as `cycle_s` makes of them; friction itself does not \
+                 depend on the rate"
             )
         })
     }

@@ -3,9 +3,10 @@
 use super::Compensator;
 use crate::effects::time_delay::{self, DelayLine};
 use crate::effects::{SPEED, TENSION, UNKNOWN};
-use crate::effects::{cable_elasticity, pulley_inertia};
+use crate::effects::{cable_elasticity, friction_drift, pulley_inertia, sensor_drift};
 use crate::places::NO_SLIP;
 use crate::robot::{ParamError, ParamProblem};
+use crate::signals::BEFORE_FIRST;
 
 /// Shares of friction that cancel out further than this are none.
 const LEAST_OF_SIZE: f64 = 1e-3;
@@ -44,6 +45,9 @@ impl<const CABLES: usize> Compensator<CABLES> {
     fn hand_over(&mut self, next: &Self) {
         let [inertia, elasticity, delay] = [pulley_inertia::ACTS, cable_elasticity::ACTS, time_delay::ACTS]
             .map(|effect| self.features.acting.has(effect) && next.features.acting.has(effect));
+        if !self.drifts() && next.drifts() {
+            self.state.cycle = BEFORE_FIRST;
+        }
         let columns = &mut self.state.columns;
         for (place, acts) in [(SPEED, inertia), (TENSION, elasticity)] {
             if let Some(memory) = columns.memory.get_mut(place).filter(|_| !acts) {
@@ -74,6 +78,11 @@ impl<const CABLES: usize> Compensator<CABLES> {
         for cable in 0..self.cable_count {
             self.hand_friction_over(next, cable);
         }
+    }
+
+    /// Whether something goes with the time of the run.
+    fn drifts(&self) -> bool {
+        self.features.acting.has(friction_drift::ACTS.and(sensor_drift::ACTS))
     }
 
     /// Friction stored in a cable, from the form that it has to that of `next`, with the same force at the platform: the sum over

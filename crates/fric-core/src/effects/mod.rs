@@ -24,6 +24,7 @@ use core::ops::Range;
 
 use crate::parameters::{self, FRICTION_COUNT, ParameterRow};
 use crate::robot::{ParamError, check};
+use crate::scalar::Scalar;
 
 /// One effect of the catalogue.
 #[derive(Clone, Copy, Debug)]
@@ -47,6 +48,23 @@ pub const UNKNOWN: f64 = f64::INFINITY;
 pub(crate) const TENSION: usize = 0;
 /// Low pass of the speed, of `pulley_inertia`, m/s.
 pub(crate) const SPEED: usize = 1;
+
+/// The row of `until_s` of an effect that goes with time: what drifts in one run does not go on like that for ever.
+const UNTIL_ROW: ParameterRow = ParameterRow {
+    key: "until_s",
+    unit: "s",
+    neutral: 0.0,
+    min: 0.0,
+    max: 1e9,
+    fitted: false,
+    excitation: "the run itself: it is as long as this",
+};
+
+/// The time that a drift goes by, s: that of the run, up to `until_s`; without end where that is 0.
+#[inline(always)]
+fn drifting_s<T: Scalar>(time_s: T, until_s: T) -> T {
+    T::select(T::splat(0.0).lt(until_s), time_s.min(until_s), time_s)
+}
 
 /// Every effect that a cable of a robot file can have.
 pub const CATALOGUE: &[EffectRow] = &[

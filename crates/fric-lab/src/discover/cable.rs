@@ -204,6 +204,7 @@ impl<'a> Case<'a> {
             noise_n,
             friction_n: base.values[MU] * tension_n,
             speed_m_per_s: speed.rms().unwrap_or(0.1).max(1e-4),
+            end_s: self.record.rows.iter().map(|row| row.cycle).fold(0.0, f64::max) * self.record.cycle_s,
             periods_m: Vec::new(),
         }
     }

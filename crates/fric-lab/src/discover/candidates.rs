@@ -28,6 +28,8 @@ pub struct Scale {
     pub friction_n: f64,
     /// The same of the speed while it moves, m/s.
     pub speed_m_per_s: f64,
+    /// Time from the first sample to the last, of the longest log, s.
+    pub end_s: f64,
     /// Periods at which the residual ripples with the cable's length, m.
     pub periods_m: Vec<f64>,
 }
@@ -86,6 +88,7 @@ pub fn starts(row: &EffectRow, current: &Values, scale: &Scale, record: &CableRe
             let of_period = |period_m: &f64| set(&[("sin_ratio", 1e-3), ("cos_ratio", 1e-3), ("period_m", *period_m)]);
             scale.periods_m.iter().map(of_period).collect()
         }
+        "friction_drift" | "sensor_drift" => vec![set(&[("until_s", scale.end_s)])],
         // Twice the noise of the sensor; that of the reference is in what is known of it too.
         "cable_elasticity" => [1.0, 1.6].map(|plays| set(&[("play_n", plays * scale.noise_n)])).to_vec(),
         _ => vec![*current],

@@ -139,6 +139,11 @@ pub struct CableCause<'a> {
 #[derive(Debug, Default)]
 pub struct TruthEffects(Vec<Box<dyn TruthEffect>>);
 
+/// The time that a drift has gone on for, s; one that ends at 0 has no end.
+fn drifted_s(time_s: f64, until_s: f64) -> f64 {
+    if until_s > 0.0 && time_s > until_s { until_s } else { time_s }
+}
+
 pub type Build = fn(&mut Cause<'_>) -> Box<dyn TruthEffect>;
 
 /// What the simulation can do, by the catalogue's names.

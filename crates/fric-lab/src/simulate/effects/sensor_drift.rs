@@ -1,18 +1,19 @@
-//! `sensor_drift` in the simulated robot: a sensor whose zero creeps away, evenly from the start of the log.
+//! `sensor_drift` in the simulated robot: a sensor whose zero creeps away, evenly from the start of the log until it ends.
 
-use super::{Cause, TruthEffect};
+use super::{Cause, TruthEffect, drifted_s};
 
 #[derive(Debug)]
 struct Creep {
     rate_n_per_s: f64,
+    until_s: f64,
 }
 
 pub fn build(cause: &mut Cause<'_>) -> Box<dyn TruthEffect> {
-    Box::new(Creep { rate_n_per_s: (cause.value)("rate_n_per_s") })
+    Box::new(Creep { rate_n_per_s: (cause.value)("rate_n_per_s"), until_s: (cause.value)("until_s") })
 }
 
 impl TruthEffect for Creep {
     fn sensor_offset_n(&self, time_s: f64) -> f64 {
-        self.rate_n_per_s * time_s
+        self.rate_n_per_s * drifted_s(time_s, self.until_s)
     }
 }
