@@ -8,9 +8,10 @@
 
 use std::collections::BTreeMap;
 
+use fric_core::effects::pulley_inertia::MASS;
 use fric_core::effects::time_delay::DELAY;
-use fric_core::effects::{self, EffectRow, pulley_eccentricity, pulley_inertia, time_delay};
-use fric_core::parameters::MU;
+use fric_core::effects::{self, EffectRow, pulley_eccentricity};
+use fric_core::parameters::{MU, VISCOUS, Values};
 
 use super::candidates::{Scale, fitted, has, is_friction, starts};
 use super::evidence::inflation;
@@ -32,7 +33,7 @@ const LEAST_SIZE: f64 = 0.002;
 const NEGLIGIBLE: f64 = 0.01;
 /// Candidates are first brought so near to their minima that what is left to gain is this part of what a candidate needs to enter.
 const UNDECIDED: f64 = 0.5;
-/// A delay of less than this many cycles is the lag of an acceleration that is taken from differences, not one of its own.
+/// Speeds and accelerations that are taken from differences lag, by less than this many cycles.
 const LAG_CYCLES: f64 = 1.0;
 /// Evidence that an effect has to have to stay, and names have to have over each other to be told apart.
 pub const STRONG_BIC: f64 = 10.0;
@@ -290,9 +291,7 @@ impl<'b, 'a> Search<'b, 'a> {
             let gain = |named: &Named| named.without.held_out - model.held_out;
             let fails = |named: &&Named| {
                 let strong = self.delta_bic(&named.without, &model, named.inflation) < -STRONG_BIC;
-                let is_lag = named.row.kind == time_delay::ROW.kind
-                    && contains(rows, &pulley_inertia::ROW)
-                    && model.values[DELAY].abs() < LAG_CYCLES * self.bench.record.cycle_s;
+                let is_lag = is_lag(named.row, &model.values, self.bench.record.cycle_s);
                 is_lag || !(strong && gain(named) > LEAST_SIZE * self.noise_squares && gain(named) > remains)
             };
             let weakest = named.iter().filter(fails).min_by(|one, other| gain(one).total_cmp(&gain(other)));
@@ -311,6 +310,17 @@ impl<'b, 'a> Search<'b, 'a> {
 /// more parameters; of less than two samples there is no evidence.
 fn delta_bic(count: f64, squares_ratio: f64, more: f64) -> f64 {
     if count < 2.0 { f64::INFINITY } else { count * squares_ratio.ln() + more * count.ln() }
+}
+
+/// Whether an effect is no greater than what the lag of differences makes of another: of the acceleration of `pulley_inertia` a
+/// delay, of the speed v in viscous friction `viscous·(v − a·lag)` an inertia.
+fn is_lag(row: &EffectRow, values: &Values, cycle_s: f64) -> bool {
+    let lag_s = LAG_CYCLES * cycle_s;
+    match row.kind {
+        "time_delay" => values[MASS] > 0.0 && values[DELAY].abs() < lag_s,
+        "pulley_inertia" => values[MASS] < values[VISCOUS] * lag_s,
+        _ => false,
+    }
 }
 
 /// The best on the samples learned from.
