@@ -210,11 +210,13 @@ fn a_delayed_ripple_is_that_of_the_delayed_length() {
             let now = f64::from(cycle);
             let force_n = feed(&mut compensator, 20.0, length_m(now), 0.0);
             let late_m = if delay_cycles < 0.0 {
-                // The parabola through now, τ ago and 2τ ago; until that is in order, the length as it is.
+                // The parabola through now, τ ago and 2τ ago, unless it leads back; until that is in order, the length as it is.
                 let tau = -delay_cycles;
                 let led = |now: f64| 3.0 * length_m(now) - 3.0 * length_m(now - tau) + length_m(now - 2.0 * tau);
                 let first = 2.0 * tau + 2.0;
-                if now < first { length_m(now) } else { led(now) }
+                let ahead_m = led(now) - length_m(now);
+                let leads_on = ahead_m * (length_m(now) - length_m(now - 1.0)) > 0.0;
+                if now < first || !leads_on { length_m(now) } else { led(now) }
             } else {
                 let at = |cycle: f64| length_m(cycle.max(0.0));
                 let (whole, rest) = (delay_cycles.floor(), delay_cycles.fract());
@@ -457,6 +459,8 @@ fn every_name_has_a_cause_a_remedy_and_its_parameters() {
         all.iter().filter(|(_, row)| !row.fitted).map(|(kind, row)| (kind.unwrap(), row.key)).collect();
     let expected = [
         ("load_nonlinearity", "reference_n"),
+        ("friction_drift", "until_s"),
+        ("sensor_drift", "until_s"),
         ("pulley_inertia", "window_s"),
         ("pulley_eccentricity", "period_m"),
         ("cable_elasticity", "play_n"),

@@ -3,14 +3,16 @@
 //! 1. *Enter.* Every candidate is fitted together with all that the model has. The best on the samples learned from
 //!    enters if it also helps on those held out; leniently, for what is still missing colours the residual.
 //! 2. *Exchange.* For every effect that has entered, all others are tried in its place.
-//! 3. *Leave.* An effect stays if the evidence for it is strong, if it is large enough to matter, and if it explains more than
-//!    what remains unexplained: a name that leaves most of the gap open is not the name.
+//! 3. *Leave.* An effect stays if the evidence for it is strong, if it is large enough to matter, if it explains more than
+//!    what remains unexplained (a name that leaves most of the gap open is not the name), and if its parameters keep clear of the
+//!    ends of their ranges: a law that is bent as far as it goes imitates something else.
 
 use std::collections::BTreeMap;
 
+use fric_core::effects::pulley_inertia::MASS;
 use fric_core::effects::time_delay::DELAY;
-use fric_core::effects::{self, EffectRow, pulley_eccentricity, pulley_inertia, time_delay};
-use fric_core::parameters::MU;
+use fric_core::effects::{self, EffectRow, pulley_eccentricity};
+use fric_core::parameters::{MU, VISCOUS, Values};
 
 use super::candidates::{Scale, fitted, has, is_friction, starts};
 use super::evidence::inflation;
@@ -18,6 +20,7 @@ use super::noise::white_noise_throughout;
 use super::ripple::periods_m;
 use super::workbench::{Model, NEAR_ERRORS, Trial, Workbench};
 use crate::fit::Parameter;
+use crate::fit::engine::Coordinate;
 
 /// Most effects of one cable.
 const MOST_EFFECTS: usize = 4;
@@ -32,8 +35,10 @@ const LEAST_SIZE: f64 = 0.002;
 const NEGLIGIBLE: f64 = 0.01;
 /// Candidates are first brought so near to their minima that what is left to gain is this part of what a candidate needs to enter.
 const UNDECIDED: f64 = 0.5;
-/// A delay of less than this many cycles is the lag of an acceleration that is taken from differences, not one of its own.
+/// Speeds and accelerations that are taken from differences lag, by less than this many cycles.
 const LAG_CYCLES: f64 = 1.0;
+/// Of the way from its neutral value to an end of its range, a parameter that has less than this share left has run into the end.
+const END_RATIO: f64 = 0.01;
 /// Evidence that an effect has to have to stay, and names have to have over each other to be told apart.
 pub const STRONG_BIC: f64 = 10.0;
 /// The named model is brought this near to its minimum, in standard errors.
@@ -290,10 +295,10 @@ impl<'b, 'a> Search<'b, 'a> {
             let gain = |named: &Named| named.without.held_out - model.held_out;
             let fails = |named: &&Named| {
                 let strong = self.delta_bic(&named.without, &model, named.inflation) < -STRONG_BIC;
-                let is_lag = named.row.kind == time_delay::ROW.kind
-                    && contains(rows, &pulley_inertia::ROW)
-                    && model.values[DELAY].abs() < LAG_CYCLES * self.bench.record.cycle_s;
-                is_lag || !(strong && gain(named) > LEAST_SIZE * self.noise_squares && gain(named) > remains)
+                let cycle_s = self.bench.record.cycle_s;
+                let is_real =
+                    !is_lag(named.row, &model.values, cycle_s) && !is_at_end(named.row, &model.values, cycle_s);
+                !(is_real && strong && gain(named) > LEAST_SIZE * self.noise_squares && gain(named) > remains)
             };
             let weakest = named.iter().filter(fails).min_by(|one, other| gain(one).total_cmp(&gain(other)));
             let Some(weakest) = weakest.map(|named| named.row.kind) else {
@@ -313,6 +318,29 @@ fn delta_bic(count: f64, squares_ratio: f64, more: f64) -> f64 {
     if count < 2.0 { f64::INFINITY } else { count * squares_ratio.ln() + more * count.ln() }
 }
 
+/// Whether an effect is no greater than what the lag of differences makes of another: of the acceleration of `pulley_inertia` a
+/// delay, of the speed v in viscous friction `viscous·(v − a·lag)` an inertia.
+fn is_lag(row: &EffectRow, values: &Values, cycle_s: f64) -> bool {
+    let lag_s = LAG_CYCLES * cycle_s;
+    match row.kind {
+        "time_delay" => values[MASS] > 0.0 && values[DELAY].abs() < lag_s,
+        "pulley_inertia" => values[MASS] < values[VISCOUS] * lag_s,
+        _ => false,
+    }
+}
+
+/// Whether a parameter of an effect has run into an end of its range that is not its neutral value; of friction that every model
+/// has the ranges are orders of magnitude.
+fn is_at_end(row: &EffectRow, values: &Values, cycle_s: f64) -> bool {
+    let has_run = |parameter: &Parameter| {
+        let (least, greatest) = Coordinate::of(parameter, cycle_s).range();
+        let neutral = parameter.row().neutral;
+        let left = |end: f64| (end - values[parameter.place()]).abs() / (end - neutral).abs();
+        [least, greatest].into_iter().any(|end| left(end) < END_RATIO)
+    };
+    !is_friction(row) && fitted(row).iter().any(has_run)
+}
+
 /// The best on the samples learned from.
 fn best(tried: impl IntoIterator<Item = (&'static EffectRow, Trial)>) -> Option<(&'static EffectRow, Trial)> {
     tried.into_iter().min_by(|(_, one), (_, other)| one.training.total_cmp(&other.training))
@@ -330,7 +358,51 @@ fn kinds(rows: &[&'static EffectRow]) -> Kinds {
 
 #[cfg(test)]
 mod tests {
-    use super::delta_bic;
+    use fric_core::effects::pulley_inertia::MASS;
+    use fric_core::effects::time_delay::DELAY;
+    use fric_core::effects::{presliding_shape, pulley_inertia, stribeck, time_delay};
+    use fric_core::parameters::{PARAMETER_COUNT, VISCOUS, Values};
+
+    use super::{delta_bic, fitted, is_at_end, is_lag};
+    use crate::fit::Parameter;
+
+    const CYCLE_S: f64 = 1e-3;
+
+    fn neutral() -> Values {
+        let mut values = [0.0; PARAMETER_COUNT];
+        for parameter in Parameter::all() {
+            values[parameter.place()] = parameter.row().neutral;
+        }
+        values
+    }
+
+    #[test]
+    fn what_a_lag_of_half_a_cycle_makes_is_no_effect() {
+        let mut values = neutral();
+        (values[VISCOUS], values[MASS], values[DELAY]) = (0.3, 0.3 * 0.5 * CYCLE_S, -0.5 * CYCLE_S);
+        assert!(is_lag(&pulley_inertia::ROW, &values, CYCLE_S) && is_lag(&time_delay::ROW, &values, CYCLE_S));
+        assert!(!is_lag(&stribeck::ROW, &values, CYCLE_S));
+        (values[MASS], values[DELAY]) = (0.01, 2.0 * CYCLE_S);
+        assert!(!is_lag(&pulley_inertia::ROW, &values, CYCLE_S) && !is_lag(&time_delay::ROW, &values, CYCLE_S));
+        (values[MASS], values[DELAY]) = (0.0, 0.5 * CYCLE_S);
+        assert!(!is_lag(&time_delay::ROW, &values, CYCLE_S));
+    }
+
+    #[test]
+    fn a_parameter_at_the_end_of_its_range_has_run_into_it() {
+        for (row, inside, end) in
+            [(presliding_shape::ROW, 0.5, 0.3), (stribeck::ROW, 2.0, 5.0), (time_delay::ROW, 0.02, 0.063)]
+        {
+            let place = fitted(&row)[0].place();
+            for (value, has_run) in [(inside, false), (end, true), (end * (1.0 - 1e-6), true)] {
+                let mut values = neutral();
+                values[place] = value;
+                assert_eq!(is_at_end(&row, &values, CYCLE_S), has_run, "{}: {value}", row.kind);
+            }
+        }
+        // At an end that is the neutral value there is only little of the effect.
+        assert!(!is_at_end(&pulley_inertia::ROW, &neutral(), CYCLE_S));
+    }
 
     #[test]
     fn what_nothing_is_known_of_is_no_evidence() {

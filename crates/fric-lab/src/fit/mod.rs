@@ -47,6 +47,7 @@ pub(crate) mod engine {
     pub use super::scores::Scores;
     pub use super::selection::{Standing, count};
     pub use super::solve::{Solution, Unknown, covariance, inverse_of_normal, search_near, vagueness};
+    pub use super::vector::Coordinate;
 }
 
 pub use cables::{fit_cables, residuals_n};
