@@ -53,7 +53,7 @@ typedef enum fric_result {
   FRIC_RESULT_WRONG_SIZE = 2,
   /// The robot file cannot be read, or something in it is wrong; the error text says what, where and what is allowed.
   FRIC_RESULT_ROBOT_FILE = 3,
-  /// The parameters given before have not been taken over yet; try again when their blend is over.
+  /// The change of parameters given before is not over; try again some steps later.
   FRIC_RESULT_BUSY = 4,
   /// A mistake inside of the library, caught; please report it.
   FRIC_RESULT_INTERNAL = 5,
@@ -147,9 +147,10 @@ extern "C" {
 ///
 /// The steps after it take the parameters over: within `blend_s` seconds (0…3600; one cycle at least) the output goes over from
 /// the old parameters to the new ones, and a step takes twice as long. The file is that of the same robot: friction,
-/// effects, geometry, masses and limits may differ, cycle time, number of cables and their pulleys not. FRIC_RESULT_BUSY
-/// where a change given before is not over; FRIC_RESULT_ROBOT_FILE also where the file is that of another robot, or `blend_s` out of
-/// its range or NaN. `error` is as in fric_load_file. Not for the cycle: it reads a file and allocates.
+/// effects, geometry, masses and limits may differ, cycle time, number of cables and their pulleys not. One change at a time:
+/// FRIC_RESULT_BUSY until the first step after the blend of the change before. FRIC_RESULT_ROBOT_FILE also where the file is that
+/// of another robot, or `blend_s` out of its range or NaN. `error` is as in fric_load_file. Not for the cycle: it reads a file
+/// and allocates.
 ///
 /// # Safety
 /// `compensator` is null or a compensator that has not been given back and is not while this runs; `path` is null or a
@@ -183,7 +184,8 @@ enum fric_result fric_step(struct fric_compensator *compensator,
                            const struct fric_input *input,
                            struct fric_output *output);
 
-/// Back to the state after set-up: at rest, nothing stored, no pose. It does not allocate, lock or wait.
+/// Back to the state after set-up: at rest, nothing stored, no pose. The parameters stay; those of a change that has been given
+/// hold at once, without a blend. It does not allocate, lock or wait.
 ///
 /// # Safety
 /// `compensator` is null or a compensator that has not been given back and that nobody else steps or resets now.

@@ -91,11 +91,12 @@ public:
         return result;
     }
 
-    /// Back to the state after set-up.
+    /// Back to the state after set-up; the parameters of a change that has been given hold at once.
     Result reset() noexcept { return ::fric_reset(handle_.get()); }
 
     /// Changes to the parameters of another robot file of the same robot within `blend_s` seconds, from any thread, while
-    /// another one steps. Gives false where a change given before is not over. Throws Error.
+    /// another one steps. Gives false, and changes nothing, until the first step after the blend of the change before.
+    /// Throws Error.
     [[nodiscard]] bool change_to_file(const std::string& path, double blend_s) const {
         return change(::fric_change_file, path, blend_s);
     }

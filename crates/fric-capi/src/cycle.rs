@@ -1,6 +1,6 @@
 //! The cycle: plain structures in, plain structures out.
 
-use fric_core::{CableInput, Pose, Wrench};
+use fric_core::{CableInput, ParamError, Pose, Wrench};
 
 use crate::handle::{Cycle, Handle};
 use crate::outcome::Outcome;
@@ -148,7 +148,7 @@ pub unsafe extern "C" fn fric_step(
     }
     // SAFETY: null, or a pose that can be read.
     let pose = unsafe { input.pose.as_ref() }.copied();
-    let outside = cycle.step(pose, input.elapsed_cycles);
+    let Ok(outside) = cycle.step(pose, input.elapsed_cycles) else { return Outcome::Internal };
     for (place, outcome) in cycle.compensator.outputs().iter().enumerate() {
         let result = CableResult {
             force_at_platform_n: outcome.force_at_platform_n,
@@ -175,15 +175,23 @@ pub unsafe extern "C" fn fric_step(
 }
 
 impl Cycle {
-    fn step(&mut self, pose: Option<PlatformPose>, elapsed_cycles: f64) -> Option<Wrench> {
+    /// Both ends of the exchange are of the same robot, so that an error here and in `reset` is a mistake of ours.
+    fn step(&mut self, pose: Option<PlatformPose>, elapsed_cycles: f64) -> Result<Option<Wrench>, ParamError> {
         let pose = pose.and_then(|pose| Pose::from_parts(pose.position_m, pose.orientation_xyzw));
-        self.parameters.deliver_to(&mut self.compensator);
+        self.parameters.deliver_to(&mut self.compensator)?;
         self.compensator.set_input(&self.signals, pose, elapsed_cycles);
-        self.compensator.step()
+        Ok(self.compensator.step())
+    }
+
+    fn reset(&mut self) -> Result<(), ParamError> {
+        self.parameters.deliver_to(&mut self.compensator)?;
+        self.compensator.reset();
+        Ok(())
     }
 }
 
-/// Back to the state after set-up: at rest, nothing stored, no pose. It does not allocate, lock or wait.
+/// Back to the state after set-up: at rest, nothing stored, no pose. The parameters stay; those of a change that has been given
+/// hold at once, without a blend. It does not allocate, lock or wait.
 ///
 /// # Safety
 /// `compensator` is null or a compensator that has not been given back and that nobody else steps or resets now.
@@ -193,6 +201,6 @@ pub unsafe extern "C" fn fric_reset(compensator: *mut Handle) -> Outcome {
         return Outcome::BadPointer;
     }
     // SAFETY: a live handle that nobody else uses in this way; no other reference to its cycle exists.
-    unsafe { &mut (*compensator).cycle }.compensator.reset();
-    Outcome::Ok
+    let cycle = unsafe { &mut (*compensator).cycle };
+    cycle.reset().map_or(Outcome::Internal, |()| Outcome::Ok)
 }

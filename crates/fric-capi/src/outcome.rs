@@ -17,7 +17,7 @@ pub enum Outcome {
     WrongSize = 2,
     /// The robot file cannot be read, or something in it is wrong; the error text says what, where and what is allowed.
     RobotFile = 3,
-    /// The parameters given before have not been taken over yet; try again when their blend is over.
+    /// The change of parameters given before is not over; try again some steps later.
     Busy = 4,
     /// A mistake inside of the library, caught; please report it.
     Internal = 5,

@@ -5,7 +5,7 @@ use std::ptr;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::thread;
 
-use fric::{CableResult, CableSignals, Handle, Outcome, fric_change_file, fric_change_text};
+use fric::{CableResult, CableSignals, Handle, Outcome, fric_change_file, fric_change_text, fric_reset};
 
 use crate::support::{CABLES, POSE, ROBOT, load, robot, signals, step};
 
@@ -77,6 +77,25 @@ fn another_thread_changes_parameters_while_this_one_steps() {
 }
 
 #[test]
+fn with_a_reset_the_parameters_given_hold_at_once() {
+    for steps_before in 0..3 {
+        let handle = robot();
+        let built = load(&rougher()).unwrap_or_else(|(_, text)| unreachable!("{text}"));
+        assert_eq!(change(handle.0, &rougher(), 1.0).0, Outcome::Ok);
+        for cycle in 0..steps_before {
+            step(&handle, &signals(cycle), Some(&POSE));
+        }
+        assert_eq!(unsafe { fric_reset(handle.0) }, Outcome::Ok);
+        for cycle in 0..3 {
+            let [(results, _), (expected, _)] =
+                [&handle, &built].map(|handle| step(handle, &signals(cycle), Some(&POSE)));
+            assert_eq!(results, expected, "{steps_before} steps before, cycle {cycle}");
+        }
+        assert_eq!(change(handle.0, ROBOT, 1.0).0, Outcome::Ok);
+    }
+}
+
+#[test]
 fn what_is_refused_is_told() {
     let handle = robot();
     let is_refused = |toml: &str, blend_s, expected: Outcome, word: &str| {
@@ -91,12 +110,12 @@ fn what_is_refused_is_told() {
         "`cycle_s` is 0.002; in the robot that runs it is 0.001",
     );
     is_refused(ROBOT, f64::NAN, Outcome::RobotFile, "`blend_s` is NaN");
-    assert_eq!(change(handle.0, &rougher(), 0.01).0, Outcome::Ok);
-    is_refused(&rougher(), 0.1, Outcome::Busy, "not been taken over yet");
-    for cycle in 0..2 {
+    assert_eq!(change(handle.0, &rougher(), 0.003).0, Outcome::Ok);
+    for cycle in 0..=3 {
+        is_refused(ROBOT, 0.1, Outcome::Busy, "is not over");
         step(&handle, &signals(cycle), None);
     }
-    assert_eq!(change(handle.0, &rougher(), 0.01).0, Outcome::Ok);
+    assert_eq!(change(handle.0, ROBOT, 0.003).0, Outcome::Ok);
     assert_eq!(change(ptr::null(), ROBOT, 0.1).0, Outcome::BadPointer);
     unsafe {
         assert_eq!(fric_change_text(handle.0, ptr::null(), 0.1, ptr::null_mut(), 0), Outcome::BadPointer);

@@ -23,10 +23,14 @@ pub enum Command {
     #[command(after_help = "Example:\n  fric-cli replay examples/mini-ipanema.mcap -o compensated.mcap")]
     Replay(ReplayArguments),
     /// Identify the friction parameters from the log of an identification run
+    ///
+    /// All samples are kept in memory: some 200 bytes a sample and cable.
     #[command(after_help = "Examples:\n  fric-cli fit examples/mini-ipanema.mcap -o fitted.toml\n  \
                       fric-cli fit examples/mini-ipanema.mcap --reference wrench -o by-wrench.toml")]
     Fit(FitArguments),
     /// Find where the model and the measurement disagree, name the effect that is missing, and add it to the robot file
+    ///
+    /// All samples are kept in memory: some 200 bytes a sample and cable.
     #[command(
         after_help = "Example:\n  fric-cli discover examples/mini-ipanema.mcap -o extended.toml --report discovery.html"
     )]

@@ -1,8 +1,9 @@
 //! New parameters from one thread into the cycle of another.
 //!
 //! For: [`AnyCompensator`] in a control loop, and whoever identifies, tunes or reads files beside it. Both ends are
-//! wait-free (two rings of the `rtrb` crate): the loop takes a pointer, copies, and gives the pointer back, so that it
-//! neither allocates nor frees. Needs the feature `alloc`.
+//! wait-free (two rings of the `rtrb` crate): the loop looks at a pointer, copies, and gives the pointer back, so that it
+//! neither allocates nor frees. One change at a time: its parameters leave their ring of one place when it is over, and
+//! until then nothing else can be sent. Needs the feature `alloc`.
 
 use alloc::boxed::Box;
 use core::fmt;
@@ -35,6 +36,8 @@ pub struct ParameterSender {
 #[derive(Debug)]
 pub struct ParameterReceiver {
     inward: Consumer<Box<Parcel>>,
+    /// The change to the parameters in `inward` has begun.
+    has_begun: bool,
     back: Producer<Box<Parcel>>,
 }
 
@@ -42,7 +45,7 @@ pub struct ParameterReceiver {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum SendError {
-    /// Those sent before have not been taken over yet; try again some cycles later.
+    /// The change to those sent before is not over; try again some cycles later.
     Busy,
     /// They are not for the robot that runs, or the blend is no time.
     Param(ParamError),
@@ -51,9 +54,9 @@ pub enum SendError {
 impl fmt::Display for SendError {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Busy => formatter.write_str(
-                "the parameters sent before have not been taken over yet; try again when their blend is over",
-            ),
+            Self::Busy => {
+                formatter.write_str("the change to the parameters sent before is not over; try again some cycles later")
+            }
             Self::Param(error) => error.fmt(formatter),
         }
     }
@@ -67,15 +70,17 @@ impl core::error::Error for SendError {}
 /// As [`AnyCompensator::new`].
 pub fn parameter_exchange(robot: &RobotParams<'_>) -> Result<(ParameterSender, ParameterReceiver), ParamError> {
     let pattern = AnyCompensator::new(robot)?;
-    // Of two parcels at most, one is on its way and the other back.
     let (outward, inward) = RingBuffer::new(1);
+    // Between two looks of the sender at what has come back, the parcel sent before may come and the one sent last.
     let (back_in, back) = RingBuffer::new(2);
-    Ok((ParameterSender { pattern, outward, back }, ParameterReceiver { inward, back: back_in }))
+    let receiver = ParameterReceiver { inward, has_begun: false, back: back_in };
+    Ok((ParameterSender { pattern, outward, back }, receiver))
 }
 
 impl ParameterSender {
     /// Sends the parameters of `robot` into the loop, whose output goes over to them within `blend_s` seconds (0…3600, one
-    /// cycle at least). Allocates, and frees what has come back; never waits.
+    /// cycle at least). The change begins with the next [`deliver_to`](ParameterReceiver::deliver_to); it is over, and others
+    /// can be sent, with the first one after its blend. Allocates, and frees what has come back; never waits.
     ///
     /// # Errors
     /// [`SendError`]; nothing has been sent then.
@@ -98,15 +103,27 @@ impl ParameterSender {
 }
 
 impl ParameterReceiver {
-    /// To be called before each cycle: starts the change to parameters that have come, once the one before is over. Wait-free;
-    /// neither allocates nor frees.
-    pub fn deliver_to(&mut self, compensator: &mut AnyCompensator) {
-        if compensator.is_changing() || self.back.is_full() {
-            return;
+    /// To be called before each cycle: ends the change whose blend is over, and begins the one to parameters that have come.
+    /// Wait-free; neither allocates nor frees.
+    ///
+    /// # Errors
+    /// [`ParamError`] if the parameters do not fit, as with a `compensator` of another robot than [`parameter_exchange`] was
+    /// given; nothing is changed then, and the sender is told nothing.
+    pub fn deliver_to(&mut self, compensator: &mut AnyCompensator) -> Result<(), ParamError> {
+        if compensator.is_changing() {
+            return Ok(());
         }
+        if self.has_begun {
+            self.give_back();
+        }
+        let Ok(parcel) = self.inward.peek() else { return Ok(()) };
+        self.has_begun = true;
+        compensator.change(&parcel.next, parcel.blend_cycles)
+    }
+
+    fn give_back(&mut self) {
+        self.has_begun = false;
         let Ok(parcel) = self.inward.pop() else { return };
-        // The sender has checked it.
-        let _ = compensator.change(&parcel.next, parcel.blend_cycles);
         if let Err(rtrb::PushError::Full(parcel)) = self.back.push(parcel) {
             // There was room; were there none, losing memory would do less harm here than freeing it.
             core::mem::forget(parcel);

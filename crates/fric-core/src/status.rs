@@ -11,7 +11,7 @@ use core::ops::BitOr;
 ///
 /// | flag | cause | what the output is |
 /// |---|---|---|
-/// | `SLACK` | sensor force ≤ 0 | friction 0 and stored friction released; the force is the sensor's own |
+/// | `SLACK` | sensor force, less what `sensor_*` effects correct of it, ≤ 0 | no force but the offset; stored friction released |
 /// | `SLACK` | viscous friction exceeds the tension | no force but the offset; stored friction goes on as usual |
 /// | `SLIP` | `F_j/F_{j−1}` beyond `e^{±μ_p α}` at a pulley | the ratio held at that bound |
 /// | `SENSOR_NOT_FINITE` | sensor force NaN, infinite or beyond ±10⁹ N | last good force and friction held; the stored friction follows the motion with the last good force, so that the first good cycle goes on from where the cable is |

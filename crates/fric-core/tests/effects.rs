@@ -419,7 +419,7 @@ fn every_effect_recovers_from_faults_without_a_bump() {
 
 #[test]
 fn every_name_has_a_cause_a_remedy_and_its_parameters() {
-    let contract = [
+    let kinds = [
         "coulomb",
         "viscous",
         "presliding",
@@ -439,7 +439,7 @@ fn every_name_has_a_cause_a_remedy_and_its_parameters() {
     ];
     let all: Vec<_> = parameters().collect();
     let mut claimed = Vec::new();
-    for kind in contract {
+    for kind in kinds {
         let row = named().find(|row| row.kind == kind).unwrap_or_else(|| panic!("{kind} is missing"));
         assert!(!row.cause.is_empty() && !row.remedy.is_empty());
         assert_eq!(row.places().len(), row.parameters.len());
@@ -451,7 +451,7 @@ fn every_name_has_a_cause_a_remedy_and_its_parameters() {
         }
         assert!(row.parameters.iter().any(|parameter| parameter.fitted), "{kind}");
     }
-    assert_eq!(named().count(), contract.len());
+    assert_eq!(named().count(), kinds.len());
     // All but the offset at the platform, which is the reference's.
     claimed.sort_unstable();
     assert_eq!(claimed, [&[MU, SIGMA, VISCOUS][..], &(FRICTION.len()..all.len()).collect::<Vec<_>>()].concat());

@@ -147,7 +147,7 @@ fn parameters_arrive_from_another_thread() {
     let (mut sender, mut receiver) = with_robot(0.02, parameter_exchange).unwrap();
     let mut step = |cycle: u32, running: &mut AnyCompensator| {
         let input = input(cycle);
-        receiver.deliver_to(running);
+        receiver.deliver_to(running).unwrap();
         running.set_input(&input.cables, input.pose, 1.0);
         running.step();
     };
@@ -155,7 +155,6 @@ fn parameters_arrive_from_another_thread() {
     std::thread::scope(|scope| {
         let sent = scope.spawn(|| {
             let sent = with_robot(0.05, |robot| sender.send(robot, 0.02));
-            // The loop stands still: the second has to wait.
             (sent, with_robot(0.06, |robot| sender.send(robot, 0.02)))
         });
         assert_eq!(sent.join().unwrap(), (Ok(()), Err(SendError::Busy)));
@@ -163,6 +162,7 @@ fn parameters_arrive_from_another_thread() {
     for cycle in 1..=20 {
         assert_eq!(running.is_changing(), cycle > 1);
         step(cycle, &mut running);
+        assert_eq!(with_robot(0.06, |robot| sender.send(robot, 0.02)), Err(SendError::Busy), "cycle {cycle}");
     }
     assert!(!running.is_changing());
     let mut built = with_robot(0.05, AnyCompensator::new).unwrap();
@@ -180,6 +180,29 @@ fn parameters_arrive_from_another_thread() {
     for blend_s in [f64::NAN, -1.0, 1e4] {
         let refused = with_robot(0.06, |robot| sender.send(robot, blend_s)).unwrap_err();
         assert!(refused.to_string().starts_with("`blend_s` is "), "{refused}");
+    }
+    // One after the other, as often as one likes.
+    for cycle in 1000..1010 {
+        assert_eq!(with_robot(0.06, |robot| sender.send(robot, 0.0)), Ok(()), "cycle {cycle}");
+        step(2 * cycle, &mut running);
+        assert_eq!(with_robot(0.07, |robot| sender.send(robot, 0.0)), Err(SendError::Busy), "cycle {cycle}");
+        step(2 * cycle + 1, &mut running);
+    }
+}
+
+#[test]
+fn parameters_for_another_robot_than_the_one_that_runs_are_told() {
+    let one_cable = CableParams::new(&options(0.02, 1000.0, 0.0)[0]).unwrap();
+    let robot =
+        RobotParams::new(0.001, &PlatformOptions::default(), MONITOR, std::slice::from_ref(&one_cable)).unwrap();
+    let mut running = AnyCompensator::new(&robot).unwrap();
+    let (mut sender, mut receiver) = with_robot(0.02, parameter_exchange).unwrap();
+    for _ in 0..3 {
+        assert_eq!(with_robot(0.05, |robot| sender.send(robot, 0.02)), Ok(()));
+        let refused = receiver.deliver_to(&mut running).unwrap_err().to_string();
+        assert!(refused.starts_with("`cable`"), "{refused}");
+        assert!(!running.is_changing());
+        assert_eq!(receiver.deliver_to(&mut running), Ok(()));
     }
 }
 

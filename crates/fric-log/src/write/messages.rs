@@ -25,7 +25,7 @@ pub struct CableStatusChannel(Channel);
 
 /// The numbers of a `JointState`, in the order of the channel's names; each array may be empty instead.
 ///
-/// For cables the units are those of the contract: metres, metres per second, newtons.
+/// For cables the units are metres, metres per second, newtons.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct JointState<'a> {
     /// Lengths.
