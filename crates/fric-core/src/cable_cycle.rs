@@ -76,14 +76,15 @@ pub fn cable_cycle<T: Scalar>(
         chain_n = chain_n * PulleyEccentricity::of(|place| cable.effect(place)).factor(signals.length_m);
     }
     let slack = no_tension.or(chain_n.lt(zero));
-    let pulled_n = chain_n.max(zero);
-    let moving_n = T::select(no_tension, frictionless_n, pulled_n) + model.offset_n;
+    // A cable cannot push, whatever an untared sensor shows of a limp one.
+    let pulled_n = chain_n.max(zero).keep(no_tension.not());
+    let moving_n = pulled_n + model.offset_n;
     let friction_n = moving_n - model.offset_n - frictionless_n;
 
     let hold = signals.hold;
     let held_friction_n = cable.held_friction_n();
-    cable.set_held_friction_n(T::select(hold, held_friction_n, friction_n));
-    let held_n = held_friction_n.max(-frictionless_n).keep(no_tension.not());
+    cable.set_held_friction_n(T::select(hold, held_friction_n, friction_n.keep(no_tension.not())));
+    let held_n = T::select(no_tension, -frictionless_n, held_friction_n.max(-frictionless_n));
     let platform_force_n = T::select(hold, frictionless_n + held_n + model.offset_n, moving_n);
     let friction_n = T::select(hold, held_n, friction_n);
     CableForces {

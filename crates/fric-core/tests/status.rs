@@ -12,6 +12,7 @@ const MONITOR: MonitorOptions = MonitorOptions { frozen_cycles: 10, length_jump_
 type Change = fn(&mut CableInput);
 
 /// A winch on a test bench that pays out at 0.1 m/s, its force rising a little every cycle.
+#[derive(Clone)]
 struct Bench {
     compensator: Compensator<1>,
     cycle: i32,
@@ -58,16 +59,23 @@ fn good_signals_have_no_flag() {
 }
 
 #[test]
-fn slack_shows_the_sensors_own_force_and_releases_the_friction() {
+fn a_slack_cable_does_not_push_and_releases_the_friction() {
     for presliding in FORMS {
         for force_n in [0.0, -0.0, -3.0] {
             let mut bench = Bench::new(presliding);
             assert!(bench.run(300).friction_n > 0.1);
             let output = bench.step(|signals| signals.sensor_force_n = force_n);
             assert_eq!(output.status, CableStatus::SLACK);
-            assert_eq!(output.friction_n, 0.0);
-            assert_near(output.force_at_platform_n, 0.5 * force_n + FRICTION.offset_n, 1e-15);
+            // What the sensor shows of it is told beside.
+            assert_near(output.force_at_platform_n, FRICTION.offset_n, 1e-15);
+            assert_near(output.frictionless_n, 0.5 * force_n, 1e-15);
+            assert_near(output.friction_n, -0.5 * force_n, 1e-15);
             assert_eq!(bench.stored_n(), 0.0);
+            // Nor does one whose sensor then falls silent.
+            let mut silent = bench.clone();
+            let output = silent.step(|signals| signals.sensor_force_n = f64::NAN);
+            assert_eq!(output.status, CableStatus::SENSOR_NOT_FINITE);
+            assert_near(output.force_at_platform_n, FRICTION.offset_n, 1e-15);
             // Tension comes back: no flag, and friction builds up anew over the presliding distance.
             let output = bench.step(|_| ());
             assert_eq!(output.status, CableStatus::OK);
