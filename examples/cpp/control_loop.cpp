@@ -2,8 +2,9 @@
 ///
 /// Usage: control_loop ROBOT.toml ROWS.csv [SECONDS]    ROWS.csv is made as rows.hpp says; it stands for the bus, over and over.
 ///
-/// Memory is locked, the thread sleeps until absolute times, and it has real-time priority where the system permits. At the
-/// end: wake-up latency, duration of a step, page faults and memory taken since the first cycle. Exits 1 if there was a fault.
+/// Memory is locked, the thread sleeps until absolute times, and it has real-time priority where the system permits. Whole
+/// cycles that it comes too late for (an overrun) are skipped and told by `elapsed_cycles`. At the end: overruns, wake-up latency,
+/// duration of a step, page faults and memory taken since the first cycle. Exits 1 if there was a page fault or memory was taken.
 
 #include <malloc.h>
 #include <sched.h>
@@ -84,29 +85,37 @@ struct Durations {
 struct Loop {
     Durations wake_up, step;
     Counters before{}, after{};
-    std::uint64_t flagged = 0;
+    std::uint64_t flagged = 0, overruns = 0, skipped = 0;
 
     /// Nothing in it allocates or throws.
-    bool run(fric::Compensator& compensator, const std::vector<Row>& rows, fric::Output& output,
+    bool run(fric::Compensator& compensator, std::vector<Row>& rows, fric::Output& output,
              std::int64_t cycle_nanos) noexcept {
         std::int64_t due = now_nanos() + cycle_nanos;
         std::size_t row = 0;
         for (std::size_t cycle = 0; cycle < step.nanos.size(); ++cycle) {
             sleep_until(due);
+            const std::int64_t late = now_nanos() - due;
+            const std::int64_t missed = late / cycle_nanos;
+            // The bus has not waited.
+            row = (row + static_cast<std::size_t>(missed)) % rows.size();
+            fric::Input& input = rows[row].input;
+            input.elapsed_cycles = 1.0 + static_cast<double>(missed);
             const std::int64_t start = now_nanos();
-            const fric::Result result = compensator.step(rows[row].input, output);
+            const fric::Result result = compensator.step(input, output);
             const std::int64_t end = now_nanos();
             if (result != FRIC_RESULT_OK) {
                 return false;
             }
-            wake_up.nanos[cycle] = start - due;
+            wake_up.nanos[cycle] = late;
             step.nanos[cycle] = end - start;
+            overruns += missed > 0;
+            skipped += static_cast<std::uint64_t>(missed);
             flagged += output.wrench_status != FRIC_STATUS_OK;
             if (cycle == 0) {
                 before = Counters::read();
             }
-            row = row + 1 < rows.size() ? row + 1 : 0;
-            due += cycle_nanos;
+            row = (row + 1) % rows.size();
+            due += (1 + missed) * cycle_nanos;
         }
         after = Counters::read();
         return true;
@@ -122,7 +131,7 @@ int main(int argc, char** argv) {
     }
     try {
         fric::Compensator compensator = fric::Compensator::from_file(argv[1]);
-        const std::vector<Row> rows = read_rows(argv[2], compensator);
+        std::vector<Row> rows = read_rows(argv[2], compensator);
         const double seconds = argc > 3 ? std::atof(argv[3]) : 60.0;
         // Checked before it becomes a whole number: NaN and what does not fit would be undefined.
         const bool in_range = seconds >= compensator.cycle_s() && seconds < 1e6;
@@ -141,6 +150,8 @@ int main(int argc, char** argv) {
             return 1;
         }
         std::printf("%zu cycles, %llu flagged\n", cycle_count, static_cast<unsigned long long>(loop.flagged));
+        std::printf("%llu overruns, %llu cycles skipped\n", static_cast<unsigned long long>(loop.overruns),
+                    static_cast<unsigned long long>(loop.skipped));
         std::printf("%-8s %9s %9s %9s %9s\n", "us", "p50", "p99.9", "p99.999", "max");
         loop.wake_up.show("wake-up");
         loop.step.show("step");

@@ -3,7 +3,9 @@
 import os
 import re
 import shutil
+import signal
 import subprocess
+import time
 
 import numpy as np
 import pandas as pd
@@ -163,6 +165,20 @@ def test_the_control_loop_takes_no_page_and_no_memory(examples, few_rows):
     if "memory is not locked" not in done.stdout:
         assert taken.groups() == ("0", "0", "0") and done.returncode == 0, done
     assert taken[3] == "0"
+
+
+def test_the_control_loop_skips_the_cycles_that_it_has_overslept(examples, few_rows):
+    """Half a second asleep in the midst of two: the cycles of that time are skipped, not made up for."""
+    command = [examples["cpp"] / "control_loop", ROBOT, few_rows, "2"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as loop:
+        time.sleep(1.0)
+        loop.send_signal(signal.SIGSTOP)
+        time.sleep(0.5)
+        loop.send_signal(signal.SIGCONT)
+        told, _ = loop.communicate()
+    overruns, skipped = map(int, re.search(r"(\d+) overruns, (\d+) cycles skipped", told).groups())
+    assert overruns >= 1 and skipped >= 400, told
+    assert "2000 cycles, 0 flagged" in told, told
 
 
 def test_pkg_config_finds_the_library(prefix, tmp_path):

@@ -94,7 +94,8 @@ pub trait Cable<T: Scalar> {
     fn greatest_mu(&self) -> T;
     /// A parameter of an effect, by its place in [`Values`].
     fn effect(&self, place: usize) -> T;
-    /// What an effect remembers, by its place in [`MEMORY`]; [`UNKNOWN`] before the first cycle.
+    /// What an effect remembers, by its place in [`MEMORY`](crate::effects::MEMORY); [`UNKNOWN`](crate::effects::UNKNOWN) before the first
+    /// cycle.
     fn memory(&self, place: usize) -> T;
     /// Keeps it.
     fn set_memory(&mut self, place: usize, value: T);
