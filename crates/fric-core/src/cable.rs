@@ -177,6 +177,7 @@ impl<T: Scalar, C: Cable<T>> Cable<T> for Looked<'_, C> {
 
 /// What may differ between robots but not between the lanes of one: decided once a cycle, outside the arithmetic.
 #[derive(Clone, Copy, Debug, Default)]
+#[expect(clippy::struct_excessive_bools, reason = "each is there or not, whatever the others are")]
 pub struct Features {
     /// Some cable has one Dahl state per pulley.
     pub per_pulley: bool,
