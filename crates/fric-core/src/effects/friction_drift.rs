@@ -57,6 +57,6 @@ impl<T: Scalar> FrictionDrift<T> {
     /// Factor on μ at a time (s) since the start.
     #[inline(always)]
     pub fn factor(&self, time_s: T) -> T {
-        (T::splat(1.0) + self.rate_per_s.scale(drifting_s(time_s, self.until_s))).max(T::splat(0.0))
+        (T::splat(1.0) + self.rate_per_s * drifting_s(time_s, self.until_s)).max(T::splat(0.0))
     }
 }

@@ -57,6 +57,6 @@ impl<T: Scalar> SensorDrift<T> {
     /// The force there is for the one shown (N) at a time (s) since the start.
     #[inline(always)]
     pub fn undo(&self, shown_n: T, time_s: T) -> T {
-        shown_n - self.rate_n_per_s.scale(drifting_s(time_s, self.until_s))
+        shown_n - self.rate_n_per_s * drifting_s(time_s, self.until_s)
     }
 }

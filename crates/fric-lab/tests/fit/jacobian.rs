@@ -83,13 +83,18 @@ fn value_and_step(parameter: &Parameter, random: &mut ChaCha8Rng) -> (f64, f64) 
         "offset_n" => (uniform(random, -10.0, 10.0), 1e-4),
         "stribeck.ratio" => (uniform(random, -0.7, 2.0), 1e-5),
         "stribeck.velocity_m_per_s" => relative(log_uniform(random, 0.01, 1.0)),
-        "time_delay.delay_s" => (uniform(random, 1e-5, 0.02), 1e-9),
+        "time_delay.delay_s" => {
+            let sign = if uniform(random, 0.0, 1.0) < 0.5 { -1.0 } else { 1.0 };
+            (sign * uniform(random, 1e-5, 0.02), 1e-9)
+        }
         "direction_asymmetry.coulomb_ratio" | "direction_asymmetry.viscous_ratio" | "sensor_offset.offset_n" => {
             (uniform(random, -0.5, 0.5), 1e-5)
         }
         "bearing_drag.drag_n" => (uniform(random, 0.0, 2.0), 1e-6),
         "load_nonlinearity.exponent" => (uniform(random, 0.7, 1.3), 1e-5),
         "friction_drift.rate_per_s" => (uniform(random, -2.0, 2.0), 1e-5),
+        // Within the record, or after it.
+        "friction_drift.until_s" | "sensor_drift.until_s" => (uniform(random, 0.01, 0.3), 1e-7),
         "presliding_shape.exponent" => (uniform(random, 1.0, 2.5), 1e-5),
         "sensor_gain.gain" => (uniform(random, 0.8, 1.2), 1e-5),
         "sensor_drift.rate_n_per_s" => (uniform(random, -1.0, 1.0), 1e-5),
