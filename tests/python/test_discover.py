@@ -124,7 +124,7 @@ def test_what_a_log_lacks_is_told(robot, log):
     lacks = r"no reference forces on /reference_forces\. .* force sensors at the platform\."
     with pytest.raises(fric.FitError, match=lacks):
         fric.discover(robot, without_reference(log, 0))
-    lacks = r"tells nothing of winch: .* too few, 8 s are needed\. Record a longer run"
+    lacks = r"2\.0 s of samples with a reference are too few, 8 s are needed\. Record a longer run"
     with pytest.raises(fric.FitError, match=lacks):
         fric.discover(robot, fric.simulate(robot, duration_s=2.0))
 
