@@ -8,12 +8,12 @@
 use crate::bearing::Bearing;
 use crate::cable::{Cable, CableModel, Features, Looked, Moment};
 use crate::chain::Chain;
-use crate::effects::cable_elasticity::{self, CableElasticity};
+use crate::effects::cable_elasticity::{self, CableElasticity, Stretching};
 use crate::effects::pulley_eccentricity::{self, PulleyEccentricity};
 use crate::effects::sensor_drift::{self, SensorDrift};
 use crate::effects::sensor_gain::{self, SensorGain};
 use crate::effects::sensor_offset::{self, SensorOffset};
-use crate::effects::{Acting, TENSION};
+use crate::effects::{Acting, STRETCH, TENSION};
 use crate::scalar::{Mask, Scalar};
 use crate::signals::CableSignals;
 
@@ -60,7 +60,7 @@ pub fn cable_cycle<T: Scalar>(
     };
     let no_tension = sensor_force_n.le(zero);
     let bearing = Bearing::new(model, acting, signals, moment, cable);
-    let stretch_m = stretch(acting, frictionless_n + cable.held_friction_n(), signals, cable);
+    let stretch_m = stretch(acting, frictionless_n + cable.held_friction_n(), (signals, moment), cable);
     let displacement_m = signals.displacement_m;
     let chain = Chain { model, features, bearing, sensor_force_n, displacement_m, stretch_m };
     let (mut chain_n, mut slip) = over_pulleys(&chain, no_tension, cable);
@@ -135,14 +135,22 @@ fn corrected_sensor<T: Scalar>(acting: Acting, shown_n: T, moment: &Moment<T>, c
 
 /// By how much the whole cable has stretched in this cycle, m; a sensor that tells nothing tells of no stretch.
 #[inline(always)]
-fn stretch<T: Scalar>(acting: Acting, tension_n: T, signals: &CableSignals<T>, cable: &mut impl Cable<T>) -> T {
+fn stretch<T: Scalar>(
+    acting: Acting,
+    tension_n: T,
+    (signals, moment): (&CableSignals<T>, &Moment<T>),
+    cable: &mut impl Cable<T>,
+) -> T {
     if !acting.has(cable_elasticity::ACTS) {
         return T::splat(0.0);
     }
     let elasticity = CableElasticity::of(|place| cable.effect(place));
-    let middle_n = cable.memory(TENSION);
-    let (stretch_m, next_n) = elasticity.stretch_m(tension_n.max(T::splat(0.0)), middle_n);
+    let last = Stretching { middle_n: cable.memory(TENSION), waiting_m: cable.memory(STRETCH) };
+    let mut next = last;
+    let tension_n = tension_n.max(T::splat(0.0));
+    let stretch_m = elasticity.stretch_m(tension_n, signals.displacement_m, moment.step_s, &mut next);
     let known = signals.sensor_fault.not();
-    cable.set_memory(TENSION, T::select(known, next_n, middle_n));
+    cable.set_memory(TENSION, T::select(known, next.middle_n, last.middle_n));
+    cable.set_memory(STRETCH, T::select(known, next.waiting_m, last.waiting_m));
     stretch_m.keep(known)
 }

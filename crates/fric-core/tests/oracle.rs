@@ -84,6 +84,7 @@ pub struct Memory {
     cycles: u32,
     slow_speed: f64,
     settled_n: f64,
+    waiting_m: f64,
     friction_n: f64,
 }
 
@@ -161,7 +162,13 @@ impl Cable {
         }
         let settled_n =
             self.memory.settled_n.clamp(tension_n - effects.stretch_play_n, tension_n + effects.stretch_play_n);
-        let stretch_m = effects.compliance_m_per_n * (settled_n - self.memory.settled_n);
+        let waiting_m = self.memory.waiting_m + effects.compliance_m_per_n * (settled_n - self.memory.settled_n);
+        // A twentieth in a cycle of 1 ms; more where the winch would turn the middle pulley back, or where more than the play waits.
+        let least_m = if waiting_m > 0.0 { -2.0 * displacement_m } else { 2.0 * displacement_m };
+        let excess_m = waiting_m.abs() - effects.compliance_m_per_n * effects.stretch_play_n;
+        let going_m = [waiting_m.abs() / 20.0, least_m, excess_m].into_iter().fold(0.0, f64::max);
+        let stretch_m = going_m.min(waiting_m.abs()).copysign(waiting_m);
+        let waiting_m = waiting_m - stretch_m;
         let low_pass = |slow: f64, now: f64, window_s: f64| (window_s * slow + CYCLE_S * now) / (window_s + CYCLE_S);
         let slow_speed = low_pass(self.memory.slow_speed, speed, effects.mass_window_s);
         let inertia_n = effects.mass_kg * (slow_speed - self.memory.slow_speed) / CYCLE_S;
@@ -176,7 +183,7 @@ impl Cable {
         let angle = std::f64::consts::TAU * (length_m / period_m);
         let force_n = chain_n * (1.0 + sin * angle.sin() + cos * angle.cos());
         let friction_n = force_n - straight_n;
-        self.memory = Memory { cycles: self.memory.cycles + 1, slow_speed, settled_n, friction_n };
+        self.memory = Memory { cycles: self.memory.cycles + 1, slow_speed, settled_n, waiting_m, friction_n };
         force_n + self.offset_n
     }
 

@@ -2,7 +2,7 @@
 
 use super::Compensator;
 use crate::effects::time_delay::{self, DelayLine};
-use crate::effects::{SPEED, TENSION, UNKNOWN};
+use crate::effects::{SPEED, STRETCH, TENSION, UNKNOWN};
 use crate::effects::{cable_elasticity, friction_drift, pulley_inertia, sensor_drift};
 use crate::places::NO_SLIP;
 use crate::robot::{ParamError, ParamProblem};
@@ -49,7 +49,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
             self.state.cycle = BEFORE_FIRST;
         }
         let columns = &mut self.state.columns;
-        for (place, acts) in [(SPEED, inertia), (TENSION, elasticity)] {
+        for (place, acts) in [(SPEED, inertia), (TENSION, elasticity), (STRETCH, elasticity)] {
             if let Some(memory) = columns.memory.get_mut(place).filter(|_| !acts) {
                 memory.fill(UNKNOWN);
             }

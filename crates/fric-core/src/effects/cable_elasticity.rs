@@ -6,10 +6,16 @@
 //! state of `lumped` presliding moves by the mean of its pulleys, `(n + 1)/(2n)` of the stretch.
 //!
 //! ΔF is how far the tension at the platform, with the friction of the last cycle, pushes the edge of a play of ± `play_n`: noise
-//! within it moves nothing, and a tension that goes on changing is followed without delay. Without it the noise of the
-//! sensor would shake the stored friction loose; with one and a half times the noise of the sensor, as cable tension, next
-//! to nothing of it is left. (A low pass would delay the stretch: on a simulated log it leaves a third more of the noise than the play
-//! does.) Friction that follows a tension it adds to is stable while `compliance·σ·(n + 1)/(2n) < 1`, as it is for a cable far
+//! within it moves nothing, and a tension that goes on changing is followed. Without it the noise of the sensor would shake the
+//! stored friction loose; with one and a half times the noise of the sensor, as cable tension, next to nothing of it is left.
+//!
+//! A slow change comes through a play in bursts, at the peaks of the noise. Between them the small motions of a winch at rest would
+//! turn each pulley back that in truth goes on with the stretch, and friction, which such turns wear away, would be too small.
+//! So a burst waits: of what waits, `Δt/20 ms` moves the cable in a cycle; where the winch moves the other way, as much as keeps
+//! the pulley in the middle from turning; and at once what is more than the stretch by `play_n`. (A low pass on the tension itself
+//! would delay stops and starts too, and leave several times as much.)
+//!
+//! Friction that follows a tension it adds to is stable while `compliance·σ·(n + 1)/(2n) < 1`, as it is for a cable far
 //! stiffer than its presliding; beyond, friction jumps to its Coulomb bound and no further. A sensor pulley with less wrap than 60° (or
 //! more than 300°) makes of the friction in it `cos α₁/(1 − cos α₁)` times as much, and the compliance has
 //! to be lower by that factor. Only presliding and its direction follow the stretch; viscous friction and what depends on speed follow the winch, since the rate of a tension is mostly noise.
@@ -66,6 +72,20 @@ pub struct CableElasticity<T> {
     pub play_n: T,
 }
 
+/// What an elastic cable remembers of its tension.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stretching<T> {
+    /// Middle of the play, N; infinite before the first cycle.
+    pub middle_n: T,
+    /// Stretch that waits to move the last pulley, m.
+    pub waiting_m: T,
+}
+
+/// How long what waits takes, s.
+const RELEASE_S: f64 = 0.02;
+/// Where the pulley in the middle is, as a share of the stretch.
+const MIDDLE: f64 = 0.5;
+
 impl<T: Scalar> CableElasticity<T> {
     /// From a cable's parameter values, by their place.
     #[inline(always)]
@@ -73,14 +93,25 @@ impl<T: Scalar> CableElasticity<T> {
         Self { compliance_m_per_n: value(COMPLIANCE), play_n: value(PLAY) }
     }
 
-    /// Stretch at the last pulley in this cycle, m, and the middle of the play for the next, N; `middle_n` is the last
-    /// cycle's, infinite before the first.
+    /// Stretch at the last pulley in this cycle of `step_s`, m, while the winch moves by `displacement_m`; `memory` is the last
+    /// cycle's, on return this one's.
     #[inline(always)]
-    pub fn stretch_m(&self, tension_n: T, middle_n: T) -> (T, T) {
-        let known = middle_n.within(f64::MAX);
-        let before_n = T::select(known, middle_n, tension_n);
+    pub fn stretch_m(&self, tension_n: T, displacement_m: T, step_s: T, memory: &mut Stretching<T>) -> T {
+        let zero = T::splat(0.0);
+        let known = memory.middle_n.within(f64::MAX);
+        let before_n = T::select(known, memory.middle_n, tension_n);
         let change_n = tension_n - before_n;
-        let step_n = change_n.sign() * (change_n.abs() - self.play_n).max(T::splat(0.0));
-        (self.compliance_m_per_n * step_n, before_n + step_n)
+        let step_n = change_n.sign() * (change_n.abs() - self.play_n).max(zero);
+        let waiting_m = memory.waiting_m.keep(known) + self.compliance_m_per_n * step_n;
+        let size_m = waiting_m.abs();
+        let share = step_s.scale(T::splat(1.0 / RELEASE_S)).min(T::splat(1.0));
+        let turning_m = displacement_m
+            .abs()
+            .scale(T::splat(1.0 / MIDDLE))
+            .keep((displacement_m.sign() * waiting_m.sign()).lt(zero));
+        let excess_m = size_m - self.compliance_m_per_n * self.play_n;
+        let moved_m = waiting_m.sign() * (size_m * share).max(turning_m.min(size_m)).max(excess_m);
+        *memory = Stretching { middle_n: before_n + step_n, waiting_m: waiting_m - moved_m };
+        moved_m
     }
 }
