@@ -157,7 +157,8 @@ impl<'a> Case<'a> {
         let rest_n = bench.residuals_n(&naming.model.values);
         let noise_n = white_noise(&rest_n).unwrap_or(0.0).max(least_n);
         let excess = self.excess(&rest_n, noise_n);
-        let (share, before) = (excess.share(), self.excess(&residual_n, noise_n).share());
+        let before_n = bench.residuals_n(&naming.with_friction.values);
+        let (share, before) = (excess.share(), self.excess(&before_n, noise_n).share());
         let is_small = share <= WORTH.max(REMAINDER * if naming.named.is_empty() { 0.0 } else { before });
         let rest_places = excess.places(conditions);
         let stretch = if is_small { None } else { stretch_of_cable(&excess, conditions) };

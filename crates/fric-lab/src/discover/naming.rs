@@ -26,7 +26,7 @@ use crate::fit::engine::Coordinate;
 const MOST_EFFECTS: usize = 4;
 /// Of the squares above the noise, a candidate has to take away this share to enter: of those that are left,
 const LEAST_GAIN: f64 = 0.02;
-/// and of those that the given model leaves. Real friction is never quite that of an equation, and what the equation of a strong
+/// and of those that the given model leaves, with the friction that every model has. Real friction is never quite that of an equation, and what the equation of a strong
 /// effect leaves must not be taken for a weak one.
 const LEAST_GAIN_OF_ALL: f64 = 0.004;
 /// And of the noise itself this share: the rms falls by half of it.
@@ -67,6 +67,8 @@ pub struct Named {
 pub struct Naming {
     /// The model with all that was found.
     pub model: Trial,
+    /// The given model with what it lacked of the friction that every model has.
+    pub with_friction: Trial,
     /// What was found, in the order in which it entered.
     pub named: Vec<Named>,
     /// The models on the way from the first to the last, one more than effects.
@@ -107,7 +109,7 @@ impl<'b, 'a> Search<'b, 'a> {
         let named = self.justify(&mut rows);
         self.polish(&rows);
         let ladder = (0..=rows.len()).map(|count| self.fit(rows.get(..count).unwrap_or_default())).collect();
-        Naming { model: self.fit(&rows), named, ladder, first_round }
+        Naming { model: self.fit(&rows), with_friction: self.fit(&friction_of(&rows)), named, ladder, first_round }
     }
 
     /// Difference of Schwarz's criterion from one model to another over the samples learned from; negative speaks for the other.
@@ -137,20 +139,19 @@ impl<'b, 'a> Search<'b, 'a> {
             if self.excess(&model) <= NEGLIGIBLE {
                 break;
             }
-            let Some((row, _)) = best(self.round(rows)).filter(|(_, trial)| self.enters(&model, trial)) else { break };
+            let enough = self.least_gain(rows, &model);
+            let Some((row, _)) = best(self.round(rows)).filter(|(_, trial)| gains(&model, trial, enough)) else {
+                break;
+            };
             rows.push(row);
         }
     }
 
-    /// Whether a candidate is let in.
-    fn enters(&self, before: &Trial, after: &Trial) -> bool {
-        before.held_out - after.held_out > self.least_gain(before)
-    }
-
-    /// By how much the squares of the samples held out have to fall for a candidate to be let in, N².
-    fn least_gain(&self, before: &Trial) -> f64 {
-        let gap = |trial: &Trial| (trial.held_out - self.noise_squares).max(0.0);
-        let all = self.fits.get(&Kinds::new()).map_or(0.0, gap);
+    /// By how much the squares of the samples held out have to fall for a candidate to be let in beside some effects, N².
+    fn least_gain(&mut self, rows: &[&'static EffectRow], before: &Trial) -> f64 {
+        let noise_squares = self.noise_squares;
+        let gap = |trial: &Trial| (trial.held_out - noise_squares).max(0.0);
+        let all = gap(&self.fit(&friction_of(rows)));
         (LEAST_GAIN * gap(before)).max(LEAST_GAIN_OF_ALL * all).max(LEAST_SIZE * self.noise_squares)
     }
 
@@ -165,7 +166,8 @@ impl<'b, 'a> Search<'b, 'a> {
                 .collect()
         };
         let friction = self.beside(rows, &lacking(true));
-        if friction.iter().any(|(_, trial)| self.enters(&model, trial)) {
+        let enough = self.least_gain(rows, &model);
+        if friction.iter().any(|(_, trial)| gains(&model, trial, enough)) {
             return friction;
         }
         self.beside(rows, &lacking(false))
@@ -196,7 +198,7 @@ impl<'b, 'a> Search<'b, 'a> {
         }
         #[expect(clippy::cast_precision_loss, reason = "counts of samples")]
         let [learned, held_out] = [false, true].map(|held_out| self.bench.count(held_out) as f64);
-        let needed = self.least_gain(&model) * learned / held_out;
+        let needed = self.least_gain(rows, &model) * learned / held_out;
         let near_errors = (UNDECIDED * needed * learned / model.training).sqrt().max(NEAR_ERRORS);
         for (owner, trial) in owners.into_iter().zip(self.bench.try_all(&models, near_errors)) {
             let is_better = self.fits.get(&owner).is_none_or(|other| trial.training < other.training);
@@ -339,6 +341,16 @@ fn is_at_end(row: &EffectRow, values: &Values, cycle_s: f64) -> bool {
         [least, greatest].into_iter().any(|end| left(end) < END_RATIO)
     };
     !is_friction(row) && fitted(row).iter().any(has_run)
+}
+
+/// Whether a model has so much less of the squares held out than another, N².
+fn gains(before: &Trial, after: &Trial, enough: f64) -> bool {
+    before.held_out - after.held_out > enough
+}
+
+/// Those that every model has.
+fn friction_of(rows: &[&'static EffectRow]) -> Vec<&'static EffectRow> {
+    rows.iter().copied().filter(|row| is_friction(row)).collect()
 }
 
 /// The best on the samples learned from.

@@ -1,13 +1,21 @@
 //! Discovery on logs with known effects hidden in them; the whole sweep is `benches/discover.rs`.
 
+use fric_core::parameters::VISCOUS;
+use fric_core::robot::file::{FrictionTable, RobotFile};
 use fric_lab::discover::{CableDiscovery, Verdict, discover};
 use fric_lab::fit::{Measurements, Progress, Reference};
-use fric_lab::simulate::sweep::{Case, CaseTruth, Group};
+use fric_lab::simulate::sweep::{Case, CaseLog, CaseTruth, Group};
 
 /// Looks at the one cable of a case's log.
 fn look(case: &Case) -> (CableDiscovery, CaseTruth) {
-    let mut log = case.log().unwrap();
-    let params = log.robot.params();
+    let log = case.log().unwrap();
+    let robot = log.robot.clone();
+    look_by(log, &robot)
+}
+
+/// Looks at the one cable of a log by a robot file.
+fn look_by(mut log: CaseLog, robot: &RobotFile) -> (CableDiscovery, CaseTruth) {
+    let params = robot.params();
     let mut measurements = Measurements::new(&params, Reference::Forces);
     measurements.start_log();
     while let Some(sample) = log.simulation.next_cycle() {
@@ -37,6 +45,21 @@ fn left_ratio(found: &CableDiscovery, truth: &CaseTruth) -> f64 {
 #[test]
 fn nothing_is_named_where_nothing_is_hidden() {
     assert_found(&Case { seed: 70_001, ..Case::of(Group::Nothing) }, Verdict::Complete);
+}
+
+/// Viscous friction is a small part of a gap that is all of friction, and is named all the same.
+#[test]
+fn from_no_friction_it_climbs_to_the_model_of_the_paper() {
+    let log = Case { seed: 840_025, ..Case::of(Group::Nothing) }.log().unwrap();
+    let true_friction = log.truth.robot.params().cables()[0].friction();
+    let mut options = log.robot.options().clone();
+    options.cable[0].friction = FrictionTable::default();
+    let (found, truth) = look_by(log, &RobotFile::check(options).unwrap());
+    let kinds: Vec<&str> = found.findings.iter().map(|finding| finding.row.kind).collect();
+    assert_eq!((kinds, found.verdict), (vec!["coulomb", "presliding", "viscous"], Verdict::Extended));
+    assert!(left_ratio(&found, &truth) < 1.05);
+    let viscous = found.after.values[VISCOUS] / true_friction.viscous_n_s_per_m;
+    assert!((viscous - 1.0).abs() < 0.05, "{viscous}");
 }
 
 #[test]
