@@ -11,6 +11,7 @@ mod progress;
 mod report;
 mod result;
 mod set_points;
+mod steps;
 mod warnings;
 
 use std::process::ExitCode;

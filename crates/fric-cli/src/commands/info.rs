@@ -16,6 +16,7 @@ use crate::interrupt;
 use crate::model::Model;
 use crate::output::JsonTarget;
 use crate::progress::{self, STRIDE};
+use crate::steps::{StepResult, step_table};
 use crate::warnings::warn_all;
 
 /// `fric-info/1`.
@@ -55,15 +56,6 @@ struct SignalResult {
     messages: u64,
     gaps: u64,
     remarks: Vec<String>,
-}
-
-/// Whether a log is good for a step.
-#[derive(Debug, Serialize)]
-pub struct StepResult {
-    pub step: &'static str,
-    pub possible: bool,
-    /// What is missing, or what is missing for all of it.
-    pub reasons: Vec<String>,
 }
 
 /// Log times of a topic, accumulated.
@@ -264,7 +256,7 @@ fn steps(model: &Model, holdings: &Holdings, problem: Option<&str>) -> Vec<StepR
     } else if needs_pose && holdings.posed == 0 {
         errors.push(no_pose());
     }
-    let step = |step, possible: bool, reasons: Vec<String>| StepResult { step, possible, reasons };
+    let step = StepResult::new;
     let fit = |name, readiness: Readiness| {
         let causes = || readiness.lacks.iter().map(|lack| lack.cause.clone()).collect();
         step(name, has_rows && readiness.is_possible(), if has_rows { causes() } else { vec![nothing()] })
@@ -321,14 +313,6 @@ fn describe(result: &InfoResult, model: Option<&Model>, attachments: &[String]) 
         .collect();
     text += &table(&["signal", "path", "messages used", ""], 4, &rows);
     text += "\n";
-    let rows: Vec<_> = result
-        .steps
-        .iter()
-        .map(|step| {
-            let possible = if step.possible { "possible" } else { "impossible" };
-            [step.step.to_owned(), possible.to_owned(), step.reasons.join("; ")]
-        })
-        .collect();
-    text += &table(&["the log allows", "", ""], 3, &rows);
+    text += &step_table("the log allows", &result.steps);
     text
 }

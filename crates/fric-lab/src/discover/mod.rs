@@ -59,6 +59,10 @@ pub fn discover(measurements: &Measurements<'_>, progress: &Progress) -> Vec<Cab
         found
     };
     let mut cables: Vec<CableDiscovery> = records.par_iter().map(of_cable).collect();
-    neighbours::find_neighbours(&records, &mut cables);
+    for (place, cable) in cables.iter_mut().enumerate() {
+        if let Some(unexplained) = &mut cable.unexplained {
+            unexplained.neighbours = neighbours::neighbours_of(&cable.residual_after_n, place, &records);
+        }
+    }
     cables
 }

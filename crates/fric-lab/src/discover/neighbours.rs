@@ -4,7 +4,6 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::report::CableDiscovery;
 use super::split::{Block, split};
 use crate::fit::{CableRecord, Row};
 
@@ -24,20 +23,19 @@ pub struct Neighbour {
     pub correlation: f64,
 }
 
-/// Looks for the neighbours of every residual that is unexplained.
-pub fn find_neighbours(records: &[CableRecord<'_>], cables: &mut [CableDiscovery]) {
-    for (place, (record, found)) in records.iter().zip(cables).enumerate() {
-        let Some(unexplained) = &mut found.unexplained else { continue };
-        let blocks = split(record);
-        let own = columns(record);
-        for (cable, other) in records.iter().enumerate().filter(|(cable, _)| *cable != place) {
-            for (signal, column) in ["sensor_force", "speed"].into_iter().zip(columns(other)) {
-                let correlation = correlation(&found.residual_after_n, &own, &column, &blocks);
-                unexplained.neighbours.extend(correlation.map(|correlation| Neighbour { cable, signal, correlation }));
-            }
+/// What the residual of one cable goes with, N in each cycle; `own` is that cable's place. The strongest first.
+pub fn neighbours_of(residual_n: &[f64], own: usize, records: &[CableRecord<'_>]) -> Vec<Neighbour> {
+    let Some(record) = records.get(own) else { return Vec::new() };
+    let (blocks, own_columns) = (split(record), columns(record));
+    let mut neighbours = Vec::new();
+    for (cable, other) in records.iter().enumerate().filter(|(cable, _)| *cable != own) {
+        for (signal, column) in ["sensor_force", "speed"].into_iter().zip(columns(other)) {
+            let correlation = correlation(residual_n, &own_columns, &column, &blocks);
+            neighbours.extend(correlation.map(|correlation| Neighbour { cable, signal, correlation }));
         }
-        unexplained.neighbours.sort_by(|one, other| other.correlation.abs().total_cmp(&one.correlation.abs()));
     }
+    neighbours.sort_by(|one, other| other.correlation.abs().total_cmp(&one.correlation.abs()));
+    neighbours
 }
 
 /// Sensor force and speed of a cable in each cycle.

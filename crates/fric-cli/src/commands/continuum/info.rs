@@ -9,9 +9,9 @@ use fric_log::table::NumberTable;
 use serde::Serialize;
 
 use super::{Model, about};
-use crate::commands::info::StepResult;
 use crate::failure::Outcome;
 use crate::output::JsonTarget;
+use crate::steps::{StepResult, step_table};
 use crate::warnings::warn_all;
 
 /// `fric-continuum-info/1`.
@@ -119,7 +119,7 @@ fn steps(run: &Run, gratings: Option<&Gratings>) -> Vec<StepResult> {
     .into_iter()
     .flatten()
     .collect();
-    let step = |step, possible: bool, reasons: Vec<String>| StepResult { step, possible, reasons };
+    let step = StepResult::new;
     vec![
         step("friction at the holes", measured.is_empty(), friction),
         step("shape: none, coulomb, history", by_tension.is_empty(), by_tension),
@@ -138,14 +138,6 @@ fn describe(result: &InfoResult, path: &Path) -> String {
             [group.group.to_owned(), columns, group.remarks.join(", ")]
         })
         .collect();
-    let steps: Vec<_> = result
-        .steps
-        .iter()
-        .map(|step| {
-            let possible = if step.possible { "possible" } else { "impossible" };
-            [step.step.to_owned(), possible.to_owned(), step.reasons.join("; ")]
-        })
-        .collect();
     let manipulator = result.manipulator.as_ref().map_or_else(String::new, |name| format!(", manipulator {name}"));
     format!(
         "{}: {} samples, {} … {} s{manipulator}\n\n{}\n{}",
@@ -154,6 +146,6 @@ fn describe(result: &InfoResult, path: &Path) -> String {
         result.from_s,
         result.to_s,
         table(&["group", "columns", ""], 3, &groups),
-        table(&["the run allows", "", ""], 3, &steps)
+        step_table("the run allows", &result.steps)
     )
 }

@@ -1,0 +1,28 @@
+//! Which steps a recording is good for, in every `info`.
+
+use fric_lab::text::table;
+use serde::Serialize;
+
+/// Whether a recording is good for a step.
+#[derive(Debug, Serialize)]
+pub struct StepResult {
+    step: &'static str,
+    possible: bool,
+    /// What is missing, or what is missing for all of it.
+    reasons: Vec<String>,
+}
+
+impl StepResult {
+    pub fn new(step: &'static str, possible: bool, reasons: Vec<String>) -> Self {
+        Self { step, possible, reasons }
+    }
+}
+
+/// Steps as a table.
+pub fn step_table(title: &str, steps: &[StepResult]) -> String {
+    let row = |step: &StepResult| {
+        let possible = if step.possible { "possible" } else { "impossible" };
+        [step.step.to_owned(), possible.to_owned(), step.reasons.join("; ")]
+    };
+    table(&[title, "", ""], 3, &steps.iter().map(row).collect::<Vec<_>>())
+}
