@@ -39,8 +39,9 @@ const UNDECIDED: f64 = 0.5;
 const LAG_CYCLES: f64 = 1.0;
 /// Of the way from its neutral value to an end of its range, a parameter that has less than this share left has run into the end.
 const END_RATIO: f64 = 0.01;
-/// Evidence that an effect has to have to stay, and names have to have over each other to be told apart.
-pub const STRONG_BIC: f64 = 10.0;
+/// Evidence that an effect has to have to stay, and names have to have over each other to be told apart. 10 would do if the memory of the residual were
+/// known; where noise wanders, the best of a dozen candidates comes to nearly 30 by chance, and effects that are there mostly to hundreds.
+pub const STRONG_BIC: f64 = 30.0;
 /// The named model is brought this near to its minimum, in standard errors.
 const AT_MINIMUM: f64 = 0.01;
 /// Rounds of entering and exchanging.
