@@ -204,7 +204,7 @@ pub struct StateColumns<const CABLES: usize> {
     pub frozen_count: [f64; CABLES],
     /// Last finite length, m; NaN before the first.
     pub length_m: [f64; CABLES],
-    /// How far the cable has moved since the sensor has changed last, m.
+    /// How far the cable has got since the sensor has changed last, m.
     pub frozen_travel_m: [f64; CABLES],
     /// Last good friction in all, N.
     pub friction_n: [f64; CABLES],

@@ -7,7 +7,7 @@ use crate::scalar::{Mask, Scalar};
 
 /// Sensor forces beyond this are no forces, N.
 const GREATEST_FORCE_N: f64 = 1e9;
-/// A sensor that does not change while the cable travels this far is frozen, m; beyond every encoder's noise.
+/// A sensor that does not change while the cable gets this far from where it stood is frozen, m; beyond every encoder's noise.
 const FROZEN_TRAVEL_M: f64 = 1e-3;
 /// A pause counts as at most so many cycles.
 const GREATEST_ELAPSED: f64 = 1e6;
@@ -32,7 +32,7 @@ pub struct SignalState<T> {
     pub sensor_force_n: T,
     /// Cycles since it has changed.
     pub frozen_count: T,
-    /// How far the cable has moved since then, m.
+    /// How far the cable has got since then, m; once that is far enough for a frozen sensor, it stays.
     pub frozen_travel_m: T,
     /// Last finite length, m; NaN before the first.
     pub length_m: T,
@@ -186,8 +186,11 @@ pub fn condition<T: Scalar>(
     let unchanged = sensor_force_n.eq(state.sensor_force_n).and(zero.lt(sensor_force_n)).and(sensor_finite);
     state.sensor_force_n = sensor_force_n;
     state.frozen_count = (state.frozen_count + T::splat(1.0)).keep(unchanged);
-    state.frozen_travel_m = (state.frozen_travel_m + displacement_m).keep(unchanged);
-    let far = T::splat(FROZEN_TRAVEL_M).le(state.frozen_travel_m.abs());
+    // A sensor that has been found frozen is so too where the cable comes back.
+    let travel_m = T::splat(FROZEN_TRAVEL_M);
+    let was_far = travel_m.le(state.frozen_travel_m.abs());
+    state.frozen_travel_m = (state.frozen_travel_m + displacement_m.keep(was_far.not())).keep(unchanged);
+    let far = travel_m.le(state.frozen_travel_m.abs());
     let stuck = T::splat(limits.frozen_cycles).le(state.frozen_count).and(far);
     let frozen = stuck.and(sensor_finite);
     let length_m = state.length_m;

@@ -13,9 +13,9 @@ use core::ops::BitOr;
 /// |---|---|---|
 /// | `SLACK` | sensor force, less what `sensor_*` effects correct of it, ≤ 0 | no force but the offset; stored friction released |
 /// | `SLACK` | viscous friction exceeds the tension | no force but the offset; stored friction goes on as usual |
-/// | `SLIP` | `F_j/F_{j−1}` beyond `e^{±μ_p α}` at a pulley | the ratio held at that bound |
+/// | `SLIP` | `F_j/F_{j−1}` beyond `e^{±μ_p α}` at a pulley; with `lumped` in the sliding that the motion leads to | the ratio held at that bound; with `lumped`, what is stored already is left as it is |
 /// | `SENSOR_NOT_FINITE` | sensor force NaN, infinite or beyond ±10⁹ N | last good force and friction held; the stored friction follows the motion with the last good force, so that the first good cycle goes on from where the cable is |
-/// | `SENSOR_FROZEN` | the same positive sensor value to the last bit over `frozen_cycles` cycles and 1 mm of way | as above |
+/// | `SENSOR_FROZEN` | the same positive sensor value to the last bit over `frozen_cycles` cycles, in which the cable has got 1 mm away; until it changes | as above |
 /// | `LENGTH_JUMP` | length changed by more than `length_jump_m` per elapsed cycle | friction held, force follows the sensor; the jump is not taken for motion |
 /// | `MOTION_NOT_FINITE` | length or speed NaN, infinite or beyond ±10⁶ | friction held, force follows the sensor |
 /// | `OUT_OF_RANGE` | force or speed outside the cable's `validated` range | computed as usual |

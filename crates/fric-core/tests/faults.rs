@@ -166,6 +166,34 @@ fn sensor_frozen() {
 }
 
 #[test]
+fn a_frozen_sensor_stays_so_where_the_cable_comes_back() {
+    for presliding in FORMS {
+        let mut compensator = robot(presliding);
+        let mut held: Option<CableOutput> = None;
+        for cycle in 0..8000 {
+            let phase = std::f64::consts::TAU * 0.5 * f64::from(cycle) * 0.001;
+            let mut input = smooth_input::<1>(0);
+            let cable = &mut input.cables[0];
+            cable.sensor_force_n = 14.0;
+            (cable.length_m, cable.speed_m_per_s) =
+                (2.0 + 0.05 * phase.sin(), 0.05 * 0.5 * std::f64::consts::TAU * phase.cos());
+            let output = compensator.step(&input).cables[0];
+            let is_far = (input.cables[0].length_m - 2.0).abs() >= 1e-3;
+            let is_due = is_far && cycle >= MONITOR.frozen_cycles;
+            assert_eq!(output.status.contains(CableStatus::SENSOR_FROZEN), is_due || held.is_some(), "cycle {cycle}");
+            if let Some(held) = held {
+                assert_eq!(bits(&output), bits(&held), "cycle {cycle}");
+            } else if is_due {
+                held = Some(output);
+            }
+        }
+        let mut input = smooth_input::<1>(0);
+        (input.cables[0].sensor_force_n, input.cables[0].length_m) = (14.1, 2.0);
+        assert!(compensator.step(&input).cables[0].status.is_ok());
+    }
+}
+
+#[test]
 fn sensor_spike() {
     for presliding in FORMS {
         for more_n in [10.0, 500.0, 1e6] {

@@ -120,11 +120,9 @@ fn every_output_is_finite_whatever_goes_in() {
         let options: Vec<_> = (0..6)
             .map(|cable| demanding(&mut random, [&WINCH as &[_], &GUIDE_AND_SWIVEL, &SMALL_SENSOR][cable % 3]))
             .collect();
-        let monitor = MonitorOptions {
-            frozen_cycles: 3,
-            length_jump_m: [1e-9, 0.01, 1e3][usize::try_from(seed % 3).unwrap()],
-            length_noise_m: [0.0, 1e-5][usize::try_from(seed % 2).unwrap()],
-        };
+        let length_jump_m = [1e-9, 0.01, 1e3][usize::try_from(seed % 3).unwrap()];
+        let length_noise_m = [0.0, f64::min(1e-5, 0.1 * length_jump_m)][usize::try_from(seed % 2).unwrap()];
+        let monitor = MonitorOptions { frozen_cycles: 3, length_jump_m, length_noise_m };
         let mut compensator = compensator::<7>(&options, monitor);
         for cycle in 0..600 {
             let mut input = smooth_input::<7>(cycle);

@@ -222,6 +222,12 @@ fn bad_files() -> Vec<Bad> {
             line: Some(29),
             says: &["`frozen_cycles`", "-1", "whole number"],
         },
+        Bad {
+            text: format!("{EXAMPLE}[monitor]\nlength_noise_m = 0.01\n"),
+            line: Some(29),
+            says: &["`length_noise_m`", "not less than `length_jump_m`"],
+        },
+        bad("name = \"cable1\"", "name = \" \"", 17, &["`name`", "is empty"]),
         // Wrong types.
         bad("cycle_s = 0.001", "cycle_s = \"fast\"", 3, &["`cycle_s`", "\"fast\"", "a number"]),
         bad("name = \"rig\"", "name = 7", 2, &["`name`", "is 7;", "text in quotes"]),

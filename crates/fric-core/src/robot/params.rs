@@ -383,8 +383,8 @@ impl Default for PlatformOptions {
 /// When a signal counts as faulty, as stated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MonitorOptions {
-    /// After so many cycles, and 1 mm of way, with the same sensor value to the last bit the sensor counts as frozen;
-    /// 0: never.
+    /// After so many cycles with the same sensor value to the last bit, in which the cable has got 1 mm away, the sensor counts
+    /// as frozen; 0: never.
     pub frozen_cycles: u32,
     /// Greatest change of length in one cycle, m.
     pub length_jump_m: f64,
@@ -435,6 +435,12 @@ impl<'a> RobotParams<'a> {
             return Err(ParamError { key: "cable", pulley: None, effect: None, problem });
         }
         check("cycle_s", cycle_s, 1e-6, 10.0)?;
+        let length_jump_m = check("length_jump_m", monitor.length_jump_m, 1e-9, 1e3)?;
+        let length_noise_m = check("length_noise_m", monitor.length_noise_m, 0.0, 0.1)?;
+        if length_noise_m >= length_jump_m {
+            let reason = "is not less than `length_jump_m`: every change would be noise or a jump, none of them motion";
+            return Err(ParamError::conflict("length_noise_m", reason));
+        }
         let (earliest_s, latest_s) = delay_range_s(cycle_s);
         for cable in cables {
             check("delay_s", cable.values()[time_delay::DELAY], earliest_s, latest_s)
@@ -445,11 +451,7 @@ impl<'a> RobotParams<'a> {
             mass_kg: check("mass_kg", platform.mass_kg, 0.0, 1e6)?,
             center_of_mass_m: check_point("center_of_mass_m", platform.center_of_mass_m)?,
             gravity_m_per_s2: check_point("gravity_m_per_s2", platform.gravity_m_per_s2)?,
-            monitor: MonitorOptions {
-                length_jump_m: check("length_jump_m", monitor.length_jump_m, 1e-9, 1e3)?,
-                length_noise_m: check("length_noise_m", monitor.length_noise_m, 0.0, 0.1)?,
-                ..monitor
-            },
+            monitor: MonitorOptions { length_jump_m, length_noise_m, ..monitor },
             cables,
         })
     }

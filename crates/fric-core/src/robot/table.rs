@@ -1,5 +1,6 @@
 //! One `[[cable]]` of a robot file, checked.
 
+use std::borrow::ToOwned;
 use std::format;
 use std::string::ToString;
 use std::vec::Vec;
@@ -15,6 +16,10 @@ use crate::effects::{self, EffectParams};
 impl CableTable {
     /// The checked cable.
     pub(super) fn check(&self) -> Result<CableParams, OptionsError> {
+        if self.name.trim().is_empty() {
+            let problem = "is empty; give the name that the log has for the cable".to_owned();
+            return Err(OptionsError::new(&[Step::Key("name")], "name", problem));
+        }
         let pulleys = self
             .pulleys
             .iter()
