@@ -8,7 +8,7 @@ use fric_core::SendError;
 use fric_core::robot::file::RobotFile;
 
 use crate::error_text::ErrorText;
-use crate::handle::Handle;
+use crate::handle::{Handle, description};
 use crate::load::{guarded, message, text};
 use crate::outcome::Outcome;
 
@@ -17,7 +17,8 @@ use crate::outcome::Outcome;
 ///
 /// The steps after it take the parameters over: within `blend_s` seconds (0…3600; one cycle at least) the output goes over from
 /// the old parameters to the new ones, and a step takes twice as long. The file is that of the same robot: friction,
-/// effects, geometry, masses and limits may differ, cycle time, number of cables and their pulleys not. One change at a time:
+/// effects, wraps, geometry, masses and limits may differ; cycle time, the cables' names and order, how many pulleys each
+/// has, which of them follow the pose, and which cables have an attachment may not. One change at a time:
 /// FRIC_RESULT_BUSY until the first step after the blend of the change before. FRIC_RESULT_ROBOT_FILE also where the file is that
 /// of another robot, or `blend_s` out of its range or NaN. `error` is as in fric_load_file. Not for the cycle: it reads a file
 /// and allocates.
@@ -73,14 +74,20 @@ unsafe fn change(
     error: ErrorText,
 ) -> Outcome {
     error.write("");
-    if compensator.is_null() || !compensator.is_aligned() {
+    // SAFETY: the same is promised here.
+    let Some(description) = (unsafe { description(compensator) }) else {
         error.write("`compensator` is a null pointer or not aligned");
         return Outcome::BadPointer;
-    }
+    };
     // SAFETY: a handle that lives; the step looks at other fields only, and no reference to those is made here.
     let parameters = unsafe { &(*compensator).parameters };
     let sent = guarded(|| {
         let robot = read(source?).map_err(|text| (Outcome::RobotFile, text))?;
+        if !description.has_cables_of(&robot) {
+            let names = robot.cable_names().join(", ");
+            let text = format!("`name` of the cables, in order: {names}; they have to be those of the robot that runs");
+            return Err((Outcome::RobotFile, text));
+        }
         // After a panic the two rings are whole all the same.
         let mut sender = parameters.lock().unwrap_or_else(PoisonError::into_inner);
         sender.send(&robot.params(), blend_s).map_err(|refused| {

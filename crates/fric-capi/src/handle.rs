@@ -27,10 +27,19 @@ pub(crate) struct Cycle {
 }
 
 /// What does not change after set-up.
-struct Description {
+pub(crate) struct Description {
     robot_name: CString,
     cable_names: Vec<CString>,
     cycle_s: f64,
+}
+
+impl Description {
+    /// Whether the cables of a robot file are these, in this order.
+    pub(crate) fn has_cables_of(&self, robot: &RobotFile) -> bool {
+        let names = robot.cable_names();
+        let ours = self.cable_names.iter().map(CString::as_bytes);
+        ours.eq(names.iter().map(|name| name.as_bytes()))
+    }
 }
 
 /// Why a checked robot file makes no handle.
@@ -64,7 +73,7 @@ impl Handle {
 ///
 /// # Safety
 /// `compensator` is null or a handle that has not been given back.
-unsafe fn description<'a>(compensator: *const Handle) -> Option<&'a Description> {
+pub(crate) unsafe fn description<'a>(compensator: *const Handle) -> Option<&'a Description> {
     if compensator.is_null() || !compensator.is_aligned() {
         return None;
     }

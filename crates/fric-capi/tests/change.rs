@@ -109,6 +109,9 @@ fn what_is_refused_is_told() {
         Outcome::RobotFile,
         "`cycle_s` is 0.002; in the robot that runs it is 0.001",
     );
+    let [first, second] = ["name = \"left\"", "name = \"right\""];
+    let swapped = ROBOT.replace(first, "name = \"\"").replace(second, first).replace("name = \"\"", second);
+    is_refused(&swapped, 0.1, Outcome::RobotFile, "they have to be those of the robot that runs");
     is_refused(ROBOT, f64::NAN, Outcome::RobotFile, "`blend_s` is NaN");
     assert_eq!(change(handle.0, &rougher(), 0.003).0, Outcome::Ok);
     for cycle in 0..=3 {

@@ -80,7 +80,8 @@ pub fn parameter_exchange(robot: &RobotParams<'_>) -> Result<(ParameterSender, P
 impl ParameterSender {
     /// Sends the parameters of `robot` into the loop, whose output goes over to them within `blend_s` seconds (0…3600, one
     /// cycle at least). The change begins with the next [`deliver_to`](ParameterReceiver::deliver_to); it is over, and others
-    /// can be sent, with the first one after its blend. Allocates, and frees what has come back; never waits.
+    /// can be sent, with the first one after its blend. Allocates, and frees what has come back; never waits. Names of cables are
+    /// not known here: that these are the same cables in the same order is the caller's to see to.
     ///
     /// # Errors
     /// [`SendError`]; nothing has been sent then.
