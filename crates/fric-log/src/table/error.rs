@@ -79,7 +79,7 @@ pub enum TableError {
     },
     /// A log without the wanted fields.
     #[error(
-        "{}: no topic has messages with a field `{example}` or another column of a run (topics: {topics}); record one \
+        "{}: no topic has messages with a field `{example}` or another column of a run (topics: {found}); record one \
          message a sample, with the columns as its fields", path.display()
     )]
     NoTopic {
@@ -87,8 +87,18 @@ pub enum TableError {
         path: PathBuf,
         /// A wanted field.
         example: String,
-        /// What there is.
-        topics: String,
+        /// The topics there are, and what of the file could not be read.
+        found: String,
+    },
+    /// A log whose messages with the wanted fields are all wrong.
+    #[error("{}: no message on `{topic}` can be used ({problem}); record again", path.display())]
+    NoUsableMessage {
+        /// The file.
+        path: PathBuf,
+        /// The topic.
+        topic: String,
+        /// What is wrong with the first one.
+        problem: String,
     },
     /// Several topics with wanted fields.
     #[error("{}: columns of a run are on several topics ({topics}); put them into the messages of one", path.display())]

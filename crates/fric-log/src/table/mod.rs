@@ -3,8 +3,9 @@
 //! For the runs of manipulators and for load steps on a bench, where one row is one measurement. What the columns mean is the
 //! caller's. An empty cell, `nan` and JSON's `null` are NaN; infinities pass through. A whole table is held in memory, 8 bytes a number.
 //!
-//! In a log, the topic is the one whose messages have any of the wanted fields; it has to be one alone. Where the messages
-//! have no `time_s` of their own it is put in front: from `header.stamp`, else the log time, in seconds since the first row.
+//! In a log, the topic is the one whose messages have any of the wanted fields; it has to be one alone. It may be on several
+//! channels; what the messages of one do not have of the columns is NaN there. Where no messages have a `time_s` of their own
+//! it is put in front: from `header.stamp`, else the log time, in seconds since the first row.
 
 mod csv_text;
 mod error;

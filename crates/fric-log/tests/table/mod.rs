@@ -29,10 +29,16 @@ impl Place {
 
     /// A log with JSON messages, each with its topic and log time in seconds.
     fn json(&self, messages: &[(&str, u64, &str)]) -> Result<NumberTable, String> {
+        self.json_of(&messages.iter().map(|(topic, time_s, text)| (*topic, "", *time_s, *text)).collect::<Vec<_>>())
+    }
+
+    /// The same with the node in each message's channel.
+    fn json_of(&self, messages: &[(&str, &str, u64, &str)]) -> Result<NumberTable, String> {
         let file = std::fs::File::create(self.path("t.mcap")).unwrap();
         let mut writer = mcap::Writer::new(std::io::BufWriter::new(file)).unwrap();
-        for (place, (topic, time_s, text)) in messages.iter().enumerate() {
-            let channel = writer.add_channel(0, topic, "json", &BTreeMap::new()).unwrap();
+        for (place, (topic, node, time_s, text)) in messages.iter().enumerate() {
+            let metadata = BTreeMap::from([("node".to_owned(), (*node).to_owned())]);
+            let channel = writer.add_channel(0, topic, "json", &metadata).unwrap();
             let nanos = time_s * 1_000_000_000;
             let sequence = u32::try_from(place).unwrap();
             let header =
@@ -134,4 +140,49 @@ fn messages_without_a_schema_are_asked_themselves() {
     assert!(none.contains("no topic has messages with a field `time_s`") && none.contains("/log"), "{none}");
     let two = place.json(&[("/a", 1, r#"{"force_n": 1}"#), ("/b", 1, r#"{"force_n": 1}"#)]).unwrap_err();
     assert!(two.contains("several topics (/a, /b)"), "{two}");
+}
+
+#[test]
+fn a_topic_on_several_channels_is_one() {
+    let place = Place::new();
+    let table = place
+        .json_of(&[
+            ("/run", "first", 1, r#"{"force_n": 1}"#),
+            ("/run", "second", 2, r#"{"force_n": 2, "shift_1_nm": 0.5}"#),
+            ("/run", "third", 3, r#"{"text": "stopped"}"#),
+            ("/run", "first", 4, r#"{"force_n": 3}"#),
+        ])
+        .unwrap();
+    let [(_, times_s), (force, forces_n), (shift, shifts_nm)] = &table.columns[..] else { panic!("{table:?}") };
+    assert_eq!((force.as_str(), shift.as_str()), ("force_n", "shift_1_nm"));
+    assert_eq!((&times_s[..], &forces_n[..]), (&[0.0, 1.0, 3.0][..], &[1.0, 2.0, 3.0][..]));
+    assert!(shifts_nm[0].is_nan() && shifts_nm[1].to_bits() == 0.5_f64.to_bits() && shifts_nm[2].is_nan());
+    assert_eq!(table.warnings, [""; 0]);
+}
+
+#[test]
+fn a_log_without_a_usable_message_says_why() {
+    let place = Place::new();
+    let mut writer = LogWriter::create(&place.path("t.mcap"), &[] as &[&str], false).unwrap();
+    let channel = writer.add_numbers("/run", "fric_msgs/msg/TendonRun", &["force_n".to_owned()]).unwrap();
+    writer.write_numbers(&channel, 1_000_000_000, &[1.0]).unwrap();
+    writer.finish().unwrap();
+    let whole = std::fs::read(place.path("t.mcap")).unwrap();
+    // Without its end: what is damaged is said beside what is missing.
+    std::fs::write(place.path("cut.mcap"), &whole[..60]).unwrap();
+    let sentence = NumberTable::read(&place.path("cut.mcap"), &wanted()).unwrap_err().to_string();
+    assert!(sentence.contains("(topics: none; `") && sentence.contains("cut off"), "{sentence}");
+
+    let file = std::fs::File::create(place.path("t.mcap")).unwrap();
+    let mut writer = mcap::Writer::new(std::io::BufWriter::new(file)).unwrap();
+    let schema = writer.add_schema("demo/Force", "ros2msg", b"float64 force_n").unwrap();
+    let channel_id = writer.add_channel(schema, "/run", "cdr", &BTreeMap::new()).unwrap();
+    let header = mcap::records::MessageHeader { channel_id, sequence: 0, log_time: 1, publish_time: 1 };
+    writer.write_to_known_channel(&header, &[0, 1, 0, 0, 0]).unwrap();
+    writer.finish().unwrap();
+    let sentence = NumberTable::read(&place.path("t.mcap"), &wanted()).unwrap_err().to_string();
+    assert!(
+        sentence.contains("no message on `/run` can be used (") && sentence.ends_with("; record again"),
+        "{sentence}"
+    );
 }
