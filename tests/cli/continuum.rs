@@ -257,6 +257,20 @@ fn a_hole_gives_its_coefficient() {
         .fails(1, &["hole.csv", "`angle_1_rad` is 74 in row 1", "in rad"]);
 }
 
+/// What was left out is told before what is then missing.
+#[test]
+fn loads_cut_off_are_told_before_their_number() {
+    let place = Place::empty();
+    let header = "tension_1_n,tension_2_n,angle_1_rad,angle_2_rad\n";
+    place.write("hole.csv", format!("{header}1,0.9,1,1\n2,1.8,1,1\n3,2.7,1,1"));
+    let run = place.run_in_vain(&["continuum", "hole", "hole.csv"]);
+    assert!(run.stderr.starts_with("warning: `hole.csv` is cut off: its last line has no line end"), "{run:#?}");
+    run.fails(1, &["hole.csv", "fewer than three loads"]);
+    place.write("hole.csv", format!("{header}1,0.9,1,1"));
+    let run = place.run_in_vain(&["continuum", "hole", "hole.csv"]);
+    run.fails(1, &["hole.csv has no whole row", "no line end and is left out"]).advises(&["put a line end behind it"]);
+}
+
 #[test]
 fn info_says_what_is_impossible() {
     let place = place();

@@ -30,6 +30,9 @@ pub(super) fn read(path: &Path) -> Result<NumberTable, TableError> {
             })?);
         }
     }
+    if is_cut && columns.first().is_some_and(|(_, numbers)| numbers.is_empty()) {
+        return Err(TableError::CutOff { path: path.to_owned() });
+    }
     let warning = || {
         format!(
             "`{}` is cut off: its last line has no line end and is left out; if that line is whole, put a line end behind it",

@@ -26,6 +26,15 @@ pub enum TableError {
         /// The file.
         path: PathBuf,
     },
+    /// Its only row has no line end, so that a number of it may be cut off.
+    #[error(
+        "{} has no whole row of numbers below its header: its last line has no line end and is left out; if that line is \
+         whole, put a line end behind it", path.display()
+    )]
+    CutOff {
+        /// The file.
+        path: PathBuf,
+    },
     /// It is no text.
     #[error("{} is neither CSV nor MCAP: line {line} is no UTF-8 text; name another file", path.display())]
     NotText {

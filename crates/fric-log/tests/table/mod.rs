@@ -96,7 +96,15 @@ fn a_last_line_that_is_cut_off_is_left_out_and_told() {
     assert_eq!(place.csv("a,b\n1,2\n3,4\n  ").unwrap(), whole);
     // Damage elsewhere stays an error.
     assert!(place.csv("a,b\n1,2\n3\n5,").unwrap_err().contains("line 3: 1 cells"));
-    assert!(place.csv("a,b\n1,").unwrap_err().contains("no row of numbers"));
+}
+
+#[test]
+fn a_table_of_one_line_that_is_cut_off_says_what_is_missing() {
+    for text in ["a,b\n1,2", "a,b\r\n1,"] {
+        let sentence = Place::new().csv(text).unwrap_err();
+        assert!(sentence.contains("t.csv has no whole row of numbers below its header"), "{sentence}");
+        assert!(sentence.ends_with("; if that line is whole, put a line end behind it"), "{sentence}");
+    }
 }
 
 #[test]
