@@ -97,7 +97,8 @@ impl TrackCounts {
     /// What a topic did out of the ordinary, in words.
     #[must_use]
     pub fn remarks(&self) -> Vec<String> {
-        let Self { duplicate_count, late_count, clock_step_count, gap_count, undecodable_count, .. } = *self;
+        let Self { duplicate_count, late_count, clock_step_count, gap_count, undecodable_count, partial_count, .. } =
+            *self;
         let all = [
             (gap_count, "gap", "gaps"),
             (duplicate_count, "message with a stamp used before", "messages with a stamp used before"),
@@ -106,6 +107,13 @@ impl TrackCounts {
             (undecodable_count, "unusable message", "unusable messages"),
         ];
         let said = all.into_iter().filter(|(count, ..)| *count > 0);
-        said.map(|(count, one, many)| format!("{count} {}", if count == 1 { one } else { many })).collect()
+        let counted = said.map(|(count, one, many)| format!("{count} {}", if count == 1 { one } else { many }));
+        let partial = (partial_count > 0).then(|| {
+            format!(
+                "messages name only some of the cables at {partial_count} of their stamps, and the others have no value \
+                 there: put all cables into one message, or give the messages of a cycle one stamp"
+            )
+        });
+        counted.chain(partial).collect()
     }
 }

@@ -120,6 +120,11 @@ impl ChannelReader {
 }
 
 impl Decoded<'_> {
+    /// The cables without numbers, as bits.
+    pub fn missing_cables(&self) -> u64 {
+        self.order.missing_cables()
+    }
+
     /// Writes the numbers: for cables one block of the robot's cables per quantity, NaN where the message has none; the
     /// block of speeds is left out if the message has no speeds.
     pub fn fill(&self, out: &mut Vec<f64>) {

@@ -14,7 +14,9 @@
 //!
 //! | what a topic does | what is done | counted as |
 //! |---|---|---|
+//! | same stamp again, of cables not named there yet | the messages are one | nothing |
 //! | same stamp again | the first counts | `duplicate_count` |
+//! | names now these, now those cables at different stamps | the others are NaN in that row | `partial_count` |
 //! | one or a few messages with earlier stamps, then on as before | they are left out | `late_count` |
 //! | goes on with earlier stamps ([`CLOCK_STEP_MESSAGES`] that follow one another) | the clock was set back: the stream goes on in the new time | `clock_step_count` |
 //! | pauses | rows in between lack that signal; cable signal: no rows | `gap_count` |
@@ -118,8 +120,10 @@ impl SignalPaths {
 pub struct TrackCounts {
     /// Messages used.
     pub message_count: u64,
-    /// Messages with the stamp of the one before.
+    /// Messages with the stamp of the one before, and nothing new.
     pub duplicate_count: u64,
+    /// Times at which messages named only some of the cables that the topic has named.
+    pub partial_count: u64,
     /// Single messages behind the time.
     pub late_count: u64,
     /// Times the clock was set back.

@@ -12,8 +12,9 @@ pub(super) struct Order {
     cables: Vec<Option<usize>>,
     is_robots: bool,
     is_foreign: bool,
+    missing_cables: u64,
     twice: Option<String>,
-    /// The names, as far as an error shows them.
+    /// The names of a message about other cables, as far as an error shows them.
     names: Vec<String>,
 }
 
@@ -46,6 +47,12 @@ impl Order {
         self.is_robots
     }
 
+    /// The cables that a message does not name, as bits; none where messages have no names. Cables past the 64th, which no
+    /// compensator takes, share a bit.
+    pub fn missing_cables(&self) -> u64 {
+        self.missing_cables
+    }
+
     /// What is named instead of the robot's cables.
     pub fn describe(&self, cables: &[String]) -> String {
         let found = if self.names.is_empty() { "nothing at all".to_owned() } else { self.names.join(", ") };
@@ -59,7 +66,10 @@ impl Order {
         self.cables.extend(names.iter().map(|name| cables.iter().position(|cable| cable == name)));
         self.is_robots = names.len() == cables.len() && self.cables.iter().copied().eq((0..cables.len()).map(Some));
         self.is_foreign = !self.cables.iter().any(Option::is_some);
-        self.names = names.iter().take(8).map(str::to_owned).collect();
+        let missing = (0..cables.len()).filter(|cable| !self.cables.contains(&Some(*cable)));
+        self.missing_cables = missing.fold(0, |bits, cable| bits | 1 << cable.min(63));
+        let shown = if self.is_foreign { 8 } else { 0 };
+        self.names = names.iter().take(shown).map(str::to_owned).collect();
         let is_twice = |cable: usize| self.cables.iter().filter(|entry| **entry == Some(cable)).count() > 1;
         self.twice = (0..cables.len()).find(|cable| is_twice(*cable)).and_then(|cable| cables.get(cable)).cloned();
     }

@@ -157,7 +157,9 @@ impl SignalReader {
         }
         let awaited = self.topics.is_awaited.iter().skip(1);
         let mut tracks = others.iter().zip(awaited);
-        tracks.all(|(track, is_awaited)| !is_awaited || track.has_reached(oldest.stamp_nanos))
+        // Messages of the same time may name the cables that are missing.
+        let is_whole = oldest.missing_cables == 0 || cable.samples().len() > 1;
+        is_whole && tracks.all(|(track, is_awaited)| !is_awaited || track.has_reached(oldest.stamp_nanos))
             || self.log_time_nanos.saturating_sub(oldest.log_time_nanos) >= WAIT_NANOS
             || cable.samples().len() >= WAITING_LIMIT
             || others.iter().any(|track| track.samples().len() >= WAITING_LIMIT)
@@ -185,7 +187,10 @@ impl SignalReader {
             let track = self.tracks.get_mut(role);
             match reader.read(&message, &self.topics.cable_names) {
                 Ok(decoded) => {
-                    track.push(decoded.stamp_nanos, message.log_time_nanos, |values| decoded.fill(values));
+                    let missing_cables = decoded.missing_cables();
+                    track.push(decoded.stamp_nanos, message.log_time_nanos, missing_cables, |values| {
+                        decoded.fill(values);
+                    });
                 }
                 Err(Rejection::Unusable(reason)) => {
                     track.count_undecodable();

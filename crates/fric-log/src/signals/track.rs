@@ -20,6 +20,8 @@ pub(super) struct Tracked {
     /// Which of the track's samples it is.
     pub number: u64,
     pub values: Vec<f64>,
+    /// The cables that no message of this time has named yet, as bits.
+    pub missing_cables: u64,
     /// Whether more than a usual interval lies before it.
     after_gap: bool,
 }
@@ -41,6 +43,8 @@ pub(super) struct Track {
     reached_nanos: Option<i64>,
     pace: Pace,
     counts: TrackCounts,
+    /// The cables that any message has named, as bits.
+    named_cables: u64,
 }
 
 impl Track {
@@ -57,18 +61,32 @@ impl Track {
         &self.samples
     }
 
-    /// Takes in a sample; `fill` writes its values into an empty vector.
-    pub fn push(&mut self, stamp_nanos: i64, log_time_nanos: u64, fill: impl FnOnce(&mut Vec<f64>)) {
+    /// Takes in a sample without the cables missing (as bits); `fill` writes its values into an empty vector.
+    pub fn push(
+        &mut self,
+        stamp_nanos: i64,
+        log_time_nanos: u64,
+        missing_cables: u64,
+        fill: impl FnOnce(&mut Vec<f64>),
+    ) {
         let is_behind = self.last_nanos.is_some_and(|last| stamp_nanos <= last);
         let is_expecting = self.expecting > 0;
         self.expecting = self.expecting.saturating_sub(1);
-        if is_behind && !self.may_be_step(stamp_nanos) {
-            return;
+        if is_behind {
+            let suspected_nanos = self.suspects.back().map(|suspect| suspect.stamp_nanos);
+            if [self.last_nanos, suspected_nanos].contains(&Some(stamp_nanos)) {
+                self.complete(stamp_nanos, missing_cables, fill);
+                return;
+            }
+            // Suspects that this one does not go on from are no clock.
+            if suspected_nanos > Some(stamp_nanos) {
+                self.drop_suspects(stamp_nanos);
+            }
         }
         let mut values = self.spare.pop().unwrap_or_default();
         values.clear();
         fill(&mut values);
-        let sample = Tracked { stamp_nanos, log_time_nanos, number: 0, values, after_gap: false };
+        let sample = Tracked { stamp_nanos, log_time_nanos, number: 0, values, missing_cables, after_gap: false };
         if is_behind {
             self.suspects.push_back(sample);
             if is_expecting || self.suspects.len() >= CLOCK_STEP_MESSAGES {
@@ -85,18 +103,38 @@ impl Track {
         self.drop_suspects(i64::MIN);
     }
 
-    /// Whether a sample that is not ahead of the last one may belong to a clock that was set back; else it is counted.
-    fn may_be_step(&mut self, stamp_nanos: i64) -> bool {
-        let last = self.suspects.back().map(|suspect| suspect.stamp_nanos);
-        if self.last_nanos == Some(stamp_nanos) || last == Some(stamp_nanos) {
+    /// Takes in a message of the time of the newest sample or suspect: of the cables that were missing there.
+    #[cold]
+    fn complete(&mut self, stamp_nanos: i64, missing_cables: u64, fill: impl FnOnce(&mut Vec<f64>)) {
+        let accepted = if self.is_stepped { &mut self.ahead } else { &mut self.samples };
+        let mut newest = self.suspects.back_mut().into_iter().chain(accepted.back_mut());
+        let sample = newest.find(|sample| sample.stamp_nanos == stamp_nanos);
+        let Some(sample) = sample.filter(|sample| sample.missing_cables & !missing_cables != 0) else {
             self.counts.duplicate_count += 1;
-            return false;
+            return;
+        };
+        let mut values = self.spare.pop().unwrap_or_default();
+        values.clear();
+        fill(&mut values);
+        // Only one of the two may have speeds.
+        sample.values.resize(sample.values.len().max(values.len()), f64::NAN);
+        for (place, value) in sample.values.iter_mut().zip(&values).filter(|(place, _)| place.is_nan()) {
+            *place = *value;
         }
-        // Suspects that this one does not go on from are no clock.
-        if last > Some(stamp_nanos) {
-            self.drop_suspects(stamp_nanos);
+        self.spare.push(values);
+        sample.missing_cables &= missing_cables;
+        let is_whole = sample.missing_cables == 0;
+        self.named_cables |= !missing_cables;
+        self.counts.message_count += 1;
+        if is_whole && self.last_nanos == Some(stamp_nanos) {
+            self.reach(Some(stamp_nanos));
         }
-        true
+    }
+
+    fn reach(&mut self, stamp_nanos: Option<i64>) {
+        if self.pace.is_settled() {
+            self.reached_nanos = self.reached_nanos.max(stamp_nanos);
+        }
     }
 
     fn accept(&mut self, mut sample: Tracked) {
@@ -113,14 +151,17 @@ impl Track {
         }
         self.counts.message_count += 1;
         sample.number = self.counts.message_count;
-        let stamp_nanos = sample.stamp_nanos;
+        let (stamp_nanos, missing_cables) = (sample.stamp_nanos, sample.missing_cables);
         let (first, last) = self.counts.stamps_nanos.unwrap_or((stamp_nanos, stamp_nanos));
         self.counts.stamps_nanos = Some((first.min(stamp_nanos), last.max(stamp_nanos)));
-        self.last_nanos = Some(stamp_nanos);
-        if self.is_stepped { &mut self.ahead } else { &mut self.samples }.push_back(sample);
-        if self.pace.is_settled() {
-            self.reached_nanos = self.reached_nanos.max(Some(stamp_nanos));
-        }
+        let samples = if self.is_stepped { &mut self.ahead } else { &mut self.samples };
+        let is_partial = samples.back().is_some_and(|before| before.missing_cables & self.named_cables != 0);
+        self.counts.partial_count += u64::from(is_partial);
+        samples.push_back(sample);
+        self.named_cables |= !missing_cables;
+        let before_nanos = self.last_nanos.replace(stamp_nanos);
+        // More messages of this time may come.
+        self.reach(if missing_cables == 0 { Some(stamp_nanos) } else { before_nanos });
         if self.samples.len().max(self.ahead.len()) > WAITING_LIMIT {
             self.keep_within_limit();
         }
@@ -167,8 +208,10 @@ impl Track {
         self.clear();
         self.is_stepped = false;
         std::mem::swap(&mut self.samples, &mut self.ahead);
-        let newest_nanos = self.samples.back().map(|sample| sample.stamp_nanos);
-        self.reached_nanos = newest_nanos.filter(|_| self.pace.is_settled());
+        let is_whole = self.samples.back().is_none_or(|newest| newest.missing_cables == 0);
+        let newest_whole = self.samples.iter().rev().nth(usize::from(!is_whole));
+        let newest_nanos = newest_whole.map(|sample| sample.stamp_nanos);
+        self.reach(newest_nanos);
     }
 
     /// The cable signal's clock was set back, so that this one's will have been: one message is enough to tell.
@@ -297,7 +340,7 @@ mod tests {
         let mut track = Track::default();
         for stamp in stamps {
             #[expect(clippy::cast_precision_loss, reason = "small numbers")]
-            track.push(stamp, 0, |values| values.push(stamp as f64));
+            track.push(stamp, 0, 0, |values| values.push(stamp as f64));
         }
         track.finish();
         track

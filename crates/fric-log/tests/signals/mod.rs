@@ -5,6 +5,7 @@ mod cut;
 mod errors;
 mod layouts;
 mod oracle;
+mod partial;
 mod random;
 mod support;
 mod table;
