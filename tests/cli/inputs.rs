@@ -1,6 +1,6 @@
 //! Logs that are none, and robot files that do not fit the log.
 
-use super::logs::{Storage, rewrite, without};
+use super::logs::{Storage, rewrite, with_data, without};
 use super::support::{Place, example_robot, short_log};
 
 const COMMANDS: [&str; 2] = ["replay", "info"];
@@ -141,4 +141,40 @@ fn a_log_without_messages_is_told() {
     let info = place.run_in_vain(&["info", "log.mcap"]);
     assert_eq!(info.code, Some(0), "{info:#?}");
     assert!(info.stdout.contains("impossible"), "{info:#?}");
+}
+
+/// The log with the stamps of a topic taken from a clock that began with the controller.
+fn with_another_clock(topic: &str) -> Vec<u8> {
+    with_data(short_log(), topic, |data| {
+        // Behind the four bytes that say how it is encoded: seconds.
+        let mut data = data.to_vec();
+        data[4..8].copy_from_slice(&12_i32.to_le_bytes());
+        data
+    })
+}
+
+#[test]
+fn a_signal_on_another_clock_is_told_and_no_other_topic_is_advised() {
+    let place = Place::with_log();
+    place.write("log.mcap", with_another_clock("/reference_forces"));
+    let told = ["reference signal `/reference_forces`: none of its", "stamped 12.000 … 12.", "one clock"];
+    let run = place.run(&["replay", "log.mcap"]).warns(&told);
+    assert!(!run.stderr.contains("under `[log]`"), "{run:#?}");
+    for command in ["fit", "discover"] {
+        let run = place.run_in_vain(&[command, "log.mcap", "-o", "out.toml"]);
+        assert!(run.stderr.starts_with(&format!("warning: {}", told[0])), "{run:#?}");
+        let run = run.fails(1, &["no message of the reference signal is of a time of the cable signal"]);
+        assert!(!run.advises(&["one clock", "stamp of zero"]).stderr.contains("under `[log]`"));
+    }
+    place.run(&["info", "log.mcap", "--json", "j.json"]).succeeds();
+    let signals = place.json("j.json")["signals"].clone();
+    let signal = signals.as_array().unwrap().iter().find(|signal| signal["signal"] == "reference").unwrap();
+    assert_eq!(signal["messages"], 0, "{signal}");
+    assert!(signal["remarks"][0].as_str().unwrap().starts_with("none of its 400 messages"), "{signal}");
+
+    place.write("log.mcap", with_another_clock("/platform_pose"));
+    let run = place.run(&["replay", "log.mcap"]).warns(&["pose signal `/platform_pose`: none of its"]);
+    assert!(!run.warns(&["no row has a pose", "90°"]).stderr.contains("under `[log]`"));
+    let run = place.run_in_vain(&["fit", "log.mcap", "--reference", "wrench", "-o", "out.toml"]);
+    run.fails(1, &["no message of the pose signal"]).advises(&["one clock"]);
 }

@@ -15,7 +15,7 @@ use fric_lab::hysteresis::HysteresisError;
 use fric_lab::simulate::SimulationError;
 use fric_log::output::{OutputError, directory_of};
 use fric_log::recording::RecordingError;
-use fric_log::signals::SignalError;
+use fric_log::signals::{SignalError, TimesApart};
 use fric_log::table::TableError;
 use fric_log::write::WriteError;
 use fric_log::{in_full, reason, with_sources};
@@ -88,6 +88,14 @@ macro_rules! failure_with_advice_from {
 }
 
 failure_with_advice_from!(ExcitationError, HysteresisError, RecordingError, SignalError, SimulationError);
+
+impl From<TimesApart> for Failure {
+    fn from(apart: TimesApart) -> Self {
+        let signal = apart.role.key();
+        Self::new(format!("no message of the {signal} signal is of a time of the cable signal"))
+            .advise(TimesApart::ADVICE)
+    }
+}
 
 impl From<FitError> for Failure {
     fn from(error: FitError) -> Self {

@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::Duration;
 
-use fric_lab::fit::readiness::Holdings;
+use fric_core::CableParams;
+use fric_lab::fit::readiness::{Holdings, Readiness};
 use fric_lab::fit::{Measurements, Progress, Reference};
 use fric_log::recording::Recording;
-use fric_log::signals::{Role, SignalReader};
+use fric_log::signals::{Role, SignalReader, TimesApart};
 
 use crate::failure::{Failure, Outcome};
 use crate::interrupt;
@@ -41,8 +42,23 @@ pub fn find_model(named: Option<&Path>, logs: &[PathBuf]) -> Outcome<Model> {
     Err(model::missing())
 }
 
+/// What was read of all logs.
+pub struct LogsRead<'a> {
+    pub measurements: Measurements<'a>,
+    pub holdings: Holdings,
+    /// A signal that is needed and, in all logs, of other times than the cable signal.
+    apart: Option<TimesApart>,
+}
+
+impl LogsRead<'_> {
+    /// What to warn of: what is missing for some cables.
+    pub fn check(&self, readiness: &Readiness) -> Outcome<Vec<String>> {
+        readiness.check().map_err(|error| self.apart.map_or_else(|| error.into(), Failure::from))
+    }
+}
+
 /// Reads all logs, each by itself.
-pub fn read<'a>(logs: &[PathBuf], model: &'a Model, reference: Reference) -> Outcome<(Measurements<'a>, Holdings)> {
+pub fn read<'a>(logs: &[PathBuf], model: &'a Model, reference: Reference) -> Outcome<LogsRead<'a>> {
     // What is not compared with is not even read.
     let (unread, compared) = match reference {
         Reference::Forces => (Role::Wrench, Role::Reference),
@@ -51,13 +67,24 @@ pub fn read<'a>(logs: &[PathBuf], model: &'a Model, reference: Reference) -> Out
     let paths = model.signal_paths()?.with(unread, None);
     warn_all(&model.robot.warnings());
     let names = model.robot.cable_names();
-    let mut measurements = Measurements::new(&model.robot.params(), reference);
+    let params = model.robot.params();
+    let is_needed = |role: &Role| match role {
+        Role::Pose => reference == Reference::Wrench || params.cables().iter().any(CableParams::needs_pose),
+        // The platform's mass may stand in for it.
+        Role::Wrench => params.mass_kg() <= 0.0,
+        _ => true,
+    };
+    let mut all_apart: Vec<Role> = [Role::Length, compared, Role::Pose].into_iter().filter(is_needed).collect();
+    let mut apart = None;
+    let mut measurements = Measurements::new(&params, reference);
     let mut all: Option<Holdings> = None;
     for log in logs {
         measurements.start_log();
         let mut reader = SignalReader::new(Recording::open(&[log])?, paths.clone(), &names);
         let holdings = read_one(&mut reader, &mut measurements, names.len())?;
         warn_all(reader.cycle_warning(&model.robot).as_slice());
+        all_apart.retain(|role| reader.times_apart(*role).is_some());
+        apart = all_apart.first().and_then(|role| reader.times_apart(*role));
         let has_compared = holdings.has_reference() || holdings.wrenched > 0;
         match &mut all {
             Some(all) => all.join(&holdings),
@@ -69,7 +96,7 @@ pub fn read<'a>(logs: &[PathBuf], model: &'a Model, reference: Reference) -> Out
         }
     }
     let holdings = all.unwrap_or_else(|| Holdings::new(names.len()));
-    Ok((measurements, holdings))
+    Ok(LogsRead { measurements, holdings, apart })
 }
 
 fn read_one(reader: &mut SignalReader, measurements: &mut Measurements<'_>, cable_count: usize) -> Outcome<Holdings> {

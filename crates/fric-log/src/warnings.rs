@@ -58,6 +58,7 @@ impl SignalReader {
                 let signal = role.key();
                 warnings.push(format!("{signal} signal `{path}`: some messages cannot be used; the first: {problem}"));
             }
+            warnings.extend(self.times_apart(role).map(|apart| format!("{} signal `{path}`: {apart}", role.key())));
         }
         warnings
     }
@@ -66,12 +67,18 @@ impl SignalReader {
     #[must_use]
     pub fn robot_warnings(&self, robot: &RobotFile) -> Vec<String> {
         let mut warnings = Vec::new();
-        let no_pose = self.counts(Role::Pose).message_count == 0;
+        let has_messages = self.counts(Role::Pose).message_count > 0;
+        let no_pose = !has_messages || self.times_apart(Role::Pose).is_some();
         let needs_pose = robot.params().cables().iter().any(CableParams::needs_pose);
         if no_pose && needs_pose {
-            let text = "the log has no pose: the wrap of the last pulleys is taken as 90°, and there is no wrench; name \
-                        the pose's topic as `pose` under `[log]` in the robot file";
-            warnings.push(text.to_owned());
+            let (nothing, advice) = if has_messages {
+                ("no row has a", "")
+            } else {
+                ("the log has no", "; name the pose's topic as `pose` under `[log]` in the robot file")
+            };
+            warnings.push(format!(
+                "{nothing} pose: the wrap of the last pulleys is taken as 90°, and there is no wrench{advice}"
+            ));
         }
         warnings.extend(self.cycle_warning(robot));
         warnings

@@ -33,14 +33,14 @@ pub fn run(arguments: &DiscoverArguments) -> Outcome {
     let report = report.as_ref().map(|path| OutputFile::create(path, &inputs, result.force)).transpose()?;
     let extended_file = OutputFile::create(output, &inputs, result.force)?;
 
-    let (measurements, holdings) = read(logs, &model, Reference::Forces)?;
-    let readiness = readiness::to_discover(&model.robot, &holdings);
+    let read = read(logs, &model, Reference::Forces)?;
+    let readiness = readiness::to_discover(&model.robot, &read.holdings);
     // What is missing for some cables only stands beside their verdicts.
-    readiness.check()?;
-    let discoveries = watched("cables looked at", |progress| discover(&measurements, progress))?;
+    read.check(&readiness)?;
+    let discoveries = watched("cables looked at", |progress| discover(&read.measurements, progress))?;
 
     let names = logs.iter().map(|log| log.display().to_string());
-    let logs: Vec<(String, f64)> = names.zip(measurements.log_starts_s()).collect();
+    let logs: Vec<(String, f64)> = names.zip(read.measurements.log_starts_s()).collect();
     let outcome = DiscoverResult::new(&model.robot, &logs, &readiness, &discoveries);
     outcome.check_told()?;
     extended_file.finish_with(&extended(&model.text, &model.origin, &discoveries)?)?;

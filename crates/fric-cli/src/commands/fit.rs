@@ -29,18 +29,18 @@ pub fn run(arguments: &FitArguments) -> Outcome {
 
     let (fits, readiness) = match reference {
         ReferenceName::Forces => {
-            let (measurements, holdings) = read(logs, &model, Reference::Forces)?;
-            let readiness = readiness::by_forces(&model.robot, &holdings);
-            warn_all(&readiness.check()?);
-            (Fits::Forces(watched("fitted", |progress| fit_cables(&measurements, &options, progress))?), readiness)
+            let read = read(logs, &model, Reference::Forces)?;
+            let readiness = readiness::by_forces(&model.robot, &read.holdings);
+            warn_all(&read.check(&readiness)?);
+            (Fits::Forces(watched("fitted", |progress| fit_cables(&read.measurements, &options, progress))?), readiness)
         }
         ReferenceName::Wrench => {
             // The robot file alone can rule it out.
             readiness::geometry(&model.robot, &model.origin).map_or(Ok(()), |lack| Err(lack.error()))?;
-            let (measurements, holdings) = read(logs, &model, Reference::Wrench)?;
-            let readiness = readiness::by_wrench(&model.robot, &model.origin, &holdings);
-            warn_all(&readiness.check()?);
-            (Fits::Wrench(watched("fitted", |progress| fit_wrench(&measurements, &options, progress))?), readiness)
+            let read = read(logs, &model, Reference::Wrench)?;
+            let readiness = readiness::by_wrench(&model.robot, &model.origin, &read.holdings);
+            warn_all(&read.check(&readiness)?);
+            (Fits::Wrench(watched("fitted", |progress| fit_wrench(&read.measurements, &options, progress))?), readiness)
         }
     };
     let outcome = FitResult::new(&model.robot, &fits);

@@ -207,13 +207,15 @@ fn signal_results(reader: &SignalReader, paths: &SignalPaths) -> Vec<SignalResul
         let counts = reader.counts(role);
         let mut remarks = counts.remarks();
         remarks.extend(reader.first_problem(role).map(|problem| format!("cannot be used: {problem}")));
+        let apart = reader.times_apart(role);
+        remarks.extend(apart.map(|apart| apart.to_string()));
         if counts.message_count == 0 && remarks.is_empty() {
             remarks.push("not in the log".to_owned());
         }
         Some(SignalResult {
             signal: role.key(),
             path: path.to_string(),
-            messages: counts.message_count,
+            messages: if apart.is_some() { 0 } else { counts.message_count },
             gaps: counts.gap_count,
             remarks,
         })

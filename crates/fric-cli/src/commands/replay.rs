@@ -7,7 +7,7 @@ use fric_lab::replay::{CableErrors, Replay};
 use fric_lab::text::table;
 use fric_log::output::OutputFile;
 use fric_log::recording::Recording;
-use fric_log::signals::SignalReader;
+use fric_log::signals::{Role, SignalReader};
 use fric_log::write::ReplayedLog;
 use hdrhistogram::Histogram;
 
@@ -71,7 +71,13 @@ pub fn run(arguments: &ReplayArguments) -> Outcome {
     end?;
     warn_all(&reader.warnings());
     warn_all(&reader.robot_warnings(&model.robot));
-    warn_all(&replay.warnings(&model.robot));
+    if reader.times_apart(Role::Reference).is_some() {
+        // That there are no reference forces has been told, and why.
+        warn_all(&model.robot.warnings());
+        warn_all(&replay.cable_warnings(&model.robot));
+    } else {
+        warn_all(&replay.warnings(&model.robot));
+    }
 
     let outcome = summarize(&model, &names, &replay, &durations);
     if let Some(writer) = writer {

@@ -31,6 +31,8 @@ pub(super) enum Rejection {
 /// A decoded message: its time, and its numbers in the robot's order.
 pub(super) struct Decoded<'a> {
     pub stamp_nanos: i64,
+    /// Whether the message says so; else it is its log time.
+    pub is_stamped: bool,
     role: Role,
     layout: &'a Layout,
     order: &'a Order,
@@ -102,6 +104,7 @@ impl ChannelReader {
         let stamp_nanos = stamps.find(|stamp| *stamp != 0);
         Ok(Decoded {
             stamp_nanos: stamp_nanos.unwrap_or_else(|| i64::try_from(message.log_time_nanos).unwrap_or(i64::MAX)),
+            is_stamped: stamp_nanos.is_some(),
             role: self.role,
             layout: &self.layout,
             order: &self.order,

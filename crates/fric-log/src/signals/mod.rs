@@ -36,6 +36,7 @@
 //! Speed that a message does not have (an empty `velocity`, or NaN in it) is the change of length since it was last known
 //! over the time since then, also over a gap; 0 in the first row and where the clock went back.
 
+mod apart;
 mod channel;
 mod error;
 mod layout;
@@ -46,6 +47,7 @@ mod row;
 mod speed;
 mod track;
 
+pub use apart::TimesApart;
 pub use error::SignalError;
 pub(crate) use layout::{Probe, STAMPS};
 pub use reader::SignalReader;

@@ -65,6 +65,8 @@ struct Topics {
     /// By role: whether rows wait for it. Not if it is not looked for, or its type has not got it.
     is_awaited: [bool; 6],
     has_cable_messages: bool,
+    /// By role: whether any message has a stamp.
+    is_stamped: [bool; 6],
     /// By role: what is wrong with the first message that cannot be used.
     first_problem: [Option<String>; 6],
     /// By role: what the first message is about that is not about the robot.
@@ -88,6 +90,7 @@ impl SignalReader {
             cable_names: cable_names.iter().map(|name| name.as_ref().to_owned()).collect(),
             paths,
             has_cable_messages: false,
+            is_stamped: [false; 6],
             first_problem: Default::default(),
             first_foreign: Default::default(),
         };
@@ -121,6 +124,11 @@ impl SignalReader {
         let foreign = self.topics.first_foreign[role as usize].as_deref();
         let foreign = foreign.filter(|_| self.counts(role).message_count == 0);
         self.topics.first_problem[role as usize].as_deref().or(foreign)
+    }
+
+    /// Whether any message of a role has a stamp.
+    pub(super) fn is_stamped(&self, role: Role) -> bool {
+        self.topics.is_stamped[role as usize]
     }
 
     /// The next row; `None` at the end of the log.
@@ -187,6 +195,7 @@ impl SignalReader {
             let track = self.tracks.get_mut(role);
             match reader.read(&message, &self.topics.cable_names) {
                 Ok(decoded) => {
+                    self.topics.is_stamped[role as usize] |= decoded.is_stamped;
                     let missing_cables = decoded.missing_cables();
                     track.push(decoded.stamp_nanos, message.log_time_nanos, missing_cables, |values| {
                         decoded.fill(values);

@@ -1,5 +1,6 @@
 //! Rows joined from topics, against definitions and hand-made logs.
 
+mod apart;
 mod clocks;
 mod cut;
 mod errors;
