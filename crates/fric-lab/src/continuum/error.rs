@@ -175,6 +175,9 @@ pub enum ContinuumError {
         /// How many are needed.
         needed: usize,
     },
+    /// Gratings of which hardly any samples follow one another.
+    #[error("so many samples of the gratings are missing that nothing tells their noise; record a run with fewer gaps")]
+    UntoldNoise,
     /// Shifts that nothing turns into tensions.
     #[error(
         "the manipulator file has no `[gratings]`, without which shifts are no tensions; write them with a calibration"

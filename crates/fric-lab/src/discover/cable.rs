@@ -13,7 +13,7 @@ use super::naming::{Named, Naming, STRONG_BIC, Search};
 use super::noise::white_noise;
 use super::places::{Excess, Place};
 use super::profile::profile;
-use super::readiness::{lack_of, lack_of_samples};
+use super::readiness::{lack_of, lack_of_noise, lack_of_samples};
 use super::report::{CableDiscovery, Finding, Model, RunnerUp, Tried, Unexplained, Verdict};
 use super::rest::{WORTH, is_wander};
 use super::split::{Block, split};
@@ -54,18 +54,23 @@ pub fn discover_cable(record: &CableRecord<'_>, progress: &Progress) -> CableDis
     let hum = lines(&bench.residuals_n(&bench.try_one(&start).values), record.cycle_s);
     let rows = without_lines(record, &hum);
     let case = Case { record: record.with_signals(&rows), raw: *record, blocks: &blocks, stop };
-    let mut outcome = case.look(&counts, &start, &conditions);
+    let Some(mut outcome) = case.look(&counts, &start, &conditions) else {
+        return CableDiscovery::untold(record, samples, lack_of_noise());
+    };
     let told = case.told(&counts, &outcome.naming, &held);
     if !told.is_empty() {
         start.free.extend(told);
-        outcome = case.look(&counts, &start, &conditions);
+        if let Some(again) = case.look(&counts, &start, &conditions) {
+            outcome = again;
+        }
     }
     let mut stretch = None;
     // A narrow stretch with trouble of its own may hide what else there is, or be taken for it.
     if let Some(found) = outcome.stretch.take() {
         let outside: Vec<bool> = counts.iter().zip(&found.cycles).map(|(counts, inside)| *counts && !inside).collect();
         let again = case.look(&outside, &start, &conditions);
-        if again.rest_is_noise || again.naming.named.len() > outcome.naming.named.len() {
+        let is_clearer = |again: &Outcome| again.rest_is_noise || again.naming.named.len() > outcome.naming.named.len();
+        if let Some(again) = again.filter(is_clearer) {
             (outcome, stretch) = (again, Some(found.place));
         }
     }
@@ -146,16 +151,16 @@ impl<'a> Case<'a> {
         Excess { record: &self.record, blocks: self.blocks, residual_n, noise_n }
     }
 
-    /// Fits, names, and judges the rest.
-    fn look(&self, counts: &[bool], start: &workbench::Model, conditions: &[Condition]) -> Outcome {
+    /// Fits, names, and judges the rest; `None` where nothing tells the noise.
+    fn look(&self, counts: &[bool], start: &workbench::Model, conditions: &[Condition]) -> Option<Outcome> {
         let bench = self.bench(counts);
         let base = bench.try_one(start);
         let residual_n = bench.residuals_n(&base.values);
         let least_n = BELIEVED_RATIO * self.scale(&base, 0.0).tension_n;
-        let noise_n = white_noise(&residual_n).unwrap_or(0.0).max(least_n);
+        let noise_n = white_noise(&residual_n)?.max(least_n);
         let naming = Search::new(&bench, noise_n, self.scale(&base, noise_n), &base).run();
         let rest_n = bench.residuals_n(&naming.model.values);
-        let noise_n = white_noise(&rest_n).unwrap_or(0.0).max(least_n);
+        let noise_n = white_noise(&rest_n)?.max(least_n);
         let excess = self.excess(&rest_n, noise_n);
         let before_n = bench.residuals_n(&naming.with_friction.values);
         let (share, before) = (excess.share(), self.excess(&before_n, noise_n).share());
@@ -163,7 +168,7 @@ impl<'a> Case<'a> {
         let rest_places = excess.places(conditions);
         let stretch = if is_small { None } else { stretch_of_cable(&excess, conditions) };
         let is_wander = !is_small && stretch.is_none() && is_wander(&excess, &rest_places);
-        Outcome {
+        Some(Outcome {
             counts: counts.to_vec(),
             base,
             naming,
@@ -173,7 +178,7 @@ impl<'a> Case<'a> {
             rest_places,
             stretch,
             rest_n,
-        }
+        })
     }
 
     /// Which of the held parameters the log determines when the model has what it lacked.

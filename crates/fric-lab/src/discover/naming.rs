@@ -129,8 +129,8 @@ impl<'b, 'a> Search<'b, 'a> {
     fn noise_squares_throughout(&self, model: &Trial) -> f64 {
         #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
         let count = self.bench.count(true) as f64;
-        let noise_n = white_noise_throughout(&self.bench.residuals_n(&model.values)).unwrap_or(0.0);
-        (count * noise_n * noise_n).max(self.noise_squares)
+        let throughout_n = white_noise_throughout(&self.bench.residuals_n(&model.values));
+        throughout_n.map_or(self.noise_squares, |noise_n| (count * noise_n * noise_n).max(self.noise_squares))
     }
 
     /// Lets the best candidates in as long as they help.

@@ -2,7 +2,8 @@
 //!
 //! Differences of fourth order, `(r₀ − 4r₁ + 6r₂ − 4r₃ + r₄)/√70`, leave white noise as it is and all but remove what changes
 //! slowly: whatever the model misses. Their mean square is taken over short blocks, and the median of these, so that a few
-//! stretches with more do not count. Noise that remembers is not seen by it.
+//! stretches with more do not count. A missing sample costs the differences that it is in and nothing else: a block goes on after a
+//! gap. Noise that remembers is not seen by it.
 
 /// Samples of a block.
 const BLOCK: usize = 200;
@@ -19,8 +20,8 @@ fn mean_per_median(block: usize) -> f64 {
     (1.0 - 2.0 / (9.0 * count)).powi(-3)
 }
 
-/// Standard deviation of the white noise in a residual, in its unit; NaN samples divide it into stretches. `None` where no
-/// stretch is long enough.
+/// Standard deviation of the white noise in a residual, in its unit; NaN where a sample is missing. `None` where all that have four
+/// neighbours do not fill a block.
 pub fn white_noise(residual: &[f64]) -> Option<f64> {
     white_noise_in(residual, BLOCK)
 }
@@ -47,17 +48,14 @@ pub fn white_noise_throughout(residual: &[f64]) -> Option<f64> {
 
 /// Mean square of the differences in each block of so many samples.
 fn block_squares(residual: &[f64], block: usize) -> Vec<f64> {
-    let mut squares = Vec::new();
-    for stretch in residual.split(|number| !number.is_finite()) {
-        let differences: Vec<f64> = stretch
-            .windows(COEFFICIENTS.len())
-            .map(|window| window.iter().zip(COEFFICIENTS).map(|(number, factor)| number * factor).sum::<f64>() / NORM)
-            .collect();
-        #[expect(clippy::cast_precision_loss, reason = "a small constant")]
-        squares
-            .extend(differences.chunks_exact(block).map(|part| part.iter().map(|d| d * d).sum::<f64>() / block as f64));
-    }
-    squares
+    let difference =
+        |window: &[f64]| window.iter().zip(COEFFICIENTS).map(|(number, factor)| number * factor).sum::<f64>() / NORM;
+    let stretches = residual.split(|number| !number.is_finite());
+    let differences: Vec<f64> =
+        stretches.flat_map(|stretch| stretch.windows(COEFFICIENTS.len()).map(difference)).collect();
+    #[expect(clippy::cast_precision_loss, reason = "a small count")]
+    let mean_square = |part: &[f64]| part.iter().map(|d| d * d).sum::<f64>() / block as f64;
+    differences.chunks_exact(block).map(mean_square).collect()
 }
 
 #[cfg(test)]
@@ -85,7 +83,26 @@ mod tests {
     }
 
     #[test]
+    fn gaps_do_not_hide_it() {
+        let mut random = ChaCha8Rng::seed_from_u64(2);
+        for distance in [150, 37, 6] {
+            let residual: Vec<f64> = (0..50_000)
+                .map(|k| {
+                    let noise: f64 = StandardNormal.sample(&mut random);
+                    if k % distance == 0 { f64::NAN } else { 0.0141 * noise + (f64::from(k) * 0.006).sin() }
+                })
+                .collect();
+            for found in [white_noise(&residual), white_noise_throughout(&residual)] {
+                let found = found.unwrap();
+                assert!((found / 0.0141 - 1.0).abs() < 0.03, "{distance}: {found}");
+            }
+        }
+    }
+
+    #[test]
     fn a_residual_too_short_has_none() {
         assert_eq!(white_noise(&[0.1; 150]), None);
+        let in_fours: Vec<f64> = (0..50_000).map(|k| if k % 5 == 0 { f64::NAN } else { f64::from(k % 3) }).collect();
+        assert_eq!(white_noise(&in_fours), None);
     }
 }

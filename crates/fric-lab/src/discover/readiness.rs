@@ -111,6 +111,14 @@ pub fn lack_of_samples(counts: &SampleCounts, cycle_s: f64) -> Option<Lack> {
     Some(Lack::new(format!("only {used_s:.1} s of its samples can be used: {LEAST_S} s are needed"), advice))
 }
 
+/// What is lacking where nothing tells how much noise there is.
+pub fn lack_of_noise() -> Lack {
+    Lack::new(
+        "so many of its samples are missing or flagged that hardly five in a row can be used, which it takes to tell the noise",
+        "See the gaps with `fric-cli info` and the flags with `fric-cli replay`.",
+    )
+}
+
 fn seconds(samples: usize, cycle_s: f64) -> f64 {
     #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
     let seconds = samples as f64 * cycle_s;

@@ -47,6 +47,28 @@ fn a_spread_of_friction_is_nothing_missing() {
     assert_eq!(told(&found(&without_sigma(&text), &samples)), ("complete", Vec::new()));
 }
 
+/// The noise is that of the same run without gaps.
+#[test]
+fn samples_that_gratings_lack_do_not_hide_their_noise() {
+    let (text, mut samples) = measured(Experiment::Mixed, 2, &[0.1753]);
+    let whole = found(&text, &samples).result.cables[0].noise_floor_n;
+    for shift_nm in samples.iter_mut().step_by(20).flat_map(|sample| &mut sample.shift_nm) {
+        *shift_nm = f64::NAN;
+    }
+    let discovery = found(&text, &samples);
+    assert_eq!(told(&discovery), ("complete", Vec::new()));
+    let noise_n = discovery.result.cables[0].noise_floor_n;
+    assert!((noise_n / whole - 1.0).abs() < 0.1, "{noise_n} {whole}");
+    for (place, sample) in samples.iter_mut().enumerate() {
+        if place % 4 == 0 {
+            sample.shift_nm.fill(f64::NAN);
+        }
+    }
+    let file = ManipulatorFile::parse(&text, "arm").unwrap();
+    let refused = discover(&file, &Run::new(samples, 8).unwrap(), "run").unwrap_err();
+    assert_eq!(refused, ContinuumError::UntoldNoise);
+}
+
 #[test]
 fn friction_and_its_memory_are_named() {
     let none = |text: &str| text.replace("mu = 0.1753 ", "mu = 0.0 ");

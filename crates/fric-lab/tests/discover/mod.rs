@@ -1,5 +1,7 @@
 //! Discovery on logs with known effects hidden in them; the whole sweep is `benches/discover.rs`.
 
+mod faulty;
+
 use fric_core::parameters::VISCOUS;
 use fric_core::robot::file::{FrictionTable, RobotFile};
 use fric_lab::discover::{CableDiscovery, Verdict, discover};

@@ -134,13 +134,16 @@ impl<'a> Case<'a> {
     }
 
     /// Standard deviation of the gratings' noise, N, from a residual.
-    pub fn noise_n(&self, fit: &Fit) -> f64 {
+    ///
+    /// # Errors
+    /// [`ContinuumError::UntoldNoise`] where gaps leave too little of it.
+    pub fn noise_n(&self, fit: &Fit) -> Result<f64, ContinuumError> {
         let mut series = Vec::new();
         for grating in 0..self.newton_per_nm.len() {
             series.extend(fit.residual_n.iter().filter_map(|row| row.get(grating)).copied());
             series.push(f64::NAN);
         }
-        white_noise_in(&series, NOISE_BLOCK.min(self.samples.len() / 2)).unwrap_or(0.0)
+        white_noise_in(&series, NOISE_BLOCK.min(self.samples.len() / 2)).ok_or(ContinuumError::UntoldNoise)
     }
 }
 

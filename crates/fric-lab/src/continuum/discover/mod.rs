@@ -52,7 +52,8 @@ pub struct TendonDiscovery {
 ///
 /// # Errors
 /// [`ContinuumError::MissingGroup`] without the tension at the base or gratings, [`ContinuumError::NoGratings`] if the file does not say how shifts become
-/// tensions, [`ContinuumError::TooShort`] for a run with too few samples to hold any out, [`ContinuumError::OverCapacity`].
+/// tensions, [`ContinuumError::TooShort`] for a run with too few samples to hold any out, [`ContinuumError::UntoldNoise`] for gratings of more gaps
+/// than samples, [`ContinuumError::OverCapacity`].
 pub fn discover(file: &ManipulatorFile, run: &Run, log: &str) -> Result<TendonDiscovery, ContinuumError> {
     let lack = |what, remedy| ContinuumError::MissingGroup { what, consequence: "there is nothing to compare", remedy };
     if !run.has_tension() {
@@ -64,6 +65,6 @@ pub fn discover(file: &ManipulatorFile, run: &Run, log: &str) -> Result<TendonDi
     run.check_capacity(file.params().capacity_n(Tendon::Agonist))?;
     let gratings = Gratings::from_file(file)?.ok_or(ContinuumError::NoGratings)?;
     let case = Case::new(file, run, &gratings)?;
-    let outcome = naming::name(&case);
+    let outcome = naming::name(&case)?;
     Ok(result::told(&case, &outcome, log))
 }

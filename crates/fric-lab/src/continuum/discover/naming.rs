@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::case::{Case, Fit};
 use super::fitting::fitted;
 use super::model::{Effect, Model};
+use crate::continuum::error::ContinuumError;
 use crate::continuum::shape_errors::Way;
 use crate::discover::Verdict;
 use crate::replay::Deviation;
@@ -56,10 +57,13 @@ struct Trial {
 ///
 /// Where something is left, a name is not put on a grating, or on a hole between two, that still disagrees: what is wrong there is
 /// something else.
-pub fn name(case: &Case<'_>) -> Outcome {
+///
+/// # Errors
+/// [`ContinuumError::UntoldNoise`] where gaps, or a model without shapes, leave nothing that tells the noise.
+pub fn name(case: &Case<'_>) -> Result<Outcome, ContinuumError> {
     let mut distrusted = Vec::new();
     loop {
-        let outcome = search(case, &distrusted);
+        let outcome = search(case, &distrusted)?;
         let disagrees = |grating: usize| !is_noise_at(case, &outcome.after, outcome.noise_n, grating);
         let is_wrong = |effect: &Effect| match *effect {
             Effect::SensorDrift(grating) => disagrees(grating),
@@ -69,19 +73,19 @@ pub fn name(case: &Case<'_>) -> Outcome {
         let effects = outcome.findings.iter().map(|finding| finding.effect);
         let wrong: Vec<Effect> = effects.filter(is_wrong).collect();
         if outcome.verdict != Verdict::Unexplained || wrong.is_empty() {
-            return outcome;
+            return Ok(outcome);
         }
         distrusted.extend(wrong);
     }
 }
 
 /// Searches among all effects but the distrusted.
-fn search(case: &Case<'_>, distrusted: &[Effect]) -> Outcome {
+fn search(case: &Case<'_>, distrusted: &[Effect]) -> Result<Outcome, ContinuumError> {
     let given = case.given();
-    let before = fitted(case, &given).or_else(|| case.fit(&given)).unwrap_or_else(|| nothing(&given));
+    let before = fitted(case, &given).or_else(|| case.fit(&given)).ok_or(ContinuumError::UntoldNoise)?;
     let mut now = before.clone();
     let mut findings: Vec<Finding> = Vec::new();
-    let mut noise_n = case.noise_n(&now);
+    let mut noise_n = case.noise_n(&now)?;
     while findings.len() < MOST_EFFECTS && !is_noise(case, &now, noise_n) {
         let mut trials = trials(case, &now, distrusted);
         let gap_n = excess_n(&now, noise_n);
@@ -104,7 +108,7 @@ fn search(case: &Case<'_>, distrusted: &[Effect]) -> Outcome {
             findings.push(Finding { effect, fit: best.fit.clone(), delta_bic: best.delta_bic, runner_up });
         }
         now = best.fit;
-        noise_n = case.noise_n(&now);
+        noise_n = case.noise_n(&now)?;
     }
     if !is_noise(case, &now, noise_n) {
         // A name for less than what is left would be a guess.
@@ -125,12 +129,7 @@ fn search(case: &Case<'_>, distrusted: &[Effect]) -> Outcome {
         (false, true) => Verdict::Extended,
         (_, false) => Verdict::Unexplained,
     };
-    Outcome { noise_n, verdict, before, after: now, findings }
-}
-
-/// A run that no model fits, such as one without any live grating.
-fn nothing(model: &Model) -> Fit {
-    Fit { model: model.clone(), residual_n: Vec::new(), squares: 0.0, held_out_n: crate::replay::Deviation::default() }
+    Ok(Outcome { noise_n, verdict, before, after: now, findings })
 }
 
 pub fn rms_n(fit: &Fit) -> f64 {

@@ -1,0 +1,72 @@
+//! What is wrong with a log, or with how it was recorded, is neither a missing effect nor something unexplained.
+
+use fric_core::{CableInput, Pose, Sample};
+use fric_lab::discover::{CableDiscovery, Verdict, discover};
+use fric_lab::fit::{Measurements, Progress, Reference};
+use fric_lab::simulate::sweep::{Case, CaseTruth, Group};
+
+/// A sample of the one cable of a log.
+#[derive(Clone, Copy)]
+struct Point {
+    stamp_nanos: i64,
+    cable: CableInput,
+    reference_n: f64,
+    pose: Option<Pose>,
+}
+
+/// The samples of a case's log.
+fn points_of(case: &Case) -> (Vec<Point>, CaseTruth) {
+    let mut log = case.log().unwrap();
+    let mut points = Vec::new();
+    while let Some(sample) = log.simulation.next_cycle() {
+        let (cable, reference_n) = (sample.cables[0], sample.reference_force_n[0]);
+        points.push(Point { stamp_nanos: sample.stamp_nanos, cable, reference_n, pose: sample.pose });
+    }
+    (points, log.truth)
+}
+
+/// Looks at logs by the model that they were made with.
+fn look(logs: &[&[Point]], truth: &CaseTruth) -> CableDiscovery {
+    let params = truth.robot.params();
+    let mut measurements = Measurements::new(&params, Reference::Forces);
+    for points in logs {
+        measurements.start_log();
+        for point in *points {
+            measurements.add(&Sample {
+                stamp_nanos: point.stamp_nanos,
+                cables: &[point.cable],
+                reference_force_n: &[point.reference_n],
+                pose: point.pose,
+                outside_wrench: None,
+            });
+        }
+    }
+    discover(&measurements, &Progress::new()).remove(0)
+}
+
+fn assert_complete(found: &CableDiscovery, floor_n: f64) {
+    assert!(found.unexplained.is_none(), "{:?}", found.unexplained);
+    assert_eq!((found.verdict, found.findings.len()), (Verdict::Complete, 0));
+    let ratio = found.noise_floor_n / floor_n;
+    assert!((ratio - 1.0).abs() < 0.05, "floor {ratio}");
+}
+
+#[test]
+fn gaps_do_not_hide_the_noise() {
+    let (points, truth) = points_of(&Case { seed: 70_011, ..Case::of(Group::Nothing) });
+    let gaps: [fn(&mut Point); 3] = [
+        |point| point.reference_n = f64::NAN,
+        |point| point.cable.sensor_force_n = f64::NAN,
+        |point| point.reference_n += 5.0,
+    ];
+    for gap in gaps {
+        let mut points = points.clone();
+        points.iter_mut().step_by(150).for_each(gap);
+        assert_complete(&look(&[&points], &truth), truth.floor_n);
+    }
+    // Of each five samples one is missing: nothing tells the noise, and that is said.
+    let mut points = points;
+    points.iter_mut().step_by(5).for_each(gaps[0]);
+    let found = look(&[&points], &truth);
+    assert!(found.lack.unwrap().cause.contains("hardly five in a row"), "{:?}", found.verdict);
+}
