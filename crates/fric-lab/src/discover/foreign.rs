@@ -4,8 +4,8 @@
 
 use std::ops::Range;
 
-use crate::fit::CableRecord;
 use crate::fit::engine::Standing;
+use crate::fit::{CableRecord, Row};
 
 /// Samples in a row with the same force, to the last bit, from which on a sensor stands still.
 const FEWEST_STILL: usize = 20;
@@ -38,15 +38,18 @@ pub struct FaultyStretch {
 
 /// Stretches of a cable's log with a faulty sensor, in the order of time.
 pub fn faulty_stretches(record: &CableRecord<'_>) -> Vec<FaultyStretch> {
-    let shown: Vec<f64> = record.rows.iter().map(|row| row.signals.sensor_force_n).collect();
+    // Where the sensor shows no number, that of the last good sample stands for it: such samples are flagged already.
+    let shown_n = |row: &Row| if row.signals.sensor_finite { row.signals.sensor_force_n } else { f64::NAN };
+    let shown: Vec<f64> = record.rows.iter().map(shown_n).collect();
     let runs: Vec<Range<usize>> = shown
         .chunk_by(|one, next| one.to_bits() == next.to_bits())
         .scan(0, |start, run| {
             *start += run.len();
             Some(*start - run.len()..*start)
         })
+        .filter(|run| shown.get(run.start).is_some_and(|force_n| force_n.is_finite()))
         .collect();
-    let usual = usual_length(&runs, shown.len());
+    let usual = usual_length(&runs, runs.iter().map(Range::len).sum());
     let mut stretches = Vec::new();
     let ends = ends_of_range(&shown, usual);
     let is_end = |force_n: f64| ends.iter().any(|end| end.to_bits() == force_n.to_bits());

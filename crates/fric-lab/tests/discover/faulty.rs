@@ -1,7 +1,7 @@
 //! What is wrong with a log, or with how it was recorded, is neither a missing effect nor something unexplained.
 
 use fric_core::{CableInput, Pose, Sample};
-use fric_lab::discover::{CableDiscovery, Verdict, discover};
+use fric_lab::discover::{CableDiscovery, Fault, Verdict, discover};
 use fric_lab::fit::{Measurements, Progress, Reference};
 use fric_lab::simulate::sweep::{Case, CaseTruth, Group};
 
@@ -69,4 +69,19 @@ fn gaps_do_not_hide_the_noise() {
     points.iter_mut().step_by(5).for_each(gaps[0]);
     let found = look(&[&points], &truth);
     assert!(found.lack.unwrap().cause.contains("hardly five in a row"), "{:?}", found.verdict);
+}
+
+#[test]
+fn a_sensor_that_drops_out_is_not_frozen() {
+    let (mut points, truth) = points_of(&Case { seed: 70_012, ..Case::of(Group::Nothing) });
+    for start in [15_000, 31_000] {
+        points[start..start + 30].iter_mut().for_each(|point| point.cable.sensor_force_n = f64::NAN);
+    }
+    assert_complete(&look(&[&points], &truth), truth.floor_n);
+    // One that repeats its last number is.
+    let held_n = points[40_000].cable.sensor_force_n;
+    points[40_000..40_030].iter_mut().for_each(|point| point.cable.sensor_force_n = held_n);
+    let found = look(&[&points], &truth);
+    let faults: Vec<Fault> = found.unexplained.unwrap().faults.iter().map(|(fault, _)| *fault).collect();
+    assert_eq!((faults, found.verdict), (vec![Fault::Frozen], Verdict::Unexplained));
 }
