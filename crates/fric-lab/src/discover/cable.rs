@@ -8,7 +8,7 @@ use nalgebra::DMatrix;
 use super::candidates::Scale;
 use super::conditions::{Condition, conditions};
 use super::foreign::{FaultyStretch, faulty_stretches, leave_out};
-use super::lines::{Line, lines};
+use super::lines::{Line, Times, lines};
 use super::naming::{Named, Naming, STRONG_BIC, Search};
 use super::noise::white_noise;
 use super::places::{Excess, Place};
@@ -51,8 +51,9 @@ pub fn discover_cable(record: &CableRecord<'_>, progress: &Progress) -> CableDis
 
     // What hums is no matter of friction: it comes off the reference.
     let bench = Workbench { record: *record, blocks: &blocks, counts: &counts, stop };
-    let hum = lines(&bench.residuals_n(&bench.try_one(&start).values), record.cycle_s);
-    let rows = without_lines(record, &hum);
+    let times = Times::of(record);
+    let hum = lines(&bench.residuals_n(&bench.try_one(&start).values), &times);
+    let rows = without_lines(record, &hum, &times);
     let case = Case { record: record.with_signals(&rows), raw: *record, blocks: &blocks, stop };
     let Some(mut outcome) = case.look(&counts, &start, &conditions) else {
         return CableDiscovery::untold(record, samples, lack_of_noise());
@@ -100,12 +101,12 @@ fn given_model(record: &CableRecord<'_>, paper: &engine::Solution) -> (workbench
 }
 
 /// The rows with lines taken off the reference.
-fn without_lines(record: &CableRecord<'_>, lines: &[Line]) -> Vec<Row> {
-    let clean = |(cycle, row): (usize, &Row)| {
-        let hum_n: f64 = lines.iter().map(|line| line.at(cycle, record.cycle_s)).sum();
-        Row { reference_n: row.reference_n + hum_n, ..*row }
-    };
-    record.rows.iter().enumerate().map(clean).collect()
+fn without_lines(record: &CableRecord<'_>, lines: &[Line], times: &Times) -> Vec<Row> {
+    let mut rows = record.rows.to_vec();
+    for line in lines {
+        line.add_to(rows.iter_mut().map(|row| &mut row.reference_n), 1.0, times);
+    }
+    rows
 }
 
 /// What is wrong with the log itself.

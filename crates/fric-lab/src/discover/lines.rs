@@ -2,12 +2,17 @@
 //!
 //! The periodogram of Welch: spectra of overlapping stretches under Hann's window, averaged. A line stands out from its
 //! neighbours by many times their median, everywhere in the log; what a moving cable does is broad.
+//!
+//! Its phase follows the time, lost samples or not. Over a long pause, and from one log to the next, it begins anew.
 
 use std::f64::consts::TAU;
+use std::ops::Range;
 
 use realfft::RealFftPlanner;
 
-/// Samples of a stretch.
+use crate::fit::{CableRecord, Row};
+
+/// Cycles of a stretch, and of a pause after which a line begins anew.
 const STRETCH: usize = 4096;
 /// Neighbours on either side that a line is compared with.
 const NEIGHBOURS: usize = 24;
@@ -15,61 +20,116 @@ const NEIGHBOURS: usize = 24;
 const WIDTH: usize = 3;
 /// By how many times their median it stands out.
 const LEAST_RATIO: f64 = 12.0;
-/// A line below this many turns in a stretch is no line but a slow change.
+/// A line below this many turns in a stretch is no line but a slow change, and as many tell its phase.
 const FEWEST_TURNS: usize = 8;
 /// Lines that are looked for.
 const MOST_LINES: usize = 8;
 /// And the least share of the noise's power that one has to have.
 const LEAST_SHARE: f64 = 0.01;
 
+/// When a record's rows are, and over which of them a line keeps its phase.
+pub struct Times {
+    /// Of each row, cycles since the first of its log.
+    cycles: Vec<f64>,
+    /// Rows of one phase.
+    runs: Vec<Range<usize>>,
+    cycle_s: f64,
+}
+
+impl Times {
+    /// Of a record.
+    #[must_use]
+    pub fn of(record: &CableRecord<'_>) -> Self {
+        #[expect(clippy::cast_precision_loss, reason = "a small constant")]
+        let is_near = |one: &Row, next: &Row| next.cycle - one.cycle < STRETCH as f64;
+        let mut runs = Vec::new();
+        for (mut start, rows) in record.logs() {
+            for run in rows.chunk_by(is_near) {
+                runs.push(start..start + run.len());
+                start += run.len();
+            }
+        }
+        Self { cycles: record.rows.iter().map(|row| row.cycle).collect(), runs, cycle_s: record.cycle_s }
+    }
+
+    /// The cycles of the rows of a run.
+    fn cycles(&self, run: &Range<usize>) -> &[f64] {
+        self.cycles.get(run.clone()).unwrap_or_default()
+    }
+
+    fn phase(&self, frequency_hz: f64, cycle: f64) -> f64 {
+        TAU * frequency_hz * (cycle * self.cycle_s)
+    }
+
+    /// Cycles from the first to the last of the longest run.
+    fn longest(&self) -> f64 {
+        let length = |run: &Range<usize>| match self.cycles(run) {
+            [first, .., last] => last - first + 1.0,
+            _ => 1.0,
+        };
+        self.runs.iter().map(length).fold(1.0, f64::max)
+    }
+}
+
 /// A sine of fixed frequency.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Line {
     /// Its frequency, Hz.
     pub frequency_hz: f64,
-    /// Factors of its sine and cosine, in the residual's unit.
-    pub sine: f64,
-    /// See `sine`.
-    pub cosine: f64,
+    /// In each run of rows.
+    waves: Vec<Wave>,
+}
+
+/// A line over rows in which it keeps its phase.
+#[derive(Clone, Debug, PartialEq)]
+struct Wave {
+    rows: Range<usize>,
+    /// Samples that it was seen in.
+    count: f64,
+    /// Factors of sine and cosine, in the residual's unit.
+    sine: f64,
+    cosine: f64,
 }
 
 impl Line {
-    /// Half its height from peak to peak.
+    /// Half its height from peak to peak; the root mean square of several.
     #[must_use]
     pub fn amplitude(&self) -> f64 {
-        self.sine.hypot(self.cosine)
+        if let [wave] = self.waves.as_slice() {
+            return wave.sine.hypot(wave.cosine);
+        }
+        let (squares, count) = self.waves.iter().fold((0.0, 0.0), |(squares, count), wave| {
+            (squares + wave.count * (wave.sine * wave.sine + wave.cosine * wave.cosine), count + wave.count)
+        });
+        if count > 0.0 { (squares / count).sqrt() } else { 0.0 }
     }
 
-    /// Its value in a cycle.
-    #[must_use]
-    pub fn at(&self, cycle: usize, cycle_s: f64) -> f64 {
-        let (sin, cos) = phase(self.frequency_hz, cycle, cycle_s).sin_cos();
-        self.sine * sin + self.cosine * cos
+    /// Adds it, times a factor, to a number of each row.
+    pub fn add_to<'a>(&self, numbers: impl Iterator<Item = &'a mut f64>, factor: f64, times: &Times) {
+        let values = self.waves.iter().flat_map(|wave| {
+            times.cycles(&wave.rows).iter().map(|cycle| {
+                let (sin, cos) = times.phase(self.frequency_hz, *cycle).sin_cos();
+                wave.sine * sin + wave.cosine * cos
+            })
+        });
+        numbers.zip(values).for_each(|(number, value)| *number += factor * value);
     }
-}
-
-fn phase(frequency_hz: f64, cycle: usize, cycle_s: f64) -> f64 {
-    #[expect(clippy::cast_precision_loss, reason = "a count of cycles")]
-    let time_s = cycle as f64 * cycle_s;
-    TAU * frequency_hz * time_s
 }
 
 /// The lines of a residual, the strongest first; NaN where there is no sample.
-pub fn lines(residual: &[f64], cycle_s: f64) -> Vec<Line> {
+pub fn lines(residual: &[f64], times: &Times) -> Vec<Line> {
     let mut rest = residual.to_vec();
     let mut lines = Vec::new();
     while lines.len() < MOST_LINES {
-        let Some(line) = strongest(&rest, cycle_s) else { break };
-        for (cycle, number) in rest.iter_mut().enumerate() {
-            *number -= line.at(cycle, cycle_s);
-        }
+        let Some(line) = strongest(&rest, times) else { break };
+        line.add_to(rest.iter_mut(), -1.0, times);
         lines.push(line);
     }
     lines
 }
 
-fn strongest(residual: &[f64], cycle_s: f64) -> Option<Line> {
-    let spectrum = spectrum(residual)?;
+fn strongest(residual: &[f64], times: &Times) -> Option<Line> {
+    let spectrum = spectrum(residual, times)?;
     let ratio = |place: usize| -> Option<f64> {
         let around = place.checked_sub(NEIGHBOURS)?..(place + NEIGHBOURS + 1).min(spectrum.len());
         let mut others: Vec<f64> = around
@@ -86,8 +146,8 @@ fn strongest(residual: &[f64], cycle_s: f64) -> Option<Line> {
         .filter(|(_, ratio)| *ratio > LEAST_RATIO)
         .max_by(|a, b| spectrum.get(a.0).unwrap_or(&0.0).total_cmp(spectrum.get(b.0).unwrap_or(&0.0)))?;
     #[expect(clippy::cast_precision_loss, reason = "small counts")]
-    let (coarse_hz, width_hz) = (place as f64 / (STRETCH as f64 * cycle_s), 1.0 / (STRETCH as f64 * cycle_s));
-    let line = refine(residual, coarse_hz, width_hz, cycle_s);
+    let (place, stretch_s) = (place as f64, STRETCH as f64 * times.cycle_s);
+    let line = refine(residual, place / stretch_s, 1.0 / stretch_s, times);
     let (squares, count) = residual
         .iter()
         .filter(|number| number.is_finite())
@@ -95,8 +155,8 @@ fn strongest(residual: &[f64], cycle_s: f64) -> Option<Line> {
     (line.amplitude().powi(2) * 0.5 > LEAST_SHARE * squares / count).then_some(line)
 }
 
-/// Averaged periodogram; `None` for a log shorter than a stretch.
-fn spectrum(residual: &[f64]) -> Option<Vec<f64>> {
+/// Averaged periodogram; `None` where no run is as long as a stretch.
+fn spectrum(residual: &[f64], times: &Times) -> Option<Vec<f64>> {
     let transform = RealFftPlanner::<f64>::new().plan_fft_forward(STRETCH);
     let mut input = transform.make_input_vec();
     let mut output = transform.make_output_vec();
@@ -104,26 +164,35 @@ fn spectrum(residual: &[f64]) -> Option<Vec<f64>> {
     let mut any = false;
     #[expect(clippy::cast_precision_loss, reason = "a small constant")]
     let window = |place: usize| 0.5 - 0.5 * (TAU * place as f64 / STRETCH as f64).cos();
-    for start in (0..residual.len().saturating_sub(STRETCH - 1)).step_by(STRETCH / 2) {
-        let stretch = residual.get(start..start + STRETCH)?;
-        for (place, (input, number)) in input.iter_mut().zip(stretch).enumerate() {
-            *input = if number.is_finite() { number * window(place) } else { 0.0 };
+    for run in &times.runs {
+        for start in (run.start..(run.end + 1).saturating_sub(STRETCH)).step_by(STRETCH / 2) {
+            let stretch = start..start + STRETCH;
+            input.fill(0.0);
+            let cycles = times.cycles(&stretch);
+            let first = cycles.first()?;
+            for (cycle, number) in cycles.iter().zip(residual.get(stretch.clone())?).filter(|(_, of)| of.is_finite()) {
+                // Lost rows leave their places empty, and those after them move on, the last out of the stretch.
+                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
+                let place = (cycle - first) as usize;
+                if let Some(input) = input.get_mut(place) {
+                    *input = number * window(place);
+                }
+            }
+            transform.process(&mut input, &mut output).ok()?;
+            for (sum, number) in sums.iter_mut().zip(&output) {
+                *sum += number.norm_sqr();
+            }
+            any = true;
         }
-        transform.process(&mut input, &mut output).ok()?;
-        for (sum, number) in sums.iter_mut().zip(&output) {
-            *sum += number.norm_sqr();
-        }
-        any = true;
     }
     any.then_some(sums)
 }
 
-/// The frequency near a coarse one at which a sine fits best over the whole log.
-fn refine(residual: &[f64], coarse_hz: f64, width_hz: f64, cycle_s: f64) -> Line {
-    // Over the whole log a sine is far narrower than over a stretch: a grid first, then golden section.
-    #[expect(clippy::cast_precision_loss, reason = "a count of cycles")]
-    let narrow_hz = 1.0 / (residual.len() as f64 * cycle_s);
-    let fit = |frequency_hz: f64| project(residual, frequency_hz, cycle_s);
+/// The frequency near a coarse one at which a sine fits best over all runs.
+fn refine(residual: &[f64], coarse_hz: f64, width_hz: f64, times: &Times) -> Line {
+    // Over a whole run a sine is far narrower than over a stretch: a grid first, then golden section.
+    let narrow_hz = 1.0 / (times.longest() * times.cycle_s);
+    let fit = |frequency_hz: f64| project(residual, frequency_hz, times);
     let (mut low_hz, mut high_hz) = (coarse_hz - 1.5 * width_hz, coarse_hz + 1.5 * width_hz);
     let step_hz = 0.4 * narrow_hz;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
@@ -141,29 +210,36 @@ fn refine(residual: &[f64], coarse_hz: f64, width_hz: f64, cycle_s: f64) -> Line
     fit(0.5 * (low_hz + high_hz))
 }
 
-/// The sine of a frequency that fits best.
-fn project(residual: &[f64], frequency_hz: f64, cycle_s: f64) -> Line {
+/// The sine of a frequency that fits best, in each run.
+fn project(residual: &[f64], frequency_hz: f64, times: &Times) -> Line {
+    let wave =
+        |run: &Range<usize>| project_run(residual.get(run.clone()).unwrap_or_default(), frequency_hz, times, run);
+    Line { frequency_hz, waves: times.runs.iter().map(wave).collect() }
+}
+
+fn project_run(residual: &[f64], frequency_hz: f64, times: &Times, run: &Range<usize>) -> Wave {
     // The angle grows by one step a cycle: a rotation costs less than a sine and a cosine.
-    let (step_sin, step_cos) = (TAU * frequency_hz * cycle_s).sin_cos();
-    let (mut sin, mut cos) = (0.0_f64, 1.0_f64);
-    let (mut ss, mut cc, mut sc, mut sr, mut cr) = (0.0, 0.0, 0.0, 0.0, 0.0);
-    for (cycle, number) in residual.iter().enumerate() {
-        if cycle % STRETCH == 0 {
-            (sin, cos) = phase(frequency_hz, cycle, cycle_s).sin_cos();
+    let (step_sin, step_cos) = (TAU * frequency_hz * times.cycle_s).sin_cos();
+    let (mut sin, mut cos, mut expected) = (0.0_f64, 1.0_f64, f64::NAN);
+    let (mut ss, mut cc, mut sc, mut sr, mut cr, mut count) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    for (place, (number, cycle)) in residual.iter().zip(times.cycles(run)).enumerate() {
+        if place % STRETCH == 0 || cycle.to_bits() != expected.to_bits() {
+            (sin, cos) = times.phase(frequency_hz, *cycle).sin_cos();
         }
         if number.is_finite() {
             (ss, cc, sc) = (ss + sin * sin, cc + cos * cos, sc + sin * cos);
             (sr, cr) = (sr + sin * number, cr + cos * number);
+            count += 1.0;
         }
         (sin, cos) = (sin * step_cos + cos * step_sin, cos * step_cos - sin * step_sin);
+        expected = cycle + 1.0;
     }
     let determinant = ss * cc - sc * sc;
-    let (sine, cosine) = if determinant > 0.0 {
-        ((sr * cc - cr * sc) / determinant, (cr * ss - sr * sc) / determinant)
-    } else {
-        (0.0, 0.0)
-    };
-    Line { frequency_hz, sine, cosine }
+    #[expect(clippy::cast_precision_loss, reason = "a small constant")]
+    let is_told = determinant > 0.0 && count * times.cycle_s * frequency_hz >= FEWEST_TURNS as f64;
+    let (sine, cosine) =
+        if is_told { ((sr * cc - cr * sc) / determinant, (cr * ss - sr * sc) / determinant) } else { (0.0, 0.0) };
+    Wave { rows: run.clone(), count, sine, cosine }
 }
 
 #[cfg(test)]
@@ -179,6 +255,35 @@ mod tests {
         (0..50_000).map(|_| StandardNormal.sample(&mut random)).collect()
     }
 
+    /// Of one log without gaps.
+    fn times(count: usize) -> Times {
+        #[expect(clippy::cast_precision_loss, reason = "a small count")]
+        let cycles = (0..count).map(|cycle| cycle as f64).collect();
+        Times { cycles, runs: std::iter::once(0..count).collect(), cycle_s: 1e-3 }
+    }
+
+    /// Seven rows are lost, and there is a second log, in which the hum is twice as high.
+    #[test]
+    fn hum_keeps_its_phase_over_lost_rows_and_has_one_in_each_log() {
+        let mut residual = noise(3);
+        let mut of_logs = times(residual.len());
+        of_logs.runs = vec![0..30_000, 30_000..residual.len()];
+        for (row, cycle) in of_logs.cycles.iter_mut().enumerate() {
+            *cycle += if row < 12_345 { 0.0 } else { 7.0 };
+            *cycle -= if row < 30_000 { 0.0 } else { 30_007.0 };
+            let (height, phase) = if row < 30_000 { (1.0, 0.4) } else { (2.0, 2.0) };
+            residual[row] += height * (TAU * 50.02 * *cycle * 1e-3 + phase).sin();
+        }
+        let found = lines(&residual, &of_logs);
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!((found[0].frequency_hz - 50.02).abs() < 1e-3);
+        // Of 30,000 samples with the height 1 and 20,000 with 2.
+        assert!((found[0].amplitude() - 2.2_f64.sqrt()).abs() < 0.03, "{}", found[0].amplitude());
+        found[0].add_to(residual.iter_mut(), -1.0, &of_logs);
+        let left = residual.iter().map(|number| number * number).sum::<f64>() / 50_000.0;
+        assert!((left - 1.0).abs() < 0.03, "{left}");
+    }
+
     #[test]
     fn finds_hum_and_its_harmonic() {
         let mut residual = noise(1);
@@ -187,18 +292,18 @@ mod tests {
             let time_s = cycle as f64 * 1e-3;
             *number += 1.3 * (TAU * 50.02 * time_s + 0.4).sin() + 0.4 * (TAU * 150.06 * time_s).cos();
         }
-        let found = lines(&residual, 1e-3);
+        let found = lines(&residual, &times(residual.len()));
         assert_eq!(found.len(), 2, "{found:?}");
         assert!((found[0].frequency_hz - 50.02).abs() < 1e-3 && (found[0].amplitude() - 1.3).abs() < 0.03);
         assert!((found[1].frequency_hz - 150.06).abs() < 2e-3 && (found[1].amplitude() - 0.4).abs() < 0.03);
-        assert!((found[0].sine - 1.3 * 0.4_f64.cos()).abs() < 0.05);
+        assert!((found[0].waves[0].sine - 1.3 * 0.4_f64.cos()).abs() < 0.05);
     }
 
     #[test]
     fn noise_and_wander_have_none() {
         for seed in 0..20 {
             let white = noise(seed);
-            assert_eq!(lines(&white, 1e-3), []);
+            assert_eq!(lines(&white, &times(white.len())), []);
             let mut level = 0.0;
             let wander: Vec<f64> = white
                 .iter()
@@ -207,7 +312,7 @@ mod tests {
                     level + 0.3 * number
                 })
                 .collect();
-            assert_eq!(lines(&wander, 1e-3), []);
+            assert_eq!(lines(&wander, &times(wander.len())), []);
         }
     }
 }

@@ -85,3 +85,22 @@ fn a_sensor_that_drops_out_is_not_frozen() {
     let faults: Vec<Fault> = found.unexplained.unwrap().faults.iter().map(|(fault, _)| *fault).collect();
     assert_eq!((faults, found.verdict), (vec![Fault::Frozen], Verdict::Unexplained));
 }
+
+#[test]
+fn hum_is_one_line_with_lost_rows_and_in_several_logs() {
+    let case = Case { disturbance: Some("hum"), seed: 70_013, ..Case::of(Group::Nothing) };
+    let (mut points, truth) = points_of(&case);
+    let (_, frequency_hz) = truth.disturbances[0].values()[1];
+    points.drain(20_000..20_007);
+    // The second log begins anywhere in the hum.
+    let (one, other) = points.split_at(26_003);
+    for logs in [&[points.as_slice()][..], &[one, other][..]] {
+        let found = look(logs, &truth);
+        let lines: Vec<f64> =
+            found.unexplained.iter().flat_map(|rest| &rest.lines).map(|line| line.frequency_hz).collect();
+        assert_eq!((lines.len(), found.findings.len()), (1, 0), "{lines:?}");
+        assert!((lines[0] - frequency_hz).abs() < 0.05, "{lines:?} {frequency_hz}");
+        let (after_n, floor_n) = (found.noise_floor_n, truth.floor_n);
+        assert!((after_n / floor_n - 1.0).abs() < 0.05, "{after_n} {floor_n}");
+    }
+}
