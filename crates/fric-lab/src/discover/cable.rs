@@ -50,11 +50,15 @@ pub fn discover_cable(record: &CableRecord<'_>, progress: &Progress) -> CableDis
     let (mut start, held) = given_model(record, &paper.solution);
 
     // What hums is no matter of friction: it comes off the reference.
-    let bench = Workbench { record: *record, blocks: &blocks, counts: &counts, stop };
+    let measured = engine::measured(record);
+    let bench = Workbench { record: *record, blocks: &blocks, counts: &counts, measured: &measured, stop };
+    let fitted = bench.try_one(&start);
+    // Between two measurements too: it may be faster than they are.
+    let throughout = with_interpolated(record, &counts, &measured);
     let times = Times::of(record);
-    let hum = lines(&bench.residuals_n(&bench.try_one(&start).values), &times);
+    let hum = lines(&Workbench { counts: &throughout, ..bench }.residuals_n(&fitted.values), &times);
     let rows = without_lines(record, &hum, &times);
-    let case = Case { record: record.with_signals(&rows), raw: *record, blocks: &blocks, stop };
+    let case = Case { record: record.with_signals(&rows), raw: *record, blocks: &blocks, measured: &measured, stop };
     let Some(mut outcome) = case.look(&counts, &start, &conditions) else {
         return CableDiscovery::untold(record, samples, lack_of_noise());
     };
@@ -100,6 +104,24 @@ fn given_model(record: &CableRecord<'_>, paper: &engine::Solution) -> (workbench
     (workbench::Model { values, free }, held)
 }
 
+/// What counts, and what is between two neighbours of it, on the line from one measurement to the next.
+fn with_interpolated(record: &CableRecord<'_>, counts: &[bool], measured: &[bool]) -> Vec<bool> {
+    let mut all = counts.to_vec();
+    let mut before = 0;
+    for (place, counts_too) in counts.iter().enumerate().filter(|(place, _)| measured.get(*place) == Some(&true)) {
+        let is_between = *counts_too && counts.get(before) == Some(&true);
+        let between = before + 1..place;
+        before = place;
+        let (true, Some(all), Some(rows)) = (is_between, all.get_mut(between.clone()), record.rows.get(between)) else {
+            continue;
+        };
+        for (counts, row) in all.iter_mut().zip(rows) {
+            *counts = row.is_sound() && row.reference_n.is_finite();
+        }
+    }
+    all
+}
+
 /// The rows with lines taken off the reference.
 fn without_lines(record: &CableRecord<'_>, lines: &[Line], times: &Times) -> Vec<Row> {
     let mut rows = record.rows.to_vec();
@@ -123,6 +145,7 @@ struct Case<'a> {
     /// As it is.
     raw: CableRecord<'a>,
     blocks: &'a [Block],
+    measured: &'a [bool],
     stop: &'a AtomicBool,
 }
 
@@ -145,7 +168,7 @@ impl<'a> Case<'a> {
     where
         'a: 'b,
     {
-        Workbench { record: self.record, blocks: self.blocks, counts, stop: self.stop }
+        Workbench { record: self.record, blocks: self.blocks, counts, measured: self.measured, stop: self.stop }
     }
 
     fn excess<'b>(&'b self, residual_n: &'b [f64], noise_n: f64) -> Excess<'b> {
@@ -158,10 +181,10 @@ impl<'a> Case<'a> {
         let base = bench.try_one(start);
         let residual_n = bench.residuals_n(&base.values);
         let least_n = BELIEVED_RATIO * self.scale(&base, 0.0).tension_n;
-        let noise_n = white_noise(&residual_n)?.max(least_n);
+        let noise_n = white_noise(&bench.measured_of(&residual_n))?.max(least_n);
         let naming = Search::new(&bench, noise_n, self.scale(&base, noise_n), &base).run();
         let rest_n = bench.residuals_n(&naming.model.values);
-        let noise_n = white_noise(&rest_n)?.max(least_n);
+        let noise_n = white_noise(&bench.measured_of(&rest_n))?.max(least_n);
         let excess = self.excess(&rest_n, noise_n);
         let before_n = bench.residuals_n(&naming.with_friction.values);
         let (share, before) = (excess.share(), self.excess(&before_n, noise_n).share());
@@ -227,6 +250,8 @@ impl<'a> Case<'a> {
         let Outcome { base, naming, noise_n, .. } = outcome;
         let raw = Workbench { record: self.raw, ..self.bench(counts) };
         let held_out = raw.used(true);
+        let with_interpolated = with_interpolated(&self.raw, counts, self.measured);
+        let throughout = Workbench { counts: &with_interpolated, ..raw.clone() };
         let held_out_of = |values: &Values| {
             let residual_n = raw.residuals_n(values);
             let judged = residual_n.iter().zip(&held_out).filter(|(_, held_out)| **held_out);
@@ -283,7 +308,7 @@ impl<'a> Case<'a> {
         });
         CableDiscovery {
             samples,
-            held_out: super::rest::ranges(held_out.iter().copied())
+            held_out: super::rest::ranges(throughout.used(true).into_iter())
                 .into_iter()
                 .map(|range| [range.start, range.end])
                 .collect(),

@@ -129,7 +129,8 @@ impl<'b, 'a> Search<'b, 'a> {
     fn noise_squares_throughout(&self, model: &Trial) -> f64 {
         #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
         let count = self.bench.count(true) as f64;
-        let throughout_n = white_noise_throughout(&self.bench.residuals_n(&model.values));
+        let residual_n = self.bench.residuals_n(&model.values);
+        let throughout_n = white_noise_throughout(&self.bench.measured_of(&residual_n));
         throughout_n.map_or(self.noise_squares, |noise_n| (count * noise_n * noise_n).max(self.noise_squares))
     }
 

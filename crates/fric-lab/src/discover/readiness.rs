@@ -86,8 +86,9 @@ pub fn too_short(samples: u64, cycle_s: f64) -> Option<Lack> {
 
 /// What is lacking once it is known which samples count.
 pub fn lack_of_samples(counts: &SampleCounts, cycle_s: f64) -> Option<Lack> {
-    let SampleCounts { used, flagged, without_reference, warm_up, outliers } = *counts;
-    let used_s = seconds(used, cycle_s);
+    let SampleCounts { used, flagged, without_reference, interpolated, warm_up, outliers } = *counts;
+    // A measurement of a reference with less than the rate of the cycle stands for the cycles around it.
+    let used_s = seconds(used + interpolated, cycle_s);
     if used_s >= LEAST_S {
         return None;
     }

@@ -34,22 +34,24 @@ fn share_of_wave(excess: &Excess<'_>) -> f64 {
     let cycle_s = excess.record.cycle_s;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
     let length = (WINDOW_S / cycle_s).ceil().max(1.0) as usize;
+    let mut samples = 0.0;
     let mean = |(window, numbers): (usize, &[f64])| {
         let finite = || numbers.iter().filter(|number| number.is_finite());
         #[expect(clippy::cast_precision_loss, reason = "counts")]
         let (count, time_s) = (finite().count() as f64, (window * length) as f64 * cycle_s);
+        samples += count;
         (count > 0.0).then(|| (time_s, finite().sum::<f64>() / count))
     };
     let means: Vec<(f64, f64)> = excess.residual_n.chunks(length).enumerate().filter_map(mean).collect();
-    #[expect(clippy::cast_precision_loss, reason = "counts")]
-    let (count, length) = (means.len() as f64, length as f64);
+    #[expect(clippy::cast_precision_loss, reason = "a count of windows")]
+    let count = means.len() as f64;
     let level_n = means.iter().map(|(_, mean_n)| mean_n).sum::<f64>() / count;
     let duration_s = count * WINDOW_S;
     let half_waves = std::iter::successors(Some(1.0), |half_waves| Some(half_waves + 0.5));
     let periods_s =
         half_waves.map(|half_waves| 2.0 * duration_s / half_waves).take_while(|period_s| *period_s > QUICKEST_S);
     let wave = periods_s.map(|period_s| ripple_power(&means, period_s)).fold(0.0, f64::max);
-    length * (count * level_n * level_n + wave) / excess.sum()
+    samples / count * (count * level_n * level_n + wave) / excess.sum()
 }
 
 /// Share of the excess in the tenth of the blocks that have most of it.

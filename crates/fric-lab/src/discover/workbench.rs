@@ -56,6 +56,8 @@ pub struct Workbench<'a> {
     pub blocks: &'a [Block],
     /// Which samples count.
     pub counts: &'a [bool],
+    /// Which have a reference of their own, rather than one between two measurements.
+    pub measured: &'a [bool],
     /// Set to end every search.
     pub stop: &'a AtomicBool,
 }
@@ -151,6 +153,11 @@ impl<'a> Workbench<'a> {
     /// Force of the model less the reference in each cycle, N; NaN where a sample does not count.
     pub fn residuals_n(&self, values: &Values) -> Vec<f64> {
         self.residuals_with(&self.problem(&[], None), values)
+    }
+
+    /// Those of them with a reference of their own: of a series of measurements, with its gaps.
+    pub fn measured_of(&self, residual_n: &[f64]) -> Vec<f64> {
+        residual_n.iter().zip(self.measured).filter(|(_, measured)| **measured).map(|(number, _)| *number).collect()
     }
 
     fn residuals_with(&self, problem: &Problem<'_>, values: &Values) -> Vec<f64> {

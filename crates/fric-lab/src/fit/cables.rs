@@ -129,6 +129,7 @@ fn warm_up_was_misjudged(
 pub fn prepared(record: &CableRecord<'_>) -> Vec<Standing> {
     let mut standings = selection::first_look(record, |_, row| row.reference_n.is_finite());
     selection::leave_out_still_references(record, &mut standings);
+    selection::leave_out_interpolated_references(record, &mut standings);
     standings
 }
 

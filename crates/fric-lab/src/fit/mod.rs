@@ -17,6 +17,7 @@ mod dual;
 mod error;
 mod gang;
 mod gram;
+mod interpolated;
 mod optimizer;
 mod options;
 mod pass;
@@ -42,6 +43,7 @@ pub(crate) mod engine {
     pub use super::cables::{Search, prepared, used};
     pub use super::gang::{Gang, Seat};
     pub use super::gram::{Gram, Triangle};
+    pub use super::interpolated::measured;
     pub use super::problem::{Comparison, Loss, Member, Problem};
     pub use super::rewritten::{NewValues, with_values};
     pub use super::scores::Scores;

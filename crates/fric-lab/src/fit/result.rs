@@ -214,7 +214,7 @@ fn cable_result(name: &str, fit: &CableFit) -> FitCableResult {
         samples: samples.used,
         left_out: LeftOut {
             flagged: samples.flagged,
-            without_reference: samples.without_reference,
+            without_reference: samples.without_reference + samples.interpolated,
             warm_up: samples.warm_up,
             outliers: samples.outliers,
         },

@@ -2,6 +2,7 @@
 
 use fric_core::parameters::{MU, SIGMA, Values};
 
+use super::interpolated::measured;
 use super::record::{CableRecord, Row};
 
 /// How many samples count, and how many not for which reason. Every sample is in one of these.
@@ -13,6 +14,8 @@ pub struct SampleCounts {
     pub flagged: usize,
     /// No reference, or one that stood still while the cable moved.
     pub without_reference: usize,
+    /// Between two measurements of the reference, which has been joined by lines.
+    pub interpolated: usize,
     /// From the start of a log until what the pulleys had stored before no longer matters.
     pub warm_up: usize,
     /// Too far from everything else to be a measurement.
@@ -25,6 +28,7 @@ pub enum Standing {
     Used,
     Flagged,
     WithoutReference,
+    Interpolated,
     WarmUp,
     Outlier,
 }
@@ -68,6 +72,12 @@ pub fn leave_out_still_references(record: &CableRecord<'_>, standings: &mut [Sta
     }
 }
 
+/// Takes out references that nobody measured, but lines between two measurements give.
+pub fn leave_out_interpolated_references(record: &CableRecord<'_>, standings: &mut [Standing]) {
+    let rows = standings.iter_mut().zip(measured(record)).filter(|(standing, _)| **standing == Standing::Used);
+    rows.filter(|(_, measured)| !measured).for_each(|(standing, _)| *standing = Standing::Interpolated);
+}
+
 /// Takes out the start of each log, until the friction stored before is forgotten.
 ///
 /// Whatever way a cable moves, `exp(−Σσ|Δl|/f_c)` of the stored friction is left, with σ and f_c of the pulley that keeps
@@ -79,7 +89,8 @@ pub fn leave_out_warm_up(record: &CableRecord<'_>, values: &Values, standings: &
     }
     for (start, rows) in record.logs() {
         let of_log = standings.iter_mut().skip(start).take(warm_up(rows, memory_m));
-        of_log.filter(|standing| **standing == Standing::Used).for_each(|standing| *standing = Standing::WarmUp);
+        let counts = |standing: &&mut Standing| [Standing::Used, Standing::Interpolated].contains(standing);
+        of_log.filter(counts).for_each(|standing| *standing = Standing::WarmUp);
     }
 }
 
@@ -109,6 +120,7 @@ pub fn count(standings: &[Standing]) -> SampleCounts {
         used: of(Standing::Used),
         flagged: of(Standing::Flagged),
         without_reference: of(Standing::WithoutReference),
+        interpolated: of(Standing::Interpolated),
         warm_up: of(Standing::WarmUp),
         outliers: of(Standing::Outlier),
     }

@@ -4,6 +4,9 @@ use fric_core::{CableInput, Pose, Sample};
 use fric_lab::discover::{CableDiscovery, Fault, Verdict, discover};
 use fric_lab::fit::{Measurements, Progress, Reference};
 use fric_lab::simulate::sweep::{Case, CaseTruth, Group};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use rand_distr::{Distribution, StandardNormal};
 
 /// A sample of the one cable of a log.
 #[derive(Clone, Copy)]
@@ -102,5 +105,38 @@ fn hum_is_one_line_with_lost_rows_and_in_several_logs() {
         assert!((lines[0] - frequency_hz).abs() < 0.05, "{lines:?} {frequency_hz}");
         let (after_n, floor_n) = (found.noise_floor_n, truth.floor_n);
         assert!((after_n / floor_n - 1.0).abs() < 0.05, "{after_n} {floor_n}");
+    }
+}
+
+/// References of every so many cycles, with so much more noise, joined to the cycles as a reader of logs does.
+fn with_slow_reference(points: &mut [Point], distance: usize, noise_n: f64, seed: u64) {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    for point in points.iter_mut().step_by(distance) {
+        let noise: f64 = StandardNormal.sample(&mut random);
+        point.reference_n += noise_n * noise;
+    }
+    for start in (0..points.len()).step_by(distance) {
+        let before = points[start];
+        let Some(after) = points.get(start + distance).copied() else {
+            points[start + 1..].iter_mut().for_each(|point| point.reference_n = f64::NAN);
+            break;
+        };
+        let since = |stamp_nanos: i64| f64::from(i32::try_from(stamp_nanos - before.stamp_nanos).unwrap());
+        for point in &mut points[start + 1..start + distance] {
+            let ratio = since(point.stamp_nanos) / since(after.stamp_nanos);
+            point.reference_n = before.reference_n + ratio * (after.reference_n - before.reference_n);
+        }
+    }
+}
+
+#[test]
+fn a_reference_slower_than_the_cycle_is_judged_where_it_was_measured() {
+    for seed in [70_014, 70_015, 70_016] {
+        let (mut points, truth) = points_of(&Case { seed, ..Case::of(Group::Nothing) });
+        with_slow_reference(&mut points, 10, 0.06, seed);
+        let found = look(&[&points], &truth);
+        assert_complete(&found, truth.floor_n.hypot(0.06));
+        let used = found.samples.used + found.samples.warm_up / 10;
+        assert!(used.abs_diff(points.len() / 10) < 50, "{:?}", found.samples);
     }
 }

@@ -1,0 +1,123 @@
+//! References that were measured less often than the cycle runs: between two measurements there is the line that joins them, and
+//! the line is no measurement. It bends only where something was measured.
+
+use super::record::{CableRecord, Row};
+
+/// A log's reference is joined by lines where more than this share of its moving samples lies on the line of their neighbours. A
+/// reference of few digits at the rate of the cycle has less by chance; one with more than a third of that rate has less too.
+const LEAST_ON_LINE: f64 = 0.25;
+/// What rounding bends a line, as a share of its steps, for the times, and of its value.
+const ROUNDING_OF_STEP: f64 = 1e-8;
+const ROUNDING_OF_VALUE: f64 = 8.0 * f64::EPSILON;
+
+/// Which cycles are no cycles between two measurements of the reference: all where it was measured at the rate of the cycle.
+pub fn measured(record: &CableRecord<'_>) -> Vec<bool> {
+    let of_log = |(start, rows): (usize, &[Row])| {
+        let points: Vec<(f64, f64)> =
+            rows.iter().enumerate().map(|(place, row)| (record.time_s(start + place), row.reference_n)).collect();
+        of_log(&points)
+    };
+    record.logs().flat_map(of_log).collect()
+}
+
+/// For one log: times and references.
+fn of_log(points: &[(f64, f64)]) -> Vec<bool> {
+    let bends_n: Vec<f64> = (0..points.len()).map(|place| bend_n(points, place).unwrap_or(f64::NAN)).collect();
+    let moves = |place: usize| match points.get(place.wrapping_sub(1)..=place) {
+        Some([(_, before_n), (_, now_n)]) => before_n.to_bits() != now_n.to_bits(),
+        _ => false,
+    };
+    let (mut moving, mut on_line) = (0.0, 0.0);
+    for (_, bend_n) in bends_n.iter().enumerate().filter(|(place, bend_n)| bend_n.is_finite() && moves(*place)) {
+        moving += 1.0;
+        on_line += if *bend_n > 0.0 { 0.0 } else { 1.0 };
+    }
+    if on_line <= LEAST_ON_LINE * moving {
+        return vec![true; points.len()];
+    }
+    // A measurement between two cycles bends the line at both, and more at the nearer one.
+    let at = |place: Option<usize>| place.and_then(|place| bends_n.get(place)).copied().unwrap_or(f64::NAN);
+    let is_greatest = |(place, bend_n): (usize, &f64)| {
+        let (before_n, after_n) = (at(place.checked_sub(1)), at(Some(place + 1)));
+        *bend_n > 0.0 && (before_n.is_nan() || before_n < *bend_n) && (after_n.is_nan() || after_n <= *bend_n)
+    };
+    bends_n.iter().enumerate().map(is_greatest).collect()
+}
+
+/// By how much the sample after one is off the line through it and the sample before, N; 0 within rounding.
+fn bend_n(points: &[(f64, f64)], place: usize) -> Option<f64> {
+    let [(before_s, before_n), (now_s, now_n), (after_s, after_n)] =
+        *points.get(place.checked_sub(1)?..=place + 1)?.first_chunk()?;
+    let line_n = (now_n - before_n) * (after_s - now_s) / (now_s - before_s);
+    let bend_n = (after_n - now_n - line_n).abs();
+    let rounding_n = ROUNDING_OF_STEP * (line_n.abs() + (after_n - now_n).abs()) + ROUNDING_OF_VALUE * now_n.abs();
+    Some(if bend_n <= rounding_n { 0.0 } else { bend_n })
+}
+
+#[cfg(test)]
+mod tests {
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::SeedableRng;
+    use rand_distr::{Distribution, StandardNormal};
+
+    use super::*;
+
+    /// A slow wave with noise, measured at some times.
+    fn knots(times_s: impl Iterator<Item = f64>) -> Vec<(f64, f64)> {
+        let mut random = ChaCha8Rng::seed_from_u64(1);
+        times_s
+            .map(|time_s| {
+                let noise: f64 = StandardNormal.sample(&mut random);
+                (time_s, 5.0 + (3.0 * time_s).sin() + 0.02 * noise)
+            })
+            .collect()
+    }
+
+    /// The same at a kilohertz, by the lines between.
+    fn joined(knots: &[(f64, f64)]) -> Vec<(f64, f64)> {
+        let at = |cycle: i32| {
+            let time_s = f64::from(cycle) * 1e-3;
+            let next = knots.partition_point(|(knot_s, _)| *knot_s <= time_s);
+            let ((from_s, from_n), (to_s, to_n)) = (knots[next - 1], knots[next]);
+            (time_s, from_n + (time_s - from_s) / (to_s - from_s) * (to_n - from_n))
+        };
+        (1..5000).map(at).collect()
+    }
+
+    #[test]
+    fn lines_bend_where_something_was_measured() {
+        // At 100 Hz in step with the cycle; between cycles; at times that wander; at 300 Hz.
+        let wandering = |k: i32| f64::from(k) * 0.01 + 0.004 * (f64::from(k) * 0.7).sin();
+        let series: [Vec<(f64, f64)>; 4] = [
+            knots((0..502).map(|k| f64::from(k) * 0.01)),
+            knots((0..502).map(|k| f64::from(k) * 0.01 + 0.0003)),
+            knots((0..502).map(wandering)),
+            knots((0..1602).map(|k| f64::from(k) / 300.0)),
+        ];
+        for (which, knots) in series.iter().enumerate() {
+            let knots = [&[(-1.0, 5.0)], knots.as_slice()].concat();
+            let found = of_log(&joined(&knots));
+            let inside = knots.iter().filter(|(time_s, _)| (0.002..4.998).contains(time_s)).count();
+            let cycles: Vec<f64> =
+                (1..5000).zip(&found).filter(|(_, found)| **found).map(|(cycle, _)| f64::from(cycle)).collect();
+            let near = |cycle: &&f64| knots.iter().any(|(knot_s, _)| (knot_s * 1e3 - **cycle).abs() < 0.51);
+            let hits = cycles.iter().filter(near).count();
+            assert!(
+                cycles.len().abs_diff(inside) * 20 < inside && hits * 20 > 19 * cycles.len(),
+                "{which}: {hits} {} {inside}",
+                cycles.len()
+            );
+        }
+    }
+
+    #[test]
+    fn a_reference_at_the_rate_of_the_cycle_is_measured_throughout() {
+        let full = knots((0..5000).map(|cycle| f64::from(cycle) * 1e-3));
+        assert!(of_log(&full).iter().all(|measured| *measured));
+        for digit_n in [0.05, 0.01, 0.001] {
+            let coarse: Vec<(f64, f64)> =
+                full.iter().map(|(time_s, force_n)| (*time_s, (force_n / digit_n).round() * digit_n)).collect();
+            assert!(of_log(&coarse).iter().all(|measured| *measured), "{digit_n}");
+        }
+    }
+}
