@@ -9,7 +9,7 @@ use fric_core::robot::file::RobotFile;
 
 use crate::error_text::ErrorText;
 use crate::handle::{Handle, description};
-use crate::load::{guarded, message, text};
+use crate::load::{guarded, text};
 use crate::outcome::Outcome;
 
 /// Changes to the parameters of another robot file while a thread steps: without stopping it, without a lock in the step, and without a
@@ -39,7 +39,15 @@ pub unsafe extern "C" fn fric_change_file(
     // SAFETY: the same is promised here.
     let path = unsafe { text(path, "path") };
     // SAFETY: the same is promised here.
-    unsafe { change(compensator, path, |path| RobotFile::read(Path::new(path)).map_err(message), blend_s, error) }
+    unsafe {
+        change(
+            compensator,
+            path,
+            |path| RobotFile::read(Path::new(path)).map_err(|error| error.to_string()),
+            blend_s,
+            error,
+        )
+    }
 }
 
 /// The same with the text of a robot file.
@@ -59,7 +67,15 @@ pub unsafe extern "C" fn fric_change_text(
     // SAFETY: the same is promised here.
     let toml = unsafe { text(toml, "toml") };
     // SAFETY: the same is promised here.
-    unsafe { change(compensator, toml, |toml| RobotFile::parse(toml, "robot file").map_err(message), blend_s, error) }
+    unsafe {
+        change(
+            compensator,
+            toml,
+            |toml| RobotFile::parse(toml, "robot file").map_err(|error| error.to_string()),
+            blend_s,
+            error,
+        )
+    }
 }
 
 /// Sends parameters, or gives a code and a text.

@@ -31,7 +31,9 @@ pub unsafe extern "C" fn fric_load_file(
     // SAFETY: the same is promised here.
     let path = unsafe { text(path, "path") };
     // SAFETY: the same is promised here.
-    unsafe { load(path, |path| RobotFile::read(Path::new(path)).map_err(message), compensator, error) }
+    unsafe {
+        load(path, |path| RobotFile::read(Path::new(path)).map_err(|error| error.to_string()), compensator, error)
+    }
 }
 
 /// The same for the text of a robot file, which has no place of its own: errors name line and key.
@@ -50,19 +52,9 @@ pub unsafe extern "C" fn fric_load_text(
     // SAFETY: the same is promised here.
     let toml = unsafe { text(toml, "toml") };
     // SAFETY: the same is promised here.
-    unsafe { load(toml, |toml| RobotFile::parse(toml, "robot file").map_err(message), compensator, error) }
-}
-
-/// What went wrong, and its causes.
-pub(crate) fn message(error: impl std::error::Error) -> String {
-    let mut text = error.to_string();
-    let mut cause = error.source();
-    while let Some(error) = cause {
-        text.push_str(": ");
-        text.push_str(&error.to_string());
-        cause = error.source();
+    unsafe {
+        load(toml, |toml| RobotFile::parse(toml, "robot file").map_err(|error| error.to_string()), compensator, error)
     }
-    text
 }
 
 /// A text of the caller's.

@@ -81,7 +81,14 @@ fn show(name: &str, durations: &Histogram<u64>) {
     println!("{name:8} {p50:9.3} {p999:9.3} {p99999:9.3} {:9.3}", us(durations.max()));
 }
 
-fn main() -> Result<ExitCode, Box<dyn Error>> {
+fn main() -> ExitCode {
+    run().unwrap_or_else(|error| {
+        eprintln!("error: {error}");
+        ExitCode::FAILURE
+    })
+}
+
+fn run() -> Result<ExitCode, Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let (robot, log, seconds) = match arguments.as_slice() {
         [robot, log] => (robot, log, 60.0),

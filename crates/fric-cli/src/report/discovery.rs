@@ -104,10 +104,8 @@ fn details(cable: &DiscoverCableResult, found: &CableDiscovery) -> Markup {
         @if let Some(rest) = cable.unexplained.as_ref().filter(|_| !cable.effects.is_empty() || cable.places.is_empty()) {
             (places("Where the rest lies", &rest.places))
         }
-        div.views {
-            (candidates(cable))
-            (parameters(found))
-        }
+        (candidates(cable))
+        (parameters(found))
     }
 }
 
@@ -346,7 +344,7 @@ fn candidates(cable: &DiscoverCableResult) -> Markup {
                 }
                 p.soft {
                     "ΔBIC here is that of each by itself beside the given model, as the search began; the sentences above give that \
-                     within the extended model, which is another figure. Below zero the evidence speaks for it, −10 is strong. Bold: found."
+                     within the extended model, which is another figure. Below zero the evidence speaks for it; a name needs −30 there. Bold: found."
                 }
             }
         }
