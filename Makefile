@@ -15,23 +15,13 @@ TARGET := $(or $(CARGO_TARGET_DIR),target)
 BARE_METAL := thumbv7em-none-eabihf
 MIRI_TARGET := riscv64gc-unknown-linux-gnu
 
-# Commands of the system that tests run, each with the Debian package that has it.
-TOOLS := c++=g++ cmake=cmake pkg-config=pkg-config valgrind=valgrind
-
 .PHONY: test format lint test-rust docs test-python instructions bare-metal miri bench install tools
 
-test: format lint test-rust docs test-python instructions bare-metal miri
+test: tools format lint test-rust docs test-python instructions bare-metal miri
 
+# First, so that what is missing shows at once.
 tools:
-	@missing=; for tool in $(TOOLS); do \
-		command -v "$${tool%%=*}" >/dev/null || missing="$$missing $${tool#*=}"; \
-	done; \
-	if [ -n "$$missing" ]; then \
-		[ "$$(id -u)" = 0 ] && as_root= || as_root="sudo -n"; \
-		{ $$as_root true 2>/dev/null && echo "installing$$missing" \
-			&& $$as_root sh -c "apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends$$missing"; } \
-			|| { echo "the tests need packages that could not be installed here; as root: apt-get install$$missing" >&2; exit 1; }; \
-	fi
+	$(PYTHON) tests/python/tools.py
 
 format:
 	$(CARGO) fmt --all --check
@@ -45,13 +35,13 @@ test-rust:
 docs:
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --workspace --no-deps --quiet
 
-test-python: tools $(VENV)/ready
+test-python: $(VENV)/ready
 	$(CARGO) build --quiet -p fric-cli
 	# As `pip install .` does, but with what has been built for the other tests.
 	PATH="$(CURDIR)/$(VENV)/bin:$$PATH" MATURIN_PEP517_ARGS="--profile dev" $(PIP) install --no-build-isolation --no-deps .
 	$(VENV)/bin/python -m pytest tests/python
 
-$(VENV)/ready: tests/python/requirements.txt
+$(VENV)/ready: tests/python/requirements.txt | tools
 	$(PYTHON) -m venv $(VENV)
 	$(PIP) install -r tests/python/requirements.txt
 	touch $@

@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from contextlib import contextmanager
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -27,6 +28,16 @@ def run(*arguments):
     done = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", check=False)
     assert done.returncode == 0, done
     return done.stderr
+
+
+@contextmanager
+def started(*command):
+    """A program while it runs, its stdout kept; killed where the test fails before it ends."""
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as program:
+        try:
+            yield program
+        finally:
+            program.kill()
 
 
 # Presses Ctrl-C a moment after the call that it is the `progress` of has begun.

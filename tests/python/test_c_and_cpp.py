@@ -12,7 +12,8 @@ import pandas as pd
 import pytest
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
-from support import LOG, ROBOT, ROOT, run
+from support import LOG, ROBOT, ROOT, run, started
+from tools import hint, program
 
 import fric
 
@@ -20,10 +21,11 @@ WARNINGS = "-Wall -Wextra -Wpedantic -Wshadow -Werror"
 ROW_COUNT = 6000
 
 
-def tool(name, package):
+def tool(package):
     """A program of the system."""
-    assert shutil.which(name), f"{name} is missing: apt-get install {package}"
-    return name
+    found = program(package)
+    assert found, hint([package])
+    return found
 
 
 def call(*command, **options):
@@ -44,13 +46,13 @@ def prefix(tmp_path_factory):
 @pytest.fixture(scope="module")
 def examples(prefix, tmp_path_factory):
     """The built programs of `examples/c` and `examples/cpp`, each from a folder of its own."""
-    tool("c++", "g++")
+    tool("g++")
     programs = {}
     for language in ["c", "cpp"]:
         folder = tmp_path_factory.mktemp(language)
         source = shutil.copytree(ROOT / "examples" / language, folder / "source")
         flags = [f"-DCMAKE_{compiler}_FLAGS={WARNINGS}" for compiler in ["C", "CXX"]]
-        call(tool("cmake", "cmake"), "-S", source, "-B", folder / "build", f"-DCMAKE_PREFIX_PATH={prefix}", *flags)
+        call(tool("cmake"), "-S", source, "-B", folder / "build", f"-DCMAKE_PREFIX_PATH={prefix}", *flags)
         call("cmake", "--build", folder / "build")
         programs[language] = folder / "build"
     return programs
@@ -128,7 +130,7 @@ def test_under_valgrind_there_is_no_error_and_no_leak(examples, few_rows, outcom
     arguments = [ROBOT, few_rows, tmp_path / "out.csv"]
     checks = ["--error-exitcode=9", "--leak-check=full", "--errors-for-leak-kinds=definite,indirect,possible"]
     for program in [[examples["cpp"] / "replay", *arguments], [examples["c"] / "cycle", ROBOT]]:
-        call(tool("valgrind", "valgrind"), "--quiet", *checks, *program)
+        call(tool("valgrind"), "--quiet", *checks, *program)
     under_valgrind = numbers(tmp_path / "out.csv")
     assert under_valgrind.equals(outcome.iloc[: len(under_valgrind)])
 
@@ -144,7 +146,7 @@ def test_after_set_up_nothing_allocates(examples, few_rows, tmp_path):
     def seen(start):
         profile = tmp_path / f"{start}.out"
         options = ["--tool=callgrind", f"--toggle-collect={start}", f"--callgrind-out-file={profile}"]
-        call(tool("valgrind", "valgrind"), *options, examples["cpp"] / "replay", ROBOT, few_rows, tmp_path / "out.csv")
+        call(tool("valgrind"), *options, examples["cpp"] / "replay", ROBOT, few_rows, tmp_path / "out.csv")
         return functions(profile)
 
     def allocating(names):
@@ -170,7 +172,7 @@ def test_the_control_loop_takes_no_page_and_no_memory(examples, few_rows):
 def test_the_control_loop_skips_the_cycles_that_it_has_overslept(examples, few_rows):
     """Half a second asleep in the midst of two: the cycles of that time are skipped, not made up for."""
     command = [examples["cpp"] / "control_loop", ROBOT, few_rows, "2"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as loop:
+    with started(*command) as loop:
         time.sleep(1.0)
         loop.send_signal(signal.SIGSTOP)
         time.sleep(0.5)
@@ -184,7 +186,7 @@ def test_the_control_loop_skips_the_cycles_that_it_has_overslept(examples, few_r
 def test_pkg_config_finds_the_library(prefix, tmp_path):
     """The C example without CMake, with the shared library."""
     environment = {**os.environ, "PKG_CONFIG_PATH": str(prefix / "lib" / "pkgconfig")}
-    flags = call(tool("pkg-config", "pkg-config"), "--cflags", "--libs", "fric", env=environment).split()
+    flags = call(tool("pkg-config"), "--cflags", "--libs", "fric", env=environment).split()
     program = tmp_path / "cycle"
     call("cc", "-std=c11", ROOT / "examples" / "c" / "cycle.c", *flags, f"-Wl,-rpath,{prefix / 'lib'}", "-o", program)
     assert call(program, ROBOT).startswith("mini-ipanema\n")

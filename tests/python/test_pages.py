@@ -3,15 +3,15 @@
 import html
 import json
 import re
-import shutil
 import subprocess
 from urllib.parse import urlencode
 
 import pytest
 from support import LOG, ROBOT, ROOT, SLOW_BENCH, run
+from tools import hint, program
 
-BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
-pytestmark = pytest.mark.skipif(BROWSER is None, reason="neither Chromium nor Chrome is installed")
+BROWSER = program("chromium")
+pytestmark = pytest.mark.skipif(BROWSER is None, reason=hint(["chromium"]))
 
 KINDS = ("replay", "discover", "excite", "calibrate", "shape", "friction", "tendon")
 # A laptop, a telephone.
