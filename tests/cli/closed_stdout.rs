@@ -1,14 +1,12 @@
 //! A reader that goes away, as `head` does, is no failure.
 
-use std::process::Stdio;
-
 use super::support::Place;
 
 fn assert_quiet(place: &Place, arguments: &[&str]) {
-    let mut child = place.command(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-    // The pipe's reading end: closed before the program says anything.
-    drop(child.stdout.take());
-    let output = child.wait_with_output().unwrap();
+    let mut program = place.start(arguments);
+    // Before it says anything.
+    program.close_stdout();
+    let output = program.end();
     assert_eq!(String::from_utf8(output.stderr).unwrap(), "", "{arguments:?}");
     assert!(output.status.success(), "{arguments:?}");
 }

@@ -1,32 +1,27 @@
 //! Ctrl-C and its like: no half file, no temporary one.
 #![cfg(unix)]
 
-use std::process::{Command, Stdio};
 use std::thread::sleep;
-use std::time::{Duration, Instant};
+use std::time::Duration;
+
+use nix::sys::signal::Signal::{self, SIGINT, SIGTERM};
 
 use super::support::{Place, root};
 
 /// Starts the program, sends it the signal once its output is in the making, and looks at what is left.
-fn interrupt(arguments: &[&str], signal: &str) {
+fn interrupt(arguments: &[&str], signal: Signal) {
     interrupt_after(arguments, signal, Duration::ZERO);
 }
 
 /// The same some time later.
-fn interrupt_after(arguments: &[&str], signal: &str, delay: Duration) {
+fn interrupt_after(arguments: &[&str], signal: Signal, delay: Duration) {
     let place = Place::empty();
     place.write("robot.toml", super::support::example_robot());
-    let mut child = place.command(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-    let start = Instant::now();
-    while !place.names().iter().any(|name| name.starts_with(".fric-")) {
-        assert!(start.elapsed() < Duration::from_secs(30), "no output in the making: {:?}", place.names());
-        assert!(child.try_wait().unwrap().is_none(), "ended before it could be interrupted");
-        sleep(Duration::from_millis(2));
-    }
+    let mut program = place.start(arguments);
+    program.wait_until(|| place.names().iter().any(|name| name.starts_with(".fric-")));
     sleep(delay);
-    let kill = Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
-    assert!(kill.success());
-    let output = child.wait_with_output().unwrap();
+    program.signal(signal);
+    let output = program.end();
     let stderr = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(1), "{arguments:?} {signal}: {stderr}");
     assert_eq!(stderr, "error: interrupted before the end: nothing was written\n");
@@ -36,7 +31,7 @@ fn interrupt_after(arguments: &[&str], signal: &str, delay: Duration) {
 
 #[test]
 fn an_interrupted_simulation_leaves_nothing() {
-    for signal in ["-INT", "-TERM"] {
+    for signal in [SIGINT, SIGTERM] {
         interrupt(&["simulate", "--model", "robot.toml", "-o", "out.mcap", "--duration", "100000"], signal);
     }
 }
@@ -44,7 +39,7 @@ fn an_interrupted_simulation_leaves_nothing() {
 #[test]
 fn an_interrupted_replay_leaves_nothing() {
     let log = root().join("examples/mini-ipanema.mcap");
-    for signal in ["-INT", "-TERM"] {
+    for signal in [SIGINT, SIGTERM] {
         let outputs = ["-o", "out.mcap", "--report", "out.html", "--json", "out.json"];
         interrupt(&[&["replay", log.to_str().unwrap()], &outputs[..]].concat(), signal);
     }
@@ -53,7 +48,7 @@ fn an_interrupted_replay_leaves_nothing() {
 #[test]
 fn an_interrupted_fit_leaves_nothing() {
     let log = root().join("examples/mini-ipanema.mcap");
-    for signal in ["-INT", "-TERM"] {
+    for signal in [SIGINT, SIGTERM] {
         // At once: it reads the log.
         interrupt(&["fit", log.to_str().unwrap(), "-o", "out.toml", "--json", "out.json"], signal);
     }
@@ -64,7 +59,7 @@ fn an_interrupted_fit_leaves_nothing() {
 fn a_fit_interrupted_in_its_search_leaves_nothing() {
     let log = root().join("examples/mini-ipanema.mcap");
     let arguments = ["fit", log.to_str().unwrap(), "--reference", "wrench", "-o", "out.toml", "--json", "out.json"];
-    interrupt_after(&arguments, "-INT", Duration::from_secs(1));
+    interrupt_after(&arguments, SIGINT, Duration::from_secs(1));
 }
 
 /// The same, in the search for what is missing.
@@ -73,6 +68,6 @@ fn an_interrupted_discovery_leaves_nothing() {
     let log = root().join("examples/mini-ipanema.mcap");
     let outputs = ["-o", "out.toml", "--report", "out.html", "--json", "out.json"];
     let arguments = [&["discover", log.to_str().unwrap()], &outputs[..]].concat();
-    interrupt(&arguments, "-INT");
-    interrupt_after(&arguments, "-TERM", Duration::from_secs(1));
+    interrupt(&arguments, SIGINT);
+    interrupt_after(&arguments, SIGTERM, Duration::from_secs(1));
 }

@@ -2,9 +2,12 @@
 
 use std::collections::BTreeMap;
 use std::fs;
+use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Child, Command, Output, Stdio};
 use std::sync::OnceLock;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 
 use serde_json::Value;
 use tempfile::TempDir;
@@ -94,6 +97,64 @@ impl Run {
     }
 }
 
+/// How long a test waits for what has to happen before it fails.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// The program while it runs, its stdout and stderr kept; a test that ends before it does, by failing, kills it.
+pub struct Running(Child);
+
+impl Running {
+    /// Sends a signal.
+    #[cfg(unix)]
+    pub fn signal(&self, signal: nix::sys::signal::Signal) {
+        let process = nix::unistd::Pid::from_raw(self.0.id().try_into().unwrap());
+        nix::sys::signal::kill(process, signal).unwrap();
+    }
+
+    /// Closes the reading end of stdout.
+    pub fn close_stdout(&mut self) {
+        drop(self.0.stdout.take());
+    }
+
+    /// Waits for something to happen while the program runs.
+    #[track_caller]
+    pub fn wait_until(&mut self, happened: impl Fn() -> bool) {
+        let start = Instant::now();
+        while !happened() {
+            assert!(self.0.try_wait().unwrap().is_none(), "ended too early");
+            assert!(start.elapsed() < PATIENCE, "nothing after {PATIENCE:?}");
+            sleep(Duration::from_millis(2));
+        }
+    }
+
+    /// Waits for the end; what is printed until then has to fit into the pipes.
+    #[track_caller]
+    pub fn end(mut self) -> Output {
+        let start = Instant::now();
+        let status = loop {
+            if let Some(status) = self.0.try_wait().unwrap() {
+                break status;
+            }
+            assert!(start.elapsed() < PATIENCE, "still running after {PATIENCE:?}");
+            sleep(Duration::from_millis(2));
+        };
+        let (mut stdout, mut stderr) = (Vec::new(), Vec::new());
+        if let Some(pipe) = &mut self.0.stdout {
+            pipe.read_to_end(&mut stdout).unwrap();
+        }
+        self.0.stderr.as_mut().unwrap().read_to_end(&mut stderr).unwrap();
+        Output { status, stdout, stderr }
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        // Neither does anything to a process that has ended.
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
 /// A directory to run the program in, gone at the end.
 pub struct Place {
     directory: TempDir,
@@ -136,6 +197,11 @@ impl Place {
 
     pub fn run(&self, arguments: &[&str]) -> Run {
         Run::new(self.command(arguments).output().unwrap())
+    }
+
+    /// Starts the program and leaves it running.
+    pub fn start(&self, arguments: &[&str]) -> Running {
+        Running(self.command(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap())
     }
 
     /// Runs the program on a command line that has to leave everything as it was.
