@@ -17,9 +17,9 @@ MIRI_TARGET := riscv64gc-unknown-linux-gnu
 
 .PHONY: test format lint test-rust docs test-python instructions bare-metal miri bench install tools
 
+# The tools first, so that what is missing shows at once.
 test: tools format lint test-rust docs test-python instructions bare-metal miri
 
-# First, so that what is missing shows at once.
 tools:
 	$(PYTHON) tests/python/tools.py
 
@@ -39,7 +39,7 @@ test-python: $(VENV)/ready
 	$(CARGO) build --quiet -p fric-cli
 	# As `pip install .` does, but with what has been built for the other tests.
 	PATH="$(CURDIR)/$(VENV)/bin:$$PATH" MATURIN_PEP517_ARGS="--profile dev" $(PIP) install --no-build-isolation --no-deps .
-	$(VENV)/bin/python -m pytest tests/python
+	$(VENV)/bin/python -m pytest -rs tests/python
 
 $(VENV)/ready: tests/python/requirements.txt | tools
 	$(PYTHON) -m venv $(VENV)

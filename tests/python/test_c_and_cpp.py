@@ -5,6 +5,7 @@ import re
 import shutil
 import signal
 import subprocess
+import sys
 import time
 
 import numpy as np
@@ -16,6 +17,8 @@ from support import LOG, ROBOT, ROOT, run, started
 from tools import hint, program
 
 import fric
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="`make install` is for Linux")
 
 WARNINGS = "-Wall -Wextra -Wpedantic -Wshadow -Werror"
 ROW_COUNT = 6000

@@ -11,10 +11,6 @@ from importlib.util import find_spec
 
 # Debian's packages, and the programs of which one does.
 PROGRAMS = {
-    "g++": ["c++"],
-    "cmake": ["cmake"],
-    "pkg-config": ["pkg-config"],
-    "valgrind": ["valgrind"],
     "chromium": [
         "chromium",
         "chromium-browser",
@@ -22,6 +18,9 @@ PROGRAMS = {
         "/Applications/Google Chrome.app/Contents/MacOS/Google Chrome",
     ],
 }
+# The C and C++ interface is installed, and instructions are counted, on Linux only.
+if sys.platform == "linux":
+    PROGRAMS |= {"g++": ["c++"], "cmake": ["cmake"], "pkg-config": ["pkg-config"], "valgrind": ["valgrind"]}
 # Without it Debian's Python makes no virtual environment.
 VENV = "python3-venv"
 # Without a browser the tests of the pages are skipped; without any of the others tests fail.
@@ -34,21 +33,26 @@ def program(package):
 
 
 def missing():
+    """Packages that are needed here."""
     packages = [package for package in PROGRAMS if program(package) is None]
     return packages if find_spec("ensurepip") else [*packages, VENV]
 
 
 def hint(packages):
-    return f"needed: {' '.join(packages)} (Debian's names; as root: apt-get install {' '.join(packages)}); CONTRIBUTING.md has other systems' names"
+    """What to do about packages that are missing."""
+    names = " ".join(packages)
+    return f"missing for the tests: {names} (on Debian, as root: apt-get install {names}; CONTRIBUTING.md has Fedora's and macOS's names)"
 
 
 def install(packages):
     """Without asking for a password, and each by itself: one that cannot be had keeps no other back."""
     as_root = [] if os.geteuid() == 0 else ["sudo", "-n"]
-    apt_get = [*as_root, "env", "DEBIAN_FRONTEND=noninteractive", "apt-get", "-qq"]
-    if not all(map(shutil.which, ["apt-get", *as_root[:1]])) or subprocess.run([*as_root, "true"], check=False, stderr=subprocess.DEVNULL).returncode:
+    if not all(map(shutil.which, ["apt-get", *as_root[:1]])):
+        return
+    if subprocess.run([*as_root, "true"], check=False, stderr=subprocess.DEVNULL).returncode != 0:
         return
     print("installing", *packages, flush=True)
+    apt_get = [*as_root, "env", "DEBIAN_FRONTEND=noninteractive", "apt-get", "-qq"]
     subprocess.run([*apt_get, "update"], check=False)
     for package in packages:
         subprocess.run([*apt_get, "install", "-y", "--no-install-recommends", package], check=False, stdout=subprocess.DEVNULL)
