@@ -5,7 +5,7 @@ use super::final_fit::{Final, is_own_mu};
 use super::fitting::{covariance, fitted};
 use super::markers::MarkerFit;
 use super::model::{Effect, Model};
-use super::noise::{excess_n, is_noise, is_noise_at, rms_n};
+use super::noise::{excess_n, is_negligible, is_noise, is_noise_at, rms_n};
 use super::trials::{Trial, trials};
 use super::worse::{are_tensions_worse, worse_shape};
 use crate::continuum::error::ContinuumError;
@@ -186,7 +186,7 @@ fn search(case: &Case<'_>, distrusted: &[Effect]) -> Result<Search, ContinuumErr
         now = without;
         noise_n = case.noise_n(&now)?;
     }
-    if !is_noise(case, &now, noise_n) {
+    if !is_negligible(case, &now, noise_n) {
         // A name for less than what is left would be a guess.
         let left_n = excess_n(&now, noise_n);
         while let Some(last) = findings.last() {
@@ -208,7 +208,7 @@ fn search(case: &Case<'_>, distrusted: &[Effect]) -> Result<Search, ContinuumErr
             tried.extend(Vec::into_iter(dropped).map(guess));
         }
     }
-    let verdict = match (findings.is_empty(), is_noise(case, &now, noise_n)) {
+    let verdict = match (findings.is_empty(), is_negligible(case, &now, noise_n)) {
         (true, true) => Verdict::Complete,
         (false, true) => Verdict::Extended,
         (_, false) => Verdict::Unexplained,

@@ -11,7 +11,7 @@ use super::goes_with::{GoesWith, of_markers, of_tensions};
 use super::markers::MarkerFit;
 use super::model::{Effect, Model, Parameter};
 use super::naming::{Finding, Outcome, Tried};
-use super::noise::{excess_n, is_noise, rms_n};
+use super::noise::{excess_n, is_negligible, rms_n};
 use crate::continuum::shape_errors::Way;
 use crate::discover::Verdict;
 use crate::discover::result::{DiscoverResult, Evidence};
@@ -227,7 +227,7 @@ fn marker_errors(markers: &[Option<MarkerFit>; 2]) -> Option<TendonMarkers> {
 fn rest(case: &Case<'_>, outcome: &Outcome) -> TendonRest {
     let Outcome { noise_n, given, after, last, markers: [_, markers], .. } = outcome;
     let off = markers.as_ref().filter(|markers| !markers.is_noise());
-    let are_tensions_off = !is_noise(case, after, *noise_n);
+    let are_tensions_off = !is_negligible(case, after, *noise_n);
     let tensions = are_tensions_off.then(|| of_tensions(case, given)).flatten();
     // Gratings that are wrong make shapes that are wrong; only tensions that are right tell of the bending.
     let bending = off.filter(|_| !are_tensions_off).and_then(|markers| of_markers(case, &last.fit, markers));

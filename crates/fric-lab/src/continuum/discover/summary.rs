@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::result::{TendonDiscoverResult, TendonMarkers, TendonRest, TendonTried};
+use super::result::{TendonDiscoverResult, TendonEffect, TendonMarkers, TendonRest, TendonTried};
 use crate::errors::ForceError;
 use crate::fit::HALF_INTERVAL;
 use crate::text::{quantity, table, wrapped};
@@ -19,7 +19,8 @@ impl TendonDiscoverResult {
             .cables
             .iter()
             .map(|tendon| {
-                let kinds: Vec<&str> = tendon.effects.iter().map(|effect| effect.kind).collect();
+                let mut kinds: Vec<&str> = tendon.effects.iter().map(|effect| effect.kind).collect();
+                kinds.dedup();
                 [
                     tendon.name.to_owned(),
                     tendon.verdict.to_owned(),
@@ -35,7 +36,8 @@ impl TendonDiscoverResult {
         let mut text = format!("{}: what the model lacks\n\n{}", self.robot, table(&header, 3, &rows));
         text +=
             "\nrms of the tension in the segments, gratings less model, in N, over samples that\nno fit has seen.\n";
-        for effect in self.cables.iter().flat_map(|tendon| &tendon.effects) {
+        let effects: Vec<&TendonEffect> = self.cables.iter().flat_map(|tendon| &tendon.effects).collect();
+        for (place, effect) in effects.iter().enumerate() {
             let values: Vec<String> = effect
                 .parameters
                 .0
@@ -47,64 +49,77 @@ impl TendonDiscoverResult {
                 .collect();
             // Writing to a String cannot fail.
             let _ = writeln!(text, "\n{}: {}", effect.kind, values.join(", "));
-            let [cause, remedy] = effect.words;
-            text += &wrapped("  cause   ", cause);
-            text += &wrapped("  remedy  ", remedy);
+            // Once for holes that were found together.
+            if effects.get(place + 1).is_none_or(|next| next.kind != effect.kind) {
+                let [cause, remedy] = effect.words;
+                text += &wrapped("  cause   ", cause);
+                text += &wrapped("  remedy  ", remedy);
+            }
         }
         for tendon in &self.cables {
             if let Some(markers) = &tendon.markers {
                 text += "\n";
-                text += &wrapped("markers: ", &of_markers(markers));
+                text += &wrapped("markers: ", &markers.sentence());
             }
             for tried in &tendon.tried {
                 text += "\n";
-                text += &wrapped("not named: ", &of_tried(tried));
+                text += &wrapped("not named: ", &tried.sentence());
             }
             if let Some(rest) = &tendon.unexplained {
                 text += "\n";
-                text += &wrapped("unexplained: ", &of_rest(rest));
+                text += &wrapped("unexplained: ", &rest.sentence());
             }
         }
         text
     }
 }
 
-fn of_markers(markers: &TendonMarkers) -> String {
-    let TendonMarkers { noise_mm, calibration_error_mm, before, after } = markers;
-    format!(
-        "with the tensions that the gratings show the disks are {:.2} mm off their markers (rms; at most {:.2} mm), {:.2} mm as \
-         given; noise makes {noise_mm:.2} mm of it, and one standard error of the calibration {calibration_error_mm:.2} mm.",
-        after.rms_mm, after.max_mm, before.rms_mm
-    )
+impl TendonMarkers {
+    fn sentence(&self) -> String {
+        let Self { noise_mm, calibration_error_mm, before, after } = self;
+        format!(
+            "with the tensions that the gratings show the disks are {:.2} mm off their markers (rms; at most {:.2} mm), {:.2} mm as \
+             given; noise makes {noise_mm:.2} mm of it, and one standard error of the calibration {calibration_error_mm:.2} mm.",
+            after.rms_mm, after.max_mm, before.rms_mm
+        )
+    }
 }
 
-fn of_tried(tried: &TendonTried) -> String {
-    let place = tried.parameters.0.iter().map(|(name, value)| format!(" at {name} {value}")).collect::<String>();
-    format!("{}{place}: {}.", tried.kind, tried.reason)
+impl TendonTried {
+    /// For people.
+    #[must_use]
+    pub fn sentence(&self) -> String {
+        let place = self.parameters.0.iter().map(|(name, value)| format!(" at {name} {value}")).collect::<String>();
+        format!("{}{place}: {}.", self.kind, self.reason)
+    }
 }
 
-fn of_rest(rest: &TendonRest) -> String {
-    let most = |signal: &str| rest.places.iter().find(|place| place.signal == signal);
-    let mut text = String::new();
-    if let Some(place) = most("grating") {
-        let (share, grating) = (100.0 * place.share_of_excess, place.from);
+impl TendonRest {
+    /// For people.
+    #[must_use]
+    pub fn sentence(&self) -> String {
+        let most = |signal: &str| self.places.iter().find(|place| place.signal == signal);
+        let mut text = String::new();
         // Writing to a String cannot fail.
-        let _ = write!(
-            text,
-            "{:.4} N of tension are left above the noise, {share:.0} % of them at grating {grating}. ",
-            rest.rms_n
-        );
+        if let Some(place) = most("grating") {
+            let (share, grating) = (100.0 * place.share_of_excess, place.from);
+            let _ = write!(
+                text,
+                "{:.4} N of tension are left above the noise, {share:.0} % of the squares at grating {grating}. ",
+                self.rms_n
+            );
+        }
+        if let (Some(place), Some(rms_mm)) = (most("marker"), self.rms_mm) {
+            let (share, disk) = (100.0 * place.share_of_excess, place.from);
+            let _ = write!(
+                text,
+                "The disks are {rms_mm:.2} mm (rms) off their markers above the noise, {share:.0} % of the squares at disk {disk}. "
+            );
+        }
+        for one in &self.goes_with {
+            text += &one.sentence;
+            text += " ";
+        }
+        text + "No effect of the catalogue accounts for it."
     }
-    if let (Some(place), Some(rms_mm)) = (most("marker"), rest.rms_mm) {
-        let (share, disk) = (100.0 * place.share_of_excess, place.from);
-        let _ = write!(
-            text,
-            "The disks are {rms_mm:.2} mm (rms) off their markers above the noise, {share:.0} % of the squares at disk {disk}. "
-        );
-    }
-    for one in &rest.goes_with {
-        text += &one.sentence;
-        text += " ";
-    }
-    text + "No effect of the catalogue accounts for it."
 }
