@@ -1,8 +1,7 @@
 //! What of a residual of the tensions counts as noise.
 //!
 //! The noise itself is estimated from the residual. The search goes on while more is left than an error of that estimate and what the calibration
-//! leaves open of the gratings' lines, or while something is left that no line of a grating, however wrong, accounts for. The
-//! verdict passes over what is practically nothing. How large the gap was before does not enter.
+//! leaves open of the gratings' lines. The verdict passes over what is practically nothing. How large the gap was before does not enter.
 
 use super::case::{Case, Fit};
 use crate::replay::Deviation;
@@ -30,41 +29,12 @@ pub fn excess_n(fit: &Fit, noise_n: f64) -> f64 {
 
 /// Whether nothing is left to look for.
 pub fn is_noise(case: &Case<'_>, fit: &Fit, noise_n: f64) -> bool {
-    let beyond_n = beyond_lines_n(case, fit);
-    let excess_n2 = beyond_n * beyond_n - noise_n * noise_n;
-    excess_n(fit, noise_n) <= noise_excess_n(case, noise_n) && excess_n2 <= (NOISE_ERROR_RATIO * noise_n).powi(2)
+    excess_n(fit, noise_n) <= noise_excess_n(case, noise_n)
 }
 
 /// Whether what is left is noise, or practically nothing.
 pub fn is_negligible(case: &Case<'_>, fit: &Fit, noise_n: f64) -> bool {
     excess_n(fit, noise_n) <= negligible_n(case, noise_n)
-}
-
-/// Root mean square of what no line of a grating accounts for, N: each residual less a line over its tension that is fitted to what is
-/// learned from, on what is held out.
-fn beyond_lines_n(case: &Case<'_>, fit: &Fit) -> f64 {
-    let mut left_n = Deviation::default();
-    for grating in 0..fit.model.mu.len() {
-        let points = fit.residual_n.iter().zip(&case.observed_n).zip(&case.held_out);
-        let points: Vec<(f64, f64, bool)> = points
-            .filter_map(|((row, observed_n), held_out)| {
-                Some((*observed_n.get(grating)?, *row.get(grating)?, *held_out))
-            })
-            .filter(|(tension_n, residual_n, _)| (tension_n + residual_n).is_finite())
-            .collect();
-        let learned = || points.iter().filter(|(.., held_out)| !held_out);
-        #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
-        let count = learned().count() as f64;
-        let mean_n = learned().map(|point| point.0).sum::<f64>() / count;
-        let constant_n = learned().map(|point| point.1).sum::<f64>() / count;
-        let squares: f64 = learned().map(|point| (point.0 - mean_n).powi(2)).sum();
-        let common: f64 = learned().map(|point| (point.0 - mean_n) * point.1).sum();
-        let slope = if squares > 0.0 { common / squares } else { 0.0 };
-        for (tension_n, residual_n, _) in points.iter().filter(|(.., held_out)| *held_out) {
-            left_n.add(residual_n - constant_n - slope * (tension_n - mean_n));
-        }
-    }
-    left_n.rms().unwrap_or(0.0)
 }
 
 /// What counts as nothing above the noise, N.

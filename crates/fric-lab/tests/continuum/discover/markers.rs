@@ -47,24 +47,28 @@ fn assert_nothing_worse(text: &str, samples: &[RunSample], discovery: &TendonDis
 
 #[test]
 fn a_bending_that_is_not_the_models_is_not_called_complete() {
-    for (stiffness_ratio, offset_ratio) in [(0.9, 1.0), (1.1, 1.0), (1.0, 0.95), (1.0, 1.05)] {
-        for experiment in [Experiment::OneWay, Experiment::Mixed] {
-            let (text, samples) = off(stiffness_ratio, offset_ratio, &options(experiment, 21));
-            let discovery = found(&text, &samples);
-            assert_eq!(told(&discovery), ("unexplained", Vec::new()), "{stiffness_ratio} {offset_ratio}");
-            let rest = discovery.result.cables[0].unexplained.as_ref().unwrap();
-            assert!(rest.rms_mm.unwrap() > 2.0);
-            assert_eq!((rest.places[0].signal, rest.places[0].from), ("marker", 8), "the tip is furthest off");
-            let goes_with = &rest.goes_with[0];
-            assert_eq!((goes_with.signal, goes_with.with), ("marker", "bending"));
-            // The bend is that of the moment T·r over EI.
-            let ratio = goes_with.parameters.get("stiffness_ratio").unwrap();
-            assert!((ratio - stiffness_ratio / offset_ratio).abs() < 0.02, "{ratio}");
-            assert_nothing_worse(&text, &samples, &discovery);
-            // What was written, given again, says the same.
-            let written = rewrite(&text, "arm", &discovery.edit).unwrap();
-            assert_eq!(told(&found(&written, &samples)), ("unexplained", Vec::new()));
-        }
+    let off_by = [
+        (0.9, 1.0, Experiment::OneWay),
+        (1.1, 1.0, Experiment::Mixed),
+        (1.0, 0.95, Experiment::Mixed),
+        (1.0, 1.05, Experiment::OneWay),
+    ];
+    for (stiffness_ratio, offset_ratio, experiment) in off_by {
+        let (text, samples) = off(stiffness_ratio, offset_ratio, &options(experiment, 21));
+        let discovery = found(&text, &samples);
+        assert_eq!(told(&discovery), ("unexplained", Vec::new()), "{stiffness_ratio} {offset_ratio}");
+        let rest = discovery.result.cables[0].unexplained.as_ref().unwrap();
+        assert!(rest.rms_mm.unwrap() > 2.0);
+        assert_eq!((rest.places[0].signal, rest.places[0].from), ("marker", 8), "the tip is furthest off");
+        let goes_with = &rest.goes_with[0];
+        assert_eq!((goes_with.signal, goes_with.with), ("marker", "bending"));
+        // The bend is that of the moment T·r over EI.
+        let ratio = goes_with.parameters.get("stiffness_ratio").unwrap();
+        assert!((ratio - stiffness_ratio / offset_ratio).abs() < 0.02, "{ratio}");
+        assert_nothing_worse(&text, &samples, &discovery);
+        // What was written, given again, says the same.
+        let written = rewrite(&text, "arm", &discovery.edit).unwrap();
+        assert_eq!(told(&found(&written, &samples)), ("unexplained", Vec::new()));
     }
 }
 
@@ -96,28 +100,28 @@ fn a_frame_of_the_markers_that_is_off_is_told() {
 /// α_Λ + α_n of silica is 0.55e-6 + 6.3e-6 per K; the wavelengths are those of the C band.
 #[test]
 fn a_temperature_without_reference_is_told_and_no_friction() {
-    for (experiment, from_s) in [(Experiment::OneWay, 3.35), (Experiment::Mixed, 8.05), (Experiment::Mixed, -1.0)] {
-        for kelvin in [5.0, -5.0] {
-            let (text, mut samples) = measured(experiment, 24, &[0.1753]);
-            for sample in samples.iter_mut().filter(|sample| sample.time_s > from_s) {
-                sample.shift_nm.iter_mut().for_each(|shift_nm| *shift_nm += 1550.0 * 6.85e-6 * kelvin);
-            }
-            let discovery = found(&text, &samples);
-            assert_eq!(told(&discovery), ("unexplained", Vec::new()), "{experiment:?} {kelvin}");
-            let goes_with = &discovery.result.cables[0].unexplained.as_ref().unwrap().goes_with[0];
-            assert_eq!(goes_with.with, if from_s < 0.0 { "temperature" } else { "temperature_step" });
-            let told_kelvin = goes_with.parameters.get("temperature_k").unwrap();
-            assert!((told_kelvin / kelvin - 1.0).abs() < 0.05, "{told_kelvin}");
-            assert!(goes_with.parameters.get("from_s").is_none_or(|told_s| (told_s - from_s).abs() < 0.1));
-            assert_eq!(discovery.edit, Default::default(), "nothing is written");
+    for (experiment, from_s, kelvin) in
+        [(Experiment::OneWay, 3.35, 5.0), (Experiment::Mixed, 8.05, -5.0), (Experiment::Mixed, -1.0, 5.0)]
+    {
+        let (text, mut samples) = measured(experiment, 24, &[0.1753]);
+        for sample in samples.iter_mut().filter(|sample| sample.time_s > from_s) {
+            sample.shift_nm.iter_mut().for_each(|shift_nm| *shift_nm += 1550.0 * 6.85e-6 * kelvin);
         }
+        let discovery = found(&text, &samples);
+        assert_eq!(told(&discovery), ("unexplained", Vec::new()), "{experiment:?} {kelvin}");
+        let goes_with = &discovery.result.cables[0].unexplained.as_ref().unwrap().goes_with[0];
+        assert_eq!(goes_with.with, if from_s < 0.0 { "temperature" } else { "temperature_step" });
+        let told_kelvin = goes_with.parameters.get("temperature_k").unwrap();
+        assert!((told_kelvin / kelvin - 1.0).abs() < 0.05, "{told_kelvin}");
+        assert!(goes_with.parameters.get("from_s").is_none_or(|told_s| (told_s - from_s).abs() < 0.1));
+        assert_eq!(discovery.edit, Default::default(), "nothing is written");
     }
 }
 
 /// A right model is complete or extended, at a fifth, once and four times the usual noise; names are of holes, whose μ do differ.
 #[test]
 fn a_right_model_is_not_called_unexplained() {
-    for (noise_ratio, seed) in [(0.2, 31), (0.2, 32), (1.0, 33), (1.0, 34), (4.0, 35), (4.0, 36)] {
+    for (noise_ratio, seed) in [(0.2, 31), (1.0, 33), (4.0, 35)] {
         for experiment in [Experiment::OneWay, Experiment::Mixed] {
             let usual = TendonSimulationOptions::default();
             let options = TendonSimulationOptions {
@@ -147,11 +151,11 @@ fn what_is_found_beside_a_wrong_bending_makes_no_shape_worse() {
     assert_nothing_worse(&smooth, &samples, &discovery);
 }
 
-/// The 95 % interval of μ holds the truth, the error of the calibration included, in at least 34 of 40 runs: 38 are expected, and fewer than 34
-/// come in one of 75 series. Without the calibration's error it holds it in about half of them.
+/// The 95 % interval of μ holds the truth, the error of the calibration included, in at least 16 of 20 runs: 19 are expected, and fewer than 16
+/// come in one of 380 series.
 #[test]
 fn intervals_hold_the_truth_whatever_the_calibration() {
-    let held = (0..40).filter(|seed| {
+    let held = (0..20).filter(|seed| {
         let options = TendonSimulationOptions {
             mu_spread_ratio: 0.0,
             marker_noise_m: 0.0,
@@ -164,7 +168,7 @@ fn intervals_hold_the_truth_whatever_the_calibration() {
         (mu - 0.1753).abs() <= 1.96 * error
     });
     let count = held.count();
-    assert!(count >= 34, "{count} of 40");
+    assert!(count >= 16, "{count} of 20");
 }
 
 #[test]
