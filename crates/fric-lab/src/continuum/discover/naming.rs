@@ -149,10 +149,19 @@ fn search(case: &Case<'_>, distrusted: &[Effect]) -> Result<Search, ContinuumErr
     let mut noise_n = case.noise_n(&now)?;
     while findings.len() < MOST_EFFECTS && !is_noise(case, &now, noise_n) {
         let gap_n = excess_n(&now, noise_n);
-        let (best, others) = ranked(trials(case, &now, distrusted));
+        let (spread, single): (Vec<Trial>, Vec<Trial>) =
+            trials(case, &now, distrusted).into_iter().partition(Trial::is_spread);
         let closed = |trial: &Trial| 1.0 - excess_n(&trial.fit, noise_n) / gap_n;
         let helps = |trial: &Trial| trial.delta_bic < -LEAST_EVIDENCE;
         let is_enough = |trial: &Trial| helps(trial) && closed(trial) > LEAST_SHARE;
+        // A spread over all holes comes last: it would swallow one of them.
+        let (mut best, mut others) = ranked(single);
+        if !best.as_ref().is_some_and(is_enough)
+            && let (Some(all), _) = ranked(spread)
+            && is_enough(&all)
+        {
+            others.splice(0..0, best.replace(all));
+        }
         let best = match best {
             Some(best) if is_enough(&best) => best,
             best => {

@@ -18,6 +18,13 @@ pub struct Trial {
     pub delta_bic: f64,
 }
 
+impl Trial {
+    /// Whether it gives all holes a μ of their own.
+    pub fn is_spread(&self) -> bool {
+        matches!(self.effects[..], [Effect::HoleFriction(_), _, ..])
+    }
+}
+
 /// Whether what a grating shows goes with the time rather than with its tension: a line of it that is wrong in slope and offset, which is
 /// no effect of the catalogue, must not account for it as well as a drift does.
 fn is_told_from_line(case: &Case<'_>, fit: &Fit, grating: usize) -> bool {
