@@ -57,7 +57,7 @@ impl MarkerFit {
         let params = case.file.params();
         #[expect(clippy::cast_precision_loss, reason = "a small count")]
         let practical_m = PRACTICAL_RATIO * params.disk_count() as f64 * params.pitch_m();
-        Some(Self { practical_m, residual_m, tension_n, noise_m, line_error_m, distance_m, greatest_m })
+        Some(Self { residual_m, tension_n, noise_m, line_error_m, distance_m, greatest_m, practical_m })
     }
 
     pub fn rms_m(&self) -> f64 {

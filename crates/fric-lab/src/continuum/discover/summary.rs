@@ -89,8 +89,12 @@ impl TendonTried {
     /// For people.
     #[must_use]
     pub fn sentence(&self) -> String {
-        let place = self.parameters.0.iter().map(|(name, value)| format!(" at {name} {value}")).collect::<String>();
-        format!("{}{place}: {}.", self.kind, self.reason)
+        let mut text = self.kind.to_owned();
+        for (name, value) in &self.parameters.0 {
+            // Writing to a String cannot fail.
+            let _ = write!(text, " at {name} {value}");
+        }
+        format!("{text}: {}.", self.reason)
     }
 }
 
