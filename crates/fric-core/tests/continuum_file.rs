@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use fric_core::continuum::edit::{ManipulatorEdit, rewrite};
+use fric_core::continuum::edit::{GratingLine, ManipulatorEdit, rewrite};
 use fric_core::continuum::file::ManipulatorFile;
 use fric_core::continuum::{ManipulatorOptions, ManipulatorParams, Tendon};
 
@@ -95,21 +95,33 @@ fn gratings_are_checked() {
 
 #[test]
 fn a_calibration_goes_into_the_file_and_nothing_else_changes() {
-    let with_calibration = |text: &str, origin: &str, lines: &[[f64; 3]]| {
+    let with_calibration = |text: &str, origin: &str, lines: &[GratingLine]| {
         rewrite(text, origin, &ManipulatorEdit { lines: lines.to_vec(), ..ManipulatorEdit::default() })
     };
-    let lines: Vec<[f64; 3]> = (0..8).map(|place| [11.0 + 0.1 * f64::from(place), -0.01, 0.005]).collect();
+    let line = |place: u32| GratingLine {
+        newton_per_nm: 11.0 + 0.1 * f64::from(place),
+        offset_n: -0.01,
+        standard_error_n: 0.005,
+        line_error_n: 0.002,
+        slope_error_n_per_nm: 0.03,
+        mean_shift_nm: 0.1,
+    };
+    let lines: Vec<GratingLine> = (0..8).map(line).collect();
     let text = with_calibration(PROTOTYPE, "arm.toml", &lines).unwrap();
     assert!(text.starts_with(PROTOTYPE), "{text}");
     let read = ManipulatorFile::parse(&text, "arm.toml").unwrap();
     let gratings = read.tables().gratings.clone().unwrap();
-    assert_eq!(gratings.newton_per_nm, lines.iter().map(|line| line[0]).collect::<Vec<_>>());
+    assert_eq!(gratings.newton_per_nm, lines.iter().map(|line| line.newton_per_nm).collect::<Vec<_>>());
     assert_eq!((gratings.offset_n.len(), gratings.standard_error_n[7]), (8, 0.005));
+    assert_eq!(
+        (gratings.line_error_n[7], gratings.slope_error_n_per_nm[0], gratings.mean_shift_nm[3]),
+        (0.002, 0.03, 0.1)
+    );
     // A second calibration replaces the first; what else is known of the gratings stays.
     let stated = PROTOTYPE.to_owned() + GRATINGS;
     let again =
         with_calibration(&with_calibration(&stated, "arm.toml", &lines[..]).unwrap(), "arm.toml", &lines).unwrap();
-    assert_eq!(again.matches("newton_per_nm").count(), 1);
+    assert_eq!(again.matches("\nnewton_per_nm").count(), 1);
     assert!(again.contains("photoelastic_ratio = 0.22"));
     assert!(with_calibration(PROTOTYPE, "arm.toml", &lines[..3]).unwrap_err().to_string().contains("8 are needed"));
     assert!(with_calibration("gratings = 3", "arm.toml", &lines).is_err());

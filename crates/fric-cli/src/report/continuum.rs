@@ -146,6 +146,10 @@ pub fn discovery(found: &TendonDiscovery) -> String {
                     dt { "rms after" } dd { (format!("{:.4} N", after.rms_n)) }
                 }
                 dt { "gap closed" } dd { (percent(tendon.gap_closed)) }
+                @if let Some(markers) = tendon.markers {
+                    dt { "off the markers, rms" } dd { (format!("{:.2} mm", markers.after.rms_mm)) }
+                    dt { "noise of that" } dd { (format!("{:.2} mm", markers.noise_mm)) }
+                }
             }
             @for effect in &tendon.effects {
                 h3 { (effect.kind) }
@@ -154,9 +158,8 @@ pub fn discovery(found: &TendonDiscovery) -> String {
                     (effect.words.join(" "))
                 }
             }
-            @if let Some(rest) = &tendon.unexplained {
-                p.unexplained { (format!("{:.4} N above the noise are not accounted for by any effect.", rest.rms_n)) }
-            }
+            @for tried in &tendon.tried { p.soft { "Not named: " (tried.sentence()) } }
+            @if let Some(rest) = &tendon.unexplained { p.unexplained { (rest.sentence()) } }
         }
         p {
             "Gratings less model in each segment over time:"

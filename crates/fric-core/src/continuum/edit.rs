@@ -16,10 +16,27 @@ pub struct ManipulatorEdit {
     pub mu: Vec<f64>,
     /// Presliding stiffness of its holes, N/m.
     pub sigma_n_per_m: Option<f64>,
-    /// Slope, N/nm, offset, N, and standard error of a tension, N, of each grating.
-    pub lines: Vec<[f64; 3]>,
+    /// The line of each grating.
+    pub lines: Vec<GratingLine>,
     /// Drift of each grating, nm/s.
     pub drift_nm_per_s: Vec<f64>,
+}
+
+/// The line of a grating, `T = a·Δλ + b`, with its standard errors.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct GratingLine {
+    /// a, N/nm.
+    pub newton_per_nm: f64,
+    /// b, N.
+    pub offset_n: f64,
+    /// Of a tension from one shift, N.
+    pub standard_error_n: f64,
+    /// Of the line at the mean shift of its load steps, N.
+    pub line_error_n: f64,
+    /// Of the slope, N/nm.
+    pub slope_error_n_per_nm: f64,
+    /// That mean shift, nm.
+    pub mean_shift_nm: f64,
 }
 
 /// The text of a manipulator file with new values; `origin` says where it is from, for errors.
@@ -65,10 +82,13 @@ pub fn rewrite(text: &str, origin: &str, edit: &ManipulatorEdit) -> Result<Strin
         set("tendon", "sigma_n_per_m", sigma_n_per_m.into())?;
     }
     if !edit.lines.is_empty() {
-        for (place, key) in ["newton_per_nm", "offset_n", "standard_error_n"].into_iter().enumerate() {
-            let values: Vec<f64> = edit.lines.iter().filter_map(|line| line.get(place)).copied().collect();
-            set("gratings", key, list(&values))?;
-        }
+        let column = |of: fn(&GratingLine) -> f64| list(&edit.lines.iter().map(of).collect::<Vec<_>>());
+        set("gratings", "newton_per_nm", column(|line| line.newton_per_nm))?;
+        set("gratings", "offset_n", column(|line| line.offset_n))?;
+        set("gratings", "standard_error_n", column(|line| line.standard_error_n))?;
+        set("gratings", "line_error_n", column(|line| line.line_error_n))?;
+        set("gratings", "slope_error_n_per_nm", column(|line| line.slope_error_n_per_nm))?;
+        set("gratings", "mean_shift_nm", column(|line| line.mean_shift_nm))?;
     }
     if !edit.drift_nm_per_s.is_empty() {
         set("gratings", "drift_nm_per_s", list(&edit.drift_nm_per_s))?;

@@ -27,6 +27,16 @@ pub struct GratingsTable {
     /// Standard error of a tension from one shift, N; 0 if left out.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub standard_error_n: Vec<f64>,
+    /// Standard error of the line itself, N, at the mean shift of its load steps; half of `standard_error_n` if left out, as after ten
+    /// loads evenly spread.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub line_error_n: Vec<f64>,
+    /// Standard error of the slope, N/nm; 0 if left out.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub slope_error_n_per_nm: Vec<f64>,
+    /// Mean shift of the load steps, nm, where the errors of line and slope are independent; 0 if left out.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub mean_shift_nm: Vec<f64>,
     /// Drift of the shift with the time of a run, nm/s, such as that of a fibre that warms up; 0 if left out.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub drift_nm_per_s: Vec<f64>,
@@ -56,10 +66,13 @@ impl GratingsTable {
         };
         let one = |value: &Option<f64>| value.iter().copied().collect::<Vec<f64>>();
         let each = |values: &Option<OneOrEach>| values.iter().flat_map(|all| all.as_slice().to_vec()).collect();
-        let lists: [(&'static str, Vec<f64>, f64, f64); 9] = [
+        let lists: [(&'static str, Vec<f64>, f64, f64); 12] = [
             ("newton_per_nm", self.newton_per_nm.clone(), -1e6, 1e6),
             ("offset_n", self.offset_n.clone(), -1e6, 1e6),
             ("standard_error_n", self.standard_error_n.clone(), 0.0, 1e6),
+            ("line_error_n", self.line_error_n.clone(), 0.0, 1e6),
+            ("slope_error_n_per_nm", self.slope_error_n_per_nm.clone(), 0.0, 1e6),
+            ("mean_shift_nm", self.mean_shift_nm.clone(), -1e3, 1e3),
             ("drift_nm_per_s", self.drift_nm_per_s.clone(), -1e3, 1e3),
             ("wavelength_nm", each(&self.wavelength_nm), 100.0, 1e4),
             ("reference_wavelength_nm", one(&self.reference_wavelength_nm), 100.0, 1e4),
@@ -68,7 +81,9 @@ impl GratingsTable {
             ("length_m", each(&self.length_m), 0.0, 10.0),
         ];
         for (key, values, min, max) in &lists {
-            let may_be_one = !["newton_per_nm", "offset_n", "standard_error_n", "drift_nm_per_s"].contains(key);
+            let may_be_one =
+                ["wavelength_nm", "reference_wavelength_nm", "photoelastic_ratio", "from_base_side_m", "length_m"];
+            let may_be_one = may_be_one.contains(key);
             if !(values.is_empty() || values.len() == disk_count || may_be_one && values.len() == 1) {
                 let text =
                     format!("`{key}` has {} entries; {disk_count} are needed, one for each segment", values.len());

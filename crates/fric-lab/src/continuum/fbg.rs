@@ -5,6 +5,7 @@
 //! finite give tensions that are not finite; [`bridged`] puts something in their place and says so.
 
 use fric_core::continuum::ManipulatorParams;
+use serde::Serialize;
 
 use super::error::ContinuumError;
 
@@ -38,6 +39,25 @@ pub struct Calibration {
     count: usize,
 }
 
+/// What is not known of a line: it is off by a constant, and by its slope around the mean shift of its load steps, independently.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct LineError {
+    /// Standard error at that mean shift, N.
+    pub line_error_n: f64,
+    /// Standard error of the slope, N/nm.
+    pub slope_error_n_per_nm: f64,
+    /// That mean shift, nm.
+    pub mean_shift_nm: f64,
+}
+
+impl LineError {
+    /// How far the tension for a shift is off by one standard error of the constant, and by one of the slope, N.
+    #[must_use]
+    pub fn parts_n(&self, shift_nm: f64) -> [f64; 2] {
+        [self.line_error_n, self.slope_error_n_per_nm * (shift_nm - self.mean_shift_nm)]
+    }
+}
+
 /// A tension with its standard error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tension {
@@ -69,6 +89,21 @@ impl Calibration {
     pub fn largest_standard_error_n(&self) -> f64 {
         let far_nm = self.range_nm.iter().map(|shift_nm| self.tension(*shift_nm).standard_error_n);
         far_nm.fold(self.noise_n, f64::max)
+    }
+
+    /// What the load steps leave open of the line; nothing for one that is known.
+    #[must_use]
+    pub fn line_error(&self) -> LineError {
+        if self.count == 0 {
+            return LineError::default();
+        }
+        #[expect(clippy::cast_precision_loss, reason = "a number of load steps")]
+        let count = self.count as f64;
+        LineError {
+            line_error_n: self.noise_n / libm::sqrt(count),
+            slope_error_n_per_nm: self.noise_n / libm::sqrt(self.spread_nm2),
+            mean_shift_nm: self.mean_nm,
+        }
     }
 
     /// Fits the lines of all gratings.

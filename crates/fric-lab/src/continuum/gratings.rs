@@ -10,7 +10,9 @@ use fric_core::continuum::file::{ManipulatorFile, OneOrEach};
 use fric_core::continuum::{ManipulatorParams, Tendon};
 
 use super::error::ContinuumError;
-use super::fbg::{Calibration, GratingPlace, StrainForm, Tension, bridged, check_travel, without_temperature};
+use super::fbg::{
+    Calibration, GratingPlace, LineError, StrainForm, Tension, bridged, check_travel, without_temperature,
+};
 use super::run::{Run, RunSample};
 
 /// So many equal shifts one after the other are no measurement.
@@ -21,6 +23,10 @@ const FAR_RATIO: f64 = 0.3;
 const FAR_OF_GREATEST_RATIO: f64 = 0.1;
 const FAR_ERRORS: f64 = 8.0;
 
+/// Error of a line as a share of the standard error of a tension from one shift, where only the latter is stated: that at the ends of ten
+/// loads evenly spread, `√(h/(1 + h))` with the leverage `h = 1/10 + 4.5²/82.5`.
+const USUAL_LINE_RATIO: f64 = 0.5;
+
 /// Tension by the gratings per tension at the base that friction, a load and a rough calibration can explain.
 const PLAUSIBLE_SCALE: Range<f64> = 1.0 / 30.0..30.0;
 /// Share of the greatest tension above which the proportion of two tensions tells something.
@@ -30,6 +36,8 @@ const LOADED_RATIO: f64 = 0.2;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gratings {
     lines: Vec<Calibration>,
+    /// What is not known of them.
+    line_errors: Vec<LineError>,
     /// Drift of each shift with the time of the run, nm/s.
     drift_nm_per_s: Vec<f64>,
     /// Bragg wavelengths and that of the reference, nm.
@@ -50,7 +58,8 @@ impl Gratings {
     /// From calibrations alone.
     #[must_use]
     pub fn new(lines: Vec<Calibration>) -> Self {
-        Self { drift_nm_per_s: vec![0.0; lines.len()], lines, wavelength_nm: None, places: None }
+        let line_errors = lines.iter().map(Calibration::line_error).collect();
+        Self { drift_nm_per_s: vec![0.0; lines.len()], line_errors, lines, wavelength_nm: None, places: None }
     }
 
     /// Those of a manipulator file; `None` where it has none.
@@ -85,6 +94,15 @@ impl Gratings {
             let mean_nm = all.iter().sum::<f64>() / all.len() as f64;
             (all, table.reference_wavelength_nm.unwrap_or(mean_nm))
         });
+        let line_error = |grating: usize| {
+            let of = |list: &[f64]| list.get(grating).copied();
+            let usual_n = USUAL_LINE_RATIO * of(&table.standard_error_n).unwrap_or(0.0);
+            LineError {
+                line_error_n: of(&table.line_error_n).unwrap_or(usual_n),
+                slope_error_n_per_nm: of(&table.slope_error_n_per_nm).unwrap_or(0.0),
+                mean_shift_nm: of(&table.mean_shift_nm).unwrap_or(0.0),
+            }
+        };
         let place = |grating: usize| {
             Some(GratingPlace {
                 from_base_side_m: stated(&table.from_base_side_m, grating)?,
@@ -93,6 +111,7 @@ impl Gratings {
         };
         Ok(Some(Self {
             lines: (0..count).map(line).collect::<Result<_, _>>()?,
+            line_errors: (0..count).map(line_error).collect(),
             drift_nm_per_s: (0..count)
                 .map(|grating| table.drift_nm_per_s.get(grating).copied().unwrap_or(0.0))
                 .collect(),
@@ -105,6 +124,12 @@ impl Gratings {
     #[must_use]
     pub fn lines(&self) -> &[Calibration] {
         &self.lines
+    }
+
+    /// What is not known of each line.
+    #[must_use]
+    pub fn line_errors(&self) -> &[LineError] {
+        &self.line_errors
     }
 
     /// Bragg wavelengths and that of the reference, nm: with them the temperature can be taken off.

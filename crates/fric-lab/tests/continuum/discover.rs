@@ -1,6 +1,8 @@
 //! What is hidden in a simulated run is named, and nothing else.
 
-use fric_core::continuum::edit::{ManipulatorEdit, rewrite};
+mod markers;
+
+use fric_core::continuum::edit::{GratingLine, ManipulatorEdit, rewrite};
 use fric_core::continuum::file::ManipulatorFile;
 use fric_lab::continuum::discover::{TendonDiscovery, discover};
 use fric_lab::continuum::fbg::Calibration;
@@ -11,13 +13,27 @@ const PROTOTYPE: &str = include_str!("../../../../examples/tendon-prototype.toml
 
 /// The text of the calibrated prototype, and a run of it with these μ.
 fn measured(experiment: Experiment, seed: u64, mu: &[f64]) -> (String, Vec<RunSample>) {
-    let edit = ManipulatorEdit { mu: mu.to_vec(), ..ManipulatorEdit::default() };
-    let truth = ManipulatorFile::parse(&rewrite(PROTOTYPE, "truth", &edit).unwrap(), "truth").unwrap();
     let options = TendonSimulationOptions { experiment, seed, ..TendonSimulationOptions::default() };
-    let run = simulate(truth.params(), &options).unwrap();
-    let line = |line: Calibration| [line.newton_per_nm, line.offset_n, line.largest_standard_error_n()];
-    let lines = Calibration::fit_all(&run.calibration).unwrap().into_iter().map(line).collect();
-    let edit = ManipulatorEdit { lines, ..ManipulatorEdit::default() };
+    let edit = ManipulatorEdit { mu: mu.to_vec(), ..ManipulatorEdit::default() };
+    measured_of(&rewrite(PROTOTYPE, "truth", &edit).unwrap(), &options)
+}
+
+/// The text of the calibrated prototype, and a run of another manipulator.
+fn measured_of(truth: &str, options: &TendonSimulationOptions) -> (String, Vec<RunSample>) {
+    let run = simulate(ManipulatorFile::parse(truth, "truth").unwrap().params(), options).unwrap();
+    let lines = Calibration::fit_all(&run.calibration).unwrap();
+    let line = |line: &Calibration| {
+        let error = line.line_error();
+        GratingLine {
+            newton_per_nm: line.newton_per_nm,
+            offset_n: line.offset_n,
+            standard_error_n: line.largest_standard_error_n(),
+            line_error_n: error.line_error_n,
+            slope_error_n_per_nm: error.slope_error_n_per_nm,
+            mean_shift_nm: error.mean_shift_nm,
+        }
+    };
+    let edit = ManipulatorEdit { lines: lines.iter().map(line).collect(), ..ManipulatorEdit::default() };
     (rewrite(PROTOTYPE, "arm", &edit).unwrap(), run.samples)
 }
 

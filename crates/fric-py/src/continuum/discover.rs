@@ -44,6 +44,25 @@ impl TendonDiscovery {
         results::plain(py, &self.result.cables.first().map(|tendon| &tendon.effects))
     }
 
+    /// Distances between disks and markers under the tensions that the gratings show, as a dict: noise_mm, calibration_error_mm, before,
+    /// after; None where too few markers tell their noise.
+    #[getter]
+    fn markers<'py>(&self, py: Python<'py>) -> Outcome<Bound<'py, PyAny>> {
+        results::plain(py, &self.result.cables.first().and_then(|tendon| tendon.markers))
+    }
+
+    /// Candidates that helped and did not suffice, best first, as dicts: kind, parameters, evidence, reason.
+    #[getter]
+    fn tried<'py>(&self, py: Python<'py>) -> Outcome<Bound<'py, PyAny>> {
+        results::plain(py, &self.result.cables.first().map(|tendon| &tendon.tried))
+    }
+
+    /// What no effect accounts for, as a dict: rms_n, rms_mm, where, goes_with; None where nothing is left.
+    #[getter]
+    fn unexplained<'py>(&self, py: Python<'py>) -> Outcome<Bound<'py, PyAny>> {
+        results::plain(py, &self.result.cables.first().and_then(|tendon| tendon.unexplained.as_ref()))
+    }
+
     fn __repr__(&self) -> String {
         format!("<TendonDiscovery: {}>", self.verdict())
     }

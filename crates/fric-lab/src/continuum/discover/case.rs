@@ -7,7 +7,7 @@ use super::model::Model;
 use crate::continuum::error::ContinuumError;
 use crate::continuum::gratings::Gratings;
 use crate::continuum::run::{Run, RunSample};
-use crate::continuum::shape_errors::{Way, shapes};
+use crate::continuum::shape_errors::{ComputedShape, Way, shapes};
 use crate::discover::noise::white_noise_in;
 use crate::discover::split::{DRAW, cut};
 use crate::replay::Deviation;
@@ -28,11 +28,12 @@ pub struct Case<'a> {
     /// Tension in each segment, N; NaN where there is none.
     pub observed_n: Vec<Vec<f64>>,
     pub held_out: Vec<bool>,
+    /// Gratings that are dead, or out of proportion to their neighbours.
+    pub is_dead: Vec<Vec<bool>>,
+    /// How far each tension is off by one standard error of its line's constant and of its slope, N.
+    pub line_error_n: Vec<Vec<[f64; 2]>>,
     /// N/nm of each grating.
     pub newton_per_nm: Vec<f64>,
-    pub greatest_n: f64,
-    /// Mean standard error of a tension from one shift, N, as the file states it.
-    pub standard_error_n: f64,
     pub run_samples: usize,
 }
 
@@ -45,17 +46,27 @@ pub struct Fit {
     pub squares: f64,
     /// Over what is held out.
     pub held_out_n: Deviation,
+    /// Tension of the model in each segment, N.
+    pub tension_n: Vec<Vec<f64>>,
+    /// Markers less disks, m; NaN where one is hidden or there is no shape, empty without markers.
+    pub marker_m: Vec<Vec<[f64; 2]>>,
 }
 
 impl<'a> Case<'a> {
     pub fn new(file: &'a ManipulatorFile, run: &Run, gratings: &Gratings) -> Result<Self, ContinuumError> {
         let tensions = gratings.unbridged(run)?;
+        let judged = gratings.read(run)?;
         let kept = thinned(run.samples());
         if kept.len() < LEAST_SAMPLES {
             return Err(ContinuumError::TooShort { count: kept.len(), needed: LEAST_SAMPLES });
         }
         let samples: Vec<RunSample> = kept.iter().filter_map(|place| run.samples().get(*place)).cloned().collect();
         let row = |place: &usize| Some(tensions.get(*place)?.iter().map(|tension| tension.value_n).collect());
+        let observed_n: Vec<Vec<f64>> = kept.iter().filter_map(row).collect();
+        let line_errors = |row: &Vec<f64>| -> Vec<[f64; 2]> {
+            let lines = gratings.lines().iter().zip(gratings.line_errors());
+            lines.zip(row).map(|((line, error), tension_n)| error.parts_n(line.shift_nm(*tension_n))).collect()
+        };
         let span_s = samples.last().map_or(0.0, |last| last.time_s) - samples.first().map_or(0.0, |first| first.time_s);
         #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
         let cycle_s = span_s / samples.len() as f64;
@@ -65,11 +76,11 @@ impl<'a> Case<'a> {
         }
         Ok(Self {
             file,
-            observed_n: kept.iter().filter_map(row).collect(),
-            greatest_n: samples.iter().map(|sample| sample.tension_base_n).fold(0.0, f64::max),
+            line_error_n: observed_n.iter().map(line_errors).collect(),
+            observed_n,
+            is_dead: kept.iter().filter_map(|place| Some(judged.get(*place)?.is_bridged.clone())).collect(),
             samples,
             held_out,
-            standard_error_n: mean(gratings.lines().iter().map(|line| line.noise_n)),
             newton_per_nm: gratings.lines().iter().map(|line| line.newton_per_nm).collect(),
             run_samples: run.samples().len(),
         })
@@ -86,19 +97,41 @@ impl<'a> Case<'a> {
             Way::History
         };
         let count = mu.len();
-        Model { way, mu, is_own: vec![false; count], drifts: vec![false; count], drift_n_per_s: vec![0.0; count] }
+        Model {
+            way,
+            mu,
+            is_shared_given: false,
+            is_own: vec![false; count],
+            drifts: vec![false; count],
+            drift_n_per_s: vec![0.0; count],
+        }
     }
 
-    fn params(&self, mu: &[f64]) -> Option<ManipulatorParams> {
+    /// The same run with nothing held out.
+    pub fn whole(&self) -> Self {
+        Self {
+            samples: self.samples.clone(),
+            observed_n: self.observed_n.clone(),
+            is_dead: self.is_dead.clone(),
+            line_error_n: self.line_error_n.clone(),
+            newton_per_nm: self.newton_per_nm.clone(),
+            held_out: vec![false; self.held_out.len()],
+            ..*self
+        }
+    }
+
+    /// The manipulator with this μ at the holes and so many times its bending stiffness.
+    pub fn params(&self, mu: &[f64], stiffness_ratio: f64) -> Option<ManipulatorParams> {
         let mut tables = self.file.tables().clone();
         tables.tendon.mu = OneOrEach::Each(mu.to_vec());
+        tables.backbone.youngs_modulus_pa *= stiffness_ratio;
         // A tendon like the first stays as it was; it is slack.
         ManipulatorFile::check(tables).ok().map(|file| *file.params())
     }
 
     /// A model with its residuals; `None` where it has no shapes.
     pub fn fit(&self, model: &Model) -> Option<Fit> {
-        let computed = shapes(&self.params(&model.mu)?, &self.samples, model.way, &[]).ok()?;
+        let computed = shapes(&self.params(&model.mu, 1.0)?, &self.samples, model.way, &[]).ok()?;
         let start_s = self.samples.first()?.time_s;
         let mut residual_n = Vec::with_capacity(computed.len());
         let (mut squares, mut held_out_n) = (0.0, Deviation::default());
@@ -123,7 +156,18 @@ impl<'a> Case<'a> {
             }
             residual_n.push(row);
         }
-        (squares > 0.0).then(|| Fit { model: model.clone(), residual_n, squares, held_out_n })
+        let marker_m = computed.iter().zip(&self.samples).map(|(shape, sample)| off_markers(shape, sample)).collect();
+        let tension_n = computed.into_iter().map(|shape| shape.tension_n).collect();
+        (squares > 0.0).then(|| Fit { model: model.clone(), residual_n, squares, held_out_n, tension_n, marker_m })
+    }
+
+    /// What the lines of the gratings may be off by over the run, root mean square of one standard error, N.
+    pub fn line_error_rms_n(&self) -> f64 {
+        let mut all = Deviation::default();
+        for [constant_n, slope_n] in self.line_error_n.iter().flatten() {
+            all.add(constant_n.hypot(*slope_n));
+        }
+        all.rms().unwrap_or(0.0)
     }
 
     /// Samples that are learned from: what the evidence counts. Gratings of one sample share their error.
@@ -147,10 +191,13 @@ impl<'a> Case<'a> {
     }
 }
 
-fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
-    #[expect(clippy::cast_precision_loss, reason = "a small count")]
-    let count = values.len().max(1) as f64;
-    values.sum::<f64>() / count
+/// Markers less disks; NaN where a marker is hidden or there is no shape.
+pub fn off_markers(shape: &ComputedShape, sample: &RunSample) -> Vec<[f64; 2]> {
+    let has_shape = shape.status.has_shape();
+    let off = |([x_m, y_m], [marker_x_m, marker_y_m]): (&[f64; 2], &[f64; 2])| {
+        if has_shape { [marker_x_m - x_m, marker_y_m - y_m] } else { [f64::NAN; 2] }
+    };
+    shape.disk_position_m.iter().zip(&sample.marker_m).map(off).collect()
 }
 
 /// Places of samples: some, evenly, and all turning points of the tension.

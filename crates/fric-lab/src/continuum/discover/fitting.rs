@@ -41,20 +41,39 @@ pub fn fitted(case: &Case<'_>, start: &Model) -> Option<Fit> {
 
 /// The step to the minimum of the linearised problem.
 fn step(case: &Case<'_>, now: &Fit, parameters: &[Parameter]) -> Option<DVector<f64>> {
-    let (matrix, gradient, _) = linearised(case, now, parameters)?.0.normal_equations();
+    let (matrix, gradient, _) = linearised(case, now, &slopes(case, now, parameters)?).0.normal_equations();
     matrix.cholesky().map(|factor| factor.solve(&-gradient))
 }
 
-/// Covariance of a fitted model's parameters, under residuals that remember; `None` where the run does not determine them.
+/// Covariance of a fitted model's parameters, under residuals that remember and lines of the gratings that are known no better than their
+/// calibration makes them; `None` where the run does not determine them.
+///
+/// A line that is off by `e` moves the parameters by `(JᵀJ)⁻¹Jᵀe` (delta method); errors of constant and slope of each line are independent.
 pub fn covariance(case: &Case<'_>, fit: &Fit) -> Option<DMatrix<f64>> {
-    let (gram, scores) = linearised(case, fit, &fit.model.parameters())?;
-    Some(scores.covariance(&inverse_of_normal(&gram.normal_equations().0)?))
+    let slopes = slopes(case, fit, &fit.model.parameters())?;
+    let (gram, scores) = linearised(case, fit, &slopes);
+    let inverse = inverse_of_normal(&gram.normal_equations().0)?;
+    let mut covariance = scores.covariance(&inverse);
+    for (segment, part) in (0..fit.model.mu.len()).flat_map(|segment| [(segment, 0), (segment, 1)]) {
+        let mut pull = DVector::zeros(slopes.len());
+        for (sample, row) in fit.residual_n.iter().enumerate().filter(|(sample, _)| !case.held_out[*sample]) {
+            if row[segment].is_finite() {
+                let error_n = case.line_error_n[sample][segment][part];
+                pull.iter_mut().zip(&slopes).for_each(|(pull, slopes)| *pull += slopes[sample][segment] * error_n);
+            }
+        }
+        let change = &inverse * pull;
+        covariance += &change * change.transpose();
+    }
+    Some(covariance)
 }
 
-/// Residuals learned from and their slopes, reduced; the gratings of a sample belong together.
-fn linearised(case: &Case<'_>, now: &Fit, parameters: &[Parameter]) -> Option<(Gram, Scores)> {
+/// Derivatives of the residuals by each parameter.
+type Slopes = Vec<Vec<Vec<f64>>>;
+
+fn slopes(case: &Case<'_>, now: &Fit, parameters: &[Parameter]) -> Option<Slopes> {
     let start_s = case.samples.first()?.time_s;
-    let slopes: Vec<Vec<Vec<f64>>> = parameters
+    parameters
         .iter()
         .map(|parameter| match parameter {
             Parameter::Drift(grating) => {
@@ -72,8 +91,12 @@ fn linearised(case: &Case<'_>, now: &Fit, parameters: &[Parameter]) -> Option<(G
                 Some(pairs.map(|(one, other)| one.iter().zip(other).map(|(p, q)| (p - q) / change).collect()).collect())
             }
         })
-        .collect::<Option<_>>()?;
-    let count = parameters.len();
+        .collect()
+}
+
+/// Residuals learned from and their slopes, reduced; the gratings of a sample belong together.
+fn linearised(case: &Case<'_>, now: &Fit, slopes: &Slopes) -> (Gram, Scores) {
+    let count = slopes.len();
     let (mut gram, mut scores) = (Gram::new(count), Scores::new(count));
     for (sample, row) in now.residual_n.iter().enumerate().filter(|(sample, _)| !case.held_out[*sample]) {
         let mut score = vec![0.0; count];
@@ -86,5 +109,5 @@ fn linearised(case: &Case<'_>, now: &Fit, parameters: &[Parameter]) -> Option<(G
         }
         scores.add(&score);
     }
-    Some((gram, scores))
+    (gram, scores)
 }

@@ -14,13 +14,23 @@
 //! A line of a grating that is wrong, as of another grating, has no name: a drift has to account for more than it would, and where something is
 //! left a name is put only on a grating, or a hole between two, at which nothing is.
 //!
-//! A spread of μ by ±10 % over the holes, which every manipulator has, counts as noise: 0.25 % of the greatest tension.
+//! What remains is compared with the noise of the gratings and with what their calibration leaves open (`noise`). Where the run has markers
+//! they take part: shapes under the tensions that the gratings show (`markers`) have to meet them within the noise of both. What is left goes
+//! with one of a few physical things, or with none (`goes_with`). No effect enters the file that makes shapes or tensions worse
+//! than as given (`worse`), and no value that the run does not contradict (`final_fit`).
 
 mod case;
+mod final_fit;
 mod fitting;
+mod goes_with;
+mod markers;
 mod model;
 mod naming;
+mod noise;
 mod result;
+mod summary;
+mod trials;
+mod worse;
 
 use fric_core::continuum::Tendon;
 use fric_core::continuum::edit::ManipulatorEdit;
@@ -31,7 +41,10 @@ use super::error::ContinuumError;
 use super::gratings::Gratings;
 use super::run::Run;
 
-pub use result::{TendonDiscoverResult, TendonEffect, TendonResult};
+pub use goes_with::GoesWith;
+pub use result::{
+    MarkerError, TendonDiscoverResult, TendonEffect, TendonMarkers, TendonPlace, TendonRest, TendonResult, TendonTried,
+};
 
 /// What a discovery found.
 #[derive(Clone, Debug)]

@@ -9,6 +9,8 @@ pub struct Model {
     pub way: Way,
     /// μ of each hole.
     pub mu: Vec<f64>,
+    /// Whether the μ that holes share stays as the file states it.
+    pub is_shared_given: bool,
     /// Holes whose μ is their own: the others' is scaled without them.
     pub is_own: Vec<bool>,
     /// Gratings that drift, and by how much their tension does, N/s.
@@ -80,7 +82,8 @@ impl Model {
     /// What is fitted.
     pub fn parameters(&self) -> Vec<Parameter> {
         let has_friction = self.way != Way::None;
-        let shared = (has_friction && self.is_own.contains(&false)).then_some(Parameter::SharedMu);
+        let shared =
+            (has_friction && !self.is_shared_given && self.is_own.contains(&false)).then_some(Parameter::SharedMu);
         let all = |flags: &[bool]| (0..flags.len()).filter(|place| flags[*place]).collect::<Vec<_>>();
         let own = all(&self.is_own).into_iter().map(Parameter::OwnMu);
         shared.into_iter().chain(own).chain(all(&self.drifts).into_iter().map(Parameter::Drift)).collect()
@@ -120,11 +123,13 @@ impl Model {
         model
     }
 
-    /// The model with a hole whose μ is its own.
-    pub fn with_hole(&self, hole: usize) -> Self {
+    /// The model with holes whose μ is their own.
+    pub fn with_holes(&self, holes: &[usize]) -> Self {
         let mut model = self.clone();
-        if let Some(is_own) = model.is_own.get_mut(hole) {
-            *is_own = true;
+        for hole in holes {
+            if let Some(is_own) = model.is_own.get_mut(*hole) {
+                *is_own = true;
+            }
         }
         model
     }

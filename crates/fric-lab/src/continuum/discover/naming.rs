@@ -1,29 +1,23 @@
 //! Which effects are missing: the best candidate enters where it helps on the samples that were held out.
 
-use rayon::prelude::*;
-
 use super::case::{Case, Fit};
-use super::fitting::fitted;
+use super::final_fit::{Final, is_own_mu};
+use super::fitting::{covariance, fitted};
+use super::markers::MarkerFit;
 use super::model::{Effect, Model};
+use super::noise::{excess_n, is_negligible, is_noise, is_noise_at, rms_n};
+use super::trials::{Trial, trials};
+use super::worse::{are_tensions_worse, worse_shape};
 use crate::continuum::error::ContinuumError;
-use crate::continuum::shape_errors::Way;
 use crate::discover::Verdict;
-use crate::replay::Deviation;
 
 /// Evidence that an effect needs: Schwarz's criterion falls by more.
-const LEAST_EVIDENCE: f64 = 10.0;
+pub const LEAST_EVIDENCE: f64 = 10.0;
 /// What is within this ratio of the best error is as good.
 const AS_GOOD_RATIO: f64 = 1.05;
-/// Where the search for μ begins in a model without friction.
-const START_MU: f64 = 0.15;
 /// Share of the gap that an effect has to close.
 const LEAST_SHARE: f64 = 0.2;
-/// What counts as noise: an error of the noise's own estimate; that of the gratings' lines, as a share of the standard error of a
-/// tension; and what a spread of μ by ±10 % over the holes leaves at usual bends, as a share of the greatest tension.
-const NOISE_ERROR_RATIO: f64 = 0.3;
-const LINE_ERROR_RATIO: f64 = 0.5;
-const TOLERATED_RATIO: f64 = 0.0025;
-/// Most effects.
+/// Most effects, but for holes that enter together.
 const MOST_EFFECTS: usize = 6;
 
 /// An effect that was found.
@@ -36,72 +30,148 @@ pub struct Finding {
     pub runner_up: Option<(Effect, f64)>,
 }
 
+/// A candidate that helped and did not suffice.
+#[derive(Clone, Debug)]
+pub struct Tried {
+    pub effect: Effect,
+    pub delta_bic: f64,
+    /// Error with it on samples held out, N.
+    pub rms_n: f64,
+    /// Why it is not named.
+    pub reason: String,
+}
+
 /// What came of it.
 #[derive(Clone, Debug)]
 pub struct Outcome {
     pub noise_n: f64,
     pub verdict: Verdict,
+    /// The model as the file states it.
+    pub given: Fit,
     pub before: Fit,
     pub after: Fit,
+    /// What is written, fitted to all samples.
+    pub last: Final,
     pub findings: Vec<Finding>,
-}
-
-/// A candidate with its fit; several effects may belong together.
-struct Trial {
-    effects: Vec<Effect>,
-    fit: Fit,
-    delta_bic: f64,
+    pub tried: Vec<Tried>,
+    /// With the given model and with the extended one.
+    pub markers: [Option<MarkerFit>; 2],
 }
 
 /// Searches for what is missing.
 ///
 /// Where something is left, a name is not put on a grating, or on a hole between two, that still disagrees: what is wrong there is
-/// something else.
+/// something else. Nor is it put on an effect with which shapes or tensions are worse than as given.
 ///
 /// # Errors
 /// [`ContinuumError::UntoldNoise`] where gaps, or a model without shapes, leave nothing that tells the noise.
 pub fn name(case: &Case<'_>) -> Result<Outcome, ContinuumError> {
-    let mut distrusted = Vec::new();
+    let given = case.fit(&case.given()).ok_or(ContinuumError::UntoldNoise)?;
+    let given_markers = MarkerFit::new(case, &given);
+    let whole = case.whole();
+    let (mut refused, mut distrusted) = (Vec::new(), Vec::new());
     loop {
-        let outcome = search(case, &distrusted)?;
-        let disagrees = |grating: usize| !is_noise_at(case, &outcome.after, outcome.noise_n, grating);
-        let is_wrong = |effect: &Effect| match *effect {
-            Effect::SensorDrift(grating) => disagrees(grating),
-            Effect::HoleFriction(hole) => (hole.saturating_sub(1)..=hole).any(disagrees),
-            Effect::Coulomb | Effect::Presliding => false,
-        };
-        let effects = outcome.findings.iter().map(|finding| finding.effect);
-        let wrong: Vec<Effect> = effects.filter(is_wrong).collect();
-        if outcome.verdict != Verdict::Unexplained || wrong.is_empty() {
-            return Ok(outcome);
+        let found = search(case, &distrusted)?;
+        let wrong = disagreeing(case, &found);
+        if found.verdict == Verdict::Unexplained && !wrong.is_empty() {
+            refuse(&found, &wrong, "what it leaves at its gratings is not noise", &mut refused);
+            distrusted.extend(wrong);
+            continue;
         }
-        distrusted.extend(wrong);
+        let Search { noise_n, verdict, before, after, findings, tried } = found;
+        let last = Final::new(&whole, &given, given_markers.as_ref(), &after, verdict, findings.is_empty())
+            .ok_or(ContinuumError::UntoldNoise)?;
+        let markers = MarkerFit::new(case, &last.fit);
+        let worse = worse_shape([&given, &last.fit], [given_markers.as_ref(), markers.as_ref()]);
+        if let Some(culprit) = findings.last().filter(|_| worse.is_some() || are_tensions_worse(&given, &last.fit)) {
+            let reason = worse.map_or_else(
+                || "with it the tensions are further from the gratings than as given".to_owned(),
+                |worse| {
+                    format!(
+                        "with it disk {} is {:.2} mm off its marker (rms), {:.2} mm as given",
+                        worse.disk + 1,
+                        1e3 * worse.after_m,
+                        1e3 * worse.before_m
+                    )
+                },
+            );
+            let together = findings.iter().filter(|other| other.fit.model == culprit.fit.model);
+            let wrong: Vec<Effect> = together.map(|finding| finding.effect).collect();
+            let found = Search { noise_n, verdict, before, after, findings, tried };
+            refuse(&found, &wrong, &reason, &mut refused);
+            distrusted.extend(wrong);
+            continue;
+        }
+        let are_markers_noise = markers.as_ref().is_none_or(MarkerFit::is_noise);
+        let verdict = if are_markers_noise { verdict } else { Verdict::Unexplained };
+        refused.extend(tried);
+        let markers = [given_markers, markers];
+        return Ok(Outcome { noise_n, verdict, given, before, after, last, findings, tried: refused, markers });
+    }
+}
+
+/// What a search among some effects found.
+struct Search {
+    noise_n: f64,
+    verdict: Verdict,
+    before: Fit,
+    after: Fit,
+    findings: Vec<Finding>,
+    tried: Vec<Tried>,
+}
+
+/// Effects at gratings that still disagree.
+fn disagreeing(case: &Case<'_>, found: &Search) -> Vec<Effect> {
+    let disagrees = |grating: usize| !is_noise_at(case, &found.after, found.noise_n, grating);
+    let is_wrong = |effect: &Effect| match *effect {
+        Effect::SensorDrift(grating) => disagrees(grating),
+        Effect::HoleFriction(hole) => (hole.saturating_sub(1)..=hole).any(disagrees),
+        Effect::Coulomb | Effect::Presliding => false,
+    };
+    found.findings.iter().map(|finding| finding.effect).filter(is_wrong).collect()
+}
+
+/// Puts effects among those that helped and did not suffice.
+fn refuse(found: &Search, effects: &[Effect], reason: &str, tried: &mut Vec<Tried>) {
+    for finding in found.findings.iter().filter(|finding| effects.contains(&finding.effect)) {
+        let Finding { effect, fit, delta_bic, .. } = finding;
+        tried.push(Tried { effect: *effect, delta_bic: *delta_bic, rms_n: rms_n(fit), reason: reason.to_owned() });
     }
 }
 
 /// Searches among all effects but the distrusted.
-fn search(case: &Case<'_>, distrusted: &[Effect]) -> Result<Outcome, ContinuumError> {
+fn search(case: &Case<'_>, distrusted: &[Effect]) -> Result<Search, ContinuumError> {
     let given = case.given();
     let before = fitted(case, &given).or_else(|| case.fit(&given)).ok_or(ContinuumError::UntoldNoise)?;
     let mut now = before.clone();
     let mut findings: Vec<Finding> = Vec::new();
+    let mut tried: Vec<Tried> = Vec::new();
     let mut noise_n = case.noise_n(&now)?;
     while findings.len() < MOST_EFFECTS && !is_noise(case, &now, noise_n) {
-        let mut trials = trials(case, &now, distrusted);
         let gap_n = excess_n(&now, noise_n);
-        let helps = |trial: &Trial| {
-            trial.delta_bic < -LEAST_EVIDENCE && excess_n(&trial.fit, noise_n) < (1.0 - LEAST_SHARE) * gap_n
+        let (spread, single): (Vec<Trial>, Vec<Trial>) =
+            trials(case, &now, distrusted).into_iter().partition(Trial::is_spread);
+        let closed = |trial: &Trial| 1.0 - excess_n(&trial.fit, noise_n) / gap_n;
+        let helps = |trial: &Trial| trial.delta_bic < -LEAST_EVIDENCE;
+        let is_enough = |trial: &Trial| helps(trial) && closed(trial) > LEAST_SHARE;
+        // A spread over all holes comes last: it would swallow one of them.
+        let (mut best, mut others) = ranked(single);
+        if !best.as_ref().is_some_and(is_enough)
+            && let (Some(all), _) = ranked(spread)
+            && is_enough(&all)
+        {
+            others.splice(0..0, best.replace(all));
+        }
+        let best = match best {
+            Some(best) if is_enough(&best) => best,
+            best => {
+                let helped = best.into_iter().chain(others).filter(|trial| helps(trial) && trial.effects.len() == 1);
+                tried = helped.map(|trial| too_little(&trial, closed(&trial))).collect();
+                break;
+            }
         };
-        // Of those that are as good, the one with fewer effects.
-        let least_n = trials.iter().map(|trial| rms_n(&trial.fit)).fold(f64::INFINITY, f64::min);
-        let rank = |trial: &Trial| {
-            let is_worse = rms_n(&trial.fit) > AS_GOOD_RATIO * least_n;
-            (is_worse, if is_worse { 0 } else { trial.effects.len() })
-        };
-        trials.sort_by(|one, other| rank(one).cmp(&rank(other)).then(rms_n(&one.fit).total_cmp(&rms_n(&other.fit))));
-        let mut trials = trials.into_iter();
-        let Some(best) = trials.next().filter(helps) else { break };
-        let runner_up = trials
+        let runner_up = others
+            .iter()
             .find(|trial| trial.effects != best.effects)
             .and_then(|trial| Some((*trial.effects.last()?, trial.delta_bic)));
         for effect in best.effects {
@@ -110,7 +180,22 @@ fn search(case: &Case<'_>, distrusted: &[Effect]) -> Result<Outcome, ContinuumEr
         now = best.fit;
         noise_n = case.noise_n(&now)?;
     }
-    if !is_noise(case, &now, noise_n) {
+    while let Some((hole, without)) = undetermined_hole(case, &now, &findings) {
+        let is_it = |finding: &Finding| finding.effect == Effect::HoleFriction(hole);
+        tried.extend(findings.iter().filter(|finding| is_it(finding)).map(|finding| Tried {
+            effect: finding.effect,
+            delta_bic: finding.delta_bic,
+            rms_n: rms_n(&finding.fit),
+            reason: "the 95 % interval of its μ holds that of the others".to_owned(),
+        }));
+        findings.retain(|finding| !is_it(finding));
+        for finding in findings.iter_mut().filter(|finding| finding.fit.model.is_own.get(hole) == Some(&true)) {
+            finding.fit = without.clone();
+        }
+        now = without;
+        noise_n = case.noise_n(&now)?;
+    }
+    if !is_negligible(case, &now, noise_n) {
         // A name for less than what is left would be a guess.
         let left_n = excess_n(&now, noise_n);
         while let Some(last) = findings.last() {
@@ -121,108 +206,65 @@ fn search(case: &Case<'_>, distrusted: &[Effect]) -> Result<Outcome, ContinuumEr
             }
             now = earlier.clone();
             let model = last.fit.model.clone();
-            findings.retain(|finding| finding.fit.model != model);
+            let (dropped, kept) = findings.into_iter().partition(|finding| finding.fit.model == model);
+            findings = kept;
+            let guess = |finding: Finding| Tried {
+                effect: finding.effect,
+                delta_bic: finding.delta_bic,
+                rms_n: rms_n(&finding.fit),
+                reason: "more is left than it accounts for".to_owned(),
+            };
+            tried.extend(Vec::into_iter(dropped).map(guess));
         }
     }
-    let verdict = match (findings.is_empty(), is_noise(case, &now, noise_n)) {
+    let verdict = match (findings.is_empty(), is_negligible(case, &now, noise_n)) {
         (true, true) => Verdict::Complete,
         (false, true) => Verdict::Extended,
         (_, false) => Verdict::Unexplained,
     };
-    Ok(Outcome { noise_n, verdict, before, after: now, findings })
+    Ok(Search { noise_n, verdict, before, after: now, findings, tried })
 }
 
-pub fn rms_n(fit: &Fit) -> f64 {
-    fit.held_out_n.rms().unwrap_or(f64::INFINITY)
-}
-
-/// What a residual has above the noise, root mean square.
-pub fn excess_n(fit: &Fit, noise_n: f64) -> f64 {
-    let rms_n = rms_n(fit);
-    (rms_n * rms_n - noise_n * noise_n).max(0.0).sqrt()
-}
-
-fn is_noise(case: &Case<'_>, fit: &Fit, noise_n: f64) -> bool {
-    excess_n(fit, noise_n) <= noise_excess_n(case, noise_n)
-}
-
-/// What counts as noise above the noise, N.
-fn noise_excess_n(case: &Case<'_>, noise_n: f64) -> f64 {
-    let tolerated_n = (TOLERATED_RATIO * case.greatest_n).hypot(LINE_ERROR_RATIO * case.standard_error_n);
-    tolerated_n.hypot(NOISE_ERROR_RATIO * noise_n)
-}
-
-/// Whether one grating, from 0, has noise left alone; it may have twice as much of it as all have in the mean.
-fn is_noise_at(case: &Case<'_>, fit: &Fit, noise_n: f64, grating: usize) -> bool {
-    let mut left_n = Deviation::default();
-    for (row, _) in fit.residual_n.iter().zip(&case.held_out).filter(|(_, held_out)| **held_out) {
-        row.get(grating).into_iter().for_each(|residual_n| left_n.add(*residual_n));
+fn too_little(trial: &Trial, closed: f64) -> Tried {
+    Tried {
+        effect: trial.effects.first().copied().unwrap_or(Effect::Coulomb),
+        delta_bic: trial.delta_bic,
+        rms_n: rms_n(&trial.fit),
+        reason: format!("it closes {:.0} % of the gap", 100.0 * closed.max(0.0)),
     }
-    let rms_n = left_n.rms().unwrap_or(0.0);
-    rms_n * rms_n - noise_n * noise_n <= (2.0 * noise_excess_n(case, noise_n)).powi(2)
 }
 
-/// Whether what a grating shows goes with the time rather than with its tension: a line of it that is wrong in slope and offset, which is
-/// no effect of the catalogue, must not account for it as well as a drift does.
-fn is_told_from_line(case: &Case<'_>, fit: &Fit, grating: usize) -> bool {
-    let Some(start_s) = case.samples.first().map(|sample| sample.time_s) else { return false };
-    let drift_n_per_s = fit.model.drift_n_per_s.get(grating).copied().unwrap_or(0.0);
-    // What the drift leaves, the tension, and what there is without the drift.
-    let learned = fit.residual_n.iter().zip(&case.observed_n).zip(case.samples.iter().zip(&case.held_out));
-    let points: Vec<[f64; 3]> = learned
-        .filter(|(_, (_, held_out))| !**held_out)
-        .filter_map(|((row, observed_n), (sample, _))| {
-            let (left_n, tension_n) = (*row.get(grating)?, *observed_n.get(grating)?);
-            left_n.is_finite().then_some([left_n, tension_n, left_n + drift_n_per_s * (sample.time_s - start_s)])
-        })
-        .collect();
-    #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
-    let count = points.len() as f64;
-    let mean = |column: usize| points.iter().map(|point| point[column]).sum::<f64>() / count;
-    let (mean_tension_n, mean_shown_n) = (mean(1), mean(2));
-    let product = |of: &dyn Fn(f64, f64) -> f64| {
-        points.iter().map(|[_, tension_n, shown_n]| of(tension_n - mean_tension_n, shown_n - mean_shown_n)).sum::<f64>()
+/// The best of the trials and the others in their order: of those that are as good, the one with fewer effects.
+fn ranked(mut trials: Vec<Trial>) -> (Option<Trial>, Vec<Trial>) {
+    let least_n = trials.iter().map(|trial| rms_n(&trial.fit)).fold(f64::INFINITY, f64::min);
+    let rank = |trial: &Trial| {
+        let is_worse = rms_n(&trial.fit) > AS_GOOD_RATIO * least_n;
+        (is_worse, if is_worse { 0 } else { trial.effects.len() })
     };
-    let (tension, common, shown) = (product(&|x, _| x * x), product(&|x, y| x * y), product(&|_, y| y * y));
-    let of_line = if tension > 0.0 { shown - common * common / tension } else { shown };
-    let of_drift: f64 = points.iter().map(|[left_n, ..]| left_n * left_n).sum();
-    // The line has a number more.
-    count * (of_line / of_drift).ln() + count.ln() > LEAST_EVIDENCE
+    trials.sort_by(|one, other| rank(one).cmp(&rank(other)).then(rms_n(&one.fit).total_cmp(&rms_n(&other.fit))));
+    let mut trials = trials.into_iter();
+    (trials.next(), trials.collect())
 }
 
-/// All candidates beside what is there but the distrusted, each fitted to what is learned from.
-fn trials(case: &Case<'_>, now: &Fit, distrusted: &[Effect]) -> Vec<Trial> {
-    let model = &now.model;
-    let count = model.mu.len();
-    let mut candidates: Vec<(Vec<Effect>, Model)> = Vec::new();
-    match model.way {
-        Way::None => {
-            let rubbing = |way: Way| Model { way, mu: vec![START_MU; count], ..model.clone() };
-            candidates.push((vec![Effect::Coulomb], rubbing(Way::Coulomb)));
-            candidates.push((vec![Effect::Coulomb, Effect::Presliding], rubbing(Way::History)));
-        }
-        Way::Coulomb => candidates.push((vec![Effect::Presliding], Model { way: Way::History, ..model.clone() })),
-        Way::Measured | Way::History => {}
-    }
-    for place in 0..count {
-        if model.drifts.get(place) == Some(&false) {
-            candidates.push((vec![Effect::SensorDrift(place)], model.with_drift(place)));
-        }
-        if model.way != Way::None && model.is_own.get(place) == Some(&false) {
-            candidates.push((vec![Effect::HoleFriction(place)], model.with_hole(place)));
-        }
-    }
-    candidates.retain(|(effects, _)| effects.iter().all(|effect| !distrusted.contains(effect)));
-    let learned = case.learned_count();
-    let trial = |(effects, model): (Vec<Effect>, Model)| {
-        let fit = fitted(case, &model)?;
-        if let [Effect::SensorDrift(grating)] = effects[..]
-            && !is_told_from_line(case, &fit, grating)
-        {
-            return None;
-        }
-        let delta_bic = learned * (fit.squares / now.squares).ln() + learned.ln();
-        Some(Trial { effects, fit, delta_bic })
+/// The hole found whose μ is told least from that of the others, and the model without it; `None` where the 95 % intervals of all hold it not.
+fn undetermined_hole(case: &Case<'_>, now: &Fit, findings: &[Finding]) -> Option<(usize, Fit)> {
+    let hole = |finding: &Finding| match finding.effect {
+        Effect::HoleFriction(hole) => Some(hole),
+        _ => None,
     };
-    candidates.into_par_iter().filter_map(trial).collect()
+    let covariance = covariance(case, now);
+    let given = case.given();
+    let holes = findings.iter().filter_map(hole);
+    let unclear = holes.map(|hole| (hole, is_own_mu(&given, &now.model, covariance.as_ref(), hole)));
+    let (hole, _) =
+        unclear.filter(|(_, clearness)| *clearness < 1.0).min_by(|(_, one), (_, other)| one.total_cmp(other))?;
+    let mut model: Model = now.model.clone();
+    let shared = model.is_own.iter().zip(&model.mu).zip(&given.mu).find(|((is_own, _), _)| !**is_own);
+    let ratio = shared.map_or(1.0, |((_, mu), given)| if *given > 0.0 { mu / given } else { *mu });
+    if let Some(((is_own, mu), given)) = model.is_own.get_mut(hole).zip(model.mu.get_mut(hole)).zip(given.mu.get(hole))
+    {
+        *is_own = false;
+        *mu = if *given > 0.0 { ratio * given } else { ratio };
+    }
+    Some((hole, fitted(case, &model)?))
 }

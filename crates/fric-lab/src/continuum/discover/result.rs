@@ -1,24 +1,22 @@
 //! The result of a tendon's discovery: `fric-discover/1`, with the tendon in the place of a cable.
 
-use std::fmt::Write as _;
-
 use fric_core::continuum::edit::ManipulatorEdit;
 use fric_core::continuum::file::USUAL_SIGMA_N_PER_M;
-use nalgebra::DMatrix;
 use serde::Serialize;
 
 use super::TendonDiscovery;
 use super::case::{Case, Fit};
-use super::fitting::covariance;
+use super::final_fit::Final;
+use super::goes_with::{GoesWith, of_markers, of_tensions};
+use super::markers::MarkerFit;
 use super::model::{Effect, Model, Parameter};
-use super::naming::{Finding, Outcome, excess_n, rms_n};
+use super::naming::{Finding, Outcome, Tried};
+use super::noise::{excess_n, is_negligible, rms_n};
 use crate::continuum::shape_errors::Way;
 use crate::discover::Verdict;
 use crate::discover::result::{DiscoverResult, Evidence};
 use crate::errors::ForceError;
-use crate::fit::HALF_INTERVAL;
 use crate::fit::result::Numbers;
-use crate::text::{quantity, table, wrapped};
 
 /// `fric-discover/1` of a manipulator.
 #[derive(Clone, Debug, Serialize)]
@@ -42,6 +40,8 @@ pub struct TendonResult {
     pub samples: usize,
     /// Standard deviation of the gratings' noise, N.
     pub noise_floor_n: f64,
+    /// What one standard error of the gratings' lines is over the run, N.
+    pub calibration_error_n: f64,
     /// Error of the given model, fitted, on samples held out.
     pub before: Option<ForceError>,
     /// Error of the extended one.
@@ -53,16 +53,56 @@ pub struct TendonResult {
     /// Segments in which the given model disagrees, what tells most first.
     #[serde(rename = "where")]
     pub places: Vec<TendonPlace>,
+    /// Distances between disks and markers under the tensions that the gratings show; absent where too few markers tell their noise.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub markers: Option<TendonMarkers>,
     /// What was found, in the order in which it entered.
     pub effects: Vec<TendonEffect>,
+    /// Candidates that helped and did not suffice, best first.
+    pub tried: Vec<TendonTried>,
     /// Where what no effect accounts for lies.
     pub unexplained: Option<TendonRest>,
 }
 
-/// A segment.
+/// Disks against markers; the friction has no part in it.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct TendonMarkers {
+    /// Noise of a distance, root mean square, mm: of markers and gratings.
+    pub noise_mm: f64,
+    /// What one standard error of the gratings' lines moves the disks by, root mean square, mm.
+    pub calibration_error_mm: f64,
+    /// With the given file.
+    pub before: MarkerError,
+    /// With the extended one.
+    pub after: MarkerError,
+}
+
+/// Distances over all disks and samples.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct MarkerError {
+    /// Root mean square, mm.
+    pub rms_mm: f64,
+    /// Greatest, mm.
+    pub max_mm: f64,
+}
+
+/// A candidate that helped and did not suffice.
+#[derive(Clone, Debug, Serialize)]
+pub struct TendonTried {
+    /// Its name.
+    pub kind: &'static str,
+    /// Which: `grating` or `hole`, from 1 at the base.
+    pub parameters: Numbers,
+    /// What speaks for it.
+    pub evidence: Evidence,
+    /// Why it is not named.
+    pub reason: String,
+}
+
+/// A segment, or a disk.
 #[derive(Clone, Debug, Serialize)]
 pub struct TendonPlace {
-    /// `grating`.
+    /// `grating` or `marker`.
     pub signal: &'static str,
     /// Which, from 1 at the base.
     pub from: usize,
@@ -106,42 +146,57 @@ pub struct TendonRunnerUp {
 /// What no effect accounts for.
 #[derive(Clone, Debug, Serialize)]
 pub struct TendonRest {
-    /// Error above the noise, N.
+    /// Error of the tensions above the noise, N.
     pub rms_n: f64,
-    /// Segments in which it lies.
+    /// Distance of the disks from their markers above the noise, mm; absent where it is noise.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rms_mm: Option<f64>,
+    /// Segments and disks in which it lies: those of the signal that is not noise.
     #[serde(rename = "where")]
     pub places: Vec<TendonPlace>,
+    /// What it goes with, where it does so with one thing for the most part.
+    pub goes_with: Vec<GoesWith>,
 }
 
 /// All of it.
 pub(super) fn told(case: &Case<'_>, outcome: &Outcome, log: &str) -> TendonDiscovery {
-    let Outcome { noise_n, verdict, before, after, findings } = outcome;
+    let Outcome { noise_n, verdict, before, after, last, findings, tried, markers, .. } = outcome;
     let closed = |fit: &Fit| {
         let gap_n = rms_n(before) - noise_n;
         (*verdict != Verdict::Complete && gap_n > 0.0).then(|| 1.0 - (rms_n(fit) - noise_n) / gap_n)
     };
-    let covariance = covariance(case, after);
+    let evidence = |delta_bic: f64, rms_n: Option<f64>| Evidence { delta_bic: Some(delta_bic), held_out_rms_n: rms_n };
     let effect = |finding: &Finding| TendonEffect {
         kind: finding.effect.kind(),
-        parameters: parameters(case, finding.effect, &after.model),
-        standard_errors: standard_errors(case, finding.effect, &after.model, covariance.as_ref()),
+        parameters: parameters(case, finding.effect, &last.fit.model),
+        standard_errors: standard_errors(case, finding.effect, last),
         gap_closed: closed(&finding.fit),
-        evidence: Evidence { delta_bic: Some(finding.delta_bic), held_out_rms_n: finding.fit.held_out_n.rms() },
+        evidence: evidence(finding.delta_bic, finding.fit.held_out_n.rms()),
         runner_up: finding.runner_up.map(|(effect, delta_bic)| TendonRunnerUp { kind: effect.kind(), delta_bic }),
         words: finding.effect.cause_and_remedy(),
     };
-    let rest = || TendonRest { rms_n: excess_n(after, *noise_n), places: places(after) };
+    let helped = |tried: &Tried| TendonTried {
+        kind: tried.effect.kind(),
+        parameters: place_of(tried.effect),
+        evidence: evidence(tried.delta_bic, Some(tried.rms_n)),
+        reason: tried.reason.clone(),
+    };
+    let mut tried: Vec<&Tried> = tried.iter().collect();
+    tried.sort_by(|one, other| one.delta_bic.total_cmp(&other.delta_bic));
     let tendon = TendonResult {
         name: "tendon",
         samples: case.run_samples,
         noise_floor_n: *noise_n,
+        calibration_error_n: case.line_error_rms_n(),
         before: ForceError::of(&before.held_out_n),
         after: ForceError::of(&after.held_out_n),
         gap_closed: closed(after),
         verdict: verdict.name(),
         places: if *verdict == Verdict::Complete { Vec::new() } else { places(before) },
+        markers: marker_errors(markers),
         effects: findings.iter().map(effect).collect(),
-        unexplained: (*verdict == Verdict::Unexplained).then(rest),
+        tried: tried.into_iter().map(helped).collect(),
+        unexplained: (*verdict == Verdict::Unexplained).then(|| rest(case, outcome)),
     };
     TendonDiscovery {
         result: TendonDiscoverResult {
@@ -150,10 +205,38 @@ pub(super) fn told(case: &Case<'_>, outcome: &Outcome, log: &str) -> TendonDisco
             robot: case.file.tables().name.clone(),
             cables: vec![tendon],
         },
-        edit: edit(case, &after.model, findings),
+        edit: edit(case, outcome),
         time_s: case.samples.iter().map(|sample| sample.time_s).collect(),
         residual_before_n: before.residual_n.clone(),
         residual_after_n: after.residual_n.clone(),
+    }
+}
+
+fn marker_errors(markers: &[Option<MarkerFit>; 2]) -> Option<TendonMarkers> {
+    let [Some(before), Some(after)] = markers else { return None };
+    let error = |one: &MarkerFit| MarkerError { rms_mm: 1e3 * one.rms_m(), max_mm: 1e3 * one.greatest_m };
+    Some(TendonMarkers {
+        noise_mm: 1e3 * after.noise_m,
+        calibration_error_mm: 1e3 * after.line_error_m,
+        before: error(before),
+        after: error(after),
+    })
+}
+
+/// What is left: of the tensions, and of the markers where they are not noise.
+fn rest(case: &Case<'_>, outcome: &Outcome) -> TendonRest {
+    let Outcome { noise_n, given, after, last, markers: [_, markers], .. } = outcome;
+    let off = markers.as_ref().filter(|markers| !markers.is_noise());
+    let are_tensions_off = !is_negligible(case, after, *noise_n);
+    let tensions = are_tensions_off.then(|| of_tensions(case, given)).flatten();
+    // Gratings that are wrong make shapes that are wrong; only tensions that are right tell of the bending.
+    let bending = off.filter(|_| !are_tensions_off).and_then(|markers| of_markers(case, &last.fit, markers));
+    let of_gratings = if are_tensions_off { places(after) } else { Vec::new() };
+    TendonRest {
+        rms_n: excess_n(after, *noise_n),
+        rms_mm: off.map(|markers| 1e3 * markers.excess_m()),
+        places: of_gratings.into_iter().chain(off.map(disks).unwrap_or_default()).collect(),
+        goes_with: tensions.into_iter().chain(bending).collect(),
     }
 }
 
@@ -174,21 +257,26 @@ fn named(pairs: &[(&str, f64)]) -> Numbers {
 }
 
 /// Of what an effect has that was fitted.
-fn standard_errors(case: &Case<'_>, effect: Effect, model: &Model, covariance: Option<&DMatrix<f64>>) -> Numbers {
-    let of = |parameter: Parameter| {
-        let place = model.parameters().iter().position(|fitted| *fitted == parameter)?;
-        covariance?.get((place, place)).map(|variance| variance.sqrt()).filter(|error| error.is_finite())
-    };
+fn standard_errors(case: &Case<'_>, effect: Effect, last: &Final) -> Numbers {
     let found = match effect {
-        Effect::Coulomb => of(Parameter::SharedMu).map(|error| ("mu", error)),
+        Effect::Coulomb => last.standard_error(Parameter::SharedMu).map(|error| ("mu", error)),
         Effect::Presliding => None,
         Effect::SensorDrift(grating) => {
             let newton_per_nm = case.newton_per_nm.get(grating).map_or(f64::NAN, |slope| slope.abs());
-            of(Parameter::Drift(grating)).map(|error| ("drift_nm_per_s", error / newton_per_nm))
+            last.standard_error(Parameter::Drift(grating)).map(|error| ("drift_nm_per_s", error / newton_per_nm))
         }
-        Effect::HoleFriction(hole) => of(Parameter::OwnMu(hole)).map(|error| ("mu", error)),
+        Effect::HoleFriction(hole) => last.standard_error(Parameter::OwnMu(hole)).map(|error| ("mu", error)),
     };
     named(found.as_slice())
+}
+
+/// The grating or the hole of an effect.
+fn place_of(effect: Effect) -> Numbers {
+    match effect {
+        Effect::Coulomb | Effect::Presliding => named(&[]),
+        Effect::SensorDrift(grating) => named(&[("grating", count(grating))]),
+        Effect::HoleFriction(hole) => named(&[("hole", count(hole))]),
+    }
 }
 
 fn parameters(case: &Case<'_>, effect: Effect, model: &Model) -> Numbers {
@@ -213,32 +301,47 @@ fn drift(case: &Case<'_>, model: &Model, grating: usize) -> f64 {
 
 /// Segments by their share of the squared residual.
 fn places(fit: &Fit) -> Vec<TendonPlace> {
-    let segment_count = fit.model.mu.len();
-    let of = |segment: usize| -> f64 {
+    by_share("grating", fit.model.mu.len(), |segment| {
         let values = fit.residual_n.iter().filter_map(|row| row.get(segment));
         values.filter(|value| value.is_finite()).map(|value| value * value).sum()
-    };
-    let whole: f64 = (0..segment_count).map(of).sum();
-    let place = |segment: usize| TendonPlace {
-        signal: "grating",
-        from: segment + 1,
-        to: segment + 1,
+    })
+}
+
+/// Disks by their share of the squared distance.
+fn disks(markers: &MarkerFit) -> Vec<TendonPlace> {
+    by_share("marker", markers.residual_m.iter().map(Vec::len).max().unwrap_or(0), |disk| {
+        let places = markers.residual_m.iter().filter_map(|row| row.get(disk));
+        places.map(|[x_m, y_m]| x_m * x_m + y_m * y_m).filter(|square| square.is_finite()).sum()
+    })
+}
+
+fn by_share(signal: &'static str, place_count: usize, squares: impl Fn(usize) -> f64) -> Vec<TendonPlace> {
+    let squares: Vec<f64> = (0..place_count).map(squares).collect();
+    let whole: f64 = squares.iter().sum();
+    let place = |(place, squares): (usize, &f64)| TendonPlace {
+        signal,
+        from: place + 1,
+        to: place + 1,
         unit: "1",
-        share_of_excess: of(segment) / whole,
+        share_of_excess: squares / whole,
     };
-    let mut all: Vec<TendonPlace> = (0..segment_count).map(place).filter(|one| one.share_of_excess > 0.0).collect();
+    let all = squares.iter().enumerate().map(place);
+    let mut all: Vec<TendonPlace> = all.filter(|one| one.share_of_excess > 0.0).collect();
     all.sort_by(|one, other| other.share_of_excess.total_cmp(&one.share_of_excess));
     all
 }
 
-/// What the extended file says: values fitted to the run, and what was found.
-fn edit(case: &Case<'_>, model: &Model, findings: &[Finding]) -> ManipulatorEdit {
+/// What the extended file says: what was found, and values fitted to the run where it contradicts those given.
+fn edit(case: &Case<'_>, outcome: &Outcome) -> ManipulatorEdit {
+    let Outcome { given, last, findings, .. } = outcome;
+    let model = &last.fit.model;
     let is_same = model.mu.windows(2).all(|pair| pair[0].to_bits() == pair[1].to_bits());
     let drifts = findings.iter().any(|finding| matches!(finding.effect, Effect::SensorDrift(_)));
     let remembers = findings.iter().any(|finding| finding.effect == Effect::Presliding);
     ManipulatorEdit {
         mu: match model.way {
             Way::None => Vec::new(),
+            _ if model.mu == given.model.mu => Vec::new(),
             _ if is_same => model.mu.first().copied().into_iter().collect(),
             _ => model.mu.clone(),
         },
@@ -249,63 +352,5 @@ fn edit(case: &Case<'_>, model: &Model, findings: &[Finding]) -> ManipulatorEdit
         } else {
             Vec::new()
         },
-    }
-}
-
-impl TendonDiscoverResult {
-    /// For people.
-    #[must_use]
-    pub fn summary(&self) -> String {
-        let number =
-            |error: Option<ForceError>| error.map_or_else(|| "–".to_owned(), |error| format!("{:.4}", error.rms_n));
-        let percent =
-            |share: Option<f64>| share.map_or_else(|| "–".to_owned(), |share| format!("{:.0} %", 100.0 * share));
-        let rows: Vec<[String; 7]> = self
-            .cables
-            .iter()
-            .map(|tendon| {
-                let kinds: Vec<&str> = tendon.effects.iter().map(|effect| effect.kind).collect();
-                [
-                    tendon.name.to_owned(),
-                    tendon.verdict.to_owned(),
-                    if kinds.is_empty() { "–".to_owned() } else { kinds.join("\n") },
-                    format!("{:.4}", tendon.noise_floor_n),
-                    number(tendon.before),
-                    number(tendon.after),
-                    percent(tendon.gap_closed),
-                ]
-            })
-            .collect();
-        let header = ["", "verdict", "found", "noise", "before", "after", "closed"];
-        let mut text = format!("{}: what the model lacks\n\n{}", self.robot, table(&header, 3, &rows));
-        text +=
-            "\nrms of the tension in the segments, gratings less model, in N, over samples that\nno fit has seen.\n";
-        for effect in self.cables.iter().flat_map(|tendon| &tendon.effects) {
-            let values: Vec<String> = effect
-                .parameters
-                .0
-                .iter()
-                .map(|(name, value)| {
-                    let half_interval = effect.standard_errors.get(name).map(|error| HALF_INTERVAL * error);
-                    format!("{name} = {}", quantity(*value, half_interval, "1"))
-                })
-                .collect();
-            // Writing to a String cannot fail.
-            let _ = writeln!(text, "\n{}: {}", effect.kind, values.join(", "));
-            let [cause, remedy] = effect.words;
-            text += &wrapped("  cause   ", cause);
-            text += &wrapped("  remedy  ", remedy);
-        }
-        for rest in self.cables.iter().filter_map(|tendon| tendon.unexplained.as_ref()) {
-            let first = rest.places.first().map_or(0, |place| place.from);
-            let share = rest.places.first().map_or(0.0, |place| 100.0 * place.share_of_excess);
-            let sentence = format!(
-                "{:.4} N above the noise are left, {share:.0} % of them at grating {first}; no effect of the catalogue accounts for them.",
-                rest.rms_n
-            );
-            text += "\n";
-            text += &wrapped("unexplained: ", &sentence);
-        }
-        text
     }
 }

@@ -1,8 +1,9 @@
 //! The calibration of all gratings, as figures 4 and 5 of \[C\] have it.
 
+use fric_core::continuum::edit::GratingLine;
 use serde::Serialize;
 
-use crate::continuum::fbg::{Calibration, LoadStep};
+use crate::continuum::fbg::{Calibration, LineError, LoadStep};
 use crate::text::table;
 
 /// `fric-continuum-calibrate/1`.
@@ -29,6 +30,9 @@ pub struct GratingResult {
     pub offset_n: f64,
     /// Greatest standard error of a tension from one shift within the loads, N.
     pub standard_error_n: f64,
+    /// What is not known of the line itself.
+    #[serde(flatten)]
+    pub line_error: LineError,
     /// Residual of each step.
     pub residual_ratio: Vec<f64>,
     /// Error at each step of the line through all others.
@@ -51,6 +55,7 @@ impl CalibrationResult {
             newton_per_nm: line.newton_per_nm,
             offset_n: line.offset_n,
             standard_error_n: line.largest_standard_error_n(),
+            line_error: line.line_error(),
             residual_ratio: line.residual_ratio.clone(),
             left_out_ratio: line.left_out_ratio.clone(),
             largest_residual_ratio: line.largest_residual_ratio(),
@@ -64,10 +69,17 @@ impl CalibrationResult {
         }
     }
 
-    /// Slope, offset and standard error of each grating, for the manipulator file.
+    /// The line of each grating, for the manipulator file.
     #[must_use]
-    pub fn lines(&self) -> Vec<[f64; 3]> {
-        let line = |one: &GratingResult| [one.newton_per_nm, one.offset_n, one.standard_error_n];
+    pub fn lines(&self) -> Vec<GratingLine> {
+        let line = |one: &GratingResult| GratingLine {
+            newton_per_nm: one.newton_per_nm,
+            offset_n: one.offset_n,
+            standard_error_n: one.standard_error_n,
+            line_error_n: one.line_error.line_error_n,
+            slope_error_n_per_nm: one.line_error.slope_error_n_per_nm,
+            mean_shift_nm: one.line_error.mean_shift_nm,
+        };
         self.gratings.iter().map(line).collect()
     }
 

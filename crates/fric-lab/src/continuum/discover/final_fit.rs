@@ -1,0 +1,108 @@
+//! The values that are written: fitted to all samples, and only where the run contradicts what the file states.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::case::{Case, Fit};
+use super::fitting::{covariance, fitted};
+use super::markers::MarkerFit;
+use super::model::{Model, Parameter};
+use super::worse::worse_shape;
+use crate::continuum::shape_errors::Way;
+use crate::discover::Verdict;
+use crate::fit::HALF_INTERVAL;
+
+/// The last fit with its covariance.
+#[derive(Clone, Debug)]
+pub struct Final {
+    pub fit: Fit,
+    pub covariance: Option<DMatrix<f64>>,
+}
+
+impl Final {
+    /// Of an extended model; `whole` is the run with nothing held out.
+    ///
+    /// The μ that holes share stays as given where its 95 % interval, the calibration's error included, holds the given value, where something
+    /// unexplained could be in it, and where shapes would become worse.
+    pub fn new(
+        whole: &Case<'_>,
+        given: &Fit,
+        given_markers: Option<&MarkerFit>,
+        after: &Fit,
+        verdict: Verdict,
+        is_given: bool,
+    ) -> Option<Self> {
+        if verdict == Verdict::Unexplained && is_given {
+            return Some(Self { fit: given.clone(), covariance: None });
+        }
+        let free = Self::of(whole, &after.model)?;
+        if given.model.way == Way::None || (verdict != Verdict::Unexplained && free.contradicts(given)) {
+            let markers = MarkerFit::new(whole, &free.fit);
+            if given.model.way == Way::None
+                || worse_shape([given, &free.fit], [given_markers, markers.as_ref()]).is_none()
+            {
+                return Some(free);
+            }
+        }
+        let mut model = after.model.clone();
+        for (mu, (given_mu, is_own)) in model.mu.iter_mut().zip(given.model.mu.iter().zip(&after.model.is_own)) {
+            if !is_own {
+                *mu = *given_mu;
+            }
+        }
+        model.is_shared_given = true;
+        Self::of(whole, &model)
+    }
+
+    fn of(whole: &Case<'_>, model: &Model) -> Option<Self> {
+        let fit = fitted(whole, model)?;
+        Some(Self { covariance: covariance(whole, &fit), fit })
+    }
+
+    /// Whether the interval of the shared μ does not hold the given one.
+    fn contradicts(&self, given: &Fit) -> bool {
+        let Some(error) = standard_error(&self.fit.model, self.covariance.as_ref(), Parameter::SharedMu) else {
+            return false;
+        };
+        let [found, stated] = [&self.fit.model, &given.model].map(|model| {
+            let shared = model.mu.iter().zip(&self.fit.model.is_own).find(|(_, is_own)| !**is_own);
+            shared.map_or(f64::NAN, |(mu, _)| *mu)
+        });
+        (found - stated).abs() > HALF_INTERVAL * error
+    }
+
+    /// Standard error of a number that was fitted; `None` of another, and of one that the run does not determine.
+    pub fn standard_error(&self, parameter: Parameter) -> Option<f64> {
+        standard_error(&self.fit.model, self.covariance.as_ref(), parameter)
+    }
+}
+
+fn standard_error(model: &Model, covariance: Option<&DMatrix<f64>>, parameter: Parameter) -> Option<f64> {
+    let place = model.parameters().iter().position(|fitted| *fitted == parameter)?;
+    covariance?.get((place, place)).map(|variance| variance.sqrt()).filter(|error| error.is_finite())
+}
+
+/// How far the μ of a hole of its own is from that of the others, in half widths of the 95 % interval of the difference. Each μ counts as a share of
+/// what the file states, where it states any.
+pub fn is_own_mu(given: &Model, model: &Model, covariance: Option<&DMatrix<f64>>, hole: usize) -> f64 {
+    let parameters = model.parameters();
+    let has_given = given.mu.iter().all(|mu| *mu > 0.0);
+    let unit = |place: usize| if has_given { given.mu.get(place).copied().unwrap_or(1.0) } else { 1.0 };
+    let first_shared = model.is_own.iter().position(|is_own| !is_own);
+    let (mut ratio, mut contrast) = (0.0, DVector::zeros(parameters.len()));
+    let mut add = |place: usize, parameter: Parameter, weight: f64| {
+        ratio += weight * model.mu.get(place).copied().unwrap_or(f64::NAN) / unit(place);
+        if let Some(row) = parameters.iter().position(|fitted| *fitted == parameter) {
+            contrast[row] += weight / unit(place);
+        }
+    };
+    add(hole, Parameter::OwnMu(hole), 1.0);
+    if let Some(shared) = first_shared {
+        add(shared, Parameter::SharedMu, -1.0);
+    } else {
+        #[expect(clippy::cast_precision_loss, reason = "a small count")]
+        let weight = -1.0 / model.mu.len() as f64;
+        (0..model.mu.len()).for_each(|other| add(other, Parameter::OwnMu(other), weight));
+    }
+    let variance = covariance.map_or(f64::INFINITY, |covariance| contrast.dot(&(covariance * &contrast)));
+    if variance.is_finite() { ratio.abs() / (HALF_INTERVAL * variance.sqrt()) } else { 0.0 }
+}
