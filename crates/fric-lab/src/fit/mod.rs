@@ -13,6 +13,7 @@
 
 mod cables;
 mod determined;
+mod directions;
 mod dual;
 mod error;
 mod gang;
@@ -54,6 +55,7 @@ pub(crate) mod engine {
 
 pub use cables::{fit_cables, residuals_n};
 pub use determined::HALF_INTERVAL;
+pub use directions::{OpenDirection, open_directions};
 pub use dual::Dual;
 pub use error::FitError;
 pub use optimizer::Termination;
