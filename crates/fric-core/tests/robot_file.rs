@@ -177,7 +177,12 @@ fn bad_files() -> Vec<Bad> {
         bad("[platform]", "[plattform]", 5, &["`plattform`", "did you mean `platform`?"]),
         bad("reference =", "refrence =", 12, &["`refrence`", "did you mean `reference`?"]),
         bad(REFERENCE, "{ constant = 49.0 }", 12, &["`constant`", "did you mean `constant_n`?", "`hanging_mass_kg`"]),
-        bad(REFERENCE, "{ constant_n = 9.0, hanging_mass_kg = 1.0 }", 12, &["`hanging_mass_kg`", "beside `constant_n`"]),
+        bad(
+            REFERENCE,
+            "{ constant_n = 9.0, hanging_mass_kg = 1.0 }",
+            12,
+            &["`hanging_mass_kg`", "beside `constant_n`"],
+        ),
         bad(REFERENCE, "{}", 12, &["`reference` is empty", "`constant_n` or `hanging_mass_kg`"]),
         bad(REFERENCE, "{ constant_n = -1.0 }", 12, &["`constant_n`", "is -1;", "0 to 1e9"]),
         bad(REFERENCE, "{ constant_n = \"5 N\" }", 12, &["`constant_n`", "must be a number"]),

@@ -128,8 +128,10 @@ fn warm_up_was_misjudged(
 /// Standing of each sample before anything is known about the friction.
 pub fn prepared(record: &CableRecord<'_>) -> Vec<Standing> {
     let mut standings = selection::first_look(record, |_, row| row.reference_n.is_finite());
-    selection::leave_out_still_references(record, &mut standings);
-    selection::leave_out_interpolated_references(record, &mut standings);
+    if !record.reference_is_known {
+        selection::leave_out_still_references(record, &mut standings);
+        selection::leave_out_interpolated_references(record, &mut standings);
+    }
     standings
 }
 

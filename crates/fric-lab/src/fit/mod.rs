@@ -36,7 +36,6 @@ mod solve;
 mod start;
 mod summary;
 mod vector;
-mod weight;
 mod wrench;
 
 /// What other searches on the same records are made of.

@@ -1,7 +1,7 @@
 //! What a log holds for an identification, and what it lacks.
 
 use fric_core::Sample;
-use fric_core::robot::file::RobotFile;
+use fric_core::robot::file::{ReferenceTable, RobotFile};
 
 use super::error::FitError;
 use super::record::Reference;
@@ -132,6 +132,7 @@ impl Lack {
     }
 }
 
+const SILENT_ADVICE: &str = "Compare the names of the cables in the log with those in the robot file.";
 const POSE_ADVICE: &str = "Name the topic of the poses as `pose` under `[log]` in the robot file.";
 
 /// What is missing to identify each cable from its force at the platform.
@@ -170,10 +171,11 @@ fn of_forces(robot: &RobotFile, holdings: &Holdings, advice: &'static str, inste
     };
     let cables = without(&readiness, &|cable| holdings.cables.get(cable).is_none_or(|of| of.referenced == 0));
     if !cables.is_empty() {
+        let (cause, own_advice) = without_reference(&log.reference);
         readiness.lacks.push(Lack {
-            cause: format!("the log has no reference forces on {}{}", log.reference, of(&names, &cables)),
-            advice,
-            instead,
+            cause: cause + &of(&names, &cables),
+            advice: own_advice.unwrap_or(advice),
+            instead: instead.filter(|_| own_advice.is_none()),
             cables,
         });
     }
@@ -192,6 +194,24 @@ fn of_forces(robot: &RobotFile, holdings: &Holdings, advice: &'static str, inste
         });
     }
     readiness
+}
+
+/// That no sample has a reference force, and what to do where the reference is known and not measured.
+#[must_use]
+pub fn without_reference(reference: &ReferenceTable) -> (String, Option<&'static str>) {
+    match reference {
+        ReferenceTable::Signal(path) => (format!("the log has no reference forces on {path}"), None),
+        ReferenceTable::Known(known) if known.hanging_mass_kg.is_some() => {
+            let cause = format!(
+                "in no sample is `{reference}` the reference: there is no force with a length, or the cable is never in quiet \
+                 motion (accelerations to 0.5 m/s²)"
+            );
+            (cause, Some("Record motion at constant speed, or give the force as `constant_n`."))
+        }
+        ReferenceTable::Known(_) => {
+            (format!("in no sample is `{reference}` the reference: the log has no forces"), Some(SILENT_ADVICE))
+        }
+    }
 }
 
 /// What is missing to identify all cables from the wrench on the platform; `origin` says where the robot file is from.
@@ -264,7 +284,7 @@ fn silent(names: &[&str], holdings: &Holdings) -> Vec<Lack> {
     let listed: Vec<&str> = cables.iter().filter_map(|cable| names.get(*cable).copied()).collect();
     let lack = (!cables.is_empty()).then(|| Lack {
         cause: format!("the log has no signal of {}", listed.join(", ")),
-        advice: "Compare the names of the cables in the log with those in the robot file.",
+        advice: SILENT_ADVICE,
         instead: None,
         cables,
     });

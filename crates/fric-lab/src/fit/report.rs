@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 use super::optimizer::Termination;
 use super::selection::SampleCounts;
 use super::vector::Parameter;
-use crate::replay::{Deviation, WrenchErrors};
+use crate::replay::{Deviation, WrenchErrors, WrenchReference};
 
 /// Errors of a cable's force at the platform.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -45,8 +45,8 @@ pub struct CableFit {
 pub struct WrenchFit {
     /// The cables in the robot's order.
     pub cables: Vec<CableFit>,
-    /// Whether the wrench was measured; otherwise it is that of the platform's mass.
-    pub measured: bool,
+    /// What the forces were compared with.
+    pub reference: WrenchReference,
     /// Wrench by the frictionless forces less the outside wrench, over every sample where that is known.
     pub before: WrenchErrors,
     /// The same by the compensated forces.

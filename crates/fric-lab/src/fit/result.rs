@@ -124,8 +124,8 @@ impl FitResult {
         let cables = robot.cable_names().into_iter().zip(fits.cables());
         let (reference, wrench) = match fits {
             Fits::Forces(_) => ("forces", None),
-            Fits::Wrench(WrenchFit { measured, before, after, .. }) => {
-                (if *measured { "wrench" } else { "mass" }, WrenchResult::of(before, after))
+            Fits::Wrench(WrenchFit { reference, before, after, .. }) => {
+                (reference.name(), WrenchResult::of(*reference, before, after))
             }
         };
         Self {

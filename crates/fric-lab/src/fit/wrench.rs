@@ -21,8 +21,9 @@ use super::record::{CableRecord, Measurements};
 use super::report::WrenchFit;
 use super::selection::{self, Standing};
 use super::solve::{Solution, Unknown, contradicts, search, solve, vagueness};
-use super::{FitOptions, Progress, start, weight};
-use crate::replay::WrenchErrors;
+use super::{FitOptions, Progress, start};
+use crate::replay::{WrenchErrors, WrenchReference};
+use crate::weight;
 
 /// Fits all cables to the outside wrench. Only for a robot of which every cable has an attachment, and for
 /// [`Measurements`] with [`Reference::Wrench`](super::Reference::Wrench).
@@ -31,8 +32,9 @@ pub fn fit_wrench(measurements: &Measurements<'_>, options: &FitOptions, progres
     let records: Vec<CableRecord<'_>> = measurements.cables().collect();
     let given: Vec<Values> = records.iter().map(|record| record.params.values()).collect();
     let platform = measurements.platform();
-    let measured = platform.wrenches.iter().flatten().next().is_some();
-    let outside = outside_wrenches(measurements, measured);
+    let is_measured = platform.wrenches.iter().any(Option::is_some);
+    let reference = if is_measured { WrenchReference::Measured } else { WrenchReference::Mass };
+    let outside = outside_wrenches(measurements, reference);
     let has_wrench = |place: usize| outside.get(place).is_some_and(|wrench| wrench.iter().all(|part| part.is_finite()));
     let reaches = |place: usize| {
         let mut columns = platform.structure.iter().skip(place * records.len()).take(records.len());
@@ -91,7 +93,7 @@ pub fn fit_wrench(measurements: &Measurements<'_>, options: &FitOptions, progres
     progress.finish_one();
     let cables = cable_fits(&problem, &given, &solution, &standings);
     let [before, after] = wrench_errors(&problem, &solution.values, &platform.structure, &outside);
-    WrenchFit { cables, measured, before, after }
+    WrenchFit { cables, reference, before, after }
 }
 
 /// Deviation of the wrench by the cable forces from the one outside, with frictionless and with compensated forces.
@@ -160,16 +162,15 @@ fn offsets(
 }
 
 /// The outside wrench of each sample; NaN where there is none.
-fn outside_wrenches(measurements: &Measurements<'_>, measured: bool) -> Vec<Vector6<f64>> {
+fn outside_wrenches(measurements: &Measurements<'_>, reference: WrenchReference) -> Vec<Vector6<f64>> {
     let platform = measurements.platform();
-    if measured {
-        let vector =
-            |wrench: &Option<Wrench>| wrench.as_ref().map_or_else(|| Vector6::repeat(f64::NAN), Wrench::to_vector);
+    let vector = |wrench: &Option<Wrench>| wrench.as_ref().map_or_else(|| Vector6::repeat(f64::NAN), Wrench::to_vector);
+    if reference == WrenchReference::Measured {
         return platform.wrenches.iter().map(vector).collect();
     }
     let ends = measurements.starts().iter().skip(1).copied().chain([platform.poses.len()]);
     let logs = measurements.starts().iter().zip(ends).filter_map(|(start, end)| platform.poses.get(*start..end));
-    logs.flat_map(|poses| weight::wrenches(measurements.robot(), poses)).collect()
+    logs.flat_map(|poses| weight::wrenches(measurements.robot(), poses)).map(|wrench| vector(&wrench)).collect()
 }
 
 /// Standing of each sample for all cables together: what is the matter with the first that it cannot be used for.

@@ -56,7 +56,7 @@ fn without_wrench(mut log: Log) -> Log {
 fn measured_wrench() {
     let log = Log::record(&truth(), &SimulationOptions::default());
     let fit = fit(&log, &given());
-    assert!(fit.measured);
+    assert_eq!(fit.reference, WrenchReference::Measured);
     let ([mu, sigma, viscous], ratio) = worst(&fit, &truth());
     assert!(mu < 0.005 && sigma < 0.01 && viscous < 0.03 && ratio < 1.03);
 }
@@ -66,7 +66,7 @@ fn measured_wrench() {
 fn weight_of_the_platform() {
     let log = without_wrench(Log::record(&truth(), &SimulationOptions::default()));
     let fit_by_weight = fit(&log, &given());
-    assert!(!fit_by_weight.measured);
+    assert_eq!(fit_by_weight.reference, WrenchReference::Mass);
     let ([mu, ..], _) = worst(&fit_by_weight, &truth());
     assert!(mu < 0.05);
 }
