@@ -79,10 +79,13 @@ impl From<errors::ForceError> for ForceError {
 impl WrenchError {
     /// Before and after.
     pub fn pair(py: Python<'_>, wrench: &WrenchResult) -> PyResult<(Py<Self>, Py<Self>)> {
-        let error = |error: errors::WrenchError| {
-            Py::new(py, Self { force_rms_n: error.force_rms_n, torque_rms_nm: error.torque_rms_nm })
-        };
-        Ok((error(wrench.before)?, error(wrench.after)?))
+        Ok((Py::new(py, Self::from(wrench.before))?, Py::new(py, Self::from(wrench.after))?))
+    }
+}
+
+impl From<errors::WrenchError> for WrenchError {
+    fn from(errors::WrenchError { force_rms_n, torque_rms_nm }: errors::WrenchError) -> Self {
+        Self { force_rms_n, torque_rms_nm }
     }
 }
 

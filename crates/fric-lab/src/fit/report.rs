@@ -19,6 +19,24 @@ pub struct ForceErrors {
     pub after_n: Deviation,
 }
 
+/// A combination of parameters that the samples leave open: changed together, by these steps, they do the same.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OpenCombination {
+    /// What changes.
+    pub parts: Vec<OpenPart>,
+}
+
+/// A parameter in a combination.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OpenPart {
+    /// Which cable of the robot.
+    pub cable: usize,
+    /// Which parameter.
+    pub parameter: Parameter,
+    /// Its part of a step of 1.96 standard errors, in its unit; not finite for one that has no effect at all.
+    pub step: f64,
+}
+
 /// One cable's parameters, and how sure they are.
 #[derive(Clone, Debug)]
 pub struct CableFit {
@@ -30,6 +48,10 @@ pub struct CableFit {
     pub fitted: Vec<Parameter>,
     /// What the samples do not determine; `values` holds what was given.
     pub undetermined: Vec<Parameter>,
+    /// For each of these the combination that the samples leave open, its own part first.
+    pub open: Vec<OpenCombination>,
+    /// What the samples would have beyond the end of its range that `values` holds.
+    pub at_bound: Vec<Parameter>,
     /// Covariance of the fitted parameters, in their units.
     pub covariance: DMatrix<f64>,
     /// Why the search has ended.
@@ -51,6 +73,8 @@ pub struct WrenchFit {
     pub before: WrenchErrors,
     /// The same by the compensated forces.
     pub after: WrenchErrors,
+    /// The same on blocks of the log held out, with parameters from the other blocks; empty for a log too short for it.
+    pub held_out: WrenchErrors,
 }
 
 impl CableFit {
