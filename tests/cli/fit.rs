@@ -83,24 +83,30 @@ const FORCES: [&str; 6] = [
     ".cables[].mean_reference_n",
     ".robot",
 ];
-const WRENCH: [&str; 5] = [
+const WRENCH: [&str; 8] = [
     ".robot",
     ".wrench.after.force_rms_n",
     ".wrench.after.torque_rms_nm",
     ".wrench.before.force_rms_n",
     ".wrench.before.torque_rms_nm",
+    ".wrench.held_out.force_rms_n",
+    ".wrench.held_out.torque_rms_nm",
+    ".wrench.reference",
 ];
+/// Lists that are mostly empty, with what they hold.
+const LISTS: [&str; 3] = [".cables[].undetermined[]", ".cables[].open[]", ".cables[].at_bound[]"];
 
 /// Exactly these keys and no others; what the log does not determine is listed by name.
 #[track_caller]
 fn assert_shape(result: &Value, parts: &[&[&str]]) {
     let mut expected: Vec<&str> = parts.concat();
     expected.sort_unstable();
-    let found: Vec<String> = shape(result).into_iter().filter(|path| path != ".cables[].undetermined[]").collect();
+    let is_listed = |path: &String| LISTS.iter().any(|list| path.starts_with(list));
+    let found: Vec<String> = shape(result).into_iter().filter(|path| !is_listed(path)).collect();
     assert_eq!(found, expected);
     assert_eq!(result["format"], "fric-fit/1");
     for cable in result["cables"].as_array().unwrap() {
-        assert!(cable["undetermined"].is_array(), "{cable}");
+        assert!(["undetermined", "open", "at_bound"].iter().all(|list| cable[list].is_array()), "{cable}");
     }
 }
 
@@ -335,6 +341,24 @@ fn the_wrench_needs_no_reference_forces() {
 }
 
 #[test]
+fn a_wrench_that_one_cable_bears_is_refused_in_one_sentence() {
+    let place = Place::empty();
+    let robot = "format = 'fric-robot/1'\nname = 'one'\ncycle_s = 0.004\n[platform]\nmass_kg = 2.0\n[[cable]]\nname = 'a'\n\
+                 base_m = [0.0, 0.0, 2.0]\nplatform_m = [0.0, 0.0, 0.0]\npulleys = [{ wrap_deg = 90.0, sensor = true }]\n\
+                 friction = { mu = 0.02, sigma_n_per_m = 700.0 }\n";
+    place.write("robot.toml", robot);
+    let simulate = ["simulate", "--model", "robot.toml", "-o", "log.mcap", "--duration", "4"];
+    assert_eq!(place.run(&simulate).code, Some(0));
+    let run = fit(&place, &["log.mcap", "--reference", "wrench"]);
+    run.fails(1, &["all pull along one line", "one of its six"]).advises(&["hanging_mass_kg"]);
+    assert!(!place.names().contains(&"fitted.toml".to_owned()));
+    assert_eq!(place.run(&["info", "log.mcap", "--json", "info.json"]).code, Some(0));
+    let info = place.json("info.json");
+    let step = info["steps"].as_array().unwrap().iter().find(|step| step["step"] == "fit: wrench").unwrap();
+    assert!(step["possible"] == false && step["reasons"].to_string().contains("one line"), "{step}");
+}
+
+#[test]
 fn without_a_wrench_the_mass_takes_its_place() {
     let place = Place::empty();
     place.write("log.mcap", without(platform_log(), &["/reference_forces", "/platform_wrench"]));
@@ -347,6 +371,10 @@ fn without_a_wrench_the_mass_takes_its_place() {
         assert!(cable["samples"].as_u64().unwrap() > 0 && cable.get("before").is_none(), "{cable}");
     }
     // A wrench by the mass of 4 N: friction shows, if not as sharply.
+    let held_out = |key: &str| result["wrench"]["held_out"][key].as_f64().unwrap();
+    let after = |key: &str| result["wrench"]["after"][key].as_f64().unwrap();
+    assert_eq!(result["wrench"]["reference"], "mass");
+    assert!(run.stdout.contains("held out") && held_out("force_rms_n") > 0.5 * after("force_rms_n"), "{result}");
     let mean = |table: &str| {
         let of = |cable: &Value| cable[table]["mu"].as_f64();
         let all: Vec<f64> = result["cables"].as_array().unwrap().iter().filter_map(of).collect();

@@ -28,7 +28,13 @@ fn a_known_load_is_the_reference_of_every_command() {
         let known = reference.trim_matches(['{', ' ', '}']);
         assert!(run.stdout.contains(known) && run.stdout.contains("known and not measured"), "{run:#?}");
         assert!(!run.stdout.contains("/reference_forces"), "{run:#?}");
-        place.run(&["replay", "log.mcap", "--model", "robot.toml", "--json", "replay.json"]).succeeds();
+        // The bench of the run is faster than a mass can fall at times, and slack there.
+        let run = place.run(&["replay", "log.mcap", "--model", "robot.toml", "--json", "replay.json"]);
+        if reference.contains("mass") {
+            run.warns(&["SLACK"])
+        } else {
+            run.succeeds()
+        };
         let cable = &place.json("replay.json")["cables"][0];
         let error_n = |when: &str| cable[when]["rms_n"].as_f64().unwrap();
         assert!(error_n("after") < 0.8 * error_n("before"), "{cable}");

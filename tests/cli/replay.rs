@@ -36,11 +36,12 @@ const ALWAYS: [&str; 9] = [
     ".format",
     ".robot",
 ];
-const WRENCH: [&str; 4] = [
+const WRENCH: [&str; 5] = [
     ".wrench.after.force_rms_n",
     ".wrench.after.torque_rms_nm",
     ".wrench.before.force_rms_n",
     ".wrench.before.torque_rms_nm",
+    ".wrench.reference",
 ];
 
 #[track_caller]

@@ -16,7 +16,7 @@ use super::determined::HALF_INTERVAL;
 /// A parameter takes part in a direction with at least this share of the leading parameter's weight. At 0.1, half a per cent
 /// of the direction's square counts as a part of it; at 0.5, a parameter that makes up for half of the leading one is not
 /// reported.
-const LEAST_WEIGHT: f64 = 0.25;
+pub(super) const LEAST_WEIGHT: f64 = 0.25;
 
 /// A direction in the space of the parameters along which the samples say too little.
 #[derive(Clone, Debug, PartialEq)]

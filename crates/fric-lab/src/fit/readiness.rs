@@ -3,6 +3,7 @@
 use fric_core::Sample;
 use fric_core::robot::file::{ReferenceTable, RobotFile};
 
+use super::balance::{ONE_LINE, ONE_LINE_ADVICE};
 use super::error::FitError;
 use super::record::Reference;
 use crate::discover::readiness::too_short;
@@ -221,6 +222,10 @@ pub fn by_wrench(robot: &RobotFile, origin: &str, holdings: &Holdings) -> Readin
     let names = robot.cable_names();
     let all: Vec<usize> = (0..names.len()).collect();
     let mut lacks: Vec<Lack> = geometry(robot, origin).into_iter().collect();
+    if names.len() == 1 {
+        // What more cables do shows in the log.
+        lacks.push(Lack { cause: ONE_LINE.to_owned(), advice: ONE_LINE_ADVICE, instead: None, cables: all.clone() });
+    }
     for lack in silent(&names, holdings) {
         lacks.push(Lack {
             cause: format!("{}, and the wrench is that of all", lack.cause),

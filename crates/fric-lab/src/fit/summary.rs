@@ -252,13 +252,6 @@ fn undetermined(result: &FitResult) -> String {
                 listed(&cables, result),
                 parameter.row().excitation
             );
-            if let Some(kind) = parameter.effect() {
-                let _ = writeln!(
-                    text,
-                    "  If the robot file has no `{kind}`, put it there with a guess first: where there is none of it, nothing \
-                     tells what shapes it."
-                );
-            }
         }
     }
     for cable in &learned {

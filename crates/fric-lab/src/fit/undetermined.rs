@@ -13,7 +13,7 @@ use fric_core::parameters::{OFFSET, Values};
 use nalgebra::DMatrix;
 
 use super::determined::{HALF_INTERVAL, Yardstick};
-use super::directions::{OpenDirection, open_directions};
+use super::directions::{LEAST_WEIGHT, OpenDirection, open_directions};
 use super::optimizer::Termination;
 use super::pass::Forces;
 use super::problem::{Comparison, Member, Problem};
@@ -88,16 +88,24 @@ impl Knowledge {
             Some((held?, parts, direction.clone()))
         };
         let (held, mut parts, direction) = self.directions().iter().find_map(of_direction)?;
-        parts.retain(|place| *place != held);
-        parts.insert(0, held);
         // Along the direction each parameter moves in proportion to its weight and its own standard error.
         let step = |place: usize| {
             let weight = direction.weights.get(place).copied().unwrap_or(0.0);
             weight * self.covariance[(place, place)].sqrt() / vagueness(place)
         };
-        let widest = step(held).abs().max(f64::MIN_POSITIVE);
-        let error = self.covariance[(held, held)].sqrt();
-        let factor = HALF_INTERVAL * error / widest * step(held).signum();
+        // Of what is held the step is 1.96 standard errors.
+        let factor = HALF_INTERVAL * self.covariance[(held, held)].sqrt() / step(held);
+        // Parameters of one kind count by their own unit.
+        let is_alike = |place: usize| {
+            self.unknowns.get(place).map(|unknown| unknown.parameter)
+                == self.unknowns.get(held).map(|held| held.parameter)
+                && step(place).abs() >= LEAST_WEIGHT * step(held).abs()
+        };
+        parts.extend((0..self.unknowns.len()).filter(|place| is_alike(*place)));
+        parts.sort_unstable();
+        parts.dedup();
+        parts.retain(|place| *place != held);
+        parts.insert(0, held);
         let part = |place: &usize| {
             let Unknown { member, parameter } = *self.unknowns.get(*place)?;
             Some(OpenPart { cable: member, parameter, step: factor * step(*place) })

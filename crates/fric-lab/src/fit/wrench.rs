@@ -140,11 +140,13 @@ impl<'a> Case<'a> {
         let mut earlier = Earlier::default();
         match self.offsets(&problem, &solution, cycle_s) {
             Offsets::Contradicted => {
-                // What friction seemed undetermined beside wrong offsets gets another chance.
+                // What friction seemed undetermined beside wrong offsets gets another chance, and another start.
                 problem.members = self.members(|_| true);
                 earlier.evaluation_count += solution.evaluation_count;
-                solution =
-                    solve(&mut problem, vec![solution.values], &given, cycle_s, options.weighing, &mut standings);
+                let mut starts = vec![solution.values];
+                starts.extend(start::starts(&problem, &given, cycle_s));
+                let starts = with_newcomers(&problem, starts, &given, cycle_s);
+                solution = solve(&mut problem, starts, &given, cycle_s, options.weighing, &mut standings);
             }
             Offsets::Apart { determined, vague } => {
                 earlier.take(&mut solution);
