@@ -244,8 +244,8 @@ fn open_result(open: &OpenCombination, names: &[&str]) -> Option<OpenResult> {
 fn cable_result(name: &str, fit: &CableFit, names: &[&str]) -> FitCableResult {
     let shown = |parameter: &Parameter| {
         let value = fit.values[parameter.place()];
-        let relevant =
-            parameter.is_friction() || fit.fitted.contains(parameter) || fit.undetermined.contains(parameter);
+        let relevant = parameter.is_friction()
+            || [&fit.fitted, &fit.undetermined, &fit.at_bound].iter().any(|list| list.contains(parameter));
         (relevant && value < NO_PRESLIDING_N_PER_M).then(|| (parameter.to_string(), value))
     };
     let error = |parameter: &Parameter| Some((parameter.to_string(), fit.standard_error(parameter)?));

@@ -23,7 +23,7 @@ const DEVIATION_PER_MEDIAN: f64 = 1.482_602_218_505_602;
 /// A given value that raises the sum of squares by more than this share contradicts the samples.
 pub(super) const CONTRADICTION_RATIO: f64 = 0.01;
 /// A search goes on to within so many standard errors of the minimum.
-const NEAR_ERRORS: f64 = 0.01;
+pub(super) const NEAR_ERRORS: f64 = 0.01;
 /// Rounds of search and new look at the deviations.
 const ROUNDS: usize = 3;
 
@@ -102,7 +102,6 @@ pub fn solve(
         }
     }
     solution.hold_undetermined(problem, given, cycle_s);
-    solution.settle_at_bounds(cycle_s);
     solution
 }
 
@@ -112,21 +111,6 @@ impl Solution {
         let (found, minimum) = search(problem, &self.values, cycle_s);
         self.evaluation_count += minimum.evaluation_count;
         (self.values, self.termination) = (found, minimum.termination);
-    }
-
-    /// Takes what is nearer to an end of its range than a search goes on for to that end.
-    fn settle_at_bounds(&mut self, cycle_s: f64) {
-        for (place, unknown) in self.unknowns.iter().enumerate() {
-            let (least, greatest) = Coordinate::of(&unknown.parameter, cycle_s).range();
-            let near = NEAR_ERRORS * self.covariance[(place, place)].sqrt();
-            let Some(values) = self.values.get_mut(unknown.member) else { continue };
-            let value = &mut values[unknown.parameter.place()];
-            let bound = if *value - least < greatest - *value { least } else { greatest };
-            if near.is_finite() && (*value - bound).abs() <= near {
-                *value = bound;
-                self.at_bound.push(*unknown);
-            }
-        }
     }
 }
 

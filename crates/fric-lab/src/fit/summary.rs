@@ -64,8 +64,13 @@ impl Shown {
     /// The value; in brackets where it is not identified but that of the robot file.
     fn value(&self, cable: &FitCableResult) -> String {
         let text = self.of(&cable.parameters).map(|value| number(value, self.digits));
-        let is_identified = value_of(&cable.standard_errors, self.place).is_some();
+        let is_identified = value_of(&cable.standard_errors, self.place).is_some() || self.is_at_bound(cable);
         cell(text.map(|text| if is_identified { text } else { format!("({text})") }))
+    }
+
+    fn is_at_bound(&self, cable: &FitCableResult) -> bool {
+        let name = Parameter::all().nth(self.place).map(|parameter| parameter.to_string());
+        name.is_some_and(|name| cable.at_bound.contains(&name))
     }
 
     fn identified(&self, cable: &FitCableResult) -> Option<f64> {
@@ -162,7 +167,7 @@ fn legend(result: &FitResult) -> String {
     let is_kept = |cable: &FitCableResult| {
         let friction =
             || cable.parameters.0.iter().filter(|(name, _)| Parameter::named(name).is_some_and(|p| p.is_friction()));
-        friction().any(|(name, _)| cable.standard_errors.get(name).is_none())
+        friction().any(|(name, _)| cable.standard_errors.get(name).is_none() && !cable.at_bound.contains(name))
     };
     if result.cables.iter().any(is_kept) {
         text += "\n(…) is not identified but kept from the robot file, and left out of the mean.\n";
@@ -191,7 +196,11 @@ fn effect_table(result: &FitResult, kind: &str) -> String {
             let value = cable.parameters.get(&name)?;
             // As many digits as the error, which has two.
             let error = cable.standard_errors.get(&name);
-            Some(error.map_or_else(|| format!("({value})"), |error| number(value, digits_of(error))))
+            Some(match error {
+                Some(error) => number(value, digits_of(error)),
+                None if cable.at_bound.contains(&name) => value.to_string(),
+                None => format!("({value})"),
+            })
         };
         let header = parameter.row().key.to_owned();
         let cells: Vec<Option<String>> = result.cables.iter().map(value).collect();
@@ -302,13 +311,12 @@ fn open_combination(cable: &FitCableResult, open: &OpenResult) -> String {
         let sign = if part.step < 0.0 { "−" } else { "+" };
         format!("{}{of} {sign}{}{unit}", part.parameter, plain(part.step.abs()))
     };
-    let listed: Vec<String> = others.iter().map(part).collect();
+    let mut listed = vec![part(held).replacen(&held.parameter, &format!("{} of {}", held.parameter, cable.name), 1)];
+    listed.extend(others.iter().map(part));
+    let excitation = Parameter::named(&held.parameter).map_or("", |parameter| parameter.row().excitation);
     format!(
-        "\nThe log leaves a combination open: {} of {} {} and {}\n  do the same together. {} of {} is kept as given; what the others \
-         are found to be holds with it.\n",
-        held.parameter,
-        cable.name,
-        part(held).trim_start_matches(&held.parameter).trim(),
+        "\nThe log leaves a combination open: these together change nothing that it shows.\n  {}\n  {} of {} is kept as given, and \
+         the others hold with it. To tell them apart\n  record {excitation}.\n",
         listed.join(", "),
         held.parameter,
         cable.name,

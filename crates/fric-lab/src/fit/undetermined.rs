@@ -9,7 +9,7 @@
 
 use std::sync::Arc;
 
-use fric_core::parameters::{OFFSET, Values};
+use fric_core::parameters::{OFFSET, SIGMA, Values};
 use nalgebra::DMatrix;
 
 use super::determined::{HALF_INTERVAL, Yardstick};
@@ -18,7 +18,8 @@ use super::optimizer::Termination;
 use super::pass::Forces;
 use super::problem::{Comparison, Member, Problem};
 use super::report::{OpenCombination, OpenPart};
-use super::solve::{CONTRADICTION_RATIO, Solution, Unknown, hold, squares, unknowns};
+use super::solve::{CONTRADICTION_RATIO, NEAR_ERRORS, Solution, Unknown, hold, squares, unknowns};
+use super::vector::Coordinate;
 use crate::replay::Deviation;
 
 /// What is known of the parameters at some values.
@@ -116,6 +117,28 @@ impl Knowledge {
 }
 
 impl Solution {
+    /// Leaves what the search was driven to an end of its range for at that end; whether there is any.
+    fn settle_at_bounds(&mut self, problem: &mut Problem<'_>, knowledge: &Knowledge, cycle_s: f64) -> bool {
+        let before = self.at_bound.len();
+        for (place, unknown) in knowledge.unknowns.iter().enumerate() {
+            let Some(values) = self.values.get_mut(unknown.member) else { continue };
+            let value = &mut values[unknown.parameter.place()];
+            // Of what is determined a hundredth of a standard error is nothing.
+            let is_determined = knowledge.vagueness.get(place).is_some_and(|vagueness| *vagueness <= 1.0);
+            let near = if is_determined { NEAR_ERRORS * knowledge.covariance[(place, place)].sqrt() } else { 0.0 };
+            let bound = Coordinate::of(&unknown.parameter, cycle_s).bound_at(*value, near);
+            // Beyond all stiffness there is none, which a file says by leaving it out.
+            if let Some(bound) = bound.filter(|bound| unknown.parameter.place() != SIGMA || *bound < *value) {
+                *value = bound;
+                if let Some(member) = problem.members.get_mut(unknown.member) {
+                    member.free.retain(|parameter| *parameter != unknown.parameter);
+                }
+                self.at_bound.push(*unknown);
+            }
+        }
+        self.at_bound.len() > before
+    }
+
     /// Holds one parameter after the other that the samples do not determine. One whose given value the samples contradict
     /// stays as found: they know that much.
     pub(super) fn hold_undetermined(&mut self, problem: &mut Problem<'_>, given: &[Values], cycle_s: f64) {
@@ -124,6 +147,9 @@ impl Solution {
         loop {
             let knowledge = Knowledge::of(problem, &self.values);
             let stopped = self.termination == Termination::Stopped;
+            if !stopped && self.settle_at_bounds(problem, &knowledge, cycle_s) {
+                continue;
+            }
             let next = knowledge.to_hold(&kept).filter(|_| !stopped);
             (self.covariance, self.unknowns) = (knowledge.covariance, knowledge.unknowns);
             let Some((held, combination)) = next else { return };
