@@ -64,13 +64,8 @@ impl Shown {
     /// The value; in brackets where it is not identified but that of the robot file.
     fn value(&self, cable: &FitCableResult) -> String {
         let text = self.of(&cable.parameters).map(|value| number(value, self.digits));
-        let is_identified = value_of(&cable.standard_errors, self.place).is_some() || self.is_at_bound(cable);
+        let is_identified = value_of(&cable.standard_errors, self.place).is_some();
         cell(text.map(|text| if is_identified { text } else { format!("({text})") }))
-    }
-
-    fn is_at_bound(&self, cable: &FitCableResult) -> bool {
-        let name = Parameter::all().nth(self.place).map(|parameter| parameter.to_string());
-        name.is_some_and(|name| cable.at_bound.contains(&name))
     }
 
     fn identified(&self, cable: &FitCableResult) -> Option<f64> {
@@ -167,7 +162,7 @@ fn legend(result: &FitResult) -> String {
     let is_kept = |cable: &FitCableResult| {
         let friction =
             || cable.parameters.0.iter().filter(|(name, _)| Parameter::named(name).is_some_and(|p| p.is_friction()));
-        friction().any(|(name, _)| cable.standard_errors.get(name).is_none() && !cable.at_bound.contains(name))
+        friction().any(|(name, _)| cable.standard_errors.get(name).is_none())
     };
     if result.cables.iter().any(is_kept) {
         text += "\n(…) is not identified but kept from the robot file, and left out of the mean.\n";
@@ -198,7 +193,6 @@ fn effect_table(result: &FitResult, kind: &str) -> String {
             let error = cable.standard_errors.get(&name);
             Some(match error {
                 Some(error) => number(value, digits_of(error)),
-                None if cable.at_bound.contains(&name) => value.to_string(),
                 None => format!("({value})"),
             })
         };

@@ -117,9 +117,9 @@ impl Knowledge {
 }
 
 impl Solution {
-    /// Leaves what the search was driven to an end of its range for at that end; whether there is any.
-    fn settle_at_bounds(&mut self, problem: &mut Problem<'_>, knowledge: &Knowledge, cycle_s: f64) -> bool {
-        let before = self.at_bound.len();
+    /// Puts what the search was driven to an end of its range for at that end.
+    fn settle_at_bounds(&mut self, knowledge: &Knowledge, cycle_s: f64) {
+        self.at_bound.clear();
         for (place, unknown) in knowledge.unknowns.iter().enumerate() {
             let Some(values) = self.values.get_mut(unknown.member) else { continue };
             let value = &mut values[unknown.parameter.place()];
@@ -130,13 +130,9 @@ impl Solution {
             // Beyond all stiffness there is none, which a file says by leaving it out.
             if let Some(bound) = bound.filter(|bound| unknown.parameter.place() != SIGMA || *bound < *value) {
                 *value = bound;
-                if let Some(member) = problem.members.get_mut(unknown.member) {
-                    member.free.retain(|parameter| *parameter != unknown.parameter);
-                }
                 self.at_bound.push(*unknown);
             }
         }
-        self.at_bound.len() > before
     }
 
     /// Holds one parameter after the other that the samples do not determine. One whose given value the samples contradict
@@ -147,10 +143,10 @@ impl Solution {
         loop {
             let knowledge = Knowledge::of(problem, &self.values);
             let stopped = self.termination == Termination::Stopped;
-            if !stopped && self.settle_at_bounds(problem, &knowledge, cycle_s) {
-                continue;
-            }
-            let next = knowledge.to_hold(&kept).filter(|_| !stopped);
+            self.settle_at_bounds(&knowledge, cycle_s);
+            // At a bound it is known from one side.
+            let told: Vec<Unknown> = kept.iter().chain(&self.at_bound).copied().collect();
+            let next = knowledge.to_hold(&told).filter(|_| !stopped);
             (self.covariance, self.unknowns) = (knowledge.covariance, knowledge.unknowns);
             let Some((held, combination)) = next else { return };
             let (members, found, termination) = (problem.members.clone(), self.values.clone(), self.termination);

@@ -242,7 +242,6 @@ enum Offsets {
 struct Earlier {
     undetermined: Vec<Unknown>,
     open: Vec<OpenCombination>,
-    at_bound: Vec<Unknown>,
     evaluation_count: usize,
 }
 
@@ -250,14 +249,13 @@ impl Earlier {
     fn take(&mut self, solution: &mut Solution) {
         self.undetermined.append(&mut solution.undetermined);
         self.open.append(&mut solution.open);
-        self.at_bound.append(&mut solution.at_bound);
         self.evaluation_count += std::mem::take(&mut solution.evaluation_count);
     }
 
     fn give(mut self, solution: &mut Solution) {
         self.take(solution);
-        let Self { undetermined, open, at_bound, evaluation_count } = self;
-        *solution = Solution { undetermined, open, at_bound, evaluation_count, ..solution.clone() };
+        let Self { undetermined, open, evaluation_count } = self;
+        *solution = Solution { undetermined, open, evaluation_count, ..solution.clone() };
     }
 }
 

@@ -98,11 +98,11 @@ impl HangingRows {
         let is_quiet = |index: usize, cable: usize| {
             acceleration(index, cable).is_some_and(|now| now.abs() <= GREATEST_ACCELERATION_M_PER_S2)
         };
-        let force_n = |(cable, input): (usize, &CableInput)| {
+        let of_cable = |(cable, input): (usize, &CableInput)| {
             let is_known = input.sensor_force_n.is_finite() && around.iter().all(|index| is_quiet(*index, cable));
             acceleration(self.next, cable).filter(|_| is_known).map_or(f64::NAN, |now| self.reference.force_n(now))
         };
-        let forces_n = self.rows.get(self.next)?.cables.iter().enumerate().map(force_n).collect();
+        let forces_n = self.rows.get(self.next)?.cables.iter().enumerate().map(of_cable).collect();
         let row = self.rows.get_mut(self.next)?;
         self.next += 1;
         row.reference_force_n = forces_n;

@@ -146,10 +146,11 @@ impl SignalReader {
         };
         let mut outcome = Ok(());
         while outcome.is_ok() && !hanging.is_ready() {
-            outcome = self.join_row().map(|is_joined| match is_joined {
-                true => hanging.push(&self.row.sample()),
-                false => hanging.end(),
-            });
+            outcome = self.join_row().map(
+                |is_joined| {
+                    if is_joined { hanging.push(&self.row.sample()) } else { hanging.end() }
+                },
+            );
         }
         let hanging = self.hanging.insert(hanging);
         outcome.map(|()| hanging.pop())
