@@ -144,9 +144,7 @@ impl Solution {
             let knowledge = Knowledge::of(problem, &self.values);
             let stopped = self.termination == Termination::Stopped;
             self.settle_at_bounds(&knowledge, cycle_s);
-            // At a bound it is known from one side.
-            let told: Vec<Unknown> = kept.iter().chain(&self.at_bound).copied().collect();
-            let next = knowledge.to_hold(&told).filter(|_| !stopped);
+            let next = knowledge.to_hold(&kept).filter(|_| !stopped);
             (self.covariance, self.unknowns) = (knowledge.covariance, knowledge.unknowns);
             let Some((held, combination)) = next else { return };
             let (members, found, termination) = (problem.members.clone(), self.values.clone(), self.termination);
