@@ -28,7 +28,7 @@ fuzz_target!(|data: &[u8]| {
     let recording = open().expect("a log that has been read");
     let attached = AttachedRobot::find(&recording).ok().flatten();
     let robot = attached.as_ref().map_or(&*ROBOT, |attached| &attached.robot);
-    let Ok(paths) = SignalPaths::from_table(&robot.options().log) else { return };
+    let Ok(paths) = SignalPaths::of_robot(&robot) else { return };
     let names = robot.cable_names();
     let Ok(mut replay) = Replay::new(&robot.params()) else { return };
     let mut rows = SignalReader::new(recording, paths, &names);

@@ -20,6 +20,7 @@ mod hysteresis;
 mod info;
 mod inputs;
 mod interrupt;
+mod known;
 mod logs;
 mod outputs;
 mod replay;

@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::logs::without;
-use super::support::{Place, command, root, short_log};
+use super::support::{Place, command, example_robot, root, short_log};
 
 /// All keys of a JSON value as paths, items of lists under `[]`.
 fn keys(value: &Value, path: &str, all: &mut Vec<String>) {
@@ -36,11 +36,12 @@ const ALWAYS: [&str; 9] = [
     ".format",
     ".robot",
 ];
-const WRENCH: [&str; 4] = [
+const WRENCH: [&str; 5] = [
     ".wrench.after.force_rms_n",
     ".wrench.after.torque_rms_nm",
     ".wrench.before.force_rms_n",
     ".wrench.before.torque_rms_nm",
+    ".wrench.reference",
 ];
 
 #[track_caller]
@@ -127,9 +128,14 @@ fn what_the_log_cannot_tell_is_left_out() {
     let (table, no_reference) = replayed(&["/reference_forces"], "no reference");
     assert_shape(&no_reference, &[&ALWAYS, &WRENCH]);
     assert!(table.lines().any(|line| line.contains("cable1") && line.contains('–')), "{table}");
+    // The weight of the platform takes its place, in quiet motion.
     let (table, no_wrench) = replayed(&["/platform_wrench"], "");
-    assert_shape(&no_wrench, &[&ALWAYS, &ERRORS]);
-    assert!(!table.contains("torque"), "{table}");
+    assert_shape(&no_wrench, &[&ALWAYS, &ERRORS, &WRENCH]);
+    assert!(table.contains("wrench, by mass") && no_wrench["wrench"]["reference"] == "mass", "{table}");
+    assert_eq!(whole["wrench"]["reference"], "wrench");
+    place.write("light.toml", example_robot().replace("mass_kg = 0.41", ""));
+    place.run(&["replay", "part.mcap", "--model", "light.toml", "--json", "light.json"]).succeeds();
+    assert_shape(&place.json("light.json"), &[&ALWAYS, &ERRORS]);
     let (_, no_pose) = replayed(&["/platform_pose"], "no pose");
     assert_shape(&no_pose, &[&ALWAYS, &ERRORS]);
     let (_, bare) = replayed(&["/reference_forces", "/platform_wrench", "/platform_pose"], "no reference");

@@ -69,7 +69,7 @@ impl Model {
 
     /// The signals' paths as the robot file has them.
     pub fn signal_paths(&self) -> Outcome<SignalPaths> {
-        SignalPaths::from_table(&self.robot.options().log).map_err(|error| {
+        SignalPaths::of_robot(&self.robot).map_err(|error| {
             Failure::new(format!("{}: {error}", self.origin))
                 .advise("A signal is a topic, or a path to a field such as /joints.effort[:].")
         })

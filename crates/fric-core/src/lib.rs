@@ -76,7 +76,7 @@ pub use exchange::{ParameterReceiver, ParameterSender, SendError, parameter_exch
 pub use group::{CableCycle, CableGroup, PoseWrap};
 pub use lanes::{LANES, Lanes};
 pub use platform::{Pose, Wrench};
-pub use robot::{CableParams, ParamError, RobotParams};
+pub use robot::{CableParams, KnownReference, ParamError, RobotParams};
 pub use sample::Sample;
 
 pub use status::CableStatus;

@@ -2,7 +2,7 @@
 
 use fric_core::robot::Presliding;
 use fric_core::robot::file::{FORMAT, RobotFile, RobotFileError};
-use fric_core::{Compensator, CycleInput, Pose};
+use fric_core::{Compensator, CycleInput, KnownReference, Pose};
 
 use crate::support::assert_near;
 
@@ -101,8 +101,9 @@ fn checked_parameters_tell_what_the_file_says() {
 fn what_is_left_out_has_its_default() {
     let short = RobotFile::parse(SHORT, "bench.toml").unwrap();
     let log = &short.options().log;
-    let topics = [&log.cable, &log.reference, &log.pose, &log.wrench];
+    let topics = [&log.cable, &log.reference.to_string(), &log.pose, &log.wrench];
     assert_eq!(topics, ["/cable_states", "/reference_forces", "/platform_pose", "/platform_wrench"]);
+    assert_eq!(short.params().known_reference(), None);
     assert_near(short.options().platform.gravity_m_per_s2[2], -9.80665, 0.0);
     assert!(!short.params().cables()[0].needs_pose());
     assert_eq!(fric_core::robot::CableOptions::new(&[]).presliding, Presliding::PerPulley);
@@ -118,13 +119,31 @@ fn what_is_written_is_read_back() {
         "{EXAMPLE}traction_mu = 0.15\nvalidated = {{ force_n = [1.0, 60.0], speed_m_per_s = 1.0 }}\n[monitor]\nfrozen_cycles = 0\nlength_jump_m = 0.02\n"
     );
     let lumped = with(EXAMPLE, "per_pulley", "lumped");
-    for text in [EXAMPLE, SHORT, &monitored, &lumped] {
+    let hanging = with(EXAMPLE, "reference = \"/reference_forces\"", "reference = { hanging_mass_kg = 5.0 }");
+    for text in [EXAMPLE, SHORT, &monitored, &lumped, &hanging] {
         let file = RobotFile::parse(text, "rig.toml").unwrap();
         let written = file.to_toml().unwrap();
         let again = RobotFile::parse(&written, "written.toml").unwrap_or_else(|error| panic!("{error}\n{written}"));
         assert_eq!(again, file, "{written}");
         assert_eq!(again.to_toml().unwrap(), written);
     }
+}
+
+#[test]
+fn a_load_that_is_known_is_the_reference() {
+    let known = |reference: &str| {
+        let text = format!("{SHORT}[log]\nreference = {reference}\n[platform]\ngravity_m_per_s2 = [0.0, 3.0, -4.0]\n");
+        RobotFile::parse(&text, "bench.toml").unwrap().params().known_reference().unwrap()
+    };
+    let constant = known("{ constant_n = 49.05 }");
+    assert_eq!(constant, KnownReference::Constant { force_n: 49.05 });
+    assert_near(constant.force_n(2.0), 49.05, 0.0);
+    // m·(g − a), with the file's gravity of 5 m/s² in magnitude.
+    let weight = known("{ hanging_mass_kg = 4 }");
+    for (acceleration_m_per_s2, force_n) in [(0.0, 20.0), (1.5, 14.0), (-2.0, 28.0), (5.0, 0.0), (7.0, 0.0)] {
+        assert_near(weight.force_n(acceleration_m_per_s2), force_n, 1e-12);
+    }
+    assert!(weight.force_n(f64::NAN).is_nan());
 }
 
 #[test]
@@ -135,6 +154,8 @@ fn a_file_that_cannot_be_read_says_which() {
         std::error::Error::source(&RobotFile::read(std::path::Path::new("no/such/robot.toml")).unwrap_err()).is_some()
     );
 }
+
+const REFERENCE: &str = "\"/reference_forces\"";
 
 /// A bad file, the line that the message must name, and what else it must say.
 struct Bad {
@@ -155,6 +176,19 @@ fn bad_files() -> Vec<Bad> {
         bad("mass_kg", "mass", 6, &["`mass`", "did you mean `mass_kg`?", "`gravity_m_per_s2`"]),
         bad("[platform]", "[plattform]", 5, &["`plattform`", "did you mean `platform`?"]),
         bad("reference =", "refrence =", 12, &["`refrence`", "did you mean `reference`?"]),
+        bad(REFERENCE, "{ constant = 49.0 }", 12, &["`constant`", "did you mean `constant_n`?", "`hanging_mass_kg`"]),
+        bad(
+            REFERENCE,
+            "{ constant_n = 9.0, hanging_mass_kg = 1.0 }",
+            12,
+            &["`hanging_mass_kg`", "beside `constant_n`"],
+        ),
+        bad(REFERENCE, "{}", 12, &["`reference` is empty", "`constant_n` or `hanging_mass_kg`"]),
+        bad(REFERENCE, "{ constant_n = -1.0 }", 12, &["`constant_n`", "is -1;", "0 to 1e9"]),
+        bad(REFERENCE, "{ constant_n = \"5 N\" }", 12, &["`constant_n`", "must be a number"]),
+        bad(REFERENCE, "{ hanging_mass_kg = nan }", 12, &["`hanging_mass_kg`", "NaN", "not a finite number"]),
+        bad(REFERENCE, "{ hanging_mass_kg = -5.0 }", 12, &["`hanging_mass_kg`", "is -5;", "0 to 1000000"]),
+        bad(REFERENCE, "49.05", 12, &["`reference` is 49.05", "a topic in quotes", "constant_n"]),
         bad("base_m", "bas_m", 18, &["`bas_m`", "did you mean `base_m`?"]),
         bad("sensor = true", "senser = true", 22, &["`senser`", "did you mean `sensor`?"]),
         bad("mu = 0.019", "mue = 0.019", 26, &["`mue`", "did you mean `mu`?"]),

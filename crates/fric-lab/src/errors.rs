@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::replay::{Deviation, WrenchErrors};
+use crate::replay::{Deviation, WrenchErrors, WrenchReference};
 use crate::text::table;
 
 /// Deviation of a force from the reference.
@@ -34,28 +34,51 @@ pub struct WrenchError {
 /// Deviation of the wrench without and with compensation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct WrenchResult {
+    /// `wrench`, or `mass` where it is compared with the wrench of the platform's mass and pose.
+    pub reference: &'static str,
     /// By the frictionless forces.
     pub before: WrenchError,
     /// By the compensated forces.
     pub after: WrenchError,
+    /// By the compensated forces on blocks of the log held out, with parameters of a fit to the other blocks.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub held_out: Option<WrenchError>,
+}
+
+impl WrenchError {
+    /// Of deviations; `None` without any.
+    #[must_use]
+    pub fn of(errors: &WrenchErrors) -> Option<Self> {
+        errors.rms().map(|(force_rms_n, torque_rms_nm)| Self { force_rms_n, torque_rms_nm })
+    }
 }
 
 impl WrenchResult {
     /// Of deviations; `None` without any.
     #[must_use]
-    pub fn of(before: &WrenchErrors, after: &WrenchErrors) -> Option<Self> {
-        let error = |(force_rms_n, torque_rms_nm)| WrenchError { force_rms_n, torque_rms_nm };
-        Some(Self { before: error(before.rms()?), after: error(after.rms()?) })
+    pub fn of(reference: WrenchReference, before: &WrenchErrors, after: &WrenchErrors) -> Option<Self> {
+        let (before, after) = (WrenchError::of(before)?, WrenchError::of(after)?);
+        Some(Self { reference: reference.name(), before, after, held_out: None })
+    }
+
+    /// Heading of a table, with what the wrench is compared with where that is not the measured one.
+    #[must_use]
+    pub fn title(&self) -> &'static str {
+        if self.reference == WrenchReference::Mass.name() { "wrench, by mass" } else { "wrench" }
     }
 
     /// As a table.
     #[must_use]
     pub fn table(&self) -> String {
-        let Self { before, after } = self;
+        let errors: Vec<&WrenchError> = [&self.before, &self.after].into_iter().chain(&self.held_out).collect();
+        let row = |name: &str, cell: fn(&WrenchError) -> String| -> Vec<String> {
+            std::iter::once(name.to_owned()).chain(errors.iter().map(|error| cell(error))).collect()
+        };
         let rows = [
-            ["force".to_owned(), format!("{:.4} N", before.force_rms_n), format!("{:.4} N", after.force_rms_n)],
-            ["torque".to_owned(), format!("{:.4} Nm", before.torque_rms_nm), format!("{:.4} Nm", after.torque_rms_nm)],
+            row("force", |error| format!("{:.4} N", error.force_rms_n)),
+            row("torque", |error| format!("{:.4} Nm", error.torque_rms_nm)),
         ];
-        table(&["wrench", "rms before", "after"], 1, &rows)
+        let header = [self.title(), "rms before", "after", "held out"];
+        table(header.get(..=errors.len()).unwrap_or(&header), 1, &rows)
     }
 }

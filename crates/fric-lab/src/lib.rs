@@ -26,5 +26,6 @@ pub mod replay;
 pub mod simulate;
 pub mod text;
 pub mod trajectory;
+mod weight;
 
 pub use axis::CartesianAxis;

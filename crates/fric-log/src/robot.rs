@@ -1,6 +1,6 @@
 //! What a robot file has to do with a log: it may be attached, and it says where the signals are.
 
-use fric_core::robot::file::{LogTable, RobotFile, RobotFileError};
+use fric_core::robot::file::{LogTable, ReferenceTable, RobotFile, RobotFileError};
 use thiserror::Error;
 
 use crate::path::{MessagePath, PathError};
@@ -59,17 +59,21 @@ impl AttachedRobot {
 }
 
 impl SignalPaths {
-    /// The paths that a robot file names under `[log]`.
+    /// The paths that a robot file names under `[log]`, or the reference that is known.
     ///
     /// # Errors
     /// [`SignalPathError`] for the first that is no path.
-    pub fn from_table(table: &LogTable) -> Result<Self, SignalPathError> {
-        let LogTable { cable, length, speed, reference, pose, wrench } = table;
+    pub fn of_robot(robot: &RobotFile) -> Result<Self, SignalPathError> {
+        let LogTable { cable, length, speed, reference, pose, wrench } = &robot.options().log;
+        let reference = match reference {
+            ReferenceTable::Signal(path) => Some(path),
+            ReferenceTable::Known(_) => None,
+        };
         let paths = [
             (Role::Cable, Some(cable)),
             (Role::Length, length.as_ref()),
             (Role::Speed, speed.as_ref()),
-            (Role::Reference, Some(reference)),
+            (Role::Reference, reference),
             (Role::Pose, Some(pose)),
             (Role::Wrench, Some(wrench)),
         ];
@@ -78,6 +82,9 @@ impl SignalPaths {
             let path = text.map(|text| text.parse::<MessagePath>()).transpose();
             signals = signals.with(role, path.map_err(|source| SignalPathError { role, source })?);
         }
-        Ok(signals)
+        Ok(match robot.params().known_reference() {
+            Some(known) => signals.with_known_reference(known),
+            None => signals,
+        })
     }
 }

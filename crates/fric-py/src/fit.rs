@@ -44,6 +44,7 @@ pub struct FitResult {
     robot: Py<Robot>,
     cables: Vec<Py<CableFit>>,
     wrench: Option<(Py<WrenchError>, Py<WrenchError>)>,
+    held_out: Option<Py<WrenchError>>,
 }
 
 #[pymethods]
@@ -96,6 +97,19 @@ impl CableFit {
         self.result.undetermined.clone()
     }
 
+    /// Combinations that the samples leave open, a list of parts each: `cable`, `parameter` and the `step` by which it changes
+    /// with the others; the first part is what is kept of this cable.
+    #[getter]
+    fn open<'py>(&self, py: Python<'py>) -> Outcome<Bound<'py, PyAny>> {
+        results::plain(py, &self.result.open)
+    }
+
+    /// What is at an end of its range, where the samples would have it beyond.
+    #[getter]
+    fn at_bound(&self) -> Vec<String> {
+        self.result.at_bound.clone()
+    }
+
     /// What was fitted, in the order of `covariance`.
     #[getter]
     fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
@@ -145,6 +159,12 @@ impl FitResult {
     #[getter]
     fn wrench(&self, py: Python<'_>) -> Option<(Py<WrenchError>, Py<WrenchError>)> {
         self.wrench.as_ref().map(|(before, after)| (before.clone_ref(py), after.clone_ref(py)))
+    }
+
+    /// Error of the wrench on blocks of the log held out, with parameters from the other blocks; None in a fit to forces.
+    #[getter]
+    fn held_out(&self, py: Python<'_>) -> Option<Py<WrenchError>> {
+        self.held_out.as_ref().map(|error| error.clone_ref(py))
     }
 
     fn __repr__(&self) -> String {
@@ -222,13 +242,14 @@ pub fn fit(
     };
     log::warn(py, &readiness.check()?)?;
     let fits = watch.fit(|progress| match reference {
-        Reference::Forces => Fits::Forces(fit_cables(&measurements, &options, progress)),
-        Reference::Wrench => Fits::Wrench(fit_wrench(&measurements, &options, progress)),
-    })?;
+        Reference::Forces => Ok(Fits::Forces(fit_cables(&measurements, &options, progress))),
+        Reference::Wrench => fit_wrench(&measurements, &options, progress).map(Fits::Wrench),
+    })??;
     let result = result::FitResult::new(file, &fits);
     result.check_used()?;
     log::warn(py, &result.warnings(&fits, &readiness))?;
     let residuals_n = py.detach(|| residuals_n(&measurements, fits.cables()));
+    let held_out = result.wrench.and_then(|wrench| wrench.held_out);
     let text = rewritten(&given.to_toml()?, ORIGIN, fits.cables())?;
     let cables = fits.cables().iter().zip(&result.cables).zip(residuals_n);
     let cable = |((fit, result), residuals_n): ((&lab::CableFit, &FitCableResult), Vec<f64>)| {
@@ -241,6 +262,7 @@ pub fn fit(
         robot: Py::new(py, Robot::parse(text, ORIGIN)?)?,
         cables: cables.map(cable).collect::<Outcome<_>>()?,
         wrench: result.wrench.as_ref().map(|wrench| WrenchError::pair(py, wrench)).transpose()?,
+        held_out: held_out.map(|error| Py::new(py, WrenchError::from(error))).transpose()?,
         result,
     })
 }

@@ -262,7 +262,7 @@ pub fn read(
     let file = robot.file.clone();
     let names = file.cable_names();
     let total_bytes = recording.total_bytes();
-    let mut paths = SignalPaths::from_table(&file.options().log)?;
+    let mut paths = SignalPaths::of_robot(&file)?;
     if let Some(unread) = unread {
         paths = paths.with(unread, None);
     }

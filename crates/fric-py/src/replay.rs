@@ -58,6 +58,9 @@ pub struct ReplayResult {
     robot: String,
     cables: Vec<Py<CableErrors>>,
     wrench: Option<(Py<WrenchError>, Py<WrenchError>)>,
+    /// What the wrench is compared with: "wrench" in the log, or "mass" of the platform.
+    #[pyo3(get)]
+    wrench_reference: Option<&'static str>,
     compensation: Compensation,
 }
 
@@ -76,10 +79,13 @@ impl From<errors::ForceError> for ForceError {
 impl WrenchError {
     /// Before and after.
     pub fn pair(py: Python<'_>, wrench: &WrenchResult) -> PyResult<(Py<Self>, Py<Self>)> {
-        let error = |error: errors::WrenchError| {
-            Py::new(py, Self { force_rms_n: error.force_rms_n, torque_rms_nm: error.torque_rms_nm })
-        };
-        Ok((error(wrench.before)?, error(wrench.after)?))
+        Ok((Py::new(py, Self::from(wrench.before))?, Py::new(py, Self::from(wrench.after))?))
+    }
+}
+
+impl From<errors::WrenchError> for WrenchError {
+    fn from(errors::WrenchError { force_rms_n, torque_rms_nm }: errors::WrenchError) -> Self {
+        Self { force_rms_n, torque_rms_nm }
     }
 }
 
@@ -258,10 +264,11 @@ pub fn replay(
         Py::new(py, CableErrors { name: (*name).to_owned(), samples: replay.cycle_count(), errors: *errors })
     };
     let (before, after) = replay.wrench();
-    let wrench = WrenchResult::of(before, after);
+    let wrench = WrenchResult::of(replay.wrench_reference(), before, after);
     Ok(ReplayResult {
         robot: file.options().name.clone(),
         cables: errors.map(cable).collect::<PyResult<_>>()?,
+        wrench_reference: wrench.map(|wrench| wrench.reference),
         wrench: wrench.map(|wrench| WrenchError::pair(py, &wrench)).transpose()?,
         compensation: Compensation::new(py, columns, Some(row_count), names.len())?,
     })

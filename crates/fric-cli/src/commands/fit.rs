@@ -40,7 +40,8 @@ pub fn run(arguments: &FitArguments) -> Outcome {
             let read = read(logs, &model, Reference::Wrench)?;
             let readiness = readiness::by_wrench(&model.robot, &model.origin, &read.holdings);
             warn_all(&read.check(&readiness)?);
-            (Fits::Wrench(watched("fitted", |progress| fit_wrench(&read.measurements, &options, progress))?), readiness)
+            let fit = watched("fitted", |progress| fit_wrench(&read.measurements, &options, progress))??;
+            (Fits::Wrench(fit), readiness)
         }
     };
     let outcome = FitResult::new(&model.robot, &fits);

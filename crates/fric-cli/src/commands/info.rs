@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use fric_lab::fit::readiness::{self, Holdings, Readiness};
+use fric_core::robot::file::ReferenceTable;
+use fric_lab::fit::readiness::{self, Holdings, Readiness, without_reference};
 use fric_lab::text::table;
 use fric_log::recording::{FileDamage, Recording};
 use fric_log::signals::{Role, SignalPaths, SignalReader};
@@ -197,7 +198,15 @@ fn read_signals(model: &Model, recording: Recording) -> Outcome<(Vec<SignalResul
         }
     };
     bar.finish_and_clear();
-    let signals = signal_results(&reader, &paths);
+    let mut signals = signal_results(&reader, &paths);
+    let reference = &model.robot.options().log.reference;
+    signals.extend(paths.known_reference().map(|_| SignalResult {
+        signal: Role::Reference.key(),
+        path: reference.to_string(),
+        messages: 0,
+        gaps: 0,
+        remarks: vec!["known and not measured, the same for every cable".to_owned()],
+    }));
     Ok((signals, steps(model, &holdings, problem.as_deref())))
 }
 
@@ -247,14 +256,18 @@ fn steps(model: &Model, holdings: &Holdings, problem: Option<&str>) -> Vec<StepR
     }
     let has_wrench = has_rows && wrench.is_empty();
     if holdings.wrenched == 0 && wrench.is_empty() {
-        wrench.push("no outside wrench in the log to compare with".to_owned());
+        let is_weighed = params.mass_kg() > 0.0;
+        let instead = if is_weighed { "it is compared with the platform's weight" } else { "nothing to compare with" };
+        wrench.push(format!("no outside wrench in the log: {instead}"));
     }
     let mut errors = Vec::new();
     if !holdings.has_reference() {
-        errors.push(format!(
-            "no reference: the log has no force at the platform on {} to compare with",
-            model.robot.options().log.reference
-        ));
+        errors.push(match &model.robot.options().log.reference {
+            ReferenceTable::Signal(path) => {
+                format!("no reference: the log has no force at the platform on {path} to compare with")
+            }
+            known @ ReferenceTable::Known(_) => without_reference(known).0,
+        });
     } else if needs_pose && holdings.posed == 0 {
         errors.push(no_pose());
     }

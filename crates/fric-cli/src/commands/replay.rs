@@ -103,7 +103,7 @@ fn summarize(model: &Model, names: &[&str], replay: &Replay, durations: &Histogr
         format: ReplayResult::FORMAT,
         robot: model.robot.options().name.clone(),
         cables: names.iter().zip(replay.cables()).map(cable).collect(),
-        wrench: WrenchResult::of(before, after),
+        wrench: WrenchResult::of(replay.wrench_reference(), before, after),
         cycle: CycleResult {
             count: replay.cycle_count(),
             median_ns: durations.value_at_quantile(0.5),

@@ -97,7 +97,8 @@ fn refused(error: SimulationError) -> Failure {
 struct SimulatedLog {
     writer: LogWriter,
     cables: JointStateChannel,
-    reference: JointStateChannel,
+    /// None where the reference is known and not measured.
+    reference: Option<JointStateChannel>,
     pose: Option<PoseChannel>,
     wrench: Option<WrenchChannel>,
     /// Cycles from one pose to the next.
@@ -114,7 +115,10 @@ impl SimulatedLog {
         writer.attach_robot_file(&model.text)?;
         let names = model.robot.cable_names();
         let cables = writer.add_joint_state(&topic(Role::Cable)?, "base", &names)?;
-        let reference = writer.add_joint_state(&topic(Role::Reference)?, "platform", &names)?;
+        let is_measured = paths.known_reference().is_none();
+        let reference = is_measured
+            .then(|| Outcome::Ok(writer.add_joint_state(&topic(Role::Reference)?, "platform", &names)?))
+            .transpose()?;
         let params = model.robot.params();
         let any_geometry = params.cables().iter().any(fric_core::CableParams::has_geometry);
         let all_geometry = params.cables().iter().all(fric_core::CableParams::has_geometry);
@@ -137,8 +141,10 @@ impl SimulatedLog {
         velocity.extend(sample.cables.iter().map(|cable| cable.speed_m_per_s));
         effort.extend(sample.cables.iter().map(|cable| cable.sensor_force_n));
         writer.write_joint_state(cables, stamp_nanos, JointState { position, velocity, effort })?;
-        let measured = JointState { effort: sample.reference_force_n, ..JointState::default() };
-        writer.write_joint_state(reference, stamp_nanos, measured)?;
+        if let Some(reference) = reference {
+            let measured = JointState { effort: sample.reference_force_n, ..JointState::default() };
+            writer.write_joint_state(reference, stamp_nanos, measured)?;
+        }
         if !with_platform {
             return Ok(());
         }

@@ -63,10 +63,10 @@ fn cables(result: &ReplayResult) -> Markup {
 }
 
 fn wrench_table(wrench: &WrenchResult) -> Markup {
-    let WrenchResult { before, after } = wrench;
+    let WrenchResult { before, after, .. } = wrench;
     html! {
         table {
-            tr { th { "wrench" } th { "rms before" } th { "after" } }
+            tr { th { (wrench.title()) } th { "rms before" } th { "after" } }
             tr {
                 td { "force" }
                 td { (format!("{:.4} N", before.force_rms_n)) } td { (format!("{:.4} N", after.force_rms_n)) }

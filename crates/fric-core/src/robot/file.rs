@@ -17,6 +17,7 @@ use thiserror::Error;
 
 use super::locate::{Line, Step, describe, error_line, line_of};
 use super::read::{exactly, exactly_if_given};
+pub use super::reference::{KnownReferenceTable, ReferenceTable};
 use super::{CableParams, MonitorOptions, ParamError, ParamProblem, PlatformOptions, RobotParams};
 
 /// The only value of `format` that this version reads.
@@ -67,7 +68,7 @@ impl Default for PlatformTable {
 }
 
 /// `[log]`: a topic, or a message path to a field, for each signal.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct LogTable {
     /// Cable signals.
@@ -76,8 +77,8 @@ pub struct LogTable {
     pub length: Option<String>,
     /// Cable speeds, likewise.
     pub speed: Option<String>,
-    /// Cable forces measured at the platform.
-    pub reference: String,
+    /// Cable forces at the platform: where they are measured, or what is known of them.
+    pub reference: ReferenceTable,
     /// Pose of the platform.
     pub pose: String,
     /// Outside wrench on the platform.
@@ -90,7 +91,7 @@ impl Default for LogTable {
             cable: "/cable_states".to_owned(),
             length: None,
             speed: None,
-            reference: "/reference_forces".to_owned(),
+            reference: ReferenceTable::Signal("/reference_forces".to_owned()),
             pose: "/platform_pose".to_owned(),
             wrench: "/platform_wrench".to_owned(),
         }
@@ -328,10 +329,10 @@ impl RobotOptions {
             length_noise_m: self.monitor.length_noise_m.unwrap_or(standard.length_noise_m),
         };
         let platform = PlatformOptions { mass_kg, center_of_mass_m, gravity_m_per_s2 };
-        let RobotParams { cycle_s, mass_kg, center_of_mass_m, gravity_m_per_s2, monitor, .. } =
-            RobotParams::new(self.cycle_s, &platform, monitor, cables)
-                .map_err(|error| self.name_parameter(cables, error))?;
-        Ok(RobotParams { cycle_s, mass_kg, center_of_mass_m, gravity_m_per_s2, monitor, cables: &[] })
+        let robot = RobotParams::new(self.cycle_s, &platform, monitor, cables)
+            .map_err(|error| self.name_parameter(cables, error))?;
+        let known_reference = self.log.reference.check(robot.gravity_m_per_s2.norm())?;
+        Ok(RobotParams { cables: &[], ..robot.with_known_reference(known_reference) })
     }
 
     /// Where a refused parameter of the whole robot stands.

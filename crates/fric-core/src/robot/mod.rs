@@ -2,6 +2,7 @@
 //! `robot-file`, the TOML file that people write.
 
 mod error;
+mod known_reference;
 mod params;
 
 #[cfg(feature = "robot-file")]
@@ -13,6 +14,8 @@ pub(crate) mod locate;
 #[cfg(feature = "robot-file")]
 pub(crate) mod read;
 #[cfg(feature = "robot-file")]
+pub(crate) mod reference;
+#[cfg(feature = "robot-file")]
 mod splice;
 #[cfg(feature = "robot-file")]
 mod table;
@@ -21,6 +24,7 @@ mod warnings;
 
 pub(crate) use error::check;
 pub use error::{ParamError, ParamProblem};
+pub use known_reference::KnownReference;
 #[cfg(feature = "robot-file")]
 pub use locate::{nearest_name, unknown_name};
 pub use params::{

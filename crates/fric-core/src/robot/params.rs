@@ -6,6 +6,7 @@
 use nalgebra::Vector3;
 
 use super::error::{ParamError, ParamProblem, check};
+use super::known_reference::KnownReference;
 use crate::effects::EffectParams;
 use crate::effects::time_delay::delay_range_s;
 use crate::effects::{direction_asymmetry, stribeck, time_delay};
@@ -416,6 +417,7 @@ pub struct RobotParams<'a> {
     pub(crate) center_of_mass_m: Vector3<f64>,
     pub(crate) gravity_m_per_s2: Vector3<f64>,
     pub(crate) monitor: MonitorOptions,
+    pub(crate) known_reference: Option<KnownReference>,
     pub(crate) cables: &'a [CableParams],
 }
 
@@ -452,8 +454,21 @@ impl<'a> RobotParams<'a> {
             center_of_mass_m: check_point("center_of_mass_m", platform.center_of_mass_m)?,
             gravity_m_per_s2: check_point("gravity_m_per_s2", platform.gravity_m_per_s2)?,
             monitor: MonitorOptions { length_jump_m, length_noise_m, ..monitor },
+            known_reference: None,
             cables,
         })
+    }
+
+    /// The same robot with cable forces at the platform that are known; the cycle does not use them.
+    #[must_use]
+    pub fn with_known_reference(self, known_reference: Option<KnownReference>) -> Self {
+        Self { known_reference, ..self }
+    }
+
+    /// Cable forces at the platform that are known and not measured.
+    #[must_use]
+    pub fn known_reference(&self) -> Option<KnownReference> {
+        self.known_reference
     }
 
     /// The cycle time in s.

@@ -220,23 +220,7 @@ impl<'a> Case<'a> {
     }
 
     fn scale(&self, base: &Trial, noise_n: f64) -> Scale {
-        let gain = self.record.params.frictionless_gain();
-        let (mut tension, mut speed) = (Deviation::default(), Deviation::default());
-        for row in self.record.rows.iter().filter(|row| row.is_sound()) {
-            tension.add(row.signals.sensor_force_n * gain);
-            if row.signals.displacement_m.abs() > 0.0 {
-                speed.add(row.signals.speed_m_per_s);
-            }
-        }
-        let tension_n = tension.rms().unwrap_or(1.0);
-        Scale {
-            tension_n,
-            noise_n,
-            friction_n: base.values[MU] * tension_n,
-            speed_m_per_s: speed.rms().unwrap_or(0.1).max(1e-4),
-            end_s: self.record.rows.iter().map(|row| row.cycle).fold(0.0, f64::max) * self.record.cycle_s,
-            periods_m: Vec::new(),
-        }
+        Scale::of(&self.record, base.values[MU], noise_n)
     }
 
     fn report(

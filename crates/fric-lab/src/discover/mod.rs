@@ -13,7 +13,6 @@
 //! The model is the control cycle's own; what is found runs in it as it is.
 
 mod cable;
-mod candidates;
 mod conditions;
 mod evidence;
 mod extended;
@@ -21,20 +20,18 @@ mod foreign;
 mod lines;
 mod naming;
 mod neighbours;
-pub(crate) mod noise;
 mod places;
 mod profile;
 pub(crate) mod readiness;
 mod report;
 mod rest;
 pub mod result;
-mod ripple;
-pub(crate) mod split;
 mod stretch;
 mod summary;
 pub mod words;
 mod workbench;
 
+pub(crate) use crate::fit::{candidates, noise, ripple, split};
 use rayon::prelude::*;
 
 use crate::fit::{CableRecord, Measurements, Progress};

@@ -9,10 +9,11 @@ use std::sync::atomic::AtomicBool;
 use std::thread;
 
 use super::gang::{Gang, Seat};
+use super::newcomers::with_newcomers;
 use super::pass::Forces;
 use super::problem::{Comparison, Loss, Member, Problem};
 use super::record::{CableRecord, Measurements};
-use super::report::{CableFit, ForceErrors};
+use super::report::{CableFit, ForceErrors, OpenCombination};
 use super::selection::{self, Standing};
 use super::solve::{Solution, solve};
 use super::vector::Parameter;
@@ -40,8 +41,15 @@ pub fn fit_cables(measurements: &Measurements<'_>, options: &FitOptions, progres
                 }));
             }
         }
-        searches.into_iter().flat_map(|search| search.join().unwrap_or_else(|panic| resume_unwind(panic))).collect()
+        let fits = searches.into_iter().map(|search| search.join().unwrap_or_else(|panic| resume_unwind(panic)));
+        fits.enumerate().flat_map(|(cable, fits)| fits.into_iter().map(move |fit| of_cable(fit, cable))).collect()
     })
+}
+
+/// The fit of a cable by itself, as that of a cable of the robot.
+fn of_cable(mut fit: CableFit, cable: usize) -> CableFit {
+    fit.open.iter_mut().flat_map(|open| &mut open.parts).for_each(|part| part.cable = cable);
+    fit
 }
 
 fn fit_cable<'a>(
@@ -88,12 +96,13 @@ impl<'a> Search<'a> {
             seat: Some(Rc::new(seat)),
         };
         let starts = start::starts(&problem, &[given], record.cycle_s);
+        let starts = with_newcomers(&problem, starts, &[given], record.cycle_s);
         let start = starts.first().and_then(|start| start.first()).copied().unwrap_or(given);
         let solve_without_warm_up = |starts: Vec<Vec<Values>>| {
             let mut standings = all.to_vec();
             leave_out_warm_up(&problem, &starts, &mut standings);
             let mut problem = Problem { used: used(&standings), ..problem.clone() };
-            let solution = solve(&mut problem, starts, &[given], record.cycle_s, options.weighing, &mut standings, &[]);
+            let solution = solve(&mut problem, starts, &[given], record.cycle_s, options.weighing, &mut standings);
             (solution, standings)
         };
         let (mut solution, mut standings) = solve_without_warm_up(starts);
@@ -128,8 +137,10 @@ fn warm_up_was_misjudged(
 /// Standing of each sample before anything is known about the friction.
 pub fn prepared(record: &CableRecord<'_>) -> Vec<Standing> {
     let mut standings = selection::first_look(record, |_, row| row.reference_n.is_finite());
-    selection::leave_out_still_references(record, &mut standings);
-    selection::leave_out_interpolated_references(record, &mut standings);
+    if !record.reference_is_known {
+        selection::leave_out_still_references(record, &mut standings);
+        selection::leave_out_interpolated_references(record, &mut standings);
+    }
     standings
 }
 
@@ -159,6 +170,7 @@ pub(super) fn cable_fits(
     standings: &[Standing],
 ) -> Vec<CableFit> {
     let forces = problem.forces(&solution.values).unwrap_or_default();
+    let is_of = |member: usize, open: &OpenCombination| open.parts.first().is_some_and(|held| held.cable == member);
     let members = problem.members.iter().zip(given).enumerate();
     members
         .map(|(member, (of, given))| {
@@ -176,6 +188,13 @@ pub(super) fn cable_fits(
                 values,
                 fitted,
                 undetermined: undetermined.map(|unknown| unknown.parameter).collect(),
+                open: solution.open.iter().filter(|open| is_of(member, open)).cloned().collect(),
+                at_bound: solution
+                    .at_bound
+                    .iter()
+                    .filter(|unknown| unknown.member == member)
+                    .map(|of| of.parameter)
+                    .collect(),
                 covariance: solution.covariance.select_rows(&places).select_columns(&places),
                 termination: solution.termination,
                 evaluation_count: solution.evaluation_count,

@@ -10,8 +10,12 @@ const LEAST_ON_LINE: f64 = 0.25;
 const ROUNDING_OF_STEP: f64 = 1e-8;
 const ROUNDING_OF_VALUE: f64 = 8.0 * f64::EPSILON;
 
-/// Which cycles are no cycles between two measurements of the reference: all where it was measured at the rate of the cycle.
+/// Which cycles are no cycles between two measurements of the reference: all where it was measured at the rate of the cycle, or is
+/// known.
 pub fn measured(record: &CableRecord<'_>) -> Vec<bool> {
+    if record.reference_is_known {
+        return vec![true; record.rows.len()];
+    }
     let of_log = |(start, rows): (usize, &[Row])| {
         let points: Vec<(f64, f64)> =
             rows.iter().enumerate().map(|(place, row)| (record.time_s(start + place), row.reference_n)).collect();

@@ -11,13 +11,18 @@
 //! Nothing here fails: a search that does not converge says so in its [`Termination`]. Results do not depend on the
 //! number of threads.
 
+mod balance;
 mod cables;
+pub(crate) mod candidates;
 mod determined;
+mod directions;
 mod dual;
 mod error;
 mod gang;
 mod gram;
 mod interpolated;
+mod newcomers;
+pub(crate) mod noise;
 mod optimizer;
 mod options;
 mod pass;
@@ -29,13 +34,15 @@ mod report;
 mod residual_function;
 pub mod result;
 mod rewritten;
+pub(crate) mod ripple;
 mod scores;
 mod selection;
 mod solve;
+pub(crate) mod split;
 mod start;
 mod summary;
+mod undetermined;
 mod vector;
-mod weight;
 mod wrench;
 
 /// What other searches on the same records are made of.
@@ -48,19 +55,21 @@ pub(crate) mod engine {
     pub use super::rewritten::{NewValues, with_values};
     pub use super::scores::Scores;
     pub use super::selection::{Standing, count};
-    pub use super::solve::{Solution, Unknown, covariance, inverse_of_normal, search_near, vagueness};
+    pub use super::solve::{Solution, Unknown, search_near};
+    pub use super::undetermined::{covariance, inverse_of_normal, vagueness};
     pub use super::vector::Coordinate;
 }
 
 pub use cables::{fit_cables, residuals_n};
 pub use determined::HALF_INTERVAL;
+pub use directions::{OpenDirection, open_directions};
 pub use dual::Dual;
 pub use error::FitError;
 pub use optimizer::Termination;
 pub use options::FitOptions;
 pub use progress::Progress;
 pub use record::{CableRecord, Measurements, Reference, Row};
-pub use report::{CableFit, ForceErrors, WrenchFit};
+pub use report::{CableFit, ForceErrors, OpenCombination, OpenPart, WrenchFit};
 pub use residual_function::ResidualFunction;
 pub use rewritten::rewritten;
 pub use selection::SampleCounts;

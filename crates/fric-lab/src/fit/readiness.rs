@@ -1,8 +1,9 @@
 //! What a log holds for an identification, and what it lacks.
 
 use fric_core::Sample;
-use fric_core::robot::file::RobotFile;
+use fric_core::robot::file::{ReferenceTable, RobotFile};
 
+use super::balance::{ONE_LINE, ONE_LINE_ADVICE};
 use super::error::FitError;
 use super::record::Reference;
 use crate::discover::readiness::too_short;
@@ -132,6 +133,7 @@ impl Lack {
     }
 }
 
+const SILENT_ADVICE: &str = "Compare the names of the cables in the log with those in the robot file.";
 const POSE_ADVICE: &str = "Name the topic of the poses as `pose` under `[log]` in the robot file.";
 
 /// What is missing to identify each cable from its force at the platform.
@@ -170,10 +172,11 @@ fn of_forces(robot: &RobotFile, holdings: &Holdings, advice: &'static str, inste
     };
     let cables = without(&readiness, &|cable| holdings.cables.get(cable).is_none_or(|of| of.referenced == 0));
     if !cables.is_empty() {
+        let (cause, own_advice) = without_reference(&log.reference);
         readiness.lacks.push(Lack {
-            cause: format!("the log has no reference forces on {}{}", log.reference, of(&names, &cables)),
-            advice,
-            instead,
+            cause: cause + &of(&names, &cables),
+            advice: own_advice.unwrap_or(advice),
+            instead: instead.filter(|_| own_advice.is_none()),
             cables,
         });
     }
@@ -194,6 +197,24 @@ fn of_forces(robot: &RobotFile, holdings: &Holdings, advice: &'static str, inste
     readiness
 }
 
+/// That no sample has a reference force, and what to do where the reference is known and not measured.
+#[must_use]
+pub fn without_reference(reference: &ReferenceTable) -> (String, Option<&'static str>) {
+    match reference {
+        ReferenceTable::Signal(path) => (format!("the log has no reference forces on {path}"), None),
+        ReferenceTable::Known(known) if known.hanging_mass_kg.is_some() => {
+            let cause = format!(
+                "in no sample is `{reference}` the reference: there is no force with a length, or the cable is never in quiet \
+                 motion (accelerations to 0.5 m/s²)"
+            );
+            (cause, Some("Record motion at constant speed, or give the force as `constant_n`."))
+        }
+        ReferenceTable::Known(_) => {
+            (format!("in no sample is `{reference}` the reference: the log has no forces"), Some(SILENT_ADVICE))
+        }
+    }
+}
+
 /// What is missing to identify all cables from the wrench on the platform; `origin` says where the robot file is from.
 #[must_use]
 pub fn by_wrench(robot: &RobotFile, origin: &str, holdings: &Holdings) -> Readiness {
@@ -201,6 +222,10 @@ pub fn by_wrench(robot: &RobotFile, origin: &str, holdings: &Holdings) -> Readin
     let names = robot.cable_names();
     let all: Vec<usize> = (0..names.len()).collect();
     let mut lacks: Vec<Lack> = geometry(robot, origin).into_iter().collect();
+    if names.len() == 1 {
+        // What more cables do shows in the log.
+        lacks.push(Lack { cause: ONE_LINE.to_owned(), advice: ONE_LINE_ADVICE, instead: None, cables: all.clone() });
+    }
     for lack in silent(&names, holdings) {
         lacks.push(Lack {
             cause: format!("{}, and the wrench is that of all", lack.cause),
@@ -264,7 +289,7 @@ fn silent(names: &[&str], holdings: &Holdings) -> Vec<Lack> {
     let listed: Vec<&str> = cables.iter().filter_map(|cable| names.get(*cable).copied()).collect();
     let lack = (!cables.is_empty()).then(|| Lack {
         cause: format!("the log has no signal of {}", listed.join(", ")),
-        advice: "Compare the names of the cables in the log with those in the robot file.",
+        advice: SILENT_ADVICE,
         instead: None,
         cables,
     });

@@ -197,7 +197,8 @@ impl<'a> Measurements<'a> {
     pub fn cable(&self, index: usize) -> Option<CableRecord<'_>> {
         let (params, rows) = (self.robot.cables().get(index)?, self.cables.get(index)?);
         let (starts, times_s) = (self.starts.as_slice(), self.times_s.as_slice());
-        Some(CableRecord { params, rows, starts, times_s, cycle_s: self.robot.cycle_s() })
+        let reference_is_known = self.robot.known_reference().is_some();
+        Some(CableRecord { params, rows, starts, times_s, cycle_s: self.robot.cycle_s(), reference_is_known })
     }
 
     /// All cables in order.
@@ -229,6 +230,8 @@ pub struct CableRecord<'a> {
     pub(super) times_s: &'a [f64],
     /// Duration of a cycle, s.
     pub cycle_s: f64,
+    /// The reference was not measured: it may be constant, and is no line between measurements.
+    pub(super) reference_is_known: bool,
 }
 
 impl<'a> CableRecord<'a> {
@@ -243,7 +246,7 @@ impl<'a> CableRecord<'a> {
     where
         'a: 'b,
     {
-        CableRecord { params: self.params, rows, starts: &[0], times_s: &[], cycle_s: self.cycle_s }
+        CableRecord { rows, starts: &[0], times_s: &[], ..*self }
     }
 
     /// The same cycles with other signals.

@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 use super::optimizer::Termination;
 use super::selection::SampleCounts;
 use super::vector::Parameter;
-use crate::replay::{Deviation, WrenchErrors};
+use crate::replay::{Deviation, WrenchErrors, WrenchReference};
 
 /// Errors of a cable's force at the platform.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -17,6 +17,24 @@ pub struct ForceErrors {
     pub before_n: Deviation,
     /// Compensated force less reference, N.
     pub after_n: Deviation,
+}
+
+/// A combination of parameters that the samples leave open: changed together, by these steps, they do the same.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OpenCombination {
+    /// What changes.
+    pub parts: Vec<OpenPart>,
+}
+
+/// A parameter in a combination.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OpenPart {
+    /// Which cable of the robot.
+    pub cable: usize,
+    /// Which parameter.
+    pub parameter: Parameter,
+    /// Its part of a step of 1.96 standard errors, in its unit; not finite for one that has no effect at all.
+    pub step: f64,
 }
 
 /// One cable's parameters, and how sure they are.
@@ -30,6 +48,10 @@ pub struct CableFit {
     pub fitted: Vec<Parameter>,
     /// What the samples do not determine; `values` holds what was given.
     pub undetermined: Vec<Parameter>,
+    /// For each of these the combination that the samples leave open, its own part first.
+    pub open: Vec<OpenCombination>,
+    /// What the samples would have beyond the end of its range that `values` holds.
+    pub at_bound: Vec<Parameter>,
     /// Covariance of the fitted parameters, in their units.
     pub covariance: DMatrix<f64>,
     /// Why the search has ended.
@@ -45,12 +67,14 @@ pub struct CableFit {
 pub struct WrenchFit {
     /// The cables in the robot's order.
     pub cables: Vec<CableFit>,
-    /// Whether the wrench was measured; otherwise it is that of the platform's mass.
-    pub measured: bool,
+    /// What the forces were compared with.
+    pub reference: WrenchReference,
     /// Wrench by the frictionless forces less the outside wrench, over every sample where that is known.
     pub before: WrenchErrors,
     /// The same by the compensated forces.
     pub after: WrenchErrors,
+    /// The same on blocks of the log held out, with parameters from the other blocks; empty for a log too short for it.
+    pub held_out: WrenchErrors,
 }
 
 impl CableFit {

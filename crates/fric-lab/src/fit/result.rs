@@ -8,10 +8,10 @@ use serde::{Serialize, Serializer};
 use super::error::FitError;
 use super::optimizer::Termination;
 use super::readiness::Readiness;
-use super::report::{CableFit, WrenchFit};
+use super::report::{CableFit, OpenCombination, OpenPart, WrenchFit};
 use super::summary;
 use super::vector::Parameter;
-use crate::errors::{ForceError, WrenchResult};
+use crate::errors::{ForceError, WrenchError, WrenchResult};
 
 /// What was fitted to what.
 #[derive(Clone, Debug)]
@@ -66,8 +66,12 @@ pub struct FitCableResult {
     pub parameters: Numbers,
     /// Standard errors of those fitted.
     pub standard_errors: Numbers,
-    /// What the samples do not determine.
+    /// What the samples do not determine; the given value is kept.
     pub undetermined: Vec<String>,
+    /// Combinations that the samples leave open: what is kept of this cable, with what moves along with it.
+    pub open: Vec<OpenResult>,
+    /// What is at an end of its range, where the samples would have it beyond.
+    pub at_bound: Vec<String>,
     /// Error as if nothing rubbed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub before: Option<ForceError>,
@@ -77,6 +81,29 @@ pub struct FitCableResult {
     /// Mean of the reference, N.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mean_reference_n: Option<f64>,
+}
+
+/// A combination of parameters that the samples leave open: changed together by these steps they do the same.
+#[derive(Clone, Debug, Serialize)]
+#[serde(transparent)]
+pub struct OpenResult(pub Vec<OpenPartResult>);
+
+impl OpenResult {
+    /// Whether a parameter is the one that is kept.
+    pub(super) fn is_held(&self, name: &str) -> bool {
+        self.0.first().is_some_and(|held| held.parameter == name)
+    }
+}
+
+/// A parameter of such a combination.
+#[derive(Clone, Debug, Serialize)]
+pub struct OpenPartResult {
+    /// Name of its cable.
+    pub cable: String,
+    /// Its name.
+    pub parameter: String,
+    /// Its part of a step of 1.96 standard errors, in its unit.
+    pub step: f64,
 }
 
 /// Samples that were not learned from.
@@ -121,18 +148,21 @@ impl FitResult {
     /// Of a robot's fits.
     #[must_use]
     pub fn new(robot: &RobotFile, fits: &Fits) -> Self {
-        let cables = robot.cable_names().into_iter().zip(fits.cables());
+        let names = robot.cable_names();
+        let cables = names.iter().zip(fits.cables());
         let (reference, wrench) = match fits {
             Fits::Forces(_) => ("forces", None),
-            Fits::Wrench(WrenchFit { measured, before, after, .. }) => {
-                (if *measured { "wrench" } else { "mass" }, WrenchResult::of(before, after))
+            Fits::Wrench(WrenchFit { reference, before, after, held_out, .. }) => {
+                let wrench = WrenchResult::of(*reference, before, after);
+                let held_out = WrenchError::of(held_out);
+                (reference.name(), wrench.map(|wrench| WrenchResult { held_out, ..wrench }))
             }
         };
         Self {
             format: Self::FORMAT,
             robot: robot.options().name.clone(),
             reference,
-            cables: cables.map(|(name, fit)| cable_result(name, fit)).collect(),
+            cables: cables.map(|(name, fit)| cable_result(name, fit, &names)).collect(),
             wrench,
         }
     }
@@ -200,11 +230,22 @@ fn why_unused(left_out: &LeftOut) -> (&'static str, &'static str) {
     }
 }
 
-fn cable_result(name: &str, fit: &CableFit) -> FitCableResult {
+/// The parts of a combination that is one, with the cables' names.
+fn open_result(open: &OpenCombination, names: &[&str]) -> Option<OpenResult> {
+    let parts = open.parts.iter().filter(|part| part.step.is_finite());
+    let part = |part: &OpenPart| {
+        let cable = (*names.get(part.cable)?).to_owned();
+        Some(OpenPartResult { cable, parameter: part.parameter.to_string(), step: part.step })
+    };
+    let parts: Vec<OpenPartResult> = parts.filter_map(part).collect();
+    (parts.len() > 1).then_some(OpenResult(parts))
+}
+
+fn cable_result(name: &str, fit: &CableFit, names: &[&str]) -> FitCableResult {
     let shown = |parameter: &Parameter| {
         let value = fit.values[parameter.place()];
-        let relevant =
-            parameter.is_friction() || fit.fitted.contains(parameter) || fit.undetermined.contains(parameter);
+        let relevant = parameter.is_friction()
+            || [&fit.fitted, &fit.undetermined, &fit.at_bound].iter().any(|list| list.contains(parameter));
         (relevant && value < NO_PRESLIDING_N_PER_M).then(|| (parameter.to_string(), value))
     };
     let error = |parameter: &Parameter| Some((parameter.to_string(), fit.standard_error(parameter)?));
@@ -223,6 +264,8 @@ fn cable_result(name: &str, fit: &CableFit) -> FitCableResult {
         parameters: Numbers(Parameter::all().filter_map(|parameter| shown(&parameter)).collect()),
         standard_errors: Numbers(Parameter::all().filter_map(|parameter| error(&parameter)).collect()),
         undetermined: fit.undetermined.iter().map(ToString::to_string).collect(),
+        open: fit.open.iter().filter_map(|open| open_result(open, names)).collect(),
+        at_bound: fit.at_bound.iter().map(ToString::to_string).collect(),
         before: ForceError::of(&fit.errors.before_n),
         after: ForceError::of(&fit.errors.after_n),
         mean_reference_n: fit.errors.reference_n.mean_magnitude(),

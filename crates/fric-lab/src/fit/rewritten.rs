@@ -1,5 +1,6 @@
 //! The robot file with what was found.
 
+use fric_core::CableParams;
 use fric_core::parameters::{MU, NO_PRESLIDING_N_PER_M, OFFSET, SIGMA, VISCOUS, Values};
 use fric_core::robot::edit::{CableEdit, EffectEdit, FrictionEdit, rewrite};
 use fric_core::robot::file::{RobotFile, RobotFileError};
@@ -13,9 +14,19 @@ use super::vector::Parameter;
 /// # Errors
 /// [`RobotFileError`] as [`rewrite`].
 pub fn rewritten(text: &str, origin: &str, fits: &[CableFit]) -> Result<String, RobotFileError> {
-    let new: Vec<NewValues<'_>> =
-        fits.iter().map(|fit| NewValues { values: &fit.values, parameters: fit.fitted.clone() }).collect();
-    with_values(text, origin, &new)
+    let robot = RobotFile::parse(text, origin)?;
+    let new = |(fit, cable): (&'_ CableFit, &CableParams)| {
+        let given = cable.values();
+        // Settings of an effect that the file has not got are new too.
+        let is_new = |parameter: &Parameter| {
+            fit.fitted.contains(parameter)
+                || fit.values[parameter.place()].to_bits() != given[parameter.place()].to_bits()
+        };
+        Parameter::all().filter(is_new).collect::<Vec<Parameter>>()
+    };
+    let parameters: Vec<Vec<Parameter>> = fits.iter().zip(robot.params().cables()).map(new).collect();
+    let new = fits.iter().zip(parameters).map(|(fit, parameters)| NewValues { values: &fit.values, parameters });
+    with_values(text, origin, &new.collect::<Vec<_>>())
 }
 
 /// What is new of a cable.

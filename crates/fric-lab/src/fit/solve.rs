@@ -1,18 +1,14 @@
 //! From a problem and a start to values with their covariance: search, outliers, what is not determined.
 
-use std::sync::Arc;
-
-use fric_core::parameters::{OFFSET, Values};
+use fric_core::parameters::Values;
 use nalgebra::DMatrix;
 
-use super::determined::Yardstick;
 use super::gram::{Gram, Triangle};
 use super::optimizer::{self, Minimum, Termination};
-use super::pass::Forces;
-use super::problem::{Comparison, Loss, Member, Problem};
+use super::problem::{Loss, Member, Problem};
+use super::report::OpenCombination;
 use super::selection::Standing;
 use super::vector::{Coordinate, Parameter, with};
-use crate::replay::Deviation;
 
 /// Deviations beyond this many standard deviations that their neighbours do not share are no measurements.
 const OUTLIER_RATIO: f64 = 8.0;
@@ -24,12 +20,10 @@ const MOST_OUTLIERS_RATIO: f64 = 0.02;
 const HUBER_RATIO: f64 = 1.345;
 /// Standard deviation of a normal distribution per median of the magnitude.
 const DEVIATION_PER_MEDIAN: f64 = 1.482_602_218_505_602;
-/// Vaguenesses within this ratio are alike: those of parameters that only together have an effect.
-const COMPARABLE_RATIO: f64 = 0.01;
 /// A given value that raises the sum of squares by more than this share contradicts the samples.
-const CONTRADICTION_RATIO: f64 = 0.01;
+pub(super) const CONTRADICTION_RATIO: f64 = 0.01;
 /// A search goes on to within so many standard errors of the minimum.
-const NEAR_ERRORS: f64 = 0.01;
+pub(super) const NEAR_ERRORS: f64 = 0.01;
 /// Rounds of search and new look at the deviations.
 const ROUNDS: usize = 3;
 
@@ -61,6 +55,10 @@ pub struct Solution {
     pub unknowns: Vec<Unknown>,
     /// What the samples do not determine; held at the given values.
     pub undetermined: Vec<Unknown>,
+    /// What each of them is confused with.
+    pub open: Vec<OpenCombination>,
+    /// What is at an end of its range, where the samples would have it beyond.
+    pub at_bound: Vec<Unknown>,
     /// Covariance of the estimates.
     pub covariance: DMatrix<f64>,
     pub termination: Termination,
@@ -68,7 +66,7 @@ pub struct Solution {
 }
 
 /// Solves a problem from the starts given, the most promising first. `standings` of its samples are updated with the
-/// outliers; `kept` are varied however little is known of them.
+/// outliers.
 pub fn solve(
     problem: &mut Problem<'_>,
     starts: Vec<Vec<Values>>,
@@ -76,12 +74,13 @@ pub fn solve(
     cycle_s: f64,
     weighing: Weighing,
     standings: &mut [Standing],
-    kept: &[Unknown],
 ) -> Solution {
     let mut solution = Solution {
         values: given.to_vec(),
         unknowns: unknowns(problem),
         undetermined: Vec::new(),
+        open: Vec::new(),
+        at_bound: Vec::new(),
         covariance: DMatrix::zeros(0, 0),
         termination: Termination::NothingToFit,
         evaluation_count: 0,
@@ -102,68 +101,17 @@ pub fn solve(
             solution.search_on(problem, cycle_s);
         }
     }
-    solution.hold_undetermined(problem, given, cycle_s, kept);
+    solution.hold_undetermined(problem, given, cycle_s);
     solution
 }
 
 impl Solution {
     /// Goes on from where the last search has ended.
-    fn search_on(&mut self, problem: &Problem<'_>, cycle_s: f64) {
+    pub(super) fn search_on(&mut self, problem: &Problem<'_>, cycle_s: f64) {
         let (found, minimum) = search(problem, &self.values, cycle_s);
         self.evaluation_count += minimum.evaluation_count;
         (self.values, self.termination) = (found, minimum.termination);
     }
-
-    /// Holds one parameter after the other that the samples do not determine, the vaguest first. One whose given value the
-    /// samples contradict stays as found: they know that much.
-    fn hold_undetermined(&mut self, problem: &mut Problem<'_>, given: &[Values], cycle_s: f64, kept: &[Unknown]) {
-        let mut kept = kept.to_vec();
-        let mut least = None;
-        loop {
-            let mut all;
-            (self.covariance, all) = vagueness(problem, &self.values);
-            self.unknowns = all.iter().map(|(_, unknown)| *unknown).collect();
-            all.retain(|(_, unknown)| !kept.contains(unknown));
-            let most = all.iter().fold(1.0, |most: f64, (vagueness, _)| most.max(*vagueness));
-            let is_offset = |unknown: &Unknown| unknown.parameter.place() == OFFSET;
-            // Of those that are about as vague the offset comes last.
-            let vague = all.iter().filter(|(vagueness, _)| *vagueness > 1.0 && *vagueness >= COMPARABLE_RATIO * most);
-            let vaguest = vague.max_by(|(one, of_one), (other, of_other)| {
-                is_offset(of_other).cmp(&is_offset(of_one)).then(one.total_cmp(other))
-            });
-            let stopped = self.termination == Termination::Stopped;
-            let Some((_, worst)) = vaguest.filter(|_| !stopped).copied() else { return };
-            let (members, found, termination) = (problem.members.clone(), self.values.clone(), self.termination);
-            // By what all were before the first was held: many small steps are one big one.
-            let bound = *least.get_or_insert_with(|| squares(problem, &self.values)) * (1.0 + CONTRADICTION_RATIO);
-            hold(problem, worst, &mut self.values, given);
-            self.search_on(problem, cycle_s);
-            if squares(problem, &self.values) > bound {
-                (problem.members, self.values, self.termination) = (members, found, termination);
-                kept.push(worst);
-            } else {
-                self.undetermined.push(worst);
-            }
-        }
-    }
-}
-
-/// Covariance of what a problem varies at some values, and in its order how vague each parameter is: above 1 where the samples do
-/// not determine it, see [`Yardstick`].
-pub fn vagueness(problem: &Problem<'_>, values: &[Values]) -> (DMatrix<f64>, Vec<(f64, Unknown)>) {
-    let (covariance, leverages) = covariance(problem, values);
-    let sticks = yardsticks(problem, values);
-    let of = |(place, unknown): (usize, Unknown)| {
-        let value = values.get(unknown.member).map_or(f64::NAN, |values| values[unknown.parameter.place()]);
-        let standard_error = covariance[(place, place)].sqrt();
-        let leverage = leverages.get(place).copied().unwrap_or(0.0);
-        let vagueness = sticks
-            .get(unknown.member)
-            .map_or(f64::INFINITY, |stick| stick.vagueness(&unknown.parameter, value, standard_error, leverage));
-        (vagueness, unknown)
-    };
-    let all = unknowns(problem).into_iter().enumerate().map(of).collect();
-    (covariance, all)
 }
 
 /// Whether the samples contradict values that were held: with them free the sum of squares is smaller by far.
@@ -172,29 +120,12 @@ pub(super) fn contradicts(held: &Problem<'_>, at: &[Values], free: &Problem<'_>,
 }
 
 /// Sum of squares at some values; NaN when stopped.
-fn squares(problem: &Problem<'_>, values: &[Values]) -> f64 {
+pub(super) fn squares(problem: &Problem<'_>, values: &[Values]) -> f64 {
     problem.gram(values).map_or(f64::NAN, |gram| gram.normal_equations().2)
 }
 
-/// What matters for each cable of a problem.
-fn yardsticks(problem: &Problem<'_>, values: &[Values]) -> Vec<Yardstick> {
-    let forces = problem.forces(values).unwrap_or_default();
-    let of = |((member, values), forces): ((&Member<'_>, &Values), &Arc<Forces>)| {
-        let gain = member.record.params.frictionless_gain();
-        let (mut friction, mut tension) = (Deviation::default(), Deviation::default());
-        for (cycle, row) in member.record.rows.iter().enumerate().filter(|(_, row)| row.is_sound()) {
-            let frictionless_n = row.signals.sensor_force_n * gain;
-            friction.add(forces.at(cycle).0 - values[OFFSET] - frictionless_n);
-            tension.add(frictionless_n);
-        }
-        let [friction_n, tension_n] = [friction, tension].map(|force| force.rms().unwrap_or(0.0));
-        Yardstick::new(friction_n, tension_n, member.record.params.pulley_count())
-    };
-    problem.members.iter().zip(values).zip(&forces).map(of).collect()
-}
-
 /// What a problem varies.
-fn unknowns(problem: &Problem<'_>) -> Vec<Unknown> {
+pub(super) fn unknowns(problem: &Problem<'_>) -> Vec<Unknown> {
     let of_member = |(member, of): (usize, &Member<'_>)| {
         of.free.iter().map(|parameter| Unknown { member, parameter: *parameter }).collect::<Vec<_>>()
     };
@@ -202,7 +133,7 @@ fn unknowns(problem: &Problem<'_>) -> Vec<Unknown> {
 }
 
 /// Varies a parameter no longer: it takes its given value.
-fn hold(problem: &mut Problem<'_>, unknown: Unknown, values: &mut [Values], given: &[Values]) {
+pub(super) fn hold(problem: &mut Problem<'_>, unknown: Unknown, values: &mut [Values], given: &[Values]) {
     let place = unknown.parameter.place();
     if let Some(member) = problem.members.get_mut(unknown.member) {
         member.free.retain(|parameter| *parameter != unknown.parameter);
@@ -261,40 +192,6 @@ pub fn search_near(problem: &Problem<'_>, start: &[Values], cycle_s: f64, near_e
         problem.step(&values_at(&minimum.evaluated).0, &values);
     }
     (values, minimum)
-}
-
-/// Covariance of what a problem varies, infinite where the samples say nothing; and by how much each moves for residuals of
-/// 1 N in every sample, at worst.
-pub fn covariance(problem: &Problem<'_>, values: &[Values]) -> (DMatrix<f64>, Vec<f64>) {
-    let count = problem.parameter_count();
-    let unknown = || (DMatrix::from_diagonal_element(count, count, f64::INFINITY), vec![f64::INFINITY; count]);
-    let Some((gram, scores)) = problem.gram_and_scores(values) else { return unknown() };
-    let (matrix, ..) = gram.normal_equations();
-    let Some(inverse) = inverse_of_normal(&matrix) else { return unknown() };
-    let covariance = scores.covariance(&inverse);
-    let silent = |place: usize| matrix[(place, place)] <= 0.0;
-    let finite = |row, column| if row == column && silent(row) { f64::INFINITY } else { covariance[(row, column)] };
-    // Residuals of a wrench are no forces of a cable.
-    #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
-    let samples = match problem.comparison {
-        Comparison::Forces => problem.used.iter().filter(|used| **used).count() as f64,
-        Comparison::Wrench { .. } => 0.0,
-    };
-    let leverages = inverse.diagonal().iter().map(|variance| (samples * variance).sqrt()).collect();
-    (DMatrix::from_fn(count, count, finite), leverages)
-}
-
-/// Inverse of a matrix `JᵀJ`, scaled meanwhile; what has no effect at all gets an all but infinite variance of its own. `None` where
-/// the matrix is not of numbers.
-pub fn inverse_of_normal(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-    let count = matrix.nrows();
-    let scale: Vec<f64> = matrix.diagonal().iter().map(|square| 1.0 / square.max(f64::MIN_POSITIVE).sqrt()).collect();
-    let scaled = DMatrix::from_fn(count, count, |row, column| {
-        let vanishing = if row == column { 1e-12 } else { 0.0 };
-        matrix[(row, column)] * scale[row] * scale[column] + vanishing
-    });
-    let inverse = scaled.cholesky()?.inverse();
-    Some(DMatrix::from_fn(count, count, |row, column| inverse[(row, column)] * scale[row] * scale[column]))
 }
 
 /// Looks at the deviations anew: leaves out what cannot be a measurement, or sets Huber's bound. Whether something has

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use fric_core::effects;
 use fric_core::parameters::{FRICTION_COUNT, MU, OFFSET, SIGMA, VISCOUS};
 
-use super::result::{FitCableResult, FitResult, Numbers};
+use super::result::{FitCableResult, FitResult, Numbers, OpenPartResult, OpenResult};
 use super::vector::Parameter;
 use crate::text::{digits_of, number, plain, table};
 
@@ -191,7 +191,10 @@ fn effect_table(result: &FitResult, kind: &str) -> String {
             let value = cable.parameters.get(&name)?;
             // As many digits as the error, which has two.
             let error = cable.standard_errors.get(&name);
-            Some(error.map_or_else(|| format!("({value})"), |error| number(value, digits_of(error))))
+            Some(match error {
+                Some(error) => number(value, digits_of(error)),
+                None => format!("({value})"),
+            })
         };
         let header = parameter.row().key.to_owned();
         let cells: Vec<Option<String>> = result.cables.iter().map(value).collect();
@@ -241,29 +244,75 @@ fn undetermined(result: &FitResult) -> String {
     let learned: Vec<&FitCableResult> = result.cables.iter().filter(|cable| cable.samples > 0).collect();
     for parameter in Parameter::all() {
         let name = parameter.to_string();
-        let without = learned.iter().filter(|cable| cable.undetermined.contains(&name));
+        let is_open_with_others = |cable: &FitCableResult| cable.open.iter().any(|open| open.is_held(&name));
+        let without = learned.iter().filter(|cable| cable.undetermined.contains(&name) && !is_open_with_others(cable));
         let cables: Vec<&str> = without.map(|cable| cable.name.as_str()).collect();
         if !cables.is_empty() {
-            let symbol = FRICTION.iter().find(|shown| shown.place == parameter.place());
-            let shown = symbol.map_or_else(|| name.clone(), |shown| format!("{} ({name})", shown.symbol));
             let _ = writeln!(
                 text,
-                "\nThe log does not determine {shown} of {}: the given value is kept.\n  Record {}.",
-                if cables.len() == result.cables.len() && cables.len() > 1 {
-                    "any cable".to_owned()
-                } else {
-                    cables.join(", ")
-                },
+                "\nThe log does not determine {} of {}: the given value is kept.\n  Record {}.",
+                shown_name(&parameter),
+                listed(&cables, result),
                 parameter.row().excitation
             );
-            if let Some(kind) = parameter.effect() {
-                let _ = writeln!(
-                    text,
-                    "  If the robot file has no `{kind}`, put it there with a guess first: where there is none of it, nothing \
-                     tells what shapes it."
-                );
-            }
+        }
+    }
+    for cable in &learned {
+        for open in &cable.open {
+            text += &open_combination(cable, open);
+        }
+    }
+    for parameter in Parameter::all() {
+        let name = parameter.to_string();
+        let at_bound = learned.iter().filter(|cable| cable.at_bound.contains(&name));
+        let cables: Vec<&str> = at_bound.map(|cable| cable.name.as_str()).collect();
+        if let Some(value) =
+            learned.iter().find(|cable| cable.at_bound.contains(&name)).and_then(|cable| cable.parameters.get(&name))
+        {
+            let _ = writeln!(
+                text,
+                "\n{} of {} is at its bound of {value}: the log would have it beyond. Something else is missing in the\nmodel, or the \
+                 parameter has nothing to explain.",
+                shown_name(&parameter),
+                listed(&cables, result),
+            );
         }
     }
     text
+}
+
+/// The parameter with the symbol of the tables, where it has one.
+fn shown_name(parameter: &Parameter) -> String {
+    let symbol = FRICTION.iter().find(|shown| shown.place == parameter.place());
+    symbol.map_or_else(|| parameter.to_string(), |shown| format!("{} ({parameter})", shown.symbol))
+}
+
+/// The cables' names, unless it is all of several.
+fn listed(cables: &[&str], result: &FitResult) -> String {
+    if cables.len() == result.cables.len() && cables.len() > 1 { "any cable".to_owned() } else { cables.join(", ") }
+}
+
+/// What goes with a parameter that is kept.
+fn open_combination(cable: &FitCableResult, open: &OpenResult) -> String {
+    let Some((held, others)) = open.0.split_first() else { return String::new() };
+    let unit = |name: &str| Parameter::named(name).map_or("", |parameter| parameter.row().unit);
+    let part = |part: &OpenPartResult| {
+        let unit = match unit(&part.parameter) {
+            "1" => String::new(),
+            unit => format!(" {unit}"),
+        };
+        let of = if part.cable == cable.name { String::new() } else { format!(" of {}", part.cable) };
+        let sign = if part.step < 0.0 { "−" } else { "+" };
+        format!("{}{of} {sign}{}{unit}", part.parameter, plain(part.step.abs()))
+    };
+    let mut listed = vec![part(held).replacen(&held.parameter, &format!("{} of {}", held.parameter, cable.name), 1)];
+    listed.extend(others.iter().map(part));
+    let excitation = Parameter::named(&held.parameter).map_or("", |parameter| parameter.row().excitation);
+    format!(
+        "\nThe log leaves a combination open: these together change nothing that it shows.\n  {}\n  {} of {} is kept as given, and \
+         the others hold with it. To tell them apart\n  record {excitation}.\n",
+        listed.join(", "),
+        held.parameter,
+        cable.name,
+    )
 }

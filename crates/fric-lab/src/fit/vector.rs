@@ -143,6 +143,13 @@ impl Coordinate {
         (self.min, self.max)
     }
 
+    /// The end of the range that a search was driven to: nearer than any start is, or than `near`.
+    pub fn bound_at(self, value: f64, near: f64) -> Option<f64> {
+        let bound = if value - self.min < self.max - value { self.min } else { self.max };
+        let margin = if self.shape == Shape::Logarithmic { 0.0 } else { 0.5 * MARGIN_RATIO * (self.max - self.min) };
+        ((value - bound).abs() <= margin.max(near)).then_some(bound)
+    }
+
     /// The coordinate of a value; one out of range is moved into it.
     pub fn place_of(self, value: f64) -> f64 {
         match self.shape {
@@ -217,6 +224,18 @@ mod tests {
                 assert!((coordinate.min..=coordinate.max).contains(&value), "{parameter}");
             }
         }
+    }
+
+    #[test]
+    fn a_search_is_at_a_bound_where_no_start_is() {
+        let mu = Coordinate::of(&Parameter::named("mu").unwrap(), 0.001);
+        assert_eq!(mu.bound_at(1.65e-40, 0.0), Some(0.0));
+        assert_eq!(mu.bound_at(mu.value_at(mu.place_of(0.0)).0, 0.0), None);
+        assert_eq!(mu.bound_at(1e-6, 1e-5), Some(0.0));
+        assert_eq!(mu.bound_at(0.9, 0.0), Some(0.9));
+        assert_eq!(mu.bound_at(0.02, 1e-5), None);
+        let sigma = Coordinate::of(&Parameter::named("sigma_n_per_m").unwrap(), 0.001);
+        assert_eq!(sigma.bound_at(700.0, 0.0), None);
     }
 
     #[test]

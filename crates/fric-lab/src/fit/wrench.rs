@@ -15,161 +15,260 @@ use fric_core::Wrench;
 use fric_core::parameters::{OFFSET, Values};
 use nalgebra::{Matrix6, Vector6};
 
+use super::balance;
 use super::cables::{cable_fits, leave_out_warm_up, used};
+use super::error::FitError;
+use super::newcomers::with_newcomers;
 use super::problem::{Comparison, Loss, Member, Problem};
 use super::record::{CableRecord, Measurements};
-use super::report::WrenchFit;
+use super::report::{OpenCombination, WrenchFit};
 use super::selection::{self, Standing};
-use super::solve::{Solution, Unknown, contradicts, search, solve, vagueness};
-use super::{FitOptions, Progress, start, weight};
-use crate::replay::WrenchErrors;
+use super::solve::{Solution, Unknown, contradicts, search, solve};
+use super::split::split;
+use super::undetermined::vagueness;
+use super::{FitOptions, Progress, start};
+use crate::replay::{WrenchErrors, WrenchReference};
+use crate::weight;
 
 /// Fits all cables to the outside wrench. Only for a robot of which every cable has an attachment, and for
 /// [`Measurements`] with [`Reference::Wrench`](super::Reference::Wrench).
-#[must_use]
-pub fn fit_wrench(measurements: &Measurements<'_>, options: &FitOptions, progress: &Progress) -> WrenchFit {
-    let records: Vec<CableRecord<'_>> = measurements.cables().collect();
-    let given: Vec<Values> = records.iter().map(|record| record.params.values()).collect();
-    let platform = measurements.platform();
-    let measured = platform.wrenches.iter().flatten().next().is_some();
-    let outside = outside_wrenches(measurements, measured);
-    let has_wrench = |place: usize| outside.get(place).is_some_and(|wrench| wrench.iter().all(|part| part.is_finite()));
-    let reaches = |place: usize| {
-        let mut columns = platform.structure.iter().skip(place * records.len()).take(records.len());
-        columns.all(|column| column.x.is_finite())
-    };
-    let mut of_cables: Vec<Vec<Standing>> = records
-        .iter()
-        .map(|record| selection::first_look(record, |place, _| has_wrench(place) && reaches(place)))
-        .collect();
-    progress.begin(2);
-    let mut problem = Problem {
-        members: without_offsets(&records, options),
-        comparison: Comparison::Wrench {
-            structure: &platform.structure,
-            outside: &outside,
-            whitening: Box::new(by_moment_arm(&platform.structure)),
-        },
-        loss: Loss::Squares,
-        used: used(&together(&of_cables)),
-        stop: progress.stop_flag(),
-        seat: None,
-    };
-    let cycle_s = measurements.robot().cycle_s();
-    let starts = start::starts(&problem, &given, cycle_s);
-    for standings in &mut of_cables {
-        leave_out_warm_up(&problem, &starts, standings);
-    }
-    let mut standings = together(&of_cables);
-    problem.used = used(&standings);
-    // Friction first, then the offsets with it; all once to learn how the six deviations scatter, and once with that.
-    let mut solution = solve(&mut problem, starts, &given, cycle_s, options.weighing, &mut standings, &[]);
-    let (mut undetermined, mut evaluation_count) =
-        (std::mem::take(&mut solution.undetermined), solution.evaluation_count);
-    let (determined, vague, kept) = offsets(&problem, &records, options, &solution, cycle_s);
-    undetermined.extend(vague);
-    let with_offsets = !determined.is_empty();
-    for offset in determined {
-        if let Some(member) = problem.members.get_mut(offset.member) {
-            member.free.push(offset.parameter);
-        }
-    }
-    if with_offsets {
-        solution = solve(&mut problem, vec![solution.values], &given, cycle_s, options.weighing, &mut standings, &kept);
-        undetermined.append(&mut solution.undetermined);
-        evaluation_count += solution.evaluation_count;
-    }
-    progress.finish_one();
-    let scatter = scatter(&problem, &solution.values);
-    if let (Comparison::Wrench { whitening, .. }, Some(turn)) = (&mut problem.comparison, scatter) {
-        **whitening = turn * **whitening;
-    }
-    problem.loss = Loss::Squares;
-    solution = solve(&mut problem, vec![solution.values], &given, cycle_s, options.weighing, &mut standings, &kept);
-    solution.undetermined.extend(undetermined);
-    solution.evaluation_count += evaluation_count;
-    progress.finish_one();
-    let cables = cable_fits(&problem, &given, &solution, &standings);
-    let [before, after] = wrench_errors(&problem, &solution.values, &platform.structure, &outside);
-    WrenchFit { cables, measured, before, after }
-}
-
-/// Deviation of the wrench by the cable forces from the one outside, with frictionless and with compensated forces.
-fn wrench_errors(
-    problem: &Problem<'_>,
-    values: &[Values],
-    structure: &[Vector6<f64>],
-    outside: &[Vector6<f64>],
-) -> [WrenchErrors; 2] {
-    let forces = problem.forces(values).unwrap_or_default();
-    let count = problem.members.len();
-    let mut errors = [WrenchErrors::default(), WrenchErrors::default()];
-    for (cycle, outside) in outside.iter().enumerate() {
-        let mut sums = [*outside, *outside];
-        let columns = structure.iter().skip(cycle * count).take(count);
-        for ((member, forces), column) in problem.members.iter().zip(&forces).zip(columns) {
-            let sensor_n = member.record.rows.get(cycle).map_or(f64::NAN, |row| row.signals.sensor_force_n);
-            let frictionless_n = sensor_n * member.record.params.frictionless_gain();
-            sums[0] += column * frictionless_n;
-            sums[1] += column * forces.at(cycle).0;
-        }
-        for (errors, sum) in errors.iter_mut().zip(sums) {
-            errors.add(&Wrench { force_n: sum.fixed_rows::<3>(0).into(), torque_nm: sum.fixed_rows::<3>(3).into() });
-        }
-    }
-    errors
-}
-
-/// All cables with what is to be varied of them, but for the offsets.
-fn without_offsets<'a>(records: &[CableRecord<'a>], options: &FitOptions) -> Vec<Member<'a>> {
-    let member = |record: &CableRecord<'a>| {
-        let mut free = options.free(record.params);
-        free.retain(|parameter| parameter.place() != OFFSET);
-        Member { record: *record, free }
-    };
-    records.iter().map(member).collect()
-}
-
-/// The offsets that are to be varied, those that the samples determine or that they contradict to be as given, those to be
-/// held, and which of the first are to be varied in any case.
-fn offsets(
-    problem: &Problem<'_>,
-    records: &[CableRecord<'_>],
+///
+/// The parameters come from all samples. How well they do on samples that they were not learned from is found beforehand, by
+/// the parameters of every other block of the log on the blocks between.
+///
+/// # Errors
+/// [`FitError`] where the wrench cannot tell the forces of the cables, see [`balance`].
+pub fn fit_wrench(
+    measurements: &Measurements<'_>,
     options: &FitOptions,
-    solution: &Solution,
-    cycle_s: f64,
-) -> (Vec<Unknown>, Vec<Unknown>, Vec<Unknown>) {
-    let mut trial = problem.clone();
-    for (member, record) in trial.members.iter_mut().zip(records) {
-        member.free.extend(options.free(record.params).into_iter().filter(|parameter| parameter.place() == OFFSET));
+    progress: &Progress,
+) -> Result<WrenchFit, FitError> {
+    let is_measured = measurements.platform().wrenches.iter().any(Option::is_some);
+    let reference = if is_measured { WrenchReference::Measured } else { WrenchReference::Mass };
+    let outside = outside_wrenches(measurements, reference);
+    let records: Vec<CableRecord<'_>> = measurements.cables().collect();
+    let structure = measurements.platform().structure.as_slice();
+    balance::check(structure, &outside, records.len())?;
+    let case = Case { records, structure, outside: &outside, options, progress };
+    progress.begin(4);
+    let held_out = case.held_out();
+    let Found { problem, solution, standings } = case.identified(&|_| true);
+    let cables = cable_fits(&problem, &case.given(), &solution, &standings);
+    let [before, after] = case.errors(&problem, &solution.values, &|_| true);
+    Ok(WrenchFit { cables, reference, before, after, held_out })
+}
+
+/// What is fitted to what.
+struct Case<'a> {
+    records: Vec<CableRecord<'a>>,
+    /// Columns of the structure matrix, all cables of a sample one after the other.
+    structure: &'a [Vector6<f64>],
+    /// The wrench of each sample; NaN where there is none.
+    outside: &'a [Vector6<f64>],
+    options: &'a FitOptions,
+    progress: &'a Progress,
+}
+
+/// What was found.
+struct Found<'a> {
+    problem: Problem<'a>,
+    solution: Solution,
+    standings: Vec<Standing>,
+}
+
+impl<'a> Case<'a> {
+    fn given(&self) -> Vec<Values> {
+        self.records.iter().map(|record| record.params.values()).collect()
     }
-    if trial.parameter_count() == problem.parameter_count() || !problem.used.contains(&true) {
-        return Default::default();
+
+    /// Errors on the blocks held out from a fit to the others; none where the log is too short for it.
+    fn held_out(&self) -> WrenchErrors {
+        let blocks = self.records.first().map(split).unwrap_or_default();
+        let mut is_held_out = vec![false; self.outside.len()];
+        for block in blocks.iter().filter(|block| block.held_out) {
+            is_held_out
+                .iter_mut()
+                .skip(block.cycles.start)
+                .take(block.cycles.len())
+                .for_each(|held_out| *held_out = true);
+        }
+        let held_out = |place: usize| is_held_out.get(place).copied().unwrap_or(false);
+        let Found { problem, solution, .. } = self.identified(&|place| !held_out(place));
+        if !problem.used.contains(&true) {
+            return WrenchErrors::default();
+        }
+        let [_, after] = self.errors(&problem, &solution.values, &held_out);
+        after
     }
-    let (values, _) = search(&trial, &solution.values, cycle_s);
-    let (_, all) = vagueness(&trial, &values);
-    let offsets = all.into_iter().filter(|(_, unknown)| unknown.parameter.place() == OFFSET);
-    if contradicts(problem, &solution.values, &trial, &values) {
-        // Together they matter, whatever is known of each: a wrong mass, a payload.
-        let offsets: Vec<Unknown> = offsets.map(|(_, unknown)| unknown).collect();
-        return (offsets.clone(), Vec::new(), offsets);
+
+    /// The parameters by the samples that count.
+    fn identified(&self, counts: &dyn Fn(usize) -> bool) -> Found<'a> {
+        let Self { structure, outside, options, progress, .. } = *self;
+        let given = self.given();
+        let has_wrench =
+            |place: usize| outside.get(place).is_some_and(|wrench| wrench.iter().all(|part| part.is_finite()));
+        let reaches = |place: usize| {
+            let mut columns = structure.iter().skip(place * self.records.len()).take(self.records.len());
+            columns.all(|column| column.x.is_finite())
+        };
+        let of_cable = |record: &CableRecord<'_>| {
+            selection::first_look(record, |place, _| has_wrench(place) && reaches(place) && counts(place))
+        };
+        let mut of_cables: Vec<Vec<Standing>> = self.records.iter().map(of_cable).collect();
+        let mut problem = Problem {
+            members: self.members(|parameter_place| parameter_place != OFFSET),
+            comparison: Comparison::Wrench {
+                structure,
+                outside,
+                whitening: Box::new(balance::by_moment_arm(structure)),
+            },
+            loss: Loss::Squares,
+            used: used(&together(&of_cables)),
+            stop: progress.stop_flag(),
+            seat: None,
+        };
+        let cycle_s = self.records.first().map_or(f64::NAN, |record| record.cycle_s);
+        let starts = start::starts(&problem, &given, cycle_s);
+        for standings in &mut of_cables {
+            leave_out_warm_up(&problem, &starts, standings);
+        }
+        let mut standings = together(&of_cables);
+        problem.used = used(&standings);
+        let starts = with_newcomers(&problem, starts, &given, cycle_s);
+        // Friction first, then the offsets with it; all once to learn how the six deviations scatter, and once with that.
+        let mut solution = solve(&mut problem, starts, &given, cycle_s, options.weighing, &mut standings);
+        let mut earlier = Earlier::default();
+        match self.offsets(&problem, &solution, cycle_s) {
+            Offsets::Contradicted => {
+                // What friction seemed undetermined beside wrong offsets gets another chance, and another start.
+                problem.members = self.members(|_| true);
+                earlier.evaluation_count += solution.evaluation_count;
+                let mut starts = vec![solution.values];
+                starts.extend(start::starts(&problem, &given, cycle_s));
+                let starts = with_newcomers(&problem, starts, &given, cycle_s);
+                solution = solve(&mut problem, starts, &given, cycle_s, options.weighing, &mut standings);
+            }
+            Offsets::Apart { determined, vague } => {
+                earlier.take(&mut solution);
+                earlier.undetermined.extend(vague);
+                for offset in &determined {
+                    if let Some(member) = problem.members.get_mut(offset.member) {
+                        member.free.push(offset.parameter);
+                    }
+                }
+                if !determined.is_empty() {
+                    solution =
+                        solve(&mut problem, vec![solution.values], &given, cycle_s, options.weighing, &mut standings);
+                }
+            }
+        }
+        earlier.take(&mut solution);
+        progress.finish_one();
+        let scatter = scatter(&problem, &solution.values);
+        if let (Comparison::Wrench { whitening, .. }, Some(turn)) = (&mut problem.comparison, scatter) {
+            **whitening = turn * **whitening;
+        }
+        problem.loss = Loss::Squares;
+        solution = solve(&mut problem, vec![solution.values], &given, cycle_s, options.weighing, &mut standings);
+        earlier.give(&mut solution);
+        progress.finish_one();
+        Found { problem, solution, standings }
     }
-    let (determined, vague): (Vec<_>, Vec<_>) = offsets.partition(|(vagueness, _)| *vagueness <= 1.0);
-    let unknowns = |all: Vec<(f64, Unknown)>| all.into_iter().map(|(_, unknown)| unknown).collect();
-    (unknowns(determined), unknowns(vague), Vec::new())
+
+    /// All cables with what is to be varied of them, as far as its place is wanted.
+    fn members(&self, is_wanted: impl Fn(usize) -> bool) -> Vec<Member<'a>> {
+        let member = |record: &CableRecord<'a>| {
+            let mut free = self.options.free(record.params);
+            free.retain(|parameter| is_wanted(parameter.place()));
+            Member { record: *record, free }
+        };
+        self.records.iter().map(member).collect()
+    }
+
+    /// What the samples tell of the offsets, beside the friction found without them.
+    fn offsets(&self, problem: &Problem<'_>, solution: &Solution, cycle_s: f64) -> Offsets {
+        let mut trial = problem.clone();
+        for (member, offset) in trial.members.iter_mut().zip(self.members(|place| place == OFFSET)) {
+            member.free.extend(offset.free);
+        }
+        if trial.parameter_count() == problem.parameter_count() || !problem.used.contains(&true) {
+            return Offsets::Apart { determined: Vec::new(), vague: Vec::new() };
+        }
+        let (values, _) = search(&trial, &solution.values, cycle_s);
+        if contradicts(problem, &solution.values, &trial, &values) {
+            return Offsets::Contradicted;
+        }
+        let (_, all) = vagueness(&trial, &values);
+        let offsets = all.into_iter().filter(|(_, unknown)| unknown.parameter.place() == OFFSET);
+        let (determined, vague): (Vec<_>, Vec<_>) = offsets.partition(|(vagueness, _)| *vagueness <= 1.0);
+        let unknowns = |all: Vec<(f64, Unknown)>| all.into_iter().map(|(_, unknown)| unknown).collect();
+        Offsets::Apart { determined: unknowns(determined), vague: unknowns(vague) }
+    }
+
+    /// Deviation of the wrench by the cable forces from the one outside, with frictionless and with compensated forces, over the
+    /// samples that count.
+    fn errors(&self, problem: &Problem<'_>, values: &[Values], counts: &dyn Fn(usize) -> bool) -> [WrenchErrors; 2] {
+        let forces = problem.forces(values).unwrap_or_default();
+        let count = problem.members.len();
+        let mut errors = [WrenchErrors::default(), WrenchErrors::default()];
+        for (cycle, outside) in self.outside.iter().enumerate().filter(|(cycle, _)| counts(*cycle)) {
+            let mut sums = [*outside, *outside];
+            let columns = self.structure.iter().skip(cycle * count).take(count);
+            for ((member, forces), column) in problem.members.iter().zip(&forces).zip(columns) {
+                let sensor_n = member.record.rows.get(cycle).map_or(f64::NAN, |row| row.signals.sensor_force_n);
+                let frictionless_n = sensor_n * member.record.params.frictionless_gain();
+                sums[0] += column * frictionless_n;
+                sums[1] += column * forces.at(cycle).0;
+            }
+            for (errors, sum) in errors.iter_mut().zip(sums) {
+                errors
+                    .add(&Wrench { force_n: sum.fixed_rows::<3>(0).into(), torque_nm: sum.fixed_rows::<3>(3).into() });
+            }
+        }
+        errors
+    }
+}
+
+/// What samples tell of the offsets.
+enum Offsets {
+    /// The given ones are wrong, whatever is known of each: a wrong mass, a payload, a sensor's gain.
+    Contradicted,
+    /// Those determined are to be varied, the others held.
+    Apart { determined: Vec<Unknown>, vague: Vec<Unknown> },
+}
+
+/// What earlier searches of several have found.
+#[derive(Default)]
+struct Earlier {
+    undetermined: Vec<Unknown>,
+    open: Vec<OpenCombination>,
+    evaluation_count: usize,
+}
+
+impl Earlier {
+    fn take(&mut self, solution: &mut Solution) {
+        self.undetermined.append(&mut solution.undetermined);
+        self.open.append(&mut solution.open);
+        self.evaluation_count += std::mem::take(&mut solution.evaluation_count);
+    }
+
+    fn give(mut self, solution: &mut Solution) {
+        self.take(solution);
+        let Self { undetermined, open, evaluation_count } = self;
+        *solution = Solution { undetermined, open, evaluation_count, ..solution.clone() };
+    }
 }
 
 /// The outside wrench of each sample; NaN where there is none.
-fn outside_wrenches(measurements: &Measurements<'_>, measured: bool) -> Vec<Vector6<f64>> {
+fn outside_wrenches(measurements: &Measurements<'_>, reference: WrenchReference) -> Vec<Vector6<f64>> {
     let platform = measurements.platform();
-    if measured {
-        let vector =
-            |wrench: &Option<Wrench>| wrench.as_ref().map_or_else(|| Vector6::repeat(f64::NAN), Wrench::to_vector);
+    let vector = |wrench: &Option<Wrench>| wrench.as_ref().map_or_else(|| Vector6::repeat(f64::NAN), Wrench::to_vector);
+    if reference == WrenchReference::Measured {
         return platform.wrenches.iter().map(vector).collect();
     }
     let ends = measurements.starts().iter().skip(1).copied().chain([platform.poses.len()]);
     let logs = measurements.starts().iter().zip(ends).filter_map(|(start, end)| platform.poses.get(*start..end));
-    logs.flat_map(|poses| weight::wrenches(measurements.robot(), poses)).collect()
+    logs.flat_map(|poses| weight::wrenches(measurements.robot(), poses)).map(|wrench| vector(&wrench)).collect()
 }
 
 /// Standing of each sample for all cables together: what is the matter with the first that it cannot be used for.
@@ -180,15 +279,6 @@ fn together(of_cables: &[Vec<Standing>]) -> Vec<Standing> {
         standings.find(|standing| **standing != Standing::Used).copied().unwrap_or(Standing::Used)
     };
     (0..count).map(of_sample).collect()
-}
-
-/// Brings torques to the scale of forces, by the mean moment arm.
-fn by_moment_arm(structure: &[Vector6<f64>]) -> Matrix6<f64> {
-    let all_m = structure.iter().map(|column| column.fixed_rows::<3>(3).norm()).filter(|arm_m| arm_m.is_finite());
-    let (sum_m, count) = all_m.fold((0.0, 0.0), |(sum, count), arm_m| (sum + arm_m, count + 1.0));
-    // Cables that all meet in the platform's origin exert no torque: there is nothing to scale.
-    let arm_m = if sum_m > 0.0 { sum_m / count } else { 1.0 };
-    Matrix6::from_diagonal(&Vector6::new(1.0, 1.0, 1.0, 1.0 / arm_m, 1.0 / arm_m, 1.0 / arm_m))
 }
 
 /// What turns the deviations at `values` into independent ones of variance 1; `None` where they span fewer than six

@@ -3,13 +3,19 @@
 //! [`Replay::step`] runs one cycle and accumulates the errors before (sensor force turned into tension as if nothing
 //! rubbed) and after (compensated). It keeps sums only: memory does not grow with the log. Samples without a reference
 //! count for nothing in the errors; flagged ones count as all others, since the control loop has to live with them.
+//!
+//! The wrench is compared with the one in the log; where the log has none, with that of the platform's mass and pose in quiet
+//! motion, as `fit` does.
 
 mod error;
 mod warnings;
 
-use fric_core::{AnyCompensator, CableOutput, CableStatus, ParamError, RobotParams, Sample, Wrench};
+use std::collections::VecDeque;
+
+use fric_core::{AnyCompensator, CableOutput, CableStatus, ParamError, Pose, RobotParams, Sample, Wrench};
 
 use crate::clock::Clock;
+use crate::weight::Weight;
 
 pub use error::Deviation;
 
@@ -53,6 +59,26 @@ impl WrenchErrors {
     }
 }
 
+/// What the wrench is compared with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WrenchReference {
+    /// The wrench in the log.
+    Measured,
+    /// That of the platform's mass and pose, in quiet motion.
+    Mass,
+}
+
+impl WrenchReference {
+    /// In a word, as in the results for machines.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Measured => "wrench",
+            Self::Mass => "mass",
+        }
+    }
+}
+
 /// A replay in progress.
 #[derive(Debug)]
 pub struct Replay {
@@ -60,8 +86,40 @@ pub struct Replay {
     cables: Vec<CableErrors>,
     wrench_before: WrenchErrors,
     wrench_after: WrenchErrors,
+    /// `None` without mass or geometry, and from the first measured wrench on.
+    by_mass: Option<ByMass>,
     cycle_count: u64,
     clock: Clock,
+}
+
+/// The comparison with the wrench of the platform's mass.
+#[derive(Debug)]
+struct ByMass {
+    weight: Weight,
+    /// Wrenches by frictionless and by compensated forces, of the cycles that wait for theirs.
+    waiting: VecDeque<Option<(Wrench, Wrench)>>,
+    before: WrenchErrors,
+    after: WrenchErrors,
+}
+
+impl ByMass {
+    fn new(robot: &RobotParams<'_>) -> Option<Self> {
+        let has_weight = robot.mass_kg() > 0.0 && robot.cables().iter().all(fric_core::CableParams::has_geometry);
+        has_weight.then(|| {
+            let weight = Weight::new(robot);
+            let waiting = vec![None; weight.delay()].into();
+            Self { weight, waiting, before: WrenchErrors::default(), after: WrenchErrors::default() }
+        })
+    }
+
+    fn add(&mut self, pose: Option<Pose>, wrenches: Option<(Wrench, Wrench)>) {
+        self.waiting.push_back(wrenches);
+        let compared = self.waiting.pop_front().flatten();
+        if let (Some(reference), Some((before, after))) = (self.weight.push(pose), compared) {
+            self.before.add(&(before - reference));
+            self.after.add(&(after - reference));
+        }
+    }
 }
 
 /// With these a wrench is none: a cable's force or direction is not known.
@@ -90,6 +148,7 @@ impl Replay {
             cables: vec![CableErrors::default(); robot.cables().len()],
             wrench_before: WrenchErrors::default(),
             wrench_after: WrenchErrors::default(),
+            by_mass: ByMass::new(robot),
             cycle_count: 0,
             clock: Clock::new(robot.cycle_s()),
         })
@@ -104,11 +163,16 @@ impl Replay {
         let cycle_ns = u64::try_from(start.elapsed().as_nanos()).unwrap_or(u64::MAX);
         self.cycle_count += 1;
         let outside_wrench = outside_wrench.filter(|_| self.has_wrench());
-        if let (Some(reference), Some(wrench)) = (&sample.outside_wrench, outside_wrench) {
-            self.wrench_after.add(&(wrench - *reference));
-            if let Some(before) = self.frictionless_wrench() {
-                self.wrench_before.add(&(before - *reference));
-            }
+        if sample.outside_wrench.is_some() {
+            self.by_mass = None;
+        }
+        let wrenches = self.frictionless_wrench().zip(outside_wrench);
+        if let (Some(reference), Some((before, after))) = (&sample.outside_wrench, wrenches) {
+            self.wrench_before.add(&(before - *reference));
+            self.wrench_after.add(&(after - *reference));
+        }
+        if let Some(by_mass) = &mut self.by_mass {
+            by_mass.add(sample.pose.filter(Pose::is_usable), wrenches);
         }
         let outputs = self.compensator.outputs();
         for ((errors, output), reference_n) in self.cables.iter_mut().zip(outputs).zip(sample.reference_force_n) {
@@ -140,7 +204,16 @@ impl Replay {
     /// Errors of the wrench so far: before, after.
     #[must_use]
     pub fn wrench(&self) -> (&WrenchErrors, &WrenchErrors) {
-        (&self.wrench_before, &self.wrench_after)
+        match &self.by_mass {
+            Some(ByMass { before, after, .. }) => (before, after),
+            None => (&self.wrench_before, &self.wrench_after),
+        }
+    }
+
+    /// What the wrench is compared with.
+    #[must_use]
+    pub fn wrench_reference(&self) -> WrenchReference {
+        if self.by_mass.is_some() { WrenchReference::Mass } else { WrenchReference::Measured }
     }
 
     /// Cycles run so far.

@@ -4,6 +4,7 @@ use fric_core::CableStatus;
 use fric_core::robot::file::{CableTable, RobotFile};
 
 use super::Replay;
+use crate::fit::readiness::without_reference;
 
 impl Replay {
     /// What does nothing, what there is no error of, what is not compensated and what was flagged, so far; `robot` is the
@@ -12,11 +13,14 @@ impl Replay {
     pub fn warnings(&self, robot: &RobotFile) -> Vec<String> {
         let mut warnings = robot.warnings();
         if self.cables().iter().all(|cable| cable.before_n.count() == 0) {
-            warnings.push(format!(
-                "the log has no reference forces on {} for these cables, without which the columns of errors stay empty; name \
-                 their topic as `reference` under `[log]` in the robot file",
-                robot.options().log.reference
-            ));
+            let (cause, advice) = without_reference(&robot.options().log.reference);
+            warnings.push(match advice {
+                None => format!(
+                    "{cause} for these cables, without which the columns of errors stay empty; name their topic as \
+                     `reference` under `[log]` in the robot file"
+                ),
+                Some(advice) => format!("{cause}; the columns of errors stay empty. {}", advice.trim_end_matches('.')),
+            });
         }
         warnings.extend(self.cable_warnings(robot));
         warnings

@@ -8,6 +8,7 @@ mod advice {
     pub const EFFECT: &str = "give each effect once, with all its parameters";
     pub const DISTURBANCE: &str = "give each disturbance once, with all its parameters";
     pub const GEOMETRY: &str = "check `base_m`, `platform_m`, `radius_m` and `axis`, above all the unit m";
+    pub const LOAD: &str = "leave `reference` out, or `base_m` and `platform_m`";
     pub const PLATFORM: &str = "give every cable both, or simulate the identification run";
 }
 
@@ -53,6 +54,12 @@ pub enum SimulationError {
     /// No place was found where every cable can leave its last pulley.
     #[error("the platform finds no place where all cables can leave their last pulleys; {}", advice::GEOMETRY)]
     NoWorkspace,
+    /// Loads that are known, of cables that hold a platform.
+    #[error(
+        "`reference` under [log] is a known load, but the cables hold a platform, which pulls as it moves; {}",
+        advice::LOAD
+    )]
+    KnownLoad,
     /// A crossing run of a robot without a platform that all cables hold.
     #[error(
         "a crossing run needs a platform that all cables are attached to, and {cable} has no `base_m` and `platform_m`; {}",
@@ -73,6 +80,7 @@ impl SimulationError {
             Self::RepeatedEffect { .. } => Some(advice::EFFECT),
             Self::RepeatedDisturbance { .. } => Some(advice::DISTURBANCE),
             Self::NoWorkspace => Some(advice::GEOMETRY),
+            Self::KnownLoad => Some(advice::LOAD),
             Self::NoPlatform { .. } => Some(advice::PLATFORM),
         }
     }

@@ -3,7 +3,7 @@
 use core::ops::Range;
 
 use fric_core::robot::file::{CableTable, RobotFile};
-use fric_core::{CableInput, CableParams, Sample};
+use fric_core::{CableInput, CableParams, KnownReference, Sample};
 use nalgebra::{Vector3, Vector6};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -79,7 +79,7 @@ enum Tension {
         balanced: bool,
     },
     /// Each cable has a load of its own.
-    Bench { level: TensionLevel },
+    Bench { level: TensionLevel, load: Option<KnownReference> },
 }
 
 #[derive(Debug)]
@@ -129,12 +129,12 @@ impl Simulation {
     ///
     /// A robot whose cables are all attached to the platform moves it; its tensions hold it (see
     /// [`is_balanced`](Self::is_balanced)). Cables without geometry run the same movements each for itself, under a load
-    /// that varies. What the platform does is [`SimulationOptions::run`]. A cable with `presliding = "lumped"` has a
+    /// that varies, or the one that the robot file knows. What the platform does is [`SimulationOptions::run`]. A cable with `presliding = "lumped"` has a
     /// bristle on each pulley too: nature knows no other. `traction_mu` and `validated` of the file have no effect.
     ///
     /// # Errors
     /// [`SimulationError`] for an option out of range, an effect that cannot be simulated, a robot without a place where
-    /// all its cables can run, and a crossing run without a platform.
+    /// all its cables can run, a known load of cables that hold a platform, and a crossing run without a platform.
     pub fn new(robot: &RobotFile, options: &SimulationOptions) -> Result<Self, SimulationError> {
         Self::of(robot, options, 0..robot.options().cable.len())
     }
@@ -174,8 +174,14 @@ impl Simulation {
                 wanders: options.run == Run::Identification,
                 balanced,
             },
-            None => Tension::Bench { level: TensionLevel::of_bench(platform.weight_n(), tables) },
+            None => Tension::Bench {
+                level: TensionLevel::of_bench(platform.weight_n(), tables),
+                load: params.known_reference(),
+            },
         };
+        if held.is_some() && params.known_reference().is_some() {
+            return Err(SimulationError::KnownLoad);
+        }
         let variation = |cable| {
             let load = &mut random(options.seed, Purpose::Load, cable);
             if held.is_some() { Variation::own(load) } else { Variation::load(load) }
@@ -323,14 +329,22 @@ impl Simulation {
         let (mean_n, common_share, wanders) = match &self.tension {
             Tension::Platform { level, wanders: false, .. } => (level.mean_n, 0.0, false),
             Tension::Platform { level, common, .. } => (level.mean_n, common.share(time_s), true),
-            Tension::Bench { level } => (level.mean_n, 0.0, true),
+            Tension::Bench { level, .. } => (level.mean_n, 0.0, true),
         };
         for (force_n, variation) in self.forces_n.iter_mut().zip(&self.variations) {
             let own_share = if wanders { variation.share(time_s) } else { 0.0 };
             *force_n = mean_n * (1.0 + common_share + own_share);
         }
         let pushed_n = |push: &Variation| if self.hand_n > 0.0 { self.hand_n * push.share(time_s) } else { 0.0 };
-        if let Tension::Bench { level } = &self.tension {
+        if let Tension::Bench { level, load } = &self.tension {
+            let forces_n = self.forces_n.iter_mut().skip(self.first_cable);
+            for (force_n, cable) in forces_n.zip(&self.cables) {
+                // The reference is what is known, and the offset between it and the force at the platform.
+                let known_n = |load: KnownReference| {
+                    load.force_n(cable.winch.acceleration_m_per_s2(&self.motion, time_s)) - cable.offset_n
+                };
+                *force_n = load.map_or(*force_n, known_n);
+            }
             for (force_n, push) in self.forces_n.iter_mut().zip(&self.pushes).filter(|_| self.hand_n > 0.0) {
                 *force_n = (*force_n + pushed_n(push)).max(level.least_n);
             }

@@ -3,6 +3,7 @@
 use fric_core::robot::file::RobotFile;
 use fric_core::{CableInput, Pose, Sample, Wrench};
 use fric_lab::fit::{CableFit, FitOptions, Measurements, Parameter, Progress, Reference, fit_cables};
+use fric_lab::replay::Replay;
 use fric_lab::simulate::{Simulation, SimulationOptions};
 
 /// One cycle with all its cables.
@@ -39,15 +40,24 @@ impl Log {
     /// Goes into measurements as a log of its own.
     pub fn add_to(&self, measurements: &mut Measurements<'_>) {
         measurements.start_log();
-        for cycle in &self.0 {
-            measurements.add(&Sample {
-                stamp_nanos: cycle.stamp_nanos,
-                cables: &cycle.cables,
-                reference_force_n: &cycle.reference_force_n,
-                pose: cycle.pose,
-                outside_wrench: cycle.outside_wrench,
-            });
+        self.samples().for_each(|sample| measurements.add(&sample));
+    }
+
+    /// Runs through a replay.
+    pub fn replay(&self, replay: &mut Replay) {
+        for sample in self.samples() {
+            replay.step(&sample);
         }
+    }
+
+    fn samples(&self) -> impl Iterator<Item = Sample<'_>> {
+        self.0.iter().map(|cycle| Sample {
+            stamp_nanos: cycle.stamp_nanos,
+            cables: &cycle.cables,
+            reference_force_n: &cycle.reference_force_n,
+            pose: cycle.pose,
+            outside_wrench: cycle.outside_wrench,
+        })
     }
 
     /// By itself as what a fit takes.

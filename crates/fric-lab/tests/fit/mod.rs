@@ -8,6 +8,7 @@ mod effects;
 mod faulty;
 mod jacobian;
 mod logs;
+mod newcomers;
 mod oracle;
 mod published;
 mod residual_function;

@@ -47,7 +47,7 @@ fn the_number_of_threads_changes_no_bit() {
             let options = FitOptions::default();
             let few = FitOptions { parameters: Some(vec![parameter("mu")]), ..FitOptions::default() };
             let mut bits_of_both = bits(&fit_cables(&forces, &options, &Progress::new()));
-            bits_of_both.extend(bits(&fit_wrench(&wrench, &few, &Progress::new()).cables));
+            bits_of_both.extend(bits(&fit_wrench(&wrench, &few, &Progress::new()).unwrap().cables));
             bits_of_both
         })
     });

@@ -35,10 +35,14 @@
 //!
 //! Speed that a message does not have (an empty `velocity`, or NaN in it) is the change of length since it was last known
 //! over the time since then, also over a gap; 0 in the first row and where the clock went back.
+//!
+//! A reference that is known and not measured ([`SignalPaths::with_known_reference`]) is that of every cable in each row in
+//! which the cable has a sensor force; under a hanging mass only while the cable is in quiet motion.
 
 mod apart;
 mod channel;
 mod error;
+mod hanging;
 mod layout;
 mod order;
 mod pace;
@@ -53,6 +57,8 @@ pub(crate) use layout::{Probe, STAMPS};
 pub use reader::SignalReader;
 pub use speed::LastLength;
 pub use track::CLOCK_STEP_MESSAGES;
+
+use fric_core::KnownReference;
 
 use crate::path::MessagePath;
 
@@ -97,17 +103,33 @@ impl Role {
 }
 
 /// Where each signal is; `None` is a signal that is not looked for.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct SignalPaths {
     paths: [Option<MessagePath>; 6],
+    known_reference: Option<KnownReference>,
 }
 
 impl SignalPaths {
-    /// Sets the path of a role.
+    /// Sets the path of a role; that of the reference takes the place of a known one.
     #[must_use]
     pub fn with(mut self, role: Role, path: Option<MessagePath>) -> Self {
         self.paths[role as usize] = path;
+        if role == Role::Reference {
+            self.known_reference = None;
+        }
         self
+    }
+
+    /// Sets a reference that is known, in place of one in the log.
+    #[must_use]
+    pub fn with_known_reference(self, reference: KnownReference) -> Self {
+        Self { known_reference: Some(reference), ..self.with(Role::Reference, None) }
+    }
+
+    /// The reference that is known and not looked for in the log.
+    #[must_use]
+    pub fn known_reference(&self) -> Option<KnownReference> {
+        self.known_reference
     }
 
     /// The path of a role.

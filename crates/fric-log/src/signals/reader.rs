@@ -1,9 +1,10 @@
 //! The stream of rows.
 
-use fric_core::Sample;
+use fric_core::{KnownReference, Sample};
 
 use super::channel::{ChannelReader, Rejection};
 use super::error::SignalError;
+use super::hanging::HangingRows;
 use super::layout::Unfit;
 use super::row::RowBuffer;
 use super::track::Track;
@@ -35,6 +36,8 @@ pub struct SignalReader {
     /// The latest log time so far.
     log_time_nanos: u64,
     row: RowBuffer,
+    /// Rows that wait for the acceleration of a hanging mass.
+    hanging: Option<HangingRows>,
 }
 
 /// The tracks of all roles.
@@ -96,7 +99,9 @@ impl SignalReader {
         };
         let row = RowBuffer::new(topics.cable_names.len(), &topics.paths);
         let (channels, tracks) = (Vec::new(), Tracks::default());
-        Self { recording, topics, channels, tracks, is_ended: false, log_time_nanos: 0, row }
+        let known = topics.paths.known_reference();
+        let hanging = known.filter(|known| matches!(known, KnownReference::HangingMass { .. })).map(HangingRows::new);
+        Self { recording, topics, channels, tracks, is_ended: false, log_time_nanos: 0, row, hanging }
     }
 
     /// The recording, for its damage and its progress.
@@ -136,14 +141,31 @@ impl SignalReader {
     /// # Errors
     /// [`SignalError`] where the recording cannot be read on, or has no usable cable signal.
     pub fn next_row(&mut self) -> Result<Option<Sample<'_>>, SignalError> {
+        let Some(mut hanging) = self.hanging.take() else {
+            return Ok(if self.join_row()? { Some(self.row.sample()) } else { None });
+        };
+        let mut outcome = Ok(());
+        while outcome.is_ok() && !hanging.is_ready() {
+            outcome = self.join_row().map(
+                |is_joined| {
+                    if is_joined { hanging.push(&self.row.sample()) } else { hanging.end() }
+                },
+            );
+        }
+        let hanging = self.hanging.insert(hanging);
+        outcome.map(|()| hanging.pop())
+    }
+
+    /// Joins the next row; false at the end of the log.
+    fn join_row(&mut self) -> Result<bool, SignalError> {
         while !self.is_ready() {
             if self.is_ended {
-                return self.check_end().map(|()| None);
+                return self.check_end().map(|()| false);
             }
             self.read_message()?;
         }
         let Tracks { cable, others } = &mut self.tracks;
-        let Some(sample) = cable.pop() else { return Ok(None) };
+        let Some(sample) = cable.pop() else { return Ok(false) };
         for track in &mut *others {
             track.advance(sample.stamp_nanos);
         }
@@ -153,7 +175,7 @@ impl SignalReader {
         if cable.is_stepped() && cable.samples().is_empty() {
             self.follow_cable_step(stamp_nanos);
         }
-        Ok(Some(self.row.sample()))
+        Ok(true)
     }
 
     /// Whether the oldest cable sample has all that it can get.

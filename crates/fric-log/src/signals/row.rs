@@ -1,6 +1,6 @@
 //! The row given out: the signals of one time, put together from the tracks.
 
-use fric_core::{CableInput, Pose, Sample, Wrench};
+use fric_core::{CableInput, KnownReference, Pose, Sample, Wrench};
 
 use super::speed::LastLength;
 use super::track::{Around, Track, Tracked};
@@ -16,6 +16,8 @@ pub(super) struct RowBuffer {
     outside_wrench: Option<Wrench>,
     has_length_path: bool,
     has_speed_path: bool,
+    /// The reference of every cable, where it is the same all the time.
+    constant_n: Option<f64>,
     /// Room for lengths and speeds of their own topics.
     numbers: Vec<f64>,
     last_lengths: Vec<LastLength>,
@@ -39,6 +41,10 @@ impl RowBuffer {
             outside_wrench: None,
             has_length_path: paths.get(Role::Length).is_some(),
             has_speed_path: paths.get(Role::Speed).is_some(),
+            constant_n: paths.known_reference().and_then(|known| match known {
+                KnownReference::Constant { force_n } => Some(force_n),
+                KnownReference::HangingMass { .. } => None,
+            }),
             numbers: vec![f64::NAN; cable_count],
             last_lengths: vec![LastLength::UNKNOWN; cable_count],
             poses: [KnownPose::default(); 2],
@@ -61,6 +67,11 @@ impl RowBuffer {
         self.stamp_nanos = sample.stamp_nanos;
         self.fill_cables(sample, length, speed);
         interpolate(reference, self.stamp_nanos, &mut self.reference_force_n);
+        if let Some(constant_n) = self.constant_n {
+            for (reference_n, cable) in self.reference_force_n.iter_mut().zip(&self.cables) {
+                *reference_n = if cable.sensor_force_n.is_finite() { constant_n } else { f64::NAN };
+            }
+        }
         self.pose = pose.around(self.stamp_nanos).and_then(|around| self.pose_at(&around));
         self.outside_wrench = wrench.around(self.stamp_nanos).map(|around| {
             let mut parts = [f64::NAN; 6];

@@ -4,6 +4,7 @@ mod apart;
 mod clocks;
 mod cut;
 mod errors;
+mod known;
 mod layouts;
 mod oracle;
 mod partial;

@@ -204,7 +204,7 @@ table! {
         length,
         /// Cable speeds, likewise.
         speed,
-        /// Cable forces measured at the platform.
+        /// Cable forces at the platform: a topic or path, or what is known of them, {"constant_n": …} or {"hanging_mass_kg": …}.
         reference,
         /// Pose of the platform.
         pose,

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::fit::CableRecord;
+use super::record::CableRecord;
 
 /// Periods of a ripple that are looked for, and the strongest of them that are tried.
 const PERIODS: usize = 512;

@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use crate::fit::CableRecord;
+use super::record::CableRecord;
 
 /// Most blocks of a log, and what they last at least, s.
 const MOST_BLOCKS: f64 = 48.0;

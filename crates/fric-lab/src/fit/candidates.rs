@@ -6,7 +6,9 @@
 use fric_core::effects::{CATALOGUE, EffectRow};
 use fric_core::parameters::{MU, NO_PRESLIDING_N_PER_M, SIGMA, VISCOUS, Values};
 
-use crate::fit::{CableRecord, Parameter};
+use super::record::CableRecord;
+use super::vector::Parameter;
+use crate::replay::Deviation;
 
 /// μ that a frictionless model starts from.
 const TYPICAL_MU: f64 = 0.02;
@@ -32,6 +34,29 @@ pub struct Scale {
     pub end_s: f64,
     /// Periods at which the residual ripples with the cable's length, m.
     pub periods_m: Vec<f64>,
+}
+
+impl Scale {
+    /// Of a cable whose friction has come to a coefficient of `mu`, with this much noise; no ripple.
+    pub fn of(record: &CableRecord<'_>, mu: f64, noise_n: f64) -> Self {
+        let gain = record.params.frictionless_gain();
+        let (mut tension, mut speed) = (Deviation::default(), Deviation::default());
+        for row in record.rows.iter().filter(|row| row.is_sound()) {
+            tension.add(row.signals.sensor_force_n * gain);
+            if row.signals.displacement_m.abs() > 0.0 {
+                speed.add(row.signals.speed_m_per_s);
+            }
+        }
+        let tension_n = tension.rms().unwrap_or(1.0);
+        Self {
+            tension_n,
+            noise_n,
+            friction_n: mu * tension_n,
+            speed_m_per_s: speed.rms().unwrap_or(0.1).max(1e-4),
+            end_s: record.rows.iter().map(|row| row.cycle).fold(0.0, f64::max) * record.cycle_s,
+            periods_m: Vec::new(),
+        }
+    }
 }
 
 /// Whether a row is of the friction that every model can have, not of an effect.

@@ -1,0 +1,45 @@
+//! Cable forces at the platform that are known without a sensor there: the load of a test bench.
+
+/// What the cables of a robot pull at their platform ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum KnownReference {
+    /// The same force all the time, whatever the cable does: a pretension, a constant-force spring.
+    Constant {
+        /// Cable force at the platform, N.
+        force_n: f64,
+    },
+    /// A mass that hangs freely on the vertical end of the cable.
+    HangingMass {
+        /// The mass, kg.
+        mass_kg: f64,
+        /// Magnitude of gravity, m/s².
+        gravity_m_per_s2: f64,
+    },
+}
+
+impl KnownReference {
+    /// The cable force at the platform, N.
+    ///
+    /// `F = m·(g − a)` for a hanging mass by Newton's second law along the vertical, with the acceleration `a = d²l/dt²` of
+    /// the paid-out length in m/s²: a cable that pays out faster and faster lets the mass fall, and pulls less. In free fall
+    /// and beyond (`a ≥ g`) the cable is slack, and the force is 0. A constant force does not depend on `a`; NaN stays NaN.
+    ///
+    /// ```
+    /// use fric_core::KnownReference;
+    ///
+    /// let weight = KnownReference::HangingMass { mass_kg: 5.0, gravity_m_per_s2: 9.80665 };
+    /// assert!((weight.force_n(0.0) - 49.03325).abs() < 1e-12);
+    /// assert!((weight.force_n(-1.0) - 54.03325).abs() < 1e-12);
+    /// assert_eq!(weight.force_n(20.0), 0.0);
+    /// ```
+    #[must_use]
+    pub fn force_n(&self, acceleration_m_per_s2: f64) -> f64 {
+        match *self {
+            Self::Constant { force_n } => force_n,
+            Self::HangingMass { mass_kg, gravity_m_per_s2 } => {
+                let specific = gravity_m_per_s2 - acceleration_m_per_s2;
+                if specific <= 0.0 { 0.0 } else { mass_kg * specific }
+            }
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! Whether the wrench on the platform can tell the forces of the cables.
+//!
+//! `A^T f + w = 0` (\[P\] 3) is learned from in the directions in which cables pull. Two things rule it out:
+//!
+//! - **One line.** Where all cables pull along one line in every pose, the six equations are one: a reference force does as well,
+//!   and five components of the wrench are borne by something that is not in the model.
+//! - **Out of balance.** Where most of the wrench is in directions in which no cable pulls, no forces balance it: something else
+//!   holds the platform (a guide), or geometry, pose and wrench do not go together.
+//!
+//! A robot of fewer than six cables that hangs in balance is neither, whatever their number.
+
+use nalgebra::{DMatrix, Matrix6, Vector6};
+
+use super::error::FitError;
+
+/// Samples looked at, evenly spread over the log.
+const LOOKED_AT: usize = 2000;
+/// Singular values below this share of the largest are zero: geometry is known to 1 mm in 1 m at best.
+const RANK_RATIO: f64 = 1e-3;
+/// Greatest share of the wrench, by root mean square, that no cable bears. A robot that hangs in its cables has some per cent, from
+/// errors of the geometry and the pose; one that something else holds has nearly all. At half or double neither changes sides.
+const MOST_UNBORNE_RATIO: f64 = 0.5;
+
+/// Makes sure of it; the columns of the structure matrix are those of `cable_count` cables for each wrench.
+pub fn check(structure: &[Vector6<f64>], outside: &[Vector6<f64>], cable_count: usize) -> Result<(), FitError> {
+    let turn = by_moment_arm(structure);
+    let stride = outside.len().div_ceil(LOOKED_AT).max(1);
+    let (mut rank, mut squares, mut unborne) = (0, 0.0, 0.0);
+    let samples = structure.chunks_exact(cable_count.max(1)).zip(outside).step_by(stride);
+    for (columns, wrench) in samples.filter(|(columns, wrench)| is_finite(columns) && is_finite(&[**wrench])) {
+        let wrench = turn * wrench;
+        let scaled: Vec<Vector6<f64>> = columns.iter().map(|column| turn * column).collect();
+        let svd = DMatrix::from_fn(6, cable_count, |row, column| scaled[column][row]).svd(true, false);
+        let least = RANK_RATIO * svd.singular_values.max();
+        let directions = svd.u.iter().flat_map(|u| u.column_iter()).zip(&svd.singular_values);
+        let borne: Vec<f64> = directions.filter(|(_, value)| **value > least).map(|(u, _)| u.dot(&wrench)).collect();
+        rank = rank.max(borne.len());
+        squares += wrench.norm_squared();
+        unborne += wrench.norm_squared() - borne.iter().map(|part| part * part).sum::<f64>();
+    }
+    if rank == 1 {
+        return Err(FitError::new(ONE_LINE, ONE_LINE_ADVICE));
+    }
+    let ratio = (unborne / squares).max(0.0).sqrt();
+    if rank > 1 && ratio > MOST_UNBORNE_RATIO {
+        let cause = format!(
+            "no forces of the cables balance the wrench: {:.0} % of it is in directions in which no cable pulls",
+            100.0 * ratio
+        );
+        return Err(FitError::new(cause, UNBORNE_ADVICE));
+    }
+    Ok(())
+}
+
+/// Why a robot of one cable cannot be fitted to the wrench.
+pub const ONE_LINE: &str = "the wrench cannot identify the cables: all pull along one line in every pose, and bear one of its six \
+                            components";
+/// What to do about it.
+pub const ONE_LINE_ADVICE: &str = "Fit to the force at the platform: name its topic as `reference` under `[log]` in the robot file, or \
+                                   give the load there, `reference = { hanging_mass_kg = … }`.";
+const UNBORNE_ADVICE: &str = "Compare `base_m`, `platform_m`, the mass and the poses with the robot; a platform that something else \
+                              holds cannot be fitted to the wrench.";
+
+fn is_finite(columns: &[Vector6<f64>]) -> bool {
+    columns.iter().flat_map(|column| column.iter()).all(|number| number.is_finite())
+}
+
+/// Brings torques to the scale of forces, by the mean moment arm.
+pub fn by_moment_arm(structure: &[Vector6<f64>]) -> Matrix6<f64> {
+    let all_m = structure.iter().map(|column| column.fixed_rows::<3>(3).norm()).filter(|arm_m| arm_m.is_finite());
+    let (sum_m, count) = all_m.fold((0.0, 0.0), |(sum, count), arm_m| (sum + arm_m, count + 1.0));
+    // Cables that all meet in the platform's origin exert no torque: there is nothing to scale.
+    let arm_m = if sum_m > 0.0 { sum_m / count } else { 1.0 };
+    Matrix6::from_diagonal(&Vector6::new(1.0, 1.0, 1.0, 1.0 / arm_m, 1.0 / arm_m, 1.0 / arm_m))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A sample of cables that pull along directions at arms from the origin.
+    fn columns(cables: &[([f64; 3], [f64; 3])]) -> Vec<Vector6<f64>> {
+        let column = |(direction, arm): &([f64; 3], [f64; 3])| {
+            let (u, b) = (nalgebra::Vector3::from(*direction).normalize(), nalgebra::Vector3::from(*arm));
+            let torque = b.cross(&u);
+            Vector6::new(u.x, u.y, u.z, torque.x, torque.y, torque.z)
+        };
+        cables.iter().map(column).collect()
+    }
+
+    const WEIGHT: Vector6<f64> = Vector6::new(0.0, 0.0, -10.0, 0.0, 0.0, 0.0);
+
+    #[test]
+    fn cables_on_one_line_are_refused_and_others_that_bear_the_wrench_are_not() {
+        let up = ([0.0, 0.0, 1.0], [0.0, 0.0, 0.0]);
+        let one = columns(&[up]);
+        assert!(check(&one, &[WEIGHT], 1).is_err_and(|error| error.cause.contains("one line")));
+        let again = columns(&[up, ([0.0, 0.0, 1.0], [0.0, 0.0, 0.2])]);
+        assert!(check(&again, &[WEIGHT], 2).is_err_and(|error| error.cause.contains("one line")));
+        // Two ropes of a swing bear its weight, and so do three on a ring.
+        let swing = columns(&[([0.0, 0.0, 1.0], [0.3, 0.0, 0.0]), ([0.0, 0.0, 1.0], [-0.3, 0.0, 0.0])]);
+        assert_eq!(check(&swing, &[WEIGHT], 2), Ok(()));
+        let ring = columns(&[
+            ([0.5, 0.0, 1.0], [0.3, 0.0, 0.0]),
+            ([-0.25, 0.4330127, 1.0], [-0.15, 0.2598076, 0.0]),
+            ([-0.25, -0.4330127, 1.0], [-0.15, -0.2598076, 0.0]),
+        ]);
+        assert_eq!(check(&ring, &[WEIGHT], 3), Ok(()));
+        // A slope of 45° between two cables of a plane: half of the weight's square is for a guide.
+        let level = columns(&[([1.0, 0.0, 0.2], [0.0, 0.0, 0.0]), ([0.0, 1.0, 0.0], [0.0, 0.0, 0.0])]);
+        assert!(check(&level, &[WEIGHT], 2).is_err_and(|error| error.cause.contains("98 %")));
+        // Of no sample nothing can be said here.
+        assert_eq!(check(&one, &[Vector6::repeat(f64::NAN)], 1), Ok(()));
+    }
+}
