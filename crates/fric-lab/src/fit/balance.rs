@@ -102,8 +102,8 @@ mod tests {
         assert_eq!(check(&swing, &[WEIGHT], 2), Ok(()));
         let ring = columns(&[
             ([0.5, 0.0, 1.0], [0.3, 0.0, 0.0]),
-            ([-0.25, 0.4330127, 1.0], [-0.15, 0.2598076, 0.0]),
-            ([-0.25, -0.4330127, 1.0], [-0.15, -0.2598076, 0.0]),
+            ([-0.25, 0.433_012_7, 1.0], [-0.15, 0.259_807_6, 0.0]),
+            ([-0.25, -0.433_012_7, 1.0], [-0.15, -0.259_807_6, 0.0]),
         ]);
         assert_eq!(check(&ring, &[WEIGHT], 3), Ok(()));
         // A slope of 45° between two cables of a plane: half of the weight's square is for a guide.

@@ -12,14 +12,17 @@
 //! number of threads.
 
 mod balance;
+mod bins;
 mod cables;
 pub(crate) mod candidates;
+mod conditions;
 mod determined;
 mod directions;
 mod dual;
 mod error;
 mod gang;
 mod gram;
+mod groups;
 mod interpolated;
 mod newcomers;
 pub(crate) mod noise;
@@ -47,9 +50,11 @@ mod wrench;
 
 /// What other searches on the same records are made of.
 pub(crate) mod engine {
+    pub use super::bins::Bins;
     pub use super::cables::{Search, prepared, used};
+    pub use super::conditions::{Condition, Spacing, conditions, sign, time};
     pub use super::gang::{Gang, Seat};
-    pub use super::gram::{Gram, Triangle};
+    pub use super::gram::Gram;
     pub use super::interpolated::measured;
     pub use super::problem::{Comparison, Loss, Member, Problem};
     pub use super::rewritten::{NewValues, with_values};

@@ -1,8 +1,8 @@
 //! What a fit can be told.
 
 use fric_core::CableParams;
-use fric_core::effects;
-use fric_core::parameters::FRICTION_COUNT;
+use fric_core::effects::{self, pulley_eccentricity, sensor_offset};
+use fric_core::parameters::{FRICTION_COUNT, OFFSET};
 
 use super::solve::Weighing;
 use super::vector::Parameter;
@@ -30,7 +30,13 @@ impl FitOptions {
             let free = |parameter: &Parameter| {
                 parameter.place() < FRICTION_COUNT || parameter.effect().is_some_and(|kind| acting.contains(&kind))
             };
-            Parameter::all().filter(|parameter| parameter.row().fitted).filter(free).collect()
+            // An offset of the sensor and one at the platform are the same to the force: never both.
+            let twice =
+                |parameter: &Parameter| parameter.place() == OFFSET && acting.contains(&sensor_offset::ROW.kind);
+            // A ripple's period has no neutral value to start from: an effect that acts has one.
+            let varies =
+                |parameter: &Parameter| parameter.row().fitted || parameter.place() == pulley_eccentricity::PERIOD;
+            Parameter::all().filter(varies).filter(free).filter(|parameter| !twice(parameter)).collect()
         })
     }
 }

@@ -17,6 +17,7 @@ use rayon::prelude::*;
 
 use super::gang::{Seat, all_forces};
 use super::gram::Gram;
+use super::groups::Groups;
 use super::pass::{CandidatePass, Forces, LanePass, Part, with_room_for};
 use super::record::CableRecord;
 use super::scores::Scores;
@@ -117,12 +118,13 @@ impl Problem<'_> {
         self.visit(values, true, |_, rows| rows.for_each(|row| gram.add(row))).then_some(gram)
     }
 
-    /// The same with the samples' scores.
-    pub fn gram_and_scores(&self, values: &[Values]) -> Option<(Gram, Scores)> {
+    /// The same with the samples' scores, which are also summed up in groups if there are any.
+    pub fn gram_and_scores(&self, values: &[Values], groups: Option<Groups>) -> Option<(Gram, Scores)> {
         let count = self.parameter_count();
-        let (mut gram, mut scores) = (Gram::new(count), Scores::new(count));
+        let mut gram = Gram::new(count);
+        let mut scores = groups.map_or_else(|| Scores::new(count), |groups| Scores::grouped(count, groups));
         let mut score = vec![0.0; count];
-        let completed = self.visit(values, true, |_, rows| {
+        let completed = self.visit(values, true, |place, rows| {
             score.fill(0.0);
             for row in rows {
                 gram.add(row);
@@ -131,7 +133,7 @@ impl Problem<'_> {
                     *sum += derivative * residual;
                 }
             }
-            scores.add(&score);
+            scores.add_of(place, &score);
         });
         completed.then_some((gram, scores))
     }

@@ -249,12 +249,29 @@ impl<'a> CableRecord<'a> {
         CableRecord { rows, starts: &[0], times_s: &[], ..*self }
     }
 
+    /// The same cycles with other parameters to start from.
+    pub(crate) fn with_params<'b>(&self, params: &'b CableParams) -> CableRecord<'b>
+    where
+        'a: 'b,
+    {
+        CableRecord { params, ..*self }
+    }
+
     /// The same cycles with other signals.
     pub(crate) fn with_signals<'b>(&self, rows: &'b [Row]) -> CableRecord<'b>
     where
         'a: 'b,
     {
         CableRecord { rows, ..*self }
+    }
+
+    /// Time between two samples for the most part, s: the median.
+    #[must_use]
+    pub fn interval_s(&self) -> f64 {
+        let mut intervals: Vec<f64> = self.times_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let middle = intervals.len() / 2;
+        let median = (!intervals.is_empty()).then(|| *intervals.select_nth_unstable_by(middle, f64::total_cmp).1);
+        median.filter(|interval_s| *interval_s > 0.0).unwrap_or(self.cycle_s)
     }
 
     /// When a cycle is, s since the first sample; several logs one after the other.

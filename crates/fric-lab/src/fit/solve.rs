@@ -4,10 +4,12 @@ use fric_core::parameters::Values;
 use nalgebra::DMatrix;
 
 use super::gram::{Gram, Triangle};
+use super::groups::Groups;
 use super::optimizer::{self, Minimum, Termination};
-use super::problem::{Loss, Member, Problem};
+use super::problem::{Comparison, Loss, Member, Problem};
 use super::report::OpenCombination;
 use super::selection::Standing;
+use super::undetermined::covariance;
 use super::vector::{Coordinate, Parameter, with};
 
 /// Deviations beyond this many standard deviations that their neighbours do not share are no measurements.
@@ -102,6 +104,12 @@ pub fn solve(
         }
     }
     solution.hold_undetermined(problem, given, cycle_s);
+    if let (Comparison::Forces, [member], false) =
+        (&problem.comparison, problem.members.as_slice(), solution.unknowns.is_empty())
+    {
+        let groups = Groups::of(&member.record);
+        solution.covariance = covariance(problem, &solution.values, Some(groups)).0;
+    }
     solution
 }
 

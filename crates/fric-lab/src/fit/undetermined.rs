@@ -14,6 +14,7 @@ use nalgebra::DMatrix;
 
 use super::determined::{HALF_INTERVAL, Yardstick};
 use super::directions::{LEAST_WEIGHT, OpenDirection, open_directions};
+use super::groups::Groups;
 use super::optimizer::Termination;
 use super::pass::Forces;
 use super::problem::{Comparison, Member, Problem};
@@ -34,7 +35,7 @@ struct Knowledge {
 
 impl Knowledge {
     fn of(problem: &Problem<'_>, values: &[Values]) -> Self {
-        let (normal, covariance, leverages) = uncertainty(problem, values);
+        let (normal, covariance, leverages) = uncertainty(problem, values, None);
         let sticks = yardsticks(problem, values);
         let of = |(place, unknown): (usize, &Unknown)| {
             let value = values.get(unknown.member).map_or(f64::NAN, |values| values[unknown.parameter.place()]);
@@ -188,17 +189,21 @@ fn yardsticks(problem: &Problem<'_>, values: &[Values]) -> Vec<Yardstick> {
 }
 
 /// Covariance of what a problem varies, infinite where the samples say nothing; and by how much each moves for residuals of
-/// 1 N in every sample, at worst.
-pub fn covariance(problem: &Problem<'_>, values: &[Values]) -> (DMatrix<f64>, Vec<f64>) {
-    let (_, covariance, leverages) = uncertainty(problem, values);
+/// 1 N in every sample, at worst. The covariance is also taken over groups of samples, if there are any.
+pub fn covariance(problem: &Problem<'_>, values: &[Values], groups: Option<Groups>) -> (DMatrix<f64>, Vec<f64>) {
+    let (_, covariance, leverages) = uncertainty(problem, values, groups);
     (covariance, leverages)
 }
 
 /// The same behind the matrix `JᵀJ`, which is `None` where it is not of numbers.
-fn uncertainty(problem: &Problem<'_>, values: &[Values]) -> (Option<DMatrix<f64>>, DMatrix<f64>, Vec<f64>) {
+fn uncertainty(
+    problem: &Problem<'_>,
+    values: &[Values],
+    groups: Option<Groups>,
+) -> (Option<DMatrix<f64>>, DMatrix<f64>, Vec<f64>) {
     let count = problem.parameter_count();
     let unknown = || (None, DMatrix::from_diagonal_element(count, count, f64::INFINITY), vec![f64::INFINITY; count]);
-    let Some((gram, scores)) = problem.gram_and_scores(values) else { return unknown() };
+    let Some((gram, scores)) = problem.gram_and_scores(values, groups) else { return unknown() };
     let (matrix, ..) = gram.normal_equations();
     let Some(inverse) = inverse_of_normal(&matrix) else { return unknown() };
     let covariance = scores.covariance(&inverse);
@@ -219,7 +224,8 @@ fn uncertainty(problem: &Problem<'_>, values: &[Values]) -> (Option<DMatrix<f64>
 /// the matrix is not of numbers.
 pub fn inverse_of_normal(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let count = matrix.nrows();
-    let scale: Vec<f64> = matrix.diagonal().iter().map(|square| 1.0 / square.max(f64::MIN_POSITIVE).sqrt()).collect();
+    let scale: Vec<f64> =
+        matrix.diagonal().iter().map(|square| if *square > 0.0 { square.sqrt().recip() } else { 1.0 }).collect();
     let scaled = DMatrix::from_fn(count, count, |row, column| {
         let vanishing = if row == column { 1e-12 } else { 0.0 };
         matrix[(row, column)] * scale[row] * scale[column] + vanishing

@@ -233,7 +233,7 @@ fn an_inner_tension_is_told_and_friction_determined() {
     let robot = |friction: &str, gains: [f64; 4]| {
         let corners = [(2.0, 2.0), (-2.0, 2.0), (-2.0, -2.0), (2.0, -2.0)];
         let cables = corners.iter().zip(gains).map(|((x, y), gain)| {
-            let effects = if gain == 1.0 { String::new() } else { format!("effects = [{{ kind = 'sensor_gain', gain = {gain} }}]\n") };
+            let effects = format!("effects = [{{ kind = 'sensor_gain', gain = {gain:?} }}]\n");
             format!(
                 "[[cable]]\nname = 'cable{x}{y}'\nbase_m = [{x:?}, {y:?}, 3.0]\nplatform_m = [0.0, 0.0, 0.0]\n\
                  pulleys = [{{ wrap_deg = 180.0, sensor = true }}, {{ wrap_deg = 90.0 }}]\nfriction = {{ {friction} }}\n{effects}"
@@ -260,7 +260,7 @@ fn an_inner_tension_is_told_and_friction_determined() {
     }
     // Opposite cables by the same steps, neighbours by the opposite ones.
     let is_inner = |parts: &Vec<(usize, String, f64)>| {
-        let sign = |cable: usize| if cable % 2 == 0 { 1.0 } else { -1.0 };
+        let sign = |cable: usize| if cable.is_multiple_of(2) { 1.0 } else { -1.0 };
         let first = parts[0].2 * sign(parts[0].0);
         parts.len() == 4
             && parts.iter().all(|(cable, name, step)| name == "offset_n" && step * sign(*cable) * first > 0.0)
