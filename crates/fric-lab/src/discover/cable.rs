@@ -2,29 +2,31 @@
 
 use std::sync::atomic::AtomicBool;
 
+use fric_core::effects::EffectRow;
 use fric_core::parameters::{MU, NO_PRESLIDING_N_PER_M, OFFSET, SIGMA, VISCOUS, Values};
 use nalgebra::DMatrix;
 
 use super::candidates::Scale;
-use super::conditions::{Condition, conditions};
 use super::foreign::{FaultyStretch, faulty_stretches, leave_out};
-use super::lines::{Line, Times, lines};
-use super::naming::{Named, Naming, STRONG_BIC, Search};
+use super::lines::{Line, Times, lines, motion_and_load};
+use super::naming::{self, Named, Naming, STRONG_BIC, Search};
 use super::noise::white_noise;
 use super::places::{Excess, Place};
 use super::profile::profile;
 use super::readiness::{lack_of, lack_of_noise, lack_of_samples};
-use super::report::{CableDiscovery, Finding, Model, RunnerUp, Tried, Unexplained, Verdict};
-use super::rest::{WORTH, is_wander};
+use super::report::{CableDiscovery, Candidate, Finding, Model, RunnerUp, Tried, Unexplained, Verdict};
+use super::rest::{WORTH, wander};
 use super::split::{Block, split};
 use super::stretch::{Stretch, stretch_of_cable};
 use super::workbench::{self, Trial, Workbench};
-use crate::fit::engine;
-use crate::fit::{CableRecord, FitOptions, Parameter, Progress, Row, SampleCounts};
+use crate::fit::engine::{self, Condition, Standing, conditions, time};
+use crate::fit::{CableRecord, FitOptions, HALF_INTERVAL, Parameter, Progress, Row, SampleCounts};
 use crate::replay::Deviation;
 
-/// What is left of a gap when its cause is known is not worth a further name below this share.
-const REMAINDER: f64 = 0.02;
+/// Lines whose frequencies differ by less than this share are the same.
+const SAME_LINE_RATIO: f64 = 1e-3;
+/// Looks at a cable with what was found taken for given, until nothing more is found.
+const LOOKS: usize = 3;
 
 /// No model is believed to less than this share of the tension, however little noise there is.
 const BELIEVED_RATIO: f64 = 1e-4;
@@ -47,39 +49,56 @@ pub fn discover_cable(record: &CableRecord<'_>, progress: &Progress) -> CableDis
     let counts = engine::used(&paper.standings);
     let blocks = split(record);
     let conditions = conditions(record);
+    // A rate has the sensor's noise in it, which the residual has too: no effect is steady over it.
+    let steady = conditions.iter().filter(|condition| condition.signal != "force_rate");
+    let with_time: Vec<Condition> = steady.cloned().chain([time(record)]).collect();
     let (mut start, held) = given_model(record, &paper.solution);
 
-    // What hums is no matter of friction: it comes off the reference.
     let measured = engine::measured(record);
-    let bench = Workbench { record: *record, blocks: &blocks, counts: &counts, measured: &measured, stop };
-    let fitted = bench.try_one(&start);
-    // Between two measurements too: it may be faster than they are.
-    let throughout = with_interpolated(record, &counts, &measured);
     let times = Times::of(record);
-    let hum = lines(&Workbench { counts: &throughout, ..bench }.residuals_n(&fitted.values), &times);
-    let rows = without_lines(record, &hum, &times);
-    let case = Case { record: record.with_signals(&rows), raw: *record, blocks: &blocks, measured: &measured, stop };
-    let Some(mut outcome) = case.look(&counts, &start, &conditions) else {
+    let bench = Workbench { record: *record, blocks: &blocks, counts: &counts, measured: &measured, stop };
+    // Between two measurements too: a line may be faster than they are.
+    let throughout = with_interpolated(record, &counts, &measured);
+    let hum_left_by = |values: &Values| {
+        let residual_n = Workbench { counts: &throughout, ..bench.clone() }.residuals_n(values);
+        lines(&residual_n, &times, &motion_and_load(record))
+    };
+    let raw = Case {
+        record: *record,
+        raw: *record,
+        blocks: &blocks,
+        counts: &counts,
+        standings: &standings,
+        measured: &measured,
+        conditions: &conditions,
+        with_time: &with_time,
+        stop,
+    };
+    let look = |hum: &[Line], start: &mut workbench::Model| {
+        // What hums is no matter of friction: it comes off the reference.
+        let rows = without_lines(record, hum, &times);
+        raw.with_rows(&rows).look_closely(start, &held)
+    };
+    let mut hum = hum_left_by(&bench.try_one(&start).values);
+    let Some(mut outcome) = look(&hum, &mut start) else {
         return CableDiscovery::untold(record, samples, lack_of_noise());
     };
-    let told = case.told(&counts, &outcome.naming, &held);
-    if !told.is_empty() {
-        start.free.extend(told);
-        if let Some(again) = case.look(&counts, &start, &conditions) {
-            outcome = again;
-        }
+    // A wrong model may hide a line, or leave what only looks like one.
+    let after = hum_left_by(&outcome.fitted.values);
+    if !are_alike(&hum, &after)
+        && let Some(again) = look(&after, &mut start)
+    {
+        (outcome, hum) = (again, after);
     }
-    let mut stretch = None;
-    // A narrow stretch with trouble of its own may hide what else there is, or be taken for it.
-    if let Some(found) = outcome.stretch.take() {
-        let outside: Vec<bool> = counts.iter().zip(&found.cycles).map(|(counts, inside)| *counts && !inside).collect();
-        let again = case.look(&outside, &start, &conditions);
-        let is_clearer = |again: &Outcome| again.rest_is_noise || again.naming.named.len() > outcome.naming.named.len();
-        if let Some(again) = again.filter(is_clearer) {
-            (outcome, stretch) = (again, Some(found.place));
-        }
-    }
-    case.report(&outcome, &counts, samples, &conditions, Foreign { faults, hum, stretch })
+    let rows = without_lines(record, &hum, &times);
+    raw.with_rows(&rows).report(&outcome, samples, Foreign { faults, hum })
+}
+
+/// Whether two looks found lines at the same frequencies.
+fn are_alike(one: &[Line], other: &[Line]) -> bool {
+    let is_in =
+        |line: &Line| other.iter().any(|of| (of.frequency_hz / line.frequency_hz - 1.0).abs() < SAME_LINE_RATIO);
+    one.len() == other.len() && one.iter().all(is_in)
 }
 
 /// The given model, with start values from the data for what it has of its own: of friction what acts, an offset if it has one (a
@@ -87,14 +106,9 @@ pub fn discover_cable(record: &CableRecord<'_>, progress: &Progress) -> CableDis
 fn given_model(record: &CableRecord<'_>, paper: &engine::Solution) -> (workbench::Model, Vec<Parameter>) {
     let given = record.params.values();
     let undetermined = |parameter: &Parameter| paper.undetermined.iter().any(|unknown| unknown.parameter == *parameter);
-    let acts = |parameter: &Parameter| match parameter.place() {
-        MU | VISCOUS => given[parameter.place()] > 0.0,
-        OFFSET => given[OFFSET].abs() > 0.0,
-        SIGMA => given[MU] > 0.0 && given[SIGMA] < NO_PRESLIDING_N_PER_M,
-        _ => true,
-    };
     let all = FitOptions::default().free(record.params);
-    let (held, free): (Vec<Parameter>, Vec<Parameter>) = all.into_iter().filter(acts).partition(undetermined);
+    let acting = all.into_iter().filter(|parameter| acts(parameter, &given));
+    let (held, free): (Vec<Parameter>, Vec<Parameter>) = acting.partition(undetermined);
     let mut values = given;
     if let Some(found) = paper.values.first() {
         for parameter in &free {
@@ -102,6 +116,16 @@ fn given_model(record: &CableRecord<'_>, paper: &engine::Solution) -> (workbench
         }
     }
     (workbench::Model { values, free }, held)
+}
+
+/// Whether a parameter of the friction acts in a model.
+fn acts(parameter: &Parameter, values: &Values) -> bool {
+    match parameter.place() {
+        MU | VISCOUS => values[parameter.place()] > 0.0,
+        OFFSET => values[OFFSET].abs() > 0.0,
+        SIGMA => values[MU] > 0.0 && values[SIGMA] < NO_PRESLIDING_N_PER_M,
+        _ => true,
+    }
 }
 
 /// What counts, and what is between two neighbours of it, on the line from one measurement to the next.
@@ -135,17 +159,24 @@ fn without_lines(record: &CableRecord<'_>, lines: &[Line], times: &Times) -> Vec
 struct Foreign {
     faults: Vec<FaultyStretch>,
     hum: Vec<Line>,
-    stretch: Option<Place>,
 }
 
 /// A cable with its log.
+#[derive(Clone, Copy)]
 struct Case<'a> {
     /// Without hum.
     record: CableRecord<'a>,
     /// As it is.
     raw: CableRecord<'a>,
     blocks: &'a [Block],
+    /// Which samples count.
+    counts: &'a [bool],
+    /// Standing of each before anything was known about the friction.
+    standings: &'a [Standing],
     measured: &'a [bool],
+    conditions: &'a [Condition],
+    /// The same and the time.
+    with_time: &'a [Condition],
     stop: &'a AtomicBool,
 }
 
@@ -155,15 +186,40 @@ struct Outcome {
     counts: Vec<bool>,
     base: Trial,
     naming: Naming,
+    /// The model with all that was found, fitted to all samples as an identification does.
+    fitted: Fitted,
+    rest: Rest,
+    /// A stretch of cable with trouble of its own, left out of the rest.
+    stretch: Option<Place>,
+}
+
+/// A model fitted to all samples.
+#[derive(Clone)]
+struct Fitted {
+    values: Values,
+    parameters: Vec<Parameter>,
+    covariance: DMatrix<f64>,
+}
+
+/// What a model leaves.
+struct Rest {
     noise_n: f64,
     wander_n: f64,
-    rest_n: Vec<f64>,
-    rest_is_noise: bool,
-    rest_places: Vec<Place>,
+    residual_n: Vec<f64>,
+    is_noise: bool,
+    places: Vec<Place>,
     stretch: Option<Stretch>,
 }
 
 impl<'a> Case<'a> {
+    /// The same with other signals.
+    fn with_rows<'b>(&self, rows: &'b [Row]) -> Case<'b>
+    where
+        'a: 'b,
+    {
+        Case { record: self.raw.with_signals(rows), ..*self }
+    }
+
     fn bench<'b>(&self, counts: &'b [bool]) -> Workbench<'b>
     where
         'a: 'b,
@@ -175,34 +231,117 @@ impl<'a> Case<'a> {
         Excess { record: &self.record, blocks: self.blocks, residual_n, noise_n }
     }
 
-    /// Fits, names, and judges the rest; `None` where nothing tells the noise.
-    fn look(&self, counts: &[bool], start: &workbench::Model, conditions: &[Condition]) -> Option<Outcome> {
+    /// Looks, and looks again with what the log determines with all that was found, and outside of a narrow stretch of cable with trouble of its
+    /// own, which may hide what else there is, or be taken for it; `None` where nothing tells the noise.
+    fn look_closely(&self, start: &mut workbench::Model, held: &[Parameter]) -> Option<Outcome> {
+        let mut outcome = self.look(self.counts, start)?;
+        let told = self.told(self.counts, &outcome.naming, held);
+        if told.iter().any(|parameter| !start.free.contains(parameter)) {
+            start.free.extend(told);
+            outcome = self.look(self.counts, start).unwrap_or(outcome);
+        }
+        if let Some(found) = outcome.rest.stretch.take() {
+            let outside: Vec<bool> =
+                self.counts.iter().zip(&found.cycles).map(|(counts, inside)| *counts && !inside).collect();
+            let again = self.look(&outside, start);
+            let is_clearer =
+                |again: &Outcome| again.rest.is_noise || again.naming.named.len() > outcome.naming.named.len();
+            if let Some(again) = again.filter(is_clearer) {
+                outcome = Outcome { stretch: Some(found.place), ..again };
+            }
+        }
+        Some(outcome)
+    }
+
+    /// Fits, names, and judges the rest, until the model with all that was found lacks nothing that could be named.
+    fn look(&self, counts: &[bool], start: &workbench::Model) -> Option<Outcome> {
         let bench = self.bench(counts);
         let base = bench.try_one(start);
-        let residual_n = bench.residuals_n(&base.values);
-        let least_n = BELIEVED_RATIO * self.scale(&base, 0.0).tension_n;
+        let mut before: Vec<&'static EffectRow> = Vec::new();
+        let mut looks = 0;
+        loop {
+            looks += 1;
+            let noise_n = self.noise_n(&bench, &base)?;
+            let scale = self.scale(&base, noise_n);
+            let naming = Search::new(&bench, noise_n, scale, &base, self.with_time).run(&before);
+            let fitted = self.fitted(counts, &naming.model);
+            let again = workbench::Model { values: fitted.values, free: fitted.parameters.clone() };
+            let rows: Vec<&'static EffectRow> = naming.named.iter().map(|named| named.row).collect();
+            let more = if rows.is_empty() || looks == LOOKS { Vec::new() } else { self.missing(&bench, &again)? };
+            if more.is_empty() {
+                let residual_n = bench.residuals_n(&fitted.values);
+                let rest = self.rest(&bench, residual_n, self.least_n(&base))?;
+                return Some(Outcome { counts: counts.to_vec(), base, naming, fitted, rest, stretch: None });
+            }
+            before = rows.into_iter().chain(more).collect();
+        }
+    }
+
+    /// What a model lacks, were it given.
+    fn missing(&self, bench: &Workbench<'_>, model: &workbench::Model) -> Option<Vec<&'static EffectRow>> {
+        let base = bench.try_one(model);
+        let noise_n = self.noise_n(bench, &base)?;
+        let naming = Search::new(bench, noise_n, self.scale(&base, noise_n), &base, self.with_time).run(&[]);
+        Some(naming.named.iter().map(|named| named.row).collect())
+    }
+
+    /// Standard deviation of the white noise in what a model leaves, N.
+    fn noise_n(&self, bench: &Workbench<'_>, model: &Trial) -> Option<f64> {
+        let residual_n = bench.residuals_n(&model.values);
+        Some(white_noise(&bench.measured_of(&residual_n))?.max(self.least_n(model)))
+    }
+
+    /// What the model is not believed to, N.
+    fn least_n(&self, model: &Trial) -> f64 {
+        BELIEVED_RATIO * self.scale(model, 0.0).tension_n
+    }
+
+    /// What a model leaves, N, judged.
+    fn rest(&self, bench: &Workbench<'_>, residual_n: Vec<f64>, least_n: f64) -> Option<Rest> {
         let noise_n = white_noise(&bench.measured_of(&residual_n))?.max(least_n);
-        let naming = Search::new(&bench, noise_n, self.scale(&base, noise_n), &base).run();
-        let rest_n = bench.residuals_n(&naming.model.values);
-        let noise_n = white_noise(&bench.measured_of(&rest_n))?.max(least_n);
-        let excess = self.excess(&rest_n, noise_n);
-        let before_n = bench.residuals_n(&naming.with_friction.values);
-        let (share, before) = (excess.share(), self.excess(&before_n, noise_n).share());
-        let is_small = share <= WORTH.max(REMAINDER * if naming.named.is_empty() { 0.0 } else { before });
-        let rest_places = excess.places(conditions);
-        let stretch = if is_small { None } else { stretch_of_cable(&excess, conditions) };
-        let is_wander = !is_small && stretch.is_none() && is_wander(&excess, &rest_places);
-        Some(Outcome {
-            counts: counts.to_vec(),
-            base,
-            naming,
-            noise_n,
-            wander_n: if is_wander { noise_n * share.sqrt() } else { 0.0 },
-            rest_is_noise: is_small || is_wander,
-            rest_places,
-            stretch,
-            rest_n,
-        })
+        let excess = self.excess(&residual_n, noise_n);
+        let places = excess.places(self.conditions);
+        let share = excess.share();
+        let is_small = share <= WORTH;
+        let stretch = if is_small { None } else { stretch_of_cable(&excess, self.conditions) };
+        let wander = if is_small || stretch.is_some() { 0.0 } else { wander(&excess, &places) };
+        let is_noise = share - wander <= WORTH * (1.0 + wander);
+        Some(Rest { noise_n, wander_n: noise_n * wander.sqrt(), is_noise, places, stretch, residual_n })
+    }
+
+    /// The model with all that was found as an identification of the robot file with it gives it: fitted to all samples that count. Friction that
+    /// neither the file has nor was found stays out, and so does an offset that is more than chance: naming has refused it.
+    fn fitted(&self, counts: &[bool], model: &Trial) -> Fitted {
+        let given = self.record.params.values();
+        let is_known = |parameter: &Parameter| {
+            !parameter.is_friction() || acts(parameter, &model.values) || acts(parameter, &given)
+        };
+        let of = |also: fn(&Parameter) -> bool| {
+            let params = self.record.params.with_values(&model.values).ok()?;
+            let mut parameters = FitOptions::default().free(&params);
+            parameters.retain(|parameter| is_known(parameter) || also(parameter));
+            let options = FitOptions { parameters: Some(parameters), ..FitOptions::default() };
+            let left_out = self.counts.iter().zip(counts).map(|(all, counts)| *all && !counts);
+            let standing = |(standing, left_out)| if left_out { Standing::Flagged } else { standing };
+            let standings: Vec<Standing> = self.standings.iter().copied().zip(left_out).map(standing).collect();
+            let gang = engine::Gang::new(1, self.stop);
+            let record = self.record.with_params(&params);
+            let solution = engine::Search::run(&record, &standings, &options, self.stop, gang.seat(0)).solution;
+            let parameters = solution.unknowns.iter().map(|unknown| unknown.parameter).collect();
+            Some(Fitted { values: *solution.values.first()?, parameters, covariance: solution.covariance })
+        };
+        let has_chance_offset = |fitted: &Fitted| {
+            let place = fitted.parameters.iter().position(|parameter| parameter.place() == OFFSET);
+            let error_n = place.map_or(0.0, |place| fitted.covariance[(place, place)].sqrt());
+            model.values[OFFSET].abs() > 0.0 || fitted.values[OFFSET].abs() <= HALF_INTERVAL * error_n
+        };
+        of(|parameter| parameter.place() == OFFSET).filter(has_chance_offset).or_else(|| of(|_| false)).unwrap_or_else(
+            || {
+                let problem = self.bench(counts).problem(&model.free, None);
+                let (covariance, _) = engine::covariance(&problem, &[model.values], None);
+                Fitted { values: model.values, parameters: model.free.clone(), covariance }
+            },
+        )
     }
 
     /// Which of the held parameters the log determines when the model has what it lacked.
@@ -223,18 +362,12 @@ impl<'a> Case<'a> {
         Scale::of(&self.record, base.values[MU], noise_n)
     }
 
-    fn report(
-        &self,
-        outcome: &Outcome,
-        counts: &[bool],
-        samples: SampleCounts,
-        conditions: &[Condition],
-        foreign: Foreign,
-    ) -> CableDiscovery {
-        let Outcome { base, naming, noise_n, .. } = outcome;
-        let raw = Workbench { record: self.raw, ..self.bench(counts) };
+    fn report(&self, outcome: &Outcome, samples: SampleCounts, foreign: Foreign) -> CableDiscovery {
+        let Outcome { base, naming, fitted, rest, .. } = outcome;
+        let noise_n = rest.noise_n;
+        let raw = Workbench { record: self.raw, ..self.bench(self.counts) };
         let held_out = raw.used(true);
-        let with_interpolated = with_interpolated(&self.raw, counts, self.measured);
+        let with_interpolated = with_interpolated(&self.raw, self.counts, self.measured);
         let throughout = Workbench { counts: &with_interpolated, ..raw.clone() };
         let held_out_of = |values: &Values| {
             let residual_n = raw.residuals_n(values);
@@ -244,34 +377,52 @@ impl<'a> Case<'a> {
                 sum
             })
         };
-        let model = |trial: &Trial| Model {
-            values: trial.values,
-            fitted: trial.free.clone(),
-            covariance: self.covariance(&outcome.counts, trial),
-            held_out_n: held_out_of(&trial.values),
+        let before = Model {
+            values: base.values,
+            fitted: base.free.clone(),
+            covariance: engine::covariance(
+                &self.bench(&outcome.counts).problem(&base.free, None),
+                &[base.values],
+                None,
+            )
+            .0,
+            held_out_n: held_out_of(&base.values),
+        };
+        let after = Model {
+            values: fitted.values,
+            fitted: fitted.parameters.clone(),
+            covariance: fitted.covariance.clone(),
+            held_out_n: held_out_of(&fitted.values),
         };
         let bench = self.bench(&outcome.counts);
-        let search = Search::new(&bench, *noise_n, self.scale(base, *noise_n), base);
-        let findings = naming.named.iter().zip(naming.ladder.iter().skip(1));
+        let search = Search::new(&bench, noise_n, self.scale(base, noise_n), base, self.with_time);
+        // The last of the ladder is the extended model, as it is written.
+        let last = naming.named.len().saturating_sub(1);
+        let steps = naming.ladder.iter().skip(1).enumerate();
+        let steps = steps.map(|(place, step)| if place == last { &fitted.values } else { &step.values });
+        let findings = naming.named.iter().zip(steps);
         let findings: Vec<Finding> =
-            findings.map(|(named, step)| finding(&search, &naming.model, named, held_out_of(&step.values))).collect();
+            findings.map(|(named, step)| finding(&search, &naming.model, named, held_out_of(step))).collect();
         let rms_n = |trial: &Trial| held_out_of(&trial.values).rms().unwrap_or(f64::NAN);
-        let mut tried: Vec<Tried> = naming
-            .first_round
-            .iter()
-            .map(|(row, trial)| Tried {
-                row,
-                delta_bic: search.delta_bic(base, trial, 1.0),
-                held_out_rms_n: rms_n(trial),
-            })
-            .collect();
-        tried.sort_by(|one, other| one.delta_bic.total_cmp(&other.delta_bic));
-        let after = model(&naming.model);
-        let clean_n = self.bench(counts).residuals_n(&base.values);
-        let places = self.excess(&clean_n, *noise_n).concentrations(conditions);
-        let places = if self.excess(&clean_n, *noise_n).share() > WORTH { places } else { Vec::new() };
-        let is_foreign = !foreign.faults.is_empty() || !foreign.hum.is_empty() || foreign.stretch.is_some();
-        let unexplained = (is_foreign || !outcome.rest_is_noise).then(|| {
+        let candidate = |(row, trial): &(&'static EffectRow, Trial)| Candidate {
+            row,
+            delta_bic: search.delta_bic(base, trial, 1.0),
+            held_out_rms_n: rms_n(trial),
+        };
+        let mut candidates: Vec<Candidate> = naming.first_round.iter().map(candidate).collect();
+        candidates.sort_by(|one, other| one.delta_bic.total_cmp(&other.delta_bic));
+        let of_tried = |tried: &naming::Tried| Tried {
+            row: tried.row,
+            delta_bic: search.delta_bic(&naming.model, &tried.trial, tried.inflation),
+            held_out_rms_n: rms_n(&tried.trial),
+            refusal: tried.refusal,
+        };
+        let tried = naming.tried.iter().map(of_tried).collect();
+        let clean_n = self.bench(self.counts).residuals_n(&base.values);
+        let places = self.excess(&clean_n, noise_n).concentrations(self.conditions);
+        let places = if self.excess(&clean_n, noise_n).share() > WORTH { places } else { Vec::new() };
+        let is_foreign = !foreign.faults.is_empty() || !foreign.hum.is_empty() || outcome.stretch.is_some();
+        let unexplained = (is_foreign || !rest.is_noise).then(|| {
             let rms_n = after.held_out_n.rms().unwrap_or(f64::NAN);
             self.unexplained(outcome, (rms_n * rms_n - noise_n * noise_n).max(0.0).sqrt(), foreign)
         });
@@ -284,24 +435,27 @@ impl<'a> Case<'a> {
         let told = [places.first(), unexplained.as_ref().and_then(|rest: &Unexplained| rest.places.first())];
         let mut signals: Vec<&str> = told.into_iter().flatten().map(|place| place.signal).collect();
         signals.dedup();
-        let (residual_before_n, residual_after_n) =
-            (raw.residuals_n(&base.values), raw.residuals_n(&naming.model.values));
+        let (residual_before_n, residual_after_n) = (raw.residuals_n(&base.values), raw.residuals_n(&fitted.values));
         let profiles = signals.into_iter().filter_map(|signal| {
-            let condition = conditions.iter().find(|condition| condition.signal == signal)?;
+            let condition = self.conditions.iter().find(|condition| condition.signal == signal)?;
             profile(&self.record, condition, &residual_before_n, &residual_after_n)
         });
         CableDiscovery {
             samples,
+            reference_variation_n: variation(
+                self.raw.rows.iter().zip(&held_out).filter(|(_, used)| **used).map(|(row, _)| row.reference_n),
+            ),
             held_out: super::rest::ranges(throughout.used(true).into_iter())
                 .into_iter()
                 .map(|range| [range.start, range.end])
                 .collect(),
-            noise_floor_n: *noise_n,
-            wander_n: outcome.wander_n,
+            noise_floor_n: noise_n,
+            wander_n: rest.wander_n,
             verdict,
-            before: model(base),
+            before,
             after,
             findings,
+            candidates,
             tried,
             places,
             unexplained,
@@ -313,28 +467,34 @@ impl<'a> Case<'a> {
         }
     }
 
-    fn covariance(&self, counts: &[bool], trial: &Trial) -> DMatrix<f64> {
-        engine::covariance(&self.bench(counts).problem(&trial.free, None), &[trial.values]).0
-    }
-
     fn unexplained(&self, outcome: &Outcome, rms_n: f64, foreign: Foreign) -> Unexplained {
-        let Foreign { faults, hum, stretch } = foreign;
+        let Outcome { rest, stretch, .. } = outcome;
         let time_s = |cycle: usize| self.record.time_s(cycle);
-        let faults = faults
+        let faults = foreign
+            .faults
             .into_iter()
             .map(|FaultyStretch { fault, cycles }| (fault, [time_s(cycles.start), time_s(cycles.end)]));
-        let rest = if outcome.rest_is_noise { Vec::new() } else { outcome.rest_places.clone() };
-        let excess = self.excess(&outcome.rest_n, outcome.noise_n);
-        let loud = |cycle: usize| outcome.rest_n.get(cycle).is_some_and(|number| number.abs() > 4.0 * outcome.noise_n);
+        let excess = self.excess(&rest.residual_n, rest.noise_n);
+        let loud = |cycle: usize| rest.residual_n.get(cycle).is_some_and(|number| number.abs() > 4.0 * rest.noise_n);
         Unexplained {
             rms_n,
-            lines: hum,
+            lines: foreign.hum,
             faults: faults.collect(),
-            places: stretch.into_iter().chain(rest).collect(),
-            intervals_s: if outcome.rest_is_noise { Vec::new() } else { excess.intervals_s(loud) },
+            places: stretch.iter().chain(if rest.is_noise { &[][..] } else { &rest.places }).cloned().collect(),
+            intervals_s: if rest.is_noise { Vec::new() } else { excess.intervals_s(loud) },
             neighbours: Vec::new(),
         }
     }
+}
+
+/// Standard deviation of some numbers; NaN without any.
+fn variation(numbers: impl Iterator<Item = f64> + Clone) -> f64 {
+    let mean = |numbers: &mut dyn Iterator<Item = f64>| {
+        let (sum, count) = numbers.fold((0.0, 0.0), |(sum, count), number| (sum + number, count + 1.0));
+        sum / count
+    };
+    let middle = mean(&mut numbers.clone());
+    mean(&mut numbers.map(|number| (number - middle).powi(2))).sqrt()
 }
 
 fn finding(search: &Search<'_, '_>, model: &Trial, named: &Named, held_out_n: Deviation) -> Finding {

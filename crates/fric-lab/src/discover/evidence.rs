@@ -8,7 +8,7 @@ use crate::fit::engine::inverse_of_normal;
 /// residuals that do not depend on each other; at least 1, infinite where nothing is known.
 pub fn inflation(bench: &Workbench<'_>, model: &Trial, of: &[Parameter]) -> f64 {
     let problem = bench.problem(&model.free, None);
-    let Some((gram, scores)) = problem.gram_and_scores(&[model.values]) else { return f64::INFINITY };
+    let Some((gram, scores)) = problem.gram_and_scores(&[model.values], None) else { return f64::INFINITY };
     let (matrix, _, squares) = gram.normal_equations();
     let Some(inverse) = inverse_of_normal(&matrix) else { return f64::INFINITY };
     #[expect(clippy::cast_precision_loss, reason = "a count of samples")]

@@ -10,6 +10,7 @@ use std::ops::Range;
 
 use realfft::RealFftPlanner;
 
+use crate::fit::engine::sign;
 use crate::fit::{CableRecord, Row};
 
 /// Cycles of a stretch, and of a pause after which a line begins anew.
@@ -20,6 +21,8 @@ const NEIGHBOURS: usize = 24;
 const WIDTH: usize = 3;
 /// By how many times their median it stands out.
 const LEAST_RATIO: f64 = 12.0;
+/// The same for a line of the motion or the load: less than this, and it may be chance in a few tens of spectra averaged.
+const MOTION_RATIO: f64 = 4.0;
 /// A line below this many turns in a stretch is no line but a slow change, and as many tell its phase.
 const FEWEST_TURNS: usize = 8;
 /// Lines that are looked for.
@@ -116,8 +119,8 @@ impl Line {
     }
 }
 
-/// The lines of a residual, the strongest first; NaN where there is no sample.
-pub fn lines(residual: &[f64], times: &Times) -> Vec<Line> {
+/// The lines of a residual that have nothing to do with motion and load, the strongest first; NaN where there is no sample.
+pub fn lines(residual: &[f64], times: &Times, signals: &[Together]) -> Vec<Line> {
     let mut rest = residual.to_vec();
     let mut lines = Vec::new();
     while lines.len() < MOST_LINES {
@@ -125,23 +128,65 @@ pub fn lines(residual: &[f64], times: &Times) -> Vec<Line> {
         line.add_to(rest.iter_mut(), -1.0, times);
         lines.push(line);
     }
+    if !lines.is_empty() {
+        let spectra: Vec<Vec<Vec<f64>>> =
+            signals.iter().map(|of| of.iter().filter_map(|signal| spectrum(signal, times)).collect()).collect();
+        let have = |of: &Vec<Vec<f64>>, line: &Line| {
+            !of.is_empty() && of.iter().all(|spectrum| has_line(spectrum, line.frequency_hz, times))
+        };
+        lines.retain(|line| !spectra.iter().any(|of| have(of, line)));
+    }
     lines
+}
+
+/// Signals that only together tell a line: each may hum by itself.
+pub type Together = Vec<Vec<f64>>;
+
+/// What a cable does and bears: the motion, with the harmonics that a law of friction makes of a periodic one, and the load as both of its sensors
+/// see it.
+pub fn motion_and_load(record: &CableRecord<'_>) -> Vec<Together> {
+    let of = |value: &dyn Fn(&Row) -> f64| record.rows.iter().map(value).collect::<Vec<f64>>();
+    let speed_m_per_s = of(&|row| row.signals.speed_m_per_s);
+    let change = |pair: &[f64]| pair[1] - pair[0];
+    let acceleration = std::iter::once(0.0).chain(speed_m_per_s.windows(2).map(change)).collect();
+    vec![
+        vec![of(&|row| row.signals.displacement_m)],
+        vec![of(&|row| row.signals.displacement_m.abs())],
+        vec![of(&|row| sign(row.signals.displacement_m))],
+        vec![speed_m_per_s],
+        vec![acceleration],
+        vec![of(&|row| row.signals.sensor_force_n), of(&|row| row.reference_n)],
+    ]
+}
+
+/// Whether a spectrum has a line at a frequency.
+fn has_line(spectrum: &[f64], frequency_hz: f64, times: &Times) -> bool {
+    #[expect(clippy::cast_precision_loss, reason = "a small constant")]
+    let place = (frequency_hz * STRETCH as f64 * times.cycle_s).round();
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a place of the spectrum")]
+    let place = place as usize;
+    (place.saturating_sub(1)..=place + 1)
+        .any(|place| over_median(spectrum, place).is_some_and(|ratio| ratio > MOTION_RATIO))
+}
+
+/// By how many times the median of its neighbours a place of a spectrum stands out.
+fn over_median(spectrum: &[f64], place: usize) -> Option<f64> {
+    let around = place.checked_sub(NEIGHBOURS)?..(place + NEIGHBOURS + 1).min(spectrum.len());
+    let others = around.filter(|other| other.abs_diff(place) > WIDTH);
+    let mut others: Vec<f64> = others.filter_map(|other| spectrum.get(other).copied()).collect();
+    if others.is_empty() {
+        return None;
+    }
+    let middle = others.len() / 2;
+    let (_, median, _) = others.select_nth_unstable_by(middle, f64::total_cmp);
+    Some(spectrum.get(place)? / *median)
 }
 
 fn strongest(residual: &[f64], times: &Times) -> Option<Line> {
     let spectrum = spectrum(residual, times)?;
-    let ratio = |place: usize| -> Option<f64> {
-        let around = place.checked_sub(NEIGHBOURS)?..(place + NEIGHBOURS + 1).min(spectrum.len());
-        let mut others: Vec<f64> = around
-            .filter(|other| other.abs_diff(place) > WIDTH)
-            .filter_map(|other| spectrum.get(other).copied())
-            .collect();
-        let middle = others.len() / 2;
-        let (_, median, _) = others.select_nth_unstable_by(middle, f64::total_cmp);
-        Some(spectrum.get(place)? / *median)
-    };
     let first = FEWEST_TURNS.max(NEIGHBOURS);
-    let candidates = (first..spectrum.len().saturating_sub(1)).filter_map(|place| Some((place, ratio(place)?)));
+    let candidates =
+        (first..spectrum.len().saturating_sub(1)).filter_map(|place| Some((place, over_median(&spectrum, place)?)));
     let (place, _) = candidates
         .filter(|(_, ratio)| *ratio > LEAST_RATIO)
         .max_by(|a, b| spectrum.get(a.0).unwrap_or(&0.0).total_cmp(spectrum.get(b.0).unwrap_or(&0.0)))?;
@@ -274,7 +319,7 @@ mod tests {
             let (height, phase) = if row < 30_000 { (1.0, 0.4) } else { (2.0, 2.0) };
             residual[row] += height * (TAU * 50.02 * *cycle * 1e-3 + phase).sin();
         }
-        let found = lines(&residual, &of_logs);
+        let found = lines(&residual, &of_logs, &[]);
         assert_eq!(found.len(), 1, "{found:?}");
         assert!((found[0].frequency_hz - 50.02).abs() < 1e-3);
         // Of 30,000 samples with the height 1 and 20,000 with 2.
@@ -292,18 +337,37 @@ mod tests {
             let time_s = cycle as f64 * 1e-3;
             *number += 1.3 * (TAU * 50.02 * time_s + 0.4).sin() + 0.4 * (TAU * 150.06 * time_s).cos();
         }
-        let found = lines(&residual, &times(residual.len()));
+        let found = lines(&residual, &times(residual.len()), &[]);
         assert_eq!(found.len(), 2, "{found:?}");
         assert!((found[0].frequency_hz - 50.02).abs() < 1e-3 && (found[0].amplitude() - 1.3).abs() < 0.03);
         assert!((found[1].frequency_hz - 150.06).abs() < 2e-3 && (found[1].amplitude() - 0.4).abs() < 0.03);
         assert!((found[0].waves[0].sine - 1.3 * 0.4_f64.cos()).abs() < 0.05);
     }
 
+    /// A train of pulses has a line at every whole multiple of its frequency, and so has what friction makes of it.
+    #[test]
+    fn harmonics_of_the_motion_are_no_hum() {
+        let mut residual = noise(5);
+        let motion: Vec<f64> = (0..residual.len()).map(|cycle| f64::from(u8::from(cycle % 125 < 5))).collect();
+        for (cycle, number) in residual.iter_mut().enumerate() {
+            #[expect(clippy::cast_precision_loss, reason = "a small count")]
+            let time_s = cycle as f64 * 1e-3;
+            *number += 0.8 * (TAU * 16.0 * time_s + 0.3).sin() + 0.8 * (TAU * 50.0 * time_s).sin();
+        }
+        let of_log = times(residual.len());
+        assert_eq!(lines(&residual, &of_log, &[]).len(), 2);
+        let found = lines(&residual, &of_log, &[vec![motion.clone()]]);
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!((found[0].frequency_hz - 50.0).abs() < 1e-2);
+        // A line of one sensor alone may be its own hum.
+        assert_eq!(lines(&residual, &of_log, &[vec![motion, noise(6)]]).len(), 2);
+    }
+
     #[test]
     fn noise_and_wander_have_none() {
         for seed in 0..20 {
             let white = noise(seed);
-            assert_eq!(lines(&white, &times(white.len())), []);
+            assert_eq!(lines(&white, &times(white.len()), &[]), []);
             let mut level = 0.0;
             let wander: Vec<f64> = white
                 .iter()
@@ -312,7 +376,7 @@ mod tests {
                     level + 0.3 * number
                 })
                 .collect();
-            assert_eq!(lines(&wander, &times(wander.len())), []);
+            assert_eq!(lines(&wander, &times(wander.len()), &[]), []);
         }
     }
 }

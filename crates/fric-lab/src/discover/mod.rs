@@ -5,7 +5,9 @@
 //! 1. *Gap.* The given model is fitted to half of the log, in blocks; the other half judges (`split`). The noise is
 //!    estimated from the residual alone (`noise`).
 //! 2. *Where.* Which operating conditions carry what is above the noise (`places`).
-//! 3. *Name.* Candidates of the catalogue enter, are exchanged and justify themselves (`naming`).
+//! 3. *Name.* Candidates of the catalogue enter, justify themselves and are exchanged (`naming`): the evidence for each (`evidence`), whether it has one size in every
+//!    condition (`steadiness`), and whether a law without a name makes it superfluous (`rivals`). The model with all names is taken for the given one until nothing more
+//!    is found, and fitted to all samples as an identification does.
 //! 4. *Rest.* What is wrong with the log itself has its own names: lines in the spectrum (`lines`), a sensor that stands still
 //!    or is at the end of its range (`foreign`), a stretch of cable (`stretch`) or of time (`rest`). Left out, the rest is
 //!    judged once more; signals of other cables that it goes with are told (`neighbours`). A wander of the sensors that has nothing to do with the motion is noise.
@@ -13,7 +15,6 @@
 //! The model is the control cycle's own; what is found runs in it as it is.
 
 mod cable;
-mod conditions;
 mod evidence;
 mod extended;
 mod foreign;
@@ -22,10 +23,13 @@ mod naming;
 mod neighbours;
 mod places;
 mod profile;
+mod projection;
 pub(crate) mod readiness;
 mod report;
 mod rest;
 pub mod result;
+mod rivals;
+mod steadiness;
 mod stretch;
 mod summary;
 pub mod words;
@@ -39,11 +43,12 @@ use crate::fit::{CableRecord, Measurements, Progress};
 pub use extended::extended;
 pub use foreign::Fault;
 pub use lines::Line;
+pub use naming::Refusal;
 pub use neighbours::Neighbour;
 pub use places::Place;
 pub use profile::{Profile, ProfileBin, ProfileCell};
 pub use readiness::Lack;
-pub use report::{CableDiscovery, Finding, Model, RunnerUp, Tried, Unexplained, Verdict};
+pub use report::{CableDiscovery, Candidate, Finding, Model, RunnerUp, Tried, Unexplained, Verdict};
 
 /// Looks at every cable that has a reference.
 #[must_use]

@@ -10,9 +10,9 @@ use std::ops::Range;
 
 use serde::Serialize;
 
-use super::conditions::{Condition, Spacing, sign};
 use super::split::Block;
 use crate::fit::CableRecord;
+use crate::fit::engine::{Bins, Condition, sign};
 
 /// A gain of less than this many standard errors is chance.
 const LEAST_SIGNIFICANCE: f64 = 4.0;
@@ -317,51 +317,4 @@ pub fn sum_and_error(numbers: &[f64]) -> (f64, f64) {
     let mean = sum / count;
     let scatter: f64 = numbers.iter().map(|number| (number - mean).powi(2)).sum();
     (sum, if count > 1.0 { (scatter * count / (count - 1.0)).sqrt() } else { f64::INFINITY })
-}
-
-/// Bins of a condition that hold as many samples each.
-pub struct Bins {
-    /// One more than there are bins.
-    pub edges: Vec<f64>,
-}
-
-impl Bins {
-    /// Over the samples that have both; `None` where all are the same.
-    pub fn new(condition: &Condition, residual_n: &[f64]) -> Option<Self> {
-        let mut sorted: Vec<f64> = condition
-            .values
-            .iter()
-            .zip(residual_n)
-            .filter(|(value, residual_n)| value.is_finite() && residual_n.is_finite())
-            .map(|(value, _)| *value)
-            .collect();
-        sorted.sort_by(f64::total_cmp);
-        let (first, last) = (*sorted.first()?, sorted.len().checked_sub(1)?);
-        let mut edges: Vec<f64> = match condition.bins {
-            Spacing::Crowds(count) => (0..=count).filter_map(|bin| sorted.get(bin * last / count).copied()).collect(),
-            #[expect(clippy::cast_precision_loss, reason = "small counts")]
-            Spacing::Widths(count) => {
-                let width = (sorted.get(last)? - first) / count as f64;
-                (0..=count).map(|bin| first + bin as f64 * width).collect()
-            }
-        };
-        edges.dedup_by(|one, other| one.to_bits() == other.to_bits());
-        if let ([low, high], Spacing::Crowds(2 | 3)) = (edges.as_slice(), condition.bins) {
-            // Two values: each a bin of its own.
-            edges = vec![*low, f64::midpoint(*low, *high), *high];
-        }
-        (edges.len() > 2).then_some(Self { edges })
-    }
-
-    /// How many.
-    pub fn count(&self) -> usize {
-        self.edges.len() - 1
-    }
-
-    /// The bin of a value.
-    pub fn of(&self, value: f64) -> Option<usize> {
-        let inside = value.is_finite() && value <= *self.edges.last()?;
-        let place = self.edges.partition_point(|edge| *edge <= value);
-        (inside && place > 0).then(|| (place - 1).min(self.count() - 1))
-    }
 }

@@ -1,8 +1,7 @@
 //! A residual over one operating condition, before and after: what a figure shows of a place.
 
-use super::conditions::{Condition, Spacing, sign};
-use super::places::Bins;
 use crate::fit::CableRecord;
+use crate::fit::engine::{Bins, Condition, Spacing, sign};
 
 /// Most bins of a figure.
 const MOST_BINS: usize = 32;

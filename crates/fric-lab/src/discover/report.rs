@@ -6,6 +6,7 @@ use nalgebra::DMatrix;
 
 use super::foreign::Fault;
 use super::lines::Line;
+use super::naming::Refusal;
 use super::neighbours::Neighbour;
 use super::places::Place;
 use super::profile::Profile;
@@ -65,15 +66,28 @@ pub struct RunnerUp {
     pub is_as_good: bool,
 }
 
-/// An effect tried beside the given model.
+/// An effect by itself beside the given model.
 #[derive(Clone, Debug)]
-pub struct Tried {
+pub struct Candidate {
     /// Its row in the catalogue.
     pub row: &'static EffectRow,
     /// Schwarz's criterion with it less without it; of one that cannot enter an upper bound, for its search ended early.
     pub delta_bic: f64,
     /// Root mean square of the error with it on the samples held out, N.
     pub held_out_rms_n: f64,
+}
+
+/// An effect that helps the extended model and does not suffice.
+#[derive(Clone, Debug)]
+pub struct Tried {
+    /// Its row in the catalogue.
+    pub row: &'static EffectRow,
+    /// Schwarz's criterion with it less without it, the memory of the residual taken into account.
+    pub delta_bic: f64,
+    /// Root mean square of the error with it on the samples held out, N.
+    pub held_out_rms_n: f64,
+    /// Why it is not named.
+    pub refusal: Refusal,
 }
 
 /// What no effect accounts for.
@@ -98,6 +112,8 @@ pub struct Unexplained {
 pub struct CableDiscovery {
     /// Samples by what was done with them.
     pub samples: SampleCounts,
+    /// Standard deviation of the reference over the samples held out, N.
+    pub reference_variation_n: f64,
     /// Those held out, in the order of time: cycles `from..to`.
     pub held_out: Vec<[usize; 2]>,
     /// Standard deviation of the white noise of sensor and reference together, N.
@@ -113,6 +129,8 @@ pub struct CableDiscovery {
     /// What was found, in the order in which it entered.
     pub findings: Vec<Finding>,
     /// Every candidate by itself beside the given model, the best first.
+    pub candidates: Vec<Candidate>,
+    /// Candidates that help the extended model and do not suffice, the best first.
     pub tried: Vec<Tried>,
     /// Where the given model disagrees.
     pub places: Vec<Place>,
@@ -150,6 +168,7 @@ impl CableDiscovery {
         };
         Self {
             samples,
+            reference_variation_n: f64::NAN,
             held_out: Vec::new(),
             noise_floor_n: f64::NAN,
             wander_n: f64::NAN,
@@ -157,6 +176,7 @@ impl CableDiscovery {
             before: model.clone(),
             after: model,
             findings: Vec::new(),
+            candidates: Vec::new(),
             tried: Vec::new(),
             places: Vec::new(),
             unexplained: None,

@@ -13,7 +13,7 @@ use super::foreign::Fault;
 use super::lines::Line;
 use super::neighbours::Neighbour;
 use super::places::Place;
-use super::report::{CableDiscovery, Finding, Model, Tried, Unexplained, Verdict};
+use super::report::{self, CableDiscovery, Finding, Model, Tried, Unexplained, Verdict};
 use super::summary;
 use crate::errors::ForceError;
 use crate::fit::readiness::Readiness;
@@ -54,6 +54,8 @@ pub struct DiscoverCableResult {
     pub noise_floor_n: Option<f64>,
     /// Standard deviation of slow noise of the sensors, N.
     pub wander_n: Option<f64>,
+    /// Standard deviation of the reference over the samples that judge, N: the error of a model that predicts a constant.
+    pub reference_variation_n: Option<f64>,
     /// Error of the given model, fitted.
     pub before: Option<ForceError>,
     /// Error of the extended one.
@@ -72,6 +74,8 @@ pub struct DiscoverCableResult {
     pub effects: Vec<EffectResult>,
     /// Every candidate by itself beside the given model, the best first.
     pub candidates: Vec<Candidate>,
+    /// Candidates that help the extended model and do not suffice, the best first.
+    pub tried: Vec<TriedResult>,
     /// Values of the extended model, as the robot file's `friction`, and `effect.key`.
     pub parameters: Numbers,
     /// Standard errors of those fitted.
@@ -160,7 +164,18 @@ pub struct RunnerUpResult {
     pub row: &'static EffectRow,
 }
 
-/// An effect that was tried.
+/// An effect that helps the extended model and does not suffice.
+#[derive(Clone, Debug, Serialize)]
+pub struct TriedResult {
+    /// Its name in the catalogue.
+    pub kind: &'static str,
+    /// What speaks for it, beside the extended model.
+    pub evidence: Evidence,
+    /// Why it is not named, a clause.
+    pub reason: String,
+}
+
+/// An effect by itself beside the given model.
 #[derive(Clone, Debug, Serialize)]
 pub struct Candidate {
     /// Its name in the catalogue.
@@ -348,6 +363,7 @@ fn cable_result(
         held_out_s: found.held_out.iter().map(|range| range.map(time_s)).collect(),
         noise_floor_n: finite(found.noise_floor_n),
         wander_n: finite(found.wander_n),
+        reference_variation_n: finite(found.reference_variation_n),
         before,
         after,
         gap_closed: after.and_then(|after| share(after.rms_n)),
@@ -355,7 +371,8 @@ fn cable_result(
         missing,
         places,
         effects: found.findings.iter().map(|finding| effect_result(found, finding)).collect(),
-        candidates: found.tried.iter().map(Candidate::of).collect(),
+        candidates: found.candidates.iter().map(Candidate::of).collect(),
+        tried: found.tried.iter().map(TriedResult::of).collect(),
         parameters: parameters(found),
         standard_errors: errors(&found.after, Parameter::all(), ToString::to_string),
         unexplained: found.unexplained.as_ref().map(|rest| unexplained(rest, gap[1], names)),
@@ -419,8 +436,17 @@ fn effect_result(found: &CableDiscovery, finding: &Finding) -> EffectResult {
 }
 
 impl Candidate {
+    fn of(candidate: &report::Candidate) -> Self {
+        let report::Candidate { row, delta_bic, held_out_rms_n } = candidate;
+        Self { kind: row.kind, delta_bic: finite(*delta_bic), held_out_rms_n: finite(*held_out_rms_n) }
+    }
+}
+
+impl TriedResult {
     fn of(tried: &Tried) -> Self {
-        Self { kind: tried.row.kind, delta_bic: finite(tried.delta_bic), held_out_rms_n: finite(tried.held_out_rms_n) }
+        let Tried { row, delta_bic, held_out_rms_n, refusal } = tried;
+        let evidence = Evidence { delta_bic: finite(*delta_bic), held_out_rms_n: finite(*held_out_rms_n) };
+        Self { kind: row.kind, evidence, reason: refusal.in_words() }
     }
 }
 

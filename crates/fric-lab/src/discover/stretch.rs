@@ -4,8 +4,8 @@
 //! bins is tried on the samples learned from as a force of constant size against the motion; the best of them is tried on those
 //! held out. The signs of the blocks' residuals drawn at random tell what the best of so many stretches gains by chance.
 
-use super::conditions::{Condition, sign};
-use super::places::{Bins, Excess, Place, random_sign};
+use super::places::{Excess, Place, random_sign};
+use crate::fit::engine::{Bins, Condition, sign};
 
 /// A stretch holds no more than this share of the samples,
 const NARROW: f64 = 0.2;

@@ -7,6 +7,8 @@ use crate::text::{listed, table, wrapped};
 const LABEL: usize = 11;
 /// Places that are told.
 const MOST_PLACES: usize = 2;
+/// Candidates that did not suffice that are told.
+const MOST_TRIED: usize = 3;
 
 /// All of it.
 pub(super) fn describe(result: &DiscoverResult) -> String {
@@ -21,7 +23,10 @@ pub(super) fn describe(result: &DiscoverResult) -> String {
         text += &wrapped("", &effect.in_words(result.cables.len()));
     }
     let is_quiet = |cable: &&DiscoverCableResult| {
-        cable.verdict == "complete" && cable.wander_n.is_none_or(|wander_n| wander_n <= 0.0)
+        cable.verdict == "complete"
+            && cable.wander_n.is_none_or(|wander_n| wander_n <= 0.0)
+            && cable.tried.is_empty()
+            && !cable.is_constant()
     };
     let quiet: Vec<&str> = result.cables.iter().filter(is_quiet).map(|cable| cable.name.as_str()).collect();
     if let Some(first) = result.cables.iter().find(is_quiet) {
@@ -67,6 +72,8 @@ fn details(cable: &DiscoverCableResult, told: &mut Vec<&'static str>) -> String 
     if let Some(gap) = cable.gap_in_words().filter(|_| cable.verdict != "complete") {
         text += &line("gap", &gap);
     }
+    let variation = cable.variation_in_words().filter(|_| cable.verdict != "complete" || cable.is_constant());
+    text += &variation.map_or_else(String::new, |variation| line("reference", &variation));
     for (count, place) in cable.places.iter().filter(|place| place.signal != "frequency").take(MOST_PLACES).enumerate()
     {
         text += &line(if count == 0 { "where" } else { "" }, &place.in_words("the gap"));
@@ -74,6 +81,9 @@ fn details(cable: &DiscoverCableResult, told: &mut Vec<&'static str>) -> String 
     for effect in &cable.effects {
         text += &of_effect(effect, told.contains(&effect.kind));
         told.push(effect.kind);
+    }
+    for (count, tried) in cable.tried.iter().take(MOST_TRIED).enumerate() {
+        text += &line(if count == 0 { "tried" } else { "" }, &tried.in_words());
     }
     if let Some(rest) = &cable.unexplained {
         for (count, sentence) in rest.in_words().iter().enumerate() {

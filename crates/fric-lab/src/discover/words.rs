@@ -4,10 +4,11 @@ use std::fmt::Write as _;
 
 use fric_core::effects::EffectRow;
 
+use super::naming::Refusal;
 use super::places::LEAST_CONCENTRATION;
 use super::result::{
-    CommonEffect, CommonParameter, DiscoverCableResult, EffectResult, FaultResult, RunnerUpResult, UnexplainedResult,
-    WhereResult,
+    CommonEffect, CommonParameter, DiscoverCableResult, EffectResult, Evidence, FaultResult, RunnerUpResult,
+    TriedResult, UnexplainedResult, WhereResult,
 };
 use crate::fit::HALF_INTERVAL;
 use crate::text::{listed, quantity, significant};
@@ -128,6 +129,7 @@ pub fn condition(signal: &str) -> String {
         "length" => "cable length".to_owned(),
         "way_since_reversal" => "way since the last reversal".to_owned(),
         "force_rate" => "rate of the sensor force".to_owned(),
+        "reference_rate" => "rate of the reference".to_owned(),
         "wrap" => "wrap angle".to_owned(),
         _ => signal.replace('_', " "),
     }
@@ -201,6 +203,37 @@ impl DiscoverCableResult {
             None => ends,
         })
     }
+
+    /// What is left beside the reference's own variation, as a sentence without its full stop; `None` where nothing was measured.
+    #[must_use]
+    pub fn variation_in_words(&self) -> Option<String> {
+        let (after, variation_n) = (self.after?, self.reference_variation_n?);
+        if self.is_constant() {
+            return Some(format!(
+                "the reference varies by {} only: a model that predicts a constant agrees with it as well, so that nothing is \
+                 known of a gain, or of what goes with the load",
+                newtons(variation_n)
+            ));
+        }
+        Some(format!("rms after is {} of what the reference varies by", percent(after.rms_n / variation_n)))
+    }
+
+    /// Whether the reference varies by no more than the model leaves.
+    #[must_use]
+    pub fn is_constant(&self) -> bool {
+        let left_n = self.after.map_or(f64::INFINITY, |after| after.rms_n);
+        self.reference_variation_n.is_some_and(|variation_n| variation_n <= left_n)
+    }
+}
+
+impl TriedResult {
+    /// Its evidence and why it is not named, as a sentence without its full stop.
+    #[must_use]
+    pub fn in_words(&self) -> String {
+        let Evidence { delta_bic, held_out_rms_n } = &self.evidence;
+        let rms = held_out_rms_n.map_or_else(|| "–".to_owned(), newtons);
+        format!("{} helps, to rms {rms} with ΔBIC {}, but {}", self.kind, evidence(*delta_bic), self.reason)
+    }
 }
 
 impl EffectResult {
@@ -245,6 +278,35 @@ fn excitation(rows: [&EffectRow; 2]) -> String {
     let mut all: Vec<&str> = rows.into_iter().filter_map(|row| Some(row.parameters.first()?.excitation)).collect();
     all.dedup();
     all.join("; and ")
+}
+
+impl Refusal {
+    /// Why a candidate that helps is not named, a clause.
+    #[must_use]
+    pub fn in_words(self) -> String {
+        match self {
+            Self::Weak => "the evidence is weaker than what chance may give".to_owned(),
+            Self::Lag => "it is no more than what the lag of differenced speeds makes of another effect".to_owned(),
+            Self::AtBound => "its parameter runs to the end of its range".to_owned(),
+            Self::Open(other) => format!("the log cannot tell it from {}", name_of(other)),
+            Self::Unsteady(signal) => {
+                format!(
+                    "its size is not one constant, it changes with the {}: something else is taken for it",
+                    condition(signal)
+                )
+            }
+            Self::StandsIn(signal) => format!(
+                "a law without a name that goes with the {} explains more, and leaves little for it",
+                condition(signal)
+            ),
+            Self::Bent(signal) => {
+                format!(
+                    "what is left would go away if its size went with the {}: its law is another one",
+                    condition(signal)
+                )
+            }
+        }
+    }
 }
 
 impl FaultResult {

@@ -6,12 +6,13 @@ use std::sync::atomic::AtomicBool;
 use std::thread;
 
 use fric_core::LANES;
-use fric_core::parameters::Values;
+use fric_core::parameters::{OFFSET, Values};
+use nalgebra::DVector;
 use rayon::prelude::*;
 
 use super::split::Block;
-use crate::fit::engine::{Comparison, Gang, Loss, Member, Problem, Seat, Triangle, search_near};
-use crate::fit::{CableRecord, Parameter};
+use crate::fit::engine::{Comparison, Gang, Loss, Member, Problem, Seat, inverse_of_normal, search_near};
+use crate::fit::{CableRecord, Parameter, Row};
 
 /// A model is judged this near to its minimum, in standard errors: the sum of squares changes by less than noise does.
 pub const NEAR_ERRORS: f64 = 0.5;
@@ -155,6 +156,17 @@ impl<'a> Workbench<'a> {
         self.residuals_with(&self.problem(&[], None), values)
     }
 
+    /// What the model adds to the force that the sensor shows, as if nothing rubbed, in each cycle, N.
+    pub fn added_n(&self, values: &Values) -> Vec<f64> {
+        let forces = self.problem(&[], None).forces(&[*values]).unwrap_or_default();
+        let gain = self.record.params.frictionless_gain();
+        let added_n = |(cycle, row): (usize, &Row)| {
+            let force_n = forces.first().map_or(f64::NAN, |forces| forces.at(cycle).0);
+            force_n - values[OFFSET] - row.signals.sensor_force_n * gain
+        };
+        self.record.rows.iter().enumerate().map(added_n).collect()
+    }
+
     /// Those of them with a reference of their own: of a series of measurements, with its gaps.
     pub fn measured_of(&self, residual_n: &[f64]) -> Vec<f64> {
         residual_n.iter().zip(self.measured).filter(|(_, measured)| **measured).map(|(number, _)| *number).collect()
@@ -176,13 +188,13 @@ fn within_bounds(problem: &mut Problem<'_>, values: Values) -> Values {
     if !free.iter().any(is_least) {
         return values;
     }
-    let triangle = problem.gram(&[values]).map(|gram| {
-        let (matrix, gradient, squares) = gram.normal_equations();
-        Triangle::new(&matrix, &gradient, squares)
+    let step = problem.gram(&[values]).and_then(|gram| {
+        let (matrix, gradient, _) = gram.normal_equations();
+        Some(inverse_of_normal(&matrix)? * gradient)
     });
-    let step = triangle.and_then(|triangle| triangle.step()).unwrap_or_default();
+    let step = step.unwrap_or_else(|| DVector::zeros(free.len()));
     let mut start = values;
-    for (parameter, step) in free.iter().zip(step).filter(|(parameter, _)| is_least(parameter)) {
+    for (parameter, step) in free.iter().zip(&step).filter(|(parameter, _)| is_least(parameter)) {
         start[parameter.place()] = (values[parameter.place()] - step).clamp(parameter.row().min, parameter.row().max);
     }
     for member in &mut problem.members {

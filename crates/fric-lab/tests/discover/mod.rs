@@ -33,7 +33,8 @@ fn assert_found(case: &Case, verdict: Verdict) -> (CableDiscovery, CaseTruth) {
     kinds.sort_unstable();
     let mut hidden = case.effects.clone();
     hidden.sort_unstable();
-    assert_eq!((kinds, found.verdict), (hidden, verdict), "{}", case.name());
+    let tried: Vec<_> = found.tried.iter().map(|tried| (tried.row.kind, tried.refusal)).collect();
+    assert_eq!((kinds, found.verdict), (hidden, verdict), "{}: {tried:?}", case.name());
     let floor_ratio = found.noise_floor_n / truth.floor_n;
     assert!((floor_ratio - 1.0).abs() < 0.05, "{}: floor {floor_ratio}", case.name());
     (found, truth)
