@@ -14,7 +14,7 @@ use fric_core::parameters::{MU, OFFSET, SIGMA, VISCOUS};
 use fric_core::robot::file::RobotFile;
 use fric_lab::fit::{CableFit, FitOptions, Measurements, Progress, Reference, fit_cables};
 use fric_log::recording::Recording;
-use fric_log::signals::{Role, SignalPaths, SignalReader};
+use fric_log::signals::{SignalPaths, SignalReader};
 
 /// Enough for processor time, which comes in ticks.
 const RUNS: usize = 15;
@@ -40,12 +40,7 @@ fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [log, robot] = arguments.as_slice() else { panic!("usage: fit LOG ROBOT") };
     let robot = RobotFile::read(Path::new(robot)).expect("a robot file");
-    let topics = &robot.options().log;
-    let path = |topic: &str| Some(topic.parse().expect("a topic"));
-    let paths = SignalPaths::default()
-        .with(Role::Cable, path(&topics.cable))
-        .with(Role::Reference, path(&topics.reference))
-        .with(Role::Pose, path(&topics.pose));
+    let paths = SignalPaths::of_robot(&robot).expect("topics");
     let recording = Recording::open(&[log]).expect("a log");
     let mut reader = SignalReader::new(recording, paths, &robot.cable_names());
     let params = robot.params();

@@ -11,20 +11,14 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use fric_core::robot::file::RobotFile;
 use fric_lab::replay::Replay;
 use fric_log::recording::Recording;
-use fric_log::signals::{Role, SignalPaths, SignalReader};
+use fric_log::signals::{SignalPaths, SignalReader};
 
 fn example(name: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../examples").join(name)
 }
 
 fn replay(robot: &RobotFile) -> f64 {
-    let path = |topic: &str| topic.parse().ok();
-    let log = &robot.options().log;
-    let paths = SignalPaths::default()
-        .with(Role::Cable, path(&log.cable))
-        .with(Role::Reference, path(&log.reference))
-        .with(Role::Pose, path(&log.pose))
-        .with(Role::Wrench, path(&log.wrench));
+    let paths = SignalPaths::of_robot(robot).unwrap();
     let recording = Recording::open(&[example("mini-ipanema.mcap")]).unwrap();
     let mut reader = SignalReader::new(recording, paths, &robot.cable_names());
     let mut replay = Replay::new(&robot.params()).unwrap();

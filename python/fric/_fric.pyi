@@ -392,6 +392,11 @@ class _Evidence(TypedDict):
 class _Candidate(_Evidence):
     kind: str
 
+class _Tried(TypedDict):
+    kind: str
+    evidence: _Evidence
+    reason: str
+
 class _RunnerUp(_Candidate):
     as_good: bool
 
@@ -469,6 +474,10 @@ class CableDiscovery:
     def effects(self) -> list[_Effect]: ...
     @property
     def candidates(self) -> list[_Candidate]: ...
+    @property
+    def tried(self) -> list[_Tried]: ...
+    @property
+    def reference_variation_n(self) -> float | None: ...
     @property
     def parameters(self) -> dict[str, float]: ...
     @property

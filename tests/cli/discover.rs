@@ -370,11 +370,20 @@ fn a_cable_that_cannot_be_told_keeps_its_values() {
 }
 
 #[test]
+fn without_an_output_it_only_tells_and_with_one_says_what_is_next() {
+    let place = with(hidden_stribeck());
+    place.write("robot.toml", two_cables());
+    let run = place.run(&["discover", "log.mcap"]).succeeds();
+    assert!(run.stdout.contains("lacks stribeck") && run.stdout.contains("Nothing is written"), "{run:#?}");
+    let run = place.run(&["discover", "log.mcap", "-o", "extended.toml"]).succeeds();
+    assert!(run.stdout.contains("Next: fric-cli replay log.mcap --model extended.toml"), "{run:#?}");
+}
+
+#[test]
 fn command_lines_and_outputs_that_are_wrong_are_told() {
     let place = with(hidden_stribeck());
     place.write("robot.toml", two_cables());
     place.write("old", "kept");
-    place.run_in_vain(&["discover", "log.mcap"]).fails(2, &["--output"]);
     place.run_in_vain(&["discover", "log.mcap", "-o", "x", "--raport", "r.html"]).fails(2, &["--raport", "--report"]);
     place.run_in_vain(&["discover", "log.mcap", "./log.mcap", "-o", "x"]).fails(2, &["./log.mcap is named twice"]);
     place.run_in_vain(&["discover", "log.mcap", "-o", "x", "--report", "x"]).fails(2, &["named for two outputs"]);

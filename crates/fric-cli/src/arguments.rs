@@ -31,9 +31,8 @@ pub enum Command {
     /// Find where the model and the measurement disagree, name the effect that is missing, and add it to the robot file
     ///
     /// All samples are kept in memory: some 200 bytes a sample and cable.
-    #[command(
-        after_help = "Example:\n  fric-cli discover examples/mini-ipanema.mcap -o extended.toml --report discovery.html"
-    )]
+    #[command(after_help = "Examples:\n  fric-cli discover examples/mini-ipanema.mcap\n  \
+                      fric-cli discover examples/mini-ipanema.mcap -o extended.toml --report discovery.html")]
     Discover(DiscoverArguments),
     /// Show what is in a log, what each signal maps to, and what is missing for which step
     #[command(after_help = "Example:\n  fric-cli info examples/mini-ipanema.mcap")]
@@ -127,9 +126,9 @@ pub struct DiscoverArguments {
     /// Robot or manipulator file; without it the robot file attached to the first log that has one
     #[arg(long, value_name = "M.toml")]
     pub model: Option<PathBuf>,
-    /// Write the file with what was found, and with values fitted to the log, to this file
-    #[arg(short, long, value_name = "EXTENDED.toml", required = true, value_parser = a_file())]
-    pub output: PathBuf,
+    /// Write the file with what was found, and with values fitted to the log, to this file; without it, only tell
+    #[arg(short, long, value_name = "EXTENDED.toml", value_parser = a_file())]
+    pub output: Option<PathBuf>,
     /// Write a page with figures of what was found to this HTML file
     #[arg(long, value_name = "R.html", value_parser = a_file())]
     pub report: Option<PathBuf>,

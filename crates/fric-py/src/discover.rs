@@ -145,6 +145,18 @@ impl CableDiscovery {
         results::plain(py, &self.result.candidates)
     }
 
+    /// Candidates that help the extended model and do not suffice, the best first: kind, evidence and reason.
+    #[getter]
+    fn tried<'py>(&self, py: Python<'py>) -> Outcome<Bound<'py, PyAny>> {
+        results::plain(py, &self.result.tried)
+    }
+
+    /// Standard deviation of the reference over the samples that judge, N: the error of a model that predicts a constant.
+    #[getter]
+    fn reference_variation_n(&self) -> Option<f64> {
+        self.result.reference_variation_n
+    }
+
     /// Values of the extended model by the robot file's keys, those of an effect as "stribeck.ratio".
     #[getter]
     fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {

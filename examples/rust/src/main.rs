@@ -66,7 +66,7 @@ fn page_faults() -> [i64; 2] {
 }
 
 fn read(robot: &RobotFile, log: PathBuf) -> Result<Vec<Row>, Box<dyn Error>> {
-    let paths = SignalPaths::of_robot(&robot)?;
+    let paths = SignalPaths::of_robot(robot)?;
     let mut reader = SignalReader::new(Recording::open(&[log])?, paths, &robot.cable_names());
     let mut rows = Vec::new();
     while let Some(sample) = reader.next_row()? {

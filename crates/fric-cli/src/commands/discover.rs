@@ -1,5 +1,7 @@
 //! `discover`: where the model and a log disagree, which effect is missing, and the robot file with it.
 
+use std::path::Path;
+
 use fric_lab::discover::result::DiscoverResult;
 use fric_lab::discover::{discover, extended};
 use fric_lab::fit::Reference;
@@ -24,14 +26,14 @@ pub fn run(arguments: &DiscoverArguments) -> Outcome {
             .advise("Name it with --model, such as examples/tendon-prototype.toml with calibrated gratings."));
     }
     let json_file = result.json.as_deref().filter(|path| !output::is_stdout(path));
-    output::check_distinct(&[Some(output), report.as_deref(), json_file])?;
+    output::check_distinct(&[output.as_deref(), report.as_deref(), json_file])?;
     check_named_once(logs)?;
     let mut inputs = logs.clone();
     inputs.extend(model.clone());
     let model = find_model(model.as_deref(), logs)?;
     let json = JsonTarget::prepare(result.json.as_deref(), &inputs, result.force)?;
     let report = report.as_ref().map(|path| OutputFile::create(path, &inputs, result.force)).transpose()?;
-    let extended_file = OutputFile::create(output, &inputs, result.force)?;
+    let extended_file = output.as_ref().map(|path| OutputFile::create(path, &inputs, result.force)).transpose()?;
 
     let read = read(logs, &model, Reference::Forces)?;
     let readiness = readiness::to_discover(&model.robot, &read.holdings);
@@ -43,10 +45,21 @@ pub fn run(arguments: &DiscoverArguments) -> Outcome {
     let logs: Vec<(String, f64)> = names.zip(read.measurements.log_starts_s()).collect();
     let outcome = DiscoverResult::new(&model.robot, &logs, &readiness, &discoveries);
     outcome.check_told()?;
-    extended_file.finish_with(&extended(&model.text, &model.origin, &discoveries)?)?;
+    if let Some(file) = extended_file {
+        file.finish_with(&extended(&model.text, &model.origin, &discoveries)?)?;
+    }
     if let Some(report) = report {
         report.finish_with(&report::discovery::page(&outcome, &discoveries))?;
     }
-    json.show(&outcome.summary())?;
+    json.show(&format!("{}\n{}\n", outcome.summary(), next_step(&logs, output.as_deref())))?;
     json.write(&outcome)
+}
+
+/// What a user would do with the result.
+fn next_step(logs: &[(String, f64)], output: Option<&Path>) -> String {
+    let log = logs.first().map_or("LOG", |(name, _)| name.as_str());
+    output.map_or_else(
+        || "Nothing is written; `-o extended.toml` writes the robot file with it.".to_owned(),
+        |path| format!("Next: fric-cli replay {log} --model {}", path.display()),
+    )
 }

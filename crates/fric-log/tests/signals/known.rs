@@ -28,8 +28,8 @@ fn moving(times_s: impl IntoIterator<Item = f64>, length_m: impl Fn(f64) -> f64)
         #[expect(clippy::cast_possible_truncation, reason = "nanoseconds")]
         let stamp = S + (time_s * 1e9).round() as i64;
         #[expect(clippy::cast_precision_loss, reason = "a count, and nanoseconds")]
-        let (force_n, time_s) = (number as f64, (stamp - S) as f64 * 1e-9);
-        log.add("/cables", JOINT_STATES, stamp, joints(stamp, &["a"], &[length_m(time_s)], &[], &[force_n]));
+        let (force_n, since_s) = (number as f64, (stamp - S) as f64 * 1e-9);
+        log.add("/cables", JOINT_STATES, stamp, joints(stamp, &["a"], &[length_m(since_s)], &[], &[force_n]));
     }
     log
 }

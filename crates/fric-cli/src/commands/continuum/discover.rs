@@ -15,7 +15,7 @@ use crate::report;
 pub fn run(arguments: &DiscoverArguments) -> Outcome {
     let DiscoverArguments { logs, model, output, report, result } = arguments;
     let json_file = result.json.as_deref().filter(|path| !output::is_stdout(path));
-    output::check_distinct(&[Some(output), report.as_deref(), json_file])?;
+    output::check_distinct(&[output.as_deref(), report.as_deref(), json_file])?;
     let ([log], Some(model)) = (logs.as_slice(), model) else {
         return Err(
             Failure::usage("a manipulator's runs are looked at one by one").advise("Name one run and its --model.")
@@ -25,11 +25,13 @@ pub fn run(arguments: &DiscoverArguments) -> Outcome {
     let model = Model::read(model)?;
     let json = JsonTarget::prepare(result.json.as_deref(), &inputs, result.force)?;
     let report = report.as_ref().map(|path| OutputFile::create(path, &inputs, result.force)).transpose()?;
-    let extended = OutputFile::create(output, &inputs, result.force)?;
+    let extended = output.as_ref().map(|path| OutputFile::create(path, &inputs, result.force)).transpose()?;
     let table = read_table(log, &columns::of_run(model.disk_count()))?;
     let run = Run::from_columns(&table, model.disk_count()).map_err(|error| about(log, error))?;
     let found = discover(&model.file, &run, &log.display().to_string()).map_err(|error| about(log, error))?;
-    extended.finish_with(&rewrite(&model.text, &model.origin, &found.edit)?)?;
+    if let Some(file) = extended {
+        file.finish_with(&rewrite(&model.text, &model.origin, &found.edit)?)?;
+    }
     if let Some(report) = report {
         report.finish_with(&report::continuum::discovery(&found))?;
     }
