@@ -37,7 +37,7 @@ use crate::weight;
 /// the parameters of every other block of the log on the blocks between.
 ///
 /// # Errors
-/// [`FitError`] where the wrench cannot tell the forces of the cables, see [`balance`].
+/// [`FitError`] where the wrench cannot tell the forces of the cables.
 pub fn fit_wrench(
     measurements: &Measurements<'_>,
     options: &FitOptions,
