@@ -1,9 +1,9 @@
 //! All cables at once from the wrench on the platform; the references that the logs hold are only looked at afterwards.
 //!
-//! What the fit is not told becomes friction as far as friction can be like it. A mass that is 5 % too large takes μ up to
-//! 14 % off here, and the force error to five times the noise. A hand that pushes unseen with a slow force of 1 N, a
-//! quarter of the platform's weight, takes μ 2 % off even where σ and F_pv are known: the mass has to be right, and a log for
-//! this fit must be free of hands, or have them measured.
+//! What the fit is not told goes where it can. A mass that is 5 % too large goes into the offsets of the cables: μ stays
+//! right, but the force error grows to three times the noise. A hand that pushes unseen with a slow force of 1 N, a quarter of
+//! the platform's weight, takes μ 2 % off even where σ and F_pv are known: a log for this fit must be free of hands, or have
+//! them measured.
 
 use fric_core::Wrench;
 use fric_core::robot::file::RobotFile;
@@ -76,12 +76,12 @@ fn forty_seconds() -> Log {
     Log::record(&truth(), &SimulationOptions { duration_s: Some(40.0), ..SimulationOptions::default() })
 }
 
-/// A mass 5 % too large.
+/// A mass 5 % too large: 0.2 N of weight that no cable bears, and that looks like no friction.
 #[test]
 fn a_wrong_mass() {
     let heavy = mini_ipanema_text("mass_kg = 0.41", "mass_kg = 0.4305");
     let ([mu, ..], ratio) = worst(&fit(&without_wrench(forty_seconds()), &heavy), &truth());
-    assert!((0.05..0.25).contains(&mu) && ratio > 2.0, "{mu} {ratio}");
+    assert!(mu < 0.01 && ratio > 2.0, "{mu} {ratio}");
 }
 
 /// A hand that pushes with a slow force of ±1 N that nobody has measured, where all but μ is known.
