@@ -83,6 +83,7 @@ impl Effects {
 pub struct Memory {
     cycles: u32,
     slow_speed: f64,
+    slower_speed: f64,
     settled_n: f64,
     waiting_m: f64,
     friction_n: f64,
@@ -158,7 +159,7 @@ impl Cable {
         let straight_n = self.frictionless(sensor_n, &wraps_rad);
         let tension_n = (straight_n + self.memory.friction_n).max(0.0);
         if self.memory.cycles == 0 {
-            (self.memory.slow_speed, self.memory.settled_n) = (speed, tension_n);
+            (self.memory.slow_speed, self.memory.slower_speed, self.memory.settled_n) = (speed, speed, tension_n);
         }
         let settled_n =
             self.memory.settled_n.clamp(tension_n - effects.stretch_play_n, tension_n + effects.stretch_play_n);
@@ -171,7 +172,11 @@ impl Cable {
         let waiting_m = waiting_m - stretch_m;
         let low_pass = |slow: f64, now: f64, window_s: f64| (window_s * slow + CYCLE_S * now) / (window_s + CYCLE_S);
         let slow_speed = low_pass(self.memory.slow_speed, speed, effects.mass_window_s);
-        let inertia_n = effects.mass_kg * (slow_speed - self.memory.slow_speed) / CYCLE_S;
+        let slower_speed = low_pass(self.memory.slower_speed, self.memory.slow_speed, effects.mass_window_s);
+        let [near, far] = [slow_speed - self.memory.slow_speed, slower_speed - self.memory.slower_speed]
+            .map(|change| change / CYCLE_S);
+        let led = (effects.mass_window_s + 0.5 * CYCLE_S) / (effects.mass_window_s + CYCLE_S);
+        let inertia_n = effects.mass_kg * ((1.0 + led) * near - led * far);
 
         let motion = Motion { displacement_m, stretch_m, speed, inertia_n };
         let chain_n = if self.lumped {
@@ -183,7 +188,8 @@ impl Cable {
         let angle = std::f64::consts::TAU * (length_m / period_m);
         let force_n = chain_n * (1.0 + sin * angle.sin() + cos * angle.cos());
         let friction_n = force_n - straight_n;
-        self.memory = Memory { cycles: self.memory.cycles + 1, slow_speed, settled_n, waiting_m, friction_n };
+        self.memory =
+            Memory { cycles: self.memory.cycles + 1, slow_speed, slower_speed, settled_n, waiting_m, friction_n };
         force_n + self.offset_n
     }
 

@@ -2,7 +2,7 @@
 
 use super::Compensator;
 use crate::effects::time_delay::{self, DelayLine};
-use crate::effects::{SPEED, STRETCH, TENSION, UNKNOWN};
+use crate::effects::{SPEEDS, STRETCH, TENSION, UNKNOWN};
 use crate::effects::{cable_elasticity, friction_drift, pulley_inertia, sensor_drift};
 use crate::places::NO_SLIP;
 use crate::robot::{ParamError, ParamProblem};
@@ -49,7 +49,8 @@ impl<const CABLES: usize> Compensator<CABLES> {
             self.state.cycle = BEFORE_FIRST;
         }
         let columns = &mut self.state.columns;
-        for (place, acts) in [(SPEED, inertia), (TENSION, elasticity), (STRETCH, elasticity)] {
+        let of_inertia = SPEEDS.map(|place| (place, inertia));
+        for (place, acts) in of_inertia.into_iter().chain([(TENSION, elasticity), (STRETCH, elasticity)]) {
             if let Some(memory) = columns.memory.get_mut(place).filter(|_| !acts) {
                 memory.fill(UNKNOWN);
             }
@@ -65,8 +66,8 @@ impl<const CABLES: usize> Compensator<CABLES> {
             if before != delay {
                 *lag_m = line.lag(*delay);
                 // Another delay is another speed, not an acceleration.
-                if let Some(speed_m_per_s) = columns.memory.get_mut(SPEED).and_then(|column| column.get_mut(cable)) {
-                    *speed_m_per_s = UNKNOWN;
+                for column in columns.memory.iter_mut().skip(SPEEDS[0]).take(SPEEDS.len()) {
+                    column.iter_mut().skip(cable).take(1).for_each(|speed_m_per_s| *speed_m_per_s = UNKNOWN);
                 }
             }
         }

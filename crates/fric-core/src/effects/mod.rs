@@ -41,15 +41,15 @@ pub struct EffectRow {
 }
 
 /// Numbers that effects remember from cycle to cycle.
-pub const MEMORY: usize = 3;
+pub const MEMORY: usize = 4;
 /// Stands for a number that is not known yet; equal to itself, as a snapshot has to be.
 pub const UNKNOWN: f64 = f64::INFINITY;
 /// Middle of the play of the tension, of `cable_elasticity`, N.
 pub(crate) const TENSION: usize = 0;
 /// Stretch that waits to move the cable, of `cable_elasticity`, m.
 pub(crate) const STRETCH: usize = 1;
-/// Low pass of the speed, of `pulley_inertia`, m/s.
-pub(crate) const SPEED: usize = 2;
+/// Both low passes of the speed, of `pulley_inertia`, m/s.
+pub(crate) const SPEEDS: [usize; 2] = [2, 3];
 
 /// The row of `until_s` of an effect that goes with time: what drifts in one run does not go on like that for ever.
 const UNTIL_ROW: ParameterRow = ParameterRow {

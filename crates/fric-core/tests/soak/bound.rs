@@ -45,7 +45,10 @@ pub fn friction_bound_n(cable: &CableParams, force_n: f64, speed_m_per_s: f64, c
     // A lead takes the speed of three moments, 3, −3 and 1 times: of one that turns round 7 times.
     let led = if value("time_delay", "delay_s") < 0.0 { 7.0 } else { 1.0 };
     let speed_m_per_s = led * speed_m_per_s;
-    let moved_n = speed_m_per_s * (viscous + value("pulley_inertia", "mass_kg") * 2.0 / window_s);
+    // The acceleration is (1 + r, −1 − 2r, r) times the speed and its low passes by the window, r the share that it is led by.
+    let lead_ratio = 1.0 - 0.5 * cycle_s / window_s;
+    let accelerating = value("pulley_inertia", "mass_kg") * 2.0 * (1.0 + 2.0 * lead_ratio) / window_s;
+    let moved_n = speed_m_per_s * (viscous + accelerating);
     // A slip limit takes from the stored friction what viscous friction is too much, and that stays stored.
     let stored_too_n = if cable.traction_mu().is_some() { 2.0 * moved_n } else { 0.0 };
 
