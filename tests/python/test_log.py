@@ -268,8 +268,8 @@ def test_speed_that_is_not_given_is_derived(log):
     length_m = good()["length_m"]
     length_m[2, 1] = np.nan
     made = fric.Log.from_arrays(**good() | {"length_m": length_m})
-    # Over what is missing the speed is the change since the last that was known.
-    assert np.allclose(made.speed_m_per_s, [[0, 0], [2, 2], [2, np.nan], [2, 2]], equal_nan=True)
+    # Over what is missing it comes from the lengths known before and after.
+    assert np.allclose(made.speed_m_per_s, [[2, 2], [2, 2], [2, np.nan], [2, 2]], equal_nan=True)
     assert np.isnan(made.reference_force_n).all() and np.isnan(made.orientation_xyzw).all() and made.robot is None
 
 

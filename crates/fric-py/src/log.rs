@@ -6,7 +6,7 @@ use fric_core::Pose;
 use fric_lab::columns::{SampleColumns, SampleRows};
 use fric_log::recording::Recording;
 use fric_log::robot::{AttachedRobot, ROBOT_FILE};
-use fric_log::signals::{LastLength, Role, SignalPaths, SignalReader};
+use fric_log::signals::{KnownLength, Role, SignalPaths, SignalReader};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -324,12 +324,17 @@ fn ascending(stamp_nanos: &Bound<'_, PyAny>) -> Outcome<Vec<i64>> {
 
 /// Speeds as where a log file has none.
 fn derived_speed_m_per_s(stamp_nanos: &[i64], length_m: &[f64], cable_count: usize) -> Vec<f64> {
-    let mut last = vec![LastLength::UNKNOWN; cable_count];
+    let rows: Vec<(i64, &[f64])> = stamp_nanos.iter().copied().zip(length_m.chunks(cable_count)).collect();
+    let length =
+        |(stamp_nanos, lengths_m): &(i64, &[f64]), cable: usize| KnownLength::new(*stamp_nanos, *lengths_m.get(cable)?);
+    let mut before = vec![None; cable_count];
     let mut speed_m_per_s = Vec::with_capacity(length_m.len());
-    for (stamp_nanos, lengths_m) in stamp_nanos.iter().zip(length_m.chunks(cable_count)) {
-        for (last, length_m) in last.iter_mut().zip(lengths_m) {
-            speed_m_per_s.push(last.speed_m_per_s(*length_m, *stamp_nanos));
-            last.update(*length_m, *stamp_nanos);
+    for (place, row) in rows.iter().enumerate() {
+        for (cable, before) in before.iter_mut().enumerate() {
+            let now = length(row, cable);
+            let after = || rows.iter().skip(place + 1).take(cable_count).find_map(|row| length(row, cable));
+            speed_m_per_s.push(now.map_or(f64::NAN, |now| now.speed_m_per_s(*before, after())));
+            *before = now.or(*before);
         }
     }
     speed_m_per_s

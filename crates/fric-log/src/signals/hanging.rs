@@ -9,7 +9,9 @@
 
 use std::collections::VecDeque;
 
-use fric_core::{CableInput, KnownReference, Pose, Sample, Wrench};
+use fric_core::{CableInput, KnownReference, Sample};
+
+use super::waiting::Row;
 
 /// Half the width of the window, and the shortest distance of rows for a difference.
 const WINDOW_NANOS: i64 = 20_000_000;
@@ -24,22 +26,18 @@ const GREATEST_ACCELERATION_M_PER_S2: f64 = 0.5;
 pub(super) struct HangingRows {
     reference: KnownReference,
     /// Those given out that others still need, then those that wait, in the order they came.
-    rows: VecDeque<Row>,
+    rows: VecDeque<Waiting>,
     /// The first of them that waits.
     next: usize,
     is_ended: bool,
 }
 
-/// A row with numbers of its own.
+/// A row that waits.
 #[derive(Debug)]
-struct Row {
-    stamp_nanos: i64,
+struct Waiting {
+    row: Row,
     /// Which time it belongs to: a clock that was set back begins another.
     time: u32,
-    cables: Vec<CableInput>,
-    reference_force_n: Vec<f64>,
-    pose: Option<Pose>,
-    outside_wrench: Option<Wrench>,
     /// By cable, NaN where it is not known; empty until it is needed.
     accelerations_m_per_s2: Vec<f64>,
 }
@@ -50,17 +48,10 @@ impl HangingRows {
     }
 
     /// Takes in the row that follows.
-    pub fn push(&mut self, row: &Sample<'_>) {
-        let time = self.rows.back().map_or(0, |last| last.time + u32::from(last.stamp_nanos >= row.stamp_nanos));
-        self.rows.push_back(Row {
-            stamp_nanos: row.stamp_nanos,
-            time,
-            cables: row.cables.to_vec(),
-            reference_force_n: Vec::new(),
-            pose: row.pose,
-            outside_wrench: row.outside_wrench,
-            accelerations_m_per_s2: Vec::new(),
-        });
+    pub fn push(&mut self, row: Row) {
+        let is_back = |last: &Waiting| last.row.stamp_nanos >= row.stamp_nanos;
+        let time = self.rows.back().map_or(0, |last| last.time + u32::from(is_back(last)));
+        self.rows.push_back(Waiting { row, time, accelerations_m_per_s2: Vec::new() });
     }
 
     /// No row follows.
@@ -72,9 +63,7 @@ impl HangingRows {
     pub fn is_ready(&self) -> bool {
         let next = self.rows.get(self.next).zip(self.rows.back());
         self.is_ended
-            || next.is_some_and(|(row, last)| {
-                row.time != last.time || last.stamp_nanos.saturating_sub(row.stamp_nanos) >= 2 * WINDOW_NANOS
-            })
+            || next.is_some_and(|(row, last)| row.time != last.time || last.after_nanos(row) >= 2 * WINDOW_NANOS)
     }
 
     /// The next row; `None` after the last.
@@ -102,45 +91,43 @@ impl HangingRows {
             let is_known = input.sensor_force_n.is_finite() && around.iter().all(|index| is_quiet(*index, cable));
             acceleration(self.next, cable).filter(|_| is_known).map_or(f64::NAN, |now| self.reference.force_n(now))
         };
-        let forces_n = self.rows.get(self.next)?.cables.iter().enumerate().map(of_cable).collect();
-        let row = self.rows.get_mut(self.next)?;
+        let forces_n = self.rows.get(self.next)?.row.cables.iter().enumerate().map(of_cable).collect();
+        let waiting = self.rows.get_mut(self.next)?;
         self.next += 1;
-        row.reference_force_n = forces_n;
-        Some(Sample {
-            stamp_nanos: row.stamp_nanos,
-            cables: &row.cables,
-            reference_force_n: &row.reference_force_n,
-            pose: row.pose,
-            outside_wrench: row.outside_wrench,
-        })
+        waiting.row.reference_force_n = forces_n;
+        Some(waiting.row.sample())
     }
 
     /// Whether a row is within the window around the next.
-    fn is_around(&self, row: &Row) -> bool {
-        self.rows.get(self.next).is_some_and(|next| {
-            row.time == next.time && row.stamp_nanos.saturating_sub(next.stamp_nanos).abs() <= WINDOW_NANOS
-        })
+    fn is_around(&self, row: &Waiting) -> bool {
+        self.rows
+            .get(self.next)
+            .is_some_and(|next| row.time == next.time && row.after_nanos(next).abs() <= WINDOW_NANOS)
     }
 
     /// Acceleration of each cable in a row, m/s².
     fn accelerations_m_per_s2(&self, index: usize) -> Vec<f64> {
         let Some(now) = self.rows.get(index) else { return Vec::new() };
-        let apart = |row: &&Row| row.stamp_nanos.saturating_sub(now.stamp_nanos).abs() >= WINDOW_NANOS;
-        let is_near = |row: &&Row| {
-            row.time == now.time && row.stamp_nanos.saturating_sub(now.stamp_nanos).abs() <= FARTHEST_NANOS
-        };
+        let apart = |row: &&Waiting| row.after_nanos(now).abs() >= WINDOW_NANOS;
+        let is_near = |row: &&Waiting| row.time == now.time && row.after_nanos(now).abs() <= FARTHEST_NANOS;
         let before = self.rows.iter().take(index).rev().find(apart).filter(is_near);
         let after = self.rows.iter().skip(index + 1).find(apart).filter(is_near);
-        let Some((before, after)) = before.zip(after) else { return vec![f64::NAN; now.cables.len()] };
+        let Some((before, after)) = before.zip(after) else { return vec![f64::NAN; now.row.cables.len()] };
         #[expect(clippy::cast_precision_loss, reason = "intervals between rows")]
-        let [past_s, future_s] = [now.stamp_nanos - before.stamp_nanos, after.stamp_nanos - now.stamp_nanos]
-            .map(|nanos| nanos as f64 * 1e-9);
-        let cables = before.cables.iter().zip(&now.cables).zip(&after.cables);
+        let [past_s, future_s] = [now.after_nanos(before), after.after_nanos(now)].map(|nanos| nanos as f64 * 1e-9);
+        let cables = before.row.cables.iter().zip(&now.row.cables).zip(&after.row.cables);
         let second_difference = |((before, now), after): ((&CableInput, &CableInput), &CableInput)| {
             let past_m_per_s = (now.length_m - before.length_m) / past_s;
             let future_m_per_s = (after.length_m - now.length_m) / future_s;
             2.0 * (future_m_per_s - past_m_per_s) / (past_s + future_s)
         };
         cables.map(second_difference).collect()
+    }
+}
+
+impl Waiting {
+    /// How much later than another it is.
+    fn after_nanos(&self, other: &Self) -> i64 {
+        self.row.stamp_nanos.saturating_sub(other.row.stamp_nanos)
     }
 }

@@ -33,8 +33,8 @@
 //! NaN and infinities pass through: the core flags them for the cable concerned. A cable that a message does not name is
 //! NaN in that row. A quaternion that is none, such as all zeros, gives no pose; the sign of a quaternion does not matter.
 //!
-//! Speed that a message does not have (an empty `velocity`, or NaN in it) is the change of length since it was last known
-//! over the time since then, also over a gap; 0 in the first row and where the clock went back.
+//! Speed that a message does not have (an empty `velocity`, or NaN in it) is the derivative of the parabola through the lengths last
+//! known before, in, and first known after the row ([`KnownLength::speed_m_per_s`]), also over a gap.
 //!
 //! A reference that is known and not measured ([`SignalPaths::with_known_reference`]) is that of every cable in each row in
 //! which the cable has a sensor force; under a hanging mass only while the cable is in quiet motion.
@@ -50,12 +50,13 @@ mod reader;
 mod row;
 mod speed;
 mod track;
+mod waiting;
 
 pub use apart::TimesApart;
 pub use error::SignalError;
 pub(crate) use layout::{Probe, STAMPS};
 pub use reader::SignalReader;
-pub use speed::LastLength;
+pub use speed::KnownLength;
 pub use track::CLOCK_STEP_MESSAGES;
 
 use fric_core::KnownReference;

@@ -7,6 +7,7 @@ use super::error::SignalError;
 use super::hanging::HangingRows;
 use super::layout::Unfit;
 use super::row::RowBuffer;
+use super::speed::SpeedRows;
 use super::track::Track;
 use super::{Role, SignalPaths, TrackCounts, WAIT_NANOS, WAITING_LIMIT};
 use crate::recording::{Message, Recording};
@@ -35,7 +36,9 @@ pub struct SignalReader {
     is_ended: bool,
     /// The latest log time so far.
     log_time_nanos: u64,
-    row: RowBuffer,
+    buffer: RowBuffer,
+    /// Rows that wait for their speeds.
+    speeds: SpeedRows,
     /// Rows that wait for the acceleration of a hanging mass.
     hanging: Option<HangingRows>,
 }
@@ -97,11 +100,12 @@ impl SignalReader {
             first_problem: Default::default(),
             first_foreign: Default::default(),
         };
-        let row = RowBuffer::new(topics.cable_names.len(), &topics.paths);
+        let buffer = RowBuffer::new(topics.cable_names.len(), &topics.paths);
+        let speeds = SpeedRows::new(topics.cable_names.len());
         let (channels, tracks) = (Vec::new(), Tracks::default());
         let known = topics.paths.known_reference();
         let hanging = known.filter(|known| matches!(known, KnownReference::HangingMass { .. })).map(HangingRows::new);
-        Self { recording, topics, channels, tracks, is_ended: false, log_time_nanos: 0, row, hanging }
+        Self { recording, topics, channels, tracks, is_ended: false, log_time_nanos: 0, buffer, speeds, hanging }
     }
 
     /// The recording, for its damage and its progress.
@@ -142,18 +146,36 @@ impl SignalReader {
     /// [`SignalError`] where the recording cannot be read on, or has no usable cable signal.
     pub fn next_row(&mut self) -> Result<Option<Sample<'_>>, SignalError> {
         let Some(mut hanging) = self.hanging.take() else {
-            return Ok(if self.join_row()? { Some(self.row.sample()) } else { None });
+            return Ok(if self.next_with_speeds()? { Some(self.buffer.row.sample()) } else { None });
         };
         let mut outcome = Ok(());
         while outcome.is_ok() && !hanging.is_ready() {
-            outcome = self.join_row().map(
-                |is_joined| {
-                    if is_joined { hanging.push(&self.row.sample()) } else { hanging.end() }
-                },
-            );
+            outcome = self
+                .next_with_speeds()
+                .map(|has_row| if has_row { hanging.push(self.buffer.row.clone()) } else { hanging.end() });
         }
         let hanging = self.hanging.insert(hanging);
         outcome.map(|()| hanging.pop())
+    }
+
+    /// Puts the next row, with its speeds, into the buffer; false at the end of the log.
+    fn next_with_speeds(&mut self) -> Result<bool, SignalError> {
+        if !self.buffer.derives_speed() {
+            return self.join_row();
+        }
+        while !self.speeds.is_ready() {
+            if !self.join_row()? {
+                self.speeds.end();
+            } else if self.speeds.passes(&self.buffer.row) {
+                return Ok(true);
+            } else {
+                self.speeds.push(self.buffer.row.clone());
+            }
+        }
+        let row = self.speeds.pop();
+        let has_row = row.is_some();
+        self.buffer.row = row.unwrap_or_default();
+        Ok(has_row)
     }
 
     /// Joins the next row; false at the end of the log.
@@ -169,7 +191,7 @@ impl SignalReader {
         for track in &mut *others {
             track.advance(sample.stamp_nanos);
         }
-        self.row.fill(&sample, others);
+        self.buffer.fill(&sample, others);
         let stamp_nanos = sample.stamp_nanos;
         cable.recycle(sample);
         if cable.is_stepped() && cable.samples().is_empty() {

@@ -1,26 +1,21 @@
 //! The row given out: the signals of one time, put together from the tracks.
 
-use fric_core::{CableInput, KnownReference, Pose, Sample, Wrench};
+use fric_core::{KnownReference, Pose, Wrench};
 
-use super::speed::LastLength;
 use super::track::{Around, Track, Tracked};
+use super::waiting::Row;
 use super::{Role, SignalPaths};
 
-/// The row given out, and what the next one needs of it.
+/// The row given out, and what it takes to put the next one together.
 #[derive(Debug)]
 pub(super) struct RowBuffer {
-    stamp_nanos: i64,
-    cables: Vec<CableInput>,
-    reference_force_n: Vec<f64>,
-    pose: Option<Pose>,
-    outside_wrench: Option<Wrench>,
+    pub row: Row,
     has_length_path: bool,
     has_speed_path: bool,
     /// The reference of every cable, where it is the same all the time.
     constant_n: Option<f64>,
     /// Room for lengths and speeds of their own topics.
     numbers: Vec<f64>,
-    last_lengths: Vec<LastLength>,
     poses: [KnownPose; 2],
 }
 
@@ -34,11 +29,7 @@ struct KnownPose {
 impl RowBuffer {
     pub fn new(cable_count: usize, paths: &SignalPaths) -> Self {
         Self {
-            stamp_nanos: 0,
-            cables: vec![CableInput::default(); cable_count],
-            reference_force_n: vec![f64::NAN; cable_count],
-            pose: None,
-            outside_wrench: None,
+            row: Row::new(cable_count),
             has_length_path: paths.get(Role::Length).is_some(),
             has_speed_path: paths.get(Role::Speed).is_some(),
             constant_n: paths.known_reference().and_then(|known| match known {
@@ -46,34 +37,28 @@ impl RowBuffer {
                 KnownReference::HangingMass { .. } => None,
             }),
             numbers: vec![f64::NAN; cable_count],
-            last_lengths: vec![LastLength::UNKNOWN; cable_count],
             poses: [KnownPose::default(); 2],
         }
     }
 
-    pub fn sample(&self) -> Sample<'_> {
-        Sample {
-            stamp_nanos: self.stamp_nanos,
-            cables: &self.cables,
-            reference_force_n: &self.reference_force_n,
-            pose: self.pose,
-            outside_wrench: self.outside_wrench,
-        }
+    /// Whether speeds that a message does not have come from the lengths.
+    pub fn derives_speed(&self) -> bool {
+        !self.has_speed_path
     }
 
     /// The row of a cable sample; `others` are the tracks of the other roles, advanced to its time.
     pub fn fill(&mut self, sample: &Tracked, others: &[Track; 5]) {
         let [length, speed, reference, pose, wrench] = others;
-        self.stamp_nanos = sample.stamp_nanos;
+        self.row.stamp_nanos = sample.stamp_nanos;
         self.fill_cables(sample, length, speed);
-        interpolate(reference, self.stamp_nanos, &mut self.reference_force_n);
+        interpolate(reference, self.row.stamp_nanos, &mut self.row.reference_force_n);
         if let Some(constant_n) = self.constant_n {
-            for (reference_n, cable) in self.reference_force_n.iter_mut().zip(&self.cables) {
+            for (reference_n, cable) in self.row.reference_force_n.iter_mut().zip(&self.row.cables) {
                 *reference_n = if cable.sensor_force_n.is_finite() { constant_n } else { f64::NAN };
             }
         }
-        self.pose = pose.around(self.stamp_nanos).and_then(|around| self.pose_at(&around));
-        self.outside_wrench = wrench.around(self.stamp_nanos).map(|around| {
+        self.row.pose = pose.around(self.row.stamp_nanos).and_then(|around| self.pose_at(&around));
+        self.row.outside_wrench = wrench.around(self.row.stamp_nanos).map(|around| {
             let mut parts = [f64::NAN; 6];
             around.interpolate(&mut parts);
             let [fx, fy, fz, tx, ty, tz] = parts;
@@ -82,9 +67,9 @@ impl RowBuffer {
     }
 
     fn fill_cables(&mut self, sample: &Tracked, length: &Track, speed: &Track) {
-        let stamp_nanos = self.stamp_nanos;
-        let mut blocks = sample.values.chunks_exact(self.cables.len().max(1));
-        for (cable, force_n) in self.cables.iter_mut().zip(blocks.next().unwrap_or_default()) {
+        let stamp_nanos = self.row.stamp_nanos;
+        let mut blocks = sample.values.chunks_exact(self.row.cables.len().max(1));
+        for (cable, force_n) in self.row.cables.iter_mut().zip(blocks.next().unwrap_or_default()) {
             cable.sensor_force_n = *force_n;
         }
         let mut lengths_m = blocks.next().unwrap_or_default();
@@ -92,7 +77,7 @@ impl RowBuffer {
             interpolate(length, stamp_nanos, &mut self.numbers);
             lengths_m = &self.numbers;
         }
-        for (cable, length_m) in self.cables.iter_mut().zip(lengths_m) {
+        for (cable, length_m) in self.row.cables.iter_mut().zip(lengths_m) {
             cable.length_m = *length_m;
         }
         let mut speeds = blocks.next();
@@ -101,14 +86,8 @@ impl RowBuffer {
             speeds = Some(&self.numbers);
         }
         let speeds = speeds.unwrap_or_default().iter().copied().chain(std::iter::repeat(f64::NAN));
-        for ((cable, last), speed_m_per_s) in self.cables.iter_mut().zip(&self.last_lengths).zip(speeds) {
-            // Drivers that do not measure a speed publish NaN.
-            let is_derived = speed_m_per_s.is_nan() && !self.has_speed_path;
-            cable.speed_m_per_s =
-                if is_derived { last.speed_m_per_s(cable.length_m, stamp_nanos) } else { speed_m_per_s };
-        }
-        for (cable, last) in self.cables.iter().zip(&mut self.last_lengths) {
-            last.update(cable.length_m, stamp_nanos);
+        for (cable, speed_m_per_s) in self.row.cables.iter_mut().zip(speeds) {
+            cable.speed_m_per_s = speed_m_per_s;
         }
     }
 

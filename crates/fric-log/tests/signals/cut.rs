@@ -29,8 +29,9 @@ fn a_log_cut_in_half_gives_the_rows_of_its_half() {
     assert!((24_000..30_000).contains(&count), "{count}");
     for (row, whole) in half.rows.iter().zip(&all) {
         assert_eq!((row.stamp_nanos, &row.force_n), (whole.stamp_nanos, &whole.force_n));
-        assert_eq!(row.speed_m_per_s, whole.speed_m_per_s);
     }
+    // The speed of the last row has no length after it to go by.
+    assert!(half.rows[..count - 1].iter().zip(&all).all(|(row, whole)| row.speed_m_per_s == whole.speed_m_per_s));
     // The last pose is at most three rows before the end.
     assert!(half.rows[..count - 4].iter().zip(&all).all(|(row, whole)| row.pose == whole.pose));
 }

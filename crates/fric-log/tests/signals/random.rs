@@ -127,15 +127,18 @@ fn rows_are_as_the_oracle_has_them() {
 fn check(joined: &Joined, topics: &[Topic; 6], own: [bool; 2], what: &str) {
     let [cables, lengths, speeds, references, poses, wrenches] = topics;
     assert_eq!(joined.rows.len(), cables.kept().len(), "{what}");
-    let mut known: [Option<(i64, f64)>; 2] = [None; 2];
-    for (row, (stamp, it)) in joined.rows.iter().zip(cables.kept()) {
+    let kept = cables.kept();
+    let lengths_at = |place: usize| {
+        let (stamp, it) = kept.get(place)?;
+        Some((*stamp, if own[0] { lengths.at(*stamp, 2) } else { vec![it[2], it[0]] }))
+    };
+    for (place, (row, (stamp, it))) in joined.rows.iter().zip(kept).enumerate() {
         let what = format!("{what} at {stamp}");
         assert_eq!(row.stamp_nanos, *stamp, "{what}");
         assert_eq!(row.force_n, [it[5], it[3]], "{what}");
-        let length = if own[0] { lengths.at(*stamp, 2) } else { vec![it[2], it[0]] };
+        let length = lengths_at(place).unwrap().1;
         assert_near(&row.length_m, &length, &what);
-        let derived: Vec<f64> =
-            known.iter_mut().zip(&length).map(|(known, length)| derive(known, *stamp, *length)).collect();
+        let derived: Vec<f64> = (0..2).map(|cable| derive(&lengths_at, place, cable)).collect();
         let speed = if own[1] { speeds.at(*stamp, 2) } else { derived };
         assert_near(&row.speed_m_per_s, &speed, &what);
         let reference = references.at(*stamp, 2);
@@ -155,11 +158,23 @@ fn check(joined: &Joined, topics: &[Topic; 6], own: [bool; 2], what: &str) {
     }
 }
 
-/// Change of length since it was last known.
-fn derive(known: &mut Option<(i64, f64)>, stamp: i64, length: f64) -> f64 {
-    if length.is_nan() {
-        return f64::NAN;
+/// Slope in a row of the polynomial through the lengths known last before, in, and first after it within two rows: Newton's
+/// divided differences.
+fn derive(lengths_at: &dyn Fn(usize) -> Option<(i64, Vec<f64>)>, place: usize, cable: usize) -> f64 {
+    let now = lengths_at(place).unwrap().0;
+    let known = |place: usize| {
+        let (stamp, lengths) = lengths_at(place)?;
+        Some((ms(stamp - now) / 1e3, lengths[cable])).filter(|(_, length)| length.is_finite())
+    };
+    let Some((t1, x1)) = known(place) else { return f64::NAN };
+    let slope = |(t, x): (f64, f64)| (x - x1) / (t - t1);
+    let before = (0..place).rev().find_map(known);
+    let after = (place + 1..=place + 2).find_map(known);
+    match (before, after) {
+        (Some(before), Some(after)) => {
+            let bend = (slope(after) - slope(before)) / (after.0 - before.0);
+            slope(before) + bend * (t1 - before.0)
+        }
+        (one, other) => one.or(other).map_or(0.0, slope),
     }
-    let before = known.replace((stamp, length));
-    before.map_or(0.0, |(before, last)| (length - last) / (ms(stamp - before) / 1e3))
 }

@@ -158,7 +158,24 @@ fn missing_speed_is_derived_message_by_message() {
     add(104, 1.106, &[]);
     add(105, 1.109, &[f64::NAN]);
     let speeds: Vec<f64> = log.read_a().rows.iter().map(|row| row.speed_m_per_s[0]).collect();
-    assert_near(&speeds, &[0.0, 1.0, 7.0, f64::NAN, 2.0, 1.0, 3.0], "speeds");
+    // In m per ms, by the parabola through three points: (1·1 + 1·1)/2; (2·100 + 1·2)/102; (1·1 + 3·100)/101.
+    assert_near(&speeds, &[1.0, 1.0, 7.0, f64::NAN, 202.0 / 102.0, 301.0 / 101.0, 3.0], "speeds");
+}
+
+/// Each of two cables has messages of its own, and the length is the square of the time: its derivative is met all the same.
+#[test]
+fn derived_speed_does_not_lag() {
+    let mut log = Log::default();
+    for at in 0..20_i64 {
+        let (name, t) = (["a", "b"][usize::try_from(at % 2).unwrap()], 1e-3 * f64::from(i32::try_from(at).unwrap()));
+        log.add("/cables", JOINT_STATES, S + at * MS, joints(S + at * MS, &[name], &[t * t], &[], &[1.0]));
+    }
+    let rows = log.read_a_and_b().rows;
+    assert_eq!(rows.len(), 20);
+    for (at, row) in rows.iter().enumerate().skip(2).take(16) {
+        assert!((row.speed_m_per_s[at % 2] - 2e-3 * at as f64).abs() < 1e-9, "{at} {:?}", row.speed_m_per_s);
+        assert!(row.speed_m_per_s[1 - at % 2].is_nan());
+    }
 }
 
 #[test]

@@ -1,0 +1,45 @@
+//! The signals of one time, as what has to wait for later ones keeps them.
+
+use fric_core::{CableInput, Pose, Sample, Wrench};
+
+use super::speed::KnownLength;
+
+/// A row.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Row {
+    pub stamp_nanos: i64,
+    pub cables: Vec<CableInput>,
+    pub reference_force_n: Vec<f64>,
+    pub pose: Option<Pose>,
+    pub outside_wrench: Option<Wrench>,
+}
+
+impl Row {
+    pub fn new(cable_count: usize) -> Self {
+        Self {
+            cables: vec![CableInput::default(); cable_count],
+            reference_force_n: vec![f64::NAN; cable_count],
+            ..Self::default()
+        }
+    }
+
+    pub fn sample(&self) -> Sample<'_> {
+        Sample {
+            stamp_nanos: self.stamp_nanos,
+            cables: &self.cables,
+            reference_force_n: &self.reference_force_n,
+            pose: self.pose,
+            outside_wrench: self.outside_wrench,
+        }
+    }
+
+    /// The length of a cable.
+    pub fn known_length(&self, cable: usize) -> Option<KnownLength> {
+        KnownLength::new(self.stamp_nanos, self.cables.get(cable)?.length_m)
+    }
+
+    /// Whether a cable has a length and no speed.
+    pub fn lacks_speed(&self, cable: usize) -> bool {
+        self.cables.get(cable).is_some_and(|cable| cable.speed_m_per_s.is_nan() && cable.length_m.is_finite())
+    }
+}
