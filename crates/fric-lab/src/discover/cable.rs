@@ -442,9 +442,7 @@ impl<'a> Case<'a> {
         });
         CableDiscovery {
             samples,
-            reference_variation_n: variation(
-                self.raw.rows.iter().zip(&held_out).filter(|(_, used)| **used).map(|(row, _)| row.reference_n),
-            ),
+            reference_variation_n: raw.reference_variation_n(),
             held_out: super::rest::ranges(throughout.used(true).into_iter())
                 .into_iter()
                 .map(|range| [range.start, range.end])
@@ -485,16 +483,6 @@ impl<'a> Case<'a> {
             neighbours: Vec::new(),
         }
     }
-}
-
-/// Standard deviation of some numbers; NaN without any.
-fn variation(numbers: impl Iterator<Item = f64> + Clone) -> f64 {
-    let mean = |numbers: &mut dyn Iterator<Item = f64>| {
-        let (sum, count) = numbers.fold((0.0, 0.0), |(sum, count), number| (sum + number, count + 1.0));
-        sum / count
-    };
-    let middle = mean(&mut numbers.clone());
-    mean(&mut numbers.map(|number| (number - middle).powi(2))).sqrt()
 }
 
 fn finding(search: &Search<'_, '_>, model: &Trial, named: &Named, held_out_n: Deviation) -> Finding {

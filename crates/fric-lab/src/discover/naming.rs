@@ -11,11 +11,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use fric_core::effects::pulley_inertia::MASS;
 use fric_core::effects::sensor_offset::OFFSET as OFFSET_OF_SENSOR;
-use fric_core::effects::time_delay::DELAY;
-use fric_core::effects::{self, EffectRow, pulley_eccentricity, sensor_offset};
-use fric_core::parameters::{MU, OFFSET, VISCOUS, Values};
+use fric_core::effects::{self, EffectRow, pulley_eccentricity, sensor_gain, sensor_offset};
+use fric_core::parameters::{MU, OFFSET, Values};
 
 use super::candidates::{Scale, fitted, has, is_friction, starts};
 use super::evidence::inflation;
@@ -40,8 +38,6 @@ const LEAST_SIZE: f64 = 0.002;
 const NEGLIGIBLE: f64 = 0.01;
 /// Candidates are first brought so near to their minima that what is left to gain is this part of what a candidate needs to enter.
 const UNDECIDED: f64 = 0.5;
-/// Speeds and accelerations that are taken from differences lag, by less than this many cycles.
-const LAG_CYCLES: f64 = 1.0;
 /// A parameter within this fraction of its bound counts as stuck at the bound, by the way from its neutral value.
 const END_RATIO: f64 = 0.01;
 /// Minimum ΔBIC to keep an effect, and to prefer one name over another. 10 would do if the memory of the residual were
@@ -81,8 +77,6 @@ pub struct Named {
 pub enum Refusal {
     /// The evidence for it is weaker than what chance gives.
     Weak,
-    /// It is no more than what the lag of differences makes of another effect.
-    Lag,
     /// Its parameter runs to the end of its range.
     AtBound,
     /// The log cannot tell it from the parameter of this name.
@@ -131,6 +125,8 @@ pub struct Search<'b, 'a> {
     scale: Scale,
     conditions: &'b [Condition],
     fits: BTreeMap<Kinds, Trial>,
+    /// Whether the reference tells more loads than one; if not, a sensor of no gain that is off by that load agrees with it best.
+    knows_load: bool,
     /// Candidates that were refused, and why.
     refused: BTreeMap<&'static str, Refusal>,
     /// Of effects in sets: by how much memory weakens the evidence, and why they cannot stay.
@@ -158,6 +154,7 @@ impl<'b, 'a> Search<'b, 'a> {
             scale,
             conditions,
             fits,
+            knows_load: bench.reference_variation_n() > noise_n,
             refused: BTreeMap::new(),
             judged: BTreeMap::new(),
             unrivalled: BTreeSet::new(),
@@ -244,7 +241,6 @@ impl<'b, 'a> Search<'b, 'a> {
             let may_enter = |(row, trial): &(&'static EffectRow, Trial)| {
                 !self.refused.contains_key(row.kind)
                     && gains(&model, trial, enough)
-                    && !is_lag(row, &trial.values, cycle_s)
                     && !is_at_end(row, &trial.values, cycle_s)
             };
             let Some((row, _)) = best(candidates.into_iter().filter(may_enter)) else { break };
@@ -269,7 +265,7 @@ impl<'b, 'a> Search<'b, 'a> {
     /// Each candidate that a model lacks, fitted beside all that it has; the ladder of friction comes before everything else.
     fn round(&mut self, rows: &[&'static EffectRow]) -> Vec<(&'static EffectRow, Trial)> {
         let model = self.fit(rows);
-        let slides = model.values[MU] > 0.0;
+        let (slides, knows_load) = (model.values[MU] > 0.0, self.knows_load);
         // An offset of the sensor and one at the platform are the same to the force.
         let has_offset = model.free.iter().any(|parameter| parameter.place() == OFFSET);
         let lacking = |friction: bool| -> Vec<&'static EffectRow> {
@@ -277,6 +273,7 @@ impl<'b, 'a> Search<'b, 'a> {
                 .filter(|row| is_friction(row) == friction && !has(row, &model.values) && !contains(rows, row))
                 .filter(|row| row.kind != "presliding" || slides)
                 .filter(|row| row.kind != sensor_offset::ROW.kind || !has_offset)
+                .filter(|row| row.kind != sensor_gain::ROW.kind || knows_load)
                 .collect()
         };
         let friction = self.beside(rows, &lacking(true));
@@ -448,9 +445,6 @@ impl<'b, 'a> Search<'b, 'a> {
     /// Why an effect cannot stay in a model.
     fn refusal(&self, model: &Trial, row: &EffectRow, without_it: &Trial, inflation: f64) -> Option<Refusal> {
         let cycle_s = self.bench.record.cycle_s;
-        if is_lag(row, &model.values, cycle_s) {
-            return Some(Refusal::Lag);
-        }
         if is_at_end(row, &model.values, cycle_s) {
             return Some(Refusal::AtBound);
         }
@@ -506,9 +500,7 @@ impl<'b, 'a> Search<'b, 'a> {
             .map(|(row, trial)| {
                 let inflation = inflation(self.bench, &trial, &fitted(row));
                 let cycle_s = self.bench.record.cycle_s;
-                let refusal = if is_lag(row, &trial.values, cycle_s) {
-                    Refusal::Lag
-                } else if is_at_end(row, &trial.values, cycle_s) {
+                let refusal = if is_at_end(row, &trial.values, cycle_s) {
                     Refusal::AtBound
                 } else {
                     self.refused.get(row.kind).copied().unwrap_or(Refusal::Weak)
@@ -549,17 +541,6 @@ fn delta_bic(count: f64, squares_ratio: f64, more: f64) -> f64 {
     if count < 2.0 { f64::INFINITY } else { count * squares_ratio.ln() + more * count.ln() }
 }
 
-/// Whether an effect is no greater than what the lag of differences makes of another: of the acceleration of `pulley_inertia` a
-/// delay, of the speed v in viscous friction `viscous·(v − a·lag)` an inertia.
-fn is_lag(row: &EffectRow, values: &Values, cycle_s: f64) -> bool {
-    let lag_s = LAG_CYCLES * cycle_s;
-    match row.kind {
-        "time_delay" => values[MASS] > 0.0 && values[DELAY].abs() < lag_s,
-        "pulley_inertia" => values[MASS] < values[VISCOUS] * lag_s,
-        _ => false,
-    }
-}
-
 /// Whether a parameter of an effect has run into an end of its range that is not its neutral value; of friction that every model
 /// has the ranges are orders of magnitude.
 fn is_at_end(row: &EffectRow, values: &Values, cycle_s: f64) -> bool {
@@ -594,12 +575,10 @@ fn kinds(rows: &[&'static EffectRow]) -> Kinds {
 
 #[cfg(test)]
 mod tests {
-    use fric_core::effects::pulley_inertia::MASS;
-    use fric_core::effects::time_delay::DELAY;
     use fric_core::effects::{presliding_shape, pulley_inertia, stribeck, time_delay};
-    use fric_core::parameters::{PARAMETER_COUNT, VISCOUS, Values};
+    use fric_core::parameters::{PARAMETER_COUNT, Values};
 
-    use super::{delta_bic, fitted, is_at_end, is_lag};
+    use super::{delta_bic, fitted, is_at_end};
     use crate::fit::Parameter;
 
     const CYCLE_S: f64 = 1e-3;
@@ -610,18 +589,6 @@ mod tests {
             values[parameter.place()] = parameter.row().neutral;
         }
         values
-    }
-
-    #[test]
-    fn what_a_lag_of_half_a_cycle_makes_is_no_effect() {
-        let mut values = neutral();
-        (values[VISCOUS], values[MASS], values[DELAY]) = (0.3, 0.3 * 0.5 * CYCLE_S, -0.5 * CYCLE_S);
-        assert!(is_lag(&pulley_inertia::ROW, &values, CYCLE_S) && is_lag(&time_delay::ROW, &values, CYCLE_S));
-        assert!(!is_lag(&stribeck::ROW, &values, CYCLE_S));
-        (values[MASS], values[DELAY]) = (0.01, 2.0 * CYCLE_S);
-        assert!(!is_lag(&pulley_inertia::ROW, &values, CYCLE_S) && !is_lag(&time_delay::ROW, &values, CYCLE_S));
-        (values[MASS], values[DELAY]) = (0.0, 0.5 * CYCLE_S);
-        assert!(!is_lag(&time_delay::ROW, &values, CYCLE_S));
     }
 
     #[test]

@@ -286,7 +286,6 @@ impl Refusal {
     pub fn in_words(self) -> String {
         match self {
             Self::Weak => "the evidence is weaker than what chance may give".to_owned(),
-            Self::Lag => "it is no more than what the lag of differenced speeds makes of another effect".to_owned(),
             Self::AtBound => "its parameter runs to the end of its range".to_owned(),
             Self::Open(other) => format!("the log cannot tell it from {}", name_of(other)),
             Self::Unsteady(signal) => {

@@ -83,6 +83,19 @@ impl<'a> Workbench<'a> {
         self.used(held_out).into_iter().filter(|used| *used).count()
     }
 
+    /// Standard deviation of the reference over the samples held out, N; NaN without any.
+    pub fn reference_variation_n(&self) -> f64 {
+        let used = self.used(true);
+        let rows = self.record.rows.iter().zip(&used).filter(|(_, used)| **used);
+        let known_n = rows.map(|(row, _)| row.reference_n);
+        let mean = |numbers: &mut dyn Iterator<Item = f64>| {
+            let (sum, count) = numbers.fold((0.0, 0.0), |(sum, count), number| (sum + number, count + 1.0));
+            sum / count
+        };
+        let middle_n = mean(&mut known_n.clone());
+        mean(&mut known_n.map(|force_n| (force_n - middle_n).powi(2))).sqrt()
+    }
+
     /// The least-squares problem over the samples learned from.
     pub fn problem(&self, free: &[Parameter], seat: Option<Rc<Seat<'a>>>) -> Problem<'a> {
         Problem {
