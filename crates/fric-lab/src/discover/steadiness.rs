@@ -20,7 +20,7 @@ use crate::fit::engine::{Bins, Condition, Problem};
 pub struct Steadiness {
     /// The condition.
     pub signal: &'static str,
-    /// Mean square by which the size differs from the fitted one over the bins, weighed by what each tells of it, less what noise makes of it.
+    /// Mean square by which the size differs from the fitted one over the bins, weighed by what each tells of it, less what chance makes of it.
     pub scatter: f64,
     /// What is above the noise that the effect would explain if it grew or fell in proportion to the condition, as a share.
     pub bent: f64,
@@ -55,9 +55,13 @@ impl<'a> Portrait<'a> {
         Some(Self { residual_n, own_n, conditions, noise_n, inflation })
     }
 
-    /// Mean square of the noise in a sum of products, N².
+    /// Mean square by which chance scatters a sum of products, N²: that of the residual, by how many of its samples are worth an
+    /// independent one. What other effects have left scatters the sums as noise does.
     fn variance(&self) -> f64 {
-        self.noise_n * self.noise_n * self.inflation
+        let finite = self.residual_n.iter().filter(|number| number.is_finite());
+        let (squares, count) =
+            finite.fold((0.0, 0.0), |(squares, count), number| (squares + number * number, count + 1.0));
+        squares / count * self.inflation
     }
 
     /// The steadiness over each condition that is divided into bins.
