@@ -8,7 +8,8 @@
 
 use std::collections::BTreeMap;
 
-use fric_lab::discover::{CableDiscovery, Verdict, discover};
+use fric_core::robot::file::RobotFile;
+use fric_lab::discover::{CableDiscovery, Verdict, discover, extended};
 use fric_lab::fit::{Measurements, Progress, Reference};
 use fric_lab::simulate::sweep::{self, Case, CaseTruth, Group};
 use rayon::prelude::*;
@@ -23,9 +24,11 @@ struct Outcome {
     verdict: Verdict,
     /// How well the parameters of what was hidden came out.
     errors: Vec<ParameterError>,
-    /// Root mean square after, and the floor found, as multiples of the true floor.
+    /// Root mean square after, as a multiple of noise and wander together; the floor found, of the noise.
     after_ratio: f64,
     floor_ratio: f64,
+    /// Whether the search names nothing more from its own extended file, with the verdict that goes with it.
+    is_settled: bool,
 }
 
 /// How far a parameter came out from what was hidden.
@@ -39,7 +42,7 @@ struct ParameterError {
 }
 
 impl Outcome {
-    fn new(case: Case, truth: &CaseTruth, cable: &CableDiscovery) -> Self {
+    fn new(case: Case, truth: &CaseTruth, cable: &CableDiscovery, is_settled: bool) -> Self {
         let mut found: Vec<&'static str> = cable.findings.iter().map(|finding| finding.row.kind).collect();
         let first = found.first().copied();
         found.sort_unstable();
@@ -49,8 +52,9 @@ impl Outcome {
             found,
             first,
             verdict: cable.verdict,
-            after_ratio: rms_n / truth.floor_n,
+            after_ratio: rms_n / truth.floor_n.hypot(case.sensor_wander_n).hypot(case.reference_wander_n),
             floor_ratio: cable.noise_floor_n / truth.floor_n,
+            is_settled,
             case,
         }
     }
@@ -93,19 +97,30 @@ fn errors(truth: &CaseTruth, cable: &CableDiscovery) -> Vec<ParameterError> {
     errors
 }
 
-fn run(case: Case) -> Option<Outcome> {
+/// What the log of a case tells, beginning with a robot.
+fn search(case: &Case, robot: &RobotFile) -> Option<CableDiscovery> {
     let mut log = case.log().expect("a case of the sweep makes a log");
-    let params = log.robot.params();
+    let params = robot.params();
     let mut measurements = Measurements::new(&params, Reference::Forces);
     measurements.start_log();
     while let Some(sample) = log.simulation.next_cycle() {
         measurements.add(&sample);
     }
-    let cable = discover(&measurements, &Progress::new()).into_iter().next()?;
-    let outcome = Outcome::new(case, &log.truth, &cable);
+    discover(&measurements, &Progress::new()).into_iter().next()
+}
+
+fn run(case: Case) -> Option<Outcome> {
+    let log = case.log().expect("a case of the sweep makes a log");
+    let cable = search(&case, &log.robot)?;
+    let text = extended(&log.robot_text, "sweep", std::slice::from_ref(&cable)).expect("an extended file");
+    let again = search(&case, &RobotFile::parse(&text, "sweep").expect("an extended file is a robot file"))?;
+    let verdict = if cable.verdict == Verdict::Extended { Verdict::Complete } else { cable.verdict };
+    let is_settled = again.findings.is_empty() && again.verdict == verdict;
+    let outcome = Outcome::new(case, &log.truth, &cable, is_settled);
     let mark = if outcome.is_right() { "right" } else { "WRONG" };
+    let settled = if is_settled { "settled" } else { "UNSETTLED" };
     println!(
-        "{mark} {}: {:?} {:?}, rms after {:.3}, floor {:.3}",
+        "{mark} {settled} {}: {:?} {:?}, rms after {:.3}, floor {:.3}",
         outcome.case.name(),
         outcome.verdict,
         outcome.found,
@@ -130,6 +145,7 @@ fn main() {
     print_strengths(&outcomes);
     print_confusions(&outcomes);
     print_sizes(&outcomes);
+    print_promises(&outcomes);
 }
 
 fn share(of: &[&Outcome], is: impl Fn(&Outcome) -> bool) -> String {
@@ -196,18 +212,21 @@ fn print_sizes(outcomes: &[Outcome]) {
     for error in right.iter().flat_map(|outcome| &outcome.errors) {
         of_parameters.entry(&error.name).or_default().push(error);
     }
-    println!("\n| parameter | cases | error / size: median | 95 % | error / standard error: median | 95 % |");
-    println!("|---|---|---|---|---|---|");
+    println!(
+        "\n| parameter | cases | error / size: median | 95 % | error / standard error: median | 95 % | within 1.96 |\n\
+         |---|---|---|---|---|---|---|"
+    );
     for (name, errors) in &of_parameters {
         let [of_size, of_errors] = [|error: &&ParameterError| error.of_size, |error: &&ParameterError| error.of_errors]
             .map(|part| quantiles(errors.iter().map(part).collect()));
         println!(
-            "| {name} | {} | {:.3} | {:.3} | {:.1} | {:.1} |",
+            "| {name} | {} | {:.3} | {:.3} | {:.1} | {:.1} | {} |",
             errors.len(),
             of_size[0],
             of_size[1],
             of_errors[0],
-            of_errors[1]
+            of_errors[1],
+            errors.iter().filter(|error| error.of_errors <= 1.96).count()
         );
     }
     let row = |numbers: Vec<f64>| {
@@ -231,6 +250,22 @@ fn print_sizes(outcomes: &[Outcome]) {
     let named_first: Vec<&Outcome> = named_first.collect();
     let is_there = |outcome: &Outcome| outcome.first.is_some_and(|kind| outcome.case.effects.contains(&kind));
     println!("\nOf the cases with effects, the first named is one of them in {}.", share(&named_first, is_there));
+}
+
+/// What holds of every log.
+fn print_promises(outcomes: &[Outcome]) {
+    let all: Vec<&Outcome> = outcomes.iter().collect();
+    println!("\nFed with its own extended file the search names nothing more in {}.", share(&all, |of| of.is_settled));
+    let told: Vec<&Outcome> = outcomes.iter().filter(|of| of.verdict != Verdict::Unexplained).collect();
+    println!(
+        "Of what is called complete or extended, {} are at 1.05 of noise and wander or below, {} at 1.1.",
+        share(&told, |of| of.after_ratio <= 1.05),
+        share(&told, |of| of.after_ratio <= 1.1)
+    );
+    let many = || outcomes.iter().filter(|of| of.case.group == Group::Many);
+    let hidden: usize = many().map(|of| of.case.effects.len()).sum();
+    let named: usize = many().flat_map(|of| of.found.iter().filter(|kind| of.case.effects.contains(kind))).count();
+    println!("Of four or five effects at once, {named} of {hidden} are named.");
 }
 
 /// Median, 95 % and most.

@@ -50,6 +50,25 @@ fn a_known_load_is_the_reference_of_every_command() {
     }
 }
 
+/// One load tells no gain from an offset: none is named, whichever of the two is wrong, and the text says why.
+#[test]
+fn under_one_load_no_gain_is_named() {
+    let place = place_of("{ constant_n = 49.05 }");
+    let off = |offset_n: &str| {
+        bench("{ constant_n = 49.05 }", 0.02).replace("0.5 }", &format!("0.5, offset_n = {offset_n} }}"))
+    };
+    place.write("off.toml", off("0.8"));
+    let gain = ["--hide", "sensor_gain:gain=1.02", "-o", "gain.mcap", "--duration", "20", "--seed", "4"];
+    place.run(&[&["simulate", "--model", "truth.toml"], &gain[..]].concat()).succeeds();
+    for (log, robot) in [("log.mcap", "off.toml"), ("gain.mcap", "truth.toml"), ("gain.mcap", "off.toml")] {
+        let run = place.run(&["discover", log, "--model", robot, "--json", "found.json"]).succeeds();
+        let cable = &place.json("found.json")["cables"][0];
+        assert_eq!(cable["effects"], serde_json::json!([]), "{log} {robot}: {cable}");
+        let told = run.stdout.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(told.contains("nothing is known of a gain, or of what goes with the load"), "{run:#?}");
+    }
+}
+
 #[test]
 fn a_weight_that_never_moves_quietly_is_told() {
     let place = place_of("{ hanging_mass_kg = 5.0 }");

@@ -26,8 +26,8 @@ const LEAST_MORE: f64 = 0.1;
 const WHOLE: f64 = 0.995;
 /// Bins beside the densest one belong to it down to this share of its density.
 const SHOULDER: f64 = 0.4;
-/// Draws of signs for the blocks that show what chance would gain.
-const FLIPS: u64 = 40;
+/// Shifts of the residual against the conditions, in equal steps through the log, that show what chance would gain.
+const SHIFTS: usize = 79;
 /// A bin with fewer samples tells nothing.
 const FEWEST_SAMPLES: f64 = 50.0;
 /// Intervals in time that are worth a look.
@@ -193,44 +193,44 @@ impl Excess<'_> {
 
     /// How much of the squares of all samples a function of the condition and of the direction takes away, and its significance.
     fn explained(&self, bins: &Bins, condition: &Condition) -> (f64, f64) {
-        let cells = 3 * bins.count();
-        let mut sums = vec![(0.0_f64, 0.0_f64); cells * self.blocks.len()];
-        for (place, block) in self.blocks.iter().enumerate() {
+        let mut cells = vec![None; self.residual_n.len()];
+        for block in self.blocks {
             for cycle in block.cycles.clone() {
-                let residual_n = self.residual_n.get(cycle).copied().filter(|number| number.is_finite());
-                let bin = condition.values.get(cycle).and_then(|value| bins.of(*value));
-                let (Some(residual_n), Some(bin)) = (residual_n, bin) else { continue };
+                let Some(bin) = condition.values.get(cycle).and_then(|value| bins.of(*value)) else { continue };
                 let direction = self.record.rows.get(cycle).map_or(0.0, |row| sign(row.signals.displacement_m));
                 let cell = 3 * bin + if direction > 0.0 { 2 } else { usize::from(direction < 0.0) };
-                if let Some((sum, count)) = sums.get_mut(place * cells + cell) {
-                    (*sum, *count) = (*sum + residual_n, *count + 1.0);
+                if let Some(of_cycle) = cells.get_mut(cycle) {
+                    *of_cycle = Some((cell, usize::from(block.held_out)));
                 }
             }
         }
-        let gain = |flip: &dyn Fn(usize) -> f64| self.gain_of_means(&sums, cells, flip);
-        let found = gain(&|_| 1.0);
-        (found, significance(found, gain))
+        let found = self.gain_of_means(&cells, 3 * bins.count(), 0);
+        let chances: Vec<f64> = (1..=SHIFTS)
+            .map(|shift| self.gain_of_means(&cells, 3 * bins.count(), shift * cells.len() / (SHIFTS + 1)))
+            .collect();
+        (found, significance(found, &chances))
     }
 
     /// What the means over cells of the samples learned from take away of the squares of those held out, in proportion to all; the
-    /// residuals of each block times `flip`. `sums` are those of the residuals and the counts, block by block.
-    fn gain_of_means(&self, sums: &[(f64, f64)], cells: usize, flip: &dyn Fn(usize) -> f64) -> f64 {
-        let mut means = vec![(0.0, 0.0); cells];
-        let blocks = || self.blocks.iter().zip(sums.chunks_exact(cells)).enumerate();
-        for (place, (_, of_block)) in blocks().filter(|(_, (block, _))| !block.held_out) {
-            for (mean, (sum, count)) in means.iter_mut().zip(of_block) {
-                *mean = (mean.0 + flip(place) * sum, mean.1 + count);
+    /// residuals shifted in time by so many cycles. `cells` are those of the cycles, and 1 where they are held out.
+    fn gain_of_means(&self, cells: &[Option<(usize, usize)>], count: usize, shift: usize) -> f64 {
+        let mut sums = vec![[(0.0_f64, 0.0_f64); 2]; count];
+        let (later, earlier) = self.residual_n.split_at(shift);
+        for (residual_n, cell) in earlier.iter().chain(later).zip(cells) {
+            let Some((cell, half)) = cell.filter(|_| residual_n.is_finite()) else { continue };
+            if let Some((sum, count)) = sums.get_mut(cell).and_then(|sums| sums.get_mut(half)) {
+                (*sum, *count) = (*sum + residual_n, *count + 1.0);
             }
         }
-        let (mut gain, mut held_out) = (0.0, 0.0);
-        for (place, (_, of_block)) in blocks().filter(|(_, (block, _))| block.held_out) {
-            for ((total, known), (sum, count)) in means.iter().zip(of_block).filter(|((_, known), _)| *known > 0.0) {
+        let (mut gain, mut held_out, mut all) = (0.0, 0.0, 0.0);
+        for [(total, known), (sum, count)] in sums {
+            all += known + count;
+            if known > 0.0 {
                 let mean_n = total / known;
-                gain += 2.0 * flip(place) * sum * mean_n - count * mean_n * mean_n;
+                gain += 2.0 * sum * mean_n - count * mean_n * mean_n;
                 held_out += count;
             }
         }
-        let all: f64 = sums.iter().map(|(_, count)| count).sum();
         if held_out > 0.0 { gain * all / held_out } else { 0.0 }
     }
 
@@ -290,10 +290,8 @@ impl Excess<'_> {
     }
 }
 
-/// How many standard errors what was found is above what chance gains: `gain` for the signs of the blocks, drawn at random.
-fn significance(found: f64, gain: impl Fn(&dyn Fn(usize) -> f64) -> f64) -> f64 {
-    let of_draw = |draw: u64| gain(&|block| random_sign(draw, block));
-    let chances: Vec<f64> = (1..=FLIPS).map(of_draw).collect();
+/// How many standard deviations of what chance gains what was found is above it.
+fn significance(found: f64, chances: &[f64]) -> f64 {
     #[expect(clippy::cast_precision_loss, reason = "a small count")]
     let count = chances.len() as f64;
     let mean = chances.iter().sum::<f64>() / count;

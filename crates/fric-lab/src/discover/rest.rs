@@ -9,9 +9,7 @@ use super::places::{Excess, Place};
 use super::ripple::ripple_power;
 use crate::fit::Row;
 
-/// Of a wander, no more than this share is a function of any condition.
-const MOST_EXPLAINED: f64 = 0.12;
-/// And no more than this share lies in a tenth of the log.
+/// Of a wander, no more than this share lies in a tenth of the log.
 const MOST_IN_TENTH: f64 = 0.6;
 /// Nor is more than this share one level and one wave, of a period above this, s, seen by means over this time: noise forgets.
 const MOST_WAVE: f64 = 0.7;
@@ -28,10 +26,10 @@ const LEAST_RANKS_APART: f64 = 3.0;
 /// An excess above this share of the noise's mean square is worth an explanation: the rms is 3 % above the floor.
 pub const WORTH: f64 = 0.06;
 
-/// Mean square of the sensors' wander in an excess, as a share of the noise's.
+/// Mean square of the sensors' wander in an excess, as a share of the noise's; `places` are the conditions that it is a function of.
 pub fn wander(excess: &Excess<'_>, places: &[Place]) -> f64 {
     let is_wander = excess.share() < MOST_WANDER * MOST_WANDER
-        && places.iter().all(|place| place.explains < MOST_EXPLAINED)
+        && places.is_empty()
         && share_of_tenth(excess) < MOST_IN_TENTH
         && share_of_wave(excess) < MOST_WAVE;
     if is_wander { excess.share() * (1.0 - share_of_motion(excess)) } else { 0.0 }

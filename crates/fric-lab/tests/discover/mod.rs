@@ -4,7 +4,7 @@ mod faulty;
 
 use fric_core::parameters::VISCOUS;
 use fric_core::robot::file::{FrictionTable, RobotFile};
-use fric_lab::discover::{CableDiscovery, Verdict, discover};
+use fric_lab::discover::{CableDiscovery, Verdict, discover, extended};
 use fric_lab::fit::{Measurements, Progress, Reference};
 use fric_lab::simulate::sweep::{Case, CaseLog, CaseTruth, Group};
 
@@ -38,6 +38,26 @@ fn assert_found(case: &Case, verdict: Verdict) -> (CableDiscovery, CaseTruth) {
     let floor_ratio = found.noise_floor_n / truth.floor_n;
     assert!((floor_ratio - 1.0).abs() < 0.05, "{}: floor {floor_ratio}", case.name());
     (found, truth)
+}
+
+/// Given its own extended file the search names nothing more, and its verdict is the one that goes with it.
+#[test]
+fn its_own_extended_file_is_the_end() {
+    let named = Case { seed: 70_101, ..Case::hiding(Group::Pair, &["sensor_gain", "friction_drift"]) };
+    let beside =
+        Case { disturbance: Some("local_defect"), seed: 70_102, ..Case::hiding(Group::Mixed, &["time_delay"]) };
+    for (case, verdict) in [(named, Verdict::Complete), (beside, Verdict::Unexplained)] {
+        let log = case.log().unwrap();
+        let (text, robot) = (log.robot_text.clone(), log.robot.clone());
+        let (found, _) = look_by(log, &robot);
+        assert!(!found.findings.is_empty(), "{}", case.name());
+        let text = extended(&text, "extended", std::slice::from_ref(&found)).unwrap();
+        let (again, _) = look_by(case.log().unwrap(), &RobotFile::parse(&text, "extended").unwrap());
+        let names: Vec<&str> = again.findings.iter().map(|finding| finding.row.kind).collect();
+        assert_eq!((names, again.verdict), (Vec::new(), verdict), "{}", case.name());
+        let [once_n, twice_n] = [&found, &again].map(|of| of.after.held_out_n.rms().unwrap());
+        assert!((twice_n / once_n - 1.0).abs() < 0.01, "{}: {once_n} {twice_n}", case.name());
+    }
 }
 
 /// The error that is left, as a multiple of the noise there is.

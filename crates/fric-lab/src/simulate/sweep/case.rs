@@ -35,6 +35,8 @@ const STREAM: u64 = u64::MAX;
 pub struct CaseLog {
     /// What a user has: the robot without the effect, with guesses for its friction. It has the one cable of the log.
     pub robot: RobotFile,
+    /// Its text.
+    pub robot_text: String,
     /// The log itself, a sample a cycle.
     pub simulation: Simulation,
     /// What is to be found.
@@ -87,11 +89,10 @@ impl Case {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below 8")]
         let cable = (uniform(random, 0.0, cables) as usize).min(CABLE_COUNT - 1);
         let is_bench = self.group == Group::Bench;
-        let robot = |friction: &Friction| {
-            let text =
-                if is_bench { bench(mass_kg, friction) } else { small_robot([cable].into_iter(), mass_kg, friction) };
-            RobotFile::parse(&text, "sweep")
+        let robot_text = |friction: &Friction| {
+            if is_bench { bench(mass_kg, friction) } else { small_robot([cable].into_iter(), mass_kg, friction) }
         };
+        let robot = |friction: &Friction| RobotFile::parse(&robot_text(friction), "sweep");
         // Weight, and what viscous friction takes at 1 m/s.
         let tension_n = mass_kg * 9.80665 + 3.0 * friction.viscous_n_s_per_m;
         let scale = &mut Scale {
@@ -128,6 +129,6 @@ impl Case {
         // At 180° the sensor feels the cable twice.
         let floor_n = libm::hypot(0.5 * options.sensor_noise_n, options.reference_noise_n);
         let truth = CaseTruth { robot: robot(&friction)?, effects, disturbances, floor_n };
-        Ok(CaseLog { robot: robot(&GUESS)?, simulation, truth })
+        Ok(CaseLog { robot: robot(&GUESS)?, robot_text: robot_text(&GUESS), simulation, truth })
     }
 }

@@ -1,7 +1,7 @@
 //! Many logs at random with known effects hidden in them: what a search for missing effects is tried on.
 //!
 //! [`cases`] lists what is tried: nothing hidden, each effect in three strengths under three levels of noise, pairs and
-//! triples that can be told apart, other laws of presliding, noise that wanders, a hand on the platform, disturbances
+//! triples that can be told apart, four and five at once, other laws of presliding, noise that wanders, a hand on the platform, disturbances
 //! outside the catalogue alone and beside an effect, a drive on a test bench. [`Case::log`] makes the log of one, with the
 //! robot file that a user would have: without the effect, and with friction values that are guesses.
 //!
@@ -46,6 +46,8 @@ pub enum Group {
     Pair,
     /// Three effects.
     Triple,
+    /// Four or five effects.
+    Many,
     /// A disturbance that is in no catalogue.
     Outside,
     /// Such a disturbance and one effect.
@@ -66,6 +68,7 @@ impl Group {
             Self::Law => "law",
             Self::Pair => "pair",
             Self::Triple => "triple",
+            Self::Many => "many",
             Self::Outside => "outside",
             Self::Mixed => "mixed",
             Self::Bench => "bench",
@@ -128,6 +131,8 @@ const NOISES: [f64; 3] = [1.0, 0.5, 2.0];
 const LAWS: [f64; 6] = [-0.5, -0.25, 0.3125, 0.625, 1.5, 2.0];
 /// Every so many of the triples that there are.
 const TRIPLE_STRIDE: usize = 9;
+/// How many logs with four, and with five effects.
+const MANY: usize = 10;
 /// How hard the hand pushes, N along each axis: about 1.5 N in a cable.
 const HAND_N: f64 = 3.0;
 
@@ -155,6 +160,7 @@ pub fn cases() -> Vec<Case> {
     cases.extend(LAWS.map(law));
     cases.extend(pairs().map(|pair| Case::hiding(Group::Pair, &pair)));
     cases.extend(triples().step_by(TRIPLE_STRIDE).map(|triple| Case::hiding(Group::Triple, &triple)));
+    cases.extend((0..2 * MANY).map(|which| Case::hiding(Group::Many, &many(which))));
     for row in DISTURBANCES {
         let spoilt =
             |group, effects: &[&'static str]| Case { disturbance: Some(row.kind), ..Case::hiding(group, effects) };
@@ -229,6 +235,19 @@ fn pairs() -> impl Iterator<Item = [&'static str; 2]> {
     (0..COMBINED.len())
         .flat_map(move |place| from(place).take(1).flat_map(move |one| from(place + 1).map(move |other| [one, other])))
         .filter(|[one, other]| !is_alike(one, other))
+}
+
+/// Four effects of those that can be told apart, or, from the tenth on, five: every so many, from another one each time.
+fn many(which: usize) -> Vec<&'static str> {
+    let (wanted, stride) = (4 + which / MANY, [1, 5, 7, 11][which % 4]);
+    let mut kinds: Vec<&'static str> = Vec::new();
+    for place in 0..COMBINED.len() {
+        let kind = COMBINED[(which + place * stride) % COMBINED.len()];
+        if kinds.len() < wanted && !kinds.iter().any(|other| is_alike(kind, other)) {
+            kinds.push(kind);
+        }
+    }
+    kinds
 }
 
 fn triples() -> impl Iterator<Item = [&'static str; 3]> {
