@@ -50,7 +50,7 @@ fn a_known_load_is_the_reference_of_every_command() {
     }
 }
 
-/// One load tells no gain from an offset: none is named, whichever of the two is wrong, and the text says why.
+/// One load tells no gain from an offset: no gain is named, whichever of the two is wrong, and what cannot be told apart is said.
 #[test]
 fn under_one_load_no_gain_is_named() {
     let place = place_of("{ constant_n = 49.05 }");
@@ -58,12 +58,16 @@ fn under_one_load_no_gain_is_named() {
         bench("{ constant_n = 49.05 }", 0.02).replace("0.5 }", &format!("0.5, offset_n = {offset_n} }}"))
     };
     place.write("off.toml", off("0.8"));
-    let gain = ["--hide", "sensor_gain:gain=1.02", "-o", "gain.mcap", "--duration", "20", "--seed", "4"];
+    let gain = ["--effect", "sensor_gain:gain=1.02", "-o", "gain.mcap", "--duration", "20", "--seed", "4"];
     place.run(&[&["simulate", "--model", "truth.toml"], &gain[..]].concat()).succeeds();
     for (log, robot) in [("log.mcap", "off.toml"), ("gain.mcap", "truth.toml"), ("gain.mcap", "off.toml")] {
-        let run = place.run(&["discover", log, "--model", robot, "--json", "found.json"]).succeeds();
+        let run = place.run(&["discover", log, "--model", robot, "--json", "found.json", "--force"]).succeeds();
         let cable = &place.json("found.json")["cables"][0];
-        assert_eq!(cable["effects"], serde_json::json!([]), "{log} {robot}: {cable}");
+        for effect in cable["effects"].as_array().unwrap() {
+            assert_eq!(effect["kind"], "sensor_offset", "{log} {robot}: {cable}");
+            let other = &effect["runner_up"];
+            assert!(other["kind"] == "sensor_gain" && other["as_good"] == true, "{log} {robot}: {cable}");
+        }
         let told = run.stdout.split_whitespace().collect::<Vec<_>>().join(" ");
         assert!(told.contains("nothing is known of a gain, or of what goes with the load"), "{run:#?}");
     }

@@ -125,7 +125,8 @@ pub struct Search<'b, 'a> {
     scale: Scale,
     conditions: &'b [Condition],
     fits: BTreeMap<Kinds, Trial>,
-    /// Whether the reference tells more loads than one; if not, a sensor of no gain that is off by that load agrees with it best.
+    /// Whether the reference tells more loads than one; if not, a sensor of no gain that is off by that load agrees with it best, and a
+    /// gain is another word for an offset.
     knows_load: bool,
     /// Candidates that were refused, and why.
     refused: BTreeMap<&'static str, Refusal>,
@@ -174,7 +175,7 @@ impl<'b, 'a> Search<'b, 'a> {
         let mut named = Vec::new();
         for _ in 0..PASSES {
             let before = kinds(&rows);
-            self.refused.clear();
+            self.refused = self.beyond_the_log();
             named = self.pass(&mut rows);
             if kinds(&rows) == before {
                 break;
@@ -187,6 +188,12 @@ impl<'b, 'a> Search<'b, 'a> {
         self.polish(&rows);
         let ladder = (0..=rows.len()).map(|count| self.fit(rows.get(..count).unwrap_or_default())).collect();
         Naming { model: self.fit(&rows), named, ladder, first_round, tried }
+    }
+
+    /// Candidates that no log like this can justify.
+    fn beyond_the_log(&self) -> BTreeMap<&'static str, Refusal> {
+        let of_gain = (sensor_gain::ROW.kind, Refusal::Open("offset_n"));
+        if self.knows_load { BTreeMap::new() } else { BTreeMap::from([of_gain]) }
     }
 
     /// Lets candidates in and has them justify themselves until nothing changes; what cannot is set aside, and the next has its turn. What
@@ -265,7 +272,7 @@ impl<'b, 'a> Search<'b, 'a> {
     /// Each candidate that a model lacks, fitted beside all that it has; the ladder of friction comes before everything else.
     fn round(&mut self, rows: &[&'static EffectRow]) -> Vec<(&'static EffectRow, Trial)> {
         let model = self.fit(rows);
-        let (slides, knows_load) = (model.values[MU] > 0.0, self.knows_load);
+        let slides = model.values[MU] > 0.0;
         // An offset of the sensor and one at the platform are the same to the force.
         let has_offset = model.free.iter().any(|parameter| parameter.place() == OFFSET);
         let lacking = |friction: bool| -> Vec<&'static EffectRow> {
@@ -273,7 +280,6 @@ impl<'b, 'a> Search<'b, 'a> {
                 .filter(|row| is_friction(row) == friction && !has(row, &model.values) && !contains(rows, row))
                 .filter(|row| row.kind != "presliding" || slides)
                 .filter(|row| row.kind != sensor_offset::ROW.kind || !has_offset)
-                .filter(|row| row.kind != sensor_gain::ROW.kind || knows_load)
                 .collect()
         };
         let friction = self.beside(rows, &lacking(true));
@@ -378,7 +384,10 @@ impl<'b, 'a> Search<'b, 'a> {
         for place in 0..rows.len() {
             let Some((other, trial)) = self.alternative(rows, place) else { continue };
             let model = self.fit(rows);
-            if trial.training < model.training && trial.held_out < model.held_out {
+            if !self.refused.contains_key(other.kind)
+                && trial.training < model.training
+                && trial.held_out < model.held_out
+            {
                 rows[place] = other;
                 is_changed = true;
             }
@@ -394,7 +403,10 @@ impl<'b, 'a> Search<'b, 'a> {
         }
         let others: Vec<&'static EffectRow> = rows.iter().copied().filter(|other| other.kind != row.kind).collect();
         let others = self.round(&others).into_iter().filter(|(other, _)| other.kind != row.kind);
-        best(others.filter(|(other, _)| !self.refused.contains_key(other.kind)).collect::<Vec<_>>())
+        // What the log cannot tell from it is another name for it.
+        let beyond = self.beyond_the_log();
+        let is_rival = |other: &EffectRow| beyond.contains_key(other.kind) || !self.refused.contains_key(other.kind);
+        best(others.filter(|(other, _)| is_rival(other)).collect::<Vec<_>>())
     }
 
     /// Every effect of a model with what speaks for it, and why it cannot stay if it cannot.
