@@ -122,7 +122,7 @@ struct Search {
 
 /// Effects at gratings that still disagree.
 fn disagreeing(case: &Case<'_>, found: &Search) -> Vec<Effect> {
-    let disagrees = |grating: usize| !is_noise_at(case, &found.after, found.noise_n, grating);
+    let disagrees = |grating: usize| !is_noise_at(case, &found.after, grating);
     let is_wrong = |effect: &Effect| match *effect {
         Effect::SensorDrift(grating) => disagrees(grating),
         Effect::HoleFriction(hole) => (hole.saturating_sub(1)..=hole).any(disagrees),
@@ -146,12 +146,11 @@ fn search(case: &Case<'_>, distrusted: &[Effect]) -> Result<Search, ContinuumErr
     let mut now = before.clone();
     let mut findings: Vec<Finding> = Vec::new();
     let mut tried: Vec<Tried> = Vec::new();
-    let mut noise_n = case.noise_n(&now)?;
-    while findings.len() < MOST_EFFECTS && !is_noise(case, &now, noise_n) {
-        let gap_n = excess_n(&now, noise_n);
+    while findings.len() < MOST_EFFECTS && !is_noise(&now) {
+        let gap_n = excess_n(&now);
         let (spread, single): (Vec<Trial>, Vec<Trial>) =
             trials(case, &now, distrusted).into_iter().partition(Trial::is_spread);
-        let closed = |trial: &Trial| 1.0 - excess_n(&trial.fit, noise_n) / gap_n;
+        let closed = |trial: &Trial| 1.0 - excess_n(&trial.fit) / gap_n;
         let helps = |trial: &Trial| trial.delta_bic < -LEAST_EVIDENCE;
         let is_enough = |trial: &Trial| helps(trial) && closed(trial) > LEAST_SHARE;
         // A spread over all holes comes last: it would swallow one of them.
@@ -178,30 +177,15 @@ fn search(case: &Case<'_>, distrusted: &[Effect]) -> Result<Search, ContinuumErr
             findings.push(Finding { effect, fit: best.fit.clone(), delta_bic: best.delta_bic, runner_up });
         }
         now = best.fit;
-        noise_n = case.noise_n(&now)?;
     }
-    while let Some((hole, without)) = undetermined_hole(case, &now, &findings) {
-        let is_it = |finding: &Finding| finding.effect == Effect::HoleFriction(hole);
-        tried.extend(findings.iter().filter(|finding| is_it(finding)).map(|finding| Tried {
-            effect: finding.effect,
-            delta_bic: finding.delta_bic,
-            rms_n: rms_n(&finding.fit),
-            reason: "the 95 % interval of its μ holds that of the others".to_owned(),
-        }));
-        findings.retain(|finding| !is_it(finding));
-        for finding in findings.iter_mut().filter(|finding| finding.fit.model.is_own.get(hole) == Some(&true)) {
-            finding.fit = without.clone();
-        }
-        now = without;
-        noise_n = case.noise_n(&now)?;
-    }
-    if !is_negligible(case, &now, noise_n) {
+    (now, findings) = clear(case, now, findings, &mut tried);
+    if !is_negligible(case, &now) {
         // A name for less than what is left would be a guess.
-        let left_n = excess_n(&now, noise_n);
+        let left_n = excess_n(&now);
         while let Some(last) = findings.last() {
             let earlier = findings.iter().rev().find(|other| other.fit.model != last.fit.model);
             let earlier = earlier.map_or(&before, |other| &other.fit);
-            if excess_n(earlier, noise_n).powi(2) >= 2.0 * left_n * left_n {
+            if excess_n(earlier).powi(2) >= 2.0 * left_n * left_n {
                 break;
             }
             now = earlier.clone();
@@ -217,11 +201,12 @@ fn search(case: &Case<'_>, distrusted: &[Effect]) -> Result<Search, ContinuumErr
             tried.extend(Vec::into_iter(dropped).map(guess));
         }
     }
-    let verdict = match (findings.is_empty(), is_negligible(case, &now, noise_n)) {
+    let verdict = match (findings.is_empty(), is_negligible(case, &now)) {
         (true, true) => Verdict::Complete,
         (false, true) => Verdict::Extended,
         (_, false) => Verdict::Unexplained,
     };
+    let noise_n = case.noise_of(&now)?;
     Ok(Search { noise_n, verdict, before, after: now, findings, tried })
 }
 
@@ -246,25 +231,52 @@ fn ranked(mut trials: Vec<Trial>) -> (Option<Trial>, Vec<Trial>) {
     (trials.next(), trials.collect())
 }
 
-/// The hole found whose μ is told least from that of the others, and the model without it; `None` where the 95 % intervals of all hold it not.
-fn undetermined_hole(case: &Case<'_>, now: &Fit, findings: &[Finding]) -> Option<(usize, Fit)> {
-    let hole = |finding: &Finding| match finding.effect {
-        Effect::HoleFriction(hole) => Some(hole),
+/// Leaves only those holes named whose 95 % interval does not hold the μ of the others. Beside a named one they keep a μ of their own, for the
+/// evidence is that of all that entered. Without any all share one, but where that leaves more than noise: then holes do differ, and the run does not
+/// tell which.
+fn clear(case: &Case<'_>, mut now: Fit, mut findings: Vec<Finding>, tried: &mut Vec<Tried>) -> (Fit, Vec<Finding>) {
+    let is_hole = |finding: &Finding| matches!(finding.effect, Effect::HoleFriction(_));
+    let clearness = holes_clearness(case, &now, &findings);
+    if clearness.is_empty() {
+        return (now, findings);
+    }
+    let is_clear = |finding: &Finding| {
+        clearness.iter().all(|(hole, clear)| finding.effect != Effect::HoleFriction(*hole) || *clear >= 1.0)
+    };
+    let (kept, unclear): (Vec<_>, Vec<_>) = findings.into_iter().partition(is_clear);
+    findings = kept;
+    tried.extend(unclear.into_iter().map(|finding| Tried {
+        effect: finding.effect,
+        delta_bic: finding.delta_bic,
+        rms_n: rms_n(&finding.fit),
+        reason: "the 95 % interval of its μ holds that of the others".to_owned(),
+    }));
+    if !findings.iter().any(is_hole)
+        && let Some(shared) = with_shared_mu(case, &now.model)
+        && (is_negligible(case, &shared) || !is_negligible(case, &now))
+    {
+        now = shared;
+    }
+    (now, findings)
+}
+
+/// How clear each hole found is told from the others, in half widths of the 95 % interval.
+fn holes_clearness(case: &Case<'_>, now: &Fit, findings: &[Finding]) -> Vec<(usize, f64)> {
+    let given = case.given();
+    let covariance = covariance(case, now);
+    let clearness = |finding: &Finding| match finding.effect {
+        Effect::HoleFriction(hole) => Some((hole, is_own_mu(&given, &now.model, covariance.as_ref(), hole))),
         _ => None,
     };
-    let covariance = covariance(case, now);
+    findings.iter().filter_map(clearness).collect()
+}
+
+/// The model with one μ for all holes, as the file has them in proportion, fitted.
+fn with_shared_mu(case: &Case<'_>, model: &Model) -> Option<Fit> {
     let given = case.given();
-    let holes = findings.iter().filter_map(hole);
-    let unclear = holes.map(|hole| (hole, is_own_mu(&given, &now.model, covariance.as_ref(), hole)));
-    let (hole, _) =
-        unclear.filter(|(_, clearness)| *clearness < 1.0).min_by(|(_, one), (_, other)| one.total_cmp(other))?;
-    let mut model: Model = now.model.clone();
-    let shared = model.is_own.iter().zip(&model.mu).zip(&given.mu).find(|((is_own, _), _)| !**is_own);
-    let ratio = shared.map_or(1.0, |((_, mu), given)| if *given > 0.0 { mu / given } else { *mu });
-    if let Some(((is_own, mu), given)) = model.is_own.get_mut(hole).zip(model.mu.get_mut(hole)).zip(given.mu.get(hole))
-    {
-        *is_own = false;
-        *mu = if *given > 0.0 { ratio * given } else { ratio };
-    }
-    Some((hole, fitted(case, &model)?))
+    let unit = |hole: usize| given.mu.get(hole).copied().filter(|mu| *mu > 0.0).unwrap_or(1.0);
+    #[expect(clippy::cast_precision_loss, reason = "a small count")]
+    let ratio = model.mu.iter().enumerate().map(|(hole, mu)| mu / unit(hole)).sum::<f64>() / model.mu.len() as f64;
+    let mu = (0..model.mu.len()).map(|hole| ratio * unit(hole)).collect();
+    fitted(case, &Model { mu, is_own: vec![false; model.mu.len()], ..model.clone() })
 }

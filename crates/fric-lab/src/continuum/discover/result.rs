@@ -6,12 +6,13 @@ use serde::Serialize;
 
 use super::TendonDiscovery;
 use super::case::{Case, Fit};
-use super::final_fit::Final;
+use super::final_fit::{Final, shared_mu};
 use super::goes_with::{GoesWith, of_markers, of_tensions};
 use super::markers::MarkerFit;
 use super::model::{Effect, Model, Parameter};
 use super::naming::{Finding, Outcome, Tried};
 use super::noise::{excess_n, is_negligible, rms_n};
+use super::worse::Worse;
 use crate::continuum::shape_errors::Way;
 use crate::discover::Verdict;
 use crate::discover::result::{DiscoverResult, Evidence};
@@ -60,6 +61,9 @@ pub struct TendonResult {
     pub effects: Vec<TendonEffect>,
     /// Candidates that helped and did not suffice, best first.
     pub tried: Vec<TendonTried>,
+    /// Why the file keeps a μ that the run contradicts; absent where it keeps none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub kept: Option<String>,
     /// Where what no effect accounts for lies.
     pub unexplained: Option<TendonRest>,
 }
@@ -163,7 +167,7 @@ pub(super) fn told(case: &Case<'_>, outcome: &Outcome, log: &str) -> TendonDisco
     let Outcome { noise_n, verdict, before, after, last, findings, tried, markers, .. } = outcome;
     let closed = |fit: &Fit| {
         let gap_n = rms_n(before) - noise_n;
-        (*verdict != Verdict::Complete && gap_n > 0.0).then(|| 1.0 - (rms_n(fit) - noise_n) / gap_n)
+        (*verdict != Verdict::Complete && gap_n > 0.0).then(|| (1.0 - (rms_n(fit) - noise_n) / gap_n).min(1.0))
     };
     let evidence = |delta_bic: f64, rms_n: Option<f64>| Evidence { delta_bic: Some(delta_bic), held_out_rms_n: rms_n };
     let effect = |finding: &Finding| TendonEffect {
@@ -196,6 +200,7 @@ pub(super) fn told(case: &Case<'_>, outcome: &Outcome, log: &str) -> TendonDisco
         markers: marker_errors(markers),
         effects: findings.iter().map(effect).collect(),
         tried: tried.into_iter().map(helped).collect(),
+        kept: last.kept.map(|(worse, mu)| kept(&worse, mu)),
         unexplained: (*verdict == Verdict::Unexplained).then(|| rest(case, outcome)),
     };
     TendonDiscovery {
@@ -212,6 +217,15 @@ pub(super) fn told(case: &Case<'_>, outcome: &Outcome, log: &str) -> TendonDisco
     }
 }
 
+fn kept(worse: &Worse, mu: f64) -> String {
+    format!(
+        "the file keeps its μ; fitted to the run it is {mu:.4}, and disk {} is then {:.2} mm off its marker (rms) instead of {:.2} mm.",
+        worse.disk + 1,
+        1e3 * worse.after_m,
+        1e3 * worse.before_m
+    )
+}
+
 fn marker_errors(markers: &[Option<MarkerFit>; 2]) -> Option<TendonMarkers> {
     let [Some(before), Some(after)] = markers else { return None };
     let error = |one: &MarkerFit| MarkerError { rms_mm: 1e3 * one.rms_m(), max_mm: 1e3 * one.greatest_m };
@@ -225,15 +239,15 @@ fn marker_errors(markers: &[Option<MarkerFit>; 2]) -> Option<TendonMarkers> {
 
 /// What is left: of the tensions, and of the markers where they are not noise.
 fn rest(case: &Case<'_>, outcome: &Outcome) -> TendonRest {
-    let Outcome { noise_n, given, after, last, markers: [_, markers], .. } = outcome;
+    let Outcome { given, after, last, markers: [_, markers], .. } = outcome;
     let off = markers.as_ref().filter(|markers| !markers.is_noise());
-    let are_tensions_off = !is_negligible(case, after, *noise_n);
+    let are_tensions_off = !is_negligible(case, after);
     let tensions = are_tensions_off.then(|| of_tensions(case, given)).flatten();
     // Gratings that are wrong make shapes that are wrong; only tensions that are right tell of the bending.
     let bending = off.filter(|_| !are_tensions_off).and_then(|markers| of_markers(case, &last.fit, markers));
     let of_gratings = if are_tensions_off { places(after) } else { Vec::new() };
     TendonRest {
-        rms_n: excess_n(after, *noise_n),
+        rms_n: excess_n(after),
         rms_mm: off.map(|markers| 1e3 * markers.excess_m()),
         places: of_gratings.into_iter().chain(off.map(disks).unwrap_or_default()).collect(),
         goes_with: tensions.into_iter().chain(bending).collect(),
@@ -246,12 +260,6 @@ fn count(place: usize) -> f64 {
     count
 }
 
-/// μ of the holes that share one.
-fn shared_mu(model: &Model) -> f64 {
-    let shared = model.mu.iter().zip(&model.is_own).find(|(_, is_own)| !**is_own);
-    shared.map_or(0.0, |(mu, _)| *mu)
-}
-
 fn named(pairs: &[(&str, f64)]) -> Numbers {
     Numbers(pairs.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect())
 }
@@ -259,7 +267,7 @@ fn named(pairs: &[(&str, f64)]) -> Numbers {
 /// Of what an effect has that was fitted.
 fn standard_errors(case: &Case<'_>, effect: Effect, last: &Final) -> Numbers {
     let found = match effect {
-        Effect::Coulomb => last.standard_error(Parameter::SharedMu).map(|error| ("mu", error)),
+        Effect::Coulomb => last.shared_mu_error().map(|error| ("mu", error)),
         Effect::Presliding => None,
         Effect::SensorDrift(grating) => {
             let newton_per_nm = case.newton_per_nm.get(grating).map_or(f64::NAN, |slope| slope.abs());
