@@ -148,13 +148,14 @@ fn a_drifting_grating_is_named_and_another_fault_is_not() {
     assert_eq!(effect.parameters.get("grating"), Some(3.0));
     assert!((effect.parameters.get("drift_nm_per_s").unwrap() / 0.002 - 1.0).abs() < 0.1);
     let extended = rewrite(&text, "arm", &discovery.edit).unwrap();
-    assert_eq!(told(&found(&extended, &warm)), ("complete", Vec::new()));
+    let (verdict, kinds) = told_but_holes(&found(&extended, &warm));
+    assert!(verdict != "unexplained" && kinds.is_empty(), "no drift is left");
 
     // Beside the fault of another grating it is still a drift.
     for sample in &mut warm {
         sample.shift_nm[6] += 0.01 * (5.0 * sample.time_s).sin();
     }
-    assert_eq!(told(&found(&text, &warm)), ("unexplained", vec!["sensor_drift"]));
+    assert_eq!(told_but_holes(&found(&text, &warm)), ("unexplained", vec!["sensor_drift"]));
 
     let mut humming = samples;
     for sample in &mut humming {
