@@ -1,6 +1,15 @@
 //! What the discovery makes of simulated manipulators, for the tables of docs/manipulators.md:
 //! `cargo run --release -p fric-lab --example tendon_discover [RUNS] [SEED] [WORDS]`; words choose rows.
-#![allow(missing_docs, clippy::unwrap_used, clippy::print_stdout, reason = "a measurement that may fail by panicking")]
+#![allow(
+    missing_docs,
+    clippy::cast_possible_truncation,
+    clippy::cast_precision_loss,
+    clippy::cast_sign_loss,
+    clippy::too_many_lines,
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a measurement that may fail by panicking; all counts are small"
+)]
 
 use std::collections::BTreeMap;
 
