@@ -82,6 +82,15 @@ pub fn name(case: &Case<'_>) -> Result<Outcome, ContinuumError> {
         let last = Final::new(&whole, &given, given_markers.as_ref(), &after, verdict, findings.is_empty())
             .ok_or(ContinuumError::UntoldNoise)?;
         let markers = MarkerFit::new(case, &last.fit);
+        let is_hole = |effect: &Effect| matches!(effect, Effect::HoleFriction(_));
+        let holes: Vec<Effect> = findings.iter().map(|finding| finding.effect).filter(is_hole).collect();
+        if !holes.is_empty() && markers.as_ref().is_some_and(|markers| !markers.is_noise()) {
+            let found = Search { noise_n, verdict, before, after, findings, tried };
+            let reason = "the disks are off their markers: the bend at the hole, from which its μ is found, is another";
+            refuse(&found, &holes, reason, &mut refused);
+            distrusted.extend(holes);
+            continue;
+        }
         let worse = worse_shape([&given, &last.fit], [given_markers.as_ref(), markers.as_ref()]);
         if let Some(culprit) = findings.last().filter(|_| worse.is_some() || are_tensions_worse(&given, &last.fit)) {
             let reason = worse.map_or_else(
