@@ -21,7 +21,9 @@
 //! than as given (`worse`), and no value that the run does not contradict (`final_fit`). Intervals hold the calibration's error and that holes which
 //! share a μ do differ (`spread`).
 
+mod assemble;
 mod case;
+mod extended_file;
 mod final_fit;
 mod fitting;
 mod goes_with;
@@ -30,6 +32,7 @@ mod markers;
 mod model;
 mod naming;
 mod noise;
+mod places;
 mod result;
 mod spread;
 mod summary;
@@ -83,5 +86,5 @@ pub fn discover(file: &ManipulatorFile, run: &Run, log: &str) -> Result<TendonDi
     let gratings = Gratings::from_file(file)?.ok_or(ContinuumError::NoGratings)?;
     let case = Case::new(file, run, &gratings)?;
     let outcome = naming::name(&case)?;
-    Ok(result::told(&case, &outcome, log))
+    Ok(assemble::told(&case, &outcome, log))
 }

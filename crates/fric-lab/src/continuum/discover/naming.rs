@@ -5,7 +5,7 @@ use super::final_fit::{Final, is_own_mu};
 use super::fitting::{covariance, fitted};
 use super::markers::MarkerFit;
 use super::model::{Effect, Model};
-use super::noise::{excess_n, is_negligible, is_noise, is_noise_at, rms_n};
+use super::noise::{excess_n, is_negligible, is_noise_at, rms_n};
 use super::trials::{Trial, trials};
 use super::worse::{are_tensions_worse, worse_shape};
 use crate::continuum::error::ContinuumError;
@@ -54,11 +54,16 @@ pub struct Outcome {
     pub last: Final,
     pub findings: Vec<Finding>,
     pub tried: Vec<Tried>,
+    /// Whether the markers alone make it unexplained, where it is.
+    pub are_tensions_explained: bool,
     /// With the given model and with the extended one.
     pub markers: [Option<MarkerFit>; 2],
 }
 
 /// Searches for what is missing.
+///
+/// Where the disks are off their markers no hole is named, for its μ is found from the bend; that tensions fit with holes of their own leaves the
+/// bending alone to be told.
 ///
 /// Where something is left, a name is not put on a grating, or on a hole between two, that still disagrees: what is wrong there is
 /// something else. Nor is it put on an effect with which shapes or tensions are worse than as given.
@@ -70,6 +75,7 @@ pub fn name(case: &Case<'_>) -> Result<Outcome, ContinuumError> {
     let given_markers = MarkerFit::new(case, &given);
     let whole = case.whole();
     let (mut refused, mut distrusted) = (Vec::new(), Vec::new());
+    let mut do_refused_holes_explain = false;
     loop {
         let found = search(case, &distrusted)?;
         let wrong = disagreeing(case, &found);
@@ -85,10 +91,11 @@ pub fn name(case: &Case<'_>) -> Result<Outcome, ContinuumError> {
         let is_hole = |effect: &Effect| matches!(effect, Effect::HoleFriction(_));
         let holes: Vec<Effect> = findings.iter().map(|finding| finding.effect).filter(is_hole).collect();
         if !holes.is_empty() && markers.as_ref().is_some_and(|markers| !markers.is_noise()) {
+            do_refused_holes_explain = verdict != Verdict::Unexplained;
             let found = Search { noise_n, verdict, before, after, findings, tried };
             let reason = "the disks are off their markers: the bend at the hole, from which its μ is found, is another";
             refuse(&found, &holes, reason, &mut refused);
-            distrusted.extend(holes);
+            distrusted.extend((0..given.model.mu.len()).map(Effect::HoleFriction));
             continue;
         }
         let worse = worse_shape([&given, &last.fit], [given_markers.as_ref(), markers.as_ref()]);
@@ -112,10 +119,22 @@ pub fn name(case: &Case<'_>) -> Result<Outcome, ContinuumError> {
             continue;
         }
         let are_markers_noise = markers.as_ref().is_none_or(MarkerFit::is_noise);
+        let are_tensions_explained =
+            verdict != Verdict::Unexplained || (do_refused_holes_explain && !are_markers_noise);
         let verdict = if are_markers_noise { verdict } else { Verdict::Unexplained };
         refused.extend(tried);
-        let markers = [given_markers, markers];
-        return Ok(Outcome { noise_n, verdict, given, before, after, last, findings, tried: refused, markers });
+        return Ok(Outcome {
+            noise_n,
+            verdict,
+            given,
+            before,
+            after,
+            last,
+            findings,
+            tried: refused,
+            are_tensions_explained,
+            markers: [given_markers, markers],
+        });
     }
 }
 
@@ -155,7 +174,8 @@ fn search(case: &Case<'_>, distrusted: &[Effect]) -> Result<Search, ContinuumErr
     let mut now = before.clone();
     let mut findings: Vec<Finding> = Vec::new();
     let mut tried: Vec<Tried> = Vec::new();
-    while findings.len() < MOST_EFFECTS && !is_noise(&now) {
+    // Until the verdict would be that nothing is missing: what was written, given again, has then nothing more to name.
+    while findings.len() < MOST_EFFECTS && !is_negligible(case, &now) {
         let gap_n = excess_n(&now);
         let (spread, single): (Vec<Trial>, Vec<Trial>) =
             trials(case, &now, distrusted).into_iter().partition(Trial::is_spread);
@@ -187,8 +207,10 @@ fn search(case: &Case<'_>, distrusted: &[Effect]) -> Result<Search, ContinuumErr
         }
         now = best.fit;
     }
+    let is_accounted = is_negligible(case, &now);
     (now, findings) = clear(case, now, findings, &mut tried);
-    if !is_negligible(case, &now) {
+    let is_accounted = is_accounted || is_negligible(case, &now);
+    if !is_accounted {
         // A name for less than what is left would be a guess.
         let left_n = excess_n(&now);
         while let Some(last) = findings.last() {
@@ -210,7 +232,7 @@ fn search(case: &Case<'_>, distrusted: &[Effect]) -> Result<Search, ContinuumErr
             tried.extend(Vec::into_iter(dropped).map(guess));
         }
     }
-    let verdict = match (findings.is_empty(), is_negligible(case, &now)) {
+    let verdict = match (findings.is_empty(), is_accounted) {
         (true, true) => Verdict::Complete,
         (false, true) => Verdict::Extended,
         (_, false) => Verdict::Unexplained,
@@ -241,8 +263,8 @@ fn ranked(mut trials: Vec<Trial>) -> (Option<Trial>, Vec<Trial>) {
 }
 
 /// Leaves only those holes named whose 95 % interval does not hold the μ of the others. Beside a named one they keep a μ of their own, for the
-/// evidence is that of all that entered. Without any all share one, but where that leaves more than noise: then holes do differ, and the run does not
-/// tell which.
+/// evidence is that of all that entered. Without any all share one again, and nothing is written of holes: that they differ may account for what is
+/// left all the same, only that the run does not tell which.
 fn clear(case: &Case<'_>, mut now: Fit, mut findings: Vec<Finding>, tried: &mut Vec<Tried>) -> (Fit, Vec<Finding>) {
     let is_hole = |finding: &Finding| matches!(finding.effect, Effect::HoleFriction(_));
     let clearness = holes_clearness(case, &now, &findings);
@@ -262,7 +284,6 @@ fn clear(case: &Case<'_>, mut now: Fit, mut findings: Vec<Finding>, tried: &mut 
     }));
     if !findings.iter().any(is_hole)
         && let Some(shared) = with_shared_mu(case, &now.model)
-        && (is_negligible(case, &shared) || !is_negligible(case, &now))
     {
         now = shared;
     }

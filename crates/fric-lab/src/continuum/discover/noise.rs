@@ -68,13 +68,7 @@ pub fn excess_n(fit: &Fit) -> f64 {
     common(fit).rms()
 }
 
-/// Whether nothing is left to look for.
-pub fn is_noise(fit: &Fit) -> bool {
-    let common = common(fit);
-    common.rms() <= common.chance()
-}
-
-/// Whether what is left is noise, or practically nothing.
+/// Whether what is left is noise, or practically nothing: nothing to look for.
 pub fn is_negligible(case: &Case<'_>, fit: &Fit) -> bool {
     let common = common(fit);
     common.rms() <= common.chance().hypot(practical_n(case))
