@@ -2,28 +2,44 @@
 //! tensions are nearly linear in all of them.
 
 use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 
 use super::case::{Case, Fit};
 use super::model::{Model, Parameter};
 use super::spread::shared_spread;
+use crate::continuum::shape_errors::Way;
 use crate::fit::engine::{Gram, Scores, inverse_of_normal};
 
 const MOST_STEPS: u32 = 8;
 const MOST_HALVINGS: u32 = 6;
-/// A step that lowers the sum of squares by less is the last.
+/// A step that would lower the sum of squares by less is not made, and one that does is the last.
 const SETTLED_RATIO: f64 = 1e-6;
 
 /// The model with its numbers fitted; `None` where it has no shapes.
 pub fn fitted(case: &Case<'_>, start: &Model) -> Option<Fit> {
-    let mut now = case.fit(start)?;
-    let parameters = start.parameters();
+    let now = case.fit(start)?;
+    let slopes = start.parameters().iter().map(|parameter| by_parameter(case, &now, *parameter)).collect::<Option<_>>();
+    descended(case, now, &slopes?)
+}
+
+/// The same from a start that is computed, with slopes that all candidates beside a model share.
+pub fn fitted_from(case: &Case<'_>, now: Fit, by_hole: &HoleSlopes) -> Option<Fit> {
+    let slopes = by_hole.slopes(case, &now.model, &now.model.parameters())?;
+    descended(case, now, &slopes)
+}
+
+fn descended(case: &Case<'_>, mut now: Fit, slopes: &Slopes) -> Option<Fit> {
+    let parameters = now.model.parameters();
     if parameters.is_empty() {
         return Some(now);
     }
-    let slopes = slopes(case, &now, &parameters)?;
     for _ in 0..MOST_STEPS {
         // The lines' errors find their minimum by themselves.
-        let Some(step) = Linearised::new(case, &now, &slopes).map(|problem| problem.step()) else { break };
+        let Some(problem) = Linearised::new(case, &now, slopes) else { break };
+        if problem.gain_n2() < SETTLED_RATIO * now.squares {
+            break;
+        }
+        let step = problem.step();
         let trial = |share: f64| {
             let moved = parameters.iter().zip(step.iter()).fold(now.model.clone(), |model, (parameter, change)| {
                 model.with(*parameter, model.get(*parameter) + share * change)
@@ -49,7 +65,8 @@ pub fn fitted(case: &Case<'_>, start: &Model) -> Option<Fit> {
 /// mean hole, which moves too, by its share. How far holes are off in the mean is estimated from the run ([`shared_spread`]).
 pub fn covariance(case: &Case<'_>, fit: &Fit) -> Option<DMatrix<f64>> {
     let parameters = fit.model.parameters();
-    let by_parameters = slopes(case, fit, &parameters)?;
+    let by_hole = HoleSlopes::new(case, fit)?;
+    let by_parameters = by_hole.slopes(case, &fit.model, &parameters)?;
     let problem = Linearised::new(case, fit, &by_parameters)?;
     let mut covariance = problem.covariance();
     let shared: Vec<usize> = (0..fit.model.mu.len()).filter(|hole| !fit.model.is_own[*hole]).collect();
@@ -59,7 +76,7 @@ pub fn covariance(case: &Case<'_>, fit: &Fit) -> Option<DMatrix<f64>> {
     let each: Vec<Parameter> = shared.iter().copied().map(Parameter::OwnMu).collect();
     let others = parameters.iter().copied().filter(|parameter| *parameter != Parameter::SharedMu);
     let all: Vec<Parameter> = each.iter().copied().chain(others).collect();
-    let all_slopes = slopes(case, fit, &all)?;
+    let all_slopes = by_hole.slopes(case, &fit.model, &all)?;
     let spread_ratio = shared_spread(&Linearised::new(case, fit, &all_slopes)?, &fit.model, &shared);
     #[expect(clippy::cast_precision_loss, reason = "a small count")]
     let share = 1.0 / shared.len() as f64;
@@ -75,28 +92,61 @@ pub fn covariance(case: &Case<'_>, fit: &Fit) -> Option<DMatrix<f64>> {
 /// Derivatives of the residuals by each parameter.
 pub type Slopes = Vec<Vec<Vec<f64>>>;
 
-fn slopes(case: &Case<'_>, now: &Fit, parameters: &[Parameter]) -> Option<Slopes> {
+/// Derivatives of the residuals by the μ of each hole; none without friction. Those by other parameters follow from them.
+pub struct HoleSlopes(Slopes);
+
+impl HoleSlopes {
+    /// `None` where the model has no shapes.
+    pub fn new(case: &Case<'_>, now: &Fit) -> Option<Self> {
+        let count = if now.model.way == Way::None { 0 } else { now.model.mu.len() };
+        let by_hole = (0..count).into_par_iter().map(|hole| by_parameter(case, now, Parameter::OwnMu(hole)));
+        by_hole.collect::<Option<_>>().map(Self)
+    }
+
+    fn slopes(&self, case: &Case<'_>, model: &Model, parameters: &[Parameter]) -> Option<Slopes> {
+        let of = |parameter: &Parameter| match parameter {
+            Parameter::Drift(grating) => by_drift(case, *grating),
+            Parameter::OwnMu(hole) => self.0.get(*hole).cloned(),
+            Parameter::SharedMu => self.by_shared_mu(model),
+        };
+        parameters.iter().map(of).collect()
+    }
+
+    /// All holes that share a μ are scaled together.
+    fn by_shared_mu(&self, model: &Model) -> Option<Vec<Vec<f64>>> {
+        let shared_mu = model.get(Parameter::SharedMu);
+        let mut sum: Vec<Vec<f64>> = self.0.first()?.iter().map(|row| vec![0.0; row.len()]).collect();
+        let holes = self.0.iter().zip(&model.mu).zip(&model.is_own).filter(|(_, is_own)| !**is_own);
+        for ((by_hole, mu), _) in holes {
+            for (sum, by_hole) in sum.iter_mut().flatten().zip(by_hole.iter().flatten()) {
+                *sum += mu / shared_mu * by_hole;
+            }
+        }
+        Some(sum)
+    }
+}
+
+/// By one parameter, by differences where it is a μ.
+fn by_parameter(case: &Case<'_>, now: &Fit, parameter: Parameter) -> Option<Vec<Vec<f64>>> {
+    if let Parameter::Drift(grating) = parameter {
+        return by_drift(case, grating);
+    }
+    let value = now.model.get(parameter);
+    let moved = now.model.with(parameter, value + 0.02 * value.max(0.02));
+    let change = moved.get(parameter) - value;
+    let slope = |(moved_n, now_n): (&f64, &f64)| (now_n - moved_n) / change;
+    let rows = case.tensions_n(&moved)?.into_iter().zip(&now.tension_n);
+    Some(rows.map(|(moved_n, now_n)| moved_n.iter().zip(now_n).map(slope).collect()).collect())
+}
+
+fn by_drift(case: &Case<'_>, grating: usize) -> Option<Vec<Vec<f64>>> {
     let start_s = case.samples.first()?.time_s;
-    parameters
-        .iter()
-        .map(|parameter| match parameter {
-            Parameter::Drift(grating) => {
-                let elapsed_s = case.samples.iter().map(|sample| sample.time_s - start_s);
-                let slope = |elapsed_s: f64, segment: usize| if segment == *grating { -elapsed_s } else { 0.0 };
-                let count = now.model.mu.len();
-                Some(elapsed_s.map(|elapsed_s| (0..count).map(|segment| slope(elapsed_s, segment)).collect()).collect())
-            }
-            mu => {
-                let value = now.model.get(*mu);
-                let change = 0.02 * value.max(0.02);
-                let moved = now.model.with(*mu, value + change);
-                let change = moved.get(*mu) - value;
-                let slope = |(moved_n, now_n): (&f64, &f64)| (now_n - moved_n) / change;
-                let rows = case.tensions_n(&moved)?.into_iter().zip(&now.tension_n);
-                Some(rows.map(|(moved_n, now_n)| moved_n.iter().zip(now_n).map(slope).collect()).collect())
-            }
-        })
-        .collect()
+    let row = |time_s: f64| {
+        let mut row = vec![0.0; case.newton_per_nm.len()];
+        row[grating] = start_s - time_s;
+        row
+    };
+    Some(case.samples.iter().map(|sample| row(sample.time_s)).collect())
 }
 
 /// Residuals learned from and their slopes, those by the errors of the gratings' lines last, reduced.
@@ -139,6 +189,11 @@ impl Linearised {
         #[expect(clippy::cast_precision_loss, reason = "a count of parameters")]
         let variance_n2 = squares / (case.learned_count() - parameters as f64).max(1.0);
         Some(Self { parameters, gradient, inverse, scores, noise_n: case.noise_n, variance_n2 })
+    }
+
+    /// By how much the step lowers the sum of squares, N².
+    fn gain_n2(&self) -> f64 {
+        self.gradient.dot(&(&self.inverse * &self.gradient))
     }
 
     /// To the minimum.
