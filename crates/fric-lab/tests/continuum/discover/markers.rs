@@ -74,6 +74,38 @@ fn a_bending_that_is_not_the_models_is_not_called_complete() {
     }
 }
 
+/// Friction that is too great hides a part of a backbone that is stiffer than stated: with the μ of the run the disks bend further beyond their markers.
+#[test]
+fn a_mu_that_stays_for_the_shapes_sake_says_why() {
+    let truth = PROTOTYPE.replace("mu = 0.1753 ", "mu = 0.15 ");
+    let (text, samples) = {
+        let stiffer = truth.replace("youngs_modulus_pa = 200e9", "youngs_modulus_pa = 220e9");
+        measured_of(&stiffer, &options(Experiment::OneWay, 27))
+    };
+    let discovery = found(&text, &samples);
+    assert!(discovery.edit.mu.is_empty(), "the file keeps its μ");
+    let kept = discovery.result.cables[0].kept.clone().unwrap();
+    assert!(discovery.result.summary().contains("\nkept: "));
+    let number_after = |words: &str| -> f64 {
+        let number = kept.split(words).nth(1).unwrap().trim_start().split([' ', ',']).next().unwrap();
+        number.parse().unwrap()
+    };
+    let mu = number_after("fitted to the run it is");
+    assert!((mu / 0.15 - 1.0).abs() < 0.1, "{kept}");
+    let disk = format!("{}", number_after("disk")).parse::<usize>().unwrap() - 1;
+    let refitted = rewrite(&text, "arm", &ManipulatorEdit { mu: vec![mu], ..ManipulatorEdit::default() }).unwrap();
+    let [before_m, after_m] = [&text, &refitted].map(|text| distances_m(text, &samples)[disk]);
+    // Written to a hundredth of a millimetre.
+    assert!((number_after("is then") - 1e3 * after_m).abs() < 0.02, "{kept} {after_m}");
+    assert!((number_after("instead of") - 1e3 * before_m).abs() < 0.02, "{kept} {before_m}");
+    assert!(after_m > before_m);
+    // A right bending keeps nothing back.
+    let (text, samples) = measured_of(&truth, &options(Experiment::OneWay, 27));
+    let discovery = found(&text, &samples);
+    assert!(discovery.result.cables[0].kept.is_none());
+    assert!((discovery.edit.mu[0] / 0.15 - 1.0).abs() < 0.1);
+}
+
 #[test]
 fn without_markers_the_bending_is_not_told() {
     let (text, mut samples) = off(0.9, 1.0, &options(Experiment::Mixed, 22));
