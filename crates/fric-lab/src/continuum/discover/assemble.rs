@@ -101,15 +101,18 @@ fn marker_errors(markers: &[Option<MarkerFit>; 2]) -> Option<TendonMarkers> {
 fn rest(case: &Case<'_>, outcome: &Outcome) -> TendonRest {
     let Outcome { given, after, last, are_tensions_explained, markers: [_, markers], .. } = outcome;
     let off = markers.as_ref().filter(|markers| !markers.is_noise());
-    let tensions = (!are_tensions_explained).then(|| of_tensions(case, given)).flatten();
-    // Gratings that are wrong make shapes that are wrong; only tensions that are right tell of the bending.
-    let bending = off.filter(|_| *are_tensions_explained).and_then(|markers| of_markers(case, &last.fit, markers));
+    // Gratings that are wrong make shapes that are wrong; the bending is told where they cannot account for the shapes.
+    let is_bending = |markers: &&MarkerFit| *are_tensions_explained || markers.is_beyond(case, excess_n(after));
+    let bending = off.filter(is_bending).and_then(|markers| of_markers(case, &last.fit, markers));
+    let tensions = if *are_tensions_explained { None } else { of_tensions(case, given) };
     let of_gratings = if *are_tensions_explained { Vec::new() } else { segments(after) };
+    let of_disks = off.map(disks).unwrap_or_default();
+    let places = if bending.is_some() { [of_disks, of_gratings] } else { [of_gratings, of_disks] };
     TendonRest {
         rms_n: excess_n(after),
         rms_mm: off.map(|markers| 1e3 * markers.excess_m()),
-        places: of_gratings.into_iter().chain(off.map(disks).unwrap_or_default()).collect(),
-        goes_with: tensions.into_iter().chain(bending).collect(),
+        places: places.concat(),
+        goes_with: bending.into_iter().chain(tensions).collect(),
     }
 }
 

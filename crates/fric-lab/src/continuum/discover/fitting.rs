@@ -19,19 +19,19 @@ const SETTLED_RATIO: f64 = 1e-6;
 pub fn fitted(case: &Case<'_>, start: &Model) -> Option<Fit> {
     let now = case.fit(start)?;
     let slopes = start.parameters().iter().map(|parameter| by_parameter(case, &now, *parameter)).collect::<Option<_>>();
-    descended(case, now, &slopes?)
+    Some(descended(case, now, &slopes?))
 }
 
 /// The same from a start that is computed, with slopes that all candidates beside a model share.
 pub fn fitted_from(case: &Case<'_>, now: Fit, by_hole: &HoleSlopes) -> Option<Fit> {
     let slopes = by_hole.slopes(case, &now.model, &now.model.parameters())?;
-    descended(case, now, &slopes)
+    Some(descended(case, now, &slopes))
 }
 
-fn descended(case: &Case<'_>, mut now: Fit, slopes: &Slopes) -> Option<Fit> {
+fn descended(case: &Case<'_>, mut now: Fit, slopes: &Slopes) -> Fit {
     let parameters = now.model.parameters();
     if parameters.is_empty() {
-        return Some(now);
+        return now;
     }
     for _ in 0..MOST_STEPS {
         // The lines' errors find their minimum by themselves.
@@ -55,7 +55,7 @@ fn descended(case: &Case<'_>, mut now: Fit, slopes: &Slopes) -> Option<Fit> {
             break;
         }
     }
-    Some(now)
+    now
 }
 
 /// Covariance of a fitted model's parameters: under residuals that remember, under lines of the gratings that are known no better than their

@@ -182,24 +182,21 @@ fn search(case: &Case<'_>, distrusted: &[Effect]) -> Result<Search, ContinuumErr
         let closed = |trial: &Trial| 1.0 - excess_n(&trial.fit) / gap_n;
         let helps = |trial: &Trial| trial.delta_bic < -LEAST_EVIDENCE;
         let is_enough = |trial: &Trial| helps(trial) && closed(trial) > LEAST_SHARE;
-        // A spread over all holes comes last: it would swallow one of them.
-        let (mut best, mut others) = ranked(single);
-        if !best.as_ref().is_some_and(is_enough)
-            && let (Some(all), _) = ranked(spread)
-            && is_enough(&all)
-        {
-            others.splice(0..0, best.replace(all));
+        // What suffices comes before what does not, and a spread over all holes last: it would swallow one of them.
+        let mut ranking = ranked(single);
+        if let Some(place) = ranking.iter().position(is_enough) {
+            ranking[..=place].rotate_right(1);
+        } else {
+            ranking.splice(0..0, spread.into_iter().filter(is_enough));
         }
-        let best = match best {
-            Some(best) if is_enough(&best) => best,
-            best => {
-                let helped = best.into_iter().chain(others).filter(|trial| helps(trial) && trial.effects.len() == 1);
-                tried = helped.map(|trial| too_little(&trial, closed(&trial))).collect();
-                break;
-            }
-        };
+        if !ranking.first().is_some_and(is_enough) {
+            let helped = ranking.into_iter().filter(|trial| helps(trial) && trial.effects.len() == 1);
+            tried = helped.map(|trial| too_little(&trial, closed(&trial))).collect();
+            break;
+        }
+        let mut others = ranking.into_iter();
+        let Some(best) = others.next() else { break };
         let runner_up = others
-            .iter()
             .find(|trial| trial.effects != best.effects)
             .and_then(|trial| Some((*trial.effects.last()?, trial.delta_bic)));
         for effect in best.effects {
@@ -250,16 +247,15 @@ fn too_little(trial: &Trial, closed: f64) -> Tried {
     }
 }
 
-/// The best of the trials and the others in their order: of those that are as good, the one with fewer effects.
-fn ranked(mut trials: Vec<Trial>) -> (Option<Trial>, Vec<Trial>) {
+/// The best of the trials first: of those that are as good, the one with fewer effects.
+fn ranked(mut trials: Vec<Trial>) -> Vec<Trial> {
     let least_n = trials.iter().map(|trial| rms_n(&trial.fit)).fold(f64::INFINITY, f64::min);
     let rank = |trial: &Trial| {
         let is_worse = rms_n(&trial.fit) > AS_GOOD_RATIO * least_n;
         (is_worse, if is_worse { 0 } else { trial.effects.len() })
     };
     trials.sort_by(|one, other| rank(one).cmp(&rank(other)).then(rms_n(&one.fit).total_cmp(&rms_n(&other.fit))));
-    let mut trials = trials.into_iter();
-    (trials.next(), trials.collect())
+    trials
 }
 
 /// Leaves only those holes named whose 95 % interval does not hold the μ of the others. Beside a named one they keep a μ of their own, for the
