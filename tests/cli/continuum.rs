@@ -463,7 +463,9 @@ fn discovery_names_the_memory_of_the_holes() {
     assert_eq!((&tendon["verdict"], &tendon["effects"][0]["kind"]), (&"extended".into(), &"presliding".into()));
     let rms = |when: &str| tendon[when]["rms_n"].as_f64().unwrap();
     let floor = tendon["noise_floor_n"].as_f64().unwrap();
-    assert_close(tendon["gap_closed"].as_f64().unwrap(), 1.0 - (rms("after") - floor) / (rms("before") - floor));
+    // A share is at most one; what is held out may scatter a little less than the noise.
+    let closed = (1.0 - (rms("after") - floor) / (rms("before") - floor)).min(1.0);
+    assert_close(tendon["gap_closed"].as_f64().unwrap(), closed);
     assert!(tendon["effects"][0]["evidence"]["delta_bic"].as_f64().unwrap() < -10.0);
     assert_self_contained(&String::from_utf8(place.read("d.html")).unwrap());
     let again = ["discover", "mixed.csv", "--model", "new.toml", "-o", "again.toml"];

@@ -159,6 +159,7 @@ pub fn discovery(found: &TendonDiscovery) -> String {
                 }
             }
             @for tried in &tendon.tried { p.soft { "Not named: " (tried.sentence()) } }
+            @if let Some(kept) = &tendon.kept { p.soft { "Kept: " (kept) } }
             @if let Some(rest) = &tendon.unexplained { p.unexplained { (rest.sentence()) } }
         }
         p {

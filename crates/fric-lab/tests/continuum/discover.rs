@@ -1,5 +1,6 @@
 //! What is hidden in a simulated run is named, and nothing else.
 
+mod intervals;
 mod markers;
 
 use fric_core::continuum::edit::{GratingLine, ManipulatorEdit, rewrite};
@@ -48,15 +49,29 @@ fn told(discovery: &TendonDiscovery) -> (&'static str, Vec<&'static str>) {
     (tendon.verdict, tendon.effects.iter().map(|effect| effect.kind).collect())
 }
 
+/// The same without the holes whose μ is their own: those of simulated manipulators differ by ±10 %, and a run with both directions tells some of them.
+fn told_but_holes(discovery: &TendonDiscovery) -> (&'static str, Vec<&'static str>) {
+    let (verdict, mut kinds) = told(discovery);
+    kinds.retain(|kind| *kind != "hole_friction");
+    (verdict, kinds)
+}
+
 fn without_sigma(text: &str) -> String {
     text.lines().filter(|line| !line.starts_with("sigma_n_per_m")).map(|line| line.to_owned() + "\n").collect()
 }
 
 #[test]
-fn a_spread_of_friction_is_nothing_missing() {
-    for (experiment, seed) in [(Experiment::OneWay, 1), (Experiment::Mixed, 2), (Experiment::Mixed, 3)] {
-        let (text, samples) = measured(experiment, seed, &[0.1753]);
-        assert_eq!(told(&found(&text, &samples)), ("complete", Vec::new()), "{experiment:?} {seed}");
+fn a_spread_of_friction_is_told_hole_by_hole_or_not_at_all() {
+    let (text, samples) = measured(Experiment::OneWay, 1, &[0.1753]);
+    assert_eq!(told(&found(&text, &samples)), ("complete", Vec::new()));
+    for seed in [2, 3] {
+        let (text, samples) = measured(Experiment::Mixed, seed, &[0.1753]);
+        let discovery = found(&text, &samples);
+        let (verdict, kinds) = told(&discovery);
+        assert_eq!(verdict, if kinds.is_empty() { "complete" } else { "extended" }, "{seed}");
+        assert!(kinds.iter().all(|kind| *kind == "hole_friction"), "{seed} {kinds:?}");
+        let written = rewrite(&text, "arm", &discovery.edit).unwrap();
+        assert_eq!(told(&found(&written, &samples)), ("complete", Vec::new()), "{seed}");
     }
     // Pulled one way, nothing tells the history from Coulomb's friction.
     let (text, samples) = measured(Experiment::OneWay, 4, &[0.1753]);
@@ -72,7 +87,7 @@ fn samples_that_gratings_lack_do_not_hide_their_noise() {
         *shift_nm = f64::NAN;
     }
     let discovery = found(&text, &samples);
-    assert_eq!(told(&discovery), ("complete", Vec::new()));
+    assert_ne!(told(&discovery).0, "unexplained");
     let noise_n = discovery.result.cables[0].noise_floor_n;
     assert!((noise_n / whole - 1.0).abs() < 0.1, "{noise_n} {whole}");
     for (place, sample) in samples.iter_mut().enumerate() {
@@ -96,9 +111,9 @@ fn friction_and_its_memory_are_named() {
     assert!(discovery.result.cables[0].gap_closed.unwrap() > 0.95);
 
     let (text, samples) = measured(Experiment::Mixed, 6, &[0.1753]);
-    assert_eq!(told(&found(&none(&text), &samples)), ("extended", vec!["coulomb", "presliding"]));
+    assert_eq!(told_but_holes(&found(&none(&text), &samples)), ("extended", vec!["coulomb", "presliding"]));
     let discovery = found(&without_sigma(&text), &samples);
-    assert_eq!(told(&discovery), ("extended", vec!["presliding"]));
+    assert_eq!(told_but_holes(&discovery), ("extended", vec!["presliding"]));
     // With what was found in the file nothing is missing.
     let extended = rewrite(&without_sigma(&text), "arm", &discovery.edit).unwrap();
     assert_eq!(told(&found(&extended, &samples)), ("complete", Vec::new()));
@@ -111,9 +126,9 @@ fn a_hole_of_its_own_is_named() {
     for experiment in [Experiment::OneWay, Experiment::Mixed] {
         let (text, samples) = measured(experiment, 1, &mu);
         let discovery = found(&text, &samples);
-        assert_eq!(told(&discovery), ("extended", vec!["hole_friction"]), "{experiment:?}");
+        assert_eq!(told_but_holes(&discovery), ("extended", Vec::new()), "{experiment:?}");
         let effect = &discovery.result.cables[0].effects[0];
-        assert_eq!(effect.parameters.get("hole"), Some(4.0));
+        assert_eq!(effect.parameters.get("hole"), Some(4.0), "the roughest comes first");
         assert!((effect.parameters.get("mu").unwrap() / 0.35 - 1.0).abs() < 0.15);
         assert_eq!(discovery.edit.mu.len(), 8);
     }
@@ -127,8 +142,9 @@ fn a_drifting_grating_is_named_and_another_fault_is_not() {
         sample.shift_nm[2] += 0.002 * sample.time_s;
     }
     let discovery = found(&text, &warm);
-    assert_eq!(told(&discovery), ("extended", vec!["sensor_drift"]));
-    let effect = &discovery.result.cables[0].effects[0];
+    assert_eq!(told_but_holes(&discovery), ("extended", vec!["sensor_drift"]));
+    let effects = &discovery.result.cables[0].effects;
+    let effect = effects.iter().find(|effect| effect.kind == "sensor_drift").unwrap();
     assert_eq!(effect.parameters.get("grating"), Some(3.0));
     assert!((effect.parameters.get("drift_nm_per_s").unwrap() / 0.002 - 1.0).abs() < 0.1);
     let extended = rewrite(&text, "arm", &discovery.edit).unwrap();
@@ -138,7 +154,7 @@ fn a_drifting_grating_is_named_and_another_fault_is_not() {
     for sample in &mut warm {
         sample.shift_nm[6] += 0.01 * (5.0 * sample.time_s).sin();
     }
-    assert_eq!(told(&found(&text, &warm)), ("unexplained", vec!["sensor_drift"]));
+    assert_eq!(told_but_holes(&found(&text, &warm)), ("unexplained", vec!["sensor_drift"]));
 
     let mut humming = samples;
     for sample in &mut humming {

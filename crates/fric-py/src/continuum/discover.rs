@@ -57,6 +57,12 @@ impl TendonDiscovery {
         results::plain(py, &self.result.cables.first().map(|tendon| &tendon.tried))
     }
 
+    /// Why the file keeps a μ that the run contradicts: shapes would be worse; None where it keeps none.
+    #[getter]
+    fn kept(&self) -> Option<&str> {
+        self.result.cables.first().and_then(|tendon| tendon.kept.as_deref())
+    }
+
     /// What no effect accounts for, as a dict: rms_n, rms_mm, where, goes_with; None where nothing is left.
     #[getter]
     fn unexplained<'py>(&self, py: Python<'py>) -> Outcome<Bound<'py, PyAny>> {

@@ -3,6 +3,7 @@
 use fric_core::continuum::file::{ManipulatorFile, OneOrEach};
 use fric_core::continuum::{ManipulatorParams, Tendon};
 
+use super::lines::take_off;
 use super::model::Model;
 use crate::continuum::error::ContinuumError;
 use crate::continuum::gratings::Gratings;
@@ -34,6 +35,8 @@ pub struct Case<'a> {
     pub line_error_n: Vec<Vec<[f64; 2]>>,
     /// N/nm of each grating.
     pub newton_per_nm: Vec<f64>,
+    /// Noise of the gratings, N, beside which the lines' errors are weighed: from the given model's residual.
+    pub noise_n: f64,
     pub run_samples: usize,
 }
 
@@ -41,8 +44,11 @@ pub struct Case<'a> {
 #[derive(Clone, Debug)]
 pub struct Fit {
     pub model: Model,
+    /// Without what the gratings' lines are found to be off by.
     pub residual_n: Vec<Vec<f64>>,
-    /// Sum of squares over what is learned from, N².
+    /// What they are off by, in standard errors of constant and slope.
+    pub line_errors: Vec<[f64; 2]>,
+    /// Sum of squares over what is learned from, N², the lines' errors included: each as a residual of so many times the noise.
     pub squares: f64,
     /// Over what is held out.
     pub held_out_n: Deviation,
@@ -74,8 +80,9 @@ impl<'a> Case<'a> {
         for block in cut(0..samples.len(), cycle_s, &mut { DRAW }) {
             held_out[block.cycles].fill(block.held_out);
         }
-        Ok(Self {
+        let mut case = Self {
             file,
+            noise_n: 0.0,
             line_error_n: observed_n.iter().map(line_errors).collect(),
             observed_n,
             is_dead: kept.iter().filter_map(|place| Some(judged.get(*place)?.is_bridged.clone())).collect(),
@@ -83,7 +90,10 @@ impl<'a> Case<'a> {
             held_out,
             newton_per_nm: gratings.lines().iter().map(|line| line.newton_per_nm).collect(),
             run_samples: run.samples().len(),
-        })
+        };
+        let given = case.fit(&case.given()).ok_or(ContinuumError::UntoldNoise)?;
+        case.noise_n = case.noise_of(&given)?;
+        Ok(case)
     }
 
     /// The model that the file states.
@@ -129,14 +139,21 @@ impl<'a> Case<'a> {
         ManipulatorFile::check(tables).ok().map(|file| *file.params())
     }
 
+    /// Tension of a model in each segment, N; NaN where it has no shape, `None` where it has none at all.
+    pub fn tensions_n(&self, model: &Model) -> Option<Vec<Vec<f64>>> {
+        let computed = shapes(&self.params(&model.mu, 1.0)?, &self.samples, model.way, &[]).ok()?;
+        let tensions = |shape: ComputedShape| {
+            if shape.status.has_shape() { shape.tension_n } else { vec![f64::NAN; model.mu.len()] }
+        };
+        Some(computed.into_iter().map(tensions).collect())
+    }
+
     /// A model with its residuals; `None` where it has no shapes.
     pub fn fit(&self, model: &Model) -> Option<Fit> {
         let computed = shapes(&self.params(&model.mu, 1.0)?, &self.samples, model.way, &[]).ok()?;
         let start_s = self.samples.first()?.time_s;
         let mut residual_n = Vec::with_capacity(computed.len());
-        let (mut squares, mut held_out_n) = (0.0, Deviation::default());
-        let rows = computed.iter().zip(&self.observed_n).zip(self.samples.iter().zip(&self.held_out));
-        for ((shape, observed_n), (sample, held_out)) in rows {
+        for ((shape, observed_n), sample) in computed.iter().zip(&self.observed_n).zip(&self.samples) {
             let elapsed_s = sample.time_s - start_s;
             let has_shape = shape.status.has_shape();
             let segments = observed_n.iter().zip(&shape.tension_n).zip(&model.drift_n_per_s);
@@ -147,6 +164,12 @@ impl<'a> Case<'a> {
                     },
                 )
                 .collect();
+            residual_n.push(row);
+        }
+        let line_errors = take_off(self, &mut residual_n);
+        let mut held_out_n = Deviation::default();
+        let mut squares: f64 = line_errors.iter().flatten().map(|errors| (errors * self.noise_n).powi(2)).sum();
+        for (row, held_out) in residual_n.iter().zip(&self.held_out) {
             for residual_n in row.iter().filter(|residual_n| residual_n.is_finite()) {
                 if *held_out {
                     held_out_n.add(*residual_n);
@@ -154,11 +177,18 @@ impl<'a> Case<'a> {
                     squares += residual_n * residual_n;
                 }
             }
-            residual_n.push(row);
         }
         let marker_m = computed.iter().zip(&self.samples).map(|(shape, sample)| off_markers(shape, sample)).collect();
         let tension_n = computed.into_iter().map(|shape| shape.tension_n).collect();
-        (squares > 0.0).then(|| Fit { model: model.clone(), residual_n, squares, held_out_n, tension_n, marker_m })
+        (squares > 0.0).then(|| Fit {
+            model: model.clone(),
+            residual_n,
+            line_errors,
+            squares,
+            held_out_n,
+            tension_n,
+            marker_m,
+        })
     }
 
     /// What the lines of the gratings may be off by over the run, root mean square of one standard error, N.
@@ -170,10 +200,11 @@ impl<'a> Case<'a> {
         all.rms().unwrap_or(0.0)
     }
 
-    /// Samples that are learned from: what the evidence counts. Gratings of one sample share their error.
+    /// Tensions that are learned from: what the evidence counts. What gratings of all samples share, the error of their lines, is a term of its own.
     pub fn learned_count(&self) -> f64 {
-        #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
-        let count = self.held_out.iter().filter(|held_out| !**held_out).count() as f64;
+        let learned = self.observed_n.iter().zip(&self.held_out).filter(|(_, held_out)| !**held_out);
+        #[expect(clippy::cast_precision_loss, reason = "a count of tensions")]
+        let count = learned.flat_map(|(row, _)| row).filter(|tension_n| tension_n.is_finite()).count() as f64;
         count
     }
 
@@ -181,7 +212,7 @@ impl<'a> Case<'a> {
     ///
     /// # Errors
     /// [`ContinuumError::UntoldNoise`] where gaps leave too little of it.
-    pub fn noise_n(&self, fit: &Fit) -> Result<f64, ContinuumError> {
+    pub fn noise_of(&self, fit: &Fit) -> Result<f64, ContinuumError> {
         let mut series = Vec::new();
         for grating in 0..self.newton_per_nm.len() {
             series.extend(fit.residual_n.iter().filter_map(|row| row.get(grating)).copied());

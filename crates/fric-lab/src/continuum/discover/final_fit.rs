@@ -6,7 +6,7 @@ use super::case::{Case, Fit};
 use super::fitting::{covariance, fitted};
 use super::markers::MarkerFit;
 use super::model::{Model, Parameter};
-use super::worse::worse_shape;
+use super::worse::{Worse, worse_shape};
 use crate::continuum::shape_errors::Way;
 use crate::discover::Verdict;
 use crate::fit::HALF_INTERVAL;
@@ -15,7 +15,12 @@ use crate::fit::HALF_INTERVAL;
 #[derive(Clone, Debug)]
 pub struct Final {
     pub fit: Fit,
-    pub covariance: Option<DMatrix<f64>>,
+    /// What the covariance is of, and that: with all that the run has to tell, the shared μ that stays as given included, for that it stays does not
+    /// make it known.
+    parameters: Vec<Parameter>,
+    covariance: Option<DMatrix<f64>>,
+    /// The disk that a refit would have put further off, where that is why the given μ stays, with that μ.
+    pub kept: Option<(Worse, f64)>,
 }
 
 impl Final {
@@ -32,15 +37,18 @@ impl Final {
         is_given: bool,
     ) -> Option<Self> {
         if verdict == Verdict::Unexplained && is_given {
-            return Some(Self { fit: given.clone(), covariance: None });
+            return Some(Self { fit: given.clone(), parameters: Vec::new(), covariance: None, kept: None });
         }
+        let mut kept = None;
         let free = Self::of(whole, &after.model)?;
         if given.model.way == Way::None || (verdict != Verdict::Unexplained && free.contradicts(given)) {
-            let markers = MarkerFit::new(whole, &free.fit);
-            if given.model.way == Way::None
-                || worse_shape([given, &free.fit], [given_markers, markers.as_ref()]).is_none()
-            {
+            if given.model.way == Way::None {
                 return Some(free);
+            }
+            let markers = MarkerFit::new(whole, &free.fit);
+            match worse_shape([given, &free.fit], [given_markers, markers.as_ref()]) {
+                None => return Some(free),
+                Some(worse) => kept = Some((worse, shared_mu(&free.fit.model))),
             }
         }
         let mut model = after.model.clone();
@@ -50,17 +58,17 @@ impl Final {
             }
         }
         model.is_shared_given = true;
-        Self::of(whole, &model)
+        Some(Self { fit: fitted(whole, &model)?, kept, ..free })
     }
 
     fn of(whole: &Case<'_>, model: &Model) -> Option<Self> {
         let fit = fitted(whole, model)?;
-        Some(Self { covariance: covariance(whole, &fit), fit })
+        Some(Self { parameters: fit.model.parameters(), covariance: covariance(whole, &fit), fit, kept: None })
     }
 
     /// Whether the interval of the shared μ does not hold the given one.
     fn contradicts(&self, given: &Fit) -> bool {
-        let Some(error) = standard_error(&self.fit.model, self.covariance.as_ref(), Parameter::SharedMu) else {
+        let Some(error) = self.standard_error(Parameter::SharedMu) else {
             return false;
         };
         let [found, stated] = [&self.fit.model, &given.model].map(|model| {
@@ -72,13 +80,29 @@ impl Final {
 
     /// Standard error of a number that was fitted; `None` of another, and of one that the run does not determine.
     pub fn standard_error(&self, parameter: Parameter) -> Option<f64> {
-        standard_error(&self.fit.model, self.covariance.as_ref(), parameter)
+        let place = self.parameters.iter().position(|fitted| *fitted == parameter)?;
+        Some(self.covariance.as_ref()?.get((place, place))?.sqrt()).filter(|error| error.is_finite())
+    }
+
+    /// Of [`shared_mu`].
+    pub fn shared_mu_error(&self) -> Option<f64> {
+        if let Some(error) = self.standard_error(Parameter::SharedMu) {
+            return Some(error);
+        }
+        let is_own = |parameter: &Parameter| matches!(parameter, Parameter::OwnMu(_));
+        let own = self.parameters.iter().map(|parameter| if is_own(parameter) { 1.0 } else { 0.0 });
+        let own = DVector::from_iterator(self.parameters.len(), own);
+        let variance = own.dot(&(self.covariance.as_ref()? * &own)) / own.sum().powi(2);
+        Some(variance.sqrt()).filter(|error| error.is_finite())
     }
 }
 
-fn standard_error(model: &Model, covariance: Option<&DMatrix<f64>>, parameter: Parameter) -> Option<f64> {
-    let place = model.parameters().iter().position(|fitted| *fitted == parameter)?;
-    covariance?.get((place, place)).map(|variance| variance.sqrt()).filter(|error| error.is_finite())
+/// μ of the holes that share one, of the mean hole where none does.
+pub fn shared_mu(model: &Model) -> f64 {
+    let shared = model.mu.iter().zip(&model.is_own).find(|(_, is_own)| !**is_own);
+    #[expect(clippy::cast_precision_loss, reason = "a small count")]
+    let mean = model.mu.iter().sum::<f64>() / model.mu.len() as f64;
+    shared.map_or(mean, |(mu, _)| *mu)
 }
 
 /// How far the μ of a hole of its own is from that of the others, in half widths of the 95 % interval of the difference. Each μ counts as a share of

@@ -71,6 +71,25 @@ fn best(candidates: impl IntoIterator<Item = GoesWith>) -> Option<GoesWith> {
     likely.max_by(|one, other| one.share.total_cmp(&other.share))
 }
 
+/// The step of all shifts that accounts for most of a rest: its share of the squares, the shift, nm, and the sample from which on it is there. One pass
+/// from the end adds a sample to what is after the step; the rest before it has no part but in the squares.
+fn best_step(rest_n: &[Vec<f64>], newton_per_nm: &dyn Fn(usize) -> f64) -> Option<(f64, f64, usize)> {
+    let mut sums = Vec::with_capacity(rest_n.len());
+    let (mut normal, mut right, mut squares) = (0.0, 0.0, 0.0);
+    for (begin, row) in rest_n.iter().enumerate().rev() {
+        for (segment, left_n) in row.iter().enumerate().filter(|(_, left_n)| left_n.is_finite()) {
+            let slope = newton_per_nm(segment);
+            normal += slope * slope;
+            right += slope * left_n;
+            squares += left_n * left_n;
+        }
+        sums.push((begin, normal, right));
+    }
+    let steps = sums.into_iter().filter(|(begin, normal, _)| *begin > 0 && *normal > 0.0);
+    let found = steps.map(|(begin, normal, right)| (right * right / (normal * squares), right / normal, begin));
+    found.filter(|_| squares > 0.0).max_by(|(one, ..), (other, ..)| one.total_cmp(other))
+}
+
 /// What the rest of the tensions goes with; `given` is the model as the file states it, for a fit bends what is not friction into friction.
 pub fn of_tensions(case: &Case<'_>, given: &Fit) -> Option<GoesWith> {
     let start_s = case.samples.first()?.time_s;
@@ -101,12 +120,8 @@ pub fn of_tensions(case: &Case<'_>, given: &Fit) -> Option<GoesWith> {
         );
         found("temperature", share, &[("shift_nm", shift[0]), ("temperature_k", kelvin(shift[0]))], text)
     });
-    let step = (1..case.samples.len())
-        .filter_map(|begin| {
-            let (share, shift) = solved(&|sample, segment| if sample >= begin { slope(segment) } else { 0.0 })?;
-            Some((share, shift[0], case.samples.get(begin)?.time_s))
-        })
-        .max_by(|(one, ..), (other, ..)| one.total_cmp(other))
+    let step = best_step(&given.residual_n, &slope)
+        .and_then(|(share, shift_nm, begin)| Some((share, shift_nm, case.samples.get(begin)?.time_s)))
         .map(|(share, shift_nm, from_s)| {
             let text = format!(
                 "is a shift of all gratings alike by {shift_nm:.4} nm from {from_s} s on, as {:.1} K do. {remedy}",
@@ -206,4 +221,36 @@ pub fn of_markers(case: &Case<'_>, fit: &Fit, markers: &MarkerFit) -> Option<Goe
     let frame = best([still, moving].into_iter().flatten());
     let is_clearer = |bending: &GoesWith| frame.as_ref().is_none_or(|one| bending.share > one.share - 0.02);
     best(bending.filter(is_clearer)).or(frame)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One regression for each sample at which it may begin, as [`Rows`] does them.
+    #[test]
+    fn one_pass_finds_the_step_of_all_regressions() {
+        let slopes = [11.0, 10.5, 12.0];
+        let rest_n: Vec<Vec<f64>> = (0..60_u32)
+            .map(|sample| {
+                let noise = |segment: u32| f64::from((7919 * (3 * sample + segment)) % 101) / 1e4;
+                let warm_nm = if sample >= 23 { 0.003 } else { 0.0 };
+                let left_n = (0..3).map(|segment| slopes[segment as usize] * warm_nm + noise(segment));
+                left_n.map(|left_n| if sample == 40 { f64::NAN } else { left_n }).collect()
+            })
+            .collect();
+        let single = |begin: usize| {
+            let rows = rest_n.iter().enumerate().flat_map(|(sample, row)| {
+                let after = if sample >= begin { 1.0 } else { 0.0 };
+                row.iter().zip(slopes).map(move |(left_n, slope)| (vec![after * slope], *left_n))
+            });
+            Rows::new(rows, 1).solved().map(|(share, shift)| (share, shift[0], begin))
+        };
+        let (share, shift_nm, begin) =
+            (1..60).filter_map(single).max_by(|(one, ..), (other, ..)| one.total_cmp(other)).unwrap();
+        let found = best_step(&rest_n, &|segment| slopes[segment]).unwrap();
+        assert_eq!(found.2, begin);
+        assert!((found.0 - share).abs() < 1e-12 && (found.1 - shift_nm).abs() < 1e-12);
+        assert_eq!(begin, 23);
+    }
 }

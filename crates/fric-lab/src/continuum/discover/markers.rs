@@ -69,6 +69,14 @@ impl MarkerFit {
         (self.rms_m().powi(2) - self.noise_m.powi(2)).max(0.0).sqrt()
     }
 
+    /// Whether the disks are further off than gratings that are off by so much would put them, alike in all segments: in proportion to what one
+    /// standard error of their lines, independent from segment to segment, does, twice.
+    pub fn is_beyond(&self, case: &Case<'_>, tension_n: f64) -> bool {
+        #[expect(clippy::cast_precision_loss, reason = "a small count")]
+        let alike = (case.newton_per_nm.len() as f64).sqrt();
+        self.excess_m() > LINE_ERRORS * alike * self.line_error_m * tension_n / case.line_error_rms_n()
+    }
+
     /// Whether noise and calibration account for all but what is practically nothing.
     pub fn is_noise(&self) -> bool {
         let allowed_m = (LINE_ERRORS * self.line_error_m).hypot(NOISE_ERROR_RATIO * self.noise_m);

@@ -14,20 +14,27 @@
 //! A line of a grating that is wrong, as of another grating, has no name: a drift has to account for more than it would, and where something is
 //! left a name is put only on a grating, or a hole between two, at which nothing is.
 //!
-//! What remains is compared with the noise of the gratings and with what their calibration leaves open (`noise`). Where the run has markers
+//! What the gratings' calibration leaves open of their lines is estimated along with each model (`lines`), and what then remains is noise where samples that
+//! follow each other have nothing in common (`noise`). Where the run has markers
 //! they take part: shapes under the tensions that the gratings show (`markers`) have to meet them within the noise of both. What is left goes
 //! with one of a few physical things, or with none (`goes_with`). No effect enters the file that makes shapes or tensions worse
-//! than as given (`worse`), and no value that the run does not contradict (`final_fit`).
+//! than as given (`worse`), and no value that the run does not contradict (`final_fit`). Intervals hold the calibration's error and that holes which
+//! share a μ do differ (`spread`).
 
+mod assemble;
 mod case;
+mod extended_file;
 mod final_fit;
 mod fitting;
 mod goes_with;
+mod lines;
 mod markers;
 mod model;
 mod naming;
 mod noise;
+mod places;
 mod result;
+mod spread;
 mod summary;
 mod trials;
 mod worse;
@@ -79,5 +86,5 @@ pub fn discover(file: &ManipulatorFile, run: &Run, log: &str) -> Result<TendonDi
     let gratings = Gratings::from_file(file)?.ok_or(ContinuumError::NoGratings)?;
     let case = Case::new(file, run, &gratings)?;
     let outcome = naming::name(&case)?;
-    Ok(result::told(&case, &outcome, log))
+    Ok(assemble::told(&case, &outcome, log))
 }

@@ -5,7 +5,7 @@ use super::final_fit::{Final, is_own_mu};
 use super::fitting::{covariance, fitted};
 use super::markers::MarkerFit;
 use super::model::{Effect, Model};
-use super::noise::{excess_n, is_negligible, is_noise, is_noise_at, rms_n};
+use super::noise::{excess_n, is_negligible, is_noise_at, rms_n};
 use super::trials::{Trial, trials};
 use super::worse::{are_tensions_worse, worse_shape};
 use crate::continuum::error::ContinuumError;
@@ -54,11 +54,16 @@ pub struct Outcome {
     pub last: Final,
     pub findings: Vec<Finding>,
     pub tried: Vec<Tried>,
+    /// Whether the markers alone make it unexplained, where it is.
+    pub are_tensions_explained: bool,
     /// With the given model and with the extended one.
     pub markers: [Option<MarkerFit>; 2],
 }
 
 /// Searches for what is missing.
+///
+/// Where the disks are off their markers no hole is named, for its μ is found from the bend; that tensions fit with holes of their own leaves the
+/// bending alone to be told.
 ///
 /// Where something is left, a name is not put on a grating, or on a hole between two, that still disagrees: what is wrong there is
 /// something else. Nor is it put on an effect with which shapes or tensions are worse than as given.
@@ -70,6 +75,7 @@ pub fn name(case: &Case<'_>) -> Result<Outcome, ContinuumError> {
     let given_markers = MarkerFit::new(case, &given);
     let whole = case.whole();
     let (mut refused, mut distrusted) = (Vec::new(), Vec::new());
+    let mut do_refused_holes_explain = false;
     loop {
         let found = search(case, &distrusted)?;
         let wrong = disagreeing(case, &found);
@@ -82,6 +88,16 @@ pub fn name(case: &Case<'_>) -> Result<Outcome, ContinuumError> {
         let last = Final::new(&whole, &given, given_markers.as_ref(), &after, verdict, findings.is_empty())
             .ok_or(ContinuumError::UntoldNoise)?;
         let markers = MarkerFit::new(case, &last.fit);
+        let is_hole = |effect: &Effect| matches!(effect, Effect::HoleFriction(_));
+        let holes: Vec<Effect> = findings.iter().map(|finding| finding.effect).filter(is_hole).collect();
+        if !holes.is_empty() && markers.as_ref().is_some_and(|markers| !markers.is_noise()) {
+            do_refused_holes_explain = verdict != Verdict::Unexplained;
+            let found = Search { noise_n, verdict, before, after, findings, tried };
+            let reason = "the disks are off their markers: the bend at the hole, from which its μ is found, is another";
+            refuse(&found, &holes, reason, &mut refused);
+            distrusted.extend((0..given.model.mu.len()).map(Effect::HoleFriction));
+            continue;
+        }
         let worse = worse_shape([&given, &last.fit], [given_markers.as_ref(), markers.as_ref()]);
         if let Some(culprit) = findings.last().filter(|_| worse.is_some() || are_tensions_worse(&given, &last.fit)) {
             let reason = worse.map_or_else(
@@ -103,10 +119,22 @@ pub fn name(case: &Case<'_>) -> Result<Outcome, ContinuumError> {
             continue;
         }
         let are_markers_noise = markers.as_ref().is_none_or(MarkerFit::is_noise);
+        let are_tensions_explained =
+            verdict != Verdict::Unexplained || (do_refused_holes_explain && !are_markers_noise);
         let verdict = if are_markers_noise { verdict } else { Verdict::Unexplained };
         refused.extend(tried);
-        let markers = [given_markers, markers];
-        return Ok(Outcome { noise_n, verdict, given, before, after, last, findings, tried: refused, markers });
+        return Ok(Outcome {
+            noise_n,
+            verdict,
+            given,
+            before,
+            after,
+            last,
+            findings,
+            tried: refused,
+            are_tensions_explained,
+            markers: [given_markers, markers],
+        });
     }
 }
 
@@ -122,7 +150,7 @@ struct Search {
 
 /// Effects at gratings that still disagree.
 fn disagreeing(case: &Case<'_>, found: &Search) -> Vec<Effect> {
-    let disagrees = |grating: usize| !is_noise_at(case, &found.after, found.noise_n, grating);
+    let disagrees = |grating: usize| !is_noise_at(case, &found.after, grating);
     let is_wrong = |effect: &Effect| match *effect {
         Effect::SensorDrift(grating) => disagrees(grating),
         Effect::HoleFriction(hole) => (hole.saturating_sub(1)..=hole).any(disagrees),
@@ -146,62 +174,46 @@ fn search(case: &Case<'_>, distrusted: &[Effect]) -> Result<Search, ContinuumErr
     let mut now = before.clone();
     let mut findings: Vec<Finding> = Vec::new();
     let mut tried: Vec<Tried> = Vec::new();
-    let mut noise_n = case.noise_n(&now)?;
-    while findings.len() < MOST_EFFECTS && !is_noise(case, &now, noise_n) {
-        let gap_n = excess_n(&now, noise_n);
+    // Until the verdict would be that nothing is missing: what was written, given again, has then nothing more to name.
+    while findings.len() < MOST_EFFECTS && !is_negligible(case, &now) {
+        let gap_n = excess_n(&now);
         let (spread, single): (Vec<Trial>, Vec<Trial>) =
             trials(case, &now, distrusted).into_iter().partition(Trial::is_spread);
-        let closed = |trial: &Trial| 1.0 - excess_n(&trial.fit, noise_n) / gap_n;
+        let closed = |trial: &Trial| 1.0 - excess_n(&trial.fit) / gap_n;
         let helps = |trial: &Trial| trial.delta_bic < -LEAST_EVIDENCE;
         let is_enough = |trial: &Trial| helps(trial) && closed(trial) > LEAST_SHARE;
-        // A spread over all holes comes last: it would swallow one of them.
-        let (mut best, mut others) = ranked(single);
-        if !best.as_ref().is_some_and(is_enough)
-            && let (Some(all), _) = ranked(spread)
-            && is_enough(&all)
-        {
-            others.splice(0..0, best.replace(all));
+        // What suffices comes before what does not, and a spread over all holes last: it would swallow one of them.
+        let mut ranking = ranked(single);
+        if let Some(place) = ranking.iter().position(is_enough) {
+            ranking[..=place].rotate_right(1);
+        } else {
+            ranking.splice(0..0, spread.into_iter().filter(is_enough));
         }
-        let best = match best {
-            Some(best) if is_enough(&best) => best,
-            best => {
-                let helped = best.into_iter().chain(others).filter(|trial| helps(trial) && trial.effects.len() == 1);
-                tried = helped.map(|trial| too_little(&trial, closed(&trial))).collect();
-                break;
-            }
-        };
+        if !ranking.first().is_some_and(is_enough) {
+            let helped = ranking.into_iter().filter(|trial| helps(trial) && trial.effects.len() == 1);
+            tried = helped.map(|trial| too_little(&trial, closed(&trial))).collect();
+            break;
+        }
+        let mut others = ranking.into_iter();
+        let Some(best) = others.next() else { break };
         let runner_up = others
-            .iter()
             .find(|trial| trial.effects != best.effects)
             .and_then(|trial| Some((*trial.effects.last()?, trial.delta_bic)));
         for effect in best.effects {
             findings.push(Finding { effect, fit: best.fit.clone(), delta_bic: best.delta_bic, runner_up });
         }
         now = best.fit;
-        noise_n = case.noise_n(&now)?;
     }
-    while let Some((hole, without)) = undetermined_hole(case, &now, &findings) {
-        let is_it = |finding: &Finding| finding.effect == Effect::HoleFriction(hole);
-        tried.extend(findings.iter().filter(|finding| is_it(finding)).map(|finding| Tried {
-            effect: finding.effect,
-            delta_bic: finding.delta_bic,
-            rms_n: rms_n(&finding.fit),
-            reason: "the 95 % interval of its μ holds that of the others".to_owned(),
-        }));
-        findings.retain(|finding| !is_it(finding));
-        for finding in findings.iter_mut().filter(|finding| finding.fit.model.is_own.get(hole) == Some(&true)) {
-            finding.fit = without.clone();
-        }
-        now = without;
-        noise_n = case.noise_n(&now)?;
-    }
-    if !is_negligible(case, &now, noise_n) {
+    let is_accounted = is_negligible(case, &now);
+    (now, findings) = clear(case, now, findings, &mut tried);
+    let is_accounted = is_accounted || is_negligible(case, &now);
+    if !is_accounted {
         // A name for less than what is left would be a guess.
-        let left_n = excess_n(&now, noise_n);
+        let left_n = excess_n(&now);
         while let Some(last) = findings.last() {
             let earlier = findings.iter().rev().find(|other| other.fit.model != last.fit.model);
             let earlier = earlier.map_or(&before, |other| &other.fit);
-            if excess_n(earlier, noise_n).powi(2) >= 2.0 * left_n * left_n {
+            if excess_n(earlier).powi(2) >= 2.0 * left_n * left_n {
                 break;
             }
             now = earlier.clone();
@@ -217,11 +229,12 @@ fn search(case: &Case<'_>, distrusted: &[Effect]) -> Result<Search, ContinuumErr
             tried.extend(Vec::into_iter(dropped).map(guess));
         }
     }
-    let verdict = match (findings.is_empty(), is_negligible(case, &now, noise_n)) {
+    let verdict = match (findings.is_empty(), is_accounted) {
         (true, true) => Verdict::Complete,
         (false, true) => Verdict::Extended,
         (_, false) => Verdict::Unexplained,
     };
+    let noise_n = case.noise_of(&now)?;
     Ok(Search { noise_n, verdict, before, after: now, findings, tried })
 }
 
@@ -234,37 +247,62 @@ fn too_little(trial: &Trial, closed: f64) -> Tried {
     }
 }
 
-/// The best of the trials and the others in their order: of those that are as good, the one with fewer effects.
-fn ranked(mut trials: Vec<Trial>) -> (Option<Trial>, Vec<Trial>) {
+/// The best of the trials first: of those that are as good, the one with fewer effects.
+fn ranked(mut trials: Vec<Trial>) -> Vec<Trial> {
     let least_n = trials.iter().map(|trial| rms_n(&trial.fit)).fold(f64::INFINITY, f64::min);
     let rank = |trial: &Trial| {
         let is_worse = rms_n(&trial.fit) > AS_GOOD_RATIO * least_n;
         (is_worse, if is_worse { 0 } else { trial.effects.len() })
     };
     trials.sort_by(|one, other| rank(one).cmp(&rank(other)).then(rms_n(&one.fit).total_cmp(&rms_n(&other.fit))));
-    let mut trials = trials.into_iter();
-    (trials.next(), trials.collect())
+    trials
 }
 
-/// The hole found whose μ is told least from that of the others, and the model without it; `None` where the 95 % intervals of all hold it not.
-fn undetermined_hole(case: &Case<'_>, now: &Fit, findings: &[Finding]) -> Option<(usize, Fit)> {
-    let hole = |finding: &Finding| match finding.effect {
-        Effect::HoleFriction(hole) => Some(hole),
+/// Leaves only those holes named whose 95 % interval does not hold the μ of the others. Beside a named one they keep a μ of their own, for the
+/// evidence is that of all that entered. Without any all share one again, and nothing is written of holes: that they differ may account for what is
+/// left all the same, only that the run does not tell which.
+fn clear(case: &Case<'_>, mut now: Fit, mut findings: Vec<Finding>, tried: &mut Vec<Tried>) -> (Fit, Vec<Finding>) {
+    let is_hole = |finding: &Finding| matches!(finding.effect, Effect::HoleFriction(_));
+    let clearness = holes_clearness(case, &now, &findings);
+    if clearness.is_empty() {
+        return (now, findings);
+    }
+    let is_clear = |finding: &Finding| {
+        clearness.iter().all(|(hole, clear)| finding.effect != Effect::HoleFriction(*hole) || *clear >= 1.0)
+    };
+    let (kept, unclear): (Vec<_>, Vec<_>) = findings.into_iter().partition(is_clear);
+    findings = kept;
+    tried.extend(unclear.into_iter().map(|finding| Tried {
+        effect: finding.effect,
+        delta_bic: finding.delta_bic,
+        rms_n: rms_n(&finding.fit),
+        reason: "the 95 % interval of its μ holds that of the others".to_owned(),
+    }));
+    if !findings.iter().any(is_hole)
+        && let Some(shared) = with_shared_mu(case, &now.model)
+    {
+        now = shared;
+    }
+    (now, findings)
+}
+
+/// How clear each hole found is told from the others, in half widths of the 95 % interval.
+fn holes_clearness(case: &Case<'_>, now: &Fit, findings: &[Finding]) -> Vec<(usize, f64)> {
+    let given = case.given();
+    let covariance = covariance(case, now);
+    let clearness = |finding: &Finding| match finding.effect {
+        Effect::HoleFriction(hole) => Some((hole, is_own_mu(&given, &now.model, covariance.as_ref(), hole))),
         _ => None,
     };
-    let covariance = covariance(case, now);
+    findings.iter().filter_map(clearness).collect()
+}
+
+/// The model with one μ for all holes, as the file has them in proportion, fitted.
+fn with_shared_mu(case: &Case<'_>, model: &Model) -> Option<Fit> {
     let given = case.given();
-    let holes = findings.iter().filter_map(hole);
-    let unclear = holes.map(|hole| (hole, is_own_mu(&given, &now.model, covariance.as_ref(), hole)));
-    let (hole, _) =
-        unclear.filter(|(_, clearness)| *clearness < 1.0).min_by(|(_, one), (_, other)| one.total_cmp(other))?;
-    let mut model: Model = now.model.clone();
-    let shared = model.is_own.iter().zip(&model.mu).zip(&given.mu).find(|((is_own, _), _)| !**is_own);
-    let ratio = shared.map_or(1.0, |((_, mu), given)| if *given > 0.0 { mu / given } else { *mu });
-    if let Some(((is_own, mu), given)) = model.is_own.get_mut(hole).zip(model.mu.get_mut(hole)).zip(given.mu.get(hole))
-    {
-        *is_own = false;
-        *mu = if *given > 0.0 { ratio * given } else { ratio };
-    }
-    Some((hole, fitted(case, &model)?))
+    let unit = |hole: usize| given.mu.get(hole).copied().filter(|mu| *mu > 0.0).unwrap_or(1.0);
+    #[expect(clippy::cast_precision_loss, reason = "a small count")]
+    let ratio = model.mu.iter().enumerate().map(|(hole, mu)| mu / unit(hole)).sum::<f64>() / model.mu.len() as f64;
+    let mu = (0..model.mu.len()).map(|hole| ratio * unit(hole)).collect();
+    fitted(case, &Model { mu, is_own: vec![false; model.mu.len()], ..model.clone() })
 }

@@ -1,59 +1,86 @@
-//! What of a residual of the tensions counts as noise.
+//! What of a residual is more than noise.
 //!
-//! The noise itself is estimated from the residual. The search goes on while more is left than an error of that estimate and what the calibration
-//! leaves open of the gratings' lines. The verdict passes over what is practically nothing. How large the gap was before does not enter.
+//! What a model misses changes slowly: samples that follow each other have it in common, and of white noise nothing. So the mean product of a residual
+//! with itself some samples later is the square of what is missed, without the noise and without an estimate of it; of white noise
+//! alone it is 0 with a standard error of the mean square over the root of the number of products. How large the gap was before does not enter.
 
 use super::case::{Case, Fit};
-use crate::replay::Deviation;
 
-/// Error of the noise's own estimate, as a share of the noise in quadrature: 4 % of the root mean square, which some hundred samples of eight
-/// gratings tell it to. At half of it chance alone keeps the search going, at twice a rest of half the noise ends it.
-const NOISE_ERROR_RATIO: f64 = 0.3;
-/// Standard errors of the gratings' lines.
-const LINE_ERRORS: f64 = 2.0;
-/// Share of the greatest tension that is practically nothing: what a spread of μ by ±10 % over the holes, which every manipulator has, leaves at
-/// usual bends. At half of it such a spread is a rest in quiet runs, at twice one of ±20 % is none.
-const PRACTICAL_RATIO: f64 = 0.0025;
-/// A single grating may have so many times as much left as all have in the mean.
-const SINGLE_RATIO: f64 = 2.0;
+/// A residual is multiplied with each of so many that follow. What is over within fewer samples, as the turning round of a hole, shows in part only.
+const LAGS: usize = 4;
+/// Standard errors beyond which a mean product is not noise: one in a thousand.
+const STANDARD_ERRORS: f64 = 3.0;
+/// Share of the greatest tension that is practically nothing in the verdict: twice what Dahl's contacts make of holes that stick and slip in runs with
+/// both directions, 0.4 mN of 1.7 N.
+const PRACTICAL_RATIO: f64 = 0.0005;
+
+/// What neighbours have in common.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Common {
+    products: f64,
+    product_count: f64,
+    squares: f64,
+    count: f64,
+}
+
+impl Common {
+    /// Takes in a series; a gap takes its products with it.
+    pub fn add(&mut self, series: &[f64]) {
+        for (place, value) in series.iter().enumerate().filter(|(_, value)| value.is_finite()) {
+            self.squares += value * value;
+            self.count += 1.0;
+            for later in series.iter().skip(place + 1).take(LAGS).filter(|later| later.is_finite()) {
+                self.products += value * later;
+                self.product_count += 1.0;
+            }
+        }
+    }
+
+    /// Root mean square of what is common, in the unit of the series.
+    pub fn rms(&self) -> f64 {
+        (self.products / self.product_count.max(1.0)).max(0.0).sqrt()
+    }
+
+    /// What chance makes of it.
+    pub fn chance(&self) -> f64 {
+        let mean_square = self.squares / self.count.max(1.0);
+        (STANDARD_ERRORS * mean_square / self.product_count.max(1.0).sqrt()).sqrt()
+    }
+}
 
 pub fn rms_n(fit: &Fit) -> f64 {
     fit.held_out_n.rms().unwrap_or(f64::INFINITY)
 }
 
-/// What a residual has above the noise, root mean square.
-pub fn excess_n(fit: &Fit, noise_n: f64) -> f64 {
-    let rms_n = rms_n(fit);
-    (rms_n * rms_n - noise_n * noise_n).max(0.0).sqrt()
+/// Of one grating, from 0.
+fn series(fit: &Fit, grating: usize) -> Vec<f64> {
+    fit.residual_n.iter().map(|row| row.get(grating).copied().unwrap_or(f64::NAN)).collect()
 }
 
-/// Whether nothing is left to look for.
-pub fn is_noise(case: &Case<'_>, fit: &Fit, noise_n: f64) -> bool {
-    excess_n(fit, noise_n) <= noise_excess_n(case, noise_n)
+fn common(fit: &Fit) -> Common {
+    let mut common = Common::default();
+    (0..fit.model.mu.len()).for_each(|grating| common.add(&series(fit, grating)));
+    common
 }
 
-/// Whether what is left is noise, or practically nothing.
-pub fn is_negligible(case: &Case<'_>, fit: &Fit, noise_n: f64) -> bool {
-    excess_n(fit, noise_n) <= negligible_n(case, noise_n)
+/// What a residual has above the noise, root mean square over learned and held-out samples, N: what a fit takes from the one it adds to the other.
+pub fn excess_n(fit: &Fit) -> f64 {
+    common(fit).rms()
 }
 
-/// What counts as nothing above the noise, N.
-fn negligible_n(case: &Case<'_>, noise_n: f64) -> f64 {
-    let greatest_n = case.samples.iter().map(|sample| sample.tension_base_n).fold(0.0, f64::max);
-    noise_excess_n(case, noise_n).hypot(PRACTICAL_RATIO * greatest_n)
-}
-
-/// What counts as noise above the noise, N.
-fn noise_excess_n(case: &Case<'_>, noise_n: f64) -> f64 {
-    (LINE_ERRORS * case.line_error_rms_n()).hypot(NOISE_ERROR_RATIO * noise_n)
+/// Whether what is left is noise, or practically nothing: nothing to look for.
+pub fn is_negligible(case: &Case<'_>, fit: &Fit) -> bool {
+    let common = common(fit);
+    common.rms() <= common.chance().hypot(practical_n(case))
 }
 
 /// Whether one grating, from 0, has noise left alone.
-pub fn is_noise_at(case: &Case<'_>, fit: &Fit, noise_n: f64, grating: usize) -> bool {
-    let mut left_n = Deviation::default();
-    for (row, _) in fit.residual_n.iter().zip(&case.held_out).filter(|(_, held_out)| **held_out) {
-        row.get(grating).into_iter().for_each(|residual_n| left_n.add(*residual_n));
-    }
-    let rms_n = left_n.rms().unwrap_or(0.0);
-    rms_n * rms_n - noise_n * noise_n <= (SINGLE_RATIO * negligible_n(case, noise_n)).powi(2)
+pub fn is_noise_at(case: &Case<'_>, fit: &Fit, grating: usize) -> bool {
+    let mut common = Common::default();
+    common.add(&series(fit, grating));
+    common.rms() <= common.chance().hypot(practical_n(case))
+}
+
+fn practical_n(case: &Case<'_>) -> f64 {
+    PRACTICAL_RATIO * case.samples.iter().map(|sample| sample.tension_base_n).fold(0.0, f64::max)
 }

@@ -65,6 +65,10 @@ impl TendonDiscoverResult {
                 text += "\n";
                 text += &wrapped("not named: ", &tried.sentence());
             }
+            if let Some(kept) = &tendon.kept {
+                text += "\n";
+                text += &wrapped("kept: ", kept);
+            }
             if let Some(rest) = &tendon.unexplained {
                 text += "\n";
                 text += &wrapped("unexplained: ", &rest.sentence());

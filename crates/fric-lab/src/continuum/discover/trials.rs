@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::case::{Case, Fit};
-use super::fitting::fitted;
+use super::fitting::{HoleSlopes, fitted, fitted_from};
 use super::model::{Effect, Model};
 use super::naming::LEAST_EVIDENCE;
 use crate::continuum::shape_errors::Way;
@@ -84,8 +84,14 @@ pub fn trials(case: &Case<'_>, now: &Fit, distrusted: &[Effect]) -> Vec<Trial> {
     }
     candidates.retain(|(effects, _)| effects.iter().all(|effect| !distrusted.contains(effect)));
     let learned = case.learned_count();
-    let trial = |(effects, model): (Vec<Effect>, Model)| {
-        let fit = fitted(case, &model)?;
+    let Some(by_hole) = HoleSlopes::new(case, now) else { return Vec::new() };
+    let trial = |(effects, candidate): (Vec<Effect>, Model)| {
+        // What is to be fitted begins as it is: tensions and residuals are those at hand.
+        let fit = if candidate.way == model.way {
+            fitted_from(case, Fit { model: candidate, ..now.clone() }, &by_hole)?
+        } else {
+            fitted(case, &candidate)?
+        };
         if let [Effect::SensorDrift(grating)] = effects[..]
             && !is_told_from_line(case, &fit, grating)
         {

@@ -7,7 +7,7 @@ use fric_lab::continuum::shape_errors::{Way, shapes};
 use fric_lab::continuum::simulate::{Experiment, TendonSimulationOptions};
 use fric_lab::continuum::{Run, RunSample};
 
-use super::{PROTOTYPE, found, measured, measured_of, told};
+use super::{PROTOTYPE, found, measured, measured_of, told, told_but_holes};
 
 fn options(experiment: Experiment, seed: u64) -> TendonSimulationOptions {
     TendonSimulationOptions { experiment, seed, ..TendonSimulationOptions::default() }
@@ -58,7 +58,7 @@ fn a_bending_that_is_not_the_models_is_not_called_complete() {
     for (stiffness_ratio, offset_ratio, experiment) in off_by {
         let (text, samples) = off(stiffness_ratio, offset_ratio, &options(experiment, 21));
         let discovery = found(&text, &samples);
-        assert_eq!(told(&discovery), ("unexplained", Vec::new()), "{stiffness_ratio} {offset_ratio}");
+        assert_eq!(told_but_holes(&discovery), ("unexplained", Vec::new()), "{stiffness_ratio} {offset_ratio}");
         let rest = discovery.result.cables[0].unexplained.as_ref().unwrap();
         assert!(rest.rms_mm.unwrap() > 2.0);
         assert_eq!((rest.places[0].signal, rest.places[0].from), ("marker", 8), "the tip is furthest off");
@@ -70,8 +70,40 @@ fn a_bending_that_is_not_the_models_is_not_called_complete() {
         assert_nothing_worse(&text, &samples, &discovery);
         // What was written, given again, says the same.
         let written = rewrite(&text, "arm", &discovery.edit).unwrap();
-        assert_eq!(told(&found(&written, &samples)), ("unexplained", Vec::new()));
+        assert_eq!(told_but_holes(&found(&written, &samples)), ("unexplained", Vec::new()));
     }
+}
+
+/// Friction that is too great hides a part of a backbone that is stiffer than stated: with the μ of the run the disks bend further beyond their markers.
+#[test]
+fn a_mu_that_stays_for_the_shapes_sake_says_why() {
+    let truth = PROTOTYPE.replace("mu = 0.1753 ", "mu = 0.15 ");
+    let (text, samples) = {
+        let stiffer = truth.replace("youngs_modulus_pa = 200e9", "youngs_modulus_pa = 220e9");
+        measured_of(&stiffer, &options(Experiment::OneWay, 27))
+    };
+    let discovery = found(&text, &samples);
+    assert!(discovery.edit.mu.is_empty(), "the file keeps its μ");
+    let kept = discovery.result.cables[0].kept.clone().unwrap();
+    assert!(discovery.result.summary().contains("\nkept: "));
+    let number_after = |words: &str| -> f64 {
+        let number = kept.split(words).nth(1).unwrap().trim_start().split([' ', ',']).next().unwrap();
+        number.parse().unwrap()
+    };
+    let mu = number_after("fitted to the run it is");
+    assert!((mu / 0.15 - 1.0).abs() < 0.1, "{kept}");
+    let disk = format!("{}", number_after("disk")).parse::<usize>().unwrap() - 1;
+    let refitted = rewrite(&text, "arm", &ManipulatorEdit { mu: vec![mu], ..ManipulatorEdit::default() }).unwrap();
+    let [before_m, after_m] = [&text, &refitted].map(|text| distances_m(text, &samples)[disk]);
+    // Written to a hundredth of a millimetre.
+    assert!((number_after("is then") - 1e3 * after_m).abs() < 0.02, "{kept} {after_m}");
+    assert!((number_after("instead of") - 1e3 * before_m).abs() < 0.02, "{kept} {before_m}");
+    assert!(after_m > before_m);
+    // A right bending keeps nothing back.
+    let (text, samples) = measured_of(&truth, &options(Experiment::OneWay, 27));
+    let discovery = found(&text, &samples);
+    assert!(discovery.result.cables[0].kept.is_none());
+    assert!((discovery.edit.mu[0] / 0.15 - 1.0).abs() < 0.1);
 }
 
 #[test]
@@ -82,7 +114,7 @@ fn without_markers_the_bending_is_not_told() {
     }
     let discovery = found(&text, &samples);
     assert!(discovery.result.cables[0].markers.is_none());
-    assert_eq!(discovery.result.cables[0].verdict, "complete");
+    assert_ne!(discovery.result.cables[0].verdict, "unexplained");
 }
 
 #[test]
@@ -92,7 +124,7 @@ fn a_frame_of_the_markers_that_is_off_is_told() {
         *marker_m = [marker_m[0] + 0.001, marker_m[1] - 0.002];
     }
     let discovery = found(&text, &samples);
-    assert_eq!(told(&discovery), ("unexplained", Vec::new()));
+    assert_eq!(told_but_holes(&discovery), ("unexplained", Vec::new()));
     let goes_with = &discovery.result.cables[0].unexplained.as_ref().unwrap().goes_with[0];
     assert_eq!(goes_with.with, "frame");
     let of = |name: &str| goes_with.parameters.get(name).unwrap();
@@ -149,7 +181,7 @@ fn what_is_found_beside_a_wrong_bending_makes_no_shape_worse() {
     let (text, samples) = off(1.1, 1.0, &options(Experiment::Mixed, 25));
     let smooth = text.replace("mu = 0.1753 ", "mu = 0.0 ");
     let discovery = found(&smooth, &samples);
-    assert_eq!(told(&discovery), ("unexplained", vec!["coulomb", "presliding"]));
+    assert_eq!(told_but_holes(&discovery), ("unexplained", vec!["coulomb", "presliding"]));
     assert_nothing_worse(&smooth, &samples, &discovery);
 }
 

@@ -1,0 +1,43 @@
+//! What the lines of the gratings are off by, estimated along with a model.
+//!
+//! The calibration tells constant and slope of each line to a standard error. In a fit both are unknowns, in standard errors, and count as
+//! measured once to be 0 ± 1 (generalised least squares): what a line is off by is common to all samples, and no evidence for an effect.
+
+use nalgebra::{Matrix2, Vector2};
+
+use super::case::Case;
+
+/// Standard errors that a line can be off by, constant and slope together: one line in a thousand is further off (√χ² of two numbers). What is
+/// beyond stays in the residual.
+const MOST_ERRORS: f64 = 3.7;
+
+/// Takes off a residual what the lines are off by, as far as the calibration leaves it open. Gives the standard errors of each line's constant and
+/// slope.
+pub fn take_off(case: &Case<'_>, residual_n: &mut [Vec<f64>]) -> Vec<[f64; 2]> {
+    let mut errors = Vec::with_capacity(case.newton_per_nm.len());
+    for segment in 0..case.newton_per_nm.len() {
+        let parts = |sample: usize| {
+            let parts = case.line_error_n.get(sample).and_then(|row| row.get(segment)).copied();
+            Vector2::from(parts.unwrap_or([f64::NAN; 2]))
+        };
+        let (mut matrix, mut right) = (Matrix2::identity() * case.noise_n.powi(2), Vector2::zeros());
+        for (sample, row) in residual_n.iter().enumerate().filter(|(sample, _)| !case.held_out[*sample]) {
+            let left_n = row[segment];
+            if left_n.is_finite() {
+                let parts_n = parts(sample);
+                matrix += parts_n * parts_n.transpose();
+                right += left_n * parts_n;
+            }
+        }
+        let found = matrix.cholesky().map_or_else(Vector2::zeros, |factor| factor.solve(&right));
+        let found = found * (MOST_ERRORS / found.norm()).min(1.0);
+        for (sample, row) in residual_n.iter_mut().enumerate() {
+            // A gap has no shift either.
+            if row[segment].is_finite() {
+                row[segment] -= parts(sample).dot(&found);
+            }
+        }
+        errors.push(found.into());
+    }
+    errors
+}
