@@ -53,8 +53,8 @@ fn its_own_extended_file_is_the_end() {
         assert!(!found.findings.is_empty(), "{}", case.name());
         let text = extended(&text, "extended", std::slice::from_ref(&found)).unwrap();
         let (again, _) = look_by(case.log().unwrap(), &RobotFile::parse(&text, "extended").unwrap());
-        let names: Vec<&str> = again.findings.iter().map(|finding| finding.row.kind).collect();
-        assert_eq!((names, again.verdict), (Vec::new(), verdict), "{}", case.name());
+        let more: Vec<&str> = again.findings.iter().map(|finding| finding.row.kind).collect();
+        assert_eq!((more, again.verdict), (Vec::new(), verdict), "{}", case.name());
         let [once_n, twice_n] = [&found, &again].map(|of| of.after.held_out_n.rms().unwrap());
         assert!((twice_n / once_n - 1.0).abs() < 0.01, "{}: {once_n} {twice_n}", case.name());
     }
