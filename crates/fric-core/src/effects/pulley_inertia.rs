@@ -87,7 +87,7 @@ impl<T: Scalar> PulleyInertia<T> {
         let near = (speed_m_per_s - once) / lag_s;
         let far = (once - twice) / lag_s;
         let lead_ratio = (lag_s - step_s.scale(T::splat(0.5))) / lag_s;
-        let force_n = self.mass_kg * (near + (near - far).scale(lead_ratio));
+        let force_n = self.mass_kg * (near + (near - far) * lead_ratio);
         (force_n, [once + near.scale(step_s), twice + far.scale(step_s)])
     }
 }
