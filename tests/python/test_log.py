@@ -78,7 +78,7 @@ def test_a_replay_tells_what_the_command_line_tells(tmp_path, robot, log):
     before, after = (
         {"force_rms_n": error.force_rms_n, "torque_rms_nm": error.torque_rms_nm} for error in result.wrench
     )
-    assert {"before": before, "after": after} == told["wrench"]
+    assert {"reference": result.wrench_reference, "before": before, "after": after} == told["wrench"]
     assert result.cable("cable3").after.rms_n == result.cables[2].after.rms_n
 
     # The files differ in nothing but the comments of the robot file attached.

@@ -29,7 +29,7 @@ use crate::watch::{STRIDE, Watch};
 /// ...     length_m=np.array([[0.0], [0.001], [0.002]]),
 /// ... )
 /// >>> log.speed_m_per_s[:, 0]
-/// array([0., 1., 1.])
+/// array([1., 1., 1.])
 #[pyclass(module = "fric", frozen)]
 pub struct Log {
     /// Time, ns since 1970.
