@@ -39,11 +39,11 @@ pub fn discover_cable(record: &CableRecord<'_>, progress: &Progress) -> CableDis
     }
     let faults = faulty_stretches(record);
     let mut standings = engine::prepared(record);
-    leave_out(&faults, record.cycle_s, &mut standings);
+    leave_out(&faults, record.interval_s, &mut standings);
     let gang = engine::Gang::new(1, stop);
     let paper = engine::Search::run(record, &standings, &FitOptions::default(), stop, gang.seat(0));
     let samples = engine::count(&paper.standings);
-    if let Some(lack) = lack_of_samples(&samples, record.cycle_s) {
+    if let Some(lack) = lack_of_samples(&samples, record.interval_s) {
         return CableDiscovery::untold(record, samples, lack);
     }
     let counts = engine::used(&paper.standings);

@@ -61,7 +61,7 @@ pub fn faulty_stretches(record: &CableRecord<'_>) -> Vec<FaultyStretch> {
             stretches.push(FaultyStretch { fault: Fault::Frozen, cycles: run });
         }
     }
-    merged(stretches, record.cycle_s)
+    merged(stretches, record.interval_s)
 }
 
 /// Length of the runs that half of the samples are in.
@@ -91,12 +91,13 @@ fn ends_of_range(forces_n: &[f64], usual: usize) -> Vec<f64> {
     ends
 }
 
-fn merged(stretches: Vec<FaultyStretch>, cycle_s: f64) -> Vec<FaultyStretch> {
+fn merged(stretches: Vec<FaultyStretch>, interval_s: f64) -> Vec<FaultyStretch> {
     let mut merged: Vec<FaultyStretch> = Vec::new();
     for stretch in stretches {
         #[expect(clippy::cast_precision_loss, reason = "a count of cycles")]
-        let is_near =
-            |last: &FaultyStretch| (stretch.cycles.start.saturating_sub(last.cycles.end)) as f64 * cycle_s < MERGED_S;
+        let is_near = |last: &FaultyStretch| {
+            (stretch.cycles.start.saturating_sub(last.cycles.end)) as f64 * interval_s < MERGED_S
+        };
         match merged.last_mut() {
             Some(last) if last.fault == stretch.fault && is_near(last) => last.cycles.end = stretch.cycles.end,
             _ => merged.push(stretch),
@@ -106,9 +107,9 @@ fn merged(stretches: Vec<FaultyStretch>, cycle_s: f64) -> Vec<FaultyStretch> {
 }
 
 /// Leaves such stretches, and the moment after each, out of what counts.
-pub fn leave_out(stretches: &[FaultyStretch], cycle_s: f64, standings: &mut [Standing]) {
+pub fn leave_out(stretches: &[FaultyStretch], interval_s: f64, standings: &mut [Standing]) {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
-    let after = (AFTER_S / cycle_s) as usize;
+    let after = (AFTER_S / interval_s) as usize;
     for stretch in stretches {
         let end = (stretch.cycles.end + after).min(standings.len());
         if let Some(standings) = standings.get_mut(stretch.cycles.start..end) {

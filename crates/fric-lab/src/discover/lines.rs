@@ -30,13 +30,16 @@ const MOST_LINES: usize = 8;
 /// And the least share of the noise's power that one has to have.
 const LEAST_SHARE: f64 = 0.01;
 
+/// A log whose samples are as far apart as the cycles, but for this share, is that of the loop.
+const RATE_TOLERANCE: f64 = 0.1;
+
 /// When a record's rows are, and over which of them a line keeps its phase.
 pub struct Times {
-    /// Of each row, cycles since the first of its log.
-    cycles: Vec<f64>,
+    /// Of each row, its place since the first of its log, in rows of a log without gaps.
+    places: Vec<f64>,
     /// Rows of one phase.
     runs: Vec<Range<usize>>,
-    cycle_s: f64,
+    interval_s: f64,
 }
 
 impl Times {
@@ -44,29 +47,37 @@ impl Times {
     #[must_use]
     pub fn of(record: &CableRecord<'_>) -> Self {
         #[expect(clippy::cast_precision_loss, reason = "a small constant")]
-        let is_near = |one: &Row, next: &Row| next.cycle - one.cycle < STRETCH as f64;
-        let mut runs = Vec::new();
+        let is_near = |one: &f64, next: &f64| next - one < STRETCH as f64;
+        // A loop that logs each cycle does not jitter as its stamps do; of a log at another rate the stamps are all there is.
+        let is_of_loop = (record.interval_s / record.cycle_s - 1.0).abs() < RATE_TOLERANCE;
+        let interval_s = if is_of_loop { record.cycle_s } else { record.interval_s };
+        let (mut places, mut runs) = (Vec::with_capacity(record.rows.len()), Vec::new());
         for (mut start, rows) in record.logs() {
-            for run in rows.chunk_by(is_near) {
+            let first_s = record.time_s(start);
+            let by_stamp = |place: usize| (record.time_s(start + place) - first_s) / interval_s;
+            let of_log =
+                rows.iter().enumerate().map(|(place, row)| if is_of_loop { row.cycle } else { by_stamp(place) });
+            places.extend(of_log);
+            for run in places.get(start..).unwrap_or_default().chunk_by(is_near) {
                 runs.push(start..start + run.len());
                 start += run.len();
             }
         }
-        Self { cycles: record.rows.iter().map(|row| row.cycle).collect(), runs, cycle_s: record.cycle_s }
+        Self { places, runs, interval_s }
     }
 
-    /// The cycles of the rows of a run.
-    fn cycles(&self, run: &Range<usize>) -> &[f64] {
-        self.cycles.get(run.clone()).unwrap_or_default()
+    /// The places of the rows of a run.
+    fn places(&self, run: &Range<usize>) -> &[f64] {
+        self.places.get(run.clone()).unwrap_or_default()
     }
 
-    fn phase(&self, frequency_hz: f64, cycle: f64) -> f64 {
-        TAU * frequency_hz * (cycle * self.cycle_s)
+    fn phase(&self, frequency_hz: f64, place: f64) -> f64 {
+        TAU * frequency_hz * (place * self.interval_s)
     }
 
-    /// Cycles from the first to the last of the longest run.
+    /// Rows from the first to the last of the longest run, had it no gaps.
     fn longest(&self) -> f64 {
-        let length = |run: &Range<usize>| match self.cycles(run) {
+        let length = |run: &Range<usize>| match self.places(run) {
             [first, .., last] => last - first + 1.0,
             _ => 1.0,
         };
@@ -110,8 +121,8 @@ impl Line {
     /// Adds it, times a factor, to a number of each row.
     pub fn add_to<'a>(&self, numbers: impl Iterator<Item = &'a mut f64>, factor: f64, times: &Times) {
         let values = self.waves.iter().flat_map(|wave| {
-            times.cycles(&wave.rows).iter().map(|cycle| {
-                let (sin, cos) = times.phase(self.frequency_hz, *cycle).sin_cos();
+            times.places(&wave.rows).iter().map(|place| {
+                let (sin, cos) = times.phase(self.frequency_hz, *place).sin_cos();
                 wave.sine * sin + wave.cosine * cos
             })
         });
@@ -162,7 +173,7 @@ pub fn motion_and_load(record: &CableRecord<'_>) -> Vec<Together> {
 /// Whether a spectrum has a line at a frequency.
 fn has_line(spectrum: &[f64], frequency_hz: f64, times: &Times) -> bool {
     #[expect(clippy::cast_precision_loss, reason = "a small constant")]
-    let place = (frequency_hz * STRETCH as f64 * times.cycle_s).round();
+    let place = (frequency_hz * STRETCH as f64 * times.interval_s).round();
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a place of the spectrum")]
     let place = place as usize;
     (place.saturating_sub(1)..=place + 1)
@@ -191,7 +202,7 @@ fn strongest(residual: &[f64], times: &Times) -> Option<Line> {
         .filter(|(_, ratio)| *ratio > LEAST_RATIO)
         .max_by(|a, b| spectrum.get(a.0).unwrap_or(&0.0).total_cmp(spectrum.get(b.0).unwrap_or(&0.0)))?;
     #[expect(clippy::cast_precision_loss, reason = "small counts")]
-    let (place, stretch_s) = (place as f64, STRETCH as f64 * times.cycle_s);
+    let (place, stretch_s) = (place as f64, STRETCH as f64 * times.interval_s);
     let line = refine(residual, place / stretch_s, 1.0 / stretch_s, times);
     let (squares, count) = residual
         .iter()
@@ -213,12 +224,12 @@ fn spectrum(residual: &[f64], times: &Times) -> Option<Vec<f64>> {
         for start in (run.start..(run.end + 1).saturating_sub(STRETCH)).step_by(STRETCH / 2) {
             let stretch = start..start + STRETCH;
             input.fill(0.0);
-            let cycles = times.cycles(&stretch);
-            let first = cycles.first()?;
-            for (cycle, number) in cycles.iter().zip(residual.get(stretch.clone())?).filter(|(_, of)| of.is_finite()) {
+            let places = times.places(&stretch);
+            let first = places.first()?;
+            for (place, number) in places.iter().zip(residual.get(stretch.clone())?).filter(|(_, of)| of.is_finite()) {
                 // Lost rows leave their places empty, and those after them move on, the last out of the stretch.
                 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
-                let place = (cycle - first) as usize;
+                let place = (place - first).round() as usize;
                 if let Some(input) = input.get_mut(place) {
                     *input = number * window(place);
                 }
@@ -236,7 +247,7 @@ fn spectrum(residual: &[f64], times: &Times) -> Option<Vec<f64>> {
 /// The frequency near a coarse one at which a sine fits best over all runs.
 fn refine(residual: &[f64], coarse_hz: f64, width_hz: f64, times: &Times) -> Line {
     // Over a whole run a sine is far narrower than over a stretch: a grid first, then golden section.
-    let narrow_hz = 1.0 / (times.longest() * times.cycle_s);
+    let narrow_hz = 1.0 / (times.longest() * times.interval_s);
     let fit = |frequency_hz: f64| project(residual, frequency_hz, times);
     let (mut low_hz, mut high_hz) = (coarse_hz - 1.5 * width_hz, coarse_hz + 1.5 * width_hz);
     let step_hz = 0.4 * narrow_hz;
@@ -263,13 +274,13 @@ fn project(residual: &[f64], frequency_hz: f64, times: &Times) -> Line {
 }
 
 fn project_run(residual: &[f64], frequency_hz: f64, times: &Times, run: &Range<usize>) -> Wave {
-    // The angle grows by one step a cycle: a rotation costs less than a sine and a cosine.
-    let (step_sin, step_cos) = (TAU * frequency_hz * times.cycle_s).sin_cos();
+    // The angle grows by one step a row: a rotation costs less than a sine and a cosine.
+    let (step_sin, step_cos) = (TAU * frequency_hz * times.interval_s).sin_cos();
     let (mut sin, mut cos, mut expected) = (0.0_f64, 1.0_f64, f64::NAN);
     let (mut ss, mut cc, mut sc, mut sr, mut cr, mut count) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
-    for (place, (number, cycle)) in residual.iter().zip(times.cycles(run)).enumerate() {
-        if place % STRETCH == 0 || cycle.to_bits() != expected.to_bits() {
-            (sin, cos) = times.phase(frequency_hz, *cycle).sin_cos();
+    for (row, (number, place)) in residual.iter().zip(times.places(run)).enumerate() {
+        if row % STRETCH == 0 || place.to_bits() != expected.to_bits() {
+            (sin, cos) = times.phase(frequency_hz, *place).sin_cos();
         }
         if number.is_finite() {
             (ss, cc, sc) = (ss + sin * sin, cc + cos * cos, sc + sin * cos);
@@ -277,11 +288,11 @@ fn project_run(residual: &[f64], frequency_hz: f64, times: &Times, run: &Range<u
             count += 1.0;
         }
         (sin, cos) = (sin * step_cos + cos * step_sin, cos * step_cos - sin * step_sin);
-        expected = cycle + 1.0;
+        expected = place + 1.0;
     }
     let determinant = ss * cc - sc * sc;
     #[expect(clippy::cast_precision_loss, reason = "a small constant")]
-    let is_told = determinant > 0.0 && count * times.cycle_s * frequency_hz >= FEWEST_TURNS as f64;
+    let is_told = determinant > 0.0 && count * times.interval_s * frequency_hz >= FEWEST_TURNS as f64;
     let (sine, cosine) =
         if is_told { ((sr * cc - cr * sc) / determinant, (cr * ss - sr * sc) / determinant) } else { (0.0, 0.0) };
     Wave { rows: run.clone(), count, sine, cosine }
@@ -303,8 +314,8 @@ mod tests {
     /// Of one log without gaps.
     fn times(count: usize) -> Times {
         #[expect(clippy::cast_precision_loss, reason = "a small count")]
-        let cycles = (0..count).map(|cycle| cycle as f64).collect();
-        Times { cycles, runs: std::iter::once(0..count).collect(), cycle_s: 1e-3 }
+        let places = (0..count).map(|place| place as f64).collect();
+        Times { places, runs: std::iter::once(0..count).collect(), interval_s: 1e-3 }
     }
 
     /// Seven rows are lost, and there is a second log, in which the hum is twice as high.
@@ -313,11 +324,11 @@ mod tests {
         let mut residual = noise(3);
         let mut of_logs = times(residual.len());
         of_logs.runs = vec![0..30_000, 30_000..residual.len()];
-        for (row, cycle) in of_logs.cycles.iter_mut().enumerate() {
-            *cycle += if row < 12_345 { 0.0 } else { 7.0 };
-            *cycle -= if row < 30_000 { 0.0 } else { 30_007.0 };
+        for (row, place) in of_logs.places.iter_mut().enumerate() {
+            *place += if row < 12_345 { 0.0 } else { 7.0 };
+            *place -= if row < 30_000 { 0.0 } else { 30_007.0 };
             let (height, phase) = if row < 30_000 { (1.0, 0.4) } else { (2.0, 2.0) };
-            residual[row] += height * (TAU * 50.02 * *cycle * 1e-3 + phase).sin();
+            residual[row] += height * (TAU * 50.02 * *place * 1e-3 + phase).sin();
         }
         let found = lines(&residual, &of_logs, &[]);
         assert_eq!(found.len(), 1, "{found:?}");

@@ -58,7 +58,7 @@ pub fn lack_of(record: &CableRecord<'_>) -> Option<Lack> {
     if motion.range_m < LEAST_RANGE_M {
         return Some(Lack::new(format!("it rests: its length changes by {:.3} mm in all", motion.range_m * 1e3), RUN));
     }
-    if let Some(lack) = too_short(sound as u64, record.cycle_s) {
+    if let Some(lack) = too_short(seconds(sound, record.interval_s)) {
         return Some(lack);
     }
     if motion.reversals < FEWEST_REVERSALS {
@@ -76,19 +76,17 @@ pub fn lack_of(record: &CableRecord<'_>) -> Option<Lack> {
     None
 }
 
-/// What so many samples with a reference lack.
-pub fn too_short(samples: u64, cycle_s: f64) -> Option<Lack> {
-    #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
-    let samples_s = samples as f64 * cycle_s;
+/// What so many seconds of samples with a reference lack.
+pub fn too_short(samples_s: f64) -> Option<Lack> {
     let cause = || format!("{samples_s:.1} s of samples with a reference are too few, {LEAST_S} s are needed");
     (samples_s < LEAST_S).then(|| Lack::new(cause(), LONGER))
 }
 
 /// What is lacking once it is known which samples count.
-pub fn lack_of_samples(counts: &SampleCounts, cycle_s: f64) -> Option<Lack> {
+pub fn lack_of_samples(counts: &SampleCounts, interval_s: f64) -> Option<Lack> {
     let SampleCounts { used, flagged, without_reference, interpolated, warm_up, outliers } = *counts;
     // A measurement of a reference with less than the rate of the cycle stands for the cycles around it.
-    let used_s = seconds(used + interpolated, cycle_s);
+    let used_s = seconds(used + interpolated, interval_s);
     if used_s >= LEAST_S {
         return None;
     }
@@ -100,7 +98,7 @@ pub fn lack_of_samples(counts: &SampleCounts, cycle_s: f64) -> Option<Lack> {
         let cause = format!(
             "{used_s:.1} s of samples are too few, {LEAST_S} s are needed: before them, {:.1} s of motion pass until it has \
              forgotten the friction stored in it when the log began",
-            seconds(warm_up, cycle_s)
+            seconds(warm_up, interval_s)
         );
         return Some(Lack::new(cause, LONGER));
     }
@@ -120,9 +118,9 @@ pub fn lack_of_noise() -> Lack {
     )
 }
 
-fn seconds(samples: usize, cycle_s: f64) -> f64 {
+fn seconds(samples: usize, interval_s: f64) -> f64 {
     #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
-    let seconds = samples as f64 * cycle_s;
+    let seconds = samples as f64 * interval_s;
     seconds
 }
 
@@ -152,10 +150,10 @@ impl Motion {
             }
             motion.range_m = motion.range_m.max(greatest_m - least_m);
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
-            let stretch = ((SPEED_OVER_S / record.cycle_s) as usize).max(1);
+            let stretch = ((SPEED_OVER_S / record.interval_s) as usize).max(1);
             speeds.extend(rows.chunks_exact(stretch).map(|rows| {
                 let way_m: f64 = rows.iter().map(|row| row.signals.displacement_m).sum();
-                way_m.abs() / seconds(stretch, record.cycle_s)
+                way_m.abs() / seconds(stretch, record.interval_s)
             }));
         }
         speeds.sort_by(f64::total_cmp);

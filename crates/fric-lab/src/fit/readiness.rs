@@ -18,6 +18,10 @@ pub struct Holdings {
     /// Those with the outside wrench.
     pub wrenched: u64,
     cables: Vec<CableHoldings>,
+    last_stamp_nanos: Option<i64>,
+    /// Times from one row to the next: how many, and their sum, s.
+    intervals: u64,
+    intervals_s: f64,
 }
 
 /// The same for one cable.
@@ -31,7 +35,15 @@ impl Holdings {
     /// Nothing yet, of so many cables.
     #[must_use]
     pub fn new(cable_count: usize) -> Self {
-        Self { rows: 0, posed: 0, wrenched: 0, cables: vec![CableHoldings::default(); cable_count] }
+        Self {
+            rows: 0,
+            posed: 0,
+            wrenched: 0,
+            cables: vec![CableHoldings::default(); cable_count],
+            last_stamp_nanos: None,
+            intervals: 0,
+            intervals_s: 0.0,
+        }
     }
 
     /// Takes in a row.
@@ -39,6 +51,12 @@ impl Holdings {
         self.rows += 1;
         self.posed += u64::from(row.pose.is_some());
         self.wrenched += u64::from(row.outside_wrench.is_some());
+        if let Some(last_nanos) = self.last_stamp_nanos.replace(row.stamp_nanos) {
+            self.intervals += 1;
+            #[expect(clippy::cast_precision_loss, reason = "a duration")]
+            let interval_nanos = row.stamp_nanos.saturating_sub(last_nanos) as f64;
+            self.intervals_s += interval_nanos * 1e-9;
+        }
         for (holdings, (input, reference_n)) in self.cables.iter_mut().zip(row.cables.iter().zip(row.reference_force_n))
         {
             holdings.signalled += u64::from(input.sensor_force_n.is_finite() && input.length_m.is_finite());
@@ -51,10 +69,19 @@ impl Holdings {
         self.rows += other.rows;
         self.posed += other.posed;
         self.wrenched += other.wrenched;
+        self.intervals += other.intervals;
+        self.intervals_s += other.intervals_s;
         for (cable, other) in self.cables.iter_mut().zip(&other.cables) {
             cable.signalled += other.signalled;
             cable.referenced += other.referenced;
         }
+    }
+
+    /// How long a cable has a reference, by the mean time from one row to the next, s.
+    #[expect(clippy::cast_precision_loss, reason = "counts of rows")]
+    fn referenced_s(&self, cable: usize) -> f64 {
+        let referenced = self.cables.get(cable).map_or(0, |of| of.referenced);
+        referenced as f64 * self.intervals_s / self.intervals.max(1) as f64
     }
 
     /// Whether any cable has a reference.
@@ -149,14 +176,12 @@ pub fn to_discover(robot: &RobotFile, holdings: &Holdings) -> Readiness {
     let advice = "Name their topic as `reference` under `[log]` in the robot file, or record with force sensors at the \
                   platform.";
     let mut readiness = of_forces(robot, holdings, advice, None);
-    let cycle_s = robot.options().cycle_s;
-    let referenced = |cable: usize| holdings.cables.get(cable).map_or(0, |of| of.referenced);
-    let is_short = |cable: &usize| too_short(referenced(*cable), cycle_s).is_some();
+    let is_short = |cable: &usize| too_short(holdings.referenced_s(*cable)).is_some();
     let cables: Vec<usize> =
         (0..readiness.cable_count).filter(|cable| !readiness.is_lacking(*cable)).filter(is_short).collect();
     // Of several, what the longest lacks.
-    let most = cables.iter().map(|cable| referenced(*cable)).max();
-    if let Some(lack) = most.and_then(|most| too_short(most, cycle_s)) {
+    let most_s = cables.iter().map(|cable| holdings.referenced_s(*cable)).fold(0.0, f64::max);
+    if let Some(lack) = too_short(most_s).filter(|_| !cables.is_empty()) {
         let cause = lack.cause + &of(&robot.cable_names(), &cables);
         readiness.lacks.push(Lack { cause, advice: lack.advice, instead: None, cables });
     }

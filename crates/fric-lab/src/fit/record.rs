@@ -198,7 +198,9 @@ impl<'a> Measurements<'a> {
         let (params, rows) = (self.robot.cables().get(index)?, self.cables.get(index)?);
         let (starts, times_s) = (self.starts.as_slice(), self.times_s.as_slice());
         let reference_is_known = self.robot.known_reference().is_some();
-        Some(CableRecord { params, rows, starts, times_s, cycle_s: self.robot.cycle_s(), reference_is_known })
+        let cycle_s = self.robot.cycle_s();
+        let interval_s = usual_interval_s(times_s).unwrap_or(cycle_s);
+        Some(CableRecord { params, rows, starts, times_s, cycle_s, interval_s, reference_is_known })
     }
 
     /// All cables in order.
@@ -219,6 +221,14 @@ impl<'a> Measurements<'a> {
 
 const NOTHING: CableInput = CableInput { sensor_force_n: f64::NAN, length_m: f64::NAN, speed_m_per_s: f64::NAN };
 
+/// Median time between two samples, s; `None` of fewer than two, or where most have the stamp of the one before.
+fn usual_interval_s(times_s: &[f64]) -> Option<f64> {
+    let mut intervals: Vec<f64> = times_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let middle = intervals.len() / 2;
+    let median = (!intervals.is_empty()).then(|| *intervals.select_nth_unstable_by(middle, f64::total_cmp).1);
+    median.filter(|interval_s| *interval_s > 0.0)
+}
+
 /// The cycles of one cable.
 #[derive(Clone, Copy, Debug)]
 pub struct CableRecord<'a> {
@@ -228,8 +238,10 @@ pub struct CableRecord<'a> {
     pub rows: &'a [Row],
     pub(super) starts: &'a [usize],
     pub(super) times_s: &'a [f64],
-    /// Duration of a cycle, s.
+    /// What the loop runs at, s: the duration of a cycle.
     pub cycle_s: f64,
+    /// What the log was recorded at, s: the time between two samples for the most part.
+    pub interval_s: f64,
     /// The reference was not measured: it may be constant, and is no line between measurements.
     pub(super) reference_is_known: bool,
 }
@@ -263,15 +275,6 @@ impl<'a> CableRecord<'a> {
         'a: 'b,
     {
         CableRecord { rows, ..*self }
-    }
-
-    /// Time between two samples for the most part, s: the median.
-    #[must_use]
-    pub fn interval_s(&self) -> f64 {
-        let mut intervals: Vec<f64> = self.times_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
-        let middle = intervals.len() / 2;
-        let median = (!intervals.is_empty()).then(|| *intervals.select_nth_unstable_by(middle, f64::total_cmp).1);
-        median.filter(|interval_s| *interval_s > 0.0).unwrap_or(self.cycle_s)
     }
 
     /// When a cycle is, s since the first sample; several logs one after the other.

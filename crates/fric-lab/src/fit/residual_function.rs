@@ -112,14 +112,15 @@ struct Cable {
     rows: Vec<Row>,
     starts: Vec<usize>,
     cycle_s: f64,
+    interval_s: f64,
     reference_is_known: bool,
 }
 
 impl Cable {
     fn of(record: &CableRecord<'_>) -> Self {
         let starts = record.logs().map(|(start, _)| start).collect();
-        let CableRecord { params, rows, cycle_s, reference_is_known, .. } = *record;
-        Self { params: *params, rows: rows.to_vec(), starts, cycle_s, reference_is_known }
+        let CableRecord { params, rows, cycle_s, interval_s, reference_is_known, .. } = *record;
+        Self { params: *params, rows: rows.to_vec(), starts, cycle_s, interval_s, reference_is_known }
     }
 
     fn record(&self) -> CableRecord<'_> {
@@ -129,6 +130,7 @@ impl Cable {
             starts: &self.starts,
             times_s: &[],
             cycle_s: self.cycle_s,
+            interval_s: self.interval_s,
             reference_is_known: self.reference_is_known,
         }
     }

@@ -24,16 +24,16 @@ pub struct Block {
 /// Blocks of all logs of a cable, in order.
 pub fn split(record: &CableRecord<'_>) -> Vec<Block> {
     let mut draw = DRAW;
-    record.logs().flat_map(|(start, rows)| cut(start..start + rows.len(), record.cycle_s, &mut draw)).collect()
+    record.logs().flat_map(|(start, rows)| cut(start..start + rows.len(), record.interval_s, &mut draw)).collect()
 }
 
 /// Where the draw begins.
 pub(crate) const DRAW: u32 = 0x9e37_79b9;
 
 /// Blocks of one log.
-pub(crate) fn cut(log: Range<usize>, cycle_s: f64, draw: &mut u32) -> Vec<Block> {
+pub(crate) fn cut(log: Range<usize>, interval_s: f64, draw: &mut u32) -> Vec<Block> {
     #[expect(clippy::cast_precision_loss, reason = "a count of cycles")]
-    let longest = (log.len() as f64 * cycle_s / SHORTEST_S).floor();
+    let longest = (log.len() as f64 * interval_s / SHORTEST_S).floor();
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to a small count")]
     let count = longest.clamp(2.0, MOST_BLOCKS) as usize & !1;
     let edge = |place: usize| log.start + place * log.len() / count;
