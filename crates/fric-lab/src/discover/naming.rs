@@ -32,8 +32,9 @@ const LEAST_GAIN: f64 = 0.02;
 /// No equation of friction is believed to less than this share of what it adds to the force of the sensor: what the equation of a
 /// strong effect leaves must not be taken for a weak one.
 const BELIEVED_RATIO: f64 = 1e-3;
-/// A candidate takes away at least this share of the noise's own squares: the rms falls by half of it.
-const LEAST_SIZE: f64 = 0.002;
+/// A candidate takes away at least this share of the noise's own squares, half of what is negligible: the rms falls by a quarter of a per
+/// cent. Less is what the equation of another effect leaves: at 0.002, four of 250 extended files were given a second name so small.
+const LEAST_SIZE: f64 = 0.5 * NEGLIGIBLE;
 /// What is left above the noise, as a share of it, from which on no further name is sought: the rms is half of it above.
 const NEGLIGIBLE: f64 = 0.01;
 /// Candidates are first brought so near to their minima that what is left to gain is this part of what a candidate needs to enter.

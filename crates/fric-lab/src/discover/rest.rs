@@ -23,8 +23,8 @@ const CHANGE_S: f64 = 0.1;
 const FEWEST_QUIET: usize = 16;
 /// Changes with and without motion are alike up to this many standard deviations of chance.
 const LEAST_RANKS_APART: f64 = 3.0;
-/// An excess above this share of the noise's mean square is worth an explanation: the rms is 3 % above the floor.
-pub const WORTH: f64 = 0.06;
+/// An excess above this share of the noise's mean square is worth an explanation: the rms is 5 % above the floor.
+pub const WORTH: f64 = 0.1;
 
 /// Mean square of the sensors' wander in an excess, as a share of the noise's; `places` are the conditions that it is a function of.
 pub fn wander(excess: &Excess<'_>, places: &[Place]) -> f64 {
@@ -43,7 +43,7 @@ pub fn wander(excess: &Excess<'_>, places: &[Place]) -> f64 {
 /// Whitney.
 fn share_of_motion(excess: &Excess<'_>) -> f64 {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
-    let length = (CHANGE_S / excess.record.interval_s()).ceil().max(1.0) as usize;
+    let length = (CHANGE_S / excess.record.interval_s).ceil().max(1.0) as usize;
     let mut changes: Vec<Change> = Vec::new();
     for (start, rows) in excess.record.logs() {
         let windows: Vec<Window> = rows
@@ -152,14 +152,14 @@ fn ranks_apart(low: &[&Change], high: &[&Change]) -> f64 {
 
 /// Share of the excess that is one level and one slow wave.
 fn share_of_wave(excess: &Excess<'_>) -> f64 {
-    let cycle_s = excess.record.interval_s();
+    let interval_s = excess.record.interval_s;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
-    let length = (WINDOW_S / cycle_s).ceil().max(1.0) as usize;
+    let length = (WINDOW_S / interval_s).ceil().max(1.0) as usize;
     let mut samples = 0.0;
     let mean = |(window, numbers): (usize, &[f64])| {
         let finite = || numbers.iter().filter(|number| number.is_finite());
         #[expect(clippy::cast_precision_loss, reason = "counts")]
-        let (count, time_s) = (finite().count() as f64, (window * length) as f64 * cycle_s);
+        let (count, time_s) = (finite().count() as f64, (window * length) as f64 * interval_s);
         samples += count;
         (count > 0.0).then(|| (time_s, finite().sum::<f64>() / count))
     };

@@ -64,7 +64,14 @@ pub fn best_rival(
         residual_n.iter().zip(&without_n).map(|(with, without)| with - without).collect()
     };
     let mut signals: Vec<Vec<f64>> = effects.iter().map(added_by).collect();
-    let laws = laws(bench, &bench.added_n(&model.values));
+    // What warms up is friction, and not, say, the inertia that is on trial.
+    let mut without = model.values;
+    for (parameters, neutral) in effects {
+        for place in parameters.iter().filter(|parameter| !parameter.is_friction()).map(Parameter::place) {
+            without[place] = neutral[place];
+        }
+    }
+    let laws = laws(bench, &bench.added_n(&without));
     let names: Vec<&'static str> = laws.iter().map(|(signal, _)| *signal).collect();
     signals.extend(laws.into_iter().map(|(_, values)| values));
     let columns = less_projection(&problem, &model.values, &signals)?;
