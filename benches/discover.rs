@@ -9,8 +9,8 @@
 use std::collections::BTreeMap;
 
 use fric_core::robot::file::RobotFile;
-use fric_lab::discover::{CableDiscovery, Verdict, discover, extended};
-use fric_lab::fit::{Measurements, Progress, Reference};
+use fric_lab::discover::{CableDiscovery, Model, Refusal, Verdict, discover, extended};
+use fric_lab::fit::{Measurements, Parameter, Progress, Reference};
 use fric_lab::simulate::sweep::{self, Case, CaseTruth, Group};
 use rayon::prelude::*;
 
@@ -24,7 +24,8 @@ struct Outcome {
     verdict: Verdict,
     /// How well the parameters of what was hidden came out.
     errors: Vec<ParameterError>,
-    /// Root mean square after, as a multiple of noise and wander together; the floor found, of the noise.
+    /// Root mean square before and after, as multiples of noise and wander together; the floor found, of the noise.
+    before_ratio: f64,
     after_ratio: f64,
     floor_ratio: f64,
     /// Whether the search names nothing more from its own extended file, with the verdict that goes with it.
@@ -46,13 +47,15 @@ impl Outcome {
         let mut found: Vec<&'static str> = cable.findings.iter().map(|finding| finding.row.kind).collect();
         let first = found.first().copied();
         found.sort_unstable();
-        let rms_n = cable.after.held_out_n.rms().unwrap_or(f64::NAN);
+        let floor_n = truth.floor_n.hypot(case.sensor_wander_n).hypot(case.reference_wander_n);
+        let ratio = |model: &Model| model.held_out_n.rms().unwrap_or(f64::NAN) / floor_n;
         Self {
             errors: errors(truth, cable),
             found,
             first,
             verdict: cable.verdict,
-            after_ratio: rms_n / truth.floor_n.hypot(case.sensor_wander_n).hypot(case.reference_wander_n),
+            before_ratio: ratio(&cable.before),
+            after_ratio: ratio(&cable.after),
             floor_ratio: cable.noise_floor_n / truth.floor_n,
             is_settled,
             case,
@@ -77,24 +80,26 @@ impl Outcome {
     }
 }
 
-/// Errors of the parameters that were hidden and fitted.
+/// Errors of the parameters that were fitted: friction, and of what was hidden.
 fn errors(truth: &CaseTruth, cable: &CableDiscovery) -> Vec<ParameterError> {
-    let mut errors = Vec::new();
-    for effect in &truth.effects {
-        for (key, value) in effect.values() {
-            let name = format!("{}.{key}", effect.kind());
-            let fitted = cable.after.fitted.iter().find(|parameter| parameter.to_string() == name);
-            if let Some(parameter) = fitted {
-                let error = (cable.after.values[parameter.place()] - value).abs();
-                let standard_error = cable.after.standard_error(parameter).unwrap_or(f64::NAN);
-                // What an identification does not vary by itself, a period, says nothing by its neutral value.
-                let neutral = if parameter.row().fitted { parameter.row().neutral } else { 0.0 };
-                let of_size = error / (value - neutral).abs();
-                errors.push(ParameterError { name, of_size, of_errors: error / standard_error });
-            }
-        }
-    }
-    errors
+    let params = truth.robot.params();
+    let friction = params.cables().first().map(|cable| cable.values());
+    let true_value = |parameter: &Parameter| {
+        let Some(kind) = parameter.effect() else { return friction.map(|values| values[parameter.place()]) };
+        let effect = truth.effects.iter().find(|effect| effect.kind() == kind)?;
+        effect.values().into_iter().find(|(key, _)| *key == parameter.row().key).map(|(_, value)| *value)
+    };
+    let error = |parameter: &Parameter| {
+        let value = true_value(parameter)?;
+        let error = (cable.after.values[parameter.place()] - value).abs();
+        let standard_error = cable.after.standard_error(parameter)?;
+        // The neutral value of a period says nothing, as it is none that an identification varies by itself; nor does that of σ.
+        let is_distance = parameter.row().fitted && !parameter.is_friction();
+        let neutral = if is_distance { parameter.row().neutral } else { 0.0 };
+        let of_size = error / (value - neutral).abs();
+        Some(ParameterError { name: parameter.to_string(), of_size, of_errors: error / standard_error })
+    };
+    cable.after.fitted.iter().filter_map(error).collect()
 }
 
 /// What the log of a case tells, beginning with a robot.
@@ -115,15 +120,19 @@ fn run(case: Case) -> Option<Outcome> {
     let text = extended(&log.robot_text, "sweep", std::slice::from_ref(&cable)).expect("an extended file");
     let again = search(&case, &RobotFile::parse(&text, "sweep").expect("an extended file is a robot file"))?;
     let verdict = if cable.verdict == Verdict::Extended { Verdict::Complete } else { cable.verdict };
-    let is_settled = again.findings.is_empty() && again.verdict == verdict;
+    let more: Vec<&str> = again.findings.iter().map(|finding| finding.row.kind).collect();
+    let is_settled = more.is_empty() && again.verdict == verdict;
     let outcome = Outcome::new(case, &log.truth, &cable, is_settled);
     let mark = if outcome.is_right() { "right" } else { "WRONG" };
-    let settled = if is_settled { "settled" } else { "UNSETTLED" };
+    let tried: Vec<(&str, Refusal)> = cable.tried.iter().map(|tried| (tried.row.kind, tried.refusal)).collect();
+    let tried = if outcome.is_right() { String::new() } else { format!(", tried {tried:?}") };
+    let settled = if is_settled { String::new() } else { format!(", then {:?} {more:?}", again.verdict) };
     println!(
-        "{mark} {settled} {}: {:?} {:?}, rms after {:.3}, floor {:.3}",
+        "{mark} {}: {:?} {:?}, rms {:.3} to {:.3}, floor {:.3}{settled}{tried}",
         outcome.case.name(),
         outcome.verdict,
         outcome.found,
+        outcome.before_ratio,
         outcome.after_ratio,
         outcome.floor_ratio
     );
@@ -234,7 +243,7 @@ fn print_sizes(outcomes: &[Outcome]) {
         format!("{median:.3} | {most_of_them:.3} | {most:.3}")
     };
     println!("\n| of the cases that are right | median | 95 % | most |\n|---|---|---|---|");
-    let all = || of_parameters.values().flatten();
+    let all = || of_parameters.values().flatten().filter(|error| error.of_size.is_finite());
     println!("| error of a parameter / its size | {} |", row(all().map(|error| error.of_size).collect()));
     println!("| error of a parameter / its standard error | {} |", row(all().map(|error| error.of_errors).collect()));
     let is_white = |outcome: &&&Outcome| outcome.case.sensor_wander_n <= 0.0 && outcome.case.reference_wander_n <= 0.0;

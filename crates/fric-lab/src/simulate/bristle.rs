@@ -149,6 +149,20 @@ impl BristleChain {
         }
     }
 
+    /// Bearing friction that the sensor feels while all pulleys slide one way, per tension and to first order in μ: with the pulleys' own
+    /// μ, and with a μ of 1.
+    pub fn sliding_per_tension(&self, pose_cos: f64) -> [f64; 2] {
+        let mut sums = [0.0; 2];
+        for (place, bristle) in self.pulleys.iter().enumerate() {
+            let cos = bristle.pulley.cos_wrap.unwrap_or(pose_cos);
+            // A sensor pulley feels its own friction on the winch's side alone, the others' on both.
+            let felt = if self.sensor_pulley && place == 0 { -cos / (1.0 - cos) } else { 1.0 };
+            let share = felt * libm::sqrt(2.0 - 2.0 * cos);
+            sums = [sums[0] + bristle.pulley.mu * share, sums[1] + share];
+        }
+        sums
+    }
+
     /// Tension behind the last pulley, N: that at the platform, but for what ripples in between.
     fn chain_end_n(&self, at: &Moment) -> f64 {
         at.force_n / self.effects.platform_factor(at.length_m)

@@ -26,6 +26,9 @@ use crate::trajectory::{Limits, SetPoint, Trajectory};
 /// Stamp of the first cycle: 28 May 2026, 20:26:40 UTC. The same in every run, so that equal seeds give equal logs.
 pub const START_NANOS: i64 = 1_780_000_000_000_000_000;
 
+/// In how many places of a run the pulleys' share in the friction is looked at.
+const MU_PLACES: u32 = 1000;
+
 /// A simulated robot at work; memory does not depend on the duration.
 #[derive(Debug)]
 pub struct Simulation {
@@ -252,6 +255,16 @@ impl Simulation {
     #[must_use]
     pub fn imbalance(&self) -> Option<&Imbalance> {
         self.imbalance.as_ref()
+    }
+
+    /// The one μ that stands for those of a cable's pulleys: their mean over the run, each as far as the sensor feels it.
+    pub(super) fn mean_mu(&self, cable: usize) -> Option<f64> {
+        let SimulatedCable { chain, winch, .. } = self.cables.get(cable)?;
+        let step_s = self.motion.trajectory().duration_s() / f64::from(MU_PLACES);
+        let at = |place| winch.pose_cos(self.motion.platform(f64::from(place) * step_s).as_ref());
+        let sums = (0..MU_PLACES).map(|place| chain.sliding_per_tension(at(place)));
+        let [with_mu, with_one] = sums.fold([0.0; 2], |sum, part| [sum[0] + part[0], sum[1] + part[1]]);
+        Some(with_mu / with_one)
     }
 
     /// The next cycle; `None` after the last. What it lends is overwritten by the following one.

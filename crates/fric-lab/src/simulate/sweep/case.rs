@@ -46,7 +46,7 @@ pub struct CaseLog {
 /// What is in a log.
 #[derive(Clone, Debug)]
 pub struct CaseTruth {
-    /// The robot of the log with its true friction, without the effects; μ is the mean of what the pulleys are drawn around.
+    /// The robot of the log with its true friction, without the effects; its μ is the mean of the pulleys', as the sensor feels them.
     pub robot: RobotFile,
     /// Effects of the catalogue.
     pub effects: Vec<HiddenEffect>,
@@ -128,7 +128,8 @@ impl Case {
         };
         // At 180° the sensor feels the cable twice.
         let floor_n = libm::hypot(0.5 * options.sensor_noise_n, options.reference_noise_n);
-        let truth = CaseTruth { robot: robot(&friction)?, effects, disturbances, floor_n };
+        let mean = Friction { mu: simulation.mean_mu(0).unwrap_or(friction.mu), ..friction };
+        let truth = CaseTruth { robot: robot(&mean)?, effects, disturbances, floor_n };
         Ok(CaseLog { robot: robot(&GUESS)?, robot_text: robot_text(&GUESS), simulation, truth })
     }
 }
