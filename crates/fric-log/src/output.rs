@@ -89,7 +89,12 @@ impl OutputFile {
             Ok(_) if !force => return Err(OutputError::Exists { path }),
             _ => {}
         }
-        let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        // As much of the name as leaves room for the rest.
+        let name: String = path
+            .file_name()
+            .into_iter()
+            .flat_map(|name| name.to_string_lossy().chars().take(100).collect::<Vec<_>>())
+            .collect();
         let prefix = format!(".fric-{name}-");
         remove_orphans(directory_of(&path), &prefix);
         let mut builder = tempfile::Builder::new();
