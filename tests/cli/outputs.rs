@@ -136,3 +136,45 @@ fn a_disk_that_fills_up_is_told_in_one_sentence_and_nothing_is_left() {
         assert_eq!(place.names(), ["log.mcap", "robot.toml"]);
     }
 }
+
+#[cfg(unix)]
+#[test]
+fn what_is_no_regular_file_is_never_replaced() {
+    use std::os::unix::fs::{FileTypeExt, symlink};
+
+    let place = Place::with_log();
+    // Not among the files that are compared: reading it would wait for a writer.
+    let elsewhere = tempfile::tempdir().unwrap();
+    let pipe = elsewhere.path().join("pipe");
+    nix::unistd::mkfifo(&pipe, nix::sys::stat::Mode::S_IRWXU).unwrap();
+    place.write("far", "kept");
+    symlink("far", place.path("link")).unwrap();
+    symlink("/dev/null", place.path("null")).unwrap();
+    let simulate = ["simulate", "--model", "robot.toml", "--duration", "0.05", "-o"];
+    for output in [pipe.to_str().unwrap(), "link", "null", "/dev/null", "/dev/full"] {
+        for option in OPTIONS {
+            let run = place.run_in_vain(&["replay", "log.mcap", option, output, "--force"]);
+            run.fails(1, &[output, "no regular file"]).advises(&["another output"]);
+        }
+        place.run_in_vain(&[&simulate[..], &[output, "--force"]].concat()).fails(1, &["no regular file"]);
+        place.run_in_vain(&["info", "log.mcap", "--json", output, "--force"]).fails(1, &["no regular file"]);
+    }
+    let kind = |name: &str| std::fs::symlink_metadata(place.path(name)).unwrap().file_type();
+    assert!(
+        std::fs::metadata(&pipe).unwrap().file_type().is_fifo()
+            && kind("/dev/null").is_char_device()
+            && kind("link").is_symlink()
+    );
+    assert_eq!(place.read("far"), b"kept");
+}
+
+#[test]
+fn what_a_killed_run_left_is_gone_after_the_next() {
+    let place = Place::with_log();
+    for name in [".fric-new.json-Ab1.part", ".fric-other.json-Ab1.part", ".fric-new.json.bak"] {
+        place.write(name, "half");
+    }
+    place.run(&["replay", "log.mcap", "--json", "new.json"]).succeeds();
+    let names = [".fric-new.json.bak", ".fric-other.json-Ab1.part", "log.mcap", "new.json", "robot.toml"];
+    assert_eq!(place.names(), names);
+}

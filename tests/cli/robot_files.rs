@@ -98,3 +98,42 @@ fn effects_that_do_nothing_are_warned_of() {
         }
     }
 }
+
+#[cfg(unix)]
+#[test]
+fn what_is_no_regular_file_is_not_waited_for() {
+    let place = Place::with_log();
+    let elsewhere = tempfile::tempdir().unwrap();
+    let pipe = elsewhere.path().join("pipe");
+    nix::unistd::mkfifo(&pipe, nix::sys::stat::Mode::S_IRWXU).unwrap();
+    for file in [pipe.to_str().unwrap(), "/dev/zero"] {
+        place.run_in_vain(&["replay", "log.mcap", "--model", file]).fails(1, &[file, "no regular file"]);
+        place.run_in_vain(&["replay", file, "--model", "robot.toml"]).fails(1, &[file]);
+        place.run_in_vain(&["continuum", "fit", file, "--model", "robot.toml"]).fails(1, &[file]);
+    }
+}
+
+#[test]
+fn what_a_file_says_never_commands_a_terminal() {
+    refuses("name = \"mini-ipanema\"", "name = \"a\\u001b[2J\\nerror: forged\"", &["`name`", "control character"]);
+    refuses("name = \"cable3\"", "name = \"c\\u0007\"", &["`name`", "control character"]);
+    // An unknown key is quoted, and so is a text where a number should be.
+    refuses("cycle_s = 0.001", "\"cy\\u001b[31m\" = 0.001", &["cy\\u{1b}[31m"]);
+    refuses("cycle_s = 0.001", "cycle_s = \"\\u009b31m\"", &["u{9b}31m"]);
+}
+
+#[test]
+fn a_file_of_many_cables_or_bytes_is_refused_at_once() {
+    let place = Place::with_log();
+    place.write("huge.toml", example_robot() + &"#".repeat(2_000_000));
+    place.run_in_vain(&["replay", "log.mcap", "--model", "huge.toml"]).fails(1, &["huge.toml", "1 MiB"]);
+    let cables: String =
+        (0..10_000).map(|k| format!("[[cable]]\nname = \"c{k}\"\n{FRICTION}\npulleys = []\n")).collect();
+    let head = "format = \"fric-robot/1\"\nname = \"many\"\ncycle_s = 0.001\n";
+    place.write("many.toml", format!("{head}{cables}"));
+    place.run_in_vain(&["replay", "log.mcap", "--model", "many.toml"]).fails(1, &["many.toml", "`cable`", "64"]);
+    // What is quoted of a mistake is short.
+    place.write("long.toml", format!("{head}{} = 1\n", "k".repeat(500_000)));
+    let run = place.run_in_vain(&["replay", "log.mcap", "--model", "long.toml"]).fails(1, &["long.toml"]);
+    assert!(run.stderr.len() < 5_000, "{}", run.stderr.len());
+}

@@ -1,5 +1,6 @@
 """libfric as a user has it: `make install`, CMake and pkg-config, the examples, and the bits of `fric-cli replay`."""
 
+import math
 import os
 import re
 import shutil
@@ -90,6 +91,44 @@ def numbers(path):
     """A table as written, to the last bit, whichever version of pandas reads it."""
     table = pd.read_csv(path, dtype=str)
     return table.astype({name: np.int64 if name == "stamp_nanos" else float for name in table})
+
+
+STANDARDS = {
+    "fric.h": ("c", ["c99", "c11", "c17", "c2x"], ["gcc", "clang"], ""),
+    "fric.hpp": ("c++", ["c++17", "c++20", "c++2b"], ["g++", "clang++"], "-Wold-style-cast"),
+}
+
+
+@pytest.mark.parametrize("header", STANDARDS)
+def test_headers_compile_without_a_warning(header):
+    language, standards, compilers, extra = STANDARDS[header]
+    tool("g++")
+    found = [compiler for compiler in compilers if shutil.which(compiler)]
+    assert found
+    flags = f"{WARNINGS} -Wconversion -Wsign-conversion {extra} -fsyntax-only".split()
+    folder = ROOT / "crates/fric-capi/include"
+    for compiler in found:
+        for standard in standards:
+            source = f"#include <{header}>\n"
+            call(compiler, f"-std={standard}", *flags, f"-I{folder}", f"-x{language}", "-", input=source)
+
+
+def test_a_zero_byte_in_a_text_of_cpp_is_refused(prefix, tmp_path):
+    source = tmp_path / "zero.cpp"
+    source.write_text(
+        """
+        #include <fric.hpp>
+        #include <iostream>
+        int main() {
+            try { fric::Compensator::from_text(std::string("format = 1\\0", 11)); }
+            catch (const fric::Error& error) { std::cout << error.what(); }
+        }
+        """,
+        encoding="utf-8",
+    )
+    libraries = [f"-L{prefix}/lib", "-lfric", f"-Wl,-rpath,{prefix}/lib"]
+    call("g++", "-std=c++17", "-Wno-unused-result", f"-I{prefix}/include", source, *libraries, "-o", tmp_path / "zero")
+    assert "zero byte" in call(tmp_path / "zero")
 
 
 def test_the_c_example_agrees_with_python(examples):
@@ -184,6 +223,45 @@ def test_the_control_loop_skips_the_cycles_that_it_has_overslept(examples, few_r
     overruns, skipped = map(int, re.search(r"(\d+) overruns, (\d+) cycles skipped", told).groups())
     assert overruns >= 1 and skipped >= 400, told
     assert "2000 cycles, 0 flagged" in told, told
+
+
+# Each effect of the catalogue, acting.
+EFFECTS = [
+    'kind = "stribeck", ratio = 0.5, velocity_m_per_s = 0.02',
+    'kind = "direction_asymmetry", coulomb_ratio = 0.1, viscous_ratio = 0.1',
+    'kind = "bearing_drag", drag_n = 0.05',
+    'kind = "load_nonlinearity", exponent = 0.8, reference_n = 20.0',
+    'kind = "friction_drift", rate_per_s = 0.001',
+    'kind = "presliding_shape", exponent = 1.5',
+    'kind = "sensor_gain", gain = 1.02',
+    'kind = "sensor_offset", offset_n = 0.1',
+    'kind = "sensor_drift", rate_n_per_s = 0.001',
+    'kind = "time_delay", delay_s = 0.004',
+    'kind = "time_delay", delay_s = -0.004',
+    'kind = "pulley_inertia", mass_kg = 0.02',
+    'kind = "pulley_eccentricity", sin_ratio = 0.01, cos_ratio = 0.01, period_m = 0.06',
+    'kind = "cable_elasticity", compliance_m_per_n = 1e-5, play_n = 0.05',
+]
+
+
+@pytest.fixture(scope="module")
+def traps(prefix, tmp_path_factory):
+    """A program that runs a robot with floating-point traps on."""
+    built = tmp_path_factory.mktemp("traps") / "traps"
+    source = ROOT / "crates/fric-capi/tests/traps.c"
+    libraries = [f"-L{prefix}/lib", "-lfric", "-lm", f"-Wl,-rpath,{prefix}/lib"]
+    call("gcc", "-std=c11", f"-I{prefix}/include", source, *libraries, "-o", built)
+    return built
+
+
+@pytest.mark.parametrize("presliding", ["per_pulley", "lumped"])
+@pytest.mark.parametrize("effect", [None, *EFFECTS])
+def test_no_operation_is_invalid_on_finite_signals(traps, tmp_path, effect, presliding):
+    text = ROBOT.read_text(encoding="utf-8")
+    extra = f'presliding = "{presliding}"\n' + (f"effects = [{{ {effect} }}]\n" if effect else "")
+    robot = tmp_path / "robot.toml"
+    robot.write_text(text.replace("friction = {", f"{extra}friction = {{"), encoding="utf-8")
+    assert math.isfinite(float(call(traps, robot)))
 
 
 def test_pkg_config_finds_the_library(prefix, tmp_path):

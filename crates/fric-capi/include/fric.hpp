@@ -135,15 +135,23 @@ private:
 
     explicit Compensator(::fric_compensator* handle) noexcept : handle_(handle) {}
 
+    // A string of C++ may hold zeros; for C it would end there, and the rest would be lost without a word.
+    static const char* c_text(const std::string& source) {
+        if (source.find('\0') != std::string::npos) {
+            throw Error(FRIC_RESULT_ROBOT_FILE, "the text or path has a zero byte in it");
+        }
+        return source.c_str();
+    }
+
     template <typename Load>
-    static Compensator load(Load load, const std::string& source) {
+    static Compensator load(Load c_load, const std::string& source) {
         if (::fric_abi_version() != FRIC_ABI_VERSION) {
             throw Error(FRIC_RESULT_WRONG_SIZE, "libfric has ABI version " + std::to_string(::fric_abi_version()) +
                                                     ", this program was built for " + std::to_string(FRIC_ABI_VERSION));
         }
         ::fric_compensator* handle = nullptr;
         char error[1024] = "";
-        const Result result = load(source.c_str(), &handle, error, sizeof error);
+        const Result result = c_load(c_text(source), &handle, error, sizeof error);
         if (result != FRIC_RESULT_OK) {
             throw Error(result, error);
         }
@@ -151,16 +159,18 @@ private:
     }
 
     template <typename Change>
-    bool change(Change change, const std::string& source, double blend_s) const {
+    bool change(Change c_change, const std::string& source, double blend_s) const {
         char error[1024] = "";
-        const Result result = change(handle_.get(), source.c_str(), blend_s, error, sizeof error);
+        const Result result = c_change(handle_.get(), c_text(source), blend_s, error, sizeof error);
         if (result != FRIC_RESULT_OK && result != FRIC_RESULT_BUSY) {
             throw Error(result, error);
         }
         return result == FRIC_RESULT_OK;
     }
 
-    static std::string text(const char* text) { return text == nullptr ? std::string() : std::string(text); }
+    static std::string text(const char* c_string) {
+        return c_string == nullptr ? std::string() : std::string(c_string);
+    }
 
     std::unique_ptr<::fric_compensator, Free> handle_;
 };

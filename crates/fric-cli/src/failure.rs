@@ -8,6 +8,7 @@ use std::path::Path;
 use fric_core::ParamError;
 use fric_core::continuum::file::ManipulatorFileError;
 use fric_core::robot::file::RobotFileError;
+use fric_core::text_file::printable;
 use fric_lab::continuum::ContinuumError;
 use fric_lab::excite::ExcitationError;
 use fric_lab::fit::FitError;
@@ -70,9 +71,9 @@ impl Failure {
     pub fn print(&self) {
         let mut stderr = std::io::stderr().lock();
         // There is nowhere left to report a broken stderr to.
-        let _ = writeln!(stderr, "error: {}", self.cause);
+        let _ = writeln!(stderr, "error: {}", printable(&self.cause));
         if let Some(advice) = &self.advice {
-            let _ = writeln!(stderr, "  {advice}");
+            let _ = writeln!(stderr, "  {}", printable(advice));
         }
     }
 }
@@ -158,6 +159,10 @@ impl From<OutputError> for Failure {
         match error {
             OutputError::Exists { path } => Self::new(format!("{} exists already", path.display()))
                 .advise("Name another output file, or replace it with --force."),
+            OutputError::NotRegular { path } => {
+                Failure::new(format!("{} is no regular file, and is never replaced", path.display()))
+                    .advise("Name another output file.")
+            }
             OutputError::Input { path, .. } => {
                 Self::new(format!("{} is an input of this command and would be overwritten", path.display()))
                     .advise("Name another output file.")

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use fric_core::continuum::file::FORMAT as MANIPULATOR_FORMAT;
 use fric_core::robot::file::{FORMAT as ROBOT_FORMAT, RobotFile};
+use fric_core::text_file;
 use fric_log::recording::Recording;
 use fric_log::robot::{ATTACHED, AttachedRobot, AttachedRobotError, ROBOT_FILE};
 use fric_log::signals::SignalPaths;
@@ -13,7 +14,7 @@ use crate::failure::{Failure, Outcome};
 /// The text of a model's file, and where it is from; `kind` is whose file it is.
 pub fn read_text(path: &Path, kind: &str) -> Outcome<(String, String)> {
     let origin = path.display().to_string();
-    let text = std::fs::read_to_string(path).map_err(|error| {
+    let text = text_file::read(path).map_err(|error| {
         Failure::new(format!("cannot read the {kind} file {origin}: {error}"))
             .advise("Check the path given with --model.")
     })?;

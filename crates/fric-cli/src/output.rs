@@ -60,10 +60,19 @@ impl JsonTarget {
     /// Shows a text to people: on stdout, or on stderr where stdout takes the JSON.
     pub fn show(&self, text: &str) -> Outcome {
         match self {
-            Self::Stdout => print_to(std::io::stderr(), text),
-            Self::Nowhere | Self::File(_) => print_to(std::io::stdout(), text),
+            Self::Stdout => print_to(std::io::stderr(), &harmless(text)),
+            Self::Nowhere | Self::File(_) => print_to(std::io::stdout(), &harmless(text)),
         }
     }
+}
+
+/// Lines of text without what a terminal would take for an order.
+fn harmless(text: &str) -> String {
+    let is_order = |character: char| character.is_control() && character != '\n';
+    let escaped = |character: char| {
+        if is_order(character) { character.escape_default().to_string() } else { character.to_string() }
+    };
+    if text.contains(is_order) { text.chars().map(escaped).collect() } else { text.to_owned() }
 }
 
 /// `-`, where stdout is meant.

@@ -29,6 +29,11 @@ const PLATFORM_COLUMNS: [&str; 13] = [
     "az_m_per_s2",
 ];
 
+/// A cell that a spreadsheet does not take for a formula, which may do anything.
+fn no_formula(cell: String) -> String {
+    if cell.starts_with(['=', '+', '-', '@']) { format!("'{cell}") } else { cell }
+}
+
 impl SetPointTable {
     /// At the start of a file.
     pub fn new(file: OutputFile) -> Self {
@@ -46,7 +51,7 @@ impl SetPointTable {
         for name in names {
             header.extend(quantities.iter().map(|quantity| format!("{name}_{quantity}")));
         }
-        self.writer.write_record(&header).map_err(|error| self.failure(error))
+        self.writer.write_record(header.into_iter().map(no_formula)).map_err(|error| self.failure(error))
     }
 
     /// One row.

@@ -10,7 +10,7 @@ use core::fmt;
 use crate::compensator::{Compensator, Snapshot};
 use crate::cycle::{CableInput, CableOutput, CycleInput, CycleOutput};
 use crate::platform::{Pose, Wrench};
-use crate::robot::{MAX_PULLEYS, ParamError, RobotParams};
+use crate::robot::{MAX_PULLEYS, MOST_CABLES, ParamError, RobotParams};
 use crate::status::CableStatus;
 use crate::tunable::TunableCompensator;
 
@@ -46,7 +46,7 @@ impl core::error::Error for SnapshotMismatch {}
 
 impl AnyCompensator {
     /// The largest robot.
-    pub const MOST_CABLES: usize = 64;
+    pub const MOST_CABLES: usize = MOST_CABLES;
 
     /// Set-up from checked parameters.
     ///

@@ -65,6 +65,8 @@ pub mod scalar;
 pub mod signals;
 mod status;
 pub mod swivel;
+#[cfg(feature = "robot-file")]
+pub mod text_file;
 mod tunable;
 
 #[cfg(feature = "alloc")]

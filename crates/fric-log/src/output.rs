@@ -3,7 +3,7 @@
 //! Neither an input nor, unless told so, any other existing file is overwritten; of a file that is never finished nothing
 //! is left.
 
-use std::fs::{self, Metadata};
+use std::fs::{self, File, Metadata};
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
@@ -17,6 +17,12 @@ pub enum OutputError {
     /// The place is taken.
     #[error("`{}` exists; choose another name, or force it to be replaced", path.display())]
     Exists {
+        /// The place.
+        path: PathBuf,
+    },
+    /// The place is taken by what is no regular file: a device, a pipe, a symbolic link.
+    #[error("`{}` is no regular file, and is never replaced; choose another name", path.display())]
+    NotRegular {
         /// The place.
         path: PathBuf,
     },
@@ -75,19 +81,33 @@ impl OutputFile {
             let input = input.to_owned();
             return Err(OutputError::Input { path, input });
         }
-        if !force && fs::symlink_metadata(&path).is_ok() {
-            return Err(OutputError::Exists { path });
+        match fs::symlink_metadata(&path) {
+            Ok(place) if place.is_dir() => {
+                return Err(OutputError::File { path, source: io::ErrorKind::IsADirectory.into() });
+            }
+            Ok(place) if !place.is_file() => return Err(OutputError::NotRegular { path }),
+            Ok(_) if !force => return Err(OutputError::Exists { path }),
+            _ => {}
         }
-        if path.is_dir() {
-            return Err(OutputError::File { path, source: io::ErrorKind::IsADirectory.into() });
-        }
+        // As much of the name as leaves room for the rest.
+        let name: String = path
+            .file_name()
+            .into_iter()
+            .flat_map(|name| name.to_string_lossy().chars().take(100).collect::<Vec<_>>())
+            .collect();
+        let prefix = format!(".fric-{name}-");
+        remove_orphans(directory_of(&path), &prefix);
         let mut builder = tempfile::Builder::new();
-        builder.prefix(".fric-").suffix(".part");
+        builder.prefix(&prefix).suffix(PART);
         // Temporary files are private; this one becomes an ordinary file, which the umask restricts.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
         match builder.tempfile_in(directory_of(&path)) {
-            Ok(file) => Ok(Self { path, file, force }),
+            Ok(file) => {
+                // Until the process ends, however it does. A file system without locks leaves its orphans.
+                let _ = file.as_file().try_lock();
+                Ok(Self { path, file, force })
+            }
             Err(source) => Err(OutputError::File { path, source }),
         }
     }
@@ -140,6 +160,23 @@ impl Write for OutputFile {
 impl Seek for OutputFile {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         self.file.seek(to)
+    }
+}
+
+/// What the name of a file in the making ends with.
+const PART: &str = ".part";
+
+/// Removes files in the making whose process was killed: nobody holds their lock.
+fn remove_orphans(directory: &Path, prefix: &str) {
+    for entry in fs::read_dir(directory).into_iter().flatten().flatten() {
+        let is_part = |name: &str| name.starts_with(prefix) && name.ends_with(PART);
+        let is_part = entry.file_name().to_str().is_some_and(is_part)
+            && entry.file_type().is_ok_and(|file_type| file_type.is_file());
+        let is_orphan = || File::open(entry.path()).is_ok_and(|file| file.try_lock().is_ok());
+        if is_part && is_orphan() {
+            // One that stays disturbs nobody.
+            let _ = fs::remove_file(entry.path());
+        }
     }
 }
 

@@ -6,7 +6,9 @@ use std::thread;
 use std::time::Duration;
 
 use fric_lab::fit::Progress;
+use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
+use rayon::ThreadPoolBuilder;
 
 use crate::errors::Outcome;
 
@@ -59,7 +61,7 @@ impl<'py> Watch<'py> {
     pub fn fit<T: Send>(&mut self, fit: impl FnOnce(&Progress) -> T + Send) -> Outcome<T> {
         let (py, progress) = (self.py, Progress::new());
         thread::scope(|scope| {
-            let worker = scope.spawn(|| fit(&progress));
+            let worker = scope.spawn(|| with_own_threads(|| fit(&progress)));
             let mut seen = Ok(());
             while !worker.is_finished() {
                 let (done, total) = progress.steps();
@@ -70,7 +72,8 @@ impl<'py> Watch<'py> {
                 py.detach(|| thread::sleep(INTERVAL));
             }
             let fitted = worker.join().unwrap_or_else(|panic| resume_unwind(panic));
-            seen.and_then(|()| self.look(1, 1)).map(|()| fitted)
+            seen.and_then(|()| self.look(1, 1))?;
+            fitted
         })
     }
 
@@ -85,6 +88,13 @@ impl<'py> Watch<'py> {
         }
         self.look(count as u64, count as u64)
     }
+}
+
+/// Works with threads that end with the work. A pool that lives on is lost to a child that the process forks, which would wait for it for ever.
+pub fn with_own_threads<T: Send>(work: impl FnOnce() -> T + Send) -> Outcome<T> {
+    let pool = ThreadPoolBuilder::new().build();
+    let pool = pool.map_err(|error| PyRuntimeError::new_err(format!("no threads can be started: {error}")))?;
+    Ok(pool.install(work))
 }
 
 /// A bar that was being drawn leaves its line.

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use fric_core::robot::file::ReferenceTable;
+use fric_core::text_file::printable;
 use fric_lab::fit::readiness::{self, Holdings, Readiness, without_reference};
 use fric_lab::text::table;
 use fric_log::recording::{FileDamage, Recording};
@@ -296,9 +297,9 @@ fn describe(result: &InfoResult, model: Option<&Model>, attachments: &[String]) 
         .map(|topic| {
             let milliseconds = |value: Option<f64>| number(value.map(|seconds| seconds * 1e3), 3);
             [
-                topic.topic.clone(),
-                topic.schema.clone(),
-                topic.encoding.clone(),
+                printable(&topic.topic),
+                printable(&topic.schema),
+                printable(&topic.encoding),
                 topic.messages.to_string(),
                 number(topic.rate_hz, 1),
                 milliseconds(topic.jitter_s),
@@ -312,7 +313,7 @@ fn describe(result: &InfoResult, model: Option<&Model>, attachments: &[String]) 
     // Writing to a String cannot fail, here and below.
     let mut text = table(&header, 3, &rows);
     if !attachments.is_empty() {
-        let _ = writeln!(text, "\nattached: {}", attachments.join(", "));
+        let _ = writeln!(text, "\nattached: {}", printable(&attachments.join(", ")));
     }
     let Some(model) = model else {
         text += "\nWhich signal is which is in the robot file: none is attached to the log, name one with --model.\n";

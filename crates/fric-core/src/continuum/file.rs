@@ -22,6 +22,7 @@ use super::params::{
 use crate::robot::check;
 use crate::robot::locate::{Line, Step, describe, error_line, line_of};
 use crate::robot::read::exactly;
+use crate::text_file;
 
 /// The only value of `format` that this version reads.
 pub const FORMAT: &str = "fric-continuum/1";
@@ -214,8 +215,8 @@ impl ManipulatorFile {
     /// # Errors
     /// [`ManipulatorFileError`] if it cannot be read or is not right.
     pub fn read(path: &Path) -> Result<Self, ManipulatorFileError> {
-        let text = std::fs::read_to_string(path)
-            .map_err(|source| ManipulatorFileError::Read { path: path.to_owned(), source })?;
+        let text =
+            text_file::read(path).map_err(|source| ManipulatorFileError::Read { path: path.to_owned(), source })?;
         Self::parse(&text, &path.display().to_string())
     }
 
@@ -224,7 +225,14 @@ impl ManipulatorFile {
     /// # Errors
     /// [`ManipulatorFileError::Invalid`] for the first thing that is not right.
     pub fn parse(text: &str, origin: &str) -> Result<Self, ManipulatorFileError> {
-        let invalid = |line, problem| ManipulatorFileError::Invalid { origin: origin.to_owned(), line, problem };
+        let invalid = |line, problem: String| ManipulatorFileError::Invalid {
+            origin: text_file::printable(origin),
+            line,
+            problem: text_file::printable(&problem),
+        };
+        if let Some(problem) = text_file::excess(text) {
+            return Err(invalid(None, problem));
+        }
         let tables: ManipulatorTables =
             toml::from_str(text).map_err(|error| invalid(error_line(text, &error), describe(text, &error, FORMAT)))?;
         Self::check(tables).map_err(|error| invalid(line_of(text, &error.path), error.problem))
@@ -238,6 +246,9 @@ impl ManipulatorFile {
         if tables.format != FORMAT {
             let problem = format!("`format` is \"{}\"; this version reads \"{FORMAT}\"", tables.format);
             return Err(TablesError { path: Vec::from([Step::Key("format")]), problem });
+        }
+        if let Some(problem) = text_file::name_problem(&tables.name) {
+            return Err(TablesError { path: Vec::from([Step::Key("name")]), problem: format!("`name` {problem}") });
         }
         let BackboneTable { width_m, thickness_m, youngs_modulus_pa, mass_kg_per_m } = tables.backbone;
         let lengths = [("width_m", width_m), ("thickness_m", thickness_m)].map(|(key, value)| (key, value, 1e-6, 1.0));

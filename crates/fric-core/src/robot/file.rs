@@ -18,7 +18,8 @@ use thiserror::Error;
 use super::locate::{Line, Step, describe, error_line, line_of};
 use super::read::{exactly, exactly_if_given};
 pub use super::reference::{KnownReferenceTable, ReferenceTable};
-use super::{CableParams, MonitorOptions, ParamError, ParamProblem, PlatformOptions, RobotParams};
+use super::{CableParams, MOST_CABLES, MonitorOptions, ParamError, ParamProblem, PlatformOptions, RobotParams};
+use crate::text_file;
 
 /// The only value of `format` that this version reads.
 pub const FORMAT: &str = "fric-robot/1";
@@ -249,8 +250,7 @@ impl RobotFile {
     /// # Errors
     /// [`RobotFileError`] if it cannot be read or is not right.
     pub fn read(path: &Path) -> Result<Self, RobotFileError> {
-        let text =
-            std::fs::read_to_string(path).map_err(|source| RobotFileError::Read { path: path.to_owned(), source })?;
+        let text = text_file::read(path).map_err(|source| RobotFileError::Read { path: path.to_owned(), source })?;
         Self::parse(&text, &path.display().to_string())
     }
 
@@ -259,7 +259,14 @@ impl RobotFile {
     /// # Errors
     /// [`RobotFileError::Invalid`] for the first thing that is not right.
     pub fn parse(text: &str, origin: &str) -> Result<Self, RobotFileError> {
-        let invalid = |line, problem| RobotFileError::Invalid { origin: origin.to_owned(), line, problem };
+        let invalid = |line, problem: String| RobotFileError::Invalid {
+            origin: text_file::printable(origin),
+            line,
+            problem: text_file::printable(&problem),
+        };
+        if let Some(problem) = text_file::excess(text) {
+            return Err(invalid(None, problem));
+        }
         let options: RobotOptions =
             toml::from_str(text).map_err(|error| invalid(error_line(text, &error), describe(text, &error, FORMAT)))?;
         Self::check(options).map_err(|fault| invalid(line_of(text, &fault.path), fault.to_string()))
@@ -274,7 +281,15 @@ impl RobotFile {
             let problem = format!("is \"{}\"; this version reads \"{FORMAT}\"", options.format);
             return Err(OptionsError::new(&[Step::Key("format")], "format", problem));
         }
-        let mut cables = Vec::with_capacity(options.cable.len());
+        if let Some(problem) = text_file::name_problem(&options.name) {
+            return Err(OptionsError::new(&[Step::Key("name")], "name", problem));
+        }
+        let count = options.cable.len();
+        if count > MOST_CABLES {
+            let problem = format!("has {count} tables; a robot has {MOST_CABLES} cables at most");
+            return Err(OptionsError::new(&[Step::Key("cable")], "cable", problem));
+        }
+        let mut cables = Vec::with_capacity(count);
         for (index, table) in options.cable.iter().enumerate() {
             let at = |mut error: OptionsError| {
                 error.path.splice(0..0, [Step::Key("cable"), Step::Index(index)]);
@@ -283,6 +298,9 @@ impl RobotFile {
             };
             if options.cable.iter().take(index).any(|other| other.name == table.name) {
                 let problem = "is the name of an earlier cable too; names must differ".to_owned();
+                return Err(at(OptionsError::new(&[Step::Key("name")], "name", problem)));
+            }
+            if let Some(problem) = text_file::name_problem(&table.name) {
                 return Err(at(OptionsError::new(&[Step::Key("name")], "name", problem)));
             }
             cables.push(table.check().map_err(at)?);

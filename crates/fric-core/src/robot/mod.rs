@@ -28,7 +28,7 @@ pub use known_reference::KnownReference;
 #[cfg(feature = "robot-file")]
 pub use locate::{nearest_name, unknown_name};
 pub use params::{
-    CableOptions, CableParams, FrictionOptions, GeometryOptions, MAX_PULLEYS, MonitorOptions, PlatformOptions,
-    Presliding, PulleyOptions, RobotParams, ValidatedRange,
+    CableOptions, CableParams, FrictionOptions, GeometryOptions, MAX_PULLEYS, MOST_CABLES, MonitorOptions,
+    PlatformOptions, Presliding, PulleyOptions, RobotParams, ValidatedRange,
 };
 pub(crate) use params::{Geometry, Wrap};

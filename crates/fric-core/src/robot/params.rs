@@ -409,6 +409,9 @@ impl MonitorOptions {
     }
 }
 
+/// Cables that a robot file may have.
+pub const MOST_CABLES: usize = 64;
+
 /// A checked robot: what a [`Compensator`](crate::Compensator) is built from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RobotParams<'a> {

@@ -3,9 +3,8 @@
 //! The problem comes to it reduced ([`Triangle`]), which leaves every one of its decisions as it would be on the long one.
 
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt, TerminationReason};
-// The crate's own, which need not be the version that the rest of the workspace uses.
-use nalgebra_of_optimizer::storage::Owned;
-use nalgebra_of_optimizer::{DMatrix, DVector, Dyn};
+use nalgebra::storage::Owned;
+use nalgebra::{DMatrix, DVector, Dyn};
 
 use super::gram::Triangle;
 

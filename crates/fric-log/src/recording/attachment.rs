@@ -6,7 +6,7 @@ use super::scan::AttachmentPlace;
 use super::window::{read_into, read_up_to};
 
 /// The largest attachment that is read into memory.
-pub const ATTACHMENT_LIMIT_BYTES: u64 = 256 * 1024 * 1024;
+pub const ATTACHMENT_LIMIT_BYTES: u64 = 64 * 1024 * 1024;
 
 /// What an attachment is called and how large it is.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -3,7 +3,7 @@
 use super::record::Compression;
 
 /// The most that one chunk may hold when decompressed; a larger one is counted as damaged.
-pub const CHUNK_LIMIT_BYTES: u64 = 1024 * 1024 * 1024;
+pub const CHUNK_LIMIT_BYTES: u64 = 128 * 1024 * 1024;
 
 /// A chunk, or a run of messages that are not in chunks.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -11,8 +11,8 @@ mod csv_text;
 mod error;
 mod messages;
 
-use std::fs::File;
-use std::io::{ErrorKind, Read};
+use std::fs::{self, File};
+use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
 pub use error::TableError;
@@ -50,6 +50,12 @@ impl NumberTable {
 
 fn is_mcap(path: &Path) -> Result<bool, TableError> {
     let file_error = |source| TableError::File { path: path.to_owned(), source };
+    // By name first: opening a pipe would wait for its writer, and a device may never end.
+    let metadata = fs::metadata(path).map_err(file_error)?;
+    if !metadata.is_file() && !metadata.is_dir() {
+        let reason = "it is no regular file (a pipe or a device)";
+        return Err(file_error(io::Error::new(ErrorKind::InvalidInput, reason)));
+    }
     let mut start = [0; MCAP_MAGIC.len()];
     match File::open(path).and_then(|mut file| file.read_exact(&mut start)) {
         Ok(()) => Ok(start == MCAP_MAGIC),

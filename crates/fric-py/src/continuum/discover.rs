@@ -9,6 +9,7 @@ use super::{Manipulator, TendonRun, check_disks, flat};
 use crate::arrays::{fixed, fixed_rows};
 use crate::errors::Outcome;
 use crate::results;
+use crate::watch::with_own_threads;
 
 /// Outcome of `discover`. Arrays have a row for each sample that was compared: the run thinned, with every turn of the tension.
 #[pyclass(module = "fric.continuum", frozen)]
@@ -80,7 +81,7 @@ impl TendonDiscovery {
 pub fn continuum_discover(py: Python<'_>, manipulator: &Manipulator, run: &TendonRun) -> Outcome<TendonDiscovery> {
     check_disks(manipulator, &run.run)?;
     let (file, run) = (&manipulator.file, &run.run);
-    let found = py.detach(|| discover(file, run, "arrays"))?;
+    let found = py.detach(|| with_own_threads(|| discover(file, run, "arrays")))??;
     let text = rewrite(&manipulator.text, "manipulator", &found.edit)?;
     let disks = file.params().disk_count();
     Ok(TendonDiscovery {

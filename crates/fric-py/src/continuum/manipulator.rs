@@ -37,7 +37,7 @@ impl Manipulator {
     /// The manipulator of a manipulator file.
     #[staticmethod]
     fn read(path: PathBuf) -> Outcome<Self> {
-        let text = std::fs::read_to_string(&path)
+        let text = fric_core::text_file::read(&path)
             .map_err(|source| ManipulatorFileError::Read { path: path.clone(), source })?;
         Self::parse(text, &path.display().to_string())
     }

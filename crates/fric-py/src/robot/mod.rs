@@ -50,7 +50,7 @@ impl Robot {
     #[staticmethod]
     fn read(path: PathBuf) -> Outcome<Self> {
         let text =
-            std::fs::read_to_string(&path).map_err(|source| RobotFileError::Read { path: path.clone(), source })?;
+            fric_core::text_file::read(&path).map_err(|source| RobotFileError::Read { path: path.clone(), source })?;
         Self::parse(text, &path.display().to_string())
     }
 

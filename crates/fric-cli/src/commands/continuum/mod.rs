@@ -8,11 +8,12 @@ pub mod info;
 mod shape;
 mod simulate;
 
-use std::fs::File;
+use std::fs::{self, File, Metadata};
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 use fric_core::continuum::file::{FORMAT, ManipulatorFile};
+use fric_core::text_file;
 use fric_lab::continuum::gratings::{GratingSample, Gratings};
 use fric_lab::continuum::{ContinuumError, Run, columns};
 use fric_log::output::OutputFile;
@@ -40,12 +41,14 @@ pub fn run(command: &ContinuumCommand) -> Outcome {
 
 /// Whether a model is a manipulator file rather than a robot's.
 pub fn is_manipulator(model: Option<&Path>) -> bool {
-    model.is_some_and(|model| std::fs::read_to_string(model).is_ok_and(|text| has_format(&text, FORMAT)))
+    model.is_some_and(|model| text_file::read(model).is_ok_and(|text| has_format(&text, FORMAT)))
 }
 
 /// Whether a log is text under a header with a column of a manipulator's run.
 pub fn is_text_run(log: &Path) -> bool {
     let begin = || {
+        // A pipe would be waited for.
+        fs::metadata(log).ok().filter(Metadata::is_file)?;
         let mut begin = Vec::new();
         File::open(log).ok()?.take(LONGEST_HEADER).read_to_end(&mut begin).ok()?;
         String::from_utf8(begin).ok()
