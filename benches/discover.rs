@@ -83,11 +83,11 @@ impl Outcome {
 /// Errors of the parameters that were fitted: friction, and of what was hidden.
 fn errors(truth: &CaseTruth, cable: &CableDiscovery) -> Vec<ParameterError> {
     let params = truth.robot.params();
-    let friction = params.cables().first().map(|cable| cable.values());
+    let friction = params.cables().first().map(fric_core::CableParams::values);
     let true_value = |parameter: &Parameter| {
         let Some(kind) = parameter.effect() else { return friction.map(|values| values[parameter.place()]) };
         let effect = truth.effects.iter().find(|effect| effect.kind() == kind)?;
-        effect.values().into_iter().find(|(key, _)| *key == parameter.row().key).map(|(_, value)| *value)
+        effect.values().iter().find(|(key, _)| *key == parameter.row().key).map(|(_, value)| *value)
     };
     let error = |parameter: &Parameter| {
         let value = true_value(parameter)?;
