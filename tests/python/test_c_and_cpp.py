@@ -1,6 +1,5 @@
 """libfric as a user has it: `make install`, CMake and pkg-config, the examples, and the bits of `fric-cli replay`."""
 
-import math
 import os
 import re
 import shutil
@@ -223,45 +222,6 @@ def test_the_control_loop_skips_the_cycles_that_it_has_overslept(examples, few_r
     overruns, skipped = map(int, re.search(r"(\d+) overruns, (\d+) cycles skipped", told).groups())
     assert overruns >= 1 and skipped >= 400, told
     assert "2000 cycles, 0 flagged" in told, told
-
-
-# Each effect of the catalogue, acting.
-EFFECTS = [
-    'kind = "stribeck", ratio = 0.5, velocity_m_per_s = 0.02',
-    'kind = "direction_asymmetry", coulomb_ratio = 0.1, viscous_ratio = 0.1',
-    'kind = "bearing_drag", drag_n = 0.05',
-    'kind = "load_nonlinearity", exponent = 0.8, reference_n = 20.0',
-    'kind = "friction_drift", rate_per_s = 0.001',
-    'kind = "presliding_shape", exponent = 1.5',
-    'kind = "sensor_gain", gain = 1.02',
-    'kind = "sensor_offset", offset_n = 0.1',
-    'kind = "sensor_drift", rate_n_per_s = 0.001',
-    'kind = "time_delay", delay_s = 0.004',
-    'kind = "time_delay", delay_s = -0.004',
-    'kind = "pulley_inertia", mass_kg = 0.02',
-    'kind = "pulley_eccentricity", sin_ratio = 0.01, cos_ratio = 0.01, period_m = 0.06',
-    'kind = "cable_elasticity", compliance_m_per_n = 1e-5, play_n = 0.05',
-]
-
-
-@pytest.fixture(scope="module")
-def traps(prefix, tmp_path_factory):
-    """A program that runs a robot with floating-point traps on."""
-    built = tmp_path_factory.mktemp("traps") / "traps"
-    source = ROOT / "crates/fric-capi/tests/traps.c"
-    libraries = [f"-L{prefix}/lib", "-lfric", "-lm", f"-Wl,-rpath,{prefix}/lib"]
-    call("gcc", "-std=c11", f"-I{prefix}/include", source, *libraries, "-o", built)
-    return built
-
-
-@pytest.mark.parametrize("presliding", ["per_pulley", "lumped"])
-@pytest.mark.parametrize("effect", [None, *EFFECTS])
-def test_no_operation_is_invalid_on_finite_signals(traps, tmp_path, effect, presliding):
-    text = ROBOT.read_text(encoding="utf-8")
-    extra = f'presliding = "{presliding}"\n' + (f"effects = [{{ {effect} }}]\n" if effect else "")
-    robot = tmp_path / "robot.toml"
-    robot.write_text(text.replace("friction = {", f"{extra}friction = {{"), encoding="utf-8")
-    assert math.isfinite(float(call(traps, robot)))
 
 
 def test_pkg_config_finds_the_library(prefix, tmp_path):
