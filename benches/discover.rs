@@ -8,9 +8,11 @@
 
 use std::collections::BTreeMap;
 
+use fric_core::parameters::{MU, Values};
 use fric_core::robot::file::RobotFile;
 use fric_lab::discover::{CableDiscovery, Model, Refusal, Verdict, discover, extended};
 use fric_lab::fit::{Measurements, Parameter, Progress, Reference};
+use fric_lab::simulate::HiddenEffect;
 use fric_lab::simulate::sweep::{self, Case, CaseTruth, Group};
 use rayon::prelude::*;
 
@@ -85,7 +87,10 @@ fn errors(truth: &CaseTruth, cable: &CableDiscovery) -> Vec<ParameterError> {
     let params = truth.robot.params();
     let friction = params.cables().first().map(fric_core::CableParams::values);
     let true_value = |parameter: &Parameter| {
-        let Some(kind) = parameter.effect() else { return friction.map(|values| values[parameter.place()]) };
+        let Some(kind) = parameter.effect() else {
+            let factor = if parameter.place() == MU { mu_factor(truth, &cable.after.values) } else { 1.0 };
+            return friction.map(|values| factor * values[parameter.place()]);
+        };
         let effect = truth.effects.iter().find(|effect| effect.kind() == kind)?;
         effect.values().iter().find(|(key, _)| *key == parameter.row().key).map(|(_, value)| *value)
     };
@@ -100,6 +105,17 @@ fn errors(truth: &CaseTruth, cable: &CableDiscovery) -> Vec<ParameterError> {
         Some(ParameterError { name: parameter.to_string(), of_size, of_errors: error / standard_error })
     };
     cable.after.fitted.iter().filter_map(error).collect()
+}
+
+/// The μ of a friction that is no multiple of the load is that at a reference load, which the discovery chooses by the log: the true one there,
+/// of that where it was hidden.
+fn mu_factor(truth: &CaseTruth, values: &Values) -> f64 {
+    let hidden = truth.effects.iter().find(|effect| effect.kind() == "load_nonlinearity");
+    let value =
+        |of: &HiddenEffect, wanted: &str| of.values().iter().find(|(key, _)| *key == wanted).map(|(_, value)| *value);
+    let named_n = Parameter::named("load_nonlinearity.reference_n").map(|parameter| values[parameter.place()]);
+    let power = hidden.and_then(|of| Some((value(of, "reference_n")?, value(of, "exponent")?)));
+    power.zip(named_n).map_or(1.0, |((hidden_n, exponent), named_n)| (named_n / hidden_n).powf(exponent - 1.0))
 }
 
 /// What the log of a case tells, beginning with a robot.

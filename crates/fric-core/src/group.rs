@@ -88,6 +88,7 @@ struct State<T: Scalar> {
     /// Where the pulley at the last place follows the pose.
     follows_pose: T::Mask,
     pose_wrap_factor: T,
+    posed_mu_ratio: T,
     pose_traction_ratio: T,
     count: usize,
     pulley_friction_n: [T; PLACES],
@@ -164,6 +165,7 @@ impl<T: Scalar> CableGroup<T> {
                 traction_ratio: at(|places| &places.traction_ratio),
                 follows_pose: zero.lt(T::from_lanes(|lane| f64::from(of_lane(lane).needs_pose()))),
                 pose_wrap_factor: zero,
+                posed_mu_ratio: T::splat(1.0),
                 pose_traction_ratio: zero,
                 count,
                 pulley_friction_n: [zero; PLACES],
@@ -172,6 +174,27 @@ impl<T: Scalar> CableGroup<T> {
                 memory: [T::splat(UNKNOWN); MEMORY],
             },
         })
+    }
+
+    /// The same `cables` with a μ of its own for each pulley: `ratio` gives it for a lane and a pulley, as a multiple of the cable's.
+    ///
+    /// It is the normal force that is multiplied, which comes to the same, but for a `load_nonlinearity`: that sees it too.
+    #[must_use]
+    pub fn with_mu_ratios(mut self, cables: &[&CableParams], ratio: impl Fn(usize, usize) -> f64) -> Self {
+        let places: [Option<Places>; LANES] = core::array::from_fn(|lane| {
+            cables.get(lane).or(cables.last()).map(|params| Places::new(params, self.state.count))
+        });
+        let ratio_at = |place: usize, lane: usize| {
+            let of_lane = places.get(lane).and_then(Option::as_ref);
+            let pulley = of_lane.and_then(|places| places.of_pulley.iter().position(|other| *other == place));
+            pulley.map_or(1.0, |pulley| ratio(lane, pulley))
+        };
+        for (place, wrap_factor) in self.state.wrap_factor.iter_mut().enumerate() {
+            *wrap_factor = *wrap_factor * T::from_lanes(|lane| ratio_at(place, lane));
+        }
+        let last = self.state.count.saturating_sub(1);
+        self.state.posed_mu_ratio = T::from_lanes(|lane| ratio_at(last, lane));
+        self
     }
 
     /// One cycle; `cycle` gives what the cable of a lane is fed.
@@ -228,7 +251,8 @@ impl<T: Scalar> CableGroup<T> {
         }
         let of_lanes = |cycles: [f64; LANES]| T::from_lanes(|lane| cycles[lane % LANES]);
         let moment = Moment::new(of_lanes(count), of_lanes(last), self.cycle_s);
-        self.state.pose_wrap_factor = T::from_lanes(|lane| cycle(lane).pose_wrap.wrap_factor);
+        let wrap_factor = T::from_lanes(|lane| cycle(lane).pose_wrap.wrap_factor);
+        self.state.pose_wrap_factor = wrap_factor.scale(self.state.posed_mu_ratio);
         self.state.pose_traction_ratio = T::from_lanes(|lane| cycle(lane).pose_wrap.traction_ratio);
         cable_cycle(&self.model, self.features.limited_to::<EFFECTS>(), &signals, &moment, &mut self.state)
     }

@@ -45,6 +45,7 @@ pub(crate) mod split;
 mod start;
 mod summary;
 mod undetermined;
+mod unlike_pulleys;
 mod vector;
 mod wrench;
 

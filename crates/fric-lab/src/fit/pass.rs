@@ -180,6 +180,21 @@ impl CandidatePass {
         Self { groups: candidates.iter().filter_map(group).collect() }
     }
 
+    /// Begun at rest, with the same values; `ratio` gives the μ of a candidate's pulley as a multiple of the cable's.
+    pub fn of_mu_ratios(
+        record: &CableRecord<'_>,
+        values: &Values,
+        candidates: usize,
+        ratio: impl Fn(usize, usize) -> f64,
+    ) -> Self {
+        let alike = Self::new(record, &vec![values.map(Lanes::splat); candidates.div_ceil(LANES)]);
+        let groups = alike.groups.into_iter().enumerate();
+        let unlike = groups.map(|(place, group)| {
+            group.with_mu_ratios(&[record.params], |lane, pulley| ratio(place * LANES + lane, pulley))
+        });
+        Self { groups: unlike.collect() }
+    }
+
     /// Forces in these cycles in place of what `forces` holds: those of all candidates in the first, then in the next.
     pub fn advance(&mut self, rows: &[Row], forces: &mut Vec<f64>) {
         forces.clear();

@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use fric_core::parameters::{SIGMA, Values};
 use fric_core::scalar::Scalar;
 use fric_core::{LANES, Lanes};
-use nalgebra::{Matrix6, Vector6};
+use nalgebra::{DMatrix, Matrix6, Vector6};
 use rayon::prelude::*;
 
 use super::gang::{Seat, all_forces};
@@ -76,6 +76,14 @@ impl Loss {
                 (root.copysign(residual), bound / root)
             }
             _ => (residual, 1.0),
+        }
+    }
+
+    /// The slope where the root is this.
+    fn slope_at(self, root: f64) -> f64 {
+        match self {
+            Self::Huber(bound) if root.abs() > bound => bound / root.abs(),
+            _ => 1.0,
         }
     }
 }
@@ -151,6 +159,21 @@ impl Problem<'_> {
     /// Every row: derivatives by the free parameters, then the residual.
     pub fn rows(&self, values: &[Values], mut visit: impl FnMut(&[f64])) {
         self.visit(values, true, |_, rows| rows.for_each(&mut visit));
+    }
+
+    /// `Jᵀd` for several changes `d` of a single cable's force, given side by side for every cycle: a column each.
+    pub fn projected(&self, values: &[Values], changes_n: &[f64], count: usize) -> DMatrix<f64> {
+        let mut sums = DMatrix::zeros(self.parameter_count(), count);
+        self.visit(values, true, |place, rows| {
+            let changes_n = changes_n.get(place * count..(place + 1) * count).unwrap_or_default();
+            for (root, derivatives) in rows.filter_map(<[f64]>::split_last) {
+                let slope = self.loss.slope_at(*root);
+                for (mut column, change_n) in sums.column_iter_mut().zip(changes_n) {
+                    column.iter_mut().zip(derivatives).for_each(|(sum, part)| *sum += part * slope * change_n);
+                }
+            }
+        });
+        sums
     }
 
     fn stopped(&self) -> bool {

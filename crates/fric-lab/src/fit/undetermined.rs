@@ -20,6 +20,7 @@ use super::pass::Forces;
 use super::problem::{Comparison, Member, Problem};
 use super::report::{OpenCombination, OpenPart};
 use super::solve::{CONTRADICTION_RATIO, NEAR_ERRORS, Solution, Unknown, hold, squares, unknowns};
+use super::unlike_pulleys;
 use super::vector::Coordinate;
 use crate::replay::Deviation;
 
@@ -203,10 +204,14 @@ fn uncertainty(
 ) -> (Option<DMatrix<f64>>, DMatrix<f64>, Vec<f64>) {
     let count = problem.parameter_count();
     let unknown = || (None, DMatrix::from_diagonal_element(count, count, f64::INFINITY), vec![f64::INFINITY; count]);
+    let is_final = groups.is_some();
     let Some((gram, scores)) = problem.gram_and_scores(values, groups) else { return unknown() };
     let (matrix, ..) = gram.normal_equations();
     let Some(inverse) = inverse_of_normal(&matrix) else { return unknown() };
-    let covariance = scores.covariance(&inverse);
+    let mut covariance = scores.covariance(&inverse);
+    if is_final {
+        covariance += unlike_pulleys::covariance(problem, values, &inverse);
+    }
     let silent = |place: usize| matrix[(place, place)] <= 0.0;
     let finite = |row, column| if row == column && silent(row) { f64::INFINITY } else { covariance[(row, column)] };
     // Residuals of a wrench are no forces of a cable.

@@ -1,4 +1,4 @@
-//! Whether the standard errors are what they say: 95 % intervals cover the truth in 95 of 100 logs.
+//! Whether the standard errors are what they say: 95 % intervals cover the truth in 95 of 100 logs, whose pulleys are not alike.
 //!
 //! ±1.96 standard errors, without Student's t: with thousands of samples its quantile is the normal one; what is left of
 //! the scatter of the block sums makes intervals some per cent too wide rather than too narrow (see the module
@@ -11,17 +11,24 @@ use fric_lab::fit::{FitOptions, HALF_INTERVAL, Reference, ResidualFunction};
 use nalgebra::DMatrix;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use rand_distr::{Distribution, StandardNormal};
+use rand_distr::{Distribution, StandardNormal, Uniform};
 use rayon::prelude::*;
 
 use super::logs::{FRICTION, Log, deviation, value};
 use super::oracle::{Bench, PULLEYS, strokes, wandering};
 use crate::simulate::robots::bench;
 
+/// What it is to be found by in a log: each pulley's μ lies anywhere within ±10 % of 0.02.
+fn truth(seed: u64) -> Bench {
+    let mut random = ChaCha8Rng::seed_from_u64(2_000_000 + seed);
+    let mut ratio = || Uniform::new(0.9, 1.1).unwrap().sample(&mut random);
+    Bench { seed, mu_ratios: vec![ratio(), ratio()], ..Bench::default() }
+}
+
 /// A log of 6 s; its reference wanders by itself by `wander_n` with a memory of 20 ms, a
 /// three-hundredth of the log.
 fn log(seed: u64, wander_n: f64) -> Log {
-    let mut log = Bench { seed, ..Bench::default() }.run(6.0, strokes(0.05, 1.0), wandering(8.0));
+    let mut log = truth(seed).run(6.0, strokes(0.05, 1.0), wandering(8.0));
     let mut random = ChaCha8Rng::seed_from_u64(1_000_000 + seed);
     let memory = (-0.05_f64).exp();
     let mut wandered_n = 0.0;
@@ -55,9 +62,8 @@ const COVERED_WITH_WANDER: RangeInclusive<u32> = 172..=198;
 /// In how many of [`LOGS`] each parameter's interval covers its truth: by the fit's standard errors, and by naive ones.
 fn covered(wander_n: f64) -> ([u32; 4], [u32; 4]) {
     let robot = bench(PULLEYS, "mu = 0.05, sigma_n_per_m = 300.0");
-    let truth = Bench::default().truth();
     let of_log = |seed: u64| {
-        let log = log(seed, wander_n);
+        let (log, truth) = (log(seed, wander_n), truth(seed).truth());
         let fit = log.fit(&robot, &FitOptions::default()).remove(0);
         let values = FRICTION.map(|name| value(&fit, name));
         let naive = naive_standard_errors(&log, &robot, &values);

@@ -22,6 +22,8 @@ pub struct Bench {
     pub offset_n: f64,
     /// From the winch; the first pulley carries the sensor.
     pub wraps_deg: Vec<f64>,
+    /// μ of each pulley as a multiple of `mu`; of those that are not there 1.
+    pub mu_ratios: Vec<f64>,
     pub cycle_s: f64,
     pub sensor_noise_n: f64,
     pub reference_noise_n: f64,
@@ -36,6 +38,7 @@ impl Default for Bench {
             viscous_n_s_per_m: 0.3,
             offset_n: 0.2,
             wraps_deg: vec![180.0, 90.0],
+            mu_ratios: Vec::new(),
             cycle_s: 0.001,
             sensor_noise_n: 0.02,
             reference_noise_n: 0.01,
@@ -48,9 +51,22 @@ impl Default for Bench {
 pub const PULLEYS: &str = "{ wrap_deg = 180.0, sensor = true }, { wrap_deg = 90.0 }";
 
 impl Bench {
-    /// True parameters in the order of the file's `friction`.
+    /// The pulleys' μ.
+    fn mus(&self) -> impl Iterator<Item = f64> {
+        self.mu_ratios.iter().copied().chain(std::iter::repeat(1.0)).map(|ratio| ratio * self.mu)
+    }
+
+    /// True parameters in the order of the file's `friction`; μ is the mean of the pulleys', each by the share of its friction that the sensor
+    /// feels per normal force (\[P\] 8, 11).
     pub fn truth(&self) -> [f64; 4] {
-        [self.mu, self.sigma_n_per_m, self.viscous_n_s_per_m, self.offset_n]
+        let share = |(place, wrap_deg): (usize, &f64)| {
+            let cos = wrap_deg.to_radians().cos();
+            let felt = if place == 0 { -cos / (1.0 - cos) } else { 1.0 };
+            felt * (2.0 - 2.0 * cos).sqrt()
+        };
+        let shares: Vec<f64> = self.wraps_deg.iter().enumerate().map(share).collect();
+        let mu = self.mus().zip(&shares).map(|(mu, share)| mu * share).sum::<f64>() / shares.iter().sum::<f64>();
+        [mu, self.sigma_n_per_m, self.viscous_n_s_per_m, self.offset_n]
     }
 
     /// Noise of the compensated force against the reference with the true parameters, N.
@@ -64,6 +80,7 @@ impl Bench {
         let mut random = ChaCha8Rng::seed_from_u64(self.seed);
         let stiffness_n_per_m = self.sigma_n_per_m / f64::from(u32::try_from(self.wraps_deg.len()).unwrap());
         let cosines: Vec<f64> = self.wraps_deg.iter().map(|wrap_deg| wrap_deg.to_radians().cos()).collect();
+        let mus: Vec<f64> = self.mus().take(cosines.len()).collect();
         let mut friction_n = vec![0.0; cosines.len()];
         let mut cycles = Vec::new();
         let mut cycle = 0_u32;
@@ -76,11 +93,11 @@ impl Bench {
                     let from_s = time_s - self.cycle_s + f64::from(substep) * step_s;
                     let way_m = length_m(from_s + step_s) - length_m(from_s);
                     let mut downstream_n = force_n(from_s + 0.5 * step_s);
-                    for (stored_n, cos) in friction_n.iter_mut().zip(&cosines).rev() {
+                    for ((stored_n, cos), mu) in friction_n.iter_mut().zip(&cosines).zip(&mus).rev() {
                         let upstream_n = downstream_n - *stored_n - self.viscous_n_s_per_m * way_m / step_s;
                         let normal_n =
                             (upstream_n.powi(2) - 2.0 * upstream_n * downstream_n * cos + downstream_n.powi(2)).sqrt();
-                        let bound_n = self.mu * normal_n;
+                        let bound_n = mu * normal_n;
                         let decay = (-stiffness_n_per_m * way_m.abs() / bound_n).exp();
                         // 0·∞ where nothing rubs: no friction.
                         let pulled_n = if bound_n > 0.0 { bound_n * way_m.signum() } else { 0.0 };
