@@ -16,7 +16,7 @@ TEXT = {text!r}
 def work(seed):
     robot = fric.Robot.from_toml(TEXT)
     log = fric.simulate(robot, seed=seed, duration_s=24.0)
-    fitted = fric.fit(robot, log).cables[0].parameters["mu"]
+    fitted = fric.fit(robot, log).cables[0].values["mu"]
     return fitted, fric.discover(robot, log).cables[0].verdict
 
 
