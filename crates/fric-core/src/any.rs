@@ -6,6 +6,7 @@
 use alloc::boxed::Box;
 use core::any::Any;
 use core::fmt;
+use core::iter::repeat;
 
 use crate::compensator::{Compensator, Snapshot};
 use crate::cycle::{CableInput, CableOutput, CycleInput, CycleOutput};
@@ -233,7 +234,9 @@ impl<const CABLES: usize> Cycle for Fixed<CABLES> {
     }
 
     fn set_input(&mut self, cables: &[CableInput], pose: Option<Pose>, elapsed_cycles: f64) {
-        let signals = cables.iter().copied().chain(core::iter::repeat(NOTHING));
+        let count = self.compensator.compensator().cable_count();
+        // Places beyond the robot's cables rest.
+        let signals = cables.iter().copied().chain(repeat(NOTHING)).take(count).chain(repeat(CableInput::default()));
         for (place, signal) in self.input.cables.iter_mut().zip(signals) {
             *place = signal;
         }

@@ -294,7 +294,7 @@ impl<const CABLES: usize> StateColumns<CABLES> {
     pub const START: Self = Self {
         sensor_force_n: [0.0; CABLES],
         frozen_count: [0.0; CABLES],
-        length_m: [f64::NAN; CABLES],
+        length_m: [f64::INFINITY; CABLES],
         frozen_travel_m: [0.0; CABLES],
         friction_n: [0.0; CABLES],
         lumped_friction_n: [0.0; CABLES],

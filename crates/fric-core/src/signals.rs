@@ -34,7 +34,7 @@ pub struct SignalState<T> {
     pub frozen_count: T,
     /// How far the cable has got since then, m; once that is far enough for a frozen sensor, it stays.
     pub frozen_travel_m: T,
-    /// Last finite length, m; NaN before the first.
+    /// Last finite length, m; infinite before the first.
     pub length_m: T,
 }
 
@@ -43,7 +43,7 @@ impl<T: Scalar> SignalState<T> {
     #[must_use]
     pub fn start() -> Self {
         let zero = T::splat(0.0);
-        Self { sensor_force_n: zero, frozen_count: zero, frozen_travel_m: zero, length_m: T::splat(f64::NAN) }
+        Self { sensor_force_n: zero, frozen_count: zero, frozen_travel_m: zero, length_m: T::splat(f64::INFINITY) }
     }
 }
 
@@ -67,7 +67,7 @@ pub struct Conditioned<T: Scalar> {
     pub displacement_m: T,
     /// Speed; 0 where the motion is not to be believed, m/s.
     pub speed_m_per_s: T,
-    /// Last finite length, m; NaN before the first.
+    /// Last finite length, m; infinite before the first.
     pub length_m: T,
     /// The sensor force is a number.
     pub sensor_finite: T::Mask,
@@ -90,7 +90,7 @@ pub struct CableSignals<T: Scalar> {
     pub lead_m: T,
     /// Speed; 0 where the motion is not to be believed, m/s.
     pub speed_m_per_s: T,
-    /// Last finite length, m; NaN before the first.
+    /// Last finite length, m; infinite before the first.
     pub length_m: T,
     /// See [`Conditioned::hold`].
     pub hold: T::Mask,
@@ -165,8 +165,8 @@ pub fn condition<T: Scalar>(
     let motion_finite = raw.length_m.within(GREATEST_MOTION).and(raw.speed_m_per_s.within(GREATEST_MOTION));
     let change_m = raw.length_m - state.length_m;
     let length_jump_m = T::splat(limits.length_jump_m * bounded_elapsed(elapsed_cycles));
-    let jump = motion_finite.and(length_jump_m.lt(change_m.abs()));
-    // NaN before the first length compares false: no motion, no flag.
+    // Before the first length: no motion, no flag.
+    let jump = motion_finite.and(length_jump_m.lt(change_m.abs())).and(change_m.within(f64::MAX));
     let moves = motion_finite.and(change_m.abs().le(length_jump_m));
     let mut displacement_m = change_m.keep(moves);
     let mut settled_m = raw.length_m;

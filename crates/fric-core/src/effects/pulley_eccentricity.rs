@@ -81,6 +81,6 @@ impl<T: Scalar> PulleyEccentricity<T> {
     pub fn factor(&self, length_m: T) -> T {
         let [sin, cos] = (length_m / self.period_m).sin_cos_turns();
         let one = T::splat(1.0);
-        T::select(length_m.eq(length_m), one + self.sin_ratio * sin + self.cos_ratio * cos, one)
+        T::select(length_m.within(f64::MAX), one + self.sin_ratio * sin + self.cos_ratio * cos, one)
     }
 }
