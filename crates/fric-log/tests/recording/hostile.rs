@@ -38,7 +38,8 @@ fn chunks_that_claim_too_much_are_left_out() {
     let cases = [
         (chunk("zstd", &zstd, 1 << 60, 0, (50, 50)), DamageKind::ChunkTooLarge),
         (chunk("zstd", &zstd, u64::MAX, 0, (50, 50)), DamageKind::ChunkTooLarge),
-        (chunk("zstd", &zstd, 1 << 30, 0, (50, 50)), DamageKind::ChunkSize),
+        (chunk("zstd", &zstd, 1 << 30, 0, (50, 50)), DamageKind::ChunkTooLarge),
+        (chunk("zstd", &zstd, 1 << 26, 0, (50, 50)), DamageKind::ChunkSize),
         (chunk("zstd", &zstd, true_len + 1, 0, (50, 50)), DamageKind::ChunkSize),
         (chunk("zstd", &zstd, true_len - 1, 0, (50, 50)), DamageKind::ChunkDecompression),
         (chunk("zstd", &zstd, 0, 0, (50, 50)), DamageKind::ChunkDecompression),
