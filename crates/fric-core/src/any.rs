@@ -183,8 +183,20 @@ const NOTHING: CableInput = CableInput { sensor_force_n: f64::NAN, length_m: f64
 
 impl<const CABLES: usize> Fixed<CABLES> {
     fn boxed(robot: &RobotParams<'_>) -> Result<Box<dyn Cycle>, ParamError> {
-        let compensator = TunableCompensator::new(Compensator::new(robot)?);
-        Ok(Box::new(Self { compensator, input: CycleInput::default(), output: CycleOutput::default() }))
+        Ok(Self::around(Self::set_up(robot)?))
+    }
+
+    /// A function of its own, as the next one, so that a robot takes the stack of its own size, not of the largest, and one after the
+    /// other.
+    #[inline(never)]
+    fn set_up(robot: &RobotParams<'_>) -> Result<Box<Compensator<CABLES>>, ParamError> {
+        Ok(Box::new(Compensator::new(robot)?))
+    }
+
+    #[inline(never)]
+    fn around(compensator: Box<Compensator<CABLES>>) -> Box<dyn Cycle> {
+        let compensator = TunableCompensator::new(*compensator);
+        Box::new(Self { compensator, input: CycleInput::default(), output: CycleOutput::default() })
     }
 }
 
