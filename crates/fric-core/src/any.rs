@@ -194,6 +194,7 @@ impl<const CABLES: usize> Fixed<CABLES> {
     }
 
     #[inline(never)]
+    #[expect(clippy::boxed_local, reason = "in the box it takes no stack of the caller's")]
     fn around(compensator: Box<Compensator<CABLES>>) -> Box<dyn Cycle> {
         let compensator = TunableCompensator::new(*compensator);
         Box::new(Self { compensator, input: CycleInput::default(), output: CycleOutput::default() })

@@ -114,7 +114,7 @@ impl<T: Scalar> Bearing<T> {
 
     /// That friction of the pulley at a place, N.
     #[inline(always)]
-    pub fn drag_n(&self, place: usize, cable: &impl Cable<T>) -> T {
+    pub fn drag_n(place: usize, cable: &impl Cable<T>) -> T {
         BearingDrag::of(|place| cable.effect(place)).drag_n.scale(cable.present(place))
     }
 
@@ -131,7 +131,7 @@ impl<T: Scalar> Bearing<T> {
         let mu = self.mu_at(wrap_factor, tensions, displacement_m.sign(), cable);
         let mut sliding_n = sliding_friction(mu, wrap_factor, tensions.0, tensions.1);
         if self.drags() {
-            sliding_n = sliding_n + self.drag_n(place, cable);
+            sliding_n = sliding_n + Self::drag_n(place, cable);
         }
         self.preslide(stored_n, sliding_n, displacement_m, cable)
     }

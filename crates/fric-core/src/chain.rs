@@ -110,7 +110,7 @@ impl<T: Scalar> Chain<'_, T> {
         for place in 0..cable.count() {
             let wrap_factor = cable.wrap_factor(place);
             let added_n = bearing.viscous_n(place, cable);
-            let drag_n = if bearing.drags() { bearing.drag_n(place, cable).scale(direction) } else { zero };
+            let drag_n = if bearing.drags() { Bearing::drag_n(place, cable).scale(direction) } else { zero };
             let resisting_n = if bearing.drags() { added_n + drag_n } else { added_n };
             let tension_n = |coulomb_n: T, viscous_n: T, divisor: T| (coulomb_n + viscous_n) / divisor;
             let before_n = if needs_tensions { tension_n(coulomb_n, viscous_n, divisor) } else { frictionless_n };
