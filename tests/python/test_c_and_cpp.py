@@ -1,6 +1,8 @@
 """libfric as a user has it: `make install`, CMake and pkg-config, the examples, and the bits of `fric-cli replay`."""
 
+import math
 import os
+import platform
 import re
 import shutil
 import signal
@@ -222,6 +224,103 @@ def test_the_control_loop_skips_the_cycles_that_it_has_overslept(examples, few_r
     overruns, skipped = map(int, re.search(r"(\d+) overruns, (\d+) cycles skipped", told).groups())
     assert overruns >= 1 and skipped >= 400, told
     assert "2000 cycles, 0 flagged" in told, told
+
+
+# Each effect of the catalogue, acting.
+EFFECTS = [
+    'kind = "stribeck", ratio = 0.5, velocity_m_per_s = 0.02',
+    'kind = "direction_asymmetry", coulomb_ratio = 0.1, viscous_ratio = 0.1',
+    'kind = "bearing_drag", drag_n = 0.05',
+    'kind = "load_nonlinearity", exponent = 0.8, reference_n = 20.0',
+    'kind = "friction_drift", rate_per_s = 0.001',
+    'kind = "presliding_shape", exponent = 1.5',
+    'kind = "presliding_shape", exponent = 0.5',
+    'kind = "sensor_gain", gain = 1.02',
+    'kind = "sensor_offset", offset_n = 0.1',
+    'kind = "sensor_drift", rate_n_per_s = 0.001',
+    'kind = "time_delay", delay_s = -0.004',
+    'kind = "time_delay", delay_s = 0.004',
+    'kind = "pulley_inertia", mass_kg = 0.02',
+    'kind = "pulley_eccentricity", sin_ratio = 0.01, cos_ratio = 0.01, period_m = 0.06',
+    'kind = "cable_elasticity", compliance_m_per_n = 1e-5, play_n = 0.05',
+]
+
+
+def kind_of(effect):
+    return re.search(r'kind = "(\w+)"', effect)[1]
+
+
+# One of each kind.
+ALL_EFFECTS = list({kind_of(effect): effect for effect in EFFECTS}.values())
+
+
+def write_robot(path, cable_count, effects, keys="", monitor="", pulleys=None):
+    """The example robot with as many cables, every one with these effects and keys."""
+    head, *cables = ROBOT.read_text(encoding="utf-8").split("[[cable]]\n")
+    listed = ", ".join(f"{{ {effect} }}" for effect in effects)
+    text = head + monitor
+    for index in range(cable_count):
+        cable = re.sub(r'name = "\w+"', f'name = "cable{index + 1}"', cables[index % len(cables)])
+        if pulleys:
+            cable = re.sub(r"pulleys = \[.*?\n\]", lambda _: f"pulleys = [{pulleys}]", cable, flags=re.DOTALL)
+        text += "[[cable]]\n" + cable.replace("friction = {", f"{keys}effects = [{listed}]\nfriction = {{")
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="module")
+def shipped(tmp_path_factory):
+    """Where `make install` has put the optimised library."""
+    prefix = tmp_path_factory.mktemp("shipped") / "usr"
+    call("make", "--no-print-directory", "-C", ROOT, "install", f"PREFIX={prefix}")
+    return prefix
+
+
+def compiled(source, prefix, folder):
+    """A program of `crates/fric-capi/tests`."""
+    program = folder / source.removesuffix(".c")
+    libraries = [f"-L{prefix}/lib", "-lfric", "-lm", "-pthread", f"-Wl,-rpath,{prefix}/lib"]
+    flags = ["-std=c11", "-O1", *WARNINGS.split(), f"-I{prefix}/include"]
+    call("gcc", *flags, ROOT / "crates/fric-capi/tests" / source, *libraries, "-o", program)
+    return program
+
+
+def test_every_effect_of_the_catalogue_is_tried():
+    files = {path.stem for path in (ROOT / "crates/fric-core/src/effects").glob("*.rs")}
+    assert {kind_of(effect) for effect in EFFECTS} == files - {"mod", "friction"}
+
+
+MONITORED = "[monitor]\nlength_noise_m = 1e-5\nfrozen_cycles = 20\n\n"
+LIMITED = "traction_mu = 0.1\nvalidated = { force_n = [2.0, 30.0], speed_m_per_s = 0.1 }\n"
+
+
+@pytest.mark.skipif(platform.machine() != "x86_64", reason="other processors need not have traps")
+@pytest.mark.parametrize("library", ["prefix", "shipped"])
+@pytest.mark.parametrize(
+    ("cable_count", "keys", "monitor"), [(8, "", ""), (5, LIMITED, MONITORED), (1, "", MONITORED), (17, LIMITED, "")]
+)
+def test_no_operation_is_invalid_on_finite_signals(request, tmp_path, library, cable_count, keys, monitor):
+    """Each effect, all together and none, in both forms of presliding; in lanes without a cable too."""
+    program = compiled("traps.c", request.getfixturevalue(library), tmp_path)
+    sets = [[], *([effect] for effect in EFFECTS), ALL_EFFECTS]
+    robots = []
+    for presliding in ["per_pulley", "lumped"]:
+        for number, effects in enumerate(sets):
+            path = tmp_path / f"{presliding}{number}.toml"
+            robots.append(write_robot(path, cable_count, effects, f'presliding = "{presliding}"\n{keys}', monitor))
+    assert math.isfinite(float(call(program, *robots)))
+
+
+def test_a_file_is_loaded_with_the_stack_that_is_stated(shipped, tmp_path):
+    """64 cables of eight pulleys with every effect and a slip limit; the example robot needs less."""
+    header = (shipped / "include/fric.h").read_text(encoding="utf-8")
+    most_kib, few_kib = map(int, re.search(r"(\d+) KiB of stack, (\d+) KiB", header).groups())
+    program = compiled("stack.c", shipped, tmp_path)
+    pulleys = ", ".join(["{ wrap_deg = 180.0, sensor = true }", *["{ wrap_deg = 90.0 }"] * 6])
+    pulleys += ', { wrap = "pose", radius_m = 0.01, axis = [0.0, 0.0, 1.0] }'
+    for cable_count, kib in [(64, most_kib), (16, few_kib), (8, few_kib)]:
+        worst = write_robot(tmp_path / f"{cable_count}.toml", cable_count, ALL_EFFECTS, LIMITED, pulleys=pulleys)
+        call(program, str(kib * 1024), ROBOT if cable_count == 8 else worst, worst)
 
 
 def test_pkg_config_finds_the_library(prefix, tmp_path):

@@ -6,6 +6,7 @@
 use alloc::boxed::Box;
 use core::any::Any;
 use core::fmt;
+use core::iter::repeat;
 
 use crate::compensator::{Compensator, Snapshot};
 use crate::cycle::{CableInput, CableOutput, CycleInput, CycleOutput};
@@ -182,8 +183,21 @@ const NOTHING: CableInput = CableInput { sensor_force_n: f64::NAN, length_m: f64
 
 impl<const CABLES: usize> Fixed<CABLES> {
     fn boxed(robot: &RobotParams<'_>) -> Result<Box<dyn Cycle>, ParamError> {
-        let compensator = TunableCompensator::new(Compensator::new(robot)?);
-        Ok(Box::new(Self { compensator, input: CycleInput::default(), output: CycleOutput::default() }))
+        Ok(Self::around(Self::set_up(robot)?))
+    }
+
+    /// A function of its own, as the next one, so that a robot takes the stack of its own size, not of the largest, and one after the
+    /// other.
+    #[inline(never)]
+    fn set_up(robot: &RobotParams<'_>) -> Result<Box<Compensator<CABLES>>, ParamError> {
+        Ok(Box::new(Compensator::new(robot)?))
+    }
+
+    #[inline(never)]
+    #[expect(clippy::boxed_local, reason = "in the box it takes no stack of the caller's")]
+    fn around(compensator: Box<Compensator<CABLES>>) -> Box<dyn Cycle> {
+        let compensator = TunableCompensator::new(*compensator);
+        Box::new(Self { compensator, input: CycleInput::default(), output: CycleOutput::default() })
     }
 }
 
@@ -233,7 +247,9 @@ impl<const CABLES: usize> Cycle for Fixed<CABLES> {
     }
 
     fn set_input(&mut self, cables: &[CableInput], pose: Option<Pose>, elapsed_cycles: f64) {
-        let signals = cables.iter().copied().chain(core::iter::repeat(NOTHING));
+        let count = self.compensator.compensator().cable_count();
+        // Places beyond the robot's cables rest.
+        let signals = cables.iter().copied().chain(repeat(NOTHING)).take(count).chain(repeat(CableInput::default()));
         for (place, signal) in self.input.cables.iter_mut().zip(signals) {
             *place = signal;
         }

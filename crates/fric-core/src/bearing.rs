@@ -106,11 +106,16 @@ impl<T: Scalar> Bearing<T> {
         self.acting.has(load_nonlinearity::ACTS)
     }
 
-    /// Friction of the pulley at a place that does not depend on its load, N; `None` where no cable has any.
+    /// Whether some cable's bearings have friction that does not depend on the load.
     #[inline(always)]
-    pub fn drag_n(&self, place: usize, cable: &impl Cable<T>) -> Option<T> {
-        let drag_n = || BearingDrag::of(|place| cable.effect(place)).drag_n.scale(cable.present(place));
-        self.acting.has(bearing_drag::ACTS).then(drag_n)
+    pub fn drags(&self) -> bool {
+        self.acting.has(bearing_drag::ACTS)
+    }
+
+    /// That friction of the pulley at a place, N.
+    #[inline(always)]
+    pub fn drag_n(place: usize, cable: &impl Cable<T>) -> T {
+        BearingDrag::of(|place| cable.effect(place)).drag_n.scale(cable.present(place))
     }
 
     /// Friction stored by the bearing of a pulley after a displacement, between two tensions, N.
@@ -125,8 +130,8 @@ impl<T: Scalar> Bearing<T> {
         let wrap_factor = cable.wrap_factor(place);
         let mu = self.mu_at(wrap_factor, tensions, displacement_m.sign(), cable);
         let mut sliding_n = sliding_friction(mu, wrap_factor, tensions.0, tensions.1);
-        if let Some(drag_n) = self.drag_n(place, cable) {
-            sliding_n = sliding_n + drag_n;
+        if self.drags() {
+            sliding_n = sliding_n + Self::drag_n(place, cable);
         }
         self.preslide(stored_n, sliding_n, displacement_m, cable)
     }

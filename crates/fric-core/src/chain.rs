@@ -110,8 +110,8 @@ impl<T: Scalar> Chain<'_, T> {
         for place in 0..cable.count() {
             let wrap_factor = cable.wrap_factor(place);
             let added_n = bearing.viscous_n(place, cable);
-            let drag_n = bearing.drag_n(place, cable).map(|drag_n| drag_n.scale(direction));
-            let resisting_n = drag_n.map_or(added_n, |drag_n| added_n + drag_n);
+            let drag_n = if bearing.drags() { Bearing::drag_n(place, cable).scale(direction) } else { zero };
+            let resisting_n = if bearing.drags() { added_n + drag_n } else { added_n };
             let tension_n = |coulomb_n: T, viscous_n: T, divisor: T| (coulomb_n + viscous_n) / divisor;
             let before_n = if needs_tensions { tension_n(coulomb_n, viscous_n, divisor) } else { frictionless_n };
             let mu = if place == 0 {
@@ -132,7 +132,7 @@ impl<T: Scalar> Chain<'_, T> {
                 divisor = divisor * minus;
             }
             viscous_n = viscous_n + added_n * share;
-            if let Some(drag_n) = drag_n {
+            if bearing.drags() {
                 coulomb_n = coulomb_n + drag_n * share;
             }
             if features.traction {

@@ -195,14 +195,14 @@ impl<const CABLES: usize> ParamColumns<CABLES> {
 }
 
 /// What a cycle leaves for the next one. Plain numbers: copying it is the snapshot. Aligned like [`ParamColumns`].
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(32))]
 pub struct StateColumns<const CABLES: usize> {
     /// Last good sensor force, N.
     pub sensor_force_n: [f64; CABLES],
     /// Cycles since it has changed.
     pub frozen_count: [f64; CABLES],
-    /// Last finite length, m; NaN before the first.
+    /// Last finite length, m; [`UNKNOWN`] before the first.
     pub length_m: [f64; CABLES],
     /// How far the cable has got since the sensor has changed last, m.
     pub frozen_travel_m: [f64; CABLES],
@@ -226,47 +226,6 @@ pub struct StateColumns<const CABLES: usize> {
     pub delayed_speed_m_per_s: [DelayLine; CABLES],
     /// How far the delayed motion lags behind, m.
     pub lag_m: [f64; CABLES],
-}
-
-impl<const CABLES: usize> PartialEq for StateColumns<CABLES> {
-    /// Lengths that are not known yet are equal to each other.
-    fn eq(&self, other: &Self) -> bool {
-        // Named one by one, so that none that is added can be forgotten.
-        let Self {
-            sensor_force_n,
-            frozen_count,
-            length_m,
-            frozen_travel_m,
-            friction_n,
-            lumped_friction_n,
-            pulley_friction_n,
-            memory,
-            pose_wrap_factor,
-            pose_traction_ratio,
-            direction_known,
-            direction,
-            moment_arm_m,
-            delayed_displacement_m,
-            delayed_speed_m_per_s,
-            lag_m,
-        } = self;
-        length_m.iter().zip(&other.length_m).all(|(one, other)| one.to_bits() == other.to_bits())
-            && *sensor_force_n == other.sensor_force_n
-            && *frozen_count == other.frozen_count
-            && *frozen_travel_m == other.frozen_travel_m
-            && *friction_n == other.friction_n
-            && *lumped_friction_n == other.lumped_friction_n
-            && *pulley_friction_n == other.pulley_friction_n
-            && *memory == other.memory
-            && *pose_wrap_factor == other.pose_wrap_factor
-            && *pose_traction_ratio == other.pose_traction_ratio
-            && *direction_known == other.direction_known
-            && *direction == other.direction
-            && *moment_arm_m == other.moment_arm_m
-            && *delayed_displacement_m == other.delayed_displacement_m
-            && *delayed_speed_m_per_s == other.delayed_speed_m_per_s
-            && *lag_m == other.lag_m
-    }
 }
 
 impl<const CABLES: usize> StateColumns<CABLES> {
@@ -294,7 +253,7 @@ impl<const CABLES: usize> StateColumns<CABLES> {
     pub const START: Self = Self {
         sensor_force_n: [0.0; CABLES],
         frozen_count: [0.0; CABLES],
-        length_m: [f64::NAN; CABLES],
+        length_m: [UNKNOWN; CABLES],
         frozen_travel_m: [0.0; CABLES],
         friction_n: [0.0; CABLES],
         lumped_friction_n: [0.0; CABLES],

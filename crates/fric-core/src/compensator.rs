@@ -429,19 +429,19 @@ impl<const CABLES: usize> Compensator<CABLES> {
     }
 }
 
-/// Which cables of a block lead, and by how far the parabola does, m; `None` if none does.
+/// Which cables of a block lead, and by how far the parabola does, m.
 fn lead_block<T: Block, const CABLES: usize>(
     lines: &[DelayLine; CABLES],
     first: usize,
     delays: &[Delay],
-) -> Option<(T::Mask, T)> {
+) -> (T::Mask, T) {
     if !delays.iter().take(T::COUNT).any(|delay| delay.leads()) {
-        return None;
+        return (T::Mask::NONE, T::splat(0.0));
     }
     let leads = T::from_lanes(|lane| f64::from(delays.get(lane).is_some_and(|delay| delay.leads())));
     let lead_m =
         |lane: usize| lines.get(first + lane).zip(delays.get(lane)).map_or(0.0, |(line, delay)| line.lead(*delay));
-    Some((T::splat(0.0).lt(leads), T::from_lanes(lead_m)))
+    (T::splat(0.0).lt(leads), T::from_lanes(lead_m))
 }
 
 /// One cycle of a block's delay lines.

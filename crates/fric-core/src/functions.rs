@@ -19,16 +19,19 @@ fn round<T: Scalar>(x: T) -> T {
 #[inline(always)]
 pub fn ln_1p_ratio<T: Scalar>(x: T) -> T {
     let (one, two) = (T::splat(1.0), T::splat(2.0));
-    let inverse = one / (two + x);
-    let z = x * inverse;
+    let (is_near, exists) = (x.within(SERIES), T::splat(-1.0).lt(x));
+    // Neither form is worked out where it is not defined.
+    let small = x.keep(is_near);
+    let large = T::select(is_near.not().and(exists), x, one);
+    let inverse = one / (two + small);
+    let z = small * inverse;
     let z2 = z * z;
     // |z| ≤ 1/7: the first term left out is 1/21·7⁻²⁰.
     let odd = [19.0, 17.0, 15.0, 13.0, 11.0, 9.0, 7.0, 5.0, 3.0, 1.0];
     let sum = odd.into_iter().fold(T::splat(0.0), |sum, divisor| sum * z2 + T::splat(1.0 / divisor));
     let near = two * inverse * sum;
-    let far = (one + x).ln() / x;
-    let exists = T::splat(-1.0).lt(x);
-    T::select(x.within(SERIES), near, T::select(exists, far, T::splat(BEYOND)))
+    let far = (one + large).ln() / large;
+    T::select(is_near, near, T::select(exists, far, T::splat(BEYOND)))
 }
 
 /// Sine and cosine of `2π·turns`, `|turns| < 2⁴⁹`; the Taylor polynomials on an eighth of a turn to both sides, whose remainders are

@@ -15,7 +15,7 @@ use crate::places::{NO_SLIP, PLACES, Places, START_WRAP_FACTOR};
 use crate::platform::Pose;
 use crate::pulley::traction_ratio;
 use crate::robot::CableParams;
-use crate::scalar::Scalar;
+use crate::scalar::{Mask, Scalar};
 use crate::signals::{CableSignals, Conditioned};
 use crate::swivel;
 
@@ -239,12 +239,14 @@ impl<T: Scalar> CableGroup<T> {
                 shift(&mut delayed.displacement_m, known[0], in_order, taps, fractions),
                 shift(&mut delayed.speed_m_per_s, known[1], in_order, taps, fractions),
             ];
-            let lead = taps.into_iter().any(Taps::leads).then(|| {
+            let lead = if taps.into_iter().any(Taps::leads) {
                 let leads = T::from_lanes(|lane| f64::from(taps[lane % LANES].leads()));
                 let lines = &delayed.displacement_m;
                 let leads_m = core::array::from_fn(|lane| lines[lane % LANES].about_lead(taps[lane % LANES]));
                 (T::splat(0.0).lt(leads), About::of_lanes(&leads_m, fractions))
-            });
+            } else {
+                (T::Mask::NONE, T::splat(0.0))
+            };
             let shifted = Shifted::new(known, by_lines, delayed.lag_m, lead);
             delayed.lag_m = shifted.lag_m;
             shifted.enter(&mut signals);

@@ -12,6 +12,8 @@ use crate::swivel::{self, Swivel};
 
 /// A normalised quaternion's norm is no further from 1: four rounded squares and a root, four rounded quotients.
 const NORM_ROUNDING: f64 = 4.0 * f64::EPSILON;
+/// No part of a quaternion of norm 1.1 or less is beyond this.
+const GREATEST_PART: f64 = 1.2;
 
 /// Pose of the platform in the base frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,12 +38,19 @@ impl Pose {
     /// quaternion, as an unset message has it, is no rotation.
     #[must_use]
     pub fn from_parts(position_m: [f64; 3], [x, y, z, w]: [f64; 4]) -> Option<Self> {
+        // Before anything is squared or divided by: a square may overflow, the norm may be 0.
+        if ![x, y, z, w].into_iter().all(|part| part.abs() <= GREATEST_PART) {
+            return None;
+        }
         let quaternion = Quaternion::new(w, x, y, z);
         let norm = quaternion.norm();
+        if !(0.9..=1.1).contains(&norm) {
+            return None;
+        }
         let is_unit = (norm - 1.0).abs() <= NORM_ROUNDING;
         let unit = if is_unit { quaternion } else { quaternion / norm };
         let pose = Self { position_m: position_m.into(), orientation: UnitQuaternion::new_unchecked(unit) };
-        ((0.9..=1.1).contains(&norm) && pose.is_usable()).then_some(pose)
+        pose.is_usable().then_some(pose)
     }
 
     /// The pose a share `ratio` (0…1) of the way to `other`: position linear, orientation along the shorter arc

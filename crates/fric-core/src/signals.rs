@@ -3,6 +3,7 @@
 //! For: raw signals of one cycle in, finite ones and their faults out ([`condition`]). It knows no friction and no
 //! parameters of it, so that a log can be conditioned once and fitted many times. State: four numbers a cable.
 
+use crate::effects::UNKNOWN;
 use crate::scalar::{Mask, Scalar};
 
 /// Sensor forces beyond this are no forces, N.
@@ -34,7 +35,7 @@ pub struct SignalState<T> {
     pub frozen_count: T,
     /// How far the cable has got since then, m; once that is far enough for a frozen sensor, it stays.
     pub frozen_travel_m: T,
-    /// Last finite length, m; NaN before the first.
+    /// Last finite length, m; [`UNKNOWN`] before the first.
     pub length_m: T,
 }
 
@@ -43,7 +44,7 @@ impl<T: Scalar> SignalState<T> {
     #[must_use]
     pub fn start() -> Self {
         let zero = T::splat(0.0);
-        Self { sensor_force_n: zero, frozen_count: zero, frozen_travel_m: zero, length_m: T::splat(f64::NAN) }
+        Self { sensor_force_n: zero, frozen_count: zero, frozen_travel_m: zero, length_m: T::splat(UNKNOWN) }
     }
 }
 
@@ -67,7 +68,7 @@ pub struct Conditioned<T: Scalar> {
     pub displacement_m: T,
     /// Speed; 0 where the motion is not to be believed, m/s.
     pub speed_m_per_s: T,
-    /// Last finite length, m; NaN before the first.
+    /// Last finite length, m; [`UNKNOWN`] before the first.
     pub length_m: T,
     /// The sensor force is a number.
     pub sensor_finite: T::Mask,
@@ -90,7 +91,7 @@ pub struct CableSignals<T: Scalar> {
     pub lead_m: T,
     /// Speed; 0 where the motion is not to be believed, m/s.
     pub speed_m_per_s: T,
-    /// Last finite length, m; NaN before the first.
+    /// Last finite length, m; [`UNKNOWN`] before the first.
     pub length_m: T,
     /// See [`Conditioned::hold`].
     pub hold: T::Mask,
@@ -165,8 +166,9 @@ pub fn condition<T: Scalar>(
     let motion_finite = raw.length_m.within(GREATEST_MOTION).and(raw.speed_m_per_s.within(GREATEST_MOTION));
     let change_m = raw.length_m - state.length_m;
     let length_jump_m = T::splat(limits.length_jump_m * bounded_elapsed(elapsed_cycles));
-    let jump = motion_finite.and(length_jump_m.lt(change_m.abs()));
-    // NaN before the first length compares false: no motion, no flag.
+    // Before the first length: no motion, no flag.
+    let has_length = state.length_m.lt(T::splat(UNKNOWN));
+    let jump = motion_finite.and(length_jump_m.lt(change_m.abs())).and(has_length);
     let moves = motion_finite.and(change_m.abs().le(length_jump_m));
     let mut displacement_m = change_m.keep(moves);
     let mut settled_m = raw.length_m;

@@ -23,7 +23,7 @@
 //!
 //! Cause: the cable is an elastic spring between winch and platform.
 
-use super::{Acting, EffectRow, first_place};
+use super::{Acting, EffectRow, UNKNOWN, first_place};
 use crate::parameters::ParameterRow;
 use crate::scalar::Scalar;
 
@@ -75,7 +75,7 @@ pub struct CableElasticity<T> {
 /// What an elastic cable remembers of its tension.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stretching<T> {
-    /// Middle of the play, N; infinite before the first cycle.
+    /// Middle of the play, N; [`UNKNOWN`] before the first cycle.
     pub middle_n: T,
     /// Stretch that waits to move the last pulley, m.
     pub waiting_m: T,
@@ -98,7 +98,7 @@ impl<T: Scalar> CableElasticity<T> {
     #[inline(always)]
     pub fn stretch_m(&self, tension_n: T, displacement_m: T, step_s: T, memory: &mut Stretching<T>) -> T {
         let zero = T::splat(0.0);
-        let known = memory.middle_n.within(f64::MAX);
+        let known = memory.middle_n.lt(T::splat(UNKNOWN));
         let before_n = T::select(known, memory.middle_n, tension_n);
         let change_n = tension_n - before_n;
         let step_n = change_n.sign() * (change_n.abs() - self.play_n).max(zero);

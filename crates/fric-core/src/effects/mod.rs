@@ -42,8 +42,9 @@ pub struct EffectRow {
 
 /// Numbers that effects remember from cycle to cycle.
 pub const MEMORY: usize = 4;
-/// Stands for a number that is not known yet; equal to itself, as a snapshot has to be.
-pub const UNKNOWN: f64 = f64::INFINITY;
+/// Stands for a number that is not known yet: far beyond all that are. Equal to itself, as a snapshot has to be, and finite: what is worked
+/// out from it and then not chosen, which a compiler may do unasked, is no invalid operation.
+pub const UNKNOWN: f64 = 1e200;
 /// Middle of the play of the tension, of `cable_elasticity`, N.
 pub(crate) const TENSION: usize = 0;
 /// Stretch that waits to move the cable, of `cable_elasticity`, m.

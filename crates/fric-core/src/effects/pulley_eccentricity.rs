@@ -7,7 +7,7 @@
 //!
 //! Cause: a pulley that runs out of true, with its circumference as the period; the cogging of a motor shows the same way.
 
-use super::{Acting, EffectRow, first_place};
+use super::{Acting, EffectRow, UNKNOWN, first_place};
 use crate::parameters::ParameterRow;
 use crate::scalar::Scalar;
 
@@ -76,11 +76,12 @@ impl<T: Scalar> PulleyEccentricity<T> {
         Self { sin_ratio: value(SIN), cos_ratio: value(COS), period_m: value(PERIOD) }
     }
 
-    /// Factor on the tension at a cable length (m); 1 where it is NaN, before the first.
+    /// Factor on the tension at a cable length (m); 1 where it is [`UNKNOWN`], before the first.
     #[inline(never)]
     pub fn factor(&self, length_m: T) -> T {
-        let [sin, cos] = (length_m / self.period_m).sin_cos_turns();
+        let known = length_m.lt(T::splat(UNKNOWN));
+        let [sin, cos] = (length_m.keep(known) / self.period_m).sin_cos_turns();
         let one = T::splat(1.0);
-        T::select(length_m.eq(length_m), one + self.sin_ratio * sin + self.cos_ratio * cos, one)
+        T::select(known, one + self.sin_ratio * sin + self.cos_ratio * cos, one)
     }
 }

@@ -19,7 +19,7 @@
 //!
 //! Cause: heavy pulleys, or pulleys of large radius, at high acceleration.
 
-use super::{Acting, EffectRow, first_place};
+use super::{Acting, EffectRow, UNKNOWN, first_place};
 use crate::parameters::ParameterRow;
 use crate::scalar::Scalar;
 
@@ -76,11 +76,11 @@ impl<T: Scalar> PulleyInertia<T> {
     }
 
     /// Force that accelerates one pulley, N, and both low passes of the speed for the next cycle; `filtered_m_per_s` are the
-    /// last cycle's, infinite before the first; `step_s` the time since.
+    /// last cycle's, [`UNKNOWN`] before the first; `step_s` the time since.
     #[inline(always)]
     pub fn force_n(&self, speed_m_per_s: T, filtered_m_per_s: [T; 2], step_s: T) -> (T, [T; 2]) {
         let [once, twice] = filtered_m_per_s;
-        let known = once.within(f64::MAX);
+        let known = once.lt(T::splat(UNKNOWN));
         let once = T::select(known, once, speed_m_per_s);
         let twice = T::select(known, twice, speed_m_per_s);
         let lag_s = self.window_s + step_s;

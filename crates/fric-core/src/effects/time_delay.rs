@@ -247,17 +247,14 @@ pub(crate) struct Shifted<T> {
 }
 
 impl<T: Scalar> Shifted<T> {
-    /// Of displacement and speed that are `known` and what the lines give for them, `lag_m` behind the cycle before; `lead` tells which
+    /// Of displacement and speed that are `known` and what the lines give for them, `lag_m` behind the cycle before; then which
     /// lanes lead, and by how far the parabola does.
     #[inline]
-    pub fn new(known: [T; 2], by_lines: [T; 2], lag_m: T, lead: Option<(T::Mask, T)>) -> Self {
-        let ([known_m, known_m_per_s], [mut displacement_m, mut speed_m_per_s]) = (known, by_lines);
-        let mut lead_m = T::splat(0.0);
-        if let Some((leads, parabola_m)) = lead {
-            displacement_m = T::select(leads, known_m, displacement_m);
-            speed_m_per_s = T::select(leads, never_against(known_m_per_s, speed_m_per_s), speed_m_per_s);
-            lead_m = never_against(known_m, parabola_m).keep(leads);
-        }
+    pub fn new(known: [T; 2], by_lines: [T; 2], lag_m: T, (leads, parabola_m): (T::Mask, T)) -> Self {
+        let ([known_m, known_m_per_s], [displacement_m, speed_m_per_s]) = (known, by_lines);
+        let displacement_m = T::select(leads, known_m, displacement_m);
+        let speed_m_per_s = T::select(leads, never_against(known_m_per_s, speed_m_per_s), speed_m_per_s);
+        let lead_m = never_against(known_m, parabola_m).keep(leads);
         Self { displacement_m, speed_m_per_s, lag_m: lag_m + (known_m - displacement_m), lead_m }
     }
 

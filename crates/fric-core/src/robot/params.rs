@@ -273,8 +273,9 @@ impl CableParams {
     pub(crate) fn greatest_mu(&self) -> f64 {
         self.sensor_wrap_rad.map_or(GREATEST_MU, |wrap_rad| {
             let (factor, cos) = (wrap_factor(wrap_rad), libm::cos(wrap_rad));
-            // At 180° (cos = −1) friction takes nothing from the sensor: no bound, an infinite one.
-            GREATEST_MU.min(4.0 / 3.0 * (1.0 - cos) / (factor * (1.0 + cos)))
+            let taken = factor * (1.0 + cos);
+            // At 180° (cos = −1) friction takes nothing from the sensor: no bound.
+            if taken > 0.0 { GREATEST_MU.min(4.0 / 3.0 * (1.0 - cos) / taken) } else { GREATEST_MU }
         })
     }
 

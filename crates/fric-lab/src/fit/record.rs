@@ -5,6 +5,7 @@
 
 use std::ops::Range;
 
+use fric_core::effects::UNKNOWN;
 use fric_core::robot::RobotParams;
 use fric_core::signals::{BEFORE_FIRST, Conditioned, RawSignals, SignalState, condition, next_cycle};
 use fric_core::{CableInput, CableParams, Pose, PoseWrap, Sample, Wrench};
@@ -39,7 +40,7 @@ impl Reference {
 /// One cycle of one cable.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
-    /// Signals as the friction takes them.
+    /// Signals as the friction takes them; the length is NaN before the first.
     pub signals: Conditioned<f64>,
     /// Wrap of the pulley that follows the pose.
     pub pose_wrap: PoseWrap,
@@ -145,7 +146,10 @@ impl<'a> Measurements<'a> {
             let input = sample.cables.get(index).copied().unwrap_or(NOTHING);
             let CableInput { sensor_force_n, length_m, speed_m_per_s } = input;
             let raw = RawSignals { sensor_force_n, length_m, speed_m_per_s };
-            let signals = condition(&limits, state, &raw, elapsed_cycles);
+            let mut signals = condition(&limits, state, &raw, elapsed_cycles);
+            if signals.length_m >= UNKNOWN {
+                signals.length_m = f64::NAN;
+            }
             let pose_wrap = pose.as_ref().and_then(|pose| PoseWrap::at(params, pose));
             *wrap = pose_wrap.unwrap_or(*wrap);
             let reference_n = sample.reference_force_n.get(index).copied().unwrap_or(f64::NAN);
