@@ -94,8 +94,8 @@ pub fn best_rival(
         }
         let replaces: Vec<usize> = all.iter().copied().filter(|place| !places.contains(place)).collect();
         let (together, gain) = (gain(&[&all[..], &[effects.len() + law]].concat()), gain(&places));
-        if replaces.is_empty() && together - by_name > white.max(MOST_BENT * excess) {
-            // Most of what is left goes with the law, and one of the names shares what it explains with it.
+        if replaces.is_empty() && together - by_name > enough.max(MOST_BENT * excess) {
+            // Much of what is left goes with the law, more than chance makes of it, and one of the names shares what it explains with it.
             let of_name = |name: &usize| {
                 let others: Vec<usize> = all.iter().copied().filter(|other| other != name).collect();
                 let beside = [&others[..], &[effects.len() + law]].concat();
