@@ -16,7 +16,7 @@ use crate::outcome::Outcome;
 /// jump in the output.
 ///
 /// The steps after it take the parameters over: within `blend_s` seconds (0…3600; one cycle at least) the output goes over from
-/// the old parameters to the new ones, and a step takes twice as long. The file is that of the same robot: friction,
+/// the old parameters to the new ones, and a step takes twice as long, the first up to six times. The file is that of the same robot: friction,
 /// effects, wraps, geometry, masses and limits may differ; cycle time, the cables' names and order, how many pulleys each
 /// has, which of them follow the pose, and which cables have an attachment may not. One change at a time:
 /// FRIC_RESULT_BUSY until the first step after the blend of the change before. FRIC_RESULT_ROBOT_FILE also where the file is that

@@ -2,7 +2,7 @@
 //!
 //! For: a control loop that must not stop for a new identification. The new parameters start from the state that the old
 //! have left, and both run side by side while the output goes over from one to the other; those cycles take twice as
-//! long. It knows no threads: how parameters get here is the caller's matter, or `ParameterSender`'s. Non-finite input
+//! long, the first of them up to six times. It knows no threads: how parameters get here is the caller's matter, or `ParameterSender`'s. Non-finite input
 //! is treated as by [`Compensator`]. Size: two compensators.
 
 use crate::compensator::Compensator;
