@@ -131,6 +131,9 @@ pub trait Mask: Copy + core::fmt::Debug {
     /// Lane-wise not.
     #[must_use]
     fn not(self) -> Self;
+    /// Whether it holds in any lane.
+    #[must_use]
+    fn any(self) -> bool;
 }
 
 impl Mask for bool {
@@ -147,6 +150,10 @@ impl Mask for bool {
     #[inline(always)]
     fn not(self) -> Self {
         !self
+    }
+    #[inline(always)]
+    fn any(self) -> bool {
+        self
     }
 }
 

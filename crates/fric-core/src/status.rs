@@ -45,9 +45,13 @@ impl CableStatus {
     pub const POSE_MISSING: Self = Self(1 << 7);
     /// The pose leaves the cable no way out of its last pulley.
     pub const POSE_UNREACHABLE: Self = Self(1 << 8);
+    /// The sensor force has jumped, and not yet back.
+    pub const SENSOR_JUMP: Self = Self(1 << 9);
+    /// What is stored is beyond what the load bears, or left by a jump.
+    pub const UNSETTLED: Self = Self(1 << 10);
 
     /// Every flag with its name, lowest bit first.
-    pub const NAMES: [(&'static str, Self); 9] = [
+    pub const NAMES: [(&'static str, Self); 11] = [
         ("SLACK", Self::SLACK),
         ("SLIP", Self::SLIP),
         ("SENSOR_NOT_FINITE", Self::SENSOR_NOT_FINITE),
@@ -57,6 +61,8 @@ impl CableStatus {
         ("OUT_OF_RANGE", Self::OUT_OF_RANGE),
         ("POSE_MISSING", Self::POSE_MISSING),
         ("POSE_UNREACHABLE", Self::POSE_UNREACHABLE),
+        ("SENSOR_JUMP", Self::SENSOR_JUMP),
+        ("UNSETTLED", Self::UNSETTLED),
     ];
 
     /// The flags as a number, as it stands in `/fric/status`.

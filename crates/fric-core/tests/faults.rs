@@ -8,7 +8,7 @@ use crate::bits::bits;
 use crate::support::{FRICTION, assert_near, compensator, corner_cable, smooth_input};
 
 const FORMS: [Presliding; 2] = [Presliding::Lumped, Presliding::PerPulley];
-const MONITOR: MonitorOptions = MonitorOptions { frozen_cycles: 10, length_jump_m: 0.01, length_noise_m: 0.0 };
+const MONITOR: MonitorOptions = MonitorOptions { frozen_cycles: 10, length_jump_m: 0.01, length_noise_m: 0.0, sensor_jump_n: None };
 /// The sensor's range, as the robot file's `validated` states it.
 const RANGE_N: [f64; 2] = [5.0, 18.0];
 /// First cycle with a fault: at some 0.08 m/s, everything in steady sliding.

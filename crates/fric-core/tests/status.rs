@@ -7,7 +7,7 @@ use crate::support::{FRICTION, GUIDE_90, SENSOR_180, assert_near, compensator, c
 
 const FORMS: [Presliding; 2] = [Presliding::Lumped, Presliding::PerPulley];
 const PULLEYS: [fric_core::robot::PulleyOptions; 2] = [SENSOR_180, GUIDE_90];
-const MONITOR: MonitorOptions = MonitorOptions { frozen_cycles: 10, length_jump_m: 0.01, length_noise_m: 0.0 };
+const MONITOR: MonitorOptions = MonitorOptions { frozen_cycles: 10, length_jump_m: 0.01, length_noise_m: 0.0, sensor_jump_n: None };
 
 type Change = fn(&mut CableInput);
 
