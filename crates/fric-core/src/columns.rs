@@ -238,6 +238,7 @@ pub struct StateColumns<const CABLES: usize> {
     pub jump_cycles: [f64; CABLES],
     pub jump_from_n: [f64; CABLES],
     pub jumped_n: [f64; CABLES],
+    pub stored_from_n: [f64; CABLES],
     pub left_n: [f64; CABLES],
     /// Dahl state of the `lumped` form, N.
     pub lumped_friction_n: [f64; CABLES],
@@ -273,6 +274,7 @@ impl<const CABLES: usize> PartialEq for StateColumns<CABLES> {
             jump_cycles,
             jump_from_n,
             jumped_n,
+            stored_from_n,
             left_n,
             lumped_friction_n,
             pulley_friction_n,
@@ -295,6 +297,7 @@ impl<const CABLES: usize> PartialEq for StateColumns<CABLES> {
             && *jump_cycles == other.jump_cycles
             && *jump_from_n == other.jump_from_n
             && *jumped_n == other.jumped_n
+            && *stored_from_n == other.stored_from_n
             && *left_n == other.left_n
             && *lumped_friction_n == other.lumped_friction_n
             && *pulley_friction_n == other.pulley_friction_n
@@ -339,6 +342,7 @@ impl<const CABLES: usize> StateColumns<CABLES> {
             jump_cycles: T::load(&self.jump_cycles, block),
             jump_from_n: T::load(&self.jump_from_n, block),
             jumped_n: T::load(&self.jumped_n, block),
+            stored_from_n: T::load(&self.stored_from_n, block),
             left_n: T::load(&self.left_n, block),
         }
     }
@@ -350,6 +354,7 @@ impl<const CABLES: usize> StateColumns<CABLES> {
         doubts.jump_cycles.store(&mut self.jump_cycles, block);
         doubts.jump_from_n.store(&mut self.jump_from_n, block);
         doubts.jumped_n.store(&mut self.jumped_n, block);
+        doubts.stored_from_n.store(&mut self.stored_from_n, block);
         doubts.left_n.store(&mut self.left_n, block);
     }
 
@@ -364,6 +369,7 @@ impl<const CABLES: usize> StateColumns<CABLES> {
         jump_cycles: [0.0; CABLES],
         jump_from_n: [0.0; CABLES],
         jumped_n: [0.0; CABLES],
+        stored_from_n: [0.0; CABLES],
         left_n: [0.0; CABLES],
         lumped_friction_n: [0.0; CABLES],
         pulley_friction_n: [[0.0; CABLES]; PLACES],

@@ -11,15 +11,13 @@ use crate::cable::{Cable, Features, Moment};
 use crate::cable_cycle::cable_cycle;
 use crate::columns::{BlockOfCables, ParamColumns, StateColumns};
 use crate::cycle::{CableInput, CableOutput, CycleInput, CycleOutput};
-use crate::doubt::{
-    LONGEST_LIE_S, Shown, Stored, TOLERATED_N, TOLERATED_RATIO, Trust, review_friction, review_sensor,
-};
+use crate::doubt::{LONGEST_LIE_S, Shown, Stored, TOLERATED_N, TOLERATED_RATIO, Trust, review_friction, review_sensor};
+use crate::effects::Acting;
 use crate::effects::direction_asymmetry::{self, DirectionAsymmetry};
 use crate::effects::friction_drift::{self, FrictionDrift};
 use crate::effects::load_nonlinearity::{self, LoadNonlinearity};
 use crate::effects::presliding_shape::{self, PreslidingShape};
 use crate::effects::time_delay::{self, Delay, DelayLine, Shifted};
-use crate::effects::Acting;
 use crate::lanes::{Block, CycleLanes, LANES, Lanes};
 use crate::parameters::ParameterRow;
 use crate::places::{NO_SLIP, PLACES, Places};
@@ -28,7 +26,8 @@ use crate::pulley::traction_ratio;
 use crate::robot::{MAX_PULLEYS, ParamError, ParamProblem, RobotParams, ValidatedRange};
 use crate::scalar::{Mask, Scalar};
 use crate::signals::{
-    BEFORE_FIRST, CableSignals, Conditioned, GREATEST_MOTION, RawSignals, SignalLimits, bounded_elapsed, condition, next_cycle,
+    BEFORE_FIRST, CableSignals, Conditioned, GREATEST_MOTION, RawSignals, SignalLimits, bounded_elapsed, condition,
+    next_cycle,
 };
 use crate::status::CableStatus;
 use crate::swivel;
@@ -372,7 +371,8 @@ impl<const CABLES: usize> Compensator<CABLES> {
         // A sensor force that is no number is not calm either.
         let last_n = T::load(&self.state.columns.sensor_force_n, block);
         let calm = (raw.sensor_force_n - last_n).abs().le(T::load(&self.params.calm_change_n, block));
-        let reviewed = (stepped.all_reviewed || T::bits(calm) != (1 << T::COUNT) - 1).then(|| self.review_sensor::<T>(block, input));
+        let reviewed = (stepped.all_reviewed || T::bits(calm) != (1 << T::COUNT) - 1)
+            .then(|| self.review_sensor::<T>(block, input));
         let mut remembered = self.state.columns.signals::<T>(block);
         let conditioned = condition(&self.limits, &mut remembered, &raw, input.elapsed_cycles);
         let columns = &mut self.state.columns;
@@ -416,7 +416,8 @@ impl<const CABLES: usize> Compensator<CABLES> {
         let [sensor_jump, unsettled] = if reviewed.is_some() || T::bits(settled_n.lt(forces.stored_n)) != 0 {
             // Where the stretch goes against the winch, a contact may have moved by so little.
             let way_m = signals.displacement_m.abs() - forces.stretch_m.abs();
-            self.review_friction(stepped.first, input, reviewed.unwrap_or(0), [way_m, forces.tension_n, forces.stored_n])
+            let numbers = [way_m, forces.tension_n, forces.stored_n, forces.platform_force_n];
+            self.review_friction(stepped.first, input, reviewed.unwrap_or(0), numbers)
         } else {
             [0; 2]
         };
@@ -472,7 +473,13 @@ impl<const CABLES: usize> Compensator<CABLES> {
         let (last_n, unchanged_cycles) = (last.sensor_force_n, last.frozen_count);
         let signals = condition(&self.limits, &mut last, &raw_signals(input, block * T::COUNT), input.elapsed_cycles);
         let mut doubts = self.state.columns.doubts::<T>(block);
+        let columns = &self.state.columns;
+        let stored_n =
+            columns.pulley_friction_n.iter().fold(T::splat(0.0), |sum, column| sum + T::load(column, block).abs());
+        let is_lumped = self.params.model::<T>(block).lumped;
+        let stored_n = T::select(is_lumped, T::load(&columns.lumped_friction_n, block).abs(), stored_n);
         let shown = Shown {
+            stored_n,
             sensor_force_n: [signals.sensor_force_n, last_n],
             finite: signals.sensor_finite,
             paused: signals.jump,
@@ -498,7 +505,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
         first: usize,
         input: &CycleInput<CABLES>,
         jump: u32,
-        [way_m, tension_n, stored_n]: [T; 3],
+        [way_m, tension_n, stored_n, platform_force_n]: [T; 4],
     ) -> [u32; 2] {
         let (block, acting) = (first / T::COUNT, self.features.acting);
         let (zero, one) = (T::splat(0.0), T::splat(1.0));
@@ -541,6 +548,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
             jump: zero.lt(T::from_lanes(|lane| f64::from(jump >> lane & 1))),
             tension_n,
             stored_n,
+            platform_force_n,
             bears_n: ratio * (tension_n + viscous_n * platform_share) + (bears_n - tolerated[1]) + limited_n,
             bears_ratio: ratio,
             platform_share,

@@ -392,8 +392,8 @@ pub struct MonitorOptions {
     /// Amplitude of the noise of measured lengths, m: changes within it are no motion. 0 for set points.
     pub length_noise_m: f64,
     /// Greatest change of a sensor force in one cycle, N: beyond it the sensor has jumped. `None`: what the cable's own presliding
-    /// stiffness (or the stiffness of `cable_elasticity` where that is greater) gives over a twentieth of `length_jump_m`. A change
-    /// within 5 % of the force + 0.1 N at the platform is no jump either way.
+    /// stiffness σ makes of a twentieth of `length_jump_m`. A change within 5 % of the force + 0.1 N at the platform is no jump
+    /// either way, and without σ none is.
     pub sensor_jump_n: Option<f64>,
 }
 
