@@ -18,7 +18,8 @@
 //!   [`LONGEST_LIE_S`] after the last of them: a level that stays longer is taken for the load. A jump that comes back by a part stands
 //!   for that time.
 //! - **Unsettled**: `S − B` beyond 5 % of `T` + 0.1 N at the platform, or `E` beyond half of the same for the force less `E`. While a jump stands `E = S + max(B, S_0)`,
-//!   `S_0` what was stored before it: the truth has stored no more, either way. From then on `E ← E·exp(−σ|Δl|/f_c)`, by which two Dahl states under
+//!   `S_0` what was stored before it: the truth has stored no more, either way. From then on `E ← E·(e + (1 − e)·B/T)`,
+//!   `e = exp(−σ|Δl|/f_c)`, by which two Dahl states under
 //!   the same load come nearer, and with another exponent of the law by that law.
 
 use crate::dahl::dahl_step;
@@ -39,6 +40,8 @@ const STRETCHED_RATIO: f64 = 0.05;
 /// The part of what is tolerated from which on what a jump has left is settled: the rest is for what one pulley passes on to the next,
 /// and for the stretch that friction itself makes, up to as much again. At 0.8 some 10 cycles in 10⁶ of the adversary were silent.
 const LEFT_RATIO: f64 = 0.5;
+/// The greatest part of what is off that a chain keeps feeding on, however much its pulleys bear: it is forgotten in the end.
+const GREATEST_FED: f64 = 0.95;
 /// How long a jump stands that is not taken back, s: beyond the spikes and drop-outs of amplifiers and buses. Twice as long doubles what
 /// a real step of the load costs in flagged cycles; half as long lets a shorter lie pass for the load.
 pub const LONGEST_LIE_S: f64 = 5.0;
@@ -241,7 +244,10 @@ pub fn review_friction<T: Scalar>(stored: &Stored<T>, doubts: &mut Doubts<T>) ->
         Some(shape) => shape.step(from_n, sliding_n, sigma_n_per_m, way_m),
         None => dahl_step(from_n, sliding_n, sigma_n_per_m, way_m),
     };
-    let left_n = T::select(stored.jump, at_most_n, (to_n - sliding_n).max(zero));
+    let own_n = (to_n - sliding_n).max(zero);
+    // What is off in one contact is load of itself and of those behind it, and so in what they slide at.
+    let fed = (stored.bears_ratio * platform_share).min(T::splat(GREATEST_FED));
+    let left_n = T::select(stored.jump, at_most_n, own_n + fed * (doubts.left_n - own_n));
     // Below what is tolerated of a cable without tension nothing is doubtful any more.
     doubts.left_n = left_n.keep(T::splat(LEFT_RATIO * TOLERATED_N).lt(left_n));
     let excess_n = (stored_n - bears_n) * platform_share;
