@@ -369,8 +369,8 @@ impl<const CABLES: usize> Compensator<CABLES> {
         let missing = if stepped.has_pose { 0 } else { T::bits(self.misses_pose::<T>(block)) };
         let raw: RawSignals<T> = raw_signals(input, first);
         // A sensor force that is no number is not calm either.
-        let last_n = T::load(&self.state.columns.sensor_force_n, block);
-        let calm = (raw.sensor_force_n - last_n).abs().le(T::load(&self.params.calm_change_n, block));
+        let before_n = T::load(&self.state.columns.sensor_force_n, block);
+        let calm = (raw.sensor_force_n - before_n).abs().le(T::load(&self.params.calm_change_n, block));
         let reviewed = (stepped.all_reviewed || T::bits(calm) != (1 << T::COUNT) - 1)
             .then(|| self.review_sensor::<T>(block, input));
         let mut remembered = self.state.columns.signals::<T>(block);
@@ -547,7 +547,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
         let stored = Stored {
             jump: zero.lt(T::from_lanes(|lane| f64::from(jump >> lane & 1))),
             tension_n,
-            stored_n,
+            sum_n: stored_n,
             platform_force_n,
             bears_n: ratio * (tension_n + viscous_n * platform_share) + (bears_n - tolerated[1]) + limited_n,
             bears_ratio: ratio,

@@ -170,7 +170,7 @@ pub struct Stored<T: Scalar> {
     /// `T`, N.
     pub tension_n: T,
     /// `S`, N.
-    pub stored_n: T,
+    pub sum_n: T,
     /// Force at the platform, N.
     pub platform_force_n: T,
     /// `B`, N.
@@ -234,11 +234,13 @@ pub fn review_sensor<T: Scalar>(
 #[inline(always)]
 pub fn review_friction<T: Scalar>(stored: &Stored<T>, doubts: &mut Doubts<T>) -> [T::Mask; 2] {
     let zero = T::splat(0.0);
-    let Stored { tension_n, stored_n, bears_n, platform_share, sigma_n_per_m, way_m, .. } = *stored;
+    let Stored { tension_n, sum_n: stored_n, bears_n, platform_share, sigma_n_per_m, way_m, .. } = *stored;
     let tolerated_n = tension_n * T::splat(TOLERATED_RATIO) + T::splat(TOLERATED_N);
     let at_most_n = (stored_n + bears_n.max(doubts.stored_from_n)) * platform_share;
     // From beyond the sliding friction `f_c` Dahl's law leads to it as from one state to another.
-    let sliding_n = bears_n + stored.bears_ratio * stored_n;
+    // `μk(F_0 + F_1)/2` of a sensor pulley grows by `share + 1/2` times what it stores.
+    let fed = stored.bears_ratio * (platform_share + T::splat(0.5));
+    let sliding_n = bears_n + fed * stored_n;
     let from_n = sliding_n + doubts.left_n;
     let to_n = match &stored.shape {
         Some(shape) => shape.step(from_n, sliding_n, sigma_n_per_m, way_m),
@@ -246,7 +248,7 @@ pub fn review_friction<T: Scalar>(stored: &Stored<T>, doubts: &mut Doubts<T>) ->
     };
     let own_n = (to_n - sliding_n).max(zero);
     // What is off in one contact is load of itself and of those behind it, and so in what they slide at.
-    let fed = (stored.bears_ratio * platform_share).min(T::splat(GREATEST_FED));
+    let fed = fed.min(T::splat(GREATEST_FED));
     let left_n = T::select(stored.jump, at_most_n, own_n + fed * (doubts.left_n - own_n));
     // Below what is tolerated of a cable without tension nothing is doubtful any more.
     doubts.left_n = left_n.keep(T::splat(LEFT_RATIO * TOLERATED_N).lt(left_n));
