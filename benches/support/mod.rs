@@ -79,10 +79,13 @@ pub fn inputs<const COUNT: usize>() -> Vec<CycleInput<COUNT>> {
         noise ^= noise << 17;
         (noise >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
     };
+    // There and back, so that nothing jumps where the motion repeats.
     (0..CYCLES)
         .map(|cycle| {
-            let t = cycle as f64 * CYCLE_S;
+            let is_back = cycle >= CYCLES / 2;
+            let t = if is_back { CYCLES - cycle } else { cycle } as f64 * CYCLE_S;
             let (place, speed) = motion(t);
+            let speed = if is_back { speed.map(|part| -part) } else { speed };
             let turn = 0.15 * (2.0 * t).sin();
             let pose = Pose::from_parts(place, [0.3 * turn, -0.2 * turn, turn, (1.0 - 1.13 * turn * turn).sqrt()])
                 .expect("a good pose");

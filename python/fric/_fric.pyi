@@ -80,6 +80,7 @@ class Monitor:
     frozen_cycles: int | None
     length_jump_m: float | None
     length_noise_m: float | None
+    sensor_jump_n: float | None
     def set(self, **values: Any) -> None: ...
 
 @final

@@ -10,3 +10,5 @@ class Status(IntFlag):
     OUT_OF_RANGE = 64
     POSE_MISSING = 128
     POSE_UNREACHABLE = 256
+    SENSOR_JUMP = 512
+    UNSETTLED = 1024

@@ -39,6 +39,7 @@ def test_a_robot_reads_as_its_file(robot):
         ("platform", "center_of_mass_m", [0.0, 0.1, 0.2]),
         ("monitor", "frozen_cycles", 7),
         ("monitor", "length_noise_m", 1e-5),
+        ("monitor", "sensor_jump_n", 2.5),
         ("log", "reference", "/load_cells"),
         ("log", "length", "/winches.length[:]"),
         ("cable", "name", "winch"),

@@ -21,6 +21,8 @@ FLAGS = [
     "OUT_OF_RANGE",
     "POSE_MISSING",
     "POSE_UNREACHABLE",
+    "SENSOR_JUMP",
+    "UNSETTLED",
 ]
 
 

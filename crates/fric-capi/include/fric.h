@@ -43,6 +43,12 @@
 /// The pose leaves the cable no way out of its last pulley: last wrap and direction are held.
 #define FRIC_STATUS_POSE_UNREACHABLE 256
 
+/// The sensor force has jumped by more than the cable can do, and not yet back; computed as usual.
+#define FRIC_STATUS_SENSOR_JUMP 512
+
+/// The stored friction is beyond what the load bears, or left by a jump of the sensor: the force may be off by more than 5 % + 0.1 N.
+#define FRIC_STATUS_UNSETTLED 1024
+
 /// Outcome of a call. Anything but FRIC_RESULT_OK has left the compensator, and the output of a step, as they were.
 typedef enum fric_result {
   /// Done.

@@ -22,9 +22,13 @@ pub const FRIC_STATUS_OUT_OF_RANGE: u32 = 64;
 pub const FRIC_STATUS_POSE_MISSING: u32 = 128;
 /// The pose leaves the cable no way out of its last pulley: last wrap and direction are held.
 pub const FRIC_STATUS_POSE_UNREACHABLE: u32 = 256;
+/// The sensor force has jumped by more than the cable can do, and not yet back; computed as usual.
+pub const FRIC_STATUS_SENSOR_JUMP: u32 = 512;
+/// The stored friction is beyond what the load bears, or left by a jump of the sensor: the force may be off by more than 5 % + 0.1 N.
+pub const FRIC_STATUS_UNSETTLED: u32 = 1024;
 
 /// The flags in the order of [`CableStatus::NAMES`].
-const FLAGS: [u32; 9] = [
+const FLAGS: [u32; 11] = [
     FRIC_STATUS_SLACK,
     FRIC_STATUS_SLIP,
     FRIC_STATUS_SENSOR_NOT_FINITE,
@@ -34,6 +38,8 @@ const FLAGS: [u32; 9] = [
     FRIC_STATUS_OUT_OF_RANGE,
     FRIC_STATUS_POSE_MISSING,
     FRIC_STATUS_POSE_UNREACHABLE,
+    FRIC_STATUS_SENSOR_JUMP,
+    FRIC_STATUS_UNSETTLED,
 ];
 
 // cbindgen takes numbers only; that they are the core's is checked here.

@@ -23,10 +23,16 @@ pub struct CableForces<T: Scalar> {
     /// Force at the platform, N, the offset ε included.
     pub platform_force_n: T,
     /// Friction: force at the platform less the frictionless one, without ε, N. With it all that effects add: inertia,
-    /// ripple, what is corrected of the sensor.
+    /// ripple, what is corrected of the sensor. 0 in a cable without tension.
     pub friction_n: T,
     /// Sensor force as it is shown, turned into cable tension as if nothing rubbed, N.
     pub frictionless_n: T,
+    /// The same of the corrected sensor force, N.
+    pub tension_n: T,
+    /// Friction stored: the sum of the pulleys' magnitudes, with `lumped` that of the cable, N.
+    pub stored_n: T,
+    /// By how much the cable has stretched in this cycle, m.
+    pub stretch_m: T,
     /// The cable carries no tension at the platform, or none at all.
     pub slack: T::Mask,
     /// Slip on a pulley.
@@ -63,11 +69,11 @@ pub fn cable_cycle<T: Scalar>(
     let stretch_m = stretch(acting, frictionless_n + cable.held_friction_n(), (signals, moment), cable);
     let displacement_m = signals.displacement_m;
     let chain = Chain { model, features, bearing, sensor_force_n, displacement_m, stretch_m };
-    let (mut chain_n, mut slip) = over_pulleys(&chain, no_tension, cable);
+    let Moved { mut chain_n, mut slip, stored_n } = over_pulleys(&chain, no_tension, cable);
     if features.leads {
         // From what is stored, a step that is not.
         let ahead = Chain { displacement_m: signals.lead_m, stretch_m: zero, ..chain };
-        let (ahead_n, slips) = over_pulleys(&ahead, no_tension, &mut Looked(cable));
+        let Moved { chain_n: ahead_n, slip: slips, .. } = over_pulleys(&ahead, no_tension, &mut Looked(cable));
         let leads = zero.lt(signals.lead_m.abs());
         chain_n = T::select(leads, ahead_n, chain_n);
         slip = leads.and(slips).or(leads.not().and(slip));
@@ -79,38 +85,65 @@ pub fn cable_cycle<T: Scalar>(
     // A cable cannot push, whatever an untared sensor shows of a limp one.
     let pulled_n = chain_n.max(zero).keep(no_tension.not());
     let moving_n = pulled_n + model.offset_n;
-    let friction_n = moving_n - model.offset_n - frictionless_n;
+    // Nothing rubs in a cable without tension, whatever its sensor shows.
+    let friction_n = (moving_n - model.offset_n - frictionless_n).keep(no_tension.not());
 
     let hold = signals.hold;
-    let held_friction_n = cable.held_friction_n();
-    cable.set_held_friction_n(T::select(hold, held_friction_n, friction_n.keep(no_tension.not())));
-    let held_n = T::select(no_tension, -frictionless_n, held_friction_n.max(-frictionless_n));
-    let platform_force_n = T::select(hold, frictionless_n + held_n + model.offset_n, moving_n);
-    let friction_n = T::select(hold, held_n, friction_n);
+    let (platform_force_n, friction_n) = if hold.any() {
+        let held_friction_n = cable.held_friction_n();
+        cable.set_held_friction_n(T::select(hold, held_friction_n, friction_n));
+        let held_n = held_friction_n.max(-frictionless_n).keep(no_tension.not());
+        let holding_n = (frictionless_n + held_n).keep(no_tension.not()) + model.offset_n;
+        (T::select(hold, holding_n, moving_n), T::select(hold, held_n, friction_n))
+    } else {
+        cable.set_held_friction_n(friction_n);
+        (moving_n, friction_n)
+    };
     CableForces {
         platform_force_n,
-        friction_n: if acting.has(SENSOR) { platform_force_n - model.offset_n - shown_n } else { friction_n },
+        friction_n: if acting.has(SENSOR) {
+            (platform_force_n - model.offset_n - shown_n).keep(no_tension.not())
+        } else {
+            friction_n
+        },
         frictionless_n: shown_n,
+        tension_n: frictionless_n,
+        stored_n,
+        stretch_m,
         slack,
         slip: slip.and(slack.not()).and(hold.not()),
     }
 }
 
-/// The chain in the forms that cables have: the tension behind the last pulley, N, and slip. What is stored is moved on, and released
-/// without tension.
+/// What the chain comes to.
+struct Moved<T: Scalar> {
+    /// Tension behind the last pulley, N.
+    chain_n: T,
+    slip: T::Mask,
+    /// See [`CableForces::stored_n`].
+    stored_n: T,
+}
+
+/// The chain in the forms that cables have. What is stored is moved on, and released without tension.
 #[inline(always)]
-fn over_pulleys<T: Scalar>(chain: &Chain<'_, T>, no_tension: T::Mask, cable: &mut impl Cable<T>) -> (T, T::Mask) {
+fn over_pulleys<T: Scalar>(chain: &Chain<'_, T>, no_tension: T::Mask, cable: &mut impl Cable<T>) -> Moved<T> {
     let lumped = chain.model.lumped;
     if !chain.features.lumped {
-        return chain.per_pulley(no_tension.or(lumped), cable);
+        let (chain_n, stored_n, slip) = chain.per_pulley(no_tension.or(lumped), cable);
+        return Moved { chain_n, slip, stored_n };
     }
     let (lumped_n, friction_n, lumped_slips) = chain.lumped(cable);
-    cable.set_lumped_friction_n(friction_n.keep(no_tension.not()));
+    let friction_n = friction_n.keep(no_tension.not());
+    cable.set_lumped_friction_n(friction_n);
     if !chain.features.per_pulley {
-        return (lumped_n, lumped_slips);
+        return Moved { chain_n: lumped_n, slip: lumped_slips, stored_n: friction_n.abs() };
     }
-    let (per_pulley_n, slips) = chain.per_pulley(no_tension.or(lumped), cable);
-    (T::select(lumped, lumped_n, per_pulley_n), lumped.and(lumped_slips).or(lumped.not().and(slips)))
+    let (per_pulley_n, stored_n, slips) = chain.per_pulley(no_tension.or(lumped), cable);
+    Moved {
+        chain_n: T::select(lumped, lumped_n, per_pulley_n),
+        slip: lumped.and(lumped_slips).or(lumped.not().and(slips)),
+        stored_n: T::select(lumped, friction_n.abs(), stored_n),
+    }
 }
 
 /// Effects of the force sensor.

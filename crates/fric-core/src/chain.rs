@@ -26,12 +26,13 @@ impl<T: Scalar> Chain<'_, T> {
     /// `per_pulley`: one Dahl state on each bearing; its normal force includes the friction it has stored.
     ///
     /// With the stored Coulomb friction `f_j`: `F_1 = (F_s − c(f_1 + F_pv v))/(1 − c)` (\[P\] 11), then
-    /// `F_j = F_{j−1} + f_j + F_pv v`. In steady sliding this is \[P\] 10. Gives the tension behind the last pulley, and slip.
+    /// `F_j = F_{j−1} + f_j + F_pv v`. In steady sliding this is \[P\] 10. Gives the tension
+    /// behind the last pulley, the magnitudes stored, and slip.
     #[inline(always)]
-    pub fn per_pulley(&self, release: T::Mask, cable: &mut impl Cable<T>) -> (T, T::Mask) {
+    pub fn per_pulley(&self, release: T::Mask, cable: &mut impl Cable<T>) -> (T, T, T::Mask) {
         let Self { model, features, bearing, sensor_force_n, .. } = self;
         let sensor_force_n = *sensor_force_n;
-        let mut tension_n = T::splat(0.0);
+        let (mut tension_n, mut sum_n) = (T::splat(0.0), T::splat(0.0));
         let mut slip = T::Mask::NONE;
         for place in 0..cable.count() {
             let stored_n = cable.pulley_friction_n(place);
@@ -62,10 +63,12 @@ impl<T: Scalar> Chain<'_, T> {
                 friction_n = T::select(slips, held_n - held_before_n - viscous_n, friction_n);
                 slip = slip.or(slips);
             }
-            cable.set_pulley_friction_n(place, friction_n.keep(release.not()));
+            let friction_n = friction_n.keep(release.not());
+            cable.set_pulley_friction_n(place, friction_n);
+            sum_n = sum_n + friction_n.abs();
             tension_n = behind_n;
         }
-        (tension_n, slip)
+        (tension_n, sum_n, slip)
     }
 
     /// Displacement of the cable at a pulley, m.

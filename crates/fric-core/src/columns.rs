@@ -3,6 +3,7 @@
 //! Private to the crate: the structure-of-arrays behind [`Compensator`](crate::Compensator).
 
 use crate::cable::{Cable, CableModel};
+use crate::doubt::{Doubts, TOLERATED_N, TOLERATED_RATIO, Trust};
 use crate::effects::time_delay::{self, Delay, DelayLine};
 use crate::effects::{EFFECT_PARAMETER_COUNT, MEMORY, UNKNOWN};
 use crate::lanes::Block;
@@ -37,6 +38,15 @@ pub struct ParamColumns<const CABLES: usize> {
     pub least_force_n: [f64; CABLES],
     pub greatest_force_n: [f64; CABLES],
     pub greatest_speed_m_per_s: [f64; CABLES],
+    /// [`Trust`], with what is tolerated of the force in what the load bears.
+    pub sensor_jump_n: [f64; CABLES],
+    pub tolerated_sensor_n: [f64; CABLES],
+    /// A change of the sensor force that is no jump whatever the force, N.
+    pub calm_change_n: [f64; CABLES],
+    pub bears_ratio: [f64; CABLES],
+    pub bears_per_wrap: [f64; CABLES],
+    pub bears_n: [f64; CABLES],
+    pub platform_share: [f64; CABLES],
     pub delay: [Delay; CABLES],
     entry_m: [[f64; CABLES]; 3],
     axis: [[f64; CABLES]; 3],
@@ -68,6 +78,13 @@ impl<const CABLES: usize> ParamColumns<CABLES> {
         least_force_n: [-f64::MAX; CABLES],
         greatest_force_n: [f64::MAX; CABLES],
         greatest_speed_m_per_s: [f64::MAX; CABLES],
+        sensor_jump_n: [Trust::NONE.sensor_jump_n; CABLES],
+        tolerated_sensor_n: [Trust::NONE.tolerated_sensor_n; CABLES],
+        calm_change_n: [GREATEST_CALM_N; CABLES],
+        bears_ratio: [Trust::NONE.bears_ratio; CABLES],
+        bears_per_wrap: [Trust::NONE.bears_per_wrap; CABLES],
+        bears_n: [Trust::NONE.bears_n; CABLES],
+        platform_share: [Trust::NONE.platform_share; CABLES],
         delay: [Delay::NONE; CABLES],
         entry_m: [[0.0; CABLES]; 3],
         axis: [[0.0; CABLES], [0.0; CABLES], [1.0; CABLES]],
@@ -80,7 +97,7 @@ impl<const CABLES: usize> ParamColumns<CABLES> {
 
 impl<const CABLES: usize> ParamColumns<CABLES> {
     /// Enters a cable of a robot with `place_count` places a cable.
-    pub fn set(&mut self, cable: usize, params: &CableParams, cycle_s: f64, place_count: usize) {
+    pub fn set(&mut self, cable: usize, params: &CableParams, trust: &Trust, cycle_s: f64, place_count: usize) {
         let values = params.values();
         let model = CableModel::<f64>::new(|_| params, &values);
         put(&mut self.mu, cable, model.mu);
@@ -97,6 +114,14 @@ impl<const CABLES: usize> ParamColumns<CABLES> {
         put(&mut self.least_force_n, cable, params.validated.force_n[0]);
         put(&mut self.greatest_force_n, cable, params.validated.force_n[1]);
         put(&mut self.greatest_speed_m_per_s, cable, params.validated.speed_m_per_s);
+        let Trust { sensor_jump_n, tolerated_sensor_n, bears_ratio, bears_per_wrap, bears_n, platform_share } = *trust;
+        put(&mut self.sensor_jump_n, cable, sensor_jump_n);
+        put(&mut self.tolerated_sensor_n, cable, tolerated_sensor_n);
+        put(&mut self.calm_change_n, cable, sensor_jump_n.max(tolerated_sensor_n).min(GREATEST_CALM_N));
+        put(&mut self.bears_ratio, cable, bears_ratio + TOLERATED_RATIO / platform_share);
+        put(&mut self.bears_per_wrap, cable, bears_per_wrap);
+        put(&mut self.bears_n, cable, bears_n + TOLERATED_N / platform_share);
+        put(&mut self.platform_share, cable, platform_share);
         let delay_cycles = values[time_delay::DELAY] / cycle_s;
         put(&mut self.delay, cable, Delay::from_cycles(delay_cycles));
         let places = Places::new(params, place_count);
@@ -208,6 +233,13 @@ pub struct StateColumns<const CABLES: usize> {
     pub frozen_travel_m: [f64; CABLES],
     /// Last good friction in all, N.
     pub friction_n: [f64; CABLES],
+    /// What is remembered of jumps, see [`Doubts`].
+    pub unseen_cycles: [f64; CABLES],
+    pub jump_cycles: [f64; CABLES],
+    pub jump_from_n: [f64; CABLES],
+    pub jumped_n: [f64; CABLES],
+    pub stored_from_n: [f64; CABLES],
+    pub left_n: [f64; CABLES],
     /// Dahl state of the `lumped` form, N.
     pub lumped_friction_n: [f64; CABLES],
     /// Dahl states of the `per_pulley` form, N.
@@ -249,6 +281,30 @@ impl<const CABLES: usize> StateColumns<CABLES> {
         signals.length_m.store(&mut self.length_m, block);
     }
 
+    /// What is remembered of a block's jumps.
+    #[inline(always)]
+    pub fn doubts<T: Block>(&self, block: usize) -> Doubts<T> {
+        Doubts {
+            unseen_cycles: T::load(&self.unseen_cycles, block),
+            jump_cycles: T::load(&self.jump_cycles, block),
+            jump_from_n: T::load(&self.jump_from_n, block),
+            jumped_n: T::load(&self.jumped_n, block),
+            stored_from_n: T::load(&self.stored_from_n, block),
+            left_n: T::load(&self.left_n, block),
+        }
+    }
+
+    /// Keeps it.
+    #[inline(always)]
+    pub fn set_doubts<T: Block>(&mut self, block: usize, doubts: &Doubts<T>) {
+        doubts.unseen_cycles.store(&mut self.unseen_cycles, block);
+        doubts.jump_cycles.store(&mut self.jump_cycles, block);
+        doubts.jump_from_n.store(&mut self.jump_from_n, block);
+        doubts.jumped_n.store(&mut self.jumped_n, block);
+        doubts.stored_from_n.store(&mut self.stored_from_n, block);
+        doubts.left_n.store(&mut self.left_n, block);
+    }
+
     /// At rest, nothing stored, no pose yet: the wrap that follows it taken as 90°.
     pub const START: Self = Self {
         sensor_force_n: [0.0; CABLES],
@@ -256,6 +312,12 @@ impl<const CABLES: usize> StateColumns<CABLES> {
         length_m: [UNKNOWN; CABLES],
         frozen_travel_m: [0.0; CABLES],
         friction_n: [0.0; CABLES],
+        unseen_cycles: [UNKNOWN; CABLES],
+        jump_cycles: [0.0; CABLES],
+        jump_from_n: [0.0; CABLES],
+        jumped_n: [0.0; CABLES],
+        stored_from_n: [0.0; CABLES],
+        left_n: [0.0; CABLES],
         lumped_friction_n: [0.0; CABLES],
         pulley_friction_n: [[0.0; CABLES]; PLACES],
         memory: [[UNKNOWN; CABLES]; MEMORY],
@@ -375,6 +437,9 @@ impl<T: Block, const CABLES: usize> Cable<T> for BlockOfCables<'_, CABLES> {
         friction_n.store(&mut self.state.friction_n, self.block);
     }
 }
+
+/// From no force to one that is none is no calm change, N.
+const GREATEST_CALM_N: f64 = 1e8;
 
 /// `column[place] = value`, nothing where the place does not exist.
 fn put<V, const COUNT: usize>(column: &mut [V; COUNT], place: usize, value: V) {

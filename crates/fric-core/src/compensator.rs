@@ -7,10 +7,16 @@
 
 mod takeover;
 
-use crate::cable::{Features, Moment};
+use crate::cable::{Cable, Features, Moment};
 use crate::cable_cycle::cable_cycle;
 use crate::columns::{BlockOfCables, ParamColumns, StateColumns};
 use crate::cycle::{CableInput, CableOutput, CycleInput, CycleOutput};
+use crate::doubt::{LONGEST_LIE_S, Shown, Stored, TOLERATED_N, TOLERATED_RATIO, Trust, review_friction, review_sensor};
+use crate::effects::Acting;
+use crate::effects::direction_asymmetry::{self, DirectionAsymmetry};
+use crate::effects::friction_drift::{self, FrictionDrift};
+use crate::effects::load_nonlinearity::{self, LoadNonlinearity};
+use crate::effects::presliding_shape::{self, PreslidingShape};
 use crate::effects::time_delay::{self, Delay, DelayLine, Shifted};
 use crate::lanes::{Block, CycleLanes, LANES, Lanes};
 use crate::parameters::ParameterRow;
@@ -19,7 +25,10 @@ use crate::platform::{self, Pose, Wrench};
 use crate::pulley::traction_ratio;
 use crate::robot::{MAX_PULLEYS, ParamError, ParamProblem, RobotParams, ValidatedRange};
 use crate::scalar::{Mask, Scalar};
-use crate::signals::{BEFORE_FIRST, CableSignals, Conditioned, RawSignals, SignalLimits, condition, next_cycle};
+use crate::signals::{
+    BEFORE_FIRST, CableSignals, Conditioned, GREATEST_MOTION, RawSignals, SignalLimits, bounded_elapsed, condition,
+    next_cycle,
+};
 use crate::status::CableStatus;
 use crate::swivel;
 use nalgebra::{Matrix3, SMatrix, Vector3};
@@ -84,6 +93,8 @@ struct State<const CABLES: usize> {
     /// The cycle, from the first, and the one before.
     cycle: f64,
     last_cycle: f64,
+    /// Some cable's sensor or stored friction is doubtful, so that all are reviewed.
+    doubtful: bool,
 }
 
 /// The state of a [`Compensator`] at one moment, for [`Compensator::restore`].
@@ -97,6 +108,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
         gravity: None,
         cycle: BEFORE_FIRST,
         last_cycle: BEFORE_FIRST,
+        doubtful: true,
     };
 
     /// Set-up from checked parameters.
@@ -120,7 +132,8 @@ impl<const CABLES: usize> Compensator<CABLES> {
             place_count = place_count.max(Places::needed(cable));
         }
         for (place, cable) in robot.cables.iter().enumerate() {
-            params.set(place, cable, robot.cycle_s, place_count);
+            let trust = Trust::new(cable, robot.monitor.sensor_jump_n, robot.monitor.length_jump_m);
+            params.set(place, cable, &trust, robot.cycle_s, place_count);
         }
         Ok(Self {
             params,
@@ -191,9 +204,12 @@ impl<const CABLES: usize> Compensator<CABLES> {
                 };
             }
         }
+        let all_reviewed = self.state.doubtful || self.features.acting.has(BEARS_OTHERWISE);
+        self.state.doubtful = false;
         let mut first = 0;
         while let Some(&unreachable) = unreachable.get(first).filter(|_| first < cables) {
-            let mut block = Stepped { first, has_pose: followed.is_some(), unreachable, forces_n: &mut forces_n };
+            let has_pose = followed.is_some();
+            let mut block = Stepped { first, has_pose, unreachable, all_reviewed, forces_n: &mut forces_n };
             let (status, count) = if cables - first > LANES {
                 (self.step_cables::<CycleLanes>(&mut block, input, output), CycleLanes::COUNT)
             } else {
@@ -266,6 +282,8 @@ impl<const CABLES: usize> Compensator<CABLES> {
 struct Stepped<'a, const CABLES: usize> {
     /// Its first cable, a multiple of the lanes.
     first: usize,
+    /// What a lie may have left is looked at, suspicious or not.
+    all_reviewed: bool,
     /// There is a usable pose.
     has_pose: bool,
     /// Lanes whose attachment the pose puts out of reach.
@@ -349,15 +367,15 @@ impl<const CABLES: usize> Compensator<CABLES> {
         }
         let first = block * T::COUNT;
         let missing = if stepped.has_pose { 0 } else { T::bits(self.misses_pose::<T>(block)) };
-        let signal = |of: fn(&CableInput) -> f64| T::from_lanes(|lane| input.cables.get(first + lane).map_or(0.0, of));
-        let raw = RawSignals {
-            sensor_force_n: signal(|cable| cable.sensor_force_n),
-            length_m: signal(|cable| cable.length_m),
-            speed_m_per_s: signal(|cable| cable.speed_m_per_s),
-        };
-        let columns = &mut self.state.columns;
-        let mut remembered = columns.signals::<T>(block);
+        let raw: RawSignals<T> = raw_signals(input, first);
+        // A sensor force that is no number is not calm either.
+        let before_n = T::load(&self.state.columns.sensor_force_n, block);
+        let calm = (raw.sensor_force_n - before_n).abs().le(T::load(&self.params.calm_change_n, block));
+        let reviewed = (stepped.all_reviewed || T::bits(calm) != (1 << T::COUNT) - 1)
+            .then(|| self.review_sensor::<T>(block, input));
+        let mut remembered = self.state.columns.signals::<T>(block);
         let conditioned = condition(&self.limits, &mut remembered, &raw, input.elapsed_cycles);
+        let columns = &mut self.state.columns;
         columns.set_signals(block, &remembered);
         let mut signals = conditioned.signals();
         let moment = Moment::new(T::splat(self.state.cycle), T::splat(self.state.last_cycle), self.cycle_s);
@@ -390,7 +408,24 @@ impl<const CABLES: usize> Compensator<CABLES> {
         } else {
             T::Mask::NONE
         };
-        let any_flag = T::bits(hold.or(forces.slack).or(forces.slip).or(out_of_range)) | missing | stepped.unreachable;
+        let [bears_ratio, bears_per_wrap, bears_n] =
+            [&self.params.bears_ratio, &self.params.bears_per_wrap, &self.params.bears_n]
+                .map(|column| T::load(column, block));
+        let wrap_factor = T::load(&self.state.columns.pose_wrap_factor, block);
+        let settled_n = (bears_per_wrap * wrap_factor + bears_ratio) * forces.tension_n + bears_n;
+        let [sensor_jump, unsettled] = if reviewed.is_some() || T::bits(settled_n.lt(forces.stored_n)) != 0 {
+            // Where the stretch goes against the winch, a contact may have moved by so little.
+            let way_m = signals.displacement_m.abs() - forces.stretch_m.abs();
+            let numbers = [way_m, forces.tension_n, forces.stored_n, forces.platform_force_n];
+            self.review_friction(stepped.first, input, reviewed.unwrap_or(0), numbers)
+        } else {
+            [0; 2]
+        };
+        let any_flag = T::bits(hold.or(forces.slack).or(forces.slip).or(out_of_range))
+            | missing
+            | stepped.unreachable
+            | sensor_jump
+            | unsettled;
         let flags = || {
             [
                 (CableStatus::SLACK, T::bits(forces.slack.and(sensor_fault.not()))),
@@ -402,6 +437,8 @@ impl<const CABLES: usize> Compensator<CABLES> {
                 (CableStatus::OUT_OF_RANGE, T::bits(out_of_range)),
                 (CableStatus::POSE_MISSING, missing),
                 (CableStatus::POSE_UNREACHABLE, stepped.unreachable),
+                (CableStatus::SENSOR_JUMP, sensor_jump),
+                (CableStatus::UNSETTLED, unsettled),
             ]
         };
         let present = self.cable_count.saturating_sub(first).min(T::COUNT);
@@ -427,7 +464,124 @@ impl<const CABLES: usize> Compensator<CABLES> {
         forces.platform_force_n.store(stepped.forces_n, block);
         of_all
     }
+
+    /// Jumps of a block's sensors, before the cycle keeps its signals: one bit a cable.
+    #[cold]
+    #[inline(never)]
+    fn review_sensor<T: Block>(&mut self, block: usize, input: &CycleInput<CABLES>) -> u32 {
+        let mut last = self.state.columns.signals::<T>(block);
+        let (last_n, unchanged_cycles) = (last.sensor_force_n, last.frozen_count);
+        let signals = condition(&self.limits, &mut last, &raw_signals(input, block * T::COUNT), input.elapsed_cycles);
+        let mut doubts = self.state.columns.doubts::<T>(block);
+        let columns = &self.state.columns;
+        let stored_n =
+            columns.pulley_friction_n.iter().fold(T::splat(0.0), |sum, column| sum + T::load(column, block).abs());
+        let is_lumped = self.params.model::<T>(block).lumped;
+        let stored_n = T::select(is_lumped, T::load(&columns.lumped_friction_n, block).abs(), stored_n);
+        let shown = Shown {
+            stored_n,
+            sensor_force_n: [signals.sensor_force_n, last_n],
+            finite: signals.sensor_finite,
+            paused: signals.jump,
+            unchanged_cycles,
+            elapsed_cycles: T::splat(bounded_elapsed(input.elapsed_cycles)),
+            longest_cycles: T::splat(LONGEST_LIE_S / self.cycle_s),
+        };
+        let limits_n =
+            [&self.params.sensor_jump_n, &self.params.tolerated_sensor_n].map(|column| T::load(column, block));
+        let [jump, goes_on] = review_sensor(limits_n, &shown, &mut doubts);
+        self.state.columns.set_doubts(block, &doubts);
+        let present = self.present_bits::<T>(block);
+        self.state.doubtful |= T::bits(goes_on) & present != 0;
+        T::bits(jump) & present
+    }
+
+    /// What a block's cables have stored beyond what the load bears, or from a jump: the cycle's bits of both flags, after
+    /// [`review_sensor`](Self::review_sensor) has given the first.
+    #[cold]
+    #[inline(never)]
+    fn review_friction<T: Block>(
+        &mut self,
+        first: usize,
+        input: &CycleInput<CABLES>,
+        jump: u32,
+        [way_m, tension_n, stored_n, platform_force_n]: [T; 4],
+    ) -> [u32; 2] {
+        let (block, acting) = (first / T::COUNT, self.features.acting);
+        let (zero, one) = (T::splat(0.0), T::splat(1.0));
+        let mut doubts = self.state.columns.doubts::<T>(block);
+        let [bears_ratio, bears_per_wrap, bears_n, platform_share, wrap_factor] = [
+            &self.params.bears_ratio,
+            &self.params.bears_per_wrap,
+            &self.params.bears_n,
+            &self.params.platform_share,
+            &self.state.columns.pose_wrap_factor,
+        ]
+        .map(|column| T::load(column, block));
+        let cable = BlockOfCables::new(&self.params, &mut self.state.columns, block, self.place_count);
+        let value = |place| Cable::<T>::effect(&cable, place);
+        let tension_n = tension_n.max(zero);
+        // μ as it is now beside that of the parameters, the greatest of the pulleys.
+        let mut raised = one;
+        if acting.has(load_nonlinearity::ACTS) {
+            let law = LoadNonlinearity::of(value);
+            raised = (0..self.place_count).fold(zero, |greatest, place| {
+                let wrap_factor = Cable::<T>::wrap_factor(&cable, place);
+                greatest.max(law.factor(wrap_factor * tension_n).keep(zero.lt(wrap_factor)))
+            });
+        }
+        if acting.has(friction_drift::ACTS) {
+            raised = raised * FrictionDrift::of(value).factor(T::splat(self.state.cycle * self.cycle_s));
+        }
+        let speed_m_per_s: T = raw_signals(input, first).speed_m_per_s;
+        let speed_m_per_s = speed_m_per_s.keep(speed_m_per_s.within(GREATEST_MOTION)).abs();
+        let mut viscous_n =
+            (0..self.place_count).fold(zero, |sum, place| sum + Cable::<T>::viscous_n(&cable, place, speed_m_per_s));
+        if acting.has(direction_asymmetry::ACTS) {
+            viscous_n = viscous_n * (one + DirectionAsymmetry::of(value).viscous_ratio.abs());
+        }
+        let tolerated = [TOLERATED_RATIO, TOLERATED_N].map(|tolerated| T::splat(tolerated) / platform_share);
+        let ratio = (bears_ratio - tolerated[0] + bears_per_wrap * wrap_factor) * raised;
+        // Viscous friction is load of the pulleys behind; a slip limit takes it out of what is stored.
+        let limited_n = if self.features.traction { viscous_n } else { zero };
+        let stored = Stored {
+            jump: zero.lt(T::from_lanes(|lane| f64::from(jump >> lane & 1))),
+            tension_n,
+            sum_n: stored_n,
+            platform_force_n,
+            bears_n: ratio * (tension_n + viscous_n * platform_share) + (bears_n - tolerated[1]) + limited_n,
+            bears_ratio: ratio,
+            platform_share,
+            way_m: way_m.max(zero),
+            sigma_n_per_m: self.params.model::<T>(block).sigma_n_per_m,
+            shape: acting.has(presliding_shape::ACTS).then(|| PreslidingShape::of(value)),
+        };
+        let [unsettled, goes_on] = review_friction(&stored, &mut doubts);
+        self.state.columns.set_doubts(block, &doubts);
+        let present = self.present_bits::<T>(block);
+        self.state.doubtful |= T::bits(goes_on) & present != 0;
+        [jump, T::bits(unsettled) & present]
+    }
+
+    /// Which lanes of a block are cables of the robot.
+    fn present_bits<T: Block>(&self, block: usize) -> u32 {
+        (1 << self.cable_count.saturating_sub(block * T::COUNT).min(T::COUNT)) - 1
+    }
 }
+
+/// The signals of a block's cables.
+#[inline(always)]
+fn raw_signals<T: Block, const CABLES: usize>(input: &CycleInput<CABLES>, first: usize) -> RawSignals<T> {
+    let signal = |of: fn(&CableInput) -> f64| T::from_lanes(|lane| input.cables.get(first + lane).map_or(0.0, of));
+    RawSignals {
+        sensor_force_n: signal(|cable| cable.sensor_force_n),
+        length_m: signal(|cable| cable.length_m),
+        speed_m_per_s: signal(|cable| cable.speed_m_per_s),
+    }
+}
+
+/// Effects by which a bearing may bear less than its parameters alone tell.
+const BEARS_OTHERWISE: Acting = friction_drift::ACTS.and(load_nonlinearity::ACTS);
 
 /// Which cables of a block lead, and by how far the parabola does, m.
 fn lead_block<T: Block, const CABLES: usize>(

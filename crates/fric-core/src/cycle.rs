@@ -41,7 +41,7 @@ impl<const CABLES: usize> Default for CycleInput<CABLES> {
 pub struct CableOutput {
     /// Cable force at the platform, N, the offset ε included.
     pub force_at_platform_n: f64,
-    /// Estimated friction, N: force at the platform less the frictionless one, without ε.
+    /// Estimated friction, N: force at the platform less the frictionless one, without ε; 0 where the sensor shows no tension, or less.
     pub friction_n: f64,
     /// The sensor force turned into cable tension as if nothing rubbed, N.
     pub frictionless_n: f64,

@@ -84,6 +84,10 @@ macro_rules! lanes {
             fn not(self) -> Self {
                 Self(!self.0)
             }
+            #[inline(always)]
+            fn any(self) -> bool {
+                self.0.to_bitmask() != 0
+            }
         }
 
         impl Block for $lanes {

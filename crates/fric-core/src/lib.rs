@@ -49,6 +49,7 @@ mod compensator;
 pub mod continuum;
 mod cycle;
 pub mod dahl;
+mod doubt;
 pub mod effects;
 #[cfg(feature = "alloc")]
 mod exchange;

@@ -3,7 +3,8 @@
 //! Every equation of this crate is generic over [`Scalar`], so that one source serves three uses: plain `f64` (one
 //! cable, one number), [`Lanes`](crate::Lanes) (cables side by side, as in the control cycle), and any number that
 //! carries derivatives along. Choices that depend on data are [`select`](Scalar::select)s, not branches: all lanes take the
-//! same path, and the time that the equations take does not depend on what the cables do.
+//! same path, and the time that the equations take does not depend on what the cables do, but for what is out of the ordinary (signals that are
+//! held or repeat themselves, a sensor that has jumped), which takes longer.
 //!
 //! Only operations that IEEE 754 rounds exactly are used (`+ − × ÷ √` and comparisons); transcendental functions, above
 //! all [`exp_negative`], are built from them, the logarithm by the `libm` crate. So results do not depend on the platform.
@@ -131,6 +132,9 @@ pub trait Mask: Copy + core::fmt::Debug {
     /// Lane-wise not.
     #[must_use]
     fn not(self) -> Self;
+    /// Whether it holds in any lane.
+    #[must_use]
+    fn any(self) -> bool;
 }
 
 impl Mask for bool {
@@ -147,6 +151,10 @@ impl Mask for bool {
     #[inline(always)]
     fn not(self) -> Self {
         !self
+    }
+    #[inline(always)]
+    fn any(self) -> bool {
+        self
     }
 }
 

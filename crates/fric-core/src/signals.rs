@@ -13,7 +13,7 @@ const FROZEN_TRAVEL_M: f64 = 1e-3;
 /// A pause counts as at most so many cycles.
 const GREATEST_ELAPSED: f64 = 1e6;
 /// Lengths and speeds beyond this are none, m and m/s.
-const GREATEST_MOTION: f64 = 1e6;
+pub(crate) const GREATEST_MOTION: f64 = 1e6;
 
 /// When a signal counts as faulty.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -184,17 +184,24 @@ pub fn condition<T: Scalar>(
     // Sensor: what may be taken for a force.
     let sensor_finite = raw.sensor_force_n.within(GREATEST_FORCE_N);
     let sensor_force_n = T::select(sensor_finite, raw.sensor_force_n, state.sensor_force_n);
-    // A value that is none says nothing about the ones around it.
-    let unchanged = sensor_force_n.eq(state.sensor_force_n).and(zero.lt(sensor_force_n)).and(sensor_finite);
+    let repeats = raw.sensor_force_n.eq(state.sensor_force_n);
     state.sensor_force_n = sensor_force_n;
-    state.frozen_count = (state.frozen_count + T::splat(1.0)).keep(unchanged);
-    // A sensor that has been found frozen is so too where the cable comes back.
-    let travel_m = T::splat(FROZEN_TRAVEL_M);
-    let was_far = travel_m.le(state.frozen_travel_m.abs());
-    state.frozen_travel_m = (state.frozen_travel_m + displacement_m.keep(was_far.not())).keep(unchanged);
-    let far = travel_m.le(state.frozen_travel_m.abs());
-    let stuck = T::splat(limits.frozen_cycles).le(state.frozen_count).and(far);
-    let frozen = stuck.and(sensor_finite);
+    let frozen = if repeats.any() {
+        // A value that is none says nothing about the ones around it.
+        let unchanged = repeats.and(zero.lt(sensor_force_n)).and(sensor_finite);
+        state.frozen_count = (state.frozen_count + T::splat(1.0)).keep(unchanged);
+        // A sensor that has been found frozen is so too where the cable comes back.
+        let travel_m = T::splat(FROZEN_TRAVEL_M);
+        let was_far = travel_m.le(state.frozen_travel_m.abs());
+        state.frozen_travel_m = (state.frozen_travel_m + displacement_m.keep(was_far.not())).keep(unchanged);
+        let far = travel_m.le(state.frozen_travel_m.abs());
+        let stuck = T::splat(limits.frozen_cycles).le(state.frozen_count).and(far);
+        stuck.and(sensor_finite)
+    } else {
+        // The noise of a sensor changes its last bits in nearly every cycle.
+        (state.frozen_count, state.frozen_travel_m) = (zero, zero);
+        T::Mask::NONE
+    };
     let length_m = state.length_m;
     Conditioned { sensor_force_n, displacement_m, speed_m_per_s, length_m, sensor_finite, frozen, jump, motion_finite }
 }

@@ -7,7 +7,7 @@ use core::ops::BitOr;
 ///
 /// Every flag is about its own cable; no flag of one cable changes a bit of another. All of them clear by
 /// themselves in the first cycle in which their cause is gone. A cable that has moved by more than `length_jump_m` while
-/// its motion was not finite comes back with one cycle of `LENGTH_JUMP`.
+/// its motion was not finite comes back with one cycle of `LENGTH_JUMP`. `SENSOR_JUMP` and `UNSETTLED` remember: what they are about lasts.
 ///
 /// | flag | cause | what the output is |
 /// |---|---|---|
@@ -21,6 +21,8 @@ use core::ops::BitOr;
 /// | `OUT_OF_RANGE` | force or speed outside the cable's `validated` range | computed as usual |
 /// | `POSE_MISSING` | no pose, or not a usable one (not finite, or a quaternion far from norm 1), for a cable that needs it | last wrap and direction held; 90° until the first pose |
 /// | `POSE_UNREACHABLE` | the attachment lies inside the last pulley's circle | last wrap and direction held |
+/// | `SENSOR_JUMP` | sensor force changed by more than `sensor_jump_n` in a cycle (`σ·length_jump_m/20` unless the robot file states it, and never less than 5 % of the force + 0.1 N at the platform; `n` times as much where it had not changed for `n` cycles); until jumps have cancelled or led back to the force before, to within that limit, else for 5 s | computed as usual |
+/// | `UNSETTLED` | friction stored beyond what the present load bears, `Σμk_jT_j` and drag, by more than 5 % of the tension + 0.1 N; or a jump may have left more than half of 5 % + 0.1 N in it; until motion has forgotten it | computed as usual |
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct CableStatus(u32);
 
@@ -45,9 +47,13 @@ impl CableStatus {
     pub const POSE_MISSING: Self = Self(1 << 7);
     /// The pose leaves the cable no way out of its last pulley.
     pub const POSE_UNREACHABLE: Self = Self(1 << 8);
+    /// The sensor force has jumped, and not yet back.
+    pub const SENSOR_JUMP: Self = Self(1 << 9);
+    /// What is stored is beyond what the load bears, or left by a jump.
+    pub const UNSETTLED: Self = Self(1 << 10);
 
     /// Every flag with its name, lowest bit first.
-    pub const NAMES: [(&'static str, Self); 9] = [
+    pub const NAMES: [(&'static str, Self); 11] = [
         ("SLACK", Self::SLACK),
         ("SLIP", Self::SLIP),
         ("SENSOR_NOT_FINITE", Self::SENSOR_NOT_FINITE),
@@ -57,6 +63,8 @@ impl CableStatus {
         ("OUT_OF_RANGE", Self::OUT_OF_RANGE),
         ("POSE_MISSING", Self::POSE_MISSING),
         ("POSE_UNREACHABLE", Self::POSE_UNREACHABLE),
+        ("SENSOR_JUMP", Self::SENSOR_JUMP),
+        ("UNSETTLED", Self::UNSETTLED),
     ];
 
     /// The flags as a number, as it stands in `/fric/status`.

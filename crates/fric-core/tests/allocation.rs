@@ -41,7 +41,7 @@ fn everything_on() -> Compensator<8> {
             CableParams::new(&options).unwrap()
         })
         .collect();
-    let monitor = MonitorOptions { frozen_cycles: 10, length_jump_m: 0.01, length_noise_m: 0.0 };
+    let monitor = MonitorOptions { frozen_cycles: 10, length_jump_m: 0.01, length_noise_m: 0.0, sensor_jump_n: None };
     let robot = RobotParams::new(0.001, &PlatformOptions::default(), monitor, &cables).unwrap();
     Compensator::new(&robot).unwrap()
 }

@@ -8,7 +8,8 @@ use crate::bits::bits;
 use crate::support::{FRICTION, assert_near, compensator, corner_cable, smooth_input};
 
 const FORMS: [Presliding; 2] = [Presliding::Lumped, Presliding::PerPulley];
-const MONITOR: MonitorOptions = MonitorOptions { frozen_cycles: 10, length_jump_m: 0.01, length_noise_m: 0.0 };
+const MONITOR: MonitorOptions =
+    MonitorOptions { frozen_cycles: 10, length_jump_m: 0.01, length_noise_m: 0.0, sensor_jump_n: None };
 /// The sensor's range, as the robot file's `validated` states it.
 const RANGE_N: [f64; 2] = [5.0, 18.0];
 /// First cycle with a fault: at some 0.08 m/s, everything in steady sliding.
@@ -62,6 +63,24 @@ impl Run {
             }
             Some(input)
         })
+    }
+
+    /// The flag stands in every cycle of a lie of the sensor, with `SENSOR_JUMP`; after it nothing but that and `UNSETTLED`, until what
+    /// it has left is forgotten, and in every cycle in which the force is off by 5 % + 0.1 N.
+    fn assert_told(&self, cycles: usize, flag: CableStatus) {
+        for cycle in FIRST..FIRST + cycles {
+            assert!(self.spoilt[cycle].status.contains(flag | CableStatus::SENSOR_JUMP), "cycle {cycle}");
+        }
+        self.assert_settles(FIRST + cycles);
+    }
+
+    fn assert_settles(&self, from: usize) {
+        let doubts = CableStatus::SENSOR_JUMP | CableStatus::UNSETTLED;
+        for (cycle, (spoilt, good)) in self.spoilt.iter().zip(&self.good).enumerate().skip(from) {
+            assert!(doubts.contains(spoilt.status), "cycle {cycle}: {}", spoilt.status);
+            let is_off = self.distance_n(cycle) > 0.05 * good.force_at_platform_n + 0.1;
+            assert!(!is_off || !spoilt.status.is_ok(), "cycle {cycle}: {} N", self.distance_n(cycle));
+        }
     }
 
     /// The flag stands in every cycle of the fault, and in none after it.
@@ -130,7 +149,7 @@ fn sensor_drops_out_for_n_cycles() {
             // A bus that gives zero instead: as a slack cable, which stores nothing; friction builds up anew.
             let run = Run::with(presliding, cycles, |input| input.cables[0].sensor_force_n = 0.0);
             let range = CableStatus::OUT_OF_RANGE;
-            run.assert_flagged(cycles, CableStatus::SLACK | range);
+            run.assert_told(cycles, CableStatus::SLACK | range);
             for slack in &run.spoilt[FIRST..FIRST + cycles] {
                 assert_near(slack.force_at_platform_n, FRICTION.offset_n, 1e-15);
                 assert_eq!(slack.friction_n, 0.0);
@@ -199,7 +218,7 @@ fn sensor_spike() {
         for more_n in [10.0, 500.0, 1e6] {
             let run = Run::with(presliding, 1, |input| input.cables[0].sensor_force_n += more_n);
             // Flagged by the range of the robot file, in the very cycle; a spike within the range cannot be told from a force.
-            run.assert_flagged(1, CableStatus::OUT_OF_RANGE);
+            run.assert_told(1, CableStatus::OUT_OF_RANGE);
             // The output follows the sensor; friction, with the load, by no more than the cycle's way and the viscous part allow.
             let (spike, good) = (run.spoilt[FIRST], run.good[FIRST]);
             assert_near(spike.frictionless_n, good.frictionless_n + 0.5 * more_n, 1e-15);
@@ -208,9 +227,91 @@ fn sensor_spike() {
         }
         // Downwards it is a cable without tension.
         let run = Run::with(presliding, 1, |input| input.cables[0].sensor_force_n -= 40.0);
-        run.assert_flagged(1, CableStatus::SLACK | CableStatus::OUT_OF_RANGE);
+        run.assert_told(1, CableStatus::SLACK | CableStatus::OUT_OF_RANGE);
         assert_near(run.spoilt[FIRST].force_at_platform_n, FRICTION.offset_n, 1e-15);
         run.assert_returns(FIRST + 1, GREATEST_FRICTION_N);
+    }
+}
+
+/// Without `validated`: a lie over 88 cycles is told while it lasts, and what it leaves until it is forgotten.
+#[test]
+fn sensor_lies_without_a_range() {
+    for presliding in FORMS {
+        for more_n in [1e2, 1e3, 1e4, 1e5, -1e2, 3.0] {
+            let robot = || compensator::<1>(&[corner_cable(0, presliding)], MONITOR);
+            let (mut spoilt, mut good) = (robot(), robot());
+            let mut off_count = 0;
+            for cycle in 0..FIRST + 88 + 5000 + RETURN_CYCLES {
+                let mut input = smooth_input::<1>(cycle);
+                let expected = good.step(&input).cables[0];
+                assert!(expected.status.is_ok(), "cycle {cycle}: {}", expected.status);
+                let lies = (FIRST..FIRST + 88).contains(&cycle);
+                input.cables[0].sensor_force_n += if lies { more_n } else { 0.0 };
+                let output = spoilt.step(&input).cables[0];
+                assert_eq!(
+                    output.status.contains(CableStatus::SENSOR_JUMP),
+                    lies || cycle == FIRST + 88,
+                    "cycle {cycle}"
+                );
+                let off_n = (output.force_at_platform_n - expected.force_at_platform_n).abs();
+                let is_off = off_n > 0.05 * expected.force_at_platform_n + 0.1;
+                assert!(!is_off || !output.status.is_ok(), "{more_n} N, cycle {cycle}: {off_n} N");
+                off_count += usize::from(is_off && !lies);
+                // Forgotten, it is not flagged any more.
+                assert!(
+                    cycle < FIRST + 88 + RETURN_CYCLES || output.status.is_ok(),
+                    "cycle {cycle}: {}",
+                    output.status
+                );
+            }
+            assert!(more_n < 1e4 || off_count > 0, "nothing was left to tell of");
+        }
+    }
+}
+
+/// A level that stays is taken for the load after 5 s.
+#[test]
+fn a_step_of_the_load_is_believed_in_the_end() {
+    for presliding in FORMS {
+        let mut compensator = compensator::<1>(&[corner_cable(0, presliding)], MONITOR);
+        for cycle in 0..FIRST + 5000 + RETURN_CYCLES {
+            let mut input = smooth_input::<1>(cycle);
+            input.cables[0].sensor_force_n += if cycle < FIRST { 0.0 } else { 30.0 };
+            let status = compensator.step(&input).cables[0].status;
+            assert_eq!(
+                status.contains(CableStatus::SENSOR_JUMP),
+                (FIRST..FIRST + 5000).contains(&cycle),
+                "cycle {cycle}"
+            );
+            assert!(status.is_ok() || cycle < FIRST + 5000 + RETURN_CYCLES - 1);
+        }
+    }
+}
+
+/// What is stored at rest while the load falls is beyond what the bearings bear then.
+#[test]
+fn a_load_that_falls_at_rest_is_unsettled_until_the_cable_moves() {
+    for presliding in FORMS {
+        let monitor = MonitorOptions { frozen_cycles: 0, ..MONITOR };
+        let mut compensator = compensator::<1>(&[corner_cable(0, presliding)], monitor);
+        let mut step = |force_n: f64, length_m: f64, speed_m_per_s: f64| {
+            let mut input = smooth_input::<1>(0);
+            input.cables[0] = fric_core::CableInput { sensor_force_n: force_n, length_m, speed_m_per_s };
+            compensator.step(&input).cables[0]
+        };
+        for cycle in 0..1000 {
+            assert!(step(30.0, 1e-4 * f64::from(cycle), 0.1).status.is_ok());
+        }
+        let mut output = CableOutput::default();
+        for cycle in 0..1000 {
+            output = step(30.0 - 0.027 * f64::from(cycle), 0.1, 0.0);
+        }
+        assert!(output.friction_n > 0.9 && output.frictionless_n < 1.6, "{output:?}");
+        assert_eq!(output.status, CableStatus::UNSETTLED);
+        for cycle in 1..=40 {
+            output = step(3.0, 0.1 + 1e-4 * f64::from(cycle), 0.1);
+        }
+        assert_eq!(output.status, CableStatus::OK);
     }
 }
 
@@ -232,7 +333,7 @@ fn sensor_saturated() {
                 assert_eq!(bits(&output), bits(&run.spoilt[cycle - 1]));
             }
         }
-        assert!(run.spoilt[FIRST + 60..].iter().all(|output| output.status.is_ok()));
+        run.assert_settles(FIRST + 60);
         run.assert_returns(FIRST + 60, GREATEST_FRICTION_N);
     }
 }

@@ -75,12 +75,15 @@ fn the_documented_example_is_read() {
 
 #[test]
 fn checked_parameters_tell_what_the_file_says() {
-    let text = format!("{EXAMPLE}traction_mu = 0.15\n[monitor]\nfrozen_cycles = 7\nlength_noise_m = 1e-6\n");
+    let text = format!(
+        "{EXAMPLE}traction_mu = 0.15\n[monitor]\nfrozen_cycles = 7\nlength_noise_m = 1e-6\nsensor_jump_n = 2.5\n"
+    );
     let file = RobotFile::parse(&with(&text, "per_pulley", "lumped"), "rig.toml").unwrap();
     let robot = file.params();
     assert_eq!(robot.mass_kg(), 0.41);
     assert_eq!((robot.center_of_mass_m().as_slice(), robot.gravity_m_per_s2().z), (&[0.0; 3][..], -9.80665));
     let monitor = robot.monitor();
+    assert_eq!(monitor.sensor_jump_n, Some(2.5));
     assert_eq!((monitor.frozen_cycles, monitor.length_jump_m, monitor.length_noise_m), (7, 0.01, 1e-6));
     let cable = &robot.cables()[0];
     let wraps: Vec<_> = cable.fixed_wraps_rad().collect();

@@ -55,7 +55,8 @@ pub const FRICTION: FrictionOptions =
     FrictionOptions { mu: 0.019, sigma_n_per_m: Some(950.0), viscous_n_s_per_m: 0.5, offset_n: 0.03 };
 
 /// No check for a frozen sensor: tests feed constant forces.
-pub const UNMONITORED: MonitorOptions = MonitorOptions { frozen_cycles: 0, length_jump_m: 0.01, length_noise_m: 0.0 };
+pub const UNMONITORED: MonitorOptions =
+    MonitorOptions { frozen_cycles: 0, length_jump_m: 0.01, length_noise_m: 0.0, sensor_jump_n: Some(1e10) };
 
 /// The paper's winch: 180° sensor pulley, 90° guide, swivel.
 pub const WINCH: [PulleyOptions; 3] = [SENSOR_180, GUIDE_90, SWIVEL];

@@ -11,7 +11,8 @@ use crate::support::{FRICTION, compensator, corner_cable, smooth_input};
 
 const CABLES: usize = 5;
 const BLEND_CYCLES: u32 = 40;
-const MONITOR: MonitorOptions = MonitorOptions { frozen_cycles: 10, length_jump_m: 0.01, length_noise_m: 0.0 };
+const MONITOR: MonitorOptions =
+    MonitorOptions { frozen_cycles: 10, length_jump_m: 0.01, length_noise_m: 0.0, sensor_jump_n: None };
 
 fn options(mu: f64, sigma_n_per_m: f64, offset_n: f64) -> [CableOptions<'static>; CABLES] {
     core::array::from_fn(|index| CableOptions {

@@ -109,6 +109,8 @@ pub struct MonitorTable {
     pub length_jump_m: Option<f64>,
     /// Amplitude of the noise of measured lengths, m.
     pub length_noise_m: Option<f64>,
+    /// Greatest change of a sensor force in a cycle, N.
+    pub sensor_jump_n: Option<f64>,
 }
 
 /// `[[cable]]`.
@@ -345,6 +347,7 @@ impl RobotOptions {
             frozen_cycles: self.monitor.frozen_cycles.unwrap_or(standard.frozen_cycles),
             length_jump_m: self.monitor.length_jump_m.unwrap_or(standard.length_jump_m),
             length_noise_m: self.monitor.length_noise_m.unwrap_or(standard.length_noise_m),
+            sensor_jump_n: self.monitor.sensor_jump_n,
         };
         let platform = PlatformOptions { mass_kg, center_of_mass_m, gravity_m_per_s2 };
         let robot = RobotParams::new(self.cycle_s, &platform, monitor, cables)
@@ -357,7 +360,7 @@ impl RobotOptions {
     fn name_parameter(&self, cables: &[CableParams], error: ParamError) -> OptionsError {
         let table = match error.key {
             "mass_kg" | "center_of_mass_m" | "gravity_m_per_s2" => Some(Step::Key("platform")),
-            "length_jump_m" | "length_noise_m" => Some(Step::Key("monitor")),
+            "length_jump_m" | "length_noise_m" | "sensor_jump_n" => Some(Step::Key("monitor")),
             "delay_s" => return self.delay_error(cables, error),
             _ => None,
         };

@@ -392,19 +392,23 @@ pub struct MonitorOptions {
     pub length_jump_m: f64,
     /// Amplitude of the noise of measured lengths, m: changes within it are no motion. 0 for set points.
     pub length_noise_m: f64,
+    /// Greatest change of a sensor force in one cycle, N: beyond it the sensor has jumped. `None`: what the cable's own presliding
+    /// stiffness σ makes of a twentieth of `length_jump_m`. A change within 5 % of the force + 0.1 N at the platform is no jump
+    /// either way, and without σ none is.
+    pub sensor_jump_n: Option<f64>,
 }
 
 impl MonitorOptions {
-    /// 100 cycles; what 10 m/s cover in a cycle; no noise.
+    /// 100 cycles; what 10 m/s cover in a cycle; no noise; jumps by each cable's own stiffness.
     #[must_use]
     pub fn for_cycle(cycle_s: f64) -> Self {
-        Self { frozen_cycles: 100, length_jump_m: 10.0 * cycle_s, length_noise_m: 0.0 }
+        Self { frozen_cycles: 100, length_jump_m: 10.0 * cycle_s, length_noise_m: 0.0, sensor_jump_n: None }
     }
 
     /// As the signal checks take them.
     #[must_use]
     pub fn limits(&self) -> SignalLimits {
-        let Self { frozen_cycles, length_jump_m, length_noise_m } = *self;
+        let Self { frozen_cycles, length_jump_m, length_noise_m, sensor_jump_n: _ } = *self;
         let frozen_cycles = if frozen_cycles == 0 { f64::INFINITY } else { f64::from(frozen_cycles) };
         SignalLimits { frozen_cycles, length_jump_m, length_noise_m }
     }
@@ -446,6 +450,9 @@ impl<'a> RobotParams<'a> {
         if length_noise_m >= length_jump_m {
             let reason = "is not less than `length_jump_m`: every change would be noise or a jump, none of them motion";
             return Err(ParamError::conflict("length_noise_m", reason));
+        }
+        if let Some(sensor_jump_n) = monitor.sensor_jump_n {
+            check("sensor_jump_n", sensor_jump_n, 1e-6, 1e10)?;
         }
         let (earliest_s, latest_s) = delay_range_s(cycle_s);
         for cable in cables {

@@ -9,8 +9,11 @@
 //! | neighbours | cables without a fault have the bits of a twin without any |
 //! | recovery | after the last fault, and 800 cycles of strokes, a cable is within a millionth of its twin, and on its way there only came nearer |
 //!
+//! [`adversary`] has another, at the force sensors, with invariants of its own.
+//!
 //! Deterministic: an episode depends on its seed alone. The command is `cargo run --release -p fric-core --example soak`.
 
+pub mod adversary;
 mod bound;
 mod episode;
 mod fault;
@@ -84,7 +87,14 @@ pub fn soak(cycles: u64, seed: u64, threads: usize, progress: impl Fn(u64) + Syn
 
 #[cfg(test)]
 mod tests {
-    use super::{CableStatus, soak, watch};
+    use super::{CableStatus, adversary, soak, watch};
+
+    #[test]
+    fn an_adversary_at_the_sensors_is_told_of() {
+        let seen = adversary::run(400_000, 1, 1).unwrap_or_else(|problem| panic!("{problem}"));
+        assert!(seen.spikes > 200 && seen.off > 10_000, "{seen:?}");
+        assert_eq!(seen.false_flags, 0, "{seen:?}");
+    }
 
     #[test]
     fn no_invariant_breaks_in_random_cycles_with_faults() {

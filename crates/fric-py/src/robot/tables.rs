@@ -182,7 +182,7 @@ table! {
 
 table! {
     /// `[monitor]`: when a signal counts as faulty. None stands for the default.
-    Monitor, optional: [frozen_cycles, length_jump_m, length_noise_m];
+    Monitor, optional: [frozen_cycles, length_jump_m, length_noise_m, sensor_jump_n];
     keys: {
         /// After so many cycles with the same value a sensor counts as frozen (100); 0 switches it off.
         frozen_cycles,
@@ -190,6 +190,8 @@ table! {
         length_jump_m,
         /// Amplitude of the noise of measured lengths, m (0).
         length_noise_m,
+        /// Greatest change of a sensor force in a cycle, N (what each cable's σ makes of a twentieth of `length_jump_m`).
+        sensor_jump_n,
     }
     also [] {}
 }

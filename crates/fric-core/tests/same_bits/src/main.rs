@@ -123,7 +123,7 @@ fn robot<const CABLES: usize>(
     let platform =
         PlatformOptions { mass_kg: 0.41, center_of_mass_m: random.vector(0.02), ..PlatformOptions::default() };
     let length_noise_m = if effects > 2 { 2e-6 } else { 0.0 };
-    let monitor = MonitorOptions { frozen_cycles: 20, length_jump_m: 0.01, length_noise_m };
+    let monitor = MonitorOptions { frozen_cycles: 20, length_jump_m: 0.01, length_noise_m, sensor_jump_n: None };
     Compensator::new(&RobotParams::new(CYCLE_S, &platform, monitor, &cables).unwrap()).unwrap()
 }
 

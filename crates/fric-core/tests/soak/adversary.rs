@@ -1,0 +1,244 @@
+//! An adversary at the force sensors: spikes of all sizes, 0.1 N to 10⁹ N up and down, over 1 to 1000 cycles, beside a twin without any.
+//!
+//! | invariant | statement |
+//! |---|---|
+//! | told | while a cable's force is off by more than 5 % + 0.1 N of the twin's, some flag of it is up |
+//! | believed | the twin has no `SENSOR_JUMP`, and is `UNSETTLED` only where it has stored more than `Σμk_j·T` |
+//!
+//! With `cable_elasticity` the play of the stretch may stay off by 3·`play_n`·`compliance_m_per_n`·σ, which is left out.
+//! What cannot be told is counted and left out: a spike of no more than [`greatest_change_n`] is what the cable can do, from its
+//! first cycle until, after its last, the force has come back to the twin's. The twin's own force changes by at most half of that in a cycle.
+
+use fric_core::robot::{MonitorOptions, Presliding};
+use fric_core::{CableInput, CableParams, CableStatus, CycleInput, Pose};
+
+use super::bound::{effect, greatest_mu, sensor_cos};
+use super::motion::Motion;
+use super::robot::{Robot, magnitude, once_in};
+use crate::random::Random;
+
+/// Cycles of an episode.
+const CYCLES: u64 = 20_000;
+
+/// What was seen.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Seen {
+    /// Cycles of a cable beside its twin.
+    pub cycles: u64,
+    /// Spikes, and those among them that are no jump.
+    pub spikes: u64,
+    pub hidden: u64,
+    /// Cycles of a cable in which its force was off, and in which that was left out.
+    pub off: u64,
+    pub left_out: u64,
+    /// Cycles of a twin that were flagged without a reason.
+    pub false_flags: u64,
+    /// Cycles of a twin that had stored more than the load bears, flagged.
+    pub unsettled: u64,
+}
+
+impl Seen {
+    pub fn add(&mut self, other: &Self) {
+        self.cycles += other.cycles;
+        self.spikes += other.spikes;
+        self.hidden += other.hidden;
+        self.off += other.off;
+        self.left_out += other.left_out;
+        self.false_flags += other.false_flags;
+        self.unsettled += other.unsettled;
+    }
+}
+
+/// The greatest change of a sensor force (N) in a cycle that is no jump, written from the robot file's description.
+fn greatest_change_n(cable: &CableParams, monitor: &MonitorOptions, force_n: f64) -> f64 {
+    let default_n = cable.friction().sigma_n_per_m.unwrap() * monitor.length_jump_m / 20.0;
+    monitor.sensor_jump_n.unwrap_or(default_n).max(0.05 * force_n + 0.1 * (1.0 - sensor_cos(cable)))
+}
+
+/// One cable's true force and what is done to it.
+struct Line {
+    motion: Motion,
+    base_n: f64,
+    force_n: f64,
+    target_n: f64,
+    /// Cycles until the next spike begins, or this one ends.
+    cycles_left: u64,
+    spike: Option<Spike>,
+    /// A spike that is no jump stands, or has left something.
+    hidden: bool,
+}
+
+#[derive(Clone, Copy)]
+enum Spike {
+    More(f64),
+    Shows(f64),
+}
+
+impl Line {
+    fn step(&mut self, random: &mut Random, cable: &CableParams, monitor: &MonitorOptions) -> CableInput {
+        let mut input = self.motion.any(random);
+        if once_in(random, 400) {
+            self.target_n = match random.below(8) {
+                0 => -0.5,
+                1 => 0.1 * self.base_n,
+                _ => self.base_n * random.range(0.5, 2.0),
+            };
+        }
+        let most_n = 0.4 * greatest_change_n(cable, monitor, self.force_n.max(0.0));
+        let wanted_n = 0.01 * (self.target_n - self.force_n) + 0.02 * self.base_n * random.range(-1.0, 1.0);
+        self.force_n += wanted_n.clamp(-most_n, most_n);
+        let noise_n = (0.1 * most_n).min(0.01);
+        input.sensor_force_n = self.force_n + random.range(-noise_n, noise_n);
+        input
+    }
+
+    /// Spoils the sensor force; whether a spike begins.
+    fn spoil(
+        &mut self,
+        random: &mut Random,
+        (last_n, force_n): (f64, &mut f64),
+        cable: &CableParams,
+        monitor: &MonitorOptions,
+    ) -> Option<bool> {
+        let mut begins = None;
+        if self.cycles_left == 0 {
+            if self.spike.take().is_none() {
+                let size_n = magnitude(random, 0.1, 1e9) * if once_in(random, 2) { 1.0 } else { -1.0 };
+                self.spike = Some(if once_in(random, 3) { Spike::Shows(size_n) } else { Spike::More(size_n) });
+                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to 1000")]
+                let cycles = magnitude(random, 1.0, 1000.0).round() as u64;
+                self.cycles_left = cycles;
+                begins = Some(false);
+            } else {
+                self.cycles_left = 50 + random.below(3000);
+            }
+        }
+        self.cycles_left -= 1;
+        if let Some(spike) = self.spike {
+            let shown_n = match spike {
+                Spike::More(more_n) => *force_n + more_n,
+                Spike::Shows(value_n) => value_n,
+            };
+            if let Some(hidden) = &mut begins {
+                *hidden = (shown_n - last_n).abs() <= greatest_change_n(cable, monitor, shown_n.min(last_n));
+            }
+            *force_n = shown_n;
+        }
+        begins
+    }
+}
+
+/// One robot and its twin.
+pub fn episode(seed: u64) -> Result<Seen, String> {
+    let mut random = Random::new(seed);
+    let robot = Robot::new(&mut random);
+    let monitor = robot.monitor;
+    let mut lines: Vec<Line> = (0..robot.cables.len())
+        .map(|_| {
+            let motion = Motion::new(&mut random, robot.cycle_s, monitor.length_jump_m, monitor.length_noise_m);
+            let base_n = magnitude(&mut random, 2.0, 50.0);
+            let cycles_left = 500 + random.below(1000);
+            Line { motion, base_n, force_n: base_n, target_n: base_n, cycles_left, spike: None, hidden: false }
+        })
+        .collect();
+    let (mut twin, mut spoilt) = (robot.compensator(), robot.compensator());
+    let cable = |index: usize| &robot.cables[index];
+    let mut seen = Seen::default();
+    let mut pose: Option<Pose> = None;
+    let mut shown_n: Vec<f64> = lines.iter().map(|line| line.force_n).collect();
+    for cycle in 0..CYCLES / robot.cables.len() as u64 {
+        if once_in(&mut random, 50) {
+            pose = Some(random.pose(0.3));
+        }
+        let mut good = CycleInput { pose, ..CycleInput::default() };
+        for ((place, line), cable) in good.cables.iter_mut().zip(&mut lines).zip(&robot.cables) {
+            *place = line.step(&mut random, cable, &monitor);
+        }
+        let mut bad = good;
+        for (index, line) in lines.iter_mut().enumerate() {
+            let force_n = &mut bad.cables[index].sensor_force_n;
+            if let Some(hidden) = line.spoil(&mut random, (shown_n[index], force_n), cable(index), &monitor) {
+                seen.spikes += 1;
+                seen.hidden += u64::from(hidden);
+                line.hidden |= hidden;
+            }
+            shown_n[index] = *force_n;
+        }
+        let (expected, output) = (twin.step(&good), spoilt.step(&bad));
+        for (index, line) in lines.iter_mut().enumerate() {
+            let (one, other) = (&output.cables[index], &expected.cables[index]);
+            seen.cycles += 1;
+            let off_n = (one.force_at_platform_n - other.force_at_platform_n).abs();
+            let tolerated_n = 0.05 * other.force_at_platform_n.abs() + 0.1 + play_n(cable(index));
+            let is_off = off_n > tolerated_n;
+            seen.off += u64::from(is_off);
+            seen.left_out += u64::from(is_off && line.hidden);
+            let is_silent = is_off && !line.hidden && one.status.is_ok();
+            if is_silent {
+                return Err(format!(
+                    "cycle {cycle}, cable {index}: {one:?} beside {other:?}, from {:?}; {:?}",
+                    bad.cables[index], robot.cables[index],
+                ));
+            }
+            if off_n < 0.01 * tolerated_n && line.spike.is_none() {
+                line.hidden = false;
+            }
+            let has = |flag| other.status.contains(flag);
+            let stored_n: f64 = match robot.cables[index].presliding() {
+                Presliding::PerPulley => twin.pulley_friction_n(index).iter().map(|friction_n| friction_n.abs()).sum(),
+                Presliding::Lumped => f64::INFINITY,
+            };
+            let unsettled = has(CableStatus::UNSETTLED);
+            let is_false = unsettled && stored_n <= least_borne_n(&robot.cables[index], other.frictionless_n);
+            seen.unsettled += u64::from(unsettled && !is_false);
+            seen.false_flags += u64::from(has(CableStatus::SENSOR_JUMP) || is_false);
+        }
+    }
+    Ok(seen)
+}
+
+/// What the play of a stretched cable may be off by for good, N: its middle by 2·`play_n`, and what waits by one.
+fn play_n(cable: &CableParams) -> f64 {
+    let value = |key| effect(cable, "cable_elasticity", key);
+    3.0 * value("play_n") * value("compliance_m_per_n") * cable.friction().sigma_n_per_m.unwrap()
+}
+
+/// `Σμk_j·T` of the pulleys whose wrap is fixed, N; no effect lowers it but those that are left out.
+fn least_borne_n(cable: &CableParams, tension_n: f64) -> f64 {
+    let neutral = [
+        ("load_nonlinearity", "exponent", 1.0),
+        ("friction_drift", "rate_per_s", 0.0),
+        ("sensor_gain", "gain", 1.0),
+        ("sensor_offset", "offset_n", 0.0),
+        ("sensor_drift", "rate_n_per_s", 0.0),
+    ];
+    if neutral.iter().any(|(kind, key, neutral)| effect(cable, kind, key) != *neutral) {
+        return 0.0;
+    }
+    let wraps = cable.fixed_wraps_rad().flatten();
+    wraps.map(|wrap_rad| greatest_mu(cable) * 2.0 * (0.5 * wrap_rad).sin() * tension_n.max(0.0)).sum()
+}
+
+/// Robots, one after the other, over at least so many cycles of a cable.
+pub fn run(cycles: u64, seed: u64, threads: u64) -> Result<Seen, String> {
+    let work = |thread: u64| {
+        let mut seen = Seen::default();
+        let mut episode_count = thread;
+        while seen.cycles < cycles / threads {
+            let own = seed
+                .wrapping_mul(0xd134_2543_de82_ef95)
+                .wrapping_add(episode_count.wrapping_mul(0x2545_f491_4f6c_dd1d));
+            seen.add(&episode(own).map_err(|problem| format!("seed {seed}, episode {episode_count}: {problem}"))?);
+            episode_count += threads;
+        }
+        Ok::<Seen, String>(seen)
+    };
+    std::thread::scope(|scope| {
+        let started: Vec<_> = (0..threads).map(|thread| scope.spawn(move || work(thread))).collect();
+        let mut all = Seen::default();
+        for thread in started {
+            all.add(&thread.join().unwrap()?);
+        }
+        Ok(all)
+    })
+}
