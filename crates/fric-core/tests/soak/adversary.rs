@@ -22,7 +22,7 @@ const CYCLES: u64 = 20_000;
 
 /// What was seen.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Seen {
+pub struct Tally {
     /// Cycles of a cable beside its twin.
     pub cycles: u64,
     /// Spikes, and those among them that are no jump.
@@ -37,7 +37,7 @@ pub struct Seen {
     pub unsettled: u64,
 }
 
-impl Seen {
+impl Tally {
     pub fn add(&mut self, other: &Self) {
         self.cycles += other.cycles;
         self.spikes += other.spikes;
@@ -129,7 +129,7 @@ impl Line {
 }
 
 /// One robot and its twin.
-pub fn episode(seed: u64) -> Result<Seen, String> {
+pub fn episode(seed: u64) -> Result<Tally, String> {
     let mut random = Random::new(seed);
     let robot = Robot::new(&mut random);
     let monitor = robot.monitor;
@@ -143,7 +143,7 @@ pub fn episode(seed: u64) -> Result<Seen, String> {
         .collect();
     let (mut twin, mut spoilt) = (robot.compensator(), robot.compensator());
     let cable = |index: usize| &robot.cables[index];
-    let mut seen = Seen::default();
+    let mut tally = Tally::default();
     let mut pose: Option<Pose> = None;
     let mut shown_n: Vec<f64> = lines.iter().map(|line| line.force_n).collect();
     for cycle in 0..CYCLES / robot.cables.len() as u64 {
@@ -158,8 +158,8 @@ pub fn episode(seed: u64) -> Result<Seen, String> {
         for (index, line) in lines.iter_mut().enumerate() {
             let force_n = &mut bad.cables[index].sensor_force_n;
             if let Some(hidden) = line.spoil(&mut random, (shown_n[index], force_n), cable(index), &monitor) {
-                seen.spikes += 1;
-                seen.hidden += u64::from(hidden);
+                tally.spikes += 1;
+                tally.hidden += u64::from(hidden);
                 line.hidden |= hidden;
             }
             shown_n[index] = *force_n;
@@ -167,12 +167,12 @@ pub fn episode(seed: u64) -> Result<Seen, String> {
         let (expected, output) = (twin.step(&good), spoilt.step(&bad));
         for (index, line) in lines.iter_mut().enumerate() {
             let (one, other) = (&output.cables[index], &expected.cables[index]);
-            seen.cycles += 1;
+            tally.cycles += 1;
             let off_n = (one.force_at_platform_n - other.force_at_platform_n).abs();
             let tolerated_n = 0.05 * other.force_at_platform_n.abs() + 0.1 + play_n(cable(index));
             let is_off = off_n > tolerated_n;
-            seen.off += u64::from(is_off);
-            seen.left_out += u64::from(is_off && line.hidden);
+            tally.off += u64::from(is_off);
+            tally.left_out += u64::from(is_off && line.hidden);
             let is_silent = is_off && !line.hidden && one.status.is_ok();
             if is_silent {
                 return Err(format!(
@@ -190,11 +190,11 @@ pub fn episode(seed: u64) -> Result<Seen, String> {
             };
             let unsettled = has(CableStatus::UNSETTLED);
             let is_false = unsettled && stored_n <= least_borne_n(&robot.cables[index], other.frictionless_n);
-            seen.unsettled += u64::from(unsettled && !is_false);
-            seen.false_flags += u64::from(has(CableStatus::SENSOR_JUMP) || is_false);
+            tally.unsettled += u64::from(unsettled && !is_false);
+            tally.false_flags += u64::from(has(CableStatus::SENSOR_JUMP) || is_false);
         }
     }
-    Ok(seen)
+    Ok(tally)
 }
 
 /// What the play of a stretched cable may be off by for good, N: its middle by 2·`play_n`, and what waits by one.
@@ -220,22 +220,22 @@ fn least_borne_n(cable: &CableParams, tension_n: f64) -> f64 {
 }
 
 /// Robots, one after the other, over at least so many cycles of a cable.
-pub fn run(cycles: u64, seed: u64, threads: u64) -> Result<Seen, String> {
+pub fn run(cycles: u64, seed: u64, threads: u64) -> Result<Tally, String> {
     let work = |thread: u64| {
-        let mut seen = Seen::default();
+        let mut tally = Tally::default();
         let mut episode_count = thread;
-        while seen.cycles < cycles / threads {
+        while tally.cycles < cycles / threads {
             let own = seed
                 .wrapping_mul(0xd134_2543_de82_ef95)
                 .wrapping_add(episode_count.wrapping_mul(0x2545_f491_4f6c_dd1d));
-            seen.add(&episode(own).map_err(|problem| format!("seed {seed}, episode {episode_count}: {problem}"))?);
+            tally.add(&episode(own).map_err(|problem| format!("seed {seed}, episode {episode_count}: {problem}"))?);
             episode_count += threads;
         }
-        Ok::<Seen, String>(seen)
+        Ok::<Tally, String>(tally)
     };
     std::thread::scope(|scope| {
         let started: Vec<_> = (0..threads).map(|thread| scope.spawn(move || work(thread))).collect();
-        let mut all = Seen::default();
+        let mut all = Tally::default();
         for thread in started {
             all.add(&thread.join().unwrap()?);
         }

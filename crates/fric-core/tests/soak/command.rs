@@ -31,9 +31,9 @@ fn main() -> ExitCode {
     let start = Instant::now();
     if is_adversary {
         return match soak::adversary::run(cycles, seed, threads as u64) {
-            Ok(seen) => {
+            Ok(tally) => {
                 println!(
-                    "{seen:?} in {:.0} s, seed {seed}: no force was off without a flag",
+                    "{tally:?} in {:.0} s, seed {seed}: no force was off without a flag",
                     start.elapsed().as_secs_f64()
                 );
                 ExitCode::SUCCESS
