@@ -46,7 +46,7 @@
 /// The sensor force has jumped by more than the cable can do, and not yet back; computed as usual.
 #define FRIC_STATUS_SENSOR_JUMP 512
 
-/// The stored friction is beyond what the load bears, or left by a jump of the sensor: the force may be off by more than 5 % + 0.1 N.
+/// The stored friction is beyond what the load bears by more than 25 % of the tension + 0.1 N, or a jump of the sensor may have left an error of 5 % + 0.1 N.
 #define FRIC_STATUS_UNSETTLED 1024
 
 /// Outcome of a call. Anything but FRIC_RESULT_OK has left the compensator, and the output of a step, as they were.

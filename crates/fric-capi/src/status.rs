@@ -24,7 +24,7 @@ pub const FRIC_STATUS_POSE_MISSING: u32 = 128;
 pub const FRIC_STATUS_POSE_UNREACHABLE: u32 = 256;
 /// The sensor force has jumped by more than the cable can do, and not yet back; computed as usual.
 pub const FRIC_STATUS_SENSOR_JUMP: u32 = 512;
-/// The stored friction is beyond what the load bears, or left by a jump of the sensor: the force may be off by more than 5 % + 0.1 N.
+/// The stored friction is beyond what the load bears by more than 25 % of the tension + 0.1 N, or a jump of the sensor may have left an error of 5 % + 0.1 N.
 pub const FRIC_STATUS_UNSETTLED: u32 = 1024;
 
 /// The flags in the order of [`CableStatus::NAMES`].

@@ -3,7 +3,7 @@
 //! Private to the crate: the structure-of-arrays behind [`Compensator`](crate::Compensator).
 
 use crate::cable::{Cable, CableModel};
-use crate::doubt::{Doubts, TOLERATED_N, TOLERATED_RATIO, Trust};
+use crate::doubt::{BEYOND_RATIO, Doubts, TOLERATED_N, Trust};
 use crate::effects::time_delay::{self, Delay, DelayLine};
 use crate::effects::{EFFECT_PARAMETER_COUNT, MEMORY, UNKNOWN};
 use crate::lanes::Block;
@@ -118,7 +118,7 @@ impl<const CABLES: usize> ParamColumns<CABLES> {
         put(&mut self.sensor_jump_n, cable, sensor_jump_n);
         put(&mut self.tolerated_sensor_n, cable, tolerated_sensor_n);
         put(&mut self.calm_change_n, cable, sensor_jump_n.max(tolerated_sensor_n).min(GREATEST_CALM_N));
-        put(&mut self.bears_ratio, cable, bears_ratio + TOLERATED_RATIO / platform_share);
+        put(&mut self.bears_ratio, cable, bears_ratio + BEYOND_RATIO / platform_share);
         put(&mut self.bears_per_wrap, cable, bears_per_wrap);
         put(&mut self.bears_n, cable, bears_n + TOLERATED_N / platform_share);
         put(&mut self.platform_share, cable, platform_share);

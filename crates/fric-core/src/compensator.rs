@@ -11,7 +11,7 @@ use crate::cable::{Cable, Features, Moment};
 use crate::cable_cycle::cable_cycle;
 use crate::columns::{BlockOfCables, ParamColumns, StateColumns};
 use crate::cycle::{CableInput, CableOutput, CycleInput, CycleOutput};
-use crate::doubt::{LONGEST_LIE_S, Shown, Stored, TOLERATED_N, TOLERATED_RATIO, Trust, review_friction, review_sensor};
+use crate::doubt::{BEYOND_RATIO, LONGEST_LIE_S, Shown, Stored, TOLERATED_N, Trust, review_friction, review_sensor};
 use crate::effects::Acting;
 use crate::effects::direction_asymmetry::{self, DirectionAsymmetry};
 use crate::effects::friction_drift::{self, FrictionDrift};
@@ -540,7 +540,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
         if acting.has(direction_asymmetry::ACTS) {
             viscous_n = viscous_n * (one + DirectionAsymmetry::of(value).viscous_ratio.abs());
         }
-        let tolerated = [TOLERATED_RATIO, TOLERATED_N].map(|tolerated| T::splat(tolerated) / platform_share);
+        let tolerated = [BEYOND_RATIO, TOLERATED_N].map(|tolerated| T::splat(tolerated) / platform_share);
         let ratio = (bears_ratio - tolerated[0] + bears_per_wrap * wrap_factor) * raised;
         // Viscous friction is load of the pulleys behind; a slip limit takes it out of what is stored.
         let limited_n = if self.features.traction { viscous_n } else { zero };
