@@ -14,6 +14,9 @@ pub(super) struct Definition<'a> {
     pub fields: Vec<(FieldLine<'a>, usize)>,
 }
 
+/// Fields and types that a schema may have; those of real messages have some hundreds.
+const MAX_LINES: usize = 50_000;
+
 /// Splits the text into its definitions; the first one is that of `schema_name`.
 pub(super) fn split<'a>(schema_name: &str, text: &'a str) -> Result<Vec<Definition<'a>>, SchemaError> {
     let syntax = |line, LineError(expected, found): LineError<'_>| SchemaError::Syntax {
@@ -28,9 +31,19 @@ pub(super) fn split<'a>(schema_name: &str, text: &'a str) -> Result<Vec<Definiti
     let mut done = Vec::new();
     let mut type_names = HashSet::from([current.name.clone()]);
     let mut field_names = HashSet::new();
+    let mut left = MAX_LINES;
+    let mut count = || {
+        left = left.checked_sub(1).ok_or_else(|| SchemaError::TooLarge {
+            name: schema_name.to_owned(),
+            limit: MAX_LINES,
+            what: "fields and types",
+        })?;
+        Ok(())
+    };
     let mut lines = (1..).zip(text.trim_start_matches('\u{feff}').lines());
     while let Some((number, text)) = lines.next() {
         if is_separator(text) {
+            count()?;
             let heading = lines.by_ref().find(|(_, text)| !text.trim().is_empty());
             let (number, heading) = heading.unwrap_or((number, text));
             if heading.starts_with("IDL:") {
@@ -45,6 +58,7 @@ pub(super) fn split<'a>(schema_name: &str, text: &'a str) -> Result<Vec<Definiti
             continue;
         }
         if let Line::Field(field) = line::parse(text).map_err(|error| syntax(number, error))? {
+            count()?;
             if !field_names.insert(field.name) {
                 return Err(duplicate(number, field.name));
             }
