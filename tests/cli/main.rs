@@ -13,6 +13,7 @@ mod continuum;
 mod damage;
 mod discover;
 mod excite;
+mod failing;
 mod fit;
 mod fit_inputs;
 mod help;

@@ -64,6 +64,14 @@ impl Failure {
         self
     }
 
+    /// Says which outputs are in their places all the same.
+    pub fn although_written(mut self, paths: &[String]) -> Self {
+        if !paths.is_empty() {
+            self.cause = format!("{}; written before: {}", self.cause, paths.join(", "));
+        }
+        self
+    }
+
     pub fn exit_code(&self) -> u8 {
         if self.is_usage { 2 } else { 1 }
     }
@@ -188,9 +196,16 @@ fn unwritable(path: &Path, error: &io::Error) -> Failure {
     let failure = Failure::new(format!("cannot write {}: {}", path.display(), reason(error)));
     match error.kind() {
         ErrorKind::IsADirectory => failure.advise("Name a file in it."),
-        ErrorKind::StorageFull => failure.advise("Free some space, or name a file on another disk."),
-        _ => {
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
+            failure.advise("Free some space, or name a file on another disk.")
+        }
+        ErrorKind::NotFound
+        | ErrorKind::NotADirectory
+        | ErrorKind::PermissionDenied
+        | ErrorKind::ReadOnlyFilesystem
+        | ErrorKind::InvalidFilename => {
             failure.advise(format!("Check that the directory {} exists and is writable.", directory_of(path).display()))
         }
+        _ => failure.advise("Try again, or name a file on another disk."),
     }
 }

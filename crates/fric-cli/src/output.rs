@@ -3,7 +3,7 @@
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use fric_log::output::{OutputFile, directory_of};
+use fric_log::output::{CompleteFile, OutputFile, directory_of};
 use serde::Serialize;
 
 use crate::failure::{Failure, Outcome};
@@ -43,27 +43,50 @@ impl JsonTarget {
         }
     }
 
-    /// Writes the result.
-    pub fn write(self, result: &impl Serialize) -> Outcome {
-        let text = || {
-            serde_json::to_string_pretty(result)
-                .map(|text| text + "\n")
-                .map_err(|error| Failure::new(format!("cannot write the result as JSON: {error}")))
-        };
+    /// Ends a command: puts its outputs in their places, all of them complete, and shows a text to people, on stdout, or on
+    /// stderr where stdout takes the JSON.
+    pub fn finish(self, result: &impl Serialize, text: &str, mut files: Vec<CompleteFile>) -> Outcome {
         match self {
-            Self::Nowhere => Ok(()),
-            Self::Stdout => print_to(std::io::stdout(), &text()?),
-            Self::File(file) => Ok(file.finish_with(&text()?)?),
+            Self::Nowhere => {
+                place(files)?;
+                show(text)
+            }
+            Self::File(file) => {
+                files.push(file.complete_with(&as_json(result)?)?);
+                place(files)?;
+                show(text)
+            }
+            Self::Stdout => {
+                let json = as_json(result)?;
+                place(files)?;
+                print_to(std::io::stderr(), "stderr", &harmless(text))?;
+                print_to(std::io::stdout(), "stdout", &json)
+            }
         }
     }
+}
 
-    /// Shows a text to people: on stdout, or on stderr where stdout takes the JSON.
-    pub fn show(&self, text: &str) -> Outcome {
-        match self {
-            Self::Stdout => print_to(std::io::stderr(), &harmless(text)),
-            Self::Nowhere | Self::File(_) => print_to(std::io::stdout(), &harmless(text)),
-        }
+/// A result for machines.
+pub fn as_json(result: &impl Serialize) -> Outcome<String> {
+    serde_json::to_string_pretty(result)
+        .map(|text| text + "\n")
+        .map_err(|error| Failure::new(format!("cannot write the result as JSON: {error}")))
+}
+
+/// Puts files in their places; where one cannot be, tells which stand there already.
+pub fn place(files: Vec<CompleteFile>) -> Outcome {
+    let mut placed = Vec::new();
+    for file in files {
+        let path = file.path().display().to_string();
+        file.place().map_err(|error| Failure::from(error).although_written(&placed))?;
+        placed.push(path);
     }
+    Ok(())
+}
+
+/// Shows a text to people on stdout.
+pub fn show(text: &str) -> Outcome {
+    print_to(std::io::stdout(), "stdout", &harmless(text))
 }
 
 /// Lines of text without what a terminal would take for an order.
@@ -81,10 +104,11 @@ pub fn is_stdout(path: &Path) -> bool {
 }
 
 /// A reader that has gone away (`| head`) is no failure.
-fn print_to(mut stream: impl Write, text: &str) -> Outcome {
+fn print_to(mut stream: impl Write, name: &str, text: &str) -> Outcome {
     match stream.write_all(text.as_bytes()).and_then(|()| stream.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(Failure::new(format!("cannot write the result: {error}")))
+            Err(Failure::new(format!("cannot print the result to {name}: {error}"))
+                .advise(format!("See where {name} leads; output files that were named are written.")))
         }
         _ => Ok(()),
     }

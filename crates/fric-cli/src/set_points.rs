@@ -3,7 +3,7 @@
 use std::io;
 
 use fric_lab::excite::{Excitation, ExcitedCycle};
-use fric_log::output::{OutputError, OutputFile};
+use fric_log::output::{CompleteFile, OutputError, OutputFile};
 
 use crate::failure::{Failure, Outcome};
 
@@ -79,11 +79,11 @@ impl SetPointTable {
         self.writer.write_record(None::<&[u8]>).map_err(|error| self.failure(error))
     }
 
-    /// Puts the file with all its rows in its place.
-    pub fn finish(self) -> Outcome {
+    /// The file with all its rows, to be put in its place.
+    pub fn complete(self) -> Outcome<CompleteFile> {
         let path = self.writer.get_ref().path().to_owned();
         let file = self.writer.into_inner().map_err(|error| OutputError::File { path, source: error.into_error() })?;
-        Ok(file.finish()?)
+        Ok(file.complete()?)
     }
 
     /// All digits, so that the reader has the very number; no minus before a zero.

@@ -122,11 +122,8 @@ impl OutputFile {
     ///
     /// # Errors
     /// As [`finish`](Self::finish).
-    pub fn finish_with(mut self, text: &str) -> Result<(), OutputError> {
-        match self.file.write_all(text.as_bytes()) {
-            Ok(()) => self.finish(),
-            Err(source) => Err(OutputError::File { path: self.path, source }),
-        }
+    pub fn finish_with(self, text: &str) -> Result<(), OutputError> {
+        self.complete_with(text)?.place()
     }
 
     /// Puts the file in its place.
@@ -134,10 +131,50 @@ impl OutputFile {
     /// # Errors
     /// Where it cannot be written to the end, or another one has appeared in its place and `force` is not set.
     pub fn finish(self) -> Result<(), OutputError> {
-        let Self { path, file, force } = self;
-        if let Err(source) = file.as_file().sync_all() {
-            return Err(OutputError::File { path, source });
+        self.complete()?.place()
+    }
+
+    /// Writes a text, which is all of the file.
+    ///
+    /// # Errors
+    /// Where it cannot be written to the end.
+    pub fn complete_with(mut self, text: &str) -> Result<CompleteFile, OutputError> {
+        match self.file.write_all(text.as_bytes()) {
+            Ok(()) => self.complete(),
+            Err(source) => Err(OutputError::File { path: self.path, source }),
         }
+    }
+
+    /// Ends the writing: what was written is on the disk. Outputs that belong together are all complete before the first of
+    /// them is put in its place.
+    ///
+    /// # Errors
+    /// Where it cannot be written to the end.
+    pub fn complete(self) -> Result<CompleteFile, OutputError> {
+        match self.file.as_file().sync_all() {
+            Ok(()) => Ok(CompleteFile(self)),
+            Err(source) => Err(OutputError::File { path: self.path, source }),
+        }
+    }
+}
+
+/// A file with all its bytes that is not in its place yet.
+#[derive(Debug)]
+pub struct CompleteFile(OutputFile);
+
+impl CompleteFile {
+    /// Where the file will be.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.0.path
+    }
+
+    /// Puts the file in its place.
+    ///
+    /// # Errors
+    /// Where the file system refuses, or another one has appeared in its place and `force` is not set.
+    pub fn place(self) -> Result<(), OutputError> {
+        let OutputFile { path, file, force } = self.0;
         let placed = if force { file.persist(&path) } else { file.persist_noclobber(&path) };
         match placed.map_err(|error| error.error) {
             Ok(_) => Ok(()),

@@ -45,14 +45,15 @@ pub fn run(arguments: &DiscoverArguments) -> Outcome {
     let logs: Vec<(String, f64)> = names.zip(read.measurements.log_starts_s()).collect();
     let outcome = DiscoverResult::new(&model.robot, &logs, &readiness, &discoveries);
     outcome.check_told()?;
+    let mut files = Vec::new();
     if let Some(file) = extended_file {
-        file.finish_with(&extended(&model.text, &model.origin, &discoveries)?)?;
+        files.push(file.complete_with(&extended(&model.text, &model.origin, &discoveries)?)?);
     }
     if let Some(report) = report {
-        report.finish_with(&report::discovery::page(&outcome, &discoveries))?;
+        files.push(report.complete_with(&report::discovery::page(&outcome, &discoveries))?);
     }
-    json.show(&format!("{}\n{}\n", outcome.summary(), next_step(&logs, output.as_deref())))?;
-    json.write(&outcome)
+    let summary = format!("{}\n{}\n", outcome.summary(), next_step(&logs, output.as_deref()));
+    json.finish(&outcome, &summary, files)
 }
 
 /// What a user would do with the result.

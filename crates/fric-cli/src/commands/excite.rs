@@ -11,7 +11,7 @@ use crate::arguments::ExciteArguments;
 use crate::failure::{Failure, Outcome};
 use crate::interrupt;
 use crate::model::Model;
-use crate::output::{self, JsonTarget};
+use crate::output;
 use crate::progress::{self, STRIDE};
 use crate::report::{RunSeries, preview};
 use crate::set_points::SetPointTable;
@@ -47,11 +47,12 @@ pub fn run(arguments: &ExciteArguments) -> Outcome {
         series.add(&cycle);
     }
     bar.finish_and_clear();
-    table.finish()?;
+    let mut files = vec![table.complete()?];
     if let Some(page) = page {
-        page.finish_with(&preview::page(&model.robot, &excitation, &series))?;
+        files.push(page.complete_with(&preview::page(&model.robot, &excitation, &series))?);
     }
-    JsonTarget::Nowhere.show(&format!(
+    output::place(files)?;
+    output::show(&format!(
         "{}: {done_cycles} set points, {:.1} s{}\n",
         arguments.output.display(),
         excitation.trajectory().duration_s(),

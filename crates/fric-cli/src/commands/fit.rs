@@ -48,9 +48,7 @@ pub fn run(arguments: &FitArguments) -> Outcome {
     outcome.check_used()?;
     warn_all(&outcome.warnings(&fits, &readiness));
     let text = rewritten(&model.text, &model.origin, fits.cables())?;
-    fitted_file.finish_with(&text)?;
-    json.show(&outcome.summary())?;
-    json.write(&outcome)
+    json.finish(&outcome, &outcome.summary(), vec![fitted_file.complete_with(&text)?])
 }
 
 /// The parameters that the command line names.

@@ -38,8 +38,7 @@ pub fn run(arguments: &HysteresisArguments) -> Outcome {
 
     let axes = hysteresis.axes()?;
     let outcome = HysteresisResult::new(&model.robot, &crossed, &axes);
-    json.show(&outcome.summary())?;
-    json.write(&outcome)
+    json.finish(&outcome, &outcome.summary(), Vec::new())
 }
 
 /// All samples of the log one after the other.

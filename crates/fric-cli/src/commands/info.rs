@@ -8,7 +8,7 @@ use fric_core::text_file::printable;
 use fric_lab::fit::readiness::{self, Holdings, Readiness, without_reference};
 use fric_lab::text::table;
 use fric_log::recording::{FileDamage, Recording};
-use fric_log::signals::{Role, SignalPaths, SignalReader};
+use fric_log::signals::{Role, SignalError, SignalPaths, SignalReader};
 use serde::Serialize;
 
 use super::continuum;
@@ -130,8 +130,7 @@ pub fn run(arguments: &InfoArguments) -> Outcome {
         signals,
         steps,
     };
-    json.show(&describe(&outcome, model.as_ref(), &attachments))?;
-    json.write(&outcome)
+    json.finish(&outcome, &describe(&outcome, model.as_ref(), &attachments), Vec::new())
 }
 
 fn read_topics(recording: &mut Recording) -> Outcome<Vec<TopicResult>> {
@@ -195,6 +194,8 @@ fn read_signals(model: &Model, recording: Recording) -> Outcome<(Vec<SignalResul
         match reader.next_row() {
             Ok(Some(row)) => holdings.add(&row),
             Ok(None) => break None,
+            // That the disk refuses says nothing of the log.
+            Err(SignalError::Recording(error)) => return Err(error.into()),
             Err(error) => break Some(error.to_string()),
         }
     };

@@ -80,14 +80,14 @@ pub fn run(arguments: &ReplayArguments) -> Outcome {
     }
 
     let outcome = summarize(&model, &names, &replay, &durations);
+    let mut files = Vec::new();
     if let Some(writer) = writer {
-        writer.finish()?;
+        files.push(writer.complete()?);
     }
     if let (Some(report), Some(series)) = (report, series) {
-        report.finish_with(&report::errors::page(&outcome, &series, &log.logs))?;
+        files.push(report.complete_with(&report::errors::page(&outcome, &series, &log.logs))?);
     }
-    json.show(&describe(&outcome))?;
-    json.write(&outcome)
+    json.finish(&outcome, &describe(&outcome), files)
 }
 
 fn summarize(model: &Model, names: &[&str], replay: &Replay, durations: &Histogram<u64>) -> ReplayResult {

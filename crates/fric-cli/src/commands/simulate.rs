@@ -12,7 +12,7 @@ use crate::arguments::{RunName, SimulateArguments};
 use crate::failure::{Failure, Outcome};
 use crate::interrupt;
 use crate::model::Model;
-use crate::output::JsonTarget;
+use crate::output;
 use crate::progress::{self, STRIDE};
 use crate::warnings::warn_all;
 
@@ -73,7 +73,7 @@ pub fn run(arguments: &SimulateArguments) -> Outcome {
     log.writer.finish()?;
     let effects = options.effects.iter().map(ToString::to_string);
     let hidden: Vec<String> = effects.chain(options.disturbances.iter().map(ToString::to_string)).collect();
-    JsonTarget::Nowhere.show(&format!(
+    output::show(&format!(
         "{}: {done_cycles} cycles, seed {}, {}\n",
         arguments.output.display(),
         options.seed,

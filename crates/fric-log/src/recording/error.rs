@@ -13,6 +13,7 @@ mod advice {
     pub const PIPE: &str = "save the recording to a file first";
     pub const PERMISSIONS: &str = "check its permissions";
     pub const EMPTY: &str = "copy the recording again, or name another one";
+    pub const OPEN: &str = "try again, or check the disk and the limit of open files (`ulimit -n`)";
     pub const DISK: &str = "check the disk, or copy the file and try again";
     pub const COPY: &str = "take it from another copy of the recording";
     pub const EXTRACT: &str = "extract it with another tool";
@@ -52,7 +53,7 @@ pub enum RecordingError {
         path: PathBuf,
     },
     /// The file could not be opened for another reason, which is the source.
-    #[error("`{}` could not be opened", path.display())]
+    #[error("`{}` could not be opened; {}", path.display(), advice::OPEN)]
     Open {
         /// The path as given.
         path: PathBuf,
@@ -140,7 +141,7 @@ impl RecordingError {
             Self::Directory { .. } => advice::DIRECTORY,
             Self::NotAFile { .. } => advice::PIPE,
             Self::Forbidden { .. } => advice::PERMISSIONS,
-            Self::Open { .. } => return None,
+            Self::Open { .. } => advice::OPEN,
             Self::Empty { .. } => advice::EMPTY,
             Self::NotMcap { advice, .. } => advice,
             Self::Read { .. } => advice::DISK,

@@ -16,12 +16,12 @@ mod payload;
 mod replayed;
 
 use std::collections::BTreeMap;
-use std::io::BufWriter;
+use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 
 use mcap::{Attachment, Compression, McapError, WriteOptions};
 
-use crate::output::{OutputError, OutputFile};
+use crate::output::{CompleteFile, OutputError, OutputFile};
 use background::BackgroundWriter;
 pub use error::WriteError;
 pub use messages::{CableStatusChannel, JointState, JointStateChannel, NumbersChannel, PoseChannel, WrenchChannel};
@@ -96,12 +96,20 @@ impl LogWriter {
     /// # Errors
     /// Where the file cannot be written, or another one has appeared in its place and `force` is not set.
     pub fn finish(self) -> Result<(), WriteError> {
+        Ok(self.complete()?.place()?)
+    }
+
+    /// Writes the log to its end, without putting it in its place.
+    ///
+    /// # Errors
+    /// Where a message, this one or an earlier one, cannot be written.
+    pub fn complete(self) -> Result<CompleteFile, WriteError> {
         let Self { writer, path, .. } = self;
         let mut writer = writer.into_writer().map_err(|source| mcap_error(&path, source))?;
         writer.finish().map_err(|source| mcap_error(&path, source))?;
         let file = writer.into_inner().into_inner();
         let file = file.map_err(|error| OutputError::File { path, source: error.into_error() })?;
-        Ok(file.finish()?)
+        Ok(file.complete()?)
     }
 
     fn add_channel(&mut self, topic: &str, schema_name: &str, schema: &str) -> Result<u16, WriteError> {
@@ -127,6 +135,17 @@ fn mcap_error(path: &Path, source: McapError) -> WriteError {
     let path = path.to_owned();
     match source {
         McapError::Io(source) => OutputError::File { path, source }.into(),
-        source => WriteError::Mcap { path, source },
+        source => match refused(&source) {
+            Some(source) => OutputError::File { path, source }.into(),
+            None => WriteError::Mcap { path, source },
+        },
     }
+}
+
+/// What the operating system said, of which the writer of records (`binrw`) leaves the text alone.
+fn refused(error: &McapError) -> Option<io::Error> {
+    let McapError::Parse(error) = error else { return None };
+    let text = error.to_string();
+    let (code, _) = text.split_once("(os error ")?.1.split_once(')')?;
+    code.parse().ok().map(io::Error::from_raw_os_error)
 }

@@ -4,6 +4,8 @@ use std::path::Path;
 
 use fric_core::{CableOutput, CableStatus, Wrench};
 
+use crate::output::CompleteFile;
+
 use super::{CableStatusChannel, JointState, JointStateChannel, LogWriter, WrenchChannel, WriteError};
 
 /// A log with `/fric/cable_forces`, `/fric/friction`, `/fric/wrench` and `/fric/status`, and the robot file attached.
@@ -75,5 +77,13 @@ impl ReplayedLog {
     /// As [`LogWriter::finish`].
     pub fn finish(self) -> Result<(), WriteError> {
         self.log.finish()
+    }
+
+    /// Writes the log to its end, without putting it in its place.
+    ///
+    /// # Errors
+    /// As [`LogWriter::complete`].
+    pub fn complete(self) -> Result<CompleteFile, WriteError> {
+        self.log.complete()
     }
 }

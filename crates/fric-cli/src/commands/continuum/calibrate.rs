@@ -26,6 +26,6 @@ pub fn run(arguments: &CalibrateArguments) -> Outcome {
     let lines = Calibration::fit_all(&steps).map_err(|error| about(loads, error))?;
     let result = CalibrationResult::new(model.name(), &steps, &lines);
     let edit = ManipulatorEdit { lines: result.lines(), ..ManipulatorEdit::default() };
-    file.finish_with(&rewrite(&model.text, &model.origin, &edit)?)?;
-    outputs.finish(&result, &result.summary(), || continuum::calibration(&result, loads))
+    let calibrated = file.complete_with(&rewrite(&model.text, &model.origin, &edit)?)?;
+    outputs.finish(&result, &result.summary(), || continuum::calibration(&result, loads), vec![calibrated])
 }

@@ -29,12 +29,12 @@ pub fn run(arguments: &DiscoverArguments) -> Outcome {
     let table = read_table(log, &columns::of_run(model.disk_count()))?;
     let run = Run::from_columns(&table, model.disk_count()).map_err(|error| about(log, error))?;
     let found = discover(&model.file, &run, &log.display().to_string()).map_err(|error| about(log, error))?;
+    let mut files = Vec::new();
     if let Some(file) = extended {
-        file.finish_with(&rewrite(&model.text, &model.origin, &found.edit)?)?;
+        files.push(file.complete_with(&rewrite(&model.text, &model.origin, &found.edit)?)?);
     }
     if let Some(report) = report {
-        report.finish_with(&report::continuum::discovery(&found))?;
+        files.push(report.complete_with(&report::continuum::discovery(&found))?);
     }
-    json.show(&found.result.summary())?;
-    json.write(&found.result)
+    json.finish(&found.result, &found.result.summary(), files)
 }

@@ -17,6 +17,5 @@ pub fn run(arguments: &HoleArguments) -> Outcome {
     let steps = hole_loads(&table).map_err(|error| about(loads, error))?;
     let found = hole_coefficient(&steps).map_err(|error| about(loads, error))?;
     let outcome = HoleResult::new(&found);
-    json.show(&outcome.summary())?;
-    json.write(&outcome)
+    json.finish(&outcome, &outcome.summary(), Vec::new())
 }

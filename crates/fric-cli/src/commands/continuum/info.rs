@@ -64,8 +64,7 @@ pub fn run(path: &Path, model: Option<&Path>, json: JsonTarget) -> Outcome {
         groups: groups(&run, gratings.as_ref()),
         steps: steps(&run, gratings.as_ref()),
     };
-    json.show(&describe(&outcome, path))?;
-    json.write(&outcome)
+    json.finish(&outcome, &describe(&outcome, path), Vec::new())
 }
 
 fn groups(run: &Run, gratings: Option<&Gratings>) -> Vec<GroupResult> {

@@ -16,7 +16,7 @@ use fric_core::continuum::file::{FORMAT, ManipulatorFile};
 use fric_core::text_file;
 use fric_lab::continuum::gratings::{GratingSample, Gratings};
 use fric_lab::continuum::{ContinuumError, Run, columns};
-use fric_log::output::OutputFile;
+use fric_log::output::{CompleteFile, OutputFile};
 use fric_log::table::NumberTable;
 
 use crate::arguments::continuum::{ContinuumCommand, ReportArguments, RunArguments};
@@ -133,12 +133,17 @@ impl Outputs {
         Ok(Self { json, report })
     }
 
-    /// Writes page, table and JSON.
-    fn finish(self, result: &impl serde::Serialize, summary: &str, page: impl FnOnce() -> String) -> Outcome {
+    /// Writes page, table and JSON, beside `files`.
+    fn finish(
+        self,
+        result: &impl serde::Serialize,
+        summary: &str,
+        page: impl FnOnce() -> String,
+        mut files: Vec<CompleteFile>,
+    ) -> Outcome {
         if let Some(report) = self.report {
-            report.finish_with(&page())?;
+            files.push(report.complete_with(&page())?);
         }
-        self.json.show(summary)?;
-        self.json.write(result)
+        self.json.finish(result, summary, files)
     }
 }

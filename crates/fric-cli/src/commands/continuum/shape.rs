@@ -47,5 +47,5 @@ pub fn run(arguments: &ShapeArguments) -> Outcome {
     if let Some(Err(error)) = Gratings::from_file(&model.file)?.map(|one| one.check_travel(params, greatest_rad)) {
         return Err(about(&paths.run, error));
     }
-    outputs.finish(&result, &result.summary(), || continuum::shape(&result, &run, &ways, &paths.run))
+    outputs.finish(&result, &result.summary(), || continuum::shape(&result, &run, &ways, &paths.run), Vec::new())
 }

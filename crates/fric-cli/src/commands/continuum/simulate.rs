@@ -5,14 +5,14 @@ use std::path::Path;
 
 use fric_lab::continuum::simulate::{Experiment, SimulatedRun, TendonSimulationOptions, simulate};
 use fric_lab::continuum::{ContinuumError, columns};
-use fric_log::output::{OutputError, OutputFile};
+use fric_log::output::{CompleteFile, OutputError, OutputFile};
 use fric_log::write::LogWriter;
 use serde::Serialize;
 
 use super::Model;
 use crate::arguments::continuum::{ExperimentName, TendonSimulateArguments};
 use crate::failure::{Failure, Outcome};
-use crate::output::{self, JsonTarget};
+use crate::output;
 
 /// The topic of a run in MCAP.
 const TOPIC: &str = "/tendon_run";
@@ -60,15 +60,16 @@ pub fn run(arguments: &TendonSimulateArguments) -> Outcome {
     };
     let (calibration, truth) = (create(calibration)?, create(truth)?);
     let run = simulate(model.file.params(), &options).map_err(refused)?;
-    target.write(&run, model.disk_count())?;
+    let mut files = vec![target.write(&run, model.disk_count())?];
     if let Some(file) = calibration {
-        write_calibration(file, &run, model.disk_count())?;
+        files.push(write_calibration(file, &run, model.disk_count())?);
     }
     if let Some(file) = truth {
-        JsonTarget::File(file).write(&truth_of(model.name(), &run))?;
+        files.push(file.complete_with(&output::as_json(&truth_of(model.name(), &run))?)?);
     }
+    output::place(files)?;
     let last = run.truth.last().map_or(0.0, |truth| truth.bend_rad.to_degrees());
-    JsonTarget::Nowhere.show(&format!(
+    output::show(&format!(
         "{}: {} samples, seed {}, {} of them with friction of both directions, {last:.1}° at the end\n",
         output.display(),
         run.samples.len(),
@@ -112,7 +113,7 @@ enum Target {
 }
 
 impl Target {
-    fn write(self, run: &SimulatedRun, disk_count: usize) -> Outcome {
+    fn write(self, run: &SimulatedRun, disk_count: usize) -> Outcome<CompleteFile> {
         let mut names = vec![columns::TENSION_BASE.to_owned()];
         names.extend(columns::shifts(disk_count).into_iter().chain(columns::markers(disk_count)));
         let rows = run.samples.iter().map(|sample| {
@@ -132,7 +133,7 @@ impl Target {
                     let stamp_nanos = (time_s * 1e9).round() as u64;
                     writer.write_numbers(&channel, stamp_nanos, &numbers)?;
                 }
-                Ok(writer.finish()?)
+                Ok(writer.complete()?)
             }
             Self::Text(file) => {
                 names.insert(0, columns::TIME.to_owned());
@@ -146,7 +147,7 @@ impl Target {
     }
 }
 
-fn write_calibration(file: OutputFile, run: &SimulatedRun, disk_count: usize) -> Outcome {
+fn write_calibration(file: OutputFile, run: &SimulatedRun, disk_count: usize) -> Outcome<CompleteFile> {
     let mut names = vec![columns::LOADS[1].to_owned()];
     names.extend(columns::shifts(disk_count));
     let rows = run.calibration.iter().map(|step| std::iter::once(step.load_n).chain(step.shift_nm.clone()).collect());
@@ -154,7 +155,7 @@ fn write_calibration(file: OutputFile, run: &SimulatedRun, disk_count: usize) ->
 }
 
 /// All digits, so that the reader has the very numbers.
-fn write_text(file: OutputFile, names: &[String], rows: impl Iterator<Item = Vec<f64>>) -> Outcome {
+fn write_text(file: OutputFile, names: &[String], rows: impl Iterator<Item = Vec<f64>>) -> Outcome<CompleteFile> {
     let path = file.path().to_owned();
     let mut writer = csv::Writer::from_writer(file);
     let failed = |error: csv::Error| written(&path, error.into());
@@ -164,7 +165,7 @@ fn write_text(file: OutputFile, names: &[String], rows: impl Iterator<Item = Vec
     }
     let mut file = writer.into_inner().map_err(|error| written(&path, error.into_error()))?;
     file.flush().map_err(|error| written(&path, error))?;
-    Ok(file.finish()?)
+    Ok(file.complete()?)
 }
 
 fn written(path: &Path, source: std::io::Error) -> Failure {

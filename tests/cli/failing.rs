@@ -1,0 +1,229 @@
+//! Every write, read, opening, renaming and allocation of a run fails once: nothing is half written, one sentence says why.
+//!
+//! `failing.c`, loaded into the program, counts the calls of a kind and makes the n-th fail; n goes up to the last one.
+#![cfg(all(target_os = "linux", target_env = "gnu", target_arch = "x86_64"))]
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::os::unix::process::ExitStatusExt;
+use std::path::PathBuf;
+use std::process::{Command, Output};
+use std::sync::OnceLock;
+
+use tempfile::TempDir;
+
+use super::simulate::bench_robot;
+use super::support::{Place, Run, root, short_log};
+
+/// A command line, and the outputs it names.
+struct Case {
+    arguments: &'static [&'static str],
+    outputs: &'static [&'static str],
+}
+
+const CASES: [Case; 6] = [
+    Case {
+        arguments: &["simulate", "--model", "robot.toml", "-o", "out", "--duration", "0.1", "--seed", "3"],
+        outputs: &["out"],
+    },
+    Case {
+        arguments: &["replay", "log.mcap", "-o", "out", "--report", "page", "--json", "json"],
+        outputs: &["out", "page", "json"],
+    },
+    Case { arguments: &["fit", "bench.mcap", "-o", "out", "--json", "json"], outputs: &["out", "json"] },
+    Case {
+        arguments: &["discover", "bench.mcap", "-o", "out", "--report", "page", "--json", "json"],
+        outputs: &["out", "page", "json"],
+    },
+    Case { arguments: &["info", "log.mcap", "--json", "-"], outputs: &[] },
+    Case {
+        arguments: &["continuum", "calibrate", "loads.csv", "--model", "arm.toml", "-o", "out", "--json", "json"],
+        outputs: &["out", "json"],
+    },
+];
+
+/// The shim, compiled once.
+fn shim() -> PathBuf {
+    static SHIM: OnceLock<TempDir> = OnceLock::new();
+    let directory = SHIM.get_or_init(|| {
+        let directory = tempfile::tempdir().unwrap();
+        let mut compiler = Command::new("cc");
+        compiler.args(["-O1", "-Wall", "-Wextra", "-Werror", "-shared", "-fPIC", "-o"]);
+        compiler.arg(directory.path().join("failing.so")).arg(root().join("tests/cli/failing.c"));
+        let output = compiler.output().expect("this test needs a C compiler called `cc`, such as Debian's gcc");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        directory
+    });
+    directory.path().join("failing.so")
+}
+
+/// All inputs of the commands, by name; the bench's log is long enough to identify it, at a cycle of 10 ms.
+fn inputs() -> &'static [(&'static str, Vec<u8>)] {
+    static INPUTS: OnceLock<Vec<(&'static str, Vec<u8>)>> = OnceLock::new();
+    INPUTS.get_or_init(|| {
+        let place = Place::with_log();
+        place.write("bench.toml", bench_robot().replace("0.001", "0.01"));
+        place.write("arm.toml", fs::read(root().join("examples/tendon-prototype.toml")).unwrap());
+        let bench = ["simulate", "--model", "bench.toml", "-o", "bench.mcap", "--duration", "15", "--seed", "3"];
+        place.run(&bench).succeeds();
+        let arm = ["continuum", "simulate", "--model", "arm.toml", "-o", "run.csv", "--calibration", "loads.csv"];
+        place.run(&arm).succeeds();
+        assert_eq!(place.read("log.mcap"), short_log());
+        ["robot.toml", "log.mcap", "bench.mcap", "arm.toml", "loads.csv"].map(|name| (name, place.read(name))).to_vec()
+    })
+}
+
+/// What a run gave, without the times it took, which differ from run to run.
+#[derive(PartialEq, Eq, Clone)]
+struct Outcome {
+    stdout: String,
+    files: BTreeMap<String, Vec<u8>>,
+}
+
+fn without_times(text: &str) -> String {
+    let without_numbers: String = text.split_inclusive('\n').filter(|line| !line.contains("_ns\": ")).collect();
+    let mut parts = without_numbers.split("one takes ");
+    let begin = parts.next().unwrap_or_default().to_owned();
+    parts.fold(begin, |text, part| text + part.split_once("(longest)").map_or(part, |(_, rest)| rest))
+}
+
+fn outcome(place: &Place, stdout: &[u8]) -> Outcome {
+    let file = |name: String| {
+        let bytes = place.read(&name);
+        let has_times = ["json", "page"].contains(&name.as_str());
+        let bytes = if has_times { without_times(str::from_utf8(&bytes).unwrap()).into_bytes() } else { bytes };
+        (name, bytes)
+    };
+    let files = place.names().into_iter().map(file).collect();
+    Outcome { stdout: without_times(str::from_utf8(stdout).unwrap()), files }
+}
+
+/// A place with the inputs and, to be replaced, old outputs.
+fn place(case: &Case, with_old: bool) -> Place {
+    let place = Place::empty();
+    for (name, content) in inputs() {
+        place.write(name, content);
+    }
+    for name in case.outputs.iter().filter(|_| with_old) {
+        place.write(name, "old\n");
+    }
+    place
+}
+
+/// Runs the program with its n-th call of a kind failing; how many calls there were, and whether that one was among them.
+fn run(case: &Case, place: &Place, kind: &str, n: u64) -> (Output, u64, bool) {
+    let seen = tempfile::NamedTempFile::new().unwrap();
+    let mut command = place.command(case.arguments);
+    if !case.outputs.is_empty() {
+        command.arg("--force");
+    }
+    command.env("LD_PRELOAD", shim()).env("FRIC_FAIL", kind).env("FRIC_FAIL_AT", n.to_string());
+    let output = command.env("FRIC_FAIL_SEEN", seen.path()).env("RUST_BACKTRACE", "0").output().unwrap();
+    let [calls, failed] = *fs::read(seen.path()).unwrap().as_chunks::<8>().0 else {
+        panic!("the shim was not loaded: {output:?}")
+    };
+    (output, u64::from_le_bytes(calls), u64::from_le_bytes(failed) == 1)
+}
+
+/// The run is as if nothing had failed, or says in one sentence why it ended, and each output is the old one or the new one, whole.
+fn check(case: &Case, label: &str, place: &Place, old: &Outcome, undisturbed: &Outcome, output: Output) {
+    let found = outcome(place, &output.stdout);
+    if output.status.success() {
+        assert!(found == *undisturbed, "{label}: other outputs {:?}, {output:?}", place.names());
+        return;
+    }
+    let stderr = String::from_utf8(output.stderr.clone()).unwrap();
+    let was_aborted = output.status.signal() == Some(nix::sys::signal::Signal::SIGABRT as i32);
+    let placed: Vec<&str> =
+        case.outputs.iter().copied().filter(|name| found.files.get(*name) != old.files.get(*name)).collect();
+    for name in &placed {
+        assert!(found.files.get(*name) == undisturbed.files.get(*name), "{label}: {name} is half written");
+    }
+    for name in found.files.keys() {
+        assert!(
+            undisturbed.files.contains_key(name) || was_aborted && name.starts_with(".fric-"),
+            "{label}: {name} is left"
+        );
+    }
+    if was_aborted {
+        // Rust ends the process where it gets no memory.
+        assert!(label.contains("memory"), "{label}: {stderr}");
+        assert!(stderr.contains("memory allocation of ") && !stderr.contains("panicked"), "{label}: {stderr}");
+        return;
+    }
+    if stderr.contains("cannot print the result to ") {
+        // A text may be cut off there; the files come first.
+        assert_eq!((output.status.code(), placed), (Some(1), case.outputs.to_vec()), "{label}: {stderr}");
+        assert!(undisturbed.stdout.starts_with(&found.stdout) && !stderr.contains("panicked"), "{label}: {stderr}");
+        return;
+    }
+    Run::new(output).fails(1, &[]).advises(&[]);
+    let sentence: Vec<_> = stderr.lines().filter(|line| !line.starts_with("warning: ")).collect();
+    assert_eq!(sentence.len(), 2, "{label}: {stderr}");
+    let told = format!("; written before: {}", placed.join(", "));
+    assert!(placed.is_empty() || sentence[0].ends_with(&told), "{label}: {stderr}");
+}
+
+/// One kind of call in all commands, with and without old outputs, at the numbers picked from how many calls there are.
+fn fail_each(kind: &str, pick: impl Fn(u64) -> Vec<u64>) {
+    // Reading is over before the old outputs matter.
+    let replaces = |case: &Case| !case.outputs.is_empty() && ["write", "short", "rename", "sync"].contains(&kind);
+    for (case, with_old) in CASES.iter().flat_map(|case| [false, true].map(|with_old| (case, with_old))) {
+        if with_old && !replaces(case) {
+            continue;
+        }
+        let undisturbed = place(case, with_old);
+        let old = outcome(&undisturbed, b"");
+        let (output, calls, _) = run(case, &undisturbed, kind, 0);
+        assert!(output.status.success(), "{output:?}");
+        let undisturbed = outcome(&undisturbed, &output.stdout);
+        assert!(calls > 0 || case.outputs.is_empty(), "{kind} is not seen");
+        for n in pick(calls) {
+            let label = format!("{} with {kind} {n} of {calls} failing", case.arguments.join(" "));
+            let place = place(case, with_old);
+            let (output, _, was_reached) = run(case, &place, kind, n);
+            // Threads do not allocate in the same order every time.
+            assert!(was_reached || kind == "memory", "{label}");
+            check(case, &label, &place, &old, &undisturbed, output);
+            let is_left = |place: &Place| place.names().iter().any(|name| name.starts_with(".fric-"));
+            if is_left(&place) {
+                let (again, _, _) = run(case, &place, kind, 0);
+                assert!(again.status.success() && !is_left(&place), "{label}, then again: {again:?}");
+                assert!(outcome(&place, &again.stdout) == undisturbed, "{label}, then again");
+            }
+        }
+    }
+}
+
+fn every(calls: u64) -> Vec<u64> {
+    (1..=calls).collect()
+}
+
+#[test]
+fn a_write_that_fails_leaves_nothing_half() {
+    fail_each("write", every);
+    fail_each("short", every);
+}
+
+#[test]
+fn an_output_that_cannot_be_put_in_its_place_is_told() {
+    for kind in ["rename", "sync"] {
+        fail_each(kind, every);
+    }
+}
+
+#[test]
+fn a_read_that_fails_is_told() {
+    for kind in ["read", "open", "look"] {
+        fail_each(kind, every);
+    }
+}
+
+/// There are thousands: each of the first 50, then every tenth more, by which the later ones are farther apart.
+#[test]
+fn an_allocation_that_is_refused_leaves_nothing_half() {
+    fail_each("memory", |calls| {
+        let later = std::iter::successors(Some(55), |n| Some(n + n / 10)).take_while(|n| *n <= calls);
+        (1..=50).chain(later).collect()
+    });
+}
