@@ -15,7 +15,7 @@ TARGET := $(or $(CARGO_TARGET_DIR),target)
 BARE_METAL := thumbv7em-none-eabihf
 MIRI_TARGET := riscv64gc-unknown-linux-gnu
 
-.PHONY: test format lint test-rust docs test-python instructions bare-metal miri bench install tools
+.PHONY: test format lint test-rust docs test-python instructions bare-metal miri bench install tools coverage notices deny
 
 # The tools first, so that what is missing shows at once.
 test: tools format lint test-rust docs test-python instructions bare-metal miri
@@ -67,3 +67,17 @@ install:
 
 bench:
 	$(CARGO) bench
+
+# Lines and branches of core, log and C interface that their own tests reach. Some 12 minutes; needs `cargo install cargo-llvm-cov` and
+# `rustup component add llvm-tools --toolchain nightly`.
+coverage:
+	$(CARGO) +nightly llvm-cov --branch -p fric-core -p fric-log -p fric-capi --all-features --quiet --summary-only
+
+# Licences of what is built in, for who passes binaries on; needs `cargo install cargo-about --features cli`.
+notices:
+	$(CARGO) about generate --locked --workspace about.hbs -o THIRD-PARTY.txt
+	sed -i '/^  fric-/d' THIRD-PARTY.txt
+
+# Licences, advisories, sources and doubles of what is built in; needs `cargo install cargo-deny`.
+deny:
+	$(CARGO) deny check

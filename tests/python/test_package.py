@@ -2,6 +2,7 @@
 
 import doctest
 import inspect
+import re
 import subprocess
 import sys
 
@@ -31,6 +32,16 @@ def test_what_is_public_is_documented_and_examples_are_right(monkeypatch):
         runner.run(test, clear_globs=False)
     assert runner.summarize(verbose=False).failed == 0
     assert runner.tries > 20
+
+
+def test_the_notices_name_all_that_is_built_in():
+    tree = ["cargo", "tree", "--workspace", "--edges", "normal", "--prefix", "none", "--format", "{p}", "--frozen"]
+    lines = subprocess.run(tree, cwd=ROOT, capture_output=True, text=True, check=True).stdout.splitlines()
+    # Our own have a path behind the version.
+    built_in = {line.split(" (")[0].replace(" v", " ") for line in lines if line and "(/" not in line}
+    named = set(re.findall(r"^  ([\w-]+ \d+\.\d+\.\S+)$", (ROOT / "THIRD-PARTY.txt").read_text(encoding="utf-8"), re.MULTILINE))
+    assert len(built_in) > 100
+    assert built_in - named == set(), "`make notices` writes THIRD-PARTY.txt anew"
 
 
 def test_the_status_is_the_core_s():

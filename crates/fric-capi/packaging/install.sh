@@ -10,8 +10,10 @@ root=${DESTDIR:-}$prefix
 version=$(sed -n 's/^version = "\(.*\)"/\1/p' "$package/../../Cargo.toml" | head -1)
 abi=$(sed -n 's/^#define FRIC_ABI_VERSION //p' "$package/include/fric.h")
 
-install -d "$root/include" "$root/lib/pkgconfig" "$root/lib/cmake/fric"
+licences=$root/share/licenses/fric
+install -d "$licences" "$root/include" "$root/lib/pkgconfig" "$root/lib/cmake/fric"
 install -m 644 "$package/include/fric.h" "$package/include/fric.hpp" "$root/include"
+install -m 644 "$package"/../../{LICENSE,LICENSE-APACHE,LICENSE-MIT,THIRD-PARTY.txt} "$licences"
 install -m 644 "$libraries/libfric.a" "$root/lib"
 install -m 755 "$libraries/libfric.so" "$root/lib/libfric.so.$version"
 ln -sf "libfric.so.$version" "$root/lib/libfric.so.$abi"
