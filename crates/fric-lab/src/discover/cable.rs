@@ -338,7 +338,7 @@ impl<'a> Case<'a> {
         of(|parameter| parameter.place() == OFFSET).filter(has_chance_offset).or_else(|| of(|_| false)).unwrap_or_else(
             || {
                 let problem = self.bench(counts).problem(&model.free, None);
-                let (covariance, _) = engine::covariance(&problem, &[model.values], None);
+                let covariance = engine::covariance(&problem, &[model.values]);
                 Fitted { values: model.values, parameters: model.free.clone(), covariance }
             },
         )
@@ -380,12 +380,7 @@ impl<'a> Case<'a> {
         let before = Model {
             values: base.values,
             fitted: base.free.clone(),
-            covariance: engine::covariance(
-                &self.bench(&outcome.counts).problem(&base.free, None),
-                &[base.values],
-                None,
-            )
-            .0,
+            covariance: engine::covariance(&self.bench(&outcome.counts).problem(&base.free, None), &[base.values]),
             held_out_n: held_out_of(&base.values),
         };
         let after = Model {

@@ -161,15 +161,18 @@ impl Problem<'_> {
         self.visit(values, true, |_, rows| rows.for_each(&mut visit));
     }
 
-    /// `Jᵀd` for several changes `d` of a single cable's force, given side by side for every cycle: a column each.
-    pub fn projected(&self, values: &[Values], changes_n: &[f64], count: usize) -> DMatrix<f64> {
+    /// `Jᵀd` for several changes `d` of the force of one member, given side by side for every cycle: a column each.
+    pub fn projected(&self, values: &[Values], member: usize, changes_n: &[f64], count: usize) -> DMatrix<f64> {
         let mut sums = DMatrix::zeros(self.parameter_count(), count);
+        let mut levers = Vec::new();
         self.visit(values, true, |place, rows| {
             let changes_n = changes_n.get(place * count..(place + 1) * count).unwrap_or_default();
-            for (root, derivatives) in rows.filter_map(<[f64]>::split_last) {
-                let slope = self.loss.slope_at(*root);
+            self.levers(place, &mut levers);
+            let Some(lever) = levers.get(member) else { return };
+            for ((root, derivatives), lever) in rows.filter_map(<[f64]>::split_last).zip(lever.iter()) {
+                let factor = self.loss.slope_at(*root) * lever;
                 for (mut column, change_n) in sums.column_iter_mut().zip(changes_n) {
-                    column.iter_mut().zip(derivatives).for_each(|(sum, part)| *sum += part * slope * change_n);
+                    column.iter_mut().zip(derivatives).for_each(|(sum, part)| *sum += part * factor * change_n);
                 }
             }
         });

@@ -4,12 +4,11 @@ use fric_core::parameters::Values;
 use nalgebra::DMatrix;
 
 use super::gram::{Gram, Triangle};
-use super::groups::Groups;
 use super::optimizer::{self, Minimum, Termination};
 use super::problem::{Comparison, Loss, Member, Problem};
 use super::report::OpenCombination;
 use super::selection::Standing;
-use super::undetermined::covariance;
+use super::undetermined::reported_covariance;
 use super::vector::{Coordinate, Parameter, with};
 
 /// Deviations beyond this many standard deviations that their neighbours do not share are no measurements.
@@ -104,11 +103,8 @@ pub fn solve(
         }
     }
     solution.hold_undetermined(problem, given, cycle_s);
-    if let (Comparison::Forces, [member], false) =
-        (&problem.comparison, problem.members.as_slice(), solution.unknowns.is_empty())
-    {
-        let groups = Groups::of(&member.record);
-        solution.covariance = covariance(problem, &solution.values, Some(groups)).0;
+    if matches!(problem.comparison, Comparison::Forces) && !solution.unknowns.is_empty() {
+        solution.covariance = reported_covariance(problem, &solution.values);
     }
     solution
 }

@@ -189,14 +189,27 @@ fn yardsticks(problem: &Problem<'_>, values: &[Values]) -> Vec<Yardstick> {
     problem.members.iter().zip(values).zip(&forces).map(of).collect()
 }
 
-/// Covariance of what a problem varies, infinite where the samples say nothing; and by how much each moves for residuals of
-/// 1 N in every sample, at worst. The covariance is also taken over groups of samples, if there are any.
-pub fn covariance(problem: &Problem<'_>, values: &[Values], groups: Option<Groups>) -> (DMatrix<f64>, Vec<f64>) {
-    let (_, covariance, leverages) = uncertainty(problem, values, groups);
-    (covariance, leverages)
+/// Covariance of what a problem varies, infinite where the samples say nothing.
+pub fn covariance(problem: &Problem<'_>, values: &[Values]) -> DMatrix<f64> {
+    uncertainty(problem, values, None).1
 }
 
-/// The same behind the matrix `JᵀJ`, which is `None` where it is not of numbers.
+/// The same as it is reported: a single cable's is also taken over groups of samples in the same condition, and what unlike pulleys do
+/// comes on top.
+pub fn reported_covariance(problem: &Problem<'_>, values: &[Values]) -> DMatrix<f64> {
+    let groups = match (&problem.comparison, problem.members.as_slice()) {
+        (Comparison::Forces, [member]) => Some(Groups::of(&member.record)),
+        _ => None,
+    };
+    let (normal, covariance, _) = uncertainty(problem, values, groups);
+    match normal.as_ref().and_then(inverse_of_normal) {
+        Some(inverse) => covariance + unlike_pulleys::covariance(problem, values, &inverse),
+        None => covariance,
+    }
+}
+
+/// Matrix `JᵀJ`, `None` where it is not of numbers; covariance; and by how much each parameter moves for residuals of 1 N in every
+/// sample, at worst.
 fn uncertainty(
     problem: &Problem<'_>,
     values: &[Values],
@@ -204,14 +217,10 @@ fn uncertainty(
 ) -> (Option<DMatrix<f64>>, DMatrix<f64>, Vec<f64>) {
     let count = problem.parameter_count();
     let unknown = || (None, DMatrix::from_diagonal_element(count, count, f64::INFINITY), vec![f64::INFINITY; count]);
-    let is_final = groups.is_some();
     let Some((gram, scores)) = problem.gram_and_scores(values, groups) else { return unknown() };
     let (matrix, ..) = gram.normal_equations();
     let Some(inverse) = inverse_of_normal(&matrix) else { return unknown() };
-    let mut covariance = scores.covariance(&inverse);
-    if is_final {
-        covariance += unlike_pulleys::covariance(problem, values, &inverse);
-    }
+    let covariance = scores.covariance(&inverse);
     let silent = |place: usize| matrix[(place, place)] <= 0.0;
     let finite = |row, column| if row == column && silent(row) { f64::INFINITY } else { covariance[(row, column)] };
     // Residuals of a wrench are no forces of a cable.

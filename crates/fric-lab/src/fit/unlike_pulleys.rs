@@ -19,31 +19,35 @@ const SPREAD_RATIO: f64 = 0.057_735;
 /// Cycles that are evaluated at once.
 const CHUNK: usize = 2048;
 
-/// What they add to the covariance of a single cable's estimate, from the inverse of `JᵀJ`.
+/// What they add to the covariance of an estimate, from the inverse of `JᵀJ`.
 pub fn covariance(problem: &Problem<'_>, values: &[Values], inverse: &DMatrix<f64>) -> DMatrix<f64> {
-    let none = || DMatrix::zeros(inverse.nrows(), inverse.ncols());
-    let ([member], [of_member]) = (problem.members.as_slice(), values) else { return none() };
-    let count = member.record.params.pulley_count();
-    if count < 2 {
-        return none();
-    }
-    let Some(forces) = problem.forces(values) else { return none() };
-    let mut changes_n = by_each_pulley(member, of_member, count);
-    let mut weights = vec![0.0; count];
-    for (cycle, changes_n) in changes_n.chunks_exact_mut(count).enumerate() {
-        let force_n = forces.first().map_or(f64::NAN, |forces| forces.at(cycle).0);
-        for (change_n, weight) in changes_n.iter_mut().zip(&mut weights) {
-            *change_n -= force_n;
-            *weight += change_n.abs();
+    let none = DMatrix::zeros(inverse.nrows(), inverse.ncols());
+    let Some(forces) = problem.forces(values) else { return none };
+    let of_members = problem.members.iter().zip(values).zip(forces).enumerate();
+    of_members.fold(none, |mut sum, (place, ((member, of_member), forces))| {
+        let count = member.record.params.pulley_count();
+        if count < 2 {
+            return sum;
         }
-    }
-    let moves = inverse * problem.projected(values, &changes_n, count);
-    let (together, all): (DVector<f64>, f64) = (moves.column_sum(), weights.iter().sum());
-    if !(all > 0.0 && all.is_finite()) {
-        return none();
-    }
-    let of_pulleys = moves.column_iter().zip(weights).map(|(of_pulley, weight)| of_pulley - &together * (weight / all));
-    of_pulleys.fold(none(), |sum, alone| sum + &alone * alone.transpose())
+        let mut changes_n = by_each_pulley(member, of_member, count);
+        let mut weights = vec![0.0; count];
+        for (cycle, changes_n) in changes_n.chunks_exact_mut(count).enumerate() {
+            let (force_n, _) = forces.at(cycle);
+            for (change_n, weight) in changes_n.iter_mut().zip(&mut weights) {
+                *change_n -= force_n;
+                *weight += change_n.abs();
+            }
+        }
+        let moves = inverse * problem.projected(values, place, &changes_n, count);
+        let (together, all): (DVector<f64>, f64) = (moves.column_sum(), weights.iter().sum());
+        if all > 0.0 && all.is_finite() {
+            for (of_pulley, weight) in moves.column_iter().zip(weights) {
+                let alone = of_pulley - &together * (weight / all);
+                sum += &alone * alone.transpose();
+            }
+        }
+        sum
+    })
 }
 
 /// Forces in every cycle where the μ of one pulley after the other is greater, N.

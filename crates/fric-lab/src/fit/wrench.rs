@@ -25,7 +25,7 @@ use super::report::{OpenCombination, WrenchFit};
 use super::selection::{self, Standing};
 use super::solve::{Solution, Unknown, contradicts, search, solve};
 use super::split::split;
-use super::undetermined::vagueness;
+use super::undetermined::{reported_covariance, vagueness};
 use super::{FitOptions, Progress, start};
 use crate::replay::{WrenchErrors, WrenchReference};
 use crate::weight;
@@ -52,7 +52,10 @@ pub fn fit_wrench(
     let case = Case { records, structure, outside: &outside, options, progress };
     progress.begin(4);
     let held_out = case.held_out();
-    let Found { problem, solution, standings } = case.identified(&|_| true);
+    let Found { problem, mut solution, standings } = case.identified(&|_| true);
+    if !solution.unknowns.is_empty() {
+        solution.covariance = reported_covariance(&problem, &solution.values);
+    }
     let cables = cable_fits(&problem, &case.given(), &solution, &standings);
     let [before, after] = case.errors(&problem, &solution.values, &|_| true);
     Ok(WrenchFit { cables, reference, before, after, held_out })
