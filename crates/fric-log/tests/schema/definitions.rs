@@ -216,7 +216,7 @@ fn deep_and_wide_schemas_are_refused_quickly() {
     };
     assert!(ros(&chain(10_000, 1)).unwrap_err().to_string().contains("more than 64 levels"));
     assert!(ros(&chain(100_000, 1)).unwrap_err().to_string().contains("more than 50000 fields and types"));
-    let fields: String = (0..60_000).map(|index| format!("float64 x{index}\n")).collect();
+    let fields = (0..60_000).map(|index| format!("float64 x{index}\n")).collect::<Vec<_>>().concat();
     assert!(ros(&fields).unwrap_err().to_string().contains("more than 50000 fields and types"));
     // 2⁵⁰ fields in all.
     let wide = ros(&chain(50, 2)).unwrap();
