@@ -23,8 +23,10 @@ test: tools format lint test-rust docs test-python instructions bare-metal miri
 tools:
 	$(PYTHON) tests/python/tools.py
 
+# `cargo fmt` does not see the files of the effects, which a macro names.
 format:
 	$(CARGO) fmt --all --check
+	rustfmt --check crates/*/src/effects/*.rs
 
 lint:
 	$(CARGO) clippy --workspace --all-targets --quiet -- -D warnings

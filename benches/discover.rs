@@ -8,6 +8,7 @@
 
 use std::collections::BTreeMap;
 
+use fric_core::effects::Effect;
 use fric_core::parameters::{MU, Values};
 use fric_core::robot::file::RobotFile;
 use fric_lab::discover::{CableDiscovery, Model, Refusal, Verdict, discover, extended};
@@ -19,10 +20,10 @@ use rayon::prelude::*;
 /// What became of a case.
 struct Outcome {
     case: Case,
-    /// Names found, in the order of the alphabet.
-    found: Vec<&'static str>,
-    /// Name that entered first.
-    first: Option<&'static str>,
+    /// Effects found, in their order.
+    found: Vec<Effect>,
+    /// The one that entered first.
+    first: Option<Effect>,
     verdict: Verdict,
     /// How well the parameters of what was hidden came out.
     errors: Vec<ParameterError>,
@@ -46,7 +47,7 @@ struct ParameterError {
 
 impl Outcome {
     fn new(case: Case, truth: &CaseTruth, cable: &CableDiscovery, is_settled: bool) -> Self {
-        let mut found: Vec<&'static str> = cable.findings.iter().map(|finding| finding.row.kind).collect();
+        let mut found: Vec<Effect> = cable.findings.iter().map(|finding| finding.effect).collect();
         let first = found.first().copied();
         found.sort_unstable();
         let floor_n = truth.floor_n.hypot(case.sensor_wander_n).hypot(case.reference_wander_n);
@@ -64,8 +65,8 @@ impl Outcome {
         }
     }
 
-    /// What there is to be found, in the order of the alphabet.
-    fn hidden(&self) -> Vec<&'static str> {
+    /// What there is to be found, in the order of effects.
+    fn hidden(&self) -> Vec<Effect> {
         let mut hidden = self.case.effects.clone();
         hidden.sort_unstable();
         hidden
@@ -87,12 +88,12 @@ fn errors(truth: &CaseTruth, cable: &CableDiscovery) -> Vec<ParameterError> {
     let params = truth.robot.params();
     let friction = params.cables().first().map(fric_core::CableParams::values);
     let true_value = |parameter: &Parameter| {
-        let Some(kind) = parameter.effect() else {
+        let Some(effect) = parameter.effect() else {
             let factor = if parameter.place() == MU { mu_factor(truth, &cable.after.values) } else { 1.0 };
             return friction.map(|values| factor * values[parameter.place()]);
         };
-        let effect = truth.effects.iter().find(|effect| effect.kind() == kind)?;
-        effect.values().iter().find(|(key, _)| *key == parameter.row().key).map(|(_, value)| *value)
+        let hidden = truth.effects.iter().find(|hidden| hidden.effect() == effect)?;
+        hidden.values().iter().find(|(key, _)| *key == parameter.row().key).map(|(_, value)| *value)
     };
     let error = |parameter: &Parameter| {
         let value = true_value(parameter)?;
@@ -110,7 +111,7 @@ fn errors(truth: &CaseTruth, cable: &CableDiscovery) -> Vec<ParameterError> {
 /// The μ of a friction that is no multiple of the load is that at a reference load, which the discovery chooses by the log: the true one there,
 /// of that where it was hidden.
 fn mu_factor(truth: &CaseTruth, values: &Values) -> f64 {
-    let hidden = truth.effects.iter().find(|effect| effect.kind() == "load_nonlinearity");
+    let hidden = truth.effects.iter().find(|effect| effect.effect() == Effect::LoadNonlinearity);
     let value =
         |of: &HiddenEffect, wanted: &str| of.values().iter().find(|(key, _)| *key == wanted).map(|(_, value)| *value);
     let named_n = Parameter::named("load_nonlinearity.reference_n").map(|parameter| values[parameter.place()]);
@@ -136,11 +137,11 @@ fn run(case: Case) -> Option<Outcome> {
     let text = extended(&log.robot_text, "sweep", std::slice::from_ref(&cable)).expect("an extended file");
     let again = search(&case, &RobotFile::parse(&text, "sweep").expect("an extended file is a robot file"))?;
     let verdict = if cable.verdict == Verdict::Extended { Verdict::Complete } else { cable.verdict };
-    let more: Vec<&str> = again.findings.iter().map(|finding| finding.row.kind).collect();
+    let more: Vec<&str> = again.findings.iter().map(|finding| finding.effect.kind()).collect();
     let is_settled = more.is_empty() && again.verdict == verdict;
     let outcome = Outcome::new(case, &log.truth, &cable, is_settled);
     let mark = if outcome.is_right() { "right" } else { "WRONG" };
-    let tried: Vec<(&str, Refusal)> = cable.tried.iter().map(|tried| (tried.row.kind, tried.refusal)).collect();
+    let tried: Vec<(&str, Refusal)> = cable.tried.iter().map(|tried| (tried.effect.kind(), tried.refusal)).collect();
     let tried = if outcome.is_right() { String::new() } else { format!(", tried {tried:?}") };
     let settled = if is_settled { String::new() } else { format!(", then {:?} {more:?}", again.verdict) };
     println!(
@@ -175,6 +176,10 @@ fn main() {
 
 fn share(of: &[&Outcome], is: impl Fn(&Outcome) -> bool) -> String {
     format!("{}/{}", of.iter().filter(|outcome| is(outcome)).count(), of.len())
+}
+
+fn names(effects: &[Effect]) -> String {
+    effects.iter().map(|effect| effect.kind()).collect::<Vec<_>>().join(" + ")
 }
 
 /// Each group with how many cases are right.
@@ -214,12 +219,12 @@ fn print_confusions(outcomes: &[Outcome]) {
     let mut taken_for: BTreeMap<&str, BTreeMap<String, u32>> = BTreeMap::new();
     for outcome in outcomes {
         let hidden = match (outcome.case.group, outcome.case.disturbance) {
-            (Group::Single, _) => outcome.case.effects.first().copied().unwrap_or_default(),
+            (Group::Single, _) => outcome.case.effects.first().map_or("", |effect| effect.kind()),
             (Group::Outside, Some(disturbance)) => disturbance,
             (Group::Nothing | Group::Wander | Group::Hand, _) => outcome.case.group.name(),
             _ => continue,
         };
-        let named = if outcome.found.is_empty() { "—".to_owned() } else { outcome.found.join(" + ") };
+        let named = if outcome.found.is_empty() { "—".to_owned() } else { names(&outcome.found) };
         let named = if outcome.verdict == Verdict::Unexplained { format!("{named}, unexplained") } else { named };
         *taken_for.entry(hidden).or_default().entry(named).or_default() += 1;
     }

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use fric_core::effects::Effect;
 use fric_lab::simulate::DISTURBANCES;
 
 /// Friction compensation for cable-driven robots: identify friction, find what the model lacks, replay logs, look into
@@ -211,7 +212,8 @@ pub struct SimulateArguments {
 
 /// What `--effect` can hide.
 fn effects_help() -> String {
-    let effects = fric_core::effects::CATALOGUE.iter().map(|row| {
+    let effects = Effect::CATALOGUE.iter().map(|effect| {
+        let row = effect.row();
         let keys = row.parameters.iter().map(|parameter| parameter.key);
         (row.kind, keys.collect::<Vec<_>>(), row.cause)
     });

@@ -12,14 +12,13 @@ use crate::effects::load_nonlinearity::{self, LoadNonlinearity};
 use crate::effects::presliding_shape::{self, PreslidingShape};
 use crate::effects::pulley_inertia::{self, PulleyInertia};
 use crate::effects::stribeck::{self, Stribeck};
-use crate::effects::{Acting, SPEEDS, UNKNOWN};
+use crate::effects::{Acting, UNKNOWN};
 use crate::pulley::sliding_friction;
 use crate::scalar::Scalar;
 use crate::signals::CableSignals;
 
 /// Effects that can take μ beyond what the sensor pulley bears.
-const RAISES_MU: Acting =
-    stribeck::ACTS.and(direction_asymmetry::ACTS).and(friction_drift::ACTS).and(load_nonlinearity::ACTS);
+const RAISES_MU: Acting = Acting::raising_mu();
 
 /// The friction law of a cable's bearings in one cycle.
 #[derive(Clone, Copy, Debug)]
@@ -47,10 +46,10 @@ impl<T: Scalar> Bearing<T> {
         let mut accelerating_n = T::splat(0.0);
         if acting.has(pulley_inertia::ACTS) {
             let inertia = PulleyInertia::of(|place| cable.effect(place));
-            let filtered_m_per_s = SPEEDS.map(|place| cable.memory(place));
+            let filtered_m_per_s = pulley_inertia::SPEEDS.map(|place| cable.memory(place));
             let (force_n, next_m_per_s) = inertia.force_n(signals.speed_m_per_s, filtered_m_per_s, moment.step_s);
             // After a motion that is not to be believed the low passes begin anew: no bump.
-            for (place, next_m_per_s) in SPEEDS.into_iter().zip(next_m_per_s) {
+            for (place, next_m_per_s) in pulley_inertia::SPEEDS.into_iter().zip(next_m_per_s) {
                 cable.set_memory(place, T::select(signals.moves, next_m_per_s, T::splat(UNKNOWN)));
             }
             accelerating_n = force_n.keep(signals.moves);

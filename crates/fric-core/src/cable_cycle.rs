@@ -8,12 +8,12 @@
 use crate::bearing::Bearing;
 use crate::cable::{Cable, CableModel, Features, Looked, Moment};
 use crate::chain::Chain;
+use crate::effects::Acting;
 use crate::effects::cable_elasticity::{self, CableElasticity, Stretching};
 use crate::effects::pulley_eccentricity::{self, PulleyEccentricity};
 use crate::effects::sensor_drift::{self, SensorDrift};
 use crate::effects::sensor_gain::{self, SensorGain};
 use crate::effects::sensor_offset::{self, SensorOffset};
-use crate::effects::{Acting, STRETCH, TENSION};
 use crate::scalar::{Mask, Scalar};
 use crate::signals::CableSignals;
 
@@ -178,12 +178,15 @@ fn stretch<T: Scalar>(
         return T::splat(0.0);
     }
     let elasticity = CableElasticity::of(|place| cable.effect(place));
-    let last = Stretching { middle_n: cable.memory(TENSION), waiting_m: cable.memory(STRETCH) };
+    let last = Stretching {
+        middle_n: cable.memory(cable_elasticity::TENSION),
+        waiting_m: cable.memory(cable_elasticity::STRETCH),
+    };
     let mut next = last;
     let tension_n = tension_n.max(T::splat(0.0));
     let stretch_m = elasticity.stretch_m(tension_n, signals.displacement_m, moment.step_s, &mut next);
     let known = signals.sensor_fault.not();
-    cable.set_memory(TENSION, T::select(known, next.middle_n, last.middle_n));
-    cable.set_memory(STRETCH, T::select(known, next.waiting_m, last.waiting_m));
+    cable.set_memory(cable_elasticity::TENSION, T::select(known, next.middle_n, last.middle_n));
+    cable.set_memory(cable_elasticity::STRETCH, T::select(known, next.waiting_m, last.waiting_m));
     stretch_m.keep(known)
 }

@@ -23,8 +23,9 @@
 //!   the same load come nearer, and with another exponent of the law by that law.
 
 use crate::dahl::dahl_step;
+use crate::effects::bearing_drag;
 use crate::effects::presliding_shape::PreslidingShape;
-use crate::effects::{direction_asymmetry, stribeck};
+use crate::parameters::GREATEST_MU;
 use crate::pulley::wrap_factor;
 use crate::robot::{CableParams, Presliding, Wrap};
 use crate::scalar::{Mask, Scalar};
@@ -84,13 +85,11 @@ impl Trust {
 
     /// From a cable's parameters: `J = σ·length_jump_m/20` unless the robot file states it; without σ nothing is a jump.
     pub fn new(params: &CableParams, sensor_jump_n: Option<f64>, length_jump_m: f64) -> Self {
-        let effect = |kind, key| params.effects.get(kind, key).unwrap_or(0.0);
         let values = params.values();
         let by_stiffness_n = params.friction.sigma_n_per_m.map(|sigma| STRETCHED_RATIO * length_jump_m * sigma);
         let gain = params.frictionless_gain();
 
-        let raised = 1.0 + values[stribeck::RATIO].max(0.0);
-        let mu = params.friction.mu * raised * (1.0 + values[direction_asymmetry::COULOMB].abs());
+        let mu = params.raised_mu().unwrap_or(GREATEST_MU);
         let is_lumped = params.presliding == Presliding::Lumped;
         let cos = params.sensor_wrap_rad.map_or(0.0, libm::cos);
         let mut trust = Self {
@@ -123,7 +122,7 @@ impl Trust {
                 // `2/(2 − μk) ≤ 1/(1 − μ)` for every wrap.
                 Wrap::Pose => trust.bears_per_wrap = mu * tension / (1.0 - mu),
             }
-            trust.bears_n += counts * effect("bearing_drag", "drag_n");
+            trust.bears_n += counts * values[bearing_drag::DRAG];
         }
         trust.bears_ratio = trust.bears_ratio.min(UNBOUNDED_RATIO);
         trust.bears_per_wrap = trust.bears_per_wrap.min(UNBOUNDED_RATIO);

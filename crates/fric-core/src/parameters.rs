@@ -3,7 +3,7 @@
 //! First the four of the robot file's `friction`, then those of each effect in the order of the catalogue. The order is
 //! that of [`Values`]; a [`ParameterRow`] says what each is.
 
-use crate::effects::{self, EFFECT_PARAMETER_COUNT};
+use crate::effects::{self, EFFECT_PARAMETER_COUNT, Effect};
 use crate::robot::{CableParams, FrictionOptions, ParamError};
 
 /// One parameter of the friction model.
@@ -87,9 +87,9 @@ pub const PARAMETER_COUNT: usize = FRICTION_COUNT + EFFECT_PARAMETER_COUNT;
 /// A value for each parameter of a cable; `T` is a number, or one that carries derivatives along.
 pub type Values<T = f64> = [T; PARAMETER_COUNT];
 
-/// Each parameter in the order of [`Values`], with the kind of its effect; `None` for those of `friction`.
-pub fn parameters() -> impl Iterator<Item = (Option<&'static str>, &'static ParameterRow)> {
-    let of_effects = effects::parameters().map(|(row, parameter)| (Some(row.kind), parameter));
+/// Each parameter in the order of [`Values`], with its effect; `None` for those of `friction`.
+pub fn parameters() -> impl Iterator<Item = (Option<Effect>, &'static ParameterRow)> {
+    let of_effects = effects::parameters().map(|(effect, parameter)| (Some(effect), parameter));
     FRICTION.iter().map(|parameter| (None, parameter)).chain(of_effects)
 }
 

@@ -3,7 +3,7 @@
 
 use allocation_counter::measure;
 use fric_core::continuum::{Direction, Friction, ManipulatorOptions, ManipulatorParams, StaticModel};
-use fric_core::effects::CATALOGUE;
+use fric_core::effects::Effect;
 use fric_core::robot::{
     CableOptions, FrictionOptions, GeometryOptions, MonitorOptions, PlatformOptions, Presliding, PulleyOptions,
 };
@@ -33,10 +33,10 @@ fn everything_on() -> Compensator<8> {
                 traction_mu: Some(0.05),
                 ..CableOptions::new(&PULLEYS)
             };
-            for row in CATALOGUE {
-                let parameter = &row.parameters[0];
+            for effect in Effect::CATALOGUE {
+                let parameter = &effect.row().parameters[0];
                 let value = if parameter.key == "delay_s" { 0.0105 } else { parameter.neutral + 1e-3 };
-                options.effects.set(row.kind, parameter.key, value).unwrap();
+                options.effects.set(*effect, parameter.key, value).unwrap();
             }
             CableParams::new(&options).unwrap()
         })

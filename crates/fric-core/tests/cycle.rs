@@ -1,5 +1,6 @@
 //! The cycle's lanes against the slow oracle, and its state as a value.
 
+use fric_core::effects::Effect;
 use fric_core::robot::{CableOptions, FrictionOptions, GeometryOptions, Presliding, PulleyOptions};
 use fric_core::{CableInput, Compensator, CycleInput, CycleOutput, Pose};
 
@@ -40,8 +41,8 @@ fn draw(
         ..CableOptions::new(&[])
     };
     if let Some((ratio, velocity_m_per_s)) = stribeck {
-        options.effects.set("stribeck", "ratio", ratio).unwrap();
-        options.effects.set("stribeck", "velocity_m_per_s", velocity_m_per_s).unwrap();
+        options.effects.set(Effect::Stribeck, "ratio", ratio).unwrap();
+        options.effects.set(Effect::Stribeck, "velocity_m_per_s", velocity_m_per_s).unwrap();
     }
     let effects = if random.below(2) == 0 { draw_effects(random, presliding, &mut options) } else { Effects::NONE };
     let oracle = Cable {
@@ -72,7 +73,7 @@ fn draw_effects(random: &mut Random, presliding: Presliding, options: &mut Cable
         }
         for (key, value, least, greatest) in parameters {
             **value = random.range(*least, *greatest);
-            options.effects.set(kind, key, **value).unwrap();
+            options.effects.set(Effect::of_kind(kind).unwrap(), key, **value).unwrap();
         }
     };
     let of = &mut effects;

@@ -3,7 +3,7 @@
 use fric_core::effects::friction_drift::FrictionDrift;
 use fric_core::effects::presliding_shape::PreslidingShape;
 use fric_core::effects::sensor_drift::SensorDrift;
-use fric_core::effects::{CATALOGUE, EffectParams, EffectRow, named};
+use fric_core::effects::{Effect, EffectParams};
 use fric_core::parameters::{FRICTION, MU, SIGMA, VISCOUS, parameters};
 use fric_core::robot::{CableOptions, FrictionOptions, Presliding, PulleyOptions};
 use fric_core::{CableInput, CableParams, Compensator, CycleInput};
@@ -22,7 +22,7 @@ const GUIDE: [PulleyOptions; 1] = [GUIDE_90];
 fn with(effects: &[(&str, &str, f64)]) -> EffectParams {
     let mut params = EffectParams::NEUTRAL;
     for (kind, key, value) in effects {
-        params.set(kind, key, *value).unwrap();
+        params.set(Effect::of_kind(kind).unwrap(), key, *value).unwrap();
     }
     params
 }
@@ -375,8 +375,8 @@ proptest! {
 }
 
 /// Every effect with its first parameter off its neutral value, so that it acts.
-fn acting(row: &EffectRow) -> f64 {
-    let parameter = &row.parameters[0];
+fn acting(effect: Effect) -> f64 {
+    let parameter = &effect.row().parameters[0];
     if parameter.key == "delay_s" {
         0.004
     } else {
@@ -387,13 +387,14 @@ fn acting(row: &EffectRow) -> f64 {
 #[test]
 fn neutral_values_change_no_bit_beside_cables_that_have_the_effect() {
     for presliding in FORMS {
-        for row in CATALOGUE {
+        for effect in Effect::CATALOGUE.iter().copied() {
+            let row = effect.row();
             let plain: Vec<CableOptions<'_>> = (0..4).map(|index| corner_cable(index, presliding)).collect();
             let mut some = plain.clone();
-            some[1].effects.set(row.kind, row.parameters[0].key, acting(row)).unwrap();
+            some[1].effects.set(effect, row.parameters[0].key, acting(effect)).unwrap();
             // Settings alone are no effect.
             for parameter in row.parameters.iter().filter(|parameter| !parameter.fitted) {
-                some[2].effects.set(row.kind, parameter.key, 2.0 * parameter.neutral).unwrap();
+                some[2].effects.set(effect, parameter.key, 2.0 * parameter.neutral).unwrap();
             }
             let (mut without, mut beside) =
                 (compensator::<4>(&plain, UNMONITORED), compensator::<4>(&some, UNMONITORED));
@@ -411,7 +412,7 @@ fn neutral_values_change_no_bit_beside_cables_that_have_the_effect() {
                 }
                 differs |= bits(&got.cables[1]) != bits(&expected.cables[1]);
             }
-            assert!(differs, "{} does nothing at {}", row.kind, acting(row));
+            assert!(differs, "{} does nothing at {}", row.kind, acting(effect));
         }
     }
 }
@@ -420,10 +421,11 @@ fn neutral_values_change_no_bit_beside_cables_that_have_the_effect() {
 #[test]
 fn every_effect_recovers_from_faults_without_a_bump() {
     for presliding in FORMS {
-        for row in CATALOGUE {
-            for value in [acting(row), if row.kind == "time_delay" { -0.015 } else { acting(row) }] {
+        for effect in Effect::CATALOGUE.iter().copied() {
+            let row = effect.row();
+            for value in [acting(effect), if effect == Effect::TimeDelay { -0.015 } else { acting(effect) }] {
                 let mut options = corner_cable(0, presliding);
-                options.effects.set(row.kind, row.parameters[0].key, value).unwrap();
+                options.effects.set(effect, row.parameters[0].key, value).unwrap();
                 let [mut sound, mut faulty] = [(); 2].map(|()| compensator::<1>(&[options], UNMONITORED));
                 for cycle in 0..1200 {
                     let input = smooth_input::<1>(cycle);
@@ -474,10 +476,12 @@ fn every_name_has_a_cause_a_remedy_and_its_parameters() {
     let all: Vec<_> = parameters().collect();
     let mut claimed = Vec::new();
     for kind in kinds {
-        let row = named().find(|row| row.kind == kind).unwrap_or_else(|| panic!("{kind} is missing"));
+        let effect = Effect::ALL.iter().find(|effect| effect.kind() == kind);
+        let effect = effect.unwrap_or_else(|| panic!("{kind} is missing"));
+        let row = effect.row();
         assert!(!row.cause.is_empty() && !row.remedy.is_empty());
-        assert_eq!(row.places().len(), row.parameters.len());
-        for (place, parameter) in row.places().zip(row.parameters) {
+        assert_eq!(effect.places().len(), row.parameters.len());
+        for (place, parameter) in effect.places().zip(row.parameters) {
             assert_eq!(all[place].1.key, parameter.key, "{kind}");
             assert!((parameter.min..=parameter.max).contains(&parameter.neutral) || parameter.key == "sigma_n_per_m");
             assert!(!parameter.excitation.is_empty());
@@ -485,12 +489,12 @@ fn every_name_has_a_cause_a_remedy_and_its_parameters() {
         }
         assert!(row.parameters.iter().any(|parameter| parameter.fitted), "{kind}");
     }
-    assert_eq!(named().count(), kinds.len());
+    assert_eq!(Effect::ALL.len(), kinds.len());
     // All but the offset at the platform, which is the reference's.
     claimed.sort_unstable();
     assert_eq!(claimed, [&[MU, SIGMA, VISCOUS][..], &(FRICTION.len()..all.len()).collect::<Vec<_>>()].concat());
     let settings: Vec<_> =
-        all.iter().filter(|(_, row)| !row.fitted).map(|(kind, row)| (kind.unwrap(), row.key)).collect();
+        all.iter().filter(|(_, row)| !row.fitted).map(|(effect, row)| (effect.unwrap().kind(), row.key)).collect();
     let expected = [
         ("load_nonlinearity", "reference_n"),
         ("friction_drift", "until_s"),
@@ -509,9 +513,9 @@ fn mu_beyond_what_can_be_is_refused() {
         CableParams::new(&CableOptions { friction, effects: with(effects), ..CableOptions::new(&GUIDE) }).unwrap_err()
     };
     let error = refused(&[("stribeck", "ratio", 1.5), ("direction_asymmetry", "coulomb_ratio", -0.5)]);
-    assert_eq!((error.effect, error.key), (Some("direction_asymmetry"), "coulomb_ratio"));
+    assert_eq!((error.effect, error.key), (Some(Effect::DirectionAsymmetry), "coulomb_ratio"));
     let error = refused(&[("stribeck", "ratio", 3.0), ("direction_asymmetry", "coulomb_ratio", -0.5)]);
-    assert_eq!((error.effect, error.key), (Some("stribeck"), "ratio"));
+    assert_eq!((error.effect, error.key), (Some(Effect::Stribeck), "ratio"));
 }
 
 /// What a drift does in a loop that goes on after the run that it was found in.

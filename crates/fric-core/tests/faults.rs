@@ -1,6 +1,7 @@
 //! Every fault of a robot's signals: in which cycle it is flagged, what the output does meanwhile, and how it returns, beside a twin
 //! without the fault. ASSURANCE.md has the table.
 
+use fric_core::effects::Effect;
 use fric_core::robot::{CableOptions, MonitorOptions, Presliding, ValidatedRange};
 use fric_core::{CableOutput, CableStatus, Compensator, CycleInput};
 
@@ -473,7 +474,7 @@ fn a_ripple_under_a_lead_comes_back() {
             ("pulley_eccentricity", "sin_ratio", 0.1),
             ("pulley_eccentricity", "period_m", 0.05),
         ] {
-            options.effects.set(kind, key, value).unwrap();
+            options.effects.set(Effect::of_kind(kind).unwrap(), key, value).unwrap();
         }
         let (mut good, mut spoilt) = (compensator::<1>(&[options], MONITOR), compensator::<1>(&[options], MONITOR));
         for cycle in 0..FIRST + 50 + RETURN_CYCLES {

@@ -1,6 +1,6 @@
 //! What holds for every input there is.
 
-use fric_core::effects::{CATALOGUE, EffectParams, EffectRow};
+use fric_core::effects::{Effect, EffectParams};
 use fric_core::parameters::ParameterRow;
 use fric_core::robot::{CableOptions, FrictionOptions, MonitorOptions, Presliding, PulleyOptions};
 use fric_core::scalar::Scalar as _;
@@ -48,9 +48,9 @@ fn demanding(random: &mut Random, pulleys: &'static [PulleyOptions]) -> CableOpt
     let mut options =
         CableOptions { friction, pulleys, ..corner_cable(index, FORMS[usize::try_from(random.below(2)).unwrap()]) };
     options.traction_mu = traction_mu.filter(|_| random.below(2) == 0);
-    for row in CATALOGUE.iter().filter(|_| random.below(2) == 0).collect::<Vec<_>>() {
-        for parameter in row.parameters {
-            options.effects.set(row.kind, parameter.key, any_in_range(random, parameter)).unwrap();
+    for effect in Effect::CATALOGUE.iter().filter(|_| random.below(2) == 0).collect::<Vec<_>>() {
+        for parameter in effect.row().parameters {
+            options.effects.set(*effect, parameter.key, any_in_range(random, parameter)).unwrap();
         }
     }
     options
@@ -154,14 +154,16 @@ fn every_output_is_finite_whatever_goes_in() {
                         CableStatus::SLACK | CableStatus::SLIP | CableStatus::LENGTH_JUMP | CableStatus::UNSETTLED;
                     assert!(allowed.contains(cable.status), "{}", cable.status);
                     // What is added at the ends of these ranges is beyond any friction.
-                    let added = |row: &EffectRow| row.kind.starts_with("sensor_") || row.kind == "pulley_inertia";
-                    let acts = |row: &&EffectRow| {
-                        row.parameters.iter().any(|of| options.effects.get(row.kind, of.key) != Some(of.neutral))
+                    let added =
+                        |effect: &Effect| effect.kind().starts_with("sensor_") || *effect == Effect::PulleyInertia;
+                    let acts = |effect: &&Effect| {
+                        let mut parameters = effect.row().parameters.iter();
+                        parameters.any(|of| options.effects.get(**effect, of.key) != Some(of.neutral))
                     };
-                    if CATALOGUE.iter().filter(acts).any(added) {
+                    if Effect::CATALOGUE.iter().filter(acts).any(added) {
                         continue;
                     }
-                    let drag_n = 3.0 * options.effects.get("bearing_drag", "drag_n").unwrap();
+                    let drag_n = 3.0 * options.effects.get(Effect::BearingDrag, "drag_n").unwrap();
                     let viscous_n = 3.0 * options.friction.viscous_n_s_per_m * 0.1;
                     assert!(cable.friction_n.abs() < 1e3 + 1e2 * (viscous_n + drag_n), "seed {seed}: {cable:?}");
                 }

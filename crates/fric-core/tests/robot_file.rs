@@ -1,5 +1,6 @@
 //! The robot file: what is right is read, what is wrong is named.
 
+use fric_core::effects::Effect;
 use fric_core::robot::Presliding;
 use fric_core::robot::file::{FORMAT, RobotFile, RobotFileError};
 use fric_core::{Compensator, CycleInput, KnownReference, Pose};
@@ -92,7 +93,7 @@ fn checked_parameters_tell_what_the_file_says() {
     let friction = cable.friction();
     assert_eq!((friction.mu, friction.sigma_n_per_m), (0.019, Some(950.0)));
     assert_eq!((friction.viscous_n_s_per_m, friction.offset_n), (0.5, 0.0));
-    assert_eq!((cable.effects().get("stribeck", "ratio"), cable.traction_mu()), (Some(0.5), Some(0.15)));
+    assert_eq!((cable.effects().get(Effect::Stribeck, "ratio"), cable.traction_mu()), (Some(0.5), Some(0.15)));
     assert_eq!(cable.base_m().unwrap().as_slice(), [0.55, 0.4, 0.5]);
     assert_eq!(cable.platform_m().unwrap().as_slice(), [0.06, 0.05, -0.05]);
     let bench = RobotFile::parse(SHORT, "bench.toml").unwrap();

@@ -1,6 +1,6 @@
 //! A change of parameters against two compensators that know nothing of it.
 
-use fric_core::effects::{CATALOGUE, EffectParams};
+use fric_core::effects::{Effect, EffectParams};
 use fric_core::robot::{CableOptions, FrictionOptions, MonitorOptions, PlatformOptions, Presliding, PulleyOptions};
 use fric_core::{AnyCompensator, CableParams, CableStatus, RobotParams, SendError};
 use fric_core::{
@@ -251,7 +251,7 @@ const FORMS: [Presliding; 2] = [Presliding::PerPulley, Presliding::Lumped];
 fn robot_with(presliding: Presliding, effects: &[(&str, &str, f64)]) -> Compensator<3> {
     let mut params = EffectParams::NEUTRAL;
     for (kind, key, value) in effects {
-        params.set(kind, key, *value).unwrap();
+        params.set(Effect::of_kind(kind).unwrap(), key, *value).unwrap();
     }
     let friction = FrictionOptions { sigma_n_per_m: Some(5000.0), ..FRICTION };
     let cables: Vec<_> =
@@ -322,7 +322,7 @@ const EFFECTS: &[&[(&str, &str, f64)]] = &[
 /// On, off and on again is off and on: nothing of the first time comes back.
 #[test]
 fn each_effect_switched_on_again_knows_nothing_of_the_first_time() {
-    assert!(CATALOGUE.iter().all(|row| EFFECTS.iter().any(|effects| effects[0].0 == row.kind)));
+    assert!(Effect::CATALOGUE.iter().all(|effect| EFFECTS.iter().any(|effects| effects[0].0 == effect.kind())));
     for presliding in FORMS {
         for effects in EFFECTS {
             let (without, with) = (robot_with(presliding, &[]), robot_with(presliding, effects));

@@ -114,8 +114,8 @@ fn effect_in_words(effect: &EffectResult) -> Markup {
         h3 { (effect.kind) }
         dl {
             dt { "values" } dd { (effect.values_in_words()) " (95 %)" }
-            dt { "cause" } dd { (effect.row.cause) }
-            dt { "remedy" } dd { (effect.row.remedy) }
+            dt { "cause" } dd { (effect.effect.row().cause) }
+            dt { "remedy" } dd { (effect.effect.row().remedy) }
             @if let Some(alternative) = effect.alternative_in_words() { dt { "else" } dd { (alternative) } }
         }
     }
@@ -352,8 +352,9 @@ fn candidates(cable: &DiscoverCableResult) -> Markup {
 }
 
 fn parameters(found: &CableDiscovery) -> Markup {
-    let of_finding =
-        |parameter: &Parameter| found.findings.iter().any(|finding| finding.row.places().contains(&parameter.place()));
+    let of_finding = |parameter: &Parameter| {
+        found.findings.iter().any(|finding| finding.effect.places().contains(&parameter.place()))
+    };
     let shown = Parameter::all().filter(|parameter| found.after.fitted.contains(parameter) || of_finding(parameter));
     let is_extended = !found.findings.is_empty();
     let value = |model: &Model, parameter: &Parameter| {
@@ -370,7 +371,7 @@ fn parameters(found: &CableDiscovery) -> Markup {
                 }
                 @for parameter in shown {
                     tr {
-                        td { @if let Some(kind) = parameter.effect() { (kind) ": " } (name_of(parameter.row().key)) }
+                        td { @if let Some(effect) = parameter.effect() { (effect.kind()) ": " } (name_of(parameter.row().key)) }
                         td { @if of_finding(&parameter) { "–" } @else { (value(&found.before, &parameter)) } }
                         @if is_extended { td { (value(&found.after, &parameter)) } }
                     }

@@ -1,9 +1,8 @@
 //! One compensator's parameters in the place of another's, for [`TunableCompensator`](crate::TunableCompensator).
 
 use super::Compensator;
-use crate::effects::time_delay::{self, DelayLine};
-use crate::effects::{SPEEDS, STRETCH, TENSION, UNKNOWN};
-use crate::effects::{cable_elasticity, friction_drift, pulley_inertia, sensor_drift};
+use crate::effects::time_delay::DelayLine;
+use crate::effects::{Acting, Effect, Memory, UNKNOWN};
 use crate::places::NO_SLIP;
 use crate::robot::{ParamError, ParamProblem};
 use crate::signals::BEFORE_FIRST;
@@ -43,17 +42,15 @@ impl<const CABLES: usize> Compensator<CABLES> {
     /// The state as the parameters of `next` can start from it: whatever stands still while its effect, form or limit does not act
     /// is as unknown as at the start, and friction that is stored in one form goes on in the other.
     fn hand_over(&mut self, next: &Self) {
-        let [inertia, elasticity, delay] = [pulley_inertia::ACTS, cable_elasticity::ACTS, time_delay::ACTS]
-            .map(|effect| self.features.acting.has(effect) && next.features.acting.has(effect));
+        let goes_on =
+            |effect: Effect| self.features.acting.has(effect.acts()) && next.features.acting.has(effect.acts());
+        let delay = goes_on(Effect::TimeDelay);
         if !self.drifts() && next.drifts() {
             self.state.cycle = BEFORE_FIRST;
         }
         let columns = &mut self.state.columns;
-        let of_inertia = SPEEDS.map(|place| (place, inertia));
-        for (place, acts) in of_inertia.into_iter().chain([(TENSION, elasticity), (STRETCH, elasticity)]) {
-            if let Some(memory) = columns.memory.get_mut(place).filter(|_| !acts) {
-                memory.fill(UNKNOWN);
-            }
+        for effect in Effect::CATALOGUE.iter().filter(|effect| !goes_on(**effect)) {
+            columns.memory.get_mut(effect.memory_places()).unwrap_or_default().as_flattened_mut().fill(UNKNOWN);
         }
         if !delay {
             columns.delayed_displacement_m.fill(DelayLine::EMPTY);
@@ -66,8 +63,11 @@ impl<const CABLES: usize> Compensator<CABLES> {
             if before != delay {
                 *lag_m = line.lag(*delay);
                 // Another delay is another speed, not an acceleration.
-                for column in columns.memory.iter_mut().skip(SPEEDS[0]).take(SPEEDS.len()) {
-                    column.iter_mut().skip(cable).take(1).for_each(|speed_m_per_s| *speed_m_per_s = UNKNOWN);
+                let of_motion = |effect: &&Effect| matches!(effect.row().memory, Memory::OfMotion(_));
+                for effect in Effect::CATALOGUE.iter().filter(of_motion) {
+                    for column in columns.memory.get_mut(effect.memory_places()).unwrap_or_default() {
+                        column.iter_mut().skip(cable).take(1).for_each(|memory| *memory = UNKNOWN);
+                    }
                 }
             }
         }
@@ -83,7 +83,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
 
     /// Whether something goes with the time of the run.
     fn drifts(&self) -> bool {
-        self.features.acting.has(friction_drift::ACTS.and(sensor_drift::ACTS))
+        self.features.acting.has(Acting::going_by_time())
     }
 
     /// Friction stored in a cable, from the form that it has to that of `next`, with the same force at the platform: the sum over

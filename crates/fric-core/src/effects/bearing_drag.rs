@@ -5,13 +5,13 @@
 //!
 //! Cause: preload of the bearing, its seals and its grease resist however little the cable pulls.
 
-use super::{Acting, EffectRow, first_place};
+use super::{Acting, Effect, EffectRow, Memory, OnMu};
 use crate::parameters::ParameterRow;
 use crate::scalar::Scalar;
 
 const EXCITATION: &str = "long movements in both directions at cable forces that differ by a factor of two and more";
 
-/// The catalogue row.
+/// What it is.
 pub const ROW: EffectRow = EffectRow {
     kind: "bearing_drag",
     cause: "preload, seals or grease of the bearings resist independently of the cable force",
@@ -25,12 +25,15 @@ pub const ROW: EffectRow = EffectRow {
         fitted: true,
         excitation: EXCITATION,
     }],
+    memory: Memory::Nothing,
+    on_mu: OnMu::Unchanged,
+    goes_by_time: false,
 };
 
 /// The effect by itself, to ask whether it acts.
-pub(crate) const ACTS: Acting = Acting::only(ROW.kind);
+pub(crate) const ACTS: Acting = Effect::BearingDrag.acts();
 /// Place of `drag_n` in [`Values`](crate::parameters::Values).
-pub const DRAG: usize = first_place(ROW.kind);
+pub const DRAG: usize = Effect::BearingDrag.first_place();
 
 /// The effect's parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]

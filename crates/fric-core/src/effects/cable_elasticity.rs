@@ -23,13 +23,13 @@
 //!
 //! Cause: the cable is an elastic spring between winch and platform.
 
-use super::{Acting, EffectRow, UNKNOWN, first_place};
+use super::{Acting, Effect, EffectRow, Memory, OnMu, UNKNOWN};
 use crate::parameters::ParameterRow;
 use crate::scalar::Scalar;
 
 const EXCITATION: &str = "an outside force on the resting platform that rises and falls, beside the usual run";
 
-/// The catalogue row.
+/// What it is.
 pub const ROW: EffectRow = EffectRow {
     kind: "cable_elasticity",
     cause: "the cable stretches, so that a change of force moves the far pulleys while the winch rests",
@@ -54,14 +54,22 @@ pub const ROW: EffectRow = EffectRow {
             excitation: EXCITATION,
         },
     ],
+    memory: Memory::OfTension(2),
+    on_mu: OnMu::Unchanged,
+    goes_by_time: false,
 };
 
 /// The effect by itself, to ask whether it acts.
-pub(crate) const ACTS: Acting = Acting::only(ROW.kind);
+pub(crate) const ACTS: Acting = Effect::CableElasticity.acts();
 /// Place of `compliance_m_per_n` in [`Values`](crate::parameters::Values).
-pub const COMPLIANCE: usize = first_place(ROW.kind);
+pub const COMPLIANCE: usize = Effect::CableElasticity.first_place();
 /// Place of `play_n`.
 pub const PLAY: usize = COMPLIANCE + 1;
+
+/// Place of what it remembers: the middle of the play of the tension, N.
+pub(crate) const TENSION: usize = Effect::CableElasticity.memory_places().start;
+/// And the stretch that waits to move the cable, m.
+pub(crate) const STRETCH: usize = TENSION + 1;
 
 /// The effect's parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]

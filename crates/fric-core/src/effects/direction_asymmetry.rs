@@ -6,13 +6,13 @@
 //!
 //! Cause: seals, cages or a tilted bearing rub differently the two ways; a cable that runs off a flange as well.
 
-use super::{Acting, EffectRow, first_place};
+use super::{Acting, Effect, EffectRow, Memory, OnMu, first};
 use crate::parameters::ParameterRow;
 use crate::scalar::Scalar;
 
 const EXCITATION: &str = "long movements at several speeds in both directions";
 
-/// The catalogue row.
+/// What it is.
 pub const ROW: EffectRow = EffectRow {
     kind: "direction_asymmetry",
     cause: "a bearing, its seal or the groove rubs more one way than the other",
@@ -37,12 +37,19 @@ pub const ROW: EffectRow = EffectRow {
             excitation: EXCITATION,
         },
     ],
+    memory: Memory::Nothing,
+    on_mu: OnMu::AtMost {
+        factor: |values| 1.0 + first(values).abs(),
+        key: "coulomb_ratio",
+        problem: "raises the friction one way, `mu`·(1 + `coulomb_ratio`), beyond 0.9; lower it, or `mu`",
+    },
+    goes_by_time: false,
 };
 
 /// The effect by itself, to ask whether it acts.
-pub(crate) const ACTS: Acting = Acting::only(ROW.kind);
+pub(crate) const ACTS: Acting = Effect::DirectionAsymmetry.acts();
 /// Place of `coulomb_ratio` in [`Values`](crate::parameters::Values).
-pub const COULOMB: usize = first_place(ROW.kind);
+pub const COULOMB: usize = Effect::DirectionAsymmetry.first_place();
 /// Place of `viscous_ratio`.
 pub const VISCOUS: usize = COULOMB + 1;
 

@@ -1,10 +1,10 @@
 //! `coulomb`, `viscous`, `presliding`: the friction that every model has.
 //!
 //! Their parameters are μ, F_pv and σ of [`parameters`](crate::parameters), the keys of the robot file's `friction`. They have rows
-//! like the effects, so that whoever names causes has one list ([`named`](super::named)); they are no entries of
+//! like the effects, so that whoever names causes has one list ([`Effect`](super::Effect)); they are no entries of
 //! `effects` in a robot file.
 
-use super::EffectRow;
+use super::{EffectRow, Memory, OnMu};
 use crate::parameters::{FRICTION, MU, SIGMA, VISCOUS};
 
 /// Friction in proportion to the load of the bearing, `μ·F_N`.
@@ -13,6 +13,9 @@ pub const COULOMB_ROW: EffectRow = EffectRow {
     cause: "the bearings of the pulleys rub in proportion to the cable force",
     remedy: "nothing unusual up to 0.03; above, check bearings and cable for wear, and the grooves for rubbing flanges",
     parameters: &[FRICTION[MU]],
+    memory: Memory::Nothing,
+    on_mu: OnMu::Unchanged,
+    goes_by_time: false,
 };
 
 /// Friction in proportion to speed, `F_pv·v`.
@@ -21,6 +24,9 @@ pub const VISCOUS_ROW: EffectRow = EffectRow {
     cause: "the grease of the bearings resists in proportion to the speed",
     remedy: "thinner grease, or less of it",
     parameters: &[FRICTION[VISCOUS]],
+    memory: Memory::Nothing,
+    on_mu: OnMu::Unchanged,
+    goes_by_time: false,
 };
 
 /// Friction that builds up over the first fractions of a millimetre after a reversal, [`dahl`](crate::dahl).
@@ -29,4 +35,7 @@ pub const PRESLIDING_ROW: EffectRow = EffectRow {
     cause: "the contacts give elastically before they slide, so friction builds up over a way after each reversal",
     remedy: "nothing is wrong with the machine: keep the stiffness",
     parameters: &[FRICTION[SIGMA]],
+    memory: Memory::Nothing,
+    on_mu: OnMu::Unchanged,
+    goes_by_time: false,
 };

@@ -6,13 +6,13 @@
 //!
 //! Cause: bearings and grease warm up, or dirt gets in.
 
-use super::{Acting, EffectRow, UNTIL_ROW, drifting_s, first_place};
+use super::{Acting, Effect, EffectRow, Memory, OnMu, UNTIL_ROW, drifting_s};
 use crate::parameters::ParameterRow;
 use crate::scalar::Scalar;
 
 const EXCITATION: &str = "a long run with the same movements at its beginning and its end";
 
-/// The catalogue row.
+/// What it is.
 pub const ROW: EffectRow = EffectRow {
     kind: "friction_drift",
     cause: "bearings and grease warm up during the run, so friction falls or rises",
@@ -29,12 +29,15 @@ pub const ROW: EffectRow = EffectRow {
         },
         UNTIL_ROW,
     ],
+    memory: Memory::Nothing,
+    on_mu: OnMu::Unbounded,
+    goes_by_time: true,
 };
 
 /// The effect by itself, to ask whether it acts.
-pub(crate) const ACTS: Acting = Acting::only(ROW.kind);
+pub(crate) const ACTS: Acting = Effect::FrictionDrift.acts();
 /// Place of `rate_per_s` in [`Values`](crate::parameters::Values).
-pub const RATE: usize = first_place(ROW.kind);
+pub const RATE: usize = Effect::FrictionDrift.first_place();
 /// Place of `until_s`.
 pub const UNTIL: usize = RATE + 1;
 

@@ -5,13 +5,13 @@
 //!
 //! Cause: the contact of the bearing's rolling elements, or of the groove, grows less or more than the force on it.
 
-use super::{Acting, EffectRow, first_place};
+use super::{Acting, Effect, EffectRow, Memory, OnMu};
 use crate::parameters::ParameterRow;
 use crate::scalar::Scalar;
 
 const EXCITATION: &str = "long movements in both directions at cable forces that differ by a factor of two and more";
 
-/// The catalogue row.
+/// What it is.
 pub const ROW: EffectRow = EffectRow {
     kind: "load_nonlinearity",
     cause: "contact surfaces of the bearings grow with the load, so friction is not proportional to it",
@@ -36,12 +36,15 @@ pub const ROW: EffectRow = EffectRow {
             excitation: EXCITATION,
         },
     ],
+    memory: Memory::Nothing,
+    on_mu: OnMu::Unbounded,
+    goes_by_time: false,
 };
 
 /// The effect by itself, to ask whether it acts.
-pub(crate) const ACTS: Acting = Acting::only(ROW.kind);
+pub(crate) const ACTS: Acting = Effect::LoadNonlinearity.acts();
 /// Place of `exponent` in [`Values`](crate::parameters::Values).
-pub const EXPONENT: usize = first_place(ROW.kind);
+pub const EXPONENT: usize = Effect::LoadNonlinearity.first_place();
 /// Place of `reference_n`.
 pub const REFERENCE: usize = EXPONENT + 1;
 

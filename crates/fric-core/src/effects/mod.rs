@@ -1,24 +1,10 @@
-//! The effect catalogue: what can be added to the model, one file and one row each.
+//! The effect catalogue: what can be added to the model, one file and one variant of [`Effect`] each.
 //!
-//! A row states the name of the robot file, the parameters with unit, range and neutral value, the physical cause and
-//! what to do about it on the machine. Everything that deals with effects reads the rows: the robot file, the
-//! identification, the simulation, the command line, the documentation. [`named`] lists them together with the friction
-//! that every model has.
+//! A [row](EffectRow) states the name of the robot file, the parameters with unit, range and neutral value, the physical cause,
+//! what to do about it on the machine, what it remembers, and what it can do to μ. Everything that deals with effects reads the rows: the
+//! robot file, set-up, the change of parameters, the identification, the simulation, the command line, the documentation.
 
-pub mod bearing_drag;
-pub mod cable_elasticity;
-pub mod direction_asymmetry;
 pub mod friction;
-pub mod friction_drift;
-pub mod load_nonlinearity;
-pub mod presliding_shape;
-pub mod pulley_eccentricity;
-pub mod pulley_inertia;
-pub mod sensor_drift;
-pub mod sensor_gain;
-pub mod sensor_offset;
-pub mod stribeck;
-pub mod time_delay;
 
 use core::ops::Range;
 
@@ -26,9 +12,8 @@ use crate::parameters::{self, FRICTION_COUNT, ParameterRow};
 use crate::robot::{ParamError, check};
 use crate::scalar::Scalar;
 
-/// One effect of the catalogue.
+/// What an effect is: all that the rest of the code derives from it. Each part is stated, so that none is forgotten.
 #[derive(Clone, Copy, Debug)]
-#[non_exhaustive]
 pub struct EffectRow {
     /// Its name in robot files and reports.
     pub kind: &'static str,
@@ -38,20 +23,183 @@ pub struct EffectRow {
     pub remedy: &'static str,
     /// Its parameters in order.
     pub parameters: &'static [ParameterRow],
+    /// What it remembers from cycle to cycle.
+    pub memory: Memory,
+    /// What it can do to μ.
+    pub on_mu: OnMu,
+    /// Whether it goes by the time of the run, which then begins where it is switched on.
+    pub goes_by_time: bool,
 }
 
+/// Numbers that an effect remembers from cycle to cycle. While the effect does not act they are [`UNKNOWN`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Memory {
+    /// None.
+    Nothing,
+    /// So many that go with the motion: unknown too where the motion jumps, as where a delay changes.
+    OfMotion(usize),
+    /// So many that go with the tension.
+    OfTension(usize),
+}
+
+impl Memory {
+    const fn count(self) -> usize {
+        match self {
+            Self::Nothing => 0,
+            Self::OfMotion(count) | Self::OfTension(count) => count,
+        }
+    }
+}
+
+/// What an effect can do to μ, which at set-up has to stay within what the model bears.
+#[derive(Clone, Copy, Debug)]
+pub enum OnMu {
+    /// It stays as it is, or falls.
+    Unchanged,
+    /// It grows by a factor at most, which follows from the values of the effect's parameters in order.
+    AtMost {
+        /// The factor, 1 and more.
+        factor: fn(&[f64]) -> f64,
+        /// The parameter to blame.
+        key: &'static str,
+        /// What is the matter where μ is too great, and what to do.
+        problem: &'static str,
+    },
+    /// There is no such factor: the cycle holds μ where the cable can bear it.
+    Unbounded,
+}
+
+/// The catalogue: each effect and its file, in the order in which their parameters stand. Gives the list to a macro.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! catalogue {
+    ($with:ident) => {
+        $with! {
+            Stribeck stribeck,
+            DirectionAsymmetry direction_asymmetry,
+            BearingDrag bearing_drag,
+            LoadNonlinearity load_nonlinearity,
+            FrictionDrift friction_drift,
+            PreslidingShape presliding_shape,
+            SensorGain sensor_gain,
+            SensorOffset sensor_offset,
+            SensorDrift sensor_drift,
+            TimeDelay time_delay,
+            PulleyInertia pulley_inertia,
+            PulleyEccentricity pulley_eccentricity,
+            CableElasticity cable_elasticity,
+        }
+    };
+}
+
+macro_rules! effects {
+    ($($effect:ident $file:ident,)+) => {
+        $(pub mod $file;)+
+
+        /// What has a name in the friction of a cable: what every model has, then the catalogue.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum Effect {
+            /// Friction in proportion to the load.
+            Coulomb,
+            /// Friction in proportion to speed.
+            Viscous,
+            /// Friction that builds up over a way.
+            Presliding,
+            $(#[doc = concat!("[`", stringify!($file), "`](mod@", stringify!($file), ")")] $effect,)+
+        }
+
+        impl Effect {
+            /// Every one.
+            pub const ALL: &[Self] = &[Self::Coulomb, Self::Viscous, Self::Presliding, $(Self::$effect),+];
+
+            /// What it is.
+            #[must_use]
+            pub const fn row(self) -> &'static EffectRow {
+                match self {
+                    Self::Coulomb => &friction::COULOMB_ROW,
+                    Self::Viscous => &friction::VISCOUS_ROW,
+                    Self::Presliding => &friction::PRESLIDING_ROW,
+                    $(Self::$effect => &$file::ROW,)+
+                }
+            }
+        }
+    };
+}
+
+catalogue!(effects);
+
+/// Places of the parameters of what every model has.
+const OF_FRICTION: [usize; 3] = [parameters::MU, parameters::VISCOUS, parameters::SIGMA];
+
+impl Effect {
+    /// Every effect that a cable of a robot file can have.
+    pub const CATALOGUE: &[Self] = Self::ALL.split_at(OF_FRICTION.len()).1;
+
+    /// The effect of a name in robot files.
+    #[must_use]
+    pub fn of_kind(kind: &str) -> Option<Self> {
+        Self::CATALOGUE.iter().copied().find(|effect| effect.kind() == kind)
+    }
+
+    /// Its name in robot files and reports.
+    #[must_use]
+    pub const fn kind(self) -> &'static str {
+        self.row().kind
+    }
+
+    /// Whether every model has it, so that it is no entry of `effects` in a robot file.
+    #[must_use]
+    pub const fn is_friction(self) -> bool {
+        (self as usize) < OF_FRICTION.len()
+    }
+
+    /// Place of its first parameter in [`Values`](parameters::Values).
+    #[must_use]
+    pub const fn first_place(self) -> usize {
+        if self.is_friction() { OF_FRICTION[self as usize] } else { FRICTION_COUNT + before(self).0 }
+    }
+
+    /// Places of its parameters in [`Values`](parameters::Values).
+    #[must_use]
+    pub const fn places(self) -> Range<usize> {
+        let first = self.first_place();
+        first..first + self.row().parameters.len()
+    }
+
+    /// Places of what it remembers.
+    pub(crate) const fn memory_places(self) -> Range<usize> {
+        let first = before(self).1;
+        first..first + self.row().memory.count()
+    }
+
+    /// The effect by itself, to ask whether it acts.
+    pub(crate) const fn acts(self) -> Acting {
+        Acting(1 << self as u32)
+    }
+}
+
+/// How many parameters of effects, and numbers that effects remember, stand before those of an effect.
+const fn before(effect: Effect) -> (usize, usize) {
+    let (mut parameters, mut memory, mut place) = (0, 0, OF_FRICTION.len());
+    while place < effect as usize {
+        let row = Effect::ALL[place].row();
+        parameters += row.parameters.len();
+        memory += row.memory.count();
+        place += 1;
+    }
+    (parameters, memory)
+}
+
+/// The last of the catalogue.
+const LAST: Effect = Effect::ALL[Effect::ALL.len() - 1];
+/// Parameters of all effects together.
+pub const EFFECT_PARAMETER_COUNT: usize = before(LAST).0 + LAST.row().parameters.len();
 /// Numbers that effects remember from cycle to cycle.
-pub const MEMORY: usize = 4;
+pub const MEMORY: usize = LAST.memory_places().end;
+
 /// Stands for a number that is not known yet: far beyond all that are. Equal to itself, as a snapshot has to be, and finite: what is worked
 /// out from it and then not chosen, which a compiler may do unasked, is no invalid operation.
 pub const UNKNOWN: f64 = 1e200;
-/// Middle of the play of the tension, of `cable_elasticity`, N.
-pub(crate) const TENSION: usize = 0;
-/// Stretch that waits to move the cable, of `cable_elasticity`, m.
-pub(crate) const STRETCH: usize = 1;
-/// Both low passes of the speed, of `pulley_inertia`, m/s.
-pub(crate) const SPEEDS: [usize; 2] = [2, 3];
-
 /// The row of `until_s` of an effect that goes with time: what drifts in one run does not go on like that for ever.
 const UNTIL_ROW: ParameterRow = ParameterRow {
     key: "until_s",
@@ -69,54 +217,9 @@ fn drifting_s<T: Scalar>(time_s: T, until_s: T) -> T {
     T::select(T::splat(0.0).lt(until_s), time_s.min(until_s), time_s)
 }
 
-/// Every effect that a cable of a robot file can have.
-pub const CATALOGUE: &[EffectRow] = &[
-    stribeck::ROW,
-    direction_asymmetry::ROW,
-    bearing_drag::ROW,
-    load_nonlinearity::ROW,
-    friction_drift::ROW,
-    presliding_shape::ROW,
-    sensor_gain::ROW,
-    sensor_offset::ROW,
-    sensor_drift::ROW,
-    time_delay::ROW,
-    pulley_inertia::ROW,
-    pulley_eccentricity::ROW,
-    cable_elasticity::ROW,
-];
-
-/// Everything that has a name in the friction of a cable: what every model has, then the catalogue.
-pub fn named() -> impl Iterator<Item = &'static EffectRow> {
-    [friction::COULOMB_ROW, friction::VISCOUS_ROW, friction::PRESLIDING_ROW].iter().chain(CATALOGUE)
-}
-
-impl EffectRow {
-    /// Places of its parameters in [`Values`](parameters::Values).
-    #[must_use]
-    pub fn places(&self) -> Range<usize> {
-        let first = match self.kind {
-            "coulomb" => parameters::MU,
-            "viscous" => parameters::VISCOUS,
-            "presliding" => parameters::SIGMA,
-            kind => first_place(kind),
-        };
-        first..first + self.parameters.len()
-    }
-}
-
-/// Parameters of all effects together.
-pub const EFFECT_PARAMETER_COUNT: usize = count(CATALOGUE);
-
-/// The row of a name.
-#[must_use]
-pub fn row(kind: &str) -> Option<&'static EffectRow> {
-    CATALOGUE.iter().find(|row| row.kind == kind)
-}
-
 /// Each parameter of each effect with its effect, in the order of [`EffectParams::values`].
-pub fn parameters() -> impl Iterator<Item = (&'static EffectRow, &'static ParameterRow)> {
-    CATALOGUE.iter().flat_map(|row| row.parameters.iter().map(move |parameter| (row, parameter)))
+pub fn parameters() -> impl Iterator<Item = (Effect, &'static ParameterRow)> {
+    Effect::CATALOGUE.iter().flat_map(|effect| effect.row().parameters.iter().map(|parameter| (*effect, parameter)))
 }
 
 /// The parameters of all effects of one cable; neutral unless set.
@@ -127,22 +230,21 @@ impl EffectParams {
     /// No effect.
     pub const NEUTRAL: Self = Self(neutral());
 
-    /// One parameter; `None` for a kind or a key that the catalogue does not have.
+    /// One parameter; `None` for a key that the effect does not have.
     #[must_use]
-    pub fn get(&self, kind: &str, key: &str) -> Option<f64> {
-        let mut named =
-            parameters().zip(self.0).filter(|((row, parameter), _)| row.kind == kind && parameter.key == key);
+    pub fn get(&self, effect: Effect, key: &str) -> Option<f64> {
+        let mut named = parameters().zip(self.0).filter(|((of, parameter), _)| *of == effect && parameter.key == key);
         named.next().map(|(_, value)| value)
     }
 
     /// Sets one parameter.
     ///
     /// # Errors
-    /// [`ParamError`] for a kind or a key that the catalogue does not have, and for a value out of the row's range.
-    pub fn set(&mut self, kind: &str, key: &str, value: f64) -> Result<(), ParamError> {
-        for ((row, parameter), place) in parameters().zip(&mut self.0) {
-            if row.kind == kind && parameter.key == key {
-                *place = check_parameter(row, parameter, value)?;
+    /// [`ParamError`] for a key that the effect does not have, and for a value out of the row's range.
+    pub fn set(&mut self, effect: Effect, key: &str, value: f64) -> Result<(), ParamError> {
+        for ((of, parameter), place) in parameters().zip(&mut self.0) {
+            if of == effect && parameter.key == key {
+                *place = check_parameter(effect, parameter, value)?;
                 return Ok(());
             }
         }
@@ -160,15 +262,15 @@ impl EffectParams {
     /// # Errors
     /// [`ParamError`] names the first that is out of its row's range.
     pub fn from_values(values: [f64; EFFECT_PARAMETER_COUNT]) -> Result<Self, ParamError> {
-        for ((row, parameter), value) in parameters().zip(values) {
-            check_parameter(row, parameter, value)?;
+        for ((effect, parameter), value) in parameters().zip(values) {
+            check_parameter(effect, parameter, value)?;
         }
         Ok(Self(values))
     }
 }
 
-fn check_parameter(row: &EffectRow, parameter: &ParameterRow, value: f64) -> Result<f64, ParamError> {
-    check(parameter.key, value, parameter.min, parameter.max).map_err(|error| error.of_effect(row.kind))
+fn check_parameter(effect: Effect, parameter: &ParameterRow, value: f64) -> Result<f64, ParamError> {
+    check(parameter.key, value, parameter.min, parameter.max).map_err(|error| error.of_effect(effect))
 }
 
 impl Default for EffectParams {
@@ -177,20 +279,14 @@ impl Default for EffectParams {
     }
 }
 
-const fn count(rows: &[EffectRow]) -> usize {
-    match rows {
-        [] => 0,
-        [row, rest @ ..] => row.parameters.len() + count(rest),
-    }
-}
-
 const fn neutral() -> [f64; EFFECT_PARAMETER_COUNT] {
     let mut values = [0.0; EFFECT_PARAMETER_COUNT];
     let (mut place, mut effect) = (0, 0);
-    while effect < CATALOGUE.len() {
+    while effect < Effect::CATALOGUE.len() {
+        let parameters = Effect::CATALOGUE[effect].row().parameters;
         let mut parameter = 0;
-        while parameter < CATALOGUE[effect].parameters.len() {
-            values[place] = CATALOGUE[effect].parameters[parameter].neutral;
+        while parameter < parameters.len() {
+            values[place] = parameters[parameter].neutral;
             place += 1;
             parameter += 1;
         }
@@ -207,30 +303,37 @@ impl Acting {
     /// No effect.
     pub const NONE: Self = Self(0);
 
-    /// The effect of a name. For constants: it compares texts.
-    const fn only(kind: &str) -> Self {
-        let mut effect = 0;
-        while effect < CATALOGUE.len() {
-            if same(CATALOGUE[effect].kind.as_bytes(), kind.as_bytes()) {
-                return Self(1 << effect);
-            }
-            effect += 1;
-        }
-        Self::NONE
-    }
-
     /// The effects of which a parameter is `active`, asked by its row and its place in
     /// [`Values`](parameters::Values).
     pub fn of(active: impl Fn(&ParameterRow, usize) -> bool) -> Self {
-        let mut place = FRICTION_COUNT;
-        let mut bits = 0;
-        for (effect, row) in CATALOGUE.iter().enumerate() {
-            for parameter in row.parameters {
-                bits |= u32::from(active(parameter, place)) << effect;
-                place += 1;
+        let acts = |effect: &Effect| {
+            effect.row().parameters.iter().zip(effect.places()).any(|(row, place)| active(row, place))
+        };
+        Effect::CATALOGUE.iter().filter(|effect| acts(effect)).fold(Self::NONE, |all, effect| all.and(effect.acts()))
+    }
+
+    /// Those of the catalogue of which this holds. For constants: it is asked of rows.
+    pub const fn going_by_time() -> Self {
+        let (mut all, mut effect) = (Self::NONE, 0);
+        while effect < Effect::CATALOGUE.len() {
+            if Effect::CATALOGUE[effect].row().goes_by_time {
+                all = all.and(Effect::CATALOGUE[effect].acts());
             }
+            effect += 1;
         }
-        Self(bits)
+        all
+    }
+
+    /// Those that can raise μ.
+    pub const fn raising_mu() -> Self {
+        let (mut all, mut effect) = (Self::NONE, 0);
+        while effect < Effect::CATALOGUE.len() {
+            if !matches!(Effect::CATALOGUE[effect].row().on_mu, OnMu::Unchanged) {
+                all = all.and(Effect::CATALOGUE[effect].acts());
+            }
+            effect += 1;
+        }
+        all
     }
 
     /// These and those.
@@ -252,24 +355,7 @@ impl Acting {
     }
 }
 
-/// Where an effect's parameters begin among all of a cable, see [`crate::parameters`]. Evaluated by the compiler, which
-/// refuses a name that is not in the catalogue: what comes out is no place of an array.
-const fn first_place(kind: &str) -> usize {
-    let (mut place, mut effect) = (FRICTION_COUNT, 0);
-    while effect < CATALOGUE.len() {
-        if same(CATALOGUE[effect].kind.as_bytes(), kind.as_bytes()) {
-            return place;
-        }
-        place += CATALOGUE[effect].parameters.len();
-        effect += 1;
-    }
-    usize::MAX
-}
-
-const fn same(one: &[u8], other: &[u8]) -> bool {
-    match (one, other) {
-        ([], []) => true,
-        ([a, one @ ..], [b, other @ ..]) => *a == *b && same(one, other),
-        _ => false,
-    }
+/// The first of some values.
+fn first(values: &[f64]) -> f64 {
+    values.first().copied().unwrap_or(0.0)
 }

@@ -10,14 +10,14 @@
 //!
 //! Cause: the asperities of the contact yield more abruptly (below 1) or more gradually (above 1) than Dahl's simplest law has it.
 
-use super::{Acting, EffectRow, first_place};
+use super::{Acting, Effect, EffectRow, Memory, OnMu};
 use crate::dahl::dahl_step_over;
 use crate::parameters::ParameterRow;
 use crate::scalar::Scalar;
 
 const EXCITATION: &str = "small movements that reverse: steps of 0.25 … 10 mm there and back, with breaks";
 
-/// The catalogue row.
+/// What it is.
 pub const ROW: EffectRow = EffectRow {
     kind: "presliding_shape",
     cause: "the contact gives way more abruptly, or more gradually, than in the simplest presliding law",
@@ -31,12 +31,15 @@ pub const ROW: EffectRow = EffectRow {
         fitted: true,
         excitation: EXCITATION,
     }],
+    memory: Memory::Nothing,
+    on_mu: OnMu::Unchanged,
+    goes_by_time: false,
 };
 
 /// The effect by itself, to ask whether it acts.
-pub(crate) const ACTS: Acting = Acting::only(ROW.kind);
+pub(crate) const ACTS: Acting = Effect::PreslidingShape.acts();
 /// Place of `exponent` in [`Values`](crate::parameters::Values).
-pub const EXPONENT: usize = first_place(ROW.kind);
+pub const EXPONENT: usize = Effect::PreslidingShape.first_place();
 
 /// The effect's parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,13 +7,13 @@
 //!
 //! Cause: a pulley that runs out of true, with its circumference as the period; the cogging of a motor shows the same way.
 
-use super::{Acting, EffectRow, UNKNOWN, first_place};
+use super::{Acting, Effect, EffectRow, Memory, OnMu, UNKNOWN};
 use crate::parameters::ParameterRow;
 use crate::scalar::Scalar;
 
 const EXCITATION: &str = "slow long movements over several turns of the pulleys";
 
-/// The catalogue row.
+/// What it is.
 pub const ROW: EffectRow = EffectRow {
     kind: "pulley_eccentricity",
     cause: "a pulley runs out of true, or the motor cogs: the force ripples with the cable length",
@@ -47,12 +47,15 @@ pub const ROW: EffectRow = EffectRow {
             excitation: EXCITATION,
         },
     ],
+    memory: Memory::Nothing,
+    on_mu: OnMu::Unchanged,
+    goes_by_time: false,
 };
 
 /// The effect by itself, to ask whether it acts.
-pub(crate) const ACTS: Acting = Acting::only(ROW.kind);
+pub(crate) const ACTS: Acting = Effect::PulleyEccentricity.acts();
 /// Place of `sin_ratio` in [`Values`](crate::parameters::Values).
-pub const SIN: usize = first_place(ROW.kind);
+pub const SIN: usize = Effect::PulleyEccentricity.first_place();
 /// Place of `cos_ratio`.
 pub const COS: usize = SIN + 1;
 /// Place of `period_m`.

@@ -19,13 +19,13 @@
 //!
 //! Cause: heavy pulleys, or pulleys of large radius, at high acceleration.
 
-use super::{Acting, EffectRow, UNKNOWN, first_place};
+use super::{Acting, Effect, EffectRow, Memory, OnMu, UNKNOWN};
 use crate::parameters::ParameterRow;
 use crate::scalar::Scalar;
 
 const EXCITATION: &str = "strokes there and back with high acceleration";
 
-/// The catalogue row.
+/// What it is.
 pub const ROW: EffectRow = EffectRow {
     kind: "pulley_inertia",
     cause: "the pulleys take a force to be accelerated",
@@ -50,14 +50,23 @@ pub const ROW: EffectRow = EffectRow {
             excitation: EXCITATION,
         },
     ],
+    memory: Memory::OfMotion(2),
+    on_mu: OnMu::Unchanged,
+    goes_by_time: false,
 };
 
 /// The effect by itself, to ask whether it acts.
-pub(crate) const ACTS: Acting = Acting::only(ROW.kind);
+pub(crate) const ACTS: Acting = Effect::PulleyInertia.acts();
 /// Place of `mass_kg` in [`Values`](crate::parameters::Values).
-pub const MASS: usize = first_place(ROW.kind);
+pub const MASS: usize = Effect::PulleyInertia.first_place();
 /// Place of `window_s`.
 pub const WINDOW: usize = MASS + 1;
+
+/// Places of what it remembers: both low passes of the speed, m/s.
+pub(crate) const SPEEDS: [usize; 2] = {
+    let first = Effect::PulleyInertia.memory_places().start;
+    [first, first + 1]
+};
 
 /// The effect's parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,13 +6,13 @@
 //!
 //! Cause: the load cell or its amplifier warms up.
 
-use super::{Acting, EffectRow, UNTIL_ROW, drifting_s, first_place};
+use super::{Acting, Effect, EffectRow, Memory, OnMu, UNTIL_ROW, drifting_s};
 use crate::parameters::ParameterRow;
 use crate::scalar::Scalar;
 
 const EXCITATION: &str = "a long run with the same poses at its beginning and its end";
 
-/// The catalogue row.
+/// What it is.
 pub const ROW: EffectRow = EffectRow {
     kind: "sensor_drift",
     cause: "the zero of the force sensor or its amplifier moves with temperature",
@@ -29,12 +29,15 @@ pub const ROW: EffectRow = EffectRow {
         },
         UNTIL_ROW,
     ],
+    memory: Memory::Nothing,
+    on_mu: OnMu::Unchanged,
+    goes_by_time: true,
 };
 
 /// The effect by itself, to ask whether it acts.
-pub(crate) const ACTS: Acting = Acting::only(ROW.kind);
+pub(crate) const ACTS: Acting = Effect::SensorDrift.acts();
 /// Place of `rate_n_per_s` in [`Values`](crate::parameters::Values).
-pub const RATE: usize = first_place(ROW.kind);
+pub const RATE: usize = Effect::SensorDrift.first_place();
 /// Place of `until_s`.
 pub const UNTIL: usize = RATE + 1;
 

@@ -5,13 +5,13 @@
 //!
 //! Cause: calibration of the amplifier, or of the load cell's direction in its mount.
 
-use super::{Acting, EffectRow, first_place};
+use super::{Acting, Effect, EffectRow, Memory, OnMu};
 use crate::parameters::ParameterRow;
 use crate::scalar::Scalar;
 
 const EXCITATION: &str = "long movements at cable forces that differ by a factor of two and more";
 
-/// The catalogue row.
+/// What it is.
 pub const ROW: EffectRow = EffectRow {
     kind: "sensor_gain",
     cause: "the force sensor or its amplifier is calibrated with a wrong slope",
@@ -25,12 +25,15 @@ pub const ROW: EffectRow = EffectRow {
         fitted: true,
         excitation: EXCITATION,
     }],
+    memory: Memory::Nothing,
+    on_mu: OnMu::Unchanged,
+    goes_by_time: false,
 };
 
 /// The effect by itself, to ask whether it acts.
-pub(crate) const ACTS: Acting = Acting::only(ROW.kind);
+pub(crate) const ACTS: Acting = Effect::SensorGain.acts();
 /// Place of `gain` in [`Values`](crate::parameters::Values).
-pub const GAIN: usize = first_place(ROW.kind);
+pub const GAIN: usize = Effect::SensorGain.first_place();
 
 /// The effect's parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]

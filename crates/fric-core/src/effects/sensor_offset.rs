@@ -6,13 +6,13 @@
 //!
 //! Cause: the sensor was not tared, or its zero has moved since.
 
-use super::{Acting, EffectRow, first_place};
+use super::{Acting, Effect, EffectRow, Memory, OnMu};
 use crate::parameters::ParameterRow;
 use crate::scalar::Scalar;
 
 const EXCITATION: &str = "long movements at cable forces that differ by a factor of two and more";
 
-/// The catalogue row.
+/// What it is.
 pub const ROW: EffectRow = EffectRow {
     kind: "sensor_offset",
     cause: "the force sensor was not tared",
@@ -26,12 +26,15 @@ pub const ROW: EffectRow = EffectRow {
         fitted: true,
         excitation: EXCITATION,
     }],
+    memory: Memory::Nothing,
+    on_mu: OnMu::Unchanged,
+    goes_by_time: false,
 };
 
 /// The effect by itself, to ask whether it acts.
-pub(crate) const ACTS: Acting = Acting::only(ROW.kind);
+pub(crate) const ACTS: Acting = Effect::SensorOffset.acts();
 /// Place of `offset_n` in [`Values`](crate::parameters::Values).
-pub const OFFSET: usize = first_place(ROW.kind);
+pub const OFFSET: usize = Effect::SensorOffset.first_place();
 
 /// The effect's parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,13 +5,13 @@
 //!
 //! Cause: at low speed the lubricant film in the bearing has not formed and the surfaces touch.
 
-use super::{Acting, EffectRow, first_place};
+use super::{Acting, Effect, EffectRow, Memory, OnMu, first};
 use crate::parameters::ParameterRow;
 use crate::scalar::Scalar;
 
 const EXCITATION: &str = "long movements at several speeds, creeping ones too, in both directions";
 
-/// The catalogue row.
+/// What it is.
 pub const ROW: EffectRow = EffectRow {
     kind: "stribeck",
     cause: "at low speed the lubricant film of a bearing has not formed yet, so friction is higher near standstill",
@@ -36,12 +36,19 @@ pub const ROW: EffectRow = EffectRow {
             excitation: EXCITATION,
         },
     ],
+    memory: Memory::Nothing,
+    on_mu: OnMu::AtMost {
+        factor: |values| 1.0 + first(values).max(0.0),
+        key: "ratio",
+        problem: "raises the friction at rest, `mu`·(1 + `ratio`), beyond 0.9; lower it, or `mu`",
+    },
+    goes_by_time: false,
 };
 
 /// The effect by itself, to ask whether it acts.
-pub(crate) const ACTS: Acting = Acting::only(ROW.kind);
+pub(crate) const ACTS: Acting = Effect::Stribeck.acts();
 /// Place of `ratio` in [`Values`](crate::parameters::Values).
-pub const RATIO: usize = first_place(ROW.kind);
+pub const RATIO: usize = Effect::Stribeck.first_place();
 /// Place of `velocity_m_per_s`.
 pub const VELOCITY: usize = RATIO + 1;
 

@@ -23,13 +23,13 @@
 //! through the bus. Deviation from the paper: the set points are shifted, not the friction computed from them, so that
 //! the friction is that of the present force.
 
-use super::{Acting, EffectRow, UNKNOWN, first_place};
+use super::{Acting, Effect, EffectRow, Memory, OnMu, UNKNOWN};
 use crate::lanes::LANES;
 use crate::parameters::ParameterRow;
 use crate::scalar::Scalar;
 use crate::signals::CableSignals;
 
-/// The catalogue row.
+/// What it is.
 pub const ROW: EffectRow = EffectRow {
     kind: "time_delay",
     cause: "motion and force signal are not of the same time: the motion is known too early (set points), or too late where the delay is negative",
@@ -43,12 +43,15 @@ pub const ROW: EffectRow = EffectRow {
         fitted: true,
         excitation: "quick reversals: strokes there and back without breaks",
     }],
+    memory: Memory::Nothing,
+    on_mu: OnMu::Unchanged,
+    goes_by_time: false,
 };
 
 /// The effect by itself, to ask whether it acts.
-pub(crate) const ACTS: Acting = Acting::only(ROW.kind);
+pub(crate) const ACTS: Acting = Effect::TimeDelay.acts();
 /// Place of `delay_s` in [`Values`](crate::parameters::Values).
-pub const DELAY: usize = first_place(ROW.kind);
+pub const DELAY: usize = Effect::TimeDelay.first_place();
 
 /// The longest delay, in cycles; part of the size of a [`Compensator`](crate::Compensator).
 pub const MAX_DELAY_CYCLES: usize = 64;

@@ -2,6 +2,8 @@
 
 use core::fmt;
 
+use crate::effects::Effect;
+
 /// Why a parameter was refused: which one, its value, what is allowed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -11,7 +13,7 @@ pub struct ParamError {
     /// Which pulley, from the winch, where it is one's.
     pub pulley: Option<usize>,
     /// Which effect, where it is one's.
-    pub effect: Option<&'static str>,
+    pub effect: Option<Effect>,
     /// What is wrong with it.
     pub problem: ParamProblem,
 }
@@ -62,8 +64,8 @@ impl ParamError {
         Self { pulley: Some(place), ..self }
     }
 
-    pub(crate) const fn of_effect(self, kind: &'static str) -> Self {
-        Self { effect: Some(kind), ..self }
+    pub(crate) const fn of_effect(self, effect: Effect) -> Self {
+        Self { effect: Some(effect), ..self }
     }
 }
 
@@ -86,8 +88,8 @@ impl fmt::Display for ParamError {
         if let Some(place) = pulley {
             write!(formatter, " of pulley {}", place + 1)?;
         }
-        if let Some(kind) = effect {
-            write!(formatter, " of effect `{kind}`")?;
+        if let Some(effect) = effect {
+            write!(formatter, " of effect `{}`", effect.kind())?;
         }
         write!(formatter, " {problem}")
     }

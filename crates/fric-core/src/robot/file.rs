@@ -19,6 +19,7 @@ use super::locate::{Line, Step, describe, error_line, line_of};
 use super::read::{exactly, exactly_if_given};
 pub use super::reference::{KnownReferenceTable, ReferenceTable};
 use super::{CableParams, MOST_CABLES, MonitorOptions, ParamError, ParamProblem, PlatformOptions, RobotParams};
+use crate::effects::Effect;
 use crate::text_file;
 
 /// The only value of `format` that this version reads.
@@ -372,9 +373,10 @@ impl RobotOptions {
     /// The longest delay depends on the cycle time, so it is known only with the whole robot.
     fn delay_error(&self, cables: &[CableParams], error: ParamError) -> OptionsError {
         let of_value = |cable: &CableParams| match error.problem {
-            ParamProblem::OutOfRange { value, .. } => {
-                cable.effects.get("time_delay", "delay_s").is_some_and(|delay_s| delay_s.to_bits() == value.to_bits())
-            }
+            ParamProblem::OutOfRange { value, .. } => cable
+                .effects
+                .get(Effect::TimeDelay, "delay_s")
+                .is_some_and(|delay_s| delay_s.to_bits() == value.to_bits()),
             _ => false,
         };
         let place = cables.iter().position(of_value).and_then(|index| Some((index, self.cable.get(index)?)));

@@ -7,9 +7,8 @@ use nalgebra::Vector3;
 
 use super::error::{ParamError, ParamProblem, check};
 use super::known_reference::KnownReference;
-use crate::effects::EffectParams;
 use crate::effects::time_delay::delay_range_s;
-use crate::effects::{direction_asymmetry, stribeck, time_delay};
+use crate::effects::{Effect, EffectParams, OnMu, time_delay};
 use crate::parameters::{FRICTION, GREATEST_MU};
 use crate::pulley::wrap_factor;
 use crate::signals::SignalLimits;
@@ -254,19 +253,26 @@ impl CableParams {
         for (row, value) in FRICTION.iter().zip(stated) {
             value.map(|value| check(row.key, value, row.min, row.max)).transpose()?;
         }
-        let values = self.values();
-        let mu_at_rest = mu * (1.0 + values[stribeck::RATIO].max(0.0));
-        if mu_at_rest > GREATEST_MU {
-            let reason = "raises the friction at rest, `mu`·(1 + `ratio`), beyond 0.9; lower it, or `mu`";
-            return Err(ParamError::conflict("ratio", reason).of_effect(stribeck::ROW.kind));
-        }
-        let greatest_mu = mu_at_rest * (1.0 + values[direction_asymmetry::COULOMB].abs());
-        if greatest_mu > GREATEST_MU {
-            let reason = "raises the friction one way, `mu`·(1 + `coulomb_ratio`), beyond 0.9; lower it, or `mu`";
-            return Err(ParamError::conflict("coulomb_ratio", reason).of_effect(direction_asymmetry::ROW.kind));
-        }
+        let raised_mu = self.raised_mu()?;
         self.sensor_wrap_rad
-            .map_or(Ok(()), |wrap_rad| check_sensor_wrap(wrap_rad, greatest_mu).map_err(|error| error.at_pulley(0)))
+            .map_or(Ok(()), |wrap_rad| check_sensor_wrap(wrap_rad, raised_mu).map_err(|error| error.at_pulley(0)))
+    }
+
+    /// μ with all that effects can raise it by.
+    ///
+    /// # Errors
+    /// [`ParamError`] names the effect that takes it beyond [`GREATEST_MU`].
+    pub(crate) fn raised_mu(&self) -> Result<f64, ParamError> {
+        let values = self.values();
+        let mut mu = self.friction.mu;
+        for effect in Effect::CATALOGUE {
+            let OnMu::AtMost { factor, key, problem } = effect.row().on_mu else { continue };
+            mu *= factor(values.get(effect.places()).unwrap_or_default());
+            if mu > GREATEST_MU {
+                return Err(ParamError::conflict(key, problem).of_effect(*effect));
+            }
+        }
+        Ok(mu)
     }
 
     /// The greatest μ that leaves the sensor pulley a third of the tension that it would feel without friction.
@@ -457,7 +463,7 @@ impl<'a> RobotParams<'a> {
         let (earliest_s, latest_s) = delay_range_s(cycle_s);
         for cable in cables {
             check("delay_s", cable.values()[time_delay::DELAY], earliest_s, latest_s)
-                .map_err(|error| error.of_effect(time_delay::ROW.kind))?;
+                .map_err(|error| error.of_effect(Effect::TimeDelay))?;
         }
         Ok(Self {
             cycle_s,

@@ -11,7 +11,7 @@ use super::{
     CableOptions, CableParams, FrictionOptions, GeometryOptions, ParamError, ParamProblem, Presliding, PulleyOptions,
     ValidatedRange,
 };
-use crate::effects::{self, EffectParams};
+use crate::effects::{Effect, EffectParams};
 
 impl CableTable {
     /// The checked cable.
@@ -62,7 +62,7 @@ impl CableTable {
 
     /// Where a refused parameter stands in this cable's table: in one of its effects, or in the table itself.
     pub(super) fn name_parameter(&self, error: ParamError) -> OptionsError {
-        let Some(kind) = error.effect else { return OptionsError::from(error) };
+        let Some(kind) = error.effect.map(Effect::kind) else { return OptionsError::from(error) };
         if let Some(index) = self.effects.iter().position(|effect| effect.kind == kind) {
             let path = [Step::Key("effects"), Step::Index(index), Step::Key(error.key)];
             return OptionsError::new(&path, error.key, format!("of effect `{kind}` {}", error.problem));
@@ -74,8 +74,8 @@ impl CableTable {
         let mut params = EffectParams::NEUTRAL;
         for (index, effect) in self.effects.iter().enumerate() {
             let path = [Step::Key("effects"), Step::Index(index)];
-            let Some(row) = effects::row(&effect.kind) else {
-                let known = effects::CATALOGUE.iter().map(|row| row.kind);
+            let Some(named) = Effect::of_kind(&effect.kind) else {
+                let known = Effect::CATALOGUE.iter().map(|effect| effect.kind());
                 let problem = format!("names an {}", unknown_name("effect", &effect.kind, known));
                 return Err(OptionsError::new(&path, "kind", problem));
             };
@@ -84,12 +84,12 @@ impl CableTable {
                 return Err(OptionsError::new(&path, "kind", problem));
             }
             for (key, value) in &effect.parameters {
-                let known = || row.parameters.iter().map(|parameter| parameter.key);
+                let known = || named.row().parameters.iter().map(|parameter| parameter.key);
                 if !known().any(|name| name == key) {
                     let problem = format!("has an {}", unknown_name("key", key, known()));
-                    return Err(OptionsError::new(&path, row.kind, problem));
+                    return Err(OptionsError::new(&path, named.kind(), problem));
                 }
-                params.set(row.kind, key, *value).map_err(|error| self.name_parameter(error))?;
+                params.set(named, key, *value).map_err(|error| self.name_parameter(error))?;
             }
         }
         Ok(params)

@@ -5,29 +5,30 @@ use std::string::String;
 use std::vec::Vec;
 
 use super::file::{EffectTable, RobotFile};
-use crate::effects;
+use crate::effects::Effect;
 
 impl RobotFile {
     /// Effects that change nothing.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let is_idle = |effect: &EffectTable| {
-            effects::row(&effect.kind).is_some_and(|row| {
-                let neutral = |key: &str| row.parameters.iter().find(|row| row.key == key).map(|row| row.neutral);
+            Effect::of_kind(&effect.kind).is_some_and(|named| {
+                let neutral =
+                    |key: &str| named.row().parameters.iter().find(|row| row.key == key).map(|row| row.neutral);
                 effect.parameters.iter().all(|(key, value)| neutral(key) == Some(*value))
             })
         };
         let mut warnings = Vec::new();
-        for row in effects::CATALOGUE {
+        for named in Effect::CATALOGUE {
             let has_idle =
-                |effects: &[EffectTable]| effects.iter().any(|effect| effect.kind == row.kind && is_idle(effect));
+                |effects: &[EffectTable]| effects.iter().any(|effect| effect.kind == named.kind() && is_idle(effect));
             let cables = self.options().cable.iter().filter(|cable| has_idle(&cable.effects));
             let names: Vec<&str> = cables.map(|cable| cable.name.as_str()).collect();
             if !names.is_empty() {
                 warnings.push(format!(
                     "the effect `{}` of {} has only neutral values and does nothing; give it others, or take it out of \
                      the robot file",
-                    row.kind,
+                    named.kind(),
                     names.join(", ")
                 ));
             }

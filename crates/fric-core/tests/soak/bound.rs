@@ -6,13 +6,14 @@
 use std::f64::consts::PI;
 
 use fric_core::CableParams;
+use fric_core::effects::Effect;
 
 /// The run lasts no longer than this, s: what a drift can come to.
 const LONGEST_RUN_S: f64 = 200.0;
 
 /// An effect's parameter.
 pub fn effect(cable: &CableParams, kind: &str, key: &str) -> f64 {
-    cable.effects().get(kind, key).unwrap()
+    cable.effects().get(Effect::of_kind(kind).unwrap(), key).unwrap()
 }
 
 /// The greatest μ that stands at a pulley, but for `load_nonlinearity`.

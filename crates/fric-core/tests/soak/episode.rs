@@ -1,5 +1,6 @@
 //! One robot over a few ten thousand cycles, and what is checked of it.
 
+use fric_core::effects::Effect;
 use fric_core::robot::{MonitorOptions, Presliding};
 use fric_core::{CableInput, CableParams, CableStatus, Compensator, CycleInput, CycleOutput, Pose};
 
@@ -288,7 +289,7 @@ fn comes_straight(cable: &CableParams, monitor: &MonitorOptions) -> bool {
 }
 
 fn acts(cable: &CableParams, kind: &str) -> bool {
-    let row = fric_core::effects::row(kind).unwrap();
+    let row = Effect::of_kind(kind).unwrap().row();
     row.parameters.iter().any(|parameter| effect(cable, kind, parameter.key).to_bits() != parameter.neutral.to_bits())
 }
 

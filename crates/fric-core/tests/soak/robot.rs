@@ -1,6 +1,6 @@
 //! Random robots: every form, every effect, parameters of machines that could be built.
 
-use fric_core::effects::CATALOGUE;
+use fric_core::effects::Effect;
 use fric_core::robot::{
     CableOptions, FrictionOptions, GeometryOptions, MonitorOptions, PlatformOptions, Presliding, PulleyOptions,
     ValidatedRange,
@@ -29,8 +29,11 @@ impl Robot {
         let count = 1 + random.below(MOST_CABLES as u64);
         // Every other robot has effects, a few of them.
         let has_effects = once_in(random, 2);
-        let kinds: Vec<&str> =
-            CATALOGUE.iter().map(|row| row.kind).filter(|_| has_effects && once_in(random, 5)).collect();
+        let kinds: Vec<&str> = Effect::CATALOGUE
+            .iter()
+            .map(|effect| effect.kind())
+            .filter(|_| has_effects && once_in(random, 5))
+            .collect();
         Self { cables: (0..count).map(|_| cable(random, cycle_s, &kinds)).collect(), cycle_s, monitor }
     }
 
@@ -141,7 +144,7 @@ fn add_effects(random: &mut Random, cycle_s: f64, kinds: &[&str], options: &mut 
     for (kind, parameters) in effects.into_iter().filter(|(kind, _)| kinds.contains(kind)) {
         // Not all cables alike.
         for (key, value) in parameters.iter().filter(|_| !once_in(random, 3)) {
-            options.effects.set(kind, key, *value).unwrap();
+            options.effects.set(Effect::of_kind(kind).unwrap(), key, *value).unwrap();
         }
     }
 }

@@ -2,11 +2,11 @@
 
 use std::sync::atomic::AtomicBool;
 
-use fric_core::effects::EffectRow;
+use fric_core::effects::Effect;
 use fric_core::parameters::{MU, NO_PRESLIDING_N_PER_M, OFFSET, SIGMA, VISCOUS, Values};
 use nalgebra::DMatrix;
 
-use super::candidates::Scale;
+use super::candidates::around;
 use super::foreign::{FaultyStretch, faulty_stretches, leave_out};
 use super::lines::{Line, Times, lines, motion_and_load};
 use super::naming::{self, Named, Naming, STRONG_BIC, Search};
@@ -19,6 +19,7 @@ use super::rest::{WORTH, wander};
 use super::split::{Block, split};
 use super::stretch::{Stretch, stretch_of_cable};
 use super::workbench::{self, Trial, Workbench};
+use crate::effects::Around;
 use crate::fit::engine::{self, Condition, Standing, conditions, time};
 use crate::fit::{CableRecord, FitOptions, HALF_INTERVAL, Parameter, Progress, Row, SampleCounts};
 use crate::replay::Deviation;
@@ -257,16 +258,16 @@ impl<'a> Case<'a> {
     fn look(&self, counts: &[bool], start: &workbench::Model) -> Option<Outcome> {
         let bench = self.bench(counts);
         let base = bench.try_one(start);
-        let mut before: Vec<&'static EffectRow> = Vec::new();
+        let mut before: Vec<Effect> = Vec::new();
         let mut looks = 0;
         loop {
             looks += 1;
             let noise_n = self.noise_n(&bench, &base)?;
-            let scale = self.scale(&base, noise_n);
-            let naming = Search::new(&bench, noise_n, scale, &base, self.with_time).run(&before);
+            let around = self.around(&base, noise_n);
+            let naming = Search::new(&bench, noise_n, around, &base, self.with_time).run(&before);
             let fitted = self.fitted(counts, &naming.model);
             let again = workbench::Model { values: fitted.values, free: fitted.parameters.clone() };
-            let rows: Vec<&'static EffectRow> = naming.named.iter().map(|named| named.row).collect();
+            let rows: Vec<Effect> = naming.named.iter().map(|named| named.effect).collect();
             let more = if rows.is_empty() || looks == LOOKS { Vec::new() } else { self.missing(&bench, &again)? };
             if more.is_empty() {
                 let residual_n = bench.residuals_n(&fitted.values);
@@ -278,11 +279,11 @@ impl<'a> Case<'a> {
     }
 
     /// What a model lacks, were it given.
-    fn missing(&self, bench: &Workbench<'_>, model: &workbench::Model) -> Option<Vec<&'static EffectRow>> {
+    fn missing(&self, bench: &Workbench<'_>, model: &workbench::Model) -> Option<Vec<Effect>> {
         let base = bench.try_one(model);
         let noise_n = self.noise_n(bench, &base)?;
-        let naming = Search::new(bench, noise_n, self.scale(&base, noise_n), &base, self.with_time).run(&[]);
-        Some(naming.named.iter().map(|named| named.row).collect())
+        let naming = Search::new(bench, noise_n, self.around(&base, noise_n), &base, self.with_time).run(&[]);
+        Some(naming.named.iter().map(|named| named.effect).collect())
     }
 
     /// Standard deviation of the white noise in what a model leaves, N.
@@ -293,7 +294,7 @@ impl<'a> Case<'a> {
 
     /// What the model is not believed to, N.
     fn least_n(&self, model: &Trial) -> f64 {
-        BELIEVED_RATIO * self.scale(model, 0.0).tension_n
+        BELIEVED_RATIO * self.around(model, 0.0).tension_n
     }
 
     /// What a model leaves, N, judged.
@@ -358,8 +359,8 @@ impl<'a> Case<'a> {
         all.into_iter().filter(is_told).map(|(_, of)| of.parameter).collect()
     }
 
-    fn scale(&self, base: &Trial, noise_n: f64) -> Scale {
-        Scale::of(&self.record, base.values[MU], noise_n)
+    fn around(&self, base: &Trial, noise_n: f64) -> Around {
+        around(&self.record, base.values[MU], noise_n)
     }
 
     fn report(&self, outcome: &Outcome, samples: SampleCounts, foreign: Foreign) -> CableDiscovery {
@@ -390,7 +391,7 @@ impl<'a> Case<'a> {
             held_out_n: held_out_of(&fitted.values),
         };
         let bench = self.bench(&outcome.counts);
-        let search = Search::new(&bench, noise_n, self.scale(base, noise_n), base, self.with_time);
+        let search = Search::new(&bench, noise_n, self.around(base, noise_n), base, self.with_time);
         // The last of the ladder is the extended model, as it is written.
         let last = naming.named.len().saturating_sub(1);
         let steps = naming.ladder.iter().skip(1).enumerate();
@@ -399,15 +400,15 @@ impl<'a> Case<'a> {
         let findings: Vec<Finding> =
             findings.map(|(named, step)| finding(&search, &naming.model, named, held_out_of(step))).collect();
         let rms_n = |trial: &Trial| held_out_of(&trial.values).rms().unwrap_or(f64::NAN);
-        let candidate = |(row, trial): &(&'static EffectRow, Trial)| Candidate {
-            row,
+        let candidate = |(effect, trial): &(Effect, Trial)| Candidate {
+            effect: *effect,
             delta_bic: search.delta_bic(base, trial, 1.0),
             held_out_rms_n: rms_n(trial),
         };
         let mut candidates: Vec<Candidate> = naming.first_round.iter().map(candidate).collect();
         candidates.sort_by(|one, other| one.delta_bic.total_cmp(&other.delta_bic));
         let of_tried = |tried: &naming::Tried| Tried {
-            row: tried.row,
+            effect: tried.effect,
             delta_bic: search.delta_bic(&naming.model, &tried.trial, tried.inflation),
             held_out_rms_n: rms_n(&tried.trial),
             refusal: tried.refusal,
@@ -483,14 +484,14 @@ impl<'a> Case<'a> {
 fn finding(search: &Search<'_, '_>, model: &Trial, named: &Named, held_out_n: Deviation) -> Finding {
     let bic = |trial: &Trial| search.delta_bic(&named.without, trial, named.inflation);
     let delta_bic = bic(model);
-    let runner_up = named.runner_up.as_ref().map(|(row, trial)| {
+    let runner_up = named.runner_up.as_ref().map(|(effect, trial)| {
         let other_bic = bic(trial);
         RunnerUp {
-            row,
+            effect: *effect,
             delta_bic: other_bic,
             held_out_squares: trial.held_out,
             is_as_good: other_bic - delta_bic < STRONG_BIC,
         }
     });
-    Finding { row: named.row, held_out_n, delta_bic, runner_up }
+    Finding { effect: named.effect, held_out_n, delta_bic, runner_up }
 }

@@ -19,7 +19,7 @@ pub fn extended(text: &str, origin: &str, discoveries: &[CableDiscovery]) -> Res
         .iter()
         .map(|cable| {
             let found = |parameter: &Parameter| {
-                cable.findings.iter().any(|finding| finding.row.places().contains(&parameter.place()))
+                cable.findings.iter().any(|finding| finding.effect.places().contains(&parameter.place()))
             };
             let written = |parameter: &Parameter| cable.after.fitted.contains(parameter) || found(parameter);
             NewValues { values: &cable.after.values, parameters: Parameter::all().filter(written).collect() }

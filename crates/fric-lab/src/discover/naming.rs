@@ -12,16 +12,17 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use fric_core::effects::sensor_offset::OFFSET as OFFSET_OF_SENSOR;
-use fric_core::effects::{self, EffectRow, pulley_eccentricity, sensor_gain, sensor_offset};
+use fric_core::effects::{Effect, pulley_eccentricity};
 use fric_core::parameters::{MU, OFFSET, Values};
 
-use super::candidates::{Scale, fitted, has, is_friction, starts};
+use super::candidates::{fitted, has, starts};
 use super::evidence::inflation;
 use super::rest::WORTH;
 use super::ripple::periods_m;
 use super::rivals::{Chance, Rival, best_rival};
 use super::steadiness::{Portrait, Steadiness};
 use super::workbench::{Model, NEAR_ERRORS, Trial, Workbench};
+use crate::effects::Around;
 use crate::fit::Parameter;
 use crate::fit::engine::{self, Condition, Coordinate};
 
@@ -55,18 +56,18 @@ const AT_MINIMUM: f64 = 0.01;
 const ROUNDS: usize = 8;
 const PASSES: usize = 2;
 
-/// Names of effects in the order of the alphabet.
-type Kinds = Vec<&'static str>;
+/// A set of effects, in their order.
+type Set = Vec<Effect>;
 
 /// An effect in a model with what speaks for it.
 #[derive(Clone, Debug)]
 pub struct Named {
-    /// Its row.
-    pub row: &'static EffectRow,
+    /// Its effect.
+    pub effect: Effect,
     /// The model without it, fitted anew.
     pub without: Trial,
     /// The best other effect in its place.
-    pub runner_up: Option<(&'static EffectRow, Trial)>,
+    pub runner_up: Option<(Effect, Trial)>,
     /// By how much memory in the residual weakens the evidence, at least 1.
     pub inflation: f64,
     /// Why it cannot stay.
@@ -100,7 +101,7 @@ pub struct Naming {
     /// The models on the way from the first to the last, one more than effects.
     pub ladder: Vec<Trial>,
     /// Every candidate's first fit beside the given model.
-    pub first_round: Vec<(&'static EffectRow, Trial)>,
+    pub first_round: Vec<(Effect, Trial)>,
     /// Candidates that help the model with all that was found and do not suffice, the best first.
     pub tried: Vec<Tried>,
 }
@@ -108,8 +109,8 @@ pub struct Naming {
 /// A candidate that helps and does not suffice.
 #[derive(Clone, Debug)]
 pub struct Tried {
-    /// Its row.
-    pub row: &'static EffectRow,
+    /// Its effect.
+    pub effect: Effect,
     /// The model with it.
     pub trial: Trial,
     /// By how much memory in the residual weakens the evidence, at least 1.
@@ -123,18 +124,18 @@ pub struct Search<'b, 'a> {
     bench: &'b Workbench<'a>,
     noise_n: f64,
     noise_squares: f64,
-    scale: Scale,
+    around: Around,
     conditions: &'b [Condition],
-    fits: BTreeMap<Kinds, Trial>,
+    fits: BTreeMap<Set, Trial>,
     /// Whether the reference tells more loads than one; if not, a sensor of no gain that is off by that load agrees with it best, and a
     /// gain is another word for an offset.
     knows_load: bool,
     /// Candidates that were refused, and why.
-    refused: BTreeMap<&'static str, Refusal>,
+    refused: BTreeMap<Effect, Refusal>,
     /// Of effects in sets: by how much memory weakens the evidence, and why they cannot stay.
-    judged: BTreeMap<(Kinds, &'static str), (f64, Option<Refusal>)>,
+    judged: BTreeMap<(Set, Effect), (f64, Option<Refusal>)>,
     /// Sets that no law without a name makes superfluous.
-    unrivalled: BTreeSet<Kinds>,
+    unrivalled: BTreeSet<Set>,
 }
 
 impl<'b, 'a> Search<'b, 'a> {
@@ -142,18 +143,18 @@ impl<'b, 'a> Search<'b, 'a> {
     pub fn new(
         bench: &'b Workbench<'a>,
         noise_n: f64,
-        scale: Scale,
+        around: Around,
         base: &Trial,
         conditions: &'b [Condition],
     ) -> Self {
         #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
         let noise_squares = bench.count(true) as f64 * noise_n * noise_n;
-        let fits = BTreeMap::from([(Kinds::new(), base.clone())]);
+        let fits = BTreeMap::from([(Set::new(), base.clone())]);
         Self {
             bench,
             noise_n,
             noise_squares,
-            scale,
+            around,
             conditions,
             fits,
             knows_load: bench.reference_variation_n() > noise_n,
@@ -164,63 +165,64 @@ impl<'b, 'a> Search<'b, 'a> {
     }
 
     /// Names what the model lacks; what was found before has a place in it from the start, and has to justify itself with the rest.
-    pub fn run(&mut self, before: &[&'static EffectRow]) -> Naming {
+    pub fn run(&mut self, before: &[Effect]) -> Naming {
         let base = self.fit(&[]);
         let first_round = if self.excess(&base) > NEGLIGIBLE { self.round(&[]) } else { Vec::new() };
-        let mut rows = Vec::new();
-        for row in before.iter().copied() {
+        let mut found = Vec::new();
+        for effect in before.iter().copied() {
             // Each beside those before it, from its own starts.
-            self.beside(&rows, &[row]);
-            rows.push(row);
+            self.beside(&found, &[effect]);
+            found.push(effect);
         }
         let mut named = Vec::new();
         for _ in 0..PASSES {
-            let before = kinds(&rows);
+            let before = set_of(&found);
             self.refused = self.beyond_the_log();
-            named = self.pass(&mut rows);
-            if kinds(&rows) == before {
+            named = self.pass(&mut found);
+            if set_of(&found) == before {
                 break;
             }
         }
         for (place, named) in named.iter_mut().enumerate() {
-            named.runner_up = self.alternative(&rows, place);
+            named.runner_up = self.alternative(&found, place);
         }
-        let tried = self.tried(&rows);
-        self.polish(&rows);
-        let ladder = (0..=rows.len()).map(|count| self.fit(rows.get(..count).unwrap_or_default())).collect();
-        Naming { model: self.fit(&rows), named, ladder, first_round, tried }
+        let tried = self.tried(&found);
+        self.polish(&found);
+        let ladder = (0..=found.len()).map(|count| self.fit(found.get(..count).unwrap_or_default())).collect();
+        Naming { model: self.fit(&found), named, ladder, first_round, tried }
     }
 
     /// Candidates that no log like this can justify.
-    fn beyond_the_log(&self) -> BTreeMap<&'static str, Refusal> {
-        let of_gain = (sensor_gain::ROW.kind, Refusal::Open("offset_n"));
+    fn beyond_the_log(&self) -> BTreeMap<Effect, Refusal> {
+        let of_gain = (Effect::SensorGain, Refusal::Open("offset_n"));
         if self.knows_load { BTreeMap::new() } else { BTreeMap::from([of_gain]) }
     }
 
     /// Lets candidates in and has them justify themselves until nothing changes; what cannot is set aside, and the next has its turn. What
     /// remains is exchanged for what is better in its place.
-    fn pass(&mut self, rows: &mut Vec<&'static EffectRow>) -> Vec<Named> {
+    fn pass(&mut self, found: &mut Vec<Effect>) -> Vec<Named> {
         for _ in 0..ROUNDS {
             let before = self.refused.len();
-            self.enter(rows);
-            let named = self.leave(rows);
-            if self.refused.len() == before && !self.exchange(rows) {
+            self.enter(found);
+            let named = self.leave(found);
+            if self.refused.len() == before && !self.exchange(found) {
                 return named;
             }
         }
-        self.leave(rows)
+        self.leave(found)
     }
 
     /// Sets aside what cannot justify itself, the weakest first.
-    fn leave(&mut self, rows: &mut Vec<&'static EffectRow>) -> Vec<Named> {
+    fn leave(&mut self, found: &mut Vec<Effect>) -> Vec<Named> {
         loop {
-            let named = self.justified(rows);
+            let named = self.justified(found);
             let held_out = |named: &&Named| named.without.held_out;
             let refused = named.iter().filter(|named| named.refusal.is_some());
             let weakest = refused.min_by(|one, other| held_out(one).total_cmp(&held_out(other)));
-            let Some(Named { row, refusal: Some(refusal), .. }) = weakest else { return named };
-            self.refused.insert(row.kind, *refusal);
-            rows.retain(|of| of.kind != row.kind);
+            let Some(Named { effect, refusal: Some(refusal), .. }) = weakest else { return named };
+            self.refused.insert(*effect, *refusal);
+            let effect = *effect;
+            found.retain(|of| *of != effect);
         }
     }
 
@@ -237,22 +239,22 @@ impl<'b, 'a> Search<'b, 'a> {
     }
 
     /// Lets the best candidates in as long as they help, but for those that were refused.
-    fn enter(&mut self, rows: &mut Vec<&'static EffectRow>) {
-        while rows.len() < MOST_EFFECTS {
-            let model = self.fit(rows);
+    fn enter(&mut self, found: &mut Vec<Effect>) {
+        while found.len() < MOST_EFFECTS {
+            let model = self.fit(found);
             if self.excess(&model) <= NEGLIGIBLE {
                 break;
             }
             let enough = self.least_gain(&model);
-            let candidates = self.round(rows);
+            let candidates = self.round(found);
             let cycle_s = self.bench.record.cycle_s;
-            let may_enter = |(row, trial): &(&'static EffectRow, Trial)| {
-                !self.refused.contains_key(row.kind)
+            let may_enter = |(effect, trial): &(Effect, Trial)| {
+                !self.refused.contains_key(effect)
                     && gains(&model, trial, enough)
-                    && !is_at_end(row, &trial.values, cycle_s)
+                    && !is_at_end(*effect, &trial.values, cycle_s)
             };
-            let Some((row, _)) = best(candidates.into_iter().filter(may_enter)) else { break };
-            rows.push(row);
+            let Some((effect, _)) = best(candidates.into_iter().filter(may_enter)) else { break };
+            found.push(effect);
         }
     }
 
@@ -271,47 +273,47 @@ impl<'b, 'a> Search<'b, 'a> {
     }
 
     /// Each candidate that a model lacks, fitted beside all that it has; the ladder of friction comes before everything else.
-    fn round(&mut self, rows: &[&'static EffectRow]) -> Vec<(&'static EffectRow, Trial)> {
-        let model = self.fit(rows);
+    fn round(&mut self, found: &[Effect]) -> Vec<(Effect, Trial)> {
+        let model = self.fit(found);
         let slides = model.values[MU] > 0.0;
         // An offset of the sensor and one at the platform are the same to the force.
         let has_offset = model.free.iter().any(|parameter| parameter.place() == OFFSET);
-        let lacking = |friction: bool| -> Vec<&'static EffectRow> {
-            effects::named()
-                .filter(|row| is_friction(row) == friction && !has(row, &model.values) && !contains(rows, row))
-                .filter(|row| row.kind != "presliding" || slides)
-                .filter(|row| row.kind != sensor_offset::ROW.kind || !has_offset)
+        let lacking = |friction: bool| -> Vec<Effect> {
+            Effect::ALL
+                .iter()
+                .copied()
+                .filter(|effect| {
+                    effect.is_friction() == friction && !has(*effect, &model.values) && !found.contains(effect)
+                })
+                .filter(|effect| *effect != Effect::Presliding || slides)
+                .filter(|effect| *effect != Effect::SensorOffset || !has_offset)
                 .collect()
         };
-        let friction = self.beside(rows, &lacking(true));
+        let friction = self.beside(found, &lacking(true));
         let enough = self.least_gain(&model);
         if friction.iter().any(|(_, trial)| gains(&model, trial, enough)) {
             return friction;
         }
-        self.beside(rows, &lacking(false))
+        self.beside(found, &lacking(false))
     }
 
     /// The model with one more effect, for each of several.
-    fn beside(
-        &mut self,
-        rows: &[&'static EffectRow],
-        candidates: &[&'static EffectRow],
-    ) -> Vec<(&'static EffectRow, Trial)> {
-        let with = |row: &&'static EffectRow| kinds(&[rows, &[*row]].concat());
-        let model = self.fit(rows);
-        let unknown: Vec<&'static EffectRow> =
-            candidates.iter().copied().filter(|row| !self.fits.contains_key(&with(row))).collect();
-        if unknown.iter().any(|row| row.kind == "pulley_eccentricity") {
+    fn beside(&mut self, found: &[Effect], candidates: &[Effect]) -> Vec<(Effect, Trial)> {
+        let with = |effect: &Effect| set_of(&[found, &[*effect]].concat());
+        let model = self.fit(found);
+        let unknown: Vec<Effect> =
+            candidates.iter().copied().filter(|effect| !self.fits.contains_key(&with(effect))).collect();
+        if unknown.contains(&Effect::PulleyEccentricity) {
             let residuals_n = self.bench.residuals_n(&model.values);
-            self.scale.periods_m = periods_m(&self.bench.record, &residuals_n);
+            self.around.periods_m = periods_m(&self.bench.record, &residuals_n);
         }
         let (mut models, mut owners) = (Vec::new(), Vec::new());
-        for row in unknown {
-            for values in starts(row, &model.values, &self.scale, &self.bench.record) {
+        for effect in unknown {
+            for values in starts(effect, &model.values, &self.around, &self.bench.record) {
                 let mut free = model.free.clone();
-                free.extend(fitted(row).into_iter().filter(|parameter| !model.free.contains(parameter)));
+                free.extend(fitted(effect).into_iter().filter(|parameter| !model.free.contains(parameter)));
                 models.push(Model { values, free });
-                owners.push(with(&row));
+                owners.push(with(&effect));
             }
         }
         #[expect(clippy::cast_precision_loss, reason = "counts of samples")]
@@ -325,18 +327,21 @@ impl<'b, 'a> Search<'b, 'a> {
             }
         }
         // Those that may enter, and may be the best, come to their minima.
-        let trained = |row: &&'static EffectRow| self.fits.get(&with(row)).map(|trial| trial.training);
+        let trained = |effect: &Effect| self.fits.get(&with(effect)).map(|trial| trial.training);
         let enough = model.training - UNDECIDED * needed;
         let bound = candidates.iter().filter_map(trained).fold(enough, |least, training| least.min(training + needed));
-        let contenders: Vec<&'static EffectRow> =
-            candidates.iter().copied().filter(|row| trained(row).is_some_and(|training| training < bound)).collect();
+        let contenders: Vec<Effect> = candidates
+            .iter()
+            .copied()
+            .filter(|effect| trained(effect).is_some_and(|training| training < bound))
+            .collect();
         self.refine(contenders.iter().map(with));
-        candidates.iter().filter_map(|row| Some((*row, self.fits.get(&with(row))?.clone()))).collect()
+        candidates.iter().filter_map(|effect| Some((*effect, self.fits.get(&with(effect))?.clone()))).collect()
     }
 
     /// Brings the models with some sets of effects to their minima.
-    fn refine(&mut self, sets: impl Iterator<Item = Kinds>) {
-        let coarse: Vec<Kinds> =
+    fn refine(&mut self, sets: impl Iterator<Item = Set>) {
+        let coarse: Vec<Set> =
             sets.filter(|set| self.fits.get(set).is_some_and(|trial| trial.near_errors > NEAR_ERRORS)).collect();
         let models: Vec<Model> = coarse.iter().filter_map(|set| self.fits.get(set)).map(Trial::model).collect();
         let fits = self.bench.try_all(&models, NEAR_ERRORS);
@@ -344,8 +349,8 @@ impl<'b, 'a> Search<'b, 'a> {
     }
 
     /// The model with a set of effects. One that has not been tried yet is fitted from the best that has one more.
-    fn fit(&mut self, rows: &[&'static EffectRow]) -> Trial {
-        let set = kinds(rows);
+    fn fit(&mut self, found: &[Effect]) -> Trial {
+        let set = set_of(found);
         self.refine(std::iter::once(set.clone()));
         if let Some(trial) = self.fits.get(&set) {
             return trial.clone();
@@ -357,12 +362,12 @@ impl<'b, 'a> Search<'b, 'a> {
             .min_by(|(_, one), (_, other)| one.training.total_cmp(&other.training));
         let Some((larger, of_larger)) = larger else { return self.fit(&[]) };
         let mut model = of_larger.model();
-        for row in effects::named().filter(|row| larger.contains(&row.kind) && !set.contains(&row.kind)) {
-            for parameter in Parameter::of_row(row) {
+        for effect in Effect::ALL.iter().copied().filter(|effect| larger.contains(effect) && !set.contains(effect)) {
+            for parameter in Parameter::of(effect) {
                 model.values[parameter.place()] = parameter.row().neutral;
             }
-            let of_row = fitted(row);
-            model.free.retain(|parameter| !of_row.contains(parameter));
+            let of_effect = fitted(effect);
+            model.free.retain(|parameter| !of_effect.contains(parameter));
         }
         let trial = self.bench.try_one(&model);
         self.fits.insert(set, trial.clone());
@@ -370,26 +375,24 @@ impl<'b, 'a> Search<'b, 'a> {
     }
 
     /// Brings the model with a set of effects to its minimum, the period of a ripple with it: it was found by a scan.
-    fn polish(&mut self, rows: &[&'static EffectRow]) {
-        let mut model = self.fit(rows).model();
-        if contains(rows, &pulley_eccentricity::ROW) {
+    fn polish(&mut self, found: &[Effect]) {
+        let mut model = self.fit(found).model();
+        if found.contains(&Effect::PulleyEccentricity) {
             let is_period = |parameter: &Parameter| parameter.place() == pulley_eccentricity::PERIOD;
             model.free.extend(Parameter::all().find(is_period));
         }
-        self.fits.insert(kinds(rows), self.bench.fit(&model, AT_MINIMUM));
+        self.fits.insert(set_of(found), self.bench.fit(&model, AT_MINIMUM));
     }
 
     /// Tries all other effects in the place of each; whether one was better.
-    fn exchange(&mut self, rows: &mut [&'static EffectRow]) -> bool {
+    fn exchange(&mut self, found: &mut [Effect]) -> bool {
         let mut is_changed = false;
-        for place in 0..rows.len() {
-            let Some((other, trial)) = self.alternative(rows, place) else { continue };
-            let model = self.fit(rows);
-            if !self.refused.contains_key(other.kind)
-                && trial.training < model.training
-                && trial.held_out < model.held_out
+        for place in 0..found.len() {
+            let Some((other, trial)) = self.alternative(found, place) else { continue };
+            let model = self.fit(found);
+            if !self.refused.contains_key(&other) && trial.training < model.training && trial.held_out < model.held_out
             {
-                rows[place] = other;
+                found[place] = other;
                 is_changed = true;
             }
         }
@@ -397,34 +400,34 @@ impl<'b, 'a> Search<'b, 'a> {
     }
 
     /// The best other effect in the place of one; friction that every model has stays.
-    fn alternative(&mut self, rows: &[&'static EffectRow], place: usize) -> Option<(&'static EffectRow, Trial)> {
-        let row = *rows.get(place)?;
-        if is_friction(row) {
+    fn alternative(&mut self, found: &[Effect], place: usize) -> Option<(Effect, Trial)> {
+        let effect = *found.get(place)?;
+        if effect.is_friction() {
             return None;
         }
-        let others: Vec<&'static EffectRow> = rows.iter().copied().filter(|other| other.kind != row.kind).collect();
-        let others = self.round(&others).into_iter().filter(|(other, _)| other.kind != row.kind);
+        let others: Vec<Effect> = found.iter().copied().filter(|other| *other != effect).collect();
+        let others = self.round(&others).into_iter().filter(|(other, _)| *other != effect);
         // What the log cannot tell from it is another name for it.
         let beyond = self.beyond_the_log();
-        let is_rival = |other: &EffectRow| beyond.contains_key(other.kind) || !self.refused.contains_key(other.kind);
+        let is_rival = |other: &Effect| beyond.contains_key(other) || !self.refused.contains_key(other);
         best(others.filter(|(other, _)| is_rival(other)).collect::<Vec<_>>())
     }
 
     /// Every effect of a model with what speaks for it, and why it cannot stay if it cannot.
-    fn justified(&mut self, rows: &[&'static EffectRow]) -> Vec<Named> {
-        let set = kinds(rows);
-        let model = self.fit(rows);
+    fn justified(&mut self, found: &[Effect]) -> Vec<Named> {
+        let set = set_of(found);
+        let model = self.fit(found);
         let mut named = Vec::new();
-        for row in rows.iter().copied() {
-            let others: Vec<&'static EffectRow> = rows.iter().copied().filter(|other| other.kind != row.kind).collect();
+        for effect in found.iter().copied() {
+            let others: Vec<Effect> = found.iter().copied().filter(|other| *other != effect).collect();
             let without = self.fit(&others);
-            let known = self.judged.get(&(set.clone(), row.kind)).copied();
+            let known = self.judged.get(&(set.clone(), effect)).copied();
             let (inflation, refusal) = known.unwrap_or_else(|| {
-                let inflation = inflation(self.bench, &model, &fitted(row));
-                (inflation, self.refusal(&model, row, &without, inflation))
+                let inflation = inflation(self.bench, &model, &fitted(effect));
+                (inflation, self.refusal(&model, effect, &without, inflation))
             });
-            self.judged.insert((set.clone(), row.kind), (inflation, refusal));
-            named.push(Named { row, without, runner_up: None, inflation, refusal });
+            self.judged.insert((set.clone(), effect), (inflation, refusal));
+            named.push(Named { effect, without, runner_up: None, inflation, refusal });
         }
         if named.iter().all(|named| named.refusal.is_none()) && !self.unrivalled.contains(&set) {
             match self.rival(&model, &named) {
@@ -432,7 +435,7 @@ impl<'b, 'a> Search<'b, 'a> {
                     for place in rival.replaces {
                         let named = &mut named[place];
                         named.refusal = Some(Refusal::StandsIn(rival.signal));
-                        self.judged.insert((set.clone(), named.row.kind), (named.inflation, named.refusal));
+                        self.judged.insert((set.clone(), named.effect), (named.inflation, named.refusal));
                     }
                 }
                 None => {
@@ -446,19 +449,19 @@ impl<'b, 'a> Search<'b, 'a> {
     /// A law without a name that makes some of the effects superfluous.
     fn rival(&self, model: &Trial, named: &[Named]) -> Option<Rival> {
         let effects: Vec<(Vec<Parameter>, Values)> =
-            named.iter().map(|named| (fitted(named.row), without(named.row, &model.values))).collect();
+            named.iter().map(|named| (fitted(named.effect), without(named.effect, &model.values))).collect();
         let inflation = named.iter().fold(1.0, |most: f64, named| most.max(named.inflation));
-        let is_friction_only = named.iter().all(|named| is_friction(named.row));
+        let is_friction_only = named.iter().all(|named| named.effect.is_friction());
         let white = STRONG_BIC * self.noise_n * self.noise_n;
         let chance = Chance { enough: white * inflation, white, noise_n: self.noise_n };
         let rival = (!is_friction_only).then(|| best_rival(self.bench, model, &effects, &chance))??;
-        (!rival.replaces.iter().any(|place| is_friction(named[*place].row))).then_some(rival)
+        (!rival.replaces.iter().any(|place| named[*place].effect.is_friction())).then_some(rival)
     }
 
     /// Why an effect cannot stay in a model.
-    fn refusal(&self, model: &Trial, row: &EffectRow, without_it: &Trial, inflation: f64) -> Option<Refusal> {
+    fn refusal(&self, model: &Trial, effect: Effect, without_it: &Trial, inflation: f64) -> Option<Refusal> {
         let cycle_s = self.bench.record.cycle_s;
-        if is_at_end(row, &model.values, cycle_s) {
+        if is_at_end(effect, &model.values, cycle_s) {
             return Some(Refusal::AtBound);
         }
         let gain = without_it.held_out - model.held_out;
@@ -466,28 +469,28 @@ impl<'b, 'a> Search<'b, 'a> {
         if !is_strong || gain <= LEAST_SIZE * self.noise_squares {
             return Some(Refusal::Weak);
         }
-        if is_friction(row) {
+        if effect.is_friction() {
             return None;
         }
-        if let Some(other) = self.confused_with(model, row) {
+        if let Some(other) = self.confused_with(model, effect) {
             return Some(Refusal::Open(other));
         }
-        let neutral = without(row, &model.values);
+        let neutral = without(effect, &model.values);
         let noise = (self.noise_n, inflation);
-        let portrait = Portrait::of(self.bench, model, &fitted(row), &neutral, self.conditions, noise)?;
+        let portrait = Portrait::of(self.bench, model, &fitted(effect), &neutral, self.conditions, noise)?;
         let is_noise = self.excess(model) <= WORTH;
         doubt(&portrait, is_noise)
     }
 
     /// The parameter that an effect cannot be told from, where the log determines none of the effect's own; an offset at the platform is one
     /// that every cable may have.
-    fn confused_with(&self, model: &Trial, row: &EffectRow) -> Option<&'static str> {
+    fn confused_with(&self, model: &Trial, effect: Effect) -> Option<&'static str> {
         let mut free = model.free.clone();
         let has_offset = free.iter().any(|parameter| [OFFSET, OFFSET_OF_SENSOR].contains(&parameter.place()));
         free.extend(Parameter::all().filter(|parameter| parameter.place() == OFFSET && !has_offset));
-        let of_row = fitted(row);
+        let of_effect = fitted(effect);
         let (covariance, all) = engine::vagueness(&self.bench.problem(&free, None), &[model.values]);
-        let own = |of: &engine::Unknown| of_row.contains(&of.parameter);
+        let own = |of: &engine::Unknown| of_effect.contains(&of.parameter);
         if all.iter().any(|(vagueness, of)| own(of) && *vagueness <= 1.0) {
             return None;
         }
@@ -501,24 +504,24 @@ impl<'b, 'a> Search<'b, 'a> {
     }
 
     /// The candidates that help a model and do not suffice, the best first.
-    fn tried(&mut self, rows: &[&'static EffectRow]) -> Vec<Tried> {
-        let model = self.fit(rows);
+    fn tried(&mut self, found: &[Effect]) -> Vec<Tried> {
+        let model = self.fit(found);
         if self.excess(&model) <= NEGLIGIBLE {
             return Vec::new();
         }
         let mut tried: Vec<Tried> = self
-            .round(rows)
+            .round(found)
             .into_iter()
             .filter(|(_, trial)| trial.held_out < model.held_out && trial.training < model.training)
-            .map(|(row, trial)| {
-                let inflation = inflation(self.bench, &trial, &fitted(row));
+            .map(|(effect, trial)| {
+                let inflation = inflation(self.bench, &trial, &fitted(effect));
                 let cycle_s = self.bench.record.cycle_s;
-                let refusal = if is_at_end(row, &trial.values, cycle_s) {
+                let refusal = if is_at_end(effect, &trial.values, cycle_s) {
                     Refusal::AtBound
                 } else {
-                    self.refused.get(row.kind).copied().unwrap_or(Refusal::Weak)
+                    self.refused.get(&effect).copied().unwrap_or(Refusal::Weak)
                 };
-                Tried { row, trial, inflation, refusal }
+                Tried { effect, trial, inflation, refusal }
             })
             .filter(|tried| self.delta_bic(&model, &tried.trial, tried.inflation) < 0.0)
             .collect();
@@ -528,9 +531,9 @@ impl<'b, 'a> Search<'b, 'a> {
 }
 
 /// The values of a model without an effect.
-fn without(row: &EffectRow, values: &Values) -> Values {
+fn without(effect: Effect, values: &Values) -> Values {
     let mut neutral = *values;
-    for parameter in Parameter::of_row(row) {
+    for parameter in Parameter::of(effect) {
         neutral[parameter.place()] = parameter.row().neutral;
     }
     neutral
@@ -556,14 +559,14 @@ fn delta_bic(count: f64, squares_ratio: f64, more: f64) -> f64 {
 
 /// Whether a parameter of an effect has run into an end of its range that is not its neutral value; of friction that every model
 /// has the ranges are orders of magnitude.
-fn is_at_end(row: &EffectRow, values: &Values, cycle_s: f64) -> bool {
+fn is_at_end(effect: Effect, values: &Values, cycle_s: f64) -> bool {
     let has_run = |parameter: &Parameter| {
         let (least, greatest) = Coordinate::of(parameter, cycle_s).range();
         let neutral = parameter.row().neutral;
         let left = |end: f64| (end - values[parameter.place()]).abs() / (end - neutral).abs();
         [least, greatest].into_iter().any(|end| left(end) < END_RATIO)
     };
-    !is_friction(row) && fitted(row).iter().any(has_run)
+    !effect.is_friction() && fitted(effect).iter().any(has_run)
 }
 
 /// Whether a model has so much less of the squares held out than another, N².
@@ -572,23 +575,19 @@ fn gains(before: &Trial, after: &Trial, enough: f64) -> bool {
 }
 
 /// The best on the samples learned from.
-fn best(tried: impl IntoIterator<Item = (&'static EffectRow, Trial)>) -> Option<(&'static EffectRow, Trial)> {
+fn best(tried: impl IntoIterator<Item = (Effect, Trial)>) -> Option<(Effect, Trial)> {
     tried.into_iter().min_by(|(_, one), (_, other)| one.training.total_cmp(&other.training))
 }
 
-fn contains(rows: &[&'static EffectRow], row: &EffectRow) -> bool {
-    rows.iter().any(|of| of.kind == row.kind)
-}
-
-fn kinds(rows: &[&'static EffectRow]) -> Kinds {
-    let mut kinds: Kinds = rows.iter().map(|row| row.kind).collect();
-    kinds.sort_unstable();
-    kinds
+fn set_of(found: &[Effect]) -> Set {
+    let mut set = found.to_vec();
+    set.sort_unstable();
+    set
 }
 
 #[cfg(test)]
 mod tests {
-    use fric_core::effects::{presliding_shape, pulley_inertia, stribeck, time_delay};
+    use fric_core::effects::Effect;
     use fric_core::parameters::{PARAMETER_COUNT, Values};
 
     use super::{delta_bic, fitted, is_at_end};
@@ -606,18 +605,18 @@ mod tests {
 
     #[test]
     fn a_parameter_at_the_end_of_its_range_has_run_into_it() {
-        for (row, inside, end) in
-            [(presliding_shape::ROW, 0.5, 0.3), (stribeck::ROW, 2.0, 5.0), (time_delay::ROW, 0.02, 0.063)]
+        for (effect, inside, end) in
+            [(Effect::PreslidingShape, 0.5, 0.3), (Effect::Stribeck, 2.0, 5.0), (Effect::TimeDelay, 0.02, 0.063)]
         {
-            let place = fitted(&row)[0].place();
+            let place = fitted(effect)[0].place();
             for (value, has_run) in [(inside, false), (end, true), (end * (1.0 - 1e-6), true)] {
                 let mut values = neutral();
                 values[place] = value;
-                assert_eq!(is_at_end(&row, &values, CYCLE_S), has_run, "{}: {value}", row.kind);
+                assert_eq!(is_at_end(effect, &values, CYCLE_S), has_run, "{effect:?}: {value}");
             }
         }
         // At an end that is the neutral value there is only little of the effect.
-        assert!(!is_at_end(&pulley_inertia::ROW, &neutral(), CYCLE_S));
+        assert!(!is_at_end(Effect::PulleyInertia, &neutral(), CYCLE_S));
     }
 
     #[test]

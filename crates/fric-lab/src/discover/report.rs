@@ -1,6 +1,6 @@
 //! What a discovery gives for one cable.
 
-use fric_core::effects::EffectRow;
+use fric_core::effects::Effect;
 use fric_core::parameters::Values;
 use nalgebra::DMatrix;
 
@@ -43,8 +43,8 @@ pub struct Model {
 /// An effect that was found.
 #[derive(Clone, Debug)]
 pub struct Finding {
-    /// Its row in the catalogue.
-    pub row: &'static EffectRow,
+    /// Its effect in the catalogue.
+    pub effect: Effect,
     /// Error with it and all found before it, on the samples held out.
     pub held_out_n: Deviation,
     /// Schwarz's criterion with it less without it; negative speaks for it.
@@ -56,8 +56,8 @@ pub struct Finding {
 /// Another effect that might have been it.
 #[derive(Clone, Debug)]
 pub struct RunnerUp {
-    /// Its row in the catalogue.
-    pub row: &'static EffectRow,
+    /// Its effect in the catalogue.
+    pub effect: Effect,
     /// Schwarz's criterion with it less without it.
     pub delta_bic: f64,
     /// Sum of squares with it over the samples held out, N².
@@ -69,8 +69,8 @@ pub struct RunnerUp {
 /// An effect by itself beside the given model.
 #[derive(Clone, Debug)]
 pub struct Candidate {
-    /// Its row in the catalogue.
-    pub row: &'static EffectRow,
+    /// Its effect in the catalogue.
+    pub effect: Effect,
     /// Schwarz's criterion with it less without it; of one that cannot enter an upper bound, for its search ended early.
     pub delta_bic: f64,
     /// Root mean square of the error with it on the samples held out, N.
@@ -80,8 +80,8 @@ pub struct Candidate {
 /// An effect that helps the extended model and does not suffice.
 #[derive(Clone, Debug)]
 pub struct Tried {
-    /// Its row in the catalogue.
-    pub row: &'static EffectRow,
+    /// Its effect in the catalogue.
+    pub effect: Effect,
     /// Schwarz's criterion with it less without it, the memory of the residual taken into account.
     pub delta_bic: f64,
     /// Root mean square of the error with it on the samples held out, N.

@@ -4,7 +4,7 @@
 //! closed is `1 − (error − floor)/(before − floor)` with root mean squares; that of an effect counts it and all above it
 //! in the list. Where nothing is missing there is no gap to close, and the share is null.
 
-use fric_core::effects::EffectRow;
+use fric_core::effects::Effect;
 use fric_core::parameters::NO_PRESLIDING_N_PER_M;
 use fric_core::robot::file::RobotFile;
 use serde::Serialize;
@@ -136,7 +136,7 @@ pub struct EffectResult {
     pub runner_up: Option<RunnerUpResult>,
     /// Its row of the catalogue.
     #[serde(skip)]
-    pub row: &'static EffectRow,
+    pub effect: Effect,
 }
 
 /// What speaks for an effect.
@@ -161,7 +161,7 @@ pub struct RunnerUpResult {
     pub as_good: bool,
     /// Its row of the catalogue.
     #[serde(skip)]
-    pub row: &'static EffectRow,
+    pub effect: Effect,
 }
 
 /// An effect that helps the extended model and does not suffice.
@@ -395,8 +395,9 @@ fn excess(model: &Model, noise_n: f64) -> f64 {
 /// Values of the extended model: friction, what was fitted, and all of each effect that was found.
 fn parameters(found: &CableDiscovery) -> Numbers {
     let model = &found.after;
-    let of_finding =
-        |parameter: &Parameter| found.findings.iter().any(|finding| finding.row.places().contains(&parameter.place()));
+    let of_finding = |parameter: &Parameter| {
+        found.findings.iter().any(|finding| finding.effect.places().contains(&parameter.place()))
+    };
     let shown = |parameter: Parameter| {
         let value = model.values[parameter.place()];
         let relevant = parameter.is_friction() || model.fitted.contains(&parameter) || of_finding(&parameter);
@@ -417,36 +418,36 @@ fn effect_result(found: &CableDiscovery, finding: &Finding) -> EffectResult {
     #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
     let count = finding.held_out_n.count() as f64;
     EffectResult {
-        kind: finding.row.kind,
+        kind: finding.effect.kind(),
         parameters: Numbers(
-            Parameter::of_row(finding.row).map(|parameter| (key(&parameter), values[parameter.place()])).collect(),
+            Parameter::of(finding.effect).map(|parameter| (key(&parameter), values[parameter.place()])).collect(),
         ),
-        standard_errors: errors(&found.after, Parameter::of_row(finding.row), key),
+        standard_errors: errors(&found.after, Parameter::of(finding.effect), key),
         gap_closed: held_out_rms_n.and_then(|rms_n| gap_closed(found, rms_n)),
         evidence: Evidence { delta_bic: finite(finding.delta_bic), held_out_rms_n },
         runner_up: finding.runner_up.as_ref().map(|other| RunnerUpResult {
-            kind: other.row.kind,
+            kind: other.effect.kind(),
             delta_bic: finite(other.delta_bic),
             held_out_rms_n: finite((other.held_out_squares / count).sqrt()),
             as_good: other.is_as_good,
-            row: other.row,
+            effect: other.effect,
         }),
-        row: finding.row,
+        effect: finding.effect,
     }
 }
 
 impl Candidate {
     fn of(candidate: &report::Candidate) -> Self {
-        let report::Candidate { row, delta_bic, held_out_rms_n } = candidate;
-        Self { kind: row.kind, delta_bic: finite(*delta_bic), held_out_rms_n: finite(*held_out_rms_n) }
+        let report::Candidate { effect, delta_bic, held_out_rms_n } = candidate;
+        Self { kind: effect.kind(), delta_bic: finite(*delta_bic), held_out_rms_n: finite(*held_out_rms_n) }
     }
 }
 
 impl TriedResult {
     fn of(tried: &Tried) -> Self {
-        let Tried { row, delta_bic, held_out_rms_n, refusal } = tried;
+        let Tried { effect, delta_bic, held_out_rms_n, refusal } = tried;
         let evidence = Evidence { delta_bic: finite(*delta_bic), held_out_rms_n: finite(*held_out_rms_n) };
-        Self { kind: row.kind, evidence, reason: refusal.in_words() }
+        Self { kind: effect.kind(), evidence, reason: refusal.in_words() }
     }
 }
 
@@ -522,7 +523,7 @@ fn common_effect(kind: &'static str, cables: &[DiscoverCableResult]) -> Option<C
         .iter()
         .filter_map(|cable| Some((cable.name.as_str(), cable.effects.iter().find(|effect| effect.kind == kind)?)))
         .collect();
-    let parameters = with.first()?.1.row.parameters.iter().filter_map(|parameter| {
+    let parameters = with.first()?.1.effect.row().parameters.iter().filter_map(|parameter| {
         let of_cable = |(_, effect): &(&str, &EffectResult)| {
             Some((effect.parameters.get(parameter.key)?, effect.standard_errors.get(parameter.key)?))
         };

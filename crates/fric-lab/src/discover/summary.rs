@@ -96,8 +96,8 @@ fn details(cable: &DiscoverCableResult, told: &mut Vec<&'static str>) -> String 
 fn of_effect(effect: &EffectResult, is_told: bool) -> String {
     let mut text = wrapped(&format!("  {}: ", effect.kind), &effect.values_in_words());
     if !is_told {
-        text += &line("  cause", effect.row.cause);
-        text += &line("  remedy", effect.row.remedy);
+        text += &line("  cause", effect.effect.row().cause);
+        text += &line("  remedy", effect.effect.row().remedy);
     }
     if let Some(alternative) = effect.alternative_in_words() {
         text += &line("  else", &alternative);

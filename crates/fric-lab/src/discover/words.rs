@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use fric_core::effects::EffectRow;
+use fric_core::effects::Effect;
 
 use super::naming::Refusal;
 use super::places::LEAST_CONCENTRATION;
@@ -245,19 +245,19 @@ impl EffectResult {
             let half = self.standard_errors.get(parameter.key).map(|error| HALF_INTERVAL * error);
             Some(format!("{} {}", name_of(parameter.key), quantity(value, half, parameter.unit)))
         };
-        let all: Vec<String> = self.row.parameters.iter().filter_map(one).collect();
+        let all: Vec<String> = self.effect.row().parameters.iter().filter_map(one).collect();
         all.join(", ")
     }
 
     /// What else it could have been, as a sentence without its full stop.
     #[must_use]
     pub fn alternative_in_words(&self) -> Option<String> {
-        let RunnerUpResult { kind, delta_bic, held_out_rms_n, as_good, row } = self.runner_up.as_ref()?;
+        let RunnerUpResult { kind, delta_bic, held_out_rms_n, as_good, effect } = self.runner_up.as_ref()?;
         let rms = held_out_rms_n.map(newtons)?;
         if *as_good {
             return Some(format!(
                 "the log cannot tell it from {kind} (rms {rms}); to tell them apart record {}",
-                excitation([self.row, row])
+                excitation([self.effect, *effect])
             ));
         }
         let own = self.evidence.held_out_rms_n.map(newtons)?;
@@ -274,8 +274,9 @@ impl EffectResult {
 }
 
 /// What to record to tell effects apart.
-fn excitation(rows: [&EffectRow; 2]) -> String {
-    let mut all: Vec<&str> = rows.into_iter().filter_map(|row| Some(row.parameters.first()?.excitation)).collect();
+fn excitation(effects: [Effect; 2]) -> String {
+    let mut all: Vec<&str> =
+        effects.into_iter().filter_map(|effect| Some(effect.row().parameters.first()?.excitation)).collect();
     all.dedup();
     all.join("; and ")
 }

@@ -7,10 +7,10 @@
 
 use std::sync::Arc;
 
-use fric_core::effects::{CATALOGUE, EffectRow};
+use fric_core::effects::Effect;
 use fric_core::parameters::{MU, Values};
 
-use super::candidates::{self, Scale};
+use super::candidates;
 use super::noise::white_noise;
 use super::pass::Forces;
 use super::problem::{Comparison, Member, Problem};
@@ -25,25 +25,25 @@ pub fn with_newcomers(
     given: &[Values],
     cycle_s: f64,
 ) -> Vec<Vec<Values>> {
-    let is_new = |row: &&EffectRow| {
+    let is_new = |effect: &Effect| {
         let of_member = |(member, given): (&Member<'_>, &Values)| {
-            wanted(row, member).next().is_some() && !candidates::has(row, given)
+            wanted(*effect, member).next().is_some() && !candidates::has(*effect, given)
         };
         problem.members.iter().zip(given).any(of_member)
     };
-    let newcomers: Vec<&EffectRow> = CATALOGUE.iter().filter(is_new).collect();
+    let newcomers: Vec<Effect> = Effect::CATALOGUE.iter().copied().filter(is_new).collect();
     if newcomers.is_empty() {
         return starts;
     }
     let mut growing = problem.clone();
     for member in &mut growing.members {
-        member.free.retain(|parameter| !newcomers.iter().any(|row| parameter.effect() == Some(row.kind)));
+        member.free.retain(|parameter| !parameter.effect().is_some_and(|effect| newcomers.contains(&effect)));
     }
     let Some(mut current) = best(&growing, starts, cycle_s) else { return Vec::new() };
-    for row in newcomers {
-        let entrants = entrants(row, &growing, problem, &current, given);
+    for effect in newcomers {
+        let entrants = entrants(effect, &growing, problem, &current, given);
         for (member, whole) in growing.members.iter_mut().zip(&problem.members) {
-            member.free.extend(wanted(row, whole));
+            member.free.extend(wanted(effect, whole));
         }
         current = best(&growing, entrants, cycle_s).unwrap_or(current);
     }
@@ -51,8 +51,8 @@ pub fn with_newcomers(
 }
 
 /// What is to be varied of an effect.
-fn wanted<'a>(row: &'a EffectRow, member: &'a Member<'_>) -> impl Iterator<Item = Parameter> + 'a {
-    member.free.iter().copied().filter(|parameter| parameter.effect() == Some(row.kind))
+fn wanted<'a>(effect: Effect, member: &'a Member<'_>) -> impl Iterator<Item = Parameter> + 'a {
+    member.free.iter().copied().filter(move |parameter| parameter.effect() == Some(effect))
 }
 
 /// The best of several minima.
@@ -63,7 +63,7 @@ fn best(problem: &Problem<'_>, starts: Vec<Vec<Values>>, cycle_s: f64) -> Option
 
 /// Values of all cables to start from with an effect.
 fn entrants(
-    row: &EffectRow,
+    effect: Effect,
     growing: &Problem<'_>,
     whole: &Problem<'_>,
     current: &[Values],
@@ -71,18 +71,18 @@ fn entrants(
 ) -> Vec<Vec<Values>> {
     let forces = growing.forces(current).unwrap_or_default();
     let of_member = |((member, forces), (values, given)): ((&Member<'_>, &Arc<Forces>), (&Values, &Values))| {
-        if candidates::has(row, given) {
+        if candidates::has(effect, given) {
             return vec![*values];
         }
         let residual_n = residual_n(growing, member, forces);
-        let mut scale = Scale::of(&member.record, values[MU], white_noise(&residual_n).unwrap_or(0.0));
-        scale.periods_m = periods_m(&member.record, &residual_n);
-        let free: Vec<Parameter> = wanted(row, member).collect();
-        let mut starts = candidates::starts(row, values, &scale, &member.record);
+        let mut around = candidates::around(&member.record, values[MU], white_noise(&residual_n).unwrap_or(0.0));
+        around.periods_m = periods_m(&member.record, &residual_n);
+        let free: Vec<Parameter> = wanted(effect, member).collect();
+        let mut starts = candidates::starts(effect, values, &around, &member.record);
         for start in &mut starts {
             // What is not asked for stays as given; settings have no given value that means anything.
             let stays = |parameter: &Parameter| parameter.row().fitted && !free.contains(parameter);
-            for parameter in Parameter::of_row(row).filter(stays) {
+            for parameter in Parameter::of(effect).filter(stays) {
                 start[parameter.place()] = given[parameter.place()];
             }
         }
@@ -104,7 +104,7 @@ fn entrants(
 fn residual_n(problem: &Problem<'_>, member: &Member<'_>, forces: &Forces) -> Vec<f64> {
     let rows = member.record.rows.iter().enumerate();
     match problem.comparison {
-        Comparison::Forces => rows.map(|(cycle, row)| forces.at(cycle).0 - row.reference_n).collect(),
+        Comparison::Forces => rows.map(|(cycle, effect)| forces.at(cycle).0 - effect.reference_n).collect(),
         Comparison::Wrench { .. } => Vec::new(),
     }
 }

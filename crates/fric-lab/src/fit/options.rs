@@ -1,8 +1,8 @@
 //! What a fit can be told.
 
 use fric_core::CableParams;
-use fric_core::effects::{self, pulley_eccentricity, sensor_offset};
-use fric_core::parameters::{FRICTION_COUNT, OFFSET};
+use fric_core::effects::{Effect, pulley_eccentricity};
+use fric_core::parameters::OFFSET;
 
 use super::solve::Weighing;
 use super::vector::Parameter;
@@ -22,17 +22,13 @@ impl FitOptions {
     pub(crate) fn free(&self, params: &CableParams) -> Vec<Parameter> {
         self.parameters.clone().unwrap_or_else(|| {
             let values = params.values();
-            let acts = |kind: &str| {
-                let mut of_kind = Parameter::all().filter(|parameter| parameter.effect() == Some(kind));
-                of_kind.any(|parameter| values[parameter.place()].to_bits() != parameter.row().neutral.to_bits())
+            let acts = |effect: Effect| {
+                let differs = |of: &Parameter| values[of.place()].to_bits() != of.row().neutral.to_bits();
+                Parameter::of(effect).any(|parameter| differs(&parameter))
             };
-            let acting: Vec<&str> = effects::CATALOGUE.iter().map(|row| row.kind).filter(|kind| acts(kind)).collect();
-            let free = |parameter: &Parameter| {
-                parameter.place() < FRICTION_COUNT || parameter.effect().is_some_and(|kind| acting.contains(&kind))
-            };
+            let free = |parameter: &Parameter| parameter.effect().is_none_or(acts);
             // An offset of the sensor and one at the platform are the same to the force: never both.
-            let twice =
-                |parameter: &Parameter| parameter.place() == OFFSET && acting.contains(&sensor_offset::ROW.kind);
+            let twice = |parameter: &Parameter| parameter.place() == OFFSET && acts(Effect::SensorOffset);
             // A ripple's period has no neutral value to start from: an effect that acts has one.
             let varies =
                 |parameter: &Parameter| parameter.row().fitted || parameter.place() == pulley_eccentricity::PERIOD;

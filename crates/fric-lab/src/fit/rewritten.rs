@@ -1,6 +1,7 @@
 //! The robot file with what was found.
 
 use fric_core::CableParams;
+use fric_core::effects::Effect;
 use fric_core::parameters::{MU, NO_PRESLIDING_N_PER_M, OFFSET, SIGMA, VISCOUS, Values};
 use fric_core::robot::edit::{CableEdit, EffectEdit, FrictionEdit, rewrite};
 use fric_core::robot::file::{RobotFile, RobotFileError};
@@ -77,7 +78,7 @@ type EffectValues = Vec<(&'static str, Vec<(&'static str, f64)>)>;
 fn effects_of(new: &NewValues<'_>) -> EffectValues {
     let mut effects = EffectValues::new();
     for parameter in &new.parameters {
-        let Some(kind) = parameter.effect() else { continue };
+        let Some(kind) = parameter.effect().map(Effect::kind) else { continue };
         let number = (parameter.row().key, new.values[parameter.place()]);
         match effects.iter_mut().find(|(of, _)| *of == kind) {
             Some((_, numbers)) => numbers.push(number),

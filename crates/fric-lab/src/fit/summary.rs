@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use fric_core::effects;
+use fric_core::effects::Effect;
 use fric_core::parameters::{FRICTION_COUNT, MU, OFFSET, SIGMA, VISCOUS};
 
 use super::result::{FitCableResult, FitResult, Numbers, OpenPartResult, OpenResult};
@@ -21,8 +21,8 @@ pub(super) fn describe(result: &FitResult) -> String {
     text += &legend(result);
     text += "\nstandard errors; ± twice as much holds the value with 95 %\n\n";
     text += &error_table(result);
-    for effect in effects::CATALOGUE {
-        text += &effect_table(result, effect.kind);
+    for effect in Effect::CATALOGUE {
+        text += &effect_table(result, *effect);
     }
     text += "\nsamples\n\n";
     text += &sample_table(result);
@@ -183,9 +183,9 @@ fn error_table(result: &FitResult) -> String {
 }
 
 /// The parameters of an effect with their standard errors; nothing for an effect that no cable has.
-fn effect_table(result: &FitResult, kind: &str) -> String {
+fn effect_table(result: &FitResult, effect: Effect) -> String {
     let mut columns = Vec::new();
-    for parameter in Parameter::all().filter(|parameter| parameter.effect() == Some(kind)) {
+    for parameter in Parameter::all().filter(|parameter| parameter.effect() == Some(effect)) {
         let name = parameter.to_string();
         let value = |cable: &FitCableResult| {
             let value = cable.parameters.get(&name)?;
@@ -205,7 +205,7 @@ fn effect_table(result: &FitResult, kind: &str) -> String {
             columns.push(Column { header: "±".to_owned(), cells, last: String::new() });
         }
     }
-    if columns.is_empty() { String::new() } else { format!("\n{}", table_of(result, kind, &columns, None)) }
+    if columns.is_empty() { String::new() } else { format!("\n{}", table_of(result, effect.kind(), &columns, None)) }
 }
 
 /// What the values were learned from; one row where it is the same for all.

@@ -7,7 +7,7 @@
 
 use std::fmt;
 
-use fric_core::effects::EffectRow;
+use fric_core::effects::Effect;
 use fric_core::effects::time_delay::{DELAY, delay_range_s};
 use fric_core::parameters::{self, FRICTION_COUNT, ParameterRow, Values};
 use fric_core::robot::unknown_name;
@@ -16,7 +16,7 @@ use fric_core::robot::unknown_name;
 #[derive(Clone, Copy, Debug)]
 pub struct Parameter {
     place: usize,
-    effect: Option<&'static str>,
+    effect: Option<Effect>,
     row: &'static ParameterRow,
 }
 
@@ -26,9 +26,9 @@ impl Parameter {
         parameters::parameters().enumerate().map(|(place, (effect, row))| Self { place, effect, row })
     }
 
-    /// Those of a row of the catalogue, or of the friction that every model has.
-    pub fn of_row(row: &EffectRow) -> impl Iterator<Item = Self> {
-        Self::all().skip(row.places().start).take(row.places().len())
+    /// Those of an effect of the catalogue, or of the friction that every model has.
+    pub fn of(effect: Effect) -> impl Iterator<Item = Self> {
+        Self::all().skip(effect.places().start).take(effect.places().len())
     }
 
     /// The parameter of a name: a key of the robot file's `friction`, or `effect.key`.
@@ -62,9 +62,9 @@ impl Parameter {
         self.place
     }
 
-    /// Kind of its effect; `None` for those of `friction`.
+    /// Its effect; `None` for those of `friction`.
     #[must_use]
-    pub fn effect(&self) -> Option<&'static str> {
+    pub fn effect(&self) -> Option<Effect> {
         self.effect
     }
 
@@ -85,7 +85,7 @@ impl Parameter {
 impl fmt::Display for Parameter {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(effect) = self.effect {
-            write!(formatter, "{effect}.")?;
+            write!(formatter, "{}.", effect.kind())?;
         }
         formatter.write_str(self.row.key)
     }

@@ -23,8 +23,9 @@
 
 use core::f64::consts::SQRT_2;
 
-use super::effects::{Contact, TruthEffect, TruthEffects};
 use super::presliding;
+use super::truth::TruthEffects;
+use crate::effects::truth::{Contact, TruthEffect};
 
 /// Stiffness that stands for "no presliding", N/m: friction reverses within nanometres.
 pub const STIFF_N_PER_M: f64 = 1e9;

@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 
 use crate::simulate::HiddenEffect;
-use crate::simulate::effects::CableCause;
+use crate::simulate::truth::CableCause;
 
 type Outcome = Result<(), Box<dyn core::error::Error>>;
 /// Sliding friction at a normal force, both in N.

@@ -40,14 +40,6 @@ pub enum SimulationError {
         /// Its name.
         kind: &'static str,
     },
-    /// An effect of the catalogue that the simulated robot cannot have.
-    #[error("the effect `{kind}` is in the catalogue, but the simulation cannot do it yet; it can do {known}")]
-    UnsupportedEffect {
-        /// Its name in the catalogue.
-        kind: String,
-        /// What it can do, as a list.
-        known: String,
-    },
     /// The robot file's parameters are not right.
     #[error("the robot's parameters are not right: {0}")]
     Robot(#[from] ParamError),
@@ -76,7 +68,7 @@ impl SimulationError {
     #[must_use]
     pub fn advice(&self) -> Option<&'static str> {
         match self {
-            Self::OptionOutOfRange { .. } | Self::UnsupportedEffect { .. } | Self::Robot(_) => None,
+            Self::OptionOutOfRange { .. } | Self::Robot(_) => None,
             Self::RepeatedEffect { .. } => Some(advice::EFFECT),
             Self::RepeatedDisturbance { .. } => Some(advice::DISTURBANCE),
             Self::NoWorkspace => Some(advice::GEOMETRY),

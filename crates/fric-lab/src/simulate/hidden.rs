@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use fric_core::effects::{self, EffectParams};
+use fric_core::effects::{Effect, EffectParams};
 use fric_core::parameters::ParameterRow;
 
 use super::error::HiddenError;
@@ -14,11 +14,12 @@ use super::stated::{self, Allowed, Kind};
 /// A parameter that is not given has the value that the same file entry without it would have.
 ///
 /// ```
+/// use fric_core::effects::Effect;
 /// use fric_lab::simulate::HiddenEffect;
 /// # fn main() -> Result<(), fric_lab::simulate::HiddenError> {
 /// let effect = HiddenEffect::parse("stribeck:ratio=0.5,velocity_m_per_s=0.02")?;
-/// assert_eq!(effect.kind(), "stribeck");
-/// assert_eq!(effect.params().get("stribeck", "ratio"), Some(0.5));
+/// assert_eq!(effect.effect(), Effect::Stribeck);
+/// assert_eq!(effect.params().get(Effect::Stribeck, "ratio"), Some(0.5));
 /// let problem = HiddenEffect::parse("stribek:ratio=0.5").map_err(|error| error.to_string());
 /// assert!(problem.is_err_and(|text| text.starts_with("there is no effect `stribek`; did you mean `stribeck`? known")));
 /// # Ok(())
@@ -26,7 +27,7 @@ use super::stated::{self, Allowed, Kind};
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct HiddenEffect {
-    kind: &'static str,
+    effect: Effect,
     values: Vec<(&'static str, f64)>,
     params: EffectParams,
 }
@@ -38,33 +39,37 @@ impl HiddenEffect {
     /// [`HiddenError`] names what is wrong and what is known or allowed.
     pub fn parse(text: &str) -> Result<Self, HiddenError> {
         let (kind, entries) = stated::split(text);
-        let kind = find(kind)?;
-        let values = kind.read(entries)?;
-        Self::of(&kind, &values)
+        let effect = find(kind)?;
+        let values = stated_kind(effect).read(entries)?;
+        Self::of(effect, &values)
     }
 
-    /// An effect from its name and values by key.
+    /// An effect from its name, with values by key.
     ///
     /// # Errors
     /// [`HiddenError`] names what is wrong and what is known or allowed.
     pub fn new(kind: &str, values: &[(&str, f64)]) -> Result<Self, HiddenError> {
-        Self::of(&find(kind)?, values)
+        Self::of(find(kind)?, values)
     }
 
-    fn of(kind: &Kind, values: &[(&str, f64)]) -> Result<Self, HiddenError> {
-        let values = kind.check(values)?;
+    /// An effect with values by key.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn of(effect: Effect, values: &[(&str, f64)]) -> Result<Self, HiddenError> {
+        let values = stated_kind(effect).check(values)?;
         let mut params = EffectParams::NEUTRAL;
         for &(key, value) in &values {
             // Checked against the same row.
-            let _ = params.set(kind.name, key, value);
+            let _ = params.set(effect, key, value);
         }
-        Ok(Self { kind: kind.name, values, params })
+        Ok(Self { effect, values, params })
     }
 
-    /// Its name in the catalogue.
+    /// Which one.
     #[must_use]
-    pub fn kind(&self) -> &'static str {
-        self.kind
+    pub fn effect(&self) -> Effect {
+        self.effect
     }
 
     /// The values given, by key.
@@ -90,16 +95,20 @@ impl FromStr for HiddenEffect {
 /// As [`HiddenEffect::parse`] reads it.
 impl fmt::Display for HiddenEffect {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        stated::write(formatter, self.kind, &self.values)
+        stated::write(formatter, self.effect.kind(), &self.values)
     }
 }
 
-fn find(kind: &str) -> Result<Kind, HiddenError> {
-    const NOUN: &str = "effect";
-    let row =
-        effects::row(kind).ok_or_else(|| stated::unknown(NOUN, kind, effects::CATALOGUE.iter().map(|row| row.kind)))?;
+const NOUN: &str = "effect";
+
+fn find(kind: &str) -> Result<Effect, HiddenError> {
+    let known = Effect::CATALOGUE.iter().map(|effect| effect.kind());
+    Effect::of_kind(kind).ok_or_else(|| stated::unknown(NOUN, kind, known))
+}
+
+fn stated_kind(effect: Effect) -> Kind {
     let allowed = |&ParameterRow { key, unit, min, max, .. }: &ParameterRow| Allowed { key, unit, min, max };
-    Ok(Kind { noun: NOUN, name: row.kind, parameters: row.parameters.iter().map(allowed).collect() })
+    Kind { noun: NOUN, name: effect.kind(), parameters: effect.row().parameters.iter().map(allowed).collect() }
 }
 
 /// With commas between.

@@ -19,10 +19,10 @@ use thiserror::Error;
 
 use super::bristle::{BristleChain, Moment, SUBSTEPS};
 use super::distribution::Distribution;
-use super::effects::TruthEffects;
 use super::platform::Platform;
 use super::stream::{Purpose, chain, random};
 use super::tension::TensionLevel;
+use super::truth::TruthEffects;
 use super::{SimulationError, SimulationOptions};
 
 /// What is simulated.

@@ -123,8 +123,8 @@ impl SimulationOptions {
             }
         }
         for (place, effect) in self.effects.iter().enumerate() {
-            if self.effects.iter().take(place).any(|other| other.kind() == effect.kind()) {
-                return Err(SimulationError::RepeatedEffect { kind: effect.kind() });
+            if self.effects.iter().take(place).any(|other| other.effect() == effect.effect()) {
+                return Err(SimulationError::RepeatedEffect { kind: effect.effect().kind() });
             }
         }
         for (place, disturbance) in self.disturbances.iter().enumerate() {

@@ -11,16 +11,17 @@ use rand_distr::{Distribution as _, StandardNormal};
 
 use super::bristle::{BristleChain, Moment, PulleyTruth, STIFF_N_PER_M, SUBSTEPS};
 use super::distribution::Distribution;
-use super::effects::{CableCause, TruthEffect, TruthEffects};
 use super::encoder::Encoder;
 use super::error::SimulationError;
 use super::motion::{CableMotion, Motion, Play, Winch};
 use super::options::{Run, SimulationOptions};
 use super::platform::{Platform, balanced_wrench};
 use super::tension::{TensionLevel, Variation};
+use super::truth::{CableCause, TruthEffects};
 use super::wander::Wander;
-use super::waves::uniform;
 use super::workspace::{SHORT_SHARE, Workspace};
+use crate::effects::truth::TruthEffect;
+use crate::random::uniform;
 use crate::trajectory::{Limits, SetPoint, Trajectory};
 
 /// Stamp of the first cycle: 28 May 2026, 20:26:40 UTC. The same in every run, so that equal seeds give equal logs.

@@ -5,7 +5,8 @@
 use core::f64::consts::TAU;
 
 use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution, Uniform};
+
+use crate::random::uniform;
 
 /// A sum of sinusoids.
 #[derive(Clone, Debug)]
@@ -47,10 +48,4 @@ impl Waves {
         let step = |wave: &Wave| wave.amplitude * libm::tanh(5.0 * libm::sin(wave.rad_per_s * time_s + wave.phase_rad));
         self.parts.iter().map(step).sum()
     }
-}
-
-/// A number between two, each as likely.
-pub fn uniform(random: &mut ChaCha8Rng, min: f64, max: f64) -> f64 {
-    // Only an empty or infinite range is refused, and the callers' are neither.
-    Uniform::new_inclusive(min, max).map_or(min, |range| range.sample(random))
 }

@@ -2,6 +2,7 @@
 
 mod faulty;
 
+use fric_core::effects::Effect;
 use fric_core::parameters::VISCOUS;
 use fric_core::robot::file::{FrictionTable, RobotFile};
 use fric_lab::discover::{CableDiscovery, Verdict, discover, extended};
@@ -29,12 +30,12 @@ fn look_by(mut log: CaseLog, robot: &RobotFile) -> (CableDiscovery, CaseTruth) {
 /// Looks at a case and makes sure of the verdict, of the names, and of the noise floor.
 fn assert_found(case: &Case, verdict: Verdict) -> (CableDiscovery, CaseTruth) {
     let (found, truth) = look(case);
-    let mut kinds: Vec<&str> = found.findings.iter().map(|finding| finding.row.kind).collect();
-    kinds.sort_unstable();
+    let mut named: Vec<Effect> = found.findings.iter().map(|finding| finding.effect).collect();
+    named.sort_unstable();
     let mut hidden = case.effects.clone();
     hidden.sort_unstable();
-    let tried: Vec<_> = found.tried.iter().map(|tried| (tried.row.kind, tried.refusal)).collect();
-    assert_eq!((kinds, found.verdict), (hidden, verdict), "{}: {tried:?}", case.name());
+    let tried: Vec<_> = found.tried.iter().map(|tried| (tried.effect.kind(), tried.refusal)).collect();
+    assert_eq!((named, found.verdict), (hidden, verdict), "{}: {tried:?}", case.name());
     let floor_ratio = found.noise_floor_n / truth.floor_n;
     assert!((floor_ratio - 1.0).abs() < 0.05, "{}: floor {floor_ratio}", case.name());
     (found, truth)
@@ -43,9 +44,9 @@ fn assert_found(case: &Case, verdict: Verdict) -> (CableDiscovery, CaseTruth) {
 /// Given its own extended file the search names nothing more, and its verdict is the one that goes with it.
 #[test]
 fn its_own_extended_file_is_the_end() {
-    let named = Case { seed: 70_101, ..Case::hiding(Group::Pair, &["sensor_gain", "friction_drift"]) };
+    let named = Case { seed: 70_101, ..Case::hiding(Group::Pair, &[Effect::SensorGain, Effect::FrictionDrift]) };
     let beside =
-        Case { disturbance: Some("local_defect"), seed: 70_102, ..Case::hiding(Group::Mixed, &["time_delay"]) };
+        Case { disturbance: Some("local_defect"), seed: 70_102, ..Case::hiding(Group::Mixed, &[Effect::TimeDelay]) };
     for (case, verdict) in [(named, Verdict::Complete), (beside, Verdict::Unexplained)] {
         let log = case.log().unwrap();
         let (text, robot) = (log.robot_text.clone(), log.robot.clone());
@@ -53,7 +54,7 @@ fn its_own_extended_file_is_the_end() {
         assert!(!found.findings.is_empty(), "{}", case.name());
         let text = extended(&text, "extended", std::slice::from_ref(&found)).unwrap();
         let (again, _) = look_by(case.log().unwrap(), &RobotFile::parse(&text, "extended").unwrap());
-        let more: Vec<&str> = again.findings.iter().map(|finding| finding.row.kind).collect();
+        let more: Vec<&str> = again.findings.iter().map(|finding| finding.effect.kind()).collect();
         assert_eq!((more, again.verdict), (Vec::new(), verdict), "{}", case.name());
         let [once_n, twice_n] = [&found, &again].map(|of| of.after.held_out_n.rms().unwrap());
         assert!((twice_n / once_n - 1.0).abs() < 0.01, "{}: {once_n} {twice_n}", case.name());
@@ -78,7 +79,7 @@ fn from_no_friction_it_climbs_to_the_model_of_the_paper() {
     let mut options = log.robot.options().clone();
     options.cable[0].friction = FrictionTable::default();
     let (found, truth) = look_by(log, &RobotFile::check(options).unwrap());
-    let kinds: Vec<&str> = found.findings.iter().map(|finding| finding.row.kind).collect();
+    let kinds: Vec<&str> = found.findings.iter().map(|finding| finding.effect.kind()).collect();
     assert_eq!((kinds, found.verdict), (vec!["coulomb", "presliding", "viscous"], Verdict::Extended));
     assert!(left_ratio(&found, &truth) < 1.05);
     let viscous = found.after.values[VISCOUS] / true_friction.viscous_n_s_per_m;
@@ -94,7 +95,8 @@ fn a_wander_of_the_reference_gets_no_name() {
 
 #[test]
 fn a_quarter_of_an_effect_is_named_alone() {
-    let case = Case { strength_ratio: 0.25, seed: 70_003, ..Case::hiding(Group::Single, &["direction_asymmetry"]) };
+    let case =
+        Case { strength_ratio: 0.25, seed: 70_003, ..Case::hiding(Group::Single, &[Effect::DirectionAsymmetry]) };
     let (found, truth) = assert_found(&case, Verdict::Extended);
     assert!(left_ratio(&found, &truth) < 1.05);
     assert!(found.findings[0].delta_bic < -100.0);
@@ -102,18 +104,18 @@ fn a_quarter_of_an_effect_is_named_alone() {
 
 #[test]
 fn two_effects_are_named_together() {
-    let case = Case { seed: 70_004, ..Case::hiding(Group::Pair, &["stribeck", "sensor_gain"]) };
+    let case = Case { seed: 70_004, ..Case::hiding(Group::Pair, &[Effect::Stribeck, Effect::SensorGain]) };
     let (found, truth) = assert_found(&case, Verdict::Extended);
     assert!(left_ratio(&found, &truth) < 1.05);
     // A sensor that shows too much: its gain to a thousandth.
-    let (_, gain) = truth.effects.iter().find(|effect| effect.kind() == "sensor_gain").unwrap().values()[0];
+    let (_, gain) = truth.effects.iter().find(|effect| effect.effect() == Effect::SensorGain).unwrap().values()[0];
     let place = fric_lab::fit::Parameter::named("sensor_gain.gain").unwrap().place();
     assert!((found.after.values[place] - gain).abs() < 1e-3, "{} {gain}", found.after.values[place]);
 }
 
 #[test]
 fn hum_is_placed_by_its_frequency_and_hides_no_effect() {
-    let case = Case { disturbance: Some("hum"), seed: 70_005, ..Case::hiding(Group::Mixed, &["sensor_gain"]) };
+    let case = Case { disturbance: Some("hum"), seed: 70_005, ..Case::hiding(Group::Mixed, &[Effect::SensorGain]) };
     let (found, truth) = assert_found(&case, Verdict::Unexplained);
     let hum = found.unexplained.unwrap().lines[0].frequency_hz;
     let (_, frequency_hz) = truth.disturbances[0].values()[1];

@@ -4,7 +4,7 @@
 //! brings through zero, a cable about to slacken. At a kink the differences to both sides disagree by what does not
 //! vanish with the step; such points are left out, and counted.
 
-use fric_core::effects::CATALOGUE;
+use fric_core::effects::Effect;
 use fric_core::robot::file::RobotFile;
 use fric_core::{CableInput, Sample};
 use fric_lab::fit::{CableRecord, FitOptions, Measurements, Parameter, Reference, ResidualFunction};
@@ -206,10 +206,10 @@ fn every_effect_has_its_derivatives() {
             let measurements = random_record(&robot, gain, &mut random);
             let record = measurements.cable(0).unwrap();
             // Every other one all parameters at drawn values; else one effect, neutral, beside drawn friction.
-            let row = &CATALOGUE[round / 2 % CATALOGUE.len()];
+            let effect = Effect::CATALOGUE[round / 2 % Effect::CATALOGUE.len()];
             let chosen: Vec<Parameter> = all
                 .iter()
-                .filter(|parameter| round % 2 == 0 || parameter.is_friction() || parameter.effect() == Some(row.kind))
+                .filter(|parameter| round % 2 == 0 || parameter.is_friction() || parameter.effect() == Some(effect))
                 .copied()
                 .collect();
             let options = FitOptions { parameters: Some(chosen), ..FitOptions::default() };
@@ -239,7 +239,7 @@ fn every_effect_has_its_derivatives() {
                     continue;
                 }
                 worst = worst.max(error);
-                assert!(error < AGREEMENT, "{presliding} {} {parameter} at {values:?}: {error:e}", row.kind);
+                assert!(error < AGREEMENT, "{presliding} {effect:?} {parameter} at {values:?}: {error:e}");
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use core::f64::consts::{PI, TAU};
 
-use fric_core::effects::CATALOGUE;
+use fric_core::effects::Effect;
 use fric_core::robot::file::RobotFile;
 use fric_lab::simulate::{DISTURBANCES, Disturbance, HiddenEffect, SimulationOptions};
 
@@ -67,11 +67,12 @@ fn time_s(cycle: usize) -> f64 {
 #[test]
 fn neutral_values_change_no_bit() {
     let plain = Signals::of(&rubbing(), &SimulationOptions { seed: 3, duration_s: Some(3.0), ..Default::default() });
-    for row in CATALOGUE {
-        let values: Vec<_> = row.parameters.iter().map(|parameter| (parameter.key, parameter.neutral)).collect();
-        let effects = vec![HiddenEffect::new(row.kind, &values).unwrap()];
+    for effect in Effect::CATALOGUE {
+        let values: Vec<_> =
+            effect.row().parameters.iter().map(|parameter| (parameter.key, parameter.neutral)).collect();
+        let effects = vec![HiddenEffect::of(*effect, &values).unwrap()];
         let options = SimulationOptions { seed: 3, duration_s: Some(3.0), effects, ..Default::default() };
-        assert!(Signals::of(&rubbing(), &options) == plain, "{}", row.kind);
+        assert!(Signals::of(&rubbing(), &options) == plain, "{effect:?}");
     }
 }
 

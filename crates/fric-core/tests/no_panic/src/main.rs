@@ -2,6 +2,7 @@
 
 use std::hint::black_box;
 
+use fric_core::effects::Effect;
 use fric_core::admittance::{Admittance, AdmittanceOptions, SetPoint};
 use fric_core::continuum::{Direction, Friction, ManipulatorOptions, ManipulatorParams, ShapeStatus, StaticModel};
 use fric_core::robot::{
@@ -146,8 +147,8 @@ fn main() {
             traction_mu: black_box(Some(0.1)),
             ..CableOptions::new(&pulleys)
         };
-        options.effects.set("time_delay", "delay_s", black_box(0.005)).unwrap();
-        options.effects.set("stribeck", "ratio", black_box(0.5)).unwrap();
+        options.effects.set(Effect::TimeDelay, "delay_s", black_box(0.005)).unwrap();
+        options.effects.set(Effect::Stribeck, "ratio", black_box(0.5)).unwrap();
         let cables = [CableParams::new(&options).unwrap()];
         let platform = PlatformOptions::default();
         let robot = RobotParams::new(0.001, &platform, MonitorOptions::for_cycle(0.001), &cables).unwrap();

@@ -6,7 +6,7 @@
 
 use fric_core::admittance::{Admittance, AdmittanceOptions};
 use fric_core::continuum::{Direction, Friction, ManipulatorOptions, ManipulatorParams, StaticModel};
-use fric_core::effects::CATALOGUE;
+use fric_core::effects::Effect;
 use fric_core::robot::{
     CableOptions, FrictionOptions, GeometryOptions, MonitorOptions, PlatformOptions, Presliding, PulleyOptions,
     ValidatedRange,
@@ -98,14 +98,14 @@ fn cable(random: &mut Random, pulleys: &[PulleyOptions], index: usize, effects: 
         ..CableOptions::new(pulleys)
     };
     for _ in 0..effects {
-        let row = &CATALOGUE[random.bits() as usize % CATALOGUE.len()];
-        for parameter in row.parameters {
+        let effect = Effect::CATALOGUE[random.bits() as usize % Effect::CATALOGUE.len()];
+        for parameter in effect.row().parameters {
             let value = match parameter.key {
                 "delay_s" => random.range(-0.005, 0.02),
                 _ => parameter.neutral + random.range(0.0, 0.02),
             };
             // Some are out of range by themselves; then the neutral value stays.
-            let _ = options.effects.set(row.kind, parameter.key, value);
+            let _ = options.effects.set(effect, parameter.key, value);
         }
     }
     CableParams::new(&options)

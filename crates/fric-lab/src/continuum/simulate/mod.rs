@@ -21,7 +21,7 @@ use self::holes::Rubbing;
 use super::error::ContinuumError;
 use super::fbg::{Calibration, LoadStep};
 use super::run::RunSample;
-use crate::simulate::uniform;
+use crate::random::uniform;
 
 /// Standard gravity, m/s²: what a gram on a calibration hook weighs.
 pub const STANDARD_GRAVITY_M_PER_S2: f64 = 9.80665;

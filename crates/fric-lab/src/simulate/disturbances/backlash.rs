@@ -1,7 +1,7 @@
 //! Play between the encoder and the cable: on a reversal the winch turns before the cable follows.
 
 use super::{DisturbanceRow, parameter};
-use crate::simulate::effects::{Cause, TruthEffect};
+use crate::effects::truth::{Cause, TruthEffect};
 
 pub const ROW: DisturbanceRow = DisturbanceRow {
     kind: "backlash",

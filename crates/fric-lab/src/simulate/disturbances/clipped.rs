@@ -1,7 +1,7 @@
 //! A sensor whose amplifier ends: no reading beyond it.
 
 use super::{DisturbanceRow, parameter};
-use crate::simulate::effects::{Cause, TruthEffect};
+use crate::effects::truth::{Cause, TruthEffect};
 
 pub const ROW: DisturbanceRow = DisturbanceRow {
     kind: "clipped",

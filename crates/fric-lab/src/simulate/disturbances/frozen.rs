@@ -1,8 +1,8 @@
 //! A sensor that sends the same value again for a while, at intervals.
 
 use super::{DisturbanceRow, in_stretch, parameter};
-use crate::simulate::effects::{Cause, TruthEffect};
-use crate::simulate::waves::uniform;
+use crate::effects::truth::{Cause, TruthEffect};
+use crate::random::uniform;
 
 pub const ROW: DisturbanceRow = DisturbanceRow {
     kind: "frozen",

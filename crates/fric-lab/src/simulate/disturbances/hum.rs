@@ -3,8 +3,8 @@
 use core::f64::consts::TAU;
 
 use super::{DisturbanceRow, parameter};
-use crate::simulate::effects::{Cause, TruthEffect};
-use crate::simulate::waves::uniform;
+use crate::effects::truth::{Cause, TruthEffect};
+use crate::random::uniform;
 
 pub const ROW: DisturbanceRow = DisturbanceRow {
     kind: "hum",

@@ -4,7 +4,7 @@
 //! length and `l₀` that at the start of the run plus `from_start_m`.
 
 use super::{DisturbanceRow, parameter};
-use crate::simulate::effects::{Cause, Contact, TruthEffect};
+use crate::effects::truth::{Cause, Contact, TruthEffect};
 
 pub const ROW: DisturbanceRow = DisturbanceRow {
     kind: "local_defect",

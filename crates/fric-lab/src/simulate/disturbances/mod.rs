@@ -17,9 +17,9 @@ use std::str::FromStr;
 
 use rand_chacha::ChaCha8Rng;
 
-use super::effects::{Build, Cause, TruthEffect};
 use super::error::HiddenError;
 use super::stated::{self, Allowed, Kind};
+use crate::effects::truth::{Build, Cause, TruthEffect};
 
 /// A kind of disturbance.
 #[derive(Clone, Copy, Debug)]
@@ -172,7 +172,7 @@ mod tests {
     fn usual_values_are_allowed_and_kinds_and_keys_are_there_once() {
         for (place, row) in DISTURBANCES.iter().enumerate() {
             assert!(DISTURBANCES.iter().skip(place + 1).all(|other| other.kind != row.kind));
-            assert!(fric_core::effects::row(row.kind).is_none(), "{} is in the catalogue", row.kind);
+            assert!(fric_core::effects::Effect::of_kind(row.kind).is_none(), "{} is in the catalogue", row.kind);
             assert!(!row.cause.is_empty());
             for parameter in row.parameters {
                 assert!((parameter.min..=parameter.max).contains(&parameter.usual), "{}", parameter.key);

@@ -1,7 +1,7 @@
 //! A sensor read by a converter of few bits.
 
 use super::{DisturbanceRow, parameter};
-use crate::simulate::effects::{Cause, TruthEffect};
+use crate::effects::truth::{Cause, TruthEffect};
 
 pub const ROW: DisturbanceRow = DisturbanceRow {
     kind: "quantised",

@@ -1,8 +1,8 @@
 //! A sensor whose zero jumps and jumps back: an amplifier that changes its range, a plug that moves.
 
 use super::{DisturbanceRow, in_stretch, parameter};
-use crate::simulate::effects::{Cause, TruthEffect};
-use crate::simulate::waves::uniform;
+use crate::effects::truth::{Cause, TruthEffect};
+use crate::random::uniform;
 
 pub const ROW: DisturbanceRow = DisturbanceRow {
     kind: "step",

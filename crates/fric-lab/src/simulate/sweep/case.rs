@@ -6,14 +6,15 @@ use rand_chacha::rand_core::SeedableRng;
 use thiserror::Error;
 
 use super::robots::{CABLE_COUNT, Friction, GUESS, bench, small_robot};
-use super::values::Scale;
+use super::values;
 use super::{Case, Group};
+use crate::effects::Sizing;
+use crate::random::uniform;
 use crate::simulate::disturbances::Disturbance;
 use crate::simulate::error::{HiddenError, SimulationError};
 use crate::simulate::hidden::HiddenEffect;
 use crate::simulate::options::SimulationOptions;
 use crate::simulate::stream::Simulation;
-use crate::simulate::waves::uniform;
 
 /// Usual noise, N.
 const SENSOR_NOISE_N: f64 = 0.02;
@@ -95,7 +96,7 @@ impl Case {
         let robot = |friction: &Friction| RobotFile::parse(&robot_text(friction), "sweep");
         // Weight, and what viscous friction takes at 1 m/s.
         let tension_n = mass_kg * 9.80665 + 3.0 * friction.viscous_n_s_per_m;
-        let scale = &mut Scale {
+        let strength = &mut Sizing {
             strength_ratio: self.strength_ratio,
             mu: friction.mu,
             tension_n,
@@ -103,9 +104,10 @@ impl Case {
             duration_s: if is_bench { BENCH_S } else { RUN_S },
             random,
         };
-        let effects = self.effects.iter().map(|kind| scale.effect(kind)).collect::<Result<Vec<_>, _>>()?;
+        let effects =
+            self.effects.iter().map(|effect| values::effect(*effect, strength)).collect::<Result<Vec<_>, _>>()?;
         let disturbances =
-            self.disturbance.iter().map(|kind| scale.disturbance(kind)).collect::<Result<Vec<_>, _>>()?;
+            self.disturbance.iter().map(|kind| values::disturbance(kind, strength)).collect::<Result<Vec<_>, _>>()?;
         let options = SimulationOptions {
             seed: self.seed,
             duration_s: is_bench.then_some(BENCH_S),

@@ -26,6 +26,8 @@ mod values;
 
 pub use case::{CaseLog, CaseTruth, SweepError};
 
+use fric_core::effects::Effect;
+
 use super::disturbances::DISTURBANCES;
 
 /// What a case is there to try.
@@ -82,7 +84,7 @@ pub struct Case {
     /// What it is there to try.
     pub group: Group,
     /// Effects to hide, by the catalogue's names: what is to be found.
-    pub effects: Vec<&'static str>,
+    pub effects: Vec<Effect>,
     /// What else to spoil it with, by the name in [`DISTURBANCES`].
     pub disturbance: Option<&'static str>,
     /// How strong both are; 1 is plain to see. Below 0, an exponent of presliding is below 1.
@@ -100,31 +102,20 @@ pub struct Case {
 }
 
 /// Effects that pairs and triples are made of: one constant offset beside another, the fitted one at the platform, is too weak.
-const COMBINED: [&str; 12] = [
-    "stribeck",
-    "direction_asymmetry",
-    "bearing_drag",
-    "load_nonlinearity",
-    "friction_drift",
-    "presliding_shape",
-    "sensor_gain",
-    "sensor_drift",
-    "time_delay",
-    "pulley_inertia",
-    "pulley_eccentricity",
-    "cable_elasticity",
-];
+fn combined() -> Vec<Effect> {
+    Effect::CATALOGUE.iter().copied().filter(|effect| *effect != Effect::SensorOffset).collect()
+}
 
 /// Pairs that look alike, so that both together say little about a search.
-const ALIKE: [(&str, &str); 4] = [
-    ("bearing_drag", "load_nonlinearity"),
-    ("time_delay", "pulley_inertia"),
-    ("stribeck", "friction_drift"),
-    ("sensor_gain", "direction_asymmetry"),
+const ALIKE: [(Effect, Effect); 4] = [
+    (Effect::BearingDrag, Effect::LoadNonlinearity),
+    (Effect::TimeDelay, Effect::PulleyInertia),
+    (Effect::Stribeck, Effect::FrictionDrift),
+    (Effect::SensorGain, Effect::DirectionAsymmetry),
 ];
 
 /// Effects beside a disturbance.
-const MIXED: [&str; 4] = ["stribeck", "direction_asymmetry", "sensor_gain", "time_delay"];
+const MIXED: [Effect; 4] = [Effect::Stribeck, Effect::DirectionAsymmetry, Effect::SensorGain, Effect::TimeDelay];
 const STRENGTHS: [f64; 3] = [1.0, 0.5, 0.25];
 const NOISES: [f64; 3] = [1.0, 0.5, 2.0];
 /// Exponents of the presliding as shares of 0.8 above 1: 0.6, 0.8, 1.25, 1.5, 2.2, 2.6.
@@ -150,20 +141,19 @@ pub fn cases() -> Vec<Case> {
         }
     }
     cases.extend((0..8).map(|_| Case { hand_n: HAND_N, ..Case::of(Group::Hand) }));
-    for effect in COMBINED.into_iter().chain(["sensor_offset"]) {
+    for effect in combined().into_iter().chain([Effect::SensorOffset]) {
         for strength_ratio in STRENGTHS {
             let single = |noise_ratio| Case { strength_ratio, noise_ratio, ..Case::hiding(Group::Single, &[effect]) };
             cases.extend(NOISES.map(single));
         }
     }
-    let law = |strength_ratio| Case { strength_ratio, ..Case::hiding(Group::Law, &["presliding_shape"]) };
+    let law = |strength_ratio| Case { strength_ratio, ..Case::hiding(Group::Law, &[Effect::PreslidingShape]) };
     cases.extend(LAWS.map(law));
-    cases.extend(pairs().map(|pair| Case::hiding(Group::Pair, &pair)));
+    cases.extend(pairs().into_iter().map(|pair| Case::hiding(Group::Pair, &pair)));
     cases.extend(triples().step_by(TRIPLE_STRIDE).map(|triple| Case::hiding(Group::Triple, &triple)));
     cases.extend((0..2 * MANY).map(|which| Case::hiding(Group::Many, &many(which))));
     for row in DISTURBANCES {
-        let spoilt =
-            |group, effects: &[&'static str]| Case { disturbance: Some(row.kind), ..Case::hiding(group, effects) };
+        let spoilt = |group, effects: &[Effect]| Case { disturbance: Some(row.kind), ..Case::hiding(group, effects) };
         for strength_ratio in [1.0, 0.5] {
             let outside = |noise_ratio| Case { strength_ratio, noise_ratio, ..spoilt(Group::Outside, &[]) };
             cases.extend([1.0, 0.5].map(outside));
@@ -171,7 +161,14 @@ pub fn cases() -> Vec<Case> {
         cases.extend(MIXED.map(|effect| spoilt(Group::Mixed, &[effect])));
     }
     cases.extend(NOISES.map(|noise_ratio| Case { noise_ratio, ..Case::of(Group::Bench) }));
-    for effect in ["stribeck", "direction_asymmetry", "presliding_shape", "sensor_gain", "friction_drift"] {
+    let on_bench = [
+        Effect::Stribeck,
+        Effect::DirectionAsymmetry,
+        Effect::PreslidingShape,
+        Effect::SensorGain,
+        Effect::FrictionDrift,
+    ];
+    for effect in on_bench {
         cases.push(Case::hiding(Group::Bench, &[effect]));
     }
     cases.extend(["hum", "backlash"].map(|kind| Case { disturbance: Some(kind), ..Case::of(Group::Bench) }));
@@ -190,7 +187,7 @@ impl Case {
 
     /// Effects at full strength, usual noise, seed 0, and a hand where nothing would be seen of an elastic cable without.
     #[must_use]
-    pub fn hiding(group: Group, effects: &[&'static str]) -> Self {
+    pub fn hiding(group: Group, effects: &[Effect]) -> Self {
         Self {
             group,
             effects: effects.to_vec(),
@@ -199,7 +196,7 @@ impl Case {
             noise_ratio: 1.0,
             sensor_wander_n: 0.0,
             reference_wander_n: 0.0,
-            hand_n: if effects.contains(&"cable_elasticity") { HAND_N } else { 0.0 },
+            hand_n: if effects.contains(&Effect::CableElasticity) { HAND_N } else { 0.0 },
             seed: 0,
         }
     }
@@ -208,7 +205,7 @@ impl Case {
     #[must_use]
     pub fn name(&self) -> String {
         let mut words = vec![self.group.name().to_owned()];
-        let hidden: Vec<&str> = self.effects.iter().copied().chain(self.disturbance).collect();
+        let hidden: Vec<&str> = self.effects.iter().map(|effect| effect.kind()).chain(self.disturbance).collect();
         if !hidden.is_empty() {
             words.push(hidden.join("+"));
         }
@@ -226,36 +223,35 @@ impl Case {
     }
 }
 
-fn is_alike(one: &str, other: &str) -> bool {
+fn is_alike(one: Effect, other: Effect) -> bool {
     ALIKE.contains(&(one, other)) || ALIKE.contains(&(other, one))
 }
 
-fn pairs() -> impl Iterator<Item = [&'static str; 2]> {
-    let from = |place: usize| COMBINED.into_iter().skip(place);
-    (0..COMBINED.len())
-        .flat_map(move |place| from(place).take(1).flat_map(move |one| from(place + 1).map(move |other| [one, other])))
-        .filter(|[one, other]| !is_alike(one, other))
+fn pairs() -> Vec<[Effect; 2]> {
+    let all = combined();
+    let each = all.iter().flat_map(|one| all.iter().filter(move |other| *other > one).map(|other| [*one, *other]));
+    each.filter(|[one, other]| !is_alike(*one, *other)).collect()
 }
 
 /// Four effects of those that can be told apart, or, from the tenth on, five: every so many, from another one each time.
-fn many(which: usize) -> Vec<&'static str> {
+fn many(which: usize) -> Vec<Effect> {
     let (wanted, stride) = (4 + which / MANY, [1, 5, 7, 11][which % 4]);
-    let mut kinds: Vec<&'static str> = Vec::new();
-    for place in 0..COMBINED.len() {
-        let kind = COMBINED[(which + place * stride) % COMBINED.len()];
-        if kinds.len() < wanted && !kinds.iter().any(|other| is_alike(kind, other)) {
-            kinds.push(kind);
+    let all = combined();
+    let mut effects: Vec<Effect> = Vec::new();
+    for place in 0..all.len() {
+        let effect = all[(which + place * stride) % all.len()];
+        if effects.len() < wanted && !effects.iter().any(|other| is_alike(effect, *other)) {
+            effects.push(effect);
         }
     }
-    kinds
+    effects
 }
 
-fn triples() -> impl Iterator<Item = [&'static str; 3]> {
-    let place = |kind: &str| COMBINED.iter().position(|other| *other == kind).unwrap_or_default();
-    pairs().flat_map(move |[one, other]| {
-        let third = COMBINED.into_iter().skip(place(other) + 1);
+fn triples() -> impl Iterator<Item = [Effect; 3]> {
+    pairs().into_iter().flat_map(|[one, other]| {
+        let third = combined().into_iter().filter(move |third| *third > other);
         third
-            .filter(move |third| !is_alike(one, third) && !is_alike(other, third))
+            .filter(move |third| !is_alike(one, *third) && !is_alike(other, *third))
             .map(move |third| [one, other, third])
     })
 }

@@ -3,14 +3,18 @@
 //! Its material lies `(j/n)·c·F` further out at pulley j of n under the tension F at the platform; as F changes, it runs
 //! over the pulleys, the far ones most, whether the winch turns or not. Within a cycle F changes evenly.
 
-use super::{Cause, TruthEffect};
+use super::truth::{Cause, TruthEffect};
+use super::{Around, LabEffect, Sizing, Start};
+
+/// What the lab knows of it.
+pub const LAB: LabEffect = LabEffect { truth, starts, typical };
 
 #[derive(Debug)]
 struct Spring {
     compliance_m_per_n: f64,
 }
 
-pub fn build(cause: &mut Cause<'_>) -> Box<dyn TruthEffect> {
+fn truth(cause: &mut Cause<'_>) -> Box<dyn TruthEffect> {
     Box::new(Spring { compliance_m_per_n: (cause.value)("compliance_m_per_n") })
 }
 
@@ -18,4 +22,13 @@ impl TruthEffect for Spring {
     fn compliance_m_per_n(&self) -> f64 {
         self.compliance_m_per_n
     }
+}
+
+/// Plays of twice the noise of the sensor; that of the reference is in what is known of it too.
+fn starts(around: &Around) -> Vec<Start> {
+    [1.0, 1.6].map(|plays| vec![("play_n", plays * around.noise_n)]).to_vec()
+}
+
+fn typical(scale: &mut Sizing<'_>) -> Start {
+    vec![("compliance_m_per_n", scale.about(2.5e-4))]
 }

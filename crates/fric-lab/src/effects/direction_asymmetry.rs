@@ -3,7 +3,11 @@
 //! Paying out, both kinds of friction are larger by their shares; reeling in, smaller by the same. The direction is that
 //! of the cable over the pulley at the instant.
 
-use super::{Cause, Contact, TruthEffect};
+use super::truth::{Cause, Contact, TruthEffect};
+use super::{LabEffect, Sizing, Start, as_it_is};
+
+/// What the lab knows of it.
+pub const LAB: LabEffect = LabEffect { truth, starts: as_it_is, typical };
 
 #[derive(Debug)]
 struct Tilted {
@@ -11,7 +15,7 @@ struct Tilted {
     viscous_ratio: f64,
 }
 
-pub fn build(cause: &mut Cause<'_>) -> Box<dyn TruthEffect> {
+fn truth(cause: &mut Cause<'_>) -> Box<dyn TruthEffect> {
     let [coulomb_ratio, viscous_ratio] = ["coulomb_ratio", "viscous_ratio"].map(cause.value);
     Box::new(Tilted { coulomb_ratio, viscous_ratio })
 }
@@ -24,4 +28,9 @@ impl TruthEffect for Tilted {
     fn viscous_factor(&self, speed_m_per_s: f64) -> f64 {
         if speed_m_per_s < 0.0 { 1.0 - self.viscous_ratio } else { 1.0 + self.viscous_ratio }
     }
+}
+
+fn typical(scale: &mut Sizing<'_>) -> Start {
+    let ratio = scale.either(0.25);
+    vec![("coulomb_ratio", ratio), ("viscous_ratio", ratio)]
 }

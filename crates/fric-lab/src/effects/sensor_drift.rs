@@ -1,6 +1,10 @@
 //! `sensor_drift` in the simulated robot: a sensor whose zero creeps away, evenly from the start of the log until it ends.
 
-use super::{Cause, TruthEffect, drifted_s};
+use super::truth::{Cause, TruthEffect, drifted_s};
+use super::{Around, LabEffect, Sizing, Start};
+
+/// What the lab knows of it.
+pub const LAB: LabEffect = LabEffect { truth, starts, typical };
 
 #[derive(Debug)]
 struct Creep {
@@ -8,7 +12,7 @@ struct Creep {
     until_s: f64,
 }
 
-pub fn build(cause: &mut Cause<'_>) -> Box<dyn TruthEffect> {
+fn truth(cause: &mut Cause<'_>) -> Box<dyn TruthEffect> {
     Box::new(Creep { rate_n_per_s: (cause.value)("rate_n_per_s"), until_s: (cause.value)("until_s") })
 }
 
@@ -16,4 +20,12 @@ impl TruthEffect for Creep {
     fn sensor_offset_n(&self, time_s: f64) -> f64 {
         self.rate_n_per_s * drifted_s(time_s, self.until_s)
     }
+}
+
+fn starts(around: &Around) -> Vec<Start> {
+    vec![vec![("until_s", around.end_s)]]
+}
+
+fn typical(scale: &mut Sizing<'_>) -> Start {
+    vec![("rate_n_per_s", scale.either(0.005))]
 }

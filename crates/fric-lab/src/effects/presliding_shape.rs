@@ -2,14 +2,18 @@
 //!
 //! The exponent of [`presliding`](crate::simulate::presliding), solved stage by stage of the integration.
 
-use super::{Cause, TruthEffect};
+use super::truth::{Cause, TruthEffect};
+use super::{LabEffect, Sizing, Start, as_it_is};
+
+/// What the lab knows of it.
+pub const LAB: LabEffect = LabEffect { truth, starts: as_it_is, typical };
 
 #[derive(Debug)]
 struct Bend {
     exponent: f64,
 }
 
-pub fn build(cause: &mut Cause<'_>) -> Box<dyn TruthEffect> {
+fn truth(cause: &mut Cause<'_>) -> Box<dyn TruthEffect> {
     Box::new(Bend { exponent: (cause.value)("exponent") })
 }
 
@@ -17,4 +21,8 @@ impl TruthEffect for Bend {
     fn presliding_exponent(&self) -> f64 {
         self.exponent
     }
+}
+
+fn typical(scale: &mut Sizing<'_>) -> Start {
+    vec![("exponent", 1.0 + scale.about(0.8))]
 }

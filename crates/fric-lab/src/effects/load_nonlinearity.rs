@@ -2,7 +2,11 @@
 //!
 //! Sliding friction is `μ·F_ref·(F_N/F_ref)^p`, with the exact normal force of the instant.
 
-use super::{Cause, TruthEffect};
+use super::truth::{Cause, TruthEffect};
+use super::{Around, LabEffect, Sizing, Start};
+
+/// What the lab knows of it.
+pub const LAB: LabEffect = LabEffect { truth, starts, typical };
 
 #[derive(Debug)]
 struct Flattening {
@@ -10,7 +14,7 @@ struct Flattening {
     reference_n: f64,
 }
 
-pub fn build(cause: &mut Cause<'_>) -> Box<dyn TruthEffect> {
+fn truth(cause: &mut Cause<'_>) -> Box<dyn TruthEffect> {
     let [exponent, reference_n] = ["exponent", "reference_n"].map(cause.value);
     Box::new(Flattening { exponent, reference_n })
 }
@@ -20,4 +24,12 @@ impl TruthEffect for Flattening {
         // A bearing without load holds nothing; the power alone would be infinite there for an exponent below 1.
         if normal_force_n > 0.0 { libm::pow(normal_force_n / self.reference_n, self.exponent - 1.0) } else { 0.0 }
     }
+}
+
+fn starts(around: &Around) -> Vec<Start> {
+    vec![vec![("reference_n", around.tension_n)]]
+}
+
+fn typical(scale: &mut Sizing<'_>) -> Start {
+    vec![("exponent", 1.0 + scale.either(0.3)), ("reference_n", scale.normal_n)]
 }

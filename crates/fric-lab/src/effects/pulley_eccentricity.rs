@@ -5,7 +5,12 @@
 
 use core::f64::consts::TAU;
 
-use super::{Cause, TruthEffect};
+use super::truth::{Cause, TruthEffect};
+use super::{Around, LabEffect, Sizing, Start};
+use crate::random::uniform;
+
+/// What the lab knows of it.
+pub const LAB: LabEffect = LabEffect { truth, starts, typical };
 
 #[derive(Debug)]
 struct OutOfTrue {
@@ -14,7 +19,7 @@ struct OutOfTrue {
     rad_per_m: f64,
 }
 
-pub fn build(cause: &mut Cause<'_>) -> Box<dyn TruthEffect> {
+fn truth(cause: &mut Cause<'_>) -> Box<dyn TruthEffect> {
     let [sin_ratio, cos_ratio, period_m] = ["sin_ratio", "cos_ratio", "period_m"].map(cause.value);
     Box::new(OutOfTrue {
         amplitude_ratio: libm::hypot(sin_ratio, cos_ratio),
@@ -27,4 +32,17 @@ impl TruthEffect for OutOfTrue {
     fn platform_factor(&self, length_m: f64) -> f64 {
         1.0 + self.amplitude_ratio * libm::sin(self.rad_per_m * length_m + self.phase_rad)
     }
+}
+
+/// The search begins from every period at which the residual ripples.
+fn starts(around: &Around) -> Vec<Start> {
+    let of_period = |period_m: &f64| vec![("sin_ratio", 1e-3), ("cos_ratio", 1e-3), ("period_m", *period_m)];
+    around.periods_m.iter().map(of_period).collect()
+}
+
+fn typical(scale: &mut Sizing<'_>) -> Start {
+    let (ratio, phase_rad) = (scale.about(0.02), uniform(scale.random, 0.0, TAU));
+    let period_m = uniform(scale.random, 0.05, 0.12);
+    let (sin, cos) = libm::sincos(phase_rad);
+    vec![("sin_ratio", ratio * cos), ("cos_ratio", ratio * sin), ("period_m", period_m)]
 }

@@ -2,7 +2,11 @@
 //!
 //! μ changes by the same amount every second from the start of the log to where the drift ends; it does not fall below zero.
 
-use super::{Cause, Contact, TruthEffect, drifted_s};
+use super::truth::{Cause, Contact, TruthEffect, drifted_s};
+use super::{Around, LabEffect, Sizing, Start};
+
+/// What the lab knows of it.
+pub const LAB: LabEffect = LabEffect { truth, starts, typical };
 
 #[derive(Debug)]
 struct Ageing {
@@ -10,7 +14,7 @@ struct Ageing {
     until_s: f64,
 }
 
-pub fn build(cause: &mut Cause<'_>) -> Box<dyn TruthEffect> {
+fn truth(cause: &mut Cause<'_>) -> Box<dyn TruthEffect> {
     Box::new(Ageing { rate_per_s: (cause.value)("rate_per_s"), until_s: (cause.value)("until_s") })
 }
 
@@ -18,4 +22,13 @@ impl TruthEffect for Ageing {
     fn mu_factor(&self, contact: &Contact) -> f64 {
         (1.0 + self.rate_per_s * drifted_s(contact.time_s, self.until_s)).max(0.0)
     }
+}
+
+fn starts(around: &Around) -> Vec<Start> {
+    vec![vec![("until_s", around.end_s)]]
+}
+
+fn typical(scale: &mut Sizing<'_>) -> Start {
+    let duration_s = scale.duration_s;
+    vec![("rate_per_s", scale.either(0.3 / duration_s))]
 }

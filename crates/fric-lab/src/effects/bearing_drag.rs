@@ -1,0 +1,30 @@
+//! `bearing_drag` in the simulated robot: a seal that rubs on every pulley's shaft whatever the load.
+//!
+//! The seal sticks as the bearing does: its force is part of what the bristle can hold before it slides.
+
+use super::truth::{Cause, Contact, TruthEffect};
+use super::{LabEffect, Sizing, Start, as_it_is};
+
+/// What the lab knows of it.
+pub const LAB: LabEffect = LabEffect { truth, starts: as_it_is, typical };
+
+#[derive(Debug)]
+struct Seal {
+    drag_n: f64,
+}
+
+fn truth(cause: &mut Cause<'_>) -> Box<dyn TruthEffect> {
+    Box::new(Seal { drag_n: (cause.value)("drag_n") })
+}
+
+impl TruthEffect for Seal {
+    fn drag_n(&self, _contact: &Contact) -> f64 {
+        self.drag_n
+    }
+}
+
+fn typical(scale: &mut Sizing<'_>) -> Start {
+    // A fifth of the whole.
+    let load_n = scale.mu * scale.normal_n;
+    vec![("drag_n", scale.about(0.25 * load_n))]
+}

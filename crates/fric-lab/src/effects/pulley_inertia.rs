@@ -1,0 +1,36 @@
+//! `pulley_inertia` in the simulated robot: pulleys that have to be sped up.
+//!
+//! Each takes `m·dv/dt` from the tension, m = J/r² and dv/dt the acceleration of the motion itself, not a difference of
+//! samples. What a stretching cable adds to the acceleration is left out.
+
+use super::truth::{Cause, TruthEffect};
+use super::{Around, LabEffect, Sizing, Start};
+
+/// What the lab knows of it.
+pub const LAB: LabEffect = LabEffect { truth, starts, typical };
+
+/// Time constants with which the acceleration is taken, in cycles: the noisier the speed, the longer.
+const WINDOWS: [f64; 4] = [0.0, 1.0, 4.0, 16.0];
+
+#[derive(Debug)]
+struct Rim {
+    mass_kg: f64,
+}
+
+fn truth(cause: &mut Cause<'_>) -> Box<dyn TruthEffect> {
+    Box::new(Rim { mass_kg: (cause.value)("mass_kg") })
+}
+
+impl TruthEffect for Rim {
+    fn pulley_mass_kg(&self) -> f64 {
+        self.mass_kg
+    }
+}
+
+fn starts(around: &Around) -> Vec<Start> {
+    WINDOWS.map(|cycles| vec![("window_s", cycles * around.cycle_s)]).to_vec()
+}
+
+fn typical(scale: &mut Sizing<'_>) -> Start {
+    vec![("mass_kg", scale.about(0.05))]
+}

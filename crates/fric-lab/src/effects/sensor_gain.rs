@@ -1,0 +1,26 @@
+//! `sensor_gain` in the simulated robot: a sensor whose amplifier is set to another slope.
+
+use super::truth::{Cause, TruthEffect};
+use super::{LabEffect, Sizing, Start, as_it_is};
+
+/// What the lab knows of it.
+pub const LAB: LabEffect = LabEffect { truth, starts: as_it_is, typical };
+
+#[derive(Debug)]
+struct Slope {
+    gain: f64,
+}
+
+fn truth(cause: &mut Cause<'_>) -> Box<dyn TruthEffect> {
+    Box::new(Slope { gain: (cause.value)("gain") })
+}
+
+impl TruthEffect for Slope {
+    fn sensor_gain(&self) -> f64 {
+        self.gain
+    }
+}
+
+fn typical(scale: &mut Sizing<'_>) -> Start {
+    vec![("gain", 1.0 + scale.either(0.03))]
+}

@@ -1,0 +1,42 @@
+//! `stribeck` in the simulated robot: the boundary layer of a bearing that has not yet built up its film.
+//!
+//! The additional share of μ falls with speed as `exp(−(v/velocity)²)`, the law that the catalogue states; speed is the
+//! cable's at the instant, within the cycle too.
+
+use super::truth::{Cause, Contact, TruthEffect};
+use super::{Around, LabEffect, Sizing, Start};
+use crate::random::uniform;
+
+/// What the lab knows of it.
+pub const LAB: LabEffect = LabEffect { truth, starts, typical };
+
+/// Speeds at which friction may change, as shares of the speed at which the cable moves for the most part.
+const SPEED_SHARES: [f64; 2] = [0.04, 0.25];
+
+#[derive(Debug)]
+struct BoundaryLayer {
+    additional_ratio: f64,
+    velocity_m_per_s: f64,
+}
+
+fn truth(cause: &mut Cause<'_>) -> Box<dyn TruthEffect> {
+    let [additional_ratio, velocity_m_per_s] = ["ratio", "velocity_m_per_s"].map(cause.value);
+    Box::new(BoundaryLayer { additional_ratio, velocity_m_per_s })
+}
+
+impl TruthEffect for BoundaryLayer {
+    fn mu_factor(&self, contact: &Contact) -> f64 {
+        1.0 + self.additional_ratio * libm::exp(-libm::pow(contact.speed_m_per_s / self.velocity_m_per_s, 2.0))
+    }
+}
+
+/// The search begins from two of the speeds at which friction may change.
+fn starts(around: &Around) -> Vec<Start> {
+    let of_share = |share| vec![("ratio", 0.3), ("velocity_m_per_s", share * around.speed_m_per_s)];
+    SPEED_SHARES.map(of_share).to_vec()
+}
+
+fn typical(scale: &mut Sizing<'_>) -> Start {
+    let ratio = scale.about(0.6);
+    vec![("ratio", ratio), ("velocity_m_per_s", 0.03 * uniform(scale.random, 0.85, 1.15))]
+}

@@ -1,0 +1,162 @@
+//! What effects and disturbances do to the simulated robot.
+//!
+//! Each implements [`TruthEffect`](crate::effects::truth::TruthEffect) from the physics, not from the compensator's code: [`effects`](crate::effects) those of the catalogue,
+//! [`disturbances`](super::disturbances) what is in none.
+//!
+//! Where several act at one place, factors multiply and forces add up; of what the sensor shows the gain comes first, then
+//! offsets, then noise, then what the amplifier makes of the sum.
+
+use fric_core::effects::Effect;
+use fric_core::effects::EffectParams;
+use fric_core::robot::file::EffectTable;
+use rand_chacha::ChaCha8Rng;
+
+use super::disturbances::Disturbance;
+use super::error::SimulationError;
+use super::hidden::HiddenEffect;
+use crate::effects;
+use crate::effects::truth::{Cause, Contact, TruthEffect};
+
+/// What the effects of one cable are made from beside their parameters.
+pub struct CableCause<'a> {
+    /// Length where the run starts, m.
+    pub start_length_m: f64,
+    /// A stream of random numbers for the disturbance at a place of the list.
+    pub random: &'a dyn Fn(usize) -> ChaCha8Rng,
+}
+
+/// All effects of one cable.
+#[derive(Debug, Default)]
+pub struct TruthEffects(Vec<Box<dyn TruthEffect>>);
+
+impl TruthEffects {
+    /// The effects that the robot file gives a cable, the hidden ones and the disturbances, all of which act.
+    pub fn new(
+        of_file: &[EffectTable],
+        hidden: &[HiddenEffect],
+        disturbances: &[Disturbance],
+        cable: &CableCause<'_>,
+    ) -> Result<Self, SimulationError> {
+        let mut all = Self::default();
+        for table in of_file {
+            // A robot file has effects of the catalogue only.
+            let Some(effect) = Effect::of_kind(&table.kind) else { continue };
+            let mut params = EffectParams::NEUTRAL;
+            for (key, value) in &table.parameters {
+                params.set(effect, key, *value)?;
+            }
+            all.add(effect, &params, cable);
+        }
+        for hidden in hidden {
+            all.add(hidden.effect(), hidden.params(), cable);
+        }
+        for (place, disturbance) in disturbances.iter().enumerate() {
+            all.0.push(disturbance.build(cable.start_length_m, &mut (cable.random)(place)));
+        }
+        Ok(all)
+    }
+
+    fn add(&mut self, effect: Effect, params: &EffectParams, cable: &CableCause<'_>) {
+        let value = |key: &str| params.get(effect, key).unwrap_or_default();
+        let CableCause { start_length_m, random } = cable;
+        let mut cause = Cause { value: &value, start_length_m: *start_length_m, random: &mut random(0) };
+        self.0.extend(effects::of(effect).map(|lab| (lab.truth)(&mut cause)));
+    }
+
+    fn product(&self, factor: impl Fn(&(dyn TruthEffect + 'static)) -> f64) -> f64 {
+        self.0.iter().map(|effect| factor(effect.as_ref())).product()
+    }
+
+    fn sum(&self, part: impl Fn(&(dyn TruthEffect + 'static)) -> f64) -> f64 {
+        // Not `sum`, whose empty sum is −0.
+        self.0.iter().fold(0.0, |sum, effect| sum + part(effect.as_ref()))
+    }
+}
+
+impl TruthEffect for TruthEffects {
+    fn mu_factor(&self, contact: &Contact) -> f64 {
+        self.product(|effect| effect.mu_factor(contact))
+    }
+
+    fn load_factor(&self, normal_force_n: f64) -> f64 {
+        self.product(|effect| effect.load_factor(normal_force_n))
+    }
+
+    fn drag_n(&self, contact: &Contact) -> f64 {
+        self.sum(|effect| effect.drag_n(contact))
+    }
+
+    fn viscous_factor(&self, speed_m_per_s: f64) -> f64 {
+        self.product(|effect| effect.viscous_factor(speed_m_per_s))
+    }
+
+    fn presliding_exponent(&self) -> f64 {
+        self.product(TruthEffect::presliding_exponent)
+    }
+
+    fn pulley_mass_kg(&self) -> f64 {
+        self.sum(TruthEffect::pulley_mass_kg)
+    }
+
+    fn compliance_m_per_n(&self) -> f64 {
+        self.sum(TruthEffect::compliance_m_per_n)
+    }
+
+    fn platform_factor(&self, length_m: f64) -> f64 {
+        self.product(|effect| effect.platform_factor(length_m))
+    }
+
+    fn motion_lead_s(&self) -> f64 {
+        self.sum(TruthEffect::motion_lead_s)
+    }
+
+    fn winch_play_m(&self) -> f64 {
+        self.sum(TruthEffect::winch_play_m)
+    }
+
+    fn sensor_gain(&self) -> f64 {
+        self.product(TruthEffect::sensor_gain)
+    }
+
+    fn sensor_offset_n(&self, time_s: f64) -> f64 {
+        self.sum(|effect| effect.sensor_offset_n(time_s))
+    }
+
+    fn reading_n(&self, shown_n: f64) -> f64 {
+        self.0.iter().fold(shown_n, |shown_n, effect| effect.reading_n(shown_n))
+    }
+
+    fn is_frozen(&self, time_s: f64) -> bool {
+        self.0.iter().any(|effect| effect.is_frozen(time_s))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand_chacha::rand_core::SeedableRng;
+
+    fn any_cable() -> CableCause<'static> {
+        CableCause { start_length_m: 1.0, random: &|place| ChaCha8Rng::seed_from_u64(place as u64) }
+    }
+
+    #[test]
+    fn effects_of_file_and_hidden_ones_both_act() -> Result<(), Box<dyn core::error::Error>> {
+        let table = EffectTable {
+            kind: "stribeck".to_owned(),
+            parameters: [("ratio".to_owned(), 0.5), ("velocity_m_per_s".to_owned(), 0.1)].into(),
+        };
+        let hidden = ["stribeck:ratio=0.2,velocity_m_per_s=0.05", "time_delay:delay_s=0.004"].map(HiddenEffect::parse);
+        let hidden = hidden.into_iter().collect::<Result<Vec<_>, _>>()?;
+        let hum = Disturbance::parse("hum:amplitude_n=0.1,frequency_hz=50")?;
+        let effects = TruthEffects::new(&[table], &hidden, &[hum], &any_cable())?;
+        let at = |speed_m_per_s| Contact { speed_m_per_s, length_m: 1.0, time_s: 0.0, is_last_pulley: false };
+        assert!((effects.mu_factor(&at(0.0)) - 1.5 * 1.2).abs() < 1e-15);
+        let expected = (1.0 + 0.5 * (-1.0_f64).exp()) * (1.0 + 0.2 * (-4.0_f64).exp());
+        assert!((effects.mu_factor(&at(-0.1)) - expected).abs() < 1e-15);
+        assert!((effects.motion_lead_s() - 0.004).abs() < 1e-18);
+        let hum_n = effects.sensor_offset_n(0.005) + effects.sensor_offset_n(0.015);
+        assert!(hum_n.abs() < 1e-12 && effects.sensor_offset_n(0.0).abs() <= 0.1);
+        Ok(())
+    }
+}
