@@ -68,9 +68,7 @@ impl JsonTarget {
 
 /// A result for machines.
 pub fn as_json(result: &impl Serialize) -> Outcome<String> {
-    serde_json::to_string_pretty(result)
-        .map(|text| text + "\n")
-        .map_err(|error| Failure::new(format!("cannot write the result as JSON: {error}")))
+    fric_work::json(result).map_err(|error| Failure::new(format!("cannot write the result as JSON: {error}")))
 }
 
 /// Puts files in their places; where one cannot be, tells which stand there already.

@@ -13,7 +13,7 @@ use crate::arguments::DiscoverArguments;
 use crate::failure::{Failure, Outcome};
 use crate::measurements::{check_named_once, find_model, read, watched};
 use crate::output::{self, JsonTarget};
-use crate::report;
+use fric_work::report;
 
 /// Runs the command.
 pub fn run(arguments: &DiscoverArguments) -> Outcome {

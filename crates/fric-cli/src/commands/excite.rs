@@ -1,11 +1,12 @@
 //! `excite`: the identification run as set points.
 
-use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use fric_lab::excite::{Excitation, ExcitationError, ExcitationOptions};
-use fric_lab::text::to_millimetre;
 use fric_log::output::OutputFile;
+use fric_work::excite::describe;
+use fric_work::report::{RunSeries, preview};
+use fric_work::set_points::SetPointTable;
 
 use crate::arguments::ExciteArguments;
 use crate::failure::{Failure, Outcome};
@@ -13,8 +14,6 @@ use crate::interrupt;
 use crate::model::Model;
 use crate::output;
 use crate::progress::{self, STRIDE};
-use crate::report::{RunSeries, preview};
-use crate::set_points::SetPointTable;
 
 /// Runs the command.
 pub fn run(arguments: &ExciteArguments) -> Outcome {
@@ -52,30 +51,7 @@ pub fn run(arguments: &ExciteArguments) -> Outcome {
         files.push(page.complete_with(&preview::page(&model.robot, &excitation, &series))?);
     }
     output::place(files)?;
-    output::show(&format!(
-        "{}: {done_cycles} set points, {:.1} s{}\n",
-        arguments.output.display(),
-        excitation.trajectory().duration_s(),
-        describe(&excitation, &series)
-    ))
-}
-
-/// Where the run goes and how hard.
-fn describe(excitation: &Excitation, series: &RunSeries) -> String {
-    let mut text = format!(", up to {:.3} m/s", series.speed().greatest);
-    if let Some(work_box) = excitation.work_box() {
-        let corners_m = [work_box.center_m - work_box.half_edges_m, work_box.center_m + work_box.half_edges_m];
-        let [from, to] = corners_m.map(|corner_m| {
-            let [x, y, z] = <[f64; 3]>::from(corner_m.map(to_millimetre));
-            format!("({x:.3}, {y:.3}, {z:.3})")
-        });
-        // Writing to a String cannot fail, here and below.
-        let _ = write!(text, ", from {from} to {to} m");
-    }
-    if let Some(tension_n) = series.tension_n() {
-        let _ = write!(text, ", cable forces {:.2} to {:.2} N", tension_n.least, tension_n.greatest);
-    }
-    text
+    output::show(&format!("{}: {}\n", arguments.output.display(), describe(&excitation, &series)))
 }
 
 /// A number on the command line is the command line's fault, the rest the robot's or the run's.

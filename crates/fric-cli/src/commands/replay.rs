@@ -2,14 +2,13 @@
 
 use std::path::PathBuf;
 
-use fric_lab::errors::{ForceError, WrenchResult};
-use fric_lab::replay::{CableErrors, Replay};
-use fric_lab::text::table;
+use fric_lab::replay::Replay;
 use fric_log::output::OutputFile;
 use fric_log::recording::Recording;
 use fric_log::signals::{Role, SignalReader};
 use fric_log::write::ReplayedLog;
-use hdrhistogram::Histogram;
+use fric_work::replay::{CycleTimes, ReplayResult};
+use fric_work::report::{self, Series};
 
 use crate::arguments::ReplayArguments;
 use crate::failure::{Failure, Outcome};
@@ -17,8 +16,6 @@ use crate::interrupt;
 use crate::model::{self, Model};
 use crate::output::{self, JsonTarget};
 use crate::progress::{self, STRIDE};
-use crate::report::{self, Series};
-use crate::result::{CableResult, CycleResult, ReplayResult};
 use crate::warnings::warn_all;
 
 /// Runs the command.
@@ -42,8 +39,7 @@ pub fn run(arguments: &ReplayArguments) -> Outcome {
     let bar = progress::bytes(recording.total_bytes());
     let mut reader = SignalReader::new(recording, paths, &names);
     let mut replay = Replay::new(&params)?;
-    // Three digits; durations beyond 2^40 ns (18 minutes) count as that.
-    let mut durations = Histogram::<u64>::new_with_max(1 << 40, 3)
+    let mut times = CycleTimes::new()
         .map_err(|error| Failure::new(format!("cannot set up the histogram of cycle times: {error}")))?;
     let mut series = report.as_ref().map(|_| Series::new(names.len()));
     let end = loop {
@@ -57,7 +53,7 @@ pub fn run(arguments: &ReplayArguments) -> Outcome {
             Err(error) => break Err(error),
         };
         let cycle = replay.step(&sample);
-        durations.saturating_record(cycle.cycle_ns);
+        times.add(cycle.cycle_ns);
         if let Some(writer) = &mut writer {
             writer.write(sample.stamp_nanos, cycle.cables, cycle.outside_wrench.as_ref())?;
         }
@@ -79,71 +75,17 @@ pub fn run(arguments: &ReplayArguments) -> Outcome {
         warn_all(&replay.warnings(&model.robot));
     }
 
-    let outcome = summarize(&model, &names, &replay, &durations);
+    let outcome = ReplayResult::new(&model.robot, &replay, &times);
     let mut files = Vec::new();
     if let Some(writer) = writer {
         files.push(writer.complete()?);
     }
     if let (Some(report), Some(series)) = (report, series) {
-        files.push(report.complete_with(&report::errors::page(&outcome, &series, &log.logs))?);
+        files.push(report.complete_with(&report::errors::page(
+            &outcome,
+            &series,
+            &log.logs.iter().map(|log| log.display().to_string()).collect::<Vec<_>>(),
+        ))?);
     }
-    json.finish(&outcome, &describe(&outcome), files)
-}
-
-fn summarize(model: &Model, names: &[&str], replay: &Replay, durations: &Histogram<u64>) -> ReplayResult {
-    let cable = |(name, errors): (&&str, &CableErrors)| CableResult {
-        name: (*name).to_owned(),
-        samples: replay.cycle_count(),
-        flagged: errors.flagged_count,
-        before: ForceError::of(&errors.before_n),
-        after: ForceError::of(&errors.after_n),
-    };
-    let (before, after) = replay.wrench();
-    ReplayResult {
-        format: ReplayResult::FORMAT,
-        robot: model.robot.options().name.clone(),
-        cables: names.iter().zip(replay.cables()).map(cable).collect(),
-        wrench: WrenchResult::of(replay.wrench_reference(), before, after),
-        cycle: CycleResult {
-            count: replay.cycle_count(),
-            median_ns: durations.value_at_quantile(0.5),
-            p999_ns: durations.value_at_quantile(0.999),
-            max_ns: durations.max(),
-        },
-    }
-}
-
-/// The result as a table.
-fn describe(result: &ReplayResult) -> String {
-    let rows: Vec<_> = result
-        .cables
-        .iter()
-        .map(|cable| {
-            let number = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.4}"));
-            let (before, after) = (cable.before.as_ref(), cable.after.as_ref());
-            let left = before.zip(after).map(|(before, after)| after.rms_n / before.rms_n * 100.0);
-            [
-                cable.name.clone(),
-                cable.samples.to_string(),
-                cable.flagged.to_string(),
-                number(before.map(|error| error.rms_n)),
-                number(after.map(|error| error.rms_n)),
-                left.filter(|left| left.is_finite()).map_or_else(|| "–".to_owned(), |left| format!("{left:.1} %")),
-                number(before.map(|error| error.mae_n)),
-                number(after.map(|error| error.mae_n)),
-            ]
-        })
-        .collect();
-    let header =
-        ["cable", "samples", "flagged", "rms before [N]", "after [N]", "left", "mean |error| before [N]", "after [N]"];
-    let mut text = format!("{}: force at the platform against the reference\n\n", result.robot);
-    text += &table(&header, 1, &rows);
-    if let Some(wrench) = &result.wrench {
-        text += "\n";
-        text += &wrench.table();
-    }
-    let CycleResult { count, median_ns, p999_ns, max_ns } = result.cycle;
-    text + &format!(
-        "\n{count} cycles; one takes {median_ns} ns (median), {p999_ns} ns (99.9 %), {max_ns} ns (longest)\n"
-    )
+    json.finish(&outcome, &outcome.summary(), files)
 }

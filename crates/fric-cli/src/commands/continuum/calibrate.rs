@@ -10,7 +10,7 @@ use fric_log::output::OutputFile;
 use super::{Model, Outputs, about, read_table};
 use crate::arguments::continuum::CalibrateArguments;
 use crate::failure::Outcome;
-use crate::report::continuum;
+use fric_work::report::continuum;
 
 /// Runs the command.
 pub fn run(arguments: &CalibrateArguments) -> Outcome {
@@ -27,5 +27,10 @@ pub fn run(arguments: &CalibrateArguments) -> Outcome {
     let result = CalibrationResult::new(model.name(), &steps, &lines);
     let edit = ManipulatorEdit { lines: result.lines(), ..ManipulatorEdit::default() };
     let calibrated = file.complete_with(&rewrite(&model.text, &model.origin, &edit)?)?;
-    outputs.finish(&result, &result.summary(), || continuum::calibration(&result, loads), vec![calibrated])
+    outputs.finish(
+        &result,
+        &result.summary(),
+        || continuum::calibration(&result, &loads.display().to_string()),
+        vec![calibrated],
+    )
 }

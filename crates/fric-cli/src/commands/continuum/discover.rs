@@ -9,7 +9,7 @@ use super::{Model, about, read_table};
 use crate::arguments::DiscoverArguments;
 use crate::failure::{Failure, Outcome};
 use crate::output::{self, JsonTarget};
-use crate::report;
+use fric_work::report;
 
 /// Runs the command.
 pub fn run(arguments: &DiscoverArguments) -> Outcome {

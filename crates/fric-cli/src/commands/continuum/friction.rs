@@ -7,8 +7,8 @@ use fric_lab::continuum::result::FrictionResult;
 use super::{Outputs, about, read_gratings, read_run};
 use crate::arguments::continuum::FrictionArguments;
 use crate::failure::Outcome;
-use crate::report::continuum;
 use crate::warnings::{warn, warn_all};
+use fric_work::report::continuum;
 
 /// Runs the command.
 pub fn run(arguments: &FrictionArguments) -> Outcome {
@@ -33,5 +33,10 @@ pub fn run(arguments: &FrictionArguments) -> Outcome {
     if !run.has_tension() {
         warn("the run has no `tension_base_n`: friction at hole 1 is not known");
     }
-    outputs.finish(&result, &result.summary(), || continuum::friction(&result, &paths.run), Vec::new())
+    outputs.finish(
+        &result,
+        &result.summary(),
+        || continuum::friction(&result, &paths.run.display().to_string()),
+        Vec::new(),
+    )
 }

@@ -9,8 +9,8 @@ use fric_lab::continuum::result::ShapeResult;
 use super::{Outputs, about, read_gratings, read_run};
 use crate::arguments::continuum::ShapeArguments;
 use crate::failure::{Failure, Outcome};
-use crate::report::continuum;
 use crate::warnings::{warn, warn_all};
+use fric_work::report::continuum;
 
 /// Runs the command.
 pub fn run(arguments: &ShapeArguments) -> Outcome {
@@ -47,5 +47,10 @@ pub fn run(arguments: &ShapeArguments) -> Outcome {
     if let Some(Err(error)) = Gratings::from_file(&model.file)?.map(|one| one.check_travel(params, greatest_rad)) {
         return Err(about(&paths.run, error));
     }
-    outputs.finish(&result, &result.summary(), || continuum::shape(&result, &run, &ways, &paths.run), Vec::new())
+    outputs.finish(
+        &result,
+        &result.summary(),
+        || continuum::shape(&result, &run, &ways, &paths.run.display().to_string()),
+        Vec::new(),
+    )
 }

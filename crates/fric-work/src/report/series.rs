@@ -7,34 +7,34 @@ const MOST_INTERVALS: usize = 1600;
 
 /// Least and greatest of what was added.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Extent {
+pub(crate) struct Extent {
     pub least: f64,
     pub greatest: f64,
 }
 
 impl Extent {
-    pub const NOTHING: Self = Self { least: f64::INFINITY, greatest: f64::NEG_INFINITY };
+    pub(crate) const NOTHING: Self = Self { least: f64::INFINITY, greatest: f64::NEG_INFINITY };
 
-    pub fn add(&mut self, value: f64) {
+    pub(crate) fn add(&mut self, value: f64) {
         if value.is_finite() {
             self.least = self.least.min(value);
             self.greatest = self.greatest.max(value);
         }
     }
 
-    pub fn merge(&mut self, other: Self) {
+    pub(crate) fn merge(&mut self, other: Self) {
         self.add(other.least);
         self.add(other.greatest);
     }
 
-    pub fn is_something(self) -> bool {
+    pub(crate) fn is_something(self) -> bool {
         self.least <= self.greatest
     }
 }
 
 /// What a cable did in one interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Interval {
+pub(crate) struct Interval {
     pub before_n: Extent,
     pub after_n: Extent,
     pub is_flagged: bool,
@@ -57,6 +57,8 @@ pub struct Series {
 }
 
 impl Series {
+    /// Before the first cycle of so many cables.
+    #[must_use]
     pub fn new(cable_count: usize) -> Self {
         Self {
             cable_count,
@@ -114,13 +116,13 @@ impl Series {
     }
 
     /// Starts of the intervals, s, and what a cable did in them.
-    pub fn of_cable(&self, cable: usize) -> impl Iterator<Item = (f64, Interval)> {
+    pub(crate) fn of_cable(&self, cable: usize) -> impl Iterator<Item = (f64, Interval)> {
         let intervals = self.intervals.iter().skip(cable).step_by(self.cable_count.max(1));
         self.starts_s.iter().copied().zip(intervals.copied())
     }
 
     /// Time of the last sample since the start, s.
-    pub fn end_s(&self) -> f64 {
+    pub(crate) fn end_s(&self) -> f64 {
         self.end_s
     }
 }

@@ -5,9 +5,9 @@ use std::io;
 use fric_lab::excite::{Excitation, ExcitedCycle};
 use fric_log::output::{CompleteFile, OutputError, OutputFile};
 
-use crate::failure::{Failure, Outcome};
-
 /// The file in the making.
+///
+/// Whatever is written to it fails as the file does, with its path and what the operating system says.
 pub struct SetPointTable {
     writer: csv::Writer<OutputFile>,
 }
@@ -36,12 +36,16 @@ fn no_formula(cell: String) -> String {
 
 impl SetPointTable {
     /// At the start of a file.
+    #[must_use]
     pub fn new(file: OutputFile) -> Self {
         Self { writer: csv::Writer::from_writer(file) }
     }
 
     /// The names of the columns, with units.
-    pub fn write_header(&mut self, names: &[&str], excitation: &Excitation) -> Outcome {
+    ///
+    /// # Errors
+    /// [`OutputError::File`] where the file cannot be written.
+    pub fn write_header(&mut self, names: &[&str], excitation: &Excitation) -> Result<(), OutputError> {
         let mut header: Vec<String> = vec!["time_s".to_owned(), "phase".to_owned()];
         if excitation.work_box().is_some() {
             header.extend(PLATFORM_COLUMNS.map(ToOwned::to_owned));
@@ -55,7 +59,10 @@ impl SetPointTable {
     }
 
     /// One row.
-    pub fn write(&mut self, cycle: &ExcitedCycle<'_>) -> Outcome {
+    ///
+    /// # Errors
+    /// [`OutputError::File`] where the file cannot be written.
+    pub fn write(&mut self, cycle: &ExcitedCycle<'_>) -> Result<(), OutputError> {
         // Cycle times are whole nanoseconds; the product has the noise of binary fractions.
         let time_s = (cycle.time_s * 1e9).round() / 1e9;
         self.field(&time_s.to_string())?;
@@ -80,27 +87,30 @@ impl SetPointTable {
     }
 
     /// The file with all its rows, to be put in its place.
-    pub fn complete(self) -> Outcome<CompleteFile> {
+    ///
+    /// # Errors
+    /// [`OutputError::File`] where the file cannot be written.
+    pub fn complete(self) -> Result<CompleteFile, OutputError> {
         let path = self.writer.get_ref().path().to_owned();
         let file = self.writer.into_inner().map_err(|error| OutputError::File { path, source: error.into_error() })?;
-        Ok(file.complete()?)
+        file.complete()
     }
 
     /// All digits, so that the reader has the very number; no minus before a zero.
-    fn number(&mut self, number: f64) -> Outcome {
+    fn number(&mut self, number: f64) -> Result<(), OutputError> {
         self.field(&(number + 0.0).to_string())
     }
 
-    fn field(&mut self, text: &str) -> Outcome {
+    fn field(&mut self, text: &str) -> Result<(), OutputError> {
         self.writer.write_field(text).map_err(|error| self.failure(error))
     }
 
-    fn failure(&self, error: csv::Error) -> Failure {
+    fn failure(&self, error: csv::Error) -> OutputError {
         let source = match error.into_kind() {
             csv::ErrorKind::Io(error) => error,
             // Rows are as long as the header, and text is all there is to write.
             kind => io::Error::other(format!("{kind:?}")),
         };
-        OutputError::File { path: self.writer.get_ref().path().to_owned(), source }.into()
+        OutputError::File { path: self.writer.get_ref().path().to_owned(), source }
     }
 }

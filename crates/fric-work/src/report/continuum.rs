@@ -1,7 +1,5 @@
 //! Pages of `continuum`: calibration, friction at the holes, shapes to scale.
 
-use std::path::Path;
-
 use fric_lab::continuum::Run;
 use fric_lab::continuum::comparison::{WayShapes, spread};
 use fric_lab::continuum::discover::TendonDiscovery;
@@ -17,8 +15,9 @@ const MOST_POINTS: usize = 1200;
 /// Shapes of a friction page.
 const SHOWN_TIMES: usize = 6;
 
-/// The page of `continuum calibrate`.
-pub fn calibration(result: &CalibrationResult, loads: &Path) -> String {
+/// The page of `continuum calibrate`; `loads` names the load steps.
+#[must_use]
+pub fn calibration(result: &CalibrationResult, loads: &str) -> String {
     let count = result.gratings.len();
     let most =
         result.gratings.iter().flat_map(|one| &one.residual_ratio).fold(0.01_f64, |most, one| most.max(one.abs()));
@@ -36,7 +35,7 @@ pub fn calibration(result: &CalibrationResult, loads: &Path) -> String {
         }
     }
     let content = html! {
-        p.soft { (loads.display().to_string()) ", " (result.load_n.len()) " loads" }
+        p.soft { (loads) ", " (result.load_n.len()) " loads" }
         table {
             tr {
                 th { "grating" } th { "a [N/nm]" } th { "b [N]" } th { "± T [N]" } th { "largest residual [%]" } th { "left out [%]" }
@@ -55,13 +54,14 @@ pub fn calibration(result: &CalibrationResult, loads: &Path) -> String {
     super::shell(&format!("{}: calibration of the gratings", result.manipulator), &content)
 }
 
-/// The page of `continuum friction`.
-pub fn friction(result: &FrictionResult, run: &Path) -> String {
+/// The page of `continuum friction`; `run` names the run.
+#[must_use]
+pub fn friction(result: &FrictionResult, run: &str) -> String {
     let series = &result.series;
     let places = spread(series.time_s.len(), SHOWN_TIMES, |_| true);
     let shown = places.iter().filter_map(|place| Some((series.time_s.get(*place)?, series.friction_n.get(*place)?)));
     let content = html! {
-        p.soft { (run.display().to_string()) ", " (result.samples) " samples. Friction is positive where the base side is tighter." }
+        p.soft { (run) ", " (result.samples) " samples. Friction is positive where the base side is tighter." }
         (bridged(result.bridged.iter().map(|one| one.warning(result.samples))))
         table {
             tr {
@@ -88,11 +88,12 @@ pub fn friction(result: &FrictionResult, run: &Path) -> String {
     super::shell(&format!("{}: friction at the holes", result.manipulator), &content)
 }
 
-/// The page of `continuum shape`.
-pub fn shape(result: &ShapeResult, run: &Run, ways: &[WayShapes], path: &Path) -> String {
+/// The page of `continuum shape`; `source` names the run.
+#[must_use]
+pub fn shape(result: &ShapeResult, run: &Run, ways: &[WayShapes], source: &str) -> String {
     let has_markers = result.ways.iter().any(|way| way.all.mean_mm.is_some());
     let content = html! {
-        p.soft { (path.display().to_string()) ", " (result.samples) " samples." }
+        p.soft { (source) ", " (result.samples) " samples." }
         (bridged(result.bridged.iter().map(|one| one.warning(result.samples))))
         p { (keys(result.ways.iter().map(|way| way.way))) @if has_markers { (key("marker", "markers")) } }
         p.soft { "Dashed over the bars: the most that a hole holds by the model's μ; what is measured may be more." }
@@ -131,6 +132,7 @@ pub fn shape(result: &ShapeResult, run: &Run, ways: &[WayShapes], path: &Path) -
 }
 
 /// The page of `discover` with a manipulator.
+#[must_use]
 pub fn discovery(found: &TendonDiscovery) -> String {
     let result = &found.result;
     let percent = |share: Option<f64>| share.map_or_else(|| "–".to_owned(), |share| format!("{:.0} %", 100.0 * share));

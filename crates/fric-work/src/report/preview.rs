@@ -30,6 +30,7 @@ fn over_time(series: &RunSeries, pick: fn(&RunInterval) -> Extent) -> impl Itera
 }
 
 /// The page.
+#[must_use]
 pub fn page(robot: &RobotFile, excitation: &Excitation, series: &RunSeries) -> String {
     let title = format!("{}: identification run", robot.options().name);
     let duration_s = excitation.trajectory().duration_s();

@@ -22,7 +22,7 @@ pub struct RunSeries {
 
 /// What the robot does in one interval.
 #[derive(Clone, Copy, Debug)]
-pub struct RunInterval {
+pub(crate) struct RunInterval {
     pub start_s: f64,
     /// Of the platform, or of the fastest cable without one, m/s.
     pub speed: Extent,
@@ -35,7 +35,7 @@ pub struct RunInterval {
 
 /// What the robot does in one phase.
 #[derive(Clone, Copy, Debug)]
-pub struct PhaseSpan {
+pub(crate) struct PhaseSpan {
     pub phase: Phase,
     pub start_s: f64,
     pub end_s: f64,
@@ -44,6 +44,8 @@ pub struct PhaseSpan {
 }
 
 impl RunSeries {
+    /// Before the first of so many cycles.
+    #[must_use]
     pub fn new(total_cycles: u64) -> Self {
         Self {
             cycles_per_interval: total_cycles.div_ceil(MOST_INTERVALS).max(1),
@@ -98,13 +100,13 @@ impl RunSeries {
     }
 
     /// Speeds of the whole run, from 0, m/s.
-    pub fn speed(&self) -> Extent {
+    pub(crate) fn speed(&self) -> Extent {
         let fastest = self.phases.iter().map(|phase| phase.fastest).fold(0.0, f64::max);
         Extent { least: 0.0, greatest: fastest }
     }
 
     /// Cable forces of the whole run, N, where there are any.
-    pub fn tension_n(&self) -> Option<Extent> {
+    pub(crate) fn tension_n(&self) -> Option<Extent> {
         let mut all = Extent::NOTHING;
         for phase in &self.phases {
             all.merge(phase.tension_n);
@@ -113,17 +115,17 @@ impl RunSeries {
     }
 
     /// The intervals in order.
-    pub fn intervals(&self) -> &[RunInterval] {
+    pub(crate) fn intervals(&self) -> &[RunInterval] {
         &self.intervals
     }
 
     /// The phases in order.
-    pub fn phases(&self) -> &[PhaseSpan] {
+    pub(crate) fn phases(&self) -> &[PhaseSpan] {
         &self.phases
     }
 
     /// Time of the last cycle, s.
-    pub fn end_s(&self) -> f64 {
+    pub(crate) fn end_s(&self) -> f64 {
         self.end_s
     }
 }

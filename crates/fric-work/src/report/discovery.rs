@@ -19,6 +19,7 @@ const HALF: f64 = 470.0;
 const MOST_CANDIDATES: usize = 16;
 
 /// The page.
+#[must_use]
 pub fn page(result: &DiscoverResult, discoveries: &[CableDiscovery]) -> String {
     let title = format!("{}: what the model lacks", result.robot);
     let content = html! {

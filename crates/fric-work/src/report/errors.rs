@@ -1,18 +1,16 @@
 //! The page of `replay --report`: the table and the errors over time.
 
-use std::path::PathBuf;
-
 use fric_lab::errors::WrenchResult;
 use maud::{Markup, PreEscaped, html};
 
 use super::chart::{Chart, Span};
 use super::series::{Extent, Interval, Series};
-use crate::result::ReplayResult;
+use crate::replay::ReplayResult;
 
-/// The page.
-pub fn page(result: &ReplayResult, series: &Series, logs: &[PathBuf]) -> String {
+/// The page; `logs` names what was replayed.
+#[must_use]
+pub fn page(result: &ReplayResult, series: &Series, logs: &[String]) -> String {
     let title = format!("{}: forces at the platform", result.robot);
-    let logs: Vec<String> = logs.iter().map(|log| log.display().to_string()).collect();
     let content = html! {
                 p.soft {
                     (logs.join(", ")) ", " (result.cycle.count) " cycles; one takes " (result.cycle.median_ns) " ns (median), "

@@ -1,0 +1,54 @@
+//! `fric-cli`: friction compensation for cable robots on the command line.
+//!
+//! The program is [`run`]: its own `main` calls it with the process's arguments, `python -m fric` with Python's.
+
+mod arguments;
+mod commands;
+mod failure;
+mod interrupt;
+mod measurements;
+mod model;
+mod output;
+mod progress;
+mod steps;
+mod warnings;
+
+use std::ffi::OsString;
+
+use clap::Parser;
+
+use arguments::{Arguments, Command};
+
+/// Runs a command line, whose first word is the name of the program, and gives the exit code: 0, 1 where the work failed, 2 where the
+/// command line is wrong.
+///
+/// Results go to stdout, what is wrong to stderr. From then on Ctrl-C ends the command, and a second one the process.
+#[must_use]
+pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
+    let arguments = match Arguments::try_parse_from(words) {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            // There is nowhere left to report a broken stream to.
+            let _ = error.print();
+            return u8::try_from(error.exit_code()).unwrap_or(2);
+        }
+    };
+    interrupt::listen();
+    let result = match &arguments.command {
+        Command::Fit(arguments) => commands::fit::run(arguments),
+        Command::Discover(arguments) => commands::discover::run(arguments),
+        Command::Replay(arguments) => commands::replay::run(arguments),
+        Command::Info(arguments) => commands::info::run(arguments),
+        Command::Simulate(arguments) => commands::simulate::run(arguments),
+        Command::Excite(arguments) => commands::excite::run(arguments),
+        Command::Hysteresis(arguments) => commands::hysteresis::run(arguments),
+        Command::Continuum(command) => commands::continuum::run(command),
+    };
+    match result {
+        Ok(()) => 0,
+        Err(failure) => {
+            failure.print();
+            failure.exit_code()
+        }
+    }
+}

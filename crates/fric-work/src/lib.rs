@@ -1,0 +1,25 @@
+//! What a user gets of a result: text for people, JSON for machines, a page in HTML.
+//!
+//! The command line and the Python module compute with `fric-lab` on samples that `fric-log` reads, and show what comes out by
+//! what is here, so that both show the same: [`json`] is the text of a result for machines, [`report`] are the pages, each one
+//! file without network access, [`replay`] is the result of a replay and [`set_points`] the file of an identification run. The texts of
+//! the other results stand beside them in `fric-lab`.
+//!
+//! Nothing here reads a log or computes friction, and nothing knows a terminal or Python.
+
+#![allow(clippy::doc_markdown, reason = "symbols of equations are no code items")]
+
+pub mod excite;
+pub mod replay;
+pub mod report;
+pub mod set_points;
+
+use serde::Serialize;
+
+/// A result for machines, as text with an end of line.
+///
+/// # Errors
+/// What serde_json refuses, such as a map whose keys are no text; no result of this workspace is such.
+pub fn json(result: &impl Serialize) -> Result<String, serde_json::Error> {
+    serde_json::to_string_pretty(result).map(|text| text + "\n")
+}

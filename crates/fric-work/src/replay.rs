@@ -1,0 +1,147 @@
+//! The result of `replay`: for machines (`format = "fric-replay/1"`) and as a table.
+
+use fric_core::robot::file::RobotFile;
+use fric_lab::errors::{ForceError, WrenchResult};
+use fric_lab::replay::{CableErrors, Replay};
+use fric_lab::text::table;
+use hdrhistogram::{CreationError, Histogram};
+use serde::Serialize;
+
+/// How long cycles take, in bounded memory.
+#[derive(Clone, Debug)]
+pub struct CycleTimes(Histogram<u64>);
+
+impl CycleTimes {
+    /// Before the first cycle. Three digits are kept; durations beyond 2^40 ns (18 minutes) count as that.
+    ///
+    /// # Errors
+    /// As [`Histogram::new_with_max`], which takes these bounds.
+    pub fn new() -> Result<Self, CreationError> {
+        Histogram::new_with_max(1 << 40, 3).map(Self)
+    }
+
+    /// Takes in a cycle.
+    pub fn add(&mut self, cycle_ns: u64) {
+        self.0.saturating_record(cycle_ns);
+    }
+}
+
+/// All of it.
+#[derive(Clone, Debug, Serialize)]
+pub struct ReplayResult {
+    /// Name and version of the form.
+    pub format: &'static str,
+    /// Name of the robot.
+    pub robot: String,
+    /// The cables in the robot's order.
+    pub cables: Vec<CableResult>,
+    /// Errors of the wrench, where there is one to compare with.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub wrench: Option<WrenchResult>,
+    /// How long cycles took.
+    pub cycle: CycleResult,
+}
+
+/// One cable.
+#[derive(Clone, Debug, Serialize)]
+pub struct CableResult {
+    /// Its name.
+    pub name: String,
+    /// Cycles run.
+    pub samples: u64,
+    /// Cycles with any flag.
+    pub flagged: u64,
+    /// Error as if nothing rubbed; `None` without a reference.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub before: Option<ForceError>,
+    /// Error of the compensated force.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub after: Option<ForceError>,
+}
+
+/// How long cycles took.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct CycleResult {
+    /// How many there were.
+    pub count: u64,
+    /// Half of them took at most so long, ns.
+    pub median_ns: u64,
+    /// 99.9 % of them did, ns.
+    pub p999_ns: u64,
+    /// The longest, ns.
+    pub max_ns: u64,
+}
+
+impl ReplayResult {
+    /// Name and version of the form.
+    pub const FORMAT: &str = "fric-replay/1";
+
+    /// Of a replay that has come to its end.
+    #[must_use]
+    pub fn new(robot: &RobotFile, replay: &Replay, times: &CycleTimes) -> Self {
+        let cable = |(name, errors): (&str, &CableErrors)| CableResult {
+            name: name.to_owned(),
+            samples: replay.cycle_count(),
+            flagged: errors.flagged_count,
+            before: ForceError::of(&errors.before_n),
+            after: ForceError::of(&errors.after_n),
+        };
+        let (before, after) = replay.wrench();
+        Self {
+            format: Self::FORMAT,
+            robot: robot.options().name.clone(),
+            cables: robot.cable_names().into_iter().zip(replay.cables()).map(cable).collect(),
+            wrench: WrenchResult::of(replay.wrench_reference(), before, after),
+            cycle: CycleResult {
+                count: replay.cycle_count(),
+                median_ns: times.0.value_at_quantile(0.5),
+                p999_ns: times.0.value_at_quantile(0.999),
+                max_ns: times.0.max(),
+            },
+        }
+    }
+
+    /// For people: a table.
+    #[must_use]
+    pub fn summary(&self) -> String {
+        let rows: Vec<_> = self
+            .cables
+            .iter()
+            .map(|cable| {
+                let number = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.4}"));
+                let (before, after) = (cable.before.as_ref(), cable.after.as_ref());
+                let left = before.zip(after).map(|(before, after)| after.rms_n / before.rms_n * 100.0);
+                [
+                    cable.name.clone(),
+                    cable.samples.to_string(),
+                    cable.flagged.to_string(),
+                    number(before.map(|error| error.rms_n)),
+                    number(after.map(|error| error.rms_n)),
+                    left.filter(|left| left.is_finite()).map_or_else(|| "–".to_owned(), |left| format!("{left:.1} %")),
+                    number(before.map(|error| error.mae_n)),
+                    number(after.map(|error| error.mae_n)),
+                ]
+            })
+            .collect();
+        let header = [
+            "cable",
+            "samples",
+            "flagged",
+            "rms before [N]",
+            "after [N]",
+            "left",
+            "mean |error| before [N]",
+            "after [N]",
+        ];
+        let mut text = format!("{}: force at the platform against the reference\n\n", self.robot);
+        text += &table(&header, 1, &rows);
+        if let Some(wrench) = &self.wrench {
+            text += "\n";
+            text += &wrench.table();
+        }
+        let CycleResult { count, median_ns, p999_ns, max_ns } = self.cycle;
+        text + &format!(
+            "\n{count} cycles; one takes {median_ns} ns (median), {p999_ns} ns (99.9 %), {max_ns} ns (longest)\n"
+        )
+    }
+}
