@@ -10,33 +10,38 @@ Numbers are SI, with the unit in the name, as in the robot file. Whatever is wro
 (needs matplotlib: `pip install fric[plot]`).
 """
 
-from . import continuum, plot
-from ._errors import ConfigError, FitError, FricError, LogError, LogWarning, OutputError, ShapeError
-from ._fric import (
-    AxisHysteresis,
+# Before all that would fail there in its own words.
+from ._interpreter import refuse_sub_interpreters as _refuse_sub_interpreters
+
+_refuse_sub_interpreters()
+
+from . import continuum, plot  # noqa: E402
+from ._errors import (  # noqa: E402
+    ArrayTypeError,
+    ConfigError,
+    ConfigFileNotFoundError,
+    FitError,
+    FricError,
+    LogError,
+    LogFileNotFoundError,
+    LogWarning,
+    OutputError,
+    ShapeError,
+)
+from ._fric import (  # noqa: E402
     Cable,
-    CableDiscovery,
-    CableErrors,
-    CableFit,
-    Compensation,
     Compensator,
-    DiscoverResult,
-    FitResult,
-    ForceError,
     Friction,
-    HysteresisResult,
     Log,
     LogPaths,
     Monitor,
     Platform,
-    ReplayResult,
     ResidualFunction,
     Robot,
     Snapshot,
-    Width,
-    WrenchError,
     __version__,
     discover,
+    excite,
     fit,
     hysteresis,
     read_log,
@@ -44,9 +49,25 @@ from ._fric import (
     residual_function,
     simulate,
 )
-from ._status import Status
+from ._results import (  # noqa: E402
+    AxisHysteresis,
+    CableDiscovery,
+    CableErrors,
+    CableFit,
+    Compensation,
+    DiscoverResult,
+    ExciteResult,
+    FitResult,
+    ForceError,
+    HysteresisResult,
+    ReplayResult,
+    Width,
+    WrenchError,
+)
+from ._status import Status  # noqa: E402
 
 __all__ = [
+    "ArrayTypeError",
     "AxisHysteresis",
     "Cable",
     "CableDiscovery",
@@ -55,7 +76,9 @@ __all__ = [
     "Compensation",
     "Compensator",
     "ConfigError",
+    "ConfigFileNotFoundError",
     "DiscoverResult",
+    "ExciteResult",
     "FitError",
     "FitResult",
     "ForceError",
@@ -64,6 +87,7 @@ __all__ = [
     "HysteresisResult",
     "Log",
     "LogError",
+    "LogFileNotFoundError",
     "LogPaths",
     "LogWarning",
     "Monitor",
@@ -80,6 +104,7 @@ __all__ = [
     "__version__",
     "continuum",
     "discover",
+    "excite",
     "fit",
     "hysteresis",
     "plot",
@@ -88,3 +113,8 @@ __all__ = [
     "residual_function",
     "simulate",
 ]
+
+# Results are of the package, not of the file they stand in.
+for _name in __all__:
+    if getattr(globals()[_name], "__module__", "").startswith("fric._results"):
+        globals()[_name].__module__ = "fric"

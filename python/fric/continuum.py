@@ -11,16 +11,7 @@ True
 Friction is positive where the base side of a hole is tighter. Holes count from the base plate, disks from the base.
 """
 
-from ._fric import (
-    CalibrationResult,
-    FrictionResult,
-    HoleResult,
-    Manipulator,
-    ShapeResult,
-    SimulatedTendon,
-    TendonDiscovery,
-    TendonRun,
-)
+from ._fric import Manipulator, TendonRun
 from ._fric import continuum_calibrate as calibrate
 from ._fric import continuum_discover as discover
 from ._fric import continuum_friction as friction
@@ -29,6 +20,14 @@ from ._fric import continuum_read_loads as read_loads
 from ._fric import continuum_read_run as read_run
 from ._fric import continuum_shape as shape
 from ._fric import continuum_simulate as simulate
+from ._results import (
+    CalibrationResult,
+    FrictionResult,
+    HoleResult,
+    ShapeResult,
+    SimulatedTendon,
+    TendonDiscovery,
+)
 
 __all__ = [
     "CalibrationResult",
@@ -48,3 +47,7 @@ __all__ = [
     "shape",
     "simulate",
 ]
+
+for _name in __all__:
+    if getattr(globals()[_name], "__module__", "").startswith("fric._results"):
+        globals()[_name].__module__ = "fric.continuum"

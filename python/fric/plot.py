@@ -14,13 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._errors import ConfigError, FitError, ShapeError
-from ._fric import FitResult
+from ._results import FitResult
 
 if TYPE_CHECKING:
     # Whoever checks types without matplotlib takes axes as they come.
     from matplotlib.axes import Axes as _Axes  # type: ignore[import-not-found, unused-ignore]
 
-    from ._fric import CableDiscovery, Compensation, DiscoverResult, Log, ReplayResult, ShapeResult
+    from ._fric import Log
+    from ._results import CableDiscovery, Compensation, DiscoverResult, ReplayResult, ShapeResult
 
 __all__ = ["candidates", "forces", "friction_loop", "gap_ladder", "parameters", "residuals", "tendon_friction", "tendon_shape", "where"]
 

@@ -4,6 +4,8 @@
 //! Behaviour with non-finite input and state are those of [`Compensator`]. Needs the feature `alloc`.
 
 use alloc::boxed::Box;
+use alloc::vec;
+use alloc::vec::Vec;
 use core::any::Any;
 use core::fmt;
 use core::iter::repeat;
@@ -14,6 +16,7 @@ use crate::platform::{Pose, Wrench};
 use crate::robot::{MAX_PULLEYS, MOST_CABLES, ParamError, RobotParams};
 use crate::status::CableStatus;
 use crate::tunable::TunableCompensator;
+use crate::words::Words as _;
 
 /// [`Compensator`] for any number of cables up to [`AnyCompensator::MOST_CABLES`]: the smallest of a few sizes that
 /// holds the robot. The size does not change a bit of the result.
@@ -89,6 +92,32 @@ impl AnyCompensator {
         if is_restored { Ok(()) } else { Err(SnapshotMismatch { expected, found }) }
     }
 
+    /// The state as words, the number of cables first: all that a snapshot holds, bit for bit, for another process. They are of
+    /// use to this version of the crate.
+    #[must_use]
+    pub fn state_words(&self) -> Vec<u64> {
+        let mut words = vec![self.cable_count() as u64];
+        self.0.each_state_word(&mut |word| words.push(*word));
+        words
+    }
+
+    /// Goes on from the words that [`state_words`](Self::state_words) gave for the same robot.
+    ///
+    /// # Errors
+    /// [`SnapshotMismatch`] if they are of a robot with another number of cables, or of another version; nothing is changed then.
+    pub fn restore_words(&mut self, words: &[u64]) -> Result<(), SnapshotMismatch> {
+        let expected = self.cable_count();
+        let found = words.first().and_then(|count| usize::try_from(*count).ok()).unwrap_or(0);
+        let mut count = 1;
+        self.0.each_state_word(&mut |_| count += 1);
+        if found != expected || words.len() != count {
+            return Err(SnapshotMismatch { expected, found });
+        }
+        let mut words = words.iter().skip(1);
+        self.0.restore_words(&mut |word| *word = words.next().copied().unwrap_or_default());
+        Ok(())
+    }
+
     /// Whether the parameters of `next` can take over, see [`Compensator::check_exchange`].
     ///
     /// # Errors
@@ -157,6 +186,10 @@ impl AnyCompensator {
 trait Cycle: Send + Sync + fmt::Debug {
     fn reset(&mut self);
     fn snapshot(&self) -> Box<dyn Any + Send + Sync>;
+    /// Shows the words of the state.
+    fn each_state_word(&self, show: &mut dyn FnMut(&u64));
+    /// Replaces them.
+    fn restore_words(&mut self, replace: &mut dyn FnMut(&mut u64));
     /// Whether the snapshot is one of this size.
     fn restore(&mut self, state: &(dyn Any + Send + Sync)) -> bool;
     fn as_any(&self) -> &dyn Any;
@@ -215,6 +248,19 @@ impl<const CABLES: usize> Cycle for Fixed<CABLES> {
 
     fn snapshot(&self) -> Box<dyn Any + Send + Sync> {
         Box::new((self.compensator.compensator().snapshot(), self.output))
+    }
+
+    fn each_state_word(&self, show: &mut dyn FnMut(&u64)) {
+        let (mut snapshot, mut output) = (self.compensator.compensator().snapshot(), self.output);
+        snapshot.each_word(&mut |word| show(word));
+        output.each_word(&mut |word| show(word));
+    }
+
+    fn restore_words(&mut self, replace: &mut dyn FnMut(&mut u64)) {
+        let mut snapshot = self.compensator.compensator().snapshot();
+        snapshot.each_word(replace);
+        self.compensator.restore(&snapshot);
+        self.output.each_word(replace);
     }
 
     fn restore(&mut self, state: &(dyn Any + Send + Sync)) -> bool {

@@ -31,6 +31,7 @@ use crate::signals::{
 };
 use crate::status::CableStatus;
 use crate::swivel;
+use crate::words::{Words, words_of};
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
 /// Friction compensation of a robot with at most `CABLES` cables.
@@ -97,9 +98,17 @@ struct State<const CABLES: usize> {
     doubtful: bool,
 }
 
+words_of!(State<const CABLES> { columns, directions_known, gravity, cycle, last_cycle, doubtful });
+
 /// The state of a [`Compensator`] at one moment, for [`Compensator::restore`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Snapshot<const CABLES: usize>(State<CABLES>);
+
+impl<const CABLES: usize> Words for Snapshot<CABLES> {
+    fn each_word(&mut self, show: &mut dyn FnMut(&mut u64)) {
+        self.0.each_word(show);
+    }
+}
 
 impl<const CABLES: usize> Compensator<CABLES> {
     const START: State<CABLES> = State {

@@ -69,6 +69,8 @@ pub mod swivel;
 #[cfg(feature = "robot-file")]
 pub mod text_file;
 mod tunable;
+#[cfg_attr(not(feature = "alloc"), allow(dead_code, reason = "`AnyCompensator` alone gives its state away"))]
+mod words;
 
 #[cfg(feature = "alloc")]
 pub use any::{AnyCompensator, AnySnapshot, SnapshotMismatch};

@@ -45,15 +45,12 @@ fn checked<T: Element + Copy>(
     dtype: &str,
 ) -> Outcome<Vec<T>> {
     let numpy = value.py().import("numpy")?;
-    let refuse = |found: String| {
+    let refusal = |found: String| {
         let Wanted { name, shape, entries } = wanted;
-        Fault::shape(format!(
-            "`{name}` must be {what} ({dtype}) of shape {}, {entries}; what came is {found}",
-            shape_text(shape)
-        ))
+        format!("`{name}` must be {what} ({dtype}) of shape {}, {entries}; what came is {found}", shape_text(shape))
     };
     let array = numpy.call_method1("asarray", (value,));
-    let array = array.map_err(|error| refuse(format!("no array: {}", error.value(value.py()))))?;
+    let array = array.map_err(|error| Fault::shape(refusal(format!("no array: {}", error.value(value.py())))))?;
     let array = array.cast::<PyUntypedArray>()?;
     let fits = |(axis, length): (&Axis, &usize)| match axis {
         Axis::Exactly(expected) => length == expected,
@@ -61,9 +58,11 @@ fn checked<T: Element + Copy>(
     };
     let lengths = array.shape();
     let has_shape = lengths.len() == wanted.shape.len() && wanted.shape.iter().zip(lengths).all(fits);
-    if !has_shape || !kinds.contains(&array.dtype().kind()) {
+    let has_type = kinds.contains(&array.dtype().kind());
+    if !has_shape || !has_type {
         let lengths: Vec<String> = lengths.iter().map(ToString::to_string).collect();
-        return Err(refuse(format!("{} of shape {}", array.dtype().str()?, tuple_text(&lengths))));
+        let text = refusal(format!("{} of shape {}", array.dtype().str()?, tuple_text(&lengths)));
+        return Err(if has_type { Fault::shape(text) } else { Fault::array_type(text) });
     }
     let array = numpy.call_method1("ascontiguousarray", (array, dtype))?;
     Ok(array.cast::<PyArrayDyn<T>>()?.readonly().as_slice()?.to_vec())

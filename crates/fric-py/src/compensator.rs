@@ -1,13 +1,15 @@
 //! `Compensator`: the control loop's cycle, one at a time or over arrays.
 
-use fric_core::{AnyCompensator, AnySnapshot, CableInput, Pose};
+use fric_core::{AnyCompensator, CableInput, Pose};
 use fric_lab::columns::OutputColumns;
-use numpy::{PyArray1, PyArrayDyn};
+use numpy::PyArray1;
 use pyo3::prelude::*;
 
 use crate::arrays::{Axis, Wanted, array, numbers};
 use crate::errors::{Fault, Outcome};
+use crate::results;
 use crate::robot::Robot;
+use crate::travel::{self, Reduced};
 use crate::watch::Watch;
 
 /// Friction compensation, as in the control loop: the same code, the same bits.
@@ -26,49 +28,39 @@ use crate::watch::Watch;
 /// (500, 8)
 #[pyclass(module = "fric")]
 pub struct Compensator {
-    compensator: AnyCompensator,
+    cycles: AnyCompensator,
+    /// The robot as it was at set-up.
+    robot: Robot,
     /// Names of the cables and how many pulleys each has.
     cables: Vec<(String, usize)>,
 }
 
 /// The state of a compensator at one moment.
-#[pyclass(module = "fric", frozen)]
-pub struct Snapshot(AnySnapshot);
-
-/// Outcome of a cycle (a number per cable), or of as many cycles as there are rows.
-#[pyclass(module = "fric", frozen)]
-pub struct Compensation {
-    /// Cable force at the platform, N, the offset included.
-    #[pyo3(get)]
-    pub force_at_platform_n: Py<PyArrayDyn<f64>>,
-    /// Estimated friction, N: positive where it makes the platform side tighter.
-    #[pyo3(get)]
-    pub friction_n: Py<PyArrayDyn<f64>>,
-    /// The sensor force turned into cable tension as if nothing rubbed, N.
-    #[pyo3(get)]
-    pub frictionless_n: Py<PyArrayDyn<f64>>,
-    /// Bits of `Status`.
-    #[pyo3(get)]
-    pub status: Py<PyArrayDyn<u32>>,
-    /// Force (N) and torque (N m) on the platform from outside, gravity included; NaN in cycles without, None without any.
-    #[pyo3(get)]
-    pub outside_wrench: Option<Py<PyArrayDyn<f64>>>,
+#[pyclass(module = "fric", frozen, eq)]
+#[derive(PartialEq)]
+pub struct Snapshot {
+    /// All of it, bit for bit.
+    words: Vec<u64>,
 }
 
-impl Compensation {
-    /// Arrays with a row per cycle; just one row where `row_count` is `None`.
-    pub fn new(py: Python<'_>, columns: OutputColumns, row_count: Option<usize>, cable_count: usize) -> Outcome<Self> {
-        let shape = |width: usize| row_count.into_iter().chain([width]).collect::<Vec<_>>();
-        let cables = shape(cable_count);
-        let has_wrench = columns.has_wrench();
-        Ok(Self {
-            force_at_platform_n: array(py, columns.force_at_platform_n, &cables)?,
-            friction_n: array(py, columns.friction_n, &cables)?,
-            frictionless_n: array(py, columns.frictionless_n, &cables)?,
-            status: array(py, columns.status, &cables)?,
-            outside_wrench: has_wrench.then(|| array(py, columns.outside_wrench, &shape(6))).transpose()?,
-        })
-    }
+/// A `Compensation`: arrays with a row per cycle; just one row where `row_count` is `None`.
+pub fn compensation(
+    py: Python<'_>,
+    columns: OutputColumns,
+    row_count: Option<usize>,
+    cable_count: usize,
+) -> Outcome<Py<PyAny>> {
+    let shape = |width: usize| row_count.into_iter().chain([width]).collect::<Vec<_>>();
+    let cables = shape(cable_count);
+    let has_wrench = columns.has_wrench();
+    let fields = (
+        array(py, columns.force_at_platform_n, &cables)?,
+        array(py, columns.friction_n, &cables)?,
+        array(py, columns.frictionless_n, &cables)?,
+        array(py, columns.status, &cables)?,
+        has_wrench.then(|| array(py, columns.outside_wrench, &shape(6))).transpose()?,
+    );
+    Ok(results::new(py, "Compensation", fields)?.unbind())
 }
 
 #[pymethods]
@@ -78,7 +70,8 @@ impl Compensator {
         let params = robot.file.params();
         let pulley_counts = params.cables().iter().map(fric_core::CableParams::pulley_count);
         let names = robot.file.cable_names().into_iter().map(ToOwned::to_owned);
-        Ok(Self { compensator: AnyCompensator::new(&params)?, cables: names.zip(pulley_counts).collect() })
+        let cables = names.zip(pulley_counts).collect();
+        Ok(Self { cycles: AnyCompensator::new(&params)?, robot: robot.clone(), cables })
     }
 
     /// One cycle: a number per cable in each array. `elapsed_cycles` is more than 1 after skipped cycles.
@@ -92,13 +85,13 @@ impl Compensator {
         position_m: Option<&Bound<'_, PyAny>>,
         orientation_xyzw: Option<&Bound<'_, PyAny>>,
         elapsed_cycles: f64,
-    ) -> Outcome<Compensation> {
+    ) -> Outcome<Py<PyAny>> {
         let signals = Signals::read(&[], self.cables.len(), [sensor_force_n, length_m, speed_m_per_s])?;
         let poses = Poses::read(&[], position_m, orientation_xyzw)?;
         let elapsed_cycles = checked_elapsed(vec![elapsed_cycles])?;
         let mut columns = OutputColumns::default();
-        cycle(&mut self.compensator, &mut columns, &signals, &poses, &elapsed_cycles, 0, &mut Vec::new());
-        Compensation::new(py, columns, None, self.cables.len())
+        cycle(&mut self.cycles, &mut columns, &signals, &poses, &elapsed_cycles, 0, &mut Vec::new());
+        compensation(py, columns, None, self.cables.len())
     }
 
     /// As many cycles as the arrays have rows, one column per cable; other threads run meanwhile.
@@ -119,7 +112,7 @@ impl Compensator {
         orientation_xyzw: Option<&Bound<'_, PyAny>>,
         elapsed_cycles: Option<&Bound<'_, PyAny>>,
         progress: Option<&Bound<'_, PyAny>>,
-    ) -> Outcome<Compensation> {
+    ) -> Outcome<Py<PyAny>> {
         let cable_count = self.cables.len();
         let signals = Signals::read(&[Axis::Rows], cable_count, [sensor_force_n, length_m, speed_m_per_s])?;
         let row_count = signals.sensor_force_n.len() / cable_count;
@@ -134,9 +127,9 @@ impl Compensator {
                 checked_elapsed(numbers(&wanted, value)?)?
             }
         };
-        let before = self.compensator.snapshot();
+        let before = self.cycles.snapshot();
         let (mut columns, mut cables) = (OutputColumns::default(), Vec::new());
-        let compensator = &mut self.compensator;
+        let compensator = &mut self.cycles;
         let result = Watch::new(py, progress)?.work(row_count, |rows| {
             for row in rows {
                 cycle(compensator, &mut columns, &signals, &poses, &elapsed_cycles, row, &mut cables);
@@ -144,25 +137,25 @@ impl Compensator {
             Ok(())
         });
         if result.is_err() {
-            self.compensator.restore(&before)?;
+            self.cycles.restore(&before)?;
         }
         result?;
-        Compensation::new(py, columns, Some(row_count), cable_count)
+        compensation(py, columns, Some(row_count), cable_count)
     }
 
     /// Back to the state after set-up: at rest, nothing stored, no pose.
     fn reset(&mut self) {
-        self.compensator.reset();
+        self.cycles.reset();
     }
 
     /// The state at this moment.
     fn snapshot(&self) -> Snapshot {
-        Snapshot(self.compensator.snapshot())
+        Snapshot { words: self.cycles.state_words() }
     }
 
     /// Goes on from a snapshot as if nothing had happened since.
     fn restore(&mut self, snapshot: &Snapshot) -> Outcome {
-        Ok(self.compensator.restore(&snapshot.0)?)
+        Ok(self.cycles.restore_words(&snapshot.words)?)
     }
 
     /// Friction stored at each pulley of a cable, from the winch, N; zeros with `lumped` presliding.
@@ -172,12 +165,59 @@ impl Compensator {
             return Err(Fault::config(fric_core::robot::unknown_name("cable", cable, names())));
         };
         let count = self.cables.get(index).map_or(0, |(_, pulley_count)| *pulley_count);
-        let friction_n = self.compensator.pulley_friction_n(index);
+        let friction_n = self.cycles.pulley_friction_n(index);
         Ok(PyArray1::from_iter(py, friction_n.into_iter().take(count)).unbind())
     }
 
+    fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {
+        let is_same = |other: &Self| {
+            self.robot.file == other.robot.file && self.cycles.state_words() == other.cycles.state_words()
+        };
+        other.cast::<Self>().is_ok_and(|other| match other.try_borrow() {
+            Ok(other) => is_same(&other),
+            // Only one that is compared with itself is borrowed.
+            Err(_) => true,
+        })
+    }
+
     fn __repr__(&self) -> String {
-        format!("<Compensator: {} cables>", self.cables.len())
+        let names: Vec<&str> = self.cables.iter().map(|(name, _)| name.as_str()).collect();
+        format!("<Compensator of {:?}: cables {}>", self.robot.file.options().name, names.join(", "))
+    }
+
+    /// Pickled, and copied, as its robot and its state: it goes on with the same bits.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> Outcome<Reduced<'py, (String, Robot, Vec<u64>)>> {
+        let one = slf.borrow();
+        let state = (travel::VERSION.to_owned(), one.robot.clone(), one.cycles.state_words());
+        Ok((slf.getattr("_unpickled")?, state))
+    }
+
+    /// The one that was pickled.
+    #[staticmethod]
+    fn _unpickled(version: &str, robot: &Robot, words: Vec<u64>) -> Outcome<Self> {
+        travel::check_version(version)?;
+        let mut one = Self::new(robot)?;
+        one.cycles.restore_words(&words)?;
+        Ok(one)
+    }
+}
+
+#[pymethods]
+impl Snapshot {
+    fn __repr__(&self) -> String {
+        format!("<Snapshot: {} cables>", self.words.first().copied().unwrap_or(0))
+    }
+
+    /// Pickled, and copied, as the numbers it holds.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> Outcome<Reduced<'py, (String, Vec<u64>)>> {
+        Ok((slf.getattr("_unpickled")?, (travel::VERSION.to_owned(), slf.get().words.clone())))
+    }
+
+    /// The one that was pickled.
+    #[staticmethod]
+    fn _unpickled(version: &str, words: Vec<u64>) -> Outcome<Self> {
+        travel::check_version(version)?;
+        Ok(Self { words })
     }
 }
 

@@ -1,9 +1,13 @@
 //! Errors of the crates below as the exceptions of `fric._errors`.
 
+use std::io;
+use std::path::Path;
+
 use fric_core::continuum::file::ManipulatorFileError;
 use fric_core::robot::file::RobotFileError;
 use fric_core::{ParamError, SnapshotMismatch};
 use fric_lab::continuum::ContinuumError;
+use fric_lab::excite::ExcitationError;
 use fric_lab::hysteresis::HysteresisError;
 use fric_lab::simulate::{HiddenError, SimulationError};
 use fric_log::output;
@@ -16,11 +20,17 @@ use fric_log::{in_full, reason};
 use numpy::AsSliceError;
 use pyo3::prelude::*;
 
+pyo3::import_exception!(fric._errors, ArrayTypeError);
 pyo3::import_exception!(fric._errors, ConfigError);
+pyo3::import_exception!(fric._errors, ConfigFileNotFoundError);
 pyo3::import_exception!(fric._errors, FitError);
 pyo3::import_exception!(fric._errors, LogError);
+pyo3::import_exception!(fric._errors, LogFileNotFoundError);
 pyo3::import_exception!(fric._errors, OutputError);
 pyo3::import_exception!(fric._errors, ShapeError);
+
+/// `errno.ENOENT`, the same on every system.
+const NO_ENTRY: i32 = 2;
 
 /// What a call ends with that does not succeed.
 pub struct Fault(PyErr);
@@ -32,6 +42,21 @@ impl Fault {
     /// A parameter, key or option that is not right.
     pub fn config(text: impl Into<String>) -> Self {
         Self(ConfigError::new_err(text.into()))
+    }
+
+    /// A robot or manipulator file that is not there.
+    fn no_config(text: String, path: &Path) -> Self {
+        Self(ConfigFileNotFoundError::new_err((NO_ENTRY, text, path.to_owned())))
+    }
+
+    /// A log that is not there.
+    fn no_log(text: String, path: &Path) -> Self {
+        Self(LogFileNotFoundError::new_err((NO_ENTRY, text, path.to_owned())))
+    }
+
+    /// What is no array of numbers.
+    pub fn array_type(text: impl Into<String>) -> Self {
+        Self(ArrayTypeError::new_err(text.into()))
     }
 
     /// Data that allow no fit.
@@ -91,16 +116,54 @@ macro_rules! fault_from {
 
 fault_from!(
     ParamError => config,
-    RobotFileError => config,
     SimulationError => config,
     HiddenError => config,
+    ExcitationError => config,
     SignalPathError => config,
-    ManipulatorFileError => config,
-    RecordingError => log,
     SignalError => log,
-    TableError => log,
     SnapshotMismatch => shape,
 );
+
+impl From<RobotFileError> for Fault {
+    fn from(error: RobotFileError) -> Self {
+        match &error {
+            RobotFileError::Read { path, source } if is_missing(source) => Self::no_config(in_full(&error), path),
+            error => Self::config(in_full(error)),
+        }
+    }
+}
+
+impl From<ManipulatorFileError> for Fault {
+    fn from(error: ManipulatorFileError) -> Self {
+        match &error {
+            ManipulatorFileError::Read { path, source } if is_missing(source) => Self::no_config(in_full(&error), path),
+            error => Self::config(in_full(error)),
+        }
+    }
+}
+
+impl From<RecordingError> for Fault {
+    fn from(error: RecordingError) -> Self {
+        match &error {
+            RecordingError::Missing { path } => Self::no_log(in_full(&error), path),
+            error => Self::log(in_full(error)),
+        }
+    }
+}
+
+impl From<TableError> for Fault {
+    fn from(error: TableError) -> Self {
+        match error {
+            TableError::Recording(error) => error.into(),
+            TableError::File { ref path, ref source } if is_missing(source) => Self::no_log(in_full(&error), path),
+            error => Self::log(in_full(&error)),
+        }
+    }
+}
+
+fn is_missing(error: &io::Error) -> bool {
+    error.kind() == io::ErrorKind::NotFound
+}
 
 impl From<fric_lab::fit::FitError> for Fault {
     fn from(error: fric_lab::fit::FitError) -> Self {

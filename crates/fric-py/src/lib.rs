@@ -7,56 +7,68 @@
 #![allow(clippy::needless_pass_by_value, reason = "values come as the interpreter passes them")]
 #![allow(clippy::too_many_arguments, reason = "they are keywords in Python")]
 
-// Before all that use its macro.
-#[macro_use]
-mod results;
-
 mod arrays;
 mod compensator;
 mod continuum;
 mod discover;
 mod errors;
+mod excite;
 mod fit;
 mod hysteresis;
 mod log;
 mod replay;
 mod residual_function;
+mod results;
 mod robot;
 mod runs;
 mod simulate;
+mod travel;
 mod watch;
 
-/// The module.
-#[pyo3::pymodule]
+/// The module. It is tried with the interpreter's lock alone: one that runs threads without it (free-threaded) takes it on again.
+#[pyo3::pymodule(gil_used = true)]
 mod _fric {
     use fric_core::CableStatus;
     use pyo3::prelude::*;
     use pyo3::types::PyDict;
 
     #[pymodule_export]
-    use crate::compensator::{Compensation, Compensator, Snapshot};
+    use crate::compensator::{Compensator, Snapshot};
     #[pymodule_export]
     use crate::continuum::{
-        CalibrationResult, FrictionResult, HoleResult, Manipulator, ShapeResult, SimulatedTendon, TendonDiscovery,
-        TendonRun, continuum_calibrate, continuum_discover, continuum_friction, continuum_hole, continuum_read_loads,
-        continuum_read_run, continuum_shape, continuum_simulate,
+        Manipulator, TendonRun, continuum_calibrate, continuum_discover, continuum_friction, continuum_hole,
+        continuum_read_loads, continuum_read_run, continuum_shape, continuum_simulate,
     };
     #[pymodule_export]
-    use crate::discover::{CableDiscovery, DiscoverResult, discover};
+    use crate::discover::discover;
     #[pymodule_export]
-    use crate::fit::{CableFit, FitResult, fit};
+    use crate::excite::excite;
     #[pymodule_export]
-    use crate::hysteresis::{AxisHysteresis, HysteresisResult, Width, hysteresis};
+    use crate::fit::fit;
+    #[pymodule_export]
+    use crate::hysteresis::hysteresis;
     #[pymodule_export]
     use crate::log::{Log, read_log};
     #[pymodule_export]
-    use crate::replay::{CableErrors, ForceError, ReplayResult, WrenchError, replay};
+    use crate::replay::replay;
     #[pymodule_export]
     use crate::residual_function::{ResidualFunction, residual_function};
     #[pymodule_export]
     use crate::robot::{Cable, Friction, LogPaths, Monitor, Platform, Robot};
     #[pymodule_export]
     use crate::simulate::simulate;
+
+    /// The sentence for a name that is none of those known.
+    #[pyfunction]
+    fn _unknown_name(what: &str, name: &str, known: Vec<String>) -> String {
+        fric_core::robot::unknown_name(what, name, known.iter().map(String::as_str))
+    }
+
+    /// Runs the command line, whose first word is the name of the program, and gives the exit code; Ctrl-C ends it from then on.
+    #[pyfunction]
+    fn _command_line(py: Python<'_>, words: Vec<std::ffi::OsString>) -> u8 {
+        py.detach(|| fric_cli::run(words))
+    }
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -1,5 +1,7 @@
 //! `Log`: the samples of a log as arrays; `read_log`.
 
+mod pickling;
+
 use std::path::PathBuf;
 
 use fric_core::Pose;
@@ -175,6 +177,12 @@ impl Log {
         })
     }
 
+    /// What it was read from, for people.
+    pub fn source_names(&self) -> Vec<String> {
+        let names = self.sources.iter().map(|path| path.display().to_string());
+        if self.sources.is_empty() { vec!["arrays".to_owned()] } else { names.collect() }
+    }
+
     /// Lends the samples.
     pub fn with_rows<T>(&self, py: Python<'_>, work: impl FnOnce(SampleRows<'_>) -> Outcome<T>) -> Outcome<T> {
         let stamp_nanos = self.stamp_nanos.bind(py).readonly();
@@ -249,7 +257,9 @@ pub fn read(
         Ok(path) => vec![path],
         Err(_) => paths.extract().map_err(|_| {
             let class = paths.get_type();
-            PyTypeError::new_err(format!("a log is given as a path or several paths, not as {class}"))
+            PyTypeError::new_err(format!(
+                "a log (`paths`, or `log`) is given as a path or several paths, not as {class}"
+            ))
         })?,
     };
     let recording = py.detach(|| Recording::open(&sources))?;

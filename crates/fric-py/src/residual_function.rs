@@ -1,15 +1,16 @@
 //! `residual_function`: the fit's problem for optimisers of one's own.
 
 use fric_lab::fit::readiness;
-use fric_lab::fit::{self, FitOptions, Measurements, Reference};
-use numpy::{PyArray1, PyArrayDyn};
+use fric_lab::fit::{self, FitOptions, KeptFunction, Measurements, Reference};
+use numpy::{PyArray1, PyArray2, PyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::arrays::{Axis, Wanted, array, fixed, numbers};
+use crate::arrays::{Axis, Wanted, array, fixed, fixed_rows, numbers};
 use crate::errors::{Fault, Outcome};
 use crate::robot::Robot;
 use crate::runs::{Runs, named_parameters};
+use crate::travel::{self, Reduced};
 use crate::watch::Watch;
 
 /// Compensated force less reference in N, of a cable's samples that can be learned from, as a function of its parameters.
@@ -19,7 +20,12 @@ use crate::watch::Watch;
 /// How long a cable remembers the time before the log is judged by `x0`; where `fit` judges that again by what it found, it
 /// learns from other samples.
 #[pyclass(module = "fric", frozen)]
-pub struct ResidualFunction(fit::ResidualFunction);
+pub struct ResidualFunction {
+    function: fit::ResidualFunction,
+    /// The robot as it was given, and its cable.
+    robot: Robot,
+    cable: String,
+}
 
 #[pymethods]
 impl ResidualFunction {
@@ -32,13 +38,13 @@ impl ResidualFunction {
     /// Values to start from, by the data.
     #[getter]
     fn x0(&self, py: Python<'_>) -> Py<PyArray1<f64>> {
-        fixed(py, self.0.start())
+        fixed(py, self.function.start())
     }
 
     /// Least and greatest values: two arrays.
     #[getter]
     fn bounds(&self, py: Python<'_>) -> (Py<PyArray1<f64>>, Py<PyArray1<f64>>) {
-        let (least, greatest) = self.0.bounds().into_iter().unzip();
+        let (least, greatest) = self.function.bounds().into_iter().unzip();
         (fixed(py, least), fixed(py, greatest))
     }
 
@@ -46,7 +52,7 @@ impl ResidualFunction {
     #[getter]
     fn rows(&self, py: Python<'_>) -> Py<PyArray1<i64>> {
         #[expect(clippy::cast_possible_wrap, reason = "a row of a log in memory")]
-        let rows = self.0.samples().map(|row| row as i64).collect();
+        let rows = self.function.samples().map(|row| row as i64).collect();
         fixed(py, rows)
     }
 
@@ -58,7 +64,7 @@ impl ResidualFunction {
     /// The residuals, N, at `x`: an array in the order of `names`, or parameters of lmfit.
     fn __call__(&self, py: Python<'_>, x: &Bound<'_, PyAny>) -> Outcome<Py<PyArrayDyn<f64>>> {
         let x = self.values(x)?;
-        let residuals = py.detach(|| self.0.residuals(&x));
+        let residuals = py.detach(|| self.function.residuals(&x));
         let count = residuals.len();
         array(py, residuals, &[count])
     }
@@ -66,22 +72,86 @@ impl ResidualFunction {
     /// Their derivatives, N per unit: a row per residual, a column per parameter.
     fn jac(&self, py: Python<'_>, x: &Bound<'_, PyAny>) -> Outcome<Py<PyArrayDyn<f64>>> {
         let x = self.values(x)?;
-        let rows = py.detach(|| self.0.jacobian(&x));
-        array(py, rows, &[self.0.count(), x.len()])
+        let rows = py.detach(|| self.function.jacobian(&x));
+        array(py, rows, &[self.function.count(), x.len()])
     }
 
     fn __len__(&self) -> usize {
-        self.0.count()
+        self.function.count()
+    }
+
+    fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {
+        let kept = |one: &Self| {
+            let KeptFunction { free, start, rows, log_starts, cycle_s, interval_s, reference_is_known } =
+                one.function.kept();
+            // To the bit, so that NaN is NaN.
+            let bits: Vec<u64> = rows.as_flattened().iter().chain(&start).map(|number| number.to_bits()).collect();
+            (free, bits, log_starts, cycle_s.to_bits(), interval_s.to_bits(), reference_is_known)
+        };
+        other.cast::<Self>().is_ok_and(|other| {
+            let other = other.get();
+            self.robot.file == other.robot.file && self.cable == other.cable && kept(self) == kept(other)
+        })
     }
 
     fn __repr__(&self) -> String {
-        format!("<ResidualFunction of {}: {} residuals>", self.names_of().join(", "), self.0.count())
+        let (names, count) = (self.names_of().join(", "), self.function.count());
+        format!("<ResidualFunction of {:?}: {names}; {count} residuals>", self.cable)
+    }
+
+    /// Pickled, and copied, with its samples.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> Outcome<Reduced<'py, Pickled>> {
+        let (py, one) = (slf.py(), slf.get());
+        let kept = one.function.kept();
+        let context = (kept.log_starts, kept.cycle_s, kept.interval_s, kept.reference_is_known);
+        let rows = fixed_rows(py, kept.rows.into_flattened(), KeptFunction::WIDTH)?;
+        let state = (
+            travel::VERSION.to_owned(),
+            one.robot.clone(),
+            one.cable.clone(),
+            one.names_of(),
+            kept.start,
+            context,
+            rows,
+        );
+        Ok((slf.getattr("_unpickled")?, state))
+    }
+
+    /// The one that was pickled.
+    #[staticmethod]
+    fn _unpickled(
+        version: &str,
+        robot: &Robot,
+        cable: String,
+        names: Vec<String>,
+        start: Vec<f64>,
+        context: Context,
+        rows: &Bound<'_, PyAny>,
+    ) -> Outcome<Self> {
+        travel::check_version(version)?;
+        let shape = [Axis::Rows, Axis::Exactly(KeptFunction::WIDTH)];
+        let rows = numbers(&Wanted { name: "rows", shape: &shape, entries: "the samples of a pickle" }, rows)?;
+        let (log_starts, cycle_s, interval_s, reference_is_known) = context;
+        let free = named_parameters(&names)?;
+        let rows = rows.as_chunks().0.to_vec();
+        let kept = KeptFunction { free, start, rows, log_starts, cycle_s, interval_s, reference_is_known };
+        let place = robot.cable_index(&cable)?;
+        let params = robot.file.params();
+        let function = params.cables().get(place).and_then(|params| fit::ResidualFunction::from_kept(params, kept));
+        let function = function.ok_or_else(|| Fault::config("the pickle of a ResidualFunction is damaged"))?;
+        Ok(Self { function, robot: robot.clone(), cable })
     }
 }
 
+/// Where the logs begin, cycle time, time between rows, and whether the reference is known rather than measured.
+type Context = (Vec<usize>, f64, f64, bool);
+
+/// Version, robot, cable, names of the parameters, start, context and rows.
+type Pickled = (String, Robot, String, Vec<String>, Vec<f64>, Context, Py<PyArray2<f64>>);
+
 impl ResidualFunction {
     fn names_of(&self) -> Vec<String> {
-        self.0.parameters().iter().map(ToString::to_string).collect()
+        self.function.parameters().iter().map(ToString::to_string).collect()
     }
 
     fn values(&self, x: &Bound<'_, PyAny>) -> Outcome<Vec<f64>> {
@@ -140,5 +210,6 @@ pub fn residual_function(
         watch.fit(|_| measurements.cable(place).map(|record| fit::ResidualFunction::new(&record, &options)))?;
     let function = function.filter(|function| function.count() > 0);
     let nothing = || Fault::fit(format!("no sample of {cable} can be used; `fit` says why"));
-    Ok(ResidualFunction(function.ok_or_else(nothing)?))
+    let given = robot.borrow().clone();
+    Ok(ResidualFunction { function: function.ok_or_else(nothing)?, robot: given, cable: cable.to_owned() })
 }

@@ -1,40 +1,30 @@
-//! What all results have in common: what the command line prints and writes of them.
+//! Results as the classes of `fric._results`, which hold what is computed here.
 
+use pyo3::call::PyCallArgs;
 use pyo3::prelude::*;
 use serde::Serialize;
 
 use crate::errors::{Fault, Outcome};
 
-/// `summary`, `to_json` and `to_dict` of a class whose field `result` is that of a command.
-macro_rules! result_methods {
-    ($class:ident, $command:literal) => {
-        #[pyo3::pymethods]
-        impl $class {
-            #[doc = concat!("What `fric-cli ", $command, "` prints.")]
-            fn summary(&self) -> String {
-                self.result.summary()
-            }
-
-            #[doc = concat!("The text that `fric-cli ", $command, " --json` writes.")]
-            fn to_json(&self) -> $crate::errors::Outcome<String> {
-                $crate::results::json(&self.result)
-            }
-
-            /// The same as a dict.
-            fn to_dict<'py>(&self, py: pyo3::Python<'py>) -> $crate::errors::Outcome<pyo3::Bound<'py, pyo3::PyAny>> {
-                $crate::results::plain(py, &self.result)
-            }
-        }
-    };
+/// The texts of a result: what people and machines see of it.
+pub fn shown<'py>(
+    py: Python<'py>,
+    summary: String,
+    result: &impl Serialize,
+    page: String,
+    table: String,
+) -> Outcome<Bound<'py, PyAny>> {
+    let json = fric_work::json(result);
+    let json = json.map_err(|error| Fault::output(format!("cannot write the result as JSON: {error}")))?;
+    Ok(py.import("fric._results.base")?.getattr("Shown")?.call1((summary, json, page, table))?)
 }
 
-/// A result as the command line writes it.
-pub fn json(result: &impl Serialize) -> Outcome<String> {
-    let text = serde_json::to_string_pretty(result);
-    text.map(|text| text + "\n").map_err(|error| Fault::output(format!("cannot write the result as JSON: {error}")))
+/// An object of a class of `fric._results` with these fields.
+pub fn new<'py>(py: Python<'py>, class: &str, fields: impl PyCallArgs<'py>) -> PyResult<Bound<'py, PyAny>> {
+    py.import("fric._results")?.getattr(class)?.call1(fields)
 }
 
-/// The same as Python has it: dicts, lists and numbers.
-pub fn plain<'py>(py: Python<'py>, result: &impl Serialize) -> Outcome<Bound<'py, PyAny>> {
-    Ok(py.import("json")?.call_method1("loads", (json(result)?,))?)
+/// An object of a class that reads its fields in the JSON of its texts.
+pub fn of<'py>(py: Python<'py>, class: &str, fields: impl PyCallArgs<'py>) -> PyResult<Bound<'py, PyAny>> {
+    py.import("fric._results")?.getattr(class)?.call_method1("_of", fields)
 }

@@ -20,7 +20,7 @@ impl<'py> Runs<'py> {
     pub fn new(given: &Bound<'py, PyAny>) -> Outcome<Self> {
         let is_one = |item: &Bound<'py, PyAny>| item.is_instance_of::<Log>() || item.extract::<PathBuf>().is_ok();
         let refuse =
-            |class| PyTypeError::new_err(format!("a log is given as a Log, a path, or a list of them, not as {class}"));
+            |class| PyTypeError::new_err(format!("`log` is given as a Log, a path, or a list of them, not as {class}"));
         let runs: Vec<Bound<'py, PyAny>> = if is_one(given) {
             vec![given.clone()]
         } else {

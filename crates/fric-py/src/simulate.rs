@@ -3,6 +3,7 @@
 use fric_core::robot::unknown_name;
 use fric_lab::columns::SampleColumns;
 use fric_lab::simulate::{Disturbance, HiddenEffect, HiddenError, Run, Simulation, SimulationOptions};
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyString;
 
@@ -104,6 +105,8 @@ type New<T> = fn(&str, &[(&str, f64)]) -> Result<T, HiddenError>;
 
 /// Something that can be hidden in a log.
 struct Kind<T> {
+    /// The argument that lists them.
+    argument: &'static str,
     /// With its article.
     noun: &'static str,
     /// As a dict.
@@ -113,6 +116,7 @@ struct Kind<T> {
 }
 
 const EFFECT: Kind<HiddenEffect> = Kind {
+    argument: "effects",
     noun: "an effect",
     example: "{\"kind\": \"stribeck\", \"ratio\": 0.5}",
     parse: HiddenEffect::parse,
@@ -120,6 +124,7 @@ const EFFECT: Kind<HiddenEffect> = Kind {
 };
 
 const DISTURBANCE: Kind<Disturbance> = Kind {
+    argument: "disturbances",
     noun: "a disturbance",
     example: "{\"kind\": \"hum\", \"amplitude_n\": 0.1}",
     parse: Disturbance::parse,
@@ -128,12 +133,16 @@ const DISTURBANCE: Kind<Disturbance> = Kind {
 
 fn all_hidden<T>(given: Option<&Bound<'_, PyAny>>, kind: &Kind<T>) -> Outcome<Vec<T>> {
     let Some(given) = given else { return Ok(Vec::new()) };
-    given.try_iter()?.map(|item| hidden(&item?, kind)).collect()
+    let items = given.try_iter().map_err(|_| {
+        let (argument, class) = (kind.argument, given.get_type());
+        PyTypeError::new_err(format!("`{argument}` is a list of dicts or texts, not {class}"))
+    })?;
+    items.map(|item| hidden(&item?, kind)).collect()
 }
 
 /// One of them as a dict, an effect as in the robot file, or as text.
 fn hidden<T>(item: &Bound<'_, PyAny>, kind: &Kind<T>) -> Outcome<T> {
-    let Kind { noun, example, parse, new } = kind;
+    let Kind { noun, example, parse, new, .. } = kind;
     if let Ok(text) = item.cast::<PyString>() {
         return Ok(parse(text.to_str()?)?);
     }

@@ -251,7 +251,7 @@ impl EffectParams {
         Err(ParamError::UNKNOWN_EFFECT)
     }
 
-    /// All of them, effect by effect in the order of [`CATALOGUE`].
+    /// All of them, effect by effect in the order of [`Effect::CATALOGUE`].
     #[must_use]
     pub const fn values(&self) -> &[f64; EFFECT_PARAMETER_COUNT] {
         &self.0

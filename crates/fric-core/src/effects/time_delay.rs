@@ -138,6 +138,20 @@ pub struct DelayLine {
     in_order: usize,
 }
 
+impl crate::words::Words for DelayLine {
+    fn each_word(&mut self, show: &mut dyn FnMut(&mut u64)) {
+        let Self { values, newest, in_order } = self;
+        values.each_word(show);
+        for count in [&mut *newest, in_order] {
+            let mut word = *count as u64;
+            show(&mut word);
+            // No more than there are values, whatever the word is.
+            *count = usize::try_from(word).unwrap_or(0).min(MAX_DELAY_CYCLES);
+        }
+        *newest %= MAX_DELAY_CYCLES;
+    }
+}
+
 impl DelayLine {
     /// A line filled with zeros: before the start nothing moved.
     pub const EMPTY: Self = Self { values: [0.0; MAX_DELAY_CYCLES], newest: 0, in_order: 0 };

@@ -76,7 +76,7 @@ pub use options::FitOptions;
 pub use progress::Progress;
 pub use record::{CableRecord, Measurements, Reference, Row};
 pub use report::{CableFit, ForceErrors, OpenCombination, OpenPart, WrenchFit};
-pub use residual_function::ResidualFunction;
+pub use residual_function::{KeptFunction, ResidualFunction};
 pub use rewritten::rewritten;
 pub use selection::SampleCounts;
 pub use solve::Weighing;

@@ -84,4 +84,17 @@ impl CableFit {
         let place = self.fitted.iter().position(|fitted| fitted == parameter)?;
         Some(self.covariance.get((place, place))?.sqrt())
     }
+
+    /// Correlations of the fitted parameters, −1 to 1, in the order of the covariance; NaN for one of which there is no error.
+    #[must_use]
+    pub fn correlation(&self) -> DMatrix<f64> {
+        let errors: Vec<f64> = self.covariance.diagonal().iter().map(|variance| variance.sqrt()).collect();
+        let mut correlation = self.covariance.clone();
+        for (mut column, of_column) in correlation.column_iter_mut().zip(&errors) {
+            for (value, of_row) in column.iter_mut().zip(&errors) {
+                *value /= of_column * of_row;
+            }
+        }
+        correlation
+    }
 }

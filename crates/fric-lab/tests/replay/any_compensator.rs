@@ -50,6 +50,26 @@ fn it_goes_on_from_a_snapshot_as_if_nothing_had_happened() {
 }
 
 #[test]
+fn another_compensator_goes_on_from_the_words_of_its_state() {
+    let robot = eight_cables();
+    let inputs = inputs();
+    let (first, second) = inputs.split_at(CYCLES);
+    let mut any = compensator(&robot.params());
+    run(&mut any, first);
+    let mut other = compensator(&robot.params());
+    other.restore_words(&any.state_words()).unwrap();
+    assert_eq!((other.outputs(), other.state_words()), (any.outputs(), any.state_words()));
+    assert_eq!(run(&mut other, second), run(&mut any, second));
+
+    let before = other.state_words();
+    let one = compensator(&bench("{ wrap_deg = 180.0, sensor = true }", "mu = 0.02").params()).state_words();
+    let error = other.restore_words(&one).map_err(|error| error.to_string());
+    assert_eq!(error, Err("the snapshot is of a robot with 1 cables, this one has 8".to_owned()));
+    assert!(other.restore_words(&before[1..]).is_err() && other.restore_words(&before[..before.len() - 1]).is_err());
+    assert_eq!(other.state_words(), before);
+}
+
+#[test]
 fn a_snapshot_of_another_robot_is_refused() {
     let (eight, one) = (eight_cables(), bench("{ wrap_deg = 180.0, sensor = true }", "mu = 0.02"));
     let mut any = compensator(&eight.params());

@@ -1,55 +1,17 @@
 //! `friction` at every hole, `hole`: μ of a single one.
 
 use fric_core::continuum::Tendon;
+use fric_lab::continuum::ContinuumError;
 use fric_lab::continuum::friction::{HoleLoad, hole_coefficient};
-use fric_lab::continuum::{ContinuumError, result};
-use numpy::{PyArray1, PyArray2};
+use fric_lab::continuum::result::{FrictionResult, HoleResult};
+use fric_work::report::continuum as report;
 use pyo3::prelude::*;
 
 use super::{Manipulator, TendonRun, check_disks, flat, measured};
 use crate::arrays::{Axis, Wanted, fixed, fixed_rows, numbers};
 use crate::errors::Outcome;
 use crate::log;
-
-/// Outcome of `friction`: arrays with a row a sample and a column a hole, from the base plate. Friction is positive where the base side
-/// is tighter, NaN where it is not known.
-#[pyclass(module = "fric.continuum", frozen)]
-pub struct FrictionResult {
-    result: result::FrictionResult,
-}
-
-result_methods!(FrictionResult, "continuum friction");
-
-#[pymethods]
-impl FrictionResult {
-    /// Time, s, (N,).
-    #[getter]
-    fn time_s(&self, py: Python<'_>) -> Py<PyArray1<f64>> {
-        fixed(py, self.result.series.time_s.clone())
-    }
-
-    /// Friction, N, (N, holes).
-    #[getter]
-    fn friction_n(&self, py: Python<'_>) -> Outcome<Py<PyArray2<f64>>> {
-        fixed_rows(py, flat(&self.result.series.friction_n), self.result.holes.len())
-    }
-
-    /// Its standard error, N, (N, holes).
-    #[getter]
-    fn standard_error_n(&self, py: Python<'_>) -> Outcome<Py<PyArray2<f64>>> {
-        fixed_rows(py, flat(&self.result.series.standard_error_n), self.result.holes.len())
-    }
-
-    /// Whether friction has both directions beyond doubt, (N,).
-    #[getter]
-    fn directions_differ(&self, py: Python<'_>) -> Py<PyArray1<bool>> {
-        fixed(py, self.result.series.directions_differ.clone())
-    }
-
-    fn __repr__(&self) -> String {
-        format!("<FrictionResult of {} samples>", self.result.samples)
-    }
-}
+use crate::results;
 
 /// The friction at every hole over a run, from its gratings; a dead one is bridged and a LogWarning.
 ///
@@ -60,8 +22,8 @@ impl FrictionResult {
 /// >>> result.friction_n.shape, bool(result.directions_differ.any())
 /// ((178, 8), True)
 #[pyfunction]
-pub fn continuum_friction(py: Python<'_>, manipulator: &Manipulator, run: &TendonRun) -> Outcome<FrictionResult> {
-    let run = &run.run;
+pub fn continuum_friction(py: Python<'_>, manipulator: &Manipulator, run: &TendonRun) -> Outcome<Py<PyAny>> {
+    let (source, run) = (run.name(), &run.run);
     check_disks(manipulator, run)?;
     run.check_capacity(manipulator.file.params().capacity_n(Tendon::Agonist))?;
     let measured = py.detach(|| measured(manipulator, run))?.ok_or(if run.has_shifts() {
@@ -73,45 +35,19 @@ pub fn continuum_friction(py: Python<'_>, manipulator: &Manipulator, run: &Tendo
             remedy: "`shift_nm`; `shape` predicts friction from the tension at the base",
         }
     })?;
-    let result = result::FrictionResult::new(&manipulator.file.tables().name, run, &measured);
+    let result = FrictionResult::new(&manipulator.file.tables().name, run, &measured);
     log::warn(py, &result.bridged.iter().map(|one| one.warning(result.samples)).collect::<Vec<_>>())?;
-    Ok(FrictionResult { result })
-}
-
-/// Outcome of `hole`.
-#[pyclass(module = "fric.continuum", frozen)]
-pub struct HoleResult {
-    result: result::HoleResult,
-}
-
-#[pymethods]
-impl HoleResult {
-    /// Friction coefficient.
-    #[getter]
-    fn mu(&self) -> f64 {
-        self.result.mu
-    }
-
-    /// Its standard error.
-    #[getter]
-    fn standard_error(&self) -> f64 {
-        self.result.standard_error
-    }
-
-    /// The interval that holds it in 95 of 100 cases.
-    #[getter]
-    fn interval(&self) -> (f64, f64) {
-        self.result.interval.into()
-    }
-
-    /// The text that `fric-cli continuum hole` prints.
-    fn summary(&self) -> String {
-        self.result.summary()
-    }
-
-    fn __repr__(&self) -> String {
-        format!("HoleResult(mu={:?}, standard_error={:?})", self.result.mu, self.result.standard_error)
-    }
+    let page = report::friction(&result, source);
+    let shown = results::shown(py, result.summary(), &result, page, report::friction_table(&result))?;
+    let (series, holes) = (&result.series, result.holes.len());
+    let fields = (
+        shown,
+        fixed(py, series.time_s.clone()),
+        fixed_rows(py, flat(&series.friction_n), holes)?,
+        fixed_rows(py, flat(&series.standard_error_n), holes)?,
+        fixed(py, series.directions_differ.clone()),
+    );
+    Ok(results::new(py, "FrictionResult", fields)?.unbind())
 }
 
 /// The friction coefficient of a single hole: tensions on both sides, N, and the angles between them and the normal force, rad.
@@ -124,11 +60,12 @@ impl HoleResult {
 /// 0.2
 #[pyfunction]
 pub fn continuum_hole(
+    py: Python<'_>,
     tension_1_n: &Bound<'_, PyAny>,
     tension_2_n: &Bound<'_, PyAny>,
     angle_1_rad: &Bound<'_, PyAny>,
     angle_2_rad: &Bound<'_, PyAny>,
-) -> Outcome<HoleResult> {
+) -> Outcome<Py<PyAny>> {
     let wanted = |name, shape| Wanted { name, shape, entries: "one number a load" };
     let first_n = numbers(&wanted("tension_1_n", &[Axis::Rows]), tension_1_n)?;
     let rows = [Axis::Exactly(first_n.len())];
@@ -144,5 +81,8 @@ pub fn continuum_hole(
             second_rad: *second_rad,
         })
         .collect();
-    Ok(HoleResult { result: result::HoleResult::new(&hole_coefficient(&loads)?) })
+    let result = HoleResult::new(&hole_coefficient(&loads)?);
+    let shown = results::shown(py, result.summary(), &result, report::hole(&result), report::hole_table(&result))?;
+    let fields = (shown, result.mu, result.standard_error, <(f64, f64)>::from(result.interval));
+    Ok(results::new(py, "HoleResult", fields)?.unbind())
 }

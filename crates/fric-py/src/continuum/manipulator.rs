@@ -10,6 +10,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::fixed;
 use crate::errors::Outcome;
+use crate::travel::Reduced;
 
 /// A continuum manipulator: what its manipulator file says.
 ///
@@ -82,6 +83,15 @@ impl Manipulator {
     #[getter]
     fn has_gratings(&self) -> bool {
         self.file.tables().gratings.is_some()
+    }
+
+    fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {
+        other.cast::<Self>().is_ok_and(|other| self.text == other.get().text)
+    }
+
+    /// Pickled, and copied, as the text of its file.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py, (String,)>> {
+        Ok((slf.getattr("from_toml")?, (slf.get().text.clone(),)))
     }
 
     fn __repr__(&self) -> String {

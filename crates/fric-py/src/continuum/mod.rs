@@ -8,18 +8,21 @@ mod run;
 mod shape;
 mod simulate;
 
-pub use calibration::{CalibrationResult, continuum_calibrate};
-pub use discover::{TendonDiscovery, continuum_discover};
-pub use friction::{FrictionResult, HoleResult, continuum_friction, continuum_hole};
+pub use calibration::continuum_calibrate;
+pub use discover::continuum_discover;
+pub use friction::{continuum_friction, continuum_hole};
 pub use manipulator::Manipulator;
 pub use run::{TendonRun, continuum_read_loads, continuum_read_run};
-pub use shape::{ShapeResult, continuum_shape};
-pub use simulate::{SimulatedTendon, continuum_simulate};
+pub use shape::continuum_shape;
+pub use simulate::continuum_simulate;
 
 use fric_lab::continuum::gratings::{GratingSample, Gratings};
 use fric_lab::continuum::{ContinuumError, Run};
 
 use crate::errors::Outcome;
+
+/// The name of a run that is from no file.
+const ARRAYS: &str = "arrays";
 
 /// What the gratings of a manipulator say in a run; `None` where either has none.
 fn measured(manipulator: &Manipulator, run: &Run) -> Result<Option<Vec<GratingSample>>, ContinuumError> {

@@ -8,10 +8,11 @@ use fric_log::table::NumberTable;
 use numpy::{PyArray1, PyArray2, PyArrayDyn};
 use pyo3::prelude::*;
 
-use super::Manipulator;
+use super::{ARRAYS, Manipulator};
 use crate::arrays::{Axis, Wanted, array, fixed, fixed_rows, numbers};
 use crate::errors::Outcome;
 use crate::log;
+use crate::travel::Reduced;
 
 /// The run of a manipulator, sample by sample. Groups that were not measured are None.
 ///
@@ -23,6 +24,8 @@ use crate::log;
 #[pyclass(module = "fric.continuum", frozen)]
 pub struct TendonRun {
     pub run: Run,
+    /// The file it was read from.
+    source: Option<String>,
 }
 
 #[pymethods]
@@ -68,7 +71,7 @@ impl TendonRun {
             marker_m: row_of(&marker_m, 2 * count, row).as_chunks().0.to_vec(),
         };
         let samples = time_s.iter().enumerate().map(sample).collect();
-        Ok(Self { run: Run::new(samples, count)? })
+        Ok(Self::new(Run::new(samples, count)?))
     }
 
     /// Time, s, (N,).
@@ -108,15 +111,79 @@ impl TendonRun {
         self.run.samples().len()
     }
 
+    fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {
+        other.cast::<Self>().is_ok_and(|other| {
+            let other = other.get();
+            self.source == other.source
+                && self.run.disk_count() == other.run.disk_count()
+                && bits(&self.run) == bits(&other.run)
+        })
+    }
+
     fn __repr__(&self) -> String {
-        format!("<TendonRun of {} samples>", self.run.samples().len())
+        format!("<TendonRun of {} samples: {}>", self.run.samples().len(), self.name())
+    }
+
+    /// Pickled, and copied, with its numbers.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> Outcome<Reduced<'py, Pickled>> {
+        let run = &slf.get().run;
+        let rows = run.samples().iter().flat_map(numbers_of).collect();
+        let rows = fixed_rows(slf.py(), rows, 3 + 3 * run.disk_count())?;
+        Ok((slf.getattr("_unpickled")?, (rows, run.disk_count(), slf.get().source.clone())))
+    }
+
+    /// The one that was pickled.
+    #[staticmethod]
+    fn _unpickled(rows: &Bound<'_, PyAny>, disk_count: usize, source: Option<String>) -> Outcome<Self> {
+        let width = 3 + 3 * disk_count;
+        let shape = [Axis::Rows, Axis::Exactly(width)];
+        let rows = numbers(&Wanted { name: "rows", shape: &shape, entries: "the samples of a pickle" }, rows)?;
+        let samples = rows.chunks_exact(width).map(|row| sample_of(row, disk_count)).collect();
+        Ok(Self { run: Run::new(samples, disk_count)?, source })
     }
 }
 
 impl TendonRun {
+    /// A run from no file.
+    pub fn new(run: Run) -> Self {
+        Self { run, source: None }
+    }
+
+    /// Its name for people: the path it was read from.
+    pub fn name(&self) -> &str {
+        self.source.as_deref().unwrap_or(ARRAYS)
+    }
+
     fn column(&self, py: Python<'_>, of: fn(&RunSample) -> f64) -> Py<PyArray1<f64>> {
         fixed(py, self.run.samples().iter().map(of).collect())
     }
+}
+
+/// Samples, a row each, the number of disks, and the file.
+type Pickled = (Py<PyArray2<f64>>, usize, Option<String>);
+
+/// A sample as numbers: time, tension, shift without load, then shifts and markers of the disks.
+fn numbers_of(sample: &RunSample) -> Vec<f64> {
+    let RunSample { time_s, tension_base_n, shift_nm, shift_reference_nm, marker_m } = sample;
+    let known = [*time_s, *tension_base_n, *shift_reference_nm];
+    known.into_iter().chain(shift_nm.iter().copied()).chain(marker_m.as_flattened().iter().copied()).collect()
+}
+
+fn sample_of(row: &[f64], disk_count: usize) -> RunSample {
+    let at = |place: usize| row.get(place).copied().unwrap_or(f64::NAN);
+    let (shifts, markers) = row.split_at_checked(3 + disk_count).unwrap_or_default();
+    RunSample {
+        time_s: at(0),
+        tension_base_n: at(1),
+        shift_reference_nm: at(2),
+        shift_nm: shifts.iter().skip(3).copied().collect(),
+        marker_m: markers.as_chunks().0.to_vec(),
+    }
+}
+
+/// To the bit, so that NaN is NaN.
+fn bits(run: &Run) -> Vec<u64> {
+    run.samples().iter().flat_map(numbers_of).map(f64::to_bits).collect()
 }
 
 /// Reads a run: CSV, or MCAP with a message for each sample. What is out of the ordinary in the file is a LogWarning.
@@ -127,7 +194,7 @@ pub fn continuum_read_run(py: Python<'_>, path: PathBuf, manipulator: &Manipulat
     let count = manipulator.file.params().disk_count();
     let table = py.detach(|| NumberTable::read(&path, &columns::of_run(count)))?;
     log::warn(py, &table.warnings)?;
-    Ok(TendonRun { run: Run::from_columns(&table.columns, count)? })
+    Ok(TendonRun { run: Run::from_columns(&table.columns, count)?, source: Some(path.display().to_string()) })
 }
 
 /// Reads load steps for `calibrate`: loads, N, (N,), and shifts, nm, (N, disks), the temperature taken off where the file has

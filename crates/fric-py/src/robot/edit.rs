@@ -18,6 +18,12 @@ pub fn get(file: &RobotFile, place: &[Step], key: &str) -> Outcome<Option<Value>
     Ok(table_at(&mut root, place).and_then(|table| table.remove(key)))
 }
 
+/// The table at a place; `None` where the file leaves it out.
+pub fn table(file: &RobotFile, place: &[Step]) -> Outcome<Option<Value>> {
+    let mut root = tree(file)?;
+    Ok(table_at(&mut root, place).map(|table| Value::Table(std::mem::take(table))))
+}
+
 /// A robot with other values for keys of the table at a place, `None` to leave a key out; checked as a file is.
 pub fn with(file: &RobotFile, place: &[Step], values: Vec<(String, Option<Value>)>) -> Outcome<RobotFile> {
     let mut root = tree(file)?;

@@ -3,7 +3,7 @@
 use fric_core::robot::unknown_name;
 use pyo3::exceptions::PyAttributeError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyTuple};
 
 use super::edit::{self, Step};
 use super::{Robot, values};
@@ -27,6 +27,32 @@ impl Place {
 
     fn value(&self, py: Python<'_>, key: &str) -> Outcome<Option<toml::Value>> {
         edit::get(&self.robot.borrow(py).file, &self.steps, key)
+    }
+
+    /// All of it.
+    fn table(&self, py: Python<'_>) -> Outcome<Option<toml::Value>> {
+        edit::table(&self.robot.borrow(py).file, &self.steps)
+    }
+
+    /// What gives the table anew: a function of the robot, or of its cable, and its arguments.
+    fn reduced<'py>(&self, py: Python<'py>) -> Outcome<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let robot = self.robot.bind(py);
+        let cable = |index: usize| -> Outcome<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+            let name = robot.borrow().file.cable_names().get(index).map(|name| (*name).to_owned());
+            Ok((robot.getattr("cable")?, (name,).into_pyobject(py)?))
+        };
+        let attribute = |object: Bound<'py, PyAny>, key: &str| -> Outcome<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+            Ok((py.import("builtins")?.getattr("getattr")?, (object, key).into_pyobject(py)?))
+        };
+        match self.steps.as_slice() {
+            [Step::Key("cable"), Step::Index(index)] => cable(*index),
+            [Step::Key("cable"), Step::Index(index), Step::Key(key)] => {
+                let (method, arguments) = cable(*index)?;
+                attribute(method.call1(arguments)?, key)
+            }
+            [Step::Key(key)] => attribute(robot.clone().into_any(), key),
+            _ => Err(Fault::config("this table of a robot cannot be pickled")),
+        }
     }
 
     fn get<'py>(&self, py: Python<'py>, key: &str) -> Outcome<Option<Bound<'py, PyAny>>> {
@@ -161,6 +187,16 @@ macro_rules! table {
                 Ok(format!("{}({})", Self::KEYS.class, parts.join(", ")))
             }
 
+            fn __eq__(&self, py: Python<'_>, other: &Bound<'_, PyAny>) -> Outcome<bool> {
+                let Ok(other) = other.cast::<Self>() else { return Ok(false) };
+                Ok(self.0.table(py)? == other.get().0.table(py)?)
+            }
+
+            /// Pickled, and copied, as what its robot gives.
+            fn __reduce__<'py>(&self, py: Python<'py>) -> Outcome<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+                self.0.reduced(py)
+            }
+
             $($also)*
         }
     };
@@ -262,7 +298,7 @@ table! {
         #[getter]
         fn effects<'py>(&self, py: Python<'py>) -> Outcome<Bound<'py, PyAny>> {
             let effects = self.0.get(py, "effects")?;
-            Ok(effects.unwrap_or_else(|| pyo3::types::PyTuple::empty(py).into_any()))
+            Ok(effects.unwrap_or_else(|| PyTuple::empty(py).into_any()))
         }
     }
 }

@@ -2,12 +2,13 @@
 
 use fric_lab::continuum::Run;
 use fric_lab::continuum::comparison::{WayShapes, spread};
-use fric_lab::continuum::discover::TendonDiscovery;
-use fric_lab::continuum::result::{CalibrationResult, FrictionResult, PickedShape, ShapeResult, WayShape};
+use fric_lab::continuum::discover::{TendonDiscoverResult, TendonDiscovery};
+use fric_lab::continuum::result::{CalibrationResult, FrictionResult, HoleResult, PickedShape, ShapeResult, WayShape};
 use fric_lab::continuum::shape_errors::{ShapeErrors, Way};
 use maud::{Markup, PreEscaped, html};
 
 use super::chart::{Chart, Span};
+use super::number;
 use super::series::Extent;
 
 /// Most points of a line over time.
@@ -36,19 +37,7 @@ pub fn calibration(result: &CalibrationResult, loads: &str) -> String {
     }
     let content = html! {
         p.soft { (loads) ", " (result.load_n.len()) " loads" }
-        table {
-            tr {
-                th { "grating" } th { "a [N/nm]" } th { "b [N]" } th { "± T [N]" } th { "largest residual [%]" } th { "left out [%]" }
-            }
-            @for one in &result.gratings {
-                tr {
-                    td { (one.grating) } td { (format!("{:.4}", one.newton_per_nm)) } td { (format!("{:.4}", one.offset_n)) }
-                    td { (format!("{:.4}", one.standard_error_n)) }
-                    td { (format!("{:.2}", 100.0 * one.largest_residual_ratio)) }
-                    td { (format!("{:.2}", 100.0 * one.largest_left_out_ratio)) }
-                }
-            }
-        }
+        (gratings(result))
         section { h2 { "Residuals in per cent of the greatest load, load by load" } (PreEscaped(chart.into_svg())) }
     };
     super::shell(&format!("{}: calibration of the gratings", result.manipulator), &content)
@@ -63,18 +52,7 @@ pub fn friction(result: &FrictionResult, run: &str) -> String {
     let content = html! {
         p.soft { (run) ", " (result.samples) " samples. Friction is positive where the base side is tighter." }
         (bridged(result.bridged.iter().map(|one| one.warning(result.samples))))
-        table {
-            tr {
-                th { "hole" } th { "mean [N]" } th { "least [N]" } th { "greatest [N]" } th { "± [N]" } th { "positive" } th { "negative" }
-            }
-            @for hole in &result.holes {
-                tr {
-                    td { (hole.hole) } td { (newtons(hole.mean_n)) } td { (newtons(hole.least_n)) } td { (newtons(hole.greatest_n)) }
-                    td { (newtons(hole.standard_error_n)) }
-                    td { (format!("{:.0} %", 100.0 * hole.positive_ratio)) } td { (format!("{:.0} %", 100.0 * hole.negative_ratio)) }
-                }
-            }
-        }
+        (friction_by_hole(result))
         p { "Directions differ along the tendon in " (result.directions_differ_samples) " of " (result.samples) " samples." }
         div.views {
             @for (time_s, friction_n) in shown {
@@ -97,16 +75,7 @@ pub fn shape(result: &ShapeResult, run: &Run, ways: &[WayShapes], source: &str) 
         (bridged(result.bridged.iter().map(|one| one.warning(result.samples))))
         p { (keys(result.ways.iter().map(|way| way.way))) @if has_markers { (key("marker", "markers")) } }
         p.soft { "Dashed over the bars: the most that a hole holds by the model's μ; what is measured may be more." }
-        table {
-            tr { th { "way" } th { "max, shown [mm]" } th { "mean [mm]" } th { "max, all [mm]" } th { "mean [mm]" } th { "missing" } }
-            @for way in &result.ways {
-                tr {
-                    td { (way.way) }
-                    td { (millimetres(way.picked.max_mm)) } td { (millimetres(way.picked.mean_mm)) }
-                    td { (millimetres(way.all.max_mm)) } td { (millimetres(way.all.mean_mm)) } td { (way.missing) }
-                }
-            }
-        }
+        (errors_by_way(result))
         @if has_markers {
             section { h2 { "Mean distance between disks and markers over time" } (PreEscaped(errors(run, ways))) }
         }
@@ -175,6 +144,121 @@ pub fn discovery(found: &TendonDiscovery) -> String {
     super::shell(&format!("{}: what the model lacks", result.robot), &content)
 }
 
+/// The lines of the gratings as a table by themselves.
+#[must_use]
+pub fn calibration_table(result: &CalibrationResult) -> String {
+    gratings(result).into_string()
+}
+
+/// The friction at the holes as a table by itself.
+#[must_use]
+pub fn friction_table(result: &FrictionResult) -> String {
+    friction_by_hole(result).into_string()
+}
+
+/// The errors of the ways as a table by themselves.
+#[must_use]
+pub fn shape_table(result: &ShapeResult) -> String {
+    errors_by_way(result).into_string()
+}
+
+/// What was found as a table by itself.
+#[must_use]
+pub fn discovery_table(result: &TendonDiscoverResult) -> String {
+    html! {
+        table {
+            tr { th.words { "verdict" } th.words { "found" } th { "noise [N]" } th { "rms before [N]" } th { "after [N]" } }
+            @for tendon in &result.cables {
+                tr {
+                    td.words { (tendon.verdict) }
+                    td.words { (tendon.effects.iter().map(|effect| effect.kind).collect::<Vec<_>>().join(", ")) }
+                    td { (newtons(tendon.noise_floor_n)) }
+                    td { (number(tendon.before.map(|error| error.rms_n))) } td { (number(tendon.after.map(|error| error.rms_n))) }
+                }
+            }
+        }
+    }
+    .into_string()
+}
+
+/// The page of a single hole.
+#[must_use]
+pub fn hole(result: &HoleResult) -> String {
+    super::shell("Friction of a hole", &coefficient(result))
+}
+
+/// Its coefficient as a table by itself.
+#[must_use]
+pub fn hole_table(result: &HoleResult) -> String {
+    coefficient(result).into_string()
+}
+
+fn coefficient(result: &HoleResult) -> Markup {
+    let [from, to] = result.interval;
+    html! {
+        table {
+            tr { th { "loads" } th { "μ" } th { "±" } th { "95 %" } }
+            tr {
+                td { (result.loads) } td { (format!("{:.4}", result.mu)) } td { (format!("{:.4}", result.standard_error)) }
+                td { (format!("{from:.4} to {to:.4}")) }
+            }
+        }
+    }
+}
+
+/// Lines of the gratings.
+fn gratings(result: &CalibrationResult) -> Markup {
+    html! {
+        table {
+            tr {
+                th { "grating" } th { "a [N/nm]" } th { "b [N]" } th { "± T [N]" } th { "largest residual [%]" } th { "left out [%]" }
+            }
+            @for one in &result.gratings {
+                tr {
+                    td { (one.grating) } td { (format!("{:.4}", one.newton_per_nm)) } td { (format!("{:.4}", one.offset_n)) }
+                    td { (format!("{:.4}", one.standard_error_n)) }
+                    td { (format!("{:.2}", 100.0 * one.largest_residual_ratio)) }
+                    td { (format!("{:.2}", 100.0 * one.largest_left_out_ratio)) }
+                }
+            }
+        }
+    }
+}
+
+/// Friction at each hole over the run.
+fn friction_by_hole(result: &FrictionResult) -> Markup {
+    html! {
+        table {
+            tr {
+                th { "hole" } th { "mean [N]" } th { "least [N]" } th { "greatest [N]" } th { "± [N]" } th { "positive" } th { "negative" }
+            }
+            @for hole in &result.holes {
+                tr {
+                    td { (hole.hole) } td { (newtons(hole.mean_n)) } td { (newtons(hole.least_n)) } td { (newtons(hole.greatest_n)) }
+                    td { (newtons(hole.standard_error_n)) }
+                    td { (format!("{:.0} %", 100.0 * hole.positive_ratio)) } td { (format!("{:.0} %", 100.0 * hole.negative_ratio)) }
+                }
+            }
+        }
+    }
+}
+
+/// Distances from the markers.
+fn errors_by_way(result: &ShapeResult) -> Markup {
+    html! {
+        table {
+            tr { th { "way" } th { "max, shown [mm]" } th { "mean [mm]" } th { "max, all [mm]" } th { "mean [mm]" } th { "missing" } }
+            @for way in &result.ways {
+                tr {
+                    td { (way.way) }
+                    td { (millimetres(way.picked.max_mm)) } td { (millimetres(way.picked.mean_mm)) }
+                    td { (millimetres(way.all.max_mm)) } td { (millimetres(way.all.mean_mm)) } td { (way.missing) }
+                }
+            }
+        }
+    }
+}
+
 /// Residuals of one segment before and after.
 fn residuals(found: &TendonDiscovery, segment: usize) -> String {
     let line = |rows: &[Vec<f64>]| -> Vec<[f64; 2]> {
@@ -218,10 +302,10 @@ fn keys<'a>(names: impl Iterator<Item = &'a str>) -> Markup {
 
 /// An axis of holes or gratings, 1 to count.
 fn holes(count: usize, unit: &'static str) -> Span {
-    Span { least: 0.4, greatest: number(count) + 0.6, unit }
+    Span { least: 0.4, greatest: count_as_number(count) + 0.6, unit }
 }
 
-fn number(count: usize) -> f64 {
+fn count_as_number(count: usize) -> f64 {
     #[expect(clippy::cast_precision_loss, reason = "a small count")]
     let number = count as f64;
     number
@@ -229,8 +313,8 @@ fn number(count: usize) -> f64 {
 
 /// The edges of one of `count` bars side by side at a place of an axis.
 fn bar_edges(place: usize, bar: usize, count: usize) -> [f64; 2] {
-    let width = 0.8 / number(count);
-    let from = number(place) + 0.6 + width * number(bar);
+    let width = 0.8 / count_as_number(count);
+    let from = count_as_number(place) + 0.6 + width * count_as_number(bar);
     [from, from + 0.9 * width]
 }
 
@@ -253,7 +337,7 @@ fn bars(ways: &[(&'static str, &[f64], &[f64])], width: f64) -> String {
             chart.rectangle(&format!("bar {way}"), [from, 0.0], [to, *friction_n]);
         }
         for (place, bound_n) in bound_n.iter().enumerate() {
-            let [from, to] = [number(place) + 0.6, number(place) + 1.4];
+            let [from, to] = [count_as_number(place) + 0.6, count_as_number(place) + 1.4];
             for side_n in [*bound_n, -bound_n] {
                 chart.line("bound", [[from, side_n], [to, side_n]].into_iter());
             }

@@ -8,6 +8,7 @@ use fric_lab::text::{quantity, scaled_unit};
 use maud::{Markup, PreEscaped, html};
 
 use super::chart::{Chart, Span};
+use super::number;
 use super::series::Extent;
 
 /// As many intervals of time as a chart has pixels to show.
@@ -31,7 +32,7 @@ pub fn page(result: &DiscoverResult, discoveries: &[CableDiscovery]) -> String {
                 }
             }
         }
-        (overview(result))
+        (overview(result, |place, name| html! { a href=(format!("#cable-{place}")) { (name) } }))
         @for effect in &result.common_effects {
             p { (effect.in_words(result.cables.len())) "." }
         }
@@ -46,11 +47,14 @@ pub fn page(result: &DiscoverResult, discoveries: &[CableDiscovery]) -> String {
     super::shell(&title, &content)
 }
 
-fn number(value: Option<f64>) -> String {
-    value.map_or_else(|| "–".to_owned(), |value| format!("{value:.4}"))
+/// The verdicts as a table by themselves.
+#[must_use]
+pub fn table(result: &DiscoverResult) -> String {
+    overview(result, |_, name| html! { (name) }).into_string()
 }
 
-fn overview(result: &DiscoverResult) -> Markup {
+/// The verdicts; `named` is a cable's name, which may lead to it.
+fn overview(result: &DiscoverResult, named: impl Fn(usize, &str) -> Markup) -> Markup {
     html! {
         table {
             tr {
@@ -59,7 +63,7 @@ fn overview(result: &DiscoverResult) -> Markup {
             }
             @for (place, cable) in result.cables.iter().enumerate() {
                 tr {
-                    td { a href=(format!("#cable-{place}")) { (cable.name) } }
+                    td { (named(place, &cable.name)) }
                     td class={ "words verdict " (cable.verdict) } { (cable.verdict) }
                     td.words {
                         @if cable.effects.is_empty() { "–" }

@@ -4,6 +4,7 @@ use fric_lab::errors::WrenchResult;
 use maud::{Markup, PreEscaped, html};
 
 use super::chart::{Chart, Span};
+use super::number;
 use super::series::{Extent, Interval, Series};
 use crate::replay::ReplayResult;
 
@@ -39,8 +40,13 @@ pub fn page(result: &ReplayResult, series: &Series, logs: &[String]) -> String {
     super::shell(&title, &content)
 }
 
+/// The errors as a table by themselves.
+#[must_use]
+pub fn table(result: &ReplayResult) -> String {
+    cables(result).into_string()
+}
+
 fn cables(result: &ReplayResult) -> Markup {
-    let number = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.4}"));
     html! {
         table {
             tr {
@@ -60,7 +66,7 @@ fn cables(result: &ReplayResult) -> Markup {
     }
 }
 
-fn wrench_table(wrench: &WrenchResult) -> Markup {
+pub(super) fn wrench_table(wrench: &WrenchResult) -> Markup {
     let WrenchResult { before, after, .. } = wrench;
     html! {
         table {

@@ -4,6 +4,8 @@ mod chart;
 pub mod continuum;
 pub mod discovery;
 pub mod errors;
+pub mod fit;
+pub mod hysteresis;
 pub mod preview;
 mod run;
 mod series;
@@ -69,6 +71,11 @@ dt { color: var(--soft); } dd { margin: 0; } ul { margin: .4rem 0; padding-left:
 @media print { body { max-width: none; margin: 0; } section { break-inside: avoid; } table { display: table; }
   svg { min-width: 0 !important; } }
 ";
+
+/// A number where there is one.
+fn number(value: Option<f64>) -> String {
+    value.map_or_else(|| "–".to_owned(), |value| format!("{value:.4}"))
+}
 
 /// A page with this title and content.
 fn shell(title: &str, content: &Markup) -> String {

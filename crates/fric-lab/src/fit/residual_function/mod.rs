@@ -1,10 +1,14 @@
 //! The residuals of \[P\] 18 as a function of the parameters, for optimisers of one's own.
 
+mod kept;
+
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use fric_core::CableParams;
 use fric_core::parameters::Values;
+
+pub use kept::KeptFunction;
 
 use super::FitOptions;
 use super::cables::{Search, prepared};

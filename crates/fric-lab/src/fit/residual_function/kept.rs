@@ -1,0 +1,109 @@
+//! A residual function as numbers, for another process.
+
+use std::sync::Arc;
+
+use fric_core::signals::Conditioned;
+use fric_core::{CableParams, PoseWrap};
+
+use super::{Cable, ResidualFunction};
+use crate::fit::record::Row;
+use crate::fit::vector::Parameter;
+
+/// All that a residual function keeps beside the parameters of its cable.
+#[derive(Clone, Debug)]
+pub struct KeptFunction {
+    /// What varies.
+    pub free: Vec<Parameter>,
+    /// Values to start from, of all parameters of the model.
+    pub start: Vec<f64>,
+    /// Cycles of all logs: eight numbers, and a bit for each fault and for being used.
+    pub rows: Vec<[f64; Self::WIDTH]>,
+    /// Where each log begins.
+    pub log_starts: Vec<usize>,
+    /// Cycle time, s.
+    pub cycle_s: f64,
+    /// Time between two rows, s.
+    pub interval_s: f64,
+    /// The reference is known rather than measured.
+    pub reference_is_known: bool,
+}
+
+impl KeptFunction {
+    /// Numbers of a row.
+    pub const WIDTH: usize = 9;
+}
+
+impl ResidualFunction {
+    /// What it keeps.
+    #[must_use]
+    pub fn kept(&self) -> KeptFunction {
+        let Cable { params: _, rows, starts, cycle_s, interval_s, reference_is_known } = self.cable.as_ref();
+        KeptFunction {
+            free: self.free.clone(),
+            start: self.start.to_vec(),
+            rows: rows.iter().zip(&self.used).map(|(row, used)| numbers_of(row, *used)).collect(),
+            log_starts: starts.clone(),
+            cycle_s: *cycle_s,
+            interval_s: *interval_s,
+            reference_is_known: *reference_is_known,
+        }
+    }
+
+    /// The function that kept this, of a cable with the same parameters; `None` where `start` has not as many values as the model.
+    #[must_use]
+    pub fn from_kept(params: &CableParams, kept: KeptFunction) -> Option<Self> {
+        let KeptFunction { free, start, rows, log_starts, cycle_s, interval_s, reference_is_known } = kept;
+        let (rows, used): (Vec<Row>, Vec<bool>) = rows.iter().map(row_of).unzip();
+        let cable = Cable { params: *params, rows, starts: log_starts, cycle_s, interval_s, reference_is_known };
+        Some(Self { cable: Arc::new(cable), free, given: params.values(), start: start.try_into().ok()?, used })
+    }
+}
+
+fn numbers_of(row: &Row, used: bool) -> [f64; KeptFunction::WIDTH] {
+    let Row { signals, pose_wrap, reference_n, pose_fault, cycle } = *row;
+    let Conditioned {
+        sensor_force_n,
+        displacement_m,
+        speed_m_per_s,
+        length_m,
+        sensor_finite,
+        frozen,
+        jump,
+        motion_finite,
+    } = signals;
+    let PoseWrap { wrap_factor, traction_ratio } = pose_wrap;
+    let facts = [sensor_finite, frozen, jump, motion_finite, pose_fault, used];
+    let bits = facts.iter().rev().fold(0_u8, |bits, fact| 2 * bits + u8::from(*fact));
+    let signals = [sensor_force_n, displacement_m, speed_m_per_s, length_m];
+    let [force, displacement, speed, length] = signals;
+    [force, displacement, speed, length, wrap_factor, traction_ratio, reference_n, cycle, f64::from(bits)]
+}
+
+fn row_of(numbers: &[f64; KeptFunction::WIDTH]) -> (Row, bool) {
+    let [
+        sensor_force_n,
+        displacement_m,
+        speed_m_per_s,
+        length_m,
+        wrap_factor,
+        traction_ratio,
+        reference_n,
+        cycle,
+        bits,
+    ] = *numbers;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "six bits")]
+    let bits = bits as u8;
+    let [sensor_finite, frozen, jump, motion_finite, pose_fault, used] =
+        [0, 1, 2, 3, 4, 5].map(|bit| bits >> bit & 1 == 1);
+    let signals = Conditioned {
+        sensor_force_n,
+        displacement_m,
+        speed_m_per_s,
+        length_m,
+        sensor_finite,
+        frozen,
+        jump,
+        motion_finite,
+    };
+    (Row { signals, pose_wrap: PoseWrap { wrap_factor, traction_ratio }, reference_n, pose_fault, cycle }, used)
+}

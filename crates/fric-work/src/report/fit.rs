@@ -1,0 +1,91 @@
+//! The page of a fit: values with their errors, correlations, and what is left of the gap to the reference.
+
+use fric_lab::fit::result::{FitCableResult, FitResult};
+use fric_lab::text::plain;
+use maud::{Markup, html};
+
+use super::errors::wrench_table;
+use crate::fit_report::{Correlation, correlations, value_text};
+
+/// The page; `fits` are those of the result.
+#[must_use]
+pub fn page(result: &FitResult, fits: &[fric_lab::fit::CableFit]) -> String {
+    let content = html! {
+        p.soft { "Fitted to " (reference_in_words(result.reference)) ". ± is one standard error." }
+        (errors(result))
+        @for (cable, fit) in result.cables.iter().zip(fits) {
+            section {
+                h2 { (cable.name) }
+                p.soft { (cable.samples) " samples, " (cable.evaluations) " evaluations: " (cable.termination) "." }
+                (values(std::slice::from_ref(cable)))
+                @for Correlation { first, second, value } in correlations(fit) {
+                    p.soft { "Correlation of " (first) " and " (second) ": " (format!("{value:.3}")) }
+                }
+            }
+        }
+        @if let Some(wrench) = &result.wrench { (wrench_table(wrench)) }
+    };
+    super::shell(&format!("{}: friction fitted", result.robot), &content)
+}
+
+/// The values as a table by itself.
+#[must_use]
+pub fn table(result: &FitResult) -> String {
+    values(&result.cables).into_string()
+}
+
+fn reference_in_words(reference: &str) -> &'static str {
+    match reference {
+        "forces" => "the cable forces at the platform",
+        "wrench" => "the wrench on the platform",
+        _ => "the wrench of the platform's mass",
+    }
+}
+
+fn values(cables: &[FitCableResult]) -> Markup {
+    html! {
+        table {
+            tr { th { "cable" } th { "parameter" } th { "value" } th { "±" } th.words { "" } }
+            @for cable in cables {
+                @for (name, value) in &cable.parameters.0 {
+                    tr {
+                        td { (cable.name) } td { (name) } td { (value_text(*value, cable.standard_errors.get(name))) }
+                        td { (cable.standard_errors.get(name).map_or_else(|| "–".to_owned(), plain)) }
+                        td.words { (remark(cable, name)) }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// What else is to be said of a value.
+pub(crate) fn remark(cable: &FitCableResult, name: &str) -> &'static str {
+    let is_in = |names: &[String]| names.iter().any(|other| other == name);
+    if is_in(&cable.undetermined) {
+        "not determined by the samples, kept as given"
+    } else if is_in(&cable.at_bound) {
+        "at the end of its range"
+    } else if cable.standard_errors.get(name).is_none() {
+        "kept as given"
+    } else {
+        ""
+    }
+}
+
+fn errors(result: &FitResult) -> Markup {
+    html! {
+        @if result.cables.iter().any(|cable| cable.before.is_some()) {
+            table {
+                tr { th { "cable" } th { "samples" } th { "rms before [N]" } th { "after [N]" } }
+                @for cable in &result.cables {
+                    tr {
+                        td { (cable.name) } td { (cable.samples) }
+                        td { (super::number(cable.before.map(|error| error.rms_n))) }
+                        td { (super::number(cable.after.map(|error| error.rms_n))) }
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,30 @@
+"""Results: what the compiled part computes, as values that are compared, copied, pickled and shown."""
+
+from .continuum import CalibrationResult, FrictionResult, HoleResult, ShapeResult, SimulatedTendon, TendonDiscovery
+from .discover import CableDiscovery, DiscoverResult
+from .excite import ExciteResult
+from .fit import CableFit, FitResult
+from .hysteresis import AxisHysteresis, HysteresisResult, Width
+from .replay import CableErrors, Compensation, ForceError, ReplayResult, WrenchError
+
+__all__ = [
+    "AxisHysteresis",
+    "CableDiscovery",
+    "CableErrors",
+    "CableFit",
+    "CalibrationResult",
+    "Compensation",
+    "DiscoverResult",
+    "ExciteResult",
+    "FitResult",
+    "ForceError",
+    "FrictionResult",
+    "HoleResult",
+    "HysteresisResult",
+    "ReplayResult",
+    "ShapeResult",
+    "SimulatedTendon",
+    "TendonDiscovery",
+    "Width",
+    "WrenchError",
+]

@@ -1,0 +1,128 @@
+"""What all results have in common."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field, fields
+from typing import Any, NamedTuple, Protocol, TypeVar
+
+import numpy as np
+
+from .._errors import ConfigError
+from .._fric import _unknown_name
+
+# A list or dict whose text is longer is counted in `repr`.
+_LONGEST_TEXT = 200
+
+
+class Shown(NamedTuple):
+    """What people and machines see of a result."""
+
+    summary: str
+    json: str
+    html: str
+    table: str
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Value:
+    """Fields that stay as they are; two are equal where all fields are, NaN with NaN. Arrays cannot be written to."""
+
+    def __post_init__(self) -> None:
+        _fix(vars(self))
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        # Arrays forget in a pickle that they are not to be written to.
+        vars(self).update(state)
+        _fix(state)
+
+    def __eq__(self, other: object) -> bool:
+        if type(other) is not type(self):
+            return NotImplemented
+        names = [one.name for one in fields(self) if one.compare]
+        return all(_same(getattr(self, name), getattr(other, name)) for name in names)
+
+    # Arrays have no hash.
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        parts = [f"{one.name}={_text(getattr(self, one.name))}" for one in fields(self) if one.repr]
+        return f"{type(self).__name__}({', '.join(parts)})"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Result(Value):
+    """A result with the texts that the command line prints and writes of it."""
+
+    _shown: Shown = field(repr=False, compare=False)
+
+    def summary(self) -> str:
+        """What the command line prints."""
+        return self._shown.summary
+
+    def to_json(self) -> str:
+        """The text that the command line writes with `--json`."""
+        return self._shown.json
+
+    def to_dict(self) -> dict[str, Any]:
+        """The same as a dict."""
+        table: dict[str, Any] = json.loads(self._shown.json)
+        return table
+
+    def to_html(self) -> str:
+        """A page, one file without network access: the report of the command line, where it has one."""
+        return self._shown.html
+
+    def _repr_html_(self) -> str:
+        return self._shown.table
+
+    def __str__(self) -> str:
+        return self._shown.summary
+
+
+class _Named(Protocol):
+    @property
+    def name(self) -> str: ...
+
+
+_Cable = TypeVar("_Cable", bound=_Named)
+
+
+def of_cable(cables: tuple[_Cable, ...], name: str) -> _Cable:
+    """The one of the cable of a name."""
+    for cable in cables:
+        if cable.name == name:
+            return cable
+    raise ConfigError(_unknown_name("cable", name, [cable.name for cable in cables]))
+
+
+def _fix(values: dict[Any, Any]) -> None:
+    """Makes arrays such that nobody can write to them."""
+    for value in values.values():
+        if isinstance(value, np.ndarray):
+            value.flags.writeable = False
+        elif isinstance(value, dict):
+            _fix(value)
+
+
+def _same(one: Any, other: Any) -> bool:
+    """Whether two values are equal, NaN with NaN."""
+    if isinstance(one, np.ndarray) and isinstance(other, np.ndarray):
+        # NaN differs from itself, and only NaN does.
+        equal = one.shape == other.shape and one.dtype == other.dtype
+        return equal and bool(((one == other) | ((one != one) & (other != other))).all())
+    if isinstance(one, dict) and isinstance(other, dict):
+        return one.keys() == other.keys() and all(_same(value, other[key]) for key, value in one.items())
+    if isinstance(one, (list, tuple)) and type(one) is type(other):
+        return len(one) == len(other) and all(map(_same, one, other))
+    return bool(one == other) or (isinstance(one, float) and isinstance(other, float) and one != one and other != other)
+
+
+def _text(value: Any) -> str:
+    """A value in `repr`; what would fill the screen is counted."""
+    if isinstance(value, np.ndarray):
+        return f"<{value.dtype} array of shape {value.shape}>"
+    text = repr(value)
+    if len(text) > _LONGEST_TEXT and isinstance(value, (list, dict)):
+        return f"<{type(value).__name__} of {len(value)}>"
+    return text

@@ -1,0 +1,227 @@
+"""Objects travel: pickled, copied, sent to other processes, each public class of the package."""
+
+import copy
+import enum
+import inspect
+import pickle
+import subprocess
+import sys
+
+import fric
+import numpy as np
+import pytest
+from fric import continuum
+from support import BENCH, ROOT, SLOW_BENCH
+
+ARM = ROOT / "examples" / "tendon-prototype.toml"
+
+
+def public_classes():
+    """By their names, wherever in the package they stand; protocols are of no objects."""
+    modules = [fric, *(getattr(fric, name) for name in fric.__all__ if inspect.ismodule(getattr(fric, name)))]
+    found = {name: getattr(module, name) for module in modules for name in module.__all__}
+    return {name: one for name, one in found.items() if inspect.isclass(one) and not getattr(one, "_is_protocol", False)}
+
+
+@pytest.fixture(scope="module")
+def examples():
+    """An object of each class, by its name."""
+    robot = fric.Robot.from_toml(SLOW_BENCH)
+    log = fric.simulate(robot, duration_s=20.0, effects=["sensor_gain:gain=1.05"])
+    compensator = fric.Compensator(robot)
+    first = compensator.run(log.sensor_force_n[:900], log.length_m[:900], log.speed_m_per_s[:900])
+    fitted, found, replayed = fric.fit(robot, log), fric.discover(robot, log), fric.replay(robot, log)
+    platform = fric.Robot.read(ROOT / "examples" / "mini-ipanema.toml")
+    crossing = fric.hysteresis(platform, fric.simulate(platform, run="crossing", duration_s=20.0))
+    arm = continuum.Manipulator.read(ARM)
+    tendon = continuum.simulate(arm, run="mixed", seed=5)
+    calibration = continuum.calibrate(arm, tendon.load_n, tendon.load_shift_nm)
+    calibrated, angle_rad = calibration.manipulator, np.full(4, 1.0)
+    objects = [
+        robot,
+        robot.platform,
+        robot.monitor,
+        robot.log,
+        robot.cable("winch"),
+        robot.cable("winch").friction,
+        log,
+        compensator,
+        compensator.snapshot(),
+        first,
+        fitted,
+        fitted.cables[0],
+        found,
+        found.cables[0],
+        replayed,
+        replayed.cables[0],
+        replayed.cables[0].after,
+        fric.replay(platform, fric.simulate(platform, duration_s=1.0)).wrench[0],
+        crossing,
+        crossing.axes[0],
+        crossing.axes[0].without,
+        fric.residual_function(robot, log, "winch"),
+        fric.excite(robot),
+        fric.Status.SLACK | fric.Status.UNSETTLED,
+        arm,
+        tendon,
+        tendon.run,
+        calibration,
+        continuum.friction(calibrated, tendon.run),
+        continuum.hole(np.linspace(0.5, 2.0, 4), np.linspace(0.5, 2.0, 4) * 0.9, angle_rad, angle_rad),
+        continuum.shape(calibrated, tendon.run, mixed=True, shapes=2),
+        continuum.discover(calibrated, tendon.run),
+    ]
+    errors = [value("what is wrong") for value in public_classes().values() if issubclass(value, Exception)]
+    return {type(one).__name__: one for one in [*objects, *errors]}
+
+
+def same(one, other):
+    if isinstance(one, BaseException):
+        return type(one) is type(other) and (one.args, str(one)) == (other.args, str(other))
+    return type(one) is type(other) and one == other and not one != other
+
+
+def test_the_classes_are_found():
+    classes = public_classes()
+    assert {"Robot", "Log", "Compensator", "FitResult", "TendonRun", "Status", "FricError"} <= set(classes)
+    assert "FittedCable" not in classes
+
+
+@pytest.mark.parametrize("name", sorted(public_classes()))
+def test_each_public_class_travels(name, examples):
+    assert name in examples, f"the test has no example of {name}; give it one"
+    one = examples[name]
+    for protocol in range(2, pickle.HIGHEST_PROTOCOL + 1):
+        assert same(pickle.loads(pickle.dumps(one, protocol)), one)
+    for other in [copy.copy(one), copy.deepcopy(one)]:
+        assert same(other, one) and type(one).__module__ == type(other).__module__
+    if isinstance(one, (BaseException, enum.Enum)):
+        return
+    assert one != "another" and repr(pickle.loads(pickle.dumps(one))) == repr(one)
+    with pytest.raises(TypeError, match="unhashable"):
+        hash(one)
+
+
+def test_values_that_differ_are_not_equal(examples):
+    robot = fric.Robot.from_toml(BENCH)
+    assert robot != examples["Robot"] and robot.cable("winch") == fric.Robot.from_toml(BENCH).cable("winch")
+    robot.cable("winch").friction.mu = 0.03
+    assert robot.cable("winch").friction != fric.Robot.from_toml(BENCH).cable("winch").friction
+    longer = fric.simulate(examples["Robot"], duration_s=20.004, effects=["sensor_gain:gain=1.05"])
+    assert longer != examples["Log"] and fric.replay(examples["Robot"], longer) != examples["ReplayResult"]
+    assert fric.replay(examples["Robot"], examples["Log"]) == examples["ReplayResult"]
+    assert fric.ForceError(1.0, float("nan")) == fric.ForceError(1.0, float("nan")) != fric.ForceError(1.0, 2.0)
+
+
+def test_a_pickled_compensator_goes_on_with_the_same_bits():
+    # Every effect that remembers something, a delay, pulleys of both forms, and a pose.
+    robot = fric.Robot.read(ROOT / "examples" / "mini-ipanema.toml")
+    cable = robot.cable("cable1")
+    cable.set(effects=[{"kind": "time_delay", "delay_s": 0.0042}, {"kind": "stribeck", "ratio": 0.5}, {"kind": "pulley_inertia"}])
+    robot.cable("cable2").presliding = "lumped"
+    log = fric.simulate(fric.Robot.read(ROOT / "examples" / "mini-ipanema.toml"), duration_s=3.0)
+
+    def run(compensator, rows):
+        poses = {"position_m": log.position_m[rows], "orientation_xyzw": log.orientation_xyzw[rows]}
+        return compensator.run(log.sensor_force_n[rows], log.length_m[rows], log.speed_m_per_s[rows], **poses)
+
+    compensator = fric.Compensator(robot)
+    run(compensator, slice(0, 1500))
+    others = [pickle.loads(pickle.dumps(compensator)), copy.copy(compensator), copy.deepcopy(compensator)]
+    snapshot = pickle.loads(pickle.dumps(compensator.snapshot()))
+    # What is changed in the robot later does not reach it, nor its copies.
+    robot.cable("cable1").friction.mu = 0.5
+    assert compensator != fric.Compensator(robot)
+    expected = run(compensator, slice(1500, 3000))
+    fresh = fric.Compensator(fric.Robot.read(ROOT / "examples" / "mini-ipanema.toml"))
+    assert run(fresh, slice(1500, 3000)) != expected
+    for other in others:
+        assert other != compensator and run(other, slice(1500, 3000)) == expected and other == compensator
+    compensator.restore(snapshot)
+    assert run(compensator, slice(1500, 3000)) == expected
+
+
+def test_a_pickled_residual_function_is_the_same_function(examples):
+    function = examples["ResidualFunction"]
+    other = pickle.loads(pickle.dumps(function))
+    x = 1.1 * function.x0
+    assert np.array_equal(other(x), function(x)) and np.array_equal(other.jac(x), function.jac(x))
+    assert np.array_equal(other.bounds, function.bounds) and np.array_equal(other.rows, function.rows)
+
+
+def test_arrays_that_cannot_be_written_to_stay_so(examples):
+    arrays = [pickle.loads(pickle.dumps(examples["Log"])).length_m, copy.deepcopy(examples["FitResult"]).cables[0].covariance]
+    for array in [*arrays, examples["Compensation"].friction_n]:
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 0.0
+
+
+def test_states_of_another_version_are_refused(examples):
+    pickled = pickle.dumps(examples["Snapshot"], protocol=2)
+    version = fric.__version__.encode()
+    assert version in pickled
+    with pytest.raises(fric.ConfigError, match=f"the pickle is of fric .*, this is {fric.__version__}"):
+        pickle.loads(pickled.replace(version, version[:-1] + b"9"))
+
+
+# Paths are relative, and the children work elsewhere.
+PROCESSES = """
+import concurrent.futures, multiprocessing, os, sys, tempfile
+import fric
+import joblib
+
+
+def elsewhere():
+    os.chdir(tempfile.mkdtemp())
+
+
+def work(robot, log):
+    elsewhere()
+    return fric.replay(robot, log), fric.fit(robot, log)
+
+
+if __name__ == "__main__":
+    robot, log = fric.Robot.read("robot.toml"), fric.read_log("log.mcap")
+    expected = fric.replay(robot, log), fric.fit(robot, log)
+    context = multiprocessing.get_context("spawn")
+    with concurrent.futures.ProcessPoolExecutor(2, mp_context=context, initializer=elsewhere) as pool:
+        found = [task.result() for task in [pool.submit(work, robot, log) for _ in range(2)]]
+    assert found == [expected] * 2
+    found = joblib.Parallel(n_jobs=2)(joblib.delayed(work)(robot, log) for _ in range(2))
+    assert found == [expected] * 2
+    print("the same", expected[1].cables[0].values["mu"])
+"""
+
+
+def test_logs_and_results_go_to_processes_of_other_folders_and_back(tmp_path):
+    (tmp_path / "script.py").write_text(PROCESSES, encoding="utf-8")
+    (tmp_path / "robot.toml").write_text(SLOW_BENCH, encoding="utf-8")
+    fric_cli = [sys.executable, "-m", "fric"]
+    simulate = [*fric_cli, "simulate", "--model", "robot.toml", "-o", "log.mcap", "--duration", "20"]
+    assert subprocess.run(simulate, cwd=tmp_path, check=False).returncode == 0
+    command = [sys.executable, "script.py"]
+    ended = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False)
+    assert ended.returncode == 0 and ended.stdout.startswith("the same 0.0"), ended.stderr
+
+
+SUB_INTERPRETER = """
+try:
+    import _interpreters as interpreters
+except ImportError:
+    import _xxsubinterpreters as interpreters
+code = '''
+try:
+    import fric
+except ImportError as error:
+    with open({told!r}, "w") as file:
+        file.write(str(error))
+'''
+run = getattr(interpreters, "exec", None) or interpreters.run_string
+run(interpreters.create(), code)
+"""
+
+
+def test_sub_interpreters_are_refused_in_one_sentence(tmp_path):
+    told = tmp_path / "told.txt"
+    subprocess.run([sys.executable, "-c", SUB_INTERPRETER.format(told=str(told))], check=True, timeout=60)
+    assert told.read_text().startswith("fric does not work in sub-interpreters")
