@@ -169,15 +169,10 @@ impl Compensator {
         Ok(PyArray1::from_iter(py, friction_n.into_iter().take(count)).unbind())
     }
 
-    fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {
-        let is_same = |other: &Self| {
-            self.robot.file == other.robot.file && self.cycles.state_words() == other.cycles.state_words()
-        };
-        other.cast::<Self>().is_ok_and(|other| match other.try_borrow() {
-            Ok(other) => is_same(&other),
-            // Only one that is compared with itself is borrowed.
-            Err(_) => true,
-        })
+    fn __eq__(&self, other: &Bound<'_, PyAny>) -> Outcome<bool> {
+        let Ok(other) = other.cast::<Self>() else { return Ok(false) };
+        let other = other.try_borrow().map_err(PyErr::from)?;
+        Ok(self.robot.file == other.robot.file && self.cycles.state_words() == other.cycles.state_words())
     }
 
     fn __repr__(&self) -> String {

@@ -7,7 +7,6 @@ use fric_lab::fit::{
 };
 use fric_work::fit_report::fit_report;
 use fric_work::report;
-use nalgebra::DMatrix;
 use pyo3::prelude::*;
 
 use crate::arrays::{array, fixed};
@@ -84,9 +83,11 @@ pub fn fit(
     let text = rewritten(&given.to_toml()?, ORIGIN, fits.cables())?;
     let cable = |(fit, residuals_n): (&CableFit, Vec<f64>)| {
         let count = fit.fitted.len();
-        let square = |matrix: &DMatrix<f64>| array(py, matrix.transpose().as_slice().to_vec(), &[count, count]);
+        // Matrices stand column by column, arrays row by row.
+        let [covariance, correlation] = [fit.covariance.transpose(), fit.correlation().transpose()]
+            .map(|matrix| array(py, matrix.as_slice().to_vec(), &[count, count]));
         let names: Vec<String> = fit.fitted.iter().map(ToString::to_string).collect();
-        Ok((names, square(&fit.covariance)?, square(&fit.correlation())?, fixed(py, residuals_n)))
+        Ok((names, covariance?, correlation?, fixed(py, residuals_n)))
     };
     let cables = fits.cables().iter().zip(residuals_n).map(cable).collect::<Outcome<Vec<_>>>()?;
     let page = report::fit::page(&result, fits.cables());

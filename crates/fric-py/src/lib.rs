@@ -1,7 +1,7 @@
 //! `fric._fric`, the compiled part of the Python package `fric`.
 //!
 //! One file per function or class that Python sees. Each class wraps one Rust value; what is computed is computed in the
-//! crates below. Long calls release the interpreter, look for Ctrl-C every few thousand cycles (`watch.rs`) and
+//! crates below. Results are dataclasses of `python/fric/_results`, which `results.rs` fills. Long calls release the interpreter, look for Ctrl-C every few thousand cycles (`watch.rs`) and
 //! leave nothing half done. `python/fric/_fric.pyi` declares what is here.
 #![allow(clippy::doc_markdown, clippy::doc_link_with_quotes, reason = "documentation here is read in Python")]
 #![allow(clippy::needless_pass_by_value, reason = "values come as the interpreter passes them")]
