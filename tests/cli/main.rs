@@ -10,6 +10,7 @@ mod cdr;
 mod closed_stdout;
 mod command_line;
 mod continuum;
+mod csv_logs;
 mod damage;
 mod discover;
 mod excite;

@@ -71,7 +71,7 @@ pub enum Command {
 /// The log and its robot.
 #[derive(Debug, Args)]
 pub struct LogArguments {
-    /// MCAP log; several files are the parts of one split recording
+    /// MCAP or CSV log; several files are the parts of one split recording
     #[arg(required = true, value_name = "LOG")]
     pub logs: Vec<PathBuf>,
     /// Robot file; without it the one attached to the log
@@ -95,7 +95,7 @@ pub struct ReplayArguments {
 
 #[derive(Debug, Args)]
 pub struct FitArguments {
-    /// MCAP log; several are runs of the same robot, identified together
+    /// MCAP or CSV log; several are runs of the same robot, identified together
     #[arg(required = true, value_name = "LOG")]
     pub logs: Vec<PathBuf>,
     /// Robot file; without it the one attached to the first log that has one
@@ -120,7 +120,7 @@ pub struct FitArguments {
 
 #[derive(Debug, Args)]
 pub struct DiscoverArguments {
-    /// MCAP log with forces at the platform; several are runs of the same robot, looked at together. With a manipulator file,
+    /// MCAP or CSV log with forces at the platform; several are runs of the same robot, looked at together. With a manipulator file,
     /// the run of a manipulator with gratings
     #[arg(required = true, value_name = "LOG")]
     pub logs: Vec<PathBuf>,

@@ -6,6 +6,7 @@
     reason = "a test fails by panicking, its helpers too"
 )]
 
+mod csv_log;
 mod path;
 mod recording;
 mod schema;

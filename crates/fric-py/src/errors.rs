@@ -96,6 +96,7 @@ fault_from!(
     HiddenError => config,
     SignalPathError => config,
     ManipulatorFileError => config,
+    fric_log::log::LogError => log,
     RecordingError => log,
     SignalError => log,
     TableError => log,

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use fric_core::Pose;
 use fric_lab::columns::{SampleColumns, SampleRows};
-use fric_log::recording::Recording;
+use fric_log::log::Log as LogSource;
 use fric_log::robot::{AttachedRobot, ROBOT_FILE};
 use fric_log::signals::{KnownLength, Role, SignalPaths, SignalReader};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
@@ -252,24 +252,24 @@ pub fn read(
             PyTypeError::new_err(format!("a log is given as a path or several paths, not as {class}"))
         })?,
     };
-    let recording = py.detach(|| Recording::open(&sources))?;
+    let source = py.detach(|| LogSource::open(&sources))?;
     let robot = match robot {
         Some(robot) => robot.borrow().clone(),
-        None => AttachedRobot::find(&recording)?.map(|attached| Robot::new(attached.robot, attached.text)).ok_or_else(
+        None => AttachedRobot::find(&source)?.map(|attached| Robot::new(attached.robot, attached.text)).ok_or_else(
             || Fault::log(format!("the log has no robot file attached ({ROBOT_FILE}); give the robot as `robot`")),
         )?,
     };
     let file = robot.file.clone();
     let names = file.cable_names();
-    let total_bytes = recording.total_bytes();
+    let total_bytes = source.total_bytes();
     let mut paths = SignalPaths::of_robot(&file)?;
     if let Some(unread) = unread {
         paths = paths.with(unread, None);
     }
-    let mut reader = SignalReader::new(recording, paths, &names);
+    let mut reader = SignalReader::new(source, paths, &names);
     let mut columns = SampleColumns::default();
     let end = loop {
-        watch.look(reader.recording().bytes_read(), total_bytes)?;
+        watch.look(reader.log().bytes_read(), total_bytes)?;
         let piece = py.detach(|| {
             for _ in 0..STRIDE {
                 let Some(sample) = reader.next_row()? else { return Ok(true) };
@@ -285,7 +285,7 @@ pub fn read(
     };
     watch.look(total_bytes, total_bytes)?;
     // Damage may be why there is nothing to go on with.
-    warn(py, &reader.recording().warnings())?;
+    warn(py, &reader.log().warnings())?;
     end?;
     warn(py, &reader.warnings())?;
     match unread {

@@ -45,6 +45,7 @@ pub use self::attachment::{ATTACHMENT_LIMIT_BYTES, Attachment, AttachmentInfo};
 pub use self::channels::{Channel, Schema};
 pub use self::damage::{Damage, DamageKind, DamagedPlace, FileDamage, FileEnd, PLACES_KEPT};
 pub use self::error::RecordingError;
+pub(crate) use self::open::open_file;
 pub use self::scan::Metadata;
 pub use self::segment::CHUNK_LIMIT_BYTES;
 

@@ -95,7 +95,8 @@ fn scan_file(path: &Path) -> Result<(SourceFile, FileScan), RecordingError> {
     }
 }
 
-fn open_file(path: &Path) -> Result<(File, u64), RecordingError> {
+/// Opens a file that is one and has bytes, and its size.
+pub(crate) fn open_file(path: &Path) -> Result<(File, u64), RecordingError> {
     let path_buf = || path.to_path_buf();
     let failed = |source: io::Error| match source.kind() {
         io::ErrorKind::NotFound => RecordingError::Missing { path: path_buf() },

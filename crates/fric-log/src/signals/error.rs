@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
+use crate::csv_log::CsvError;
 use crate::recording::RecordingError;
 use crate::schema::SchemaError;
 
@@ -23,6 +24,9 @@ pub enum SignalError {
     /// The recording cannot be read any further.
     #[error(transparent)]
     Recording(#[from] RecordingError),
+    /// The CSV file cannot be read, or has not what is needed.
+    #[error(transparent)]
+    Csv(#[from] CsvError),
     /// The recording has no cable signal.
     #[error("the log has no messages on `{topic}`, the topic of the cable signals; {}", available(topics))]
     NoCableTopic {
@@ -73,6 +77,7 @@ impl SignalError {
     pub fn advice(&self) -> Option<&'static str> {
         match self {
             Self::Recording(error) => error.advice(),
+            Self::Csv(error) => Some(error.advice()),
             Self::NoCableTopic { topics, .. } => (!topics.is_empty()).then_some(advice::TOPIC),
             Self::NoBeginning { .. } => Some(advice::BEGINNING),
             Self::CableFields { .. } => Some(advice::TOPIC_OR_PATH),

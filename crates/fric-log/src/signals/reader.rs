@@ -10,17 +10,18 @@ use super::row::RowBuffer;
 use super::speed::SpeedRows;
 use super::track::Track;
 use super::{Role, SignalPaths, TrackCounts, WAIT_NANOS, WAITING_LIMIT};
-use crate::recording::{Message, Recording};
+use crate::log::{Content, Log};
+use crate::recording::Message;
 
-/// Reads the rows of a recording.
+/// Reads the rows of a log.
 ///
 /// ```no_run
-/// use fric_log::recording::Recording;
+/// use fric_log::log::Log;
 /// use fric_log::signals::{Role, SignalPaths, SignalReader};
 ///
 /// let paths = SignalPaths::default().with(Role::Cable, Some("/cable_states".parse()?));
-/// let recording = Recording::open(&["run.mcap"])?;
-/// let mut reader = SignalReader::new(recording, paths, &["cable1"]);
+/// let log = Log::open(&["run.mcap"])?;
+/// let mut reader = SignalReader::new(log, paths, &["cable1"]);
 /// while let Some(row) = reader.next_row()? {
 ///     println!("{} {} N", row.stamp_nanos, row.cables[0].sensor_force_n);
 /// }
@@ -28,12 +29,14 @@ use crate::recording::{Message, Recording};
 /// ```
 #[derive(Debug)]
 pub struct SignalReader {
-    recording: Recording,
+    log: Log,
     topics: Topics,
     /// By channel.
     channels: Vec<Option<ChannelRoles>>,
     tracks: Tracks,
     is_ended: bool,
+    /// The first time of a table.
+    table_start_nanos: Option<i64>,
     /// The latest log time so far.
     log_time_nanos: u64,
     buffer: RowBuffer,
@@ -88,9 +91,13 @@ struct ChannelRoles {
 }
 
 impl SignalReader {
-    /// Rows of a recording for a robot with cables of these names.
+    /// Rows of a log for a robot with cables of these names.
     #[must_use]
-    pub fn new(recording: Recording, paths: SignalPaths, cable_names: &[impl AsRef<str>]) -> Self {
+    pub fn new(log: impl Into<Log>, paths: SignalPaths, cable_names: &[impl AsRef<str>]) -> Self {
+        let log = log.into();
+        // Rows of a table bring lengths and speeds beside the forces.
+        let is_table = log.column_names().is_some();
+        let paths = if is_table { paths.with(Role::Length, None).with(Role::Speed, None) } else { paths };
         let topics = Topics {
             is_awaited: Role::ALL.map(|role| paths.get(role).is_some()),
             cable_names: cable_names.iter().map(|name| name.as_ref().to_owned()).collect(),
@@ -105,13 +112,38 @@ impl SignalReader {
         let (channels, tracks) = (Vec::new(), Tracks::default());
         let known = topics.paths.known_reference();
         let hanging = known.filter(|known| matches!(known, KnownReference::HangingMass { .. })).map(HangingRows::new);
-        Self { recording, topics, channels, tracks, is_ended: false, log_time_nanos: 0, buffer, speeds, hanging }
+        Self {
+            log,
+            topics,
+            channels,
+            tracks,
+            is_ended: false,
+            table_start_nanos: None,
+            log_time_nanos: 0,
+            buffer,
+            speeds,
+            hanging,
+        }
     }
 
-    /// The recording, for its damage and its progress.
+    /// The log, for its damage and its progress.
     #[must_use]
-    pub fn recording(&self) -> &Recording {
-        &self.recording
+    pub fn log(&self) -> &Log {
+        &self.log
+    }
+
+    /// Where a signal is looked for, for people: its topic or path, or the columns of a table; `None` if it is not.
+    #[must_use]
+    pub fn place(&self, role: Role) -> Option<String> {
+        const SHOWN: usize = 3;
+        let path = self.topics.paths.get(role)?;
+        let Content::Csv(table) = &self.log.0 else { return Some(path.to_string()) };
+        let columns = table.columns_of(role);
+        Some(match columns.get(..SHOWN) {
+            Some(shown) if columns.len() > SHOWN => format!("{}, …", shown.join(", ")),
+            _ if columns.is_empty() => default_columns(role).to_owned(),
+            _ => columns.join(", "),
+        })
     }
 
     /// Where the signals are looked for.
@@ -184,7 +216,7 @@ impl SignalReader {
             if self.is_ended {
                 return self.check_end().map(|()| false);
             }
-            self.read_message()?;
+            self.read_next()?;
         }
         let Tracks { cable, others } = &mut self.tracks;
         let Some(sample) = cable.pop() else { return Ok(false) };
@@ -217,11 +249,47 @@ impl SignalReader {
             || others.iter().any(|track| track.samples().len() >= WAITING_LIMIT)
     }
 
+    /// Takes in what comes next of the log: a message, or a row of a table.
+    fn read_next(&mut self) -> Result<(), SignalError> {
+        if matches!(self.log.0, Content::Csv(_)) { self.read_table_row() } else { self.read_message() }
+    }
+
+    fn end(&mut self) {
+        self.is_ended = true;
+        self.tracks.cable.finish();
+        self.tracks.others.iter_mut().for_each(Track::finish);
+    }
+
+    fn read_table_row(&mut self) -> Result<(), SignalError> {
+        let Content::Csv(table) = &mut self.log.0 else { return Ok(()) };
+        let Some(row) = table.next_row(&self.topics.cable_names, &self.topics.paths)? else {
+            self.end();
+            return Ok(());
+        };
+        let stamp_nanos = row.stamp_nanos;
+        // A table has no log time of its own: what counts is how long a row waits.
+        let start_nanos = *self.table_start_nanos.get_or_insert(stamp_nanos);
+        let log_time_nanos = u64::try_from(stamp_nanos.saturating_sub(start_nanos)).unwrap_or(0);
+        self.log_time_nanos = self.log_time_nanos.max(log_time_nanos);
+        for role in Role::ALL {
+            if let Some(values) = row.values(role) {
+                self.topics.is_stamped[role as usize] = true;
+                let track = self.tracks.get_mut(role);
+                track.push(stamp_nanos, self.log_time_nanos, 0, |out| out.extend_from_slice(values));
+            }
+        }
+        if !self.topics.has_cable_messages {
+            self.topics.has_cable_messages = true;
+            for role in [Role::Reference, Role::Pose, Role::Wrench] {
+                self.topics.is_awaited[role as usize] = !table.columns_of(role).is_empty();
+            }
+        }
+        Ok(())
+    }
+
     fn read_message(&mut self) -> Result<(), SignalError> {
-        let Some(message) = self.recording.next_message()? else {
-            self.is_ended = true;
-            self.tracks.cable.finish();
-            self.tracks.others.iter_mut().for_each(Track::finish);
+        let Some(message) = self.log.next_message()? else {
+            self.end();
             return Ok(());
         };
         self.log_time_nanos = self.log_time_nanos.max(message.log_time_nanos);
@@ -273,16 +341,19 @@ impl SignalReader {
     }
 
     fn check_end(&self) -> Result<(), SignalError> {
+        if let Content::Csv(table) = &self.log.0 {
+            let has_cables = self.counts(Role::Cable).message_count > 0;
+            return if has_cables { Ok(()) } else { Err(table.without_numbers().into()) };
+        }
         let topic = self.topics.paths.get(Role::Cable).map_or_else(String::new, |path| path.topic.clone());
         if !self.topics.has_cable_messages {
-            let channels = self.recording.channels().iter();
+            let channels = self.log.channels().iter();
             let mut topics: Vec<_> = channels.map(|channel| channel.topic.clone()).filter(|it| *it != topic).collect();
             topics.sort();
             topics.dedup();
-            let damage = self.recording.damage();
-            let beheaded = damage.files().iter().find(|file| file.lacks_beginning());
-            if let Some(file) = beheaded.filter(|_| topics.is_empty() || damage.lost_messages() > 0) {
-                return Err(SignalError::NoBeginning { topic, path: file.path().to_owned() });
+            let beheaded = self.log.beheaded();
+            if let Some(path) = beheaded.filter(|_| topics.is_empty() || self.log.lost_messages() > 0) {
+                return Err(SignalError::NoBeginning { topic, path: path.to_owned() });
             }
             return Err(SignalError::NoCableTopic { topic, topics });
         }
@@ -291,6 +362,16 @@ impl SignalReader {
             return Err(SignalError::NoUsableMessage { topic, reason });
         }
         Ok(())
+    }
+}
+
+/// How the columns of a signal are called where the robot file says nothing.
+fn default_columns(role: Role) -> &'static str {
+    match role {
+        Role::Cable | Role::Length | Role::Speed => "NAME.force_n, NAME.length_m",
+        Role::Reference => "NAME.reference_n",
+        Role::Pose => "pose.x_m … pose.qw",
+        Role::Wrench => "wrench.fx_n … wrench.tz_nm",
     }
 }
 
