@@ -25,6 +25,7 @@ mod interrupt;
 mod known;
 mod logs;
 mod outputs;
+mod part;
 mod replay;
 mod replay_output;
 mod report;

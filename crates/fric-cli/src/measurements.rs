@@ -8,7 +8,7 @@ use fric_core::CableParams;
 use fric_lab::fit::readiness::{Holdings, Readiness};
 use fric_lab::fit::{Measurements, Progress, Reference};
 use fric_log::log::Log;
-use fric_log::signals::{Role, SignalReader, TimesApart};
+use fric_log::signals::{Part, Role, SignalReader, TimesApart};
 
 use crate::failure::{Failure, Outcome};
 use crate::interrupt;
@@ -57,8 +57,8 @@ impl LogsRead<'_> {
     }
 }
 
-/// Reads all logs, each by itself.
-pub fn read<'a>(logs: &[PathBuf], model: &'a Model, reference: Reference) -> Outcome<LogsRead<'a>> {
+/// Reads the same part of all logs, each by itself.
+pub fn read<'a>(logs: &[PathBuf], part: Part, model: &'a Model, reference: Reference) -> Outcome<LogsRead<'a>> {
     // What is not compared with is not even read.
     let (unread, compared) = match reference {
         Reference::Forces => (Role::Wrench, Role::Reference),
@@ -80,7 +80,7 @@ pub fn read<'a>(logs: &[PathBuf], model: &'a Model, reference: Reference) -> Out
     let mut all: Option<Holdings> = None;
     for log in logs {
         measurements.start_log();
-        let mut reader = SignalReader::new(Log::open(&[log])?, paths.clone(), &names);
+        let mut reader = SignalReader::new(Log::open(&[log])?, paths.clone(), &names).within(part);
         let holdings = read_one(&mut reader, &mut measurements, names.len())?;
         warn_all(reader.cycle_warning(&model.robot).as_slice());
         all_apart.retain(|role| reader.times_apart(*role).is_some());

@@ -3,7 +3,7 @@
 use fric_core::Sample;
 use fric_lab::hysteresis::{Hysteresis, HysteresisResult, Survey};
 use fric_log::log::Log;
-use fric_log::signals::SignalReader;
+use fric_log::signals::{Part, SignalReader};
 
 use crate::arguments::HysteresisArguments;
 use crate::failure::Outcome;
@@ -16,6 +16,7 @@ use crate::warnings::warn_all;
 /// Runs the command.
 pub fn run(arguments: &HysteresisArguments) -> Outcome {
     let HysteresisArguments { log, result } = arguments;
+    let part = log.part.part()?;
     let source = Log::open(&log.logs)?;
     let model = Model::find(log.model.as_deref(), &source)?.ok_or_else(model::missing)?;
     let mut inputs = log.logs.clone();
@@ -28,11 +29,11 @@ pub fn run(arguments: &HysteresisArguments) -> Outcome {
         warn_all(&reader.log().warnings());
         warn_all(&reader.warnings());
     };
-    read(source, &model, |sample| survey.add(sample), warn_about_log)?;
+    read(source, part, &model, |sample| survey.add(sample), warn_about_log)?;
     let crossed = survey.finish()?;
     let mut hysteresis = Hysteresis::new(&model.robot, &crossed)?;
     let warn_about_robot = |reader: &SignalReader| warn_all(&reader.robot_warnings(&model.robot));
-    read(Log::open(&log.logs)?, &model, |sample| hysteresis.step(sample), warn_about_robot)?;
+    read(Log::open(&log.logs)?, part, &model, |sample| hysteresis.step(sample), warn_about_robot)?;
     warn_all(&model.robot.warnings());
     warn_all(&hysteresis.replay().cable_warnings(&model.robot));
 
@@ -42,10 +43,16 @@ pub fn run(arguments: &HysteresisArguments) -> Outcome {
 }
 
 /// All samples of the log one after the other.
-fn read(log: Log, model: &Model, mut take: impl FnMut(&Sample<'_>), warn: impl FnOnce(&SignalReader)) -> Outcome {
+fn read(
+    log: Log,
+    part: Part,
+    model: &Model,
+    mut take: impl FnMut(&Sample<'_>),
+    warn: impl FnOnce(&SignalReader),
+) -> Outcome {
     let paths = model.signal_paths()?;
     let bar = progress::bytes(log.total_bytes());
-    let mut reader = SignalReader::new(log, paths, &model.robot.cable_names());
+    let mut reader = SignalReader::new(log, paths, &model.robot.cable_names()).within(part);
     let mut count = 0_u64;
     let end = loop {
         if count.is_multiple_of(STRIDE) {

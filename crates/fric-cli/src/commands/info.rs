@@ -10,7 +10,7 @@ use fric_core::text_file::printable;
 use fric_lab::fit::readiness::{self, Holdings, Readiness, without_reference};
 use fric_lab::text::table;
 use fric_log::log::Log;
-use fric_log::signals::{Role, SignalError, SignalReader};
+use fric_log::signals::{Part, Role, SignalError, SignalReader};
 use serde::Serialize;
 
 use super::continuum;
@@ -110,11 +110,13 @@ pub fn run(arguments: &InfoArguments) -> Outcome {
     if let [only] = log.logs.as_slice()
         && (continuum::is_manipulator(log.model.as_deref()) || log.model.is_none() && continuum::is_text_run(only))
     {
+        log.part.check_none()?;
         return continuum::info::run(only, log.model.as_deref(), json);
     }
+    let part = log.part.part()?;
     let mut source = Log::open(&log.logs)?;
     let model = Model::find(log.model.as_deref(), &source)?;
-    let topics = read_topics(&mut source)?;
+    let topics = read_topics(&mut source, part)?;
     let columns = columns::results(&source, model.as_ref());
     warn_all(&source.warnings());
     if let Some(model) = &model {
@@ -126,7 +128,7 @@ pub fn run(arguments: &InfoArguments) -> Outcome {
             .advise("Name a complete copy of it, or record again."));
     }
     let (signals, steps) = match &model {
-        Some(model) => read_signals(model, Log::open(&log.logs)?)?,
+        Some(model) => read_signals(model, Log::open(&log.logs)?, part)?,
         None => (Vec::new(), Vec::new()),
     };
     let outcome = InfoResult {
@@ -140,7 +142,7 @@ pub fn run(arguments: &InfoArguments) -> Outcome {
     json.finish(&outcome, &describe(&outcome, model.as_ref(), &attachments), Vec::new())
 }
 
-fn read_topics(log: &mut Log) -> Outcome<Vec<TopicResult>> {
+fn read_topics(log: &mut Log, part: Part) -> Outcome<Vec<TopicResult>> {
     let bar = progress::bytes(log.total_bytes());
     let mut topics: BTreeMap<String, Times> = BTreeMap::new();
     for channel in log.channels() {
@@ -153,7 +155,13 @@ fn read_topics(log: &mut Log) -> Outcome<Vec<TopicResult>> {
             bar.set_position(log.bytes_read());
         }
         let Some(message) = log.next_message()? else { break };
-        start_nanos.get_or_insert(message.log_time_nanos);
+        let at_s = seconds(message.log_time_nanos.saturating_sub(*start_nanos.get_or_insert(message.log_time_nanos)));
+        if part.end_s.is_some_and(|end_s| at_s >= end_s) {
+            break;
+        }
+        if part.start_s.is_some_and(|start_s| at_s < start_s) {
+            continue;
+        }
         match topics.get_mut(&message.channel.topic) {
             Some(times) => times.add(message.log_time_nanos),
             None => topics.entry(message.channel.topic.clone()).or_default().add(message.log_time_nanos),
@@ -188,10 +196,10 @@ fn read_topics(log: &mut Log) -> Outcome<Vec<TopicResult>> {
 }
 
 /// What the signals map to, found by joining them as the other commands do.
-fn read_signals(model: &Model, log: Log) -> Outcome<(Vec<SignalResult>, Vec<StepResult>)> {
+fn read_signals(model: &Model, log: Log, part: Part) -> Outcome<(Vec<SignalResult>, Vec<StepResult>)> {
     let paths = model.signal_paths()?;
     let bar = progress::bytes(log.total_bytes());
-    let mut reader = SignalReader::new(log, paths.clone(), &model.robot.cable_names());
+    let mut reader = SignalReader::new(log, paths.clone(), &model.robot.cable_names()).within(part);
     let mut holdings = Holdings::new(model.robot.cable_names().len());
     let problem = loop {
         if holdings.rows.is_multiple_of(STRIDE) {

@@ -26,6 +26,7 @@ pub fn run(arguments: &ReplayArguments) -> Outcome {
     let ReplayArguments { log, output, report, result } = arguments;
     let json_file = result.json.as_deref().filter(|path| !output::is_stdout(path));
     output::check_distinct(&[output.as_deref(), report.as_deref(), json_file])?;
+    let part = log.part.part()?;
     let source = Log::open(&log.logs)?;
     let model = Model::find(log.model.as_deref(), &source)?.ok_or_else(model::missing)?;
     let mut inputs = log.logs.clone();
@@ -40,7 +41,7 @@ pub fn run(arguments: &ReplayArguments) -> Outcome {
     let paths = model.signal_paths()?;
     let params = model.robot.params();
     let bar = progress::bytes(source.total_bytes());
-    let mut reader = SignalReader::new(source, paths, &names);
+    let mut reader = SignalReader::new(source, paths, &names).within(part);
     let mut replay = Replay::new(&params)?;
     // Three digits; durations beyond 2^40 ns (18 minutes) count as that.
     let mut durations = Histogram::<u64>::new_with_max(1 << 40, 3)

@@ -6,6 +6,7 @@ use super::channel::{ChannelReader, Rejection};
 use super::error::SignalError;
 use super::hanging::HangingRows;
 use super::layout::Unfit;
+use super::part::{Part, Progress, Side};
 use super::row::RowBuffer;
 use super::speed::SpeedRows;
 use super::track::Track;
@@ -44,6 +45,8 @@ pub struct SignalReader {
     speeds: SpeedRows,
     /// Rows that wait for the acceleration of a hanging mass.
     hanging: Option<HangingRows>,
+    /// The part that is given out.
+    progress: Progress,
 }
 
 /// The tracks of all roles.
@@ -123,7 +126,15 @@ impl SignalReader {
             buffer,
             speeds,
             hanging,
+            progress: Progress::default(),
         }
+    }
+
+    /// Gives out a part of the log only.
+    #[must_use]
+    pub fn within(mut self, part: Part) -> Self {
+        self.progress.part = part;
+        self
     }
 
     /// The log, for its damage and its progress.
@@ -152,10 +163,10 @@ impl SignalReader {
         &self.topics.paths
     }
 
-    /// What has been counted for a role so far.
+    /// What has been counted for a role so far, since the part began; stamps and interval are those of all that was read.
     #[must_use]
-    pub fn counts(&self, role: Role) -> &TrackCounts {
-        self.tracks.get(role).counts()
+    pub fn counts(&self, role: Role) -> TrackCounts {
+        self.tracks.get(role).counts().since(&self.progress.before[role as usize])
     }
 
     /// What was wrong with the first message of a role that could not be used. If none could be as none was about the
@@ -177,8 +188,37 @@ impl SignalReader {
     /// # Errors
     /// [`SignalError`] where the recording cannot be read on, or has no usable cable signal.
     pub fn next_row(&mut self) -> Result<Option<Sample<'_>>, SignalError> {
+        while !self.progress.is_over {
+            let Some(stamp_nanos) = self.make_row()? else {
+                self.progress.is_over = true;
+                break;
+            };
+            match self.progress.side(stamp_nanos) {
+                // Only a row that is taken out makes room for the next.
+                Side::Before => drop(self.hanging.as_mut().and_then(HangingRows::pop)),
+                Side::After => self.progress.is_over = true,
+                Side::Within => {
+                    if !std::mem::replace(&mut self.progress.has_begun, true) && self.progress.part.start_s.is_some() {
+                        self.progress.before = Role::ALL.map(|role| *self.tracks.get(role).counts());
+                    }
+                    return Ok(match &mut self.hanging {
+                        Some(hanging) => hanging.pop(),
+                        None => Some(self.buffer.row.sample()),
+                    });
+                }
+            }
+        }
+        if self.progress.has_begun || self.progress.part == Part::default() {
+            return Ok(None);
+        }
+        let Progress { part, last_s, .. } = self.progress;
+        Err(SignalError::NothingInPart { part, last_s })
+    }
+
+    /// Makes the next row, in the buffer or in front of those that hang; its time, `None` at the end of the log.
+    fn make_row(&mut self) -> Result<Option<i64>, SignalError> {
         let Some(mut hanging) = self.hanging.take() else {
-            return Ok(if self.next_with_speeds()? { Some(self.buffer.row.sample()) } else { None });
+            return Ok(self.next_with_speeds()?.then_some(self.buffer.row.stamp_nanos));
         };
         let mut outcome = Ok(());
         while outcome.is_ok() && !hanging.is_ready() {
@@ -187,7 +227,7 @@ impl SignalReader {
                 .map(|has_row| if has_row { hanging.push(self.buffer.row.clone()) } else { hanging.end() });
         }
         let hanging = self.hanging.insert(hanging);
-        outcome.map(|()| hanging.pop())
+        outcome.map(|()| hanging.next_stamp_nanos())
     }
 
     /// Puts the next row, with its speeds, into the buffer; false at the end of the log.
@@ -342,7 +382,7 @@ impl SignalReader {
 
     fn check_end(&self) -> Result<(), SignalError> {
         if let Content::Csv(table) = &self.log.0 {
-            let has_cables = self.counts(Role::Cable).message_count > 0;
+            let has_cables = self.tracks.cable.counts().message_count > 0;
             return if has_cables { Ok(()) } else { Err(table.without_numbers().into()) };
         }
         let topic = self.topics.paths.get(Role::Cable).map_or_else(String::new, |path| path.topic.clone());
@@ -357,7 +397,7 @@ impl SignalReader {
             }
             return Err(SignalError::NoCableTopic { topic, topics });
         }
-        if self.counts(Role::Cable).message_count == 0 {
+        if self.tracks.cable.counts().message_count == 0 {
             let reason = self.first_problem(Role::Cable).unwrap_or("it is empty").to_owned();
             return Err(SignalError::NoUsableMessage { topic, reason });
         }
