@@ -37,7 +37,7 @@ impl Rows {
                 }
                 "/platform_pose" => all.add_vector(pose(&message.data), "pose", "x_m y_m z_m qx qy qz qw"),
                 "/platform_wrench" => {
-                    all.add_vector(wrench(&message.data), "wrench", "fx_n fy_n fz_n tx_nm ty_nm tz_nm")
+                    all.add_vector(wrench(&message.data), "wrench", "fx_n fy_n fz_n tx_nm ty_nm tz_nm");
                 }
                 other => panic!("{other}"),
             }

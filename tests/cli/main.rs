@@ -5,11 +5,13 @@
     clippy::panic,
     reason = "a test fails by panicking, its helpers too"
 )]
+#![allow(clippy::format_push_string, clippy::format_collect, reason = "texts of tests are put together as they read")]
 
 mod cdr;
 mod closed_stdout;
 mod command_line;
 mod continuum;
+mod convert;
 mod csv_logs;
 mod damage;
 mod discover;

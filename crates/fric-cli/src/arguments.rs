@@ -41,6 +41,13 @@ pub enum Command {
     /// Show what is in a log, what each signal maps to, and what is missing for which step
     #[command(after_help = "Example:\n  fric-cli info examples/mini-ipanema.mcap")]
     Info(InfoArguments),
+    /// Write any log that can be read as MCAP, its signals on the topics that are looked for by default
+    ///
+    /// Samples are joined on the time of the cable signal. The robot file is attached, so that no other command needs --model.
+    #[command(
+        after_help = "Example:\n  fric-cli convert examples/mini-ipanema.mcap -o converted.mcap --start 1 --end 3"
+    )]
+    Convert(ConvertArguments),
     /// Write the log of a simulated robot, with effects hidden in it on request
     #[command(after_help = "Examples:\n  fric-cli simulate --model examples/mini-ipanema.toml -o simulated.mcap \
                       --effect stribeck:ratio=0.5,velocity_m_per_s=0.02 --seed 7\n  \
@@ -74,7 +81,7 @@ pub enum Command {
 /// The log and its robot.
 #[derive(Debug, Args)]
 pub struct LogArguments {
-    /// MCAP or CSV log; several files are the parts of one split recording
+    /// Log (MCAP, CSV, rosbag2); several files are the parts of one split recording
     #[arg(required = true, value_name = "LOG")]
     pub logs: Vec<PathBuf>,
     /// Robot file; without it the one attached to the log
@@ -132,7 +139,7 @@ pub struct ReplayArguments {
 
 #[derive(Debug, Args)]
 pub struct FitArguments {
-    /// MCAP or CSV log; several are runs of the same robot, identified together
+    /// Log (MCAP, CSV, rosbag2); several are runs of the same robot, identified together
     #[arg(required = true, value_name = "LOG")]
     pub logs: Vec<PathBuf>,
     /// Robot file; without it the one attached to the first log that has one
@@ -159,7 +166,7 @@ pub struct FitArguments {
 
 #[derive(Debug, Args)]
 pub struct DiscoverArguments {
-    /// MCAP or CSV log with forces at the platform; several are runs of the same robot, looked at together. With a manipulator file,
+    /// Log (MCAP, CSV, rosbag2) with forces at the platform; several are runs of the same robot, looked at together. With a manipulator file,
     /// the run of a manipulator with gratings
     #[arg(required = true, value_name = "LOG")]
     pub logs: Vec<PathBuf>,
@@ -176,6 +183,18 @@ pub struct DiscoverArguments {
     pub report: Option<PathBuf>,
     #[command(flatten)]
     pub result: ResultArguments,
+}
+
+#[derive(Debug, Args)]
+pub struct ConvertArguments {
+    #[command(flatten)]
+    pub log: LogArguments,
+    /// The MCAP file to write
+    #[arg(short, long, value_name = "OUT.mcap", required = true, value_parser = a_file())]
+    pub output: PathBuf,
+    /// Replace the output if it exists
+    #[arg(long)]
+    pub force: bool,
 }
 
 /// What a fit compares the model with.

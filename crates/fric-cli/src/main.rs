@@ -25,6 +25,7 @@ fn main() -> ExitCode {
     interrupt::listen();
     let result = match &arguments.command {
         Command::Fit(arguments) => commands::fit::run(arguments),
+        Command::Convert(arguments) => commands::convert::run(arguments),
         Command::Discover(arguments) => commands::discover::run(arguments),
         Command::Replay(arguments) => commands::replay::run(arguments),
         Command::Info(arguments) => commands::info::run(arguments),

@@ -1,5 +1,6 @@
 //! fric-log
 
+mod bag;
 mod csv_log;
 mod error;
 pub mod log;

@@ -51,7 +51,8 @@ pub use self::segment::CHUNK_LIMIT_BYTES;
 
 use self::channels::ChannelTable;
 use self::merge::Merge;
-use self::reader::{Reader, SourceFile};
+use self::reader::Reader;
+pub(crate) use self::reader::SourceFile;
 use self::scan::AttachmentPlace;
 use self::segment::Segment;
 
@@ -146,6 +147,11 @@ impl Recording {
     pub fn open<P: AsRef<Path>>(paths: &[P]) -> Result<Self, RecordingError> {
         let paths: Vec<&Path> = paths.iter().map(AsRef::as_ref).collect();
         open::open(&paths)
+    }
+
+    /// The same for files that are open, with the names that they have for people.
+    pub(crate) fn of_files(files: Vec<SourceFile>) -> Result<Self, RecordingError> {
+        open::open_sources(files)
     }
 
     /// The channels known so far, each at the place of its [`Channel::id`].

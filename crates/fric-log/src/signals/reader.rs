@@ -148,7 +148,7 @@ impl SignalReader {
     pub fn place(&self, role: Role) -> Option<String> {
         const SHOWN: usize = 3;
         let path = self.topics.paths.get(role)?;
-        let Content::Csv(table) = &self.log.0 else { return Some(path.to_string()) };
+        let Content::Csv(table) = &self.log.content else { return Some(path.to_string()) };
         let columns = table.columns_of(role);
         Some(match columns.get(..SHOWN) {
             Some(shown) if columns.len() > SHOWN => format!("{}, …", shown.join(", ")),
@@ -291,7 +291,7 @@ impl SignalReader {
 
     /// Takes in what comes next of the log: a message, or a row of a table.
     fn read_next(&mut self) -> Result<(), SignalError> {
-        if matches!(self.log.0, Content::Csv(_)) { self.read_table_row() } else { self.read_message() }
+        if matches!(self.log.content, Content::Csv(_)) { self.read_table_row() } else { self.read_message() }
     }
 
     fn end(&mut self) {
@@ -301,7 +301,7 @@ impl SignalReader {
     }
 
     fn read_table_row(&mut self) -> Result<(), SignalError> {
-        let Content::Csv(table) = &mut self.log.0 else { return Ok(()) };
+        let Content::Csv(table) = &mut self.log.content else { return Ok(()) };
         let Some(row) = table.next_row(&self.topics.cable_names, &self.topics.paths)? else {
             self.end();
             return Ok(());
@@ -381,7 +381,7 @@ impl SignalReader {
     }
 
     fn check_end(&self) -> Result<(), SignalError> {
-        if let Content::Csv(table) = &self.log.0 {
+        if let Content::Csv(table) = &self.log.content {
             let has_cables = self.tracks.cable.counts().message_count > 0;
             return if has_cables { Ok(()) } else { Err(table.without_numbers().into()) };
         }

@@ -212,7 +212,8 @@ fn columns_that_are_missing_are_named_beside_those_there_are() {
     let text = "t,Force a,a.length_m\n0,1,2\n";
     read(text).fails(&["has no column `time_s`; it has `t`, `Force a`, `a.length_m`", "[log.columns]"]);
     let time = ("time_s", column("t", 1.0, 0.0));
-    read_files(&[("run.csv", text.as_bytes())], &[time.clone()]).fails(&["no column `a.force_n`; it has", "`Force a`"]);
+    read_files(&[("run.csv", text.as_bytes())], std::slice::from_ref(&time))
+        .fails(&["no column `a.force_n`; it has", "`Force a`"]);
     let force = ("a.force_n", column("Force A", 1.0, 0.0));
     // The nearest one first.
     read_files(&[("run.csv", text.as_bytes())], &[time, force]).fails(&["no column `Force A`; it has `Force a`, "]);
