@@ -40,7 +40,7 @@ fuzz_target!(|data: &[u8]| {
             assert!(numbers.iter().all(|number| number.is_finite()), "{output:?}");
         }
     }
-    let _ = (rows.warnings(), rows.recording().warnings());
+    let _ = (rows.warnings(), rows.log().warnings());
 });
 
 /// What a log has to say, without the messages themselves.

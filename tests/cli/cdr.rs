@@ -72,9 +72,18 @@ pub fn joint_state(data: &[u8]) -> JointState {
 
 /// `geometry_msgs/msg/WrenchStamped`: stamp, force and torque.
 pub fn wrench(data: &[u8]) -> (u64, [f64; 6]) {
+    stamped(data)
+}
+
+/// `geometry_msgs/msg/PoseStamped`: stamp, position and quaternion.
+pub fn pose(data: &[u8]) -> (u64, [f64; 7]) {
+    stamped(data)
+}
+
+fn stamped<const COUNT: usize>(data: &[u8]) -> (u64, [f64; COUNT]) {
     let mut cdr = Cdr::new(data);
     let stamp_nanos = cdr.header();
-    let numbers = [(); 6].map(|()| cdr.f64());
+    let numbers = [(); COUNT].map(|()| cdr.f64());
     cdr.end();
     (stamp_nanos, numbers)
 }

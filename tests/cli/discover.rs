@@ -12,13 +12,13 @@ use super::simulate::bench_robot;
 use super::support::{Place, Run, rms};
 
 /// A bench of two cables; their friction is near what a simulation with it has.
-fn two_cables() -> String {
+pub fn two_cables() -> String {
     let second = bench_robot().split_once("[[cable]]").unwrap().1.replace("'winch'", "'other'");
     format!("# The bench in the cellar.\n{}\n[[cable]]{second}", bench_robot())
 }
 
 /// A log of the two cables, whose friction falls with speed, which the robot file does not say.
-fn hidden_stribeck() -> &'static [u8] {
+pub fn hidden_stribeck() -> &'static [u8] {
     static LOG: OnceLock<Vec<u8>> = OnceLock::new();
     LOG.get_or_init(|| {
         let effect = ["--duration", "25", "--seed", "3", "--effect", "stribeck:ratio=0.6,velocity_m_per_s=0.03"];

@@ -56,6 +56,7 @@ fn each_command_has_an_example_that_runs() {
             "by-wrench.toml",
             "calibrated.toml",
             "compensated.mcap",
+            "converted.mcap",
             "crossing.mcap",
             "discovery.html",
             "examples",

@@ -5,11 +5,14 @@
     clippy::panic,
     reason = "a test fails by panicking, its helpers too"
 )]
+#![allow(clippy::format_push_string, clippy::format_collect, reason = "texts of tests are put together as they read")]
 
 mod cdr;
 mod closed_stdout;
 mod command_line;
 mod continuum;
+mod convert;
+mod csv_logs;
 mod damage;
 mod discover;
 mod excite;
@@ -24,6 +27,7 @@ mod interrupt;
 mod known;
 mod logs;
 mod outputs;
+mod part;
 mod replay;
 mod replay_output;
 mod report;

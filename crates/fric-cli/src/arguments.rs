@@ -8,6 +8,9 @@ use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use fric_core::effects::Effect;
 use fric_lab::simulate::DISTURBANCES;
+use fric_log::signals::Part;
+
+use crate::failure::{Failure, Outcome};
 
 /// Friction compensation for cable-driven robots: identify friction, find what the model lacks, replay logs, look into
 /// them, simulate and excite robots; tendons of continuum manipulators.
@@ -38,6 +41,13 @@ pub enum Command {
     /// Show what is in a log, what each signal maps to, and what is missing for which step
     #[command(after_help = "Example:\n  fric-cli info examples/mini-ipanema.mcap")]
     Info(InfoArguments),
+    /// Write any log that can be read as MCAP, its signals on the topics that are looked for by default
+    ///
+    /// Samples are joined on the time of the cable signal. The robot file is attached, so that no other command needs --model.
+    #[command(
+        after_help = "Example:\n  fric-cli convert examples/mini-ipanema.mcap -o converted.mcap --start 1 --end 3"
+    )]
+    Convert(ConvertArguments),
     /// Write the log of a simulated robot, with effects hidden in it on request
     #[command(after_help = "Examples:\n  fric-cli simulate --model examples/mini-ipanema.toml -o simulated.mcap \
                       --effect stribeck:ratio=0.5,velocity_m_per_s=0.02 --seed 7\n  \
@@ -71,12 +81,46 @@ pub enum Command {
 /// The log and its robot.
 #[derive(Debug, Args)]
 pub struct LogArguments {
-    /// MCAP log; several files are the parts of one split recording
+    /// Log (MCAP, CSV, rosbag2); several files are the parts of one split recording
     #[arg(required = true, value_name = "LOG")]
     pub logs: Vec<PathBuf>,
     /// Robot file; without it the one attached to the log
     #[arg(long, value_name = "M.toml")]
     pub model: Option<PathBuf>,
+    #[command(flatten)]
+    pub part: PartArguments,
+}
+
+/// Which part of the log.
+#[derive(Clone, Copy, Debug, Args)]
+pub struct PartArguments {
+    /// Leave out what is less than so many seconds after the first sample
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = a_time)]
+    start: Option<f64>,
+    /// Leave out what is so many seconds after the first sample, or more
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = a_time)]
+    end: Option<f64>,
+}
+
+impl PartArguments {
+    /// The part, which has a beginning before its end.
+    pub fn part(self) -> Outcome<Part> {
+        let Self { start: start_s, end: end_s } = self;
+        match start_s.zip(end_s) {
+            Some((start_s, end_s)) if start_s >= end_s => {
+                Err(Failure::usage(format!("--start {start_s} is not before --end {end_s}")))
+            }
+            _ => Ok(Part { start_s, end_s }),
+        }
+    }
+
+    /// Makes sure that none is given where there is no log of a robot.
+    pub fn check_none(self) -> Outcome {
+        if self.start.is_none() && self.end.is_none() {
+            return Ok(());
+        }
+        Err(Failure::usage("--start and --end are for the logs of robots, not for the run of a manipulator"))
+    }
 }
 
 #[derive(Debug, Args)]
@@ -95,12 +139,14 @@ pub struct ReplayArguments {
 
 #[derive(Debug, Args)]
 pub struct FitArguments {
-    /// MCAP log; several are runs of the same robot, identified together
+    /// Log (MCAP, CSV, rosbag2); several are runs of the same robot, identified together
     #[arg(required = true, value_name = "LOG")]
     pub logs: Vec<PathBuf>,
     /// Robot file; without it the one attached to the first log that has one
     #[arg(long, value_name = "M.toml")]
     pub model: Option<PathBuf>,
+    #[command(flatten)]
+    pub part: PartArguments,
     /// Write the robot file with the identified values to this file
     #[arg(short, long, value_name = "FITTED.toml", required = true, value_parser = a_file())]
     pub output: PathBuf,
@@ -120,13 +166,15 @@ pub struct FitArguments {
 
 #[derive(Debug, Args)]
 pub struct DiscoverArguments {
-    /// MCAP log with forces at the platform; several are runs of the same robot, looked at together. With a manipulator file,
+    /// Log (MCAP, CSV, rosbag2) with forces at the platform; several are runs of the same robot, looked at together. With a manipulator file,
     /// the run of a manipulator with gratings
     #[arg(required = true, value_name = "LOG")]
     pub logs: Vec<PathBuf>,
     /// Robot or manipulator file; without it the robot file attached to the first log that has one
     #[arg(long, value_name = "M.toml")]
     pub model: Option<PathBuf>,
+    #[command(flatten)]
+    pub part: PartArguments,
     /// Write the file with what was found, and with values fitted to the log, to this file; without it, only tell
     #[arg(short, long, value_name = "EXTENDED.toml", value_parser = a_file())]
     pub output: Option<PathBuf>,
@@ -135,6 +183,18 @@ pub struct DiscoverArguments {
     pub report: Option<PathBuf>,
     #[command(flatten)]
     pub result: ResultArguments,
+}
+
+#[derive(Debug, Args)]
+pub struct ConvertArguments {
+    #[command(flatten)]
+    pub log: LogArguments,
+    /// The MCAP file to write
+    #[arg(short, long, value_name = "OUT.mcap", required = true, value_parser = a_file())]
+    pub output: PathBuf,
+    /// Replace the output if it exists
+    #[arg(long)]
+    pub force: bool,
 }
 
 /// What a fit compares the model with.
@@ -316,6 +376,11 @@ fn a_file() -> impl TypedValueParser<Value = PathBuf> {
 /// Whether it is in range depends on the robot and is checked with it.
 fn a_number(text: &str) -> Result<f64, &'static str> {
     text.parse().map_err(|_| "it must be a number in digits, such as 0 or 1.5, without its unit")
+}
+
+fn a_time(text: &str) -> Result<f64, &'static str> {
+    let time_s = text.parse().ok().filter(|time_s: &f64| time_s.is_finite() && *time_s >= 0.0);
+    time_s.ok_or("it must be a number of seconds, 0 or greater, such as 2.5")
 }
 
 fn a_seed(text: &str) -> Result<u64, String> {

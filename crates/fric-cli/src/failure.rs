@@ -14,6 +14,7 @@ use fric_lab::excite::ExcitationError;
 use fric_lab::fit::FitError;
 use fric_lab::hysteresis::HysteresisError;
 use fric_lab::simulate::SimulationError;
+use fric_log::log::LogError;
 use fric_log::output::{OutputError, directory_of};
 use fric_log::recording::RecordingError;
 use fric_log::signals::{SignalError, TimesApart};
@@ -96,7 +97,7 @@ macro_rules! failure_with_advice_from {
     )*};
 }
 
-failure_with_advice_from!(ExcitationError, HysteresisError, RecordingError, SignalError, SimulationError);
+failure_with_advice_from!(ExcitationError, HysteresisError, LogError, RecordingError, SignalError, SimulationError);
 
 impl From<TimesApart> for Failure {
     fn from(apart: TimesApart) -> Self {

@@ -7,8 +7,8 @@ use std::time::Duration;
 use fric_core::CableParams;
 use fric_lab::fit::readiness::{Holdings, Readiness};
 use fric_lab::fit::{Measurements, Progress, Reference};
-use fric_log::recording::Recording;
-use fric_log::signals::{Role, SignalReader, TimesApart};
+use fric_log::log::Log;
+use fric_log::signals::{Part, Role, SignalReader, TimesApart};
 
 use crate::failure::{Failure, Outcome};
 use crate::interrupt;
@@ -35,7 +35,7 @@ pub fn check_named_once(logs: &[PathBuf]) -> Outcome {
 /// The robot file named, or else the first that is attached to a log.
 pub fn find_model(named: Option<&Path>, logs: &[PathBuf]) -> Outcome<Model> {
     for log in logs {
-        if let Some(model) = Model::find(named, &Recording::open(&[log])?)? {
+        if let Some(model) = Model::find(named, &Log::open(&[log])?)? {
             return Ok(model);
         }
     }
@@ -57,8 +57,8 @@ impl LogsRead<'_> {
     }
 }
 
-/// Reads all logs, each by itself.
-pub fn read<'a>(logs: &[PathBuf], model: &'a Model, reference: Reference) -> Outcome<LogsRead<'a>> {
+/// Reads the same part of all logs, each by itself.
+pub fn read<'a>(logs: &[PathBuf], part: Part, model: &'a Model, reference: Reference) -> Outcome<LogsRead<'a>> {
     // What is not compared with is not even read.
     let (unread, compared) = match reference {
         Reference::Forces => (Role::Wrench, Role::Reference),
@@ -80,7 +80,7 @@ pub fn read<'a>(logs: &[PathBuf], model: &'a Model, reference: Reference) -> Out
     let mut all: Option<Holdings> = None;
     for log in logs {
         measurements.start_log();
-        let mut reader = SignalReader::new(Recording::open(&[log])?, paths.clone(), &names);
+        let mut reader = SignalReader::new(Log::open(&[log])?, paths.clone(), &names).within(part);
         let holdings = read_one(&mut reader, &mut measurements, names.len())?;
         warn_all(reader.cycle_warning(&model.robot).as_slice());
         all_apart.retain(|role| reader.times_apart(*role).is_some());
@@ -101,11 +101,11 @@ pub fn read<'a>(logs: &[PathBuf], model: &'a Model, reference: Reference) -> Out
 
 fn read_one(reader: &mut SignalReader, measurements: &mut Measurements<'_>, cable_count: usize) -> Outcome<Holdings> {
     let mut holdings = Holdings::new(cable_count);
-    let bar = progress::bytes(reader.recording().total_bytes());
+    let bar = progress::bytes(reader.log().total_bytes());
     let end = loop {
         if holdings.rows.is_multiple_of(STRIDE) {
             interrupt::check()?;
-            bar.set_position(reader.recording().bytes_read());
+            bar.set_position(reader.log().bytes_read());
         }
         match reader.next_row() {
             Ok(Some(sample)) => {
@@ -117,7 +117,7 @@ fn read_one(reader: &mut SignalReader, measurements: &mut Measurements<'_>, cabl
         }
     };
     bar.finish_and_clear();
-    warn_all(&reader.recording().warnings());
+    warn_all(&reader.log().warnings());
     end?;
     warn_all(&reader.warnings());
     Ok(holdings)

@@ -5,7 +5,7 @@ use std::path::Path;
 use fric_core::continuum::file::FORMAT as MANIPULATOR_FORMAT;
 use fric_core::robot::file::{FORMAT as ROBOT_FORMAT, RobotFile};
 use fric_core::text_file;
-use fric_log::recording::Recording;
+use fric_log::log::Log;
 use fric_log::robot::{ATTACHED, AttachedRobot, AttachedRobotError, ROBOT_FILE};
 use fric_log::signals::SignalPaths;
 
@@ -49,12 +49,12 @@ impl Model {
         Self::parse(text, origin)
     }
 
-    /// The robot file named, or else the one attached to the recording; `None` where there is neither.
-    pub fn find(named: Option<&Path>, recording: &Recording) -> Outcome<Option<Self>> {
+    /// The robot file named, or else the one attached to the log; `None` where there is neither.
+    pub fn find(named: Option<&Path>, log: &Log) -> Outcome<Option<Self>> {
         if let Some(path) = named {
             return Self::read(path).map(Some);
         }
-        match AttachedRobot::find(recording) {
+        match AttachedRobot::find(log) {
             Ok(attached) => {
                 Ok(attached.map(|AttachedRobot { robot, text }| Self { robot, text, origin: ATTACHED.to_owned() }))
             }

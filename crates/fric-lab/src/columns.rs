@@ -4,6 +4,8 @@
 //! gives them out again to the bit, from columns wherever they lie. Rows stand one after the other, a number per cable or
 //! coordinate; what is not known is NaN. Nothing is checked here and nothing computed; memory grows with the log.
 
+use std::ops::Range;
+
 use fric_core::{CableInput, CableOutput, Pose, Sample, Wrench};
 
 /// Samples, column by column.
@@ -109,6 +111,27 @@ impl<'a> SampleRows<'a> {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.stamp_nanos.is_empty()
+    }
+
+    /// The rows of a range, which has to be within.
+    #[must_use]
+    pub fn copied(&self, rows: Range<usize>) -> SampleColumns {
+        let row_count = self.stamp_nanos.len().max(1);
+        let of = |column: &[f64]| {
+            let width = column.len() / row_count;
+            column.get(rows.start * width..rows.end * width).unwrap_or_default().to_vec()
+        };
+        SampleColumns {
+            stamp_nanos: self.stamp_nanos.get(rows.clone()).unwrap_or_default().to_vec(),
+            sensor_force_n: of(self.sensor_force_n),
+            length_m: of(self.length_m),
+            speed_m_per_s: of(self.speed_m_per_s),
+            reference_force_n: of(self.reference_force_n),
+            position_m: of(self.position_m),
+            orientation_xyzw: of(self.orientation_xyzw),
+            outside_force_n: of(self.outside_force_n),
+            outside_torque_nm: of(self.outside_torque_nm),
+        }
     }
 
     /// The sample of a row; `cables` is room for its signals. `None` past the last row.

@@ -1,6 +1,9 @@
 //! fric-log
 
+mod bag;
+mod csv_log;
 mod error;
+pub mod log;
 pub mod output;
 pub mod path;
 pub mod recording;
@@ -11,4 +14,5 @@ pub mod table;
 mod warnings;
 pub mod write;
 
+pub use csv_log::CsvError;
 pub use error::{in_full, reason, with_sources};

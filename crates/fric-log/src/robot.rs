@@ -3,8 +3,9 @@
 use fric_core::robot::file::{LogTable, ReferenceTable, RobotFile, RobotFileError};
 use thiserror::Error;
 
+use crate::log::Log;
 use crate::path::{MessagePath, PathError};
-use crate::recording::{Recording, RecordingError};
+use crate::recording::RecordingError;
 use crate::signals::{Role, SignalPaths};
 
 /// Name of the attachment that holds the robot file.
@@ -47,12 +48,12 @@ pub struct SignalPathError {
 }
 
 impl AttachedRobot {
-    /// The robot file attached to a recording; `None` if there is none.
+    /// The robot file attached to a log; `None` if there is none.
     ///
     /// # Errors
     /// [`AttachedRobotError`] if it cannot be read or is not right.
-    pub fn find(recording: &Recording) -> Result<Option<Self>, AttachedRobotError> {
-        let Some(attachment) = recording.attachment(ROBOT_FILE)? else { return Ok(None) };
+    pub fn find(log: &Log) -> Result<Option<Self>, AttachedRobotError> {
+        let Some(attachment) = log.attachment(ROBOT_FILE)? else { return Ok(None) };
         let text = String::from_utf8(attachment.data).map_err(|_| AttachedRobotError::NotText)?;
         Ok(Some(Self { robot: RobotFile::parse(&text, ATTACHED)?, text }))
     }
@@ -64,7 +65,7 @@ impl SignalPaths {
     /// # Errors
     /// [`SignalPathError`] for the first that is no path.
     pub fn of_robot(robot: &RobotFile) -> Result<Self, SignalPathError> {
-        let LogTable { cable, length, speed, reference, pose, wrench } = &robot.options().log;
+        let LogTable { cable, length, speed, reference, pose, wrench, columns } = &robot.options().log;
         let reference = match reference {
             ReferenceTable::Signal(path) => Some(path),
             ReferenceTable::Known(_) => None,
@@ -77,7 +78,7 @@ impl SignalPaths {
             (Role::Pose, Some(pose)),
             (Role::Wrench, Some(wrench)),
         ];
-        let mut signals = Self::default();
+        let mut signals = Self::default().with_columns(columns.clone());
         for (role, text) in paths {
             let path = text.map(|text| text.parse::<MessagePath>()).transpose();
             signals = signals.with(role, path.map_err(|source| SignalPathError { role, source })?);

@@ -42,7 +42,7 @@ impl SignalReader {
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
         for role in Role::ALL {
-            let Some(path) = self.paths().get(role) else { continue };
+            let Some(path) = self.place(role) else { continue };
             let counts = self.counts(role);
             if matches!(role, Role::Length | Role::Speed) && counts.message_count == 0 {
                 warnings.push(format!(
@@ -73,6 +73,11 @@ impl SignalReader {
         if no_pose && needs_pose {
             let (nothing, advice) = if has_messages {
                 ("no row has a", "")
+            } else if self.log().column_names().is_some() {
+                (
+                    "the log has no",
+                    "; name the pose's columns, such as `pose.x_m`, under `[log.columns]` in the robot file",
+                )
             } else {
                 ("the log has no", "; name the pose's topic as `pose` under `[log]` in the robot file")
             };

@@ -5,7 +5,10 @@
     clippy::panic,
     reason = "a test fails by panicking, its helpers too"
 )]
+#![allow(clippy::format_push_string, clippy::format_collect, reason = "texts of tests are put together as they read")]
 
+mod bag;
+mod csv_log;
 mod path;
 mod recording;
 mod schema;

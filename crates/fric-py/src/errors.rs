@@ -10,6 +10,7 @@ use fric_lab::continuum::ContinuumError;
 use fric_lab::excite::ExcitationError;
 use fric_lab::hysteresis::HysteresisError;
 use fric_lab::simulate::{HiddenError, SimulationError};
+use fric_log::log::LogError;
 use fric_log::output;
 use fric_log::recording::RecordingError;
 use fric_log::robot::{AttachedRobotError, SignalPathError};
@@ -147,6 +148,15 @@ impl From<RecordingError> for Fault {
         match &error {
             RecordingError::Missing { path } => Self::no_log(in_full(&error), path),
             error => Self::log(in_full(error)),
+        }
+    }
+}
+
+impl From<LogError> for Fault {
+    fn from(error: LogError) -> Self {
+        match error {
+            LogError::Recording(error) => error.into(),
+            error => Self::log(in_full(&error)),
         }
     }
 }

@@ -5,14 +5,15 @@ mod pickling;
 use std::path::PathBuf;
 
 use fric_core::Pose;
+use fric_core::robot::unknown_name;
 use fric_lab::columns::{SampleColumns, SampleRows};
-use fric_log::recording::Recording;
+use fric_log::log::Log as LogSource;
 use fric_log::robot::{AttachedRobot, ROBOT_FILE};
 use fric_log::signals::{KnownLength, Role, SignalPaths, SignalReader};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
-use pyo3::exceptions::PyTypeError;
+use pyo3::exceptions::{PyKeyError, PyTypeError};
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
+use pyo3::types::{PyIterator, PySlice, PyTuple};
 
 use crate::arrays::{Axis, Wanted, fixed, fixed_rows, integers, numbers};
 use crate::errors::{Fault, Outcome};
@@ -21,7 +22,8 @@ use crate::watch::{STRIDE, Watch};
 
 /// The samples of a log, joined on the time of the cable signal: arrays with a row per sample that cannot be written to.
 ///
-/// Columns of cable arrays are the cables in the order of `cable_names`. What is not known at a time is NaN.
+/// Columns of cable arrays are the cables in the order of `cable_names`. What is not known at a time is NaN. `log[2.0:8.5]` is the part
+/// between two times, `len(log)` the number of rows; `"position_m" in log` tells whether a signal is known, iteration gives the names of those.
 ///
 /// >>> import numpy as np
 /// >>> log = Log.from_arrays(
@@ -145,12 +147,102 @@ impl Log {
         self.stamp_nanos.bind(py).len()
     }
 
+    /// The part between two times, s since the first row, the second itself left out; or the array of a signal.
+    ///
+    /// The rows are those of the whole log: a speed that was derived there stays as it is.
+    fn __getitem__<'py>(slf: &Bound<'py, Self>, key: &Bound<'py, PyAny>) -> Outcome<Bound<'py, PyAny>> {
+        let (py, log) = (slf.py(), slf.get());
+        if let Ok(slice) = key.cast::<PySlice>() {
+            return Ok(Bound::new(py, log.part(py, slice)?)?.into_any());
+        }
+        let Ok(name) = key.extract::<String>() else {
+            let class = key.get_type();
+            return Err(PyTypeError::new_err(format!(
+                "a log is cut by seconds, log[2.0:8.5], or asked for a signal, log[\"length_m\"], not by {class}"
+            ))
+            .into());
+        };
+        match SIGNALS.iter().find(|signal| **signal == name) {
+            Some(signal) => Ok(slf.getattr(*signal)?),
+            None => Err(PyKeyError::new_err(unknown_name("signal", &name, SIGNALS.into_iter())).into()),
+        }
+    }
+
+    /// Whether the log has a signal of this name.
+    fn __contains__(&self, py: Python<'_>, name: &str) -> Outcome<bool> {
+        Ok(self.signals(py)?.contains(&name))
+    }
+
+    /// The names of the signals that the log has: those that are known at any time.
+    fn __iter__<'py>(&self, py: Python<'py>) -> Outcome<Bound<'py, PyIterator>> {
+        Ok(PyTuple::new(py, self.signals(py)?)?.try_iter()?)
+    }
+
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         Ok(format!("<Log: {} rows, cables {}>", self.__len__(py)?, self.cable_names.join(", ")))
     }
 }
 
+/// The signals that a log may have, by the names of their arrays.
+const SIGNALS: [&str; 8] = [
+    "sensor_force_n",
+    "length_m",
+    "speed_m_per_s",
+    "reference_force_n",
+    "position_m",
+    "orientation_xyzw",
+    "outside_force_n",
+    "outside_torque_nm",
+];
+
 impl Log {
+    /// The signals of which any value is known.
+    fn signals(&self, py: Python<'_>) -> Outcome<Vec<&'static str>> {
+        self.with_rows(py, |rows| {
+            let columns = [
+                rows.sensor_force_n,
+                rows.length_m,
+                rows.speed_m_per_s,
+                rows.reference_force_n,
+                rows.position_m,
+                rows.orientation_xyzw,
+                rows.outside_force_n,
+                rows.outside_torque_nm,
+            ];
+            let is_known = |column: &[f64]| column.iter().any(|number| !number.is_nan());
+            let known = SIGNALS.into_iter().zip(columns).filter(|(_, column)| is_known(column));
+            Ok(known.map(|(name, _)| name).collect())
+        })
+    }
+
+    /// The rows from a time on and before another.
+    fn part(&self, py: Python<'_>, slice: &Bound<'_, PySlice>) -> Outcome<Self> {
+        let bound = |name: &str| {
+            let value = slice.getattr(name)?;
+            let refused = |_| PyTypeError::new_err(format!("a log is cut by seconds, not by {}", value.get_type()));
+            if value.is_none() { Ok(None) } else { value.extract::<f64>().map(Some).map_err(refused) }
+        };
+        if !slice.getattr("step")?.is_none() {
+            return Err(PyTypeError::new_err("a log is cut without a step: log[2.0:8.5]").into());
+        }
+        let (start_s, end_s) = (bound("start")?, bound("stop")?);
+        let times = self.time_s.bind(py).readonly();
+        let is_within =
+            |time_s: f64| start_s.is_none_or(|start_s| time_s >= start_s) && end_s.is_none_or(|end_s| time_s < end_s);
+        let times_s = times.as_slice()?;
+        let start = times_s.iter().position(|time_s| is_within(*time_s)).unwrap_or(times_s.len());
+        let within = times_s.iter().skip(start).take_while(|time_s| end_s.is_none_or(|end_s| **time_s < end_s));
+        let columns = self.with_rows(py, |rows| Ok(rows.copied(start..start + within.count())))?;
+        let names: Vec<&str> = self.cable_names.iter().map(String::as_str).collect();
+        let robot = self.robot.as_ref().map(|robot| robot.borrow(py).clone());
+        Self::new(py, columns, &names, robot, self.sources.clone())
+    }
+
+    /// The first and the last time, ns; `None` without rows.
+    pub fn stamps_nanos(&self, py: Python<'_>) -> Outcome<Option<(i64, i64)>> {
+        self.with_rows(py, |rows| Ok(rows.stamp_nanos.first().copied().zip(rows.stamp_nanos.last().copied())))
+    }
+
     /// Samples for Python, without copying them.
     pub fn new(
         py: Python<'_>,
@@ -220,7 +312,7 @@ impl Log {
     }
 }
 
-/// Reads an MCAP log, or the files of one split recording, for a robot: the one given, else the one attached to the log.
+/// Reads an MCAP or CSV log, or the files of one split recording, for a robot: the one given, else the one attached to the log.
 ///
 /// What is out of the ordinary in the log is told as LogWarning. Samples are joined on the time of the cable signal; speed
 /// that the log does not have is derived from the length.
@@ -262,24 +354,24 @@ pub fn read(
             ))
         })?,
     };
-    let recording = py.detach(|| Recording::open(&sources))?;
+    let source = py.detach(|| LogSource::open(&sources))?;
     let robot = match robot {
         Some(robot) => robot.borrow().clone(),
-        None => AttachedRobot::find(&recording)?.map(|attached| Robot::new(attached.robot, attached.text)).ok_or_else(
+        None => AttachedRobot::find(&source)?.map(|attached| Robot::new(attached.robot, attached.text)).ok_or_else(
             || Fault::log(format!("the log has no robot file attached ({ROBOT_FILE}); give the robot as `robot`")),
         )?,
     };
     let file = robot.file.clone();
     let names = file.cable_names();
-    let total_bytes = recording.total_bytes();
+    let total_bytes = source.total_bytes();
     let mut paths = SignalPaths::of_robot(&file)?;
     if let Some(unread) = unread {
         paths = paths.with(unread, None);
     }
-    let mut reader = SignalReader::new(recording, paths, &names);
+    let mut reader = SignalReader::new(source, paths, &names);
     let mut columns = SampleColumns::default();
     let end = loop {
-        watch.look(reader.recording().bytes_read(), total_bytes)?;
+        watch.look(reader.log().bytes_read(), total_bytes)?;
         let piece = py.detach(|| {
             for _ in 0..STRIDE {
                 let Some(sample) = reader.next_row()? else { return Ok(true) };
@@ -295,7 +387,7 @@ pub fn read(
     };
     watch.look(total_bytes, total_bytes)?;
     // Damage may be why there is nothing to go on with.
-    warn(py, &reader.recording().warnings())?;
+    warn(py, &reader.log().warnings())?;
     end?;
     warn(py, &reader.warnings())?;
     match unread {

@@ -45,9 +45,13 @@ impl<'py> Runs<'py> {
         };
         for (count, item) in self.0.iter().enumerate() {
             let own = files(item);
-            let is_same =
-                |other: &Bound<'_, PyAny>| other.is(item) || files(other).iter().any(|file| own.contains(file));
-            if self.0.iter().take(count).any(is_same) {
+            let times = times(item)?;
+            let mut is_same = false;
+            for other in self.0.iter().take(count) {
+                let shares_file = files(other).iter().any(|file| own.contains(file));
+                is_same |= other.is(item) || shares_file && overlap(times, self::times(other)?);
+            }
+            if is_same {
                 let name = own.first().map_or_else(|| "a log".to_owned(), |path| path.display().to_string());
                 return Err(Fault::config(format!("{name} is given twice, and its samples would count twice")));
             }
@@ -108,6 +112,16 @@ fn sources(item: &Bound<'_, PyAny>) -> Vec<PathBuf> {
         Ok(log) => log.get().sources.clone(),
         Err(_) => item.extract().into_iter().collect(),
     }
+}
+
+/// The first and the last time of a log that has been read, ns.
+fn times(item: &Bound<'_, PyAny>) -> Outcome<Option<(i64, i64)>> {
+    item.cast::<Log>().map_or(Ok(None), |log| log.get().stamps_nanos(item.py()))
+}
+
+/// Whether two parts of a log may have a time in common; what has not been read is all of it.
+fn overlap(one: Option<(i64, i64)>, other: Option<(i64, i64)>) -> bool {
+    one.zip(other).is_none_or(|((from, to), (other_from, other_to))| from <= other_to && other_from <= to)
 }
 
 /// Takes in a log.

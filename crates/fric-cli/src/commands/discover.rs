@@ -17,7 +17,7 @@ use fric_work::report;
 
 /// Runs the command.
 pub fn run(arguments: &DiscoverArguments) -> Outcome {
-    let DiscoverArguments { logs, model, output, report, result } = arguments;
+    let DiscoverArguments { logs, model, part, output, report, result } = arguments;
     if continuum::is_manipulator(model.as_deref()) {
         return continuum::discover::run(arguments);
     }
@@ -28,6 +28,7 @@ pub fn run(arguments: &DiscoverArguments) -> Outcome {
     let json_file = result.json.as_deref().filter(|path| !output::is_stdout(path));
     output::check_distinct(&[output.as_deref(), report.as_deref(), json_file])?;
     check_named_once(logs)?;
+    let part = part.part()?;
     let mut inputs = logs.clone();
     inputs.extend(model.clone());
     let model = find_model(model.as_deref(), logs)?;
@@ -35,7 +36,7 @@ pub fn run(arguments: &DiscoverArguments) -> Outcome {
     let report = report.as_ref().map(|path| OutputFile::create(path, &inputs, result.force)).transpose()?;
     let extended_file = output.as_ref().map(|path| OutputFile::create(path, &inputs, result.force)).transpose()?;
 
-    let read = read(logs, &model, Reference::Forces)?;
+    let read = read(logs, part, &model, Reference::Forces)?;
     let readiness = readiness::to_discover(&model.robot, &read.holdings);
     // What is missing for some cables only stands beside their verdicts.
     read.check(&readiness)?;

@@ -13,10 +13,11 @@ use crate::warnings::warn_all;
 
 /// Runs the command.
 pub fn run(arguments: &FitArguments) -> Outcome {
-    let FitArguments { logs, model, output, reference, parameters, huber, result } = arguments;
+    let FitArguments { logs, model, part, output, reference, parameters, huber, result } = arguments;
     let json_file = result.json.as_deref().filter(|path| !output::is_stdout(path));
     output::check_distinct(&[Some(output), json_file])?;
     check_named_once(logs)?;
+    let part = part.part()?;
     let options = FitOptions {
         parameters: parameters.as_deref().map(named).transpose()?,
         weighing: if *huber { Weighing::Huber } else { Weighing::LeastSquares },
@@ -29,7 +30,7 @@ pub fn run(arguments: &FitArguments) -> Outcome {
 
     let (fits, readiness) = match reference {
         ReferenceName::Forces => {
-            let read = read(logs, &model, Reference::Forces)?;
+            let read = read(logs, part, &model, Reference::Forces)?;
             let readiness = readiness::by_forces(&model.robot, &read.holdings);
             warn_all(&read.check(&readiness)?);
             (Fits::Forces(watched("fitted", |progress| fit_cables(&read.measurements, &options, progress))?), readiness)
@@ -37,7 +38,7 @@ pub fn run(arguments: &FitArguments) -> Outcome {
         ReferenceName::Wrench => {
             // The robot file alone can rule it out.
             readiness::geometry(&model.robot, &model.origin).map_or(Ok(()), |lack| Err(lack.error()))?;
-            let read = read(logs, &model, Reference::Wrench)?;
+            let read = read(logs, part, &model, Reference::Wrench)?;
             let readiness = readiness::by_wrench(&model.robot, &model.origin, &read.holdings);
             warn_all(&read.check(&readiness)?);
             let fit = watched("fitted", |progress| fit_wrench(&read.measurements, &options, progress))??;

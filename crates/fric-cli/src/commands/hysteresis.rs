@@ -2,8 +2,8 @@
 
 use fric_core::Sample;
 use fric_lab::hysteresis::{Hysteresis, HysteresisResult, Survey};
-use fric_log::recording::Recording;
-use fric_log::signals::SignalReader;
+use fric_log::log::Log;
+use fric_log::signals::{Part, SignalReader};
 
 use crate::arguments::HysteresisArguments;
 use crate::failure::Outcome;
@@ -16,8 +16,9 @@ use crate::warnings::warn_all;
 /// Runs the command.
 pub fn run(arguments: &HysteresisArguments) -> Outcome {
     let HysteresisArguments { log, result } = arguments;
-    let recording = Recording::open(&log.logs)?;
-    let model = Model::find(log.model.as_deref(), &recording)?.ok_or_else(model::missing)?;
+    let part = log.part.part()?;
+    let source = Log::open(&log.logs)?;
+    let model = Model::find(log.model.as_deref(), &source)?.ok_or_else(model::missing)?;
     let mut inputs = log.logs.clone();
     inputs.extend(log.model.clone());
     let json = JsonTarget::prepare(result.json.as_deref(), &inputs, result.force)?;
@@ -25,14 +26,14 @@ pub fn run(arguments: &HysteresisArguments) -> Outcome {
     // The first reading finds the position, the second runs the compensator; what the log is like is told once.
     let mut survey = Survey::new(&model.robot)?;
     let warn_about_log = |reader: &SignalReader| {
-        warn_all(&reader.recording().warnings());
+        warn_all(&reader.log().warnings());
         warn_all(&reader.warnings());
     };
-    read(recording, &model, |sample| survey.add(sample), warn_about_log)?;
+    read(source, part, &model, |sample| survey.add(sample), warn_about_log)?;
     let crossed = survey.finish()?;
     let mut hysteresis = Hysteresis::new(&model.robot, &crossed)?;
     let warn_about_robot = |reader: &SignalReader| warn_all(&reader.robot_warnings(&model.robot));
-    read(Recording::open(&log.logs)?, &model, |sample| hysteresis.step(sample), warn_about_robot)?;
+    read(Log::open(&log.logs)?, part, &model, |sample| hysteresis.step(sample), warn_about_robot)?;
     warn_all(&model.robot.warnings());
     warn_all(&hysteresis.replay().cable_warnings(&model.robot));
 
@@ -43,19 +44,20 @@ pub fn run(arguments: &HysteresisArguments) -> Outcome {
 
 /// All samples of the log one after the other.
 fn read(
-    recording: Recording,
+    log: Log,
+    part: Part,
     model: &Model,
     mut take: impl FnMut(&Sample<'_>),
     warn: impl FnOnce(&SignalReader),
 ) -> Outcome {
     let paths = model.signal_paths()?;
-    let bar = progress::bytes(recording.total_bytes());
-    let mut reader = SignalReader::new(recording, paths, &model.robot.cable_names());
+    let bar = progress::bytes(log.total_bytes());
+    let mut reader = SignalReader::new(log, paths, &model.robot.cable_names()).within(part);
     let mut count = 0_u64;
     let end = loop {
         if count.is_multiple_of(STRIDE) {
             interrupt::check()?;
-            bar.set_position(reader.recording().bytes_read());
+            bar.set_position(reader.log().bytes_read());
         }
         count += 1;
         match reader.next_row() {

@@ -1,5 +1,7 @@
 //! `info`: what is in a log, what maps to what, and which step is impossible and why.
 
+mod columns;
+
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
@@ -7,8 +9,8 @@ use fric_core::robot::file::ReferenceTable;
 use fric_core::text_file::printable;
 use fric_lab::fit::readiness::{self, Holdings, Readiness, without_reference};
 use fric_lab::text::table;
-use fric_log::recording::{FileDamage, Recording};
-use fric_log::signals::{Role, SignalError, SignalPaths, SignalReader};
+use fric_log::log::Log;
+use fric_log::signals::{Part, Role, SignalError, SignalReader};
 use serde::Serialize;
 
 use super::continuum;
@@ -20,6 +22,7 @@ use crate::output::JsonTarget;
 use crate::progress::{self, STRIDE};
 use crate::steps::{StepResult, step_table};
 use crate::warnings::warn_all;
+use columns::ColumnResult;
 
 /// `fric-info/1`.
 #[derive(Debug, Serialize)]
@@ -28,6 +31,9 @@ struct InfoResult {
     #[serde(skip_serializing_if = "Option::is_none")]
     robot: Option<String>,
     topics: Vec<TopicResult>,
+    /// Of a log of rows.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    columns: Vec<ColumnResult>,
     signals: Vec<SignalResult>,
     steps: Vec<StepResult>,
 }
@@ -104,55 +110,64 @@ pub fn run(arguments: &InfoArguments) -> Outcome {
     if let [only] = log.logs.as_slice()
         && (continuum::is_manipulator(log.model.as_deref()) || log.model.is_none() && continuum::is_text_run(only))
     {
+        log.part.check_none()?;
         return continuum::info::run(only, log.model.as_deref(), json);
     }
-    let mut recording = Recording::open(&log.logs)?;
-    let model = Model::find(log.model.as_deref(), &recording)?;
-    let topics = read_topics(&mut recording)?;
-    warn_all(&recording.warnings());
+    let part = log.part.part()?;
+    let mut source = Log::open(&log.logs)?;
+    let model = Model::find(log.model.as_deref(), &source)?;
+    let topics = read_topics(&mut source, part)?;
+    let columns = columns::results(&source, model.as_ref());
+    warn_all(&source.warnings());
     if let Some(model) = &model {
         warn_all(&model.robot.warnings());
     }
-    let attachments: Vec<String> = recording.attachments().map(|attachment| attachment.name.clone()).collect();
-    let is_beheaded = recording.damage().files().iter().any(FileDamage::lacks_beginning);
-    if topics.is_empty() && attachments.is_empty() && !is_beheaded {
+    let attachments = source.attachment_names();
+    if topics.is_empty() && columns.is_empty() && attachments.is_empty() && source.beheaded().is_none() {
         return Err(Failure::new("the log holds no topic, no message and no robot file, complete at least")
             .advise("Name a complete copy of it, or record again."));
     }
     let (signals, steps) = match &model {
-        Some(model) => read_signals(model, Recording::open(&log.logs)?)?,
+        Some(model) => read_signals(model, Log::open(&log.logs)?, part)?,
         None => (Vec::new(), Vec::new()),
     };
     let outcome = InfoResult {
         format: "fric-info/1",
         robot: model.as_ref().map(|model| model.robot.options().name.clone()),
         topics,
+        columns,
         signals,
         steps,
     };
     json.finish(&outcome, &describe(&outcome, model.as_ref(), &attachments), Vec::new())
 }
 
-fn read_topics(recording: &mut Recording) -> Outcome<Vec<TopicResult>> {
-    let bar = progress::bytes(recording.total_bytes());
+fn read_topics(log: &mut Log, part: Part) -> Outcome<Vec<TopicResult>> {
+    let bar = progress::bytes(log.total_bytes());
     let mut topics: BTreeMap<String, Times> = BTreeMap::new();
-    for channel in recording.channels() {
+    for channel in log.channels() {
         topics.entry(channel.topic.clone()).or_default();
     }
     let mut start_nanos = None;
     for count in 0_u64.. {
         if count.is_multiple_of(STRIDE) {
             interrupt::check()?;
-            bar.set_position(recording.bytes_read());
+            bar.set_position(log.bytes_read());
         }
-        let Some(message) = recording.next_message()? else { break };
-        start_nanos.get_or_insert(message.log_time_nanos);
+        let Some(message) = log.next_message()? else { break };
+        let at_s = seconds(message.log_time_nanos.saturating_sub(*start_nanos.get_or_insert(message.log_time_nanos)));
+        if part.end_s.is_some_and(|end_s| at_s >= end_s) {
+            break;
+        }
+        if part.start_s.is_some_and(|start_s| at_s < start_s) {
+            continue;
+        }
         match topics.get_mut(&message.channel.topic) {
             Some(times) => times.add(message.log_time_nanos),
             None => topics.entry(message.channel.topic.clone()).or_default().add(message.log_time_nanos),
         }
     }
-    for channel in recording.channels() {
+    for channel in log.channels() {
         let times = topics.entry(channel.topic.clone()).or_default();
         times.encoding.clone_from(&channel.message_encoding);
         times.schema = channel.schema.as_ref().map_or_else(String::new, |schema| schema.name.clone());
@@ -181,15 +196,15 @@ fn read_topics(recording: &mut Recording) -> Outcome<Vec<TopicResult>> {
 }
 
 /// What the signals map to, found by joining them as the other commands do.
-fn read_signals(model: &Model, recording: Recording) -> Outcome<(Vec<SignalResult>, Vec<StepResult>)> {
+fn read_signals(model: &Model, log: Log, part: Part) -> Outcome<(Vec<SignalResult>, Vec<StepResult>)> {
     let paths = model.signal_paths()?;
-    let bar = progress::bytes(recording.total_bytes());
-    let mut reader = SignalReader::new(recording, paths.clone(), &model.robot.cable_names());
+    let bar = progress::bytes(log.total_bytes());
+    let mut reader = SignalReader::new(log, paths.clone(), &model.robot.cable_names()).within(part);
     let mut holdings = Holdings::new(model.robot.cable_names().len());
     let problem = loop {
         if holdings.rows.is_multiple_of(STRIDE) {
             interrupt::check()?;
-            bar.set_position(reader.recording().bytes_read());
+            bar.set_position(reader.log().bytes_read());
         }
         match reader.next_row() {
             Ok(Some(row)) => holdings.add(&row),
@@ -200,7 +215,10 @@ fn read_signals(model: &Model, recording: Recording) -> Outcome<(Vec<SignalResul
         }
     };
     bar.finish_and_clear();
-    let mut signals = signal_results(&reader, &paths);
+    let mut signals = signal_results(&reader);
+    if reader.log().column_names().is_some() {
+        warn_all(&reader.log().warnings());
+    }
     let reference = &model.robot.options().log.reference;
     signals.extend(paths.known_reference().map(|_| SignalResult {
         signal: Role::Reference.key(),
@@ -212,9 +230,9 @@ fn read_signals(model: &Model, recording: Recording) -> Outcome<(Vec<SignalResul
     Ok((signals, steps(model, &holdings, problem.as_deref())))
 }
 
-fn signal_results(reader: &SignalReader, paths: &SignalPaths) -> Vec<SignalResult> {
+fn signal_results(reader: &SignalReader) -> Vec<SignalResult> {
     let signal = |role: Role| {
-        let path = paths.get(role)?;
+        let path = reader.place(role)?;
         let counts = reader.counts(role);
         let mut remarks = counts.remarks();
         remarks.extend(reader.first_problem(role).map(|problem| format!("cannot be used: {problem}")));
@@ -225,7 +243,7 @@ fn signal_results(reader: &SignalReader, paths: &SignalPaths) -> Vec<SignalResul
         }
         Some(SignalResult {
             signal: role.key(),
-            path: path.to_string(),
+            path,
             messages: if apart.is_some() { 0 } else { counts.message_count },
             gaps: counts.gap_count,
             remarks,
@@ -312,7 +330,13 @@ fn describe(result: &InfoResult, model: Option<&Model>, attachments: &[String]) 
     let header =
         ["topic", "schema", "encoding", "messages", "rate [Hz]", "jitter [ms]", "longest gap [ms]", "time [s]"];
     // Writing to a String cannot fail, here and below.
-    let mut text = table(&header, 3, &rows);
+    let mut text = String::new();
+    if !result.columns.is_empty() {
+        text += &columns::table_of(&result.columns);
+    }
+    if !rows.is_empty() || result.columns.is_empty() {
+        text += &table(&header, 3, &rows);
+    }
     if !attachments.is_empty() {
         let _ = writeln!(text, "\nattached: {}", printable(&attachments.join(", ")));
     }

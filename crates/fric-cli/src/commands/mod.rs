@@ -1,6 +1,7 @@
 //! One file per command.
 
 pub mod continuum;
+pub mod convert;
 pub mod discover;
 pub mod excite;
 pub mod fit;

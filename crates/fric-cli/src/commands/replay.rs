@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use fric_lab::replay::Replay;
+use fric_log::log::Log;
 use fric_log::output::OutputFile;
-use fric_log::recording::Recording;
 use fric_log::signals::{Role, SignalReader};
 use fric_log::write::ReplayedLog;
 use fric_work::replay::{CycleTimes, ReplayResult};
@@ -23,8 +23,9 @@ pub fn run(arguments: &ReplayArguments) -> Outcome {
     let ReplayArguments { log, output, report, result } = arguments;
     let json_file = result.json.as_deref().filter(|path| !output::is_stdout(path));
     output::check_distinct(&[output.as_deref(), report.as_deref(), json_file])?;
-    let recording = Recording::open(&log.logs)?;
-    let model = Model::find(log.model.as_deref(), &recording)?.ok_or_else(model::missing)?;
+    let part = log.part.part()?;
+    let source = Log::open(&log.logs)?;
+    let model = Model::find(log.model.as_deref(), &source)?.ok_or_else(model::missing)?;
     let mut inputs = log.logs.clone();
     inputs.extend(log.model.clone());
     let json = JsonTarget::prepare(result.json.as_deref(), &inputs, result.force)?;
@@ -36,8 +37,8 @@ pub fn run(arguments: &ReplayArguments) -> Outcome {
 
     let paths = model.signal_paths()?;
     let params = model.robot.params();
-    let bar = progress::bytes(recording.total_bytes());
-    let mut reader = SignalReader::new(recording, paths, &names);
+    let bar = progress::bytes(source.total_bytes());
+    let mut reader = SignalReader::new(source, paths, &names).within(part);
     let mut replay = Replay::new(&params)?;
     let mut times = CycleTimes::new()
         .map_err(|error| Failure::new(format!("cannot set up the histogram of cycle times: {error}")))?;
@@ -45,7 +46,7 @@ pub fn run(arguments: &ReplayArguments) -> Outcome {
     let end = loop {
         if replay.cycle_count().is_multiple_of(STRIDE) {
             interrupt::check()?;
-            bar.set_position(reader.recording().bytes_read());
+            bar.set_position(reader.log().bytes_read());
         }
         let sample = match reader.next_row() {
             Ok(Some(sample)) => sample,
@@ -63,7 +64,7 @@ pub fn run(arguments: &ReplayArguments) -> Outcome {
     };
     bar.finish_and_clear();
     // Damage may be why there is nothing to go on with.
-    warn_all(&reader.recording().warnings());
+    warn_all(&reader.log().warnings());
     end?;
     warn_all(&reader.warnings());
     warn_all(&reader.robot_warnings(&model.robot));

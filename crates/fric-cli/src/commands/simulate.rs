@@ -2,11 +2,10 @@
 
 use std::path::PathBuf;
 
-use fric_core::Sample;
 use fric_lab::simulate::{Disturbance, HiddenEffect, Run, Simulation, SimulationError, SimulationOptions};
 use fric_log::path::MessagePath;
 use fric_log::signals::{Role, SignalPaths};
-use fric_log::write::{JointState, JointStateChannel, LogWriter, PoseChannel, WrenchChannel};
+use fric_log::write::{LogWriter, SampledLog};
 
 use crate::arguments::{RunName, SimulateArguments};
 use crate::failure::{Failure, Outcome};
@@ -54,7 +53,7 @@ pub fn run(arguments: &SimulateArguments) -> Outcome {
         disturbances,
     };
     let mut simulation = Simulation::new(&model.robot, &options).map_err(refused)?;
-    let mut log = SimulatedLog::create(arguments, &model)?;
+    let mut simulated = SimulatedLog::create(arguments, &model)?;
     let total_cycles = simulation.total_cycles();
     let bar = progress::cycles(total_cycles);
     let mut done_cycles = 0_u64;
@@ -65,12 +64,12 @@ pub fn run(arguments: &SimulateArguments) -> Outcome {
         }
         done_cycles += 1;
         // The last cycle has a pose too: nothing is extrapolated past it.
-        let with_platform = (done_cycles - 1).is_multiple_of(log.platform_stride) || done_cycles == total_cycles;
-        log.write(&sample, with_platform)?;
+        let with_platform = (done_cycles - 1).is_multiple_of(simulated.platform_stride) || done_cycles == total_cycles;
+        simulated.log.write(&sample, with_platform)?;
     }
     bar.finish_and_clear();
     warn_all(&simulation.warnings());
-    log.writer.finish()?;
+    simulated.log.finish()?;
     let effects = options.effects.iter().map(ToString::to_string);
     let hidden: Vec<String> = effects.chain(options.disturbances.iter().map(ToString::to_string)).collect();
     output::show(&format!(
@@ -95,15 +94,9 @@ fn refused(error: SimulationError) -> Failure {
 }
 
 struct SimulatedLog {
-    writer: LogWriter,
-    cables: JointStateChannel,
-    /// None where the reference is known and not measured.
-    reference: Option<JointStateChannel>,
-    pose: Option<PoseChannel>,
-    wrench: Option<WrenchChannel>,
+    log: SampledLog,
     /// Cycles from one pose to the next.
     platform_stride: u64,
-    numbers: [Vec<f64>; 3],
 }
 
 impl SimulatedLog {
@@ -114,47 +107,21 @@ impl SimulatedLog {
         let mut writer = LogWriter::create(&arguments.output, &inputs, arguments.force)?;
         writer.attach_robot_file(&model.text)?;
         let names = model.robot.cable_names();
-        let cables = writer.add_joint_state(&topic(Role::Cable)?, "base", &names)?;
-        let is_measured = paths.known_reference().is_none();
-        let reference = is_measured
-            .then(|| Outcome::Ok(writer.add_joint_state(&topic(Role::Reference)?, "platform", &names)?))
-            .transpose()?;
+        let mut log = SampledLog::new(writer, &topic(Role::Cable)?, &names)?;
+        // Where the reference is known it is not measured.
+        if paths.known_reference().is_none() {
+            log.add_reference(&topic(Role::Reference)?, &names)?;
+        }
         let params = model.robot.params();
-        let any_geometry = params.cables().iter().any(fric_core::CableParams::has_geometry);
-        let all_geometry = params.cables().iter().all(fric_core::CableParams::has_geometry);
-        let pose = any_geometry.then(|| Outcome::Ok(writer.add_pose(&topic(Role::Pose)?, "base")?)).transpose()?;
-        let wrench =
-            all_geometry.then(|| Outcome::Ok(writer.add_wrench(&topic(Role::Wrench)?, "base")?)).transpose()?;
+        if params.cables().iter().any(fric_core::CableParams::has_geometry) {
+            log.add_pose(&topic(Role::Pose)?)?;
+        }
+        if params.cables().iter().all(fric_core::CableParams::has_geometry) {
+            log.add_wrench(&topic(Role::Wrench)?)?;
+        }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 or a small number")]
         let platform_stride = (PLATFORM_INTERVAL_S / params.cycle_s()).round().max(1.0) as u64;
-        Ok(Self { writer, cables, reference, pose, wrench, platform_stride, numbers: Default::default() })
-    }
-
-    fn write(&mut self, sample: &Sample<'_>, with_platform: bool) -> Outcome {
-        let Self { writer, cables, reference, pose, wrench, numbers, .. } = self;
-        let stamp_nanos = u64::try_from(sample.stamp_nanos).map_err(Failure::new)?;
-        let [position, velocity, effort] = numbers;
-        for column in [&mut *position, velocity, effort] {
-            column.clear();
-        }
-        position.extend(sample.cables.iter().map(|cable| cable.length_m));
-        velocity.extend(sample.cables.iter().map(|cable| cable.speed_m_per_s));
-        effort.extend(sample.cables.iter().map(|cable| cable.sensor_force_n));
-        writer.write_joint_state(cables, stamp_nanos, JointState { position, velocity, effort })?;
-        if let Some(reference) = reference {
-            let measured = JointState { effort: sample.reference_force_n, ..JointState::default() };
-            writer.write_joint_state(reference, stamp_nanos, measured)?;
-        }
-        if !with_platform {
-            return Ok(());
-        }
-        if let (Some(channel), Some(truth)) = (&pose, &sample.pose) {
-            writer.write_pose(channel, stamp_nanos, truth)?;
-        }
-        if let (Some(channel), Some(truth)) = (&wrench, &sample.outside_wrench) {
-            writer.write_wrench(channel, stamp_nanos, truth)?;
-        }
-        Ok(())
+        Ok(Self { log, platform_stride })
     }
 }
 

@@ -16,6 +16,8 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::locate::{Line, Step, describe, error_line, line_of};
+use super::log_columns;
+pub use super::log_columns::{ColumnTable, POSE_COLUMNS, TIME_COLUMN, WRENCH_COLUMNS};
 use super::read::{exactly, exactly_if_given};
 pub use super::reference::{KnownReferenceTable, ReferenceTable};
 use super::{CableParams, MOST_CABLES, MonitorOptions, ParamError, ParamProblem, PlatformOptions, RobotParams};
@@ -85,6 +87,9 @@ pub struct LogTable {
     pub pose: String,
     /// Outside wrench on the platform.
     pub wrench: String,
+    /// `[log.columns]`: for CSV, the columns that are called otherwise than by default, or are in other units.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub columns: BTreeMap<String, ColumnTable>,
 }
 
 impl Default for LogTable {
@@ -96,6 +101,7 @@ impl Default for LogTable {
             reference: ReferenceTable::Signal("/reference_forces".to_owned()),
             pose: "/platform_pose".to_owned(),
             wrench: "/platform_wrench".to_owned(),
+            columns: BTreeMap::new(),
         }
     }
 }
@@ -308,6 +314,8 @@ impl RobotFile {
             }
             cables.push(table.check().map_err(at)?);
         }
+        let names: Vec<&str> = options.cable.iter().map(|cable| cable.name.as_str()).collect();
+        log_columns::check(&options.log.columns, &names)?;
         let robot = options.robot_params(&cables)?;
         Ok(Self { options, robot, cables })
     }
@@ -328,6 +336,12 @@ impl RobotFile {
     #[must_use]
     pub fn cable_names(&self) -> Vec<&str> {
         self.options.cable.iter().map(|cable| cable.name.as_str()).collect()
+    }
+
+    /// Whether a column of a CSV log is called as one of this robot's signals.
+    #[must_use]
+    pub fn is_log_column(&self, name: &str) -> bool {
+        log_columns::known(&self.cable_names()).iter().any(|known| known == name)
     }
 
     /// The file as TOML text, without comments.

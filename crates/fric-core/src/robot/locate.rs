@@ -13,7 +13,7 @@ use toml::de::{DeTable, DeValue};
 pub enum Step {
     /// Into a table.
     Key(&'static str),
-    /// Into an array.
+    /// Into an array, or by its place in the alphabet to an entry of a table whose keys people choose.
     Index(usize),
 }
 
@@ -37,6 +37,9 @@ pub fn line_of(text: &str, path: &[Step]) -> Option<usize> {
                 // A table header has no span of its own value; its key has.
                 (key.span().start.max(value.span().start), value.get_ref())
             }),
+            (Step::Index(index), DeValue::Table(table)) => {
+                table.iter().nth(*index).map(|(key, value)| (key.span().start, value.get_ref()))
+            }
             (Step::Index(index), DeValue::Array(array)) => {
                 array.get(*index).map(|value| (value.span().start, value.get_ref()))
             }

@@ -12,6 +12,8 @@ pub mod file;
 #[cfg(feature = "robot-file")]
 pub(crate) mod locate;
 #[cfg(feature = "robot-file")]
+mod log_columns;
+#[cfg(feature = "robot-file")]
 pub(crate) mod read;
 #[cfg(feature = "robot-file")]
 pub(crate) mod reference;

@@ -15,6 +15,9 @@ pub const LOADS: [&str; 2] = ["load_g", "load_n"];
 /// A load on a single hole: tensions on both sides, and the angles between them and the normal force (\[C\] 16).
 pub const HOLE: [&str; 4] = ["tension_1_n", "tension_2_n", "angle_1_rad", "angle_2_rad"];
 
+/// What the names of columns hold that only a manipulator's run or bench has.
+pub const MARKS: [&str; 6] = [TENSION_BASE, "shift_", "marker_", "load_", "tension_1_n", "angle_1_rad"];
+
 /// `shift_1_nm` …
 #[must_use]
 pub fn shifts(disk_count: usize) -> Vec<String> {

@@ -13,6 +13,7 @@ mod advice {
     pub const PIPE: &str = "save the recording to a file first";
     pub const PERMISSIONS: &str = "check its permissions";
     pub const EMPTY: &str = "copy the recording again, or name another one";
+    pub const ONE: &str = "name the files of one of them";
     pub const OPEN: &str = "try again, or check the disk and the limit of open files (`ulimit -n`)";
     pub const DISK: &str = "check the disk, or copy the file and try again";
     pub const COPY: &str = "take it from another copy of the recording";
@@ -75,6 +76,20 @@ pub enum RecordingError {
         found: &'static str,
         /// What to do.
         advice: &'static str,
+    },
+    /// An SQLite file that is no bag, or cannot be read at all.
+    #[error("`{}` cannot be read as a rosbag2 database: {reason}; {}", path.display(), advice::EMPTY)]
+    NotBag {
+        /// The path as given.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// A folder with files of both kinds.
+    #[error("`{}` holds a bag of MCAP files and one of SQLite files; {}", path.display(), advice::ONE)]
+    SeveralStorages {
+        /// The folder.
+        path: PathBuf,
     },
     /// The operating system failed to read bytes it had promised.
     #[error("`{}` could not be read at byte {offset_bytes}; {}", path.display(), advice::DISK)]
@@ -142,8 +157,9 @@ impl RecordingError {
             Self::NotAFile { .. } => advice::PIPE,
             Self::Forbidden { .. } => advice::PERMISSIONS,
             Self::Open { .. } => advice::OPEN,
-            Self::Empty { .. } => advice::EMPTY,
+            Self::Empty { .. } | Self::NotBag { .. } => advice::EMPTY,
             Self::NotMcap { advice, .. } => advice,
+            Self::SeveralStorages { .. } => advice::ONE,
             Self::Read { .. } => advice::DISK,
             Self::AttachmentChecksum { .. } => advice::COPY,
             Self::AttachmentTooLarge { .. } => advice::EXTRACT,

@@ -45,12 +45,14 @@ pub use self::attachment::{ATTACHMENT_LIMIT_BYTES, Attachment, AttachmentInfo};
 pub use self::channels::{Channel, Schema};
 pub use self::damage::{Damage, DamageKind, DamagedPlace, FileDamage, FileEnd, PLACES_KEPT};
 pub use self::error::RecordingError;
+pub(crate) use self::open::open_file;
 pub use self::scan::Metadata;
 pub use self::segment::CHUNK_LIMIT_BYTES;
 
 use self::channels::ChannelTable;
 use self::merge::Merge;
-use self::reader::{Reader, SourceFile};
+use self::reader::Reader;
+pub(crate) use self::reader::SourceFile;
 use self::scan::AttachmentPlace;
 use self::segment::Segment;
 
@@ -145,6 +147,11 @@ impl Recording {
     pub fn open<P: AsRef<Path>>(paths: &[P]) -> Result<Self, RecordingError> {
         let paths: Vec<&Path> = paths.iter().map(AsRef::as_ref).collect();
         open::open(&paths)
+    }
+
+    /// The same for files that are open, with the names that they have for people.
+    pub(crate) fn of_files(files: Vec<SourceFile>) -> Result<Self, RecordingError> {
+        open::open_sources(files)
     }
 
     /// The channels known so far, each at the place of its [`Channel::id`].

@@ -19,9 +19,19 @@ pub(super) fn open(paths: &[&Path]) -> Result<Recording, RecordingError> {
     if paths.is_empty() {
         return Err(RecordingError::NoFiles);
     }
-    let mut scanned = Vec::with_capacity(paths.len());
+    let mut files = Vec::with_capacity(paths.len());
     for path in paths {
-        scanned.push(scan_file(path)?);
+        let (file, len) = open_file(path)?;
+        files.push(SourceFile { path: path.to_path_buf(), file, len });
+    }
+    open_sources(files)
+}
+
+/// Scans files that are open.
+pub(super) fn open_sources(files: Vec<SourceFile>) -> Result<Recording, RecordingError> {
+    let mut scanned = Vec::with_capacity(files.len());
+    for file in files {
+        scanned.push(scan_file(file)?);
     }
     // The parts of a split recording in the order in which they were recorded; those without messages stay behind.
     scanned.sort_by_key(|(_, scan)| start_time(scan).unwrap_or(u64::MAX));
@@ -82,11 +92,9 @@ fn start_time(scan: &FileScan) -> Option<u64> {
     starts.map(|segment| segment.start_time_nanos).min()
 }
 
-fn scan_file(path: &Path) -> Result<(SourceFile, FileScan), RecordingError> {
-    let (file, len) = open_file(path)?;
-    let source = SourceFile { path: path.to_path_buf(), file, len };
-    let scan =
-        scan(&source.file, len, source.path.clone()).map_err(|(offset, error)| source.read_error(offset, error))?;
+fn scan_file(source: SourceFile) -> Result<(SourceFile, FileScan), RecordingError> {
+    let scan = scan(&source.file, source.len, source.path.clone())
+        .map_err(|(offset, error)| source.read_error(offset, error))?;
     if scan.is_mcap {
         Ok((source, scan))
     } else {
@@ -95,7 +103,8 @@ fn scan_file(path: &Path) -> Result<(SourceFile, FileScan), RecordingError> {
     }
 }
 
-fn open_file(path: &Path) -> Result<(File, u64), RecordingError> {
+/// Opens a file that is one and has bytes, and its size.
+pub(crate) fn open_file(path: &Path) -> Result<(File, u64), RecordingError> {
     let path_buf = || path.to_path_buf();
     let failed = |source: io::Error| match source.kind() {
         io::ErrorKind::NotFound => RecordingError::Missing { path: path_buf() },

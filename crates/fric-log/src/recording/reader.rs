@@ -23,10 +23,10 @@ const SPARE_COUNT: usize = 3;
 const SPARE_LEN: usize = 4 * 1024 * 1024;
 
 /// A file of the recording.
-pub(super) struct SourceFile {
-    pub(super) path: PathBuf,
-    pub(super) file: File,
-    pub(super) len: u64,
+pub(crate) struct SourceFile {
+    pub(crate) path: PathBuf,
+    pub(crate) file: File,
+    pub(crate) len: u64,
 }
 
 impl SourceFile {

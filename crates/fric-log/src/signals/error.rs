@@ -1,9 +1,12 @@
 //! Why there are no rows.
 
+use std::fmt;
 use std::path::PathBuf;
 
 use thiserror::Error;
 
+use super::Part;
+use crate::csv_log::CsvError;
 use crate::recording::RecordingError;
 use crate::schema::SchemaError;
 
@@ -13,6 +16,7 @@ mod advice {
     pub const TOPIC_OR_PATH: &str =
         "Name the right topic, or the path to the forces, as `cable` under `[log]` in the robot file";
     pub const LENGTH: &str = "name the topic or path of the lengths as `length` under `[log]` in the robot file";
+    pub const PART: &str = "choose a part that it has";
     pub const BEGINNING: &str = "use a complete copy of the recording";
 }
 
@@ -23,6 +27,9 @@ pub enum SignalError {
     /// The recording cannot be read any further.
     #[error(transparent)]
     Recording(#[from] RecordingError),
+    /// The CSV file cannot be read, or has not what is needed.
+    #[error(transparent)]
+    Csv(#[from] CsvError),
     /// The recording has no cable signal.
     #[error("the log has no messages on `{topic}`, the topic of the cable signals; {}", available(topics))]
     NoCableTopic {
@@ -59,6 +66,14 @@ pub enum SignalError {
         /// What is wrong with the first one.
         reason: String,
     },
+    /// No row is in the part that was asked for.
+    #[error("no row of the log is {}: its last is {last_s:.3} s after its first; {}", Between(part), advice::PART)]
+    NothingInPart {
+        /// The part.
+        part: Part,
+        /// Time of the last row that was read, s after the first.
+        last_s: f64,
+    },
     /// There is force but no length.
     #[error("the messages on `{topic}` bring forces but no cable lengths (`position`); {}", advice::LENGTH)]
     NoLength {
@@ -73,11 +88,27 @@ impl SignalError {
     pub fn advice(&self) -> Option<&'static str> {
         match self {
             Self::Recording(error) => error.advice(),
+            Self::Csv(error) => Some(error.advice()),
             Self::NoCableTopic { topics, .. } => (!topics.is_empty()).then_some(advice::TOPIC),
             Self::NoBeginning { .. } => Some(advice::BEGINNING),
             Self::CableFields { .. } => Some(advice::TOPIC_OR_PATH),
             Self::NoUsableMessage { .. } => None,
+            Self::NothingInPart { .. } => Some(advice::PART),
             Self::NoLength { .. } => Some(advice::LENGTH),
+        }
+    }
+}
+
+/// A part in words.
+struct Between<'a>(&'a Part);
+
+impl fmt::Display for Between<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self.0 {
+            Part { start_s: Some(start_s), end_s: Some(end_s) } => write!(f, "from {start_s} s to before {end_s} s"),
+            Part { start_s: Some(start_s), end_s: None } => write!(f, "from {start_s} s on"),
+            Part { start_s: None, end_s: Some(end_s) } => write!(f, "before {end_s} s"),
+            Part { start_s: None, end_s: None } => write!(f, "there"),
         }
     }
 }

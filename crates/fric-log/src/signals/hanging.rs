@@ -66,6 +66,11 @@ impl HangingRows {
             || next.is_some_and(|(row, last)| row.time != last.time || last.after_nanos(row) >= 2 * WINDOW_NANOS)
     }
 
+    /// The time of the next row; `None` after the last.
+    pub fn next_stamp_nanos(&self) -> Option<i64> {
+        self.rows.get(self.next).map(|waiting| waiting.row.stamp_nanos)
+    }
+
     /// The next row; `None` after the last.
     pub fn pop(&mut self) -> Option<Sample<'_>> {
         while self.next > 0 && self.rows.front().is_some_and(|row| !self.is_around(row)) {

@@ -1,7 +1,8 @@
 //! From messages to the robot's signals: what the cycle needs, joined on the time of the cable signals.
 //!
-//! [`SignalReader`] takes a [`Recording`](crate::recording::Recording) and the paths of the robot file and gives one
+//! [`SignalReader`] takes a [`Log`](crate::log::Log) and the paths of the robot file and gives one
 //! [`Sample`](fric_core::Sample), a row, per cable message, as a stream: memory does not grow with the length of the log.
+//! Of CSV, the filled cells of a row are the messages, so that all that follows holds of it too.
 //!
 //! # Time
 //!
@@ -46,6 +47,7 @@ mod hanging;
 mod layout;
 mod order;
 mod pace;
+mod part;
 mod reader;
 mod row;
 mod speed;
@@ -55,11 +57,15 @@ mod waiting;
 pub use apart::TimesApart;
 pub use error::SignalError;
 pub(crate) use layout::{Probe, STAMPS};
+pub use part::Part;
 pub use reader::SignalReader;
 pub use speed::KnownLength;
 pub use track::CLOCK_STEP_MESSAGES;
 
+use std::collections::BTreeMap;
+
 use fric_core::KnownReference;
+use fric_core::robot::file::ColumnTable;
 
 use crate::path::MessagePath;
 
@@ -108,6 +114,7 @@ impl Role {
 pub struct SignalPaths {
     paths: [Option<MessagePath>; 6],
     known_reference: Option<KnownReference>,
+    columns: BTreeMap<String, ColumnTable>,
 }
 
 impl SignalPaths {
@@ -131,6 +138,18 @@ impl SignalPaths {
     #[must_use]
     pub fn known_reference(&self) -> Option<KnownReference> {
         self.known_reference
+    }
+
+    /// Sets the columns that a CSV log calls otherwise than by default, by the keys of `[log.columns]`.
+    #[must_use]
+    pub fn with_columns(self, columns: BTreeMap<String, ColumnTable>) -> Self {
+        Self { columns, ..self }
+    }
+
+    /// The columns that a CSV log calls otherwise than by default.
+    #[must_use]
+    pub fn columns(&self) -> &BTreeMap<String, ColumnTable> {
+        &self.columns
     }
 
     /// The path of a role.

@@ -6,21 +6,23 @@ use super::channel::{ChannelReader, Rejection};
 use super::error::SignalError;
 use super::hanging::HangingRows;
 use super::layout::Unfit;
+use super::part::{Part, Progress, Side};
 use super::row::RowBuffer;
 use super::speed::SpeedRows;
 use super::track::Track;
 use super::{Role, SignalPaths, TrackCounts, WAIT_NANOS, WAITING_LIMIT};
-use crate::recording::{Message, Recording};
+use crate::log::{Content, Log};
+use crate::recording::Message;
 
-/// Reads the rows of a recording.
+/// Reads the rows of a log.
 ///
 /// ```no_run
-/// use fric_log::recording::Recording;
+/// use fric_log::log::Log;
 /// use fric_log::signals::{Role, SignalPaths, SignalReader};
 ///
 /// let paths = SignalPaths::default().with(Role::Cable, Some("/cable_states".parse()?));
-/// let recording = Recording::open(&["run.mcap"])?;
-/// let mut reader = SignalReader::new(recording, paths, &["cable1"]);
+/// let log = Log::open(&["run.mcap"])?;
+/// let mut reader = SignalReader::new(log, paths, &["cable1"]);
 /// while let Some(row) = reader.next_row()? {
 ///     println!("{} {} N", row.stamp_nanos, row.cables[0].sensor_force_n);
 /// }
@@ -28,12 +30,14 @@ use crate::recording::{Message, Recording};
 /// ```
 #[derive(Debug)]
 pub struct SignalReader {
-    recording: Recording,
+    log: Log,
     topics: Topics,
     /// By channel.
     channels: Vec<Option<ChannelRoles>>,
     tracks: Tracks,
     is_ended: bool,
+    /// The first time of a table.
+    table_start_nanos: Option<i64>,
     /// The latest log time so far.
     log_time_nanos: u64,
     buffer: RowBuffer,
@@ -41,6 +45,8 @@ pub struct SignalReader {
     speeds: SpeedRows,
     /// Rows that wait for the acceleration of a hanging mass.
     hanging: Option<HangingRows>,
+    /// The part that is given out.
+    progress: Progress,
 }
 
 /// The tracks of all roles.
@@ -88,9 +94,13 @@ struct ChannelRoles {
 }
 
 impl SignalReader {
-    /// Rows of a recording for a robot with cables of these names.
+    /// Rows of a log for a robot with cables of these names.
     #[must_use]
-    pub fn new(recording: Recording, paths: SignalPaths, cable_names: &[impl AsRef<str>]) -> Self {
+    pub fn new(log: impl Into<Log>, paths: SignalPaths, cable_names: &[impl AsRef<str>]) -> Self {
+        let log = log.into();
+        // Rows of a table bring lengths and speeds beside the forces.
+        let is_table = log.column_names().is_some();
+        let paths = if is_table { paths.with(Role::Length, None).with(Role::Speed, None) } else { paths };
         let topics = Topics {
             is_awaited: Role::ALL.map(|role| paths.get(role).is_some()),
             cable_names: cable_names.iter().map(|name| name.as_ref().to_owned()).collect(),
@@ -105,13 +115,46 @@ impl SignalReader {
         let (channels, tracks) = (Vec::new(), Tracks::default());
         let known = topics.paths.known_reference();
         let hanging = known.filter(|known| matches!(known, KnownReference::HangingMass { .. })).map(HangingRows::new);
-        Self { recording, topics, channels, tracks, is_ended: false, log_time_nanos: 0, buffer, speeds, hanging }
+        Self {
+            log,
+            topics,
+            channels,
+            tracks,
+            is_ended: false,
+            table_start_nanos: None,
+            log_time_nanos: 0,
+            buffer,
+            speeds,
+            hanging,
+            progress: Progress::default(),
+        }
     }
 
-    /// The recording, for its damage and its progress.
+    /// Gives out a part of the log only.
     #[must_use]
-    pub fn recording(&self) -> &Recording {
-        &self.recording
+    pub fn within(mut self, part: Part) -> Self {
+        self.progress.part = part;
+        self
+    }
+
+    /// The log, for its damage and its progress.
+    #[must_use]
+    pub fn log(&self) -> &Log {
+        &self.log
+    }
+
+    /// Where a signal is looked for, for people: its topic or path, or the columns of a table; `None` if it is not.
+    #[must_use]
+    pub fn place(&self, role: Role) -> Option<String> {
+        const SHOWN: usize = 3;
+        let path = self.topics.paths.get(role)?;
+        let Content::Csv(table) = &self.log.content else { return Some(path.to_string()) };
+        let columns = table.columns_of(role);
+        Some(match columns.get(..SHOWN) {
+            Some(shown) if columns.len() > SHOWN => format!("{}, …", shown.join(", ")),
+            _ if columns.is_empty() => default_columns(role).to_owned(),
+            _ => columns.join(", "),
+        })
     }
 
     /// Where the signals are looked for.
@@ -120,10 +163,10 @@ impl SignalReader {
         &self.topics.paths
     }
 
-    /// What has been counted for a role so far.
+    /// What has been counted for a role so far, since the part began; stamps and interval are those of all that was read.
     #[must_use]
-    pub fn counts(&self, role: Role) -> &TrackCounts {
-        self.tracks.get(role).counts()
+    pub fn counts(&self, role: Role) -> TrackCounts {
+        self.tracks.get(role).counts().since(&self.progress.before[role as usize])
     }
 
     /// What was wrong with the first message of a role that could not be used. If none could be as none was about the
@@ -145,8 +188,37 @@ impl SignalReader {
     /// # Errors
     /// [`SignalError`] where the recording cannot be read on, or has no usable cable signal.
     pub fn next_row(&mut self) -> Result<Option<Sample<'_>>, SignalError> {
+        while !self.progress.is_over {
+            let Some(stamp_nanos) = self.make_row()? else {
+                self.progress.is_over = true;
+                break;
+            };
+            match self.progress.side(stamp_nanos) {
+                // Only a row that is taken out makes room for the next.
+                Side::Before => drop(self.hanging.as_mut().and_then(HangingRows::pop)),
+                Side::After => self.progress.is_over = true,
+                Side::Within => {
+                    if !std::mem::replace(&mut self.progress.has_begun, true) && self.progress.part.start_s.is_some() {
+                        self.progress.before = Role::ALL.map(|role| *self.tracks.get(role).counts());
+                    }
+                    return Ok(match &mut self.hanging {
+                        Some(hanging) => hanging.pop(),
+                        None => Some(self.buffer.row.sample()),
+                    });
+                }
+            }
+        }
+        if self.progress.has_begun || self.progress.part == Part::default() {
+            return Ok(None);
+        }
+        let Progress { part, last_s, .. } = self.progress;
+        Err(SignalError::NothingInPart { part, last_s })
+    }
+
+    /// Makes the next row, in the buffer or in front of those that hang; its time, `None` at the end of the log.
+    fn make_row(&mut self) -> Result<Option<i64>, SignalError> {
         let Some(mut hanging) = self.hanging.take() else {
-            return Ok(if self.next_with_speeds()? { Some(self.buffer.row.sample()) } else { None });
+            return Ok(self.next_with_speeds()?.then_some(self.buffer.row.stamp_nanos));
         };
         let mut outcome = Ok(());
         while outcome.is_ok() && !hanging.is_ready() {
@@ -155,7 +227,7 @@ impl SignalReader {
                 .map(|has_row| if has_row { hanging.push(self.buffer.row.clone()) } else { hanging.end() });
         }
         let hanging = self.hanging.insert(hanging);
-        outcome.map(|()| hanging.pop())
+        outcome.map(|()| hanging.next_stamp_nanos())
     }
 
     /// Puts the next row, with its speeds, into the buffer; false at the end of the log.
@@ -184,7 +256,7 @@ impl SignalReader {
             if self.is_ended {
                 return self.check_end().map(|()| false);
             }
-            self.read_message()?;
+            self.read_next()?;
         }
         let Tracks { cable, others } = &mut self.tracks;
         let Some(sample) = cable.pop() else { return Ok(false) };
@@ -217,11 +289,47 @@ impl SignalReader {
             || others.iter().any(|track| track.samples().len() >= WAITING_LIMIT)
     }
 
+    /// Takes in what comes next of the log: a message, or a row of a table.
+    fn read_next(&mut self) -> Result<(), SignalError> {
+        if matches!(self.log.content, Content::Csv(_)) { self.read_table_row() } else { self.read_message() }
+    }
+
+    fn end(&mut self) {
+        self.is_ended = true;
+        self.tracks.cable.finish();
+        self.tracks.others.iter_mut().for_each(Track::finish);
+    }
+
+    fn read_table_row(&mut self) -> Result<(), SignalError> {
+        let Content::Csv(table) = &mut self.log.content else { return Ok(()) };
+        let Some(row) = table.next_row(&self.topics.cable_names, &self.topics.paths)? else {
+            self.end();
+            return Ok(());
+        };
+        let stamp_nanos = row.stamp_nanos;
+        // A table has no log time of its own: what counts is how long a row waits.
+        let start_nanos = *self.table_start_nanos.get_or_insert(stamp_nanos);
+        let log_time_nanos = u64::try_from(stamp_nanos.saturating_sub(start_nanos)).unwrap_or(0);
+        self.log_time_nanos = self.log_time_nanos.max(log_time_nanos);
+        for role in Role::ALL {
+            if let Some(values) = row.values(role) {
+                self.topics.is_stamped[role as usize] = true;
+                let track = self.tracks.get_mut(role);
+                track.push(stamp_nanos, self.log_time_nanos, 0, |out| out.extend_from_slice(values));
+            }
+        }
+        if !self.topics.has_cable_messages {
+            self.topics.has_cable_messages = true;
+            for role in [Role::Reference, Role::Pose, Role::Wrench] {
+                self.topics.is_awaited[role as usize] = !table.columns_of(role).is_empty();
+            }
+        }
+        Ok(())
+    }
+
     fn read_message(&mut self) -> Result<(), SignalError> {
-        let Some(message) = self.recording.next_message()? else {
-            self.is_ended = true;
-            self.tracks.cable.finish();
-            self.tracks.others.iter_mut().for_each(Track::finish);
+        let Some(message) = self.log.next_message()? else {
+            self.end();
             return Ok(());
         };
         self.log_time_nanos = self.log_time_nanos.max(message.log_time_nanos);
@@ -273,24 +381,37 @@ impl SignalReader {
     }
 
     fn check_end(&self) -> Result<(), SignalError> {
+        if let Content::Csv(table) = &self.log.content {
+            let has_cables = self.tracks.cable.counts().message_count > 0;
+            return if has_cables { Ok(()) } else { Err(table.without_numbers().into()) };
+        }
         let topic = self.topics.paths.get(Role::Cable).map_or_else(String::new, |path| path.topic.clone());
         if !self.topics.has_cable_messages {
-            let channels = self.recording.channels().iter();
+            let channels = self.log.channels().iter();
             let mut topics: Vec<_> = channels.map(|channel| channel.topic.clone()).filter(|it| *it != topic).collect();
             topics.sort();
             topics.dedup();
-            let damage = self.recording.damage();
-            let beheaded = damage.files().iter().find(|file| file.lacks_beginning());
-            if let Some(file) = beheaded.filter(|_| topics.is_empty() || damage.lost_messages() > 0) {
-                return Err(SignalError::NoBeginning { topic, path: file.path().to_owned() });
+            let beheaded = self.log.beheaded();
+            if let Some(path) = beheaded.filter(|_| topics.is_empty() || self.log.lost_messages() > 0) {
+                return Err(SignalError::NoBeginning { topic, path: path.to_owned() });
             }
             return Err(SignalError::NoCableTopic { topic, topics });
         }
-        if self.counts(Role::Cable).message_count == 0 {
+        if self.tracks.cable.counts().message_count == 0 {
             let reason = self.first_problem(Role::Cable).unwrap_or("it is empty").to_owned();
             return Err(SignalError::NoUsableMessage { topic, reason });
         }
         Ok(())
+    }
+}
+
+/// How the columns of a signal are called where the robot file says nothing.
+fn default_columns(role: Role) -> &'static str {
+    match role {
+        Role::Cable | Role::Length | Role::Speed => "NAME.force_n, NAME.length_m",
+        Role::Reference => "NAME.reference_n",
+        Role::Pose => "pose.x_m … pose.qw",
+        Role::Wrench => "wrench.fx_n … wrench.tz_nm",
     }
 }
 

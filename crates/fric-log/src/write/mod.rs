@@ -14,6 +14,7 @@ mod error;
 mod messages;
 mod payload;
 mod replayed;
+mod sampled;
 
 use std::collections::BTreeMap;
 use std::io::{self, BufWriter};
@@ -27,6 +28,7 @@ pub use error::WriteError;
 pub use messages::{CableStatusChannel, JointState, JointStateChannel, NumbersChannel, PoseChannel, WrenchChannel};
 use payload::Payload;
 pub use replayed::ReplayedLog;
+pub use sampled::SampledLog;
 
 const LIBRARY: &str = concat!("fric ", env!("CARGO_PKG_VERSION"));
 const CHUNK_BYTES: u64 = 1 << 20;

@@ -24,7 +24,7 @@ fn a_log_cut_in_half_gives_the_rows_of_its_half() {
     assert!((3_000_000..6_000_000).contains(&bytes.len()), "{}", bytes.len());
     let all = read(&whole, &PATHS, &names).rows;
     let half = read(&to_file(&bytes[..bytes.len() / 2]), &PATHS, &names);
-    assert!(half.error.is_none() && !half.reader.recording().damage().is_empty());
+    assert!(half.error.is_none() && !half.reader.log().warnings().is_empty());
     let count = half.rows.len();
     assert!((24_000..30_000).contains(&count), "{count}");
     for (row, whole) in half.rows.iter().zip(&all) {

@@ -9,6 +9,6 @@ mod layouts;
 mod oracle;
 mod partial;
 mod random;
-mod support;
+pub mod support;
 mod table;
 mod waiting;

@@ -201,7 +201,7 @@ impl Joined {
     /// Message, duplicate, late, clock step, gap, undecodable.
     pub fn counts(&self, role: Role) -> [u64; 6] {
         let it = self.reader.counts(role);
-        let TrackCounts { message_count, duplicate_count, late_count, .. } = *it;
+        let TrackCounts { message_count, duplicate_count, late_count, .. } = it;
         [message_count, duplicate_count, late_count, it.clock_step_count, it.gap_count, it.undecodable_count]
     }
 

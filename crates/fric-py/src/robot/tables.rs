@@ -234,7 +234,7 @@ table! {
 
 table! {
     /// `[log]`: the topic of each signal, or a path to a field.
-    LogPaths, optional: [length, speed];
+    LogPaths, optional: [length, speed, columns];
     keys: {
         /// Cable signals.
         cable,
@@ -248,6 +248,9 @@ table! {
         pose,
         /// Wrench on the platform from outside.
         wrench,
+        /// Columns of a CSV log that are called otherwise than by default or are in other units, a dict for each:
+        /// {"cable1.force_n": {"column": "Load cell 1 [kg]", "factor": 9.80665}}.
+        columns,
     }
     also [] {}
 }

@@ -53,7 +53,11 @@ pub fn is_text_run(log: &Path) -> bool {
         File::open(log).ok()?.take(LONGEST_HEADER).read_to_end(&mut begin).ok()?;
         String::from_utf8(begin).ok()
     };
-    begin().is_some_and(|text| text.lines().next().is_some_and(|header| header.contains(columns::TIME)))
+    let is_of_manipulator = |header: &str| {
+        let is_there = |column: &str| header.contains(column);
+        is_there(columns::TIME) && columns::MARKS.into_iter().any(is_there)
+    };
+    begin().is_some_and(|text| text.lines().next().is_some_and(is_of_manipulator))
 }
 
 /// A manipulator and the text it was read from.

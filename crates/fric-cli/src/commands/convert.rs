@@ -1,0 +1,85 @@
+//! `convert`: any log that can be read, as MCAP with the signals on the topics that are looked for by default.
+
+use fric_core::robot::file::{LogTable, ReferenceTable, RobotFile};
+use fric_log::log::Log;
+use fric_log::robot::ROBOT_FILE;
+use fric_log::signals::SignalReader;
+use fric_log::write::{LogWriter, SampledLog};
+
+use crate::arguments::ConvertArguments;
+use crate::failure::{Failure, Outcome};
+use crate::interrupt;
+use crate::model::{self, Model};
+use crate::output;
+use crate::progress::{self, STRIDE};
+use crate::warnings::warn_all;
+
+/// Runs the command.
+pub fn run(arguments: &ConvertArguments) -> Outcome {
+    let ConvertArguments { log, output, force } = arguments;
+    let part = log.part.part()?;
+    let source = Log::open(&log.logs)?;
+    let model = Model::find(log.model.as_deref(), &source)?.ok_or_else(model::missing)?;
+    let mut inputs = log.logs.clone();
+    inputs.extend(log.model.clone());
+    let names = model.robot.cable_names();
+    let LogTable { cable, reference, pose, wrench, .. } = LogTable::default();
+    let reference = match (reference, model.robot.params().known_reference()) {
+        (ReferenceTable::Signal(topic), None) => Some(topic),
+        // What is known stays in the robot file.
+        _ => None,
+    };
+
+    let mut writer = LogWriter::create(output, &inputs, *force)?;
+    writer.attach_robot_file(&with_default_topics(&model)?)?;
+    let mut converted = SampledLog::new(writer, &cable, &names)?;
+    let bar = progress::bytes(source.total_bytes());
+    let mut reader = SignalReader::new(source, model.signal_paths()?, &names).within(part);
+    let mut count = 0_u64;
+    let end = loop {
+        if count.is_multiple_of(STRIDE) {
+            interrupt::check()?;
+            bar.set_position(reader.log().bytes_read());
+        }
+        let sample = match reader.next_row() {
+            Ok(Some(sample)) => sample,
+            Ok(None) => break Ok(()),
+            Err(error) => break Err(error),
+        };
+        count += 1;
+        if let Some(topic) = reference.as_ref().filter(|_| sample.reference_force_n.iter().any(|it| !it.is_nan())) {
+            converted.add_reference(topic, &names)?;
+        }
+        if sample.pose.is_some() {
+            converted.add_pose(&pose)?;
+        }
+        if sample.outside_wrench.is_some() {
+            converted.add_wrench(&wrench)?;
+        }
+        converted.write(&sample, true)?;
+    };
+    bar.finish_and_clear();
+    warn_all(&reader.log().warnings());
+    end?;
+    warn_all(&reader.warnings());
+    converted.finish()?;
+    output::show(&format!("{}: {count} samples of {} cables, {ROBOT_FILE} attached\n", output.display(), names.len()))
+}
+
+/// The robot file for a log with the default topics: as it is where it names no others, else without its `[log]`.
+fn with_default_topics(model: &Model) -> Outcome<String> {
+    let mut options = model.robot.options().clone();
+    let standard = LogTable::default();
+    let reference = match &options.log.reference {
+        known @ ReferenceTable::Known(_) => known.clone(),
+        ReferenceTable::Signal(_) => standard.reference.clone(),
+    };
+    let log = LogTable { reference, ..standard };
+    if options.log == log {
+        return Ok(model.text.clone());
+    }
+    options.log = log;
+    let refused = |error: &dyn std::error::Error| Failure::new(format!("{}: {error}", model.origin));
+    let robot = RobotFile::check(options).map_err(|error| refused(&error))?;
+    robot.to_toml().map_err(|error| refused(&error))
+}

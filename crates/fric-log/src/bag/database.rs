@@ -1,0 +1,236 @@
+//! One SQLite file of a bag: its topics, and its messages in the order of time.
+//!
+//! The messages' times are read some thousands at a time, in the order of the recorder's index; the messages themselves one by
+//! one. Where the index or a page of the file is damaged, the table is read in the order in which it was written, around what
+//! cannot be read.
+
+use std::collections::VecDeque;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use rusqlite::{Connection, OpenFlags, OptionalExtension as _, Row};
+use tempfile::NamedTempFile;
+
+/// So many times are read at once.
+const PAGE_LEN: u32 = 4096;
+/// Where rows cannot be read, so many are stepped over, twice as many each time, until there are none.
+const MOST_STEPS: u32 = 24;
+
+/// Time and number of a message.
+type Key = (i64, i64);
+
+/// A topic as the database has it.
+#[derive(Debug, Clone)]
+pub(super) struct StoredTopic {
+    pub id: i64,
+    pub name: String,
+    pub type_name: String,
+    pub encoding: String,
+    /// Its language, such as `ros2msg`, and its text; empty where the recorder kept none.
+    pub definition: (String, String),
+}
+
+/// The order in which messages are read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Order {
+    Time,
+    Number,
+}
+
+/// A file with messages.
+#[derive(Debug)]
+pub(super) struct Database {
+    /// As the bag has it, compressed or not.
+    pub path: PathBuf,
+    pub len: u64,
+    connection: Connection,
+    /// Where it is unpacked to, as long as it is read.
+    _unpacked: Option<NamedTempFile>,
+    order: Order,
+    keys: VecDeque<Key>,
+    /// The last message read in the order of time, and the last number looked at in the other.
+    last: Key,
+    last_number: i64,
+    greatest_number: i64,
+    first_nanos: Option<i64>,
+    pub lost_count: u64,
+    /// What SQLite said of the first that could not be read.
+    pub problem: Option<String>,
+}
+
+impl Database {
+    /// Opens a file, as it is or unpacked.
+    pub fn open(path: &Path, len: u64, unpacked: Option<NamedTempFile>) -> rusqlite::Result<Self> {
+        let file = unpacked.as_ref().map_or(path, NamedTempFile::path);
+        let connection = connect(file)?;
+        // A file that is shorter than its header says is read as far as it goes.
+        connection.pragma_update(None, "writable_schema", true)?;
+        let mut database = Self {
+            path: path.to_owned(),
+            len,
+            connection,
+            _unpacked: unpacked,
+            order: Order::Time,
+            keys: VecDeque::new(),
+            last: (i64::MIN, i64::MIN),
+            last_number: i64::MIN,
+            greatest_number: 0,
+            first_nanos: None,
+            lost_count: 0,
+            problem: None,
+        };
+        let number = |sql: &str| database.connection.query_row(sql, [], |row| row.get::<_, Option<i64>>(0));
+        let has_table =
+            number("SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name IN ('topics', 'messages')")?;
+        if has_table != Some(2) {
+            return Err(rusqlite::Error::QueryReturnedNoRows);
+        }
+        let has_index = number("SELECT count(*) FROM sqlite_master WHERE type = 'index' AND tbl_name = 'messages'");
+        let (first, greatest) = (number("SELECT min(timestamp) FROM messages"), number("SELECT max(id) FROM messages"));
+        if has_index.ok().flatten().unwrap_or(0) == 0 {
+            database.order = Order::Number;
+        }
+        database.first_nanos = first.ok().flatten();
+        database.greatest_number = greatest.ok().flatten().unwrap_or(0);
+        Ok(database)
+    }
+
+    /// Time of the first message; the greatest there is where it is not known.
+    pub fn first_nanos(&self) -> i64 {
+        self.first_nanos.unwrap_or(i64::MAX)
+    }
+
+    /// The topics; those that can be read.
+    pub fn topics(&self) -> rusqlite::Result<Vec<StoredTopic>> {
+        let definition = |type_name: &str| {
+            let sql = "SELECT encoding, encoded_message_definition FROM message_definitions WHERE topic_type = ?1";
+            // Older recorders have no such table.
+            let found = self.connection.query_row(sql, [type_name], |row| Ok((row.get(0)?, row.get(1)?)));
+            found.optional().ok().flatten().unwrap_or_default()
+        };
+        let mut statement =
+            self.connection.prepare("SELECT id, name, type, serialization_format FROM topics ORDER BY id")?;
+        let topic = |row: &Row<'_>| -> rusqlite::Result<StoredTopic> {
+            let type_name: String = row.get(2)?;
+            let definition = definition(&type_name);
+            Ok(StoredTopic { id: row.get(0)?, name: row.get(1)?, type_name, encoding: row.get(3)?, definition })
+        };
+        statement.query_map([], topic)?.collect()
+    }
+
+    /// Reads the next message into `data`; its time and the number of its topic, `None` at the end.
+    pub fn next(&mut self, data: &mut Vec<u8>) -> Option<(i64, i64)> {
+        loop {
+            let Some((stamp_nanos, number)) = self.keys.pop_front() else {
+                if self.read_keys() {
+                    continue;
+                }
+                return None;
+            };
+            if self.order == Order::Time {
+                self.last = (stamp_nanos, number);
+            }
+            match self.read(number, data) {
+                Ok(topic) => return Some((stamp_nanos, topic)),
+                Err(error) => {
+                    self.lost_count += 1;
+                    self.note(&error);
+                }
+            }
+        }
+    }
+
+    /// The share of the messages that have been read.
+    #[expect(clippy::cast_precision_loss, reason = "a share")]
+    pub fn progress_ratio(&self) -> f64 {
+        let number = if self.order == Order::Time { self.last.1 } else { self.last_number };
+        (number as f64 / self.greatest_number.max(1) as f64).clamp(0.0, 1.0)
+    }
+
+    fn note(&mut self, error: &rusqlite::Error) {
+        self.problem.get_or_insert_with(|| error.to_string());
+    }
+
+    fn read(&self, number: i64, data: &mut Vec<u8>) -> rusqlite::Result<i64> {
+        let mut statement = self.connection.prepare_cached("SELECT topic_id, data FROM messages WHERE id = ?1")?;
+        statement.query_row([number], |row| {
+            let blob = row.get_ref(1)?.as_bytes_or_null().map_err(rusqlite::Error::from)?;
+            data.clear();
+            data.extend_from_slice(blob.unwrap_or_default());
+            row.get(0)
+        })
+    }
+
+    /// Reads times and numbers of messages; whether there may be more.
+    fn read_keys(&mut self) -> bool {
+        if self.order == Order::Time {
+            let sql = "SELECT timestamp, id FROM messages WHERE timestamp >= ?1 AND (timestamp > ?1 OR id > ?2) \
+                       ORDER BY timestamp, id LIMIT ?3";
+            let (keys, problem) = self.select(sql, self.last.0, self.last.1);
+            self.keys = keys;
+            if let Some(error) = problem {
+                self.note(&error);
+                self.order = Order::Number;
+                // What follows in the order of time is not known to be whole.
+                self.keys.clear();
+            }
+            return self.order == Order::Number || !self.keys.is_empty();
+        }
+        let sql = "SELECT timestamp, id FROM messages WHERE id > ?1 AND ?2 = ?2 ORDER BY id LIMIT ?3";
+        let mut step = 1_i64;
+        for _ in 0..MOST_STEPS {
+            let (keys, problem) = self.select(sql, self.last_number, 0);
+            let newest = keys.back().map(|key| key.1);
+            let last = self.last;
+            self.keys = keys.into_iter().filter(|key| *key > last).collect();
+            if let Some(newest) = newest {
+                self.last_number = newest;
+                return true;
+            }
+            let Some(error) = problem else { return false };
+            self.note(&error);
+            self.last_number = self.last_number.max(0).saturating_add(step);
+            step *= 2;
+        }
+        false
+    }
+
+    /// The keys as far as they can be read, and what is the matter with the next.
+    fn select(&self, sql: &str, one: i64, other: i64) -> (VecDeque<Key>, Option<rusqlite::Error>) {
+        let mut keys = VecDeque::new();
+        let mut read = || -> rusqlite::Result<()> {
+            let mut statement = self.connection.prepare_cached(sql)?;
+            let mut rows = statement.query((one, other, PAGE_LEN))?;
+            while let Some(row) = rows.next()? {
+                keys.push_back((row.get(0)?, row.get(1)?));
+            }
+            Ok(())
+        };
+        let problem = read().err();
+        (keys, problem)
+    }
+}
+
+/// Opens a database without writing anything beside it.
+fn connect(path: &Path) -> rusqlite::Result<Connection> {
+    let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
+    let mut log = path.as_os_str().to_owned();
+    log.push("-wal");
+    // What the recorder had not yet taken over stands beside the file, and is read with it.
+    let has_log = fs::metadata(log).is_ok_and(|log| log.len() > 0);
+    match path.to_str().filter(|_| !has_log) {
+        Some(text) => {
+            let mut address = String::from("file:");
+            for character in text.chars() {
+                match character {
+                    '%' => address.push_str("%25"),
+                    '?' => address.push_str("%3f"),
+                    '#' => address.push_str("%23"),
+                    other => address.push(other),
+                }
+            }
+            Connection::open_with_flags(address + "?immutable=1", flags | OpenFlags::SQLITE_OPEN_URI)
+        }
+        None => Connection::open_with_flags(path, flags),
+    }
+}

@@ -1,0 +1,83 @@
+//! `metadata.yaml`: which files a bag has, and how they are compressed.
+
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+use std::{fs, io};
+
+use saphyr::{LoadableYamlNode, Yaml};
+
+/// The file that the recorder writes when it ends.
+const METADATA: &str = "metadata.yaml";
+/// How the files of a bag end.
+const ENDINGS: [&str; 2] = ["mcap", "db3"];
+/// How compressed files end, behind that.
+pub(super) const COMPRESSED: &str = "zstd";
+
+/// The files of a bag.
+#[derive(Debug, Default, PartialEq)]
+pub(super) struct Files {
+    pub paths: Vec<PathBuf>,
+    /// What is out of the ordinary, a sentence each.
+    pub remarks: Vec<String>,
+}
+
+impl Files {
+    /// The files of the bag in a folder: those that its metadata names, else those that look like it.
+    pub fn find(folder: &Path) -> io::Result<Self> {
+        let listed = match fs::read_to_string(folder.join(METADATA)) {
+            Ok(text) => named(&text),
+            Err(_) => None,
+        };
+        let mut there: Vec<PathBuf> = fs::read_dir(folder)?.filter_map(|entry| Some(entry.ok()?.path())).collect();
+        there.retain(|path| is_of_bag(path));
+        there.sort();
+        let shown = folder.display();
+        let Some(names) = listed else {
+            let remark = || {
+                format!(
+                    "`{shown}` has no {METADATA} that can be read, as where the recorder was ended: the {} files there are \
+                     read",
+                    there.len()
+                )
+            };
+            let remarks = (!there.is_empty()).then(remark).into_iter().collect();
+            return Ok(Self { paths: there, remarks });
+        };
+        let mut files = Self::default();
+        for name in names {
+            match at(folder, &name, &there) {
+                Some(path) => files.paths.push(path),
+                None => files.remarks.push(format!(
+                    "`{shown}` has no file `{name}`, which its {METADATA} names: its messages are missing"
+                )),
+            }
+        }
+        Ok(files)
+    }
+}
+
+/// The file of a name, which may have been compressed or unpacked since, or stand beside the metadata by its last name.
+fn at(folder: &Path, name: &str, there: &[PathBuf]) -> Option<PathBuf> {
+    let path = folder.join(name);
+    if path.is_file() {
+        return Some(path);
+    }
+    let last = Path::new(name).file_name()?.to_str()?;
+    let unpacked = last.strip_suffix(COMPRESSED).and_then(|name| name.strip_suffix('.'));
+    let names = [last.to_owned(), format!("{last}.{COMPRESSED}"), unpacked.unwrap_or(last).to_owned()];
+    names.into_iter().map(|name| folder.join(name)).find(|path| there.contains(path))
+}
+
+fn is_of_bag(path: &Path) -> bool {
+    let ending = |path: &Path| path.extension().and_then(OsStr::to_str).map(str::to_owned);
+    let inner = if ending(path).as_deref() == Some(COMPRESSED) { path.with_extension("") } else { path.to_owned() };
+    path.is_file() && ending(&inner).is_some_and(|ending| ENDINGS.contains(&ending.as_str()))
+}
+
+/// The files that the metadata names.
+fn named(text: &str) -> Option<Vec<String>> {
+    let documents = Yaml::load_from_str(text).ok()?;
+    let bag = documents.first()?.as_mapping_get("rosbag2_bagfile_information")?;
+    let paths = bag.as_mapping_get("relative_file_paths")?.as_sequence()?;
+    Some(paths.iter().filter_map(|path| path.as_str().map(ToOwned::to_owned)).collect())
+}

@@ -1,0 +1,71 @@
+//! Messages and files that the recorder has compressed.
+
+use std::fs::File;
+use std::io::{self, BufReader, BufWriter, Seek, SeekFrom};
+use std::path::Path;
+
+use tempfile::NamedTempFile;
+
+use crate::recording::CHUNK_LIMIT_BYTES;
+
+/// What compressed data begin with; a message in CDR begins with a zero.
+const MAGIC: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
+
+/// Decompresses messages, those that are compressed.
+#[derive(Debug, Default)]
+pub(crate) struct Unpacker {
+    content: Vec<u8>,
+    /// How many could not be decompressed.
+    pub lost_count: u64,
+}
+
+impl Unpacker {
+    /// The content of a message; nothing of one that is damaged, which no decoder takes for a message.
+    pub fn content<'a>(&'a mut self, data: &'a [u8]) -> &'a [u8] {
+        if !data.starts_with(&MAGIC) {
+            return data;
+        }
+        self.content.clear();
+        let limit = zstd::zstd_safe::get_frame_content_size(data).ok().flatten().unwrap_or(CHUNK_LIMIT_BYTES);
+        let unpacked =
+            if limit > CHUNK_LIMIT_BYTES { Err(io::ErrorKind::InvalidData.into()) } else { self.decode(data) };
+        if unpacked.is_err() {
+            self.lost_count += 1;
+            self.content.clear();
+        }
+        &self.content
+    }
+
+    /// What could not be decompressed, if anything.
+    pub fn warning(&self) -> Option<String> {
+        let count = self.lost_count;
+        let messages =
+            if count == 1 { "1 compressed message is".to_owned() } else { format!("{count} compressed messages are") };
+        (count > 0).then(|| format!("{messages} damaged, and left out"))
+    }
+
+    fn decode(&mut self, data: &[u8]) -> io::Result<()> {
+        let decoder = zstd::stream::read::Decoder::new(data)?;
+        let read = io::Read::read_to_end(&mut io::Read::take(decoder, CHUNK_LIMIT_BYTES + 1), &mut self.content)?;
+        if read as u64 > CHUNK_LIMIT_BYTES { Err(io::ErrorKind::InvalidData.into()) } else { Ok(()) }
+    }
+}
+
+/// A file that was compressed as a whole, in a temporary file, and what is missing of it.
+pub(super) fn unpacked(path: &Path, file: File) -> io::Result<(NamedTempFile, Option<String>)> {
+    let mut target = NamedTempFile::new()?;
+    let mut decoder = zstd::stream::read::Decoder::new(BufReader::new(file))?;
+    let copied = {
+        let mut writer = BufWriter::new(target.as_file_mut());
+        let copied = io::copy(&mut decoder, &mut writer);
+        writer.into_inner().map_err(io::IntoInnerError::into_error)?;
+        copied
+    };
+    let remark = match copied {
+        Ok(_) => None,
+        Err(error) if error.raw_os_error().is_some() => return Err(error),
+        Err(_) => Some(format!("`{}` is damaged or cut off: what could be decompressed is read", path.display())),
+    };
+    target.as_file_mut().seek(SeekFrom::Start(0))?;
+    Ok((target, remark))
+}

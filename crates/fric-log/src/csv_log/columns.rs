@@ -1,0 +1,151 @@
+//! Which column is which signal.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use fric_core::robot::file::{ColumnTable, POSE_COLUMNS, TIME_COLUMN, WRENCH_COLUMNS};
+use fric_core::robot::nearest_name;
+
+use super::CsvError;
+use super::form::Form;
+
+/// A column that is read.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Column {
+    /// Which of the file's.
+    pub index: usize,
+    pub table: ColumnTable,
+}
+
+impl Column {
+    /// The value of a number that stands there.
+    pub fn value(&self, number: f64) -> f64 {
+        let ColumnTable { factor, offset, .. } = self.table;
+        number * factor + offset
+    }
+
+    /// The power of ten by which the times in this column become nanoseconds, where they do by one alone.
+    pub fn nanos_exponent(&self) -> Option<u32> {
+        let units = [(1.0, 9), (1e-3, 6), (1e-6, 3), (1e-9, 0)];
+        let is_unit = |(factor, _): &(f64, u32)| factor.to_bits() == self.table.factor.to_bits();
+        units.into_iter().find(is_unit).filter(|_| self.table.offset == 0.0).map(|(_, exponent)| exponent)
+    }
+}
+
+/// Where the signals of a robot are in a file.
+#[derive(Debug, Clone)]
+pub(super) struct Columns {
+    pub time: Column,
+    /// By cable.
+    pub force_n: Vec<Option<Column>>,
+    pub length_m: Vec<Option<Column>>,
+    pub speed_m_per_s: Vec<Option<Column>>,
+    pub reference_n: Vec<Option<Column>>,
+    /// Whole or empty.
+    pub pose: Vec<Option<Column>>,
+    pub wrench: Vec<Option<Column>>,
+}
+
+/// What is looked for in a file.
+pub(super) struct Wanted<'a> {
+    pub columns: &'a BTreeMap<String, ColumnTable>,
+    pub cable_names: &'a [String],
+    pub reference: bool,
+    pub pose: bool,
+    pub wrench: bool,
+}
+
+impl Columns {
+    /// Finds the columns of a file, and says what there is only a part of.
+    pub fn find(path: &Path, form: &Form, wanted: &Wanted<'_>, remarks: &mut Vec<String>) -> Result<Self, CsvError> {
+        let finder = Finder { path, names: &form.names, columns: wanted.columns };
+        let of_cables = |quantity: &str| {
+            let keys = wanted.cable_names.iter().map(|name| format!("{name}.{quantity}"));
+            keys.map(|key| finder.find(&key)).collect::<Result<Vec<_>, _>>()
+        };
+        let time = finder.find(TIME_COLUMN)?.ok_or_else(|| finder.missing(TIME_COLUMN))?;
+        let (force_n, length_m) = (of_cables("force_n")?, of_cables("length_m")?);
+        if let Some((quantity, cable)) = incomplete(wanted.cable_names, &force_n, &length_m) {
+            return Err(finder.missing(&format!("{cable}.{quantity}")));
+        }
+        for (quantity, columns) in [("force_n", &force_n), ("length_m", &length_m)] {
+            let lacking = wanted.cable_names.iter().zip(columns).filter(|(_, column)| column.is_none());
+            let lacking: Vec<String> = lacking.map(|(name, _)| format!("`{name}.{quantity}`")).collect();
+            if !lacking.is_empty() {
+                let (path, lacking) = (path.display(), lacking.join(", "));
+                remarks.push(format!("`{path}` has no column {lacking}: nothing is compensated for these cables"));
+            }
+        }
+        let mut group = |keys: &[&str], is_wanted: bool| -> Result<Vec<Option<Column>>, CsvError> {
+            if !is_wanted {
+                return Ok(Vec::new());
+            }
+            let found = keys.iter().map(|key| finder.find(key)).collect::<Result<Vec<_>, _>>()?;
+            let lacking: Vec<_> = keys.iter().zip(&found).filter(|(_, column)| column.is_none()).collect();
+            let Some((first, _)) = lacking.first() else { return Ok(found) };
+            if lacking.len() < keys.len() {
+                let path = path.display();
+                remarks.push(format!(
+                    "`{path}` has no column `{first}`, without which the others of its kind are not used"
+                ));
+            }
+            Ok(Vec::new())
+        };
+        let pose = group(&POSE_COLUMNS, wanted.pose)?;
+        let wrench = group(&WRENCH_COLUMNS, wanted.wrench)?;
+        let speed_m_per_s = of_cables("speed_m_per_s")?;
+        let reference_n = if wanted.reference { of_cables("reference_n")? } else { Vec::new() };
+        Ok(Self { time, force_n, length_m, speed_m_per_s, reference_n, pose, wrench })
+    }
+}
+
+/// The first column that is missing where no cable has both force and length.
+fn incomplete<'a>(
+    names: &'a [String],
+    force_n: &[Option<Column>],
+    length_m: &[Option<Column>],
+) -> Option<(&'static str, &'a str)> {
+    let cables = || names.iter().zip(force_n).zip(length_m);
+    if cables().any(|((_, force), length)| force.is_some() && length.is_some()) {
+        return None;
+    }
+    // Rather of a cable that has one of the two.
+    let begun = cables().find(|((_, force), length)| force.is_some() || length.is_some());
+    let ((name, force), _) = begun.or_else(|| cables().next())?;
+    Some((if force.is_some() { "length_m" } else { "force_n" }, name.as_str()))
+}
+
+struct Finder<'a> {
+    path: &'a Path,
+    names: &'a [String],
+    columns: &'a BTreeMap<String, ColumnTable>,
+}
+
+impl Finder<'_> {
+    /// The column of a signal; one that the robot file names has to be there.
+    fn find(&self, key: &str) -> Result<Option<Column>, CsvError> {
+        let stated = self.columns.get(key);
+        let table = stated.cloned().unwrap_or_else(|| ColumnTable::plain(key));
+        let wanted = table.column.trim();
+        let mut indices = (0..).zip(self.names).filter(|(_, name)| *name == wanted).map(|(index, _)| index);
+        let (first, second) = (indices.next(), indices.next());
+        match (first, second) {
+            (Some(_), Some(_)) => Err(CsvError::Repeated { path: self.path.to_owned(), column: wanted.to_owned() }),
+            (Some(index), None) => Ok(Some(Column { index, table })),
+            (None, _) if stated.is_some() => Err(self.missing(wanted)),
+            (None, _) => Ok(None),
+        }
+    }
+
+    fn missing(&self, wanted: &str) -> CsvError {
+        let mut columns = self.names.to_vec();
+        // The one that was probably meant first.
+        if let Some(nearest) = nearest_name(wanted, self.names.iter().map(String::as_str))
+            && let Some(place) = self.names.iter().position(|name| name == nearest)
+        {
+            let nearest = columns.remove(place);
+            columns.insert(0, nearest);
+        }
+        CsvError::Missing { path: self.path.to_owned(), wanted: wanted.to_owned(), columns }
+    }
+}

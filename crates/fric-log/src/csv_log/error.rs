@@ -1,0 +1,129 @@
+//! Why a CSV log gives no rows.
+
+use std::io;
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+/// What to do, each the end of a sentence.
+mod advice {
+    pub const DISK: &str = "check the disk, or copy the file and try again";
+    pub const UTF8: &str = "save it as CSV in UTF-8";
+    pub const HEADER: &str = "put a line with the names of the columns in front";
+    pub const NAME: &str = "name the right columns under `[log.columns]` in the robot file, such as \
+                            \"cable1.force_n\" = { column = \"Load cell 1 [kg]\", factor = 9.80665 }";
+    pub const RENAME: &str = "take one of the two out, or give it another name";
+    pub const CELL: &str =
+        "write digits, without thousands separators, or leave the cell empty where there is no value";
+    pub const RECORD: &str = "name a complete copy of it, or record again";
+    pub const ROWS: &str = "give each row as many cells as the header; numbers with decimal commas need semicolons or \
+                            tabs between them";
+}
+
+/// Why a CSV log gives no rows.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum CsvError {
+    /// The operating system does not hand it over.
+    #[error("`{}` could not be read; {}", path.display(), advice::DISK)]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the operating system said.
+        source: io::Error,
+    },
+    /// It is text of another encoding.
+    #[error("`{}` is text in UTF-16; {}", path.display(), advice::UTF8)]
+    NotUtf8 {
+        /// The file.
+        path: PathBuf,
+    },
+    /// It begins with numbers.
+    #[error("`{}`, line {line}: there are numbers where the names of the columns should be; {}", path.display(), advice::HEADER)]
+    NoHeader {
+        /// The file.
+        path: PathBuf,
+        /// The line, from 1.
+        line: u64,
+    },
+    /// A signal that is needed has no column.
+    #[error(
+        "`{}` has no column `{wanted}`; it has {}; {}",
+        path.display(), listed(columns), advice::NAME
+    )]
+    Missing {
+        /// The file.
+        path: PathBuf,
+        /// The column looked for.
+        wanted: String,
+        /// Those there are.
+        columns: Vec<String>,
+    },
+    /// Two columns of the name of a signal.
+    #[error("`{}`: the column `{column}` stands there twice; {}", path.display(), advice::RENAME)]
+    Repeated {
+        /// The file.
+        path: PathBuf,
+        /// Its name.
+        column: String,
+    },
+    /// A cell that is no number.
+    #[error("`{}`, line {line}, column `{column}`: `{text}` is no number; {}", path.display(), advice::CELL)]
+    Cell {
+        /// The file.
+        path: PathBuf,
+        /// The line, from 1.
+        line: u64,
+        /// The column.
+        column: String,
+        /// What stands there.
+        text: String,
+    },
+    /// There is nothing below the header.
+    #[error("`{}` has no whole row of numbers below its header; {}", path.display(), advice::RECORD)]
+    NoRow {
+        /// The file.
+        path: PathBuf,
+    },
+    /// No row can be used.
+    #[error("`{}` has no row that can be used; the first: {problem}; {}", path.display(), advice::ROWS)]
+    NoUsableRow {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with the first one.
+        problem: String,
+    },
+    /// No row has a force and a length.
+    #[error("`{}`: no row has a number in a column of sensor forces or lengths; {}", path.display(), advice::RECORD)]
+    NoNumber {
+        /// The file.
+        path: PathBuf,
+    },
+}
+
+/// So many columns are named in an error.
+const MOST_LISTED: usize = 10;
+
+fn listed(columns: &[String]) -> String {
+    let names: Vec<String> = columns.iter().take(MOST_LISTED).map(|name| format!("`{name}`")).collect();
+    let more = columns.len().saturating_sub(MOST_LISTED);
+    let names = names.join(", ");
+    if more == 0 { names } else { format!("{names} and {more} more") }
+}
+
+impl CsvError {
+    /// What to do: the words that end the error's sentence.
+    #[must_use]
+    pub const fn advice(&self) -> &'static str {
+        match self {
+            Self::Read { .. } => advice::DISK,
+            Self::NotUtf8 { .. } => advice::UTF8,
+            Self::NoHeader { .. } => advice::HEADER,
+            Self::Missing { .. } => advice::NAME,
+            Self::Repeated { .. } => advice::RENAME,
+            Self::Cell { .. } => advice::CELL,
+            Self::NoRow { .. } | Self::NoNumber { .. } => advice::RECORD,
+            Self::NoUsableRow { .. } => advice::ROWS,
+        }
+    }
+}

@@ -1,0 +1,139 @@
+//! What a CSV file looks like: where its rows begin, what stands between the cells, what the columns are called.
+
+use csv::{ByteRecord, ReaderBuilder};
+
+use super::number::Decimals;
+
+/// What may stand between cells.
+const SEPARATORS: [u8; 3] = *b",;\t";
+/// Begins a line that is none of the table.
+pub(super) const COMMENT: u8 = b'#';
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+
+/// The form of a CSV file.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Form {
+    pub separator: u8,
+    /// In the order of the file.
+    pub names: Vec<String>,
+    /// Where the first row begins, and in which line, from 1.
+    pub rows_at: u64,
+    pub first_line: u64,
+    /// Whether numbers stand in the place of the names.
+    pub lacks_header: bool,
+    /// Whether the row under the header has as many cells, one number among them at least.
+    pub has_fitting_row: bool,
+}
+
+/// A line and where it is.
+#[derive(Clone, Copy)]
+struct Line<'a> {
+    text: &'a [u8],
+    at: usize,
+    /// From 1.
+    number: u64,
+}
+
+impl Form {
+    /// The form of a file that begins with these bytes; `None` where there is nothing but comments.
+    pub fn find(beginning: &[u8]) -> Option<Self> {
+        let table = beginning.strip_prefix(BYTE_ORDER_MARK).unwrap_or(beginning);
+        let mut at = beginning.len() - table.len();
+        let mut lines = Vec::new();
+        for (number, text) in (1..).zip(table.split_inclusive(|byte| *byte == b'\n')) {
+            lines.push(Line { text: text.trim_ascii(), at, number });
+            at += text.len();
+        }
+        let mut separators = SEPARATORS.to_vec();
+        let mut comment = None;
+        let mut filled = lines.iter().filter(|line| !line.text.is_empty());
+        let header = loop {
+            let line = filled.next()?;
+            match line.text {
+                [COMMENT, text @ ..] => comment = Some(text.trim_ascii()),
+                // Of spreadsheets.
+                [b's', b'e', b'p', b'=', separator] => separators = vec![*separator],
+                _ => break line,
+            }
+        };
+        let row = filled.find(|line| !line.text.starts_with(&[COMMENT]));
+        let separator = separators.iter().copied().max_by_key(|separator| {
+            let count = cells(header.text, *separator).len();
+            let fits = row.is_none_or(|row| cells(row.text, *separator).len() == count);
+            // The first of equals, which `max_by_key` takes last.
+            (count > 1 && fits, count, std::cmp::Reverse(*separator))
+        })?;
+        let mut names = cells(header.text, separator);
+        let lacks_names = number_count(&names) == names.len();
+        let commented =
+            comment.map(|text| cells(text, separator)).filter(|other| lacks_names && other.len() == names.len());
+        let lacks_header = lacks_names && commented.is_none();
+        let first = if lacks_names { Some(header) } else { row };
+        let has_fitting_row = first.is_some_and(|row| {
+            let cells = cells(row.text, separator);
+            cells.len() == names.len() && cells.len() > 1 && number_count(&cells) > 0
+        });
+        if let Some(commented) = commented {
+            names = commented;
+        }
+        let rows_at = if lacks_names { header.at } else { next_line(beginning, header.at) };
+        let first_line = header.number + u64::from(!lacks_names);
+        Some(Self { separator, names, rows_at: rows_at as u64, first_line, lacks_header, has_fitting_row })
+    }
+}
+
+/// Where the line behind one begins.
+fn next_line(bytes: &[u8], at: usize) -> usize {
+    let rest = bytes.get(at..).unwrap_or_default();
+    rest.iter().position(|byte| *byte == b'\n').map_or(bytes.len(), |end| at + end + 1)
+}
+
+/// The cells of a line, unquoted and without blanks around them.
+fn cells(line: &[u8], separator: u8) -> Vec<String> {
+    let mut reader = ReaderBuilder::new().has_headers(false).delimiter(separator).from_reader(line);
+    let mut record = ByteRecord::new();
+    // Reading from memory cannot fail, and bytes are not decoded.
+    let _ = reader.read_byte_record(&mut record);
+    record.iter().map(|cell| unquoted(text_of(cell).trim()).to_owned()).collect()
+}
+
+/// A name without the quotes that a blank in front of them makes part of it.
+fn unquoted(name: &str) -> &str {
+    name.strip_prefix('"').and_then(|name| name.strip_suffix('"')).unwrap_or(name)
+}
+
+/// How many of the cells are numbers.
+fn number_count(cells: &[String]) -> usize {
+    let is_number = |cell: &&String| !cell.is_empty() && Decimals::default().number(cell).is_some();
+    cells.iter().filter(is_number).count()
+}
+
+/// Bytes as text: UTF-8, else Latin-1, in which spreadsheets write headers.
+pub(super) fn text_of(bytes: &[u8]) -> String {
+    std::str::from_utf8(bytes).map_or_else(|_| bytes.iter().copied().map(char::from).collect(), ToOwned::to_owned)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_form_is_found_out() {
+        let form = |text: &str| Form::find(text.as_bytes()).unwrap();
+        let named = |text: &str| {
+            let Form { separator, names, rows_at, first_line, .. } = form(text);
+            (char::from(separator), names.join("|"), text[usize::try_from(rows_at).unwrap()..].to_owned(), first_line)
+        };
+        let expected = |separator, names: &str, rows: &str, line| (separator, names.to_owned(), rows.to_owned(), line);
+        assert_eq!(named("time_s,a\n1,2\n"), expected(',', "time_s|a", "1,2\n", 2));
+        assert_eq!(named("\u{feff}time_s;a\r\n1,5;2\r\n"), expected(';', "time_s|a", "1,5;2\r\n", 2));
+        assert_eq!(named("# made by x, y\n\nt\ta, b\n1\t2\n"), expected('\t', "t|a, b", "1\t2\n", 4));
+        assert_eq!(named("\"t [s]\",\"F; N\"\n1,2\n"), expected(',', "t [s]|F; N", "1,2\n", 2));
+        assert_eq!(named("sep=;\nt;a\n1;2\n"), expected(';', "t|a", "1;2\n", 3));
+        assert_eq!(named("# t a\n# t, a\n1,2\n"), expected(',', "t|a", "1,2\n", 3));
+        assert!(form("1,2\n3,4\n").lacks_header);
+        assert!(form("t,a\n1,2\n").has_fitting_row && !form("run one, good\nrun two\n").has_fitting_row);
+        assert_eq!(Form::find(b"# nothing\n\n"), None);
+        assert_eq!(form("t,a\n").rows_at, 4);
+    }
+}

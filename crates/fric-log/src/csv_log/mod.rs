@@ -1,0 +1,401 @@
+//! CSV logs: a header, and a row of numbers for each time.
+//!
+//! Found out by itself: comma, semicolon or tab between the cells, decimal points or commas, a byte order mark, quotes,
+//! lines with `#` in front, a header in one of these. Empty cells and `nan` are gaps of their signal. Columns are called as
+//! [`ColumnTable`](fric_core::robot::file::ColumnTable)'s keys, or as the robot file says. A row with too many cells or too
+//! few, or without a time, is left out and counted; text where a number should be is an error. The last line counts only if
+//! it has its end: what is missing of its last number cannot be seen.
+//!
+//! Rows are read one after the other, memory does not grow with the log. Several files are the parts of one, in the order of
+//! their first times.
+
+mod columns;
+mod error;
+mod form;
+mod number;
+mod units;
+
+use std::fs::File;
+use std::io::{self, BufReader, Read, Seek, SeekFrom, Take};
+use std::path::{Path, PathBuf};
+
+use csv::{ByteRecord, Reader, ReaderBuilder, Trim};
+
+pub use self::error::CsvError;
+
+use self::columns::{Column, Columns, Wanted};
+use self::form::{COMMENT, Form, text_of};
+use self::number::{Decimals, scaled};
+use self::units::{Quantity, Units};
+use crate::signals::{Role, SignalPaths};
+
+/// Bytes in which the header and the first row of a file end.
+const BEGINNING_BYTES: u64 = 1 << 18;
+/// Bytes that are searched for the last line end.
+const ENDING_BYTES: u64 = 1 << 20;
+
+/// One or several CSV files, read as one.
+#[derive(Debug)]
+pub struct CsvLog {
+    files: Vec<CsvFile>,
+    state: State,
+    /// Of which file the rows are, and how far these are read.
+    current: usize,
+    bytes_read: u64,
+    decimals: Decimals,
+    units: Units,
+    row: CsvRow,
+    record: ByteRecord,
+    row_count: u64,
+    unusable_count: u64,
+    first_problem: Option<String>,
+    remarks: Vec<String>,
+}
+
+/// One of the files.
+#[derive(Debug)]
+struct CsvFile {
+    path: PathBuf,
+    file: File,
+    len: u64,
+    /// Where its last whole line ends.
+    end: u64,
+    form: Form,
+}
+
+#[derive(Debug)]
+enum State {
+    /// Nothing is read yet.
+    Open,
+    Reading(Box<(Columns, Reader<BufReader<Take<File>>>)>),
+    Ended,
+}
+
+/// A row, in the robot's order.
+#[derive(Debug, Default)]
+pub(crate) struct CsvRow {
+    pub stamp_nanos: i64,
+    /// By role but length and speed, which stand behind the force: the values, empty where the row has none.
+    values: [Vec<f64>; 6],
+}
+
+impl CsvRow {
+    /// The values of a signal: force, length and, where the file has them, speed of each cable; reference of each cable;
+    /// position and orientation; force and torque. `None` where the row has none.
+    pub fn values(&self, role: Role) -> Option<&[f64]> {
+        Some(self.values[role as usize].as_slice()).filter(|values| !values.is_empty())
+    }
+}
+
+impl CsvLog {
+    /// Opens a file, which has bytes; `None` where it does not look like CSV.
+    pub(crate) fn open(path: &Path, mut file: File, len: u64) -> Result<Option<Self>, CsvError> {
+        let refused = |source| CsvError::Read { path: path.to_owned(), source };
+        let mut beginning = Vec::new();
+        file.by_ref().take(BEGINNING_BYTES).read_to_end(&mut beginning).map_err(refused)?;
+        let is_named =
+            path.extension().is_some_and(|it| it.eq_ignore_ascii_case("csv") || it.eq_ignore_ascii_case("tsv"));
+        if beginning.starts_with(b"\xff\xfe") || beginning.starts_with(b"\xfe\xff") {
+            return if is_named { Err(CsvError::NotUtf8 { path: path.to_owned() }) } else { Ok(None) };
+        }
+        let is_text = !beginning.iter().any(|byte| byte.is_ascii_control() && !byte.is_ascii_whitespace());
+        let Some(form) = Form::find(&beginning).filter(|form| is_text && (is_named || form.has_fitting_row)) else {
+            return if is_named && is_text { Err(CsvError::NoRow { path: path.to_owned() }) } else { Ok(None) };
+        };
+        if form.lacks_header {
+            return Err(CsvError::NoHeader { path: path.to_owned(), line: form.first_line });
+        }
+        let end = last_line_end(&mut file, len).map_err(refused)?.max(form.rows_at);
+        let remarks = (end < len)
+            .then(|| {
+                let path = path.display();
+                format!(
+                    "`{path}` is cut off: its last line has no line end and is left out; if that line is whole, put a line \
+                     end behind it"
+                )
+            })
+            .into_iter()
+            .collect();
+        Ok(Some(Self {
+            files: vec![CsvFile { path: path.to_owned(), file, len, end, form }],
+            state: State::Open,
+            current: 0,
+            bytes_read: 0,
+            decimals: Decimals::default(),
+            units: Units::default(),
+            row: CsvRow::default(),
+            record: ByteRecord::new(),
+            row_count: 0,
+            unusable_count: 0,
+            first_problem: None,
+            remarks,
+        }))
+    }
+
+    /// Adds the files of another one.
+    pub(crate) fn join(&mut self, other: Self) {
+        self.files.extend(other.files);
+        self.remarks.extend(other.remarks);
+    }
+
+    /// Names of the columns of the first file.
+    #[must_use]
+    pub fn column_names(&self) -> &[String] {
+        self.files.first().map_or(&[], |file| file.form.names.as_slice())
+    }
+
+    /// How many bytes have been read, of how many.
+    pub(crate) fn progress(&self) -> (u64, u64) {
+        (self.bytes_read, self.files.iter().map(|file| file.len).sum())
+    }
+
+    /// What was out of the ordinary. Complete when all rows have been read.
+    pub(crate) fn warnings(&self) -> Vec<String> {
+        let mut warnings = self.remarks.clone();
+        if let Some(problem) = &self.first_problem {
+            let count = self.unusable_count;
+            let rows = if count == 1 { "1 row is".to_owned() } else { format!("{count} rows are") };
+            warnings.push(format!("{rows} left out: {problem}"));
+        }
+        warnings.extend(self.units.warnings());
+        warnings
+    }
+
+    /// The columns of a signal in the first file, as they are called there; empty where there are none.
+    pub(crate) fn columns_of(&self, role: Role) -> Vec<&str> {
+        let State::Reading(reading) = &self.state else { return Vec::new() };
+        let columns = &reading.0;
+        let groups: &[&[Option<Column>]] = match role {
+            Role::Cable => &[&columns.force_n, &columns.length_m, &columns.speed_m_per_s],
+            Role::Length | Role::Speed => &[],
+            Role::Reference => &[&columns.reference_n],
+            Role::Pose => &[&columns.pose],
+            Role::Wrench => &[&columns.wrench],
+        };
+        groups.iter().flat_map(|group| group.iter().flatten()).map(|column| column.table.column.as_str()).collect()
+    }
+
+    /// The next row for a robot with cables of these names; `None` at the end.
+    pub(crate) fn next_row(&mut self, names: &[String], paths: &SignalPaths) -> Result<Option<&CsvRow>, CsvError> {
+        let wanted = Wanted {
+            columns: paths.columns(),
+            cable_names: names,
+            reference: paths.get(Role::Reference).is_some(),
+            pose: paths.get(Role::Pose).is_some(),
+            wrench: paths.get(Role::Wrench).is_some(),
+        };
+        loop {
+            match &self.state {
+                State::Open => {
+                    if self.files.len() > 1 {
+                        self.sort(&wanted)?;
+                    }
+                    self.start(&wanted)?;
+                }
+                State::Reading(_) => {
+                    if self.read_row()? {
+                        return Ok(Some(&self.row));
+                    }
+                    if self.current + 1 < self.files.len() {
+                        self.current += 1;
+                        self.start(&wanted)?;
+                    } else {
+                        return self.end().map(|()| None);
+                    }
+                }
+                State::Ended => return Ok(None),
+            }
+        }
+    }
+
+    /// Puts the files into the order of their first times.
+    fn sort(&mut self, wanted: &Wanted<'_>) -> Result<(), CsvError> {
+        let mut starts = Vec::new();
+        for place in 0..self.files.len() {
+            self.current = place;
+            self.start(wanted)?;
+            starts.push(if self.read_row()? { self.row.stamp_nanos } else { i64::MAX });
+        }
+        let mut files: Vec<_> = starts.into_iter().zip(std::mem::take(&mut self.files)).collect();
+        files.sort_by_key(|(start, _)| *start);
+        self.files = files.into_iter().map(|(_, file)| file).collect();
+        (self.current, self.row_count, self.unusable_count, self.first_problem) = (0, 0, 0, None);
+        (self.units, self.decimals) = (Units::default(), Decimals::default());
+        self.remarks.dedup();
+        Ok(())
+    }
+
+    /// Begins with the current file.
+    fn start(&mut self, wanted: &Wanted<'_>) -> Result<(), CsvError> {
+        let Some(CsvFile { path, file, end, form, .. }) = self.files.get(self.current) else { return Ok(()) };
+        let mut remarks = Vec::new();
+        let columns = Columns::find(path, form, wanted, &mut remarks)?;
+        remarks.retain(|remark| !self.remarks.contains(remark));
+        self.remarks.extend(remarks);
+        let refused = |source| CsvError::Read { path: path.clone(), source };
+        let mut rows = file.try_clone().map_err(refused)?;
+        rows.seek(SeekFrom::Start(form.rows_at)).map_err(refused)?;
+        let reader = ReaderBuilder::new()
+            .has_headers(false)
+            .flexible(true)
+            .delimiter(form.separator)
+            .comment(Some(COMMENT))
+            .trim(Trim::All)
+            .from_reader(BufReader::new(rows.take(end.saturating_sub(form.rows_at))));
+        self.state = State::Reading(Box::new((columns, reader)));
+        Ok(())
+    }
+
+    /// Reads the next row of the current file that can be used; false at its end.
+    fn read_row(&mut self) -> Result<bool, CsvError> {
+        let State::Reading(reading) = &mut self.state else { return Ok(false) };
+        let (columns, reader) = &mut **reading;
+        let Some(CsvFile { path, form, .. }) = self.files.get(self.current) else { return Ok(false) };
+        let before: u64 = self.files.iter().take(self.current).map(|file| file.len).sum();
+        loop {
+            let has_row = reader.read_byte_record(&mut self.record).map_err(|error| {
+                let source = io::Error::other(error.to_string());
+                CsvError::Read { path: path.clone(), source }
+            })?;
+            self.bytes_read = before + form.rows_at + reader.position().byte();
+            if !has_row {
+                return Ok(false);
+            }
+            let line = form.first_line - 1 + self.record.position().map_or(0, csv::Position::line);
+            let mut cells = Cells { record: &self.record, decimals: &mut self.decimals, path, line };
+            let problem = if self.record.len() == form.names.len() {
+                match cells.stamp_nanos(&columns.time)? {
+                    Some(stamp_nanos) => {
+                        self.row.stamp_nanos = stamp_nanos;
+                        cells.fill(columns, &mut self.row, &mut self.units)?;
+                        self.row_count += 1;
+                        return Ok(true);
+                    }
+                    None => format!("line {line} has no time in column `{}`", columns.time.table.column),
+                }
+            } else {
+                format!("line {line} has {} cells under a header of {}", self.record.len(), form.names.len())
+            };
+            self.unusable_count += 1;
+            self.first_problem.get_or_insert_with(|| format!("{problem} (`{}`)", path.display()));
+        }
+    }
+
+    fn end(&mut self) -> Result<(), CsvError> {
+        self.bytes_read = self.progress().1;
+        let path = || self.files.first().map(|file| file.path.clone()).unwrap_or_default();
+        if self.row_count > 0 {
+            return Ok(());
+        }
+        self.state = State::Ended;
+        Err(match self.first_problem.clone() {
+            Some(problem) => CsvError::NoUsableRow { path: path(), problem },
+            None => CsvError::NoRow { path: path() },
+        })
+    }
+
+    /// Rows, but not one with a number for a cable.
+    pub(crate) fn without_numbers(&self) -> CsvError {
+        CsvError::NoNumber { path: self.files.first().map(|file| file.path.clone()).unwrap_or_default() }
+    }
+}
+
+/// The cells of a row.
+struct Cells<'a> {
+    record: &'a ByteRecord,
+    decimals: &'a mut Decimals,
+    path: &'a Path,
+    line: u64,
+}
+
+impl<'a> Cells<'a> {
+    fn text(&self, column: &Column) -> &'a [u8] {
+        let record: &'a ByteRecord = self.record;
+        record.get(column.index).unwrap_or_default()
+    }
+
+    fn wrong(&self, column: &Column) -> CsvError {
+        CsvError::Cell {
+            path: self.path.to_owned(),
+            line: self.line,
+            column: column.table.column.clone(),
+            text: text_of(self.text(column)),
+        }
+    }
+
+    fn number(&mut self, column: &Column) -> Result<f64, CsvError> {
+        let text = std::str::from_utf8(self.text(column)).map_err(|_| self.wrong(column))?;
+        self.decimals.number(text).ok_or_else(|| self.wrong(column))
+    }
+
+    /// The time; `None` where there is none.
+    fn stamp_nanos(&mut self, column: &Column) -> Result<Option<i64>, CsvError> {
+        if let Some(exponent) = column.nanos_exponent()
+            && let Ok(text) = std::str::from_utf8(self.text(column))
+            && let Some(nanos) = scaled(text, exponent)
+        {
+            return Ok(Some(nanos));
+        }
+        let nanos = column.value(self.number(column)?) * 1e9;
+        if nanos.is_nan() {
+            return Ok(None);
+        }
+        #[expect(clippy::cast_possible_truncation, reason = "checked to be within 292 years")]
+        let stamp_nanos = (nanos.abs() < 9.2e18).then_some(nanos.round() as i64);
+        stamp_nanos.map(Some).ok_or_else(|| self.wrong(column))
+    }
+
+    /// The values of a row; a signal of which no value is known, or not the whole of a pose or wrench, is left empty.
+    fn fill(&mut self, columns: &Columns, row: &mut CsvRow, units: &mut Units) -> Result<(), CsvError> {
+        let Columns { force_n, length_m, speed_m_per_s, reference_n, pose, wrench, .. } = columns;
+        let has_speed = speed_m_per_s.iter().any(Option::is_some);
+        let speed: &[Option<Column>] = if has_speed { speed_m_per_s } else { &[] };
+        for (role, groups) in [
+            (
+                Role::Cable,
+                &[
+                    (Some(Quantity::Force), &**force_n),
+                    (Some(Quantity::Length), length_m),
+                    (Some(Quantity::Speed), speed),
+                ][..],
+            ),
+            (Role::Reference, &[(Some(Quantity::Force), &**reference_n)]),
+            (Role::Pose, &[(None, &**pose)]),
+            (Role::Wrench, &[(None, &**wrench)]),
+        ] {
+            let values = &mut row.values[role as usize];
+            values.clear();
+            for (quantity, columns) in groups {
+                for column in *columns {
+                    let value = match column {
+                        Some(column) => column.value(self.number(column)?),
+                        None => f64::NAN,
+                    };
+                    if let Some(quantity) = quantity {
+                        units.add(*quantity, value);
+                    }
+                    values.push(value);
+                }
+            }
+            let mut numbers = values.iter().map(|value| !value.is_nan());
+            let is_known =
+                if matches!(role, Role::Pose | Role::Wrench) { numbers.all(|it| it) } else { numbers.any(|it| it) };
+            if !is_known {
+                values.clear();
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Where the last line with an end ends.
+fn last_line_end(file: &mut File, len: u64) -> io::Result<u64> {
+    let from = len.saturating_sub(ENDING_BYTES);
+    file.seek(SeekFrom::Start(from))?;
+    let mut ending = Vec::new();
+    file.take(ENDING_BYTES).read_to_end(&mut ending)?;
+    let end = ending.iter().rposition(|byte| *byte == b'\n').map_or(0, |place| place + 1);
+    // Blanks behind it are no line.
+    let is_blank = ending.get(end..).unwrap_or_default().iter().all(u8::is_ascii_whitespace);
+    Ok(if is_blank { len } else { from + end as u64 })
+}

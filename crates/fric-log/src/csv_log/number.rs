@@ -1,0 +1,74 @@
+//! Numbers and times as people and programs write them.
+
+/// What a decimal point and a decimal comma look like in one file: it has one or the other.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Decimals {
+    has_points: bool,
+    has_commas: bool,
+}
+
+impl Decimals {
+    /// The number in a cell; NaN where it is empty or says so. `None` where it is none, or where commas stand beside points.
+    pub fn number(&mut self, cell: &str) -> Option<f64> {
+        if cell.is_empty() {
+            return Some(f64::NAN);
+        }
+        if cell.contains(',') {
+            let is_one = !cell.contains('.') && cell.matches(',').count() == 1;
+            self.has_commas = true;
+            return if is_one && !self.has_points { cell.replace(',', ".").parse().ok() } else { None };
+        }
+        let number = cell.parse().ok()?;
+        self.has_points |= cell.contains('.');
+        if self.has_points && self.has_commas { None } else { Some(number) }
+    }
+}
+
+/// A decimal number times `10^exponent`, exactly, rounded to an integer; `None` where it is not written as plain digits.
+pub(super) fn scaled(cell: &str, exponent: u32) -> Option<i64> {
+    let (is_negative, digits) = match cell.strip_prefix('-') {
+        Some(digits) => (true, digits),
+        None => (false, cell.strip_prefix('+').unwrap_or(cell)),
+    };
+    let (whole, fraction) = digits.split_once(['.', ',']).unwrap_or((digits, ""));
+    let is_plain = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit());
+    if whole.is_empty() && fraction.is_empty() || !is_plain(whole) || !is_plain(fraction) {
+        return None;
+    }
+    let mut value: i128 = if whole.is_empty() { 0 } else { whole.parse().ok()? };
+    let mut digits = fraction.bytes().map(|byte| i128::from(byte - b'0'));
+    for _ in 0..exponent {
+        value = value.checked_mul(10)?.checked_add(digits.next().unwrap_or(0))?;
+    }
+    if digits.next() >= Some(5) {
+        value += 1;
+    }
+    i64::try_from(if is_negative { -value } else { value }).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_exact_to_the_nanosecond() {
+        assert_eq!(scaled("1700000000.123456789", 9), Some(1_700_000_000_123_456_789));
+        assert_eq!(scaled("-0,0005", 9), Some(-500_000));
+        assert_eq!(scaled("12", 6), Some(12_000_000));
+        assert_eq!(scaled("0.0000000015", 9), Some(2));
+        assert_eq!(scaled("1700000000123456789", 0), Some(1_700_000_000_123_456_789));
+        assert_eq!([scaled("", 9), scaled("1e3", 9), scaled("nan", 9), scaled("99999999999999", 9)], [None; 4]);
+    }
+
+    #[test]
+    fn a_file_has_points_or_commas() {
+        let mut decimals = Decimals::default();
+        assert_eq!(decimals.number("1,5"), Some(1.5));
+        assert_eq!(decimals.number("-2"), Some(-2.0));
+        assert_eq!(decimals.number("1.5"), None);
+        let mut decimals = Decimals::default();
+        assert_eq!(decimals.number("1.5"), Some(1.5));
+        assert_eq!([decimals.number("1,234"), decimals.number("1,234.5"), decimals.number("x")], [None; 3]);
+        assert!(decimals.number("").is_some_and(f64::is_nan) && decimals.number("NaN").is_some_and(f64::is_nan));
+    }
+}

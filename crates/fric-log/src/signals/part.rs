@@ -1,0 +1,67 @@
+//! A part of a log.
+
+use super::TrackCounts;
+
+/// Which rows of a log are given out: from a time on and before another, seconds after the first row.
+///
+/// All that comes before is read all the same, so that rows are what they are in the whole log: speeds that are derived,
+/// values that are interpolated. What comes after is not.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Part {
+    /// The first second of it; from the first row on if `None`.
+    pub start_s: Option<f64>,
+    /// Where it ends, itself not within; with the log if `None`.
+    pub end_s: Option<f64>,
+}
+
+/// Where a row is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Side {
+    Before,
+    Within,
+    After,
+}
+
+/// The part that is given out, and how far the log has come.
+#[derive(Debug, Default)]
+pub(super) struct Progress {
+    pub part: Part,
+    first_nanos: Option<i64>,
+    /// Time of the last row, s after the first.
+    pub last_s: f64,
+    pub has_begun: bool,
+    pub is_over: bool,
+    /// By role, what had been counted before the part began.
+    pub before: [TrackCounts; 6],
+}
+
+impl Progress {
+    /// Where a row is; rows come one after the other.
+    pub fn side(&mut self, stamp_nanos: i64) -> Side {
+        let first_nanos = *self.first_nanos.get_or_insert(stamp_nanos);
+        #[expect(clippy::cast_precision_loss, reason = "as the times of a log are given in seconds")]
+        let time_s = stamp_nanos.saturating_sub(first_nanos) as f64 / 1e9;
+        self.last_s = time_s;
+        if self.part.end_s.is_some_and(|end_s| time_s >= end_s) {
+            return Side::After;
+        }
+        if self.part.start_s.is_some_and(|start_s| time_s < start_s) { Side::Before } else { Side::Within }
+    }
+}
+
+impl TrackCounts {
+    /// What has been counted since.
+    pub(super) fn since(&self, before: &Self) -> Self {
+        Self {
+            message_count: self.message_count.saturating_sub(before.message_count),
+            duplicate_count: self.duplicate_count.saturating_sub(before.duplicate_count),
+            partial_count: self.partial_count.saturating_sub(before.partial_count),
+            late_count: self.late_count.saturating_sub(before.late_count),
+            clock_step_count: self.clock_step_count.saturating_sub(before.clock_step_count),
+            gap_count: self.gap_count.saturating_sub(before.gap_count),
+            undecodable_count: self.undecodable_count.saturating_sub(before.undecodable_count),
+            stamps_nanos: self.stamps_nanos,
+            interval_nanos: self.interval_nanos,
+        }
+    }
+}

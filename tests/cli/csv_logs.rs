@@ -1,0 +1,221 @@
+//! CSV in place of MCAP: the same run gives the same results, whatever the columns are called and the units are.
+
+use std::collections::BTreeMap;
+
+use serde_json::Value;
+
+use super::cdr::{joint_state, pose, wrench};
+use super::discover::{hidden_stribeck, two_cables};
+use super::logs::messages;
+use super::support::{Place, example_robot, short_log};
+
+/// The signals of a log by time and column, as its messages have them.
+struct Rows {
+    /// In the order in which they come up.
+    columns: Vec<String>,
+    rows: BTreeMap<u64, BTreeMap<String, f64>>,
+}
+
+impl Rows {
+    fn of(log: &[u8]) -> Self {
+        let mut all = Self { columns: Vec::new(), rows: BTreeMap::new() };
+        for message in messages(log) {
+            match message.topic.as_str() {
+                "/cable_states" => {
+                    let it = joint_state(&message.data);
+                    for (cable, name) in it.names.iter().enumerate() {
+                        all.add(it.stamp_nanos, format!("{name}.force_n"), it.effort[cable]);
+                        all.add(it.stamp_nanos, format!("{name}.length_m"), it.position[cable]);
+                        all.add(it.stamp_nanos, format!("{name}.speed_m_per_s"), it.velocity[cable]);
+                    }
+                }
+                "/reference_forces" => {
+                    let it = joint_state(&message.data);
+                    for (name, effort) in it.names.iter().zip(it.effort) {
+                        all.add(it.stamp_nanos, format!("{name}.reference_n"), effort);
+                    }
+                }
+                "/platform_pose" => all.add_vector(pose(&message.data), "pose", "x_m y_m z_m qx qy qz qw"),
+                "/platform_wrench" => {
+                    all.add_vector(wrench(&message.data), "wrench", "fx_n fy_n fz_n tx_nm ty_nm tz_nm");
+                }
+                other => panic!("{other}"),
+            }
+        }
+        all
+    }
+
+    fn add(&mut self, stamp_nanos: u64, column: String, value: f64) {
+        if !self.columns.contains(&column) {
+            self.columns.push(column.clone());
+        }
+        self.rows.entry(stamp_nanos).or_default().insert(column, value);
+    }
+
+    fn add_vector<const COUNT: usize>(&mut self, (stamp_nanos, values): (u64, [f64; COUNT]), group: &str, names: &str) {
+        for (name, value) in names.split(' ').zip(values) {
+            self.add(stamp_nanos, format!("{group}.{name}"), value);
+        }
+    }
+
+    /// The columns as they are, with numbers to the last bit.
+    fn plain(&self) -> String {
+        let mut text = format!("time_s,{}\n", self.columns.join(","));
+        for (stamp, values) in &self.rows {
+            let cell =
+                |column: &String| values.get(column).map_or_else(|| ",".to_owned(), |value| format!(",{value:?}"));
+            let cells: String = self.columns.iter().map(cell).collect();
+            text += &format!("{}.{:09}{cells}\n", stamp / 1_000_000_000, stamp % 1_000_000_000);
+        }
+        text
+    }
+
+    /// As a lab would have it: other names, kilograms, millimetres, wound length, semicolons and decimal commas; and what
+    /// the robot file has to say of it.
+    fn foreign(&self) -> (String, String) {
+        let mut columns = String::from("[log.columns]\ntime_s = { column = \"Zeit [ms]\", factor = 0.001 }\n");
+        let mut header = String::from("\u{feff}# Prüfstand 3\nZeit [ms]");
+        let foreign: Vec<(String, f64)> = self
+            .columns
+            .iter()
+            .map(|key| match key.split_once('.').unwrap() {
+                (cable, "force_n") => (format!("\"Kraft; {cable} [kg]\""), 9.80665),
+                (cable, "length_m") => (format!("gewickelt {cable} [mm]"), -0.001),
+                (cable, "speed_m_per_s") => (format!("Tempo {cable} [mm/s]"), -0.001),
+                _ => (key.clone(), 1.0),
+            })
+            .collect();
+        for (key, (name, factor)) in self.columns.iter().zip(&foreign) {
+            header += &format!(";{name}");
+            if factor.to_bits() != 1.0_f64.to_bits() {
+                columns += &format!("{key:?} = {{ column = {:?}, factor = {factor} }}\n", name.trim_matches('"'));
+            }
+        }
+        let mut text = header + "\r\n";
+        for (stamp, values) in &self.rows {
+            let mut line = format!("{}.{:06}", stamp / 1_000_000, stamp % 1_000_000);
+            for (key, (_, factor)) in self.columns.iter().zip(&foreign) {
+                line += &values.get(key).map_or_else(|| ";".to_owned(), |value| format!(";{:?}", value / factor));
+            }
+            text += &(line.replace('.', ",") + "\r\n");
+        }
+        (text, columns)
+    }
+}
+
+/// A result without what differs from run to run.
+fn without_times(mut result: Value) -> Value {
+    result.as_object_mut().unwrap().remove("cycle");
+    result
+}
+
+/// What is printed, without the line about the duration of a cycle and the name of the log.
+fn printed(text: &str) -> Vec<String> {
+    let lines = text.lines().filter(|line| !line.contains(" cycles; one takes "));
+    lines.map(|line| line.replace("foreign.csv", "LOG").replace("log.mcap", "LOG")).collect()
+}
+
+fn with_columns(robot: &str, columns: &str) -> String {
+    robot.replacen("[[cable]]", &format!("{columns}\n[[cable]]"), 1)
+}
+
+#[test]
+fn a_table_with_the_numbers_of_a_log_is_replayed_to_the_same_bits() {
+    let place = Place::with_log();
+    place.write("plain.csv", Rows::of(short_log()).plain());
+    let replay = |log: &str, out: &str| {
+        place.run(&["replay", log, "--model", "robot.toml", "-o", out, "--json", "r.json", "--force"]).succeeds();
+        (messages(&place.read(out)), without_times(place.json("r.json")))
+    };
+    assert!(replay("log.mcap", "a.mcap") == replay("plain.csv", "b.mcap"));
+}
+
+#[test]
+fn other_names_units_and_signs_give_what_the_log_gives_to_the_printed_digit() {
+    let place = Place::with_log();
+    let (text, columns) = Rows::of(short_log()).foreign();
+    place.write("foreign.csv", text);
+    place.write("foreign.toml", with_columns(&example_robot(), &columns));
+    let replay = |arguments: &[&str]| printed(&place.run(&[&["replay"], arguments].concat()).succeeds().stdout);
+    assert_eq!(replay(&["foreign.csv", "--model", "foreign.toml"]), replay(&["log.mcap"]));
+
+    let info = place.run(&["info", "foreign.csv", "--model", "foreign.toml", "--json", "i.json"]).succeeds().stdout;
+    assert!(info.contains("Kraft; cable1 [kg]") && info.contains("9.80665") && info.contains("possible"), "{info}");
+    let info = place.json("i.json");
+    assert_eq!(info["columns"][1]["signal"], "cable1.force_n");
+    assert_eq!(info["signals"][0]["messages"], 400);
+}
+
+#[test]
+fn fit_and_discovery_of_a_table_are_those_of_the_log() {
+    let place = Place::empty();
+    let (text, columns) = Rows::of(hidden_stribeck()).foreign();
+    place.write("log.mcap", hidden_stribeck());
+    place.write("robot.toml", two_cables());
+    place.write("foreign.csv", text);
+    place.write("foreign.toml", with_columns(&two_cables(), &columns));
+    let print = |command: &str, log: &str, model: &str| {
+        printed(&place.run(&[command, log, "--model", model, "-o", "out.toml", "--force"]).succeeds().stdout)
+    };
+    for command in ["fit", "discover"] {
+        assert_eq!(
+            print(command, "foreign.csv", "foreign.toml"),
+            print(command, "log.mcap", "robot.toml"),
+            "{command}"
+        );
+    }
+    // The file that comes out reads the same log.
+    let fitted = String::from_utf8(place.read("out.toml")).unwrap();
+    assert!(fitted.contains("stribeck"), "{fitted}");
+}
+
+#[test]
+fn what_is_missing_in_a_table_is_told_in_a_sentence() {
+    let place = Place::with_log();
+    place.write("run.csv", "t,F1,L1\n0,1,2\n0.001,1,2\n");
+    for command in ["replay", "hysteresis"] {
+        place
+            .run_in_vain(&[command, "run.csv", "--model", "robot.toml"])
+            .fails(1, &["`run.csv` has no column `time_s`; it has `t`, `F1`, `L1`"])
+            .advises(&["[log.columns]", "column ="]);
+    }
+    place.run_in_vain(&["fit", "run.csv", "--model", "robot.toml", "-o", "f.toml"]).fails(1, &["no column `time_s`"]);
+    place.run_in_vain(&["discover", "run.csv", "--model", "robot.toml"]).fails(1, &["no column `time_s`"]);
+    for command in ["replay", "discover"] {
+        place.run_in_vain(&[command, "run.csv"]).fails(1, &["no robot file"]).advises(&["--model"]);
+    }
+    let info = place.run(&["info", "run.csv"]).succeeds().stdout;
+    assert!(info.contains("F1") && info.contains("--model"), "{info}");
+    let info = place.run(&["info", "run.csv", "--model", "robot.toml"]).succeeds().stdout;
+    assert!(info.contains("has no column `time_s`") && info.contains("impossible"), "{info}");
+    place.write("run.csv", "time_s,cable1.force_n,cable1.length_m\n0,1,2\n0.001,x,2\n");
+    place
+        .run_in_vain(&["replay", "run.csv", "--model", "robot.toml"])
+        .fails(1, &["`run.csv`, line 3, column `cable1.force_n`: `x` is no number"]);
+    place
+        .run_in_vain(&["replay", "run.csv", "log.mcap", "--model", "robot.toml"])
+        .fails(1, &["`run.csv` is CSV and `log.mcap` is not"]);
+}
+
+#[test]
+fn a_wrong_entry_of_the_columns_names_its_line() {
+    let place = Place::with_log();
+    for (entry, words) in [
+        ("\"cable1.forc_n\" = { column = \"F\" }", "unknown signal `cable1.forc_n`; did you mean `cable1.force_n`?"),
+        (
+            "time_s = { column = \"t\", factor = 0 }",
+            "`factor` of `time_s` is 0; it must be a finite number other than 0",
+        ),
+        ("time_s = { column = \"t\", offset = nan }", "`offset` of `time_s` is NaN; it must be a finite number"),
+        ("time_s = { column = \" \" }", "`column` of `time_s` is empty"),
+        ("time_s = { factor = 2 }", "`column` is missing in `time_s`"),
+        ("time_s = { column = \"t\", unit = \"ms\" }", "unknown key `unit`"),
+    ] {
+        let columns = format!("[log.columns]\n\"cable1.length_m\" = {{ column = \"L\" }}\n{entry}\n");
+        let robot = with_columns(&example_robot(), &columns);
+        let line = robot.lines().position(|line| line == entry).unwrap() + 1;
+        place.write("robot.toml", robot);
+        let line = format!("robot.toml, line {line}: ");
+        place.run_in_vain(&["replay", "log.mcap", "--model", "robot.toml"]).fails(1, &[&line, words]);
+    }
+}
