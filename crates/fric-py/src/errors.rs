@@ -10,7 +10,6 @@ use fric_lab::continuum::ContinuumError;
 use fric_lab::excite::ExcitationError;
 use fric_lab::hysteresis::HysteresisError;
 use fric_lab::simulate::{HiddenError, SimulationError};
-use fric_log::log::LogError;
 use fric_log::output;
 use fric_log::recording::RecordingError;
 use fric_log::robot::{AttachedRobotError, SignalPathError};
@@ -152,10 +151,10 @@ impl From<RecordingError> for Fault {
     }
 }
 
-impl From<LogError> for Fault {
-    fn from(error: LogError) -> Self {
+impl From<fric_log::log::LogError> for Fault {
+    fn from(error: fric_log::log::LogError) -> Self {
         match error {
-            LogError::Recording(error) => error.into(),
+            fric_log::log::LogError::Recording(error) => error.into(),
             error => Self::log(in_full(&error)),
         }
     }
