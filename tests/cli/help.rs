@@ -59,6 +59,7 @@ fn each_command_has_an_example_that_runs() {
             "converted.mcap",
             "crossing.mcap",
             "discovery.html",
+            "draft.toml",
             "examples",
             "extended.toml",
             "fitted.toml",

@@ -22,6 +22,7 @@ mod fit_inputs;
 mod help;
 mod hysteresis;
 mod info;
+mod init;
 mod inputs;
 mod interrupt;
 mod known;

@@ -48,6 +48,11 @@ pub enum Command {
         after_help = "Example:\n  fric-cli convert examples/mini-ipanema.mcap -o converted.mcap --start 1 --end 3"
     )]
     Convert(ConvertArguments),
+    /// Write a robot file to start from, with every signal of a log that can be guessed
+    ///
+    /// What could not be guessed is a comment that begins with `# ?`.
+    #[command(after_help = "Example:\n  fric-cli init examples/mini-ipanema.mcap -o draft.toml")]
+    Init(InitArguments),
     /// Write the log of a simulated robot, with effects hidden in it on request
     #[command(after_help = "Examples:\n  fric-cli simulate --model examples/mini-ipanema.toml -o simulated.mcap \
                       --effect stribeck:ratio=0.5,velocity_m_per_s=0.02 --seed 7\n  \
@@ -191,6 +196,19 @@ pub struct ConvertArguments {
     pub log: LogArguments,
     /// The MCAP file to write
     #[arg(short, long, value_name = "OUT.mcap", required = true, value_parser = a_file())]
+    pub output: PathBuf,
+    /// Replace the output if it exists
+    #[arg(long)]
+    pub force: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct InitArguments {
+    /// Log (MCAP, CSV, rosbag2); several files are the parts of one split recording
+    #[arg(required = true, value_name = "LOG")]
+    pub logs: Vec<PathBuf>,
+    /// The robot file to write
+    #[arg(short, long, value_name = "ROBOT.toml", required = true, value_parser = a_file())]
     pub output: PathBuf,
     /// Replace the output if it exists
     #[arg(long)]

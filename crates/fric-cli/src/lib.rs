@@ -37,6 +37,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
     let result = match &arguments.command {
         Command::Fit(arguments) => commands::fit::run(arguments),
         Command::Convert(arguments) => commands::convert::run(arguments),
+        Command::Init(arguments) => commands::init::run(arguments),
         Command::Discover(arguments) => commands::discover::run(arguments),
         Command::Replay(arguments) => commands::replay::run(arguments),
         Command::Info(arguments) => commands::info::run(arguments),

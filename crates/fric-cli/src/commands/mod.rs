@@ -7,5 +7,6 @@ pub mod excite;
 pub mod fit;
 pub mod hysteresis;
 pub mod info;
+pub mod init;
 pub mod replay;
 pub mod simulate;

@@ -1,0 +1,217 @@
+//! Which column of a CSV log is which signal, by its name and unit.
+
+use fric_core::robot::file::{POSE_COLUMNS, TIME_COLUMN, WRENCH_COLUMNS};
+
+use super::draft::{ColumnGuess, Draft};
+
+/// What a column may hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Time,
+    Force,
+    Length,
+    Speed,
+}
+
+/// Units by what stands in brackets, or behind the last underscore.
+const UNITS: [(&str, Kind, f64); 22] = [
+    ("s", Kind::Time, 1.0),
+    ("sec", Kind::Time, 1.0),
+    ("ms", Kind::Time, 1e-3),
+    ("us", Kind::Time, 1e-6),
+    ("µs", Kind::Time, 1e-6),
+    ("ns", Kind::Time, 1e-9),
+    ("n", Kind::Force, 1.0),
+    ("kn", Kind::Force, 1e3),
+    ("mn", Kind::Force, 1e-3),
+    ("kg", Kind::Force, 9.80665),
+    ("kgf", Kind::Force, 9.80665),
+    ("g", Kind::Force, 9.80665e-3),
+    ("lbf", Kind::Force, 4.448_221_615_260_5),
+    ("m", Kind::Length, 1.0),
+    ("cm", Kind::Length, 1e-2),
+    ("mm", Kind::Length, 1e-3),
+    ("µm", Kind::Length, 1e-6),
+    ("um", Kind::Length, 1e-6),
+    ("m/s", Kind::Speed, 1.0),
+    ("mm/s", Kind::Speed, 1e-3),
+    ("m_per_s", Kind::Speed, 1.0),
+    ("mm_per_s", Kind::Speed, 1e-3),
+];
+
+/// Words in the names of columns that say what they hold, where no unit does.
+const WORDS: [(&str, Kind); 19] = [
+    ("time", Kind::Time),
+    ("timestamp", Kind::Time),
+    ("stamp", Kind::Time),
+    ("zeit", Kind::Time),
+    ("t", Kind::Time),
+    ("force", Kind::Force),
+    ("tension", Kind::Force),
+    ("load", Kind::Force),
+    ("effort", Kind::Force),
+    ("kraft", Kind::Force),
+    ("f", Kind::Force),
+    ("length", Kind::Length),
+    ("position", Kind::Length),
+    ("encoder", Kind::Length),
+    ("l", Kind::Length),
+    ("speed", Kind::Speed),
+    ("velocity", Kind::Speed),
+    ("vel", Kind::Speed),
+    ("v", Kind::Speed),
+];
+/// Words that say that a force is one at the platform.
+const REFERENCE_WORDS: [&str; 3] = ["ref", "reference", "platform"];
+
+/// Guesses the signals of the columns of these names.
+pub fn guess(names: &[String], draft: &mut Draft) {
+    let has = |name: &str| names.iter().any(|known| known == name);
+    let mut unknown = Vec::new();
+    let mut found: Vec<ColumnGuess> = Vec::new();
+    for name in names {
+        if POSE_COLUMNS.contains(&name.as_str()) || WRENCH_COLUMNS.contains(&name.as_str()) {
+            continue;
+        }
+        let Some((key, factor)) = signal(name) else {
+            unknown.push(name.clone());
+            continue;
+        };
+        if found.iter().any(|guess| guess.key == key) {
+            draft.notes.push(format!("{key}: column {name:?} could be meant too"));
+            continue;
+        }
+        found.push(ColumnGuess { key, column: name.clone(), factor });
+    }
+    let quantity = |guess: &ColumnGuess, quantity: &str| {
+        guess.key.rsplit_once('.').filter(|(_, of)| *of == quantity).map(|(cable, _)| cable.to_owned())
+    };
+    let cables_with = |of: &str| -> Vec<String> { found.iter().filter_map(|guess| quantity(guess, of)).collect() };
+    let (forces, lengths) = (cables_with("force_n"), cables_with("length_m"));
+    for cable in forces.iter().chain(&lengths) {
+        if !draft.cables.contains(cable) {
+            draft.cables.push(cable.clone());
+        }
+    }
+    if draft.cables.is_empty() {
+        draft.notes.push("cables: no column looks like a force or a length; one cable stands for all".to_owned());
+        draft.cables.push("cable1".to_owned());
+    }
+    if !found.iter().any(|guess| guess.key == TIME_COLUMN) {
+        draft.notes.push(format!("{TIME_COLUMN}: no column looks like the time; name it under [log.columns]"));
+    }
+    for cable in &draft.cables {
+        for (of, cables) in [("force_n", &forces), ("length_m", &lengths)] {
+            if !cables.contains(cable) {
+                draft.notes.push(format!("{cable}.{of}: no column looks like it; name it under [log.columns]"));
+            }
+        }
+    }
+    if cables_with("reference_n").is_empty() {
+        draft.notes.push(
+            "reference: no column looks like a force at the platform; name it under [log.columns] as NAME.reference_n, or a \
+             known load under [log], such as reference = { constant_n = 49.05 }"
+                .to_owned(),
+        );
+    }
+    draft.has_pose = has(POSE_COLUMNS[0]);
+    if !draft.has_pose {
+        draft.notes.push("pose: no columns pose.x_m to pose.qw; a bench needs none".to_owned());
+    }
+    if !unknown.is_empty() {
+        draft.notes.push(format!("not used: {}", unknown.join(", ")));
+    }
+    // A reference of a cable that has no force is none.
+    found.retain(|guess| {
+        guess.key == TIME_COLUMN || draft.cables.iter().any(|cable| guess.key.starts_with(&format!("{cable}.")))
+    });
+    found.retain(|guess| guess.key != guess.column);
+    draft.columns = found;
+}
+
+/// The signal that a column seems to be, and the factor to its unit.
+fn signal(name: &str) -> Option<(String, f64)> {
+    if name == TIME_COLUMN {
+        return Some((name.to_owned(), 1.0));
+    }
+    if let Some((cable, quantity)) = name.rsplit_once('.')
+        && ["force_n", "length_m", "speed_m_per_s", "reference_n"].contains(&quantity)
+        && !cable.is_empty()
+    {
+        return Some((name.to_owned(), 1.0));
+    }
+    let lower = name.to_lowercase();
+    let (words, unit) = parts(&lower);
+    let by_unit = unit.and_then(|unit| UNITS.iter().find(|(of, ..)| *of == unit));
+    let by_word = || words.iter().find_map(|word| WORDS.iter().find(|(of, _)| of == word));
+    let (kind, factor) = match by_unit {
+        Some((_, kind, factor)) => (*kind, *factor),
+        None => (by_word()?.1, 1.0),
+    };
+    let number = words.iter().rev().find(|word| word.bytes().all(|byte| byte.is_ascii_digit()));
+    let cable = format!("cable{}", number.map_or("1", String::as_str));
+    let is_reference = words.iter().any(|word| REFERENCE_WORDS.contains(&word.as_str()));
+    let key = match kind {
+        Kind::Time => TIME_COLUMN.to_owned(),
+        Kind::Force if is_reference => format!("{cable}.reference_n"),
+        Kind::Force => format!("{cable}.force_n"),
+        Kind::Length => format!("{cable}.length_m"),
+        Kind::Speed => format!("{cable}.speed_m_per_s"),
+    };
+    Some((key, factor))
+}
+
+/// The words of a name, numbers by themselves, and its unit: in brackets, or behind an underscore.
+fn parts(name: &str) -> (Vec<String>, Option<&str>) {
+    let brackets = name.find(['[', '(']).and_then(|open| {
+        let inside = name.get(open + 1..)?.split([']', ')']).next()?;
+        Some((name.get(..open)?, inside.trim()))
+    });
+    let suffix = || {
+        let fits =
+            |(unit, ..): &&(&'static str, Kind, f64)| name.strip_suffix(unit).is_some_and(|rest| rest.ends_with('_'));
+        let (unit, ..) = UNITS.iter().filter(fits).max_by_key(|(unit, ..)| unit.len())?;
+        Some((name.strip_suffix(unit)?, *unit))
+    };
+    let (words, unit) = match brackets.or_else(suffix) {
+        Some((words, unit)) => (words, Some(unit)),
+        None => (name, None),
+    };
+    let mut found: Vec<String> = Vec::new();
+    let mut last = None;
+    for character in words.chars() {
+        let class = (character.is_alphabetic(), character.is_ascii_digit());
+        if class != (false, false) {
+            match found.last_mut().filter(|_| last == Some(class)) {
+                Some(word) => word.push(character),
+                None => found.push(character.to_string()),
+            }
+        }
+        last = Some(class);
+    }
+    (found, unit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_are_known_by_unit_and_name() {
+        for (name, key, factor) in [
+            ("time_s", "time_s", 1.0),
+            ("Zeit [ms]", "time_s", 1e-3),
+            ("Load cell 3 [kg]", "cable3.force_n", 9.80665),
+            ("motor_force_n", "cable1.force_n", 1.0),
+            ("position_m", "cable1.length_m", 1.0),
+            ("wound 2 (mm)", "cable2.length_m", 1e-3),
+            ("speed_2_mm_per_s", "cable2.speed_m_per_s", 1e-3),
+            ("F4", "cable4.force_n", 1.0),
+            ("platform force 4 [N]", "cable4.reference_n", 1.0),
+            ("winch.length_m", "winch.length_m", 1.0),
+        ] {
+            assert_eq!(signal(name), Some((key.to_owned(), factor)), "{name}");
+        }
+        assert_eq!([signal("note"), signal("temperature [°C]")], [None, None]);
+    }
+}

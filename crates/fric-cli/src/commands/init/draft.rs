@@ -1,0 +1,117 @@
+//! The text of the robot file in the making.
+
+use std::fmt::Write as _;
+
+use fric_core::text_file::name_problem;
+
+/// A column of a CSV log and the signal that it seems to be.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ColumnGuess {
+    /// The key under `[log.columns]`.
+    pub key: String,
+    pub column: String,
+    pub factor: f64,
+}
+
+/// What is known so far.
+#[derive(Debug)]
+pub struct Draft {
+    name: String,
+    interval_s: Option<f64>,
+    /// Names of the cables.
+    pub cables: Vec<String>,
+    /// Keys and values under `[log]`.
+    pub paths: Vec<(&'static str, String)>,
+    pub columns: Vec<ColumnGuess>,
+    pub has_pose: bool,
+    /// What could not be guessed, each a comment.
+    pub notes: Vec<String>,
+}
+
+impl Draft {
+    /// Of a robot of this name, if it is one.
+    pub fn new(name: String) -> Self {
+        let name = if name.is_empty() || name_problem(&name).is_some() { "robot".to_owned() } else { name };
+        Self {
+            name,
+            interval_s: None,
+            cables: Vec::new(),
+            paths: Vec::new(),
+            columns: Vec::new(),
+            has_pose: false,
+            notes: Vec::new(),
+        }
+    }
+
+    pub fn set_interval_s(&mut self, interval_s: Option<f64>) {
+        self.interval_s = interval_s;
+        if interval_s.is_none() {
+            self.notes.push("cycle_s could not be found: no sample could be read with what was guessed".to_owned());
+        }
+    }
+
+    /// What was guessed, for people.
+    pub fn summary(&self) -> String {
+        let Self { cables, notes, interval_s, .. } = self;
+        let rate = interval_s.map_or_else(String::new, |it| format!(", a sample every {} s", rounded(it)));
+        let plural = if cables.len() == 1 { "" } else { "s" };
+        let mut text = format!("{} cable{plural}: {}{rate}\n", cables.len(), cables.join(", "));
+        for note in notes {
+            let _ = writeln!(text, "  {note}");
+        }
+        text
+    }
+
+    /// The robot file.
+    pub fn text(&self) -> String {
+        let Self { name, interval_s, cables, paths, columns, has_pose, notes } = self;
+        let mut text = String::from(
+            "# A robot file to start from, made of a log. What is marked with `?` is to be checked on the machine.\n",
+        );
+        for note in notes {
+            let _ = writeln!(text, "# ? {}", note.replace('\n', " "));
+        }
+        let cycle = interval_s.map_or_else(
+            || "0.001 # ? cycle time, s".to_owned(),
+            |interval_s| format!("{:?} # the usual interval of the log's samples, s", rounded(interval_s)),
+        );
+        let _ = writeln!(text, "format = \"fric-robot/1\"\nname = {name:?}\ncycle_s = {cycle}\n");
+        if *has_pose {
+            text += "# ? [platform]\n# ? mass_kg = 1.0\n\n";
+        }
+        if !paths.is_empty() {
+            text += "[log]\n";
+            for (key, value) in paths {
+                let _ = writeln!(text, "{key} = {value:?}");
+            }
+            text += "\n";
+        }
+        if !columns.is_empty() {
+            text += "[log.columns]\n";
+            for ColumnGuess { key, column, factor } in columns {
+                let factor = if factor.to_bits() == 1.0_f64.to_bits() {
+                    String::new()
+                } else {
+                    format!(", factor = {factor:?}")
+                };
+                let _ = writeln!(text, "{key:?} = {{ column = {column:?}{factor} }}");
+            }
+            text += "\n";
+        }
+        for cable in cables {
+            let _ = writeln!(text, "[[cable]]\nname = {cable:?}");
+            if *has_pose {
+                text += "# ? base_m = [0.0, 0.0, 0.0]     # where the cable enters the last pulley, base frame\n\
+                         # ? platform_m = [0.0, 0.0, 0.0] # its attachment, platform frame\n";
+            }
+            text += "pulleys = [ { wrap_deg = 90.0 } ] # ? from the sensor to the platform; { wrap_deg = 180.0, sensor = true } is a sensor pulley\n\
+                     friction = { mu = 0.02, sigma_n_per_m = 1000.0, viscous_n_s_per_m = 0.0 } # ? to start from: `fric-cli fit` finds them\n\n";
+        }
+        text
+    }
+}
+
+/// To three digits, as a cycle is set.
+fn rounded(interval_s: f64) -> f64 {
+    format!("{interval_s:.2e}").parse().unwrap_or(interval_s)
+}

@@ -1,0 +1,60 @@
+//! `init`: a robot file to start from, with every signal of a log that could be guessed.
+
+mod columns;
+mod draft;
+mod topics;
+
+use fric_core::robot::file::RobotFile;
+use fric_log::log::Log;
+use fric_log::output::OutputFile;
+use fric_log::signals::{Role, SignalPaths, SignalReader};
+
+use crate::arguments::InitArguments;
+use crate::failure::{Failure, Outcome};
+use crate::output;
+use draft::Draft;
+
+/// So many samples tell how far they are apart.
+const MOST_ROWS: usize = 2000;
+
+/// Runs the command.
+pub fn run(arguments: &InitArguments) -> Outcome {
+    let InitArguments { logs, output, force } = arguments;
+    let mut log = Log::open(logs)?;
+    let file = OutputFile::create(output, logs, *force)?;
+    let first = logs.first().and_then(|path| path.file_stem()).map(|stem| stem.to_string_lossy().into_owned());
+    let mut draft = Draft::new(first.unwrap_or_default());
+    match log.column_names() {
+        Some(names) => columns::guess(names, &mut draft),
+        None => topics::guess(&mut log, &mut draft)?,
+    }
+    // The samples as the draft finds them say what the cycle is.
+    let robot = parsed(&draft.text())?;
+    let interval_s = interval_s(Log::open(logs)?, &robot);
+    draft.set_interval_s(interval_s);
+    let text = draft.text();
+    parsed(&text)?;
+    output::place(vec![file.complete_with(&text)?])?;
+    output::show(&format!("{}{}\n", draft.summary(), next_step(logs, output)))
+}
+
+fn next_step(logs: &[std::path::PathBuf], output: &std::path::Path) -> String {
+    let log = logs.first().map_or_else(String::new, |log| log.display().to_string());
+    format!("Next: see what is marked with `?` in {0}, then fric-cli info {log} --model {0}", output.display())
+}
+
+fn parsed(text: &str) -> Outcome<RobotFile> {
+    RobotFile::parse(text, "the robot file made of this log")
+        .map_err(|error| Failure::new(error).advise("Write the robot file by hand; README.md shows the format."))
+}
+
+/// The usual interval of the samples; `None` where there are none.
+fn interval_s(log: Log, robot: &RobotFile) -> Option<f64> {
+    let paths = SignalPaths::of_robot(robot).ok()?;
+    let mut reader = SignalReader::new(log, paths, &robot.cable_names());
+    let mut count = 0;
+    while count < MOST_ROWS && matches!(reader.next_row(), Ok(Some(_))) {
+        count += 1;
+    }
+    Some(reader.counts(Role::Cable).interval_nanos * 1e-9).filter(|interval_s| *interval_s > 0.0)
+}

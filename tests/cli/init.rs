@@ -1,0 +1,63 @@
+//! `init`: a robot file to start from.
+
+use super::support::{Place, assert_close, short_log};
+
+/// The drafted robot file of a log, and its text.
+fn drafted(place: &Place, log: &str) -> String {
+    place.run(&["init", log, "-o", "draft.toml"]).succeeds();
+    String::from_utf8(place.read("draft.toml")).unwrap()
+}
+
+/// How many samples and cables a result of `replay` has.
+fn counts(json: &[u8]) -> (u64, usize) {
+    let replay: serde_json::Value = serde_json::from_slice(json).unwrap();
+    let cables = replay["cables"].as_array().unwrap();
+    (cables[0]["samples"].as_u64().unwrap(), cables.len())
+}
+
+#[test]
+fn the_robot_file_of_a_log_of_messages_replays_it() {
+    let place = Place::with_log();
+    let text = drafted(&place, "log.mcap");
+    place.run(&["replay", "log.mcap", "--json", "own.json"]).succeeds();
+    place.run(&["replay", "log.mcap", "--model", "draft.toml", "--json", "drafted.json"]).succeeds();
+    assert_eq!(counts(&place.read("drafted.json")), counts(&place.read("own.json")));
+    // The topics are the usual ones, the geometry cannot be known.
+    assert!(!text.contains("[log]") && text.contains("cycle_s = 0.001 ") && text.contains("# ? base_m"), "{text}");
+}
+
+#[test]
+fn columns_are_found_by_their_names_and_units() {
+    let place = Place::empty();
+    let rows: String = (0..200).map(|at| format!("{};3.0{};{};{at}\n", 2 * at, at % 7, 800 - at)).collect();
+    place.write("run.csv", format!("Zeit [ms];Load cell 3 [kg];wound 3 (mm);note\n{rows}"));
+    let text = drafted(&place, "run.csv");
+    place.run(&["replay", "run.csv", "--model", "draft.toml", "--json", "replay.json"]).warns(&["no reference forces"]);
+    assert_eq!(counts(&place.read("replay.json")), (200, 1));
+    for part in [
+        "cycle_s = 0.002 ",
+        "name = \"cable3\"",
+        "\"cable3.force_n\" = { column = \"Load cell 3 [kg]\", factor = 9.80665 }",
+        "\"cable3.length_m\" = { column = \"wound 3 (mm)\", factor = 0.001 }",
+        "# ? not used: note",
+        "# ? reference: ",
+    ] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    place.run(&["convert", "run.csv", "--model", "draft.toml", "-o", "run.mcap"]).succeeds();
+    let states = super::logs::on_topic(&place.read("run.mcap"), "/cable_states", super::cdr::joint_state);
+    assert_close(states[3].effort[0], 3.03 * 9.80665);
+    assert_close(states[3].position[0], 0.797);
+}
+
+#[test]
+fn what_is_no_log_or_is_there_already_is_refused_and_nothing_written() {
+    let place = Place::with_log();
+    place.run(&["init", "none.mcap", "-o", "draft.toml"]).fails(1, &["none.mcap"]);
+    assert!(!place.names().contains(&"draft.toml".to_owned()));
+    place.run(&["init", "log.mcap", "-o", "log.mcap", "--force"]).fails(1, &["log.mcap"]);
+    assert_eq!(place.read("log.mcap"), short_log());
+    place.write("draft.toml", "mine");
+    place.run(&["init", "log.mcap", "-o", "draft.toml"]).fails(1, &["draft.toml", "--force"]);
+    assert_eq!(place.read("draft.toml"), b"mine");
+}
