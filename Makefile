@@ -15,10 +15,20 @@ TARGET := $(or $(CARGO_TARGET_DIR),target)
 BARE_METAL := thumbv7em-none-eabihf
 MIRI_TARGET := riscv64gc-unknown-linux-gnu
 
-.PHONY: test format lint test-rust docs test-python instructions bare-metal miri bench install tools coverage notices deny
+# What `make test` does, the tools first, so that what is missing shows at once.
+STEPS := tools format lint test-rust docs test-python instructions bare-metal miri
 
-# The tools first, so that what is missing shows at once.
-test: tools format lint test-rust docs test-python instructions bare-metal miri
+.PHONY: test check format lint test-rust docs test-python instructions bare-metal miri bench install tools coverage notices deny
+
+# One after the other; in the end, where the time went.
+test:
+	@set -e; times=; for step in $(STEPS); do \
+		start=$$(date +%s); $(MAKE) --no-print-directory $$step; times="$$times$$step $$(($$(date +%s) - start))\n"; \
+	done; printf "\nseconds of each step\n$$times"
+
+# While working: formatting, lints and the tests within the crates, without those that run whole programs or long simulations.
+check: format lint
+	$(CARGO) test --workspace --lib --quiet
 
 tools:
 	$(PYTHON) tests/python/tools.py
