@@ -13,14 +13,17 @@ impl Decimals {
         if cell.is_empty() {
             return Some(f64::NAN);
         }
+        // What is refused says nothing of the file.
         if cell.contains(',') {
-            let is_one = !cell.contains('.') && cell.matches(',').count() == 1;
+            let is_one = !self.has_points && !cell.contains('.') && cell.matches(',').count() == 1;
+            let number = cell.replace(',', ".").parse().ok().filter(|_| is_one)?;
             self.has_commas = true;
-            return if is_one && !self.has_points { cell.replace(',', ".").parse().ok() } else { None };
+            return Some(number);
         }
-        let number = cell.parse().ok()?;
-        self.has_points |= cell.contains('.');
-        if self.has_points && self.has_commas { None } else { Some(number) }
+        let has_point = cell.contains('.');
+        let number = cell.parse().ok().filter(|_| !(has_point && self.has_commas))?;
+        self.has_points |= has_point;
+        Some(number)
     }
 }
 
