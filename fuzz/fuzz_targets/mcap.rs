@@ -6,6 +6,7 @@ use std::sync::LazyLock;
 
 use fric_core::robot::file::RobotFile;
 use fric_lab::replay::Replay;
+use fric_log::log::Log;
 use fric_log::recording::Recording;
 use fric_log::robot::AttachedRobot;
 use fric_log::signals::{SignalPaths, SignalReader};
@@ -25,13 +26,13 @@ fuzz_target!(|data: &[u8]| {
     let messages = Messages::of(recording, data.len());
     assert_eq!(Messages::of(open().expect("a log that has been read"), data.len()), messages);
 
-    let recording = open().expect("a log that has been read");
-    let attached = AttachedRobot::find(&recording).ok().flatten();
+    let log = Log::from(open().expect("a log that has been read"));
+    let attached = AttachedRobot::find(&log).ok().flatten();
     let robot = attached.as_ref().map_or(&*ROBOT, |attached| &attached.robot);
     let Ok(paths) = SignalPaths::of_robot(&robot) else { return };
     let names = robot.cable_names();
     let Ok(mut replay) = Replay::new(&robot.params()) else { return };
-    let mut rows = SignalReader::new(recording, paths, &names);
+    let mut rows = SignalReader::new(log, paths, &names);
     while let Ok(Some(sample)) = rows.next_row() {
         assert_eq!((sample.cables.len(), sample.reference_force_n.len()), (names.len(), names.len()));
         let cycle = replay.step(&sample);
