@@ -54,6 +54,7 @@ pub const ROW: EffectRow = EffectRow {
             excitation: EXCITATION,
         },
     ],
+    example: &[0.00025, 0.02],
     memory: Memory::OfTension(2),
     on_mu: OnMu::Unchanged,
     goes_by_time: false,

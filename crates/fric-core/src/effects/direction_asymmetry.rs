@@ -37,6 +37,7 @@ pub const ROW: EffectRow = EffectRow {
             excitation: EXCITATION,
         },
     ],
+    example: &[0.25, -0.2],
     memory: Memory::Nothing,
     on_mu: OnMu::AtMost {
         factor: |values| 1.0 + first(values).abs(),

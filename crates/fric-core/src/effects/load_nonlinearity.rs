@@ -36,6 +36,7 @@ pub const ROW: EffectRow = EffectRow {
             excitation: EXCITATION,
         },
     ],
+    example: &[0.7, 8.0],
     memory: Memory::Nothing,
     on_mu: OnMu::Unbounded,
     goes_by_time: false,

@@ -23,6 +23,8 @@ pub struct EffectRow {
     pub remedy: &'static str,
     /// Its parameters in order.
     pub parameters: &'static [ParameterRow],
+    /// Values of the parameters as a machine of some ten newtons has them, at which it can be told from noise; help and tests show it with these.
+    pub example: &'static [f64],
     /// What it remembers from cycle to cycle.
     pub memory: Memory,
     /// What it can do to μ.

@@ -47,6 +47,7 @@ pub const ROW: EffectRow = EffectRow {
             excitation: EXCITATION,
         },
     ],
+    example: &[0.02, -0.01, 0.07],
     memory: Memory::Nothing,
     on_mu: OnMu::Unchanged,
     goes_by_time: false,

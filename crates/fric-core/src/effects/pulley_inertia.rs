@@ -50,6 +50,7 @@ pub const ROW: EffectRow = EffectRow {
             excitation: EXCITATION,
         },
     ],
+    example: &[0.05, 0.002],
     memory: Memory::OfMotion(2),
     on_mu: OnMu::Unchanged,
     goes_by_time: false,

@@ -29,6 +29,7 @@ pub const ROW: EffectRow = EffectRow {
         },
         UNTIL_ROW,
     ],
+    example: &[-0.005, 0.0],
     memory: Memory::Nothing,
     on_mu: OnMu::Unchanged,
     goes_by_time: true,

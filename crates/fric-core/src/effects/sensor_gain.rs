@@ -25,6 +25,7 @@ pub const ROW: EffectRow = EffectRow {
         fitted: true,
         excitation: EXCITATION,
     }],
+    example: &[1.03],
     memory: Memory::Nothing,
     on_mu: OnMu::Unchanged,
     goes_by_time: false,

@@ -26,6 +26,7 @@ pub const ROW: EffectRow = EffectRow {
         fitted: true,
         excitation: EXCITATION,
     }],
+    example: &[0.3],
     memory: Memory::Nothing,
     on_mu: OnMu::Unchanged,
     goes_by_time: false,

@@ -36,6 +36,7 @@ pub const ROW: EffectRow = EffectRow {
             excitation: EXCITATION,
         },
     ],
+    example: &[0.6, 0.03],
     memory: Memory::Nothing,
     on_mu: OnMu::AtMost {
         factor: |values| 1.0 + first(values).max(0.0),

@@ -43,6 +43,7 @@ pub const ROW: EffectRow = EffectRow {
         fitted: true,
         excitation: "quick reversals: strokes there and back without breaks",
     }],
+    example: &[0.0083],
     memory: Memory::Nothing,
     on_mu: OnMu::Unchanged,
     goes_by_time: false,

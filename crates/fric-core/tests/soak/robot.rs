@@ -114,37 +114,22 @@ fn add_effects(random: &mut Random, cycle_s: f64, kinds: &[&str], options: &mut 
     if kinds.is_empty() {
         return;
     }
-    let values: [f64; 20] = std::array::from_fn(|_| random.unit());
-    let between = |place: usize, least: f64, greatest: f64| least + (greatest - least) * values[place];
-    let effects: [(&str, &[(&str, f64)]); 13] = [
-        ("stribeck", &[("ratio", between(0, -0.5, 1.0)), ("velocity_m_per_s", between(1, 1e-3, 0.1))]),
-        ("direction_asymmetry", &[("coulomb_ratio", between(2, -0.4, 0.4)), ("viscous_ratio", between(3, -0.5, 0.5))]),
-        ("bearing_drag", &[("drag_n", between(4, 0.0, 1.0))]),
-        ("load_nonlinearity", &[("exponent", between(5, 0.5, 1.3)), ("reference_n", between(6, 20.0, 100.0))]),
-        ("friction_drift", &[("rate_per_s", between(7, -0.02, 0.02))]),
-        ("presliding_shape", &[("exponent", between(8, 0.5, 1.5))]),
-        ("sensor_gain", &[("gain", between(9, 0.5, 2.0))]),
-        ("sensor_offset", &[("offset_n", between(10, -1.0, 1.0))]),
-        ("sensor_drift", &[("rate_n_per_s", between(11, -0.02, 0.02))]),
-        ("time_delay", &[("delay_s", cycle_s * between(12, -10.0, 40.0))]),
-        ("pulley_inertia", &[("mass_kg", between(13, 0.0, 0.3)), ("window_s", between(14, 0.0, 0.01))]),
-        (
-            "pulley_eccentricity",
-            &[
-                ("sin_ratio", between(15, -0.2, 0.2)),
-                ("cos_ratio", between(16, -0.2, 0.2)),
-                ("period_m", between(17, 0.01, 1.0)),
-            ],
-        ),
-        (
-            "cable_elasticity",
-            &[("compliance_m_per_n", between(18, 0.0, 0.5) * stable_m_per_n), ("play_n", between(19, 0.0, 0.1))],
-        ),
-    ];
-    for (kind, parameters) in effects.into_iter().filter(|(kind, _)| kinds.contains(kind)) {
-        // Not all cables alike.
-        for (key, value) in parameters.iter().filter(|_| !once_in(random, 3)) {
-            options.effects.set(Effect::of_kind(kind).unwrap(), key, *value).unwrap();
+    for effect in Effect::CATALOGUE.iter().filter(|effect| kinds.contains(&effect.kind())) {
+        for (parameter, example) in effect.row().parameters.iter().zip(effect.row().example) {
+            // Not all cables alike.
+            if once_in(random, 3) {
+                continue;
+            }
+            let value = match (effect, parameter.key) {
+                (Effect::CableElasticity, "compliance_m_per_n") => random.range(0.0, 0.5) * stable_m_per_n,
+                (Effect::TimeDelay, _) => cycle_s * random.range(-10.0, 40.0),
+                // Both ways from neutral, and beyond what the example has; a setting of another order of magnitude.
+                (_, _) if parameter.fitted => {
+                    parameter.neutral + (example - parameter.neutral) * random.range(-2.0, 3.0)
+                }
+                (_, _) => example * magnitude(random, 0.1, 10.0),
+            };
+            options.effects.set(*effect, parameter.key, value.clamp(parameter.min, parameter.max)).unwrap();
         }
     }
 }

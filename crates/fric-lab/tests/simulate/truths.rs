@@ -52,6 +52,13 @@ fn hiding(text: &str) -> SimulationOptions {
     SimulationOptions { effects: vec![HiddenEffect::parse(text).unwrap()], ..short() }
 }
 
+/// The effect as its row's example has it, in the words of the command line.
+fn example(effect: Effect) -> String {
+    let values = effect.row().parameters.iter().zip(effect.row().example);
+    let values: Vec<String> = values.map(|(parameter, value)| format!("{}={value:?}", parameter.key)).collect();
+    format!("{}:{}", effect.kind(), values.join(","))
+}
+
 fn spoilt(text: &str) -> SimulationOptions {
     SimulationOptions { disturbances: vec![Disturbance::parse(text).unwrap()], ..short() }
 }
@@ -79,20 +86,9 @@ fn neutral_values_change_no_bit() {
 #[test]
 fn effects_change_the_sensor_and_neither_reference_nor_motion() {
     let plain = Signals::of(&rubbing(), &short());
-    for text in [
-        "stribeck:ratio=0.6,velocity_m_per_s=0.03",
-        "direction_asymmetry:coulomb_ratio=0.25,viscous_ratio=0.25",
-        "bearing_drag:drag_n=0.03",
-        "load_nonlinearity:exponent=0.7,reference_n=10",
-        "friction_drift:rate_per_s=0.006",
-        "presliding_shape:exponent=1.8",
-        "sensor_gain:gain=1.03",
-        "sensor_offset:offset_n=0.3",
-        "sensor_drift:rate_n_per_s=0.005",
-        "pulley_inertia:mass_kg=0.05",
-        "pulley_eccentricity:sin_ratio=0.02,cos_ratio=0.01,period_m=0.1",
-        "cable_elasticity:compliance_m_per_n=0.00025",
-    ] {
+    // A delay is the motion's, and changes that alone.
+    for effect in Effect::CATALOGUE.iter().filter(|effect| **effect != Effect::TimeDelay) {
+        let text = &example(*effect);
         let hidden = Signals::of(&rubbing(), &hiding(text));
         assert!(hidden.reference_n == plain.reference_n && hidden.length_m == plain.length_m, "{text}");
         assert!(hidden.speed_m_per_s == plain.speed_m_per_s, "{text}");
