@@ -7,6 +7,7 @@ use crate::cable::{Cable, CableModel, Moment};
 use crate::dahl::dahl_step;
 use crate::effects::bearing_drag::{self, BearingDrag};
 use crate::effects::direction_asymmetry::{self, DirectionAsymmetry};
+use crate::effects::dwell_stiction::{self, DwellStiction};
 use crate::effects::friction_drift::{self, FrictionDrift};
 use crate::effects::load_nonlinearity::{self, LoadNonlinearity};
 use crate::effects::presliding_shape::{self, PreslidingShape};
@@ -54,8 +55,15 @@ impl<T: Scalar> Bearing<T> {
             }
             accelerating_n = force_n.keep(signals.moves);
         }
-        let value = |place| cable.effect(place);
         let mut mu = model.mu;
+        if acting.has(dwell_stiction::ACTS) {
+            let dwell = DwellStiction::of(|place| cable.effect(place));
+            let age = cable.memory(dwell_stiction::AGE);
+            let (factor, next) = dwell.factor(age, signals.displacement_m, moment.step_s);
+            cable.set_memory(dwell_stiction::AGE, next);
+            mu = mu * factor;
+        }
+        let value = |place| cable.effect(place);
         if acting.has(stribeck::ACTS) {
             mu = mu * Stribeck::of(value).factor(signals.speed_m_per_s);
         }

@@ -90,6 +90,7 @@ macro_rules! catalogue {
             PulleyInertia pulley_inertia,
             PulleyEccentricity pulley_eccentricity,
             CableElasticity cable_elasticity,
+            DwellStiction dwell_stiction,
         }
     };
 }

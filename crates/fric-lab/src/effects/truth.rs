@@ -22,6 +22,9 @@ pub trait TruthEffect: core::fmt::Debug + Send + Sync {
         1.0
     }
 
+    /// Time goes on by `step_s`, the winch moving as the contact says: for what remembers.
+    fn moved(&mut self, _contact: &Contact, _step_s: f64) {}
+
     /// Factor on a bearing's μ that depends on its load, N.
     fn load_factor(&self, _normal_force_n: f64) -> f64 {
         1.0

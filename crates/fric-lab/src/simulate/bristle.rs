@@ -133,6 +133,14 @@ impl BristleChain {
             for bristle in self.pulleys.iter_mut().rev() {
                 bristle.step(&stages, &mut forces_n, step * cycle_s, &self.effects);
             }
+            let [_, end] = &stages;
+            let winch = Contact {
+                speed_m_per_s: end.speed_m_per_s,
+                length_m: end.length_m,
+                time_s: end.time_s,
+                is_last_pulley: false,
+            };
+            self.effects.moved(&winch, step * cycle_s);
         }
     }
 

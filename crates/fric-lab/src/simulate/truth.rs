@@ -78,6 +78,10 @@ impl TruthEffect for TruthEffects {
         self.product(|effect| effect.mu_factor(contact))
     }
 
+    fn moved(&mut self, contact: &Contact, step_s: f64) {
+        self.0.iter_mut().for_each(|effect| effect.moved(contact, step_s));
+    }
+
     fn load_factor(&self, normal_force_n: f64) -> f64 {
         self.product(|effect| effect.load_factor(normal_force_n))
     }
