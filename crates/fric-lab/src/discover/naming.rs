@@ -482,7 +482,7 @@ impl<'b, 'a> Search<'b, 'a> {
         doubt(&portrait, is_noise)
     }
 
-    /// The parameter that an effect cannot be told from, where the log determines none of the effect's own; an offset at the platform is one
+    /// The parameter that an effect cannot be told from, where the log determines none of the effect's own, be the others of them known; an offset at the platform is one
     /// that every cable may have.
     fn confused_with(&self, model: &Trial, effect: Effect) -> Option<&'static str> {
         let mut free = model.free.clone();
@@ -491,7 +491,16 @@ impl<'b, 'a> Search<'b, 'a> {
         let of_effect = fitted(effect);
         let (covariance, all) = engine::vagueness(&self.bench.problem(&free, None), &[model.values]);
         let own = |of: &engine::Unknown| of_effect.contains(&of.parameter);
-        if all.iter().any(|(vagueness, of)| own(of) && *vagueness <= 1.0) {
+        // What only the effect's own parameters share is no matter of another's.
+        let alone = |of: &Parameter| {
+            let free: Vec<Parameter> =
+                free.iter().copied().filter(|other| other == of || !of_effect.contains(other)).collect();
+            let (_, all) = engine::vagueness(&self.bench.problem(&free, None), &[model.values]);
+            all.iter().any(|(vagueness, unknown)| unknown.parameter == *of && *vagueness <= 1.0)
+        };
+        if all.iter().any(|(vagueness, of)| own(of) && *vagueness <= 1.0)
+            || of_effect.len() > 1 && of_effect.iter().any(alone)
+        {
             return None;
         }
         let correlation = |one: usize, other: usize| {
