@@ -49,8 +49,13 @@ fn demanding(random: &mut Random, pulleys: &'static [PulleyOptions]) -> CableOpt
         CableOptions { friction, pulleys, ..corner_cable(index, FORMS[usize::try_from(random.below(2)).unwrap()]) };
     options.traction_mu = traction_mu.filter(|_| random.below(2) == 0);
     for effect in Effect::CATALOGUE.iter().filter(|_| random.below(2) == 0).collect::<Vec<_>>() {
+        let without = options.effects;
         for parameter in effect.row().parameters {
             options.effects.set(*effect, parameter.key, any_in_range(random, parameter)).unwrap();
+        }
+        // Friction that no cable can have is refused.
+        if CableParams::new(&options).is_err() {
+            options.effects = without;
         }
     }
     options
