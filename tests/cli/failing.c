@@ -8,6 +8,7 @@
 #include <fcntl.h>
 #include <linux/audit.h>
 #include <linux/filter.h>
+#include <linux/magic.h>
 #include <linux/seccomp.h>
 #include <signal.h>
 #include <stddef.h>
@@ -18,6 +19,7 @@
 #include <sys/prctl.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
+#include <sys/vfs.h>
 #include <ucontext.h>
 #include <unistd.h>
 
@@ -71,10 +73,18 @@ static long call(const greg_t *registers, long third) {
     return result;
 }
 
-// Reads of pipes never fail: the thread that waits for Ctrl-C sits in one.
-static int is_regular(int file) {
+// Not counted are reads of pipes, as the thread that waits for Ctrl-C sits in one, and what glibc reads of the
+// kernel's settings: malloc does so when a thread gives memory back, which differs from run to run.
+static int is_counted(const greg_t *registers, long number) {
     struct stat status;
-    return fstat(file, &status) == 0 && S_ISREG(status.st_mode);
+    struct statfs system;
+    int file = (int)registers[REG_RDI];
+    if (kind->calls == READS)
+        return fstat(file, &status) == 0 && S_ISREG(status.st_mode) && fstatfs(file, &system) == 0 &&
+               system.f_type != PROC_SUPER_MAGIC;
+    if (kind->calls != OPENS) return 1;
+    const char *path = (const char *)registers[number == SYS_openat ? REG_RSI : REG_RDI];
+    return strncmp(path, "/proc/", 6) != 0;
 }
 
 static void on_call(int signal, siginfo_t *info, void *context) {
@@ -85,12 +95,11 @@ static void on_call(int signal, siginfo_t *info, void *context) {
     registers[REG_RAX] = info->si_syscall;
     int file = (int)registers[REG_RDI];
     long third = registers[REG_RDX];
-    int counts = kind->calls != READS || is_regular(file);
     long result;
     if (full >= 0 && full == file) {
         full = -1;
         result = -ENOSPC;
-    } else if (!counts || !is_due()) {
+    } else if (!is_counted(registers, info->si_syscall) || !is_due()) {
         result = call(registers, third);
     } else if (kind->calls == SHORT_WRITES && third > 1) {
         full = file;
