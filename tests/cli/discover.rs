@@ -279,11 +279,12 @@ fn a_sensor_that_stood_still_is_placed_in_time() {
     }));
     let run = discover(&place, &[]).succeeds();
     let cable = &place.json("found.json")["cables"][0];
-    assert_eq!((&cable["verdict"], &cable["effects"]), (&"unexplained".into(), &serde_json::json!([])), "{cable}");
-    let fault = &cable["unexplained"]["faults"][0];
-    assert_eq!(fault["fault"], "frozen");
-    assert!((fault["from_s"].as_f64().unwrap() - 12.0).abs() < 0.01, "{fault}");
-    assert!((fault["to_s"].as_f64().unwrap() - 12.8).abs() < 0.01, "{fault}");
+    assert_eq!((&cable["verdict"], &cable["effects"]), (&"complete".into(), &serde_json::json!([])), "{cable}");
+    let fault = &cable["faults"][0];
+    assert_eq!((&fault["kind"], &fault["parameters"]), (&"frozen".into(), &serde_json::json!({})));
+    let interval_s = &fault["intervals_s"][0];
+    assert!((interval_s[0].as_f64().unwrap() - 12.0).abs() < 0.01, "{fault}");
+    assert!((interval_s[1].as_f64().unwrap() - 12.8).abs() < 0.01, "{fault}");
     assert!(run.stdout.contains("the force sensor stands still at 12.0…12.8 s"), "{run:#?}");
 }
 
@@ -295,9 +296,12 @@ fn hum_is_given_its_frequency() {
     let place = with(with_first_effort(&log, "/reference_forces", |sample, force_n| force_n + hum_n(sample)));
     let run = discover(&place, &[]).succeeds();
     let cable = &place.json("found.json")["cables"][0];
-    assert_eq!((&cable["verdict"], &cable["effects"]), (&"unexplained".into(), &serde_json::json!([])), "{cable}");
-    assert!((cable["unexplained"]["frequency_hz"][0].as_f64().unwrap() - 50.0).abs() < 0.05, "{cable}");
-    assert_eq!(cable["unexplained"]["where"][0]["signal"], "frequency");
+    assert_eq!((&cable["verdict"], &cable["effects"]), (&"complete".into(), &serde_json::json!([])), "{cable}");
+    let fault = &cable["faults"][0];
+    assert_eq!((&fault["kind"], &fault["intervals_s"]), (&"hum".into(), &serde_json::json!([])));
+    assert!((fault["parameters"]["frequency_hz"].as_f64().unwrap() - 50.0).abs() < 0.05, "{cable}");
+    assert!((fault["parameters"]["amplitude_n"].as_f64().unwrap() - 0.05).abs() < 0.002, "{cable}");
+    assert_eq!(cable["where"][0]["signal"], "frequency");
     assert!(run.stdout.contains("hums at 50.0"), "{run:#?}");
 }
 

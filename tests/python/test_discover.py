@@ -103,13 +103,15 @@ def test_nothing_is_found_where_nothing_is_hidden(robot):
     assert (winch.verdict, winch.effects, winch.gap_closed) == ("complete", [], None)
 
 
-def test_what_no_effect_accounts_for_is_told(robot):
+def test_a_fault_of_the_recording_is_told_beside_the_verdict(robot):
     hum = {"kind": "hum", "amplitude_n": 0.2, "frequency_hz": 31.0}
     winch = fric.discover(robot, fric.simulate(robot, duration_s=20.0, disturbances=[hum])).cables[0]
-    assert (winch.verdict, winch.effects) == ("unexplained", [])
-    assert winch.unexplained["frequency_hz"] == pytest.approx([31.0], abs=0.01)
+    assert (winch.verdict, winch.effects, winch.unexplained) == ("complete", [], None)
+    (fault,) = winch.faults
+    assert (fault["kind"], fault["intervals_s"]) == ("hum", [])
+    assert fault["parameters"]["frequency_hz"] == pytest.approx(31.0, abs=0.01)
     # The sensor feels both ends of a cable that turns round by 180°.
-    assert winch.unexplained["amplitude_n"] == pytest.approx([0.1], rel=0.05)
+    assert fault["parameters"]["amplitude_n"] == pytest.approx(0.1, rel=0.05)
 
 
 def without_reference(log, column):

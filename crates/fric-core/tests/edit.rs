@@ -1,6 +1,6 @@
 //! New parameters in a robot file: every layout, comments and order kept, numbers to the bit.
 
-use fric_core::robot::edit::{CableEdit, EffectEdit, FrictionEdit, rewrite};
+use fric_core::robot::edit::{CableEdit, EffectEdit, FrictionEdit, rewrite, set_monitor};
 use fric_core::robot::file::{EffectTable, RobotFile, RobotOptions};
 use proptest::prelude::*;
 
@@ -270,4 +270,38 @@ proptest! {
         };
         prop_assert_eq!(bits(&found), bits(&wanted));
     }
+}
+
+/// A number of the monitor, in every layout of the cables and with every way to write the monitor.
+#[test]
+fn a_number_of_the_monitor_is_set_and_nothing_else() {
+    const MONITORS: [&str; 5] = [
+        "",
+        "monitor = { frozen_cycles = 50 } # ours\n",
+        "monitor.frozen_cycles = 50 # ours\n",
+        "monitor.length_noise_m = 1e-6 # seen\nmonitor.frozen_cycles = 50\n",
+        "[monitor] # ours\n  frozen_cycles = 50\n\n",
+    ];
+    for (cables, monitor) in LAYOUTS.iter().flat_map(|cables| MONITORS.map(|monitor| (cables, monitor))) {
+        if monitor.starts_with('[') && cables.starts_with("cable = ") {
+            continue;
+        }
+        for text in [format!("{HEAD}{monitor}{cables}"), format!("{HEAD}{monitor}{cables}").replace('\n', "\r\n")] {
+            let set = set_monitor(&text, "rig.toml", "length_noise_m", 6.13e-6).unwrap();
+            let mut expected = options(&text);
+            expected.monitor.length_noise_m = Some(6.13e-6);
+            assert_eq!(options(&set), expected, "{set}");
+            assert_eq!(set.matches('#').count(), text.matches('#').count(), "{set}");
+            assert_eq!(
+                set.matches("\r\n").count(),
+                set.matches('\n').count() * usize::from(text.contains('\r')),
+                "{set}"
+            );
+            assert_eq!(set_monitor(&set, "rig.toml", "length_noise_m", 6.13e-6).unwrap(), set);
+        }
+    }
+    let text = format!("{HEAD}{}", LAYOUTS[0]);
+    let refused = set_monitor(&text, "rig.toml", "length_noise_m", f64::NAN).unwrap_err().to_string();
+    assert!(refused.contains("length_noise_m"), "{refused}");
+    assert!(set_monitor("name = 1", "rig.toml", "length_noise_m", 1e-6).is_err());
 }

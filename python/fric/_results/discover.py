@@ -78,20 +78,17 @@ class Effect(TypedDict):
 
 
 class Fault(TypedDict):
-    """A fault of a signal."""
+    """A fault of the recording: it says something about the log, not about the machine."""
 
-    fault: Literal["frozen", "clipped"]
-    from_s: float
-    to_s: float
+    kind: Literal["hum", "noisy_length", "frozen", "clipped"]
+    parameters: dict[str, float]
+    intervals_s: list[list[float]]
 
 
 Unexplained = TypedDict(
     "Unexplained",
     {
         "rms_n": Optional[float],
-        "frequency_hz": list[float],
-        "amplitude_n": list[float],
-        "faults": list[Fault],
         "where": list[Where],
         "intervals_s": list[list[float]],
         "goes_with": list[str],
@@ -166,6 +163,8 @@ class CableDiscovery(Value):
     """Values of the extended model by the robot file's keys, those of an effect as "stribeck.ratio"."""
     standard_errors: dict[str, float]
     """Standard errors of those fitted."""
+    faults: list[Fault]
+    """Faults of the recording, corrected before model and log were compared."""
     unexplained: Unexplained | None
     """What no effect accounts for; None if nothing."""
     where_in_words: list[str]

@@ -110,6 +110,29 @@ pub fn rewrite(text: &str, origin: &str, edits: &[CableEdit<'_>]) -> Result<Stri
     Ok(draft.text)
 }
 
+/// The text of a robot file with a number of its monitor, by key: in its table, or under `cycle_s` where there is none. `origin` says where the text is from, for errors.
+///
+/// # Errors
+/// [`RobotFileError::Invalid`] if the text is not right, before or with the new number.
+pub fn set_monitor(text: &str, origin: &str, key: &str, value: f64) -> Result<String, RobotFileError> {
+    RobotFile::parse(text, origin)?;
+    let splices = Document::parse(text).ok().and_then(|document| {
+        if let Some(item) = document.get("monitor") {
+            return set(Body::of_item(item)?, text, "monitor", key, value);
+        }
+        let (name, item) = document.get_key_value("cycle_s")?;
+        let place = Entry { start: name.span()?.start, end: item.as_value()?.span()?.end };
+        Some(splice::below(text, &place, &format!("monitor.{}", entry(key, value))))
+    });
+    let problem = || "`monitor` is written in a way that cannot be added to; write it in one table".to_owned();
+    let splices =
+        splices.ok_or_else(|| RobotFileError::Invalid { origin: origin.to_owned(), line: None, problem: problem() })?;
+    let mut text = text.to_owned();
+    splice::apply(&mut text, splices);
+    RobotFile::parse(&text, &format!("{origin} with the new values"))?;
+    Ok(text)
+}
+
 /// A text in the making. It is read again after each change, so that each sees the places as they are.
 struct Draft<'a> {
     text: String,

@@ -7,7 +7,7 @@ use fric_core::parameters::{MU, NO_PRESLIDING_N_PER_M, OFFSET, SIGMA, VISCOUS, V
 use nalgebra::DMatrix;
 
 use super::candidates::around;
-use super::foreign::{FaultyStretch, faulty_stretches, leave_out};
+use super::foreign::{RecordingFault, faulty_stretches, leave_out, of_stretches};
 use super::lines::{Line, Times, lines, motion_and_load};
 use super::naming::{self, Named, Naming, STRONG_BIC, Search};
 use super::noise::white_noise;
@@ -38,9 +38,9 @@ pub fn discover_cable(record: &CableRecord<'_>, progress: &Progress) -> CableDis
     if let Some(lack) = lack_of(record) {
         return CableDiscovery::untold(record, engine::count(&engine::prepared(record)), lack);
     }
-    let faults = faulty_stretches(record);
+    let stretches = faulty_stretches(record);
     let mut standings = engine::prepared(record);
-    leave_out(&faults, record.interval_s, &mut standings);
+    leave_out(&stretches, record.interval_s, &mut standings);
     let gang = engine::Gang::new(1, stop);
     let paper = engine::Search::run(record, &standings, &FitOptions::default(), stop, gang.seat(0));
     let samples = engine::count(&paper.standings);
@@ -92,7 +92,55 @@ pub fn discover_cable(record: &CableRecord<'_>, progress: &Progress) -> CableDis
         (outcome, hum) = (again, after);
     }
     let rows = without_lines(record, &hum, &times);
-    raw.with_rows(&rows).report(&outcome, samples, Foreign { faults, hum })
+    let mut faults: Vec<RecordingFault> = hum.iter().map(Line::fault).collect();
+    faults.extend(of_stretches(&stretches, |cycle| record.time_s(cycle)));
+    raw.with_rows(&rows).report(&outcome, samples, faults)
+}
+
+/// Sum of squares of the given model, fitted to the samples learned from, over those held out, N²; `None` where the log tells nothing.
+pub fn held_out_squares(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<f64> {
+    let (counts, start) = given_to(record, stop)?;
+    let (blocks, measured) = (split(record), engine::measured(record));
+    let bench = Workbench { record: *record, blocks: &blocks, counts: &counts, measured: &measured, stop };
+    Some(bench.try_one(&start).held_out)
+}
+
+/// Which samples count, and the given model with start values from the data.
+fn given_to(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<(Vec<bool>, workbench::Model)> {
+    if lack_of(record).is_some() {
+        return None;
+    }
+    let mut standings = engine::prepared(record);
+    leave_out(&faulty_stretches(record), record.interval_s, &mut standings);
+    let gang = engine::Gang::new(1, stop);
+    let paper = engine::Search::run(record, &standings, &FitOptions::default(), stop, gang.seat(0));
+    let (start, _) = given_model(record, &paper.solution);
+    Some((engine::used(&paper.standings), start))
+}
+
+/// Adds that the length is noisy: the given model is the one that takes the noise for motion.
+pub fn tell_of_length(found: &mut CableDiscovery, given: &CableRecord<'_>, fault: RecordingFault, stop: &AtomicBool) {
+    found.faults.insert(0, fault);
+    let Some((counts, start)) = given_to(given, stop) else { return };
+    let (blocks, measured) = (split(given), engine::measured(given));
+    let bench = Workbench { record: *given, blocks: &blocks, counts: &counts, measured: &measured, stop };
+    let base = bench.try_one(&start);
+    found.residual_before_n = bench.residuals_n(&base.values);
+    found.before = Model {
+        held_out_n: judged(&found.residual_before_n, &bench.used(true)),
+        covariance: engine::covariance(&bench.problem(&base.free, None), &[base.values]),
+        fitted: base.free,
+        values: base.values,
+    };
+}
+
+/// Error over the samples that judge.
+fn judged(residual_n: &[f64], held_out: &[bool]) -> Deviation {
+    let judged = residual_n.iter().zip(held_out).filter(|(_, held_out)| **held_out);
+    judged.fold(Deviation::default(), |mut sum, (number, _)| {
+        sum.add(*number);
+        sum
+    })
 }
 
 /// Whether two looks found lines at the same frequencies.
@@ -154,12 +202,6 @@ fn without_lines(record: &CableRecord<'_>, lines: &[Line], times: &Times) -> Vec
         line.add_to(rows.iter_mut().map(|row| &mut row.reference_n), 1.0, times);
     }
     rows
-}
-
-/// What is wrong with the log itself.
-struct Foreign {
-    faults: Vec<FaultyStretch>,
-    hum: Vec<Line>,
 }
 
 /// A cable with its log.
@@ -363,21 +405,14 @@ impl<'a> Case<'a> {
         around(&self.record, base.values[MU], noise_n)
     }
 
-    fn report(&self, outcome: &Outcome, samples: SampleCounts, foreign: Foreign) -> CableDiscovery {
+    fn report(&self, outcome: &Outcome, samples: SampleCounts, faults: Vec<RecordingFault>) -> CableDiscovery {
         let Outcome { base, naming, fitted, rest, .. } = outcome;
         let noise_n = rest.noise_n;
         let raw = Workbench { record: self.raw, ..self.bench(self.counts) };
         let held_out = raw.used(true);
         let with_interpolated = with_interpolated(&self.raw, self.counts, self.measured);
         let throughout = Workbench { counts: &with_interpolated, ..raw.clone() };
-        let held_out_of = |values: &Values| {
-            let residual_n = raw.residuals_n(values);
-            let judged = residual_n.iter().zip(&held_out).filter(|(_, held_out)| **held_out);
-            judged.fold(Deviation::default(), |mut sum, (number, _)| {
-                sum.add(*number);
-                sum
-            })
-        };
+        let held_out_of = |values: &Values| judged(&raw.residuals_n(values), &held_out);
         let before = Model {
             values: base.values,
             fitted: base.free.clone(),
@@ -417,10 +452,9 @@ impl<'a> Case<'a> {
         let clean_n = self.bench(self.counts).residuals_n(&base.values);
         let places = self.excess(&clean_n, noise_n).concentrations(self.conditions);
         let places = if self.excess(&clean_n, noise_n).share() > WORTH { places } else { Vec::new() };
-        let is_foreign = !foreign.faults.is_empty() || !foreign.hum.is_empty() || outcome.stretch.is_some();
-        let unexplained = (is_foreign || !rest.is_noise).then(|| {
+        let unexplained = (outcome.stretch.is_some() || !rest.is_noise).then(|| {
             let rms_n = after.held_out_n.rms().unwrap_or(f64::NAN);
-            self.unexplained(outcome, (rms_n * rms_n - noise_n * noise_n).max(0.0).sqrt(), foreign)
+            self.unexplained(outcome, (rms_n * rms_n - noise_n * noise_n).max(0.0).sqrt())
         });
         let verdict = match (&unexplained, findings.is_empty()) {
             (Some(_), _) => Verdict::Unexplained,
@@ -452,6 +486,7 @@ impl<'a> Case<'a> {
             candidates,
             tried,
             places,
+            faults,
             unexplained,
             lack: None,
             profiles: profiles.collect(),
@@ -461,19 +496,12 @@ impl<'a> Case<'a> {
         }
     }
 
-    fn unexplained(&self, outcome: &Outcome, rms_n: f64, foreign: Foreign) -> Unexplained {
+    fn unexplained(&self, outcome: &Outcome, rms_n: f64) -> Unexplained {
         let Outcome { rest, stretch, .. } = outcome;
-        let time_s = |cycle: usize| self.record.time_s(cycle);
-        let faults = foreign
-            .faults
-            .into_iter()
-            .map(|FaultyStretch { fault, cycles }| (fault, [time_s(cycles.start), time_s(cycles.end)]));
         let excess = self.excess(&rest.residual_n, rest.noise_n);
         let loud = |cycle: usize| rest.residual_n.get(cycle).is_some_and(|number| number.abs() > 4.0 * rest.noise_n);
         Unexplained {
             rms_n,
-            lines: foreign.hum,
-            faults: faults.collect(),
             places: stretch.iter().chain(if rest.is_noise { &[][..] } else { &rest.places }).cloned().collect(),
             intervals_s: if rest.is_noise { Vec::new() } else { excess.intervals_s(loud) },
             neighbours: Vec::new(),

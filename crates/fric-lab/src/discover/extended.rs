@@ -1,13 +1,15 @@
 //! The robot file with what a discovery found.
 
+use fric_core::robot::edit::set_monitor;
 use fric_core::robot::file::RobotFileError;
 
+use super::foreign::Fault;
 use super::report::CableDiscovery;
 use crate::fit::Parameter;
 use crate::fit::engine::{NewValues, with_values};
 
 /// The text of a robot file with the extended models of its cables, in order: fitted values, and every parameter of each
-/// effect that was found. A cable without a verdict keeps its values; everything else stays as it is written. `origin`
+/// effect that was found; the monitor's `length_noise_m` where the lengths bear noise. A cable without a verdict keeps its values; everything else stays as it is written. `origin`
 /// says where the file is from, for errors.
 ///
 /// A replay with it gives the `after` of the discovery on the same samples, to the last bit.
@@ -25,5 +27,13 @@ pub fn extended(text: &str, origin: &str, discoveries: &[CableDiscovery]) -> Res
             NewValues { values: &cable.after.values, parameters: Parameter::all().filter(written).collect() }
         })
         .collect();
-    with_values(text, origin, &new)
+    let text = with_values(text, origin, &new)?;
+    let of_length = |cable: &CableDiscovery| {
+        let fault = cable.faults.iter().find(|fault| fault.fault == Fault::NoisyLength)?;
+        fault.parameters.iter().find(|(key, _)| *key == "length_noise_m").map(|(_, value)| *value)
+    };
+    discoveries
+        .iter()
+        .find_map(of_length)
+        .map_or(Ok(text.clone()), |value| set_monitor(&text, origin, "length_noise_m", value))
 }

@@ -1,6 +1,7 @@
-//! What is wrong with a log itself and no matter of friction: a sensor that stands still or is at the end of its range.
+//! What is wrong with a log itself and no matter of friction.
 //!
-//! Such stretches have a name and a place of their own; left out, the rest can be judged.
+//! Each such fault has a name, values and a place in time, and is corrected before model and log are compared: stretches in which a sensor stands still or is at the
+//! end of its range are left out, hum (`lines`) comes off the reference, the noise of the length (`length_noise`) is kept from being motion.
 
 use std::ops::Range;
 
@@ -18,13 +19,28 @@ const AFTER_S: f64 = 0.1;
 /// Two stretches with less than this between them are one, s.
 const MERGED_S: f64 = 0.1;
 
-/// What is the matter with the sensor.
+/// What is the matter with a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// It repeats itself.
+    /// A line in the spectrum that goes with nothing the cable does.
+    Hum,
+    /// The length trembles, and the model takes it for motion.
+    NoisyLength,
+    /// The force sensor repeats itself.
     Frozen,
-    /// It is at the end of its range.
+    /// The force sensor is at the end of its range.
     Clipped,
+}
+
+/// A fault of a recording: it says something about the log, not about the machine.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecordingFault {
+    /// Which.
+    pub fault: Fault,
+    /// What is known of it, by key with its unit.
+    pub parameters: Vec<(&'static str, f64)>,
+    /// When, s since the first sample; empty where it is there all the time.
+    pub intervals_s: Vec<[f64; 2]>,
 }
 
 /// Cycles in which the sensor is not to be believed.
@@ -104,6 +120,17 @@ fn merged(stretches: Vec<FaultyStretch>, interval_s: f64) -> Vec<FaultyStretch> 
         }
     }
     merged
+}
+
+/// The faults that such stretches are, by kind.
+pub fn of_stretches(stretches: &[FaultyStretch], time_s: impl Fn(usize) -> f64) -> Vec<RecordingFault> {
+    let of_kind = |fault: Fault| {
+        let alike = stretches.iter().filter(|stretch| stretch.fault == fault);
+        let intervals_s: Vec<[f64; 2]> =
+            alike.map(|stretch| [time_s(stretch.cycles.start), time_s(stretch.cycles.end)]).collect();
+        (!intervals_s.is_empty()).then(|| RecordingFault { fault, parameters: Vec::new(), intervals_s })
+    };
+    [Fault::Frozen, Fault::Clipped].into_iter().filter_map(of_kind).collect()
 }
 
 /// Leaves such stretches, and the moment after each, out of what counts.

@@ -10,6 +10,7 @@ use std::ops::Range;
 
 use realfft::RealFftPlanner;
 
+use super::foreign::{Fault, RecordingFault};
 use crate::fit::engine::sign;
 use crate::fit::{CableRecord, Row};
 
@@ -116,6 +117,12 @@ impl Line {
             (squares + wave.count * (wave.sine * wave.sine + wave.cosine * wave.cosine), count + wave.count)
         });
         if count > 0.0 { (squares / count).sqrt() } else { 0.0 }
+    }
+
+    /// The fault of the recording that it is.
+    pub fn fault(&self) -> RecordingFault {
+        let parameters = vec![("frequency_hz", self.frequency_hz), ("amplitude_n", self.amplitude())];
+        RecordingFault { fault: Fault::Hum, parameters, intervals_s: Vec::new() }
     }
 
     /// Adds it, times a factor, to a number of each row.

@@ -8,8 +8,8 @@
 //! 3. *Name.* Candidates of the catalogue enter, justify themselves and are exchanged (`naming`): the evidence for each (`evidence`), whether it has one size in every
 //!    condition (`steadiness`), and whether a law without a name makes it superfluous (`rivals`). The model with all names is taken for the given one until nothing more
 //!    is found, and fitted to all samples as an identification does.
-//! 4. *Rest.* What is wrong with the log itself has its own names: lines in the spectrum (`lines`), a sensor that stands still
-//!    or is at the end of its range (`foreign`), a stretch of cable (`stretch`) or of time (`rest`). Left out, the rest is
+//! 4. *Rest.* What is wrong with the log itself has its own names (`foreign`) and is corrected before: lines in the spectrum (`lines`), a length that trembles
+//!    (`length_noise`), a sensor that stands still or is at the end of its range. A stretch of cable (`stretch`) or of time (`rest`) is left out, and the rest
 //!    judged once more; signals of other cables that it goes with are told (`neighbours`). A wander of the sensors that has nothing to do with the motion is noise.
 //!
 //! The model is the control cycle's own; what is found runs in it as it is.
@@ -18,6 +18,7 @@ mod cable;
 mod evidence;
 mod extended;
 mod foreign;
+mod length_noise;
 mod lines;
 mod naming;
 mod neighbours;
@@ -41,8 +42,7 @@ use rayon::prelude::*;
 use crate::fit::{CableRecord, Measurements, Progress};
 
 pub use extended::extended;
-pub use foreign::Fault;
-pub use lines::Line;
+pub use foreign::{Fault, RecordingFault};
 pub use naming::Refusal;
 pub use neighbours::Neighbour;
 pub use places::Place;
@@ -53,14 +53,23 @@ pub use report::{CableDiscovery, Candidate, Finding, Model, RunnerUp, Tried, Une
 /// Looks at every cable that has a reference.
 #[must_use]
 pub fn discover(measurements: &Measurements<'_>, progress: &Progress) -> Vec<CableDiscovery> {
-    let records: Vec<CableRecord<'_>> = measurements.cables().collect();
-    progress.begin(records.len());
-    let of_cable = |record: &CableRecord<'_>| {
-        let found = cable::discover_cable(record, progress);
+    let given: Vec<CableRecord<'_>> = measurements.cables().collect();
+    progress.begin(given.len());
+    let steadied = length_noise::steadied(measurements, progress.stop_flag());
+    let records: Vec<CableRecord<'_>> = match &steadied {
+        Some(steadied) => given.iter().zip(&steadied.rows).map(|(given, rows)| given.with_signals(rows)).collect(),
+        None => given.clone(),
+    };
+    let of_cable = |(place, record): (usize, &CableRecord<'_>)| {
+        let fault = steadied.as_ref().and_then(|steadied| steadied.faults.get(place)?.clone());
+        let mut found = cable::discover_cable(record, progress);
+        if let Some((fault, given)) = fault.zip(given.get(place)) {
+            cable::tell_of_length(&mut found, given, fault, progress.stop_flag());
+        }
         progress.finish_one();
         found
     };
-    let mut cables: Vec<CableDiscovery> = records.par_iter().map(of_cable).collect();
+    let mut cables: Vec<CableDiscovery> = records.par_iter().enumerate().map(of_cable).collect();
     for (place, cable) in cables.iter_mut().enumerate() {
         if let Some(unexplained) = &mut cable.unexplained {
             unexplained.neighbours = neighbours::neighbours_of(&cable.residual_after_n, place, &records);

@@ -4,8 +4,7 @@ use fric_core::effects::Effect;
 use fric_core::parameters::Values;
 use nalgebra::DMatrix;
 
-use super::foreign::Fault;
-use super::lines::Line;
+use super::foreign::RecordingFault;
 use super::naming::Refusal;
 use super::neighbours::Neighbour;
 use super::places::Place;
@@ -95,10 +94,6 @@ pub struct Tried {
 pub struct Unexplained {
     /// Root mean square of what is left above the noise on the samples held out, N.
     pub rms_n: f64,
-    /// Lines in the spectrum.
-    pub lines: Vec<Line>,
-    /// When the sensor is not to be believed, s since the first sample.
-    pub faults: Vec<(Fault, [f64; 2])>,
     /// Where the rest sits.
     pub places: Vec<Place>,
     /// When, s since the first sample.
@@ -134,6 +129,8 @@ pub struct CableDiscovery {
     pub tried: Vec<Tried>,
     /// Where the given model disagrees.
     pub places: Vec<Place>,
+    /// What is wrong with the log itself, corrected before model and log were compared.
+    pub faults: Vec<RecordingFault>,
     /// What no effect accounts for.
     pub unexplained: Option<Unexplained>,
     /// Why nothing can be told.
@@ -179,6 +176,7 @@ impl CableDiscovery {
             candidates: Vec::new(),
             tried: Vec::new(),
             places: Vec::new(),
+            faults: Vec::new(),
             unexplained: None,
             lack: Some(lack),
             profiles: Vec::new(),

@@ -9,8 +9,7 @@ use fric_core::parameters::NO_PRESLIDING_N_PER_M;
 use fric_core::robot::file::RobotFile;
 use serde::Serialize;
 
-use super::foreign::Fault;
-use super::lines::Line;
+use super::foreign::{Fault, RecordingFault};
 use super::neighbours::Neighbour;
 use super::places::Place;
 use super::report::{self, CableDiscovery, Finding, Model, Tried, Unexplained, Verdict};
@@ -80,6 +79,8 @@ pub struct DiscoverCableResult {
     pub parameters: Numbers,
     /// Standard errors of those fitted.
     pub standard_errors: Numbers,
+    /// Faults of the recording, which say something about the log and not about the machine.
+    pub faults: Vec<FaultResult>,
     /// What no effect accounts for.
     pub unexplained: Option<UnexplainedResult>,
 }
@@ -191,12 +192,6 @@ pub struct Candidate {
 pub struct UnexplainedResult {
     /// Error above the noise, N.
     pub rms_n: Option<f64>,
-    /// Frequencies of lines in the spectrum, the strongest first.
-    pub frequency_hz: Vec<f64>,
-    /// Their amplitudes, N.
-    pub amplitude_n: Vec<f64>,
-    /// When the sensor is not to be believed.
-    pub faults: Vec<FaultResult>,
     /// Where it lies.
     #[serde(rename = "where")]
     pub places: Vec<WhereResult>,
@@ -207,15 +202,18 @@ pub struct UnexplainedResult {
     pub goes_with: Vec<String>,
 }
 
-/// A fault of the sensor.
-#[derive(Clone, Copy, Debug, Serialize)]
+/// A fault of a recording.
+#[derive(Clone, Debug, Serialize)]
 pub struct FaultResult {
-    /// `frozen` or `clipped`.
-    pub fault: &'static str,
-    /// Where it begins, s since the first sample.
-    pub from_s: f64,
-    /// Where it ends.
-    pub to_s: f64,
+    /// Its name.
+    pub kind: &'static str,
+    /// What is known of it, by key with its unit.
+    pub parameters: Numbers,
+    /// When, s since the first sample; empty where it is there all the time.
+    pub intervals_s: Vec<[f64; 2]>,
+    /// Which.
+    #[serde(skip)]
+    pub fault: Fault,
 }
 
 /// An effect that several cables have.
@@ -270,6 +268,8 @@ impl Fault {
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
+            Self::Hum => "hum",
+            Self::NoisyLength => "noisy_length",
             Self::Frozen => "frozen",
             Self::Clipped => "clipped",
         }
@@ -346,10 +346,9 @@ fn cable_result(
     let told = found.lack.as_ref().map(|lack| (lack.cause.clone(), lack.advice));
     let missing = told.map(|told| lack.unwrap_or(told)).map(|(cause, advice)| Missing { cause, advice });
     let time_s = |sample: usize| found.times_s.get(sample).or(found.times_s.last()).copied().unwrap_or(0.0);
-    let gap = [&found.before, &found.after].map(|model| excess(model, found.noise_floor_n));
-    let hum = found.unexplained.as_ref().map_or(&[][..], |rest| &rest.lines);
+    let gap = excess(&found.before, found.noise_floor_n);
     let mut places: Vec<WhereResult> = found.places.iter().map(WhereResult::of).collect();
-    places.extend(hum.iter().map(|line| WhereResult::of_line(line, gap[0])));
+    places.extend(found.faults.iter().filter_map(|fault| WhereResult::of_hum(fault, gap)));
     DiscoverCableResult {
         name: names.get(place).copied().unwrap_or_default().to_owned(),
         samples: samples.used,
@@ -375,7 +374,8 @@ fn cable_result(
         tried: found.tried.iter().map(TriedResult::of).collect(),
         parameters: parameters(found),
         standard_errors: errors(&found.after, Parameter::all(), ToString::to_string),
-        unexplained: found.unexplained.as_ref().map(|rest| unexplained(rest, gap[1], names)),
+        faults: found.faults.iter().map(FaultResult::of).collect(),
+        unexplained: found.unexplained.as_ref().map(|rest| unexplained(rest, names)),
     }
 }
 
@@ -468,12 +468,14 @@ impl WhereResult {
     }
 
     /// A line in the spectrum, of a mean square above the noise.
-    fn of_line(line: &Line, excess: f64) -> Self {
-        let share = finite((0.5 * line.amplitude().powi(2) / excess).clamp(0.0, 1.0));
-        Self {
+    fn of_hum(fault: &RecordingFault, excess: f64) -> Option<Self> {
+        let value = |key: &str| fault.parameters.iter().find(|(of, _)| *of == key).map(|(_, value)| *value);
+        let (frequency_hz, amplitude_n) = (value("frequency_hz")?, value("amplitude_n")?);
+        let share = finite((0.5 * amplitude_n.powi(2) / excess).clamp(0.0, 1.0));
+        Some(Self {
             signal: "frequency",
-            from: line.frequency_hz,
-            to: line.frequency_hz,
+            from: frequency_hz,
+            to: frequency_hz,
             unit: "Hz",
             share_of_excess: share,
             share_of_samples: Some(1.0),
@@ -481,12 +483,22 @@ impl WhereResult {
             significance: None,
             intervals_s: Vec::new(),
             range: [f64::NAN; 2],
+        })
+    }
+}
+
+impl FaultResult {
+    fn of(found: &RecordingFault) -> Self {
+        Self {
+            kind: found.fault.name(),
+            parameters: Numbers(found.parameters.iter().map(|(key, value)| ((*key).to_owned(), *value)).collect()),
+            intervals_s: found.intervals_s.clone(),
+            fault: found.fault,
         }
     }
 }
 
-fn unexplained(rest: &Unexplained, excess: f64, names: &[&str]) -> UnexplainedResult {
-    let lines = rest.lines.iter().map(|line| WhereResult::of_line(line, excess));
+fn unexplained(rest: &Unexplained, names: &[&str]) -> UnexplainedResult {
     let of_cable = rest.places.iter().map(|place| place.signal.to_owned());
     let of_others = rest.neighbours.iter().map(|Neighbour { cable, signal, .. }| {
         let name = names.get(*cable).copied().unwrap_or_default();
@@ -494,14 +506,7 @@ fn unexplained(rest: &Unexplained, excess: f64, names: &[&str]) -> UnexplainedRe
     });
     UnexplainedResult {
         rms_n: finite(rest.rms_n),
-        frequency_hz: rest.lines.iter().map(|line| line.frequency_hz).collect(),
-        amplitude_n: rest.lines.iter().map(Line::amplitude).collect(),
-        faults: rest
-            .faults
-            .iter()
-            .map(|(fault, [from_s, to_s])| FaultResult { fault: fault.name(), from_s: *from_s, to_s: *to_s })
-            .collect(),
-        places: lines.chain(rest.places.iter().map(WhereResult::of)).collect(),
+        places: rest.places.iter().map(WhereResult::of).collect(),
         intervals_s: rest.intervals_s.clone(),
         goes_with: of_cable.chain(of_others).collect(),
     }

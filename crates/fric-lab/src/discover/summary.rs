@@ -26,6 +26,7 @@ pub(super) fn describe(result: &DiscoverResult) -> String {
         cable.verdict == "complete"
             && cable.wander_n.is_none_or(|wander_n| wander_n <= 0.0)
             && cable.tried.is_empty()
+            && cable.faults.is_empty()
             && !cable.is_constant()
     };
     let quiet: Vec<&str> = result.cables.iter().filter(is_quiet).map(|cable| cable.name.as_str()).collect();
@@ -84,6 +85,9 @@ fn details(cable: &DiscoverCableResult, told: &mut Vec<&'static str>) -> String 
     }
     for (count, tried) in cable.tried.iter().take(MOST_TRIED).enumerate() {
         text += &line(if count == 0 { "tried" } else { "" }, &tried.in_words());
+    }
+    for (count, fault) in cable.faults.iter().enumerate() {
+        text += &line(if count == 0 { "recording" } else { "" }, &fault.in_words());
     }
     if let Some(rest) = &cable.unexplained {
         for (count, sentence) in rest.in_words().iter().enumerate() {

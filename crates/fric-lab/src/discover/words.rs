@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use fric_core::effects::Effect;
 
+use super::foreign::Fault;
 use super::naming::Refusal;
 use super::places::LEAST_CONCENTRATION;
 use super::result::{
@@ -165,17 +166,14 @@ impl DiscoverCableResult {
             (_, kinds) => {
                 let lacks =
                     if kinds.is_empty() { String::new() } else { format!("The model lacks {}. ", listed(kinds)) };
-                let rest = match &self.unexplained {
-                    Some(rest) if rest.is_of_the_log() => {
-                        "The log has trouble of its own that is no matter of friction."
-                    }
-                    _ => "Something remains that no effect of the catalogue accounts for.",
-                };
-                lacks + rest
+                lacks + "Something remains that no effect of the catalogue accounts for."
             }
         };
         if kinds.len() > 1 {
             text = text.replace("with it,", "with them,");
+        }
+        if !self.faults.is_empty() {
+            text += " The log has trouble of its own that is no matter of friction.";
         }
         if let Some(wander) = wander_n {
             text += " Beside white noise a slow wander of ";
@@ -310,41 +308,35 @@ impl Refusal {
 }
 
 impl FaultResult {
-    /// What the sensor does.
+    /// What is the matter and what to do, a sentence without its full stop.
     #[must_use]
-    pub fn in_words(&self) -> &'static str {
+    pub fn in_words(&self) -> String {
+        let value = |key: &str| self.parameters.get(key).unwrap_or(f64::NAN);
+        let left_out = || format!("at {}: left out of all the rest", intervals(&self.intervals_s));
         match self.fault {
-            "frozen" => "the force sensor stands still",
-            _ => "the force sensor is at the end of its range",
+            Fault::Hum => format!(
+                "it hums at {:.2} Hz with an amplitude of {}: no friction does; look at wiring and amplifiers",
+                value("frequency_hz"),
+                newtons(value("amplitude_n"))
+            ),
+            Fault::NoisyLength => format!(
+                "the length trembles by {} m (standard deviation), which the model takes for motion; `length_noise_m` = {} m of the monitor keeps \
+                 it out, and the extended file sets it; look at the encoder's resolution, supply and shielding",
+                significant(value("noise_m")),
+                significant(value("length_noise_m"))
+            ),
+            Fault::Frozen => format!("the force sensor stands still {}", left_out()),
+            Fault::Clipped => format!("the force sensor is at the end of its range {}", left_out()),
         }
     }
 }
 
 impl UnexplainedResult {
-    /// Whether a hum and faults of the sensor are all.
-    fn is_of_the_log(&self) -> bool {
-        let is_named = !self.faults.is_empty() || !self.frequency_hz.is_empty();
-        is_named && self.intervals_s.is_empty() && self.places.iter().all(|place| place.signal == "frequency")
-    }
-
     /// Where the rest lies, sentences without their full stops.
     #[must_use]
     pub fn in_words(&self) -> Vec<String> {
         let mut sentences = Vec::new();
-        for (frequency_hz, amplitude_n) in self.frequency_hz.iter().zip(&self.amplitude_n) {
-            sentences.push(format!(
-                "it hums at {frequency_hz:.2} Hz with an amplitude of {}: no friction does; look at wiring and amplifiers",
-                newtons(*amplitude_n)
-            ));
-        }
-        for fault in ["frozen", "clipped"] {
-            let of_kind: Vec<&FaultResult> = self.faults.iter().filter(|of| of.fault == fault).collect();
-            let Some(first) = of_kind.first() else { continue };
-            let when: Vec<[f64; 2]> = of_kind.iter().map(|fault| [fault.from_s, fault.to_s]).collect();
-            sentences.push(format!("{} at {}: left out of all the rest", first.in_words(), intervals(&when)));
-        }
-        let places = self.places.iter().filter(|place| place.signal != "frequency");
-        sentences.extend(places.take(2).map(|place| place.in_words("the rest")));
+        sentences.extend(self.places.iter().take(2).map(|place| place.in_words("the rest")));
         let neighbours: Vec<String> = self.goes_with.iter().filter(|signal| signal.contains(' ')).cloned().collect();
         if !neighbours.is_empty() {
             sentences.push(format!("it goes with signals of other cables: {}", listed(&neighbours)));

@@ -37,6 +37,15 @@ pub(crate) fn white_noise_in(residual: &[f64], block: usize) -> Option<f64> {
     Some((*median * mean_per_median(block)).sqrt())
 }
 
+/// The same of a signal that changes slowly by itself, where the noise is there all the time: `None` where a tenth of the blocks has less than half of it, as steps
+/// of a resolution have while nothing moves.
+pub fn lasting_white_noise(signal: &[f64]) -> Option<f64> {
+    let mut squares = block_squares(signal, BLOCK);
+    squares.sort_unstable_by(f64::total_cmp);
+    let [quiet, median] = [*squares.get(squares.len() / 10)?, *squares.get(squares.len() / 2)?];
+    (quiet > 0.25 * median).then(|| (median * mean_per_median(BLOCK)).sqrt())
+}
+
 /// The same with the stretches that have more: root mean square over all blocks. An encoder's steps, for one, make noise of a model's
 /// accelerations while the cable moves.
 pub fn white_noise_throughout(residual: &[f64]) -> Option<f64> {

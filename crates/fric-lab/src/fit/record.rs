@@ -7,10 +7,11 @@ use std::ops::Range;
 
 use fric_core::effects::UNKNOWN;
 use fric_core::robot::RobotParams;
-use fric_core::signals::{BEFORE_FIRST, Conditioned, RawSignals, SignalState, condition, next_cycle};
+use fric_core::signals::{BEFORE_FIRST, Conditioned, RawSignals, SignalLimits, SignalState, condition, next_cycle};
 use fric_core::{CableInput, CableParams, Pose, PoseWrap, Sample, Wrench};
 use nalgebra::Vector6;
 
+use super::noise::lasting_white_noise;
 use crate::clock::Clock;
 
 /// What a fit compares the model with, and so what has to be kept of a sample.
@@ -279,6 +280,39 @@ impl<'a> CableRecord<'a> {
         'a: 'b,
     {
         CableRecord { rows, ..*self }
+    }
+
+    /// Standard deviation of the white noise of the length, m; `None` where none is there all the time.
+    pub(crate) fn length_noise_m(&self) -> Option<f64> {
+        let of_log = |(_, rows): (usize, &[Row])| {
+            rows.iter().map(|row| row.signals.length_m).chain([f64::NAN]).collect::<Vec<f64>>()
+        };
+        lasting_white_noise(&self.logs().flat_map(of_log).collect::<Vec<f64>>())
+    }
+
+    /// Its cycles, conditioned anew by other limits.
+    pub(crate) fn conditioned(&self, limits: &SignalLimits) -> Vec<Row> {
+        let mut rows = Vec::with_capacity(self.rows.len());
+        for (_, log) in self.logs() {
+            let (mut state, mut last) = (SignalState::start(), BEFORE_FIRST);
+            for row in log {
+                let Conditioned { sensor_force_n, speed_m_per_s, length_m, sensor_finite, motion_finite, .. } =
+                    row.signals;
+                let known = |is_known: bool, value: f64| if is_known { value } else { f64::NAN };
+                let raw = RawSignals {
+                    sensor_force_n: known(sensor_finite, sensor_force_n),
+                    length_m: known(motion_finite, length_m),
+                    speed_m_per_s,
+                };
+                let signals = condition(limits, &mut state, &raw, row.cycle - last);
+                last = row.cycle;
+                rows.push(Row {
+                    signals: Conditioned { length_m: known(signals.length_m < UNKNOWN, signals.length_m), ..signals },
+                    ..*row
+                });
+            }
+        }
+        rows
     }
 
     /// When a cycle is, s since the first sample; several logs one after the other.

@@ -1,7 +1,10 @@
 //! What is wrong with a log, or with how it was recorded, is neither a missing effect nor something unexplained.
 
+use fric_core::effects::Effect;
+use fric_core::robot::RobotParams;
+use fric_core::robot::file::RobotFile;
 use fric_core::{CableInput, Pose, Sample};
-use fric_lab::discover::{CableDiscovery, Fault, Verdict, discover};
+use fric_lab::discover::{CableDiscovery, Fault, Verdict, discover, extended};
 use fric_lab::fit::{Measurements, Progress, Reference};
 use fric_lab::simulate::sweep::{Case, CaseTruth, Group};
 use rand_chacha::ChaCha8Rng;
@@ -30,8 +33,12 @@ fn points_of(case: &Case) -> (Vec<Point>, CaseTruth) {
 
 /// Looks at logs by the model that they were made with.
 fn look(logs: &[&[Point]], truth: &CaseTruth) -> CableDiscovery {
-    let params = truth.robot.params();
-    let mut measurements = Measurements::new(&params, Reference::Forces);
+    look_by(logs, &truth.robot.params())
+}
+
+/// Looks at logs by a robot.
+fn look_by(logs: &[&[Point]], params: &RobotParams<'_>) -> CableDiscovery {
+    let mut measurements = Measurements::new(params, Reference::Forces);
     for points in logs {
         measurements.start_log();
         for point in *points {
@@ -85,8 +92,10 @@ fn a_sensor_that_drops_out_is_not_frozen() {
     let held_n = points[40_000].cable.sensor_force_n;
     points[40_000..40_030].iter_mut().for_each(|point| point.cable.sensor_force_n = held_n);
     let found = look(&[&points], &truth);
-    let faults: Vec<Fault> = found.unexplained.unwrap().faults.iter().map(|(fault, _)| *fault).collect();
-    assert_eq!((faults, found.verdict), (vec![Fault::Frozen], Verdict::Unexplained));
+    let faults: Vec<Fault> = found.faults.iter().map(|fault| fault.fault).collect();
+    assert_eq!((faults, found.verdict), (vec![Fault::Frozen], Verdict::Complete));
+    let [from_s, to_s] = found.faults[0].intervals_s[0];
+    assert!((from_s - 40.0).abs() < 2e-3 && (to_s - 40.03).abs() < 2e-3, "{from_s} {to_s}");
 }
 
 #[test]
@@ -99,10 +108,10 @@ fn hum_is_one_line_with_lost_rows_and_in_several_logs() {
     let (one, other) = points.split_at(26_003);
     for logs in [&[points.as_slice()][..], &[one, other][..]] {
         let found = look(logs, &truth);
-        let lines: Vec<f64> =
-            found.unexplained.iter().flat_map(|rest| &rest.lines).map(|line| line.frequency_hz).collect();
-        assert_eq!((lines.len(), found.findings.len()), (1, 0), "{lines:?}");
-        assert!((lines[0] - frequency_hz).abs() < 0.05, "{lines:?} {frequency_hz}");
+        assert_eq!((found.faults.len(), found.findings.len()), (1, 0), "{:?}", found.faults);
+        let (key, told_hz) = found.faults[0].parameters[0];
+        assert_eq!((found.faults[0].fault, key, found.verdict), (Fault::Hum, "frequency_hz", Verdict::Complete));
+        assert!((told_hz - frequency_hz).abs() < 0.05, "{told_hz} {frequency_hz}");
         let (after_n, floor_n) = (found.noise_floor_n, truth.floor_n);
         assert!((after_n / floor_n - 1.0).abs() < 0.05, "{after_n} {floor_n}");
     }
@@ -138,5 +147,36 @@ fn a_reference_slower_than_the_cycle_is_judged_where_it_was_measured() {
         assert_complete(&found, truth.floor_n.hypot(0.06));
         let used = found.samples.used + found.samples.warm_up / 10;
         assert!(used.abs_diff(points.len() / 10) < 50, "{:?}", found.samples);
+    }
+}
+
+/// White noise of the length rubs in a model that takes it for motion; kept out, it hides no effect, and the extended file keeps it out as well.
+#[test]
+fn noise_of_the_length_is_told_and_hides_no_effect() {
+    let noise_m = 3e-6;
+    for effects in [&[][..], &[Effect::SensorGain]] {
+        let group = if effects.is_empty() { Group::Nothing } else { Group::Single };
+        let (mut points, truth) = points_of(&Case { seed: 70_014, ..Case::hiding(group, effects) });
+        let random = &mut ChaCha8Rng::seed_from_u64(70_014);
+        for point in &mut points {
+            let drawn: f64 = StandardNormal.sample(random);
+            point.cable.length_m += noise_m * drawn;
+        }
+        let found = look(&[&points], &truth);
+        let verdict = if effects.is_empty() { Verdict::Complete } else { Verdict::Extended };
+        let kinds: Vec<Effect> = found.findings.iter().map(|finding| finding.effect).collect();
+        assert_eq!((found.verdict, kinds.as_slice()), (verdict, effects), "{:?}", found.tried);
+        let [fault] = found.faults.as_slice() else { panic!("{:?}", found.faults) };
+        let (key, told_m) = fault.parameters[0];
+        assert_eq!((fault.fault, key), (Fault::NoisyLength, "noise_m"));
+        assert!((told_m / noise_m - 1.0).abs() < 0.05, "{told_m}");
+        let [before_n, after_n] = [&found.before, &found.after].map(|model| model.held_out_n.rms().unwrap());
+        assert!(before_n > 2.0 * truth.floor_n && after_n < 1.1 * truth.floor_n, "{before_n} {after_n}");
+        // The loop with the extended file comes to the same, and a second look finds nothing.
+        let text = extended(&truth.robot.to_toml().unwrap(), "extended", std::slice::from_ref(&found)).unwrap();
+        let again = look_by(&[&points], &RobotFile::parse(&text, "extended").unwrap().params());
+        assert_eq!((again.verdict, again.findings.len(), again.faults.len()), (Verdict::Complete, 0, 0));
+        let again_n = again.before.held_out_n.rms().unwrap();
+        assert!((again_n / after_n - 1.0).abs() < 0.01, "{again_n} {after_n}");
     }
 }

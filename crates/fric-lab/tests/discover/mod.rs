@@ -5,7 +5,7 @@ mod faulty;
 use fric_core::effects::Effect;
 use fric_core::parameters::VISCOUS;
 use fric_core::robot::file::{FrictionTable, RobotFile};
-use fric_lab::discover::{CableDiscovery, Verdict, discover, extended};
+use fric_lab::discover::{CableDiscovery, Fault, Verdict, discover, extended};
 use fric_lab::fit::{Measurements, Progress, Reference};
 use fric_lab::simulate::sweep::{Case, CaseLog, CaseTruth, Group};
 
@@ -36,6 +36,7 @@ fn assert_found(case: &Case, verdict: Verdict) -> (CableDiscovery, CaseTruth) {
     hidden.sort_unstable();
     let tried: Vec<_> = found.tried.iter().map(|tried| (tried.effect.kind(), tried.refusal)).collect();
     assert_eq!((named, found.verdict), (hidden, verdict), "{}: {tried:?}", case.name());
+    assert!(found.faults.iter().all(|fault| fault.fault != Fault::NoisyLength), "{}: {:?}", case.name(), found.faults);
     let floor_ratio = found.noise_floor_n / truth.floor_n;
     assert!((floor_ratio - 1.0).abs() < 0.05, "{}: floor {floor_ratio}", case.name());
     (found, truth)
@@ -116,8 +117,8 @@ fn two_effects_are_named_together() {
 #[test]
 fn hum_is_placed_by_its_frequency_and_hides_no_effect() {
     let case = Case { disturbance: Some("hum"), seed: 70_005, ..Case::hiding(Group::Mixed, &[Effect::SensorGain]) };
-    let (found, truth) = assert_found(&case, Verdict::Unexplained);
-    let hum = found.unexplained.unwrap().lines[0].frequency_hz;
+    let (found, truth) = assert_found(&case, Verdict::Extended);
+    let (_, hum) = found.faults[0].parameters[0];
     let (_, frequency_hz) = truth.disturbances[0].values()[1];
     assert!((hum - frequency_hz).abs() < 0.05, "{hum} {frequency_hz}");
 }

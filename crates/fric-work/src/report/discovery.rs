@@ -88,6 +88,10 @@ fn overview(result: &DiscoverResult, named: impl Fn(usize, &str) -> Markup) -> M
 fn details(cable: &DiscoverCableResult, found: &CableDiscovery) -> Markup {
     html! {
         @for effect in &cable.effects { (effect_in_words(effect)) }
+        @if !cable.faults.is_empty() {
+            h3 { "Faults of the recording" }
+            ul { @for fault in &cable.faults { li { (fault.in_words()) } } }
+        }
         @if let Some(rest) = &cable.unexplained {
             h3 { "Unexplained" }
             ul { @for sentence in rest.in_words() { li { (sentence) } } }
@@ -167,8 +171,8 @@ fn time_keys(cable: &DiscoverCableResult) -> Markup {
 /// The intervals to look at: of the rest where there is one, else of the condition that tells most.
 fn looked_at(cable: &DiscoverCableResult) -> Vec<[f64; 2]> {
     let mut all = Vec::new();
+    all.extend(cable.faults.iter().flat_map(|fault| fault.intervals_s.iter().copied()));
     if let Some(rest) = &cable.unexplained {
-        all.extend(rest.faults.iter().map(|fault| [fault.from_s, fault.to_s]));
         all.extend_from_slice(&rest.intervals_s);
         all.extend(rest.places.first().into_iter().flat_map(|place| place.intervals_s.clone()));
     }
