@@ -53,7 +53,7 @@ fn effects_that_are_none_are_told() {
 fn disturbances_that_are_none_are_told() {
     let place = Place::with_log();
     for (disturbance, words) in [
-        ("hmu:amplitude_n=0.1", &["`hmu`; did you mean `hum`?", "`backlash`"][..]),
+        ("hmu:amplitude_n=0.1", &["`hmu`; did you mean `hum`?", "`local_defect`"][..]),
         ("hum", &["hum", "`amplitude_n`"]),
         ("hum:amplitude=0.1", &["`amplitude`; did you mean `amplitude_n`?", "`frequency_hz`"]),
         ("hum:amplitude_n=-1", &["`amplitude_n`", "-1", "0 to 1000 N"]),

@@ -69,7 +69,7 @@ fn what_spoils_a_log_is_in_it_and_told() {
     let plain_error_n = error_after(&place);
     for spoilt in [
         ["--disturbance", "hum:amplitude_n=0.12,frequency_hz=50"],
-        ["--disturbance", "backlash:play_m=0.001"],
+        ["--disturbance", "step:shift_n=0.2,interval_s=2,length_s=1"],
         ["--sensor-wander-n", "0.02"],
         ["--reference-wander-n", "0.02"],
         ["--length-noise-m", "1e-5"],

@@ -9,13 +9,18 @@ use crate::effects::bearing_drag::{self, BearingDrag};
 use crate::effects::direction_asymmetry::{self, DirectionAsymmetry};
 use crate::effects::dwell_stiction::{self, DwellStiction};
 use crate::effects::friction_drift::{self, FrictionDrift};
+use crate::effects::friction_ripple;
+use crate::effects::friction_warmup::{self, FrictionWarmup};
 use crate::effects::load_nonlinearity::{self, LoadNonlinearity};
+use crate::effects::load_release::{self, LoadRelease};
 use crate::effects::presliding_shape::{self, PreslidingShape};
+use crate::effects::pulley_defect::{self, PulleyDefect};
 use crate::effects::pulley_inertia::{self, PulleyInertia};
 use crate::effects::stribeck::{self, Stribeck};
+use crate::effects::viscous_nonlinearity::{self, ViscousNonlinearity};
 use crate::effects::{Acting, UNKNOWN};
 use crate::pulley::sliding_friction;
-use crate::scalar::Scalar;
+use crate::scalar::{Mask, Scalar};
 use crate::signals::CableSignals;
 
 /// Effects that can take μ beyond what the sensor pulley bears.
@@ -27,11 +32,15 @@ pub struct Bearing<T: Scalar> {
     acting: Acting,
     /// μ at the present speed and time, 1.
     mu: T,
+    /// The same of the pulley that has one of its own.
+    defect_mu: T,
     greatest_mu: T,
     sigma_n_per_m: T,
     speed_m_per_s: T,
     /// What one pulley takes to be accelerated, N.
     accelerating_n: T,
+    /// What one pulley takes with the square of the speed, N.
+    quadratic_n: T,
 }
 
 impl<T: Scalar> Bearing<T> {
@@ -55,37 +64,59 @@ impl<T: Scalar> Bearing<T> {
             }
             accelerating_n = force_n.keep(signals.moves);
         }
-        let mut mu = model.mu;
+        let value = |place| cable.effect(place);
+        let defect_mu = if acting.has(pulley_defect::ACTS) { PulleyDefect::of(value).mu } else { T::splat(0.0) };
+        let mut mus = [model.mu, defect_mu];
+        let mut multiply = |factor: T| mus = mus.map(|mu| mu * factor);
         if acting.has(dwell_stiction::ACTS) {
             let dwell = DwellStiction::of(|place| cable.effect(place));
             let age = cable.memory(dwell_stiction::AGE);
             let (factor, next) = dwell.factor(age, signals.displacement_m, moment.step_s);
             cable.set_memory(dwell_stiction::AGE, next);
-            mu = mu * factor;
+            multiply(factor);
         }
         let value = |place| cable.effect(place);
         if acting.has(stribeck::ACTS) {
-            mu = mu * Stribeck::of(value).factor(signals.speed_m_per_s);
+            multiply(Stribeck::of(value).factor(signals.speed_m_per_s));
         }
         if acting.has(friction_drift::ACTS) {
-            mu = mu * FrictionDrift::of(value).factor(moment.time_s);
+            multiply(FrictionDrift::of(value).factor(moment.time_s));
         }
+        if acting.has(friction_warmup::ACTS) {
+            multiply(FrictionWarmup::of(value).factor(moment.time_s));
+        }
+        if acting.has(friction_ripple::ACTS) {
+            multiply(friction_ripple::factor(value, signals.length_m));
+        }
+        let [mu, defect_mu] = mus;
+        let quadratic_n = if acting.has(viscous_nonlinearity::ACTS) {
+            let pulleys = (0..cable.count()).fold(T::splat(0.0), |sum, place| sum + cable.present(place));
+            let all_n = ViscousNonlinearity::of(value).force_n(signals.speed_m_per_s);
+            all_n.scale(T::splat(1.0) / pulleys.max(T::splat(1.0)))
+        } else {
+            T::splat(0.0)
+        };
         Self {
             acting,
             mu,
+            defect_mu,
             greatest_mu: if acting.has(RAISES_MU) { cable.greatest_mu() } else { mu },
             sigma_n_per_m: model.sigma_n_per_m,
             speed_m_per_s: signals.speed_m_per_s,
             accelerating_n,
+            quadratic_n,
         }
     }
 
-    /// What a pulley adds to the tension without a presliding distance, N: viscous friction and inertia.
+    /// What a pulley adds to the tension without a presliding distance, N: what is viscous, and inertia.
     #[inline(always)]
     pub fn viscous_n(&self, place: usize, cable: &impl Cable<T>) -> T {
         let mut viscous_n = cable.viscous_n(place, self.speed_m_per_s);
         if self.acting.has(direction_asymmetry::ACTS) {
             viscous_n = viscous_n * asymmetry(cable).viscous_factor(self.speed_m_per_s.sign());
+        }
+        if self.acting.has(viscous_nonlinearity::ACTS) {
+            viscous_n = viscous_n + self.quadratic_n.scale(cable.present(place));
         }
         if self.acting.has(pulley_inertia::ACTS) {
             viscous_n = viscous_n + self.accelerating_n.scale(cable.present(place));
@@ -93,15 +124,19 @@ impl<T: Scalar> Bearing<T> {
         viscous_n
     }
 
-    /// μ of a pulley between two tensions, moving in a direction (−1, 0, +1), 1.
+    /// μ of the pulley at a place between two tensions, moving in a direction (−1, 0, +1), 1.
     #[inline(always)]
-    pub fn mu_at(&self, wrap_factor: T, (upstream_n, downstream_n): (T, T), direction: T, cable: &impl Cable<T>) -> T {
+    pub fn mu_at(&self, place: usize, (upstream_n, downstream_n): (T, T), direction: T, cable: &impl Cable<T>) -> T {
         let mut mu = self.mu;
+        if self.acting.has(pulley_defect::ACTS) {
+            let is_defect = PulleyDefect::of(|place| cable.effect(place)).is_at(cable.pulley_number(place));
+            mu = T::select(is_defect, self.defect_mu, mu);
+        }
         if self.acting.has(direction_asymmetry::ACTS) {
             mu = mu * asymmetry(cable).coulomb_factor(direction);
         }
         if self.acting.has(load_nonlinearity::ACTS) {
-            let normal_n = (upstream_n + downstream_n).scale(wrap_factor).scale(T::splat(0.5));
+            let normal_n = (upstream_n + downstream_n).scale(cable.wrap_factor(place)).scale(T::splat(0.5));
             mu = mu * LoadNonlinearity::of(|place| cable.effect(place)).factor(normal_n);
         }
         if self.acting.has(RAISES_MU) { mu.min(self.greatest_mu) } else { mu }
@@ -135,7 +170,7 @@ impl<T: Scalar> Bearing<T> {
         cable: &impl Cable<T>,
     ) -> T {
         let wrap_factor = cable.wrap_factor(place);
-        let mu = self.mu_at(wrap_factor, tensions, displacement_m.sign(), cable);
+        let mu = self.mu_at(place, tensions, displacement_m.sign(), cable);
         let mut sliding_n = sliding_friction(mu, wrap_factor, tensions.0, tensions.1);
         if self.drags() {
             sliding_n = sliding_n + Self::drag_n(place, cable);
@@ -143,9 +178,27 @@ impl<T: Scalar> Bearing<T> {
         self.preslide(stored_n, sliding_n, displacement_m, cable)
     }
 
+    /// The direction in which friction is asked for: that of the motion, and at rest, where a bearing gives back what it does not bear, that
+    /// of the friction stored.
+    #[inline(always)]
+    pub fn direction(&self, displacement_m: T, stored_n: T, cable: &impl Cable<T>) -> T {
+        let direction = displacement_m.sign();
+        if !self.acting.has(load_release::ACTS) {
+            return direction;
+        }
+        let zero = T::splat(0.0);
+        let releases = zero.lt(LoadRelease::of(|place| cable.effect(place)).ratio);
+        T::select(releases.and(displacement_m.eq(zero)), stored_n.sign(), direction)
+    }
+
     /// Friction stored after a displacement, N.
     #[inline(always)]
     pub fn preslide(&self, friction_n: T, sliding_n: T, displacement_m: T, cable: &impl Cable<T>) -> T {
+        let friction_n = if self.acting.has(load_release::ACTS) {
+            LoadRelease::of(|place| cable.effect(place)).held_n(friction_n, sliding_n)
+        } else {
+            friction_n
+        };
         if self.acting.has(presliding_shape::ACTS) {
             let shape = PreslidingShape::of(|place| cable.effect(place));
             shape.step(friction_n, sliding_n, self.sigma_n_per_m, displacement_m)

@@ -88,6 +88,8 @@ pub trait Cable<T: Scalar> {
     fn traction_ratio(&self, place: usize) -> T;
     /// 1 where there is a pulley, else 0.
     fn present(&self, place: usize) -> T;
+    /// Number of the pulley there, counted from 1 at the sensor; 0 where there is none.
+    fn pulley_number(&self, place: usize) -> T;
     /// How much of the cable's stretch lies between the winch and there, 0…1: `j/n` at pulley j of n.
     fn stretch_ratio(&self, place: usize) -> T;
     /// The greatest μ that the sensor pulley bears, see [`CableParams`].
@@ -136,6 +138,10 @@ impl<T: Scalar, C: Cable<T>> Cable<T> for Looked<'_, C> {
     #[inline(always)]
     fn present(&self, place: usize) -> T {
         self.0.present(place)
+    }
+    #[inline(always)]
+    fn pulley_number(&self, place: usize) -> T {
+        self.0.pulley_number(place)
     }
     #[inline(always)]
     fn stretch_ratio(&self, place: usize) -> T {

@@ -8,12 +8,17 @@
 use crate::bearing::Bearing;
 use crate::cable::{Cable, CableModel, Features, Looked, Moment};
 use crate::chain::Chain;
-use crate::effects::Acting;
 use crate::effects::cable_elasticity::{self, CableElasticity, Stretching};
-use crate::effects::pulley_eccentricity::{self, PulleyEccentricity};
+use crate::effects::gear_backlash::{self, GearBacklash};
+use crate::effects::pulley_eccentricity;
 use crate::effects::sensor_drift::{self, SensorDrift};
 use crate::effects::sensor_gain::{self, SensorGain};
+use crate::effects::sensor_lag::{self, SensorLag};
+use crate::effects::sensor_nonlinearity::{self, SensorNonlinearity};
 use crate::effects::sensor_offset::{self, SensorOffset};
+use crate::effects::sensor_warmup::{self, SensorWarmup};
+use crate::effects::winch_ripple;
+use crate::effects::{Acting, UNKNOWN};
 use crate::scalar::{Mask, Scalar};
 use crate::signals::CableSignals;
 
@@ -31,8 +36,8 @@ pub struct CableForces<T: Scalar> {
     pub tension_n: T,
     /// Friction stored: the sum of the pulleys' magnitudes, with `lumped` that of the cable, N.
     pub stored_n: T,
-    /// By how much the cable has stretched in this cycle, m.
-    pub stretch_m: T,
+    /// How far the contacts have moved at least, m.
+    pub way_m: T,
     /// The cable carries no tension at the platform, or none at all.
     pub slack: T::Mask,
     /// Slip on a pulley.
@@ -59,12 +64,13 @@ pub fn cable_cycle<T: Scalar>(
     let acting = features.acting;
     let shown_n = signals.sensor_force_n.scale(model.frictionless_gain);
     let (sensor_force_n, frictionless_n) = if acting.has(SENSOR) {
-        let sensor_force_n = corrected_sensor(acting, signals.sensor_force_n, moment, cable);
+        let sensor_force_n = corrected_sensor(acting, (signals, moment), model.frictionless_gain, cable);
         (sensor_force_n, sensor_force_n.scale(model.frictionless_gain))
     } else {
         (signals.sensor_force_n, shown_n)
     };
     let no_tension = sensor_force_n.le(zero);
+    let signals = &if acting.has(gear_backlash::ACTS) { behind_play(signals, cable) } else { *signals };
     let bearing = Bearing::new(model, acting, signals, moment, cable);
     let stretch_m = stretch(acting, frictionless_n + cable.held_friction_n(), (signals, moment), cable);
     let displacement_m = signals.displacement_m;
@@ -79,7 +85,7 @@ pub fn cable_cycle<T: Scalar>(
         slip = leads.and(slips).or(leads.not().and(slip));
     }
     if acting.has(pulley_eccentricity::ACTS) {
-        chain_n = chain_n * PulleyEccentricity::of(|place| cable.effect(place)).factor(signals.length_m);
+        chain_n = chain_n * pulley_eccentricity::factor(|place| cable.effect(place), signals.length_m);
     }
     let slack = no_tension.or(chain_n.lt(zero));
     // A cable cannot push, whatever an untared sensor shows of a limp one.
@@ -102,14 +108,16 @@ pub fn cable_cycle<T: Scalar>(
     CableForces {
         platform_force_n,
         friction_n: if acting.has(SENSOR) {
-            (platform_force_n - model.offset_n - shown_n).keep(no_tension.not())
+            let with_sensor_n = (platform_force_n - model.offset_n - shown_n).keep(no_tension.not());
+            T::select(shown_n.eq(frictionless_n), friction_n, with_sensor_n)
         } else {
             friction_n
         },
         frictionless_n: shown_n,
         tension_n: frictionless_n,
         stored_n,
-        stretch_m,
+        // Where the stretch goes against the winch, a contact may have moved by so little.
+        way_m: displacement_m.abs() - stretch_m.abs(),
         slack,
         slip: slip.and(slack.not()).and(hold.not()),
     }
@@ -147,23 +155,71 @@ fn over_pulleys<T: Scalar>(chain: &Chain<'_, T>, no_tension: T::Mask, cable: &mu
 }
 
 /// Effects of the force sensor.
-const SENSOR: Acting = sensor_offset::ACTS.and(sensor_drift::ACTS).and(sensor_gain::ACTS);
+const SENSOR: Acting = sensor_offset::ACTS
+    .and(sensor_drift::ACTS)
+    .and(sensor_gain::ACTS)
+    .and(sensor_lag::ACTS)
+    .and(sensor_warmup::ACTS)
+    .and(sensor_nonlinearity::ACTS)
+    .and(winch_ripple::ACTS);
 
-/// The sensor force there is for the one shown, N: `(F_shown − offset − rate·t)/gain`.
+/// The sensor force there is for the one shown, N: the lag is undone first, then what is added, then the gain and the bend of the curve.
 #[inline(always)]
-fn corrected_sensor<T: Scalar>(acting: Acting, shown_n: T, moment: &Moment<T>, cable: &impl Cable<T>) -> T {
+fn corrected_sensor<T: Scalar>(
+    acting: Acting,
+    (signals, moment): (&CableSignals<T>, &Moment<T>),
+    frictionless_gain: T,
+    cable: &mut impl Cable<T>,
+) -> T {
+    let mut force_n = signals.sensor_force_n;
+    if acting.has(sensor_lag::ACTS) {
+        let memory = sensor_lag::FORCES.map(|place| cable.memory(place));
+        let (undone_n, memory) = SensorLag::of(|place| cable.effect(place)).undo(force_n, memory, moment.step_s);
+        // After a fault it begins anew: no bump.
+        for (place, next_n) in sensor_lag::FORCES.into_iter().zip(memory) {
+            cable.set_memory(place, T::select(signals.sensor_fault, T::splat(UNKNOWN), next_n));
+        }
+        force_n = undone_n;
+    }
     let value = |place| cable.effect(place);
-    let mut force_n = shown_n;
     if acting.has(sensor_offset::ACTS) {
         force_n = SensorOffset::of(value).undo(force_n);
     }
     if acting.has(sensor_drift::ACTS) {
         force_n = SensorDrift::of(value).undo(force_n, moment.time_s);
     }
+    if acting.has(sensor_warmup::ACTS) {
+        force_n = SensorWarmup::of(value).undo(force_n, moment.time_s);
+    }
+    if acting.has(winch_ripple::ACTS) {
+        force_n = winch_ripple::undo(value, force_n, signals.length_m);
+    }
     if acting.has(sensor_gain::ACTS) {
         force_n = SensorGain::of(value).undo(force_n);
     }
+    if acting.has(sensor_nonlinearity::ACTS) {
+        force_n = SensorNonlinearity::of(value).undo(force_n, frictionless_gain);
+    }
     force_n
+}
+
+/// The motion of the cable behind the play of its gear.
+#[inline(always)]
+fn behind_play<T: Scalar>(signals: &CableSignals<T>, cable: &mut impl Cable<T>) -> CableSignals<T> {
+    let zero = T::splat(0.0);
+    let gear = GearBacklash::of(|place| cable.effect(place));
+    let [displacement_m, in_play_m] = gear.moved_m(cable.memory(gear_backlash::IN_PLAY), signals.displacement_m);
+    cable.set_memory(gear_backlash::IN_PLAY, in_play_m);
+    let [lead_m, _] = gear.moved_m(in_play_m, signals.lead_m);
+    let has_play = zero.lt(gear.play_m);
+    let driven = zero.lt(displacement_m.sign() * signals.speed_m_per_s);
+    CableSignals {
+        displacement_m: T::select(has_play, displacement_m, signals.displacement_m),
+        lead_m: T::select(has_play, lead_m, signals.lead_m),
+        speed_m_per_s: signals.speed_m_per_s.keep(driven.or(has_play.not())),
+        length_m: T::select(has_play, signals.length_m - in_play_m, signals.length_m),
+        ..*signals
+    }
 }
 
 /// By how much the whole cable has stretched in this cycle, m; a sensor that tells nothing tells of no stretch.

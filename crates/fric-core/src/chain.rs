@@ -102,7 +102,7 @@ impl<T: Scalar> Chain<'_, T> {
         let sensor_force_n = *sensor_force_n;
         let (zero, one, two) = (T::splat(0.0), T::splat(1.0), T::splat(2.0));
         let displacement_m = self.mean_displacement(cable);
-        let direction = displacement_m.sign();
+        let direction = bearing.direction(displacement_m, cable.lumped_friction_n(), cable);
         let frictionless_n = sensor_force_n.scale(model.frictionless_gain);
         let mut slip = T::Mask::NONE;
         // Coulomb and viscous part of the tension over a common divisor: one division for the whole cable. Only what depends on
@@ -120,7 +120,7 @@ impl<T: Scalar> Chain<'_, T> {
             let mu = if place == 0 {
                 self.mu_of_sensor_pulley(wrap_factor, direction, (frictionless_n, resisting_n), cable)
             } else {
-                self.mu_of_guide_pulley(wrap_factor, direction, (before_n, resisting_n), cable)
+                self.mu_of_guide_pulley(place, direction, (before_n, resisting_n), cable)
             };
             let coupling = mu.scale(direction).scale(wrap_factor);
             let (plus, minus) = (two + coupling, two - coupling);
@@ -180,7 +180,7 @@ impl<T: Scalar> Chain<'_, T> {
         (frictionless_n, resisting_n): (T, T),
         cable: &impl Cable<T>,
     ) -> T {
-        let mu_at = |tensions| self.bearing.mu_at(wrap_factor, tensions, direction, cable);
+        let mu_at = |tensions| self.bearing.mu_at(0, tensions, direction, cable);
         let mut mu = mu_at((frictionless_n, frictionless_n));
         if self.bearing.depends_on_load() {
             for _ in 0..LOAD_STEPS {
@@ -197,14 +197,15 @@ impl<T: Scalar> Chain<'_, T> {
     #[inline(always)]
     fn mu_of_guide_pulley(
         &self,
-        wrap_factor: T,
+        place: usize,
         direction: T,
         (before_n, resisting_n): (T, T),
         cable: &impl Cable<T>,
     ) -> T {
-        let mu_at = |tensions| self.bearing.mu_at(wrap_factor, tensions, direction, cable);
+        let mu_at = |tensions| self.bearing.mu_at(place, tensions, direction, cable);
         let mut mu = mu_at((before_n, before_n));
         if self.bearing.depends_on_load() {
+            let wrap_factor = cable.wrap_factor(place);
             for _ in 0..LOAD_STEPS {
                 let (gain, viscous_gain) = pulley::sliding_gains(direction, mu, wrap_factor);
                 mu = mu_at((before_n, before_n * gain + resisting_n * viscous_gain));

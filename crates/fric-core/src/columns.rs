@@ -31,6 +31,7 @@ pub struct ParamColumns<const CABLES: usize> {
     viscous_n_s_per_m: [[f64; CABLES]; PLACES],
     traction_ratio: [[f64; CABLES]; PLACES],
     present: [[f64; CABLES]; PLACES],
+    pulley_number: [[f64; CABLES]; PLACES],
     stretch_ratio: [[f64; CABLES]; PLACES],
     /// 1 where the pulley at the last place follows the pose.
     follows_pose: [f64; CABLES],
@@ -41,6 +42,8 @@ pub struct ParamColumns<const CABLES: usize> {
     /// [`Trust`], with what is tolerated of the force in what the load bears.
     pub sensor_jump_n: [f64; CABLES],
     pub tolerated_sensor_n: [f64; CABLES],
+    pub tolerated_ratio: [f64; CABLES],
+    pub recovery_cycles: [f64; CABLES],
     /// A change of the sensor force that is no jump whatever the force, N.
     pub calm_change_n: [f64; CABLES],
     pub bears_ratio: [f64; CABLES],
@@ -72,6 +75,7 @@ impl<const CABLES: usize> ParamColumns<CABLES> {
         viscous_n_s_per_m: [[0.0; CABLES]; PLACES],
         traction_ratio: [[NO_SLIP; CABLES]; PLACES],
         present: [[0.0; CABLES]; PLACES],
+        pulley_number: [[0.0; CABLES]; PLACES],
         stretch_ratio: [[0.0; CABLES]; PLACES],
         follows_pose: [0.0; CABLES],
         traction_mu: [0.0; CABLES],
@@ -80,6 +84,8 @@ impl<const CABLES: usize> ParamColumns<CABLES> {
         greatest_speed_m_per_s: [f64::MAX; CABLES],
         sensor_jump_n: [Trust::NONE.sensor_jump_n; CABLES],
         tolerated_sensor_n: [Trust::NONE.tolerated_sensor_n; CABLES],
+        tolerated_ratio: [Trust::NONE.tolerated_ratio; CABLES],
+        recovery_cycles: [Trust::NONE.recovery_cycles; CABLES],
         calm_change_n: [GREATEST_CALM_N; CABLES],
         bears_ratio: [Trust::NONE.bears_ratio; CABLES],
         bears_per_wrap: [Trust::NONE.bears_per_wrap; CABLES],
@@ -114,9 +120,12 @@ impl<const CABLES: usize> ParamColumns<CABLES> {
         put(&mut self.least_force_n, cable, params.validated.force_n[0]);
         put(&mut self.greatest_force_n, cable, params.validated.force_n[1]);
         put(&mut self.greatest_speed_m_per_s, cable, params.validated.speed_m_per_s);
-        let Trust { sensor_jump_n, tolerated_sensor_n, bears_ratio, bears_per_wrap, bears_n, platform_share } = *trust;
+        let Trust { sensor_jump_n, tolerated_sensor_n, tolerated_ratio, recovery_cycles, .. } = *trust;
+        let Trust { bears_ratio, bears_per_wrap, bears_n, platform_share, .. } = *trust;
         put(&mut self.sensor_jump_n, cable, sensor_jump_n);
         put(&mut self.tolerated_sensor_n, cable, tolerated_sensor_n);
+        put(&mut self.tolerated_ratio, cable, tolerated_ratio);
+        put(&mut self.recovery_cycles, cable, recovery_cycles);
         put(&mut self.calm_change_n, cable, sensor_jump_n.max(tolerated_sensor_n).min(GREATEST_CALM_N));
         put(&mut self.bears_ratio, cable, bears_ratio + BEYOND_RATIO / platform_share);
         put(&mut self.bears_per_wrap, cable, bears_per_wrap);
@@ -132,6 +141,7 @@ impl<const CABLES: usize> ParamColumns<CABLES> {
             (&mut self.wrap_factor, places.wrap_factor),
             (&mut self.traction_ratio, places.traction_ratio),
             (&mut self.present, places.has_pulley),
+            (&mut self.pulley_number, places.number),
             (&mut self.stretch_ratio, places.stretch_ratio),
         ];
         for (columns, values) in columns {
@@ -387,6 +397,10 @@ impl<T: Block, const CABLES: usize> Cable<T> for BlockOfCables<'_, CABLES> {
     #[inline(always)]
     fn present(&self, place: usize) -> T {
         self.column(&self.params.present, place)
+    }
+    #[inline(always)]
+    fn pulley_number(&self, place: usize) -> T {
+        self.column(&self.params.pulley_number, place)
     }
     #[inline(always)]
     fn stretch_ratio(&self, place: usize) -> T {

@@ -18,6 +18,7 @@ use crate::effects::friction_drift::{self, FrictionDrift};
 use crate::effects::load_nonlinearity::{self, LoadNonlinearity};
 use crate::effects::presliding_shape::{self, PreslidingShape};
 use crate::effects::time_delay::{self, Delay, DelayLine, Shifted};
+use crate::effects::viscous_nonlinearity::{self, ViscousNonlinearity};
 use crate::lanes::{Block, CycleLanes, LANES, Lanes};
 use crate::parameters::ParameterRow;
 use crate::places::{NO_SLIP, PLACES, Places};
@@ -141,7 +142,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
             place_count = place_count.max(Places::needed(cable));
         }
         for (place, cable) in robot.cables.iter().enumerate() {
-            let trust = Trust::new(cable, robot.monitor.sensor_jump_n, robot.monitor.length_jump_m);
+            let trust = Trust::new(cable, robot.monitor.sensor_jump_n, robot.monitor.length_jump_m, robot.cycle_s);
             params.set(place, cable, &trust, robot.cycle_s, place_count);
         }
         Ok(Self {
@@ -423,9 +424,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
         let wrap_factor = T::load(&self.state.columns.pose_wrap_factor, block);
         let settled_n = (bears_per_wrap * wrap_factor + bears_ratio) * forces.tension_n + bears_n;
         let [sensor_jump, unsettled] = if reviewed.is_some() || T::bits(settled_n.lt(forces.stored_n)) != 0 {
-            // Where the stretch goes against the winch, a contact may have moved by so little.
-            let way_m = signals.displacement_m.abs() - forces.stretch_m.abs();
-            let numbers = [way_m, forces.tension_n, forces.stored_n, forces.platform_force_n];
+            let numbers = [forces.way_m, forces.tension_n, forces.stored_n, forces.platform_force_n];
             self.review_friction(stepped.first, input, reviewed.unwrap_or(0), numbers)
         } else {
             [0; 2]
@@ -496,9 +495,11 @@ impl<const CABLES: usize> Compensator<CABLES> {
             elapsed_cycles: T::splat(bounded_elapsed(input.elapsed_cycles)),
             longest_cycles: T::splat(LONGEST_LIE_S / self.cycle_s),
         };
-        let limits_n =
-            [&self.params.sensor_jump_n, &self.params.tolerated_sensor_n].map(|column| T::load(column, block));
-        let [jump, goes_on] = review_sensor(limits_n, &shown, &mut doubts);
+        let Self { params, .. } = &*self;
+        let limits =
+            [&params.sensor_jump_n, &params.tolerated_sensor_n, &params.tolerated_ratio, &params.recovery_cycles];
+        let limits = limits.map(|column| T::load(column, block));
+        let [jump, goes_on] = review_sensor(limits, &shown, &mut doubts);
         self.state.columns.set_doubts(block, &doubts);
         let present = self.present_bits::<T>(block);
         self.state.doubtful |= T::bits(goes_on) & present != 0;
@@ -548,6 +549,9 @@ impl<const CABLES: usize> Compensator<CABLES> {
             (0..self.place_count).fold(zero, |sum, place| sum + Cable::<T>::viscous_n(&cable, place, speed_m_per_s));
         if acting.has(direction_asymmetry::ACTS) {
             viscous_n = viscous_n * (one + DirectionAsymmetry::of(value).viscous_ratio.abs());
+        }
+        if acting.has(viscous_nonlinearity::ACTS) {
+            viscous_n = viscous_n + ViscousNonlinearity::of(value).force_n(speed_m_per_s);
         }
         let tolerated = [BEYOND_RATIO, TOLERATED_N].map(|tolerated| T::splat(tolerated) / platform_share);
         let ratio = (bears_ratio - tolerated[0] + bears_per_wrap * wrap_factor) * raised;

@@ -13,8 +13,8 @@
 //! | `E` | `left_n` | N | how far the force at the platform can be off through what is stored |
 //! | `f_c` | | N | `B`, and what the stored friction itself adds to the load |
 //!
-//! - **Jump**: `|ΔF_s| > max(J, 5 % of the smaller force + 0.1 N·(1 − c))`, `n` times as much where the sensor has not changed for `n`
-//!   cycles. It stands until the jumps since have cancelled or led back to where the force was, each to within `J`, or for
+//! - **Jump**: `|ΔF_s| > max(J, 5 % of the smaller force + 0.1 N·(1 − c))`, of a sensor that follows late, or whose curve is bent, as much less as it shows of a change in a cycle, `n` times as much where the sensor has not changed for `n`
+//!   cycles. It stands until the jumps since have cancelled or led back to where the force was, each to within `J`, with a sensor whose lag is undone until that is forgotten, or for
 //!   [`LONGEST_LIE_S`] after the last of them: a level that stays longer is taken for the load. A jump that comes back by a part stands
 //!   for that time.
 //! - **Unsettled**: `S − B` beyond 25 % of `T` + 0.1 N at the platform, or `E` beyond half of 5 % of the force less `E` + 0.1 N. While a jump stands `E = S + max(B, S_0)`,
@@ -23,8 +23,10 @@
 //!   the same load come nearer, and with another exponent of the law by that law.
 
 use crate::dahl::dahl_step;
-use crate::effects::bearing_drag;
 use crate::effects::presliding_shape::PreslidingShape;
+use crate::effects::sensor_lag::SensorLag;
+use crate::effects::sensor_nonlinearity::SensorNonlinearity;
+use crate::effects::{bearing_drag, pulley_defect};
 use crate::parameters::GREATEST_MU;
 use crate::pulley::wrap_factor;
 use crate::robot::{CableParams, Presliding, Wrap};
@@ -62,6 +64,10 @@ pub struct Trust {
     pub sensor_jump_n: f64,
     /// `0.1 N·(1 − c)`: what of a sensor's change is tolerated at the platform, N.
     pub tolerated_sensor_n: f64,
+    /// 5 %: the same as a share of the force, 1.
+    pub tolerated_ratio: f64,
+    /// For how long a jump stands that has come back: until the cable has forgotten what its sensor showed, cycles.
+    pub recovery_cycles: f64,
     /// `B/T` of the pulleys whose wrap is fixed, 1.
     pub bears_ratio: f64,
     /// `B/T` of a pulley that follows the pose, for each unit of its wrap factor, 1.
@@ -77,6 +83,8 @@ impl Trust {
     pub const NONE: Self = Self {
         sensor_jump_n: NO_JUMP_N,
         tolerated_sensor_n: 0.0,
+        tolerated_ratio: TOLERATED_RATIO,
+        recovery_cycles: 0.0,
         bears_ratio: UNBOUNDED_RATIO,
         bears_per_wrap: 0.0,
         bears_n: 0.0,
@@ -84,17 +92,24 @@ impl Trust {
     };
 
     /// From a cable's parameters: `J = σ·length_jump_m/20` unless the robot file states it; without σ nothing is a jump.
-    pub fn new(params: &CableParams, sensor_jump_n: Option<f64>, length_jump_m: f64) -> Self {
+    pub fn new(params: &CableParams, sensor_jump_n: Option<f64>, length_jump_m: f64, cycle_s: f64) -> Self {
         let values = params.values();
         let by_stiffness_n = params.friction.sigma_n_per_m.map(|sigma| STRETCHED_RATIO * length_jump_m * sigma);
         let gain = params.frictionless_gain();
 
         let mu = params.raised_mu().unwrap_or(GREATEST_MU);
+        let raised = if params.friction.mu > 0.0 { mu / params.friction.mu } else { 1.0 };
+        let defect_mu = (values[pulley_defect::MU] * raised).min(params.greatest_mu());
         let is_lumped = params.presliding == Presliding::Lumped;
         let cos = params.sensor_wrap_rad.map_or(0.0, libm::cos);
+        // What the sensor shows of a change in a cycle.
+        let lag = SensorLag::of(|place| values[place]);
+        let shown = lag.shown_ratio(cycle_s) * SensorNonlinearity::of(|place| values[place]).shown_ratio();
         let mut trust = Self {
-            sensor_jump_n: sensor_jump_n.or(by_stiffness_n).unwrap_or(NO_JUMP_N),
-            tolerated_sensor_n: TOLERATED_N / gain,
+            sensor_jump_n: sensor_jump_n.or(by_stiffness_n.map(|force_n| shown * force_n)).unwrap_or(NO_JUMP_N),
+            tolerated_sensor_n: shown * TOLERATED_N / gain,
+            tolerated_ratio: shown * TOLERATED_RATIO,
+            recovery_cycles: lag.recovery_cycles(cycle_s),
             bears_ratio: 0.0,
             bears_per_wrap: 0.0,
             bears_n: 0.0,
@@ -109,6 +124,7 @@ impl Trust {
                 trust.platform_share = share.max(1.0);
             }
             let counts = if is_lumped { share } else { 1.0 };
+            let mu = if params.defect_pulley() == Some(place) { mu.max(defect_mu) } else { mu };
             match *wrap {
                 Wrap::Fixed { wrap_rad } => {
                     let half = 0.5 * mu * wrap_factor(wrap_rad);
@@ -194,23 +210,24 @@ pub struct Stored<T: Scalar> {
 
 /// The greatest change of the sensor force that is no jump, N.
 #[inline(always)]
-pub fn greatest_change_n<T: Scalar>([force_n, last_n]: [T; 2], sensor_jump_n: T, tolerated_sensor_n: T) -> T {
-    (force_n.min(last_n) * T::splat(TOLERATED_RATIO) + tolerated_sensor_n).max(sensor_jump_n)
+fn greatest_change_n<T: Scalar>([force_n, last_n]: [T; 2], [jump_n, tolerated_n, tolerated_ratio]: [T; 3]) -> T {
+    (force_n.min(last_n) * tolerated_ratio + tolerated_n).max(jump_n)
 }
 
 /// Whether a jump stands, and whether the next cycle has to be reviewed too.
 ///
-/// A cable of which nothing is doubtful stays as it is, to the bit, whoever asks.
+/// The limits are the first four numbers of [`Trust`]. A cable of which nothing is doubtful stays as it is,
+/// to the bit, whoever asks.
 #[inline(always)]
 pub fn review_sensor<T: Scalar>(
-    [sensor_jump_n, tolerated_sensor_n]: [T; 2],
+    [jump_n, tolerated_n, tolerated_ratio, recovery_cycles]: [T; 4],
     shown: &Shown<T>,
     doubts: &mut Doubts<T>,
 ) -> [T::Mask; 2] {
     let zero = T::splat(0.0);
     let stood = zero.lt(doubts.jump_cycles);
     let [force_n, last_n] = shown.sensor_force_n;
-    let jump_n = greatest_change_n(shown.sensor_force_n, sensor_jump_n, tolerated_sensor_n);
+    let jump_n = greatest_change_n(shown.sensor_force_n, [jump_n, tolerated_n, tolerated_ratio]);
     // A lie that repeats itself ends in one cycle, however long it has.
     let cycles = shown.elapsed_cycles + (doubts.unseen_cycles + shown.unchanged_cycles).keep(stood.not());
     let change_n = force_n - last_n;
@@ -220,7 +237,7 @@ pub fn review_sensor<T: Scalar>(
     let from_n = T::select(starts, last_n, doubts.jump_from_n);
     let near = jumped_n.abs().le(jump_n).or((force_n - from_n).abs().le(jump_n));
     let back = jumps.and(stood).and(near);
-    let left_cycles = (doubts.jump_cycles - shown.elapsed_cycles).max(zero).keep(back.not());
+    let left_cycles = T::select(back, recovery_cycles, (doubts.jump_cycles - shown.elapsed_cycles).max(zero));
     // What comes back by a part hides which part: it then stands for its time.
     let part = jumps.and(stood).and(near.not()).and((change_n.sign() * doubts.jumped_n.sign()).lt(zero));
     let (from_n, jumped_n) =

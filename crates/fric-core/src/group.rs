@@ -7,6 +7,7 @@
 use crate::cable::{Cable, CableModel, Features, Moment};
 use crate::cable_cycle::{CableForces, cable_cycle};
 use crate::effects::cable_elasticity::COMPLIANCE;
+use crate::effects::gear_backlash::PLAY;
 use crate::effects::time_delay::{self, About, DELAY, DelayLine, Shifted, Taps};
 use crate::effects::{MEMORY, UNKNOWN};
 use crate::lanes::LANES;
@@ -61,10 +62,11 @@ pub struct CableGroup<T: Scalar> {
     state: State<T>,
 }
 
-/// What stands for 0 in a delay and in a compliance that vary. At 0 a cable at rest does not move, so that it cannot be
+/// What stands for 0 in a delay, in a compliance and in a play that vary. At 0 a cable at rest does not move, so that it cannot be
 /// told which way a change of these would move it; this far from it, it can, and no force changes by anything that counts.
 const LEAST_DELAY_S: f64 = 1e-12;
 const LEAST_COMPLIANCE_M_PER_N: f64 = 1e-15;
+const LEAST_PLAY_M: f64 = 1e-15;
 
 /// What the delay of set points remembers, lane by lane.
 #[derive(Clone, Debug)]
@@ -82,6 +84,7 @@ struct State<T: Scalar> {
     values: Values<T>,
     wrap_factor: [T; PLACES],
     has_pulley: [T; PLACES],
+    pulley_number: [T; PLACES],
     stretch_ratio: [T; PLACES],
     greatest_mu: T,
     traction_ratio: [T; PLACES],
@@ -135,7 +138,7 @@ impl<T: Scalar> CableGroup<T> {
         let features = cables.iter().fold(Features::default(), |features, params| features.with(params));
         let features = features.and_acting(is_active);
         let mut values = *values;
-        for (place, least) in [(DELAY, LEAST_DELAY_S), (COMPLIANCE, LEAST_COMPLIANCE_M_PER_N)] {
+        for (place, least) in [(DELAY, LEAST_DELAY_S), (COMPLIANCE, LEAST_COMPLIANCE_M_PER_N), (PLAY, LEAST_PLAY_M)] {
             if varies(place) {
                 values[place] = values[place] + T::splat(least).keep(values[place].eq(zero));
             }
@@ -160,6 +163,7 @@ impl<T: Scalar> CableGroup<T> {
                 values,
                 wrap_factor: at(|places| &places.wrap_factor),
                 has_pulley: at(|places| &places.has_pulley),
+                pulley_number: at(|places| &places.number),
                 stretch_ratio: at(|places| &places.stretch_ratio),
                 greatest_mu: T::from_lanes(|lane| of_lane(lane).greatest_mu()),
                 traction_ratio: at(|places| &places.traction_ratio),
@@ -305,6 +309,10 @@ impl<T: Scalar> Cable<T> for State<T> {
     #[inline(always)]
     fn present(&self, place: usize) -> T {
         self.has_pulley.get(place).copied().unwrap_or(T::splat(0.0))
+    }
+    #[inline(always)]
+    fn pulley_number(&self, place: usize) -> T {
+        self.pulley_number.get(place).copied().unwrap_or(T::splat(0.0))
     }
     #[inline(always)]
     fn stretch_ratio(&self, place: usize) -> T {

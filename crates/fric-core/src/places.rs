@@ -18,6 +18,8 @@ pub const START_WRAP_FACTOR: f64 = core::f64::consts::SQRT_2;
 pub struct Places {
     /// 1 where a pulley stands, else 0.
     pub has_pulley: [f64; PLACES],
+    /// Number of the pulley, counted from 1 at the sensor; 0 where none stands.
+    pub number: [f64; PLACES],
     /// `j/n` at pulley j of n, from the winch: how much of the cable's stretch lies before it.
     pub stretch_ratio: [f64; PLACES],
     /// `2 sin(α/2)` of fixed wraps.
@@ -38,6 +40,7 @@ impl Places {
     pub fn new(params: &CableParams, place_count: usize) -> Self {
         let mut places = Self {
             has_pulley: [0.0; PLACES],
+            number: [0.0; PLACES],
             stretch_ratio: [0.0; PLACES],
             wrap_factor: [0.0; PLACES],
             traction_ratio: [NO_SLIP; PLACES],
@@ -54,7 +57,9 @@ impl Places {
             };
             at(&mut places.has_pulley, 1.0);
             #[expect(clippy::cast_precision_loss, reason = "at most MAX_PULLEYS")]
-            at(&mut places.stretch_ratio, (pulley + 1) as f64 / params.pulley_count as f64);
+            let [number, count] = [pulley + 1, params.pulley_count].map(|count| count as f64);
+            at(&mut places.number, number);
+            at(&mut places.stretch_ratio, number / count);
             if let Wrap::Fixed { wrap_rad } = *wrap {
                 at(&mut places.wrap_factor, wrap_factor(wrap_rad));
                 if let Some(traction_mu) = params.traction_mu {

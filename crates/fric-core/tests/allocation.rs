@@ -34,9 +34,10 @@ fn everything_on() -> Compensator<8> {
                 ..CableOptions::new(&PULLEYS)
             };
             for effect in Effect::CATALOGUE {
-                let parameter = &effect.row().parameters[0];
-                let value = if parameter.key == "delay_s" { 0.0105 } else { parameter.neutral + 1e-3 };
-                options.effects.set(*effect, parameter.key, value).unwrap();
+                for (parameter, example) in effect.row().parameters.iter().zip(effect.row().example) {
+                    let value = if parameter.key == "delay_s" { 0.0105 } else { *example };
+                    options.effects.set(*effect, parameter.key, value).unwrap();
+                }
             }
             CableParams::new(&options).unwrap()
         })

@@ -396,7 +396,8 @@ fn neutral_values_change_no_bit_beside_cables_that_have_the_effect() {
             let (mut without, mut beside) =
                 (compensator::<4>(&plain, UNMONITORED), compensator::<4>(&some, UNMONITORED));
             let mut differs = false;
-            for cycle in 0..400 {
+            // Long enough for the load to fall, too.
+            for cycle in 0..2500 {
                 let mut input = smooth_input::<4>(cycle);
                 if cycle % 97 == 13 {
                     input.cables[0].sensor_force_n = f64::NAN;

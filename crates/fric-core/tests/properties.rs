@@ -64,6 +64,8 @@ fn demanding(random: &mut Random, pulleys: &'static [PulleyOptions]) -> CableOpt
 /// A parameter of an effect, at an end of its range or within, that a cable with any μ up to 0.3 can have.
 fn any_in_range(random: &mut Random, row: &ParameterRow) -> f64 {
     let (least, greatest) = match row.key {
+        // A number, which the first pulley has.
+        "pulley" => return 1.0,
         "ratio" => (row.min, 1.0),
         "coulomb_ratio" => (-0.45, 0.45),
         // In a cycle of a millisecond.

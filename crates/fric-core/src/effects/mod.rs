@@ -5,6 +5,7 @@
 //! robot file, set-up, the change of parameters, the identification, the simulation, the command line, the documentation.
 
 pub mod friction;
+pub mod ripple;
 
 use core::ops::Range;
 
@@ -91,6 +92,16 @@ macro_rules! catalogue {
             PulleyEccentricity pulley_eccentricity,
             CableElasticity cable_elasticity,
             DwellStiction dwell_stiction,
+            ViscousNonlinearity viscous_nonlinearity,
+            FrictionRipple friction_ripple,
+            WinchRipple winch_ripple,
+            FrictionWarmup friction_warmup,
+            PulleyDefect pulley_defect,
+            LoadRelease load_release,
+            GearBacklash gear_backlash,
+            SensorNonlinearity sensor_nonlinearity,
+            SensorWarmup sensor_warmup,
+            SensorLag sensor_lag,
         }
     };
 }
@@ -218,6 +229,12 @@ const UNTIL_ROW: ParameterRow = ParameterRow {
 #[inline(always)]
 fn drifting_s<T: Scalar>(time_s: T, until_s: T) -> T {
     T::select(T::splat(0.0).lt(until_s), time_s.min(until_s), time_s)
+}
+
+/// How much of a change towards a final value has come by a time, 0…1.
+#[inline(always)]
+fn warmed<T: Scalar>(time_s: T, time_constant_s: T) -> T {
+    T::splat(1.0) - (-(time_s / time_constant_s)).exp_negative()
 }
 
 /// Each parameter of each effect with its effect, in the order of [`EffectParams::values`].

@@ -7,6 +7,7 @@ use nalgebra::Vector3;
 
 use super::error::{ParamError, ParamProblem, check};
 use super::known_reference::KnownReference;
+use crate::effects::pulley_defect::{self, PulleyDefect};
 use crate::effects::time_delay::delay_range_s;
 use crate::effects::{Effect, EffectParams, OnMu, time_delay};
 use crate::parameters::{FRICTION, GREATEST_MU};
@@ -253,9 +254,28 @@ impl CableParams {
         for (row, value) in FRICTION.iter().zip(stated) {
             value.map(|value| check(row.key, value, row.min, row.max)).transpose()?;
         }
+        self.check_defect()?;
         let raised_mu = self.raised_mu()?;
         self.sensor_wrap_rad
             .map_or(Ok(()), |wrap_rad| check_sensor_wrap(wrap_rad, raised_mu).map_err(|error| error.at_pulley(0)))
+    }
+
+    /// Whether the pulley with a friction of its own, if any, is one of the cable's.
+    fn check_defect(&self) -> Result<(), ParamError> {
+        let values = self.values();
+        let defect = PulleyDefect::of(|place| values[place]);
+        if self.defect_pulley().is_some() || defect.pulley.abs() <= 0.0 && defect.mu.abs() <= 0.0 {
+            return Ok(());
+        }
+        let problem = "is the number of none of the cable's pulleys; count them from 1 at the sensor";
+        Err(ParamError::conflict("pulley", problem).of_effect(Effect::PulleyDefect))
+    }
+
+    /// The pulley with a friction of its own, counted from 0.
+    pub(crate) fn defect_pulley(&self) -> Option<usize> {
+        let number = self.values()[pulley_defect::PULLEY];
+        #[expect(clippy::cast_precision_loss, reason = "at most MAX_PULLEYS")]
+        (0..self.pulley_count).find(|pulley| ((pulley + 1) as f64 - number).abs() <= 0.0)
     }
 
     /// μ with all that effects can raise it by.

@@ -51,8 +51,17 @@ impl Tally {
 
 /// The greatest change of a sensor force (N) in a cycle that is no jump, written from the robot file's description.
 fn greatest_change_n(cable: &CableParams, monitor: &MonitorOptions, force_n: f64) -> f64 {
-    let default_n = cable.friction().sigma_n_per_m.unwrap() * monitor.length_jump_m / 20.0;
-    monitor.sensor_jump_n.unwrap_or(default_n).max(0.05 * force_n + 0.1 * (1.0 - sensor_cos(cable)))
+    let [lag_s, smoothing_s] = ["time_constant_s", "smoothing_s"].map(|key| effect(cable, "sensor_lag", key));
+    // What 10 m/s cover.
+    let cycle_s = monitor.length_jump_m / 10.0;
+    let share = (cycle_s / smoothing_s).min(1.0);
+    let shown = (cycle_s / lag_s).min(1.0) / (2.0 * share - share * share);
+    let shown = if lag_s > 0.0 { shown.min(1.0) } else { 1.0 };
+    let is_bent = effect(cable, "sensor_nonlinearity", "curvature_per_n") != 0.0;
+    let shown = if is_bent { 0.5 * shown } else { shown };
+    let default_n = shown * cable.friction().sigma_n_per_m.unwrap() * monitor.length_jump_m / 20.0;
+    let tolerated_n = shown * (0.05 * force_n + 0.1 * (1.0 - sensor_cos(cable)));
+    monitor.sensor_jump_n.unwrap_or(default_n).max(tolerated_n)
 }
 
 /// One cable's true force and what is done to it.

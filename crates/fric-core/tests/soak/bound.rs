@@ -16,10 +16,19 @@ pub fn effect(cable: &CableParams, kind: &str, key: &str) -> f64 {
     cable.effects().get(Effect::of_kind(kind).unwrap(), key).unwrap()
 }
 
+/// Amplitude of a ripple from those of its sine and cosine.
+fn amplitude(cable: &CableParams, kind: &str, keys: [&str; 2]) -> f64 {
+    let [sin, cos] = keys.map(|key| effect(cable, kind, key));
+    sin.hypot(cos)
+}
+
 /// The greatest μ that stands at a pulley, but for `load_nonlinearity`.
 pub fn greatest_mu(cable: &CableParams) -> f64 {
-    cable.friction().mu
+    cable.friction().mu.max(effect(cable, "pulley_defect", "mu"))
         * (1.0 + effect(cable, "stribeck", "ratio").max(0.0))
+        * (1.0 + effect(cable, "dwell_stiction", "ratio").max(0.0))
+        * (1.0 + effect(cable, "friction_warmup", "ratio").max(0.0))
+        * (1.0 + amplitude(cable, "friction_ripple", ["sin_ratio", "cos_ratio"]))
         * (1.0 + effect(cable, "direction_asymmetry", "coulomb_ratio").abs())
         * (1.0 + effect(cable, "friction_drift", "rate_per_s").abs() * LONGEST_RUN_S)
 }
@@ -33,8 +42,10 @@ pub fn sensor_cos(cable: &CableParams) -> f64 {
 pub fn friction_bound_n(cable: &CableParams, force_n: f64, speed_m_per_s: f64, cycle_s: f64) -> f64 {
     let value = |kind, key| effect(cable, kind, key);
     let exponent = value("load_nonlinearity", "exponent");
-    if exponent > 1.0 {
-        // Grows faster than the load: what holds it is the core's own limit of μ.
+    // Grows faster than the load: what holds it is the core's own limit of μ. And where the force of the sensor is not known from what it
+    // shows in the cycle, nothing is known of the friction.
+    let is_open = [("sensor_lag", "time_constant_s"), ("sensor_nonlinearity", "curvature_per_n")];
+    if exponent > 1.0 || is_open.iter().any(|(kind, key)| value(kind, key).abs() > 0.0) {
         return f64::INFINITY;
     }
     let mu = greatest_mu(cable);
@@ -49,14 +60,17 @@ pub fn friction_bound_n(cable: &CableParams, force_n: f64, speed_m_per_s: f64, c
     // The acceleration is (1 + r, −1 − 2r, r) times the speed and its low passes by the window, r the share that it is led by.
     let lead_ratio = 1.0 - 0.5 * cycle_s / window_s;
     let accelerating = value("pulley_inertia", "mass_kg") * 2.0 * (1.0 + 2.0 * lead_ratio) / window_s;
-    let moved_n = speed_m_per_s * (viscous + accelerating);
+    let quadratic = value("viscous_nonlinearity", "quadratic_n_s2_per_m2") * speed_m_per_s;
+    let moved_n = speed_m_per_s * (viscous + quadratic + accelerating);
     // A slip limit takes from the stored friction what viscous friction is too much, and that stays stored.
     let stored_too_n = if cable.traction_mu().is_some() { 2.0 * moved_n } else { 0.0 };
 
     let cos = sensor_cos(cable);
     let gain = 1.0 / (1.0 - cos);
-    let mut tension_n = gain * force_n;
-    let mut friction_n = 0.0;
+    // What the winch adds to what is shown, or takes from it.
+    let rippled_n = gain * amplitude(cable, "winch_ripple", ["sin_n", "cos_n"]) / value("sensor_gain", "gain");
+    let mut tension_n = gain * force_n + rippled_n;
+    let mut friction_n = rippled_n;
     for (place, wrap_rad) in cable.fixed_wraps_rad().enumerate() {
         let half = 0.5 * mu * 2.0 * (0.5 * wrap_rad.unwrap_or(PI)).sin();
         let is_sensor = place == 0 && cable.sensor_wrap_rad().is_some();
@@ -71,7 +85,7 @@ pub fn friction_bound_n(cable: &CableParams, force_n: f64, speed_m_per_s: f64, c
         friction_n += share * (stored_n + moved_n);
         tension_n += share * (stored_n + moved_n);
     }
-    let ripple = value("pulley_eccentricity", "sin_ratio").hypot(value("pulley_eccentricity", "cos_ratio"));
+    let ripple = amplitude(cable, "pulley_eccentricity", ["sin_ratio", "cos_ratio"]);
     // A slack cable's friction takes all its tension away.
-    friction_n.max(gain * force_n) + ripple * tension_n
+    friction_n.max(gain * force_n + rippled_n) + ripple * tension_n
 }

@@ -104,6 +104,7 @@ fn fixed(random: &mut Random) -> PulleyOptions {
     PulleyOptions::Fixed { wrap_rad, sensor: false }
 }
 
+#[expect(clippy::cast_precision_loss, reason = "a few pulleys")]
 fn add_effects(random: &mut Random, cycle_s: f64, kinds: &[&str], options: &mut CableOptions<'_>) {
     // Friction that follows a tension it adds to is stable below 1, see `cable_elasticity`.
     let sensor_gain = match options.pulleys[0] {
@@ -122,6 +123,8 @@ fn add_effects(random: &mut Random, cycle_s: f64, kinds: &[&str], options: &mut 
             }
             let value = match (effect, parameter.key) {
                 (Effect::CableElasticity, "compliance_m_per_n") => random.range(0.0, 0.5) * stable_m_per_n,
+                // One of those that there are.
+                (Effect::PulleyDefect, "pulley") => pick(&[1.0, options.pulleys.len() as f64], random),
                 (Effect::TimeDelay, _) => cycle_s * random.range(-10.0, 40.0),
                 // Both ways from neutral, and beyond what the example has; a setting of another order of magnitude.
                 (_, _) if parameter.fitted => {

@@ -47,6 +47,7 @@ impl Law {
         // The way of each contact has to be known: not delayed, not stretched, without play or slip.
         let way_is_known = is("time_delay", "delay_s", 0.0)
             && is("cable_elasticity", "compliance_m_per_n", 0.0)
+            && is("gear_backlash", "play_m", 0.0)
             && monitor.length_noise_m == 0.0
             && cable.traction_mu().is_none();
         // What is stored is all the friction there is, and resists the motion.
@@ -57,6 +58,12 @@ impl Law {
             && is("sensor_gain", "gain", 1.0)
             && is("sensor_offset", "offset_n", 0.0)
             && is("sensor_drift", "rate_n_per_s", 0.0)
+            && is("sensor_warmup", "final_n", 0.0)
+            && is("sensor_nonlinearity", "curvature_per_n", 0.0)
+            && is("sensor_lag", "time_constant_s", 0.0)
+            && is("winch_ripple", "sin_n", 0.0)
+            && is("winch_ripple", "cos_n", 0.0)
+            && is("viscous_nonlinearity", "quadratic_n_s2_per_m2", 0.0)
             && sensor_cos(cable) < 1e-9;
         #[expect(clippy::cast_precision_loss, reason = "a handful")]
         let contact_n_per_m = match cable.presliding() {
@@ -138,7 +145,9 @@ impl Watch {
     ) -> Result<(), String> {
         let law = &self.law;
         let [gain, offset_n, rate_n_per_s] = law.sensor;
-        let force_n = (self.shown_n - offset_n - rate_n_per_s * time_s) / gain;
+        let warmed = 1.0 - (-time_s / effect(&law.cable, "sensor_warmup", "time_constant_s")).exp();
+        let added_n = offset_n + rate_n_per_s * time_s + effect(&law.cable, "sensor_warmup", "final_n") * warmed;
+        let force_n = (self.shown_n - added_n) / gain;
         let speed_m_per_s = if motion_finite { input.speed_m_per_s.abs() } else { 0.0 };
         if force_n.abs() > self.greatest_force_n || speed_m_per_s > self.greatest_speed_m_per_s {
             // A little more than needed, so that it is not worked out anew in every cycle.

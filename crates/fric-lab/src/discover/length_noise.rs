@@ -11,11 +11,9 @@ use rayon::prelude::*;
 
 use super::cable::held_out_squares;
 use super::foreign::{Fault, RecordingFault};
+use crate::fit::engine::PLAY_OF_NOISE;
 use crate::fit::{CableRecord, Measurements, Row};
 
-/// Half the play, as a multiple of the noise's standard deviation. With one of 1σ the rms of a log of `3 µm` comes to 1.42 of its noise, of 2σ to 1.03, of 3σ to 1.09, of
-/// 4σ to 1.21; without, to 3.7.
-const PLAY_RATIO: f64 = 2.0;
 /// The squares have to fall by this share: the rms by a quarter of a per cent, as an effect has to.
 const LEAST_GAIN: f64 = 0.005;
 
@@ -23,6 +21,8 @@ const LEAST_GAIN: f64 = 0.005;
 pub struct Steadied {
     /// The cycles of each cable.
     pub rows: Vec<Vec<Row>>,
+    /// The play that keeps the noise out, m to either side.
+    pub length_play_m: f64,
     /// What to tell of each cable: none where its length bears no noise that matters.
     pub faults: Vec<Option<RecordingFault>>,
 }
@@ -33,12 +33,13 @@ pub fn steadied(measurements: &Measurements<'_>, stop: &AtomicBool) -> Option<St
     let records: Vec<CableRecord<'_>> = measurements.cables().collect();
     let noise_that_matters_m = |record: &CableRecord<'_>| {
         let noise_m = record.length_noise_m()?;
-        let limits = SignalLimits { length_noise_m: PLAY_RATIO * noise_m, ..limits };
+        let limits = SignalLimits { length_noise_m: PLAY_OF_NOISE * noise_m, ..limits };
         if noise_m <= 0.0 || limits.length_noise_m >= limits.length_jump_m {
             return None;
         }
         let rows = record.conditioned(&limits);
-        let [with, without] = [record.with_signals(&rows), *record].map(|record| held_out_squares(&record, stop));
+        let [with, without] =
+            [record.behind_play(&rows, limits.length_noise_m), *record].map(|record| held_out_squares(&record, stop));
         (with? < (1.0 - LEAST_GAIN) * without?).then_some(noise_m)
     };
     if limits.length_noise_m > 0.0 {
@@ -46,13 +47,14 @@ pub fn steadied(measurements: &Measurements<'_>, stop: &AtomicBool) -> Option<St
     }
     let noise_m: Vec<Option<f64>> = records.par_iter().map(noise_that_matters_m).collect();
     // The monitor has one for all cables.
-    let length_noise_m = PLAY_RATIO * noise_m.iter().flatten().copied().reduce(f64::max)?;
+    let length_noise_m = PLAY_OF_NOISE * noise_m.iter().flatten().copied().reduce(f64::max)?;
     let limits = SignalLimits { length_noise_m, ..limits };
     let fault = |noise_m: Option<f64>| {
         let parameters = vec![("noise_m", noise_m?), ("length_noise_m", length_noise_m)];
         Some(RecordingFault { fault: Fault::NoisyLength, parameters, intervals_s: Vec::new() })
     };
     Some(Steadied {
+        length_play_m: length_noise_m,
         rows: records.iter().map(|record| record.conditioned(&limits)).collect(),
         faults: noise_m.into_iter().map(fault).collect(),
     })

@@ -11,18 +11,18 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use fric_core::effects::Effect;
 use fric_core::effects::sensor_offset::OFFSET as OFFSET_OF_SENSOR;
-use fric_core::effects::{Effect, pulley_eccentricity};
 use fric_core::parameters::{MU, OFFSET, Values};
 
 use super::candidates::{fitted, has, starts};
 use super::evidence::inflation;
 use super::rest::WORTH;
-use super::ripple::periods_m;
+use super::ripple::{period_of, periods};
 use super::rivals::{Chance, Rival, best_rival};
 use super::steadiness::{Portrait, Steadiness};
 use super::workbench::{Model, NEAR_ERRORS, Trial, Workbench};
-use crate::effects::Around;
+use crate::effects::{self, Around};
 use crate::fit::Parameter;
 use crate::fit::engine::{self, Condition, Coordinate};
 
@@ -87,6 +87,8 @@ pub enum Refusal {
     Unsteady(&'static str),
     /// A law without a name that goes with this explains more in its place, and leaves little for it to explain.
     StandsIn(&'static str),
+    /// It is no more than what robots without it have.
+    Usual,
     /// What is left would go away if its size went with this condition: its law is another one.
     Bent(&'static str),
 }
@@ -220,9 +222,12 @@ impl<'b, 'a> Search<'b, 'a> {
             let refused = named.iter().filter(|named| named.refusal.is_some());
             let weakest = refused.min_by(|one, other| held_out(one).total_cmp(&held_out(other)));
             let Some(Named { effect, refusal: Some(refusal), .. }) = weakest else { return named };
-            self.refused.insert(*effect, *refusal);
-            let effect = *effect;
+            let (effect, refusal) = (*effect, *refusal);
             found.retain(|of| *of != effect);
+            // What could not be told from it can be told without it.
+            let keys: Vec<&str> = Parameter::of(effect).map(|parameter| parameter.row().key).collect();
+            self.refused.retain(|_, refusal| !matches!(refusal, Refusal::Open(key) if keys.contains(key)));
+            self.refused.insert(effect, refusal);
         }
     }
 
@@ -253,8 +258,14 @@ impl<'b, 'a> Search<'b, 'a> {
                     && gains(&model, trial, enough)
                     && !is_at_end(*effect, &trial.values, cycle_s)
             };
-            let Some((effect, _)) = best(candidates.into_iter().filter(may_enter)) else { break };
-            found.push(effect);
+            let mut entrants: Vec<(Effect, Trial)> = candidates.into_iter().filter(may_enter).collect();
+            entrants.sort_by(|(_, one), (_, other)| one.training.total_cmp(&other.training));
+            // What memory in the residual makes of chance is no reason to go on.
+            let speaks_for_it = |(effect, trial): &&(Effect, Trial)| {
+                self.delta_bic(&model, trial, inflation(self.bench, trial, &fitted(*effect))) < 0.0
+            };
+            let Some((effect, _)) = entrants.iter().find(speaks_for_it) else { break };
+            found.push(*effect);
         }
     }
 
@@ -303,9 +314,9 @@ impl<'b, 'a> Search<'b, 'a> {
         let model = self.fit(found);
         let unknown: Vec<Effect> =
             candidates.iter().copied().filter(|effect| !self.fits.contains_key(&with(effect))).collect();
-        if unknown.contains(&Effect::PulleyEccentricity) {
+        if unknown.iter().any(|effect| period_of(*effect).is_some()) {
             let residuals_n = self.bench.residuals_n(&model.values);
-            self.around.periods_m = periods_m(&self.bench.record, &residuals_n);
+            self.around.periods = periods(&self.bench.record, &residuals_n);
         }
         let (mut models, mut owners) = (Vec::new(), Vec::new());
         for effect in unknown {
@@ -374,13 +385,10 @@ impl<'b, 'a> Search<'b, 'a> {
         trial
     }
 
-    /// Brings the model with a set of effects to its minimum, the period of a ripple with it: it was found by a scan.
+    /// Brings the model with a set of effects to its minimum, the periods of ripples with it: they were found by a scan.
     fn polish(&mut self, found: &[Effect]) {
         let mut model = self.fit(found).model();
-        if found.contains(&Effect::PulleyEccentricity) {
-            let is_period = |parameter: &Parameter| parameter.place() == pulley_eccentricity::PERIOD;
-            model.free.extend(Parameter::all().find(is_period));
-        }
+        model.free.extend(found.iter().filter_map(|effect| period_of(*effect)));
         self.fits.insert(set_of(found), self.bench.fit(&model, AT_MINIMUM));
     }
 
@@ -454,7 +462,8 @@ impl<'b, 'a> Search<'b, 'a> {
         let is_friction_only = named.iter().all(|named| named.effect.is_friction());
         let white = STRONG_BIC * self.noise_n * self.noise_n;
         let chance = Chance { enough: white * inflation, white, noise_n: self.noise_n };
-        let rival = (!is_friction_only).then(|| best_rival(self.bench, model, &effects, &chance))??;
+        let kinds: Vec<Effect> = named.iter().map(|named| named.effect).collect();
+        let rival = (!is_friction_only).then(|| best_rival(self.bench, model, (&kinds, &effects), &chance))??;
         (!rival.replaces.iter().any(|place| named[*place].effect.is_friction())).then_some(rival)
     }
 
@@ -469,8 +478,9 @@ impl<'b, 'a> Search<'b, 'a> {
         if !is_strong || gain <= LEAST_SIZE * self.noise_squares {
             return Some(Refusal::Weak);
         }
-        if effect.is_friction() {
-            return None;
+        let lab = effects::of(effect)?;
+        if !(lab.is_more_than_usual)(&model.values, &self.around) {
+            return Some(Refusal::Usual);
         }
         if let Some(other) = self.confused_with(model, effect) {
             return Some(Refusal::Open(other));

@@ -1,10 +1,11 @@
-//! Laws without a name that the names of a catalogue may stand in for.
+//! Plain laws that the names of a catalogue may stand in for.
 //!
 //! Where a force sensor's curve is bent, say, a gain, an offset and a nonlinear load explain nearly all of it together, each
-//! with strong evidence, and none of them is there. So a few plain laws that are in no catalogue are tried as rivals: each as one more column of the
+//! with strong evidence, and none of them is there. So a few plain laws are tried as rivals, each as one more column of the
 //! least-squares problem beside what the named effects add. If it makes names superfluous, and what is left explains as much as all names did, these names stand in
-//! for it.
+//! for it, and are set aside. Where the law is that of an effect, this has its turn then.
 
+use fric_core::effects::Effect;
 use fric_core::parameters::Values;
 use nalgebra::{DMatrix, DVector};
 
@@ -45,11 +46,11 @@ pub struct Chance {
     pub noise_n: f64,
 }
 
-/// The rival that explains most, of effects with these parameters and the model's values without each.
+/// The rival that explains most, of effects with their parameters and the model's values without each; a law that an effect states is none to that effect.
 pub fn best_rival(
     bench: &Workbench<'_>,
     model: &Trial,
-    effects: &[(Vec<Parameter>, Values)],
+    (kinds, effects): (&[Effect], &[(Vec<Parameter>, Values)]),
     noise: &Chance,
 ) -> Option<Rival> {
     let Chance { enough, white, noise_n } = *noise;
@@ -72,8 +73,9 @@ pub fn best_rival(
         }
     }
     let laws = laws(bench, &bench.added_n(&without));
-    let names: Vec<&'static str> = laws.iter().map(|(signal, _)| *signal).collect();
-    signals.extend(laws.into_iter().map(|(_, values)| values));
+    let laws: Vec<Law> = laws.into_iter().filter(|law| !kinds.contains(&law.of)).collect();
+    let names: Vec<&'static str> = laws.iter().map(|law| law.signal).collect();
+    signals.extend(laws.into_iter().map(|law| law.values));
     let columns = less_projection(&problem, &model.values, &signals)?;
     let (matrix, right) = products(&columns, effects.len(), &residual_n);
     let gain = |places: &[usize]| gain(&matrix, &right, places);
@@ -149,29 +151,46 @@ fn products(columns: &[Vec<f64>], effects: usize, residual_n: &[f64]) -> (DMatri
     (matrix, right)
 }
 
-/// Laws that are in no catalogue, each in every cycle, of any unit: sensor and reference that follow late, a bent sensor, a drag of turbulence,
-/// and what warms up, of the sensor and of the friction.
-fn laws(bench: &Workbench<'_>, friction_n: &[f64]) -> Vec<(&'static str, Vec<f64>)> {
+/// A plain law.
+struct Law {
+    /// What it goes with.
+    signal: &'static str,
+    /// The effect that it is to first order.
+    of: Effect,
+    /// In each cycle, of any unit.
+    values: Vec<f64>,
+}
+
+/// The laws: sensor and reference that follow late, a bent sensor, a drag of turbulence, and what warms up, of the sensor and of the friction.
+fn laws(bench: &Workbench<'_>, friction_n: &[f64]) -> Vec<Law> {
     let record = &bench.record;
     let of = |value: &dyn Fn(&Row) -> f64| record.rows.iter().map(value).collect::<Vec<f64>>();
     let sensor_n = of(&|row| row.signals.sensor_force_n);
     let sound = || sensor_n.iter().zip(bench.counts).filter(|(_, counts)| **counts).map(|(force_n, _)| *force_n);
     #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
     let mean_n = sound().sum::<f64>() / sound().count().max(1) as f64;
+    let logs = || record.logs().map(|(start, rows)| start..start + rows.len());
+    let law = |signal, of, values| Law { signal, of, values };
     let mut laws = vec![
-        ("force_rate", rates(record.logs().map(|(start, rows)| start..start + rows.len()), &sensor_n)),
-        (
-            "reference_rate",
-            rates(record.logs().map(|(start, rows)| start..start + rows.len()), &of(&|row| row.reference_n)),
+        law("force_rate", Effect::SensorLag, rates(logs(), &sensor_n)),
+        law("reference_rate", Effect::SensorLag, rates(logs(), &of(&|row| row.reference_n))),
+        law(
+            "sensor_force",
+            Effect::SensorNonlinearity,
+            sensor_n.iter().map(|force_n| (force_n - mean_n).powi(2)).collect(),
         ),
-        ("sensor_force", sensor_n.iter().map(|force_n| (force_n - mean_n).powi(2)).collect()),
-        ("speed", of(&|row| row.signals.speed_m_per_s * row.signals.speed_m_per_s.abs())),
+        law(
+            "speed",
+            Effect::ViscousNonlinearity,
+            of(&|row| row.signals.speed_m_per_s * row.signals.speed_m_per_s.abs()),
+        ),
     ];
     let end_s = record.rows.iter().map(|row| row.cycle).fold(0.0, f64::max) * record.cycle_s;
     for ratio in TIME_CONSTANT_RATIOS {
         let decay = of(&|row| (-row.cycle * record.cycle_s / (ratio * end_s)).exp());
-        laws.push(("time", decay.iter().zip(friction_n).map(|(decay, friction_n)| decay * friction_n).collect()));
-        laws.push(("time", decay));
+        let of_friction = decay.iter().zip(friction_n).map(|(decay, friction_n)| decay * friction_n).collect();
+        laws.push(law("time", Effect::FrictionWarmup, of_friction));
+        laws.push(law("time", Effect::SensorWarmup, decay));
     }
     laws
 }

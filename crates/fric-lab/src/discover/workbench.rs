@@ -150,7 +150,7 @@ impl<'a> Workbench<'a> {
         let mut problem = bench.problem(&model.free, Some(Rc::new(seat)));
         let mut values = model.values;
         if !model.free.is_empty() {
-            let start = within_bounds(&mut problem, model.values);
+            let start = within_bounds(&mut problem, &model.values);
             let (found, _) = search_near(&problem, &[start], self.record.cycle_s, near_errors);
             values = found.first().copied().unwrap_or(values);
         }
@@ -195,18 +195,18 @@ impl<'a> Workbench<'a> {
 
 /// Takes parameters away from the least values they can have, where the coordinates of a search have no slope: to the minimum, were the
 /// forces linear in all that varies. Those for which that is out of range stay where they are.
-fn within_bounds(problem: &mut Problem<'_>, values: Values) -> Values {
-    let Some(free) = problem.members.first().map(|member| member.free.clone()) else { return values };
+fn within_bounds(problem: &mut Problem<'_>, values: &Values) -> Values {
+    let Some(free) = problem.members.first().map(|member| member.free.clone()) else { return *values };
     let is_least = |parameter: &Parameter| values[parameter.place()] <= parameter.row().min;
     if !free.iter().any(is_least) {
-        return values;
+        return *values;
     }
-    let step = problem.gram(&[values]).and_then(|gram| {
+    let step = problem.gram(&[*values]).and_then(|gram| {
         let (matrix, gradient, _) = gram.normal_equations();
         Some(inverse_of_normal(&matrix)? * gradient)
     });
     let step = step.unwrap_or_else(|| DVector::zeros(free.len()));
-    let mut start = values;
+    let mut start = *values;
     for (parameter, step) in free.iter().zip(&step).filter(|(parameter, _)| is_least(parameter)) {
         start[parameter.place()] = (values[parameter.place()] - step).clamp(parameter.row().min, parameter.row().max);
     }

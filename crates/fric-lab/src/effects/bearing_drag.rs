@@ -3,10 +3,10 @@
 //! The seal sticks as the bearing does: its force is part of what the bristle can hold before it slides.
 
 use super::truth::{Cause, Contact, TruthEffect};
-use super::{LabEffect, Sizing, Start, as_it_is};
+use super::{LabEffect, Sizing, Start, always, as_it_is};
 
 /// What the lab knows of it.
-pub const LAB: LabEffect = LabEffect { truth, starts: as_it_is, typical };
+pub const LAB: LabEffect = LabEffect { truth, starts: as_it_is, typical, is_more_than_usual: always };
 
 #[derive(Debug)]
 struct Seal {

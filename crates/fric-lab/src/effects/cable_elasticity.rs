@@ -4,10 +4,10 @@
 //! over the pulleys, the far ones most, whether the winch turns or not. Within a cycle F changes evenly.
 
 use super::truth::{Cause, TruthEffect};
-use super::{Around, LabEffect, Sizing, Start};
+use super::{Around, LabEffect, Sizing, Start, always};
 
 /// What the lab knows of it.
-pub const LAB: LabEffect = LabEffect { truth, starts, typical };
+pub const LAB: LabEffect = LabEffect { truth, starts, typical, is_more_than_usual: always };
 
 #[derive(Debug)]
 struct Spring {

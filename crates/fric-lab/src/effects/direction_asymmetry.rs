@@ -4,10 +4,10 @@
 //! of the cable over the pulley at the instant.
 
 use super::truth::{Cause, Contact, TruthEffect};
-use super::{LabEffect, Sizing, Start, as_it_is};
+use super::{LabEffect, Sizing, Start, always, as_it_is};
 
 /// What the lab knows of it.
-pub const LAB: LabEffect = LabEffect { truth, starts: as_it_is, typical };
+pub const LAB: LabEffect = LabEffect { truth, starts: as_it_is, typical, is_more_than_usual: always };
 
 #[derive(Debug)]
 struct Tilted {

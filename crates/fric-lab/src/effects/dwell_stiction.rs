@@ -3,11 +3,11 @@
 //! The age of the contacts follows `dθ/dt = (1 − θ)/time − θ·|v|/distance`, integrated in the substeps of the bristles by the implicit Euler method.
 
 use super::truth::{Cause, Contact, TruthEffect};
-use super::{Around, LabEffect, Sizing, Start};
+use super::{Around, LabEffect, Sizing, Start, always};
 use crate::random::uniform;
 
 /// What the lab knows of it.
-pub const LAB: LabEffect = LabEffect { truth, starts, typical };
+pub const LAB: LabEffect = LabEffect { truth, starts, typical, is_more_than_usual: always };
 
 #[derive(Debug)]
 struct AgeingContacts {

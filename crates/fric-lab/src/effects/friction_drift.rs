@@ -3,10 +3,10 @@
 //! μ changes by the same amount every second from the start of the log to where the drift ends; it does not fall below zero.
 
 use super::truth::{Cause, Contact, TruthEffect, drifted_s};
-use super::{Around, LabEffect, Sizing, Start};
+use super::{Around, LabEffect, Sizing, Start, always};
 
 /// What the lab knows of it.
-pub const LAB: LabEffect = LabEffect { truth, starts, typical };
+pub const LAB: LabEffect = LabEffect { truth, starts, typical, is_more_than_usual: always };
 
 #[derive(Debug)]
 struct Ageing {

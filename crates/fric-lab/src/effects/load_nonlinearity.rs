@@ -3,10 +3,10 @@
 //! Sliding friction is `μ·F_ref·(F_N/F_ref)^p`, with the exact normal force of the instant.
 
 use super::truth::{Cause, TruthEffect};
-use super::{Around, LabEffect, Sizing, Start};
+use super::{Around, LabEffect, Sizing, Start, always};
 
 /// What the lab knows of it.
-pub const LAB: LabEffect = LabEffect { truth, starts, typical };
+pub const LAB: LabEffect = LabEffect { truth, starts, typical, is_more_than_usual: always };
 
 #[derive(Debug)]
 struct Flattening {

@@ -8,6 +8,7 @@
 pub mod truth;
 
 use fric_core::effects::Effect;
+use fric_core::parameters::Values;
 use rand_chacha::ChaCha8Rng;
 
 use self::truth::Build;
@@ -25,6 +26,8 @@ pub struct LabEffect {
     pub starts: fn(&Around) -> Vec<Start>,
     /// Values as machines have them.
     pub typical: fn(&mut Sizing<'_>) -> Start,
+    /// Whether values that were found are more than what robots without the effect have.
+    pub is_more_than_usual: fn(&Values, &Around) -> bool,
 }
 
 /// What a search on a cable begins from.
@@ -34,6 +37,8 @@ pub struct Around {
     pub cycle_s: f64,
     /// Root mean square of the cable tension, N.
     pub tension_n: f64,
+    /// Its mean, N.
+    pub mean_tension_n: f64,
     /// Standard deviation of the noise, N.
     pub noise_n: f64,
     /// Root mean square of the friction found so far, N.
@@ -42,8 +47,34 @@ pub struct Around {
     pub speed_m_per_s: f64,
     /// Time from the first sample to the last, of the longest log, s.
     pub end_s: f64,
-    /// Periods at which the residual ripples with the cable's length, m.
-    pub periods_m: Vec<f64>,
+    /// μ found so far, 1.
+    pub mu: f64,
+    /// Standard deviation of the noise of the length, m.
+    pub length_noise_m: f64,
+    /// How many pulleys the cable has.
+    pub pulley_count: u32,
+    /// Periods at which the residual ripples with the cable's length.
+    pub periods: Periods,
+}
+
+/// Periods of a ripple, m, the strongest first.
+#[derive(Clone, Debug, Default)]
+pub struct Periods {
+    /// Of one in proportion to the tension.
+    pub with_load: Vec<f64>,
+    /// Of one that also turns round with the motion.
+    pub with_friction: Vec<f64>,
+    /// Of one that goes with neither.
+    pub alone: Vec<f64>,
+}
+
+/// Time constants of what warms up that a search begins from, as shares of the log.
+const WARM_UP_RATIOS: [f64; 2] = [0.08, 0.3];
+
+impl Around {
+    fn time_constants_s(&self) -> [f64; 2] {
+        WARM_UP_RATIOS.map(|ratio| ratio * self.end_s)
+    }
 }
 
 /// What the size of an effect in the sweep goes by.
@@ -70,6 +101,11 @@ impl Sizing<'_> {
         let value = self.about(full);
         if uniform(self.random, -1.0, 1.0) < 0.0 { -value } else { value }
     }
+}
+
+/// For an effect of which every robot without has none at all.
+fn always(_: &Values, _: &Around) -> bool {
+    true
 }
 
 /// For an effect whose search leads away from its neutral values.

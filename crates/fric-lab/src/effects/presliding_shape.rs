@@ -3,10 +3,10 @@
 //! The exponent of [`presliding`](crate::simulate::presliding), solved stage by stage of the integration.
 
 use super::truth::{Cause, TruthEffect};
-use super::{LabEffect, Sizing, Start, as_it_is};
+use super::{LabEffect, Sizing, Start, always, as_it_is};
 
 /// What the lab knows of it.
-pub const LAB: LabEffect = LabEffect { truth, starts: as_it_is, typical };
+pub const LAB: LabEffect = LabEffect { truth, starts: as_it_is, typical, is_more_than_usual: always };
 
 #[derive(Debug)]
 struct Bend {

@@ -5,39 +5,31 @@
 
 use core::f64::consts::TAU;
 
-use super::truth::{Cause, TruthEffect};
-use super::{Around, LabEffect, Sizing, Start};
+use super::truth::{Cause, Oscillation, TruthEffect};
+use super::{Around, LabEffect, Sizing, Start, always};
 use crate::random::uniform;
 
 /// What the lab knows of it.
-pub const LAB: LabEffect = LabEffect { truth, starts, typical };
+pub const LAB: LabEffect = LabEffect { truth, starts, typical, is_more_than_usual: always };
 
 #[derive(Debug)]
-struct OutOfTrue {
-    amplitude_ratio: f64,
-    phase_rad: f64,
-    rad_per_m: f64,
-}
+struct OutOfTrue(Oscillation);
 
 fn truth(cause: &mut Cause<'_>) -> Box<dyn TruthEffect> {
     let [sin_ratio, cos_ratio, period_m] = ["sin_ratio", "cos_ratio", "period_m"].map(cause.value);
-    Box::new(OutOfTrue {
-        amplitude_ratio: libm::hypot(sin_ratio, cos_ratio),
-        phase_rad: libm::atan2(cos_ratio, sin_ratio),
-        rad_per_m: TAU / period_m,
-    })
+    Box::new(OutOfTrue(Oscillation::new(sin_ratio, cos_ratio, period_m)))
 }
 
 impl TruthEffect for OutOfTrue {
     fn platform_factor(&self, length_m: f64) -> f64 {
-        1.0 + self.amplitude_ratio * libm::sin(self.rad_per_m * length_m + self.phase_rad)
+        1.0 + self.0.at(length_m)
     }
 }
 
 /// The search begins from every period at which the residual ripples.
 fn starts(around: &Around) -> Vec<Start> {
     let of_period = |period_m: &f64| vec![("sin_ratio", 1e-3), ("cos_ratio", 1e-3), ("period_m", *period_m)];
-    around.periods_m.iter().map(of_period).collect()
+    around.periods.with_load.iter().map(of_period).collect()
 }
 
 fn typical(scale: &mut Sizing<'_>) -> Start {

@@ -4,10 +4,10 @@
 //! samples. What a stretching cable adds to the acceleration is left out.
 
 use super::truth::{Cause, TruthEffect};
-use super::{Around, LabEffect, Sizing, Start};
+use super::{Around, LabEffect, Sizing, Start, always};
 
 /// What the lab knows of it.
-pub const LAB: LabEffect = LabEffect { truth, starts, typical };
+pub const LAB: LabEffect = LabEffect { truth, starts, typical, is_more_than_usual: always };
 
 /// Time constants with which the acceleration is taken, in cycles: the noisier the speed, the longer.
 const WINDOWS: [f64; 4] = [0.0, 1.0, 4.0, 16.0];

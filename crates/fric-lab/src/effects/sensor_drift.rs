@@ -1,10 +1,10 @@
 //! `sensor_drift` in the simulated robot: a sensor whose zero creeps away, evenly from the start of the log until it ends.
 
 use super::truth::{Cause, TruthEffect, drifted_s};
-use super::{Around, LabEffect, Sizing, Start};
+use super::{Around, LabEffect, Sizing, Start, always};
 
 /// What the lab knows of it.
-pub const LAB: LabEffect = LabEffect { truth, starts, typical };
+pub const LAB: LabEffect = LabEffect { truth, starts, typical, is_more_than_usual: always };
 
 #[derive(Debug)]
 struct Creep {

@@ -1,10 +1,10 @@
 //! `sensor_gain` in the simulated robot: a sensor whose amplifier is set to another slope.
 
 use super::truth::{Cause, TruthEffect};
-use super::{LabEffect, Sizing, Start, as_it_is};
+use super::{LabEffect, Sizing, Start, always, as_it_is};
 
 /// What the lab knows of it.
-pub const LAB: LabEffect = LabEffect { truth, starts: as_it_is, typical };
+pub const LAB: LabEffect = LabEffect { truth, starts: as_it_is, typical, is_more_than_usual: always };
 
 #[derive(Debug)]
 struct Slope {

@@ -4,11 +4,11 @@
 //! cable's at the instant, within the cycle too.
 
 use super::truth::{Cause, Contact, TruthEffect};
-use super::{Around, LabEffect, Sizing, Start};
+use super::{Around, LabEffect, Sizing, Start, always};
 use crate::random::uniform;
 
 /// What the lab knows of it.
-pub const LAB: LabEffect = LabEffect { truth, starts, typical };
+pub const LAB: LabEffect = LabEffect { truth, starts, typical, is_more_than_usual: always };
 
 /// Speeds at which friction may change, as shares of the speed at which the cable moves for the most part.
 const SPEED_SHARES: [f64; 2] = [0.04, 0.25];

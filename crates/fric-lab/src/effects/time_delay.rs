@@ -4,10 +4,10 @@
 //! Forces and pose are of the present; the motion is computed for the other instant, not shifted by whole samples.
 
 use super::truth::{Cause, TruthEffect};
-use super::{Around, LabEffect, Sizing, Start};
+use super::{Around, LabEffect, Sizing, Start, always};
 
 /// What the lab knows of it.
-pub const LAB: LabEffect = LabEffect { truth, starts, typical };
+pub const LAB: LabEffect = LabEffect { truth, starts, typical, is_more_than_usual: always };
 
 #[derive(Debug)]
 struct MotionAhead {

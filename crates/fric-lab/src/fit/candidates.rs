@@ -6,9 +6,9 @@
 use fric_core::effects::Effect;
 use fric_core::parameters::{MU, NO_PRESLIDING_N_PER_M, SIGMA, VISCOUS, Values};
 
-use super::record::CableRecord;
+use super::record::{CableRecord, PLAY_OF_NOISE};
 use super::vector::Parameter;
-use crate::effects::{self, Around};
+use crate::effects::{self, Around, Periods};
 use crate::replay::Deviation;
 
 /// μ that a frictionless model starts from.
@@ -20,8 +20,10 @@ const PRESLIDING_M: [f64; 4] = [3e-5, 2e-4, 1e-3, 6e-3];
 pub fn around(record: &CableRecord<'_>, mu: f64, noise_n: f64) -> Around {
     let gain = record.params.frictionless_gain();
     let (mut tension, mut speed) = (Deviation::default(), Deviation::default());
+    let (mut sum_n, mut count) = (0.0, 0.0_f64);
     for row in record.rows.iter().filter(|row| row.is_sound()) {
         tension.add(row.signals.sensor_force_n * gain);
+        (sum_n, count) = (sum_n + row.signals.sensor_force_n * gain, count + 1.0);
         if row.signals.displacement_m.abs() > 0.0 {
             speed.add(row.signals.speed_m_per_s);
         }
@@ -30,11 +32,15 @@ pub fn around(record: &CableRecord<'_>, mu: f64, noise_n: f64) -> Around {
     Around {
         cycle_s: record.cycle_s,
         tension_n,
+        mean_tension_n: sum_n / count.max(1.0),
         noise_n,
         friction_n: mu * tension_n,
         speed_m_per_s: speed.rms().unwrap_or(0.1).max(1e-4),
         end_s: record.rows.iter().map(|row| row.cycle).fold(0.0, f64::max) * record.cycle_s,
-        periods_m: Vec::new(),
+        mu,
+        length_noise_m: record.length_noise_m().unwrap_or(0.0).max(record.length_play_m / PLAY_OF_NOISE),
+        pulley_count: u32::try_from(record.params.pulley_count()).unwrap_or(0),
+        periods: Periods::default(),
     }
 }
 

@@ -58,6 +58,7 @@ pub(crate) mod engine {
     pub use super::gram::Gram;
     pub use super::interpolated::measured;
     pub use super::problem::{Comparison, Loss, Member, Problem};
+    pub use super::record::PLAY_OF_NOISE;
     pub use super::rewritten::{NewValues, with_values};
     pub use super::scores::Scores;
     pub use super::selection::{Standing, count};

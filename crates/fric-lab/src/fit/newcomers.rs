@@ -14,7 +14,7 @@ use super::candidates;
 use super::noise::white_noise;
 use super::pass::Forces;
 use super::problem::{Comparison, Member, Problem};
-use super::ripple::periods_m;
+use super::ripple::periods;
 use super::solve::search;
 use super::vector::Parameter;
 
@@ -76,7 +76,7 @@ fn entrants(
         }
         let residual_n = residual_n(growing, member, forces);
         let mut around = candidates::around(&member.record, values[MU], white_noise(&residual_n).unwrap_or(0.0));
-        around.periods_m = periods_m(&member.record, &residual_n);
+        around.periods = periods(&member.record, &residual_n);
         let free: Vec<Parameter> = wanted(effect, member).collect();
         let mut starts = candidates::starts(effect, values, &around, &member.record);
         for start in &mut starts {

@@ -1,9 +1,10 @@
 //! What a fit can be told.
 
 use fric_core::CableParams;
-use fric_core::effects::{Effect, pulley_eccentricity};
+use fric_core::effects::Effect;
 use fric_core::parameters::OFFSET;
 
+use super::ripple::is_period;
 use super::solve::Weighing;
 use super::vector::Parameter;
 
@@ -30,8 +31,7 @@ impl FitOptions {
             // An offset of the sensor and one at the platform are the same to the force: never both.
             let twice = |parameter: &Parameter| parameter.place() == OFFSET && acts(Effect::SensorOffset);
             // A ripple's period has no neutral value to start from: an effect that acts has one.
-            let varies =
-                |parameter: &Parameter| parameter.row().fitted || parameter.place() == pulley_eccentricity::PERIOD;
+            let varies = |parameter: &Parameter| parameter.row().fitted || is_period(parameter);
             Parameter::all().filter(varies).filter(free).filter(|parameter| !twice(parameter)).collect()
         })
     }

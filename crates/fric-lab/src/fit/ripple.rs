@@ -2,7 +2,12 @@
 
 use std::f64::consts::TAU;
 
-use super::record::CableRecord;
+use fric_core::effects::Effect;
+use fric_core::effects::ripple::PERIOD_KEY;
+
+use super::record::{CableRecord, Row};
+use super::vector::Parameter;
+use crate::effects::Periods;
 
 /// Periods of a ripple that are looked for, and the strongest of them that are tried.
 const PERIODS: usize = 512;
@@ -10,15 +15,36 @@ const MOST_PERIODS: usize = 2;
 /// Golden sections of half a turn, down to a thousandth.
 const SECTIONS: usize = 14;
 
-/// The periods in the cable's length at which a residual ripples in proportion to the tension, the strongest first.
-pub fn periods_m(record: &CableRecord<'_>, residual_n: &[f64]) -> Vec<f64> {
+/// The period of an effect that is periodic in the cable's length. It has no neutral value to start from: a scan of the residual finds it.
+pub fn period_of(effect: Effect) -> Option<Parameter> {
+    Parameter::of(effect).find(is_period)
+}
+
+/// Whether a parameter is the period of a ripple.
+pub fn is_period(parameter: &Parameter) -> bool {
+    parameter.row().key == PERIOD_KEY
+}
+
+/// The periods in the cable's length at which a residual ripples.
+pub fn periods(record: &CableRecord<'_>, residual_n: &[f64]) -> Periods {
+    Periods {
+        with_load: periods_m(record, residual_n, |row| row.signals.sensor_force_n),
+        with_friction: periods_m(record, residual_n, |row| {
+            row.signals.sensor_force_n * row.signals.displacement_m.signum()
+        }),
+        alone: periods_m(record, residual_n, |_| 1.0),
+    }
+}
+
+/// The periods at which a residual ripples in proportion to something, the strongest first.
+fn periods_m(record: &CableRecord<'_>, residual_n: &[f64], carrier: impl Fn(&Row) -> f64) -> Vec<f64> {
     /// Samples that are enough.
     const ENOUGH: usize = 6000;
     let moving = record.rows.iter().zip(residual_n).filter(|(row, residual_n)| {
         residual_n.is_finite() && row.signals.displacement_m.abs() > 0.0 && row.signals.sensor_force_n > 0.0
     });
     let samples: Vec<(f64, f64)> =
-        moving.map(|(row, residual_n)| (row.signals.length_m, residual_n / row.signals.sensor_force_n)).collect();
+        moving.map(|(row, residual_n)| (row.signals.length_m, residual_n / carrier(row))).collect();
     let (least_m, greatest_m) =
         samples.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), (length_m, _)| {
             (least.min(*length_m), most.max(*length_m))

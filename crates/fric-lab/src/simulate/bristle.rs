@@ -90,6 +90,12 @@ struct Bristle {
     compliance_m_per_n: f64,
     /// The pulley nearest to the platform.
     is_last: bool,
+    /// Part of what all pulleys share.
+    share: f64,
+    /// It has a μ of its own.
+    has_own_mu: bool,
+    /// How many times the friction of its load it holds at most.
+    held_ratio: f64,
 }
 
 impl BristleChain {
@@ -98,7 +104,10 @@ impl BristleChain {
         #[expect(clippy::cast_precision_loss, reason = "a number of pulleys")]
         let [count, places] = [pulleys.len(), pulleys.len().max(1)].map(|count| count as f64);
         let bristle = |(place, &pulley): (f64, &PulleyTruth)| Bristle {
-            pulley,
+            pulley: PulleyTruth { mu: effects.own_mu(place).unwrap_or(pulley.mu), ..pulley },
+            share: 1.0 / places,
+            has_own_mu: effects.own_mu(place).is_some(),
+            held_ratio: effects.held_ratio(),
             stiffness_n_per_m: sigma_n_per_m / places,
             deflection_m: 0.0,
             exponent: effects.presliding_exponent(),
@@ -110,9 +119,9 @@ impl BristleChain {
         Self { pulleys, sensor_pulley, effects }
     }
 
-    /// What acts on the cable.
-    pub fn effects(&self) -> &TruthEffects {
-        &self.effects
+    /// What acts on the cable, to go on in time.
+    pub fn effects(&mut self) -> &mut TruthEffects {
+        &mut self.effects
     }
 
     /// Whether the pulleys have mass.
@@ -158,11 +167,11 @@ impl BristleChain {
         }
     }
 
-    /// Bearing friction that the sensor feels while all pulleys slide one way, per tension and to first order in μ: with the pulleys' own
-    /// μ, and with a μ of 1.
+    /// Bearing friction that the sensor feels while all pulleys slide one way, per tension and to first order in μ: with the pulleys'
+    /// μ, and with a μ of 1; without a pulley that has one of its own.
     pub fn sliding_per_tension(&self, pose_cos: f64) -> [f64; 2] {
         let mut sums = [0.0; 2];
-        for (place, bristle) in self.pulleys.iter().enumerate() {
+        for (place, bristle) in self.pulleys.iter().enumerate().filter(|(_, bristle)| !bristle.has_own_mu) {
             let cos = bristle.pulley.cos_wrap.unwrap_or(pose_cos);
             // A sensor pulley feels its own friction on the winch's side alone, the others' on both.
             let felt = if self.sensor_pulley && place == 0 { -cos / (1.0 - cos) } else { 1.0 };
@@ -196,7 +205,8 @@ impl Bristle {
 
     fn upstream_n(&self, downstream_n: f64, deflection_m: f64, at: &Moment, effects: &TruthEffects) -> f64 {
         let speed_m_per_s = self.speed_m_per_s(at);
-        let viscous_n = self.pulley.viscous_n_s_per_m * effects.viscous_factor(speed_m_per_s) * speed_m_per_s;
+        let viscous_n = self.pulley.viscous_n_s_per_m * effects.viscous_factor(speed_m_per_s) * speed_m_per_s
+            + effects.viscous_n(speed_m_per_s) * self.share;
         let inertia_n = self.mass_kg * at.acceleration_m_per_s2;
         (downstream_n - self.stiffness_n_per_m * deflection_m - viscous_n - inertia_n).max(0.0)
     }
@@ -210,9 +220,41 @@ impl Bristle {
         let first_m_per_s = (first_m - begin_m) / own_s;
         let base_m = begin_m + (1.0 - GAMMA) * step_s * first_m_per_s;
         let second_m = self.stage(base_m, own_s, second, forces_n[1], first_m, effects);
+        let second_m = self.slipped_back_m(second_m, second, forces_n[1], effects);
         forces_n[0] = self.upstream_n(forces_n[0], first_m, first, effects);
         forces_n[1] = self.upstream_n(forces_n[1], second_m, second, effects);
         self.deflection_m = second_m;
+    }
+
+    /// μ without what depends on the load, and friction beside it, N.
+    fn sliding(&self, at: &Moment, effects: &TruthEffects) -> (f64, f64) {
+        let speed_m_per_s = self.speed_m_per_s(at);
+        let contact = Contact { speed_m_per_s, length_m: at.length_m, time_s: at.time_s, is_last_pulley: self.is_last };
+        (self.pulley.mu * effects.mu_factor(&contact), effects.drag_n(&contact))
+    }
+
+    /// What the bearing holds under the tension behind it at a deflection, N.
+    fn sliding_n(
+        &self,
+        (mu, drag_n): (f64, f64),
+        (force_n, deflection_m): (f64, f64),
+        at: &Moment,
+        effects: &TruthEffects,
+    ) -> f64 {
+        let upstream_n = self.upstream_n(force_n, deflection_m, at, effects);
+        let squared = upstream_n * upstream_n - 2.0 * upstream_n * force_n * self.cos_wrap(at) + force_n * force_n;
+        let normal_n = libm::sqrt(squared.max(0.0));
+        mu * effects.load_factor(normal_n) * normal_n + drag_n
+    }
+
+    /// The deflection after the part that the load does not bear has gone back.
+    fn slipped_back_m(&self, deflection_m: f64, at: &Moment, force_n: f64, effects: &TruthEffects) -> f64 {
+        if self.held_ratio.is_infinite() {
+            return deflection_m;
+        }
+        let sliding_n = self.sliding_n(self.sliding(at, effects), (force_n, deflection_m), at, effects);
+        let most_m = self.held_ratio * sliding_n / self.stiffness_n_per_m;
+        deflection_m.clamp(-most_m, most_m)
     }
 
     /// Solves `z = base + h·v·g(1 − sgn(v)·σ·z/f_c(z))` for z.
@@ -222,16 +264,10 @@ impl Bristle {
         if travel_m.abs() <= 0.0 {
             return base_m;
         }
-        let contact = Contact { speed_m_per_s, length_m: at.length_m, time_s: at.time_s, is_last_pulley: self.is_last };
-        let mu = self.pulley.mu * effects.mu_factor(&contact);
-        let drag_n = effects.drag_n(&contact);
-        let cos = self.cos_wrap(at);
+        let sliding = self.sliding(at, effects);
         let mut deflection_m = guess_m;
         for _ in 0..MOST_ROUNDS {
-            let upstream_n = self.upstream_n(force_n, deflection_m, at, effects);
-            let squared = upstream_n * upstream_n - 2.0 * upstream_n * force_n * cos + force_n * force_n;
-            let normal_n = libm::sqrt(squared.max(0.0));
-            let sliding_n = mu * effects.load_factor(normal_n) * normal_n + drag_n;
+            let sliding_n = self.sliding_n(sliding, (force_n, deflection_m), at, effects);
             let last_m = deflection_m;
             deflection_m =
                 presliding::stage(base_m, travel_m, self.stiffness_n_per_m, sliding_n, self.exponent, last_m);

@@ -19,7 +19,7 @@ const FORCE_N: f64 = 9.0;
 
 fn with(texts: &[&str]) -> Result<TruthEffects, Box<dyn core::error::Error>> {
     let hidden = texts.iter().map(|text| HiddenEffect::parse(text)).collect::<Result<Vec<_>, _>>()?;
-    let cable = CableCause { start_length_m: 1.0, random: &|_| ChaCha8Rng::seed_from_u64(0) };
+    let cable = CableCause { start_length_m: 1.0, sensor_ratio: 0.5, random: &|_| ChaCha8Rng::seed_from_u64(0) };
     Ok(TruthEffects::new(&[], &hidden, &[], &cable)?)
 }
 

@@ -317,7 +317,7 @@ impl Simulation {
             let sensor_noise_n = self.sensor_noise_n * sensor_noise + cable.sensor_wander.advance();
             let CableMotion { length_m, speed_m_per_s } = cable.logged(&self.motion, time_s, self.cycle_s);
             *input = CableInput {
-                sensor_force_n: cable.reading_n(sensor_force_n, sensor_noise_n, time_s),
+                sensor_force_n: cable.reading_n(sensor_force_n, sensor_noise_n, time_s, self.cycle_s),
                 length_m,
                 speed_m_per_s,
             };
@@ -394,6 +394,7 @@ impl SimulatedCable {
         let start = motion.of_cable(params, motion.platform(0.0).as_ref(), 0.0);
         let cause = CableCause {
             start_length_m: start.map_or(0.0, |start| start.length_m),
+            sensor_ratio: 1.0 / params.frictionless_gain(),
             random: &|place| random_of(options.seed, Purpose::Disturbance as u64 + place as u64, cable),
         };
         let effects = TruthEffects::new(&table.effects, &options.effects, &options.disturbances, &cause)?;
@@ -456,9 +457,12 @@ impl SimulatedCable {
     }
 
     /// The force in the log.
-    fn reading_n(&mut self, sensor_force_n: f64, noise_n: f64, time_s: f64) -> f64 {
+    fn reading_n(&mut self, sensor_force_n: f64, noise_n: f64, time_s: f64, cycle_s: f64) -> f64 {
+        let length_m = self.wound.length_m;
         let effects = self.chain.effects();
-        let shown_n = effects.sensor_gain() * sensor_force_n + effects.sensor_offset_n(time_s) + noise_n;
+        let felt_n = effects.sensor_gain() * effects.bent_n(sensor_force_n);
+        let shown_n = felt_n + effects.winch_force_n(length_m) + effects.sensor_offset_n(time_s) + noise_n;
+        let shown_n = effects.lagging_n(shown_n, cycle_s);
         let reading_n = match self.reading_n {
             Some(last_n) if effects.is_frozen(time_s) => last_n,
             _ => effects.reading_n(shown_n),

@@ -3,8 +3,8 @@
 //! Each implements [`TruthEffect`](crate::effects::truth::TruthEffect) from the physics, not from the compensator's code: [`effects`](crate::effects) those of the catalogue,
 //! [`disturbances`](super::disturbances) what is in none.
 //!
-//! Where several act at one place, factors multiply and forces add up; of what the sensor shows the gain comes first, then
-//! offsets, then noise, then what the amplifier makes of the sum.
+//! Where several act at one place, factors multiply and forces add up; of what the sensor shows the bend of its curve comes first, then
+//! the gain, offsets, noise, then what the amplifier makes of the sum.
 
 use fric_core::effects::Effect;
 use fric_core::effects::EffectParams;
@@ -21,6 +21,8 @@ use crate::effects::truth::{Cause, Contact, TruthEffect};
 pub struct CableCause<'a> {
     /// Length where the run starts, m.
     pub start_length_m: f64,
+    /// What the sensor shows of the tension without friction, 1.
+    pub sensor_ratio: f64,
     /// A stream of random numbers for the disturbance at a place of the list.
     pub random: &'a dyn Fn(usize) -> ChaCha8Rng,
 }
@@ -58,8 +60,8 @@ impl TruthEffects {
 
     fn add(&mut self, effect: Effect, params: &EffectParams, cable: &CableCause<'_>) {
         let value = |key: &str| params.get(effect, key).unwrap_or_default();
-        let CableCause { start_length_m, random } = cable;
-        let mut cause = Cause { value: &value, start_length_m: *start_length_m, random: &mut random(0) };
+        let CableCause { start_length_m, sensor_ratio, random } = *cable;
+        let mut cause = Cause { value: &value, start_length_m, sensor_ratio, random: &mut random(0) };
         self.0.extend(effects::of(effect).map(|lab| (lab.truth)(&mut cause)));
     }
 
@@ -90,6 +92,18 @@ impl TruthEffect for TruthEffects {
         self.sum(|effect| effect.drag_n(contact))
     }
 
+    fn own_mu(&self, pulley: f64) -> Option<f64> {
+        self.0.iter().find_map(|effect| effect.own_mu(pulley))
+    }
+
+    fn held_ratio(&self) -> f64 {
+        self.0.iter().fold(f64::INFINITY, |least, effect| least.min(effect.held_ratio()))
+    }
+
+    fn viscous_n(&self, speed_m_per_s: f64) -> f64 {
+        self.sum(|effect| effect.viscous_n(speed_m_per_s))
+    }
+
     fn viscous_factor(&self, speed_m_per_s: f64) -> f64 {
         self.product(|effect| effect.viscous_factor(speed_m_per_s))
     }
@@ -118,12 +132,24 @@ impl TruthEffect for TruthEffects {
         self.sum(TruthEffect::winch_play_m)
     }
 
+    fn bent_n(&self, force_n: f64) -> f64 {
+        self.0.iter().fold(force_n, |force_n, effect| effect.bent_n(force_n))
+    }
+
+    fn winch_force_n(&self, length_m: f64) -> f64 {
+        self.sum(|effect| effect.winch_force_n(length_m))
+    }
+
     fn sensor_gain(&self) -> f64 {
         self.product(TruthEffect::sensor_gain)
     }
 
     fn sensor_offset_n(&self, time_s: f64) -> f64 {
         self.sum(|effect| effect.sensor_offset_n(time_s))
+    }
+
+    fn lagging_n(&mut self, force_n: f64, step_s: f64) -> f64 {
+        self.0.iter_mut().fold(force_n, |force_n, effect| effect.lagging_n(force_n, step_s))
     }
 
     fn reading_n(&self, shown_n: f64) -> f64 {
@@ -141,7 +167,7 @@ mod tests {
     use rand_chacha::rand_core::SeedableRng;
 
     fn any_cable() -> CableCause<'static> {
-        CableCause { start_length_m: 1.0, random: &|place| ChaCha8Rng::seed_from_u64(place as u64) }
+        CableCause { start_length_m: 1.0, sensor_ratio: 1.0, random: &|place| ChaCha8Rng::seed_from_u64(place as u64) }
     }
 
     #[test]

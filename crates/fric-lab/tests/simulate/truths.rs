@@ -272,7 +272,7 @@ fn play_delays_the_reversal_of_friction() {
     let play_m = 0.001;
     let robot = bench("{ wrap_deg = 180.0, sensor = true }", "mu = 0.02, sigma_n_per_m = 2000.0");
     let plain = Signals::of(&robot, &short());
-    let loose = Signals::of(&robot, &spoilt(&format!("backlash:play_m={play_m}")));
+    let loose = Signals::of(&robot, &hiding(&format!("gear_backlash:play_m={play_m}")));
     assert!(loose.length_m == plain.length_m);
     // F_1 less half of F_1 + F_0.
     let friction_n = |cycle: usize| 2.0 * loose.reference_n[cycle] - loose.sensor_n[cycle];
@@ -398,7 +398,7 @@ fn disturbances_are_read_as_they_are_written_and_errors_name_what_is_known() {
     assert_eq!(
         problem("hmu:amplitude_n=1"),
         "there is no disturbance `hmu`; did you mean `hum`? known are `hum`, `frozen`, `clipped`, `step`, `quantised`, `warming`, \
-         `local_defect`, `backlash`"
+         `local_defect`"
     );
     assert!(problem("hum").starts_with("the disturbance `hum` has no value, which would hide nothing"));
     assert_eq!(
@@ -407,7 +407,7 @@ fn disturbances_are_read_as_they_are_written_and_errors_name_what_is_known() {
          `frequency_hz` (0.01 to 100000 Hz)"
     );
     assert!(problem("hum:amplitude_n=loud").starts_with("`amplitude_n=loud` is not `key=value` with a number"));
-    assert_eq!(problem("backlash:play_m=nan"), "`play_m` of the disturbance `backlash` is NaN; allowed is 0 to 1 m");
+    assert_eq!(problem("step:shift_n=nan"), "`shift_n` of the disturbance `step` is NaN; allowed is -1000 to 1000 N");
     let twice = vec![Disturbance::parse("hum:amplitude_n=0.1").unwrap(); 2];
     let error = fric_lab::simulate::Simulation::new(&rubbing(), &SimulationOptions { disturbances: twice, ..short() });
     assert_eq!(

@@ -16,8 +16,6 @@ const INTERVALS: usize = 900;
 /// Widths of a chart that is alone, and of one of two.
 const WIDE: f64 = 960.0;
 const HALF: f64 = 470.0;
-/// Candidates that are shown.
-const MOST_CANDIDATES: usize = 16;
 
 /// The page.
 #[must_use]
@@ -344,7 +342,7 @@ fn candidates(cable: &DiscoverCableResult) -> Markup {
                 h3 { "Candidates" }
                 table {
                     tr { th { "effect" } th { "ΔBIC" } th { "rms held out [N]" } }
-                    @for candidate in cable.candidates.iter().take(MOST_CANDIDATES) {
+                    @for candidate in &cable.candidates {
                         tr class=[is_found(candidate).then_some("found")] {
                             td { (candidate.kind) } td { (evidence(candidate.delta_bic)) }
                             td { (number(candidate.held_out_rms_n)) }

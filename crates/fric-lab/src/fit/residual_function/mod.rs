@@ -136,6 +136,7 @@ impl Cable {
             cycle_s: self.cycle_s,
             interval_s: self.interval_s,
             reference_is_known: self.reference_is_known,
+            length_play_m: 0.0,
         }
     }
 }

@@ -3,7 +3,6 @@
 //! For: logs whose disagreement with the model must be found and placed without being given a wrong name. To add one: a file
 //! here that implements [`TruthEffect`], and its row in [`DISTURBANCES`].
 
-mod backlash;
 mod clipped;
 mod frozen;
 mod hum;
@@ -52,7 +51,7 @@ pub struct DisturbanceParameter {
 
 /// Every disturbance there is.
 pub const DISTURBANCES: &[DisturbanceRow] =
-    &[hum::ROW, frozen::ROW, clipped::ROW, step::ROW, quantised::ROW, warming::ROW, local_defect::ROW, backlash::ROW];
+    &[hum::ROW, frozen::ROW, clipped::ROW, step::ROW, quantised::ROW, warming::ROW, local_defect::ROW];
 
 /// A disturbance with values, checked against its row.
 ///
@@ -116,7 +115,7 @@ impl Disturbance {
     /// At work on a cable.
     pub(super) fn build(&self, start_length_m: f64, random: &mut ChaCha8Rng) -> Box<dyn TruthEffect> {
         let value = |key: &str| self.value(key).unwrap_or_default();
-        let mut cause = Cause { value: &value, start_length_m, random };
+        let mut cause = Cause { value: &value, start_length_m, sensor_ratio: 1.0, random };
         row(self.kind).map_or_else(|| Box::new(Nothing) as Box<dyn TruthEffect>, |row| (row.build)(&mut cause))
     }
 }

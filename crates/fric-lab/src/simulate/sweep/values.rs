@@ -31,7 +31,6 @@ pub fn disturbance(kind: &str, strength: &mut Sizing<'_>) -> Result<Disturbance,
             let from_start_m = uniform(strength.random, -0.03, 0.03);
             vec![("drag_n", strength.about(0.25)), ("from_start_m", from_start_m), ("width_m", 0.01)]
         }
-        "backlash" => vec![("play_m", strength.about(0.0005))],
         // Refused by name.
         _ => Vec::new(),
     };

@@ -1,0 +1,40 @@
+//! `friction_ripple`: friction that goes up and down with the cable's length.
+//!
+//! Equation: `μ(l) = μ·(1 + sin_ratio·sin(2πl/period_m) + cos_ratio·cos(2πl/period_m))`, l the cable length, behind a play of the gear if there is one. In motion one way
+//! the force ripples as with `pulley_eccentricity`, but it turns round with the motion, which the other does not. The zero of
+//! the length and the period are as they are there. Neutral: both ratios 0.
+//!
+//! Cause: a bearing with a flat place, a groove that is not round, a drum on which the cable lies unevenly.
+
+use super::ripple::{self, Ripple};
+use super::{Acting, Effect, EffectRow, Memory, OnMu};
+use crate::scalar::Scalar;
+
+const EXCITATION: &str = "slow long movements in both directions over several turns of the pulleys";
+
+/// What it is.
+pub const ROW: EffectRow = EffectRow {
+    kind: "friction_ripple",
+    cause: "a bearing or groove is not the same all around, so friction ripples as the pulley or the drum turns",
+    remedy: "look for a damaged bearing, or dirt in the groove, of the pulley whose circumference is the period",
+    parameters: &ripple::rows(["sin_ratio", "cos_ratio"], "1", 0.6, EXCITATION),
+    example: &[0.2, -0.15, 0.07],
+    memory: Memory::Nothing,
+    on_mu: OnMu::AtMost {
+        factor: |values| 1.0 + ripple::amplitude(values),
+        key: "sin_ratio",
+        problem: "and `cos_ratio` raise the friction, `mu`·(1 + amplitude), beyond 0.9; lower them, or `mu`",
+    },
+    goes_by_time: false,
+};
+
+/// The effect by itself, to ask whether it acts.
+pub(crate) const ACTS: Acting = Effect::FrictionRipple.acts();
+/// Place of `sin_ratio` in [`Values`](crate::parameters::Values).
+pub const SIN: usize = Effect::FrictionRipple.first_place();
+
+/// Factor on μ at a cable length (m), from a cable's parameter values, by their place.
+#[inline(always)]
+pub fn factor<T: Scalar>(value: impl Fn(usize) -> T, length_m: T) -> T {
+    Ripple::of(SIN, value).added_to(T::splat(1.0), length_m)
+}

@@ -1,0 +1,79 @@
+//! `friction_warmup`: friction that goes to another value as the machine warms up.
+//!
+//! Equation: `μ(t) = μ·(1 + ratio·(1 − exp(−t/time_constant_s)))`, t from the start of the run. So `μ` is that of the cold machine and
+//! `μ·(1 + ratio)` that of the warm one, at which it stays. What changes evenly over the run is `friction_drift`. A
+//! machine that is warm already does not begin anew: then set `μ` to that of the warm one and leave the effect out. Neutral: `ratio = 0`.
+//!
+//! Cause: grease becomes thinner as bearings warm up to the temperature at which they lose what friction heats them with.
+
+use super::{Acting, Effect, EffectRow, Memory, OnMu, first, warmed};
+use crate::parameters::ParameterRow;
+use crate::scalar::Scalar;
+
+const EXCITATION: &str =
+    "a long run from cold with the same movements throughout, three times as long as it takes to warm up";
+
+/// What it is.
+pub const ROW: EffectRow = EffectRow {
+    kind: "friction_warmup",
+    cause: "bearings and grease warm up towards a final temperature, and friction with them",
+    remedy: "let the robot run warm before work, and identify it warm; or a grease that depends less on temperature",
+    parameters: &[
+        ParameterRow {
+            key: "ratio",
+            unit: "1",
+            neutral: 0.0,
+            min: -0.95,
+            max: 5.0,
+            fitted: true,
+            excitation: EXCITATION,
+        },
+        ParameterRow {
+            key: "time_constant_s",
+            unit: "s",
+            neutral: 10.0,
+            min: 1e-2,
+            max: 1e6,
+            fitted: true,
+            excitation: EXCITATION,
+        },
+    ],
+    example: &[-0.3, 5.0],
+    memory: Memory::Nothing,
+    on_mu: OnMu::AtMost {
+        factor: |values| 1.0 + first(values).max(0.0),
+        key: "ratio",
+        problem: "raises the friction of the warm machine, `mu`·(1 + `ratio`), beyond 0.9; lower it, or `mu`",
+    },
+    goes_by_time: true,
+};
+
+/// The effect by itself, to ask whether it acts.
+pub(crate) const ACTS: Acting = Effect::FrictionWarmup.acts();
+/// Place of `ratio` in [`Values`](crate::parameters::Values).
+pub const RATIO: usize = Effect::FrictionWarmup.first_place();
+/// Place of `time_constant_s`.
+pub const TIME_CONSTANT: usize = RATIO + 1;
+
+/// The effect's parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrictionWarmup<T> {
+    /// Change of μ from cold to warm as a share of the cold one, 1.
+    pub ratio: T,
+    /// Time in which all but 1/e of it has come, s.
+    pub time_constant_s: T,
+}
+
+impl<T: Scalar> FrictionWarmup<T> {
+    /// From a cable's parameter values, by their place.
+    #[inline(always)]
+    pub fn of(value: impl Fn(usize) -> T) -> Self {
+        Self { ratio: value(RATIO), time_constant_s: value(TIME_CONSTANT) }
+    }
+
+    /// Factor on μ at a time (s) since the start.
+    #[inline(never)]
+    pub fn factor(&self, time_s: T) -> T {
+        T::splat(1.0) + self.ratio * warmed(time_s, self.time_constant_s)
+    }
+}

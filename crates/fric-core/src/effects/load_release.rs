@@ -1,0 +1,86 @@
+//! `load_release`: a bearing that holds no more friction than its present load bears.
+//!
+//! Equation: before a cycle moves the friction `f` that a contact has stored, it is held within `± f_c/ratio`, `f_c` the sliding friction at the present load. Dahl's law alone (\[P\] 16) stores friction until the cable moves: after a load that falls at rest
+//! it keeps what the higher load had built up. Which of the two a machine does is for its data to say. With `ratio = 1` a contact holds what it
+//! rubs with at the present load, with less it holds more. Neutral: `ratio = 0`.
+//!
+//! Cause: the elastic contact slips back as the normal force falls.
+
+use super::{Acting, Effect, EffectRow, Memory, OnMu};
+use crate::parameters::ParameterRow;
+use crate::scalar::Scalar;
+
+const EXCITATION: &str = "a load on the resting platform that rises and falls by a third and more";
+
+/// What it is.
+pub const ROW: EffectRow = EffectRow {
+    kind: "load_release",
+    cause: "as the load on a resting pulley falls, its contact slips back until it holds what the lower load bears",
+    remedy: "nothing is wrong with the machine: it is how its bearings hold friction; keep the term",
+    parameters: &[ParameterRow {
+        key: "ratio",
+        unit: "1",
+        neutral: 0.0,
+        min: 0.0,
+        max: 1.5,
+        fitted: true,
+        excitation: EXCITATION,
+    }],
+    example: &[1.0],
+    memory: Memory::Nothing,
+    on_mu: OnMu::Unchanged,
+    goes_by_time: false,
+};
+
+/// The effect by itself, to ask whether it acts.
+pub(crate) const ACTS: Acting = Effect::LoadRelease.acts();
+/// Place of `ratio` in [`Values`](crate::parameters::Values).
+pub const RATIO: usize = Effect::LoadRelease.first_place();
+
+/// The effect's parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoadRelease<T> {
+    /// Sliding friction as a share of what a contact holds at most, 1; 0 where it holds whatever it has stored.
+    pub ratio: T,
+}
+
+impl<T: Scalar> LoadRelease<T> {
+    /// From a cable's parameter values, by their place.
+    #[inline(always)]
+    pub fn of(value: impl Fn(usize) -> T) -> Self {
+        Self { ratio: value(RATIO) }
+    }
+
+    /// Friction held of what is stored under a load at which `sliding_n` rubs, N. What is within it stays as it is, to the bit.
+    #[inline(always)]
+    pub fn held_n(&self, stored_n: T, sliding_n: T) -> T {
+        let most_n = sliding_n.max(T::splat(0.0)) / self.ratio.max(T::splat(LEAST_RATIO));
+        let is_beyond = sliding_n.max(T::splat(0.0)).lt(self.ratio * stored_n.abs());
+        T::select(is_beyond, most_n * stored_n.sign(), stored_n)
+    }
+}
+
+/// No contact holds so many times its sliding friction.
+const LEAST_RATIO: f64 = 1e-6;
+
+#[cfg(test)]
+mod tests {
+    use super::LoadRelease;
+
+    #[test]
+    fn what_the_load_does_not_bear_is_given_back() {
+        let held_n = |ratio, stored_n: f64, sliding_n| LoadRelease { ratio }.held_n(stored_n, sliding_n);
+        for (ratio, stored_n, sliding_n, expected_n) in [
+            (1.0, 0.8, 0.5, 0.5),
+            (1.0, -0.8, 0.5, -0.5),
+            (0.5, 0.9, 0.4, 0.8),
+            (0.5, 0.7, 0.4, 0.7),
+            (1.0, 0.3, 0.5, 0.3),
+            (1.0, 0.3, -0.1, 0.0),
+            (0.0, -0.8, 0.5, -0.8),
+        ] {
+            assert!((held_n(ratio, stored_n, sliding_n) - expected_n).abs() < 1e-15, "{ratio} {stored_n} {sliding_n}");
+        }
+        assert_eq!(held_n(0.0, -0.0, 0.5).to_bits(), (-0.0_f64).to_bits());
+    }
+}

@@ -1,0 +1,117 @@
+//! `sensor_nonlinearity`: a force sensor whose curve is bent.
+//!
+//! Equation: `T_shown = T + curvature_per_n·(T − reference_n)²`, T the tension as if nothing rubbed, `F_s/(1 − cos α₁)`: what the sensor was calibrated for at
+//! the load `reference_n`, where value and slope of its curve are right. So the cycle takes `T = reference + 2y/(1 + √(1 + 4·curvature·y))`, `y = T_shown − reference`. Where the curve
+//! has lost half its slope the cycle goes on along its tangent: no sensor loses more. With a wrong gain, `F_shown = gain·(the above)`.
+//! Another reference is another gain and offset. Neutral: `curvature_per_n = 0`, whatever `reference_n`.
+//!
+//! Cause: a load cell that is mounted askew or overloaded, a bridge of one active gauge, a lever whose angle changes with the load.
+
+use super::{Acting, Effect, EffectRow, Memory, OnMu};
+use crate::parameters::ParameterRow;
+use crate::scalar::Scalar;
+
+const EXCITATION: &str = "long movements at cable forces that differ by a factor of three and more";
+
+/// What it is.
+pub const ROW: EffectRow = EffectRow {
+    kind: "sensor_nonlinearity",
+    cause: "the curve of the force sensor is bent: it shows more, or less, than in proportion at high forces",
+    remedy: "calibrate the sensor at the winch with at least five known weights over its range; check its mount",
+    parameters: &[
+        ParameterRow {
+            key: "curvature_per_n",
+            unit: "1/N",
+            neutral: 0.0,
+            min: -1.0,
+            max: 1.0,
+            fitted: true,
+            excitation: EXCITATION,
+        },
+        ParameterRow {
+            key: "reference_n",
+            unit: "N",
+            neutral: 10.0,
+            min: 0.0,
+            max: 1e6,
+            fitted: true,
+            excitation: EXCITATION,
+        },
+    ],
+    example: &[0.01, 7.0],
+    memory: Memory::Nothing,
+    on_mu: OnMu::Unchanged,
+    goes_by_time: false,
+};
+
+/// The effect by itself, to ask whether it acts.
+pub(crate) const ACTS: Acting = Effect::SensorNonlinearity.acts();
+/// Place of `curvature_per_n` in [`Values`](crate::parameters::Values).
+pub const CURVATURE: usize = Effect::SensorNonlinearity.first_place();
+
+/// Place of `reference_n`.
+pub const REFERENCE: usize = CURVATURE + 1;
+
+/// The effect's parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SensorNonlinearity<T> {
+    /// What the sensor shows too much for the square of the newtons from the reference, 1/N.
+    pub curvature_per_n: T,
+    /// Tension at which value and slope of its curve are right, N.
+    pub reference_n: T,
+}
+
+impl<T: Scalar> SensorNonlinearity<T> {
+    /// From a cable's parameter values, by their place.
+    #[inline(always)]
+    pub fn of(value: impl Fn(usize) -> T) -> Self {
+        Self { curvature_per_n: value(CURVATURE), reference_n: value(REFERENCE) }
+    }
+
+    /// What of a change of the force shows at least, 1.
+    pub(crate) fn shown_ratio(&self) -> T {
+        T::select(self.curvature_per_n.eq(T::splat(0.0)), T::splat(1.0), T::splat(LEAST_SLOPE))
+    }
+
+    /// The sensor force there is for the one shown, N, of a sensor that tells `1/frictionless_gain` of the tension.
+    #[inline(never)]
+    pub fn undo(&self, shown_n: T, frictionless_gain: T) -> T {
+        let (one, two) = (T::splat(1.0), T::splat(2.0));
+        let from_reference_n = shown_n.scale(frictionless_gain) - self.reference_n;
+        // The slope of the curve is the root.
+        let square = one + T::splat(4.0) * self.curvature_per_n * from_reference_n;
+        let least = T::splat(LEAST_SLOPE * LEAST_SLOPE);
+        let on_parabola_n = two * from_reference_n / (one + square.max(least).sqrt());
+        let is_beyond = square.lt(least);
+        let curvature_per_n = T::select(is_beyond, self.curvature_per_n, one);
+        // The tangent at `y₀ = −3/(16c)`, where the parabola has come to `4y₀/3`.
+        let on_tangent_n = two * from_reference_n + T::splat(0.125) / curvature_per_n;
+        let true_n = T::select(is_beyond, on_tangent_n, on_parabola_n);
+        shown_n - (from_reference_n - true_n) / frictionless_gain
+    }
+}
+
+/// The least slope that the curve of a sensor has, 1; `undo` has the tangent for one half.
+const LEAST_SLOPE: f64 = 0.5;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_curve_is_undone_as_far_as_it_has_half_its_slope() {
+        for curvature_per_n in [-0.01, 0.0, 0.003, 0.015] {
+            let sensor = SensorNonlinearity { curvature_per_n, reference_n: 8.0 };
+            for tension_n in [-2.0_f64, -0.1, 0.0, 3.0, 30.0] {
+                let shown_n = tension_n + curvature_per_n * (tension_n - 8.0).powi(2);
+                // A sensor at 180° shows twice the tension.
+                let force_n = sensor.undo(2.0 * shown_n, 0.5);
+                assert!((force_n - 2.0 * tension_n).abs() < 1e-9, "{curvature_per_n} {tension_n}: {force_n}");
+            }
+        }
+        // −0.01 has half its slope at 25 N above the reference, where it shows 18.75 N more; 1 N more is 2 N there.
+        let sensor = SensorNonlinearity { curvature_per_n: -0.01, reference_n: 8.0 };
+        assert!((sensor.undo(26.75_f64, 1.0) - 33.0).abs() < 1e-9);
+        assert!((sensor.undo(27.75_f64, 1.0) - 35.0).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,39 @@
+//! `winch_ripple`: a force that is periodic in the cable's length and does not go with the load.
+//!
+//! Equation: `F_shown = F_s + sin_n·sin(2πl/period_m) + cos_n·cos(2πl/period_m)` in the newtons that the sensor shows, l the cable length. What goes in proportion to
+//! the load is `pulley_eccentricity`, what turns round with the motion `friction_ripple`. The zero of the length and
+//! the period are as they are there. Neutral: `sin_n` and `cos_n` 0.
+//!
+//! Cause: the cogging of a motor whose current stands for the force, at its slots a turn; a drum whose cable pushes on a
+//! sensor in its mount.
+
+use super::ripple::{self, Ripple};
+use super::{Acting, Effect, EffectRow, Memory, OnMu};
+use crate::scalar::Scalar;
+
+const EXCITATION: &str =
+    "slow long movements over several turns of the winch, at cable forces that differ by a factor of two and more";
+
+/// What it is.
+pub const ROW: EffectRow = EffectRow {
+    kind: "winch_ripple",
+    cause: "the motor cogs, or the drum pushes on the sensor once a turn: the force shown ripples with the cable length whatever the load",
+    remedy: "measure the force behind the winch, or compensate the cogging in the drive; the period is the cable of a turn over the number of slots",
+    parameters: &ripple::rows(["sin_n", "cos_n"], "N", 1e4, EXCITATION),
+    example: &[0.1, -0.05, 0.03],
+    memory: Memory::Nothing,
+    on_mu: OnMu::Unchanged,
+    goes_by_time: false,
+};
+
+/// The effect by itself, to ask whether it acts.
+pub(crate) const ACTS: Acting = Effect::WinchRipple.acts();
+/// Place of `sin_n` in [`Values`](crate::parameters::Values).
+pub const SIN: usize = Effect::WinchRipple.first_place();
+
+/// What the sensor shows without the ripple for a force shown (N) at a cable length (m), from a cable's parameter values, by their place.
+#[inline(always)]
+pub fn undo<T: Scalar>(value: impl Fn(usize) -> T, shown_n: T, length_m: T) -> T {
+    let Ripple { sin, cos, period_m } = Ripple::of(SIN, value);
+    Ripple { sin: -sin, cos: -cos, period_m }.added_to(shown_n, length_m)
+}

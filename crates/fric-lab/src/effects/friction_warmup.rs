@@ -1,0 +1,36 @@
+//! `friction_warmup` in the simulated robot: bearings that warm up, and grease that becomes thinner with them.
+//!
+//! The temperature goes towards its final one as a body does that is heated evenly and cools in proportion; μ follows it.
+
+use super::truth::{Cause, Contact, TruthEffect, warmed};
+use super::{Around, LabEffect, Sizing, Start, always};
+use crate::random::uniform;
+
+/// What the lab knows of it.
+pub const LAB: LabEffect = LabEffect { truth, starts, typical, is_more_than_usual: always };
+
+#[derive(Debug)]
+struct Warming {
+    ratio: f64,
+    time_constant_s: f64,
+}
+
+fn truth(cause: &mut Cause<'_>) -> Box<dyn TruthEffect> {
+    let [ratio, time_constant_s] = ["ratio", "time_constant_s"].map(cause.value);
+    Box::new(Warming { ratio, time_constant_s })
+}
+
+impl TruthEffect for Warming {
+    fn mu_factor(&self, contact: &Contact) -> f64 {
+        1.0 + self.ratio * warmed(contact.time_s, self.time_constant_s)
+    }
+}
+
+fn starts(around: &Around) -> Vec<Start> {
+    around.time_constants_s().map(|time_s| vec![("ratio", 0.01), ("time_constant_s", time_s)]).to_vec()
+}
+
+fn typical(scale: &mut Sizing<'_>) -> Start {
+    let ratio = scale.either(0.4);
+    vec![("ratio", ratio), ("time_constant_s", scale.duration_s * uniform(scale.random, 0.1, 0.3))]
+}

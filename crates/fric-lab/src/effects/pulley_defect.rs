@@ -1,0 +1,50 @@
+//! `pulley_defect` in the simulated robot: one pulley's bearing has run dry.
+
+use fric_core::effects::pulley_defect::MU;
+use fric_core::parameters::{MU as MU_OF_ALL, Values};
+
+use super::truth::{Cause, TruthEffect};
+use super::{Around, LabEffect, Sizing, Start};
+use crate::random::uniform;
+
+/// What the lab knows of it.
+pub const LAB: LabEffect = LabEffect { truth, starts, typical, is_more_than_usual };
+
+/// The search begins from so many times the friction of the others.
+const TIMES: f64 = 2.0;
+/// Pulleys differ by a tenth and more, and one of three that has 1.3 times the friction of the others is no defect.
+const LEAST_TIMES: f64 = 1.5;
+
+#[derive(Debug)]
+struct Dry {
+    pulley: f64,
+    mu: f64,
+}
+
+fn truth(cause: &mut Cause<'_>) -> Box<dyn TruthEffect> {
+    let [pulley, mu] = ["pulley", "mu"].map(cause.value);
+    Box::new(Dry { pulley, mu })
+}
+
+impl TruthEffect for Dry {
+    fn own_mu(&self, pulley: f64) -> Option<f64> {
+        ((pulley - self.pulley).abs() < 0.5).then_some(self.mu)
+    }
+}
+
+/// Each pulley in turn.
+fn starts(around: &Around) -> Vec<Start> {
+    let of_pulley = |pulley| vec![("pulley", f64::from(pulley)), ("mu", TIMES * around.mu)];
+    (1..=around.pulley_count).map(of_pulley).collect()
+}
+
+fn typical(scale: &mut Sizing<'_>) -> Start {
+    // Of the three that a cable has.
+    let pulley = 1.0 + libm::floor(uniform(scale.random, 0.0, 3.0)).min(2.0);
+    let mu = scale.mu * (1.0 + scale.about(4.0));
+    vec![("pulley", pulley), ("mu", mu)]
+}
+
+fn is_more_than_usual(values: &Values, _: &Around) -> bool {
+    values[MU] > LEAST_TIMES * values[MU_OF_ALL]
+}

@@ -1,0 +1,38 @@
+//! `sensor_nonlinearity` in the simulated robot: a load cell that is mounted askew, whose lever changes with the load.
+
+use super::truth::{Cause, TruthEffect};
+use super::{Around, LabEffect, Sizing, Start, always};
+
+/// What the lab knows of it.
+pub const LAB: LabEffect = LabEffect { truth, starts, typical, is_more_than_usual: always };
+
+#[derive(Debug)]
+struct Askew {
+    curvature_per_n: f64,
+    reference_n: f64,
+    /// What the sensor shows of the tension, 1.
+    tension_ratio: f64,
+}
+
+fn truth(cause: &mut Cause<'_>) -> Box<dyn TruthEffect> {
+    let [curvature_per_n, reference_n] = ["curvature_per_n", "reference_n"].map(cause.value);
+    Box::new(Askew { curvature_per_n, reference_n, tension_ratio: cause.sensor_ratio })
+}
+
+impl TruthEffect for Askew {
+    fn bent_n(&self, force_n: f64) -> f64 {
+        let from_reference_n = force_n / self.tension_ratio - self.reference_n;
+        force_n + self.tension_ratio * self.curvature_per_n * from_reference_n * from_reference_n
+    }
+}
+
+fn starts(around: &Around) -> Vec<Start> {
+    // 1 % of the mean tension at twice of it; at 0 no reference shows.
+    vec![vec![("curvature_per_n", 0.01 / around.mean_tension_n), ("reference_n", around.mean_tension_n)]]
+}
+
+fn typical(scale: &mut Sizing<'_>) -> Start {
+    // 5 % of the mean tension at half and at one and a half of it.
+    let curvature_per_n = scale.either(0.2) / scale.tension_n;
+    vec![("curvature_per_n", curvature_per_n), ("reference_n", scale.tension_n)]
+}

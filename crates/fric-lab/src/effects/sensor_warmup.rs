@@ -1,0 +1,36 @@
+//! `sensor_warmup` in the simulated robot: an amplifier that was switched on shortly before.
+//!
+//! Its temperature goes towards the final one as a body does that is heated evenly and cools in proportion; its zero follows it.
+
+use super::truth::{Cause, TruthEffect, warmed};
+use super::{Around, LabEffect, Sizing, Start, always};
+use crate::random::uniform;
+
+/// What the lab knows of it.
+pub const LAB: LabEffect = LabEffect { truth, starts, typical, is_more_than_usual: always };
+
+#[derive(Debug)]
+struct SwitchedOn {
+    final_n: f64,
+    time_constant_s: f64,
+}
+
+fn truth(cause: &mut Cause<'_>) -> Box<dyn TruthEffect> {
+    let [final_n, time_constant_s] = ["final_n", "time_constant_s"].map(cause.value);
+    Box::new(SwitchedOn { final_n, time_constant_s })
+}
+
+impl TruthEffect for SwitchedOn {
+    fn sensor_offset_n(&self, time_s: f64) -> f64 {
+        self.final_n * warmed(time_s, self.time_constant_s)
+    }
+}
+
+fn starts(around: &Around) -> Vec<Start> {
+    around.time_constants_s().map(|time_s| vec![("final_n", around.noise_n), ("time_constant_s", time_s)]).to_vec()
+}
+
+fn typical(scale: &mut Sizing<'_>) -> Start {
+    let final_n = scale.either(0.3);
+    vec![("final_n", final_n), ("time_constant_s", scale.duration_s * uniform(scale.random, 0.1, 0.3))]
+}
