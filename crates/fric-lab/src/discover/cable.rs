@@ -7,7 +7,7 @@ use fric_core::parameters::{MU, NO_PRESLIDING_N_PER_M, OFFSET, SIGMA, VISCOUS, V
 use nalgebra::DMatrix;
 
 use super::candidates::around;
-use super::foreign::{RecordingFault, faulty_stretches, leave_out, of_stretches};
+use super::foreign::{Fault, RecordingFault, coarse_step_n, faulty_stretches, leave_out, of_stretches};
 use super::lines::{Line, Times, lines, motion_and_load};
 use super::naming::{self, Named, Naming, STRONG_BIC, Search};
 use super::noise::white_noise;
@@ -26,6 +26,8 @@ use crate::replay::Deviation;
 
 /// Lines whose frequencies differ by less than this share are the same.
 const SAME_LINE_RATIO: f64 = 1e-3;
+/// The steps of a converter are told of where they make this part of the noise, as squares: a twentieth of its size.
+const LEAST_ROUNDING: f64 = 0.1;
 /// Looks at a cable with what was found taken for given, until nothing more is found.
 const LOOKS: usize = 3;
 
@@ -94,6 +96,17 @@ pub fn discover_cable(record: &CableRecord<'_>, progress: &Progress) -> CableDis
     let rows = without_lines(record, &hum, &times);
     let mut faults: Vec<RecordingFault> = hum.iter().map(Line::fault).collect();
     faults.extend(of_stretches(&stretches, |cycle| record.time_s(cycle)));
+    let step_n = coarse_step_n(record).filter(|step_n| {
+        // Rounding is noise, evenly within ± half a step.
+        let rounding_n = record.params.frictionless_gain() * step_n / 12.0_f64.sqrt();
+        rounding_n * rounding_n > LEAST_ROUNDING * outcome.rest.noise_n * outcome.rest.noise_n
+    });
+    let coarse = |step_n| RecordingFault {
+        fault: Fault::CoarseConverter,
+        parameters: vec![("step_n", step_n)],
+        intervals_s: Vec::new(),
+    };
+    faults.extend(step_n.map(coarse));
     raw.with_rows(&rows).report(&outcome, samples, faults)
 }
 
@@ -106,7 +119,7 @@ pub fn held_out_squares(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<f
 }
 
 /// Which samples count, and the given model with start values from the data.
-fn given_to(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<(Vec<bool>, workbench::Model)> {
+pub fn given_to(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<(Vec<bool>, workbench::Model)> {
     if lack_of(record).is_some() {
         return None;
     }
@@ -118,8 +131,8 @@ fn given_to(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<(Vec<bool>, w
     Some((engine::used(&paper.standings), start))
 }
 
-/// Adds that the length is noisy: the given model is the one that takes the noise for motion.
-pub fn tell_of_length(found: &mut CableDiscovery, given: &CableRecord<'_>, fault: RecordingFault, stop: &AtomicBool) {
+/// Adds a fault that was corrected for the whole log: the given model is the one that does not know of it.
+pub fn tell_of(found: &mut CableDiscovery, given: &CableRecord<'_>, fault: RecordingFault, stop: &AtomicBool) {
     found.faults.insert(0, fault);
     let Some((counts, start)) = given_to(given, stop) else { return };
     let (blocks, measured) = (split(given), engine::measured(given));

@@ -9,7 +9,7 @@
 //!    condition (`steadiness`), and whether a law without a name makes it superfluous (`rivals`). The model with all names is taken for the given one until nothing more
 //!    is found, and fitted to all samples as an identification does.
 //! 4. *Rest.* What is wrong with the log itself has its own names (`foreign`) and is corrected before: lines in the spectrum (`lines`), a length that trembles
-//!    (`length_noise`), a sensor that stands still or is at the end of its range. A stretch of cable (`stretch`) or of time (`rest`) is left out, and the rest
+//!    (`length_noise`), a reference that comes late (`timing`), a sensor that stands still, spikes or is at the end of its range. A stretch of cable (`stretch`) or of time (`rest`) is left out, and the rest
 //!    judged once more; signals of other cables that it goes with are told (`neighbours`). A wander of the sensors that has nothing to do with the motion is noise.
 //!
 //! The model is the control cycle's own; what is found runs in it as it is.
@@ -33,6 +33,7 @@ mod rivals;
 mod steadiness;
 mod stretch;
 mod summary;
+mod timing;
 pub mod words;
 mod workbench;
 
@@ -50,6 +51,22 @@ pub use profile::{Profile, ProfileBin, ProfileCell};
 pub use readiness::Lack;
 pub use report::{CableDiscovery, Candidate, Finding, Model, RunnerUp, Tried, Unexplained, Verdict};
 
+/// Looks at a cable with its reference where it belongs: as far as the given model tells, and then as far as the one that has what it lacked.
+fn discover_retimed(record: &CableRecord<'_>, progress: &Progress) -> (CableDiscovery, Option<RecordingFault>) {
+    let stop = progress.stop_flag();
+    let Some((rows, fault)) = timing::retimed(record, stop) else {
+        return (cable::discover_cable(record, progress), None);
+    };
+    let found = cable::discover_cable(&record.with_signals(&rows), progress);
+    let extended = record.params.with_values(&found.after.values).ok().filter(|_| !found.findings.is_empty());
+    let Some(params) = extended else { return (found, Some(fault)) };
+    // What the given model lacks may have looked like it.
+    match timing::retimed(&record.with_params(&params), stop) {
+        Some((rows, fault)) => (cable::discover_cable(&record.with_signals(&rows), progress), Some(fault)),
+        None => (cable::discover_cable(record, progress), None),
+    }
+}
+
 /// Looks at every cable that has a reference.
 #[must_use]
 pub fn discover(measurements: &Measurements<'_>, progress: &Progress) -> Vec<CableDiscovery> {
@@ -57,14 +74,17 @@ pub fn discover(measurements: &Measurements<'_>, progress: &Progress) -> Vec<Cab
     progress.begin(given.len());
     let steadied = length_noise::steadied(measurements, progress.stop_flag());
     let records: Vec<CableRecord<'_>> = match &steadied {
-        Some(steadied) => given.iter().zip(&steadied.rows).map(|(given, rows)| given.with_signals(rows)).collect(),
+        Some(steadied) => {
+            let with_rows = given.iter().zip(&steadied.rows);
+            with_rows.map(|(given, rows)| given.behind_play(rows, steadied.length_play_m)).collect()
+        }
         None => given.clone(),
     };
     let of_cable = |(place, record): (usize, &CableRecord<'_>)| {
-        let fault = steadied.as_ref().and_then(|steadied| steadied.faults.get(place)?.clone());
-        let mut found = cable::discover_cable(record, progress);
-        if let Some((fault, given)) = fault.zip(given.get(place)) {
-            cable::tell_of_length(&mut found, given, fault, progress.stop_flag());
+        let noisy = steadied.as_ref().and_then(|steadied| steadied.faults.get(place)?.clone());
+        let (mut found, late) = discover_retimed(record, progress);
+        for fault in late.into_iter().chain(noisy) {
+            cable::tell_of(&mut found, &given[place], fault, progress.stop_flag());
         }
         progress.finish_one();
         found

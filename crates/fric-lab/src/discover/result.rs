@@ -272,6 +272,10 @@ impl Fault {
             Self::NoisyLength => "noisy_length",
             Self::Frozen => "frozen",
             Self::Clipped => "clipped",
+            Self::Spikes => "spikes",
+            Self::CoarseConverter => "coarse_converter",
+            Self::ReferenceDelay => "reference_delay",
+            Self::ClockSkew => "clock_skew",
         }
     }
 }

@@ -15,8 +15,21 @@ use crate::fit::HALF_INTERVAL;
 use crate::text::{listed, quantity, significant};
 
 /// Units at the end of keys; the longer ones first.
-const UNITS: [&str; 11] =
-    ["_n_s_per_m", "_m_per_s", "_n_per_m", "_n_per_s", "_m_per_n", "_per_s", "_kg", "_nm", "_s", "_n", "_m"];
+const UNITS: [&str; 13] = [
+    "_n_s2_per_m2",
+    "_n_s_per_m",
+    "_per_n",
+    "_m_per_s",
+    "_n_per_m",
+    "_n_per_s",
+    "_m_per_n",
+    "_per_s",
+    "_kg",
+    "_nm",
+    "_s",
+    "_n",
+    "_m",
+];
 
 /// As a share of the other end of a range, the beginning is zero below this.
 const NO_MORE_THAN_ZERO: f64 = 0.01;
@@ -297,6 +310,7 @@ impl Refusal {
                 "a law without a name that goes with the {} explains more, and leaves little for it",
                 condition(signal)
             ),
+            Self::Usual => "it is no more than what robots without it have".to_owned(),
             Self::Bent(signal) => {
                 format!(
                     "what is left would go away if its size went with the {}: its law is another one",
@@ -327,6 +341,27 @@ impl FaultResult {
             ),
             Fault::Frozen => format!("the force sensor stands still {}", left_out()),
             Fault::Clipped => format!("the force sensor is at the end of its range {}", left_out()),
+            Fault::Spikes => {
+                format!(
+                    "the force sensor spikes {}; look at its cable, its plugs and what switches beside it",
+                    left_out()
+                )
+            }
+            Fault::CoarseConverter => format!(
+                "the force sensor has steps of {}, which are part of the noise; use more of the converter's range, or one of more bits",
+                newtons(value("step_n"))
+            ),
+            Fault::ReferenceDelay => format!(
+                "the reference comes late by {}, and was put where it belongs; stamp it where it is measured, or take the filter of its \
+                 amplifier into account",
+                quantity(value("delay_s"), None, "s")
+            ),
+            Fault::ClockSkew => format!(
+                "the reference gets ahead by {} s each second, and comes late by {} s at the beginning: its clock is another one; it was put \
+                 where it belongs; record both with one clock, or synchronise them",
+                significant(value("skew_ratio")),
+                significant(value("delay_s"))
+            ),
         }
     }
 }

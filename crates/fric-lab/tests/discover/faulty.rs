@@ -169,3 +169,72 @@ fn noise_of_the_length_is_told_and_hides_no_effect() {
     let told = RobotFile::parse(&text, "extended").unwrap().options().monitor.length_noise_m.unwrap();
     assert!((told / (2.0 * told_m) - 1.0).abs() < 1e-12, "{told}");
 }
+
+/// The reference of each sample is that of so much earlier, by the true forces between two cycles.
+#[expect(clippy::cast_possible_truncation, reason = "a place in the log")]
+fn with_late_reference(points: &mut [Point], late_cycles: impl Fn(usize) -> f64) {
+    let before: Vec<f64> = points.iter().map(|point| point.reference_n).collect();
+    for (cycle, point) in points.iter_mut().enumerate() {
+        let at = f64::from(u32::try_from(cycle).unwrap()) - late_cycles(cycle);
+        let whole = at.floor();
+        let known = |place: f64| {
+            let place = usize::try_from(place as i64).ok();
+            place.and_then(|place| before.get(place)).copied().unwrap_or(f64::NAN)
+        };
+        point.reference_n = known(whole) + (at - whole) * (known(whole + 1.0) - known(whole));
+    }
+}
+
+#[test]
+fn a_late_reference_is_put_where_it_belongs_and_hides_no_effect() {
+    for (seed, effects) in [(70_017, &[][..]), (70_018, &[Effect::Stribeck][..])] {
+        let group = if effects.is_empty() { Group::Nothing } else { Group::Single };
+        let (mut points, truth) = points_of(&Case { seed, ..Case::hiding(group, effects) });
+        with_late_reference(&mut points, |_| 6.0);
+        let found = look(&[&points], &truth);
+        let kinds: Vec<Effect> = found.findings.iter().map(|finding| finding.effect).collect();
+        assert_eq!(kinds, effects, "{:?}", found.tried);
+        let [fault] = found.faults.as_slice() else { panic!("{:?}", found.faults) };
+        let (key, told_s) = fault.parameters[0];
+        assert_eq!((fault.fault, key), (Fault::ReferenceDelay, "delay_s"));
+        assert!((told_s / 6e-3 - 1.0).abs() < 0.05, "{told_s}");
+        assert!(found.verdict != Verdict::Unexplained, "{:?}", found.unexplained);
+    }
+}
+
+#[test]
+fn a_clock_that_runs_otherwise_is_told() {
+    let (mut points, truth) = points_of(&Case { seed: 70_019, ..Case::of(Group::Nothing) });
+    with_late_reference(&mut points, |cycle| -4e-4 * f64::from(u32::try_from(cycle).unwrap()));
+    let found = look(&[&points], &truth);
+    let [fault] = found.faults.as_slice() else { panic!("{:?}", found.faults) };
+    let (key, told) = fault.parameters[0];
+    assert_eq!((fault.fault, key, found.findings.len()), (Fault::ClockSkew, "skew_ratio", 0));
+    assert!((told / 4e-4 - 1.0).abs() < 0.05, "{told}");
+    assert_eq!(found.verdict, Verdict::Complete, "{:?}", found.unexplained);
+}
+
+#[test]
+fn spikes_and_coarse_steps_are_told() {
+    let (points, truth) = points_of(&Case { seed: 70_020, ..Case::of(Group::Nothing) });
+    let mut spiked = points.clone();
+    for place in [12_345, 23_456, 40_001] {
+        spiked[place].cable.sensor_force_n += 10.0;
+    }
+    let found = look(&[&spiked], &truth);
+    assert_complete(&found, truth.floor_n);
+    let [fault] = found.faults.as_slice() else { panic!("{:?}", found.faults) };
+    let starts_s: Vec<f64> = fault.intervals_s.iter().map(|interval_s| interval_s[0]).collect();
+    assert!(fault.fault == Fault::Spikes && starts_s.len() == 3, "{fault:?}");
+    assert!(starts_s.iter().zip([12.345, 23.456, 40.001]).all(|(told_s, true_s)| (told_s - true_s).abs() < 2e-3));
+
+    let mut coarse = points;
+    for point in &mut coarse {
+        point.cable.sensor_force_n = (point.cable.sensor_force_n / 0.06).round() * 0.06;
+    }
+    let found = look(&[&coarse], &truth);
+    let [fault] = found.faults.as_slice() else { panic!("{:?}", found.faults) };
+    let (key, step_n) = fault.parameters[0];
+    assert_eq!((fault.fault, key, found.findings.len()), (Fault::CoarseConverter, "step_n", 0));
+    assert!((step_n - 0.06).abs() < 1e-9, "{step_n}");
+}
