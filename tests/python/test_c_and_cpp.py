@@ -233,7 +233,10 @@ def example_of(path):
     """The example of itself that a file of the catalogue states, as in a robot file."""
     text = path.read_text(encoding="utf-8")
     kind = re.search(r'kind: "(\w+)"', text)[1]
-    keys = re.findall(r'key: "(\w+)"', text[text.index("parameters: &[") : text.index("example: &[")])
+    parameters = text[text.index("parameters: &") : text.index("example: &[")]
+    keys = re.findall(r'key: "(\w+)"', parameters)
+    if "ripple::rows" in parameters:
+        keys = [*re.findall(r'\["(\w+)", "(\w+)"\]', parameters)[0], "period_m"]
     values = re.search(r"example: &\[(.*?)\]", text, re.DOTALL)[1].strip(" \n,").split(",")
     values = [float(value.replace("_", "")) for value in values]
     # A parameter that several effects share is defined elsewhere; it is 0, as without it.
@@ -243,7 +246,7 @@ def example_of(path):
 
 # One of each kind, and those whose other sign takes another path.
 CATALOGUE = (ROOT / "crates/fric-core/src/effects").glob("*.rs")
-ALL_EFFECTS = [example_of(path) for path in sorted(CATALOGUE) if path.stem not in ("mod", "friction")]
+ALL_EFFECTS = [example_of(path) for path in sorted(CATALOGUE) if path.stem not in ("mod", "friction", "ripple")]
 EFFECTS = [
     *ALL_EFFECTS,
     'kind = "presliding_shape", exponent = 0.5',
