@@ -235,7 +235,7 @@ void fric_free(struct fric_compensator *compensator);
 /// `path` is UTF-8. On FRIC_RESULT_OK `*compensator` is the new compensator, else null. `error` takes one sentence that
 /// says what is wrong, where and what is allowed, cut to `error_size` bytes with the final zero, and is empty without
 /// an error; it may be null with size 0. Not for the cycle: it reads a file and allocates. The optimised library takes
-/// at most 512 KiB of stack, 160 KiB for a robot of 16 cables or fewer; so do fric_load_text, fric_change_file and fric_change_text.
+/// at most 1024 KiB of stack, 256 KiB for a robot of 16 cables or fewer; so do fric_load_text, fric_change_file and fric_change_text.
 ///
 /// # Safety
 /// `path` is null or a string that ends with zero; `compensator` is null or may be written to; `error` is null or
