@@ -183,6 +183,9 @@ pub struct DiscoverArguments {
     /// Write the file with what was found, and with values fitted to the log, to this file; without it, only tell
     #[arg(short, long, value_name = "EXTENDED.toml", value_parser = a_file())]
     pub output: Option<PathBuf>,
+    /// What to compare the model with
+    #[arg(long, value_name = "WHAT", default_value = "forces")]
+    pub reference: ReferenceName,
     /// Write a page with figures of what was found to this HTML file
     #[arg(long, value_name = "R.html", value_parser = a_file())]
     pub report: Option<PathBuf>,
@@ -215,8 +218,8 @@ pub struct InitArguments {
     pub force: bool,
 }
 
-/// What a fit compares the model with.
-#[derive(Clone, Copy, Debug, ValueEnum)]
+/// What a fit or a discovery compares the model with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum ReferenceName {
     /// Cable forces measured at the platform, each cable by itself
     Forces,

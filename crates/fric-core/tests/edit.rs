@@ -81,7 +81,7 @@ fn comments(text: &str) -> Vec<&str> {
 }
 
 fn edited(text: &str, friction: FrictionEdit, effects: &[EffectEdit<'_>]) -> String {
-    rewrite(text, "rig.toml", &[CableEdit { name: "a", friction, effects }])
+    rewrite(text, "rig.toml", &[CableEdit { name: "a", friction, effects, ..CableEdit::default() }])
         .unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
@@ -190,7 +190,7 @@ fn it_looks_like_written_by_hand() {
 fn what_is_not_there_or_not_right_is_told() {
     let text = format!("{HEAD}{}", LAYOUTS[0]);
     let says = |name, friction, effects: &[EffectEdit<'_>]| {
-        rewrite(&text, "rig.toml", &[CableEdit { name, friction, effects }]).unwrap_err().to_string()
+        rewrite(&text, "rig.toml", &[CableEdit { name, friction, effects, ..CableEdit::default() }]).unwrap_err().to_string()
     };
     let mu = |mu| FrictionEdit { mu: Some(mu), ..FrictionEdit::default() };
     for (said, words) in [

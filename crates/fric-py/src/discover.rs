@@ -1,7 +1,7 @@
 //! `discover`: what a model lacks, from logs.
 
 use fric_lab::discover::result::{DiscoverCableResult, DiscoverResult, WhereResult};
-use fric_lab::discover::{CableDiscovery, discover as discover_cables, extended};
+use fric_lab::discover::{CableDiscovery, Discoveries};
 use fric_lab::fit::readiness;
 use fric_lab::fit::{Measurements, Reference};
 use fric_work::report::discovery;
@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::fixed;
 use crate::errors::Outcome;
-use crate::fit::ORIGIN;
+use crate::fit::{ORIGIN, named_reference};
 use crate::log;
 use crate::results;
 use crate::robot::Robot;
@@ -18,8 +18,9 @@ use crate::watch::Watch;
 
 /// Looks where the model and logs disagree, and for the effect that is missing: `fric-cli discover`.
 ///
-/// `log` is a Log, a path, or a list of them, each a run of its own, with forces measured at the platform. Half of it, in
-/// blocks, judges what was learned from the other. A cable of which the log tells too little says so in its verdict; a log
+/// `log` is a Log, a path, or a list of them, each a run of its own. `reference` is what the model is compared with: the cable
+/// forces measured at the platform, or the wrench on the platform (measured, else that of its mass), for all cables at once. Half
+/// of the log, in blocks, judges what was learned from the other. A cable of which the log tells too little says so in its verdict; a log
 /// that tells nothing of any cable raises FitError.
 ///
 /// >>> robot = Robot.from_toml('''
@@ -39,10 +40,14 @@ use crate::watch::Watch;
 /// >>> result.robot.cable("winch").effects == ({"kind": "sensor_gain", **winch.effects[0]["parameters"]},)
 /// True
 #[pyfunction]
-#[pyo3(signature = (robot, log, *, progress=None), text_signature = "(robot, log, *, progress=False)")]
+#[pyo3(
+    signature = (robot, log, *, reference="forces", progress=None),
+    text_signature = "(robot, log, *, reference=\"forces\", progress=False)"
+)]
 pub fn discover(
     robot: &Bound<'_, Robot>,
     log: &Bound<'_, PyAny>,
+    reference: &str,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> Outcome<Py<PyAny>> {
     let py = robot.py();
@@ -51,24 +56,31 @@ pub fn discover(
     let given = robot.borrow().clone();
     let file = &given.file;
     log::warn(py, &file.warnings())?;
-    let mut measurements = Measurements::new(&file.params(), Reference::Forces);
+    let reference = named_reference(reference)?;
+    let lack = readiness::geometry(file, ORIGIN).filter(|_| reference == Reference::Wrench);
+    lack.map_or(Ok(()), |lack| Err(lack.error()))?;
+    let mut measurements = Measurements::new(&file.params(), reference);
     let holdings = runs.read(robot, &mut measurements, &mut watch)?;
-    let readiness = readiness::to_discover(file, &holdings);
+    let readiness = match reference {
+        Reference::Forces => readiness::to_discover(file, &holdings),
+        Reference::Wrench => readiness::by_wrench(file, ORIGIN, &holdings),
+    };
     // What is missing for some cables only stands beside their verdicts.
     readiness.check()?;
-    let discoveries = watch.fit(|progress| discover_cables(&measurements, progress))?;
+    let found = watch.fit(|progress| Discoveries::of(&measurements, progress))??;
     let logs: Vec<(String, f64)> = runs.names().into_iter().zip(measurements.log_starts_s()).collect();
-    let result = DiscoverResult::new(file, &logs, &readiness, &discoveries);
+    let result = DiscoverResult::new(file, &logs, &readiness, found.cables()).with_wrench(found.wrench());
     result.check_told()?;
-    let text = extended(&given.to_toml()?, ORIGIN, &discoveries)?;
-    let page = discovery::page(&result, &discoveries);
+    let text = found.extended(&given.to_toml()?, ORIGIN)?;
+    let page = discovery::page(&result, found.cables());
     let shown = results::shown(py, result.summary(), &result, page, discovery::table(&result))?;
-    let cable = |(found, result): (CableDiscovery, &DiscoverCableResult)| {
+    let cable = |(found, result): (&CableDiscovery, &DiscoverCableResult)| {
         let words: Vec<String> = result.places.iter().map(WhereResult::range_in_words).collect();
-        let arrays = [found.times_s, found.residual_before_n, found.residual_after_n].map(|numbers| fixed(py, numbers));
+        let arrays =
+            [&found.times_s, &found.residual_before_n, &found.residual_after_n].map(|numbers| fixed(py, numbers.clone()));
         let [time_s, before_n, after_n] = arrays;
         (words, time_s, before_n, after_n)
     };
-    let cables: Vec<_> = discoveries.into_iter().zip(&result.cables).map(cable).collect();
+    let cables: Vec<_> = found.cables().iter().zip(&result.cables).map(cable).collect();
     Ok(results::of(py, "DiscoverResult", (shown, Py::new(py, Robot::parse(text, ORIGIN)?)?, cables))?.unbind())
 }

@@ -20,6 +20,14 @@ use crate::watch::Watch;
 /// Where the robot is from, in what is said about it.
 pub const ORIGIN: &str = "the robot";
 
+/// What the model is compared with, by name.
+pub fn named_reference(name: &str) -> Outcome<Reference> {
+    Reference::ALL.into_iter().find(|known| known.name() == name).ok_or_else(|| {
+        let names = Reference::ALL.into_iter().map(Reference::name);
+        Fault::config(fric_core::robot::unknown_name("reference", name, names))
+    })
+}
+
 /// Identifies the friction of a robot's cables from logs: `fric-cli fit`.
 ///
 /// `log` is a Log, a path, or a list of them, each a run of its own. `reference` is what the model is compared with: the
@@ -50,11 +58,7 @@ pub fn fit(
 ) -> Outcome<Py<PyAny>> {
     let py = robot.py();
     let mut watch = Watch::new(py, progress)?;
-    let mut known = Reference::ALL.into_iter();
-    let reference = known.find(|known| known.name() == reference).ok_or_else(|| {
-        let names = Reference::ALL.into_iter().map(Reference::name);
-        Fault::config(fric_core::robot::unknown_name("reference", reference, names))
-    })?;
+    let reference = named_reference(reference)?;
     let options = FitOptions {
         parameters: parameters.as_deref().map(named_parameters).transpose()?,
         weighing: if huber { Weighing::Huber } else { Weighing::LeastSquares },

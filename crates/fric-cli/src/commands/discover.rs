@@ -3,13 +3,13 @@
 use std::path::Path;
 
 use fric_lab::discover::result::DiscoverResult;
-use fric_lab::discover::{discover, extended};
+use fric_lab::discover::Discoveries;
 use fric_lab::fit::Reference;
 use fric_lab::fit::readiness;
 use fric_log::output::OutputFile;
 
 use super::continuum;
-use crate::arguments::DiscoverArguments;
+use crate::arguments::{DiscoverArguments, ReferenceName};
 use crate::failure::{Failure, Outcome};
 use crate::measurements::{check_named_once, find_model, read, watched};
 use crate::output::{self, JsonTarget};
@@ -17,7 +17,7 @@ use fric_work::report;
 
 /// Runs the command.
 pub fn run(arguments: &DiscoverArguments) -> Outcome {
-    let DiscoverArguments { logs, model, part, output, report, result } = arguments;
+    let DiscoverArguments { logs, model, part, output, reference, report, result } = arguments;
     if continuum::is_manipulator(model.as_deref()) {
         return continuum::discover::run(arguments);
     }
@@ -36,22 +36,34 @@ pub fn run(arguments: &DiscoverArguments) -> Outcome {
     let report = report.as_ref().map(|path| OutputFile::create(path, &inputs, result.force)).transpose()?;
     let extended_file = output.as_ref().map(|path| OutputFile::create(path, &inputs, result.force)).transpose()?;
 
-    let read = read(logs, part, &model, Reference::Forces)?;
-    let readiness = readiness::to_discover(&model.robot, &read.holdings);
+    let reference = match reference {
+        ReferenceName::Forces => Reference::Forces,
+        ReferenceName::Wrench => {
+            // The robot file alone can rule it out.
+            readiness::geometry(&model.robot, &model.origin).map_or(Ok(()), |lack| Err(lack.error()))?;
+            Reference::Wrench
+        }
+    };
+    let read = read(logs, part, &model, reference)?;
+    let readiness = match reference {
+        Reference::Forces => readiness::to_discover(&model.robot, &read.holdings),
+        Reference::Wrench => readiness::by_wrench(&model.robot, &model.origin, &read.holdings),
+    };
     // What is missing for some cables only stands beside their verdicts.
     read.check(&readiness)?;
-    let discoveries = watched("cables looked at", |progress| discover(&read.measurements, progress))?;
+    let what = if reference == Reference::Forces { "cables looked at" } else { "searches done" };
+    let found = watched(what, |progress| Discoveries::of(&read.measurements, progress))??;
 
     let names = logs.iter().map(|log| log.display().to_string());
     let logs: Vec<(String, f64)> = names.zip(read.measurements.log_starts_s()).collect();
-    let outcome = DiscoverResult::new(&model.robot, &logs, &readiness, &discoveries);
+    let outcome = DiscoverResult::new(&model.robot, &logs, &readiness, found.cables()).with_wrench(found.wrench());
     outcome.check_told()?;
     let mut files = Vec::new();
     if let Some(file) = extended_file {
-        files.push(file.complete_with(&extended(&model.text, &model.origin, &discoveries)?)?);
+        files.push(file.complete_with(&found.extended(&model.text, &model.origin)?)?);
     }
     if let Some(report) = report {
-        files.push(report.complete_with(&report::discovery::page(&outcome, &discoveries))?);
+        files.push(report.complete_with(&report::discovery::page(&outcome, found.cables()))?);
     }
     let summary = format!("{}\n{}\n", outcome.summary(), next_step(&logs, output.as_deref()));
     json.finish(&outcome, &summary, files)

@@ -22,6 +22,10 @@ pub struct CableEdit<'a> {
     pub name: &'a str,
     /// Friction values.
     pub friction: FrictionEdit,
+    /// Where the cable enters its last pulley, m; `None` stays as it is.
+    pub base_m: Option<[f64; 3]>,
+    /// Where it is attached to the platform, m; `None` stays as it is.
+    pub platform_m: Option<[f64; 3]>,
     /// Effects, one after the other.
     pub effects: &'a [EffectEdit<'a>],
 }
@@ -90,7 +94,7 @@ impl FrictionEdit {
 /// "#;
 /// let effects = [EffectEdit::Set { kind: "stribeck", parameters: &[("ratio", 0.5)] }];
 /// let friction = FrictionEdit { mu: Some(0.0161), ..FrictionEdit::default() };
-/// let fitted = rewrite(text, "robot.toml", &[CableEdit { name: "winch", friction, effects: &effects }])?;
+/// let fitted = rewrite(text, "robot.toml", &[CableEdit { name: "winch", friction, effects: &effects, ..CableEdit::default() }])?;
 /// assert!(fitted.contains("# the left one"));
 /// assert!(fitted.contains("friction = { mu = 0.0161, viscous_n_s_per_m = 0.5 }\n"));
 /// assert!(fitted.ends_with("effects = [ { kind = \"stribeck\", ratio = 0.5 } ]\n"));
@@ -108,6 +112,49 @@ pub fn rewrite(text: &str, origin: &str, edits: &[CableEdit<'_>]) -> Result<Stri
     }
     RobotFile::parse(&draft.text, &format!("{origin} with the new values"))?;
     Ok(draft.text)
+}
+
+/// What to change of the platform; what is `None` stays as it is.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PlatformEdit {
+    /// Mass, kg.
+    pub mass_kg: Option<f64>,
+    /// Centre of mass, platform frame, m.
+    pub center_of_mass_m: Option<[f64; 3]>,
+    /// Gravity, base frame, m/s².
+    pub gravity_m_per_s2: Option<[f64; 3]>,
+}
+
+/// The text of a robot file with other numbers of its platform, which it has to have. `origin` says where the text is from, for errors.
+///
+/// # Errors
+/// [`RobotFileError::Invalid`] if the text is not right, before or with the new numbers, or has no table `platform`.
+pub fn set_platform(text: &str, origin: &str, edit: &PlatformEdit) -> Result<String, RobotFileError> {
+    RobotFile::parse(text, origin)?;
+    let numbers = [
+        ("mass_kg", edit.mass_kg.map(number)),
+        ("center_of_mass_m", edit.center_of_mass_m.map(list)),
+        ("gravity_m_per_s2", edit.gravity_m_per_s2.map(list)),
+    ];
+    let mut text = text.to_owned();
+    for (key, with) in numbers.into_iter().filter_map(|(key, with)| Some((key, with?))) {
+        let splices = Document::parse(text.as_str()).ok().and_then(|document| {
+            let body = Body::of_item(document.get("platform")?)?;
+            match body.table().get(key) {
+                Some(item) => replaced(item, &text, with),
+                None => body.append(&text, "platform", &format!("{key} = {with}")),
+            }
+        });
+        let problem = || "`platform` is missing, or written in a way that cannot be added to; write it in one table".to_owned();
+        let splices = splices.ok_or_else(|| RobotFileError::Invalid {
+            origin: origin.to_owned(),
+            line: None,
+            problem: problem(),
+        })?;
+        splice::apply(&mut text, splices);
+    }
+    RobotFile::parse(&text, &format!("{origin} with the new values"))?;
+    Ok(text)
 }
 
 /// The text of a robot file with a number of its monitor, by key: in its table, or under `cycle_s` where there is none. `origin` says where the text is from, for errors.
@@ -141,7 +188,12 @@ struct Draft<'a> {
 
 impl Draft<'_> {
     fn edit(&mut self, edit: &CableEdit<'_>) -> Result<(), RobotFileError> {
-        let CableEdit { name, friction, effects } = *edit;
+        let CableEdit { name, friction, base_m, platform_m, effects } = *edit;
+        for (key, point_m) in [("base_m", base_m), ("platform_m", platform_m)] {
+            if let Some(point_m) = point_m {
+                self.change(name, |cable, text| cable.set_point(text, key, point_m))?;
+            }
+        }
         for value in friction.values() {
             self.change(name, |cable, text| cable.set_friction(text, value))?;
         }
@@ -272,6 +324,13 @@ impl<'a> Cable<'a> {
         splices.ok_or_else(|| self.refuse("friction"))
     }
 
+    /// Replaces a point of the geometry, which has to be there.
+    fn set_point(&self, text: &str, key: &str, point_m: [f64; 3]) -> Result<Vec<Splice>, String> {
+        let item = self.body.table().get(key);
+        item.and_then(|item| replaced(item, text, list(point_m)))
+            .ok_or_else(|| format!("cable \"{}\" has no `{key}` to be corrected", self.name))
+    }
+
     fn effects(&self) -> Result<Effects<'a>, String> {
         match self.body.table().get("effects") {
             None => Ok(Effects::Missing),
@@ -353,6 +412,18 @@ fn set(body: Body<'_>, text: &str, dotted: &str, key: &str, value: f64) -> Optio
         return Some(Vec::new());
     }
     Some(Vec::from([Splice { range: item.span()?, with: number(value) }]))
+}
+
+/// The splice that puts another value in the place of one.
+fn replaced(item: &Item, text: &str, with: String) -> Option<Vec<Splice>> {
+    let range = item.span()?;
+    let is_same = text.get(range.clone()) == Some(with.as_str());
+    Some(if is_same { Vec::new() } else { Vec::from([Splice { range, with }]) })
+}
+
+/// Three numbers as TOML writes them.
+fn list(numbers: [f64; 3]) -> String {
+    format!("[{}]", numbers.map(number).join(", "))
 }
 
 fn entry(key: &str, value: f64) -> String {

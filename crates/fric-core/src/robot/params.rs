@@ -168,6 +168,16 @@ impl CableParams {
         self.geometry.map(|geometry| geometry.radius_m).filter(|radius_m| *radius_m > 0.0 && self.needs_pose())
     }
 
+    /// The same cable with another entry into its last pulley and another attachment, m; `None` where it has no geometry, or a
+    /// number is not finite or out of range.
+    #[must_use]
+    pub fn with_geometry(&self, base_m: [f64; 3], platform_m: [f64; 3]) -> Option<Self> {
+        let base_m = check_point("base_m", base_m).ok()?;
+        let platform_m = check_point("platform_m", platform_m).ok()?;
+        let geometry = Geometry { base_m, platform_m, ..self.geometry? };
+        Some(Self { geometry: Some(geometry), ..*self })
+    }
+
     /// Checks a cable.
     ///
     /// # Errors

@@ -181,7 +181,7 @@ fn given_model(record: &CableRecord<'_>, paper: &engine::Solution) -> (workbench
 }
 
 /// Whether a parameter of the friction acts in a model.
-fn acts(parameter: &Parameter, values: &Values) -> bool {
+pub fn acts(parameter: &Parameter, values: &Values) -> bool {
     match parameter.place() {
         MU | VISCOUS => values[parameter.place()] > 0.0,
         OFFSET => values[OFFSET].abs() > 0.0,

@@ -36,11 +36,12 @@ mod summary;
 mod timing;
 pub mod words;
 mod workbench;
+mod wrench;
 
 pub(crate) use crate::fit::{candidates, noise, ripple, split};
 use rayon::prelude::*;
 
-use crate::fit::{CableRecord, Measurements, Progress};
+use crate::fit::{CableRecord, FitError, Measurements, Progress, Reference};
 
 pub use extended::extended;
 pub use foreign::{Fault, RecordingFault};
@@ -49,6 +50,7 @@ pub use neighbours::Neighbour;
 pub use places::Place;
 pub use profile::{Profile, ProfileBin, ProfileCell};
 pub use readiness::Lack;
+pub use wrench::{Geometry, GeometryFinding, WrenchDeviation, WrenchDiscovery, discover_wrench};
 pub use report::{CableDiscovery, Candidate, Finding, Model, RunnerUp, Tried, Unexplained, Verdict};
 
 /// Looks at a cable with its reference where it belongs: as far as the given model tells, and then as far as the one that has what it lacked.
@@ -64,6 +66,57 @@ fn discover_retimed(record: &CableRecord<'_>, progress: &Progress) -> (CableDisc
     match timing::retimed(&record.with_params(&params), stop) {
         Some((rows, fault)) => (cable::discover_cable(&record.with_signals(&rows), progress), Some(fault)),
         None => (cable::discover_cable(record, progress), None),
+    }
+}
+
+/// What was found, by what the model was compared with.
+#[derive(Clone, Debug)]
+pub enum Discoveries {
+    /// By cable forces, each cable by itself.
+    Forces(Vec<CableDiscovery>),
+    /// By the wrench, all cables together.
+    Wrench(Box<WrenchDiscovery>),
+}
+
+impl Discoveries {
+    /// Looks at all cables with the reference of the measurements.
+    ///
+    /// # Errors
+    /// [`FitError`] as [`discover_wrench`].
+    pub fn of(measurements: &Measurements<'_>, progress: &Progress) -> Result<Self, FitError> {
+        Ok(match measurements.reference() {
+            Reference::Forces => Self::Forces(discover(measurements, progress)),
+            Reference::Wrench => Self::Wrench(Box::new(discover_wrench(measurements, progress)?)),
+        })
+    }
+
+    /// What was found on each cable.
+    #[must_use]
+    pub fn cables(&self) -> &[CableDiscovery] {
+        match self {
+            Self::Forces(cables) => cables,
+            Self::Wrench(found) => &found.cables,
+        }
+    }
+
+    /// What concerns all cables together.
+    #[must_use]
+    pub fn wrench(&self) -> Option<&WrenchDiscovery> {
+        match self {
+            Self::Forces(_) => None,
+            Self::Wrench(found) => Some(found),
+        }
+    }
+
+    /// The text of a robot file with what was found, see [`extended`].
+    ///
+    /// # Errors
+    /// [`RobotFileError`](fric_core::robot::file::RobotFileError) as [`extended`].
+    pub fn extended(&self, text: &str, origin: &str) -> Result<String, fric_core::robot::file::RobotFileError> {
+        match self {
+            Self::Forces(cables) => extended(text, origin, cables),
+            Self::Wrench(found) => wrench::extended_by_wrench(text, origin, found),
+        }
     }
 }
 

@@ -29,15 +29,15 @@ use crate::fit::engine::{self, Condition, Coordinate};
 /// Most effects of one cable.
 const MOST_EFFECTS: usize = 8;
 /// Of the squares above the noise that are left, a candidate has to take away this share to enter.
-const LEAST_GAIN: f64 = 0.02;
+pub const LEAST_GAIN: f64 = 0.02;
 /// No equation of friction is believed to less than this share of what it adds to the force of the sensor: what the equation of a
 /// strong effect leaves must not be taken for a weak one.
 const BELIEVED_RATIO: f64 = 1e-3;
 /// A candidate takes away at least this share of the noise's own squares, half of what is negligible: the rms falls by a quarter of a per
 /// cent. Less is what the equation of another effect leaves: at 0.002, four of 250 extended files were given a second name so small.
-const LEAST_SIZE: f64 = 0.5 * NEGLIGIBLE;
+pub const LEAST_SIZE: f64 = 0.5 * NEGLIGIBLE;
 /// What is left above the noise, as a share of it, from which on no further name is sought: the rms is half of it above.
-const NEGLIGIBLE: f64 = 0.01;
+pub const NEGLIGIBLE: f64 = 0.01;
 /// Candidates are first brought so near to their minima that what is left to gain is this part of what a candidate needs to enter.
 const UNDECIDED: f64 = 0.5;
 /// A parameter within this fraction of its bound counts as stuck at the bound, by the way from its neutral value.
@@ -572,13 +572,13 @@ fn doubt(portrait: &Portrait<'_>, is_noise: bool) -> Option<Refusal> {
 
 /// Difference of Schwarz's criterion for so many samples that do not depend on each other, a ratio of the sums of squares, and so many
 /// more parameters; of less than two samples there is no evidence.
-fn delta_bic(count: f64, squares_ratio: f64, more: f64) -> f64 {
+pub fn delta_bic(count: f64, squares_ratio: f64, more: f64) -> f64 {
     if count < 2.0 { f64::INFINITY } else { count * squares_ratio.ln() + more * count.ln() }
 }
 
 /// Whether a parameter of an effect has run into an end of its range that is not its neutral value; of friction that every model
 /// has the ranges are orders of magnitude.
-fn is_at_end(effect: Effect, values: &Values, cycle_s: f64) -> bool {
+pub fn is_at_end(effect: Effect, values: &Values, cycle_s: f64) -> bool {
     let has_run = |parameter: &Parameter| {
         let (least, greatest) = Coordinate::of(parameter, cycle_s).range();
         let neutral = parameter.row().neutral;

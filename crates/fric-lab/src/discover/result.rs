@@ -14,7 +14,8 @@ use super::neighbours::Neighbour;
 use super::places::Place;
 use super::report::{self, CableDiscovery, Finding, Model, Tried, Unexplained, Verdict};
 use super::summary;
-use crate::errors::ForceError;
+use super::wrench::{GeometryFinding, WrenchDiscovery};
+use crate::errors::{ForceError, WrenchError};
 use crate::fit::readiness::Readiness;
 use crate::fit::result::{LeftOut, Numbers};
 use crate::fit::{FitError, Parameter};
@@ -34,6 +35,67 @@ pub struct DiscoverResult {
     pub cables: Vec<DiscoverCableResult>,
     /// Effects that several cables have.
     pub common_effects: Vec<CommonEffect>,
+    /// What concerns all cables together, where they were compared with the wrench.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub wrench: Option<WrenchGap>,
+}
+
+/// The wrench before and after, and what was found about the robot as a whole.
+#[derive(Clone, Debug, Serialize)]
+pub struct WrenchGap {
+    /// `wrench`, or `mass` where it is compared with the wrench of the platform's mass and pose.
+    pub reference: &'static str,
+    /// Of all cables together: `complete`, `extended` or `unexplained`.
+    pub verdict: &'static str,
+    /// Deviation of the given model, fitted, on samples held out.
+    pub before: Option<WrenchError>,
+    /// And of the extended one.
+    pub after: Option<WrenchError>,
+    /// White noise.
+    pub noise_floor: WrenchError,
+    /// The six components.
+    pub components: Vec<WrenchComponent>,
+    /// Effects that all cables have alike, with one value.
+    pub alike: Vec<&'static str>,
+    /// Numbers of the robot file that are wrong.
+    pub geometry: Vec<GeometryResult>,
+    /// What helps and does not suffice, and is of no cable alone.
+    pub tried: Vec<TriedTogether>,
+}
+
+/// One component of the wrench.
+#[derive(Clone, Debug, Serialize)]
+pub struct WrenchComponent {
+    /// `fx_n` … `tz_nm`, the unit with it.
+    pub name: &'static str,
+    /// Standard deviation of its white noise.
+    pub noise: f64,
+    /// Root mean square of its deviation, of the given model.
+    pub before: f64,
+    /// And of the extended one.
+    pub after: f64,
+}
+
+/// Numbers of the robot file that are wrong.
+#[derive(Clone, Debug, Serialize)]
+pub struct GeometryResult {
+    /// The key of the robot file.
+    pub kind: &'static str,
+    /// The cable that it is of.
+    pub cable: Option<String>,
+    /// What the numbers should be.
+    pub parameters: Numbers,
+    /// What speaks for it.
+    pub evidence: Evidence,
+}
+
+/// What helps all cables together and does not suffice.
+#[derive(Clone, Debug, Serialize)]
+pub struct TriedTogether {
+    /// Name of the effect, or key of the robot file.
+    pub kind: String,
+    /// Why it is not named, a clause.
+    pub reason: String,
 }
 
 /// One cable.
@@ -55,9 +117,11 @@ pub struct DiscoverCableResult {
     pub wander_n: Option<f64>,
     /// Standard deviation of the reference over the samples that judge, N: the error of a model that predicts a constant.
     pub reference_variation_n: Option<f64>,
-    /// Error of the given model, fitted.
+    /// Error of the given model, fitted; absent without a reference force.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub before: Option<ForceError>,
-    /// Error of the extended one.
+    /// Error of the extended one; likewise.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub after: Option<ForceError>,
     /// Share of the gap that the extended model has closed.
     pub gap_closed: Option<f64>,
@@ -310,8 +374,17 @@ impl DiscoverResult {
             log_start_s: logs.iter().map(|(_, start_s)| *start_s).collect(),
             robot: robot.options().name.clone(),
             common_effects: common_effects(&cables),
+            wrench: None,
             cables,
         }
+    }
+
+    /// The same with what concerns all cables together.
+    #[must_use]
+    pub fn with_wrench(mut self, found: Option<&WrenchDiscovery>) -> Self {
+        let names: Vec<String> = self.cables.iter().map(|cable| cable.name.clone()).collect();
+        self.wrench = found.map(|found| WrenchGap::of(found, &names));
+        self
     }
 
     /// For people: the verdicts, then what was found.
@@ -330,6 +403,46 @@ impl DiscoverResult {
         let name = self.cables.first().map_or("", |cable| cable.name.as_str());
         let others = if self.cables.len() > 1 { ", and nothing of the others" } else { "" };
         Err(FitError::new(format!("the log tells nothing of {name}{others}: {}", first.cause), first.advice))
+    }
+}
+
+/// Names of the components with their units.
+const COMPONENTS: [&str; 6] = ["fx_n", "fy_n", "fz_n", "tx_nm", "ty_nm", "tz_nm"];
+
+impl WrenchGap {
+    fn of(found: &WrenchDiscovery, names: &[String]) -> Self {
+        let parts = found.noise.iter().zip(found.before.components.iter().zip(&found.after.components));
+        let component = |(name, (noise, (before, after))): (&&'static str, (&f64, (&f64, &f64)))| WrenchComponent {
+            name,
+            noise: *noise,
+            before: *before,
+            after: *after,
+        };
+        let geometry = |of: &GeometryFinding| GeometryResult {
+            kind: of.geometry.key(),
+            cable: of.geometry.cable().and_then(|cable| names.get(cable).cloned()),
+            parameters: Numbers(
+                of.geometry.names().iter().zip(&of.numbers).map(|(name, number)| ((*name).to_owned(), *number)).collect(),
+            ),
+            evidence: Evidence { delta_bic: finite(of.delta_bic), held_out_rms_n: None },
+        };
+        let length = |parts: &[f64]| parts.iter().map(|part| part * part).sum::<f64>().sqrt();
+        let (force, torque) = found.noise.split_at(3);
+        Self {
+            reference: found.reference.name(),
+            verdict: found.verdict.name(),
+            before: WrenchError::of(&found.before.errors),
+            after: WrenchError::of(&found.after.errors),
+            noise_floor: WrenchError { force_rms_n: length(force), torque_rms_nm: length(torque) },
+            components: COMPONENTS.iter().zip(parts).map(component).collect(),
+            alike: found.alike.iter().map(|effect| effect.kind()).collect(),
+            geometry: found.geometry.iter().map(geometry).collect(),
+            tried: found
+                .tried
+                .iter()
+                .map(|(kind, refusal)| TriedTogether { kind: kind.clone(), reason: refusal.in_words() })
+                .collect(),
+        }
     }
 }
 

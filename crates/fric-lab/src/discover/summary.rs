@@ -1,6 +1,7 @@
 //! The result of a discovery for people: the verdicts of all cables, then what was found on each.
 
-use super::result::{DiscoverCableResult, DiscoverResult, EffectResult};
+use super::result::{DiscoverCableResult, DiscoverResult, EffectResult, WrenchComponent, WrenchGap};
+use crate::replay::WrenchReference;
 use crate::text::{listed, table, wrapped};
 
 /// Columns of the words before a text.
@@ -14,6 +15,9 @@ const MOST_TRIED: usize = 3;
 pub(super) fn describe(result: &DiscoverResult) -> String {
     let mut text = format!("{}: what the model lacks\n\n", result.robot);
     text += &overview(result);
+    if let Some(gap) = &result.wrench {
+        text += &of_wrench(gap);
+    }
     if result.cables.iter().any(|cable| cable.before.is_some()) {
         text += "\nrms in N over samples that no fit has seen, of the given model fitted to the\nothers, and of the \
                  extended one.\n";
@@ -39,6 +43,35 @@ pub(super) fn describe(result: &DiscoverResult) -> String {
         text += "\n";
         text += &wrapped("", &format!("{}: {}", cable.name, cable.verdict_in_words()));
         text += &details(cable, &mut told);
+    }
+    text
+}
+
+/// What concerns all cables together.
+fn of_wrench(gap: &WrenchGap) -> String {
+    let row = |of: &WrenchComponent| {
+        let unit = if of.name.ends_with("_nm") { "Nm" } else { "N" };
+        let cell = |number: f64| format!("{number:.4} {unit}");
+        let name = of.name.split('_').next().unwrap_or(of.name).to_owned();
+        [name, cell(of.noise), cell(of.before), cell(of.after)]
+    };
+    let rows: Vec<_> = gap.components.iter().map(row).collect();
+    let title = if gap.reference == WrenchReference::Mass.name() { "wrench, by mass" } else { "wrench" };
+    let mut text = format!("\n{}", table(&[title, "noise", "rms before", "after"], 1, &rows));
+    text += "\nrms over samples that no fit has seen. All cables together: ";
+    text += gap.verdict;
+    text += ".\n";
+    for kind in &gap.alike {
+        text += &wrapped("", &format!("All cables have {kind} alike, with one value."));
+    }
+    for wrong in &gap.geometry {
+        let numbers: Vec<String> =
+            wrong.parameters.0.iter().map(|(name, number)| format!("{name} = {number:.5}")).collect();
+        let of = wrong.cable.as_ref().map_or_else(String::new, |cable| format!(" of {cable}"));
+        text += &wrapped("", &format!("The robot file's {}{of} is wrong: {}.", wrong.kind, numbers.join(", ")));
+    }
+    for tried in &gap.tried {
+        text += &wrapped("", &format!("Tried for all cables together: {}: {}.", tried.kind, tried.reason));
     }
     text
 }

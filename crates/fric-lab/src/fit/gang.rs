@@ -12,6 +12,7 @@ use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
 use fric_core::LANES;
 use fric_core::parameters::Values;
+use rayon::prelude::*;
 
 use super::pass::{Forces, LanePass, Part, room_for, with_room_for};
 use super::vector::Parameter;
@@ -162,6 +163,17 @@ fn serve_together<const N: usize>(waiting: Vec<(&mut State<'_>, (Part<'_>, Force
             *seat = State::Served(Some(forces));
         }
     }
+}
+
+/// Forces of several cables in every cycle, as many side by side as there are lanes; `None` when stopped.
+pub fn forces_of(parts: &[Part<'_>], stop: &AtomicBool) -> Option<Vec<Forces>> {
+    let of_lanes = |parts: &[Part<'_>]| {
+        let rooms = vec![Forces::default(); parts.len()];
+        let most = parts.iter().map(Part::carried).max().unwrap_or(0);
+        with_room_for!(most, all_forces(parts, rooms, stop))
+    };
+    let all: Option<Vec<Vec<Forces>>> = parts.par_chunks(LANES).map(of_lanes).collect();
+    Some(all?.into_iter().flatten().collect())
 }
 
 /// Forces of up to [`LANES`] cables in every cycle, in the room given for each; `None` when stopped.

@@ -54,9 +54,11 @@ pub(crate) mod engine {
     pub use super::bins::Bins;
     pub use super::cables::{Search, prepared, used};
     pub use super::conditions::{Condition, Spacing, conditions, sign, time};
-    pub use super::gang::{Gang, Seat};
-    pub use super::gram::Gram;
+    pub use super::gang::{Gang, Seat, forces_of};
+    pub use super::gram::{Gram, Triangle};
     pub use super::interpolated::measured;
+    pub use super::optimizer::minimize;
+    pub use super::pass::{Forces, Part};
     pub use super::problem::{Comparison, Loss, Member, Problem};
     pub use super::record::PLAY_OF_NOISE;
     pub use super::rewritten::{NewValues, with_values};
@@ -65,6 +67,7 @@ pub(crate) mod engine {
     pub use super::solve::{Solution, Unknown, search_near};
     pub use super::undetermined::{covariance, inverse_of_normal, vagueness};
     pub use super::vector::Coordinate;
+    pub use super::wrench::{first_model, reference_wrenches, scatter_of};
 }
 
 pub use cables::{fit_cables, residuals_n};

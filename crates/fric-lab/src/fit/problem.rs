@@ -103,7 +103,7 @@ pub struct Problem<'a> {
 }
 
 /// The rows of a sample: derivatives by every free parameter, then the residual.
-type Rows<'a> = std::slice::ChunksExact<'a, f64>;
+pub type Rows<'a> = std::slice::ChunksExact<'a, f64>;
 
 impl Problem<'_> {
     /// How many parameters vary, of all cables.
@@ -247,7 +247,7 @@ impl Problem<'_> {
     }
 
     /// Derivatives of a sample's residuals by the force of each cable: one column a cable.
-    fn levers(&self, place: usize, levers: &mut Vec<Vector6<f64>>) {
+    pub fn levers(&self, place: usize, levers: &mut Vec<Vector6<f64>>) {
         levers.clear();
         match &self.comparison {
             Comparison::Forces => levers.push(Vector6::repeat(1.0)),
@@ -316,7 +316,7 @@ impl<'a> Problem<'a> {
     }
 
     /// Evaluates all samples that count, with the derivatives by the free parameters or without; false when stopped.
-    fn visit(&self, values: &[Values], derivatives: bool, visit: impl FnMut(usize, Rows<'_>)) -> bool {
+    pub fn visit(&self, values: &[Values], derivatives: bool, visit: impl FnMut(usize, Rows<'_>)) -> bool {
         let parts: Vec<Part<'a>> =
             self.members.iter().zip(values).map(|(member, values)| member.part(values, derivatives)).collect();
         if let (Some(seat), [part]) = (&self.seat, parts.as_slice()) {

@@ -219,6 +219,16 @@ impl<'a> Measurements<'a> {
         &self.platform
     }
 
+    /// The pose of each sample; empty unless the reference is the wrench.
+    pub(crate) fn poses(&self) -> &[Option<Pose>] {
+        &self.platform.poses
+    }
+
+    /// Columns of the structure matrix, all cables of a sample one after the other; empty unless the reference is the wrench.
+    pub(crate) fn structure(&self) -> &[Vector6<f64>] {
+        &self.platform.structure
+    }
+
     /// Where each log begins.
     pub(super) fn starts(&self) -> &[usize] {
         &self.starts

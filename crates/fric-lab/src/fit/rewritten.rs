@@ -65,7 +65,7 @@ pub fn with_values(text: &str, origin: &str, cables: &[NewValues<'_>]) -> Result
                 viscous_n_s_per_m: written(VISCOUS),
                 offset_n: written(OFFSET),
             };
-            CableEdit { name, friction, effects }
+            CableEdit { name, friction, effects, ..CableEdit::default() }
         })
         .collect();
     rewrite(text, origin, &edits)

@@ -26,6 +26,7 @@ use super::selection::{self, Standing};
 use super::solve::{Solution, Unknown, contradicts, search, solve};
 use super::split::split;
 use super::undetermined::{reported_covariance, vagueness};
+use super::vector::Parameter;
 use super::{FitOptions, Progress, start};
 use crate::replay::{WrenchErrors, WrenchReference};
 use crate::weight;
@@ -43,12 +44,9 @@ pub fn fit_wrench(
     options: &FitOptions,
     progress: &Progress,
 ) -> Result<WrenchFit, FitError> {
-    let is_measured = measurements.platform().wrenches.iter().any(Option::is_some);
-    let reference = if is_measured { WrenchReference::Measured } else { WrenchReference::Mass };
-    let outside = outside_wrenches(measurements, reference);
+    let (reference, outside) = reference_wrenches(measurements)?;
     let records: Vec<CableRecord<'_>> = measurements.cables().collect();
     let structure = measurements.platform().structure.as_slice();
-    balance::check(structure, &outside, records.len())?;
     let case = Case { records, structure, outside: &outside, options, progress };
     progress.begin(4);
     let held_out = case.held_out();
@@ -59,6 +57,51 @@ pub fn fit_wrench(
     let cables = cable_fits(&problem, &case.given(), &solution, &standings);
     let [before, after] = case.errors(&problem, &solution.values, &|_| true);
     Ok(WrenchFit { cables, reference, before, after, held_out })
+}
+
+/// What the forces of the cables are compared with in each sample, NaN where there is nothing: the wrench in the log, else that of the mass.
+///
+/// # Errors
+/// [`FitError`] where it cannot tell the forces of the cables.
+pub fn reference_wrenches(measurements: &Measurements<'_>) -> Result<(WrenchReference, Vec<Vector6<f64>>), FitError> {
+    let is_measured = measurements.platform().wrenches.iter().any(Option::is_some);
+    let reference = if is_measured { WrenchReference::Measured } else { WrenchReference::Mass };
+    let outside = outside_wrenches(measurements, reference);
+    balance::check(&measurements.platform().structure, &outside, measurements.robot().cables().len())?;
+    Ok((reference, outside))
+}
+
+/// The given model of all cables, fitted to all samples.
+#[derive(Debug)]
+pub struct FirstModel {
+    /// Values of each cable.
+    pub values: Vec<Values>,
+    /// What was varied of each: what acts, as far as the samples determine it.
+    pub free: Vec<Vec<Parameter>>,
+    /// Standing of each sample for all cables together.
+    pub standings: Vec<Standing>,
+}
+
+/// Fits what acts in the given model to all samples; offsets stay as given, for they are seen in combinations only.
+pub fn first_model(
+    measurements: &Measurements<'_>,
+    outside: &[Vector6<f64>],
+    acts: impl Fn(&Parameter, &Values) -> bool,
+    progress: &Progress,
+) -> FirstModel {
+    let records: Vec<CableRecord<'_>> = measurements.cables().collect();
+    let structure = measurements.platform().structure.as_slice();
+    let options = FitOptions::default();
+    let case = Case { records, structure, outside, options: &options, progress };
+    let is_wanted = |record: &CableRecord<'_>, of: &Parameter| of.place() != OFFSET && acts(of, &record.params.values());
+    let Found { problem, solution, standings } = case.without_offsets(&|_| true, &is_wanted);
+    let is_known = |member: usize, of: &Parameter| {
+        let unknown = Unknown { member, parameter: *of };
+        !solution.undetermined.contains(&unknown)
+    };
+    let free = |(member, of): (usize, &Member<'_>)| of.free.iter().copied().filter(|of| is_known(member, of)).collect();
+    let free = problem.members.iter().enumerate().map(free).collect();
+    FirstModel { values: solution.values, free, standings }
 }
 
 /// What is fitted to what.
@@ -104,8 +147,12 @@ impl<'a> Case<'a> {
         after
     }
 
-    /// The parameters by the samples that count.
-    fn identified(&self, counts: &dyn Fn(usize) -> bool) -> Found<'a> {
+    /// The parameters by the samples that count, those wanted, with the offsets held.
+    fn without_offsets(
+        &self,
+        counts: &dyn Fn(usize) -> bool,
+        is_wanted: &dyn Fn(&CableRecord<'_>, &Parameter) -> bool,
+    ) -> Found<'a> {
         let Self { structure, outside, options, progress, .. } = *self;
         let given = self.given();
         let has_wrench =
@@ -119,7 +166,7 @@ impl<'a> Case<'a> {
         };
         let mut of_cables: Vec<Vec<Standing>> = self.records.iter().map(of_cable).collect();
         let mut problem = Problem {
-            members: self.members(|parameter_place| parameter_place != OFFSET),
+            members: self.members(is_wanted),
             comparison: Comparison::Wrench {
                 structure,
                 outside,
@@ -138,13 +185,23 @@ impl<'a> Case<'a> {
         let mut standings = together(&of_cables);
         problem.used = used(&standings);
         let starts = with_newcomers(&problem, starts, &given, cycle_s);
+        let solution = solve(&mut problem, starts, &given, cycle_s, options.weighing, &mut standings);
+        Found { problem, solution, standings }
+    }
+
+    /// The parameters by the samples that count.
+    fn identified(&self, counts: &dyn Fn(usize) -> bool) -> Found<'a> {
+        let Self { options, progress, .. } = *self;
+        let given = self.given();
+        let cycle_s = self.records.first().map_or(f64::NAN, |record| record.cycle_s);
         // Friction first, then the offsets with it; all once to learn how the six deviations scatter, and once with that.
-        let mut solution = solve(&mut problem, starts, &given, cycle_s, options.weighing, &mut standings);
+        let Found { mut problem, mut solution, mut standings } =
+            self.without_offsets(counts, &|_, parameter| parameter.place() != OFFSET);
         let mut earlier = Earlier::default();
         match self.offsets(&problem, &solution, cycle_s) {
             Offsets::Contradicted => {
                 // What friction seemed undetermined beside wrong offsets gets another chance, and another start.
-                problem.members = self.members(|_| true);
+                problem.members = self.members(&|_, _| true);
                 earlier.evaluation_count += solution.evaluation_count;
                 let mut starts = vec![solution.values];
                 starts.extend(start::starts(&problem, &given, cycle_s));
@@ -178,11 +235,11 @@ impl<'a> Case<'a> {
         Found { problem, solution, standings }
     }
 
-    /// All cables with what is to be varied of them, as far as its place is wanted.
-    fn members(&self, is_wanted: impl Fn(usize) -> bool) -> Vec<Member<'a>> {
+    /// All cables with what is to be varied of them, as far as it is wanted.
+    fn members(&self, is_wanted: &dyn Fn(&CableRecord<'_>, &Parameter) -> bool) -> Vec<Member<'a>> {
         let member = |record: &CableRecord<'a>| {
             let mut free = self.options.free(record.params);
-            free.retain(|parameter| is_wanted(parameter.place()));
+            free.retain(|parameter| is_wanted(record, parameter));
             Member { record: *record, free }
         };
         self.records.iter().map(member).collect()
@@ -191,7 +248,7 @@ impl<'a> Case<'a> {
     /// What the samples tell of the offsets, beside the friction found without them.
     fn offsets(&self, problem: &Problem<'_>, solution: &Solution, cycle_s: f64) -> Offsets {
         let mut trial = problem.clone();
-        for (member, offset) in trial.members.iter_mut().zip(self.members(|place| place == OFFSET)) {
+        for (member, offset) in trial.members.iter_mut().zip(self.members(&|_, parameter| parameter.place() == OFFSET)) {
             member.free.extend(offset.free);
         }
         if trial.parameter_count() == problem.parameter_count() || !problem.used.contains(&true) {
@@ -287,16 +344,20 @@ fn together(of_cables: &[Vec<Standing>]) -> Vec<Standing> {
 /// What turns the deviations at `values` into independent ones of variance 1; `None` where they span fewer than six
 /// directions.
 fn scatter(problem: &Problem<'_>, values: &[Values]) -> Option<Matrix6<f64>> {
-    let mut squares = Matrix6::zeros();
-    let mut count = 0.0;
+    let mut deviations = Vec::new();
     problem.residuals(values, |_, residuals| {
         if residuals.len() == 6 {
-            let deviation = Vector6::from_row_slice(residuals);
-            squares += deviation * deviation.transpose();
-            count += 1.0;
+            deviations.push(Vector6::from_row_slice(residuals));
         }
     });
-    let covariance = squares / count;
+    scatter_of(&deviations)
+}
+
+/// The same of deviations at hand.
+pub fn scatter_of(deviations: &[Vector6<f64>]) -> Option<Matrix6<f64>> {
+    let squares: Matrix6<f64> = deviations.iter().map(|deviation| deviation * deviation.transpose()).sum();
+    #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
+    let covariance = squares / deviations.len() as f64;
     let factor = covariance.cholesky()?.l();
     let least = factor.diagonal().min() / factor.diagonal().max();
     if least > 1e-6 { factor.try_inverse() } else { None }

@@ -7,14 +7,19 @@ use fric_log::output::OutputFile;
 
 use super::{Model, about, read_table};
 use crate::arguments::DiscoverArguments;
+use crate::arguments::ReferenceName;
 use crate::failure::{Failure, Outcome};
 use crate::output::{self, JsonTarget};
 use fric_work::report;
 
 /// Runs the command.
 pub fn run(arguments: &DiscoverArguments) -> Outcome {
-    let DiscoverArguments { logs, model, part, output, report, result } = arguments;
+    let DiscoverArguments { logs, model, part, output, reference, report, result } = arguments;
     part.check_none()?;
+    if *reference == ReferenceName::Wrench {
+        return Err(Failure::usage("--reference wrench is for robots; a manipulator has no platform")
+            .advise("Leave --reference away: the gratings are the reference."));
+    }
     let json_file = result.json.as_deref().filter(|path| !output::is_stdout(path));
     output::check_distinct(&[output.as_deref(), report.as_deref(), json_file])?;
     let ([log], Some(model)) = (logs.as_slice(), model) else {

@@ -1,0 +1,326 @@
+//! Models of all cables together, fitted to the wrench on the platform.
+
+use std::sync::atomic::AtomicBool;
+
+use fric_core::parameters::Values;
+use nalgebra::{DMatrix, Matrix6, Vector6};
+
+use super::geometry::{Changes, Description, Geometry};
+use crate::fit::engine::{
+    Comparison, Coordinate, Gram, Loss, Member, Problem, Scores, Triangle, inverse_of_normal, minimize,
+};
+use crate::fit::split::Block;
+use crate::fit::{CableRecord, Parameter};
+
+/// A number of a geometry is no further off than some such share of its size: weighs as one more deviation, so that a direction which the
+/// samples say nothing of stays.
+const GEOMETRY_RATIO: f64 = 0.1;
+
+/// A model of all cables.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// Values of each cable.
+    pub values: Vec<Values>,
+    /// What is varied of each cable by itself.
+    pub free: Vec<Vec<Parameter>>,
+    /// What is varied of all cables alike.
+    pub alike: Vec<Parameter>,
+    /// What is wrong about the description, and by how much.
+    pub changes: Changes,
+}
+
+/// A number that is varied.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unknown {
+    /// A parameter of one cable.
+    Own(usize, Parameter),
+    /// One that all cables have alike.
+    Alike(Parameter),
+    /// One of a geometry's numbers.
+    Geometry(Geometry, usize),
+}
+
+impl Model {
+    /// What is varied, in the order of the columns.
+    pub fn unknowns(&self) -> Vec<Unknown> {
+        let own = self.free.iter().enumerate().flat_map(|(cable, free)| free.iter().map(move |of| Unknown::Own(cable, *of)));
+        let alike = self.alike.iter().copied().map(Unknown::Alike);
+        let of_geometry =
+            self.changes.iter().flat_map(|(of, numbers)| (0..numbers.len()).map(|place| Unknown::Geometry(*of, place)));
+        own.chain(alike).chain(of_geometry).collect()
+    }
+
+    fn number(&self, unknown: &Unknown) -> f64 {
+        let value = |cable: usize, of: &Parameter| self.values.get(cable).map_or(f64::NAN, |values| values[of.place()]);
+        match unknown {
+            Unknown::Own(cable, of) => value(*cable, of),
+            Unknown::Alike(of) => value(0, of),
+            Unknown::Geometry(of, place) => {
+                self.changes.get(of).and_then(|numbers| numbers.get(*place)).copied().unwrap_or(0.0)
+            }
+        }
+    }
+
+    /// The same with other numbers, in the order of the unknowns.
+    fn moved(&self, numbers: &[f64]) -> Self {
+        let mut moved = self.clone();
+        for (unknown, number) in self.unknowns().iter().zip(numbers) {
+            match unknown {
+                Unknown::Own(cable, of) => {
+                    moved.values.iter_mut().skip(*cable).take(1).for_each(|values| values[of.place()] = *number);
+                }
+                Unknown::Alike(of) => moved.values.iter_mut().for_each(|values| values[of.place()] = *number),
+                Unknown::Geometry(of, place) => {
+                    let entry = moved.changes.get_mut(of).and_then(|numbers| numbers.get_mut(*place));
+                    entry.into_iter().for_each(|entry| *entry = *number);
+                }
+            }
+        }
+        moved
+    }
+}
+
+/// A model that was fitted.
+#[derive(Clone, Debug)]
+pub struct Trial {
+    pub model: Model,
+    /// Sum of squares of the whitened deviations of each block.
+    pub blocks: Vec<f64>,
+    /// The same over the blocks learned from, and those held out.
+    pub training: f64,
+    pub held_out: f64,
+}
+
+/// All cables with their samples.
+#[derive(Clone, Debug)]
+pub struct Bench<'a> {
+    pub records: Vec<CableRecord<'a>>,
+    pub description: Description<'a>,
+    pub blocks: Vec<Block>,
+    /// Which samples count.
+    pub counts: Vec<bool>,
+    /// Turns deviations into numbers of variance 1 that do not depend on each other.
+    pub whitening: Matrix6<f64>,
+    pub stop: &'a AtomicBool,
+}
+
+impl<'a> Bench<'a> {
+    /// Samples that count and are learned from, or held out.
+    pub fn used(&self, held_out: bool) -> Vec<bool> {
+        let mut used = vec![false; self.counts.len()];
+        for block in self.blocks.iter().filter(|block| block.held_out == held_out) {
+            let cycles = used.iter_mut().zip(&self.counts).skip(block.cycles.start).take(block.cycles.len());
+            cycles.for_each(|(used, counts)| *used = *counts);
+        }
+        used
+    }
+
+    /// How many samples are held out, or learned from.
+    pub fn count(&self, held_out: bool) -> usize {
+        self.used(held_out).into_iter().filter(|used| *used).count()
+    }
+
+    /// Calls with the problem of a model, in which each cable has all that it varies as its own.
+    pub fn with_problem<T>(&self, model: &Model, used: Vec<bool>, run: impl FnOnce(&Problem<'_>) -> T) -> T {
+        let (structure, outside) = self.description.changed(&model.changes);
+        let member = |(record, free): (&CableRecord<'a>, &Vec<Parameter>)| {
+            let alike = model.alike.iter().filter(|of| !free.contains(of));
+            Member { record: *record, free: free.iter().chain(alike).copied().collect() }
+        };
+        let problem = Problem {
+            members: self.records.iter().zip(&model.free).map(member).collect(),
+            comparison: Comparison::Wrench {
+                structure: &structure,
+                outside: &outside,
+                whitening: Box::new(self.whitening),
+            },
+            loss: Loss::Squares,
+            used,
+            stop: self.stop,
+            seat: None,
+        };
+        run(&problem)
+    }
+
+    /// Six rows of every sample learned from: derivatives by the unknowns, then the deviation; false when stopped.
+    pub fn rows(&self, model: &Model, mut visit: impl FnMut(usize, &[Vec<f64>])) -> bool {
+        let unknowns = model.unknowns();
+        let column = |unknown: Unknown| unknowns.iter().position(|of| *of == unknown);
+        let tangents = self.tangents(model);
+        let first_tangent = unknowns.len() - tangents.len();
+        self.with_problem(model, self.used(false), |problem| {
+            let columns: Vec<Option<usize>> = problem
+                .members
+                .iter()
+                .enumerate()
+                .flat_map(|(cable, member)| member.free.iter().map(move |of| (cable, *of)))
+                .map(|(cable, of)| column(Unknown::Own(cable, of)).or_else(|| column(Unknown::Alike(of))))
+                .collect();
+            let mut joint = vec![vec![0.0; unknowns.len() + 1]; 6];
+            problem.visit(&model.values, true, |place, rows| {
+                for ((component, row), joint) in rows.enumerate().zip(&mut joint) {
+                    joint.fill(0.0);
+                    let Some((deviation, derivatives)) = row.split_last() else { continue };
+                    for (derivative, column) in derivatives.iter().zip(&columns) {
+                        column.and_then(|column| joint.get_mut(column)).into_iter().for_each(|sum| *sum += derivative);
+                    }
+                    for (sum, tangent) in joint.iter_mut().skip(first_tangent).zip(&tangents) {
+                        *sum = tangent.get(place).map_or(f64::NAN, |change| change[component]);
+                    }
+                    joint.last_mut().into_iter().for_each(|last| *last = *deviation);
+                }
+                visit(place, &joint);
+            })
+        })
+    }
+
+    /// Whitened derivatives by the numbers of geometries, in every sample.
+    fn tangents(&self, model: &Model) -> Vec<Vec<Vector6<f64>>> {
+        if model.changes.is_empty() {
+            return Vec::new();
+        }
+        let forces = self.with_problem(model, Vec::new(), |problem| problem.forces(&model.values)).unwrap_or_default();
+        let force_n = |place: usize, cable: usize| forces.get(cable).map_or(f64::NAN, |forces| forces.at(place).0);
+        let of = |of: &Geometry| self.description.tangents(*of, &model.changes, force_n);
+        let mut all: Vec<Vec<Vector6<f64>>> = model.changes.keys().flat_map(of).collect();
+        all.iter_mut().flatten().for_each(|change| *change = self.whitening * *change);
+        all
+    }
+
+    /// Normal equations of a model over the samples learned from, and the scores if wanted; `None` when stopped.
+    pub fn gram(&self, model: &Model, mut scores: Option<&mut Scores>) -> Option<Gram> {
+        let unknowns = model.unknowns();
+        let mut gram = Gram::new(unknowns.len());
+        let mut score = vec![0.0; unknowns.len()];
+        let completed = self.rows(model, |place, rows| {
+            score.fill(0.0);
+            for row in rows {
+                gram.add(row);
+                let Some((deviation, derivatives)) = row.split_last() else { continue };
+                score.iter_mut().zip(derivatives).for_each(|(sum, derivative)| *sum += derivative * deviation);
+            }
+            if let Some(scores) = scores.as_deref_mut() {
+                scores.add_of(place, &score);
+            }
+        });
+        for (place, unknown) in unknowns.iter().enumerate() {
+            if let Unknown::Geometry(of, _) = unknown {
+                let scale = GEOMETRY_RATIO * self.description.size(*of);
+                let mut row = vec![0.0; unknowns.len() + 1];
+                row.iter_mut().skip(place).take(1).for_each(|entry| *entry = scale.recip());
+                row.last_mut().into_iter().for_each(|last| *last = model.number(unknown) / scale);
+                gram.add(&row);
+            }
+        }
+        completed.then_some(gram)
+    }
+
+    /// Fits a model to the samples learned from, as near to its minimum as asked for, in standard errors.
+    pub fn fit(&self, model: &Model, near_errors: f64) -> Trial {
+        let model = &self.off_bounds(model);
+        let unknowns = model.unknowns();
+        let cycle_s = self.records.first().map_or(f64::NAN, |record| record.cycle_s);
+        let coordinate = |unknown: &Unknown| match unknown {
+            Unknown::Own(_, of) | Unknown::Alike(of) => Some(Coordinate::of(of, cycle_s)),
+            Unknown::Geometry(..) => None,
+        };
+        let coordinates: Vec<Option<Coordinate>> = unknowns.iter().map(coordinate).collect();
+        let places = coordinates.iter().zip(&unknowns).map(|(coordinate, unknown)| {
+            let number = model.number(unknown);
+            coordinate.map_or(number, |coordinate| coordinate.place_of(number))
+        });
+        let start: Vec<f64> = places.collect();
+        let at = |places: &[f64]| -> (Model, Vec<f64>) {
+            let numbers = places.iter().zip(&coordinates).map(|(place, coordinate)| {
+                coordinate.map_or((*place, 1.0), |coordinate| coordinate.value_at(*place))
+            });
+            let (numbers, slopes): (Vec<f64>, Vec<f64>) = numbers.unzip();
+            (model.moved(&numbers), slopes)
+        };
+        let minimum = minimize(&start, 6 * self.count(false), near_errors, |_, _| false, |places| {
+            let (model, slopes) = at(places);
+            let (mut matrix, mut gradient, squares) = self.gram(&model, None)?.normal_equations();
+            for (row, slope) in slopes.iter().enumerate() {
+                matrix.row_mut(row).scale_mut(*slope);
+                matrix.column_mut(row).scale_mut(*slope);
+                gradient[row] *= slope;
+            }
+            Some(Triangle::new(&matrix, &gradient, squares))
+        });
+        self.judged(at(&minimum.coordinates).0)
+    }
+
+    /// Takes parameters away from the least values they can have, where the coordinates of a search have no slope: to the minimum, were
+    /// the forces linear in all that varies.
+    fn off_bounds(&self, model: &Model) -> Model {
+        let unknowns = model.unknowns();
+        let least = |unknown: &Unknown| match unknown {
+            Unknown::Own(_, of) | Unknown::Alike(of) => Some(of.row()).filter(|row| model.number(unknown) <= row.min),
+            Unknown::Geometry(..) => None,
+        };
+        if unknowns.iter().all(|unknown| least(unknown).is_none()) {
+            return model.clone();
+        }
+        let step = self.gram(model, None).and_then(|gram| {
+            let (matrix, gradient, _) = gram.normal_equations();
+            Some(inverse_of_normal(&matrix)? * gradient)
+        });
+        let Some(step) = step else { return model.clone() };
+        let number = |(unknown, step): (&Unknown, &f64)| {
+            let number = model.number(unknown);
+            least(unknown).map_or(number, |row| (number - step).clamp(row.min, row.max))
+        };
+        let numbers: Vec<f64> = unknowns.iter().zip(&step).map(number).collect();
+        model.moved(&numbers)
+    }
+
+    /// A model with its sums of squares.
+    pub fn judged(&self, model: Model) -> Trial {
+        let deviations = self.deviations(&model);
+        let of_block = |block: &Block| -> f64 {
+            let of_block = deviations.get(block.cycles.clone()).unwrap_or_default();
+            of_block.iter().map(Vector6::norm_squared).filter(|square| square.is_finite()).sum()
+        };
+        let blocks: Vec<f64> = self.blocks.iter().map(of_block).collect();
+        let sum = |held_out: bool| {
+            let of = self.blocks.iter().zip(&blocks).filter(|(block, _)| block.held_out == held_out);
+            of.map(|(_, squares)| squares).sum()
+        };
+        Trial { training: sum(false), held_out: sum(true), blocks, model }
+    }
+
+    /// Whitened deviations of every sample; NaN where it does not count.
+    pub fn deviations(&self, model: &Model) -> Vec<Vector6<f64>> {
+        let mut all = vec![Vector6::repeat(f64::NAN); self.counts.len()];
+        self.with_problem(model, self.counts.clone(), |problem| {
+            problem.residuals(&model.values, |place, of_sample| {
+                if let (Some(deviation), true) = (all.get_mut(place), of_sample.len() == 6) {
+                    *deviation = Vector6::from_row_slice(of_sample);
+                }
+            });
+        });
+        all
+    }
+
+    /// The deviation of each sample as the error of one cable's force alone that comes nearest to it, N.
+    pub fn of_cable_n(&self, model: &Model, deviations: &[Vector6<f64>], cable: usize) -> Vec<f64> {
+        let (structure, _) = self.description.changed(&model.changes);
+        let columns = structure.iter().skip(cable).step_by(self.records.len());
+        let nearest = |(column, deviation): (&Vector6<f64>, &Vector6<f64>)| {
+            let lever = self.whitening * column;
+            lever.dot(deviation) / lever.norm_squared()
+        };
+        columns.zip(deviations).map(nearest).collect()
+    }
+
+    /// Covariance of the unknowns of a model at its minimum, as correlated deviations scatter them, and as independent ones of the same
+    /// size would.
+    pub fn covariances(&self, model: &Model) -> Option<[DMatrix<f64>; 2]> {
+        let mut scores = Scores::new(model.unknowns().len());
+        let (matrix, _, squares) = self.gram(model, Some(&mut scores))?.normal_equations();
+        let inverse = inverse_of_normal(&matrix)?;
+        #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
+        let variance = squares / (6.0 * self.count(false) as f64);
+        Some([scores.covariance(&inverse), inverse * variance])
+    }
+}

@@ -1,0 +1,242 @@
+//! What may be wrong about the platform and the geometry of the cables, so that it does not come out as friction.
+//!
+//! `A^T f + w = 0` (\[P\] 3): the structure matrix `A^T` has the places where cables enter their last pulleys and where they are attached,
+//! the outside wrench `w` that stands for weight and inertia has mass, centre of mass and gravity. A measured wrench has none of these.
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
+use fric_core::robot::RobotParams;
+use fric_core::robot::edit::PlatformEdit;
+use fric_core::{CableParams, Pose};
+use nalgebra::{Vector3, Vector6};
+
+use crate::replay::WrenchReference;
+
+/// A number of the robot file, or three, that may be wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Geometry {
+    /// Mass of the platform.
+    Mass,
+    /// Its centre of mass.
+    CenterOfMass,
+    /// Direction of gravity in the base frame.
+    Gravity,
+    /// Where this cable enters its last pulley.
+    Base(usize),
+    /// Where this cable is attached to the platform.
+    Attachment(usize),
+}
+
+/// By how much each is off: kg, m, and two components across the given gravity, m/s².
+pub type Changes = BTreeMap<Geometry, Vec<f64>>;
+
+/// Steps for differences: small beside what matters, large beside rounding.
+const STEP_RATIO: f64 = 1e-4;
+
+impl Geometry {
+    /// The key of the robot file.
+    #[must_use]
+    pub const fn key(self) -> &'static str {
+        match self {
+            Self::Mass => "mass_kg",
+            Self::CenterOfMass => "center_of_mass_m",
+            Self::Gravity => "gravity_m_per_s2",
+            Self::Base(_) => "base_m",
+            Self::Attachment(_) => "platform_m",
+        }
+    }
+
+    /// The cable that it is of.
+    #[must_use]
+    pub const fn cable(self) -> Option<usize> {
+        match self {
+            Self::Base(cable) | Self::Attachment(cable) => Some(cable),
+            Self::Mass | Self::CenterOfMass | Self::Gravity => None,
+        }
+    }
+
+    /// Names of its numbers in results.
+    #[must_use]
+    pub const fn names(self) -> &'static [&'static str] {
+        match self {
+            Self::Mass => &["mass_kg"],
+            Self::CenterOfMass | Self::Base(_) | Self::Attachment(_) => &["x_m", "y_m", "z_m"],
+            Self::Gravity => &["x_m_per_s2", "y_m_per_s2", "z_m_per_s2"],
+        }
+    }
+
+    /// How many numbers it is varied by.
+    pub const fn count(self) -> usize {
+        match self {
+            Self::Mass => 1,
+            Self::Gravity => 2,
+            Self::CenterOfMass | Self::Base(_) | Self::Attachment(_) => 3,
+        }
+    }
+}
+
+/// The robot as it is described, with its poses.
+#[derive(Clone, Copy, Debug)]
+pub struct Description<'a> {
+    pub robot: &'a RobotParams<'a>,
+    pub reference: WrenchReference,
+    pub poses: &'a [Option<Pose>],
+    /// Columns of the structure matrix, all cables of a sample one after the other.
+    pub structure: &'a [Vector6<f64>],
+    /// The wrench of each sample; NaN where there is none.
+    pub outside: &'a [Vector6<f64>],
+}
+
+impl<'a> Description<'a> {
+    /// What may be wrong.
+    pub fn candidates(&self) -> Vec<Geometry> {
+        let of_platform = [Geometry::Mass, Geometry::CenterOfMass, Geometry::Gravity];
+        let of_cables = (0..self.count()).flat_map(|cable| [Geometry::Base(cable), Geometry::Attachment(cable)]);
+        let is_known = self.reference == WrenchReference::Mass;
+        of_platform.into_iter().filter(|_| is_known).chain(of_cables).collect()
+    }
+
+    fn count(&self) -> usize {
+        self.robot.cables().len()
+    }
+
+    /// Structure matrix and outside wrench where some numbers are off by so much.
+    pub fn changed(&self, changes: &Changes) -> (Cow<'a, [Vector6<f64>]>, Cow<'a, [Vector6<f64>]>) {
+        let (mut structure, mut outside) = (Cow::Borrowed(self.structure), Cow::Borrowed(self.outside));
+        for cable in 0..self.count() {
+            let Some(moved) = self.moved(cable, changes) else { continue };
+            let columns = structure.to_mut().iter_mut().skip(cable).step_by(self.count());
+            columns.zip(self.poses).for_each(|(column, pose)| *column = column_of(&moved, pose.as_ref()));
+        }
+        if changes.keys().any(|of| of.cable().is_none()) {
+            let wrenches = outside.to_mut().iter_mut().zip(self.poses);
+            wrenches.for_each(|(wrench, pose)| *wrench = self.wrench(*wrench, pose.as_ref(), changes));
+        }
+        (structure, outside)
+    }
+
+    /// A cable whose geometry is off.
+    fn moved(&self, cable: usize, changes: &Changes) -> Option<CableParams> {
+        let of = |geometry: Geometry| changes.get(&geometry).map(Vec::as_slice);
+        let (base, attachment) = (of(Geometry::Base(cable)), of(Geometry::Attachment(cable)));
+        if base.is_none() && attachment.is_none() {
+            return None;
+        }
+        let params = self.robot.cables().get(cable)?;
+        params.with_geometry(shifted(params.base_m()?, base), shifted(params.platform_m()?, attachment))
+    }
+
+    /// The wrench of mass, centre of mass and gravity that are off.
+    fn wrench(&self, given: Vector6<f64>, pose: Option<&Pose>, changes: &Changes) -> Vector6<f64> {
+        let Some(pose) = pose else { return given };
+        let given_n: Vector3<f64> = given.fixed_rows::<3>(0).into();
+        let mass_kg = self.mass_kg(changes);
+        let acceleration_m_per_s2 = self.robot.gravity_m_per_s2() - given_n / self.robot.mass_kg();
+        let force_n = (self.gravity_m_per_s2(changes) - acceleration_m_per_s2) * mass_kg;
+        let torque_nm = (pose.orientation * self.center_of_mass_m(changes)).cross(&force_n);
+        Vector6::new(force_n.x, force_n.y, force_n.z, torque_nm.x, torque_nm.y, torque_nm.z)
+    }
+
+    fn mass_kg(&self, changes: &Changes) -> f64 {
+        let by_kg = changes.get(&Geometry::Mass).and_then(|by| by.first()).copied().unwrap_or(0.0);
+        self.robot.mass_kg() + by_kg
+    }
+
+    fn center_of_mass_m(&self, changes: &Changes) -> Vector3<f64> {
+        let by_m = changes.get(&Geometry::CenterOfMass).map(Vec::as_slice);
+        shifted(self.robot.center_of_mass_m(), by_m).into()
+    }
+
+    /// Gravity of the given size in another direction.
+    fn gravity_m_per_s2(&self, changes: &Changes) -> Vector3<f64> {
+        let given = self.robot.gravity_m_per_s2();
+        let Some([across, along]) = changes.get(&Geometry::Gravity).and_then(|by| by.first_chunk::<2>()) else {
+            return given;
+        };
+        let [one, other] = across_of(&given);
+        let turned: Vector3<f64> = given + one * *across + other * *along;
+        turned * (given.norm() / turned.norm())
+    }
+
+    /// The numbers of the robot file as they would be, in the order of [`Geometry::names`].
+    pub fn corrected(&self, of: Geometry, changes: &Changes) -> Vec<f64> {
+        let cable = |cable: usize| self.moved(cable, changes).or_else(|| self.robot.cables().get(cable).copied());
+        let point = match of {
+            Geometry::Mass => return vec![self.mass_kg(changes)],
+            Geometry::CenterOfMass => Some(self.center_of_mass_m(changes)),
+            Geometry::Gravity => Some(self.gravity_m_per_s2(changes)),
+            Geometry::Base(of) => cable(of).and_then(|params| params.base_m()),
+            Geometry::Attachment(of) => cable(of).and_then(|params| params.platform_m()),
+        };
+        point.map_or_else(Vec::new, |point| point.iter().copied().collect())
+    }
+
+    /// The platform's numbers that are off, for its table in the robot file.
+    pub fn platform_edit(&self, changes: &Changes) -> PlatformEdit {
+        let has = |of: Geometry| changes.contains_key(&of);
+        PlatformEdit {
+            mass_kg: has(Geometry::Mass).then(|| self.mass_kg(changes)),
+            center_of_mass_m: has(Geometry::CenterOfMass).then(|| self.center_of_mass_m(changes).into()),
+            gravity_m_per_s2: has(Geometry::Gravity).then(|| self.gravity_m_per_s2(changes).into()),
+        }
+    }
+
+    /// How the sum of the wrenches changes with each number of one, in every sample, where the cables have these forces.
+    pub fn tangents(&self, of: Geometry, changes: &Changes, force_n: impl Fn(usize, usize) -> f64) -> Vec<Vec<Vector6<f64>>> {
+        let step = STEP_RATIO * self.size(of);
+        let tangent = |number: usize| {
+            let mut beside = changes.clone();
+            let numbers = beside.entry(of).or_insert_with(|| vec![0.0; of.count()]);
+            numbers.iter_mut().skip(number).take(1).for_each(|entry| *entry += step);
+            let from = changes.clone();
+            match of.cable() {
+                Some(cable) => {
+                    let params = |changes: &Changes| {
+                        self.moved(cable, changes).or_else(|| self.robot.cables().get(cable).copied())
+                    };
+                    let (Some(from), Some(to)) = (params(&from), params(&beside)) else { return Vec::new() };
+                    let change = |(place, pose): (usize, &Option<Pose>)| {
+                        let columns = column_of(&to, pose.as_ref()) - column_of(&from, pose.as_ref());
+                        columns * (force_n(place, cable) / step)
+                    };
+                    self.poses.iter().enumerate().map(change).collect()
+                }
+                None => {
+                    let change = |(wrench, pose): (&Vector6<f64>, &Option<Pose>)| {
+                        let of = |changes: &Changes| self.wrench(*wrench, pose.as_ref(), changes);
+                        (of(&beside) - of(&from)) / step
+                    };
+                    self.outside.iter().zip(self.poses).map(change).collect()
+                }
+            }
+        };
+        (0..of.count()).map(tangent).collect()
+    }
+
+    /// What a number is beside which a step is small, and beyond which nobody is wrong.
+    pub fn size(&self, of: Geometry) -> f64 {
+        match of {
+            Geometry::Mass => self.robot.mass_kg(),
+            Geometry::Gravity => self.robot.gravity_m_per_s2().norm(),
+            Geometry::CenterOfMass | Geometry::Base(_) | Geometry::Attachment(_) => 1.0,
+        }
+    }
+}
+
+fn shifted(point: Vector3<f64>, by: Option<&[f64]>) -> [f64; 3] {
+    let by = by.and_then(|by| by.first_chunk::<3>()).copied().unwrap_or_default();
+    (point + Vector3::from(by)).into()
+}
+
+fn column_of(params: &CableParams, pose: Option<&Pose>) -> Vector6<f64> {
+    pose.and_then(|pose| params.structure_column(pose)).unwrap_or_else(|| Vector6::repeat(f64::NAN))
+}
+
+/// Two directions across a vector and each other.
+fn across_of(vector: &Vector3<f64>) -> [Vector3<f64>; 2] {
+    let least = vector.abs().imin();
+    let axis = Vector3::from_fn(|row, _| f64::from(u8::from(row == least)));
+    let one = vector.cross(&axis).normalize();
+    [one, vector.cross(&one).normalize()]
+}

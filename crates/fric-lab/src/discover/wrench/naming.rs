@@ -1,0 +1,488 @@
+//! Which effects are missing, and on which cables: candidates enter, justify themselves and are exchanged, all cables jointly.
+//!
+//! The rules are those of the search on a cable with a reference force: who enters helps on samples learned from and on those held out; who stays
+//! has strong evidence, is large enough to matter, is within its range and acts in most of the blocks. Two come on top. An effect that all cables
+//! have alike costs its parameters once, and has to be taken apart where cables differ. And what is wrong about the description of the robot is
+//! a candidate like an effect, or it would come out as one.
+
+use std::collections::BTreeMap;
+
+use fric_core::parameters::MU;
+use nalgebra::DVector;
+
+use super::bench::{Bench, Model, Trial, Unknown};
+use super::geometry::Geometry;
+use super::screen::{Candidate, Promise, promises};
+use crate::discover::naming::{LEAST_GAIN, LEAST_SIZE, NEGLIGIBLE, Refusal, STRONG_BIC, delta_bic, is_at_end};
+use crate::effects::{self, Around};
+use crate::fit::Parameter;
+use crate::fit::candidates::{around, fitted, has};
+use crate::fit::engine::inverse_of_normal;
+use crate::fit::noise::white_noise;
+use crate::fit::ripple::periods;
+
+/// Candidates that are fitted of those that promise most.
+const FITTED: usize = 6;
+/// Most names.
+const MOST: usize = 16;
+/// How near to its minimum a candidate comes, and the model that is reported, in standard errors.
+const NEAR_ERRORS: f64 = 0.3;
+const AT_MINIMUM: f64 = 0.02;
+/// The gain of an effect per block held out is positive by so many standard errors.
+const LEAST_BLOCKS: f64 = 2.5;
+/// What was found is away from its neutral value by so many standard errors.
+const LEAST_AWAY: f64 = 4.0;
+/// Rounds of entering, leaving and exchanging.
+const ROUNDS: usize = 6;
+
+/// A name with what speaks for it.
+#[derive(Clone, Debug)]
+pub struct Named {
+    pub candidate: Candidate,
+    pub delta_bic: f64,
+    /// The best other one in its place, with its evidence; and whether it is as good.
+    pub runner_up: Option<(Candidate, f64, bool)>,
+}
+
+/// A candidate that helps and does not suffice.
+#[derive(Clone, Debug)]
+pub struct Tried {
+    pub candidate: Candidate,
+    pub delta_bic: f64,
+    pub refusal: Refusal,
+}
+
+/// What came out.
+#[derive(Clone, Debug)]
+pub struct Naming {
+    pub trial: Trial,
+    pub named: Vec<Named>,
+    pub tried: Vec<Tried>,
+}
+
+/// The search.
+pub struct Search<'b, 'a> {
+    bench: &'b Bench<'a>,
+    /// Mean of the noise's squares of a sample, of whitened deviations.
+    noise_square: f64,
+    fits: BTreeMap<Vec<Candidate>, Trial>,
+    promised: BTreeMap<Vec<Candidate>, Vec<Promise>>,
+    refused: BTreeMap<Candidate, Refusal>,
+}
+
+impl<'b, 'a> Search<'b, 'a> {
+    /// From a model that was fitted.
+    pub fn new(bench: &'b Bench<'a>, base: Trial, noise_square: f64) -> Self {
+        Self {
+            bench,
+            noise_square,
+            fits: BTreeMap::from([(Vec::new(), base)]),
+            promised: BTreeMap::new(),
+            refused: BTreeMap::new(),
+        }
+    }
+
+    /// Names what is missing, beginning with what was found before: models that have it.
+    pub fn run(mut self, before: &[Named], model: &Model) -> Naming {
+        let mut found: Vec<Candidate> = before.iter().map(|named| named.candidate).collect();
+        if !found.is_empty() {
+            self.fits.insert(set_of(&found), self.bench.fit(model, NEAR_ERRORS));
+        }
+        let mut named = Vec::new();
+        for _ in 0..ROUNDS {
+            let set = set_of(&found);
+            let refused = self.refused.len();
+            self.enter(&mut found);
+            self.unite(&mut found);
+            self.take_apart(&mut found);
+            named = self.leave(&mut found);
+            let is_exchanged = self.exchange(&mut found);
+            if !is_exchanged && (set_of(&found) == set || self.refused.len() == refused) {
+                break;
+            }
+        }
+        for place in 0..named.len() {
+            let runner_up = self.runner_up(&found, place);
+            named.iter_mut().skip(place).take(1).for_each(|named| named.runner_up = runner_up);
+        }
+        let tried = self.tried(&found);
+        let model = self.fit(&found).model;
+        Naming { trial: self.bench.fit(&model, AT_MINIMUM), named, tried }
+    }
+
+    fn excess(&self, trial: &Trial) -> f64 {
+        trial.held_out / self.noise_squares(true) - 1.0
+    }
+
+    fn noise_squares(&self, held_out: bool) -> f64 {
+        #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
+        let count = self.bench.count(held_out) as f64;
+        count * self.noise_square
+    }
+
+    fn least_gain(&self, trial: &Trial) -> f64 {
+        let noise = self.noise_squares(true);
+        (LEAST_GAIN * (trial.held_out - noise)).max(LEAST_SIZE * noise)
+    }
+
+    /// Lets the best in as long as they help.
+    fn enter(&mut self, found: &mut Vec<Candidate>) {
+        while found.len() < MOST {
+            let trial = self.fit(found);
+            if self.excess(&trial) <= NEGLIGIBLE {
+                break;
+            }
+            let enough = self.least_gain(&trial);
+            let mut entrants = self.beside(found);
+            entrants.retain(|(candidate, with)| {
+                !self.refused.contains_key(candidate) && trial.held_out - with.held_out > enough && !self.is_at_end(*candidate, with)
+            });
+            let cost = |(candidate, with): &(Candidate, Trial)| self.delta_bic(&trial, with, candidate.count(), 1.0);
+            entrants.sort_by(|one, other| cost(one).total_cmp(&cost(other)));
+            let speaks_for_it = |(candidate, with): &&(Candidate, Trial)| {
+                let inflation = self.standing(*candidate, with).map_or(f64::INFINITY, |standing| standing.inflation);
+                self.delta_bic(&trial, with, candidate.count(), inflation) < 0.0
+            };
+            let Some((candidate, _)) = entrants.iter().find(speaks_for_it) else { break };
+            found.push(*candidate);
+        }
+    }
+
+    /// What several cables have becomes one that all have alike, where that says as much with fewer parameters.
+    fn unite(&mut self, found: &mut Vec<Candidate>) {
+        let effects: Vec<_> = found.iter().filter_map(|of| matches!(of, Candidate::Own(..)).then(|| of.effect())?).collect();
+        for effect in effects.iter().copied().filter(|effect| effects.iter().filter(|of| *of == effect).count() > 2) {
+            let is_own = |of: &Candidate| matches!(of, Candidate::Own(_, own) if *own == effect);
+            let count = found.iter().filter(|of| is_own(of)).count();
+            let (others, candidate) = (found.iter().copied().filter(|of| !is_own(of)).collect::<Vec<_>>(), Candidate::Alike(effect));
+            if count < 3 || self.refused.contains_key(&candidate) {
+                continue;
+            }
+            let (apart, Some(alike)) = (self.fit(found), self.with(&others, candidate)) else { continue };
+            let saved = candidate.count() * (count - 1);
+            // Fewer parameters: as good is better.
+            if -self.delta_bic(&alike, &apart, saved, 1.0) < 0.0 {
+                *found = others;
+                found.push(candidate);
+            }
+        }
+    }
+
+    /// What all cables seem to have alike is taken apart where one of them differs.
+    fn take_apart(&mut self, found: &mut Vec<Candidate>) {
+        for candidate in found.clone() {
+            let Candidate::Alike(effect) = candidate else { continue };
+            let alike = self.fit(found);
+            let mut model = alike.model.clone();
+            let own = fitted(effect);
+            model.alike.retain(|of| !own.contains(of));
+            model.free.iter_mut().for_each(|free| free.extend(own.iter().copied()));
+            let apart = self.bench.fit(&model, NEAR_ERRORS);
+            let more = own.len() * (self.bench.records.len() - 1);
+            let inflation = self.standing(candidate, &alike).map_or(f64::INFINITY, |standing| standing.inflation);
+            if self.delta_bic(&alike, &apart, more, inflation) < -STRONG_BIC {
+                found.retain(|of| *of != candidate);
+                found.extend((0..self.bench.records.len()).map(|cable| Candidate::Own(cable, effect)));
+                self.fits.insert(set_of(found), apart);
+                self.refused.insert(candidate, Refusal::Unsteady("cable"));
+            }
+        }
+    }
+
+    /// Sets aside what cannot justify itself, the weakest first.
+    fn leave(&mut self, found: &mut Vec<Candidate>) -> Vec<Named> {
+        loop {
+            let trial = self.fit(found);
+            let mut named = Vec::new();
+            let mut weakest: Option<(f64, Candidate, Refusal)> = None;
+            for candidate in found.iter().copied() {
+                let others: Vec<Candidate> = found.iter().copied().filter(|of| *of != candidate).collect();
+                let without = self.fit(&others);
+                let (delta_bic, refusal) = self.judged(candidate, &trial, &without);
+                if let Some(refusal) = refusal
+                    && weakest.is_none_or(|(squares, ..)| without.held_out < squares)
+                {
+                    weakest = Some((without.held_out, candidate, refusal));
+                }
+                named.push(Named { candidate, delta_bic, runner_up: None });
+            }
+            let Some((_, candidate, refusal)) = weakest else { return named };
+            found.retain(|of| *of != candidate);
+            self.refused.insert(candidate, refusal);
+        }
+    }
+
+    /// Evidence for a name, and why it cannot stay.
+    fn judged(&self, candidate: Candidate, trial: &Trial, without: &Trial) -> (f64, Option<Refusal>) {
+        let Some(Standing { inflation, away }) = self.standing(candidate, trial) else {
+            return (f64::NAN, Some(Refusal::Weak));
+        };
+        let delta_bic = self.delta_bic(without, trial, candidate.count(), inflation);
+        let is_small = without.held_out - trial.held_out <= LEAST_SIZE * self.noise_squares(true);
+        let refusal = if self.is_at_end(candidate, trial) {
+            Some(Refusal::AtBound)
+        } else if is_small || delta_bic >= -STRONG_BIC || away < LEAST_AWAY || self.over_blocks(trial, without) < LEAST_BLOCKS {
+            Some(Refusal::Weak)
+        } else if !self.is_more_than_usual(candidate, trial) {
+            Some(Refusal::Usual)
+        } else {
+            None
+        };
+        (delta_bic, refusal)
+    }
+
+    /// Mean gain per block held out in its standard errors.
+    fn over_blocks(&self, trial: &Trial, without: &Trial) -> f64 {
+        let blocks = self.bench.blocks.iter().zip(trial.blocks.iter().zip(&without.blocks));
+        let gains: Vec<f64> = blocks.filter(|(block, _)| block.held_out).map(|(_, (with, without))| without - with).collect();
+        #[expect(clippy::cast_precision_loss, reason = "a count of blocks")]
+        let count = gains.len() as f64;
+        let mean = gains.iter().sum::<f64>() / count;
+        let scatter = gains.iter().map(|gain| (gain - mean).powi(2)).sum::<f64>() / (count - 1.0);
+        mean / (scatter / count).sqrt()
+    }
+
+    fn is_more_than_usual(&self, candidate: Candidate, trial: &Trial) -> bool {
+        let Some(lab) = candidate.effect().and_then(effects::of) else { return true };
+        let around = self.around(trial);
+        let is_more = |cable: usize| {
+            let values = trial.model.values.get(cable).zip(around.get(cable));
+            values.is_none_or(|(values, around)| (lab.is_more_than_usual)(values, around))
+        };
+        match candidate {
+            Candidate::Own(cable, _) => is_more(cable),
+            Candidate::Alike(_) => (0..self.bench.records.len()).any(is_more),
+            Candidate::Geometry(_) => true,
+        }
+    }
+
+    /// Tries what promises most in the place of each; whether something was better.
+    fn exchange(&mut self, found: &mut [Candidate]) -> bool {
+        let mut is_changed = false;
+        for place in 0..found.len() {
+            let Some((other, with)) = self.alternative(found, place) else { continue };
+            let Some(candidate) = found.get(place).copied() else { continue };
+            let trial = self.fit(found);
+            let more = self.cost(&with, other) < self.cost(&trial, candidate);
+            if !self.refused.contains_key(&other) && more && with.held_out < trial.held_out && !self.is_at_end(other, &with) {
+                found[place] = other;
+                is_changed = true;
+            }
+        }
+        is_changed
+    }
+
+    /// Schwarz's criterion of a model as far as it tells two candidates apart.
+    fn cost(&self, trial: &Trial, candidate: Candidate) -> f64 {
+        #[expect(clippy::cast_precision_loss, reason = "counts")]
+        let (count, more) = (6.0 * self.bench.count(false) as f64, candidate.count() as f64);
+        count * trial.training.ln() + more * count.ln()
+    }
+
+    fn alternative(&mut self, found: &[Candidate], place: usize) -> Option<(Candidate, Trial)> {
+        let candidate = *found.get(place)?;
+        let others: Vec<Candidate> = found.iter().copied().filter(|of| *of != candidate).collect();
+        let mut rivals = self.beside(&others);
+        rivals.retain(|(of, _)| *of != candidate && !found.contains(of));
+        rivals.into_iter().min_by(|(one, with), (other, beside)| self.cost(with, *one).total_cmp(&self.cost(beside, *other)))
+    }
+
+    fn runner_up(&mut self, found: &[Candidate], place: usize) -> Option<(Candidate, f64, bool)> {
+        let candidate = *found.get(place)?;
+        let (other, with) = self.alternative(found, place)?;
+        let others: Vec<Candidate> = found.iter().copied().filter(|of| *of != candidate).collect();
+        let (without, trial) = (self.fit(&others), self.fit(found));
+        let inflation = self.standing(candidate, &trial).map_or(f64::INFINITY, |standing| standing.inflation);
+        let delta_bic = self.delta_bic(&without, &with, other.count(), inflation);
+        let lead = self.delta_bic(&without, &trial, candidate.count(), inflation) - delta_bic;
+        Some((other, delta_bic, lead > -STRONG_BIC))
+    }
+
+    /// Candidates that help the model with all that was found and do not suffice, the best first.
+    fn tried(&mut self, found: &[Candidate]) -> Vec<Tried> {
+        let trial = self.fit(found);
+        if self.excess(&trial) <= NEGLIGIBLE {
+            return Vec::new();
+        }
+        let tried = self.beside(found).into_iter().filter(|(_, with)| with.held_out < trial.held_out).map(|(candidate, with)| {
+            let inflation = self.standing(candidate, &with).map_or(f64::INFINITY, |standing| standing.inflation);
+            let delta_bic = self.delta_bic(&trial, &with, candidate.count(), inflation);
+            let refusal = if self.is_at_end(candidate, &with) {
+                Refusal::AtBound
+            } else {
+                self.refused.get(&candidate).copied().unwrap_or(Refusal::Weak)
+            };
+            Tried { candidate, delta_bic, refusal }
+        });
+        let mut tried: Vec<Tried> = tried.filter(|tried| tried.delta_bic < 0.0).collect();
+        tried.sort_by(|one, other| one.delta_bic.total_cmp(&other.delta_bic));
+        tried
+    }
+
+    fn delta_bic(&self, from: &Trial, to: &Trial, more: usize, inflation: f64) -> f64 {
+        #[expect(clippy::cast_precision_loss, reason = "counts")]
+        let (count, more) = (6.0 * self.bench.count(false) as f64 / inflation, more as f64);
+        delta_bic(count, to.training / from.training, more)
+    }
+
+    /// The model with some names. One that has not been tried is fitted from the best that has one more.
+    fn fit(&mut self, found: &[Candidate]) -> Trial {
+        let set = set_of(found);
+        if let Some(trial) = self.fits.get(&set) {
+            return trial.clone();
+        }
+        let larger = self
+            .fits
+            .iter()
+            .filter(|(of, _)| of.len() == set.len() + 1 && set.iter().all(|candidate| of.contains(candidate)))
+            .min_by(|(_, one), (_, other)| one.training.total_cmp(&other.training));
+        let Some((larger, trial)) = larger else { return self.fit(&[]) };
+        let mut model = trial.model.clone();
+        for candidate in larger.iter().filter(|of| !set.contains(of)) {
+            take_away(&mut model, *candidate);
+        }
+        let trial = self.bench.fit(&model, NEAR_ERRORS);
+        self.fits.insert(set, trial.clone());
+        trial
+    }
+
+    /// The model with one more name, fitted.
+    fn with(&mut self, found: &[Candidate], candidate: Candidate) -> Option<Trial> {
+        let set = set_of(&[found, &[candidate]].concat());
+        if !self.fits.contains_key(&set) {
+            let promise = self.promises(found).iter().find(|promise| promise.candidate == candidate)?.clone();
+            self.fits.insert(set.clone(), self.bench.fit(&promise.model, NEAR_ERRORS));
+        }
+        self.fits.get(&set).cloned()
+    }
+
+    /// The models with one more of those that promise most, fitted.
+    fn beside(&mut self, found: &[Candidate]) -> Vec<(Candidate, Trial)> {
+        let best: Vec<Candidate> = {
+            let promises = self.promises(found).to_vec();
+            let open = promises.iter().filter(|promise| !self.refused.contains_key(&promise.candidate));
+            open.take(FITTED).map(|promise| promise.candidate).collect()
+        };
+        best.into_iter().filter_map(|candidate| Some((candidate, self.with(found, candidate)?))).collect()
+    }
+
+    fn promises(&mut self, found: &[Candidate]) -> &[Promise] {
+        let set = set_of(found);
+        if !self.promised.contains_key(&set) {
+            let trial = self.fit(found);
+            let around = self.around(&trial);
+            let model = &trial.model;
+            let has_effect = |cable: usize, effect| model.values.get(cable).is_some_and(|values| has(effect, values));
+            let is_wanted = |candidate: Candidate| match candidate {
+                Candidate::Own(cable, effect) => !has_effect(cable, effect),
+                Candidate::Alike(effect) => (0..model.values.len()).all(|cable| !has_effect(cable, effect)),
+                Candidate::Geometry(of) => !model.changes.contains_key(&of),
+            };
+            let mut all = promises(self.bench, model, &around, is_wanted);
+            // Per parameter: the criterion's price is nothing beside the gains that matter, yet of two equals the simpler goes first.
+            all.retain(|promise| promise.gain > 0.0);
+            self.promised.insert(set.clone(), all);
+        }
+        self.promised.get(&set).map(Vec::as_slice).unwrap_or_default()
+    }
+
+    /// What a search on each cable begins from.
+    fn around(&self, trial: &Trial) -> Vec<Around> {
+        let deviations = self.bench.deviations(&trial.model);
+        let of = |(cable, record)| {
+            let residual_n = self.bench.of_cable_n(&trial.model, &deviations, cable);
+            let mu = trial.model.values.get(cable).map_or(0.0, |values| values[MU]);
+            let mut around = around(record, mu, white_noise(&residual_n).unwrap_or(0.0));
+            around.periods = periods(record, &residual_n);
+            around
+        };
+        self.bench.records.iter().enumerate().map(of).collect()
+    }
+
+    fn is_at_end(&self, candidate: Candidate, trial: &Trial) -> bool {
+        let cycle_s = self.bench.records.first().map_or(f64::NAN, |record| record.cycle_s);
+        let is_at = |cable: usize, effect| {
+            trial.model.values.get(cable).is_none_or(|values| is_at_end(effect, values, cycle_s))
+        };
+        match candidate {
+            Candidate::Own(cable, effect) => is_at(cable, effect),
+            Candidate::Alike(effect) => is_at(0, effect),
+            Candidate::Geometry(_) => false,
+        }
+    }
+
+    /// How sure the parameters of a name are.
+    fn standing(&self, candidate: Candidate, trial: &Trial) -> Option<Standing> {
+        let [covariance, independent] = self.bench.covariances(&trial.model)?;
+        let unknowns = trial.model.unknowns();
+        let is_its = |unknown: &Unknown| match (candidate, unknown) {
+            (Candidate::Own(cable, effect), Unknown::Own(of, parameter)) => cable == *of && parameter.effect() == Some(effect),
+            (Candidate::Alike(effect), Unknown::Alike(parameter)) => parameter.effect() == Some(effect),
+            (Candidate::Geometry(geometry), Unknown::Geometry(of, _)) => geometry == *of,
+            _ => false,
+        };
+        let places: Vec<usize> = (0..unknowns.len()).filter(|place| unknowns.get(*place).is_some_and(is_its)).collect();
+        let inflation = places.iter().map(|place| covariance[(*place, *place)] / independent[(*place, *place)]).fold(1.0, f64::max);
+        let away = places.iter().map(|place| away_from_neutral(&trial.model, &unknowns[*place]));
+        let away = DVector::from_iterator(places.len(), away);
+        let inverse = inverse_of_normal(&covariance.select_rows(&places).select_columns(&places))?;
+        let away = (away.transpose() * inverse * &away)[(0, 0)].sqrt();
+        Some(Standing { inflation, away })
+    }
+}
+
+/// How sure the parameters of a name are.
+struct Standing {
+    /// By how much memory in the deviations weakens the evidence, at least 1.
+    inflation: f64,
+    /// How far all are from their neutral values together, in standard errors.
+    away: f64,
+}
+
+fn away_from_neutral(model: &Model, unknown: &Unknown) -> f64 {
+    let from_neutral = |cable: usize, of: &Parameter| {
+        model.values.get(cable).map_or(f64::NAN, |values| values[of.place()] - of.row().neutral)
+    };
+    match unknown {
+        Unknown::Own(cable, of) => from_neutral(*cable, of),
+        Unknown::Alike(of) => from_neutral(0, of),
+        Unknown::Geometry(of, place) => {
+            model.changes.get(of).and_then(|numbers| numbers.get(*place)).copied().unwrap_or(0.0)
+        }
+    }
+}
+
+/// Takes a name out of a model: its numbers are neutral.
+fn take_away(model: &mut Model, candidate: Candidate) {
+    match candidate {
+        Candidate::Own(cable, effect) => {
+            let own = fitted(effect);
+            model.free.iter_mut().skip(cable).take(1).for_each(|free| free.retain(|of| !own.contains(of)));
+            let values = model.values.iter_mut().skip(cable).take(1);
+            values.for_each(|values| Parameter::of(effect).for_each(|of| values[of.place()] = of.row().neutral));
+        }
+        Candidate::Alike(effect) => {
+            let own = fitted(effect);
+            model.alike.retain(|of| !own.contains(of));
+            let values = model.values.iter_mut();
+            values.for_each(|values| Parameter::of(effect).for_each(|of| values[of.place()] = of.row().neutral));
+        }
+        Candidate::Geometry(of) => {
+            model.changes.remove(&of);
+        }
+    }
+}
+
+fn set_of(found: &[Candidate]) -> Vec<Candidate> {
+    let mut set = found.to_vec();
+    set.sort_unstable();
+    set
+}
+
+/// Of which geometries a model corrects numbers.
+pub fn geometries(named: &[Named]) -> impl Iterator<Item = (&Named, Geometry)> {
+    named.iter().filter_map(|named| match named.candidate {
+        Candidate::Geometry(of) => Some((named, of)),
+        _ => None,
+    })
+}

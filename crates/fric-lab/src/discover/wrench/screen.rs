@@ -1,0 +1,349 @@
+//! What each candidate would explain, by one linear step from the model at hand.
+//!
+//! For a candidate with the columns `C` (how the deviations change with its parameters where a search for it begins, and between
+//! there and the model at hand), beside the model's own derivatives `J` and deviations `r`: the sum of squares falls by
+//! `bᵀS⁻¹b` with `S = CᵀC − CᵀJ(JᵀJ)⁻¹JᵀC` and `b = Cᵀr − CᵀJ(JᵀJ)⁻¹Jᵀr` (score test; C. R. Rao, *Large sample tests of statistical
+//! hypotheses*, Proc. Cambridge Phil. Soc. 44, 1948). One pass over the log serves all candidates.
+
+use fric_core::effects::Effect;
+use fric_core::parameters::Values;
+use nalgebra::{DMatrix, DVector, Vector6};
+
+use super::bench::{Bench, Model};
+use super::geometry::Geometry;
+use crate::effects::Around;
+use crate::fit::Parameter;
+use crate::fit::candidates::{fitted, starts};
+use crate::fit::engine::{Forces, Part, forces_of, inverse_of_normal};
+
+/// A direction of which less than this share is its own is one that the model has.
+const OWN_RATIO: f64 = 1e-6;
+
+/// What may be missing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Candidate {
+    /// An effect that all cables have alike.
+    Alike(Effect),
+    /// An effect of one cable.
+    Own(usize, Effect),
+    /// Something wrong about the description of the robot.
+    Geometry(Geometry),
+}
+
+impl Candidate {
+    /// How many parameters it adds.
+    pub fn count(self) -> usize {
+        match self {
+            Self::Alike(effect) | Self::Own(_, effect) => fitted(effect).len(),
+            Self::Geometry(of) => of.count(),
+        }
+    }
+
+    /// The effect, where it is one.
+    pub fn effect(self) -> Option<Effect> {
+        match self {
+            Self::Alike(effect) | Self::Own(_, effect) => Some(effect),
+            Self::Geometry(_) => None,
+        }
+    }
+}
+
+/// A candidate with the model that a search for it begins from.
+#[derive(Clone, Debug)]
+pub struct Promise {
+    pub candidate: Candidate,
+    pub model: Model,
+    /// By how much the whitened sum of squares over the samples learned from would fall.
+    pub gain: f64,
+}
+
+/// An effect on a cable from one start, with its columns: changes of the cable's force, cycle by cycle.
+struct Start {
+    cable: usize,
+    effect: Effect,
+    values: Values,
+    /// First of its columns among the cable's, and how many.
+    columns: std::ops::Range<usize>,
+}
+
+/// Columns of a cable, one after the other in each sample learned from.
+struct Columns {
+    numbers: Vec<f64>,
+    count: usize,
+}
+
+impl Columns {
+    fn at(&self, sample: usize) -> &[f64] {
+        self.numbers.get(sample * self.count..(sample + 1) * self.count).unwrap_or_default()
+    }
+}
+
+/// The promise of every candidate beside a model, each from its best start, the best first.
+pub fn promises(bench: &Bench<'_>, model: &Model, around: &[Around], is_wanted: impl Fn(Candidate) -> bool) -> Vec<Promise> {
+    let cables: Vec<usize> = (0..bench.records.len()).collect();
+    let catalogue = |cable: usize| {
+        let wanted = |effect: &Effect| is_wanted(Candidate::Own(cable, *effect)) || is_wanted(Candidate::Alike(*effect));
+        Effect::ALL.iter().copied().filter(wanted).collect::<Vec<Effect>>()
+    };
+    let mut all_starts: Vec<Start> = Vec::new();
+    let mut all_columns: Vec<Columns> = Vec::new();
+    let used = bench.used(false);
+    let current = bench.with_problem(model, Vec::new(), |problem| problem.forces(&model.values)).unwrap_or_default();
+    for cable in cables {
+        let (Some(record), Some(around)) = (bench.records.get(cable), around.get(cable)) else { continue };
+        let (Some(values), Some(now)) = (model.values.get(cable), current.get(cable)) else { continue };
+        let from: Vec<(Effect, Values)> = catalogue(cable)
+            .into_iter()
+            .flat_map(|effect| starts(effect, values, around, record).into_iter().map(move |start| (effect, start)))
+            .collect();
+        let parts: Vec<Part<'_>> = from
+            .iter()
+            .map(|(effect, values)| Part { record: *record, values: *values, free: fitted(*effect) })
+            .collect();
+        let forces = forces_of(&parts, bench.stop).unwrap_or_default();
+        let mut first = 0;
+        for ((effect, start), part) in from.iter().zip(&parts) {
+            // The way from the model at hand to the start is a column too, where there is one.
+            let count = part.free.len() + usize::from(is_elsewhere(start, values));
+            all_starts.push(Start { cable, effect: *effect, values: *start, columns: first..first + count });
+            first += count;
+        }
+        let mut numbers = Vec::with_capacity(first * bench.count(false));
+        for cycle in used.iter().enumerate().filter(|(_, used)| **used).map(|(cycle, _)| cycle) {
+            let now_n = now.at(cycle).0;
+            for ((_, start), forces) in from.iter().zip(&forces) {
+                let (force_n, derivatives): (f64, &[f64]) = Forces::at(forces, cycle);
+                numbers.extend_from_slice(derivatives);
+                if is_elsewhere(start, values) {
+                    numbers.push(force_n - now_n);
+                }
+            }
+        }
+        all_columns.push(Columns { numbers, count: first });
+    }
+    let sums = Sums::of(bench, model, &all_columns, &all_starts);
+    let mut promises: Vec<Promise> = Vec::new();
+    let mut offer = |promise: Promise| {
+        if !is_wanted(promise.candidate) || !promise.gain.is_finite() {
+            return;
+        }
+        match promises.iter_mut().find(|of| of.candidate == promise.candidate) {
+            Some(of) if of.gain < promise.gain => *of = promise,
+            Some(_) => {}
+            None => promises.push(promise),
+        }
+    };
+    for (place, start) in all_starts.iter().enumerate() {
+        let candidate = Candidate::Own(start.cable, start.effect);
+        let gain = sums.gain(&[place], &all_starts);
+        offer(Promise { candidate, model: beside(model, candidate, &[start]), gain });
+    }
+    for effect in Effect::ALL.iter().copied().filter(|effect| is_wanted(Candidate::Alike(*effect))) {
+        let of_cable = |cable: usize| {
+            let places = all_starts.iter().enumerate().filter(move |(_, of)| of.cable == cable && of.effect == effect);
+            places.map(|(place, _)| place).collect::<Vec<usize>>()
+        };
+        let of_cables: Vec<Vec<usize>> = (0..bench.records.len()).map(of_cable).collect();
+        let count = of_cables.iter().map(Vec::len).min().unwrap_or(0);
+        for start in 0..count {
+            let places: Vec<usize> = of_cables.iter().filter_map(|of| of.get(start).copied()).collect();
+            let from: Vec<&Start> = places.iter().filter_map(|place| all_starts.get(*place)).collect();
+            let candidate = Candidate::Alike(effect);
+            offer(Promise { candidate, model: beside(model, candidate, &from), gain: sums.gain(&places, &all_starts) });
+        }
+    }
+    for of in bench.description.candidates() {
+        let candidate = Candidate::Geometry(of);
+        if is_wanted(candidate) {
+            let model = beside(model, candidate, &[]);
+            let gain = gain_of_geometry(bench, &model, of);
+            offer(Promise { candidate, model, gain });
+        }
+    }
+    promises.sort_by(|one, other| other.gain.total_cmp(&one.gain));
+    promises
+}
+
+fn is_elsewhere(start: &Values, values: &Values) -> bool {
+    start.iter().zip(values).any(|(one, other)| one.to_bits() != other.to_bits())
+}
+
+/// A model with one more candidate, from its start; what all cables have alike begins from their mean.
+fn beside(model: &Model, candidate: Candidate, from: &[&Start]) -> Model {
+    let mut model = model.clone();
+    match candidate {
+        Candidate::Own(cable, effect) => {
+            if let (Some(values), Some(free), [start]) = (model.values.get_mut(cable), model.free.get_mut(cable), from) {
+                *values = start.values;
+                free.extend(fitted(effect).into_iter().filter(|of| !free.contains(of)).collect::<Vec<Parameter>>());
+            }
+        }
+        Candidate::Alike(effect) => {
+            #[expect(clippy::cast_precision_loss, reason = "a count of cables")]
+            let count = from.len() as f64;
+            for parameter in Parameter::of(effect) {
+                let place = parameter.place();
+                let mean = from.iter().map(|start| start.values[place]).sum::<f64>() / count;
+                model.values.iter_mut().for_each(|values| values[place] = mean);
+            }
+            let own = fitted(effect);
+            model.free.iter_mut().for_each(|free| free.retain(|of| !own.contains(of)));
+            model.alike.extend(own);
+        }
+        Candidate::Geometry(of) => {
+            model.changes.insert(of, vec![0.0; of.count()]);
+        }
+    }
+    model
+}
+
+/// By how much the sum of squares falls with a geometry that is in the model at zero, by one step.
+fn gain_of_geometry(bench: &Bench<'_>, model: &Model, of: Geometry) -> f64 {
+    let unknowns = model.unknowns();
+    let is_own = |unknown: &super::bench::Unknown| matches!(unknown, super::bench::Unknown::Geometry(geometry, _) if *geometry == of);
+    let (own, others): (Vec<usize>, Vec<usize>) = (0..unknowns.len()).partition(|place| is_own(&unknowns[*place]));
+    let Some(gram) = bench.gram(model, None) else { return f64::NAN };
+    let (matrix, gradient, _) = gram.normal_equations();
+    let pick = |rows: &[usize], columns: &[usize]| matrix.select_rows(rows).select_columns(columns);
+    let (own_gradient, gradient) = (gradient.select_rows(&own), gradient.select_rows(&others));
+    schur_gain(&pick(&own, &own), &pick(&others, &own), &pick(&others, &others), &own_gradient, &gradient)
+}
+
+/// `bᵀS⁻¹b`, without directions that the model has.
+fn schur_gain(
+    own: &DMatrix<f64>,
+    mixed: &DMatrix<f64>,
+    normal: &DMatrix<f64>,
+    own_gradient: &DVector<f64>,
+    gradient: &DVector<f64>,
+) -> f64 {
+    let Some(inverse) = inverse_of_normal(normal) else { return f64::NAN };
+    let by_others = mixed.transpose() * inverse;
+    let schur = own - &by_others * mixed;
+    let score = own_gradient - &by_others * gradient;
+    let scale: Vec<f64> = own.diagonal().iter().map(|square| square.sqrt()).collect();
+    let unit = |place: usize| if scale[place] > 0.0 { scale[place].recip() } else { 0.0 };
+    let scaled = DMatrix::from_fn(own.nrows(), own.ncols(), |row, column| schur[(row, column)] * unit(row) * unit(column));
+    if scaled.iter().any(|entry| !entry.is_finite()) {
+        return f64::NAN;
+    }
+    let eigen = scaled.symmetric_eigen();
+    let scaled_score = DVector::from_fn(score.len(), |row, _| score[row] * unit(row));
+    let parts = eigen.eigenvectors.column_iter().zip(eigen.eigenvalues.iter());
+    parts
+        .filter(|(_, size)| **size > OWN_RATIO)
+        .map(|(direction, size)| direction.dot(&scaled_score).powi(2) / size)
+        .sum()
+}
+
+/// Sums over the samples learned from.
+struct Sums {
+    normal: DMatrix<f64>,
+    gradient: DVector<f64>,
+    /// `JᵀC` of each cable.
+    mixed: Vec<DMatrix<f64>>,
+    /// `Cᵀr` of each cable.
+    scores: Vec<DVector<f64>>,
+    /// `CᵀC` of the columns of each start, and of each pair of cables' starts of the same effect that stand at the same place.
+    squares: Vec<(usize, usize, DMatrix<f64>)>,
+}
+
+impl Sums {
+    fn of(bench: &Bench<'_>, model: &Model, columns: &[Columns], starts: &[Start]) -> Self {
+        let count = model.unknowns().len();
+        let (structure, _) = bench.description.changed(&model.changes);
+        let cables = bench.records.len();
+        let mut normal = DMatrix::zeros(count, count);
+        let mut gradient = DVector::zeros(count);
+        let mut mixed: Vec<DMatrix<f64>> = columns.iter().map(|of| DMatrix::zeros(of.count, count)).collect();
+        let mut scores: Vec<DVector<f64>> = columns.iter().map(|of| DVector::zeros(of.count)).collect();
+        let mut levers_of: Vec<Vec<Vector6<f64>>> = vec![Vec::new(); cables];
+        let mut sample = 0;
+        bench.rows(model, |place, rows| {
+            let row = |component: usize| rows.get(component).map(Vec::as_slice).unwrap_or_default();
+            for component in 0..6 {
+                let Some((deviation, derivatives)) = row(component).split_last() else { continue };
+                let derivatives = DVector::from_column_slice(derivatives);
+                normal.ger(1.0, &derivatives, &derivatives, 1.0);
+                gradient.axpy(*deviation, &derivatives, 1.0);
+            }
+            for (cable, columns) in columns.iter().enumerate() {
+                let lever = structure.get(place * cables + cable).map_or_else(Vector6::zeros, |of| bench.whitening * of);
+                let mut seen = DVector::zeros(count);
+                let mut deviation = 0.0;
+                for component in 0..6 {
+                    let Some((of_deviation, derivatives)) = row(component).split_last() else { continue };
+                    seen.axpy(lever[component], &DVector::from_column_slice(derivatives), 1.0);
+                    deviation += lever[component] * of_deviation;
+                }
+                let changes = DVector::from_column_slice(columns.at(sample));
+                if let (Some(mixed), Some(scores)) = (mixed.get_mut(cable), scores.get_mut(cable)) {
+                    mixed.ger(1.0, &changes, &seen, 1.0);
+                    scores.axpy(deviation, &changes, 1.0);
+                }
+                levers_of.iter_mut().skip(cable).take(1).for_each(|of| of.push(lever));
+            }
+            sample += 1;
+        });
+        let mut squares = Vec::new();
+        for (one, from) in starts.iter().enumerate() {
+            let order = |place: usize, of: &Start| {
+                starts.iter().take(place).filter(|other| other.cable == of.cable && other.effect == of.effect).count()
+            };
+            for (other, to) in starts.iter().enumerate().skip(one) {
+                let is_pair = other == one
+                    || from.effect == to.effect
+                        && from.cable != to.cable
+                        && from.columns.len() == to.columns.len()
+                        && order(one, from) == order(other, to);
+                let (Some(left), Some(right)) = (columns.get(from.cable), columns.get(to.cable)) else { continue };
+                let (Some(left_levers), Some(right_levers)) = (levers_of.get(from.cable), levers_of.get(to.cable)) else {
+                    continue;
+                };
+                if is_pair {
+                    let mut sum = DMatrix::zeros(from.columns.len(), to.columns.len());
+                    for (sample, (one, other)) in left_levers.iter().zip(right_levers).enumerate() {
+                        let left = left.at(sample).get(from.columns.clone()).unwrap_or_default();
+                        let right = right.at(sample).get(to.columns.clone()).unwrap_or_default();
+                        let lever = one.dot(other);
+                        for (row, left) in left.iter().enumerate() {
+                            for (column, right) in right.iter().enumerate() {
+                                sum[(row, column)] += lever * left * right;
+                            }
+                        }
+                    }
+                    squares.push((one, other, sum));
+                }
+            }
+        }
+        Self { normal, gradient, mixed, scores, squares }
+    }
+
+    /// By how much the sum of squares falls where these starts, of different cables, come alike.
+    fn gain(&self, places: &[usize], starts: &[Start]) -> f64 {
+        let of: Vec<&Start> = places.iter().filter_map(|place| starts.get(*place)).collect();
+        let Some(width) = of.first().map(|start| start.columns.len()) else { return f64::NAN };
+        if of.iter().any(|start| start.columns.len() != width) {
+            return f64::NAN;
+        }
+        let mut own = DMatrix::zeros(width, width);
+        for (one, other, sum) in &self.squares {
+            if places.contains(one) && places.contains(other) {
+                own += sum;
+                if one != other {
+                    own += sum.transpose();
+                }
+            }
+        }
+        let mut mixed = DMatrix::zeros(self.normal.nrows(), width);
+        let mut score = DVector::zeros(width);
+        for start in &of {
+            let (Some(of_cable), Some(scores)) = (self.mixed.get(start.cable), self.scores.get(start.cable)) else {
+                return f64::NAN;
+            };
+            mixed += of_cable.rows(start.columns.start, width).transpose();
+            score += scores.rows(start.columns.start, width);
+        }
+        schur_gain(&own, &mixed, &self.normal, &score, &self.gradient)
+    }
+}
