@@ -78,6 +78,8 @@ pub struct FirstModel {
     pub values: Vec<Values>,
     /// What was varied of each: what acts, as far as the samples determine it.
     pub free: Vec<Vec<Parameter>>,
+    /// What acts and the samples do not determine, at its given values.
+    pub held: Vec<Vec<Parameter>>,
     /// Standing of each sample for all cables together.
     pub standings: Vec<Standing>,
 }
@@ -94,14 +96,17 @@ pub fn first_model(
     let options = FitOptions::default();
     let case = Case { records, structure, outside, options: &options, progress };
     let is_wanted = |record: &CableRecord<'_>, of: &Parameter| of.place() != OFFSET && acts(of, &record.params.values());
-    let Found { problem, solution, standings } = case.without_offsets(&|_| true, &is_wanted);
+    let Found { solution, standings, .. } = case.without_offsets(&|_| true, &is_wanted);
     let is_known = |member: usize, of: &Parameter| {
         let unknown = Unknown { member, parameter: *of };
         !solution.undetermined.contains(&unknown)
     };
-    let free = |(member, of): (usize, &Member<'_>)| of.free.iter().copied().filter(|of| is_known(member, of)).collect();
-    let free = problem.members.iter().enumerate().map(free).collect();
-    FirstModel { values: solution.values, free, standings }
+    let acting = |(member, record): (usize, &CableRecord<'_>)| -> (Vec<Parameter>, Vec<Parameter>) {
+        let wanted = options.free(record.params).into_iter().filter(|of| is_wanted(record, of));
+        wanted.partition(|of| is_known(member, of))
+    };
+    let (free, held) = case.records.iter().enumerate().map(acting).unzip();
+    FirstModel { values: solution.values, free, held, standings }
 }
 
 /// What is fitted to what.

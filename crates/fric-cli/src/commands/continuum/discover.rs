@@ -6,8 +6,7 @@ use fric_lab::continuum::{Run, columns};
 use fric_log::output::OutputFile;
 
 use super::{Model, about, read_table};
-use crate::arguments::DiscoverArguments;
-use crate::arguments::ReferenceName;
+use crate::arguments::{DiscoverArguments, ReferenceName};
 use crate::failure::{Failure, Outcome};
 use crate::output::{self, JsonTarget};
 use fric_work::report;

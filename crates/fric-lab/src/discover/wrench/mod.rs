@@ -123,7 +123,7 @@ pub fn discover_wrench(measurements: &Measurements<'_>, progress: &Progress) -> 
         changes: Changes::new(),
     };
     bench.whitening = whitening(&bench, &given).ok_or_else(too_short)?;
-    let base = bench.fit(&given, 0.1);
+    let mut base = bench.fit(&given, 0.1);
     let mut naming = Naming { trial: base.clone(), named: Vec::new(), tried: Vec::new() };
     for _ in 0..LOOKS {
         bench.whitening = whitening(&bench, &naming.trial.model).ok_or_else(too_short)?;
@@ -134,8 +134,18 @@ pub fn discover_wrench(measurements: &Measurements<'_>, progress: &Progress) -> 
         let before = naming.named.iter().map(|named| named.candidate).collect::<Vec<_>>();
         naming = search.run(&naming.named, &naming.trial.model);
         progress.finish_one();
-        if naming.named.iter().all(|named| before.contains(&named.candidate)) {
+        let told = if naming.named.is_empty() { Vec::new() } else { told(&bench, &naming.trial.model, &first.held) };
+        if told.is_empty() && naming.named.iter().all(|named| before.contains(&named.candidate)) {
             break;
+        }
+        if !told.is_empty() {
+            for model in [&mut base.model, &mut naming.trial.model] {
+                model.free.iter_mut().enumerate().for_each(|(cable, free)| {
+                    let own = told.iter().filter(|(of, _)| *of == cable).map(|(_, parameter)| *parameter);
+                    free.extend(own.filter(|of| !free.contains(of)).collect::<Vec<Parameter>>());
+                });
+            }
+            base = bench.fit(&base.model, 0.1);
         }
     }
     // As an identification does it, with all samples.
@@ -145,6 +155,27 @@ pub fn discover_wrench(measurements: &Measurements<'_>, progress: &Progress) -> 
     let covariances = all.covariances(&fitted.model);
     Case { bench: &bench, base: &base, naming: &naming, fitted: &fitted, samples: engine::count(&first.standings) }
         .report(covariances.map(|[covariance, _]| covariance))
+}
+
+/// Which of the parameters that were held the samples determine, now that the model has what it lacked.
+fn told(bench: &Bench<'_>, model: &bench::Model, held: &[Vec<Parameter>]) -> Vec<(usize, Parameter)> {
+    let mut with_all = model.clone();
+    for (free, held) in with_all.free.iter_mut().zip(held) {
+        let missing: Vec<Parameter> = held.iter().copied().filter(|of| !free.contains(of)).collect();
+        free.extend(missing);
+    }
+    if with_all.free == model.free {
+        return Vec::new();
+    }
+    let trial = bench.fit(&with_all, 0.3);
+    let (_, all) = bench.with_problem(&trial.model, bench.used(false), |problem| {
+        engine::vagueness(problem, &trial.model.values)
+    });
+    let is_told = |(vagueness, of): &(f64, engine::Unknown)| {
+        let is_new = !model.free.get(of.member).is_some_and(|free| free.contains(&of.parameter));
+        is_new && *vagueness <= 1.0 && held.get(of.member).is_some_and(|held| held.contains(&of.parameter))
+    };
+    all.into_iter().filter(is_told).map(|(_, of)| (of.member, of.parameter)).collect()
 }
 
 fn too_short() -> FitError {

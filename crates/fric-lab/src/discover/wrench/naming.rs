@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 
 use fric_core::parameters::MU;
 use nalgebra::DVector;
+use rayon::prelude::*;
 
 use super::bench::{Bench, Model, Trial, Unknown};
 use super::geometry::Geometry;
@@ -363,6 +364,15 @@ impl<'b, 'a> Search<'b, 'a> {
             let open = promises.iter().filter(|promise| !self.refused.contains_key(&promise.candidate));
             open.take(FITTED).map(|promise| promise.candidate).collect()
         };
+        let unknown = |candidate: &Candidate| !self.fits.contains_key(&set_of(&[found, &[*candidate]].concat()));
+        let wanted: Vec<Candidate> = best.iter().copied().filter(unknown).collect();
+        let promises = self.promised.get(&set_of(found)).map(Vec::as_slice).unwrap_or_default();
+        let new: Vec<Promise> = promises.iter().filter(|promise| wanted.contains(&promise.candidate)).cloned().collect();
+        let fit = |promise: &Promise| {
+            (set_of(&[found, &[promise.candidate]].concat()), self.bench.fit(&promise.model, NEAR_ERRORS))
+        };
+        let fits: Vec<(Vec<Candidate>, Trial)> = new.par_iter().map(fit).collect();
+        self.fits.extend(fits);
         best.into_iter().filter_map(|candidate| Some((candidate, self.with(found, candidate)?))).collect()
     }
 

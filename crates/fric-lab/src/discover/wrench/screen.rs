@@ -121,7 +121,15 @@ pub fn promises(bench: &Bench<'_>, model: &Model, around: &[Around], is_wanted: 
         }
         all_columns.push(Columns { numbers, count: first });
     }
-    let sums = Sums::of(bench, model, &all_columns, &all_starts);
+    let wanted = bench.description.candidates().into_iter().filter(|of| is_wanted(Candidate::Geometry(*of)));
+    let force_n = |place: usize, cable: usize| current.get(cable).map_or(f64::NAN, |forces| forces.at(place).0);
+    let geometries = wanted.map(|of| {
+        let mut tangents = bench.description.tangents(of, &model.changes, force_n);
+        tangents.iter_mut().flatten().for_each(|change| *change = bench.whitening * *change);
+        GeometrySums::new(of, tangents, model.unknowns().len())
+    });
+    let mut geometries: Vec<GeometrySums> = geometries.collect();
+    let sums = Sums::of(bench, model, &all_columns, &all_starts, &mut geometries);
     let mut promises: Vec<Promise> = Vec::new();
     let mut offer = |promise: Promise| {
         if !is_wanted(promise.candidate) || !promise.gain.is_finite() {
@@ -152,13 +160,10 @@ pub fn promises(bench: &Bench<'_>, model: &Model, around: &[Around], is_wanted: 
             offer(Promise { candidate, model: beside(model, candidate, &from), gain: sums.gain(&places, &all_starts) });
         }
     }
-    for of in bench.description.candidates() {
-        let candidate = Candidate::Geometry(of);
-        if is_wanted(candidate) {
-            let model = beside(model, candidate, &[]);
-            let gain = gain_of_geometry(bench, &model, of);
-            offer(Promise { candidate, model, gain });
-        }
+    for of in &geometries {
+        let candidate = Candidate::Geometry(of.geometry);
+        let gain = schur_gain(&of.own, &of.mixed, &sums.normal, &of.score, &sums.gradient);
+        offer(Promise { candidate, model: beside(model, candidate, &[]), gain });
     }
     promises.sort_by(|one, other| other.gain.total_cmp(&one.gain));
     promises
@@ -197,18 +202,6 @@ fn beside(model: &Model, candidate: Candidate, from: &[&Start]) -> Model {
     model
 }
 
-/// By how much the sum of squares falls with a geometry that is in the model at zero, by one step.
-fn gain_of_geometry(bench: &Bench<'_>, model: &Model, of: Geometry) -> f64 {
-    let unknowns = model.unknowns();
-    let is_own = |unknown: &super::bench::Unknown| matches!(unknown, super::bench::Unknown::Geometry(geometry, _) if *geometry == of);
-    let (own, others): (Vec<usize>, Vec<usize>) = (0..unknowns.len()).partition(|place| is_own(&unknowns[*place]));
-    let Some(gram) = bench.gram(model, None) else { return f64::NAN };
-    let (matrix, gradient, _) = gram.normal_equations();
-    let pick = |rows: &[usize], columns: &[usize]| matrix.select_rows(rows).select_columns(columns);
-    let (own_gradient, gradient) = (gradient.select_rows(&own), gradient.select_rows(&others));
-    schur_gain(&pick(&own, &own), &pick(&others, &own), &pick(&others, &others), &own_gradient, &gradient)
-}
-
 /// `bᵀS⁻¹b`, without directions that the model has.
 fn schur_gain(
     own: &DMatrix<f64>,
@@ -236,6 +229,39 @@ fn schur_gain(
         .sum()
 }
 
+/// The same sums for a geometry, with its whitened changes of the deviations in every sample.
+struct GeometrySums {
+    geometry: Geometry,
+    tangents: Vec<Vec<Vector6<f64>>>,
+    own: DMatrix<f64>,
+    mixed: DMatrix<f64>,
+    score: DVector<f64>,
+}
+
+impl GeometrySums {
+    fn new(geometry: Geometry, tangents: Vec<Vec<Vector6<f64>>>, unknowns: usize) -> Self {
+        let count = tangents.len();
+        let (own, mixed) = (DMatrix::zeros(count, count), DMatrix::zeros(unknowns, count));
+        Self { geometry, tangents, own, mixed, score: DVector::zeros(count) }
+    }
+
+    fn add(&mut self, place: usize, rows: &[Vec<f64>]) {
+        let changes: Vec<Vector6<f64>> =
+            self.tangents.iter().filter_map(|tangent| tangent.get(place)).copied().collect();
+        for (column, change) in changes.iter().enumerate() {
+            for (row, part) in rows.iter().zip(change.iter()) {
+                let Some((deviation, derivatives)) = row.split_last() else { continue };
+                self.score[column] += part * deviation;
+                let mut mixed = self.mixed.column_mut(column);
+                mixed.iter_mut().zip(derivatives).for_each(|(sum, derivative)| *sum += part * derivative);
+            }
+            for (row, other) in changes.iter().enumerate() {
+                self.own[(row, column)] += other.dot(change);
+            }
+        }
+    }
+}
+
 /// Sums over the samples learned from.
 struct Sums {
     normal: DMatrix<f64>,
@@ -249,7 +275,13 @@ struct Sums {
 }
 
 impl Sums {
-    fn of(bench: &Bench<'_>, model: &Model, columns: &[Columns], starts: &[Start]) -> Self {
+    fn of(
+        bench: &Bench<'_>,
+        model: &Model,
+        columns: &[Columns],
+        starts: &[Start],
+        geometries: &mut [GeometrySums],
+    ) -> Self {
         let count = model.unknowns().len();
         let (structure, _) = bench.description.changed(&model.changes);
         let cables = bench.records.len();
@@ -283,6 +315,7 @@ impl Sums {
                 }
                 levers_of.iter_mut().skip(cable).take(1).for_each(|of| of.push(lever));
             }
+            geometries.iter_mut().for_each(|of| of.add(place, rows));
             sample += 1;
         });
         let mut squares = Vec::new();
