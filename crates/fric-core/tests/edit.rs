@@ -190,7 +190,9 @@ fn it_looks_like_written_by_hand() {
 fn what_is_not_there_or_not_right_is_told() {
     let text = format!("{HEAD}{}", LAYOUTS[0]);
     let says = |name, friction, effects: &[EffectEdit<'_>]| {
-        rewrite(&text, "rig.toml", &[CableEdit { name, friction, effects, ..CableEdit::default() }]).unwrap_err().to_string()
+        rewrite(&text, "rig.toml", &[CableEdit { name, friction, effects, ..CableEdit::default() }])
+            .unwrap_err()
+            .to_string()
     };
     let mu = |mu| FrictionEdit { mu: Some(mu), ..FrictionEdit::default() };
     for (said, words) in [

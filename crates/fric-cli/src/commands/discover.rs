@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use fric_lab::discover::result::DiscoverResult;
 use fric_lab::discover::Discoveries;
+use fric_lab::discover::result::DiscoverResult;
 use fric_lab::fit::Reference;
 use fric_lab::fit::readiness;
 use fric_log::output::OutputFile;

@@ -145,7 +145,8 @@ pub fn set_platform(text: &str, origin: &str, edit: &PlatformEdit) -> Result<Str
                 None => body.append(&text, "platform", &format!("{key} = {with}")),
             }
         });
-        let problem = || "`platform` is missing, or written in a way that cannot be added to; write it in one table".to_owned();
+        let problem =
+            || "`platform` is missing, or written in a way that cannot be added to; write it in one table".to_owned();
         let splices = splices.ok_or_else(|| RobotFileError::Invalid {
             origin: origin.to_owned(),
             line: None,

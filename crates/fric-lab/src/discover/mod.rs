@@ -50,8 +50,8 @@ pub use neighbours::Neighbour;
 pub use places::Place;
 pub use profile::{Profile, ProfileBin, ProfileCell};
 pub use readiness::Lack;
-pub use wrench::{Geometry, GeometryFinding, WrenchDeviation, WrenchDiscovery, discover_wrench};
 pub use report::{CableDiscovery, Candidate, Finding, Model, RunnerUp, Tried, Unexplained, Verdict};
+pub use wrench::{Geometry, GeometryFinding, WrenchDeviation, WrenchDiscovery, discover_wrench};
 
 /// Looks at a cable with its reference where it belongs: as far as the given model tells, and then as far as the one that has what it lacked.
 fn discover_retimed(record: &CableRecord<'_>, progress: &Progress) -> (CableDiscovery, Option<RecordingFault>) {

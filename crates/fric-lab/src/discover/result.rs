@@ -384,6 +384,15 @@ impl DiscoverResult {
     pub fn with_wrench(mut self, found: Option<&WrenchDiscovery>) -> Self {
         let names: Vec<String> = self.cables.iter().map(|cable| cable.name.clone()).collect();
         self.wrench = found.map(|found| WrenchGap::of(found, &names));
+        // One value of all cables is as sure as it is on each.
+        for effect in &mut self.common_effects {
+            let first = self.cables.iter().flat_map(|cable| &cable.effects).find(|of| of.kind == effect.kind);
+            let is_alike = found.is_some_and(|found| found.alike.iter().any(|alike| alike.kind() == effect.kind));
+            for parameter in effect.parameters.iter_mut().filter(|_| is_alike) {
+                let error = first.and_then(|of| of.standard_errors.get(parameter.key));
+                parameter.standard_error = error.unwrap_or(parameter.standard_error);
+            }
+        }
         self
     }
 
@@ -422,7 +431,12 @@ impl WrenchGap {
             kind: of.geometry.key(),
             cable: of.geometry.cable().and_then(|cable| names.get(cable).cloned()),
             parameters: Numbers(
-                of.geometry.names().iter().zip(&of.numbers).map(|(name, number)| ((*name).to_owned(), *number)).collect(),
+                of.geometry
+                    .names()
+                    .iter()
+                    .zip(&of.numbers)
+                    .map(|(name, number)| ((*name).to_owned(), *number))
+                    .collect(),
             ),
             evidence: Evidence { delta_bic: finite(of.delta_bic), held_out_rms_n: None },
         };

@@ -95,7 +95,8 @@ pub fn first_model(
     let structure = measurements.platform().structure.as_slice();
     let options = FitOptions::default();
     let case = Case { records, structure, outside, options: &options, progress };
-    let is_wanted = |record: &CableRecord<'_>, of: &Parameter| of.place() != OFFSET && acts(of, &record.params.values());
+    let is_wanted =
+        |record: &CableRecord<'_>, of: &Parameter| of.place() != OFFSET && acts(of, &record.params.values());
     let Found { solution, standings, .. } = case.without_offsets(&|_| true, &is_wanted);
     let is_known = |member: usize, of: &Parameter| {
         let unknown = Unknown { member, parameter: *of };
@@ -253,7 +254,8 @@ impl<'a> Case<'a> {
     /// What the samples tell of the offsets, beside the friction found without them.
     fn offsets(&self, problem: &Problem<'_>, solution: &Solution, cycle_s: f64) -> Offsets {
         let mut trial = problem.clone();
-        for (member, offset) in trial.members.iter_mut().zip(self.members(&|_, parameter| parameter.place() == OFFSET)) {
+        for (member, offset) in trial.members.iter_mut().zip(self.members(&|_, parameter| parameter.place() == OFFSET))
+        {
             member.free.extend(offset.free);
         }
         if trial.parameter_count() == problem.parameter_count() || !problem.used.contains(&true) {

@@ -1,6 +1,7 @@
 //! Discovery on logs with known effects hidden in them; the whole sweep is `benches/discover.rs`.
 
 mod faulty;
+mod wrench;
 
 use fric_core::effects::Effect;
 use fric_core::parameters::VISCOUS;

@@ -7,7 +7,7 @@ mod delicate;
 mod effects;
 mod faulty;
 mod jacobian;
-mod logs;
+pub mod logs;
 mod newcomers;
 mod oracle;
 mod published;

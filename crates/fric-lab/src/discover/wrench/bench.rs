@@ -43,7 +43,8 @@ pub enum Unknown {
 impl Model {
     /// What is varied, in the order of the columns.
     pub fn unknowns(&self) -> Vec<Unknown> {
-        let own = self.free.iter().enumerate().flat_map(|(cable, free)| free.iter().map(move |of| Unknown::Own(cable, *of)));
+        let own =
+            self.free.iter().enumerate().flat_map(|(cable, free)| free.iter().map(move |of| Unknown::Own(cable, *of)));
         let alike = self.alike.iter().copied().map(Unknown::Alike);
         let of_geometry =
             self.changes.iter().flat_map(|(of, numbers)| (0..numbers.len()).map(|place| Unknown::Geometry(*of, place)));
@@ -231,22 +232,29 @@ impl<'a> Bench<'a> {
         });
         let start: Vec<f64> = places.collect();
         let at = |places: &[f64]| -> (Model, Vec<f64>) {
-            let numbers = places.iter().zip(&coordinates).map(|(place, coordinate)| {
-                coordinate.map_or((*place, 1.0), |coordinate| coordinate.value_at(*place))
-            });
+            let numbers = places
+                .iter()
+                .zip(&coordinates)
+                .map(|(place, coordinate)| coordinate.map_or((*place, 1.0), |coordinate| coordinate.value_at(*place)));
             let (numbers, slopes): (Vec<f64>, Vec<f64>) = numbers.unzip();
             (model.moved(&numbers), slopes)
         };
-        let minimum = minimize(&start, 6 * self.count(false), near_errors, |_, _| false, |places| {
-            let (model, slopes) = at(places);
-            let (mut matrix, mut gradient, squares) = self.gram(&model, None)?.normal_equations();
-            for (row, slope) in slopes.iter().enumerate() {
-                matrix.row_mut(row).scale_mut(*slope);
-                matrix.column_mut(row).scale_mut(*slope);
-                gradient[row] *= slope;
-            }
-            Some(Triangle::new(&matrix, &gradient, squares))
-        });
+        let minimum = minimize(
+            &start,
+            6 * self.count(false),
+            near_errors,
+            |_, _| false,
+            |places| {
+                let (model, slopes) = at(places);
+                let (mut matrix, mut gradient, squares) = self.gram(&model, None)?.normal_equations();
+                for (row, slope) in slopes.iter().enumerate() {
+                    matrix.row_mut(row).scale_mut(*slope);
+                    matrix.column_mut(row).scale_mut(*slope);
+                    gradient[row] *= slope;
+                }
+                Some(Triangle::new(&matrix, &gradient, squares))
+            },
+        );
         self.judged(at(&minimum.coordinates).0)
     }
 

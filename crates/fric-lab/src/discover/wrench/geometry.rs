@@ -183,7 +183,12 @@ impl<'a> Description<'a> {
     }
 
     /// How the sum of the wrenches changes with each number of one, in every sample, where the cables have these forces.
-    pub fn tangents(&self, of: Geometry, changes: &Changes, force_n: impl Fn(usize, usize) -> f64) -> Vec<Vec<Vector6<f64>>> {
+    pub fn tangents(
+        &self,
+        of: Geometry,
+        changes: &Changes,
+        force_n: impl Fn(usize, usize) -> f64,
+    ) -> Vec<Vec<Vector6<f64>>> {
         let step = STEP_RATIO * self.size(of);
         let tangent = |number: usize| {
             let mut beside = changes.clone();

@@ -12,10 +12,10 @@ mod geometry;
 mod naming;
 mod screen;
 
+use fric_core::Wrench;
 use fric_core::effects::Effect;
 use fric_core::robot::edit::{CableEdit, rewrite, set_platform};
 use fric_core::robot::file::{RobotFile, RobotFileError};
-use fric_core::Wrench;
 use nalgebra::{DMatrix, Matrix6, Vector6};
 
 use self::bench::{Bench, Trial, Unknown};
@@ -116,12 +116,7 @@ pub fn discover_wrench(measurements: &Measurements<'_>, progress: &Progress) -> 
         whitening: Matrix6::identity(),
         stop: progress.stop_flag(),
     };
-    let given = bench::Model {
-        values: first.values,
-        free: first.free,
-        alike: Vec::new(),
-        changes: Changes::new(),
-    };
+    let given = bench::Model { values: first.values, free: first.free, alike: Vec::new(), changes: Changes::new() };
     bench.whitening = whitening(&bench, &given).ok_or_else(too_short)?;
     let mut base = bench.fit(&given, 0.1);
     let mut naming = Naming { trial: base.clone(), named: Vec::new(), tried: Vec::new() };
@@ -168,9 +163,8 @@ fn told(bench: &Bench<'_>, model: &bench::Model, held: &[Vec<Parameter>]) -> Vec
         return Vec::new();
     }
     let trial = bench.fit(&with_all, 0.3);
-    let (_, all) = bench.with_problem(&trial.model, bench.used(false), |problem| {
-        engine::vagueness(problem, &trial.model.values)
-    });
+    let (_, all) =
+        bench.with_problem(&trial.model, bench.used(false), |problem| engine::vagueness(problem, &trial.model.values));
     let is_told = |(vagueness, of): &(f64, engine::Unknown)| {
         let is_new = !model.free.get(of.member).is_some_and(|free| free.contains(&of.parameter));
         is_new && *vagueness <= 1.0 && held.get(of.member).is_some_and(|held| held.contains(&of.parameter))
@@ -189,7 +183,9 @@ fn too_short() -> FitError {
 fn whitening(bench: &Bench<'_>, model: &bench::Model) -> Option<Matrix6<f64>> {
     let plain = Bench { whitening: Matrix6::identity(), ..bench.clone() };
     let deviations = plain.deviations(model);
-    scatter_of(&deviations.into_iter().filter(|deviation| deviation.iter().all(|part| part.is_finite())).collect::<Vec<_>>())
+    scatter_of(
+        &deviations.into_iter().filter(|deviation| deviation.iter().all(|part| part.is_finite())).collect::<Vec<_>>(),
+    )
 }
 
 /// Standard deviation of the white noise in each component of the deviations.
@@ -310,12 +306,9 @@ impl Case<'_, '_> {
         };
         let findings: Vec<Finding> = naming.named.iter().filter_map(|named| finding(named, cable)).collect();
         let tried = naming.tried.iter().filter_map(|tried| match tried.candidate {
-            Candidate::Own(of, effect) if of == cable => Some(Tried {
-                effect,
-                delta_bic: tried.delta_bic,
-                held_out_rms_n: f64::NAN,
-                refusal: tried.refusal,
-            }),
+            Candidate::Own(of, effect) if of == cable => {
+                Some(Tried { effect, delta_bic: tried.delta_bic, held_out_rms_n: f64::NAN, refusal: tried.refusal })
+            }
             _ => None,
         });
         let unexplained = (!is_noise).then(|| Unexplained {
@@ -399,7 +392,12 @@ pub fn extended_by_wrench(text: &str, origin: &str, found: &WrenchDiscovery) -> 
         .cable_names()
         .into_iter()
         .zip(points)
-        .map(|(name, (base_m, platform_m))| CableEdit { name, base_m: *base_m, platform_m: *platform_m, ..CableEdit::default() })
+        .map(|(name, (base_m, platform_m))| CableEdit {
+            name,
+            base_m: *base_m,
+            platform_m: *platform_m,
+            ..CableEdit::default()
+        })
         .collect();
     let text = rewrite(&text, origin, &edits)?;
     if found.edits.platform == fric_core::robot::edit::PlatformEdit::default() {

@@ -136,7 +136,9 @@ impl<'b, 'a> Search<'b, 'a> {
             let enough = self.least_gain(&trial);
             let mut entrants = self.beside(found);
             entrants.retain(|(candidate, with)| {
-                !self.refused.contains_key(candidate) && trial.held_out - with.held_out > enough && !self.is_at_end(*candidate, with)
+                !self.refused.contains_key(candidate)
+                    && trial.held_out - with.held_out > enough
+                    && !self.is_at_end(*candidate, with)
             });
             let cost = |(candidate, with): &(Candidate, Trial)| self.delta_bic(&trial, with, candidate.count(), 1.0);
             entrants.sort_by(|one, other| cost(one).total_cmp(&cost(other)));
@@ -151,11 +153,13 @@ impl<'b, 'a> Search<'b, 'a> {
 
     /// What several cables have becomes one that all have alike, where that says as much with fewer parameters.
     fn unite(&mut self, found: &mut Vec<Candidate>) {
-        let effects: Vec<_> = found.iter().filter_map(|of| matches!(of, Candidate::Own(..)).then(|| of.effect())?).collect();
+        let effects: Vec<_> =
+            found.iter().filter_map(|of| matches!(of, Candidate::Own(..)).then(|| of.effect())?).collect();
         for effect in effects.iter().copied().filter(|effect| effects.iter().filter(|of| *of == effect).count() > 2) {
             let is_own = |of: &Candidate| matches!(of, Candidate::Own(_, own) if *own == effect);
             let count = found.iter().filter(|of| is_own(of)).count();
-            let (others, candidate) = (found.iter().copied().filter(|of| !is_own(of)).collect::<Vec<_>>(), Candidate::Alike(effect));
+            let (others, candidate) =
+                (found.iter().copied().filter(|of| !is_own(of)).collect::<Vec<_>>(), Candidate::Alike(effect));
             if count < 3 || self.refused.contains_key(&candidate) {
                 continue;
             }
@@ -222,7 +226,11 @@ impl<'b, 'a> Search<'b, 'a> {
         let is_small = without.held_out - trial.held_out <= LEAST_SIZE * self.noise_squares(true);
         let refusal = if self.is_at_end(candidate, trial) {
             Some(Refusal::AtBound)
-        } else if is_small || delta_bic >= -STRONG_BIC || away < LEAST_AWAY || self.over_blocks(trial, without) < LEAST_BLOCKS {
+        } else if is_small
+            || delta_bic >= -STRONG_BIC
+            || away < LEAST_AWAY
+            || self.over_blocks(trial, without) < LEAST_BLOCKS
+        {
             Some(Refusal::Weak)
         } else if !self.is_more_than_usual(candidate, trial) {
             Some(Refusal::Usual)
@@ -235,7 +243,8 @@ impl<'b, 'a> Search<'b, 'a> {
     /// Mean gain per block held out in its standard errors.
     fn over_blocks(&self, trial: &Trial, without: &Trial) -> f64 {
         let blocks = self.bench.blocks.iter().zip(trial.blocks.iter().zip(&without.blocks));
-        let gains: Vec<f64> = blocks.filter(|(block, _)| block.held_out).map(|(_, (with, without))| without - with).collect();
+        let gains: Vec<f64> =
+            blocks.filter(|(block, _)| block.held_out).map(|(_, (with, without))| without - with).collect();
         #[expect(clippy::cast_precision_loss, reason = "a count of blocks")]
         let count = gains.len() as f64;
         let mean = gains.iter().sum::<f64>() / count;
@@ -245,7 +254,7 @@ impl<'b, 'a> Search<'b, 'a> {
 
     fn is_more_than_usual(&self, candidate: Candidate, trial: &Trial) -> bool {
         let Some(lab) = candidate.effect().and_then(effects::of) else { return true };
-        let around = self.around(trial);
+        let around = self.around(trial, false);
         let is_more = |cable: usize| {
             let values = trial.model.values.get(cable).zip(around.get(cable));
             values.is_none_or(|(values, around)| (lab.is_more_than_usual)(values, around))
@@ -265,7 +274,11 @@ impl<'b, 'a> Search<'b, 'a> {
             let Some(candidate) = found.get(place).copied() else { continue };
             let trial = self.fit(found);
             let more = self.cost(&with, other) < self.cost(&trial, candidate);
-            if !self.refused.contains_key(&other) && more && with.held_out < trial.held_out && !self.is_at_end(other, &with) {
+            if !self.refused.contains_key(&other)
+                && more
+                && with.held_out < trial.held_out
+                && !self.is_at_end(other, &with)
+            {
                 found[place] = other;
                 is_changed = true;
             }
@@ -285,7 +298,9 @@ impl<'b, 'a> Search<'b, 'a> {
         let others: Vec<Candidate> = found.iter().copied().filter(|of| *of != candidate).collect();
         let mut rivals = self.beside(&others);
         rivals.retain(|(of, _)| *of != candidate && !found.contains(of));
-        rivals.into_iter().min_by(|(one, with), (other, beside)| self.cost(with, *one).total_cmp(&self.cost(beside, *other)))
+        rivals
+            .into_iter()
+            .min_by(|(one, with), (other, beside)| self.cost(with, *one).total_cmp(&self.cost(beside, *other)))
     }
 
     fn runner_up(&mut self, found: &[Candidate], place: usize) -> Option<(Candidate, f64, bool)> {
@@ -305,16 +320,18 @@ impl<'b, 'a> Search<'b, 'a> {
         if self.excess(&trial) <= NEGLIGIBLE {
             return Vec::new();
         }
-        let tried = self.beside(found).into_iter().filter(|(_, with)| with.held_out < trial.held_out).map(|(candidate, with)| {
-            let inflation = self.standing(candidate, &with).map_or(f64::INFINITY, |standing| standing.inflation);
-            let delta_bic = self.delta_bic(&trial, &with, candidate.count(), inflation);
-            let refusal = if self.is_at_end(candidate, &with) {
-                Refusal::AtBound
-            } else {
-                self.refused.get(&candidate).copied().unwrap_or(Refusal::Weak)
-            };
-            Tried { candidate, delta_bic, refusal }
-        });
+        let tried = self.beside(found).into_iter().filter(|(_, with)| with.held_out < trial.held_out).map(
+            |(candidate, with)| {
+                let inflation = self.standing(candidate, &with).map_or(f64::INFINITY, |standing| standing.inflation);
+                let delta_bic = self.delta_bic(&trial, &with, candidate.count(), inflation);
+                let refusal = if self.is_at_end(candidate, &with) {
+                    Refusal::AtBound
+                } else {
+                    self.refused.get(&candidate).copied().unwrap_or(Refusal::Weak)
+                };
+                Tried { candidate, delta_bic, refusal }
+            },
+        );
         let mut tried: Vec<Tried> = tried.filter(|tried| tried.delta_bic < 0.0).collect();
         tried.sort_by(|one, other| one.delta_bic.total_cmp(&other.delta_bic));
         tried
@@ -367,7 +384,8 @@ impl<'b, 'a> Search<'b, 'a> {
         let unknown = |candidate: &Candidate| !self.fits.contains_key(&set_of(&[found, &[*candidate]].concat()));
         let wanted: Vec<Candidate> = best.iter().copied().filter(unknown).collect();
         let promises = self.promised.get(&set_of(found)).map(Vec::as_slice).unwrap_or_default();
-        let new: Vec<Promise> = promises.iter().filter(|promise| wanted.contains(&promise.candidate)).cloned().collect();
+        let new: Vec<Promise> =
+            promises.iter().filter(|promise| wanted.contains(&promise.candidate)).cloned().collect();
         let fit = |promise: &Promise| {
             (set_of(&[found, &[promise.candidate]].concat()), self.bench.fit(&promise.model, NEAR_ERRORS))
         };
@@ -380,7 +398,7 @@ impl<'b, 'a> Search<'b, 'a> {
         let set = set_of(found);
         if !self.promised.contains_key(&set) {
             let trial = self.fit(found);
-            let around = self.around(&trial);
+            let around = self.around(&trial, true);
             let model = &trial.model;
             let has_effect = |cable: usize, effect| model.values.get(cable).is_some_and(|values| has(effect, values));
             let is_wanted = |candidate: Candidate| match candidate {
@@ -396,17 +414,19 @@ impl<'b, 'a> Search<'b, 'a> {
         self.promised.get(&set).map(Vec::as_slice).unwrap_or_default()
     }
 
-    /// What a search on each cable begins from.
-    fn around(&self, trial: &Trial) -> Vec<Around> {
+    /// What a search on each cable begins from; the scan for periods takes its time.
+    fn around(&self, trial: &Trial, with_periods: bool) -> Vec<Around> {
         let deviations = self.bench.deviations(&trial.model);
         let of = |(cable, record)| {
             let residual_n = self.bench.of_cable_n(&trial.model, &deviations, cable);
             let mu = trial.model.values.get(cable).map_or(0.0, |values| values[MU]);
             let mut around = around(record, mu, white_noise(&residual_n).unwrap_or(0.0));
-            around.periods = periods(record, &residual_n);
+            if with_periods {
+                around.periods = periods(record, &residual_n);
+            }
             around
         };
-        self.bench.records.iter().enumerate().map(of).collect()
+        self.bench.records.par_iter().enumerate().map(of).collect()
     }
 
     fn is_at_end(&self, candidate: Candidate, trial: &Trial) -> bool {
@@ -426,13 +446,16 @@ impl<'b, 'a> Search<'b, 'a> {
         let [covariance, independent] = self.bench.covariances(&trial.model)?;
         let unknowns = trial.model.unknowns();
         let is_its = |unknown: &Unknown| match (candidate, unknown) {
-            (Candidate::Own(cable, effect), Unknown::Own(of, parameter)) => cable == *of && parameter.effect() == Some(effect),
+            (Candidate::Own(cable, effect), Unknown::Own(of, parameter)) => {
+                cable == *of && parameter.effect() == Some(effect)
+            }
             (Candidate::Alike(effect), Unknown::Alike(parameter)) => parameter.effect() == Some(effect),
             (Candidate::Geometry(geometry), Unknown::Geometry(of, _)) => geometry == *of,
             _ => false,
         };
         let places: Vec<usize> = (0..unknowns.len()).filter(|place| unknowns.get(*place).is_some_and(is_its)).collect();
-        let inflation = places.iter().map(|place| covariance[(*place, *place)] / independent[(*place, *place)]).fold(1.0, f64::max);
+        let inflation =
+            places.iter().map(|place| covariance[(*place, *place)] / independent[(*place, *place)]).fold(1.0, f64::max);
         let away = places.iter().map(|place| away_from_neutral(&trial.model, &unknowns[*place]));
         let away = DVector::from_iterator(places.len(), away);
         let inverse = inverse_of_normal(&covariance.select_rows(&places).select_columns(&places))?;

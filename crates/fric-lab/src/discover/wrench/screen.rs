@@ -79,10 +79,16 @@ impl Columns {
 }
 
 /// The promise of every candidate beside a model, each from its best start, the best first.
-pub fn promises(bench: &Bench<'_>, model: &Model, around: &[Around], is_wanted: impl Fn(Candidate) -> bool) -> Vec<Promise> {
+pub fn promises(
+    bench: &Bench<'_>,
+    model: &Model,
+    around: &[Around],
+    is_wanted: impl Fn(Candidate) -> bool,
+) -> Vec<Promise> {
     let cables: Vec<usize> = (0..bench.records.len()).collect();
     let catalogue = |cable: usize| {
-        let wanted = |effect: &Effect| is_wanted(Candidate::Own(cable, *effect)) || is_wanted(Candidate::Alike(*effect));
+        let wanted =
+            |effect: &Effect| is_wanted(Candidate::Own(cable, *effect)) || is_wanted(Candidate::Alike(*effect));
         Effect::ALL.iter().copied().filter(wanted).collect::<Vec<Effect>>()
     };
     let mut all_starts: Vec<Start> = Vec::new();
@@ -178,7 +184,8 @@ fn beside(model: &Model, candidate: Candidate, from: &[&Start]) -> Model {
     let mut model = model.clone();
     match candidate {
         Candidate::Own(cable, effect) => {
-            if let (Some(values), Some(free), [start]) = (model.values.get_mut(cable), model.free.get_mut(cable), from) {
+            if let (Some(values), Some(free), [start]) = (model.values.get_mut(cable), model.free.get_mut(cable), from)
+            {
                 *values = start.values;
                 free.extend(fitted(effect).into_iter().filter(|of| !free.contains(of)).collect::<Vec<Parameter>>());
             }
@@ -216,7 +223,8 @@ fn schur_gain(
     let score = own_gradient - &by_others * gradient;
     let scale: Vec<f64> = own.diagonal().iter().map(|square| square.sqrt()).collect();
     let unit = |place: usize| if scale[place] > 0.0 { scale[place].recip() } else { 0.0 };
-    let scaled = DMatrix::from_fn(own.nrows(), own.ncols(), |row, column| schur[(row, column)] * unit(row) * unit(column));
+    let scaled =
+        DMatrix::from_fn(own.nrows(), own.ncols(), |row, column| schur[(row, column)] * unit(row) * unit(column));
     if scaled.iter().any(|entry| !entry.is_finite()) {
         return f64::NAN;
     }
@@ -300,7 +308,8 @@ impl Sums {
                 gradient.axpy(*deviation, &derivatives, 1.0);
             }
             for (cable, columns) in columns.iter().enumerate() {
-                let lever = structure.get(place * cables + cable).map_or_else(Vector6::zeros, |of| bench.whitening * of);
+                let lever =
+                    structure.get(place * cables + cable).map_or_else(Vector6::zeros, |of| bench.whitening * of);
                 let mut seen = DVector::zeros(count);
                 let mut deviation = 0.0;
                 for component in 0..6 {
@@ -330,7 +339,8 @@ impl Sums {
                         && from.columns.len() == to.columns.len()
                         && order(one, from) == order(other, to);
                 let (Some(left), Some(right)) = (columns.get(from.cable), columns.get(to.cable)) else { continue };
-                let (Some(left_levers), Some(right_levers)) = (levers_of.get(from.cable), levers_of.get(to.cable)) else {
+                let (Some(left_levers), Some(right_levers)) = (levers_of.get(from.cable), levers_of.get(to.cable))
+                else {
                     continue;
                 };
                 if is_pair {
