@@ -26,6 +26,7 @@ mod init;
 mod inputs;
 mod interrupt;
 mod known;
+mod lengths;
 mod logs;
 mod outputs;
 mod part;

@@ -76,7 +76,7 @@ pub fn run(arguments: &ReplayArguments) -> Outcome {
         warn_all(&replay.warnings(&model.robot));
     }
 
-    let outcome = ReplayResult::new(&model.robot, &replay, &times);
+    let outcome = ReplayResult::new(&model.robot, &replay, &times).with_poses(reader.length_poses().as_ref());
     let mut files = Vec::new();
     if let Some(writer) = writer {
         files.push(writer.complete()?);
