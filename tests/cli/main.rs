@@ -12,6 +12,7 @@ mod closed_stdout;
 mod command_line;
 mod continuum;
 mod convert;
+mod correct;
 mod csv_logs;
 mod damage;
 mod discover;

@@ -284,8 +284,9 @@ impl<'a> Search<'a> {
             let is_better = match (&found, &best) {
                 (Ok(found), _) if found.agrees() => return Ok(*found),
                 (Ok(found), Ok(best)) => found.residual_rms_m < best.residual_rms_m,
-                (Ok(_), Err(_)) | (Err(NoPose::Undetermined), Err(NoPose::NotConverged | NoPose::Apart { .. })) => true,
-                (Err(NoPose::Apart { .. }), Err(NoPose::NotConverged)) => true,
+                (Ok(_), Err(_))
+                | (Err(NoPose::Undetermined), Err(NoPose::NotConverged | NoPose::Apart { .. }))
+                | (Err(NoPose::Apart { .. }), Err(NoPose::NotConverged)) => true,
                 _ => false,
             };
             if is_better {

@@ -1,6 +1,9 @@
 //! The result of `replay`: for machines (`format = "fric-replay/1"`) and as a table.
 
 use fric_core::robot::file::{POSE_FROM_LENGTHS, RobotFile};
+use fric_lab::discover::Corrections;
+use fric_lab::discover::result::FaultResult;
+use fric_lab::discover::words::recording_lines;
 use fric_lab::errors::{ForceError, WrenchResult};
 use fric_lab::replay::{CableErrors, Replay};
 use fric_lab::text::table;
@@ -96,6 +99,9 @@ pub struct CableResult {
     /// Error of the compensated force.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub after: Option<ForceError>,
+    /// Faults of the recording that were corrected before.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub faults: Vec<FaultResult>,
 }
 
 /// How long cycles took.
@@ -124,6 +130,7 @@ impl ReplayResult {
             flagged: errors.flagged_count,
             before: ForceError::of(&errors.before_n),
             after: ForceError::of(&errors.after_n),
+            faults: Vec::new(),
         };
         let (before, after) = replay.wrench();
         Self {
@@ -145,6 +152,16 @@ impl ReplayResult {
     #[must_use]
     pub fn with_poses(self, poses: Option<&LengthPoses>) -> Self {
         Self { pose: poses.map(PoseResult::of), ..self }
+    }
+
+    /// The same with what was corrected in the log.
+    #[must_use]
+    pub fn with_corrections(mut self, corrections: Option<&Corrections>) -> Self {
+        for (place, cable) in self.cables.iter_mut().enumerate() {
+            let faults = corrections.map_or(&[][..], |corrections| corrections.faults(place));
+            cable.faults = faults.iter().map(FaultResult::of).collect();
+        }
+        self
     }
 
     /// For people: a table.
@@ -181,6 +198,7 @@ impl ReplayResult {
         ];
         let mut text = format!("{}: force at the platform against the reference\n\n", self.robot);
         text += &table(&header, 1, &rows);
+        text += &recording_lines(self.cables.iter().map(|cable| (cable.name.as_str(), cable.faults.as_slice())));
         if let Some(wrench) = &self.wrench {
             text += "\n";
             text += &wrench.table();
