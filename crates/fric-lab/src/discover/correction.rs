@@ -12,7 +12,8 @@ use super::{length_noise, timing};
 use crate::fit::{CableFit, CableRecord, FitOptions, Measurements, Progress, Row, fit_cables, residuals_n};
 
 /// A fit corrects the time of a reference by itself only where no more than this multiple of the white noise is left then: else something else is missing, which may look like a late
-/// reference. Tuned on 24 simulated logs: the two that have it come to 1.00 and 0.97, the four where a missing effect looked like it to 1.38 and more; at half the excess (1.12) and at 1.37 the same are told.
+/// reference. Tuned on 24 simulated logs of others: the two that have such a fault come to 0.99 and 0.97 of their noise, the four in which a missing effect looks like it to 1.38, 1.69, 2.6 and
+/// 4.7. With 1.12 the same are told; with 1.5 also the first of the four.
 const NOTHING_LEFT_RATIO: f64 = 1.25;
 
 /// What was corrected in a log, cable by cable.
