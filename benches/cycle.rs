@@ -1,5 +1,5 @@
 //! One cycle of 8 cables with 3 pulleys each, geometry and wrench included: the mean, the worst beside it, and the mean for each of
-//! 4 to 64 cables.
+//! 4 to 64 cables; and beside it the pose of 8 lengths, which is offline.
 //!
 //! `cargo bench -p fric-core --bench cycle`
 
@@ -12,8 +12,10 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use criterion::Criterion;
-use fric_core::robot::Presliding;
-use support::{CABLES, CYCLES, best_ns, compensator, inputs};
+use fric_core::forward::PoseFollower;
+use fric_core::robot::{MonitorOptions, PlatformOptions, Presliding};
+use fric_core::{CableParams, RobotParams};
+use support::{CABLES, CYCLE_S, CYCLES, best_ns, cable_options, compensator, inputs};
 
 const FORMS: [(&str, Presliding); 2] = [("lumped", Presliding::Lumped), ("per_pulley", Presliding::PerPulley)];
 
@@ -29,6 +31,22 @@ fn mean(criterion: &mut Criterion) {
         });
     }
     group.finish();
+}
+
+/// The pose of the lengths of a sample beside the cycle of that sample.
+fn pose_from_lengths(criterion: &mut Criterion) {
+    let inputs = inputs::<CABLES>();
+    let cables =
+        cable_options::<CABLES>(Presliding::PerPulley).map(|options| CableParams::new(&options).expect("good options"));
+    let monitor = MonitorOptions::for_cycle(CYCLE_S);
+    let robot = RobotParams::new(CYCLE_S, &PlatformOptions::default(), monitor, &cables).expect("good robot");
+    let (mut follower, mut order) = (PoseFollower::default(), inputs.iter().cycle());
+    criterion.bench_function("pose from lengths", |bencher| {
+        bencher.iter(|| {
+            let input = order.next().expect("never ends");
+            follower.next_pose(&robot, black_box(&input.cables)).expect("lengths of a pose")
+        });
+    });
 }
 
 /// Single cycles with a clock around each: percentiles in nanoseconds, the clock's own cost taken off.
@@ -88,6 +106,7 @@ fn counts(rounds: usize) {
 fn main() {
     let mut criterion = Criterion::default().configure_from_args();
     mean(&mut criterion);
+    pose_from_lengths(&mut criterion);
     criterion.final_summary();
     // `cargo test --benches` runs every bench once to see that it works.
     let rounds = if std::env::args().any(|argument| argument == "--bench") { 50 } else { 1 };

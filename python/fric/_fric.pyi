@@ -321,6 +321,7 @@ def replay(
     *,
     output: _Path | None = None,
     force: bool = False,
+    correct: bool = False,
     progress: _Progress = False,
 ) -> ReplayResult: ...
 def simulate(

@@ -138,6 +138,10 @@ pub struct ReplayArguments {
     /// Write a page with the errors over time to this HTML file
     #[arg(long, value_name = "R.html", value_parser = a_file())]
     pub report: Option<PathBuf>,
+    /// Correct the recording before it is compared, and tell what was wrong: a reference that comes late or runs by another clock, noise of the
+    /// lengths; reads the log twice and keeps its samples in memory
+    #[arg(long)]
+    pub correct: bool,
     #[command(flatten)]
     pub result: ResultArguments,
 }

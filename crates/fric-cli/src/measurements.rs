@@ -4,11 +4,12 @@ use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::Duration;
 
-use fric_core::CableParams;
+use fric_core::{CableParams, Sample};
+use fric_lab::discover::{self, Corrections};
 use fric_lab::fit::readiness::{Holdings, Readiness};
 use fric_lab::fit::{Measurements, Progress, Reference};
 use fric_log::log::Log;
-use fric_log::signals::{Part, Role, SignalReader, TimesApart};
+use fric_log::signals::{Part, Role, SignalError, SignalReader, TimesApart};
 
 use crate::failure::{Failure, Outcome};
 use crate::interrupt;
@@ -99,28 +100,48 @@ pub fn read<'a>(logs: &[PathBuf], part: Part, model: &'a Model, reference: Refer
     Ok(LogsRead { measurements, holdings, apart })
 }
 
-fn read_one(reader: &mut SignalReader, measurements: &mut Measurements<'_>, cable_count: usize) -> Outcome<Holdings> {
-    let mut holdings = Holdings::new(cable_count);
+/// Reads all rows beside a bar; the inner error is the log's.
+fn take_all(reader: &mut SignalReader, mut take: impl FnMut(&Sample<'_>)) -> Outcome<Result<(), SignalError>> {
     let bar = progress::bytes(reader.log().total_bytes());
+    let mut count = 0_u64;
     let end = loop {
-        if holdings.rows.is_multiple_of(STRIDE) {
+        if count.is_multiple_of(STRIDE) {
             interrupt::check()?;
             bar.set_position(reader.log().bytes_read());
         }
+        count += 1;
         match reader.next_row() {
-            Ok(Some(sample)) => {
-                holdings.add(&sample);
-                measurements.add(&sample);
-            }
+            Ok(Some(sample)) => take(&sample),
             Ok(None) => break Ok(()),
             Err(error) => break Err(error),
         }
     };
     bar.finish_and_clear();
+    Ok(end)
+}
+
+fn read_one(reader: &mut SignalReader, measurements: &mut Measurements<'_>, cable_count: usize) -> Outcome<Holdings> {
+    let mut holdings = Holdings::new(cable_count);
+    let end = take_all(reader, |sample| {
+        holdings.add(sample);
+        measurements.add(sample);
+    })?;
     warn_all(&reader.log().warnings());
     end?;
     warn_all(&reader.warnings());
     Ok(holdings)
+}
+
+/// What has to be corrected in the parts of one log before it is compared with its reference. What is out of the ordinary is left to whoever reads it next to tell.
+pub fn corrections(parts: &[PathBuf], part: Part, model: &Model) -> Outcome<Corrections> {
+    let paths = model.signal_paths()?.with(Role::Wrench, None);
+    let names = model.robot.cable_names();
+    let params = model.robot.params();
+    let mut measurements = Measurements::new(&params, Reference::Forces);
+    let mut reader = SignalReader::new(Log::open(parts)?, paths, &names).within(part);
+    // An error comes again where the log is read for good.
+    let _ = take_all(&mut reader, |sample| measurements.add(sample))?;
+    watched("checked", |progress| discover::corrections(&measurements, progress))
 }
 
 /// Runs work beside a bar, until it is done or Ctrl-C is pressed; the bar counts what is `done`.

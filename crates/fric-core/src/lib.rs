@@ -53,6 +53,7 @@ mod doubt;
 pub mod effects;
 #[cfg(feature = "alloc")]
 mod exchange;
+pub mod forward;
 mod functions;
 mod group;
 mod lanes;

@@ -4,6 +4,7 @@
 use allocation_counter::measure;
 use fric_core::continuum::{Direction, Friction, ManipulatorOptions, ManipulatorParams, StaticModel};
 use fric_core::effects::Effect;
+use fric_core::forward::PoseFollower;
 use fric_core::robot::{
     CableOptions, FrictionOptions, GeometryOptions, MonitorOptions, PlatformOptions, Presliding, PulleyOptions,
 };
@@ -97,6 +98,32 @@ fn the_cycle_does_not_allocate() {
     assert_eq!(counted.count_total, 0);
     assert!(flagged > 1000, "{flagged} flagged cycles are too few to mean anything");
     assert!(measure(|| drop(std::hint::black_box(vec![1.0, 2.0]))).count_total > 0, "the counter does not count");
+}
+
+#[test]
+fn the_pose_from_lengths_does_not_allocate() {
+    let corner = |index: u32| {
+        let [x, y, z] = [0, 1, 2].map(|bit| if index >> bit & 1 == 0 { 1.0 } else { -1.0 });
+        let platform_m = if z > 0.0 { [0.02 * x, 0.08 * y, -0.07] } else { [0.08 * x, 0.02 * y, 0.07] };
+        let geometry = Some(GeometryOptions { base_m: [0.6 * x, 0.5 * y, 0.7 * z], platform_m });
+        CableParams::new(&CableOptions { geometry, ..CableOptions::new(&PULLEYS) }).unwrap()
+    };
+    let cables: Vec<CableParams> = (0..8).map(corner).collect();
+    let monitor = MonitorOptions::for_cycle(0.001);
+    let robot = RobotParams::new(0.001, &PlatformOptions::default(), monitor, &cables).unwrap();
+    let (mut follower, mut posed) = (PoseFollower::default(), 0);
+    let counted = measure(|| {
+        for cycle in 0..500 {
+            let place = 0.1 * (0.01 * f64::from(cycle)).sin();
+            let pose = Pose::from_parts([place, 0.0, -place], [0.0, 0.0, 0.0, 1.0]).unwrap();
+            let mut inputs = [CableInput::default(); 8];
+            for (input, cable) in inputs.iter_mut().zip(&cables) {
+                input.length_m = if cycle % 9 == 0 { f64::NAN } else { cable.length_m(&pose).unwrap() };
+            }
+            posed += u32::from(follower.next_pose(&robot, &inputs).is_ok());
+        }
+    });
+    assert_eq!((counted.count_total, posed), (0, 444));
 }
 
 #[test]

@@ -27,6 +27,8 @@ mod effects;
 #[cfg(test)]
 mod faults;
 #[cfg(test)]
+mod forward;
+#[cfg(test)]
 mod oracle;
 #[cfg(test)]
 mod platform;

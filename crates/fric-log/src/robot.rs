@@ -1,5 +1,7 @@
 //! What a robot file has to do with a log: it may be attached, and it says where the signals are.
 
+use std::sync::Arc;
+
 use fric_core::robot::file::{LogTable, ReferenceTable, RobotFile, RobotFileError};
 use thiserror::Error;
 
@@ -60,7 +62,7 @@ impl AttachedRobot {
 }
 
 impl SignalPaths {
-    /// The paths that a robot file names under `[log]`, or the reference that is known.
+    /// The paths that a robot file names under `[log]`, with the reference that is known and the pose that comes from the lengths, where they do.
     ///
     /// # Errors
     /// [`SignalPathError`] for the first that is no path.
@@ -75,13 +77,16 @@ impl SignalPaths {
             (Role::Length, length.as_ref()),
             (Role::Speed, speed.as_ref()),
             (Role::Reference, reference),
-            (Role::Pose, Some(pose)),
+            (Role::Pose, Some(pose).filter(|_| !robot.options().log.pose_is_from_lengths())),
             (Role::Wrench, Some(wrench)),
         ];
         let mut signals = Self::default().with_columns(columns.clone());
         for (role, text) in paths {
             let path = text.map(|text| text.parse::<MessagePath>()).transpose();
             signals = signals.with(role, path.map_err(|source| SignalPathError { role, source })?);
+        }
+        if robot.options().log.pose_is_from_lengths() {
+            signals = signals.with_pose_from_lengths(Arc::new(robot.clone()));
         }
         Ok(match robot.params().known_reference() {
             Some(known) => signals.with_known_reference(known),

@@ -4,7 +4,7 @@ use fric_core::CableParams;
 use fric_core::robot::file::RobotFile;
 
 use crate::recording::{Overlap, Recording};
-use crate::signals::{Role, SignalReader, TrackCounts};
+use crate::signals::{LengthPoses, Role, SignalReader, TrackCounts};
 
 impl Recording {
     /// What could not be read, what is there twice, and what came late. Complete when all messages have been read.
@@ -60,6 +60,7 @@ impl SignalReader {
             }
             warnings.extend(self.times_apart(role).map(|apart| format!("{} signal `{path}`: {apart}", role.key())));
         }
+        warnings.extend(self.length_poses().iter().flat_map(LengthPoses::warnings));
         warnings
     }
 
@@ -68,10 +69,14 @@ impl SignalReader {
     pub fn robot_warnings(&self, robot: &RobotFile) -> Vec<String> {
         let mut warnings = Vec::new();
         let has_messages = self.counts(Role::Pose).message_count > 0;
-        let no_pose = !has_messages || self.times_apart(Role::Pose).is_some();
+        let from_lengths = self.length_poses();
+        let no_pose = match &from_lengths {
+            Some(poses) => poses.posed_count == 0,
+            None => !has_messages || self.times_apart(Role::Pose).is_some(),
+        };
         let needs_pose = robot.params().cables().iter().any(CableParams::needs_pose);
         if no_pose && needs_pose {
-            let (nothing, advice) = if has_messages {
+            let (nothing, advice) = if has_messages || from_lengths.is_some() {
                 ("no row has a", "")
             } else if self.log().column_names().is_some() {
                 (

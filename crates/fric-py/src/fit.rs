@@ -1,10 +1,9 @@
 //! `fit`: the parameters of the friction model from logs.
 
+use fric_lab::discover::{CorrectedFit, fit_cables_corrected};
 use fric_lab::fit::readiness;
 use fric_lab::fit::result::{FitResult, Fits};
-use fric_lab::fit::{
-    CableFit, FitOptions, Measurements, Reference, Weighing, fit_cables, fit_wrench, residuals_n, rewritten,
-};
+use fric_lab::fit::{CableFit, FitOptions, Measurements, Reference, Weighing, fit_wrench, residuals_n, rewritten};
 use fric_work::fit_report::fit_report;
 use fric_work::report;
 use pyo3::prelude::*;
@@ -76,11 +75,17 @@ pub fn fit(
         Reference::Wrench => readiness::by_wrench(file, ORIGIN, &holdings),
     };
     log::warn(py, &readiness.check()?)?;
-    let fits = watch.fit(|progress| match reference {
-        Reference::Forces => Ok(Fits::Forces(fit_cables(&measurements, &options, progress))),
-        Reference::Wrench => fit_wrench(&measurements, &options, progress).map(Fits::Wrench),
+    let (fits, faults, corrected) = watch.fit(|progress| match reference {
+        Reference::Forces => {
+            let CorrectedFit { cables, faults, measurements } = fit_cables_corrected(&measurements, &options, progress);
+            Ok((Fits::Forces(cables), faults, measurements))
+        }
+        Reference::Wrench => {
+            fit_wrench(&measurements, &options, progress).map(|fit| (Fits::Wrench(fit), Vec::new(), None))
+        }
     })??;
-    let result = FitResult::new(file, &fits);
+    let measurements = corrected.unwrap_or(measurements);
+    let result = FitResult::new(file, &fits).with_faults(&faults);
     result.check_used()?;
     log::warn(py, &result.warnings(&fits, &readiness))?;
     let residuals_n = py.detach(|| residuals_n(&measurements, fits.cables()));

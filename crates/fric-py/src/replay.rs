@@ -2,7 +2,10 @@
 
 use std::path::PathBuf;
 
+use fric_core::RobotParams;
 use fric_lab::columns::OutputColumns;
+use fric_lab::discover::{self, Corrections};
+use fric_lab::fit::{Measurements, Reference};
 use fric_lab::replay::Replay;
 use fric_log::write::ReplayedLog;
 use fric_work::replay::{CycleTimes, ReplayResult};
@@ -21,6 +24,8 @@ use crate::watch::Watch;
 ///
 /// `log` is a Log, a path or several paths of one split recording. With `output` the compensated forces, friction,
 /// wrench and status are written to an MCAP file, whole or not at all; an existing file is replaced only with `force`.
+/// With `correct` faults of the recording are corrected before it is compared, and stand in `faults` of each cable: a
+/// reference that comes late or runs by another clock, noise of the lengths.
 ///
 /// >>> robot = Robot.read("examples/mini-ipanema.toml")
 /// >>> result = replay(robot, simulate(robot, duration_s=2.0))
@@ -28,14 +33,15 @@ use crate::watch::Watch;
 /// True
 #[pyfunction]
 #[pyo3(
-    signature = (robot, log, *, output=None, force=false, progress=None),
-    text_signature = "(robot, log, *, output=None, force=False, progress=False)"
+    signature = (robot, log, *, output=None, force=false, correct=false, progress=None),
+    text_signature = "(robot, log, *, output=None, force=False, correct=False, progress=False)"
 )]
 pub fn replay(
     robot: &Bound<'_, Robot>,
     log: &Bound<'_, PyAny>,
     output: Option<PathBuf>,
     force: bool,
+    correct: bool,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> Outcome<Py<PyAny>> {
     let py = robot.py();
@@ -54,7 +60,13 @@ pub fn replay(
     let text = robot.borrow().to_toml()?;
     let create = |path: PathBuf| ReplayedLog::create(&path, &log.sources, force, &text, &names);
     let mut writer = output.map(create).transpose()?;
-    let mut replay = Replay::new(&file.params())?;
+    let corrections = correct.then(|| corrections(py, log, &file.params(), &mut watch)).transpose()?;
+    let params = match corrections.as_ref().and_then(Corrections::length_noise_m) {
+        Some(length_noise_m) => file.params().with_length_noise_m(length_noise_m)?,
+        None => file.params(),
+    };
+    let mut replay = Replay::new(&params)?;
+    let mut room = Vec::new();
     let mut times = CycleTimes::new()
         .map_err(|error| PyRuntimeError::new_err(format!("cannot set up the histogram of cycle times: {error}")))?;
     let mut series = Series::new(names.len());
@@ -63,6 +75,10 @@ pub fn replay(
         watch.work(rows.len(), |range| {
             for row in range {
                 let Some(sample) = rows.sample(row, &mut cables) else { break };
+                let sample = match &corrections {
+                    Some(corrections) => corrections.corrected(row, &sample, &mut room),
+                    None => sample,
+                };
                 let cycle = replay.step(&sample);
                 times.add(cycle.cycle_ns);
                 if let Some(writer) = &mut writer {
@@ -79,10 +95,26 @@ pub fn replay(
         py.detach(|| writer.finish())?;
     }
     log::warn(py, &replay.warnings(&file))?;
-    let result = ReplayResult::new(&file, &replay, &times);
+    let result = ReplayResult::new(&file, &replay, &times).with_corrections(corrections.as_ref());
     let page = errors::page(&result, &series, &log.source_names());
     let shown = results::shown(py, result.summary(), &result, page, errors::table(&result))?;
     let flags: Vec<u32> = replay.cables().iter().map(|errors| errors.flags).collect();
     let cycles = compensation(py, columns, Some(row_count), names.len())?;
     Ok(results::of(py, "ReplayResult", (shown, flags, cycles))?.unbind())
+}
+
+/// What has to be corrected in a log before it is compared with its reference.
+fn corrections(py: Python<'_>, log: &Log, params: &RobotParams<'_>, watch: &mut Watch<'_>) -> Outcome<Corrections> {
+    let mut measurements = Measurements::new(params, Reference::Forces);
+    let mut cables = Vec::new();
+    log.with_rows(py, |rows| {
+        watch.work(rows.len(), |range| {
+            for row in range {
+                let Some(sample) = rows.sample(row, &mut cables) else { break };
+                measurements.add(&sample);
+            }
+            Ok(())
+        })
+    })?;
+    watch.fit(|progress| discover::corrections(&measurements, progress))
 }

@@ -53,6 +53,9 @@ pub fn fit_report(result: &FitResult, fits: &[CableFit]) -> String {
                 let _ = writeln!(text, "    C({first}, {second}) = {value:+.4}");
             }
         }
+        for fault in &cable.faults {
+            let _ = writeln!(text, "    recording: {}", fault.in_words());
+        }
         for open in &cable.open {
             let parts =
                 open.0.iter().map(|part| format!("{} of {} by {}", part.parameter, part.cable, significant(part.step)));

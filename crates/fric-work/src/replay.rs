@@ -1,9 +1,13 @@
 //! The result of `replay`: for machines (`format = "fric-replay/1"`) and as a table.
 
-use fric_core::robot::file::RobotFile;
+use fric_core::robot::file::{POSE_FROM_LENGTHS, RobotFile};
+use fric_lab::discover::Corrections;
+use fric_lab::discover::result::FaultResult;
+use fric_lab::discover::words::recording_lines;
 use fric_lab::errors::{ForceError, WrenchResult};
 use fric_lab::replay::{CableErrors, Replay};
 use fric_lab::text::table;
+use fric_log::signals::LengthPoses;
 use hdrhistogram::{CreationError, Histogram};
 use serde::Serialize;
 
@@ -38,8 +42,46 @@ pub struct ReplayResult {
     /// Errors of the wrench, where there is one to compare with.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub wrench: Option<WrenchResult>,
+    /// Where the poses come from, if not from the log.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pose: Option<PoseResult>,
     /// How long cycles took.
     pub cycle: CycleResult,
+}
+
+/// Poses that were computed.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct PoseResult {
+    /// What from: `lengths`.
+    pub source: &'static str,
+    /// Samples with a pose.
+    pub samples: u64,
+    /// Samples without one.
+    pub missing: u64,
+    /// What the lengths are off at the poses, rms over cables and samples, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub residual_rms_m: Option<f64>,
+}
+
+impl PoseResult {
+    /// Of poses from the cable lengths.
+    #[must_use]
+    pub fn of(poses: &LengthPoses) -> Self {
+        Self {
+            source: POSE_FROM_LENGTHS,
+            samples: poses.posed_count,
+            missing: poses.unposed_count(),
+            residual_rms_m: poses.residual_rms_m(),
+        }
+    }
+
+    /// For people: a line.
+    fn line(&self) -> String {
+        let residual =
+            self.residual_rms_m.map_or_else(String::new, |rms_m| format!(", residual {:.3} mm rms", rms_m * 1e3));
+        let missing = if self.missing > 0 { format!(", {} samples without", self.missing) } else { String::new() };
+        format!("\npose from the cable lengths: {} samples{residual}{missing}\n", self.samples)
+    }
 }
 
 /// One cable.
@@ -57,6 +99,9 @@ pub struct CableResult {
     /// Error of the compensated force.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub after: Option<ForceError>,
+    /// Faults of the recording that were corrected before.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub faults: Vec<FaultResult>,
 }
 
 /// How long cycles took.
@@ -85,6 +130,7 @@ impl ReplayResult {
             flagged: errors.flagged_count,
             before: ForceError::of(&errors.before_n),
             after: ForceError::of(&errors.after_n),
+            faults: Vec::new(),
         };
         let (before, after) = replay.wrench();
         Self {
@@ -92,6 +138,7 @@ impl ReplayResult {
             robot: robot.options().name.clone(),
             cables: robot.cable_names().into_iter().zip(replay.cables()).map(cable).collect(),
             wrench: WrenchResult::of(replay.wrench_reference(), before, after),
+            pose: None,
             cycle: CycleResult {
                 count: replay.cycle_count(),
                 median_ns: times.0.value_at_quantile(0.5),
@@ -99,6 +146,22 @@ impl ReplayResult {
                 max_ns: times.0.max(),
             },
         }
+    }
+
+    /// The same with poses that were computed from the cable lengths.
+    #[must_use]
+    pub fn with_poses(self, poses: Option<&LengthPoses>) -> Self {
+        Self { pose: poses.map(PoseResult::of), ..self }
+    }
+
+    /// The same with what was corrected in the log.
+    #[must_use]
+    pub fn with_corrections(mut self, corrections: Option<&Corrections>) -> Self {
+        for (place, cable) in self.cables.iter_mut().enumerate() {
+            let faults = corrections.map_or(&[][..], |corrections| corrections.faults(place));
+            cable.faults = faults.iter().map(FaultResult::of).collect();
+        }
+        self
     }
 
     /// For people: a table.
@@ -135,10 +198,12 @@ impl ReplayResult {
         ];
         let mut text = format!("{}: force at the platform against the reference\n\n", self.robot);
         text += &table(&header, 1, &rows);
+        text += &recording_lines(self.cables.iter().map(|cable| (cable.name.as_str(), cable.faults.as_slice())));
         if let Some(wrench) = &self.wrench {
             text += "\n";
             text += &wrench.table();
         }
+        text += &self.pose.as_ref().map_or_else(String::new, PoseResult::line);
         let CycleResult { count, median_ns, p999_ns, max_ns } = self.cycle;
         text + &format!(
             "\n{count} cycles; one takes {median_ns} ns (median), {p999_ns} ns (99.9 %), {max_ns} ns (longest)\n"

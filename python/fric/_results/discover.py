@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from .._fric import Robot
 from .base import Result, Shown, Value, of_cable
 from .fit import LeftOut
-from .replay import ForceError
+from .replay import Fault, ForceError
 
 
 class Missing(TypedDict):
@@ -75,14 +75,6 @@ class Effect(TypedDict):
     gap_closed: float | None
     evidence: Evidence
     runner_up: RunnerUp | None
-
-
-class Fault(TypedDict):
-    """A fault of the recording: it says something about the log, not about the machine."""
-
-    kind: Literal["hum", "noisy_length", "frozen", "clipped"]
-    parameters: dict[str, float]
-    intervals_s: list[list[float]]
 
 
 Unexplained = TypedDict(

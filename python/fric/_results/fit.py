@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from .._fric import Robot
 from .base import Result, Shown, Value, of_cable
-from .replay import ForceError, WrenchError
+from .replay import Fault, ForceError, WrenchError
 
 
 class LeftOut(TypedDict):
@@ -69,6 +69,8 @@ class CableFit(Value):
     """Error of the sensor force turned into tension as if nothing rubbed; None without a reference."""
     after: ForceError | None
     """Error of the force compensated with these values; None without a reference."""
+    faults: list[Fault]
+    """Faults of the recording that were corrected before: a reference that comes late, or runs by another clock."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -113,6 +115,7 @@ class FitResult(Result):
                 residuals_n=residuals_n,
                 before=ForceError._of(cable.pop("before", None)),
                 after=ForceError._of(cable.pop("after", None)),
+                faults=cable.pop("faults", []),
                 **{key: value for key, value in cable.items() if key != "mean_reference_n"},
             )
             for cable, (parameters, covariance, correlation, residuals_n) in zip(found["cables"], cables)

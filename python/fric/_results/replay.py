@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,6 +40,23 @@ class WrenchError(Value):
         return (WrenchError(**entry["before"]), WrenchError(**entry["after"])) if entry else None
 
 
+class Fault(TypedDict):
+    """A fault of the recording: it says something about the log, not about the machine."""
+
+    kind: Literal[
+        "hum",
+        "noisy_length",
+        "frozen",
+        "clipped",
+        "spikes",
+        "coarse_converter",
+        "reference_delay",
+        "clock_skew",
+    ]
+    parameters: dict[str, float]
+    intervals_s: list[list[float]]
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class CableErrors(Value):
     """What a replay found for a cable."""
@@ -56,6 +73,8 @@ class CableErrors(Value):
     """Error of the sensor force turned into tension as if nothing rubbed; None without a reference."""
     after: ForceError | None
     """Error of the compensated force; None without a reference."""
+    faults: list[Fault]
+    """Faults of the recording that were corrected before, with `correct`."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -114,6 +133,7 @@ class ReplayResult(Result):
                 flags=bits,
                 before=ForceError._of(cable.get("before")),
                 after=ForceError._of(cable.get("after")),
+                faults=cable.get("faults", []),
             )
             for cable, bits in zip(found["cables"], flags)
         )

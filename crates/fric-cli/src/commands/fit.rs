@@ -1,8 +1,9 @@
 //! `fit`: the parameters of the friction model from the log of an identification run.
 
+use fric_lab::discover::fit_cables_corrected;
 use fric_lab::fit::readiness;
 use fric_lab::fit::result::{FitResult, Fits};
-use fric_lab::fit::{FitOptions, Parameter, Reference, Weighing, fit_cables, fit_wrench, rewritten};
+use fric_lab::fit::{FitOptions, Parameter, Reference, Weighing, fit_wrench, rewritten};
 use fric_log::output::OutputFile;
 
 use crate::arguments::{FitArguments, ReferenceName};
@@ -28,12 +29,13 @@ pub fn run(arguments: &FitArguments) -> Outcome {
     let json = JsonTarget::prepare(result.json.as_deref(), &inputs, result.force)?;
     let fitted_file = OutputFile::create(output, &inputs, result.force)?;
 
-    let (fits, readiness) = match reference {
+    let (fits, faults, readiness) = match reference {
         ReferenceName::Forces => {
             let read = read(logs, part, &model, Reference::Forces)?;
             let readiness = readiness::by_forces(&model.robot, &read.holdings);
             warn_all(&read.check(&readiness)?);
-            (Fits::Forces(watched("fitted", |progress| fit_cables(&read.measurements, &options, progress))?), readiness)
+            let fit = watched("fitted", |progress| fit_cables_corrected(&read.measurements, &options, progress))?;
+            (Fits::Forces(fit.cables), fit.faults, readiness)
         }
         ReferenceName::Wrench => {
             // The robot file alone can rule it out.
@@ -42,10 +44,10 @@ pub fn run(arguments: &FitArguments) -> Outcome {
             let readiness = readiness::by_wrench(&model.robot, &model.origin, &read.holdings);
             warn_all(&read.check(&readiness)?);
             let fit = watched("fitted", |progress| fit_wrench(&read.measurements, &options, progress))??;
-            (Fits::Wrench(fit), readiness)
+            (Fits::Wrench(fit), Vec::new(), readiness)
         }
     };
-    let outcome = FitResult::new(&model.robot, &fits);
+    let outcome = FitResult::new(&model.robot, &fits).with_faults(&faults);
     outcome.check_used()?;
     warn_all(&outcome.warnings(&fits, &readiness));
     let text = rewritten(&model.text, &model.origin, fits.cables())?;

@@ -63,6 +63,9 @@ struct SignalResult {
     path: String,
     messages: u64,
     gaps: u64,
+    /// Of a pose from the cable lengths: what they are off at it, rms over cables and samples.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    residual_rms_m: Option<f64>,
     remarks: Vec<String>,
 }
 
@@ -225,7 +228,16 @@ fn read_signals(model: &Model, log: Log, part: Part) -> Outcome<(Vec<SignalResul
         path: reference.to_string(),
         messages: 0,
         gaps: 0,
+        residual_rms_m: None,
         remarks: vec!["known and not measured, the same for every cable".to_owned()],
+    }));
+    signals.extend(reader.length_poses().map(|poses| SignalResult {
+        signal: Role::Pose.key(),
+        path: model.robot.options().log.pose.clone(),
+        messages: 0,
+        gaps: 0,
+        residual_rms_m: poses.residual_rms_m(),
+        remarks: [vec!["computed from the cable lengths".to_owned()], poses.remarks()].concat(),
     }));
     Ok((signals, steps(model, &holdings, problem.as_deref())))
 }
@@ -246,6 +258,7 @@ fn signal_results(reader: &SignalReader) -> Vec<SignalResult> {
             path,
             messages: if apart.is_some() { 0 } else { counts.message_count },
             gaps: counts.gap_count,
+            residual_rms_m: None,
             remarks,
         })
     };

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use fric_lab::discover::Corrections;
 use fric_lab::replay::Replay;
 use fric_log::log::Log;
 use fric_log::output::OutputFile;
@@ -13,6 +14,7 @@ use fric_work::report::{self, Series};
 use crate::arguments::ReplayArguments;
 use crate::failure::{Failure, Outcome};
 use crate::interrupt;
+use crate::measurements;
 use crate::model::{self, Model};
 use crate::output::{self, JsonTarget};
 use crate::progress::{self, STRIDE};
@@ -20,7 +22,7 @@ use crate::warnings::warn_all;
 
 /// Runs the command.
 pub fn run(arguments: &ReplayArguments) -> Outcome {
-    let ReplayArguments { log, output, report, result } = arguments;
+    let ReplayArguments { log, output, report, correct, result } = arguments;
     let json_file = result.json.as_deref().filter(|path| !output::is_stdout(path));
     output::check_distinct(&[output.as_deref(), report.as_deref(), json_file])?;
     let part = log.part.part()?;
@@ -36,13 +38,18 @@ pub fn run(arguments: &ReplayArguments) -> Outcome {
     let mut writer = output.as_ref().map(create).transpose()?;
 
     let paths = model.signal_paths()?;
-    let params = model.robot.params();
+    let corrections = correct.then(|| measurements::corrections(&log.logs, part, &model)).transpose()?;
+    let params = match corrections.as_ref().and_then(Corrections::length_noise_m) {
+        Some(length_noise_m) => model.robot.params().with_length_noise_m(length_noise_m)?,
+        None => model.robot.params(),
+    };
     let bar = progress::bytes(source.total_bytes());
     let mut reader = SignalReader::new(source, paths, &names).within(part);
     let mut replay = Replay::new(&params)?;
     let mut times = CycleTimes::new()
         .map_err(|error| Failure::new(format!("cannot set up the histogram of cycle times: {error}")))?;
     let mut series = report.as_ref().map(|_| Series::new(names.len()));
+    let (mut room, mut number) = (Vec::new(), 0);
     let end = loop {
         if replay.cycle_count().is_multiple_of(STRIDE) {
             interrupt::check()?;
@@ -53,6 +60,11 @@ pub fn run(arguments: &ReplayArguments) -> Outcome {
             Ok(None) => break Ok(()),
             Err(error) => break Err(error),
         };
+        let sample = match &corrections {
+            Some(corrections) => corrections.corrected(number, &sample, &mut room),
+            None => sample,
+        };
+        number += 1;
         let cycle = replay.step(&sample);
         times.add(cycle.cycle_ns);
         if let Some(writer) = &mut writer {
@@ -76,7 +88,9 @@ pub fn run(arguments: &ReplayArguments) -> Outcome {
         warn_all(&replay.warnings(&model.robot));
     }
 
-    let outcome = ReplayResult::new(&model.robot, &replay, &times);
+    let outcome = ReplayResult::new(&model.robot, &replay, &times)
+        .with_poses(reader.length_poses().as_ref())
+        .with_corrections(corrections.as_ref());
     let mut files = Vec::new();
     if let Some(writer) = writer {
         files.push(writer.complete()?);

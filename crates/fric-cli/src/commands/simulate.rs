@@ -113,7 +113,8 @@ impl SimulatedLog {
             log.add_reference(&topic(Role::Reference)?, &names)?;
         }
         let params = model.robot.params();
-        if params.cables().iter().any(fric_core::CableParams::has_geometry) {
+        // Nor is a pose where it comes from the lengths.
+        if paths.pose_robot().is_none() && params.cables().iter().any(fric_core::CableParams::has_geometry) {
             log.add_pose(&topic(Role::Pose)?)?;
         }
         if params.cables().iter().all(fric_core::CableParams::has_geometry) {

@@ -22,10 +22,14 @@ use super::read::{exactly, exactly_if_given};
 pub use super::reference::{KnownReferenceTable, ReferenceTable};
 use super::{CableParams, MOST_CABLES, MonitorOptions, ParamError, ParamProblem, PlatformOptions, RobotParams};
 use crate::effects::Effect;
+use crate::forward::FEWEST_CABLES;
 use crate::text_file;
 
 /// The only value of `format` that this version reads.
 pub const FORMAT: &str = "fric-robot/1";
+
+/// `pose` under `[log]` where no pose was measured: it is computed from the cable lengths ([`forward`](crate::forward)).
+pub const POSE_FROM_LENGTHS: &str = "lengths";
 
 /// A robot file as written.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -83,7 +87,7 @@ pub struct LogTable {
     pub speed: Option<String>,
     /// Cable forces at the platform: where they are measured, or what is known of them.
     pub reference: ReferenceTable,
-    /// Pose of the platform.
+    /// Pose of the platform, or [`POSE_FROM_LENGTHS`].
     pub pose: String,
     /// Outside wrench on the platform.
     pub wrench: String,
@@ -103,6 +107,28 @@ impl Default for LogTable {
             wrench: "/platform_wrench".to_owned(),
             columns: BTreeMap::new(),
         }
+    }
+}
+
+impl LogTable {
+    /// Whether the pose is computed from the cable lengths.
+    #[must_use]
+    pub fn pose_is_from_lengths(&self) -> bool {
+        self.pose == POSE_FROM_LENGTHS
+    }
+
+    /// Six numbers take six cables.
+    fn check_pose(&self, cables: &[CableParams]) -> Result<(), OptionsError> {
+        let complete = cables.iter().filter(|cable| cable.has_geometry()).count();
+        if !self.pose_is_from_lengths() || complete >= FEWEST_CABLES {
+            return Ok(());
+        }
+        let problem = format!(
+            "is \"{POSE_FROM_LENGTHS}\", which takes `base_m` and `platform_m` of {FEWEST_CABLES} cables or more, and {complete} of the {} have both; give those that are missing, \
+             or the topic of a measured pose",
+            cables.len()
+        );
+        Err(OptionsError::new(&[Step::Key("log"), Step::Key("pose")], "pose", problem))
     }
 }
 
@@ -316,6 +342,7 @@ impl RobotFile {
         }
         let names: Vec<&str> = options.cable.iter().map(|cable| cable.name.as_str()).collect();
         log_columns::check(&options.log.columns, &names)?;
+        options.log.check_pose(&cables)?;
         let robot = options.robot_params(&cables)?;
         Ok(Self { options, robot, cables })
     }

@@ -453,6 +453,16 @@ impl MonitorOptions {
 /// Cables that a robot file may have.
 pub const MOST_CABLES: usize = 64;
 
+/// Noise of the lengths that leaves some motion.
+fn check_length_noise(monitor: &MonitorOptions) -> Result<f64, ParamError> {
+    let length_noise_m = check("length_noise_m", monitor.length_noise_m, 0.0, 0.1)?;
+    if length_noise_m >= monitor.length_jump_m {
+        let reason = "is not less than `length_jump_m`: every change would be noise or a jump, none of them motion";
+        return Err(ParamError::conflict("length_noise_m", reason));
+    }
+    Ok(length_noise_m)
+}
+
 /// A checked robot: what a [`Compensator`](crate::Compensator) is built from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RobotParams<'a> {
@@ -482,11 +492,7 @@ impl<'a> RobotParams<'a> {
         }
         check("cycle_s", cycle_s, 1e-6, 10.0)?;
         let length_jump_m = check("length_jump_m", monitor.length_jump_m, 1e-9, 1e3)?;
-        let length_noise_m = check("length_noise_m", monitor.length_noise_m, 0.0, 0.1)?;
-        if length_noise_m >= length_jump_m {
-            let reason = "is not less than `length_jump_m`: every change would be noise or a jump, none of them motion";
-            return Err(ParamError::conflict("length_noise_m", reason));
-        }
+        let length_noise_m = check_length_noise(&monitor)?;
         if let Some(sensor_jump_n) = monitor.sensor_jump_n {
             check("sensor_jump_n", sensor_jump_n, 1e-6, 1e10)?;
         }
@@ -510,6 +516,16 @@ impl<'a> RobotParams<'a> {
     #[must_use]
     pub fn with_known_reference(self, known_reference: Option<KnownReference>) -> Self {
         Self { known_reference, ..self }
+    }
+
+    /// The same robot with so much noise on its lengths, m ([`MonitorOptions::length_noise_m`]).
+    ///
+    /// # Errors
+    /// [`ParamError`] where that is out of range, or no less than the greatest change of length.
+    pub fn with_length_noise_m(self, length_noise_m: f64) -> Result<Self, ParamError> {
+        let monitor = MonitorOptions { length_noise_m, ..self.monitor };
+        check_length_noise(&monitor)?;
+        Ok(Self { monitor, ..self })
     }
 
     /// Cable forces at the platform that are known and not measured.

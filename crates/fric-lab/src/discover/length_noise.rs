@@ -27,6 +27,17 @@ pub struct Steadied {
     pub faults: Vec<Option<RecordingFault>>,
 }
 
+/// The cables without the noise of their lengths, where it matters.
+pub fn records<'a>(given: &[CableRecord<'a>], steadied: Option<&'a Steadied>) -> Vec<CableRecord<'a>> {
+    match steadied {
+        Some(steadied) => {
+            let with_rows = given.iter().zip(&steadied.rows);
+            with_rows.map(|(given, rows)| given.behind_play(rows, steadied.length_play_m)).collect()
+        }
+        None => given.to_vec(),
+    }
+}
+
 /// The measurements without the noise of the lengths; `None` where there is none that matters, or the robot's monitor keeps one out already.
 pub fn steadied(measurements: &Measurements<'_>, stop: &AtomicBool) -> Option<Steadied> {
     let limits = measurements.robot().monitor().limits();

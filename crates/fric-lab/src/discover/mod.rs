@@ -15,6 +15,7 @@
 //! The model is the control cycle's own; what is found runs in it as it is.
 
 mod cable;
+mod correction;
 mod evidence;
 mod extended;
 mod foreign;
@@ -43,6 +44,7 @@ use rayon::prelude::*;
 
 use crate::fit::{CableRecord, FitError, Measurements, Progress, Reference};
 
+pub use correction::{CorrectedFit, Corrections, corrections, fit_cables_corrected};
 pub use extended::extended;
 pub use foreign::{Fault, RecordingFault};
 pub use naming::Refusal;
@@ -126,13 +128,7 @@ pub fn discover(measurements: &Measurements<'_>, progress: &Progress) -> Vec<Cab
     let given: Vec<CableRecord<'_>> = measurements.cables().collect();
     progress.begin(given.len());
     let steadied = length_noise::steadied(measurements, progress.stop_flag());
-    let records: Vec<CableRecord<'_>> = match &steadied {
-        Some(steadied) => {
-            let with_rows = given.iter().zip(&steadied.rows);
-            with_rows.map(|(given, rows)| given.behind_play(rows, steadied.length_play_m)).collect()
-        }
-        None => given.clone(),
-    };
+    let records = length_noise::records(&given, steadied.as_ref());
     let of_cable = |(place, record): (usize, &CableRecord<'_>)| {
         let noisy = steadied.as_ref().and_then(|steadied| steadied.faults.get(place)?.clone());
         let (mut found, late) = discover_retimed(record, progress);

@@ -619,7 +619,9 @@ impl WhereResult {
 }
 
 impl FaultResult {
-    fn of(found: &RecordingFault) -> Self {
+    /// Of a fault that was found.
+    #[must_use]
+    pub fn of(found: &RecordingFault) -> Self {
         Self {
             kind: found.fault.name(),
             parameters: Numbers(found.parameters.iter().map(|(key, value)| ((*key).to_owned(), *value)).collect()),

@@ -12,7 +12,7 @@ use super::result::{
     TriedResult, UnexplainedResult, WhereResult,
 };
 use crate::fit::HALF_INTERVAL;
-use crate::text::{listed, quantity, significant};
+use crate::text::{listed, quantity, significant, wrapped};
 
 /// Units at the end of keys; the longer ones first.
 const UNITS: [&str; 13] = [
@@ -321,6 +321,15 @@ impl Refusal {
     }
 }
 
+/// What was wrong with the recording of each cable, a paragraph for each fault; nothing where nothing was.
+pub fn recording_lines<'a>(cables: impl Iterator<Item = (&'a str, &'a [FaultResult])>) -> String {
+    let told = cables.flat_map(|(name, faults)| {
+        faults.iter().map(move |fault| wrapped(&format!("{name}, recording: "), &fault.in_words()))
+    });
+    let text: String = told.collect();
+    if text.is_empty() { text } else { format!("\n{text}") }
+}
+
 impl FaultResult {
     /// What is the matter and what to do, a sentence without its full stop.
     #[must_use]
@@ -335,7 +344,7 @@ impl FaultResult {
             ),
             Fault::NoisyLength => format!(
                 "the length trembles by {} m (standard deviation), which the model takes for motion; `length_noise_m` = {} m of the monitor keeps \
-                 it out, and the extended file sets it; look at the encoder's resolution, supply and shielding",
+                 it out, which an extended file sets; look at the encoder's resolution, supply and shielding",
                 significant(value("noise_m")),
                 significant(value("length_noise_m"))
             ),

@@ -32,8 +32,9 @@ impl Progress {
         &self.stop
     }
 
+    /// So many steps more are to do.
     pub(crate) fn begin(&self, total: usize) {
-        self.total.store(total, Ordering::Relaxed);
+        self.total.fetch_add(total, Ordering::Relaxed);
     }
 
     pub(crate) fn finish_one(&self) {

@@ -1,7 +1,7 @@
 //! What a log holds for an identification, and what it lacks.
 
 use fric_core::Sample;
-use fric_core::robot::file::{ReferenceTable, RobotFile};
+use fric_core::robot::file::{LogTable, ReferenceTable, RobotFile};
 
 use super::balance::{ONE_LINE, ONE_LINE_ADVICE};
 use super::error::FitError;
@@ -162,6 +162,16 @@ impl Lack {
 
 const SILENT_ADVICE: &str = "Compare the names of the cables in the log with those in the robot file.";
 const POSE_ADVICE: &str = "Name the topic of the poses as `pose` under `[log]` in the robot file.";
+const LENGTHS_ADVICE: &str = "Make sure that lengths count from `base_m` to `platform_m`, or name the topic of a measured pose as `pose` under `[log]` in the robot file.";
+
+/// That there is no pose, and what to do.
+fn without_pose(log: &LogTable) -> (String, &'static str) {
+    if log.pose_is_from_lengths() {
+        ("no sample has a pose from its cable lengths".to_owned(), LENGTHS_ADVICE)
+    } else {
+        (format!("the log has no pose on {}", log.pose), POSE_ADVICE)
+    }
+}
 
 /// What is missing to identify each cable from its force at the platform.
 #[must_use]
@@ -208,13 +218,10 @@ fn of_forces(robot: &RobotFile, holdings: &Holdings, advice: &'static str, inste
     let follows_pose = |cable: usize| params.cables().get(cable).is_some_and(fric_core::CableParams::needs_pose);
     let cables = if holdings.posed == 0 { without(&readiness, &follows_pose) } else { Vec::new() };
     if !cables.is_empty() {
+        let (cause, advice) = without_pose(log);
         readiness.lacks.push(Lack {
-            cause: format!(
-                "the log has no pose on {}, and so no wrap of the last pulley{}",
-                log.pose,
-                of(&names, &cables)
-            ),
-            advice: POSE_ADVICE,
+            cause: format!("{cause}, and so no wrap of the last pulley{}", of(&names, &cables)),
+            advice,
             instead: None,
             cables,
         });
@@ -259,9 +266,10 @@ pub fn by_wrench(robot: &RobotFile, origin: &str, holdings: &Holdings) -> Readin
         });
     }
     if holdings.posed == 0 {
+        let (cause, advice) = without_pose(log);
         lacks.push(Lack {
-            cause: format!("the log has no pose on {}: the directions of the cables are not known", log.pose),
-            advice: POSE_ADVICE,
+            cause: format!("{cause}: the directions of the cables are not known"),
+            advice,
             instead: None,
             cables: all.clone(),
         });

@@ -179,6 +179,17 @@ impl<'a> Measurements<'a> {
         self.reference
     }
 
+    /// The same with other cycles of some cables.
+    pub(crate) fn with_rows(&self, rows: &[Option<Vec<Row>>]) -> Self {
+        let mut changed = self.clone();
+        for (cable, rows) in changed.cables.iter_mut().zip(rows) {
+            if let Some(rows) = rows {
+                cable.clone_from(rows);
+            }
+        }
+        changed
+    }
+
     /// How many samples.
     #[must_use]
     pub fn len(&self) -> usize {

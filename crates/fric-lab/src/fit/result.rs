@@ -11,6 +11,8 @@ use super::readiness::Readiness;
 use super::report::{CableFit, OpenCombination, OpenPart, WrenchFit};
 use super::summary;
 use super::vector::Parameter;
+use crate::discover::RecordingFault;
+use crate::discover::result::FaultResult;
 use crate::errors::{ForceError, WrenchError, WrenchResult};
 
 /// What was fitted to what.
@@ -81,6 +83,9 @@ pub struct FitCableResult {
     /// Mean of the reference, N.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mean_reference_n: Option<f64>,
+    /// Faults of the recording that were corrected before.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub faults: Vec<FaultResult>,
 }
 
 /// A combination of parameters that the samples leave open: changed together by these steps they do the same.
@@ -165,6 +170,15 @@ impl FitResult {
             cables: cables.map(|(name, fit)| cable_result(name, fit, &names)).collect(),
             wrench,
         }
+    }
+
+    /// The same with what was wrong with the recording of each cable.
+    #[must_use]
+    pub fn with_faults(mut self, faults: &[Vec<RecordingFault>]) -> Self {
+        for (cable, faults) in self.cables.iter_mut().zip(faults) {
+            cable.faults = faults.iter().map(FaultResult::of).collect();
+        }
+        self
     }
 
     /// For people: \[P\] table I, how sure it is, and what the log does not tell.
@@ -269,5 +283,6 @@ fn cable_result(name: &str, fit: &CableFit, names: &[&str]) -> FitCableResult {
         before: ForceError::of(&fit.errors.before_n),
         after: ForceError::of(&fit.errors.after_n),
         mean_reference_n: fit.errors.reference_n.mean_magnitude(),
+        faults: Vec::new(),
     }
 }

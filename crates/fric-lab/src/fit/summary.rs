@@ -7,6 +7,7 @@ use fric_core::parameters::{FRICTION_COUNT, MU, OFFSET, SIGMA, VISCOUS};
 
 use super::result::{FitCableResult, FitResult, Numbers, OpenPartResult, OpenResult};
 use super::vector::Parameter;
+use crate::discover::words::recording_lines;
 use crate::text::{digits_of, number, plain, table};
 
 /// \[P\] table I, how sure it is, and what the log does not tell.
@@ -26,6 +27,7 @@ pub(super) fn describe(result: &FitResult) -> String {
     }
     text += "\nsamples\n\n";
     text += &sample_table(result);
+    text += &recording_lines(result.cables.iter().map(|cable| (cable.name.as_str(), cable.faults.as_slice())));
     if let Some(wrench) = &result.wrench {
         text += "\n";
         text += &wrench.table();

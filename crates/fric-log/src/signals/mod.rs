@@ -37,6 +37,9 @@
 //! Speed that a message does not have (an empty `velocity`, or NaN in it) is the derivative of the parabola through the lengths last
 //! known before, in, and first known after the row ([`KnownLength::speed_m_per_s`]), also over a gap.
 //!
+//! A pose that is computed from the cable lengths ([`SignalPaths::with_pose_from_lengths`], [`fric_core::forward`]) is that of the lengths of each row; a row whose lengths
+//! give none has none.
+//!
 //! A reference that is known and not measured ([`SignalPaths::with_known_reference`]) is that of every cable in each row in
 //! which the cable has a sensor force; under a hanging mass only while the cable is in quiet motion.
 
@@ -45,6 +48,7 @@ mod channel;
 mod error;
 mod hanging;
 mod layout;
+mod lengths;
 mod order;
 mod pace;
 mod part;
@@ -57,15 +61,17 @@ mod waiting;
 pub use apart::TimesApart;
 pub use error::SignalError;
 pub(crate) use layout::{Probe, STAMPS};
+pub use lengths::LengthPoses;
 pub use part::Part;
 pub use reader::SignalReader;
 pub use speed::KnownLength;
 pub use track::CLOCK_STEP_MESSAGES;
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use fric_core::KnownReference;
-use fric_core::robot::file::ColumnTable;
+use fric_core::robot::file::{ColumnTable, RobotFile};
 
 use crate::path::MessagePath;
 
@@ -115,15 +121,19 @@ pub struct SignalPaths {
     paths: [Option<MessagePath>; 6],
     known_reference: Option<KnownReference>,
     columns: BTreeMap<String, ColumnTable>,
+    pose_robot: Option<Arc<RobotFile>>,
 }
 
 impl SignalPaths {
-    /// Sets the path of a role; that of the reference takes the place of a known one.
+    /// Sets the path of a role; that of the reference takes the place of a known one, that of the pose of one from the lengths.
     #[must_use]
     pub fn with(mut self, role: Role, path: Option<MessagePath>) -> Self {
         self.paths[role as usize] = path;
         if role == Role::Reference {
             self.known_reference = None;
+        }
+        if role == Role::Pose {
+            self.pose_robot = None;
         }
         self
     }
@@ -138,6 +148,18 @@ impl SignalPaths {
     #[must_use]
     pub fn known_reference(&self) -> Option<KnownReference> {
         self.known_reference
+    }
+
+    /// Has the pose computed from the cable lengths, by the geometry of this robot, in place of one in the log.
+    #[must_use]
+    pub fn with_pose_from_lengths(self, robot: Arc<RobotFile>) -> Self {
+        Self { pose_robot: Some(robot), ..self.with(Role::Pose, None) }
+    }
+
+    /// The robot by whose geometry the pose is computed from the cable lengths; `None` where it is looked for in the log.
+    #[must_use]
+    pub fn pose_robot(&self) -> Option<&Arc<RobotFile>> {
+        self.pose_robot.as_ref()
     }
 
     /// Sets the columns that a CSV log calls otherwise than by default, by the keys of `[log.columns]`.

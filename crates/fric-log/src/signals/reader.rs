@@ -6,6 +6,7 @@ use super::channel::{ChannelReader, Rejection};
 use super::error::SignalError;
 use super::hanging::HangingRows;
 use super::layout::Unfit;
+use super::lengths::{LengthPoses, PosesFromLengths};
 use super::part::{Part, Progress, Side};
 use super::row::RowBuffer;
 use super::speed::SpeedRows;
@@ -45,6 +46,8 @@ pub struct SignalReader {
     speeds: SpeedRows,
     /// Rows that wait for the acceleration of a hanging mass.
     hanging: Option<HangingRows>,
+    /// Computes the poses, where they come from the lengths.
+    length_poses: Option<PosesFromLengths>,
     /// The part that is given out.
     progress: Progress,
 }
@@ -114,6 +117,7 @@ impl SignalReader {
         let speeds = SpeedRows::new(topics.cable_names.len());
         let (channels, tracks) = (Vec::new(), Tracks::default());
         let known = topics.paths.known_reference();
+        let length_poses = topics.paths.pose_robot().cloned().map(PosesFromLengths::new);
         let hanging = known.filter(|known| matches!(known, KnownReference::HangingMass { .. })).map(HangingRows::new);
         Self {
             log,
@@ -126,6 +130,7 @@ impl SignalReader {
             buffer,
             speeds,
             hanging,
+            length_poses,
             progress: Progress::default(),
         }
     }
@@ -169,6 +174,12 @@ impl SignalReader {
         self.tracks.get(role).counts().since(&self.progress.before[role as usize])
     }
 
+    /// What became of poses from the cable lengths so far, since the part began; `None` where the pose is looked for in the log.
+    #[must_use]
+    pub fn length_poses(&self) -> Option<LengthPoses> {
+        self.length_poses.as_ref().map(|poses| poses.summary)
+    }
+
     /// What was wrong with the first message of a role that could not be used. If none could be as none was about the
     /// robot: what the first one was about.
     #[must_use]
@@ -194,17 +205,14 @@ impl SignalReader {
                 break;
             };
             match self.progress.side(stamp_nanos) {
-                // Only a row that is taken out makes room for the next.
-                Side::Before => drop(self.hanging.as_mut().and_then(HangingRows::pop)),
+                // Only a row that is taken out makes room for the next, and poses follow one another.
+                Side::Before => drop(self.take_row(false)),
                 Side::After => self.progress.is_over = true,
                 Side::Within => {
                     if !std::mem::replace(&mut self.progress.has_begun, true) && self.progress.part.start_s.is_some() {
                         self.progress.before = Role::ALL.map(|role| *self.tracks.get(role).counts());
                     }
-                    return Ok(match &mut self.hanging {
-                        Some(hanging) => hanging.pop(),
-                        None => Some(self.buffer.row.sample()),
-                    });
+                    return Ok(self.take_row(true));
                 }
             }
         }
@@ -213,6 +221,18 @@ impl SignalReader {
         }
         let Progress { part, last_s, .. } = self.progress;
         Err(SignalError::NothingInPart { part, last_s })
+    }
+
+    /// The row that was made, with the pose that its lengths have, if it is to be that.
+    fn take_row(&mut self, counts: bool) -> Option<Sample<'_>> {
+        let row = match &mut self.hanging {
+            Some(hanging) => hanging.pop(),
+            None => Some(self.buffer.row.sample()),
+        };
+        match &mut self.length_poses {
+            Some(poses) => row.map(|row| Sample { pose: poses.next_pose(row.cables, counts), ..row }),
+            None => row,
+        }
     }
 
     /// Makes the next row, in the buffer or in front of those that hang; its time, `None` at the end of the log.

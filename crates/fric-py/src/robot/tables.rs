@@ -244,7 +244,7 @@ table! {
         speed,
         /// Cable forces at the platform: a topic or path, or what is known of them, {"constant_n": …} or {"hanging_mass_kg": …}.
         reference,
-        /// Pose of the platform.
+        /// Pose of the platform, or "lengths", where it is computed from the cable lengths.
         pose,
         /// Wrench on the platform from outside.
         wrench,

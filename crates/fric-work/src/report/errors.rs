@@ -18,6 +18,10 @@ pub fn page(result: &ReplayResult, series: &Series, logs: &[String]) -> String {
                     (result.cycle.p999_ns) " ns (99.9 %), " (result.cycle.max_ns) " ns (longest)."
                 }
                 (cables(result))
+                @for cable in result.cables.iter().filter(|cable| !cable.faults.is_empty()) {
+                    h3 { "Faults of the recording of " (cable.name) }
+                    ul { @for fault in &cable.faults { li { (fault.in_words()) } } }
+                }
                 @if let Some(wrench) = &result.wrench { (wrench_table(wrench)) }
                 p {
                     "Deviation from the reference over time, least and greatest in each interval:"

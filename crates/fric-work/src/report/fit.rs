@@ -17,6 +17,10 @@ pub fn page(result: &FitResult, fits: &[fric_lab::fit::CableFit]) -> String {
             section {
                 h2 { (cable.name) }
                 p.soft { (cable.samples) " samples, " (cable.evaluations) " evaluations: " (cable.termination) "." }
+                @if !cable.faults.is_empty() {
+                    h3 { "Faults of the recording" }
+                    ul { @for fault in &cable.faults { li { (fault.in_words()) } } }
+                }
                 (values(std::slice::from_ref(cable)))
                 @for Correlation { first, second, value } in correlations(fit) {
                     p.soft { "Correlation of " (first) " and " (second) ": " (format!("{value:.3}")) }
