@@ -276,7 +276,11 @@ class ResidualFunction:
     def __eq__(self, other: object, /) -> bool: ...
 
 def discover(
-    robot: Robot, log: Log | _Path | Sequence[Log | _Path], *, progress: _Progress = False
+    robot: Robot,
+    log: Log | _Path | Sequence[Log | _Path],
+    *,
+    empirical: bool = True,
+    progress: _Progress = False,
 ) -> DiscoverResult: ...
 def fit(
     robot: Robot,

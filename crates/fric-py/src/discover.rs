@@ -1,7 +1,7 @@
 //! `discover`: what a model lacks, from logs.
 
 use fric_lab::discover::result::{DiscoverCableResult, DiscoverResult, WhereResult};
-use fric_lab::discover::{CableDiscovery, discover as discover_cables, extended};
+use fric_lab::discover::{CableDiscovery, DiscoverOptions, discover as discover_cables, extended};
 use fric_lab::fit::readiness;
 use fric_lab::fit::{Measurements, Reference};
 use fric_work::report::discovery;
@@ -22,6 +22,9 @@ use crate::watch::Watch;
 /// blocks, judges what was learned from the other. A cable of which the log tells too little says so in its verdict; a log
 /// that tells nothing of any cable raises FitError.
 ///
+/// What is left and has no name, but goes with the speed, the length or the load of the cable, becomes a table, the effect `empirical`, told as unnamed;
+/// `empirical=False` leaves it as it is.
+///
 /// >>> robot = Robot.from_toml('''
 /// ... format = "fric-robot/1"
 /// ... name = "bench"
@@ -39,10 +42,14 @@ use crate::watch::Watch;
 /// >>> result.robot.cable("winch").effects == ({"kind": "sensor_gain", **winch.effects[0]["parameters"]},)
 /// True
 #[pyfunction]
-#[pyo3(signature = (robot, log, *, progress=None), text_signature = "(robot, log, *, progress=False)")]
+#[pyo3(
+    signature = (robot, log, *, empirical=true, progress=None),
+    text_signature = "(robot, log, *, empirical=True, progress=False)"
+)]
 pub fn discover(
     robot: &Bound<'_, Robot>,
     log: &Bound<'_, PyAny>,
+    empirical: bool,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> Outcome<Py<PyAny>> {
     let py = robot.py();
@@ -56,7 +63,7 @@ pub fn discover(
     let readiness = readiness::to_discover(file, &holdings);
     // What is missing for some cables only stands beside their verdicts.
     readiness.check()?;
-    let discoveries = watch.fit(|progress| discover_cables(&measurements, progress))?;
+    let discoveries = watch.fit(|progress| discover_cables(&measurements, &DiscoverOptions { empirical }, progress))?;
     let logs: Vec<(String, f64)> = runs.names().into_iter().zip(measurements.log_starts_s()).collect();
     let result = DiscoverResult::new(file, &logs, &readiness, &discoveries);
     result.check_told()?;

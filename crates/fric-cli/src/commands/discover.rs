@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use fric_lab::discover::result::DiscoverResult;
-use fric_lab::discover::{discover, extended};
+use fric_lab::discover::{DiscoverOptions, discover, extended};
 use fric_lab::fit::Reference;
 use fric_lab::fit::readiness;
 use fric_log::output::OutputFile;
@@ -17,7 +17,7 @@ use fric_work::report;
 
 /// Runs the command.
 pub fn run(arguments: &DiscoverArguments) -> Outcome {
-    let DiscoverArguments { logs, model, part, output, report, result } = arguments;
+    let DiscoverArguments { logs, model, part, output, report, no_empirical, result } = arguments;
     if continuum::is_manipulator(model.as_deref()) {
         return continuum::discover::run(arguments);
     }
@@ -40,7 +40,8 @@ pub fn run(arguments: &DiscoverArguments) -> Outcome {
     let readiness = readiness::to_discover(&model.robot, &read.holdings);
     // What is missing for some cables only stands beside their verdicts.
     read.check(&readiness)?;
-    let discoveries = watched("cables looked at", |progress| discover(&read.measurements, progress))?;
+    let options = DiscoverOptions { empirical: !no_empirical };
+    let discoveries = watched("cables looked at", |progress| discover(&read.measurements, &options, progress))?;
 
     let names = logs.iter().map(|log| log.display().to_string());
     let logs: Vec<(String, f64)> = names.zip(read.measurements.log_starts_s()).collect();

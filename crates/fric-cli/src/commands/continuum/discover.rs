@@ -13,8 +13,12 @@ use fric_work::report;
 
 /// Runs the command.
 pub fn run(arguments: &DiscoverArguments) -> Outcome {
-    let DiscoverArguments { logs, model, part, output, report, result } = arguments;
+    let DiscoverArguments { logs, model, part, output, report, no_empirical, result } = arguments;
     part.check_none()?;
+    if *no_empirical {
+        return Err(Failure::usage("`--no-empirical` is for cables: a manipulator's rest never becomes a table")
+            .advise("Leave it out."));
+    }
     let json_file = result.json.as_deref().filter(|path| !output::is_stdout(path));
     output::check_distinct(&[output.as_deref(), report.as_deref(), json_file])?;
     let ([log], Some(model)) = (logs.as_slice(), model) else {
