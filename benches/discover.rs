@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use fric_core::effects::Effect;
 use fric_core::parameters::{MU, Values};
 use fric_core::robot::file::RobotFile;
-use fric_lab::discover::{CableDiscovery, Model, Refusal, Verdict, discover, extended};
+use fric_lab::discover::{CableDiscovery, DiscoverOptions, Model, Refusal, Verdict, discover, extended};
 use fric_lab::fit::{Measurements, Parameter, Progress, Reference};
 use fric_lab::simulate::HiddenEffect;
 use fric_lab::simulate::sweep::{self, Case, CaseTruth, Group};
@@ -24,6 +24,8 @@ struct Outcome {
     found: Vec<Effect>,
     /// The one that entered first.
     first: Option<Effect>,
+    /// Whether what has no name became a table.
+    has_table: bool,
     verdict: Verdict,
     /// How well the parameters of what was hidden came out.
     errors: Vec<ParameterError>,
@@ -47,7 +49,10 @@ struct ParameterError {
 
 impl Outcome {
     fn new(case: Case, truth: &CaseTruth, cable: &CableDiscovery, is_settled: bool) -> Self {
-        let mut found: Vec<Effect> = cable.findings.iter().map(|finding| finding.effect).collect();
+        // A table is no name.
+        let all = cable.findings.iter().map(|finding| finding.effect);
+        let mut found: Vec<Effect> = all.clone().filter(|effect| *effect != Effect::Empirical).collect();
+        let has_table = all.count() > found.len();
         let first = found.first().copied();
         found.sort_unstable();
         let floor_n = truth.floor_n.hypot(case.sensor_wander_n).hypot(case.reference_wander_n);
@@ -56,6 +61,7 @@ impl Outcome {
             errors: errors(truth, cable),
             found,
             first,
+            has_table,
             verdict: cable.verdict,
             before_ratio: ratio(&cable.before),
             after_ratio: ratio(&cable.after),
@@ -129,7 +135,7 @@ fn search(case: &Case, robot: &RobotFile) -> Option<CableDiscovery> {
     while let Some(sample) = log.simulation.next_cycle() {
         measurements.add(&sample);
     }
-    discover(&measurements, &Progress::new()).into_iter().next()
+    discover(&measurements, &DiscoverOptions::default(), &Progress::new()).into_iter().next()
 }
 
 fn run(case: Case) -> Option<Outcome> {
@@ -146,10 +152,11 @@ fn run(case: Case) -> Option<Outcome> {
     let tried = if outcome.is_right() { String::new() } else { format!(", tried {tried:?}") };
     let settled = if is_settled { String::new() } else { format!(", then {:?} {more:?}", again.verdict) };
     println!(
-        "{mark} {}: {:?} {:?}, rms {:.3} to {:.3}, floor {:.3}{settled}{tried}",
+        "{mark} {}: {:?} {:?}{}, rms {:.3} to {:.3}, floor {:.3}{settled}{tried}",
         outcome.case.name(),
         outcome.verdict,
         outcome.found,
+        if outcome.has_table { " and a table" } else { "" },
         outcome.before_ratio,
         outcome.after_ratio,
         outcome.floor_ratio

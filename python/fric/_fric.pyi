@@ -280,6 +280,7 @@ def discover(
     log: Log | _Path | Sequence[Log | _Path],
     *,
     reference: Literal["forces", "wrench"] = "forces",
+    empirical: bool = True,
     progress: _Progress = False,
 ) -> DiscoverResult: ...
 def fit(

@@ -193,6 +193,9 @@ pub struct DiscoverArguments {
     /// Write a page with figures of what was found to this HTML file
     #[arg(long, value_name = "R.html", value_parser = a_file())]
     pub report: Option<PathBuf>,
+    /// Leave what has no name as it is, without a table of how large it is and where
+    #[arg(long)]
+    pub no_empirical: bool,
     #[command(flatten)]
     pub result: ResultArguments,
 }

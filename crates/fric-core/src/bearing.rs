@@ -8,6 +8,7 @@ use crate::dahl::dahl_step;
 use crate::effects::bearing_drag::{self, BearingDrag};
 use crate::effects::direction_asymmetry::{self, DirectionAsymmetry};
 use crate::effects::dwell_stiction::{self, DwellStiction};
+use crate::effects::empirical;
 use crate::effects::friction_drift::{self, FrictionDrift};
 use crate::effects::friction_ripple;
 use crate::effects::friction_warmup::{self, FrictionWarmup};
@@ -44,13 +45,13 @@ pub struct Bearing<T: Scalar> {
 }
 
 impl<T: Scalar> Bearing<T> {
-    /// The law for the signals of a cycle.
+    /// The law for the signals of a cycle, with a factor on μ that has no name.
     #[inline(always)]
     pub fn new(
         model: &CableModel<T>,
         acting: Acting,
         signals: &CableSignals<T>,
-        moment: &Moment<T>,
+        (moment, unnamed_factor): (&Moment<T>, T),
         cable: &mut impl Cable<T>,
     ) -> Self {
         let mut accelerating_n = T::splat(0.0);
@@ -87,6 +88,9 @@ impl<T: Scalar> Bearing<T> {
         }
         if acting.has(friction_ripple::ACTS) {
             multiply(friction_ripple::factor(value, signals.length_m));
+        }
+        if acting.has(empirical::ACTS) {
+            multiply(unnamed_factor);
         }
         let [mu, defect_mu] = mus;
         let quadratic_n = if acting.has(viscous_nonlinearity::ACTS) {

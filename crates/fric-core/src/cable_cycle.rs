@@ -9,6 +9,7 @@ use crate::bearing::Bearing;
 use crate::cable::{Cable, CableModel, Features, Looked, Moment};
 use crate::chain::Chain;
 use crate::effects::cable_elasticity::{self, CableElasticity, Stretching};
+use crate::effects::empirical::{self, Conditions, Unnamed};
 use crate::effects::gear_backlash::{self, GearBacklash};
 use crate::effects::pulley_eccentricity;
 use crate::effects::sensor_drift::{self, SensorDrift};
@@ -71,7 +72,14 @@ pub fn cable_cycle<T: Scalar>(
     };
     let no_tension = sensor_force_n.le(zero);
     let signals = &if acting.has(gear_backlash::ACTS) { behind_play(signals, cable) } else { *signals };
-    let bearing = Bearing::new(model, acting, signals, moment, cable);
+    let unnamed = if acting.has(empirical::ACTS) {
+        let CableSignals { speed_m_per_s, length_m, .. } = *signals;
+        let conditions = Conditions { speed_m_per_s, length_m, load_n: frictionless_n };
+        empirical::unnamed(|place| cable.effect(place), &conditions)
+    } else {
+        Unnamed { force_n: zero, mu_factor: T::splat(1.0) }
+    };
+    let bearing = Bearing::new(model, acting, signals, (moment, unnamed.mu_factor), cable);
     let stretch_m = stretch(acting, frictionless_n + cable.held_friction_n(), (signals, moment), cable);
     let displacement_m = signals.displacement_m;
     let chain = Chain { model, features, bearing, sensor_force_n, displacement_m, stretch_m };
@@ -86,6 +94,9 @@ pub fn cable_cycle<T: Scalar>(
     }
     if acting.has(pulley_eccentricity::ACTS) {
         chain_n = chain_n * pulley_eccentricity::factor(|place| cable.effect(place), signals.length_m);
+    }
+    if acting.has(empirical::ACTS) {
+        chain_n = chain_n + unnamed.force_n;
     }
     let slack = no_tension.or(chain_n.lt(zero));
     // A cable cannot push, whatever an untared sensor shows of a limp one.

@@ -1,7 +1,7 @@
 //! `discover`: what a model lacks, from logs.
 
 use fric_lab::discover::result::{DiscoverCableResult, DiscoverResult, WhereResult};
-use fric_lab::discover::{CableDiscovery, Discoveries};
+use fric_lab::discover::{CableDiscovery, DiscoverOptions, Discoveries};
 use fric_lab::fit::readiness;
 use fric_lab::fit::{Measurements, Reference};
 use fric_work::report::discovery;
@@ -23,6 +23,9 @@ use crate::watch::Watch;
 /// of the log, in blocks, judges what was learned from the other. A cable of which the log tells too little says so in its verdict; a log
 /// that tells nothing of any cable raises FitError.
 ///
+/// What is left and has no name, but goes with the speed, the length or the load of the cable, becomes a table, the effect `empirical`, told as unnamed;
+/// `empirical=False` leaves it as it is.
+///
 /// >>> robot = Robot.from_toml('''
 /// ... format = "fric-robot/1"
 /// ... name = "bench"
@@ -41,13 +44,14 @@ use crate::watch::Watch;
 /// True
 #[pyfunction]
 #[pyo3(
-    signature = (robot, log, *, reference="forces", progress=None),
-    text_signature = "(robot, log, *, reference=\"forces\", progress=False)"
+    signature = (robot, log, *, reference="forces", empirical=true, progress=None),
+    text_signature = "(robot, log, *, reference=\"forces\", empirical=True, progress=False)"
 )]
 pub fn discover(
     robot: &Bound<'_, Robot>,
     log: &Bound<'_, PyAny>,
     reference: &str,
+    empirical: bool,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> Outcome<Py<PyAny>> {
     let py = robot.py();
@@ -67,7 +71,8 @@ pub fn discover(
     };
     // What is missing for some cables only stands beside their verdicts.
     readiness.check()?;
-    let found = watch.fit(|progress| Discoveries::of(&measurements, progress))??;
+    let options = DiscoverOptions { empirical };
+    let found = watch.fit(|progress| Discoveries::of(&measurements, &options, progress))??;
     let logs: Vec<(String, f64)> = runs.names().into_iter().zip(measurements.log_starts_s()).collect();
     let result = DiscoverResult::new(file, &logs, &readiness, found.cables()).with_wrench(found.wrench());
     result.check_told()?;

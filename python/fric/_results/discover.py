@@ -66,6 +66,26 @@ class RunnerUp(Candidate):
     as_good: bool
 
 
+class TablePoint(TypedDict):
+    """One place of a table: the condition, what the table changes there, and its standard error."""
+
+    at: float
+    value: float
+    standard_error: float | None
+
+
+class Table(TypedDict):
+    """What an `empirical` table says, which is no name: how large something is and where."""
+
+    status: Literal["unnamed"]
+    changes: Literal["force", "friction"]
+    value_unit: str
+    over: Literal["speed", "length", "load"]
+    unit: str
+    points: list[TablePoint]
+    looks_like: list[str]
+
+
 class Effect(TypedDict):
     """An effect that was found."""
 
@@ -75,6 +95,7 @@ class Effect(TypedDict):
     gap_closed: float | None
     evidence: Evidence
     runner_up: RunnerUp | None
+    table: Table | None
 
 
 Unexplained = TypedDict(
@@ -145,8 +166,8 @@ class CableDiscovery(Value):
     where: list[Where]
     """Ranges of the conditions in which the given model disagrees, what tells most first."""
     effects: list[Effect]
-    """Effects that were found, in the order in which they entered: kind, parameters, standard_errors, gap_closed, evidence and
-    runner_up."""
+    """Effects that were found, in the order in which they entered: kind, parameters, standard_errors, gap_closed, evidence,
+    runner_up, and table, which only `empirical` has: what is left and has no name."""
     candidates: list[Candidate]
     """Every effect by itself beside the given model, the best first."""
     tried: list[Tried]

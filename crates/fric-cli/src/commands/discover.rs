@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use fric_lab::discover::Discoveries;
 use fric_lab::discover::result::DiscoverResult;
+use fric_lab::discover::{DiscoverOptions, Discoveries};
 use fric_lab::fit::Reference;
 use fric_lab::fit::readiness;
 use fric_log::output::OutputFile;
@@ -17,7 +17,7 @@ use fric_work::report;
 
 /// Runs the command.
 pub fn run(arguments: &DiscoverArguments) -> Outcome {
-    let DiscoverArguments { logs, model, part, output, reference, report, result } = arguments;
+    let DiscoverArguments { logs, model, part, output, reference, report, no_empirical, result } = arguments;
     if continuum::is_manipulator(model.as_deref()) {
         return continuum::discover::run(arguments);
     }
@@ -51,8 +51,9 @@ pub fn run(arguments: &DiscoverArguments) -> Outcome {
     };
     // What is missing for some cables only stands beside their verdicts.
     read.check(&readiness)?;
+    let options = DiscoverOptions { empirical: !no_empirical };
     let what = if reference == Reference::Forces { "cables looked at" } else { "searches done" };
-    let found = watched(what, |progress| Discoveries::of(&read.measurements, progress))??;
+    let found = watched(what, |progress| Discoveries::of(&read.measurements, &options, progress))??;
 
     let names = logs.iter().map(|log| log.display().to_string());
     let logs: Vec<(String, f64)> = names.zip(read.measurements.log_starts_s()).collect();

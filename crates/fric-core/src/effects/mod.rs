@@ -102,6 +102,7 @@ macro_rules! catalogue {
             SensorNonlinearity sensor_nonlinearity,
             SensorWarmup sensor_warmup,
             SensorLag sensor_lag,
+            Empirical empirical,
         }
     };
 }

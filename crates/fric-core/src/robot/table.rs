@@ -11,6 +11,7 @@ use super::{
     CableOptions, CableParams, FrictionOptions, GeometryOptions, ParamError, ParamProblem, Presliding, PulleyOptions,
     ValidatedRange,
 };
+use crate::effects::empirical::Over;
 use crate::effects::{Effect, EffectParams};
 
 impl CableTable {
@@ -91,9 +92,33 @@ impl CableTable {
                 }
                 params.set(named, key, *value).map_err(|error| self.name_parameter(error))?;
             }
+            if named == Effect::Empirical {
+                check_ranges(&params, &path)?;
+            }
         }
         Ok(params)
     }
+}
+
+/// Whether a table without a name is over one condition.
+fn check_ranges(params: &EffectParams, path: &[Step]) -> Result<(), OptionsError> {
+    let row = Effect::Empirical.row();
+    let value = |place: usize| {
+        let parameter = row.parameters.get(place - Effect::Empirical.first_place());
+        parameter.and_then(|parameter| params.get(Effect::Empirical, parameter.key)).unwrap_or(0.0)
+    };
+    let count = Over::ALL.iter().filter(|over| value(over.from()) < value(over.to())).count();
+    let acts = row.parameters.iter().any(|parameter| {
+        parameter.fitted && params.get(Effect::Empirical, parameter.key).is_some_and(|value| value.abs() > 0.0)
+    });
+    let problem = match count {
+        0 if acts => {
+            "has no range; give the beginning and the end of one, such as `speed_from_m_per_s` and `speed_to_m_per_s`"
+        }
+        0 | 1 => return Ok(()),
+        _ => "has the ranges of several conditions; a table is over one: give the range of one",
+    };
+    Err(OptionsError::new(path, row.kind, problem.to_owned()))
 }
 
 impl PulleyTable {

@@ -29,6 +29,7 @@ pub fn greatest_mu(cable: &CableParams) -> f64 {
         * (1.0 + effect(cable, "dwell_stiction", "ratio").max(0.0))
         * (1.0 + effect(cable, "friction_warmup", "ratio").max(0.0))
         * (1.0 + amplitude(cable, "friction_ripple", ["sin_ratio", "cos_ratio"]))
+        * (1.0 + effect(cable, "empirical", "friction_ratio").abs())
         * (1.0 + effect(cable, "direction_asymmetry", "coulomb_ratio").abs())
         * (1.0 + effect(cable, "friction_drift", "rate_per_s").abs() * LONGEST_RUN_S)
 }
@@ -87,5 +88,5 @@ pub fn friction_bound_n(cable: &CableParams, force_n: f64, speed_m_per_s: f64, c
     }
     let ripple = amplitude(cable, "pulley_eccentricity", ["sin_ratio", "cos_ratio"]);
     // A slack cable's friction takes all its tension away.
-    friction_n.max(gain * force_n + rippled_n) + ripple * tension_n
+    friction_n.max(gain * force_n + rippled_n) + ripple * tension_n + value("empirical", "force_n").abs()
 }

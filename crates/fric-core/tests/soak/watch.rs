@@ -62,6 +62,7 @@ impl Law {
             && is("sensor_nonlinearity", "curvature_per_n", 0.0)
             && is("sensor_lag", "time_constant_s", 0.0)
             && is("winch_ripple", "sin_n", 0.0)
+            && is("empirical", "force_n", 0.0)
             && is("winch_ripple", "cos_n", 0.0)
             && is("viscous_nonlinearity", "quadratic_n_s2_per_m2", 0.0)
             && sensor_cos(cable) < 1e-9;

@@ -6,10 +6,13 @@ use fric_core::effects::Effect;
 use fric_core::parameters::{MU, NO_PRESLIDING_N_PER_M, OFFSET, SIGMA, VISCOUS, Values};
 use nalgebra::DMatrix;
 
+use super::Task;
 use super::candidates::around;
+use super::empirical::{Table, has_table, table, without_table};
 use super::foreign::{Fault, RecordingFault, coarse_step_n, faulty_stretches, leave_out, of_stretches};
 use super::lines::{Line, Times, lines, motion_and_load};
 use super::naming::{self, Named, Naming, STRONG_BIC, Search};
+use super::neighbours::neighbours_of;
 use super::noise::white_noise;
 use super::places::{Excess, Place};
 use super::profile::profile;
@@ -21,7 +24,7 @@ use super::stretch::{Stretch, stretch_of_cable};
 use super::workbench::{self, Trial, Workbench};
 use crate::effects::Around;
 use crate::fit::engine::{self, Condition, Standing, conditions, time};
-use crate::fit::{CableRecord, FitOptions, HALF_INTERVAL, Parameter, Progress, Row, SampleCounts};
+use crate::fit::{CableRecord, FitOptions, HALF_INTERVAL, Parameter, Row, SampleCounts};
 use crate::replay::Deviation;
 
 /// Lines whose frequencies differ by less than this share are the same.
@@ -35,8 +38,8 @@ const LOOKS: usize = 3;
 const BELIEVED_RATIO: f64 = 1e-4;
 
 /// Looks at one cable.
-pub fn discover_cable(record: &CableRecord<'_>, progress: &Progress) -> CableDiscovery {
-    let stop = progress.stop_flag();
+pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> CableDiscovery {
+    let stop = task.progress.stop_flag();
     if let Some(lack) = lack_of(record) {
         return CableDiscovery::untold(record, engine::count(&engine::prepared(record)), lack);
     }
@@ -107,7 +110,9 @@ pub fn discover_cable(record: &CableRecord<'_>, progress: &Progress) -> CableDis
         intervals_s: Vec::new(),
     };
     faults.extend(step_n.map(coarse));
-    raw.with_rows(&rows).report(&outcome, samples, faults)
+    let case = raw.with_rows(&rows);
+    let table = if task.options.empirical { case.table(&outcome, task) } else { None };
+    case.report(&outcome, table.as_ref(), samples, faults)
 }
 
 /// Sum of squares of the given model, fitted to the samples learned from, over those held out, N²; `None` where the log tells nothing.
@@ -418,7 +423,29 @@ impl<'a> Case<'a> {
         around(&self.record, base.values[MU], noise_n)
     }
 
-    fn report(&self, outcome: &Outcome, samples: SampleCounts, faults: Vec<RecordingFault>) -> CableDiscovery {
+    /// A table for what is left and has no name.
+    fn table(&self, outcome: &Outcome, task: &Task<'_>) -> Option<Table> {
+        let Outcome { fitted, rest, stretch, .. } = outcome;
+        if rest.is_noise && stretch.is_none() || has_table(&fitted.values) {
+            return None;
+        }
+        let bench = self.bench(self.counts);
+        let places: Vec<Place> = stretch.iter().chain(&rest.places).cloned().collect();
+        let model = workbench::Model { values: fitted.values, free: fitted.parameters.clone() };
+        let table = table(&bench, &model, rest.noise_n, &places)?;
+        // What comes from next door is no matter of this cable, however well a table of its own conditions goes with it.
+        let neighbours = neighbours_of(&bench.residuals_n(&fitted.values), task.own, task.records);
+        let of_neighbour = neighbours.first().map_or(0.0, |neighbour| neighbour.correlation * neighbour.correlation);
+        (table.gain_ratio > of_neighbour).then_some(table)
+    }
+
+    fn report(
+        &self,
+        outcome: &Outcome,
+        table: Option<&Table>,
+        samples: SampleCounts,
+        faults: Vec<RecordingFault>,
+    ) -> CableDiscovery {
         let Outcome { base, naming, fitted, rest, .. } = outcome;
         let noise_n = rest.noise_n;
         let raw = Workbench { record: self.raw, ..self.bench(self.counts) };
@@ -432,11 +459,15 @@ impl<'a> Case<'a> {
             covariance: engine::covariance(&self.bench(&outcome.counts).problem(&base.free, None), &[base.values]),
             held_out_n: held_out_of(&base.values),
         };
+        let (values, parameters, covariance) = match table {
+            Some(table) => (&table.values, &table.fitted, &table.covariance),
+            None => (&fitted.values, &fitted.parameters, &fitted.covariance),
+        };
         let after = Model {
-            values: fitted.values,
-            fitted: fitted.parameters.clone(),
-            covariance: fitted.covariance.clone(),
-            held_out_n: held_out_of(&fitted.values),
+            values: *values,
+            fitted: parameters.clone(),
+            covariance: covariance.clone(),
+            held_out_n: held_out_of(values),
         };
         let bench = self.bench(&outcome.counts);
         let search = Search::new(&bench, noise_n, self.around(base, noise_n), base, self.with_time);
@@ -445,8 +476,14 @@ impl<'a> Case<'a> {
         let steps = naming.ladder.iter().skip(1).enumerate();
         let steps = steps.map(|(place, step)| if place == last { &fitted.values } else { &step.values });
         let findings = naming.named.iter().zip(steps);
-        let findings: Vec<Finding> =
+        let mut findings: Vec<Finding> =
             findings.map(|(named, step)| finding(&search, &naming.model, named, held_out_of(step))).collect();
+        findings.extend(table.map(|table| Finding {
+            effect: Effect::Empirical,
+            held_out_n: after.held_out_n,
+            delta_bic: search.delta_bic_of_table(table.training, table.inflation),
+            runner_up: None,
+        }));
         let rms_n = |trial: &Trial| held_out_of(&trial.values).rms().unwrap_or(f64::NAN);
         let candidate = |(effect, trial): &(Effect, Trial)| Candidate {
             effect: *effect,
@@ -465,10 +502,7 @@ impl<'a> Case<'a> {
         let clean_n = self.bench(self.counts).residuals_n(&base.values);
         let places = self.excess(&clean_n, noise_n).concentrations(self.conditions);
         let places = if self.excess(&clean_n, noise_n).share() > WORTH { places } else { Vec::new() };
-        let unexplained = (outcome.stretch.is_some() || !rest.is_noise).then(|| {
-            let rms_n = after.held_out_n.rms().unwrap_or(f64::NAN);
-            self.unexplained(outcome, (rms_n * rms_n - noise_n * noise_n).max(0.0).sqrt())
-        });
+        let unexplained = self.unexplained(outcome, &after, &held_out_of);
         let verdict = match (&unexplained, findings.is_empty()) {
             (Some(_), _) => Verdict::Unexplained,
             (None, true) => Verdict::Complete,
@@ -478,7 +512,7 @@ impl<'a> Case<'a> {
         let told = [places.first(), unexplained.as_ref().and_then(|rest: &Unexplained| rest.places.first())];
         let mut signals: Vec<&str> = told.into_iter().flatten().map(|place| place.signal).collect();
         signals.dedup();
-        let (residual_before_n, residual_after_n) = (raw.residuals_n(&base.values), raw.residuals_n(&fitted.values));
+        let (residual_before_n, residual_after_n) = (raw.residuals_n(&base.values), raw.residuals_n(&after.values));
         let profiles = signals.into_iter().filter_map(|signal| {
             let condition = self.conditions.iter().find(|condition| condition.signal == signal)?;
             profile(&self.record, condition, &residual_before_n, &residual_after_n)
@@ -509,16 +543,33 @@ impl<'a> Case<'a> {
         }
     }
 
-    fn unexplained(&self, outcome: &Outcome, rms_n: f64) -> Unexplained {
+    /// What has no name, of the outcome with its last model; what only a table accounts for has none.
+    fn unexplained(
+        &self,
+        outcome: &Outcome,
+        after: &Model,
+        held_out_of: &impl Fn(&Values) -> Deviation,
+    ) -> Option<Unexplained> {
+        let unnamed = has_table(&after.values).then(|| without_table(&after.values));
         let Outcome { rest, stretch, .. } = outcome;
+        if stretch.is_none() && rest.is_noise && unnamed.is_none() {
+            return None;
+        }
+        let of_table = unnamed.and_then(|values| {
+            let bench = self.bench(self.counts);
+            self.rest(&bench, bench.residuals_n(&values), rest.noise_n)
+        });
+        let rms_n = unnamed.map_or(after.held_out_n, |values| held_out_of(&values)).rms().unwrap_or(f64::NAN);
+        let rms_n = (rms_n * rms_n - rest.noise_n * rest.noise_n).max(0.0).sqrt();
+        let rest = of_table.as_ref().unwrap_or(rest);
         let excess = self.excess(&rest.residual_n, rest.noise_n);
         let loud = |cycle: usize| rest.residual_n.get(cycle).is_some_and(|number| number.abs() > 4.0 * rest.noise_n);
-        Unexplained {
+        Some(Unexplained {
             rms_n,
             places: stretch.iter().chain(if rest.is_noise { &[][..] } else { &rest.places }).cloned().collect(),
             intervals_s: if rest.is_noise { Vec::new() } else { excess.intervals_s(loud) },
             neighbours: Vec::new(),
-        }
+        })
     }
 }
 

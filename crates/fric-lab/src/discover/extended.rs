@@ -3,6 +3,7 @@
 use fric_core::robot::edit::set_monitor;
 use fric_core::robot::file::RobotFileError;
 
+use super::empirical::is_idle;
 use super::foreign::Fault;
 use super::report::CableDiscovery;
 use crate::fit::Parameter;
@@ -23,7 +24,10 @@ pub fn extended(text: &str, origin: &str, discoveries: &[CableDiscovery]) -> Res
             let found = |parameter: &Parameter| {
                 cable.findings.iter().any(|finding| finding.effect.places().contains(&parameter.place()))
             };
-            let written = |parameter: &Parameter| cable.after.fitted.contains(parameter) || found(parameter);
+            // Of a table the range of one condition.
+            let written = |parameter: &Parameter| {
+                cable.after.fitted.contains(parameter) || found(parameter) && !is_idle(parameter, &cable.after.values)
+            };
             NewValues { values: &cable.after.values, parameters: Parameter::all().filter(written).collect() }
         })
         .collect();

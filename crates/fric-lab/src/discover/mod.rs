@@ -12,10 +12,13 @@
 //!    (`length_noise`), a reference that comes late (`timing`), a sensor that stands still, spikes or is at the end of its range. A stretch of cable (`stretch`) or of time (`rest`) is left out, and the rest
 //!    judged once more; signals of other cables that it goes with are told (`neighbours`). A wander of the sensors that has nothing to do with the motion is noise.
 //!
+//! 5. *Table.* A rest that is more than noise and has no name may be a function of a condition all the same: then a table tells how large it is and where (`empirical`). The verdict stays *unexplained*.
+//!
 //! The model is the control cycle's own; what is found runs in it as it is.
 
 mod cable;
 mod correction;
+mod empirical;
 mod evidence;
 mod extended;
 mod foreign;
@@ -40,6 +43,7 @@ mod workbench;
 mod wrench;
 
 pub(crate) use crate::fit::{candidates, noise, ripple, split};
+use fric_core::effects::Effect;
 use rayon::prelude::*;
 
 use crate::fit::{CableRecord, FitError, Measurements, Progress, Reference};
@@ -55,19 +59,43 @@ pub use readiness::Lack;
 pub use report::{CableDiscovery, Candidate, Finding, Model, RunnerUp, Tried, Unexplained, Verdict};
 pub use wrench::{Geometry, GeometryFinding, WrenchDeviation, WrenchDiscovery, discover_wrench};
 
+/// What a discovery can be told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DiscoverOptions {
+    /// Whether what is left and has no name may become a table.
+    pub empirical: bool,
+}
+
+impl Default for DiscoverOptions {
+    fn default() -> Self {
+        Self { empirical: true }
+    }
+}
+
+/// One cable among all of a robot.
+struct Task<'a> {
+    options: DiscoverOptions,
+    own: usize,
+    records: &'a [CableRecord<'a>],
+    progress: &'a Progress,
+}
+
 /// Looks at a cable with its reference where it belongs: as far as the given model tells, and then as far as the one that has what it lacked.
-fn discover_retimed(record: &CableRecord<'_>, progress: &Progress) -> (CableDiscovery, Option<RecordingFault>) {
-    let stop = progress.stop_flag();
+fn discover_retimed(record: &CableRecord<'_>, task: &Task<'_>) -> (CableDiscovery, Option<RecordingFault>) {
+    let stop = task.progress.stop_flag();
     let Some((rows, fault)) = timing::retimed(record, stop) else {
-        return (cable::discover_cable(record, progress), None);
+        return (cable::discover_cable(record, task), None);
     };
-    let found = cable::discover_cable(&record.with_signals(&rows), progress);
-    let extended = record.params.with_values(&found.after.values).ok().filter(|_| !found.findings.is_empty());
+    let found = cable::discover_cable(&record.with_signals(&rows), task);
+    let named = found.findings.iter().any(|finding| finding.effect != Effect::Empirical);
+    // What a table stands for may be the late reference itself.
+    let values = empirical::without_table(&found.after.values);
+    let extended = record.params.with_values(&values).ok().filter(|_| named);
     let Some(params) = extended else { return (found, Some(fault)) };
     // What the given model lacks may have looked like it.
     match timing::retimed(&record.with_params(&params), stop) {
-        Some((rows, fault)) => (cable::discover_cable(&record.with_signals(&rows), progress), Some(fault)),
-        None => (cable::discover_cable(record, progress), None),
+        Some((rows, fault)) => (cable::discover_cable(&record.with_signals(&rows), task), Some(fault)),
+        None => (cable::discover_cable(record, task), None),
     }
 }
 
@@ -81,13 +109,17 @@ pub enum Discoveries {
 }
 
 impl Discoveries {
-    /// Looks at all cables with the reference of the measurements.
+    /// Looks at all cables with the reference of the measurements; `options` are for forces: by the wrench nothing becomes a table.
     ///
     /// # Errors
     /// [`FitError`] as [`discover_wrench`].
-    pub fn of(measurements: &Measurements<'_>, progress: &Progress) -> Result<Self, FitError> {
+    pub fn of(
+        measurements: &Measurements<'_>,
+        options: &DiscoverOptions,
+        progress: &Progress,
+    ) -> Result<Self, FitError> {
         Ok(match measurements.reference() {
-            Reference::Forces => Self::Forces(discover(measurements, progress)),
+            Reference::Forces => Self::Forces(discover(measurements, options, progress)),
             Reference::Wrench => Self::Wrench(Box::new(discover_wrench(measurements, progress)?)),
         })
     }
@@ -124,14 +156,19 @@ impl Discoveries {
 
 /// Looks at every cable that has a reference.
 #[must_use]
-pub fn discover(measurements: &Measurements<'_>, progress: &Progress) -> Vec<CableDiscovery> {
+pub fn discover(
+    measurements: &Measurements<'_>,
+    options: &DiscoverOptions,
+    progress: &Progress,
+) -> Vec<CableDiscovery> {
     let given: Vec<CableRecord<'_>> = measurements.cables().collect();
     progress.begin(given.len());
     let steadied = length_noise::steadied(measurements, progress.stop_flag());
     let records = length_noise::records(&given, steadied.as_ref());
     let of_cable = |(place, record): (usize, &CableRecord<'_>)| {
         let noisy = steadied.as_ref().and_then(|steadied| steadied.faults.get(place)?.clone());
-        let (mut found, late) = discover_retimed(record, progress);
+        let task = Task { options: *options, own: place, records: &records, progress };
+        let (mut found, late) = discover_retimed(record, &task);
         for fault in late.into_iter().chain(noisy) {
             cable::tell_of(&mut found, &given[place], fault, progress.stop_flag());
         }

@@ -12,6 +12,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use fric_core::effects::Effect;
+use fric_core::effects::empirical::SHARES;
 use fric_core::effects::sensor_offset::OFFSET as OFFSET_OF_SENSOR;
 use fric_core::parameters::{MU, OFFSET, Values};
 
@@ -236,6 +237,13 @@ impl<'b, 'a> Search<'b, 'a> {
         #[expect(clippy::cast_precision_loss, reason = "counts")]
         let (count, more) = (self.bench.count(false) as f64 / inflation, to.free.len() as f64 - from.free.len() as f64);
         delta_bic(count, to.training / from.training, more)
+    }
+
+    /// The same for a table, from the squares without and with it.
+    pub fn delta_bic_of_table(&self, [without, with]: [f64; 2], inflation: f64) -> f64 {
+        #[expect(clippy::cast_precision_loss, reason = "counts")]
+        let (count, more) = (self.bench.count(false) as f64 / inflation, SHARES as f64);
+        delta_bic(count, with / without, more)
     }
 
     /// Mean square above the noise of the samples held out, as a share of the noise's.

@@ -5,10 +5,12 @@
 //! in the list. Where nothing is missing there is no gap to close, and the share is null.
 
 use fric_core::effects::Effect;
+use fric_core::effects::empirical::{Over, RATIO, SHARE_PLACES, SHARES, SIZE};
 use fric_core::parameters::NO_PRESLIDING_N_PER_M;
 use fric_core::robot::file::RobotFile;
 use serde::Serialize;
 
+use super::empirical;
 use super::foreign::{Fault, RecordingFault};
 use super::neighbours::Neighbour;
 use super::places::Place;
@@ -199,9 +201,41 @@ pub struct EffectResult {
     pub evidence: Evidence,
     /// The best other effect in its place.
     pub runner_up: Option<RunnerUpResult>,
+    /// What an `empirical` table says, which is no name.
+    pub table: Option<TableResult>,
     /// Its row of the catalogue.
     #[serde(skip)]
     pub effect: Effect,
+}
+
+/// A table for what has no name: how large it is and where.
+#[derive(Clone, Debug, Serialize)]
+pub struct TableResult {
+    /// `unnamed`: a table is no explanation.
+    pub status: &'static str,
+    /// `force` at the platform, N, or `friction`, a change of μ as a share of it.
+    pub changes: &'static str,
+    /// Unit of the values.
+    pub value_unit: &'static str,
+    /// The condition.
+    pub over: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// Places of the condition, between which straight lines hold; beyond the ends the first and the last.
+    pub points: Vec<TablePoint>,
+    /// Physics that look like it.
+    pub looks_like: Vec<&'static str>,
+}
+
+/// One place of a table.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct TablePoint {
+    /// The condition.
+    pub at: f64,
+    /// What the table changes there.
+    pub value: f64,
+    /// Its standard error, by the scatter of the log's blocks.
+    pub standard_error: Option<f64>,
 }
 
 /// What speaks for an effect.
@@ -531,7 +565,8 @@ fn parameters(found: &CableDiscovery) -> Numbers {
     };
     let shown = |parameter: Parameter| {
         let value = model.values[parameter.place()];
-        let relevant = parameter.is_friction() || model.fitted.contains(&parameter) || of_finding(&parameter);
+        let of_finding = of_finding(&parameter) && !empirical::is_idle(&parameter, &model.values);
+        let relevant = parameter.is_friction() || model.fitted.contains(&parameter) || of_finding;
         (relevant && value < NO_PRESLIDING_N_PER_M).then(|| (parameter.to_string(), value))
     };
     Numbers(Parameter::all().filter_map(shown).collect())
@@ -551,7 +586,10 @@ fn effect_result(found: &CableDiscovery, finding: &Finding) -> EffectResult {
     EffectResult {
         kind: finding.effect.kind(),
         parameters: Numbers(
-            Parameter::of(finding.effect).map(|parameter| (key(&parameter), values[parameter.place()])).collect(),
+            Parameter::of(finding.effect)
+                .filter(|parameter| !empirical::is_idle(parameter, values))
+                .map(|parameter| (key(&parameter), values[parameter.place()]))
+                .collect(),
         ),
         standard_errors: errors(&found.after, Parameter::of(finding.effect), key),
         gap_closed: held_out_rms_n.and_then(|rms_n| gap_closed(found, rms_n)),
@@ -563,7 +601,35 @@ fn effect_result(found: &CableDiscovery, finding: &Finding) -> EffectResult {
             as_good: other.is_as_good,
             effect: other.effect,
         }),
+        table: (finding.effect == Effect::Empirical).then(|| TableResult::of(&found.after)).flatten(),
         effect: finding.effect,
+    }
+}
+
+impl TableResult {
+    /// Of a model with a table.
+    fn of(model: &Model) -> Option<Self> {
+        let value = |place: usize| model.values[place];
+        let over = Over::of(value)?;
+        let (from, to) = (value(over.from()), value(over.to()));
+        let (size, changes, value_unit) =
+            if value(SIZE).abs() > 0.0 { (value(SIZE), "force", "N") } else { (value(RATIO), "friction", "1") };
+        let shares = Parameter::of(Effect::Empirical).filter(|parameter| SHARE_PLACES.contains(&parameter.place()));
+        #[expect(clippy::cast_precision_loss, reason = "a small count")]
+        let points = shares.enumerate().map(|(place, share)| TablePoint {
+            at: from + (to - from) * place as f64 / (SHARES - 1) as f64,
+            value: size * value(share.place()),
+            standard_error: model.standard_error(&share).and_then(|error| finite(size.abs() * error)),
+        });
+        Some(Self {
+            status: "unnamed",
+            changes,
+            value_unit,
+            over: empirical::signal_of(over),
+            unit: over.unit(),
+            points: points.collect(),
+            looks_like: empirical::looks_like(over, changes == "force").to_vec(),
+        })
     }
 }
 
@@ -661,6 +727,10 @@ fn common_effect(kind: &'static str, cables: &[DiscoverCableResult]) -> Option<C
         .iter()
         .filter_map(|cable| Some((cable.name.as_str(), cable.effects.iter().find(|effect| effect.kind == kind)?)))
         .collect();
+    // What tables have in common is no number.
+    if with.first()?.1.effect == Effect::Empirical {
+        return None;
+    }
     let parameters = with.first()?.1.effect.row().parameters.iter().filter_map(|parameter| {
         let of_cable = |(_, effect): &(&str, &EffectResult)| {
             Some((effect.parameters.get(parameter.key)?, effect.standard_errors.get(parameter.key)?))

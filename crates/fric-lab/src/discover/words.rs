@@ -9,7 +9,7 @@ use super::naming::Refusal;
 use super::places::LEAST_CONCENTRATION;
 use super::result::{
     CommonEffect, CommonParameter, DiscoverCableResult, EffectResult, Evidence, FaultResult, RunnerUpResult,
-    TriedResult, UnexplainedResult, WhereResult,
+    TablePoint, TableResult, TriedResult, UnexplainedResult, WhereResult,
 };
 use crate::fit::HALF_INTERVAL;
 use crate::text::{listed, quantity, significant, wrapped};
@@ -141,6 +141,7 @@ impl WhereResult {
 pub fn condition(signal: &str) -> String {
     match signal {
         "length" => "cable length".to_owned(),
+        "load" => "cable tension".to_owned(),
         "way_since_reversal" => "way since the last reversal".to_owned(),
         "force_rate" => "rate of the sensor force".to_owned(),
         "reference_rate" => "rate of the reference".to_owned(),
@@ -177,9 +178,15 @@ impl DiscoverCableResult {
             }
             ("extended", kinds) => format!("The model lacks {}; with it, what is left is noise.", listed(kinds)),
             (_, kinds) => {
+                let named: Vec<&str> = kinds.iter().copied().filter(|kind| *kind != Effect::Empirical.kind()).collect();
                 let lacks =
-                    if kinds.is_empty() { String::new() } else { format!("The model lacks {}. ", listed(kinds)) };
-                lacks + "Something remains that no effect of the catalogue accounts for."
+                    if named.is_empty() { String::new() } else { format!("The model lacks {}. ", listed(&named)) };
+                let rest = lacks + "Something remains that no effect of the catalogue accounts for.";
+                if named.len() == kinds.len() {
+                    rest
+                } else {
+                    rest + " A table stands in for it, unnamed: how large it is, and where."
+                }
             }
         };
         if kinds.len() > 1 {
@@ -251,6 +258,9 @@ impl EffectResult {
     /// Its parameters with their 95 % intervals.
     #[must_use]
     pub fn values_in_words(&self) -> String {
+        if let Some(table) = &self.table {
+            return table.in_words();
+        }
         let one = |parameter: &fric_core::parameters::ParameterRow| {
             let value = self.parameters.get(parameter.key)?;
             let half = self.standard_errors.get(parameter.key).map(|error| HALF_INTERVAL * error);
@@ -281,6 +291,36 @@ impl EffectResult {
         } else {
             "nothing else in the catalogue helps".to_owned()
         })
+    }
+}
+
+impl TableResult {
+    /// What it changes, by how much and where, and what it looks like, a sentence without its full stop.
+    #[must_use]
+    pub fn in_words(&self) -> String {
+        let largest = self.points.iter().max_by(|one, other| one.value.abs().total_cmp(&other.value.abs()));
+        let (Some(largest), Some(first), Some(last)) = (largest, self.points.first(), self.points.last()) else {
+            return "unnamed".to_owned();
+        };
+        let value = |point: &TablePoint| {
+            let half = point.standard_error.map(|error| HALF_INTERVAL * error);
+            if self.changes == "force" {
+                format!("a force at the platform of up to {}", quantity(point.value, half, "N"))
+            } else {
+                let half = half.map(|half| 100.0 * half);
+                format!("a change of the friction by up to {}", quantity(100.0 * point.value, half, "%"))
+            }
+        };
+        let at = |number: f64| quantity(number, None, self.unit);
+        format!(
+            "unnamed: {} over the {} of {} to {}, largest at {}; physics that look like it: {}",
+            value(largest),
+            condition(self.over),
+            at(first.at),
+            at(last.at),
+            at(largest.at),
+            self.looks_like.join("; ")
+        )
     }
 }
 

@@ -11,6 +11,8 @@ pub struct Contact {
     pub speed_m_per_s: f64,
     /// Length of the cable, m.
     pub length_m: f64,
+    /// Tension of the cable at the platform, N.
+    pub tension_n: f64,
     /// Since the start, s.
     pub time_s: f64,
     /// The pulley nearest to the platform.
@@ -75,6 +77,11 @@ pub trait TruthEffect: core::fmt::Debug + Send + Sync {
     /// Tension at the platform per tension behind the last pulley at a length.
     fn platform_factor(&self, _length_m: f64) -> f64 {
         1.0
+    }
+
+    /// Tension at the platform beyond that behind the last pulley, of a cable that runs at a speed, at a length, under a tension, N.
+    fn platform_force_n(&self, _speed_m_per_s: f64, _length_m: f64, _tension_n: f64) -> f64 {
+        0.0
     }
 
     /// By how much the logged motion runs ahead of the cable's, s.

@@ -32,7 +32,13 @@ impl FitOptions {
             let twice = |parameter: &Parameter| parameter.place() == OFFSET && acts(Effect::SensorOffset);
             // A ripple's period has no neutral value to start from: an effect that acts has one.
             let varies = |parameter: &Parameter| parameter.row().fitted || is_period(parameter);
-            Parameter::all().filter(varies).filter(free).filter(|parameter| !twice(parameter)).collect()
+            // A table changes the force or the friction: which, it says itself.
+            let is_idle = |parameter: &Parameter| {
+                parameter.effect() == Some(Effect::Empirical)
+                    && values[parameter.place()].to_bits() == parameter.row().neutral.to_bits()
+            };
+            let of_all = Parameter::all().filter(varies).filter(free);
+            of_all.filter(|parameter| !twice(parameter) && !is_idle(parameter)).collect()
         })
     }
 }

@@ -146,6 +146,7 @@ impl BristleChain {
             let winch = Contact {
                 speed_m_per_s: end.speed_m_per_s,
                 length_m: end.length_m,
+                tension_n: end.force_n,
                 time_s: end.time_s,
                 is_last_pulley: false,
             };
@@ -183,7 +184,8 @@ impl BristleChain {
 
     /// Tension behind the last pulley, N: that at the platform, but for what ripples in between.
     fn chain_end_n(&self, at: &Moment) -> f64 {
-        at.force_n / self.effects.platform_factor(at.length_m)
+        let unnamed_n = self.effects.platform_force_n(at.speed_m_per_s, at.length_m, at.force_n);
+        (at.force_n - unnamed_n) / self.effects.platform_factor(at.length_m)
     }
 
     /// Force of each bristle, N, from the winch.
@@ -229,7 +231,13 @@ impl Bristle {
     /// μ without what depends on the load, and friction beside it, N.
     fn sliding(&self, at: &Moment, effects: &TruthEffects) -> (f64, f64) {
         let speed_m_per_s = self.speed_m_per_s(at);
-        let contact = Contact { speed_m_per_s, length_m: at.length_m, time_s: at.time_s, is_last_pulley: self.is_last };
+        let contact = Contact {
+            speed_m_per_s,
+            length_m: at.length_m,
+            tension_n: at.force_n,
+            time_s: at.time_s,
+            is_last_pulley: self.is_last,
+        };
         (self.pulley.mu * effects.mu_factor(&contact), effects.drag_n(&contact))
     }
 

@@ -124,6 +124,10 @@ impl TruthEffect for TruthEffects {
         self.product(|effect| effect.platform_factor(length_m))
     }
 
+    fn platform_force_n(&self, speed_m_per_s: f64, length_m: f64, tension_n: f64) -> f64 {
+        self.sum(|effect| effect.platform_force_n(speed_m_per_s, length_m, tension_n))
+    }
+
     fn motion_lead_s(&self) -> f64 {
         self.sum(TruthEffect::motion_lead_s)
     }
@@ -180,7 +184,13 @@ mod tests {
         let hidden = hidden.into_iter().collect::<Result<Vec<_>, _>>()?;
         let hum = Disturbance::parse("hum:amplitude_n=0.1,frequency_hz=50")?;
         let effects = TruthEffects::new(&[table], &hidden, &[hum], &any_cable())?;
-        let at = |speed_m_per_s| Contact { speed_m_per_s, length_m: 1.0, time_s: 0.0, is_last_pulley: false };
+        let at = |speed_m_per_s| Contact {
+            speed_m_per_s,
+            length_m: 1.0,
+            tension_n: 5.0,
+            time_s: 0.0,
+            is_last_pulley: false,
+        };
         assert!((effects.mu_factor(&at(0.0)) - 1.5 * 1.2).abs() < 1e-15);
         let expected = (1.0 + 0.5 * (-1.0_f64).exp()) * (1.0 + 0.2 * (-4.0_f64).exp());
         assert!((effects.mu_factor(&at(-0.1)) - expected).abs() < 1e-15);

@@ -3,7 +3,7 @@
 use fric_core::effects::Effect;
 use fric_core::robot::file::RobotFile;
 use fric_core::{CableInput, Pose, Sample};
-use fric_lab::discover::{CableDiscovery, Fault, Verdict, discover, extended};
+use fric_lab::discover::{CableDiscovery, DiscoverOptions, Fault, Verdict, discover, extended};
 use fric_lab::fit::{Measurements, Progress, Reference};
 use fric_lab::simulate::sweep::{Case, CaseTruth, Group};
 use rand_chacha::ChaCha8Rng;
@@ -46,7 +46,7 @@ fn look(logs: &[&[Point]], truth: &CaseTruth) -> CableDiscovery {
             });
         }
     }
-    discover(&measurements, &Progress::new()).remove(0)
+    discover(&measurements, &DiscoverOptions::default(), &Progress::new()).remove(0)
 }
 
 fn assert_complete(found: &CableDiscovery, floor_n: f64) {

@@ -1,12 +1,13 @@
 //! Discovery on logs with known effects hidden in them; the whole sweep is `benches/discover.rs`.
 
+mod empirical;
 mod faulty;
 mod wrench;
 
 use fric_core::effects::Effect;
 use fric_core::parameters::VISCOUS;
 use fric_core::robot::file::{FrictionTable, RobotFile};
-use fric_lab::discover::{CableDiscovery, Fault, Verdict, discover, extended};
+use fric_lab::discover::{CableDiscovery, DiscoverOptions, Fault, Verdict, discover, extended};
 use fric_lab::fit::{Measurements, Progress, Reference};
 use fric_lab::simulate::sweep::{Case, CaseLog, CaseTruth, Group};
 
@@ -25,7 +26,7 @@ fn look_by(mut log: CaseLog, robot: &RobotFile) -> (CableDiscovery, CaseTruth) {
     while let Some(sample) = log.simulation.next_cycle() {
         measurements.add(&sample);
     }
-    (discover(&measurements, &Progress::new()).remove(0), log.truth)
+    (discover(&measurements, &DiscoverOptions::default(), &Progress::new()).remove(0), log.truth)
 }
 
 /// Looks at a case and makes sure of the verdict, of the names, and of the noise floor.

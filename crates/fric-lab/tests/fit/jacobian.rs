@@ -105,6 +105,10 @@ fn value_and_step(parameter: &Parameter, random: &mut ChaCha8Rng) -> (f64, f64) 
         "pulley_eccentricity.period_m" => (uniform(random, 0.05, 0.5), 1e-7),
         "cable_elasticity.compliance_m_per_n" => (log_uniform(random, 1e-8, 1e-6), 1e-10),
         "load_nonlinearity.reference_n" => relative(log_uniform(random, 3.0, 300.0)),
+        // The table of the example is over the speed.
+        "empirical.length_from_m" | "empirical.length_to_m" | "empirical.load_from_n" | "empirical.load_to_n" => {
+            (0.0, 1e-7)
+        }
         "pulley_inertia.window_s" => (uniform(random, 0.002, 0.01), 1e-7),
         // Wider than the noise of the record, so that stretch waits; edges that a step crosses are left out as kinks.
         "cable_elasticity.play_n" => (uniform(random, 0.01, 0.1), 1e-7),

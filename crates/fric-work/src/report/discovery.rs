@@ -1,6 +1,8 @@
 //! The page of `discover --report`: the verdicts, then for each cable what was found, where, and how sure it is.
 
-use fric_lab::discover::result::{Candidate, DiscoverCableResult, DiscoverResult, EffectResult, WhereResult};
+use fric_lab::discover::result::{
+    Candidate, DiscoverCableResult, DiscoverResult, EffectResult, TablePoint, TableResult, WhereResult,
+};
 use fric_lab::discover::words::{condition, evidence, intervals, name_of, newtons, percent};
 use fric_lab::discover::{CableDiscovery, Model, Profile, ProfileCell};
 use fric_lab::fit::{HALF_INTERVAL, Parameter};
@@ -125,7 +127,36 @@ fn effect_in_words(effect: &EffectResult) -> Markup {
             dt { "remedy" } dd { (effect.effect.row().remedy) }
             @if let Some(alternative) = effect.alternative_in_words() { dt { "else" } dd { (alternative) } }
         }
+        @if let Some(table) = &effect.table {
+            figure {
+                h3 { "Unnamed, over the " (condition(table.over)) }
+                p.soft { "What the table adds, with its 95 % interval; beyond the ends the first and the last hold." }
+                (PreEscaped(of_table(table)))
+            }
+        }
     }
+}
+
+/// A table over its condition, with how sure each place is.
+fn of_table(table: &TableResult) -> String {
+    let percents = if table.changes == "friction" { 100.0 } else { 1.0 };
+    let half = |point: &TablePoint| HALF_INTERVAL * percents * point.standard_error.unwrap_or(0.0);
+    let value = |point: &TablePoint| percents * point.value;
+    let mut all = Extent { least: 0.0, greatest: 0.0 };
+    for point in &table.points {
+        all.add(value(point) - half(point));
+        all.add(value(point) + half(point));
+    }
+    let ends = table.points.first().zip(table.points.last()).map_or((0.0, 1.0), |(first, last)| (first.at, last.at));
+    let x = Span { least: ends.0, greatest: ends.1, unit: table.unit };
+    let mut chart = Chart::new(x, Span::with_margin(all, 0.08, if percents > 1.0 { "%" } else { "N" }), WIDE, 240.0);
+    let bar = |point: &TablePoint| {
+        (point.at, Extent { least: value(point) - half(point), greatest: value(point) + half(point) })
+    };
+    chart.bars("after", table.points.iter().map(bar));
+    chart.line("trace after", table.points.iter().map(|point| [point.at, value(point)]));
+    chart.level("floor", 0.0, "", true);
+    chart.into_svg()
 }
 
 fn key(color: &str, text: &str) -> Markup {

@@ -13,11 +13,15 @@ use fric_work::report;
 
 /// Runs the command.
 pub fn run(arguments: &DiscoverArguments) -> Outcome {
-    let DiscoverArguments { logs, model, part, output, reference, report, result } = arguments;
+    let DiscoverArguments { logs, model, part, output, reference, report, no_empirical, result } = arguments;
     part.check_none()?;
     if *reference == ReferenceName::Wrench {
         return Err(Failure::usage("--reference wrench is for robots; a manipulator has no platform")
             .advise("Leave --reference away: the gratings are the reference."));
+    }
+    if *no_empirical {
+        return Err(Failure::usage("`--no-empirical` is for cables: a manipulator's rest never becomes a table")
+            .advise("Leave it out."));
     }
     let json_file = result.json.as_deref().filter(|path| !output::is_stdout(path));
     output::check_distinct(&[output.as_deref(), report.as_deref(), json_file])?;
