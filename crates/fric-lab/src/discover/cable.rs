@@ -35,7 +35,7 @@ const LEAST_ROUNDING: f64 = 0.1;
 const LOOKS: usize = 3;
 
 /// No model is believed to less than this share of the tension, however little noise there is.
-const BELIEVED_RATIO: f64 = 1e-4;
+pub const BELIEVED_RATIO: f64 = 1e-4;
 
 /// Looks at one cable.
 pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> CableDiscovery {

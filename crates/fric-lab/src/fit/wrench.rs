@@ -357,11 +357,6 @@ fn scatter(problem: &Problem<'_>, values: &[Values]) -> Option<Matrix6<f64>> {
             deviations.push(Vector6::from_row_slice(residuals));
         }
     });
-    scatter_of(&deviations)
-}
-
-/// The same of deviations at hand.
-pub fn scatter_of(deviations: &[Vector6<f64>]) -> Option<Matrix6<f64>> {
     let squares: Matrix6<f64> = deviations.iter().map(|deviation| deviation * deviation.transpose()).sum();
     #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
     let covariance = squares / deviations.len() as f64;

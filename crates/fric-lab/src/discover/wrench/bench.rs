@@ -11,6 +11,7 @@ use crate::fit::engine::{
 };
 use crate::fit::split::Block;
 use crate::fit::{CableRecord, Parameter};
+use crate::replay::Deviation;
 
 /// A number of a geometry is no further off than some such share of its size: weighs as one more deviation, so that a direction which the
 /// samples say nothing of stays.
@@ -72,8 +73,9 @@ impl Model {
                 }
                 Unknown::Alike(of) => moved.values.iter_mut().for_each(|values| values[of.place()] = *number),
                 Unknown::Geometry(of, place) => {
-                    let entry = moved.changes.get_mut(of).and_then(|numbers| numbers.get_mut(*place));
-                    entry.into_iter().for_each(|entry| *entry = *number);
+                    if let Some(entry) = moved.changes.get_mut(of).and_then(|numbers| numbers.get_mut(*place)) {
+                        *entry = *number;
+                    }
                 }
             }
         }
@@ -319,6 +321,27 @@ impl<'a> Bench<'a> {
             lever.dot(deviation) / lever.norm_squared()
         };
         columns.zip(deviations).map(nearest).collect()
+    }
+
+    /// What errors of all cables that are this share of their tensions make of [`of_cable_n`](Self::of_cable_n) of one at most, N: root mean
+    /// square over the samples.
+    pub fn believed_n(&self, model: &Model, cable: usize, ratio: f64) -> f64 {
+        let (structure, _) = self.description.changed(&model.changes);
+        let count = self.records.len();
+        let of_sample = |place: usize| {
+            let levers: Vec<Vector6<f64>> =
+                structure.iter().skip(place * count).take(count).map(|column| self.whitening * column).collect();
+            let own = levers.get(cable)?;
+            let error = |(lever, record): (&Vector6<f64>, &CableRecord<'_>)| {
+                let sensor_n = record.rows.get(place).map_or(f64::NAN, |row| row.signals.sensor_force_n);
+                ratio * (sensor_n * record.params.frictionless_gain() * own.dot(lever)).abs()
+            };
+            Some(levers.iter().zip(&self.records).map(error).sum::<f64>() / own.norm_squared())
+        };
+        let used = self.counts.iter().enumerate().filter(|(_, counts)| **counts);
+        let mut errors = Deviation::default();
+        used.filter_map(|(place, _)| of_sample(place)).for_each(|error_n| errors.add(error_n));
+        errors.rms().unwrap_or(0.0)
     }
 
     /// Covariance of the unknowns of a model at its minimum, as correlated deviations scatter them, and as independent ones of the same

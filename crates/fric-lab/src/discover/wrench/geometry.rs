@@ -31,6 +31,9 @@ pub enum Geometry {
 /// By how much each is off: kg, m, and two components across the given gravity, m/s².
 pub type Changes = BTreeMap<Geometry, Vec<f64>>;
 
+/// A vector a sample, or one a sample and cable: as given, or changed.
+pub type Series<'a> = Cow<'a, [Vector6<f64>]>;
+
 /// Steps for differences: small beside what matters, large beside rounding.
 const STEP_RATIO: f64 = 1e-4;
 
@@ -67,6 +70,7 @@ impl Geometry {
     }
 
     /// How many numbers it is varied by.
+    #[must_use]
     pub const fn count(self) -> usize {
         match self {
             Self::Mass => 1,
@@ -102,7 +106,7 @@ impl<'a> Description<'a> {
     }
 
     /// Structure matrix and outside wrench where some numbers are off by so much.
-    pub fn changed(&self, changes: &Changes) -> (Cow<'a, [Vector6<f64>]>, Cow<'a, [Vector6<f64>]>) {
+    pub fn changed(&self, changes: &Changes) -> (Series<'a>, Series<'a>) {
         let (mut structure, mut outside) = (Cow::Borrowed(self.structure), Cow::Borrowed(self.outside));
         for cable in 0..self.count() {
             let Some(moved) = self.moved(cable, changes) else { continue };
@@ -195,26 +199,21 @@ impl<'a> Description<'a> {
             let numbers = beside.entry(of).or_insert_with(|| vec![0.0; of.count()]);
             numbers.iter_mut().skip(number).take(1).for_each(|entry| *entry += step);
             let from = changes.clone();
-            match of.cable() {
-                Some(cable) => {
-                    let params = |changes: &Changes| {
-                        self.moved(cable, changes).or_else(|| self.robot.cables().get(cable).copied())
-                    };
-                    let (Some(from), Some(to)) = (params(&from), params(&beside)) else { return Vec::new() };
-                    let change = |(place, pose): (usize, &Option<Pose>)| {
-                        let columns = column_of(&to, pose.as_ref()) - column_of(&from, pose.as_ref());
-                        columns * (force_n(place, cable) / step)
-                    };
-                    self.poses.iter().enumerate().map(change).collect()
-                }
-                None => {
-                    let change = |(wrench, pose): (&Vector6<f64>, &Option<Pose>)| {
-                        let of = |changes: &Changes| self.wrench(*wrench, pose.as_ref(), changes);
-                        (of(&beside) - of(&from)) / step
-                    };
-                    self.outside.iter().zip(self.poses).map(change).collect()
-                }
+            if let Some(cable) = of.cable() {
+                let params =
+                    |changes: &Changes| self.moved(cable, changes).or_else(|| self.robot.cables().get(cable).copied());
+                let (Some(from), Some(to)) = (params(&from), params(&beside)) else { return Vec::new() };
+                let change = |(place, pose): (usize, &Option<Pose>)| {
+                    let columns = column_of(&to, pose.as_ref()) - column_of(&from, pose.as_ref());
+                    columns * (force_n(place, cable) / step)
+                };
+                return self.poses.iter().enumerate().map(change).collect();
             }
+            let change = |(wrench, pose): (&Vector6<f64>, &Option<Pose>)| {
+                let of = |changes: &Changes| self.wrench(*wrench, pose.as_ref(), changes);
+                (of(&beside) - of(&from)) / step
+            };
+            self.outside.iter().zip(self.poses).map(change).collect()
         };
         (0..of.count()).map(tangent).collect()
     }

@@ -22,7 +22,7 @@ use self::bench::{Bench, Trial, Unknown};
 use self::geometry::{Changes, Description};
 use self::naming::{Named, Naming, Search};
 use self::screen::Candidate;
-use super::cable::acts;
+use super::cable::{BELIEVED_RATIO, acts};
 use super::extended::extended;
 use super::naming::Refusal;
 use super::noise::white_noise;
@@ -30,7 +30,7 @@ use super::places::Excess;
 use super::report::{CableDiscovery, Finding, Model, RunnerUp, Tried, Unexplained, Verdict};
 use super::rest::{WORTH, ranges, wander};
 use super::split::split;
-use crate::fit::engine::{self, conditions, first_model, reference_wrenches, scatter_of};
+use crate::fit::engine::{self, conditions, first_model, reference_wrenches};
 use crate::fit::{CableRecord, FitError, Measurements, Parameter, Progress};
 use crate::replay::{Deviation, WrenchErrors, WrenchReference};
 
@@ -38,6 +38,8 @@ pub use geometry::Geometry;
 
 /// Searches with what was found taken for given, and deviations weighed by it.
 const LOOKS: usize = 3;
+/// A direction with less than this share of the greatest variance, components on one scale, has rounding only.
+const LEAST_VARIANCE_RATIO: f64 = 1e-9;
 
 /// What came out for all cables together.
 #[derive(Clone, Debug)]
@@ -179,13 +181,22 @@ fn too_short() -> FitError {
     )
 }
 
-/// What turns the deviations of a model into independent ones of variance 1.
+/// What turns the deviations of a model into independent ones of variance 1. Directions in which a robot has none, such as torques of a point that
+/// hangs on cables, stay out.
 fn whitening(bench: &Bench<'_>, model: &bench::Model) -> Option<Matrix6<f64>> {
     let plain = Bench { whitening: Matrix6::identity(), ..bench.clone() };
     let deviations = plain.deviations(model);
-    scatter_of(
-        &deviations.into_iter().filter(|deviation| deviation.iter().all(|part| part.is_finite())).collect::<Vec<_>>(),
-    )
+    let finite = || deviations.iter().filter(|deviation| deviation.iter().all(|part| part.is_finite()));
+    let count = finite().fold(0.0, |count, _| count + 1.0);
+    let covariance = finite().map(|deviation| deviation * deviation.transpose()).sum::<Matrix6<f64>>() / count;
+    // Forces and torques on one scale.
+    let size = |component: usize| covariance[(component, component)].sqrt();
+    let unit = Matrix6::from_fn(|row, column| if row == column && size(row) > 0.0 { size(row).recip() } else { 0.0 });
+    let eigen = (unit * covariance * unit).symmetric_eigen();
+    let greatest = eigen.eigenvalues.max();
+    let root = |value: f64| if value > LEAST_VARIANCE_RATIO * greatest { value.sqrt().recip() } else { 0.0 };
+    let scaled = Matrix6::from_diagonal(&eigen.eigenvalues.map(root)) * eigen.eigenvectors.transpose() * unit;
+    (greatest > 0.0 && scaled.iter().all(|entry| entry.is_finite())).then_some(scaled)
 }
 
 /// Standard deviation of the white noise in each component of the deviations.
@@ -279,7 +290,10 @@ impl Case<'_, '_> {
         let residual_n = |trial: &Trial| bench.of_cable_n(&trial.model, &bench.deviations(&trial.model), cable);
         let (residual_before_n, residual_after_n) = (residual_n(base), residual_n(fitted));
         let noise_n = white_noise(&residual_after_n).unwrap_or(f64::NAN);
-        let excess = Excess { record, blocks: &bench.blocks, residual_n: &residual_after_n, noise_n };
+        // No model is believed to less than a share of the tension; such errors of all cables may add up.
+        let believed_n = bench.believed_n(&fitted.model, cable, BELIEVED_RATIO);
+        let floor_n = noise_n.hypot(believed_n);
+        let excess = Excess { record, blocks: &bench.blocks, residual_n: &residual_after_n, noise_n: floor_n };
         let share = excess.share();
         let all = if share <= WORTH { Vec::new() } else { conditions(record) };
         let places = excess.places(&all);
@@ -312,10 +326,10 @@ impl Case<'_, '_> {
             _ => None,
         });
         let unexplained = (!is_noise).then(|| Unexplained {
-            rms_n: (share.max(0.0) * noise_n * noise_n).sqrt(),
+            rms_n: (share.max(0.0) * floor_n * floor_n).sqrt(),
             places: places.clone(),
             intervals_s: excess.intervals_s(|cycle| {
-                residual_after_n.get(cycle).is_some_and(|number: &f64| number.abs() > 4.0 * noise_n)
+                residual_after_n.get(cycle).is_some_and(|number: &f64| number.abs() > 4.0 * floor_n)
             }),
             neighbours: Vec::new(),
         });
@@ -325,7 +339,7 @@ impl Case<'_, '_> {
             reference_variation_n: f64::NAN,
             held_out: ranges(held_out.iter().copied()).into_iter().map(|range| [range.start, range.end]).collect(),
             noise_floor_n: noise_n,
-            wander_n: noise_n * wander.sqrt(),
+            wander_n: floor_n * wander.sqrt(),
             verdict: match (&unexplained, findings.is_empty()) {
                 (Some(_), _) => Verdict::Unexplained,
                 (None, true) => Verdict::Complete,

@@ -14,7 +14,7 @@ use super::geometry::Geometry;
 use crate::effects::Around;
 use crate::fit::Parameter;
 use crate::fit::candidates::{fitted, starts};
-use crate::fit::engine::{Forces, Part, forces_of, inverse_of_normal};
+use crate::fit::engine::{Forces, Gram, Part, forces_of, inverse_of_normal};
 
 /// A direction of which less than this share is its own is one that the model has.
 const OWN_RATIO: f64 = 1e-6;
@@ -293,40 +293,42 @@ impl Sums {
         let count = model.unknowns().len();
         let (structure, _) = bench.description.changed(&model.changes);
         let cables = bench.records.len();
-        let mut normal = DMatrix::zeros(count, count);
-        let mut gradient = DVector::zeros(count);
-        let mut mixed: Vec<DMatrix<f64>> = columns.iter().map(|of| DMatrix::zeros(of.count, count)).collect();
+        let mut gram = Gram::new(count);
+        let mut mixed: Vec<Vec<f64>> = columns.iter().map(|of| vec![0.0; of.count * count]).collect();
         let mut scores: Vec<DVector<f64>> = columns.iter().map(|of| DVector::zeros(of.count)).collect();
         let mut levers_of: Vec<Vec<Vector6<f64>>> = vec![Vec::new(); cables];
+        // Of a cable: the rows weighed by its lever, derivatives and deviation.
+        let mut seen = vec![0.0; count + 1];
         let mut sample = 0;
         bench.rows(model, |place, rows| {
-            let row = |component: usize| rows.get(component).map(Vec::as_slice).unwrap_or_default();
-            for component in 0..6 {
-                let Some((deviation, derivatives)) = row(component).split_last() else { continue };
-                let derivatives = DVector::from_column_slice(derivatives);
-                normal.ger(1.0, &derivatives, &derivatives, 1.0);
-                gradient.axpy(*deviation, &derivatives, 1.0);
+            for row in rows {
+                gram.add(row);
             }
             for (cable, columns) in columns.iter().enumerate() {
                 let lever =
                     structure.get(place * cables + cable).map_or_else(Vector6::zeros, |of| bench.whitening * of);
-                let mut seen = DVector::zeros(count);
-                let mut deviation = 0.0;
-                for component in 0..6 {
-                    let Some((of_deviation, derivatives)) = row(component).split_last() else { continue };
-                    seen.axpy(lever[component], &DVector::from_column_slice(derivatives), 1.0);
-                    deviation += lever[component] * of_deviation;
+                seen.fill(0.0);
+                for (row, part) in rows.iter().zip(lever.iter()) {
+                    seen.iter_mut().zip(row).for_each(|(sum, entry)| *sum += part * entry);
                 }
-                let changes = DVector::from_column_slice(columns.at(sample));
+                let Some((deviation, derivatives)) = seen.split_last() else { continue };
+                let changes = columns.at(sample);
                 if let (Some(mixed), Some(scores)) = (mixed.get_mut(cable), scores.get_mut(cable)) {
-                    mixed.ger(1.0, &changes, &seen, 1.0);
-                    scores.axpy(deviation, &changes, 1.0);
+                    for (change, of_change) in changes.iter().zip(mixed.chunks_exact_mut(count.max(1))) {
+                        of_change.iter_mut().zip(derivatives).for_each(|(sum, derivative)| *sum += change * derivative);
+                    }
+                    scores.iter_mut().zip(changes).for_each(|(sum, change)| *sum += change * deviation);
                 }
                 levers_of.iter_mut().skip(cable).take(1).for_each(|of| of.push(lever));
             }
-            geometries.iter_mut().for_each(|of| of.add(place, rows));
+            for of in geometries.iter_mut() {
+                of.add(place, rows);
+            }
             sample += 1;
         });
+        let (normal, gradient, _) = gram.normal_equations();
+        let mixed =
+            mixed.iter().zip(columns).map(|(mixed, of)| DMatrix::from_row_slice(of.count, count, mixed)).collect();
         let mut squares = Vec::new();
         for (one, from) in starts.iter().enumerate() {
             let order = |place: usize, of: &Start| {
