@@ -9,6 +9,7 @@ use std::sync::atomic::AtomicBool;
 use std::thread;
 
 use super::gang::{Gang, Seat};
+use super::interpolated::measured;
 use super::newcomers::with_newcomers;
 use super::pass::Forces;
 use super::problem::{Comparison, Loss, Member, Problem};
@@ -139,7 +140,7 @@ pub fn prepared(record: &CableRecord<'_>) -> Vec<Standing> {
     let mut standings = selection::first_look(record, |_, row| row.reference_n.is_finite());
     if !record.reference_is_known {
         selection::leave_out_still_references(record, &mut standings);
-        selection::leave_out_interpolated_references(record, &mut standings);
+        selection::leave_out_interpolated(&measured(record), &mut standings);
     }
     standings
 }

@@ -1,7 +1,9 @@
 //! References that were measured less often than the cycle runs: between two measurements there is the line that joins them, and
 //! the line is no measurement. It bends only where something was measured.
 
-use super::record::{CableRecord, Row};
+use fric_core::Wrench;
+
+use super::record::{CableRecord, Measurements, Row};
 
 /// A log's reference is joined by lines where more than this share of its moving samples lies on the line of their neighbours. A
 /// reference of few digits at the rate of the cycle has less by chance; one with more than a third of that rate has less too.
@@ -22,6 +24,26 @@ pub fn measured(record: &CableRecord<'_>) -> Vec<bool> {
         of_log(&points)
     };
     record.logs().flat_map(of_log).collect()
+}
+
+/// The same of the wrench, whose components were measured at the same times.
+pub fn measured_wrenches(measurements: &Measurements<'_>) -> Vec<bool> {
+    let wrenches = &measurements.platform().wrenches;
+    let Some(record) = measurements.cables().next() else { return vec![true; wrenches.len()] };
+    let of_wrenches = |(start, rows): (usize, &[Row])| {
+        let component = |component: usize| {
+            let at = |place: usize| {
+                let wrench = wrenches.get(place).and_then(Option::as_ref).map(Wrench::to_vector);
+                (record.time_s(place), wrench.map_or(f64::NAN, |wrench| wrench[component]))
+            };
+            of_log(&(start..start + rows.len()).map(at).collect::<Vec<_>>())
+        };
+        let joined: Vec<Vec<bool>> = (0..6).map(component).filter(|measured| measured.contains(&false)).collect();
+        (0..rows.len())
+            .map(|place| joined.is_empty() || joined.iter().any(|measured| measured[place]))
+            .collect::<Vec<bool>>()
+    };
+    record.logs().flat_map(of_wrenches).collect()
 }
 
 /// For one log: times and references.

@@ -67,7 +67,7 @@ pub(crate) mod engine {
     pub use super::solve::{Solution, Unknown, search_near};
     pub use super::undetermined::{covariance, inverse_of_normal, vagueness};
     pub use super::vector::Coordinate;
-    pub use super::wrench::{first_model, reference_wrenches};
+    pub use super::wrench::{ReferenceWrenches, first_model};
 }
 
 pub use cables::{fit_cables, residuals_n};

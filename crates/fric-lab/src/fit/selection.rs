@@ -2,7 +2,6 @@
 
 use fric_core::parameters::{MU, SIGMA, Values};
 
-use super::interpolated::measured;
 use super::record::{CableRecord, Row};
 
 /// How many samples count, and how many not for which reason. Every sample is in one of these.
@@ -73,9 +72,9 @@ pub fn leave_out_still_references(record: &CableRecord<'_>, standings: &mut [Sta
 }
 
 /// Takes out references that nobody measured, but lines between two measurements give.
-pub fn leave_out_interpolated_references(record: &CableRecord<'_>, standings: &mut [Standing]) {
-    let rows = standings.iter_mut().zip(measured(record)).filter(|(standing, _)| **standing == Standing::Used);
-    rows.filter(|(_, measured)| !measured).for_each(|(standing, _)| *standing = Standing::Interpolated);
+pub fn leave_out_interpolated(measured: &[bool], standings: &mut [Standing]) {
+    let rows = standings.iter_mut().zip(measured).filter(|(standing, _)| **standing == Standing::Used);
+    rows.filter(|(_, measured)| !**measured).for_each(|(standing, _)| *standing = Standing::Interpolated);
 }
 
 /// Takes out the start of each log, until the friction stored before is forgotten.

@@ -18,6 +18,7 @@ use nalgebra::{Matrix6, Vector6};
 use super::balance;
 use super::cables::{cable_fits, leave_out_warm_up, used};
 use super::error::FitError;
+use super::interpolated::measured_wrenches;
 use super::newcomers::with_newcomers;
 use super::problem::{Comparison, Loss, Member, Problem};
 use super::record::{CableRecord, Measurements};
@@ -44,10 +45,10 @@ pub fn fit_wrench(
     options: &FitOptions,
     progress: &Progress,
 ) -> Result<WrenchFit, FitError> {
-    let (reference, outside) = reference_wrenches(measurements)?;
+    let references = ReferenceWrenches::of(measurements)?;
     let records: Vec<CableRecord<'_>> = measurements.cables().collect();
     let structure = measurements.platform().structure.as_slice();
-    let case = Case { records, structure, outside: &outside, options, progress };
+    let case = Case { records, structure, references: &references, options, progress };
     progress.begin(4);
     let held_out = case.held_out();
     let Found { problem, mut solution, standings } = case.identified(&|_| true);
@@ -56,19 +57,30 @@ pub fn fit_wrench(
     }
     let cables = cable_fits(&problem, &case.given(), &solution, &standings);
     let [before, after] = case.errors(&problem, &solution.values, &|_| true);
-    Ok(WrenchFit { cables, reference, before, after, held_out })
+    Ok(WrenchFit { cables, reference: references.kind, before, after, held_out })
 }
 
-/// What the forces of the cables are compared with in each sample, NaN where there is nothing: the wrench in the log, else that of the mass.
-///
-/// # Errors
-/// [`FitError`] where it cannot tell the forces of the cables.
-pub fn reference_wrenches(measurements: &Measurements<'_>) -> Result<(WrenchReference, Vec<Vector6<f64>>), FitError> {
-    let is_measured = measurements.platform().wrenches.iter().any(Option::is_some);
-    let reference = if is_measured { WrenchReference::Measured } else { WrenchReference::Mass };
-    let outside = outside_wrenches(measurements, reference);
-    balance::check(&measurements.platform().structure, &outside, measurements.robot().cables().len())?;
-    Ok((reference, outside))
+/// What the forces of the cables are compared with.
+#[derive(Debug)]
+pub struct ReferenceWrenches {
+    /// The wrench in the log, else that of the mass.
+    pub kind: WrenchReference,
+    /// The wrench from outside in each sample; NaN where there is none.
+    pub outside: Vec<Vector6<f64>>,
+    /// Which samples are not on a line from one measured wrench to the next.
+    pub measured: Vec<bool>,
+}
+
+impl ReferenceWrenches {
+    /// # Errors
+    /// [`FitError`] where they cannot tell the forces of the cables.
+    pub fn of(measurements: &Measurements<'_>) -> Result<Self, FitError> {
+        let is_measured = measurements.platform().wrenches.iter().any(Option::is_some);
+        let kind = if is_measured { WrenchReference::Measured } else { WrenchReference::Mass };
+        let outside = outside_wrenches(measurements, kind);
+        balance::check(&measurements.platform().structure, &outside, measurements.robot().cables().len())?;
+        Ok(Self { kind, outside, measured: measured_wrenches(measurements) })
+    }
 }
 
 /// The given model of all cables, fitted to all samples.
@@ -87,14 +99,14 @@ pub struct FirstModel {
 /// Fits what acts in the given model to all samples; offsets stay as given, for they are seen in combinations only.
 pub fn first_model(
     measurements: &Measurements<'_>,
-    outside: &[Vector6<f64>],
+    references: &ReferenceWrenches,
     acts: impl Fn(&Parameter, &Values) -> bool,
     progress: &Progress,
 ) -> FirstModel {
     let records: Vec<CableRecord<'_>> = measurements.cables().collect();
     let structure = measurements.platform().structure.as_slice();
     let options = FitOptions::default();
-    let case = Case { records, structure, outside, options: &options, progress };
+    let case = Case { records, structure, references, options: &options, progress };
     let is_wanted =
         |record: &CableRecord<'_>, of: &Parameter| of.place() != OFFSET && acts(of, &record.params.values());
     let Found { solution, standings, .. } = case.without_offsets(&|_| true, &is_wanted);
@@ -115,8 +127,7 @@ struct Case<'a> {
     records: Vec<CableRecord<'a>>,
     /// Columns of the structure matrix, all cables of a sample one after the other.
     structure: &'a [Vector6<f64>],
-    /// The wrench of each sample; NaN where there is none.
-    outside: &'a [Vector6<f64>],
+    references: &'a ReferenceWrenches,
     options: &'a FitOptions,
     progress: &'a Progress,
 }
@@ -136,7 +147,7 @@ impl<'a> Case<'a> {
     /// Errors on the blocks held out from a fit to the others; none where the log is too short for it.
     fn held_out(&self) -> WrenchErrors {
         let blocks = self.records.first().map(split).unwrap_or_default();
-        let mut is_held_out = vec![false; self.outside.len()];
+        let mut is_held_out = vec![false; self.references.outside.len()];
         for block in blocks.iter().filter(|block| block.held_out) {
             is_held_out
                 .iter_mut()
@@ -159,7 +170,8 @@ impl<'a> Case<'a> {
         counts: &dyn Fn(usize) -> bool,
         is_wanted: &dyn Fn(&CableRecord<'_>, &Parameter) -> bool,
     ) -> Found<'a> {
-        let Self { structure, outside, options, progress, .. } = *self;
+        let Self { structure, references, options, progress, .. } = *self;
+        let outside = references.outside.as_slice();
         let given = self.given();
         let has_wrench =
             |place: usize| outside.get(place).is_some_and(|wrench| wrench.iter().all(|part| part.is_finite()));
@@ -168,7 +180,10 @@ impl<'a> Case<'a> {
             columns.all(|column| column.x.is_finite())
         };
         let of_cable = |record: &CableRecord<'_>| {
-            selection::first_look(record, |place, _| has_wrench(place) && reaches(place) && counts(place))
+            let mut standings =
+                selection::first_look(record, |place, _| has_wrench(place) && reaches(place) && counts(place));
+            selection::leave_out_interpolated(&references.measured, &mut standings);
+            standings
         };
         let mut of_cables: Vec<Vec<Standing>> = self.records.iter().map(of_cable).collect();
         let mut problem = Problem {
@@ -278,7 +293,7 @@ impl<'a> Case<'a> {
         let forces = problem.forces(values).unwrap_or_default();
         let count = problem.members.len();
         let mut errors = [WrenchErrors::default(), WrenchErrors::default()];
-        for (cycle, outside) in self.outside.iter().enumerate().filter(|(cycle, _)| counts(*cycle)) {
+        for (cycle, outside) in self.references.outside.iter().enumerate().filter(|(cycle, _)| counts(*cycle)) {
             let mut sums = [*outside, *outside];
             let columns = self.structure.iter().skip(cycle * count).take(count);
             for ((member, forces), column) in problem.members.iter().zip(&forces).zip(columns) {

@@ -25,8 +25,7 @@ fn look(truth: &RobotFile, given: &RobotFile, seed: u64, by_mass: bool) -> Wrenc
     if by_mass {
         log.0.iter_mut().for_each(|cycle| cycle.outside_wrench = None);
     }
-    let found = discover_wrench(&log.measured(given, Reference::Wrench), &Progress::new()).unwrap();
-    found
+    discover_wrench(&log.measured(given, Reference::Wrench), &Progress::new()).unwrap()
 }
 
 /// Names by cable.

@@ -9,6 +9,7 @@ use super::geometry::{Changes, Description, Geometry};
 use crate::fit::engine::{
     Comparison, Coordinate, Gram, Loss, Member, Problem, Scores, Triangle, inverse_of_normal, minimize,
 };
+use crate::fit::noise::white_noise;
 use crate::fit::split::Block;
 use crate::fit::{CableRecord, Parameter};
 use crate::replay::Deviation;
@@ -63,6 +64,16 @@ impl Model {
         }
     }
 
+    /// The same without what is at the least value that it can have: a search has no slope there.
+    fn without_bounded(&self) -> Self {
+        let mut searched = self.clone();
+        for (cable, free) in searched.free.iter_mut().enumerate() {
+            free.retain(|of| self.number(&Unknown::Own(cable, *of)) > of.row().min);
+        }
+        searched.alike.retain(|of| self.number(&Unknown::Alike(*of)) > of.row().min);
+        searched
+    }
+
     /// The same with other numbers, in the order of the unknowns.
     fn moved(&self, numbers: &[f64]) -> Self {
         let mut moved = self.clone();
@@ -102,6 +113,8 @@ pub struct Bench<'a> {
     pub blocks: Vec<Block>,
     /// Which samples count.
     pub counts: Vec<bool>,
+    /// Which have a reference of their own.
+    pub measured: &'a [bool],
     /// Turns deviations into numbers of variance 1 that do not depend on each other.
     pub whitening: Matrix6<f64>,
     pub stop: &'a AtomicBool,
@@ -220,7 +233,8 @@ impl<'a> Bench<'a> {
 
     /// Fits a model to the samples learned from, as near to its minimum as asked for, in standard errors.
     pub fn fit(&self, model: &Model, near_errors: f64) -> Trial {
-        let model = &self.off_bounds(model);
+        let whole = self.off_bounds(model);
+        let model = &whole.without_bounded();
         let unknowns = model.unknowns();
         let cycle_s = self.records.first().map_or(f64::NAN, |record| record.cycle_s);
         let coordinate = |unknown: &Unknown| match unknown {
@@ -241,23 +255,24 @@ impl<'a> Bench<'a> {
             let (numbers, slopes): (Vec<f64>, Vec<f64>) = numbers.unzip();
             (model.moved(&numbers), slopes)
         };
-        let minimum = minimize(
-            &start,
-            6 * self.count(false),
-            near_errors,
-            |_, _| false,
-            |places| {
-                let (model, slopes) = at(places);
-                let (mut matrix, mut gradient, squares) = self.gram(&model, None)?.normal_equations();
-                for (row, slope) in slopes.iter().enumerate() {
-                    matrix.row_mut(row).scale_mut(*slope);
-                    matrix.column_mut(row).scale_mut(*slope);
-                    gradient[row] *= slope;
-                }
-                Some(Triangle::new(&matrix, &gradient, squares))
-            },
-        );
-        self.judged(at(&minimum.coordinates).0)
+        // What a geometry's numbers change is as good as linear in them.
+        let is_straight = |from: &[f64], to: &[f64]| {
+            let mut of_each = coordinates.iter().zip(from).zip(to);
+            of_each
+                .all(|((coordinate, from), to)| coordinate.is_none_or(|coordinate| coordinate.is_straight(*from, *to)))
+        };
+        let minimum = minimize(&start, 6 * self.count(false), near_errors, is_straight, |places| {
+            let (model, slopes) = at(places);
+            let (mut matrix, mut gradient, squares) = self.gram(&model, None)?.normal_equations();
+            for (row, slope) in slopes.iter().enumerate() {
+                matrix.row_mut(row).scale_mut(*slope);
+                matrix.column_mut(row).scale_mut(*slope);
+                gradient[row] *= slope;
+            }
+            Some(Triangle::new(&matrix, &gradient, squares))
+        });
+        let Model { values, changes, .. } = at(&minimum.coordinates).0;
+        self.judged(Model { values, changes, ..whole })
     }
 
     /// Takes parameters away from the least values they can have, where the coordinates of a search have no slope: to the minimum, were
@@ -310,6 +325,12 @@ impl<'a> Bench<'a> {
             });
         });
         all
+    }
+
+    /// Standard deviation of the white noise in a number of each sample; `None` where they are too few.
+    pub fn white_noise(&self, numbers: impl Iterator<Item = f64>) -> Option<f64> {
+        let measured = numbers.zip(self.measured).filter(|(_, measured)| **measured);
+        white_noise(&measured.map(|(number, _)| number).collect::<Vec<f64>>())
     }
 
     /// The deviation of each sample as the error of one cable's force alone that comes nearest to it, N.

@@ -25,12 +25,11 @@ use self::screen::Candidate;
 use super::cable::{BELIEVED_RATIO, acts};
 use super::extended::extended;
 use super::naming::Refusal;
-use super::noise::white_noise;
 use super::places::Excess;
 use super::report::{CableDiscovery, Finding, Model, RunnerUp, Tried, Unexplained, Verdict};
 use super::rest::{WORTH, ranges, wander};
 use super::split::split;
-use crate::fit::engine::{self, conditions, first_model, reference_wrenches};
+use crate::fit::engine::{self, ReferenceWrenches, conditions, first_model};
 use crate::fit::{CableRecord, FitError, Measurements, Parameter, Progress};
 use crate::replay::{Deviation, WrenchErrors, WrenchReference};
 
@@ -99,22 +98,23 @@ struct Edits {
 /// # Errors
 /// [`FitError`] where the wrench cannot tell the forces of the cables, or the log is too short to tell the noise.
 pub fn discover_wrench(measurements: &Measurements<'_>, progress: &Progress) -> Result<WrenchDiscovery, FitError> {
-    let (reference, outside) = reference_wrenches(measurements)?;
+    let references = ReferenceWrenches::of(measurements)?;
     let records: Vec<CableRecord<'_>> = measurements.cables().collect();
     progress.begin(LOOKS + 1);
-    let first = first_model(measurements, &outside, acts, progress);
+    let first = first_model(measurements, &references, acts, progress);
     let description = Description {
         robot: measurements.robot(),
-        reference,
+        reference: references.kind,
         poses: measurements.poses(),
         structure: measurements.structure(),
-        outside: &outside,
+        outside: &references.outside,
     };
     let mut bench = Bench {
         blocks: records.first().map(split).unwrap_or_default(),
         records,
         description,
         counts: engine::used(&first.standings),
+        measured: &references.measured,
         whitening: Matrix6::identity(),
         stop: progress.stop_flag(),
     };
@@ -204,8 +204,7 @@ fn noise_of(bench: &Bench<'_>, trial: &Trial) -> Option<[f64; 6]> {
     let deviations = bench.deviations(&trial.model);
     let mut noise = [0.0; 6];
     for (component, noise) in noise.iter_mut().enumerate() {
-        let series: Vec<f64> = deviations.iter().map(|deviation| deviation[component]).collect();
-        *noise = white_noise(&series)?;
+        *noise = bench.white_noise(deviations.iter().map(|deviation| deviation[component]))?;
     }
     Some(noise)
 }
@@ -289,7 +288,7 @@ impl Case<'_, '_> {
         let record = &bench.records[cable];
         let residual_n = |trial: &Trial| bench.of_cable_n(&trial.model, &bench.deviations(&trial.model), cable);
         let (residual_before_n, residual_after_n) = (residual_n(base), residual_n(fitted));
-        let noise_n = white_noise(&residual_after_n).unwrap_or(f64::NAN);
+        let noise_n = bench.white_noise(residual_after_n.iter().copied()).unwrap_or(f64::NAN);
         // No model is believed to less than a share of the tension; such errors of all cables may add up.
         let believed_n = bench.believed_n(&fitted.model, cable, BELIEVED_RATIO);
         let floor_n = noise_n.hypot(believed_n);

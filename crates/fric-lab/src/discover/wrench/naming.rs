@@ -19,7 +19,6 @@ use crate::effects::{self, Around};
 use crate::fit::Parameter;
 use crate::fit::candidates::{around, fitted, has};
 use crate::fit::engine::inverse_of_normal;
-use crate::fit::noise::white_noise;
 use crate::fit::ripple::periods;
 
 /// Candidates that are fitted of those that promise most.
@@ -27,7 +26,7 @@ const FITTED: usize = 6;
 /// Most names.
 const MOST: usize = 16;
 /// How near to its minimum a candidate comes, and the model that is reported, in standard errors.
-const NEAR_ERRORS: f64 = 0.3;
+const NEAR_ERRORS: f64 = 0.5;
 const AT_MINIMUM: f64 = 0.02;
 /// The gain of an effect per block held out is positive by so many standard errors.
 const LEAST_BLOCKS: f64 = 2.5;
@@ -420,7 +419,7 @@ impl<'b, 'a> Search<'b, 'a> {
         let of = |(cable, record)| {
             let residual_n = self.bench.of_cable_n(&trial.model, &deviations, cable);
             let mu = trial.model.values.get(cable).map_or(0.0, |values| values[MU]);
-            let mut around = around(record, mu, white_noise(&residual_n).unwrap_or(0.0));
+            let mut around = around(record, mu, self.bench.white_noise(residual_n.iter().copied()).unwrap_or(0.0));
             if with_periods {
                 around.periods = periods(record, &residual_n);
             }
