@@ -416,3 +416,28 @@ fn several_logs_are_looked_at_together() {
     let last = result["cables"][0]["held_out_s"].as_array().unwrap().last().unwrap()[1].as_f64().unwrap();
     assert!((10.0..20.01).contains(&last), "{last}");
 }
+
+/// A payload that nobody wrote down, seen by the weight alone: no sensor at the platform, no wrench in the log.
+#[test]
+fn a_wrong_mass_is_found_by_the_weight_and_written() {
+    let robot = include_str!("../../examples/mini-ipanema.toml").replace("cycle_s = 0.001", "cycle_s = 0.004");
+    let place = with(simulated(&robot, &["--duration", "16", "--seed", "7"]));
+    let given = robot.replace("mass_kg = 0.41", "mass_kg = 0.45") + "\n[log]\nwrench = '/nothing'\n";
+    place.write("robot.toml", &given);
+    let run =
+        discover(&place, &["--model", "robot.toml", "--reference", "wrench", "--report", "report.html"]).succeeds();
+    let result = place.json("found.json");
+    let gap = &result["wrench"];
+    assert_eq!((gap["reference"].as_str(), gap["verdict"].as_str()), (Some("mass"), Some("extended")), "{gap}");
+    let [wrong] = gap["geometry"].as_array().unwrap().as_slice() else { panic!("{gap}") };
+    let mass_kg = wrong["parameters"]["mass_kg"].as_f64().unwrap();
+    assert!(wrong["kind"] == "mass_kg" && (mass_kg - 0.41).abs() < 0.002, "{wrong}");
+    assert!(gap["before"]["force_rms_n"].as_f64() > gap["after"]["force_rms_n"].as_f64(), "{gap}");
+    for cable in cables(&result) {
+        assert!(cable["effects"].as_array().unwrap().is_empty() && cable.get("before").is_none(), "{cable}");
+    }
+    assert!(run.stdout.contains("The robot file's mass_kg is wrong: mass_kg = 0.4"), "{}", run.stdout);
+    assert!(String::from_utf8(place.read("extended.toml")).unwrap().contains(&format!("mass_kg = {mass_kg}")));
+    let page = String::from_utf8(place.read("report.html")).unwrap();
+    assert!(page.contains("The robot file's mass_kg is wrong"));
+}

@@ -129,6 +129,52 @@ class CommonEffect(TypedDict):
     parameters: list[CommonParameter]
 
 
+class WrenchSizes(TypedDict):
+    """Root mean square of force and torque."""
+
+    force_rms_n: float
+    torque_rms_nm: float
+
+
+class WrenchComponent(TypedDict):
+    """One component, "fx_n" to "tz_nm": its white noise and the deviation before and after."""
+
+    name: str
+    noise: float
+    before: float
+    after: float
+
+
+class WrongNumber(TypedDict):
+    """A key of the robot file with the numbers that it should have."""
+
+    kind: str
+    cable: str | None
+    parameters: dict[str, float]
+    evidence: Evidence
+
+
+class TriedTogether(TypedDict):
+    """What helps all cables together and does not suffice."""
+
+    kind: str
+    reason: str
+
+
+class WrenchGap(TypedDict):
+    """What concerns all cables together, where they were compared with the wrench."""
+
+    reference: Literal["wrench", "mass"]
+    verdict: Literal["complete", "extended", "unexplained"]
+    before: WrenchSizes | None
+    after: WrenchSizes | None
+    noise_floor: WrenchSizes
+    components: list[WrenchComponent]
+    alike: list[str]
+    geometry: list[WrongNumber]
+    tried: list[TriedTogether]
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class CableDiscovery(Value):
     """What a discovery found for a cable. Dicts and lists are as in the result of `fric-cli discover --json`.
@@ -204,6 +250,9 @@ class DiscoverResult(Result):
     """What was found for each cable, in the robot's order."""
     common_effects: list[CommonEffect]
     """Effects that several cables have, with the mean of their parameters over these."""
+    wrench: WrenchGap | None
+    """The wrench before and after, effects that all cables have alike and wrong numbers of the robot file, as in the result of
+    `fric-cli discover --reference wrench --json`; None where the reference are forces."""
 
     def cable(self, name: str) -> CableDiscovery:
         """What was found for the cable of a name."""
@@ -230,8 +279,8 @@ class DiscoverResult(Result):
         found = json.loads(shown.json)
         of_cables = tuple(
             CableDiscovery(
-                before=ForceError._of(cable.pop("before")),
-                after=ForceError._of(cable.pop("after")),
+                before=ForceError._of(cable.pop("before", None)),
+                after=ForceError._of(cable.pop("after", None)),
                 where_in_words=words,
                 time_s=time_s,
                 residual_before_n=before_n,
@@ -240,4 +289,4 @@ class DiscoverResult(Result):
             )
             for cable, (words, time_s, before_n, after_n) in zip(found["cables"], cables)
         )
-        return cls(shown, robot, of_cables, found["common_effects"])
+        return cls(shown, robot, of_cables, found["common_effects"], found.get("wrench"))

@@ -18,7 +18,7 @@ use super::places::{Excess, Place};
 use super::profile::profile;
 use super::readiness::{lack_of, lack_of_noise, lack_of_samples};
 use super::report::{CableDiscovery, Candidate, Finding, Model, RunnerUp, Tried, Unexplained, Verdict};
-use super::rest::{WORTH, wander};
+use super::rest::{self, WORTH, wander};
 use super::split::{Block, split};
 use super::stretch::{Stretch, stretch_of_cable};
 use super::workbench::{self, Trial, Workbench};
@@ -64,7 +64,7 @@ pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> CableDiscove
     let times = Times::of(record);
     let bench = Workbench { record: *record, blocks: &blocks, counts: &counts, measured: &measured, stop };
     // Between two measurements too: a line may be faster than they are.
-    let throughout = with_interpolated(record, &counts, &measured);
+    let throughout = rest::with_interpolated(&counts, &measured, |place| has_reference(record, place));
     let hum_left_by = |values: &Values| {
         let residual_n = Workbench { counts: &throughout, ..bench.clone() }.residuals_n(values);
         lines(&residual_n, &times, &motion_and_load(record))
@@ -195,22 +195,8 @@ pub fn acts(parameter: &Parameter, values: &Values) -> bool {
     }
 }
 
-/// What counts, and what is between two neighbours of it, on the line from one measurement to the next.
-fn with_interpolated(record: &CableRecord<'_>, counts: &[bool], measured: &[bool]) -> Vec<bool> {
-    let mut all = counts.to_vec();
-    let mut before = 0;
-    for (place, counts_too) in counts.iter().enumerate().filter(|(place, _)| measured.get(*place) == Some(&true)) {
-        let is_between = *counts_too && counts.get(before) == Some(&true);
-        let between = before + 1..place;
-        before = place;
-        let (true, Some(all), Some(rows)) = (is_between, all.get_mut(between.clone()), record.rows.get(between)) else {
-            continue;
-        };
-        for (counts, row) in all.iter_mut().zip(rows) {
-            *counts = row.is_sound() && row.reference_n.is_finite();
-        }
-    }
-    all
+fn has_reference(record: &CableRecord<'_>, place: usize) -> bool {
+    record.rows.get(place).is_some_and(|row| row.is_sound() && row.reference_n.is_finite())
 }
 
 /// The rows with lines taken off the reference.
@@ -450,7 +436,8 @@ impl<'a> Case<'a> {
         let noise_n = rest.noise_n;
         let raw = Workbench { record: self.raw, ..self.bench(self.counts) };
         let held_out = raw.used(true);
-        let with_interpolated = with_interpolated(&self.raw, self.counts, self.measured);
+        let with_interpolated =
+            rest::with_interpolated(self.counts, self.measured, |place| has_reference(&self.raw, place));
         let throughout = Workbench { counts: &with_interpolated, ..raw.clone() };
         let held_out_of = |values: &Values| judged(&raw.residuals_n(values), &held_out);
         let before = Model {
@@ -520,7 +507,7 @@ impl<'a> Case<'a> {
         CableDiscovery {
             samples,
             reference_variation_n: raw.reference_variation_n(),
-            held_out: super::rest::ranges(throughout.used(true).into_iter())
+            held_out: rest::ranges(throughout.used(true).into_iter())
                 .into_iter()
                 .map(|range| [range.start, range.end])
                 .collect(),

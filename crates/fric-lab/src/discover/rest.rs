@@ -191,6 +191,21 @@ fn share_of_tenth(excess: &Excess<'_>) -> f64 {
     sums.iter().take(tenth).sum::<f64>() / excess.sum()
 }
 
+/// What counts, and what is sound between two neighbours of it, on the line from one measurement to the next.
+pub fn with_interpolated(counts: &[bool], measured: &[bool], is_sound: impl Fn(usize) -> bool) -> Vec<bool> {
+    let mut all = counts.to_vec();
+    let mut before = 0;
+    for (place, counts_too) in counts.iter().enumerate().filter(|(place, _)| measured.get(*place) == Some(&true)) {
+        let is_between = *counts_too && counts.get(before) == Some(&true);
+        let between = before + 1..place;
+        before = place;
+        if is_between && let Some(all) = all.get_mut(between.clone()) {
+            all.iter_mut().zip(between).for_each(|(counts, place)| *counts = is_sound(place));
+        }
+    }
+    all
+}
+
 /// Cycles as stretches, for results.
 pub fn ranges(cycles: impl Iterator<Item = bool>) -> Vec<Range<usize>> {
     let mut ranges: Vec<Range<usize>> = Vec::new();

@@ -1,7 +1,6 @@
 //! The result of a discovery for people: the verdicts of all cables, then what was found on each.
 
 use super::result::{DiscoverCableResult, DiscoverResult, EffectResult, WrenchComponent, WrenchGap};
-use crate::replay::WrenchReference;
 use crate::text::{listed, table, wrapped};
 
 /// Columns of the words before a text.
@@ -49,30 +48,12 @@ pub(super) fn describe(result: &DiscoverResult) -> String {
 
 /// What concerns all cables together.
 fn of_wrench(gap: &WrenchGap) -> String {
-    let row = |of: &WrenchComponent| {
-        let unit = if of.name.ends_with("_nm") { "Nm" } else { "N" };
-        let cell = |number: f64| format!("{number:.4} {unit}");
-        let name = of.name.split('_').next().unwrap_or(of.name).to_owned();
-        [name, cell(of.noise), cell(of.before), cell(of.after)]
-    };
-    let rows: Vec<_> = gap.components.iter().map(row).collect();
-    let title = if gap.reference == WrenchReference::Mass.name() { "wrench, by mass" } else { "wrench" };
-    let mut text = format!("\n{}", table(&[title, "noise", "rms before", "after"], 1, &rows));
+    let rows: Vec<_> = gap.components.iter().map(WrenchComponent::cells).collect();
+    let mut text = format!("\n{}", table(&[gap.title(), "noise", "rms before", "after"], 1, &rows));
     text += "\nrms over samples that no fit has seen. All cables together: ";
     text += gap.verdict;
     text += ".\n";
-    for kind in &gap.alike {
-        text += &wrapped("", &format!("All cables have {kind} alike, with one value."));
-    }
-    for wrong in &gap.geometry {
-        let numbers: Vec<String> =
-            wrong.parameters.0.iter().map(|(name, number)| format!("{name} = {number:.5}")).collect();
-        let of = wrong.cable.as_ref().map_or_else(String::new, |cable| format!(" of {cable}"));
-        text += &wrapped("", &format!("The robot file's {}{of} is wrong: {}.", wrong.kind, numbers.join(", ")));
-    }
-    for tried in &gap.tried {
-        text += &wrapped("", &format!("Tried for all cables together: {}: {}.", tried.kind, tried.reason));
-    }
+    gap.in_words().iter().for_each(|sentence| text += &wrapped("", sentence));
     text
 }
 

@@ -9,9 +9,10 @@ use super::naming::Refusal;
 use super::places::LEAST_CONCENTRATION;
 use super::result::{
     CommonEffect, CommonParameter, DiscoverCableResult, EffectResult, Evidence, FaultResult, RunnerUpResult,
-    TablePoint, TableResult, TriedResult, UnexplainedResult, WhereResult,
+    TablePoint, TableResult, TriedResult, UnexplainedResult, WhereResult, WrenchComponent, WrenchGap,
 };
 use crate::fit::HALF_INTERVAL;
+use crate::replay::WrenchReference;
 use crate::text::{listed, quantity, significant, wrapped};
 
 /// Units at the end of keys; the longer ones first.
@@ -251,6 +252,40 @@ impl TriedResult {
         let Evidence { delta_bic, held_out_rms_n } = &self.evidence;
         let rms = held_out_rms_n.map_or_else(|| "–".to_owned(), newtons);
         format!("{} helps, to rms {rms} with ΔBIC {}, but {}", self.kind, evidence(*delta_bic), self.reason)
+    }
+}
+
+impl WrenchGap {
+    /// What the forces were compared with.
+    #[must_use]
+    pub fn title(&self) -> &'static str {
+        if self.reference == WrenchReference::Mass.name() { "wrench, by mass" } else { "wrench" }
+    }
+
+    /// What concerns all cables together, as sentences.
+    #[must_use]
+    pub fn in_words(&self) -> Vec<String> {
+        let alike = self.alike.iter().map(|kind| format!("All cables have {kind} alike, with one value."));
+        let wrong = self.geometry.iter().map(|wrong| {
+            let numbers = wrong.parameters.0.iter().map(|(name, number)| format!("{name} = {number:.5}"));
+            let of = wrong.cable.as_ref().map_or_else(String::new, |cable| format!(" of {cable}"));
+            let numbers: Vec<String> = numbers.collect();
+            format!("The robot file's {}{of} is wrong: {}.", wrong.kind, numbers.join(", "))
+        });
+        let tried =
+            self.tried.iter().map(|tried| format!("Tried for all cables together: {}: {}.", tried.kind, tried.reason));
+        alike.chain(wrong).chain(tried).collect()
+    }
+}
+
+impl WrenchComponent {
+    /// Name, noise, root mean square before and after.
+    #[must_use]
+    pub fn cells(&self) -> [String; 4] {
+        let unit = if self.name.ends_with("_nm") { "Nm" } else { "N" };
+        let cell = |number: f64| format!("{number:.4} {unit}");
+        let name = self.name.split('_').next().unwrap_or(self.name).to_owned();
+        [name, cell(self.noise), cell(self.before), cell(self.after)]
     }
 }
 

@@ -1,7 +1,7 @@
 //! The page of `discover --report`: the verdicts, then for each cable what was found, where, and how sure it is.
 
 use fric_lab::discover::result::{
-    Candidate, DiscoverCableResult, DiscoverResult, EffectResult, TablePoint, TableResult, WhereResult,
+    Candidate, DiscoverCableResult, DiscoverResult, EffectResult, TablePoint, TableResult, WhereResult, WrenchGap,
 };
 use fric_lab::discover::words::{condition, evidence, intervals, name_of, newtons, percent};
 use fric_lab::discover::{CableDiscovery, Model, Profile, ProfileCell};
@@ -33,6 +33,7 @@ pub fn page(result: &DiscoverResult, discoveries: &[CableDiscovery]) -> String {
             }
         }
         (overview(result, |place, name| html! { a href=(format!("#cable-{place}")) { (name) } }))
+        @if let Some(gap) = &result.wrench { (of_wrench(gap)) }
         @for effect in &result.common_effects {
             p { (effect.in_words(result.cables.len())) "." }
         }
@@ -40,7 +41,7 @@ pub fn page(result: &DiscoverResult, discoveries: &[CableDiscovery]) -> String {
             section.cable id=(format!("cable-{place}")) {
                 h2 { (cable.name) ": " span class={ "verdict " (cable.verdict) } { (cable.verdict) } }
                 p { (cable.verdict_in_words()) }
-                @if cable.before.is_some() { (details(cable, found)) }
+                @if cable.noise_floor_n.is_some() { (details(cable, found)) }
             }
         }
     };
@@ -85,6 +86,24 @@ fn overview(result: &DiscoverResult, named: impl Fn(usize, &str) -> Markup) -> M
     }
 }
 
+/// All cables together.
+fn of_wrench(gap: &WrenchGap) -> Markup {
+    html! {
+        h2 { "All cables together: " span class={ "verdict " (gap.verdict) } { (gap.verdict) } }
+        table {
+            tr { th { (gap.title()) } th { "noise" } th { "rms before" } th { "after" } }
+            @for component in &gap.components {
+                tr { @for cell in component.cells() { td { (cell) } } }
+            }
+        }
+        @for sentence in gap.in_words() { p { (sentence) } }
+        p.soft {
+            "Of a cable below, a residual is the error of its force alone that comes nearest to the deviation of the wrench: what is seen there \
+             may sit in another cable with the same lever."
+        }
+    }
+}
+
 fn details(cable: &DiscoverCableResult, found: &CableDiscovery) -> Markup {
     html! {
         @for effect in &cable.effects { (effect_in_words(effect)) }
@@ -96,7 +115,7 @@ fn details(cable: &DiscoverCableResult, found: &CableDiscovery) -> Markup {
             h3 { "Unexplained" }
             ul { @for sentence in rest.in_words() { li { (sentence) } } }
         }
-        @if cable.verdict != "complete" {
+        @if cable.verdict != "complete" && cable.before.is_some() {
             figure {
                 h3 { "Gap" }
                 (PreEscaped(ladder(cable)))

@@ -27,10 +27,10 @@ use super::extended::extended;
 use super::naming::Refusal;
 use super::places::Excess;
 use super::report::{CableDiscovery, Finding, Model, RunnerUp, Tried, Unexplained, Verdict};
-use super::rest::{WORTH, ranges, wander};
+use super::rest::{WORTH, ranges, wander, with_interpolated};
 use super::split::split;
 use crate::fit::engine::{self, ReferenceWrenches, conditions, first_model};
-use crate::fit::{CableRecord, FitError, Measurements, Parameter, Progress};
+use crate::fit::{CableRecord, FitError, Measurements, Parameter, Progress, Row};
 use crate::replay::{Deviation, WrenchErrors, WrenchReference};
 
 pub use geometry::Geometry;
@@ -232,7 +232,7 @@ impl Case<'_, '_> {
             DMatrix::from_element(count, count, f64::INFINITY)
         });
         let cables: Vec<CableDiscovery> =
-            (0..bench.records.len()).map(|cable| self.cable(cable, &covariance, &held_out)).collect();
+            (0..bench.records.len()).map(|cable| self.cable(cable, &covariance)).collect();
         let is_any = |verdict: Verdict| cables.iter().any(|cable| cable.verdict == verdict);
         let verdict = if is_any(Verdict::Unexplained) {
             Verdict::Unexplained
@@ -283,7 +283,7 @@ impl Case<'_, '_> {
         })
     }
 
-    fn cable(&self, cable: usize, covariance: &DMatrix<f64>, held_out: &[bool]) -> CableDiscovery {
+    fn cable(&self, cable: usize, covariance: &DMatrix<f64>) -> CableDiscovery {
         let Self { bench, base, naming, fitted, samples } = *self;
         let record = &bench.records[cable];
         let residual_n = |trial: &Trial| bench.of_cable_n(&trial.model, &bench.deviations(&trial.model), cable);
@@ -332,11 +332,16 @@ impl Case<'_, '_> {
             }),
             neighbours: Vec::new(),
         });
+        let is_sound = |place: usize| record.rows.get(place).is_some_and(Row::is_sound);
+        let judging = Bench { counts: with_interpolated(&bench.counts, bench.measured, is_sound), ..bench.clone() };
         let count = base.model.unknowns().len();
         CableDiscovery {
             samples,
             reference_variation_n: f64::NAN,
-            held_out: ranges(held_out.iter().copied()).into_iter().map(|range| [range.start, range.end]).collect(),
+            held_out: ranges(judging.used(true).into_iter())
+                .into_iter()
+                .map(|range| [range.start, range.end])
+                .collect(),
             noise_floor_n: noise_n,
             wander_n: floor_n * wander.sqrt(),
             verdict: match (&unexplained, findings.is_empty()) {

@@ -1,7 +1,7 @@
 //! Which effects are missing, and on which cables: candidates enter, justify themselves and are exchanged, all cables jointly.
 //!
 //! The rules are those of the search on a cable with a reference force: who enters helps on samples learned from and on those held out; who stays
-//! has strong evidence, is large enough to matter, is within its range and acts in most of the blocks. Two come on top. An effect that all cables
+//! has strong evidence, is large enough to matter, is within its range and helps beyond a single block. Two come on top. An effect that all cables
 //! have alike costs its parameters once, and has to be taken apart where cables differ. And what is wrong about the description of the robot is
 //! a candidate like an effect, or it would come out as one.
 
@@ -28,8 +28,6 @@ const MOST: usize = 16;
 /// How near to its minimum a candidate comes, and the model that is reported, in standard errors.
 const NEAR_ERRORS: f64 = 0.5;
 const AT_MINIMUM: f64 = 0.02;
-/// The gain of an effect per block held out is positive by so many standard errors.
-const LEAST_BLOCKS: f64 = 2.5;
 /// What was found is away from its neutral value by so many standard errors.
 const LEAST_AWAY: f64 = 4.0;
 /// Rounds of entering, leaving and exchanging.
@@ -228,7 +226,7 @@ impl<'b, 'a> Search<'b, 'a> {
         } else if is_small
             || delta_bic >= -STRONG_BIC
             || away < LEAST_AWAY
-            || self.over_blocks(trial, without) < LEAST_BLOCKS
+            || self.beyond_one_block(trial, without) < STRONG_BIC * inflation
         {
             Some(Refusal::Weak)
         } else if !self.is_more_than_usual(candidate, trial) {
@@ -239,16 +237,13 @@ impl<'b, 'a> Search<'b, 'a> {
         (delta_bic, refusal)
     }
 
-    /// Mean gain per block held out in its standard errors.
-    fn over_blocks(&self, trial: &Trial, without: &Trial) -> f64 {
+    /// What is gained on the blocks held out but the one with the greatest gain, in variances of the noise.
+    fn beyond_one_block(&self, trial: &Trial, without: &Trial) -> f64 {
         let blocks = self.bench.blocks.iter().zip(trial.blocks.iter().zip(&without.blocks));
-        let gains: Vec<f64> =
-            blocks.filter(|(block, _)| block.held_out).map(|(_, (with, without))| without - with).collect();
-        #[expect(clippy::cast_precision_loss, reason = "a count of blocks")]
-        let count = gains.len() as f64;
-        let mean = gains.iter().sum::<f64>() / count;
-        let scatter = gains.iter().map(|gain| (gain - mean).powi(2)).sum::<f64>() / (count - 1.0);
-        mean / (scatter / count).sqrt()
+        let gains = blocks.filter(|(block, _)| block.held_out).map(|(_, (with, without))| without - with);
+        let (sum, greatest) =
+            gains.fold((0.0, 0.0), |(sum, greatest): (f64, f64), gain| (sum + gain, greatest.max(gain)));
+        (sum - greatest) * 6.0 / self.noise_square
     }
 
     fn is_more_than_usual(&self, candidate: Candidate, trial: &Trial) -> bool {
