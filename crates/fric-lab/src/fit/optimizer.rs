@@ -7,6 +7,7 @@ use nalgebra::storage::Owned;
 use nalgebra::{DMatrix, DVector, Dyn};
 
 use super::gram::Triangle;
+use super::vector::Coordinate;
 
 /// Relative reduction of the sum of squares at which a search ends in any case.
 const SQUARES_TOLERANCE: f64 = 1e-10;
@@ -50,8 +51,8 @@ impl Termination {
 /// Where a search has ended.
 #[derive(Clone, Debug)]
 pub struct Minimum {
-    /// The coordinates.
-    pub coordinates: Vec<f64>,
+    /// The values.
+    pub values: Vec<f64>,
     /// Those of the last evaluation, from which a short step led there.
     pub evaluated: Vec<f64>,
     /// Why there.
@@ -62,122 +63,225 @@ pub struct Minimum {
     pub squares: f64,
 }
 
-/// Minimises the sum of squares of `evaluate`, which gives `None` to stop.
+/// `JᵀJ`, `Jᵀr` and `rᵀr` by the values.
+pub type NormalEquations = (DMatrix<f64>, DVector<f64>, f64);
+
+/// Minimises the sum of squares of `evaluate`, which gives `None` to stop, over values in the ranges of their coordinates.
 ///
 /// `residual_count` is that of the long problem: δ standard errors away from the minimum, in any direction, the sum of squares is
 /// greater by δ² of so many parts of it. The search has arrived where δ is no more than `near_errors`; errors as they would be if
-/// residuals did not remember: true ones are no smaller. Within one standard error a step that `is_straight`, over which a coordinate and its
-/// parameter are all but proportional, is the last: what it misses the minimum by goes with its square, and is not evaluated any
-/// more.
+/// residuals did not remember: true ones are no smaller. Within one standard error a step over which all coordinates are
+/// [straight](Coordinate::is_straight) is the last: what it misses the minimum by goes with its square, and is not evaluated any more.
+///
+/// A coordinate that a step leads beyond its range stays at that end, and the search goes on with the others; at its minimum those have
+/// their turn again that would rather be inside (an active set; J. Nocedal, S. J. Wright, *Numerical Optimization*, 2006, ch. 16.7).
 pub fn minimize(
+    coordinates: &[Coordinate],
     start: &[f64],
     residual_count: usize,
     near_errors: f64,
-    is_straight: impl Fn(&[f64], &[f64]) -> bool,
-    evaluate: impl FnMut(&[f64]) -> Option<Triangle>,
+    evaluate: impl FnMut(&[f64]) -> Option<NormalEquations>,
 ) -> Minimum {
+    let places: Vec<f64> = coordinates.iter().zip(start).map(|(of, value)| of.place_of(*value)).collect();
+    let mut search =
+        Search { evaluate, coordinates, residual_count, near_errors, places, at: None, evaluation_count: 0 };
     if start.is_empty() {
-        let termination = Termination::NothingToFit;
-        return Minimum {
-            coordinates: Vec::new(),
-            evaluated: Vec::new(),
-            termination,
-            evaluation_count: 0,
-            squares: f64::NAN,
-        };
+        return search.minimum(Termination::NothingToFit, None);
     }
-    let mut adapter = Adapter {
-        evaluate,
-        coordinates: DVector::from_row_slice(start),
-        current: None,
-        is_straight,
-        residual_count,
-        near_errors,
-    };
-    adapter.update();
-    let (adapter, report) = LevenbergMarquardt::new()
-        .with_ftol(SQUARES_TOLERANCE)
-        .with_xtol(STEP_TOLERANCE)
-        .with_patience(if near_errors > 1.0 { PATIENCE_AFAR } else { PATIENCE })
-        .minimize(adapter);
-    let arrival = adapter.arrival();
-    let termination = match report.termination {
-        TerminationReason::ResidualsZero
-        | TerminationReason::Orthogonal
-        | TerminationReason::Converged { .. }
-        | TerminationReason::NoImprovementPossible(_) => Termination::Converged,
-        TerminationReason::LostPatience => Termination::OutOfPatience,
-        TerminationReason::User(_) if arrival.is_some() => Termination::Converged,
-        TerminationReason::User(_) => Termination::Stopped,
-        _ => Termination::Stalled,
-    };
-    let evaluated: Vec<f64> = adapter.coordinates.iter().copied().collect();
-    Minimum {
-        coordinates: arrival.unwrap_or_else(|| evaluated.clone()),
-        evaluated,
-        termination,
-        evaluation_count: report.number_of_evaluations,
-        squares: 2.0 * report.objective_function,
+    search.evaluate();
+    let patience = if near_errors > 1.0 { PATIENCE_AFAR } else { PATIENCE };
+    let most = patience * (start.len() + 1);
+    let mut held = vec![false; start.len()];
+    loop {
+        let free: Vec<usize> = (0..start.len()).filter(|place| !held[*place]).collect();
+        let (termination, arrival) = search.among(free, patience);
+        if search.evaluation_count > most {
+            return search.minimum(Termination::OutOfPatience, arrival);
+        }
+        let beyond: Vec<usize> = search.beyond().collect();
+        if !beyond.is_empty() {
+            for place in beyond {
+                held[place] = true;
+            }
+            search.keep_in();
+            continue;
+        }
+        let there = arrival.as_deref().unwrap_or(&search.places);
+        let inward: Vec<usize> =
+            (0..start.len()).filter(|place| held[*place] && search.gains_inside(*place, there)).collect();
+        if termination != Termination::Converged || inward.is_empty() {
+            return search.minimum(termination, arrival);
+        }
+        for place in inward {
+            held[place] = false;
+        }
+        if let Some(arrival) = arrival.filter(|arrival| *arrival != search.places) {
+            search.places = arrival;
+            search.evaluate();
+        }
     }
 }
 
-struct Adapter<E, S> {
+/// A search with where it is.
+struct Search<'a, E> {
     evaluate: E,
-    coordinates: DVector<f64>,
-    current: Option<Triangle>,
+    coordinates: &'a [Coordinate],
     residual_count: usize,
     near_errors: f64,
-    is_straight: S,
+    /// As a step led there: beyond the ends perhaps, where the values are those of the ends.
+    places: Vec<f64>,
+    /// By the coordinates; `None` when stopped.
+    at: Option<NormalEquations>,
+    evaluation_count: usize,
 }
 
-impl<E: FnMut(&[f64]) -> Option<Triangle>, S: Fn(&[f64], &[f64]) -> bool> Adapter<E, S> {
-    fn update(&mut self) {
-        self.current = (self.evaluate)(self.coordinates.as_slice());
+impl<E: FnMut(&[f64]) -> Option<NormalEquations>> Search<'_, E> {
+    fn values(&self, places: &[f64]) -> Vec<f64> {
+        self.coordinates.iter().zip(places).map(|(of, place)| of.value_at(of.kept_in(*place)).0).collect()
+    }
+
+    fn evaluate(&mut self) {
+        let values = self.values(&self.places);
+        self.evaluation_count += 1;
+        self.at = (self.evaluate)(&values).map(|(mut matrix, mut gradient, squares)| {
+            for (row, (of, place)) in self.coordinates.iter().zip(&self.places).enumerate() {
+                let (_, slope) = of.value_at(of.kept_in(*place));
+                matrix.row_mut(row).scale_mut(slope);
+                matrix.column_mut(row).scale_mut(slope);
+                gradient[row] *= slope;
+            }
+            (matrix, gradient, squares)
+        });
+    }
+
+    /// Which coordinates are beyond their ends.
+    fn beyond(&self) -> impl Iterator<Item = usize> {
+        let all = self.coordinates.iter().zip(&self.places).enumerate();
+        all.filter(|(_, (of, place))| of.kept_in(**place).to_bits() != place.to_bits()).map(|(index, _)| index)
+    }
+
+    fn keep_in(&mut self) {
+        let all = self.coordinates.iter().zip(&mut self.places);
+        all.for_each(|(of, place)| *place = of.kept_in(*place));
+    }
+
+    /// Whether a coordinate at an end of its range has something to gain inside, at a place near by.
+    fn gains_inside(&self, index: usize, there: &[f64]) -> bool {
+        let Some((matrix, gradient, squares)) = &self.at else { return false };
+        let ways = there.iter().zip(&self.places).map(|(there, here)| there - here);
+        let slope = gradient[index] + matrix.row(index).iter().zip(ways).map(|(entry, way)| entry * way).sum::<f64>();
+        let (here, curvature) = (self.places[index], matrix[(index, index)]);
+        let is_inward = self.coordinates[index].kept_in(here - slope / curvature).to_bits() != here.to_bits();
+        #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
+        let errors_square = slope * slope / curvature / squares * self.residual_count as f64;
+        is_inward && errors_square > self.near_errors * self.near_errors
+    }
+
+    /// Searches among some of the coordinates, from here: why it has ended, and the minimum where it is a short step off.
+    fn among(&mut self, free: Vec<usize>, patience: usize) -> (Termination, Option<Vec<f64>>) {
+        if free.is_empty() {
+            let is_stopped = self.at.is_none();
+            return (if is_stopped { Termination::Stopped } else { Termination::Converged }, None);
+        }
+        let mut adapter = Adapter { search: self, free, triangle: None };
+        adapter.reduce();
+        let (adapter, report) = LevenbergMarquardt::new()
+            .with_ftol(SQUARES_TOLERANCE)
+            .with_xtol(STEP_TOLERANCE)
+            .with_patience(patience)
+            .minimize(adapter);
+        let arrival = adapter.arrival();
+        let termination = match report.termination {
+            TerminationReason::ResidualsZero
+            | TerminationReason::Orthogonal
+            | TerminationReason::Converged { .. }
+            | TerminationReason::NoImprovementPossible(_) => Termination::Converged,
+            TerminationReason::LostPatience => Termination::OutOfPatience,
+            TerminationReason::User(_) if arrival.is_some() => Termination::Converged,
+            TerminationReason::User(_) => Termination::Stopped,
+            _ => Termination::Stalled,
+        };
+        (termination, arrival)
+    }
+
+    fn minimum(&self, termination: Termination, arrival: Option<Vec<f64>>) -> Minimum {
+        let evaluated = self.values(&self.places);
+        Minimum {
+            values: arrival.map_or_else(|| evaluated.clone(), |places| self.values(&places)),
+            evaluated,
+            termination,
+            evaluation_count: self.evaluation_count,
+            squares: self.at.as_ref().map_or(f64::NAN, |(_, _, squares)| *squares),
+        }
+    }
+}
+
+/// A search among some of its coordinates.
+struct Adapter<'s, 'a, E> {
+    search: &'s mut Search<'a, E>,
+    free: Vec<usize>,
+    triangle: Option<Triangle>,
+}
+
+impl<E: FnMut(&[f64]) -> Option<NormalEquations>> Adapter<'_, '_, E> {
+    fn reduce(&mut self) {
+        self.triangle = self.search.at.as_ref().map(|(matrix, gradient, squares)| {
+            let matrix = matrix.select_rows(&self.free).select_columns(&self.free);
+            Triangle::new(&matrix, &gradient.select_rows(&self.free), *squares)
+        });
+    }
+
+    /// All places with those that vary.
+    fn with(&self, free: impl IntoIterator<Item = f64>) -> Vec<f64> {
+        let mut places = self.search.places.clone();
+        self.free.iter().zip(free).for_each(|(index, place)| places[*index] = place);
+        places
     }
 
     /// The minimum where it is near, or here where hardly anything is to be gained; `None` where it is far.
     fn arrival(&self) -> Option<Vec<f64>> {
-        let triangle = self.current.as_ref()?;
+        let (search, triangle) = (&*self.search, self.triangle.as_ref()?);
         #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
-        let errors = (triangle.reducible_ratio() * self.residual_count as f64).sqrt();
-        let here = self.coordinates.as_slice();
+        let errors = (triangle.reducible_ratio() * search.residual_count as f64).sqrt();
         let step = triangle.step().filter(|_| errors <= 1.0);
-        let there = step.map(|step| here.iter().zip(step).map(|(coordinate, step)| coordinate - step).collect());
-        let there = there.filter(|there: &Vec<f64>| (self.is_straight)(here, there));
-        there.or_else(|| (errors <= self.near_errors).then(|| here.to_vec()))
+        let there = step.map(|step| self.with(self.params().iter().zip(step).map(|(place, step)| place - step)));
+        let is_near = |there: &Vec<f64>| {
+            let mut all = search.coordinates.iter().zip(&search.places).zip(there);
+            all.all(|((of, here), there)| {
+                of.kept_in(*there).to_bits() == there.to_bits() && of.is_straight(*here, *there)
+            })
+        };
+        there.filter(is_near).or_else(|| (errors <= search.near_errors).then(|| search.places.clone()))
     }
 }
 
-impl<E, S> LeastSquaresProblem<f64, Dyn, Dyn> for Adapter<E, S>
-where
-    E: FnMut(&[f64]) -> Option<Triangle>,
-    S: Fn(&[f64], &[f64]) -> bool,
-{
+impl<E: FnMut(&[f64]) -> Option<NormalEquations>> LeastSquaresProblem<f64, Dyn, Dyn> for Adapter<'_, '_, E> {
     type ResidualStorage = Owned<f64, Dyn>;
     type JacobianStorage = Owned<f64, Dyn, Dyn>;
     type ParameterStorage = Owned<f64, Dyn>;
 
-    fn set_params(&mut self, coordinates: &DVector<f64>) {
-        if self.coordinates != *coordinates {
-            self.coordinates.copy_from(coordinates);
-            self.update();
+    fn set_params(&mut self, free: &DVector<f64>) {
+        if self.params() != *free {
+            self.search.places = self.with(free.iter().copied());
+            self.search.evaluate();
+            self.reduce();
         }
     }
 
     fn params(&self) -> DVector<f64> {
-        self.coordinates.clone()
+        DVector::from_iterator(self.free.len(), self.free.iter().map(|index| self.search.places[*index]))
     }
 
     fn residuals(&self) -> Option<DVector<f64>> {
-        self.current.as_ref().map(|triangle| DVector::from_row_slice(triangle.residuals.as_slice()))
+        self.triangle.as_ref().map(|triangle| DVector::from_row_slice(triangle.residuals.as_slice()))
     }
 
-    /// None where the search has arrived: that ends it.
+    /// None where the search has arrived, or has left the range of a coordinate: that ends it.
     fn jacobian(&self) -> Option<DMatrix<f64>> {
-        if self.arrival().is_some() {
+        if self.arrival().is_some() || self.search.beyond().next().is_some() {
             return None;
         }
-        let jacobian = &self.current.as_ref()?.jacobian;
+        let jacobian = &self.triangle.as_ref()?.jacobian;
         Some(DMatrix::from_column_slice(jacobian.nrows(), jacobian.ncols(), jacobian.as_slice()))
     }
 }

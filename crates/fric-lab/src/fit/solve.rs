@@ -3,7 +3,6 @@
 use fric_core::parameters::Values;
 use nalgebra::DMatrix;
 
-use super::gram::{Gram, Triangle};
 use super::optimizer::{self, Minimum, Termination};
 use super::problem::{Comparison, Loss, Member, Problem};
 use super::report::OpenCombination;
@@ -66,9 +65,26 @@ pub struct Solution {
     pub evaluation_count: usize,
 }
 
-/// Solves a problem from the starts given, the most promising first. `standings` of its samples are updated with the
-/// outliers.
+/// Solves a problem from the starts given, the most promising first, and holds what the samples do not determine. `standings` of its
+/// samples are updated with the outliers.
 pub fn solve(
+    problem: &mut Problem<'_>,
+    starts: Vec<Vec<Values>>,
+    given: &[Values],
+    cycle_s: f64,
+    weighing: Weighing,
+    standings: &mut [Standing],
+) -> Solution {
+    let mut solution = settle(problem, starts, given, cycle_s, weighing, standings);
+    solution.hold_undetermined(problem, given, cycle_s);
+    if matches!(problem.comparison, Comparison::Forces) && !solution.unknowns.is_empty() {
+        solution.covariance = reported_covariance(problem, &solution.values);
+    }
+    solution
+}
+
+/// The same with all varied, determined or not.
+pub(super) fn settle(
     problem: &mut Problem<'_>,
     starts: Vec<Vec<Values>>,
     given: &[Values],
@@ -101,10 +117,6 @@ pub fn solve(
             }
             solution.search_on(problem, cycle_s);
         }
-    }
-    solution.hold_undetermined(problem, given, cycle_s);
-    if matches!(problem.comparison, Comparison::Forces) && !solution.unknowns.is_empty() {
-        solution.covariance = reported_covariance(problem, &solution.values);
     }
     solution
 }
@@ -157,43 +169,20 @@ pub fn search_near(problem: &Problem<'_>, start: &[Values], cycle_s: f64, near_e
     let unknowns = unknowns(problem);
     let coordinates: Vec<Coordinate> =
         unknowns.iter().map(|unknown| Coordinate::of(&unknown.parameter, cycle_s)).collect();
-    let at_start: Vec<f64> = unknowns
-        .iter()
-        .zip(&coordinates)
-        .map(|(unknown, coordinate)| {
-            start.get(unknown.member).map_or(f64::NAN, |values| coordinate.place_of(values[unknown.parameter.place()]))
-        })
-        .collect();
-    let values_at = |places: &[f64]| -> (Vec<Values>, Vec<f64>) {
-        let (numbers, slopes): (Vec<f64>, Vec<f64>) =
-            places.iter().zip(&coordinates).map(|(place, coordinate)| coordinate.value_at(*place)).unzip();
-        let mut numbers = numbers.into_iter();
+    let number =
+        |unknown: &Unknown| start.get(unknown.member).map_or(f64::NAN, |values| values[unknown.parameter.place()]);
+    let values_of = |numbers: &[f64]| -> Vec<Values> {
+        let mut numbers = numbers.iter().copied();
         let members = problem.members.iter().zip(start);
-        (
-            members
-                .map(|(member, values)| with(values, &member.free, numbers.by_ref().take(member.free.len())))
-                .collect(),
-            slopes,
-        )
+        members.map(|(member, values)| with(values, &member.free, numbers.by_ref().take(member.free.len()))).collect()
     };
-    let is_straight = |from: &[f64], to: &[f64]| {
-        let mut of_each = coordinates.iter().zip(from).zip(to);
-        of_each.all(|((coordinate, from), to)| coordinate.is_straight(*from, *to))
-    };
-    let minimum = optimizer::minimize(&at_start, problem.residual_count(), near_errors, is_straight, |places| {
-        let (values, slopes) = values_at(places);
-        let gram: Gram = problem.gram(&values)?;
-        let (mut matrix, mut gradient, squares) = gram.normal_equations();
-        for (row, slope) in slopes.iter().enumerate() {
-            matrix.row_mut(row).scale_mut(*slope);
-            matrix.column_mut(row).scale_mut(*slope);
-            gradient[row] *= slope;
-        }
-        Some(Triangle::new(&matrix, &gradient, squares))
+    let from: Vec<f64> = unknowns.iter().map(number).collect();
+    let minimum = optimizer::minimize(&coordinates, &from, problem.residual_count(), near_errors, |numbers| {
+        problem.gram(&values_of(numbers)).map(|gram| gram.normal_equations())
     });
-    let (values, _) = values_at(&minimum.coordinates);
-    if minimum.coordinates != minimum.evaluated {
-        problem.step(&values_at(&minimum.evaluated).0, &values);
+    let values = values_of(&minimum.values);
+    if minimum.values != minimum.evaluated {
+        problem.step(&values_of(&minimum.evaluated), &values);
     }
     (values, minimum)
 }

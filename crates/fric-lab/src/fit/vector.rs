@@ -99,43 +99,32 @@ impl PartialEq for Parameter {
 
 impl Eq for Parameter {}
 
-/// The coordinate in which a parameter is varied.
+/// The coordinate in which a number is varied: itself, or its logarithm where its range is one of orders of magnitude.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coordinate {
     min: f64,
     max: f64,
-    shape: Shape,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Shape {
-    Logarithmic,
-    Plain,
-    Bounded,
+    is_logarithmic: bool,
 }
 
 /// A range of more than this many is one of orders of magnitude.
 const WIDE_RATIO: f64 = 1e3;
-/// Bounds of both signs beyond this are never met, in the parameter's unit.
-const FAR: f64 = 1e3;
-/// Starts keep this share of a range's width away from its ends, where the coordinate has no slope.
-const MARGIN_RATIO: f64 = 1e-9;
+/// Starts keep this share of a range's width away from its ends, and a search goes no nearer than that share: at an end itself an effect
+/// may not act, and have no slope.
+const START_RATIO: f64 = 1e-9;
+const END_RATIO: f64 = 1e-10;
 /// How far slopes may part over a step that counts as straight: a thousandth of a standard error is too little to matter.
 const STRAIGHT_RATIO: f64 = 1e-3;
 
 impl Coordinate {
+    /// Of a number that may be anything.
+    pub const UNBOUNDED: Self = Self { min: f64::NEG_INFINITY, max: f64::INFINITY, is_logarithmic: false };
+
     /// Of a parameter at a cycle time.
     pub fn of(parameter: &Parameter, cycle_s: f64) -> Self {
         let ParameterRow { min, max, .. } = *parameter.row;
         let (min, max) = if parameter.place == DELAY { delay_range_s(cycle_s) } else { (min, max) };
-        let shape = if min > 0.0 && max / min > WIDE_RATIO {
-            Shape::Logarithmic
-        } else if min < -FAR && max > FAR {
-            Shape::Plain
-        } else {
-            Shape::Bounded
-        };
-        Self { min, max, shape }
+        Self { min, max, is_logarithmic: min > 0.0 && max / min > WIDE_RATIO }
     }
 
     /// Least and greatest value.
@@ -143,23 +132,30 @@ impl Coordinate {
         (self.min, self.max)
     }
 
+    /// A share of the range's width; 0 where it has none.
+    fn margin(self, ratio: f64) -> f64 {
+        let width = self.max - self.min;
+        if self.is_logarithmic || width.is_infinite() { 0.0 } else { ratio * width }
+    }
+
     /// The end of the range that a search was driven to: nearer than any start is, or than `near`.
     pub fn bound_at(self, value: f64, near: f64) -> Option<f64> {
         let bound = if value - self.min < self.max - value { self.min } else { self.max };
-        let margin = if self.shape == Shape::Logarithmic { 0.0 } else { 0.5 * MARGIN_RATIO * (self.max - self.min) };
-        ((value - bound).abs() <= margin.max(near)).then_some(bound)
+        ((value - bound).abs() <= self.margin(0.5 * START_RATIO).max(near)).then_some(bound)
     }
 
     /// The coordinate of a value; one out of range is moved into it.
     pub fn place_of(self, value: f64) -> f64 {
-        match self.shape {
-            Shape::Logarithmic => value.clamp(self.min, self.max).ln(),
-            Shape::Plain => value.clamp(self.min, self.max),
-            Shape::Bounded => {
-                let share = ((value - self.min) / (self.max - self.min)).clamp(MARGIN_RATIO, 1.0 - MARGIN_RATIO);
-                2.0 * share.sqrt().asin()
-            }
-        }
+        let margin = self.margin(START_RATIO);
+        let value = value.clamp(self.min + margin, self.max - margin);
+        if self.is_logarithmic { value.ln() } else { value }
+    }
+
+    /// The nearest place that a search may go to.
+    pub fn kept_in(self, place: f64) -> f64 {
+        let margin = self.margin(END_RATIO);
+        let (least, greatest) = (self.min + margin, self.max - margin);
+        if self.is_logarithmic { place.clamp(least.ln(), greatest.ln()) } else { place.clamp(least, greatest) }
     }
 
     /// Whether the value follows the coordinate in proportion from one place to another, to [`STRAIGHT_RATIO`].
@@ -169,18 +165,12 @@ impl Coordinate {
     }
 
     /// The value at a coordinate, and its slope.
-    pub fn value_at(self, coordinate: f64) -> (f64, f64) {
-        match self.shape {
-            Shape::Logarithmic => {
-                let value = coordinate.exp().clamp(self.min, self.max);
-                (value, value)
-            }
-            Shape::Plain => (coordinate.clamp(self.min, self.max), 1.0),
-            Shape::Bounded => {
-                let (sin, cos) = (0.5 * coordinate).sin_cos();
-                let width = self.max - self.min;
-                (self.min + width * sin * sin, width * sin * cos)
-            }
+    pub fn value_at(self, place: f64) -> (f64, f64) {
+        if self.is_logarithmic {
+            let value = place.exp().clamp(self.min, self.max);
+            (value, value)
+        } else {
+            (place.clamp(self.min, self.max), 1.0)
         }
     }
 }
@@ -204,23 +194,21 @@ mod tests {
             let coordinate = Coordinate::of(&parameter, 0.001);
             for share in [1e-4, 0.01, 0.3, 0.8] {
                 let (min, max) = (coordinate.min, coordinate.max);
-                let value = if coordinate.shape == Shape::Logarithmic {
-                    min * (max / min).powf(share)
-                } else {
-                    min + share * (max - min)
-                };
+                let value =
+                    if coordinate.is_logarithmic { min * (max / min).powf(share) } else { min + share * (max - min) };
                 let place = coordinate.place_of(value);
                 let (back, slope) = coordinate.value_at(place);
                 assert!(
                     (back - value).abs() <= 1e-9 * (max - min).min(value.abs().max(1.0)),
                     "{parameter}: {value} {back}"
                 );
+                assert_eq!(coordinate.kept_in(place).to_bits(), place.to_bits());
                 let h = 1e-6 * place.abs().max(1e-3);
                 let numeric = (coordinate.value_at(place + h).0 - coordinate.value_at(place - h).0) / (2.0 * h);
                 assert!((slope - numeric).abs() <= 1e-5 * numeric.abs(), "{parameter}: {slope} {numeric}");
             }
             for wild in [-1e9, -1.0, 0.0, 17.3, 1e4] {
-                let (value, _) = coordinate.value_at(wild);
+                let (value, _) = coordinate.value_at(coordinate.kept_in(wild));
                 assert!((coordinate.min..=coordinate.max).contains(&value), "{parameter}");
             }
         }
@@ -229,7 +217,7 @@ mod tests {
     #[test]
     fn a_search_is_at_a_bound_where_no_start_is() {
         let mu = Coordinate::of(&Parameter::named("mu").unwrap(), 0.001);
-        assert_eq!(mu.bound_at(1.65e-40, 0.0), Some(0.0));
+        assert_eq!(mu.bound_at(mu.value_at(mu.kept_in(-1.0)).0, 0.0), Some(0.0));
         assert_eq!(mu.bound_at(mu.value_at(mu.place_of(0.0)).0, 0.0), None);
         assert_eq!(mu.bound_at(1e-6, 1e-5), Some(0.0));
         assert_eq!(mu.bound_at(0.9, 0.0), Some(0.9));

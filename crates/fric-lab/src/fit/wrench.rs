@@ -24,7 +24,7 @@ use super::problem::{Comparison, Loss, Member, Problem};
 use super::record::{CableRecord, Measurements};
 use super::report::{OpenCombination, WrenchFit};
 use super::selection::{self, Standing};
-use super::solve::{Solution, Unknown, contradicts, search, solve};
+use super::solve::{Solution, Unknown, contradicts, search, settle, solve};
 use super::split::split;
 use super::undetermined::{reported_covariance, vagueness};
 use super::vector::Parameter;
@@ -88,15 +88,14 @@ impl ReferenceWrenches {
 pub struct FirstModel {
     /// Values of each cable.
     pub values: Vec<Values>,
-    /// What was varied of each: what acts, as far as the samples determine it.
+    /// What was varied of each: what acts.
     pub free: Vec<Vec<Parameter>>,
-    /// What acts and the samples do not determine, at its given values.
-    pub held: Vec<Vec<Parameter>>,
     /// Standing of each sample for all cables together.
     pub standings: Vec<Standing>,
 }
 
-/// Fits what acts in the given model to all samples; offsets stay as given, for they are seen in combinations only.
+/// Fits what acts in the given model to all samples; offsets stay as given, for they are seen in combinations only. What the samples determine is not
+/// asked: a model that lacks something does not know.
 pub fn first_model(
     measurements: &Measurements<'_>,
     references: &ReferenceWrenches,
@@ -109,17 +108,10 @@ pub fn first_model(
     let case = Case { records, structure, references, options: &options, progress };
     let is_wanted =
         |record: &CableRecord<'_>, of: &Parameter| of.place() != OFFSET && acts(of, &record.params.values());
-    let Found { solution, standings, .. } = case.without_offsets(&|_| true, &is_wanted);
-    let is_known = |member: usize, of: &Parameter| {
-        let unknown = Unknown { member, parameter: *of };
-        !solution.undetermined.contains(&unknown)
-    };
-    let acting = |(member, record): (usize, &CableRecord<'_>)| -> (Vec<Parameter>, Vec<Parameter>) {
-        let wanted = options.free(record.params).into_iter().filter(|of| is_wanted(record, of));
-        wanted.partition(|of| is_known(member, of))
-    };
-    let (free, held) = case.records.iter().enumerate().map(acting).unzip();
-    FirstModel { values: solution.values, free, held, standings }
+    let Prepared { mut problem, starts, mut standings } = case.prepared(&|_| true, &is_wanted);
+    let solution = settle(&mut problem, starts, &case.given(), case.cycle_s(), options.weighing, &mut standings);
+    let free = problem.members.into_iter().map(|member| member.free).collect();
+    FirstModel { values: solution.values, free, standings }
 }
 
 /// What is fitted to what.
@@ -130,6 +122,13 @@ struct Case<'a> {
     references: &'a ReferenceWrenches,
     options: &'a FitOptions,
     progress: &'a Progress,
+}
+
+/// What is to be searched.
+struct Prepared<'a> {
+    problem: Problem<'a>,
+    starts: Vec<Vec<Values>>,
+    standings: Vec<Standing>,
 }
 
 /// What was found.
@@ -164,13 +163,17 @@ impl<'a> Case<'a> {
         after
     }
 
-    /// The parameters by the samples that count, those wanted, with the offsets held.
-    fn without_offsets(
+    fn cycle_s(&self) -> f64 {
+        self.records.first().map_or(f64::NAN, |record| record.cycle_s)
+    }
+
+    /// The problem of the samples that count and the parameters wanted, with where to begin.
+    fn prepared(
         &self,
         counts: &dyn Fn(usize) -> bool,
         is_wanted: &dyn Fn(&CableRecord<'_>, &Parameter) -> bool,
-    ) -> Found<'a> {
-        let Self { structure, references, options, progress, .. } = *self;
+    ) -> Prepared<'a> {
+        let Self { structure, references, progress, .. } = *self;
         let outside = references.outside.as_slice();
         let given = self.given();
         let has_wrench =
@@ -198,26 +201,24 @@ impl<'a> Case<'a> {
             stop: progress.stop_flag(),
             seat: None,
         };
-        let cycle_s = self.records.first().map_or(f64::NAN, |record| record.cycle_s);
-        let starts = start::starts(&problem, &given, cycle_s);
+        let starts = start::starts(&problem, &given, self.cycle_s());
         for standings in &mut of_cables {
             leave_out_warm_up(&problem, &starts, standings);
         }
-        let mut standings = together(&of_cables);
+        let standings = together(&of_cables);
         problem.used = used(&standings);
-        let starts = with_newcomers(&problem, starts, &given, cycle_s);
-        let solution = solve(&mut problem, starts, &given, cycle_s, options.weighing, &mut standings);
-        Found { problem, solution, standings }
+        let starts = with_newcomers(&problem, starts, &given, self.cycle_s());
+        Prepared { problem, starts, standings }
     }
 
     /// The parameters by the samples that count.
     fn identified(&self, counts: &dyn Fn(usize) -> bool) -> Found<'a> {
         let Self { options, progress, .. } = *self;
-        let given = self.given();
-        let cycle_s = self.records.first().map_or(f64::NAN, |record| record.cycle_s);
+        let (given, cycle_s) = (self.given(), self.cycle_s());
         // Friction first, then the offsets with it; all once to learn how the six deviations scatter, and once with that.
-        let Found { mut problem, mut solution, mut standings } =
-            self.without_offsets(counts, &|_, parameter| parameter.place() != OFFSET);
+        let Prepared { mut problem, starts, mut standings } =
+            self.prepared(counts, &|_, parameter| parameter.place() != OFFSET);
+        let mut solution = solve(&mut problem, starts, &given, cycle_s, options.weighing, &mut standings);
         let mut earlier = Earlier::default();
         match self.offsets(&problem, &solution, cycle_s) {
             Offsets::Contradicted => {
@@ -293,7 +294,13 @@ impl<'a> Case<'a> {
         let forces = problem.forces(values).unwrap_or_default();
         let count = problem.members.len();
         let mut errors = [WrenchErrors::default(), WrenchErrors::default()];
-        for (cycle, outside) in self.references.outside.iter().enumerate().filter(|(cycle, _)| counts(*cycle)) {
+        for (cycle, outside) in self
+            .references
+            .outside
+            .iter()
+            .enumerate()
+            .filter(|(cycle, _)| counts(*cycle) && self.references.measured[*cycle])
+        {
             let mut sums = [*outside, *outside];
             let columns = self.structure.iter().skip(cycle * count).take(count);
             for ((member, forces), column) in problem.members.iter().zip(&forces).zip(columns) {

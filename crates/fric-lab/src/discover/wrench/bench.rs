@@ -6,17 +6,16 @@ use fric_core::parameters::Values;
 use nalgebra::{DMatrix, Matrix6, Vector6};
 
 use super::geometry::{Changes, Description, Geometry};
-use crate::fit::engine::{
-    Comparison, Coordinate, Gram, Loss, Member, Problem, Scores, Triangle, inverse_of_normal, minimize,
-};
+use crate::fit::engine::{Comparison, Coordinate, Gram, Loss, Member, Problem, Scores, inverse_of_normal, minimize};
 use crate::fit::noise::white_noise;
 use crate::fit::split::Block;
 use crate::fit::{CableRecord, Parameter};
 use crate::replay::Deviation;
 
-/// A number of a geometry is no further off than some such share of its size: weighs as one more deviation, so that a direction which the
-/// samples say nothing of stays.
+/// A number of a geometry is no further off than some such share of its size, and the friction than such a share of what is given. Each weighs as one
+/// more deviation, so that what the samples say nothing of stays.
 const GEOMETRY_RATIO: f64 = 0.1;
+const FRICTION_RATIO: f64 = 1.0;
 
 /// A model of all cables.
 #[derive(Clone, Debug)]
@@ -62,16 +61,6 @@ impl Model {
                 self.changes.get(of).and_then(|numbers| numbers.get(*place)).copied().unwrap_or(0.0)
             }
         }
-    }
-
-    /// The same without what is at the least value that it can have: a search has no slope there.
-    fn without_bounded(&self) -> Self {
-        let mut searched = self.clone();
-        for (cable, free) in searched.free.iter_mut().enumerate() {
-            free.retain(|of| self.number(&Unknown::Own(cable, *of)) > of.row().min);
-        }
-        searched.alike.retain(|of| self.number(&Unknown::Alike(*of)) > of.row().min);
-        searched
     }
 
     /// The same with other numbers, in the order of the unknowns.
@@ -220,83 +209,41 @@ impl<'a> Bench<'a> {
             }
         });
         for (place, unknown) in unknowns.iter().enumerate() {
-            if let Unknown::Geometry(of, _) = unknown {
-                let scale = GEOMETRY_RATIO * self.description.size(*of);
-                let mut row = vec![0.0; unknowns.len() + 1];
-                row.iter_mut().skip(place).take(1).for_each(|entry| *entry = scale.recip());
-                row.last_mut().into_iter().for_each(|last| *last = model.number(unknown) / scale);
-                gram.add(&row);
-            }
+            let Some((given, scale)) = self.expected(unknown) else { continue };
+            let mut row = vec![0.0; unknowns.len() + 1];
+            row.iter_mut().skip(place).take(1).for_each(|entry| *entry = scale.recip());
+            row.last_mut().into_iter().for_each(|last| *last = (model.number(unknown) - given) / scale);
+            gram.add(&row);
         }
         completed.then_some(gram)
     }
 
+    /// What is expected of a number before the samples, and how far off it may be; `None` of an effect.
+    fn expected(&self, unknown: &Unknown) -> Option<(f64, f64)> {
+        match unknown {
+            Unknown::Geometry(of, _) => Some((0.0, GEOMETRY_RATIO * self.description.size(*of))),
+            Unknown::Own(cable, of) if of.effect().is_none() => {
+                let given = self.records.get(*cable)?.params.values()[of.place()];
+                Some((given, FRICTION_RATIO * given.abs())).filter(|(_, scale)| *scale > 0.0)
+            }
+            Unknown::Own(..) | Unknown::Alike(_) => None,
+        }
+    }
+
     /// Fits a model to the samples learned from, as near to its minimum as asked for, in standard errors.
     pub fn fit(&self, model: &Model, near_errors: f64) -> Trial {
-        let whole = self.off_bounds(model);
-        let model = &whole.without_bounded();
         let unknowns = model.unknowns();
         let cycle_s = self.records.first().map_or(f64::NAN, |record| record.cycle_s);
         let coordinate = |unknown: &Unknown| match unknown {
-            Unknown::Own(_, of) | Unknown::Alike(of) => Some(Coordinate::of(of, cycle_s)),
-            Unknown::Geometry(..) => None,
+            Unknown::Own(_, of) | Unknown::Alike(of) => Coordinate::of(of, cycle_s),
+            Unknown::Geometry(..) => Coordinate::UNBOUNDED,
         };
-        let coordinates: Vec<Option<Coordinate>> = unknowns.iter().map(coordinate).collect();
-        let places = coordinates.iter().zip(&unknowns).map(|(coordinate, unknown)| {
-            let number = model.number(unknown);
-            coordinate.map_or(number, |coordinate| coordinate.place_of(number))
+        let coordinates: Vec<Coordinate> = unknowns.iter().map(coordinate).collect();
+        let start: Vec<f64> = unknowns.iter().map(|unknown| model.number(unknown)).collect();
+        let minimum = minimize(&coordinates, &start, 6 * self.count(false), near_errors, |numbers| {
+            self.gram(&model.moved(numbers), None).map(|gram| gram.normal_equations())
         });
-        let start: Vec<f64> = places.collect();
-        let at = |places: &[f64]| -> (Model, Vec<f64>) {
-            let numbers = places
-                .iter()
-                .zip(&coordinates)
-                .map(|(place, coordinate)| coordinate.map_or((*place, 1.0), |coordinate| coordinate.value_at(*place)));
-            let (numbers, slopes): (Vec<f64>, Vec<f64>) = numbers.unzip();
-            (model.moved(&numbers), slopes)
-        };
-        // What a geometry's numbers change is as good as linear in them.
-        let is_straight = |from: &[f64], to: &[f64]| {
-            let mut of_each = coordinates.iter().zip(from).zip(to);
-            of_each
-                .all(|((coordinate, from), to)| coordinate.is_none_or(|coordinate| coordinate.is_straight(*from, *to)))
-        };
-        let minimum = minimize(&start, 6 * self.count(false), near_errors, is_straight, |places| {
-            let (model, slopes) = at(places);
-            let (mut matrix, mut gradient, squares) = self.gram(&model, None)?.normal_equations();
-            for (row, slope) in slopes.iter().enumerate() {
-                matrix.row_mut(row).scale_mut(*slope);
-                matrix.column_mut(row).scale_mut(*slope);
-                gradient[row] *= slope;
-            }
-            Some(Triangle::new(&matrix, &gradient, squares))
-        });
-        let Model { values, changes, .. } = at(&minimum.coordinates).0;
-        self.judged(Model { values, changes, ..whole })
-    }
-
-    /// Takes parameters away from the least values they can have, where the coordinates of a search have no slope: to the minimum, were
-    /// the forces linear in all that varies.
-    fn off_bounds(&self, model: &Model) -> Model {
-        let unknowns = model.unknowns();
-        let least = |unknown: &Unknown| match unknown {
-            Unknown::Own(_, of) | Unknown::Alike(of) => Some(of.row()).filter(|row| model.number(unknown) <= row.min),
-            Unknown::Geometry(..) => None,
-        };
-        if unknowns.iter().all(|unknown| least(unknown).is_none()) {
-            return model.clone();
-        }
-        let step = self.gram(model, None).and_then(|gram| {
-            let (matrix, gradient, _) = gram.normal_equations();
-            Some(inverse_of_normal(&matrix)? * gradient)
-        });
-        let Some(step) = step else { return model.clone() };
-        let number = |(unknown, step): (&Unknown, &f64)| {
-            let number = model.number(unknown);
-            least(unknown).map_or(number, |row| (number - step).clamp(row.min, row.max))
-        };
-        let numbers: Vec<f64> = unknowns.iter().zip(&step).map(number).collect();
-        model.moved(&numbers)
+        self.judged(model.moved(&minimum.values))
     }
 
     /// A model with its sums of squares.

@@ -120,7 +120,7 @@ pub fn discover_wrench(measurements: &Measurements<'_>, progress: &Progress) -> 
     };
     let given = bench::Model { values: first.values, free: first.free, alike: Vec::new(), changes: Changes::new() };
     bench.whitening = whitening(&bench, &given).ok_or_else(too_short)?;
-    let mut base = bench.fit(&given, 0.1);
+    let base = bench.fit(&given, 0.1);
     let mut naming = Naming { trial: base.clone(), named: Vec::new(), tried: Vec::new() };
     for _ in 0..LOOKS {
         bench.whitening = whitening(&bench, &naming.trial.model).ok_or_else(too_short)?;
@@ -131,47 +131,29 @@ pub fn discover_wrench(measurements: &Measurements<'_>, progress: &Progress) -> 
         let before = naming.named.iter().map(|named| named.candidate).collect::<Vec<_>>();
         naming = search.run(&naming.named, &naming.trial.model);
         progress.finish_one();
-        let told = if naming.named.is_empty() { Vec::new() } else { told(&bench, &naming.trial.model, &first.held) };
-        if told.is_empty() && naming.named.iter().all(|named| before.contains(&named.candidate)) {
+        if naming.named.iter().all(|named| before.contains(&named.candidate)) {
             break;
-        }
-        if !told.is_empty() {
-            for model in [&mut base.model, &mut naming.trial.model] {
-                model.free.iter_mut().enumerate().for_each(|(cable, free)| {
-                    let own = told.iter().filter(|(of, _)| *of == cable).map(|(_, parameter)| *parameter);
-                    free.extend(own.filter(|of| !free.contains(of)).collect::<Vec<Parameter>>());
-                });
-            }
-            base = bench.fit(&base.model, 0.1);
         }
     }
     // As an identification does it, with all samples.
     let mut all = bench.clone();
     all.blocks.iter_mut().for_each(|block| block.held_out = false);
-    let fitted = all.fit(&naming.trial.model, 0.02);
+    let fitted = all.fit(&with_given(&all, &naming.trial.model), 0.02);
     let covariances = all.covariances(&fitted.model);
     Case { bench: &bench, base: &base, naming: &naming, fitted: &fitted, samples: engine::count(&first.standings) }
         .report(covariances.map(|[covariance, _]| covariance))
 }
 
-/// Which of the parameters that were held the samples determine, now that the model has what it lacked.
-fn told(bench: &Bench<'_>, model: &bench::Model, held: &[Vec<Parameter>]) -> Vec<(usize, Parameter)> {
-    let mut with_all = model.clone();
-    for (free, held) in with_all.free.iter_mut().zip(held) {
-        let missing: Vec<Parameter> = held.iter().copied().filter(|of| !free.contains(of)).collect();
-        free.extend(missing);
+/// A model with the given friction where the samples do not determine it, now that it has what it lacked.
+fn with_given(bench: &Bench<'_>, model: &bench::Model) -> bench::Model {
+    let (_, all) = bench.with_problem(model, bench.used(false), |problem| engine::vagueness(problem, &model.values));
+    let mut held = model.clone();
+    for (_, of) in all.into_iter().filter(|(vagueness, of)| *vagueness > 1.0 && of.parameter.effect().is_none()) {
+        let place = of.parameter.place();
+        held.free[of.member].retain(|free| *free != of.parameter);
+        held.values[of.member][place] = bench.records[of.member].params.values()[place];
     }
-    if with_all.free == model.free {
-        return Vec::new();
-    }
-    let trial = bench.fit(&with_all, 0.3);
-    let (_, all) =
-        bench.with_problem(&trial.model, bench.used(false), |problem| engine::vagueness(problem, &trial.model.values));
-    let is_told = |(vagueness, of): &(f64, engine::Unknown)| {
-        let is_new = !model.free.get(of.member).is_some_and(|free| free.contains(&of.parameter));
-        is_new && *vagueness <= 1.0 && held.get(of.member).is_some_and(|held| held.contains(&of.parameter))
-    };
-    all.into_iter().filter(is_told).map(|(_, of)| (of.member, of.parameter)).collect()
+    held
 }
 
 fn too_short() -> FitError {
