@@ -8,6 +8,8 @@ use super::record::{CableRecord, Measurements, Row};
 /// A log's reference is joined by lines where more than this share of its moving samples lies on the line of their neighbours. A
 /// reference of few digits at the rate of the cycle has less by chance; one with more than a third of that rate has less too.
 const LEAST_ON_LINE: f64 = 0.25;
+/// And where it bends so often while it moves, Hz: more seldom it is a motion made of lines, measured throughout and without noise.
+const LEAST_RATE_HZ: f64 = 10.0;
 /// What rounding bends a line, as a share of its steps, for the times, and of its value.
 const ROUNDING_OF_STEP: f64 = 1e-8;
 const ROUNDING_OF_VALUE: f64 = 8.0 * f64::EPSILON;
@@ -67,7 +69,12 @@ fn of_log(points: &[(f64, f64)]) -> Vec<bool> {
         let (before_n, after_n) = (at(place.checked_sub(1)), at(Some(place + 1)));
         *bend_n > 0.0 && (before_n.is_nan() || before_n < *bend_n) && (after_n.is_nan() || after_n <= *bend_n)
     };
-    bends_n.iter().enumerate().map(is_greatest).collect()
+    let measured: Vec<bool> = bends_n.iter().enumerate().map(is_greatest).collect();
+    let duration_s = points.first().zip(points.last()).map_or(0.0, |((first_s, _), (last_s, _))| last_s - first_s);
+    #[expect(clippy::cast_precision_loss, reason = "a count of cycles")]
+    let moving_s = duration_s * moving / points.len() as f64;
+    let count = measured.iter().fold(0.0, |count, measured| count + if *measured { 1.0 } else { 0.0 });
+    if count < LEAST_RATE_HZ * moving_s { vec![true; points.len()] } else { measured }
 }
 
 /// By how much the sample after one is off the line through it and the sample before, N; 0 within rounding.
@@ -134,6 +141,13 @@ mod tests {
                 cycles.len()
             );
         }
+    }
+
+    /// Lines and corners without noise, such as the acceleration of a motion with a steady jerk.
+    #[test]
+    fn a_motion_of_lines_is_measured_throughout() {
+        let corners = knots((0..22).map(|k| f64::from(k) * 0.25));
+        assert!(of_log(&joined(&corners)).iter().all(|measured| *measured));
     }
 
     #[test]

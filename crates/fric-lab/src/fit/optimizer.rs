@@ -112,13 +112,13 @@ pub fn minimize(
         if termination != Termination::Converged || inward.is_empty() {
             return search.minimum(termination, arrival);
         }
+        let mut from = arrival.unwrap_or_else(|| search.places.clone());
         for place in inward {
             held[place] = false;
+            from[place] = search.inside(place, &from);
         }
-        if let Some(arrival) = arrival.filter(|arrival| *arrival != search.places) {
-            search.places = arrival;
-            search.evaluate();
-        }
+        search.places = from;
+        search.evaluate();
     }
 }
 
@@ -165,16 +165,35 @@ impl<E: FnMut(&[f64]) -> Option<NormalEquations>> Search<'_, E> {
         all.for_each(|(of, place)| *place = of.kept_in(*place));
     }
 
-    /// Whether a coordinate at an end of its range has something to gain inside, at a place near by.
-    fn gains_inside(&self, index: usize, there: &[f64]) -> bool {
-        let Some((matrix, gradient, squares)) = &self.at else { return false };
+    /// Slope and curvature of half the sum of squares over a value at an end of its range, all else at a place near by.
+    fn bend(&self, index: usize, there: &[f64]) -> Option<(f64, f64)> {
+        let (matrix, gradient, _) = self.at.as_ref()?;
         let ways = there.iter().zip(&self.places).map(|(there, here)| there - here);
-        let slope = gradient[index] + matrix.row(index).iter().zip(ways).map(|(entry, way)| entry * way).sum::<f64>();
-        let (here, curvature) = (self.places[index], matrix[(index, index)]);
-        let is_inward = self.coordinates[index].kept_in(here - slope / curvature).to_bits() != here.to_bits();
+        let gradient =
+            gradient[index] + matrix.row(index).iter().zip(ways).map(|(entry, way)| entry * way).sum::<f64>();
+        let (_, slope) = self.coordinates[index].value_at(self.places[index]);
+        Some((gradient / slope, matrix[(index, index)] / (slope * slope)))
+    }
+
+    /// Whether a coordinate at an end of its range has something to gain inside.
+    fn gains_inside(&self, index: usize, there: &[f64]) -> bool {
+        let (Some((slope, curvature)), Some((_, _, squares))) = (self.bend(index, there), &self.at) else {
+            return false;
+        };
+        let here = self.places[index];
+        let is_inward = self.inside(index, there).to_bits() != here.to_bits();
         #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
         let errors_square = slope * slope / curvature / squares * self.residual_count as f64;
         is_inward && errors_square > self.near_errors * self.near_errors
+    }
+
+    /// Where the sum of squares would be least along a coordinate at an end of its range.
+    fn inside(&self, index: usize, there: &[f64]) -> f64 {
+        let (of, here) = (self.coordinates[index], self.places[index]);
+        let Some((slope, curvature)) = self.bend(index, there) else { return here };
+        let (value, (least, greatest)) = (of.value_at(here).0, of.range());
+        let outward = if value - least < greatest - value { slope >= 0.0 } else { slope <= 0.0 };
+        if outward { here } else { of.place_of(value - slope / curvature) }
     }
 
     /// Searches among some of the coordinates, from here: why it has ended, and the minimum where it is a short step off.

@@ -99,18 +99,28 @@ impl PartialEq for Parameter {
 
 impl Eq for Parameter {}
 
-/// The coordinate in which a number is varied: itself, or its logarithm where its range is one of orders of magnitude.
+/// The coordinate in which a number is varied: its logarithm where its range is one of orders of magnitude, an angle in any other range, in which a
+/// long step towards an end grows shorter, or itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coordinate {
     min: f64,
     max: f64,
-    is_logarithmic: bool,
+    shape: Shape,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Shape {
+    Logarithmic,
+    Plain,
+    Bounded,
 }
 
 /// A range of more than this many is one of orders of magnitude.
 const WIDE_RATIO: f64 = 1e3;
-/// Starts keep this share of a range's width away from its ends, and a search goes no nearer than that share: at an end itself an effect
-/// may not act, and have no slope.
+/// Bounds of both signs beyond this are never met, in the parameter's unit.
+const FAR: f64 = 1e3;
+/// Starts keep this share of a range's width away from its ends, and a search goes no nearer than that share: at an end itself the
+/// coordinate has no slope.
 const START_RATIO: f64 = 1e-9;
 const END_RATIO: f64 = 1e-10;
 /// How far slopes may part over a step that counts as straight: a thousandth of a standard error is too little to matter.
@@ -118,13 +128,20 @@ const STRAIGHT_RATIO: f64 = 1e-3;
 
 impl Coordinate {
     /// Of a number that may be anything.
-    pub const UNBOUNDED: Self = Self { min: f64::NEG_INFINITY, max: f64::INFINITY, is_logarithmic: false };
+    pub const UNBOUNDED: Self = Self { min: f64::NEG_INFINITY, max: f64::INFINITY, shape: Shape::Plain };
 
     /// Of a parameter at a cycle time.
     pub fn of(parameter: &Parameter, cycle_s: f64) -> Self {
         let ParameterRow { min, max, .. } = *parameter.row;
         let (min, max) = if parameter.place == DELAY { delay_range_s(cycle_s) } else { (min, max) };
-        Self { min, max, is_logarithmic: min > 0.0 && max / min > WIDE_RATIO }
+        let shape = if min > 0.0 && max / min > WIDE_RATIO {
+            Shape::Logarithmic
+        } else if min < -FAR && max > FAR {
+            Shape::Plain
+        } else {
+            Shape::Bounded
+        };
+        Self { min, max, shape }
     }
 
     /// Least and greatest value.
@@ -132,30 +149,31 @@ impl Coordinate {
         (self.min, self.max)
     }
 
-    /// A share of the range's width; 0 where it has none.
-    fn margin(self, ratio: f64) -> f64 {
-        let width = self.max - self.min;
-        if self.is_logarithmic || width.is_infinite() { 0.0 } else { ratio * width }
-    }
-
     /// The end of the range that a search was driven to: nearer than any start is, or than `near`.
     pub fn bound_at(self, value: f64, near: f64) -> Option<f64> {
         let bound = if value - self.min < self.max - value { self.min } else { self.max };
-        ((value - bound).abs() <= self.margin(0.5 * START_RATIO).max(near)).then_some(bound)
+        let margin = if self.shape == Shape::Bounded { 0.5 * START_RATIO * (self.max - self.min) } else { 0.0 };
+        ((value - bound).abs() <= margin.max(near)).then_some(bound)
     }
 
     /// The coordinate of a value; one out of range is moved into it.
     pub fn place_of(self, value: f64) -> f64 {
-        let margin = self.margin(START_RATIO);
-        let value = value.clamp(self.min + margin, self.max - margin);
-        if self.is_logarithmic { value.ln() } else { value }
+        match self.shape {
+            Shape::Logarithmic => value.clamp(self.min, self.max).ln(),
+            Shape::Plain => value.clamp(self.min, self.max),
+            Shape::Bounded => {
+                angle_of(((value - self.min) / (self.max - self.min)).clamp(START_RATIO, 1.0 - START_RATIO))
+            }
+        }
     }
 
     /// The nearest place that a search may go to.
     pub fn kept_in(self, place: f64) -> f64 {
-        let margin = self.margin(END_RATIO);
-        let (least, greatest) = (self.min + margin, self.max - margin);
-        if self.is_logarithmic { place.clamp(least.ln(), greatest.ln()) } else { place.clamp(least, greatest) }
+        match self.shape {
+            Shape::Logarithmic => place.clamp(self.min.ln(), self.max.ln()),
+            Shape::Plain => place.clamp(self.min, self.max),
+            Shape::Bounded => place.clamp(angle_of(END_RATIO), angle_of(1.0 - END_RATIO)),
+        }
     }
 
     /// Whether the value follows the coordinate in proportion from one place to another, to [`STRAIGHT_RATIO`].
@@ -166,13 +184,24 @@ impl Coordinate {
 
     /// The value at a coordinate, and its slope.
     pub fn value_at(self, place: f64) -> (f64, f64) {
-        if self.is_logarithmic {
-            let value = place.exp().clamp(self.min, self.max);
-            (value, value)
-        } else {
-            (place.clamp(self.min, self.max), 1.0)
+        match self.shape {
+            Shape::Logarithmic => {
+                let value = place.exp().clamp(self.min, self.max);
+                (value, value)
+            }
+            Shape::Plain => (place.clamp(self.min, self.max), 1.0),
+            Shape::Bounded => {
+                let (sin, cos) = (0.5 * place).sin_cos();
+                let width = self.max - self.min;
+                (self.min + width * sin * sin, width * sin * cos)
+            }
         }
     }
+}
+
+/// The angle at a share of a range.
+fn angle_of(share: f64) -> f64 {
+    2.0 * share.sqrt().asin()
 }
 
 /// `values` with `changed` at the places of `free`.
@@ -194,15 +223,18 @@ mod tests {
             let coordinate = Coordinate::of(&parameter, 0.001);
             for share in [1e-4, 0.01, 0.3, 0.8] {
                 let (min, max) = (coordinate.min, coordinate.max);
-                let value =
-                    if coordinate.is_logarithmic { min * (max / min).powf(share) } else { min + share * (max - min) };
+                let value = if coordinate.shape == Shape::Logarithmic {
+                    min * (max / min).powf(share)
+                } else {
+                    min + share * (max - min)
+                };
                 let place = coordinate.place_of(value);
                 let (back, slope) = coordinate.value_at(place);
                 assert!(
                     (back - value).abs() <= 1e-9 * (max - min).min(value.abs().max(1.0)),
                     "{parameter}: {value} {back}"
                 );
-                assert_eq!(coordinate.kept_in(place).to_bits(), place.to_bits());
+                assert_eq!(coordinate.kept_in(place).to_bits(), place.to_bits(), "{parameter}");
                 let h = 1e-6 * place.abs().max(1e-3);
                 let numeric = (coordinate.value_at(place + h).0 - coordinate.value_at(place - h).0) / (2.0 * h);
                 assert!((slope - numeric).abs() <= 1e-5 * numeric.abs(), "{parameter}: {slope} {numeric}");

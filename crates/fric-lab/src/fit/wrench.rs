@@ -20,6 +20,7 @@ use super::cables::{cable_fits, leave_out_warm_up, used};
 use super::error::FitError;
 use super::interpolated::measured_wrenches;
 use super::newcomers::with_newcomers;
+use super::noise::white_noise;
 use super::problem::{Comparison, Loss, Member, Problem};
 use super::record::{CableRecord, Measurements};
 use super::report::{OpenCombination, WrenchFit};
@@ -31,6 +32,9 @@ use super::vector::Parameter;
 use super::{FitOptions, Progress, start};
 use crate::replay::{WrenchErrors, WrenchReference};
 use crate::weight;
+
+/// A line between two measurements counts as such where it is off by less than this share of the noise: at most 6 % of its variance.
+const STRAIGHT_RATIO: f64 = 0.25;
 
 /// Fits all cables to the outside wrench. Only for a robot of which every cable has an attachment, and for
 /// [`Measurements`] with [`Reference::Wrench`](super::Reference::Wrench).
@@ -69,6 +73,8 @@ pub struct ReferenceWrenches {
     pub outside: Vec<Vector6<f64>>,
     /// Which samples are not on a line from one measured wrench to the next.
     pub measured: Vec<bool>,
+    /// Which are on such a line, and it cannot be off by as much as would matter.
+    straight: Vec<bool>,
 }
 
 impl ReferenceWrenches {
@@ -79,7 +85,71 @@ impl ReferenceWrenches {
         let kind = if is_measured { WrenchReference::Measured } else { WrenchReference::Mass };
         let outside = outside_wrenches(measurements, kind);
         balance::check(&measurements.platform().structure, &outside, measurements.robot().cables().len())?;
-        Ok(Self { kind, outside, measured: measured_wrenches(measurements) })
+        let measured = measured_wrenches(measurements);
+        let mut references = Self { kind, straight: vec![false; outside.len()], outside, measured };
+        references.find_straight(measurements);
+        Ok(references)
+    }
+
+    /// Whether a sample may be compared with.
+    fn counts(&self) -> Vec<bool> {
+        self.measured.iter().zip(&self.straight).map(|(measured, straight)| *measured || *straight).collect()
+    }
+
+    /// Between two measurements, of which the lines before and after turn by the slopes `j` and `k`, the wrench is off the line by `h·(|j| + |k|)/4` at
+    /// most, with one corner between them or a steady curve. That is to be small beside the noise.
+    fn find_straight(&mut self, measurements: &Measurements<'_>) {
+        let Some(record) = measurements.cables().next().filter(|_| self.measured.contains(&false)) else { return };
+        let Some(noise) = self.white_noise(measurements) else { return };
+        for (start, rows) in record.logs() {
+            let knots: Vec<usize> = (start..start + rows.len()).filter(|place| self.measured[*place]).collect();
+            let slope = |from: usize, to: usize| {
+                (self.outside[to] - self.outside[from]) / (record.time_s(to) - record.time_s(from))
+            };
+            let between_s = |knots: &[usize]| {
+                knots.first().zip(knots.last()).map(|(from, to)| record.time_s(*to) - record.time_s(*from))
+            };
+            let mut intervals_s: Vec<f64> = knots.windows(2).filter_map(between_s).collect();
+            if intervals_s.is_empty() {
+                continue;
+            }
+            // What was measured on a line does not show: no interval is longer than most.
+            let middle = intervals_s.len() / 2;
+            let usual_s = *intervals_s.select_nth_unstable_by(middle, f64::total_cmp).1;
+            let mut straight = Vec::new();
+            for around in knots.windows(4) {
+                let [before, from, to, after] = *around else { continue };
+                let line = slope(from, to);
+                let turns = (line - slope(before, from)).abs() + (slope(to, after) - line).abs();
+                let most = turns * (0.25 * usual_s.min(record.time_s(to) - record.time_s(from)));
+                if most.iter().zip(noise.iter()).all(|(most, noise)| *most <= STRAIGHT_RATIO * noise) {
+                    straight.push(from + 1..to);
+                }
+            }
+            for place in straight.into_iter().flatten() {
+                self.straight[place] = true;
+            }
+        }
+    }
+
+    /// Standard deviation of the white noise in the sums of forces and wrench, where it was measured; `None` where that is too seldom.
+    fn white_noise(&self, measurements: &Measurements<'_>) -> Option<Vector6<f64>> {
+        let records: Vec<CableRecord<'_>> = measurements.cables().collect();
+        let structure = measurements.platform().structure.as_slice();
+        let mut sums = self.outside.clone();
+        for (place, sum) in sums.iter_mut().enumerate() {
+            let columns = structure.iter().skip(place * records.len());
+            for (record, column) in records.iter().zip(columns) {
+                let sensor_n = record.rows.get(place).map_or(f64::NAN, |row| row.signals.sensor_force_n);
+                *sum += column * (sensor_n * record.params.frictionless_gain());
+            }
+        }
+        let of_component = |component: usize| {
+            let measured = sums.iter().zip(&self.measured).filter(|(_, measured)| **measured);
+            white_noise(&measured.map(|(sum, _)| sum[component]).collect::<Vec<f64>>())
+        };
+        let noise: Option<Vec<f64>> = (0..6).map(of_component).collect();
+        Some(Vector6::from_row_slice(&noise?))
     }
 }
 
@@ -182,10 +252,11 @@ impl<'a> Case<'a> {
             let mut columns = structure.iter().skip(place * self.records.len()).take(self.records.len());
             columns.all(|column| column.x.is_finite())
         };
+        let counted = references.counts();
         let of_cable = |record: &CableRecord<'_>| {
             let mut standings =
                 selection::first_look(record, |place, _| has_wrench(place) && reaches(place) && counts(place));
-            selection::leave_out_interpolated(&references.measured, &mut standings);
+            selection::leave_out_interpolated(&counted, &mut standings);
             standings
         };
         let mut of_cables: Vec<Vec<Standing>> = self.records.iter().map(of_cable).collect();
@@ -293,13 +364,10 @@ impl<'a> Case<'a> {
     fn errors(&self, problem: &Problem<'_>, values: &[Values], counts: &dyn Fn(usize) -> bool) -> [WrenchErrors; 2] {
         let forces = problem.forces(values).unwrap_or_default();
         let count = problem.members.len();
+        let counted = self.references.counts();
         let mut errors = [WrenchErrors::default(), WrenchErrors::default()];
-        for (cycle, outside) in self
-            .references
-            .outside
-            .iter()
-            .enumerate()
-            .filter(|(cycle, _)| counts(*cycle) && self.references.measured[*cycle])
+        for (cycle, outside) in
+            self.references.outside.iter().enumerate().filter(|(cycle, _)| counts(*cycle) && counted[*cycle])
         {
             let mut sums = [*outside, *outside];
             let columns = self.structure.iter().skip(cycle * count).take(count);

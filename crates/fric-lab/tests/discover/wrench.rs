@@ -37,7 +37,12 @@ fn names(found: &WrenchDiscovery) -> Vec<Vec<Effect>> {
 fn nothing_is_named_where_nothing_is_missing() {
     let truth = robot(|text| text);
     let found = look(&truth, &truth, 3, true);
-    assert!(found.geometry.is_empty() && names(&found).iter().all(Vec::is_empty));
+    assert!(
+        found.geometry.is_empty() && names(&found).iter().all(Vec::is_empty),
+        "{:?} {:?}",
+        found.geometry,
+        names(&found)
+    );
     assert_eq!(found.verdict, Verdict::Complete);
 }
 

@@ -169,7 +169,7 @@ fn a_cable_that_never_moves() {
     for ((place, cable), params) in fit.cables.iter().enumerate().zip(truth().params().cables()) {
         let error = (value(cable, "mu") / params.values()[0] - 1.0).abs();
         println!("cable {}: {:?}, μ off by {error:.5}", place + 1, undetermined(cable));
-        assert!(cable.samples.used > 25_000);
+        assert!(cable.samples.used + cable.samples.interpolated > 25_000);
         if place == 2 {
             assert!(undetermined(cable).iter().filter(|name| *name != "offset_n").count() == 3);
         } else {
@@ -275,7 +275,7 @@ fn pulleys_that_are_not_alike_are_in_the_errors() {
     let text = EXAMPLE.replace("pulleys = [", "presliding = \"per_pulley\"\npulleys = [");
     let robot = RobotFile::parse(&text, "example").unwrap();
     let mut deviations = [const { Vec::new() }; 2];
-    for seed in 1..=3 {
+    for seed in 1..=4 {
         let options =
             SimulationOptions { seed, mu_spread_ratio: 0.1, duration_s: Some(20.0), ..SimulationOptions::default() };
         let fit = fit(&Log::record(&robot, &options), &robot);
@@ -285,8 +285,13 @@ fn pulleys_that_are_not_alike_are_in_the_errors() {
             }
         }
     }
-    // Of three times eight cables.
-    let rms = deviations.map(|of| (of.iter().map(|one| one * one).sum::<f64>() / 24.0).sqrt());
+    // Of four times eight cables; one that keeps its given value has none.
+    let rms = deviations.map(|of| {
+        let told: Vec<f64> = of.into_iter().filter(|one: &f64| !one.is_nan()).collect();
+        assert!(told.len() >= 27, "{}", told.len());
+        let (squares, count) = told.iter().fold((0.0, 0.0), |(squares, count), one| (squares + one * one, count + 1.0));
+        f64::sqrt(squares / count)
+    });
     println!("in standard errors, rms: σ {:.2}, F_pv {:.2}", rms[0], rms[1]);
     assert!(rms.iter().all(|rms| *rms > 0.3 && *rms < 1.5), "{rms:?}");
 }
