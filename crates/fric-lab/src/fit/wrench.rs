@@ -360,15 +360,12 @@ impl<'a> Case<'a> {
     }
 
     /// Deviation of the wrench by the cable forces from the one outside, with frictionless and with compensated forces, over the
-    /// samples that count.
+    /// samples that count. On a line between two measurements too: a replay with the parameters found has these errors.
     fn errors(&self, problem: &Problem<'_>, values: &[Values], counts: &dyn Fn(usize) -> bool) -> [WrenchErrors; 2] {
         let forces = problem.forces(values).unwrap_or_default();
         let count = problem.members.len();
-        let counted = self.references.counts();
         let mut errors = [WrenchErrors::default(), WrenchErrors::default()];
-        for (cycle, outside) in
-            self.references.outside.iter().enumerate().filter(|(cycle, _)| counts(*cycle) && counted[*cycle])
-        {
+        for (cycle, outside) in self.references.outside.iter().enumerate().filter(|(cycle, _)| counts(*cycle)) {
             let mut sums = [*outside, *outside];
             let columns = self.structure.iter().skip(cycle * count).take(count);
             for ((member, forces), column) in problem.members.iter().zip(&forces).zip(columns) {

@@ -274,10 +274,31 @@ impl<'a> Bench<'a> {
         all
     }
 
-    /// Standard deviation of the white noise in a number of each sample; `None` where they are too few.
+    /// Standard deviation of the white noise in a number of each sample, NaN where it does not count; `None` where they are too few. Of the samples on lines
+    /// between two measurements too where they are the most: the sensors' noise is in each, and the lines have next to none.
     pub fn white_noise(&self, numbers: impl Iterator<Item = f64>) -> Option<f64> {
-        let measured = numbers.zip(self.measured).filter(|(_, measured)| **measured);
-        white_noise(&measured.map(|(number, _)| number).collect::<Vec<f64>>())
+        let all: Vec<(f64, bool)> = numbers.zip(self.measured.iter().copied()).collect();
+        let count =
+            |wanted: bool| all.iter().filter(|(number, measured)| number.is_finite() && *measured == wanted).count();
+        let (by_measurement, between) = (count(true), count(false));
+        let taken = all.into_iter().filter(|(_, measured)| *measured || between > by_measurement);
+        white_noise(&taken.map(|(number, _)| number).collect::<Vec<f64>>())
+    }
+
+    /// Mean square of the whitened deviation that errors of all cables make which are this share of their tensions and add up.
+    pub fn believed_square(&self, model: &Model, ratio: f64) -> f64 {
+        let (structure, _) = self.description.changed(&model.changes);
+        let (mut sum, mut count) = (0.0, 0.0);
+        for place in (0..self.counts.len()).filter(|place| self.counts[*place]) {
+            let columns = structure.iter().skip(place * self.records.len());
+            let error = |(record, column): (&CableRecord<'_>, &Vector6<f64>)| {
+                let sensor_n = record.rows.get(place).map_or(f64::NAN, |row| row.signals.sensor_force_n);
+                (self.whitening * column).abs() * (ratio * sensor_n * record.params.frictionless_gain()).abs()
+            };
+            sum += self.records.iter().zip(columns).map(error).sum::<Vector6<f64>>().norm_squared();
+            count += 1.0;
+        }
+        if count > 0.0 { sum / count } else { 0.0 }
     }
 
     /// The deviation of each sample as the error of one cable's force alone that comes nearest to it, N.
