@@ -17,6 +17,10 @@ const STEP_TOLERANCE: f64 = 1e-8;
 const PATIENCE: usize = 20;
 /// And where a place several standard errors from the minimum would do.
 const PATIENCE_AFAR: usize = 2;
+/// Models that are only compared are given up after so many evaluations in any case: on a surface that is rough on a small scale a
+/// search creeps, and what it gains is no evidence.
+const NEAR_TO_COMPARE: f64 = 0.5;
+const MOST_TO_COMPARE: usize = 100;
 
 /// Why a search has ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -90,7 +94,9 @@ pub fn minimize(
     }
     search.evaluate();
     let patience = if near_errors > 1.0 { PATIENCE_AFAR } else { PATIENCE };
-    let most = patience * (start.len() + 1);
+    let is_compared = near_errors >= NEAR_TO_COMPARE;
+    let most = (patience * (start.len() + 1)).min(if is_compared { MOST_TO_COMPARE } else { usize::MAX });
+    let patience = most.div_ceil(start.len() + 1);
     let mut held = vec![false; start.len()];
     loop {
         let free: Vec<usize> = (0..start.len()).filter(|place| !held[*place]).collect();

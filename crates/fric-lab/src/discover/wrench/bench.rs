@@ -246,6 +246,18 @@ impl<'a> Bench<'a> {
         self.judged(model.moved(&minimum.values))
     }
 
+    /// A model with the friction of the robot file where it is varied.
+    pub fn with_given_friction(&self, model: &Model) -> Model {
+        let mut model = model.clone();
+        for ((values, free), record) in model.values.iter_mut().zip(&model.free).zip(&self.records) {
+            let given = record.params.values();
+            for of in free.iter().filter(|of| of.effect().is_none()) {
+                values[of.place()] = given[of.place()];
+            }
+        }
+        model
+    }
+
     /// A model with its sums of squares.
     pub fn judged(&self, model: Model) -> Trial {
         let deviations = self.deviations(&model);

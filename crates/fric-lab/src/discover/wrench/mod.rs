@@ -37,6 +37,8 @@ pub use geometry::Geometry;
 
 /// Searches with what was found taken for given, and deviations weighed by it.
 const LOOKS: usize = 3;
+/// How near to its minimum a model comes that is reported, in standard errors.
+const AT_MINIMUM: f64 = 0.1;
 /// A direction with less than this share of the greatest variance, components on one scale, has rounding only.
 const LEAST_VARIANCE_RATIO: f64 = 1e-9;
 
@@ -120,7 +122,7 @@ pub fn discover_wrench(measurements: &Measurements<'_>, progress: &Progress) -> 
     };
     let given = bench::Model { values: first.values, free: first.free, alike: Vec::new(), changes: Changes::new() };
     bench.whitening = whitening(&bench, &given).ok_or_else(too_short)?;
-    let base = bench.fit(&given, 0.1);
+    let base = bench.fit(&given, AT_MINIMUM);
     let mut naming = Naming { trial: base.clone(), named: Vec::new(), tried: Vec::new() };
     for _ in 0..LOOKS {
         bench.whitening = whitening(&bench, &naming.trial.model).ok_or_else(too_short)?;
@@ -139,7 +141,7 @@ pub fn discover_wrench(measurements: &Measurements<'_>, progress: &Progress) -> 
     // As an identification does it, with all samples.
     let mut all = bench.clone();
     all.blocks.iter_mut().for_each(|block| block.held_out = false);
-    let fitted = all.fit(&with_given(&all, &naming.trial.model), 0.02);
+    let fitted = naming.confirmed(&all, |model| all.fit(&with_given(&all, model), AT_MINIMUM));
     let covariances = all.covariances(&fitted.model);
     Case { bench: &bench, base: &base, naming: &naming, fitted: &fitted, samples: engine::count(&first.standings) }
         .report(covariances.map(|[covariance, _]| covariance))

@@ -25,9 +25,8 @@ use crate::fit::ripple::periods;
 const FITTED: usize = 6;
 /// Most names.
 const MOST: usize = 16;
-/// How near to its minimum a candidate comes, and the model that is reported, in standard errors.
+/// How near to its minimum a candidate comes, in standard errors.
 const NEAR_ERRORS: f64 = 0.5;
-const AT_MINIMUM: f64 = 0.02;
 /// What was found is away from its neutral value by so many standard errors.
 const LEAST_AWAY: f64 = 4.0;
 /// Rounds of entering, leaving and exchanging.
@@ -56,6 +55,23 @@ pub struct Naming {
     pub trial: Trial,
     pub named: Vec<Named>,
     pub tried: Vec<Tried>,
+}
+
+impl Naming {
+    /// The model fitted to all samples, without the names that do not stand there.
+    pub fn confirmed(&mut self, bench: &Bench<'_>, fit: impl Fn(&Model) -> Trial) -> Trial {
+        loop {
+            let fitted = fit(&self.trial.model);
+            let found: Vec<Candidate> = self.named.iter().map(|named| named.candidate).collect();
+            let all = standings(bench, &fitted, &found).into_iter().zip(&found);
+            let weakest = all.min_by(|(one, _), (other, _)| one.away.total_cmp(&other.away));
+            let Some((_, candidate)) = weakest.filter(|(standing, _)| standing.away < LEAST_AWAY) else {
+                return fitted;
+            };
+            take_away(&mut self.trial.model, *candidate);
+            self.named.retain(|named| named.candidate != *candidate);
+        }
+    }
 }
 
 /// The search.
@@ -104,8 +120,7 @@ impl<'b, 'a> Search<'b, 'a> {
             named.iter_mut().skip(place).take(1).for_each(|named| named.runner_up = runner_up);
         }
         let tried = self.tried(&found);
-        let model = self.fit(&found).model;
-        Naming { trial: self.bench.fit(&model, AT_MINIMUM), named, tried }
+        Naming { trial: self.fit(&found), named, tried }
     }
 
     fn excess(&self, trial: &Trial) -> f64 {
@@ -140,7 +155,7 @@ impl<'b, 'a> Search<'b, 'a> {
             let cost = |(candidate, with): &(Candidate, Trial)| self.delta_bic(&trial, with, candidate.count(), 1.0);
             entrants.sort_by(|one, other| cost(one).total_cmp(&cost(other)));
             let speaks_for_it = |(candidate, with): &&(Candidate, Trial)| {
-                let inflation = self.standing(*candidate, with).map_or(f64::INFINITY, |standing| standing.inflation);
+                let inflation = self.inflation(*candidate, with);
                 self.delta_bic(&trial, with, candidate.count(), inflation) < 0.0
             };
             let Some((candidate, _)) = entrants.iter().find(speaks_for_it) else { break };
@@ -181,7 +196,7 @@ impl<'b, 'a> Search<'b, 'a> {
             model.free.iter_mut().for_each(|free| free.extend(own.iter().copied()));
             let apart = self.bench.fit(&model, NEAR_ERRORS);
             let more = own.len() * (self.bench.records.len() - 1);
-            let inflation = self.standing(candidate, &alike).map_or(f64::INFINITY, |standing| standing.inflation);
+            let inflation = self.inflation(candidate, &alike);
             if self.delta_bic(&alike, &apart, more, inflation) < -STRONG_BIC {
                 found.retain(|of| *of != candidate);
                 found.extend((0..self.bench.records.len()).map(|cable| Candidate::Own(cable, effect)));
@@ -191,34 +206,42 @@ impl<'b, 'a> Search<'b, 'a> {
         }
     }
 
-    /// Sets aside what cannot justify itself, the weakest first.
+    /// Sets aside what cannot justify itself, the weakest first: what is fewest standard errors from doing nothing.
     fn leave(&mut self, found: &mut Vec<Candidate>) -> Vec<Named> {
         loop {
             let trial = self.fit(found);
-            let mut named = Vec::new();
-            let mut weakest: Option<(f64, Candidate, Refusal)> = None;
-            for candidate in found.iter().copied() {
+            let mut weakest_first: Vec<(Standing, Candidate)> =
+                standings(self.bench, &trial, found).into_iter().zip(found.iter().copied()).collect();
+            weakest_first.sort_by(|(one, _), (other, _)| one.away.total_cmp(&other.away));
+            let mut named = BTreeMap::new();
+            let mut refused = None;
+            for (standing, candidate) in weakest_first {
                 let others: Vec<Candidate> = found.iter().copied().filter(|of| *of != candidate).collect();
                 let without = self.fit(&others);
-                let (delta_bic, refusal) = self.judged(candidate, &trial, &without);
-                if let Some(refusal) = refusal
-                    && weakest.is_none_or(|(squares, ..)| without.held_out < squares)
-                {
-                    weakest = Some((without.held_out, candidate, refusal));
+                let (delta_bic, refusal) = self.judged(candidate, &trial, &without, &standing);
+                refused = refusal.map(|refusal| (candidate, refusal));
+                if refused.is_some() {
+                    break;
                 }
-                named.push(Named { candidate, delta_bic, runner_up: None });
+                named.insert(candidate, Named { candidate, delta_bic, runner_up: None });
             }
-            let Some((_, candidate, refusal)) = weakest else { return named };
+            let Some((candidate, refusal)) = refused else {
+                return found.iter().filter_map(|of| named.remove(of)).collect();
+            };
             found.retain(|of| *of != candidate);
             self.refused.insert(candidate, refusal);
         }
     }
 
     /// Evidence for a name, and why it cannot stay.
-    fn judged(&self, candidate: Candidate, trial: &Trial, without: &Trial) -> (f64, Option<Refusal>) {
-        let Some(Standing { inflation, away }) = self.standing(candidate, trial) else {
-            return (f64::NAN, Some(Refusal::Weak));
-        };
+    fn judged(
+        &self,
+        candidate: Candidate,
+        trial: &Trial,
+        without: &Trial,
+        standing: &Standing,
+    ) -> (f64, Option<Refusal>) {
+        let Standing { inflation, away } = *standing;
         let delta_bic = self.delta_bic(without, trial, candidate.count(), inflation);
         let is_small = without.held_out - trial.held_out <= LEAST_SIZE * self.noise_squares(true);
         let refusal = if self.is_at_end(candidate, trial) {
@@ -302,7 +325,7 @@ impl<'b, 'a> Search<'b, 'a> {
         let (other, with) = self.alternative(found, place)?;
         let others: Vec<Candidate> = found.iter().copied().filter(|of| *of != candidate).collect();
         let (without, trial) = (self.fit(&others), self.fit(found));
-        let inflation = self.standing(candidate, &trial).map_or(f64::INFINITY, |standing| standing.inflation);
+        let inflation = self.inflation(candidate, &trial);
         let delta_bic = self.delta_bic(&without, &with, other.count(), inflation);
         let lead = self.delta_bic(&without, &trial, candidate.count(), inflation) - delta_bic;
         Some((other, delta_bic, lead > -STRONG_BIC))
@@ -316,7 +339,7 @@ impl<'b, 'a> Search<'b, 'a> {
         }
         let tried = self.beside(found).into_iter().filter(|(_, with)| with.held_out < trial.held_out).map(
             |(candidate, with)| {
-                let inflation = self.standing(candidate, &with).map_or(f64::INFINITY, |standing| standing.inflation);
+                let inflation = self.inflation(candidate, &with);
                 let delta_bic = self.delta_bic(&trial, &with, candidate.count(), inflation);
                 let refusal = if self.is_at_end(candidate, &with) {
                     Refusal::AtBound
@@ -381,7 +404,13 @@ impl<'b, 'a> Search<'b, 'a> {
         let new: Vec<Promise> =
             promises.iter().filter(|promise| wanted.contains(&promise.candidate)).cloned().collect();
         let fit = |promise: &Promise| {
-            (set_of(&[found, &[promise.candidate]].concat()), self.bench.fit(&promise.model, NEAR_ERRORS))
+            let mut trial = self.bench.fit(&promise.model, NEAR_ERRORS);
+            if found.is_empty() {
+                // What is missing may have led the friction astray.
+                let by_given = self.bench.fit(&self.bench.with_given_friction(&promise.model), NEAR_ERRORS);
+                trial = if by_given.training < trial.training { by_given } else { trial };
+            }
+            (set_of(&[found, &[promise.candidate]].concat()), trial)
         };
         let fits: Vec<(Vec<Candidate>, Trial)> = new.par_iter().map(fit).collect();
         self.fits.extend(fits);
@@ -435,11 +464,31 @@ impl<'b, 'a> Search<'b, 'a> {
         }
     }
 
-    /// How sure the parameters of a name are.
-    fn standing(&self, candidate: Candidate, trial: &Trial) -> Option<Standing> {
-        let [covariance, independent] = self.bench.covariances(&trial.model)?;
-        let unknowns = trial.model.unknowns();
-        let is_its = |unknown: &Unknown| match (candidate, unknown) {
+    fn inflation(&self, candidate: Candidate, trial: &Trial) -> f64 {
+        standings(self.bench, trial, &[candidate]).first().map_or(f64::INFINITY, |standing| standing.inflation)
+    }
+}
+
+/// How sure the parameters of a name are.
+struct Standing {
+    /// By how much memory in the deviations weakens the evidence, at least 1.
+    inflation: f64,
+    /// How far all are from their neutral values together, in standard errors.
+    away: f64,
+}
+
+impl Standing {
+    /// Where the samples do not tell them.
+    const NONE: Self = Self { inflation: f64::INFINITY, away: 0.0 };
+}
+
+/// How sure the parameters of each of a model's names are.
+fn standings(bench: &Bench<'_>, trial: &Trial, candidates: &[Candidate]) -> Vec<Standing> {
+    let unknowns = trial.model.unknowns();
+    let covariances = bench.covariances(&trial.model);
+    let of = |candidate: &Candidate| {
+        let [covariance, independent] = covariances.as_ref()?;
+        let is_its = |unknown: &Unknown| match (*candidate, unknown) {
             (Candidate::Own(cable, effect), Unknown::Own(of, parameter)) => {
                 cable == *of && parameter.effect() == Some(effect)
             }
@@ -455,15 +504,8 @@ impl<'b, 'a> Search<'b, 'a> {
         let inverse = inverse_of_normal(&covariance.select_rows(&places).select_columns(&places))?;
         let away = (away.transpose() * inverse * &away)[(0, 0)].sqrt();
         Some(Standing { inflation, away })
-    }
-}
-
-/// How sure the parameters of a name are.
-struct Standing {
-    /// By how much memory in the deviations weakens the evidence, at least 1.
-    inflation: f64,
-    /// How far all are from their neutral values together, in standard errors.
-    away: f64,
+    };
+    candidates.iter().map(|candidate| of(candidate).unwrap_or(Standing::NONE)).collect()
 }
 
 fn away_from_neutral(model: &Model, unknown: &Unknown) -> f64 {
