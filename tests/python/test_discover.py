@@ -114,6 +114,25 @@ def test_a_fault_of_the_recording_is_told_beside_the_verdict(robot):
     assert fault["parameters"]["amplitude_n"] == pytest.approx(0.1, rel=0.05)
 
 
+def test_a_wrong_gain_is_found_by_the_wrench():
+    given = ROBOT.read_text(encoding="utf-8").replace("cycle_s = 0.001", "cycle_s = 0.004")
+    hidden = given.replace("\nfriction =", '\neffects = [{ kind = "sensor_gain", gain = 1.04 }]\nfriction =', 1)
+    log = fric.simulate(fric.Robot.from_toml(hidden), seed=4, duration_s=16.0)
+    result = fric.discover(fric.Robot.from_toml(given), log, reference="wrench")
+    first, *others = result.cables
+    assert [effect["kind"] for effect in first.effects] == ["sensor_gain"] and not any(of.effects for of in others)
+    assert first.effects[0]["parameters"]["gain"] == pytest.approx(1.04, abs=0.002)
+    # No force to compare a single cable with.
+    assert first.before is None and first.after is None and first.gap_closed is None
+    gap = result.wrench
+    assert (gap["reference"], gap["verdict"], gap["geometry"], gap["alike"]) == ("wrench", "extended", [], [])
+    assert gap["after"]["force_rms_n"] < 0.2 * gap["before"]["force_rms_n"]
+    assert [of["name"] for of in gap["components"]] == ["fx_n", "fy_n", "fz_n", "tx_nm", "ty_nm", "tz_nm"]
+    assert all(of["noise"] < 1.5 * of["after"] < of["before"] for of in gap["components"])
+    (effect,) = result.robot.cables[0].effects
+    assert (effect["kind"], effect["gain"]) == ("sensor_gain", first.parameters["sensor_gain.gain"])
+
+
 def without_reference(log, column):
     names = ("stamp_nanos", "sensor_force_n", "length_m", "speed_m_per_s", "position_m", "orientation_xyzw")
     arrays = {name: getattr(log, name) for name in names}
