@@ -15,7 +15,7 @@ from ._interpreter import refuse_sub_interpreters as _refuse_sub_interpreters
 
 _refuse_sub_interpreters()
 
-from . import continuum, plot  # noqa: E402
+from . import continuum, fleet, plot  # noqa: E402
 from ._errors import (  # noqa: E402
     ArrayTypeError,
     ConfigError,
@@ -106,6 +106,7 @@ __all__ = [
     "discover",
     "excite",
     "fit",
+    "fleet",
     "hysteresis",
     "plot",
     "read_log",
