@@ -1,6 +1,6 @@
 """Writes the logs of three simulated robots over two years: on one a pulley dries, on one a sensor is replaced.
 
-    python benches/fleet/make_logs.py FOLDER [SEED]
+python benches/fleet/make_logs.py FOLDER [SEED]
 """
 
 import json

@@ -264,9 +264,10 @@ def trend(result: Trend, robot: str, cable: str, parameter: str, *, ax: _Axes | 
         ax = _figure(1, (9.0, 4.0))[0]
     bars = _SIGMAS * np.where(np.isfinite(series.standard_errors), series.standard_errors, 0.0)
     ax.errorbar(series.date, series.values, yerr=bars, fmt="o", color=_MEASURED, markersize=3, linewidth=0.8, label="logs")
-    steps = [0, *(int(np.searchsorted(series.date, _utc(one.date))) for one in series.changes if one.kind == "step"), len(series.date)]
-    for begin, end in zip(steps, steps[1:]):
-        ax.plot(series.date[begin:end], series.fitted[begin:end], color=_MODEL, linewidth=1.6, label="" if begin else "level and slope")
+    steps = [int(np.searchsorted(series.date, _utc(change.date))) for change in series.changes if change.kind == "step"]
+    for begin, end in zip([0, *steps], [*steps, len(series.date)]):
+        label = "" if begin else "level and slope"
+        ax.plot(series.date[begin:end], series.fitted[begin:end], color=_MODEL, linewidth=1.6, label=label)
     for place, change in enumerate(series.changes):
         ax.axvspan(_utc(change.earliest), _utc(change.latest), color=_BAND, alpha=0.7, linewidth=0)
         ax.axvline(_utc(change.date), color="black", linewidth=1.0, linestyle="--", label="" if place else "change")
@@ -278,7 +279,7 @@ def trend(result: Trend, robot: str, cable: str, parameter: str, *, ax: _Axes | 
     return ax
 
 
-def _utc(date: datetime) -> np.datetime64:
+def _utc(date: datetime) -> Any:
     """A date as those of a series are."""
     return np.datetime64(date.replace(tzinfo=None), "ns")
 

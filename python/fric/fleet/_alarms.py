@@ -31,13 +31,15 @@ def day(date: datetime) -> str:
 
 
 def _together(series: tuple[Series, ...]) -> list[list[tuple[Series, Change]]]:
-    """Changes of a cable that may be of one date, the strongest first. What the model leaves follows from a parameter that has changed before."""
+    """Changes of a cable that have one cause, the strongest first: those that may be of one date; slopes of which one begins while the
+    other goes on, for a parameter that the model lacks bends the others; and what the model leaves, which follows from a parameter that
+    has changed before."""
     changes = [(one, change) for one in series for change in one.changes]
     parameters = [pair for pair in changes if not _follows(pair[1])]
     groups: list[list[tuple[Series, Change]]] = []
     for pair in sorted(parameters, key=lambda pair: pair[1].delta_bic):
         for group in groups:
-            if group[0][1].earliest <= pair[1].latest and pair[1].earliest <= group[0][1].latest:
+            if _of_one_date(group[0][1], pair[1]) or _go_on_together(group[0], pair):
                 group.append(pair)
                 break
         else:
@@ -49,6 +51,24 @@ def _together(series: tuple[Series, ...]) -> list[list[tuple[Series, Change]]]:
         else:
             groups.append([pair])
     return groups
+
+
+def _of_one_date(one: Change, other: Change) -> bool:
+    return one.earliest <= other.latest and other.earliest <= one.latest
+
+
+def _go_on_together(one: tuple[Series, Change], other: tuple[Series, Change]) -> bool:
+    """Whether two slopes have a time in common."""
+    if one[1].kind != "slope" or other[1].kind != "slope":
+        return False
+    return one[1].date < _end(other) and other[1].date < _end(one)
+
+
+def _end(pair: tuple[Series, Change]) -> datetime:
+    """When a slope becomes another, or the last log."""
+    series, change = pair
+    later = [one.date for one in series.changes if one.date > change.date]
+    return min(later, default=_date_of(series, -1))
 
 
 def _follows(change: Change) -> bool:

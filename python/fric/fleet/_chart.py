@@ -39,7 +39,9 @@ def chart(series: Series) -> str:
     for change in series.changes:
         edges = x(np.array([_stamp(change.earliest), _stamp(change.latest)]))
         at = float(x(np.array(_stamp(change.date))))
-        parts.append(f'<rect class="when" x="{edges[0] - 2:.1f}" y="{_TOP}" width="{edges[1] - edges[0] + 4:.1f}" height="{bottom - _TOP:.1f}"/>')
+        parts.append(
+            f'<rect class="when" x="{edges[0] - 2:.1f}" y="{_TOP}" width="{edges[1] - edges[0] + 4:.1f}" height="{bottom - _TOP:.1f}"/>'
+        )
         parts.append(f'<path class="since" d="M{at:.1f},{_TOP}V{bottom}"/>')
     parts += [f'<path class="limit" d="M{_LEFT},{float(y(np.array(bound))):.1f}H{right}"/>' for bound in bounds]
     places, heights, lows, highs = x(stamp), y(series.values), y(series.values - errors), y(series.values + errors)
@@ -53,7 +55,9 @@ def chart(series: Series) -> str:
 
 def _path(series: Series, places: Array, heights: Array) -> str:
     steps = {int(np.searchsorted(series.date.astype(np.int64), _stamp(one.date))) for one in series.changes if one.kind == "step"}
-    return "".join(f"{'M' if place in steps or place == 0 else 'L'}{at:.1f},{height:.1f}" for place, (at, height) in enumerate(zip(places, heights)))
+    return "".join(
+        f"{'M' if place in steps or place == 0 else 'L'}{at:.1f},{height:.1f}" for place, (at, height) in enumerate(zip(places, heights))
+    )
 
 
 def _labels(series: Series, least: float, greatest: float) -> list[str]:

@@ -41,9 +41,20 @@ def _own(distributed: Any, workers: int | None) -> Iterator[Any]:
         raise ConfigError(f"`workers` is {workers}; give 1 or more")
     # Processes of one thread each: with more, the threads of fric and those of the worker would be in each other's way.
     environment = {"RAYON_NUM_THREADS": "1"}
-    cluster = distributed.LocalCluster(
-        n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=logging.CRITICAL, env=environment
-    )
+    # Any free port, for this machine alone: another cluster may have the usual one.
+    dashboard = "127.0.0.1:0"
+    try:
+        cluster = distributed.LocalCluster(
+            n_workers=workers,
+            threads_per_worker=1,
+            processes=True,
+            dashboard_address=dashboard,
+            silence_logs=logging.CRITICAL,
+            env=environment,
+        )
+    except RuntimeError as error:
+        text = f'no workers can be started on this machine: {error}; a script needs `if __name__ == "__main__":` around its call of run'
+        raise FleetError(text) from error
     with cluster, distributed.Client(cluster) as client:
         yield client
 

@@ -10,13 +10,12 @@ import numpy as np
 from ._needs import need
 from ._noise import Array
 
-Kind = Literal["step", "slope", "step_and_slope"]
 
 LEAST_LOGS = 3
 """Logs on each side of a joint: of two alone none could be an outlier."""
-SINGLE: tuple[Kind, ...] = ("step", "slope")
+SINGLE: tuple[Literal["step", "slope"], ...] = ("step", "slope")
 """What a joint by itself may be."""
-_KINDS: tuple[Kind, ...] = (*SINGLE, "step_and_slope")
+_KINDS: tuple[Literal["step", "slope", "step_and_slope"], ...] = (*SINGLE, "step_and_slope")
 _SWEEPS = 8
 # Columns that are tried at once, so that memory does not grow with the square of the logs.
 _BLOCK = 512
@@ -27,10 +26,10 @@ Whiten = Callable[[Array], Array]
 
 
 class Joint(NamedTuple):
-    """From the log `index` on the line is another."""
+    """From the log `log_index` on the line is another."""
 
-    index: int
-    kind: Kind
+    log_index: int
+    kind: Literal["step", "slope", "step_and_slope"]
 
 
 class Line(NamedTuple):
@@ -66,9 +65,9 @@ class Line(NamedTuple):
     def cost(self, count: int, series_count: int) -> float:
         """What the line costs in units of -2 log likelihood, by the prior odds.
 
-        A coefficient costs log N (Schwarz 1978). A joint may be at each of N logs, which are equally likely: 2 log N, together the penalty of
-        Zhang and Siegmund (2007). A joint, or a slope from the beginning on, is expected in one of all the series: 2 log of their number (Chen and
-        Chen 2008).
+        A coefficient costs log N (Schwarz 1978). A joint may be at each of N logs, which are equally likely: 2 log N, together the
+        penalty of Zhang and Siegmund (2007). A joint, or a slope from the beginning on, is expected in one of all the series: 2 log of
+        their number (Chen and Chen 2008).
         """
         coefficients = self.sloped + sum(1 + (joint.kind == "step_and_slope") for joint in self.joints)
         places = 2 * len(self.joints) * np.log(count)
@@ -100,8 +99,9 @@ def candidates(time: Array, values: Array, variance: Array, series_count: int) -
     return list(dict.fromkeys([Line(), Line(sloped=True), *improved]))
 
 
-def residual_sums(rest: Line, kind: Kind, time: Array, values: Array, whiten: Whiten) -> Array:
-    """Sum of squares of the whitened noise that is left with one more joint of a kind, at each log; infinite where there is no room for one."""
+def residual_sums(rest: Line, kind: Literal["step", "slope", "step_and_slope"], time: Array, values: Array, whiten: Whiten) -> Array:
+    """Sum of squares of the whitened noise that is left with one more joint of a kind, at each log; infinite where there is no room for
+    one."""
     q, _ = np.linalg.qr(whiten(rest.design(time)))
     left = whiten(values[:, None])
     left = left - q @ (q.T @ left)
@@ -132,21 +132,25 @@ def _room(rest: Line, count: int) -> np.ndarray[Any, np.dtype[np.int64]]:
     allowed = np.zeros(count, dtype=bool)
     allowed[LEAST_LOGS : count - LEAST_LOGS + 1] = True
     for joint in rest.joints:
-        allowed[max(0, joint.index - LEAST_LOGS + 1) : joint.index + LEAST_LOGS] = False
+        allowed[max(0, joint.log_index - LEAST_LOGS + 1) : joint.log_index + LEAST_LOGS] = False
     return np.flatnonzero(allowed)
 
 
 def _columns(time: Array, joint: Joint) -> list[Array]:
-    return [columns[:, 0] for columns in _columns_at(time, np.array([joint.index]), joint.kind)]
+    return [columns[:, 0] for columns in _columns_at(time, np.array([joint.log_index]), joint.kind)]
 
 
-def _columns_at(time: Array, places: np.ndarray[Any, np.dtype[np.int64]], kind: Kind) -> list[Array]:
+def _columns_at(
+    time: Array, places: np.ndarray[Any, np.dtype[np.int64]], kind: Literal["step", "slope", "step_and_slope"]
+) -> list[Array]:
     step = (np.arange(len(time))[:, None] >= places[None, :]).astype(float)
     slope = np.maximum(time[:, None] - time[places][None, :], 0.0)
     return [step] * (kind != "slope") + [slope] * (kind != "step")
 
 
-def _best_joint(rest: Line, kind: Kind, time: Array, values: Array, variance: Array) -> Joint | None:
+def _best_joint(
+    rest: Line, kind: Literal["step", "slope", "step_and_slope"], time: Array, values: Array, variance: Array
+) -> Joint | None:
     sums = residual_sums(rest, kind, time, values, by_deviation(variance))
     return Joint(int(np.argmin(sums)), kind) if np.isfinite(sums).any() else None
 
@@ -177,29 +181,28 @@ def _segments(time: Array, values: Array, variance: Array) -> Line:
     """A segmentation into levels and slopes, bottom up (Keogh et al. 2001), a joint with step and slope between any two."""
     ruptures = need("ruptures")
     weights = 1 / variance
-    sums = np.cumsum([np.zeros(len(time) + 1), *(np.append(0.0, weights * term) for term in _moments(time, values))], axis=1)[1:]
-    sloped = np.log(len(time))
+    terms = (np.append(0.0, weights * moment) for moment in _moments(time, values))
+    sums = np.cumsum(list(terms), axis=1)
+    worth = float(np.log(len(time)))
 
-    class Segment(ruptures.base.BaseCost):  # type: ignore[misc, name-defined, unused-ignore]
+    def fit(cost: Any, signal: Array) -> Any:
+        cost.signal = signal
+        return cost
+
+    def error(_: Any, start: int, end: int) -> float:
         """Weighted squares about a level, or about a line where that is worth its slope."""
+        w, wt, wtt, wy, wty, wyy = sums[:, end] - sums[:, start]
+        level = wyy - wy * wy / w
+        spread = wtt - wt * wt / w
+        slope = level - (wty - wt * wy / w) ** 2 / spread if spread > 0 else level
+        return float(max(min(level, slope + worth), 0.0))
 
-        model = ""
-        min_size = LEAST_LOGS
-
-        def fit(self, signal: Array) -> Any:
-            self.signal = signal
-            return self
-
-        def error(self, start: int, end: int) -> float:
-            w, wt, wtt, wy, wty, wyy = sums[:, end] - sums[:, start]
-            level = wyy - wy * wy / w
-            spread = wtt - wt * wt / w
-            slope = level - (wty - wt * wy / w) ** 2 / spread if spread > 0 else level
-            return float(max(min(level, slope + sloped), 0.0))
-
-    search = ruptures.BottomUp(custom_cost=Segment(), min_size=LEAST_LOGS, jump=1).fit(values.reshape(-1, 1))
+    # The base class is there only with the library.
+    parts = {"model": "", "min_size": LEAST_LOGS, "fit": fit, "error": error}
+    cost = type("Segment", (ruptures.base.BaseCost,), parts)()
+    search = ruptures.BottomUp(custom_cost=cost, min_size=LEAST_LOGS, jump=1).fit(values.reshape(-1, 1))
     # Fewer than the evidence asks for would be lost; too many are left out afterwards.
-    ends = search.predict(pen=3 * np.log(len(time)))
+    ends = search.predict(pen=3 * worth)
     return Line(tuple(Joint(int(end), "step_and_slope") for end in ends[:-1]))
 
 

@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 FREEDOM = 4.0
 _ITERATIONS = 60
 _CONVERGED = 1e-8
-# Values that agree in all their digits still have rounding.
+# Values that agree in all their digits still have rounding; values are brought to about 1 before.
 _ROUNDING = 1e-9
 
 
@@ -32,9 +32,10 @@ class Scatter(NamedTuple):
     """-2 log likelihood."""
 
 
-def least(values: Array) -> float:
-    """The smallest standard deviation that counts, beside values of this size."""
-    return _ROUNDING * float(np.abs(values).max(initial=0.0)) + np.finfo(float).tiny ** 0.5
+def size_of(values: Array) -> float:
+    """What values are divided by to be about 1: their deviation, or their size where they do not differ."""
+    greatest, deviation = float(np.abs(values).max()), float(np.std(values))
+    return deviation if deviation > _ROUNDING * greatest else greatest or 1.0
 
 
 def rough_scatter(values: Array, errors: Array) -> float:
@@ -46,11 +47,12 @@ def rough_scatter(values: Array, errors: Array) -> float:
 
 
 def fit_line(design: Array, values: Array, errors: Array, start: float) -> Scatter:
-    """Fits values by a design, (N, P), under Student's t of the variance errors² + scatter², the scatter by maximum likelihood.
+    """Fits values by a design, (N, P), under Student's t of the variance errors² + scatter², the scatter by maximum likelihood; values
+    are about 1.
 
     The variance is found by scoring, the weights by expectation-maximisation.
     """
-    floor = least(values) ** 2
+    floor = _ROUNDING**2
     scatter2 = start**2
     fixed = errors**2 + floor
     weights = np.ones(len(values))
@@ -86,9 +88,10 @@ def _deviance(left2: Array, variance: Array) -> float:
 
 
 def white(design: Array, values: Array, variance: Array) -> float:
-    """-2 log likelihood of normal noise without a wander."""
+    """-2 log likelihood of normal noise without a wander, whose variance is the likeliest multiple of the one given."""
     coefficients, _ = weighted(design, values, variance)
-    return float(np.sum((values - design @ coefficients) ** 2 / variance + np.log(2 * pi * variance)))
+    multiple = max(float(np.mean((values - design @ coefficients) ** 2 / variance)), _ROUNDING**2)
+    return float(np.sum(np.log(2 * pi * multiple * variance)) + len(values))
 
 
 class Wander(NamedTuple):
@@ -110,13 +113,13 @@ class Wander(NamedTuple):
 
 
 def wander(time: Array, design: Array, values: Array, variance: Array) -> Wander:
-    """The likeliest wander, on a grid of factors of 2: its memory from the steps of time to the whole, its variance as a share of all, and how
-    much of the noise is left to the values."""
+    """The likeliest wander, on a grid of factors of 2: its memory from the steps of time to the whole, its variance as a share of all,
+    and the variance of the noise as a multiple of the one given."""
     whole = float(time[-1] - time[0])
     shortest = max(float(np.median(np.diff(time))), whole / len(time) / 4)
     memories = shortest * 2.0 ** np.arange(np.ceil(np.log2(whole / shortest)) + 1)
     sizes2 = float(np.var(values)) * 2.0 ** np.arange(-7, 3)
-    shares = 2.0 ** np.arange(-4, 1)
+    shares = 2.0 ** np.arange(-4, 3)
     grid = np.stack([axis.ravel() for axis in np.meshgrid(sizes2, memories, shares)])
     noise = variance[:, None] * grid[2]
     columns = np.column_stack([design, values])
@@ -130,8 +133,8 @@ def wander(time: Array, design: Array, values: Array, variance: Array) -> Wander
 
 
 def _filtered(time: Array, noise: Array, size2: Array, memory: Array, columns: Array) -> tuple[Array, Array]:
-    """The Kalman filter of wanders (G,) beside noise (N, G): innovations of each column in units of their deviation, (N, G, C), and the sum of
-    the logarithms of their variances, (G,)."""
+    """The Kalman filter of wanders (G,) beside noise (N, G): innovations of each column in units of their deviation, (N, G, C), and the
+    sum of the logarithms of their variances, (G,)."""
     mean = np.zeros((size2.size, columns.shape[1]))
     variance, log_variance = size2.copy(), np.zeros(size2.size)
     whitened = np.empty((len(time), *mean.shape))

@@ -29,13 +29,13 @@ section.alarm { border-top: 2px solid var(--line); margin-top: 1.6rem; }
 dl { display: grid; grid-template-columns: max-content 1fr; gap: .15rem 1rem; margin: .4rem 0; }
 dt { color: var(--soft); } dd { margin: 0; }
 .alarm h3 span { color: var(--flag); } .good { color: var(--good); font-weight: 600; }
-figure { margin: .6rem 0; break-inside: avoid; } figcaption { color: var(--soft); }
+.views { display: flex; flex-wrap: wrap; gap: 0 1.5rem; } figure { margin: .6rem 0; flex: 0 1 29rem; min-width: 0; break-inside: avoid; } figcaption { color: var(--soft); }
 svg { width: 100%; height: auto; display: block; } svg text { fill: var(--soft); font: 12px system-ui, sans-serif; }
 svg .axis { stroke: var(--line); stroke-width: 1; fill: none; } svg .value { fill: var(--before); } svg .error { stroke: var(--before); stroke-width: 1; }
 svg .fitted { stroke: var(--after); stroke-width: 2; fill: none; stroke-linejoin: round; } svg .when { fill: var(--flag); opacity: .18; }
 svg .since { stroke: var(--flag); stroke-width: 1.2; } svg .limit { stroke: var(--soft); stroke-width: 1.2; stroke-dasharray: 5 4; }
 a { color: var(--after); } a:focus-visible { outline: 2px solid var(--after); }
-@media (max-width: 40rem) { table.stacked, .stacked tbody, .stacked tr, .stacked td, .stacked tbody th { display: block; text-align: left; border: 0; padding: 0; }
+@media (max-width: 40rem) { table.stacked, .stacked caption, .stacked tbody, .stacked tr, .stacked td, .stacked tbody th { display: block; text-align: left; border: 0; padding: 0; }
   .stacked thead { position: absolute; left: -10000px; } .stacked tr { border-bottom: 1px solid var(--line); padding: .4rem 0; }
   .stacked td::before { content: attr(data-name) ": "; color: var(--soft); } table { font-size: .85rem; } }
 @media print { body { max-width: none; margin: 0; font-size: 12px; } section.alarm { break-inside: avoid; } a { color: inherit; } }
@@ -48,7 +48,12 @@ def page(trend: Trend) -> str:
     robots = list(dict.fromkeys(one.robot for one in trend.series))
     title = f"Fleet: {', '.join(robots) if len(robots) <= 3 else f'{len(robots)} robots'}"
     parts = [f"<p>{escape(headline(trend))}</p>", *(f'<p class="soft">{escape(text)}</p>' for text in remarks(trend))]
-    parts += [_overview(trend), *(_alarm(trend, place, alarm) for place, alarm in enumerate(trend.alarms)), _robots(trend, robots), _failures(trend)]
+    parts += [
+        _overview(trend),
+        *(_alarm(trend, place, alarm) for place, alarm in enumerate(trend.alarms)),
+        _robots(trend, robots),
+        _failures(trend),
+    ]
     return (
         '<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">'
         f"<title>{escape(title)}</title><style>{_STYLE}</style></head><body><main><h1>{escape(title)}</h1>{''.join(parts)}</main></body></html>\n"
@@ -59,7 +64,12 @@ def _overview(trend: Trend) -> str:
     if not trend.alarms:
         return '<h2>What has changed</h2><p class="good">Nothing: all parameters are what they were, within their scatter.</p>'
     rows = [
-        [f'<a href="#alarm-{place}">{escape(one.robot)}, {escape(one.cable)}</a>', escape(since(one)), escape(one.text), escape(one.remedy)]
+        [
+            f'<a href="#alarm-{place}">{escape(one.robot)}, {escape(one.cable)}</a>',
+            escape(since(one)),
+            escape(one.text),
+            escape(one.remedy),
+        ]
         for place, one in enumerate(trend.alarms)
     ]
     return "<h2>What has changed</h2>" + _table("Alarms, the latest first", ["where", "since", "what", "to do"], rows, stacked=True)
@@ -70,15 +80,22 @@ def _alarm(trend: Trend, place: int, alarm: Alarm) -> str:
     words = {"since": since(alarm), "what": alarm.text, "likely": alarm.cause, "to do": alarm.remedy}
     listed = "".join(f"<dt>{name}</dt><dd>{escape(text)}</dd>" for name, text in words.items())
     rows = [
-        [escape(one.parameter), one.kind, escape(between(one)), f"{one.before:.4g}", f"{one.after:.4g}", _size(one.size, one.size_standard_error, one.kind),
-         f"{one.delta_bic:.0f}".replace("-", "−")]
+        [
+            escape(one.parameter),
+            one.kind,
+            escape(between(one)),
+            f"{one.before:.4g}",
+            f"{one.after:.4g}",
+            _size(one.size, one.size_standard_error, one.kind),
+            f"{one.delta_bic:.0f}".replace("-", "−"),
+        ]
         for one in alarm.changes
     ]
     names = ["parameter", "kind", "since (95 %)", "before", "after", "size", "ΔBIC"]
     changes = _table("Changes; a ΔBIC of −10 is very strong evidence", names, rows, stacked=True) if rows else ""
     head = f"<h3>{escape(alarm.robot)}, {escape(alarm.cable)}: <span>{_REASONS[alarm.reason]}</span></h3>"
-    figures = "".join(_figure(one) for one in sorted(shown, key=lambda one: alarm.parameters.index(one.parameter)))
-    return f'<section class="alarm" id="alarm-{place}">{head}<dl>{listed}</dl>{figures}{changes}</section>'
+    drawn = "".join(_figure(one) for one in sorted(shown, key=lambda one: alarm.parameters.index(one.parameter)))
+    return f'<section class="alarm" id="alarm-{place}">{head}<dl>{listed}</dl><div class="views">{drawn}</div>{changes}</section>'
 
 
 def _size(size: float, error: float, kind: str) -> str:
@@ -95,7 +112,15 @@ def _robots(trend: Trend, robots: list[str]) -> str:
     for robot in robots:
         of_robot = [one for one in trend.series if one.robot == robot]
         rows = [
-            [escape(one.cable), escape(one.parameter), str(len(one.values)), f"{one.fitted[0]:.4g}", f"{one.fitted[-1]:.4g}", f"{one.scatter:.2g}", _state(one)]
+            [
+                escape(one.cable),
+                escape(one.parameter),
+                str(len(one.values)),
+                f"{one.fitted[0]:.4g}",
+                f"{one.fitted[-1]:.4g}",
+                f"{one.scatter:.2g}",
+                _state(one),
+            ]
             for one in of_robot
         ]
         days = sorted(date for one in of_robot for date in (one.date[0], one.date[-1]))
@@ -121,13 +146,19 @@ def _table(caption: str, names: list[str], rows: list[list[str]], *, stacked: bo
     """A table whose cells are HTML; the first of each row is its head."""
     numbers = {"logs", "at first", "now", "scatter", "before", "after", "size", "ΔBIC"}
     kinds = ["number" if name in numbers else "words" for name in names]
-    head = "".join(f'<th scope="col" class="{kind}">{name}</th>' for name, kind in zip(names, kinds))
+    head = "".join(f'<th scope="col" role="columnheader" class="{kind}">{name}</th>' for name, kind in zip(names, kinds))
     body = "".join(
-        f'<tr><th scope="row">{row[0]}</th>'
-        + "".join(f'<td class="{kind}" data-name="{name}">{cell}</td>' for cell, kind, name in zip(row[1:], kinds[1:], names[1:]))
+        f'<tr role="row"><th scope="row" role="rowheader">{row[0]}</th>'
+        + "".join(
+            f'<td role="cell" class="{kind}" data-name="{name}">{cell}</td>' for cell, kind, name in zip(row[1:], kinds[1:], names[1:])
+        )
         + "</tr>"
         for row in rows
     )
     shown = f"<caption>{escape(caption)}</caption>" if caption else ""
-    table = f'<table{" class=stacked" if stacked else ""}>{shown}<thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>'
-    return f'<div class="scroll" tabindex="0" role="region" aria-label="{escape(caption or names[0])}">{table}</div>'
+    # The roles hold where the cells are stacked, which takes them from the elements.
+    table = f'<table role="table"{" class=stacked" if stacked else ""}>{shown}<thead role="rowgroup"><tr role="row">{head}</tr></thead>'
+    label = escape(caption or " and ".join(names))
+    return (
+        f'<div class="scroll" tabindex="0" role="region" aria-label="{label}">{table}<tbody role="rowgroup">{body}</tbody></table></div>'
+    )

@@ -81,19 +81,19 @@ def run(
     are those of the operation: `reference`, `parameters` and `huber` of a fit, `reference` and `empirical` of a discovery, `correct` of a
     replay.
 
-    `client` is a `distributed.Client` or a scheduler's address. Without it, `workers` processes of this machine are started (as many as it
-    has cores) and ended; a script then needs `if __name__ == "__main__":`, as with every process pool. Workers of a scheduler have
+    `client` is a `distributed.Client` or a scheduler's address. Without it, `workers` processes of this machine are started (as many as
+    it has cores) and ended; a script then needs `if __name__ == "__main__":`, as with every process pool. Workers of a scheduler have
     `fric[fleet]` installed, and best one thread each (`dask worker --nthreads 1`).
 
-    What a log's result depends on are its bytes, the model, the options and the version of fric. A log for which such a result is there is not
-    computed again, so that a run that was cut off goes on, and new logs are added, by the same call. A worker that dies is replaced, and its log
-    is done by another. An error stays with its log: it is in `failures`, and, if it lies in the log's own bytes, kept as its result; all others
-    are tried again by the next run.
+    What a log's result depends on are its bytes, the model, the options and the version of fric. A log for which such a result is there
+    is not computed again, so that a run that was cut off goes on, and new logs are added, by the same call. A worker that dies is
+    replaced, and its log is done by another. An error stays with its log: it is in `failures`, and, if it lies in the log's own bytes,
+    kept as its result; all others are tried again by the next run.
 
     `progress` is True for a bar, or a function that is called with 0 … 1.
 
-    Raises ConfigError for an operation, option or model that is not right, LogFileNotFoundError where a path matches nothing, FleetError where
-    no scheduler or worker answers, ImportError where a library of the extra `fleet` is missing.
+    Raises ConfigError for an operation, option or model that is not right, LogFileNotFoundError where a path matches nothing, FleetError
+    where no scheduler or worker answers, ImportError where a library of the extra `fleet` is missing.
     """
     checked(operation, options)
     text = _text_of(model)
@@ -130,9 +130,7 @@ def _note(outcome: Outcome, store: Store, states: dict[str, int], failures: list
         states[outcome.state] += 1
 
 
-def _missing(
-    logs: list[LogAddress], seen: dict[str, str], there: dict[str, str], key: str
-) -> tuple[list[LogAddress], list[str]]:
+def _missing(logs: list[LogAddress], seen: dict[str, str], there: dict[str, str], key: str) -> tuple[list[LogAddress], list[str]]:
     """Logs without a result, and the paths of the errors of those that failed before."""
     missing, failed = [], []
     for log in logs:
@@ -150,7 +148,10 @@ def _outcomes(client: Any, jobs: Iterator[Job]) -> Iterator[Outcome]:
     waiting: dict[Any, Job] = {}
 
     def next_ones(count: int) -> list[Any]:
-        new = {client.submit(work, job, key=f"fric-{job.operation}-{job.log.stamp}-{job.key}", pure=False): job for job in islice(jobs, count)}
+        new = {
+            client.submit(work, job, key=f"fric-{job.operation}-{job.log.stamp}-{job.key}", pure=False): job
+            for job in islice(jobs, count)
+        }
         waiting.update(new)
         return list(new)
 
@@ -174,12 +175,14 @@ def _outcome(distributed: Any, future: Any, job: Job) -> Outcome:
         text = f"{times} workers died over it; it may need more memory than they have (it is tried again by the next run)"
         return Outcome(job.log, "failed", error=text)
     except Exception as error:
-        raise FleetError(f"a worker cannot run fric: {type(error).__name__}: {error}; install fric[fleet] there, in the same version") from error
+        raise FleetError(
+            f"a worker cannot run fric: {type(error).__name__}: {error}; install fric[fleet] there, in the same version"
+        ) from error
     return outcome
 
 
 def _threads(client: Any) -> int:
-    return max(1, sum(client.nthreads().values()))
+    return max(1, sum(int(count) for count in client.nthreads().values()))
 
 
 def _text_of(model: Robot | Path | None) -> str | None:

@@ -85,7 +85,9 @@ def _table(results: Any) -> Any:
             table = pa.table(results)
         except (TypeError, ValueError) as error:
             kind = type(results).__name__
-            raise ShapeError(f"`results` is {kind}; give what fric.fleet.run returned, the address of its results or a table of them") from error
+            raise ShapeError(
+                f"`results` is {kind}; give what fric.fleet.run returned, the address of its results or a table of them"
+            ) from error
     missing = [name for name in _NEEDED if name not in table.column_names]
     if missing:
         raise ShapeError(f"`results` has no column {', '.join(missing)}; a table needs {', '.join(_NEEDED)}")

@@ -1,7 +1,7 @@
 """Results as a Parquet data set: one file a log, which is there whole or not at all.
 
-`operation=fit/robot=NAME/month=2026-03/HASH-KEY.parquet`: HASH is of the log's bytes, KEY of whatever else the numbers depend on (version of
-fric, operation, options, model). The same work has the same name, so that doing it again changes nothing. `_seen` remembers which log
+`operation=fit/robot=NAME/month=2026-03/HASH-KEY.parquet`: HASH is of the log's bytes, KEY of whatever else the numbers depend on (version
+of fric, operation, options, model). The same work has the same name, so that doing it again changes nothing. `_seen` remembers which log
 had which bytes when it was listed; without it logs are read once more to see that nothing is missing.
 """
 
@@ -41,25 +41,27 @@ def schema() -> Any:
     """Columns of a result: one row a log, cable and parameter."""
     pa = need("pyarrow")
     text, number = pa.string(), pa.float64()
-    return pa.schema([
-        ("log", text),
-        ("log_hash", text),
-        ("start", pa.timestamp("ns", tz="UTC")),
-        ("duration_s", number),
-        ("cable", text),
-        ("parameter", text),
-        ("value", number),
-        ("standard_error", number),
-        ("state", text),
-        ("verdict", text),
-        ("warnings", pa.list_(text)),
-        ("error", text),
-        ("fric_version", text),
-        ("model_hash", text),
-        ("options", text),
-        ("seconds", number),
-        ("computed", pa.timestamp("us", tz="UTC")),
-    ])
+    return pa.schema(
+        [
+            ("log", text),
+            ("log_hash", text),
+            ("start", pa.timestamp("ns", tz="UTC")),
+            ("duration_s", number),
+            ("cable", text),
+            ("parameter", text),
+            ("value", number),
+            ("standard_error", number),
+            ("state", text),
+            ("verdict", text),
+            ("warnings", pa.list_(text)),
+            ("error", text),
+            ("fric_version", text),
+            ("model_hash", text),
+            ("options", text),
+            ("seconds", number),
+            ("computed", pa.timestamp("us", tz="UTC")),
+        ]
+    )
 
 
 class Store:

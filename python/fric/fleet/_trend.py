@@ -51,7 +51,8 @@ class Change(Value):
     size_standard_error: float
     """Its standard error."""
     delta_bic: float
-    """Evidence: below zero speaks for the change, -10 very strongly. The odds of finding one by chance among all logs and series are in it."""
+    """Evidence: below zero speaks for the change, -10 very strongly. The odds of finding one by chance among all logs and series are in
+    it."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -137,14 +138,14 @@ class Trend(Result):
 def trend(results: Any, *, operation: Literal["discover", "fit", "replay"] | None = None, limits: Limits | None = None) -> Trend:
     """Tells what has changed on each robot and cable, in which parameter, and since when.
 
-    `results` is what `run` returned, the address of its data set, or a table with the columns robot, cable, parameter, start and value, and
-    standard_error where there is one (a `pyarrow.Table`, or a data frame of pandas or polars). `operation` says which results are meant where the
-    data set has several. `limits` are least and greatest allowed values, None for none, by parameter (`{"mu": (None, 0.05)}`) or by robot, cable and
-    parameter (`{"rig/cable1/mu": (None, 0.04)}`).
+    `results` is what `run` returned, the address of its data set, or a table with the columns robot, cable, parameter, start and value,
+    and standard_error where there is one (a `pyarrow.Table`, or a data frame of pandas or polars). `operation` says which results are
+    meant where the data set has several. `limits` are least and greatest allowed values, None for none, by parameter (`{"mu": (None,
+    0.05)}`) or by robot, cable and parameter (`{"rig/cable1/mu": (None, 0.04)}`).
 
-    A change is a step or a slope that begins; it is told where the evidence is for it after the standard errors, the scatter from log to log, outliers,
-    a slow wander and the number of dates and series among which it was found. At least three logs have to lie on each side of it. Of a log that was
-    computed more than once, the last result counts.
+    A change is a step or a slope that begins; it is told where the evidence is for it after the standard errors, the scatter from log to
+    log, outliers, a slow wander and the number of dates and series among which it was found. At least three logs have to lie on each side
+    of it. Of a log that was computed more than once, the last result counts.
 
     Raises ConfigError where there are no results or a name is not right, ShapeError for a table without these columns.
     """
@@ -166,13 +167,23 @@ def _series(values: Values, found: Course, bounds: dict[str, tuple[float | None,
     limit = bounds.get(name, bounds.get(values.parameter, (None, None)))
     dates = values.stamp_nanos.astype("datetime64[ns]")
     return Series(
-        values.robot, values.cable, values.parameter, dates, values.value, values.standard_error, found.fitted, found.scatter, found.wanders, changes, limit
+        values.robot,
+        values.cable,
+        values.parameter,
+        dates,
+        values.value,
+        values.standard_error,
+        found.fitted,
+        found.scatter,
+        found.wanders,
+        changes,
+        limit,
     )
 
 
 def _change(values: Values, found: Course, place: int, change: Found) -> Change:
-    begin = change.index
-    end = next((one.index for one in found.changes[place + 1 :]), len(values.value)) - 1
+    begin = change.log_index
+    end = next((one.log_index for one in found.changes[place + 1 :]), len(values.value)) - 1
     is_step = change.kind != "slope"
     column = found.line.column(place)
     return Change(

@@ -76,7 +76,8 @@ def table_of(trend: Trend) -> str:
     """The table of a notebook."""
     head = "".join(f"<th>{name}</th>" for name in ("robot", "cable", "since", "what", "to do"))
     rows = "".join(
-        "<tr>" + "".join(f"<td>{escape(text)}</td>" for text in (one.robot, one.cable, since(one), one.text, one.remedy)) + "</tr>" for one in trend.alarms
+        "<tr>" + "".join(f"<td>{escape(text)}</td>" for text in (one.robot, one.cable, since(one), one.text, one.remedy)) + "</tr>"
+        for one in trend.alarms
     )
     return f"<p>{escape(headline(trend))}</p><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
 
