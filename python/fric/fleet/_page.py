@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from html import escape
 
 from ._alarms import day
@@ -24,7 +25,7 @@ table { border-collapse: collapse; margin: .5rem 0 1rem; font-variant-numeric: t
 caption { text-align: left; color: var(--soft); padding-bottom: .2rem; }
 th, td { padding: .2rem .9rem .2rem 0; text-align: right; border-bottom: 1px solid var(--line); vertical-align: top; }
 th { font-weight: 600; color: var(--soft); } th.words, td.words, tbody th { text-align: left; } tbody th { color: var(--text); }
-td.number { white-space: nowrap; }
+td.number, .day { white-space: nowrap; }
 section.alarm { border-top: 2px solid var(--line); margin-top: 1.6rem; }
 dl { display: grid; grid-template-columns: max-content 1fr; gap: .15rem 1rem; margin: .4rem 0; }
 dt { color: var(--soft); } dd { margin: 0; }
@@ -66,7 +67,7 @@ def _overview(trend: Trend) -> str:
     rows = [
         [
             f'<a href="#alarm-{place}">{escape(one.robot)}, {escape(one.cable)}</a>',
-            escape(since(one)),
+            _days(since(one)),
             escape(one.text),
             escape(one.remedy),
         ]
@@ -83,7 +84,7 @@ def _alarm(trend: Trend, place: int, alarm: Alarm) -> str:
         [
             escape(one.parameter),
             one.kind,
-            escape(between(one)),
+            _days(between(one)),
             f"{one.before:.4g}",
             f"{one.after:.4g}",
             _size(one.size, one.size_standard_error, one.kind),
@@ -96,6 +97,11 @@ def _alarm(trend: Trend, place: int, alarm: Alarm) -> str:
     head = f"<h3>{escape(alarm.robot)}, {escape(alarm.cable)}: <span>{_REASONS[alarm.reason]}</span></h3>"
     drawn = "".join(_figure(one) for one in sorted(shown, key=lambda one: alarm.parameters.index(one.parameter)))
     return f'<section class="alarm" id="alarm-{place}">{head}<dl>{listed}</dl><div class="views">{drawn}</div>{changes}</section>'
+
+
+def _days(text: str) -> str:
+    """A text in which no date is broken."""
+    return re.sub(r"\d{4}-\d\d-\d\d", r'<span class="day">\g<0></span>', escape(text))
 
 
 def _size(size: float, error: float, kind: str) -> str:

@@ -16,9 +16,22 @@ from ._run import FleetRun, LogFailure
 from ._store import Store
 
 # What a log has not measured, but the model given has it.
-_NOT_MEASURED = {"kept", "missing", "found"}
+_NOT_MEASURED = ["kept", "missing", "found"]
 _NEEDED = ("robot", "cable", "parameter", "start", "value")
-_OPTIONAL = ("operation", "standard_error", "state", "log", "log_hash", "error", "computed")
+_COLUMNS = {
+    "operation": "string",
+    "robot": "string",
+    "cable": "string",
+    "parameter": "string",
+    "start": "int64",
+    "value": "double",
+    "standard_error": "double",
+    "state": "string",
+    "log": "string",
+    "log_hash": "string",
+    "error": "string",
+    "computed": "stamp",
+}
 
 
 @dataclass(frozen=True)
@@ -52,26 +65,44 @@ def gather(results: Any, operation: str | None) -> Gathered:
     table = _table(results)
     if operation is None and isinstance(results, FleetRun):
         operation = results.operation
-    if "operation" in table.column_names:
-        table, operation = _of_operation(table, operation)
-    rows = _latest(table.to_pylist())
-    failures = tuple(sorted({(row["log"], row["error"]) for row in rows if row.get("error") is not None}))
-    good = [row for row in rows if row.get("error") is None]
-    undated = tuple(sorted({str(row.get("log")) for row in good if row["start"] is None}))
-    dated = [row for row in good if row["start"] is not None]
-    keys: dict[tuple[str, str, str], list[dict[str, Any]]] = {}
-    for row in dated:
-        if row.get("state") not in _NOT_MEASURED and row["value"] is not None and np.isfinite(row["value"]) and _counts(row["parameter"]):
-            keys.setdefault((row["robot"], row["cable"] or "platform", row["parameter"]), []).append(row)
-    series = [_values(key, entries) for key, entries in keys.items()]
-    count = len({(row["robot"], row["start"], row.get("log_hash")) for row in dated})
-    ordered = tuple(sorted(series, key=lambda one: (one.robot, one.cable, one.parameter)))
-    return Gathered(operation or "fit", ordered, tuple(LogFailure(*failure) for failure in failures), undated, count)
+    table, operation = _of_operation(table, operation)
+    table = _latest(table)
+    compute = need("pyarrow.compute")
+    is_good = compute.is_null(table.column("error"))
+    failures = table.filter(compute.invert(is_good)).select(["log", "error"]).to_pylist()
+    good = table.filter(is_good)
+    has_date = compute.is_valid(good.column("start"))
+    undated = {str(log) for log in good.filter(compute.invert(has_date)).column("log").unique().to_pylist()}
+    dated = good.filter(has_date)
+    told = tuple(LogFailure(*failure) for failure in sorted({(str(one["log"]), str(one["error"])) for one in failures}))
+    logs = dated.group_by(["robot", "start", "log_hash"]).aggregate([]).num_rows
+    return Gathered(operation or "fit", _split(dated), told, tuple(sorted(undated)), logs)
 
 
-def _counts(parameter: str) -> bool:
-    """Whether a parameter says something that no other says: the mean error goes with its rms."""
-    return not parameter.endswith(".mae_n")
+def _split(table: Any) -> tuple[Values, ...]:
+    """The series of a table, by robot, cable and parameter."""
+    pa, compute = need("pyarrow"), need("pyarrow.compute")
+    measured = compute.invert(compute.is_in(table.column("state"), value_set=pa.array(_NOT_MEASURED)))
+    # The mean error goes with its rms.
+    apart = compute.invert(compute.ends_with(table.column("parameter"), ".mae_n"))
+    table = table.filter(compute.and_(compute.and_(measured, apart), compute.is_finite(table.column("value"))))
+    table = table.sort_by([(name, "ascending") for name in ("robot", "cable", "parameter", "start")])
+    names = [table.column(name).combine_chunks() for name in ("robot", "cable", "parameter")]
+    codes = np.stack([name.dictionary_encode().indices.to_numpy(zero_copy_only=False) for name in names])
+    edges = np.flatnonzero(np.any(np.diff(codes, axis=1) != 0, axis=0)) + 1
+    bounds = [0, *edges.tolist(), table.num_rows] if table.num_rows else [0]
+    numbers = {name: table.column(name).to_numpy() for name in ("start", "value", "standard_error")}
+    logs = table.column("log")
+    return tuple(
+        Values(
+            *(str(name[begin].as_py()) for name in names),
+            numbers["start"][begin:end].copy(),
+            numbers["value"][begin:end].copy(),
+            numbers["standard_error"][begin:end].copy(),
+            tuple(str(log) for log in logs[begin:end].to_pylist()),
+        )
+        for begin, end in zip(bounds, bounds[1:])
+    )
 
 
 def _table(results: Any) -> Any:
@@ -91,42 +122,44 @@ def _table(results: Any) -> Any:
     missing = [name for name in _NEEDED if name not in table.column_names]
     if missing:
         raise ShapeError(f"`results` has no column {', '.join(missing)}; a table needs {', '.join(_NEEDED)}")
-    table = table.select([name for name in (*_NEEDED, *_OPTIONAL) if name in table.column_names])
-    start = table.column_names.index("start")
-    stamps = table.column("start").cast(pa.timestamp("ns", tz="UTC") if table.schema.field(start).type != pa.int64() else pa.int64())
-    return table.set_column(start, "start", stamps.cast(pa.int64()))
+    try:
+        return _typed(table)
+    except (pa.ArrowInvalid, pa.ArrowNotImplementedError) as error:
+        raise ShapeError(f"a column of `results` is of another type than fric.fleet.run writes: {error}") from error
 
 
-def _of_operation(table: Any, operation: str | None) -> tuple[Any, str]:
+def _typed(table: Any) -> Any:
+    """The columns that are needed, in the types of the data set, nulls for those that are not there; the start in ns since 1970."""
+    pa, compute = need("pyarrow"), need("pyarrow.compute")
+    columns = {}
+    for name, kind in _COLUMNS.items():
+        column = table.column(name) if name in table.column_names else pa.nulls(table.num_rows)
+        if name == "start" and not pa.types.is_integer(column.type):
+            column = column.cast(pa.timestamp("ns", tz="UTC"))
+        columns[name] = column.cast(pa.type_for_alias(kind) if kind != "stamp" else pa.timestamp("us", tz="UTC"))
+    columns["cable"] = compute.fill_null(columns["cable"], "platform")
+    return pa.table(columns)
+
+
+def _of_operation(table: Any, operation: str | None) -> tuple[Any, str | None]:
     compute = need("pyarrow.compute")
-    there = sorted(set(table.column("operation").unique().to_pylist()))
+    there = sorted(compute.drop_null(table.column("operation").unique()).to_pylist())
+    if not there:
+        return table, operation
     if operation is None:
         if len(there) > 1:
             raise ConfigError(f"`results` has {' and '.join(there)}; say by `operation` which of them is meant")
-        operation = there[0] if there else "fit"
+        operation = str(there[0])
     if operation not in there:
         raise ConfigError(_unknown_name("operation in `results`", operation, there))
-    return table.filter(compute.equal(table.column("operation"), operation)), str(operation)
+    return table.filter(compute.equal(table.column("operation"), operation)), operation
 
 
-def _latest(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
+def _latest(table: Any) -> Any:
     """Of a log that was computed with several models, options or versions, what was computed last."""
-    if not rows or "computed" not in rows[0] or "log_hash" not in rows[0]:
-        return rows
-    last: dict[tuple[str, str], Any] = {}
-    for row in rows:
-        log = row["robot"], row["log_hash"]
-        last[log] = max(last.get(log, row["computed"]), row["computed"])
-    return [row for row in rows if row["computed"] == last[row["robot"], row["log_hash"]]]
-
-
-def _values(key: tuple[str, str, str], rows: list[dict[str, Any]]) -> Values:
-    rows = sorted(rows, key=lambda row: row["start"])
-    errors = [row.get("standard_error") for row in rows]
-    return Values(
-        *key,
-        np.array([row["start"] for row in rows], dtype=np.int64),
-        np.array([row["value"] for row in rows], dtype=np.float64),
-        np.array([np.nan if error is None else error for error in errors], dtype=np.float64),
-        tuple(str(row.get("log", "")) for row in rows),
-    )
+    compute = need("pyarrow.compute")
+    if table.column("computed").null_count or table.column("log_hash").null_count:
+        return table
+    last = table.group_by(["robot", "log_hash"]).aggregate([("computed", "max")])
+    joined = table.join(last, ["robot", "log_hash"])
+    return joined.filter(compute.equal(joined.column("computed"), joined.column("computed_max")))
