@@ -87,18 +87,20 @@ def _split(table: Any) -> tuple[Values, ...]:
     apart = compute.invert(compute.ends_with(table.column("parameter"), ".mae_n"))
     table = table.filter(compute.and_(compute.and_(measured, apart), compute.is_finite(table.column("value"))))
     table = table.sort_by([(name, "ascending") for name in ("robot", "cable", "parameter", "start")])
-    names = [table.column(name).combine_chunks() for name in ("robot", "cable", "parameter")]
-    codes = np.stack([name.dictionary_encode().indices.to_numpy(zero_copy_only=False) for name in names])
+    robots, cables, parameters = (table.column(name).combine_chunks() for name in ("robot", "cable", "parameter"))
+    codes = np.stack([name.dictionary_encode().indices.to_numpy() for name in (robots, cables, parameters)])
     edges = np.flatnonzero(np.any(np.diff(codes, axis=1) != 0, axis=0)) + 1
     bounds = [0, *edges.tolist(), table.num_rows] if table.num_rows else [0]
-    numbers = {name: table.column(name).to_numpy() for name in ("start", "value", "standard_error")}
+    start, value, error = (table.column(name).to_numpy() for name in ("start", "value", "standard_error"))
     logs = table.column("log")
     return tuple(
         Values(
-            *(str(name[begin].as_py()) for name in names),
-            numbers["start"][begin:end].copy(),
-            numbers["value"][begin:end].copy(),
-            numbers["standard_error"][begin:end].copy(),
+            str(robots[begin]),
+            str(cables[begin]),
+            str(parameters[begin]),
+            start[begin:end].copy(),
+            value[begin:end].copy(),
+            error[begin:end].copy(),
             tuple(str(log) for log in logs[begin:end].to_pylist()),
         )
         for begin, end in zip(bounds, bounds[1:])
