@@ -22,7 +22,7 @@ def advice(parameter: str, shape: Literal["step", "slope"], *, rises: bool) -> A
     if parameter.startswith(("before.", "after.")):
         return _ERRORS[parameter.startswith("after.")]
     if "." in parameter:
-        effect = parameter.removeprefix("found.").partition(".")[0]
+        effect = parameter.partition(".")[0]
         return Advice(f"the effect {effect} has changed", _COMPARE)
     return Advice(f"{parameter} has changed", _COMPARE)
 

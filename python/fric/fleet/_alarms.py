@@ -72,7 +72,7 @@ def _end(pair: tuple[Series, Change]) -> datetime:
 
 
 def _follows(change: Change) -> bool:
-    return change.parameter.startswith(("before.", "after.", "found."))
+    return change.parameter.startswith(("before.", "after."))
 
 
 def _of_history(robot: str, cable: str, pairs: list[tuple[Series, Change]]) -> Alarm:

@@ -5,6 +5,3 @@ from .._errors import FricError
 
 class FleetError(FricError):
     """No cluster can be reached, or it cannot do the work; says which and what to do. Results that were written stay."""
-
-
-FleetError.__module__ = "fric.fleet"

@@ -65,13 +65,13 @@ class Line(NamedTuple):
     def cost(self, count: int, series_count: int) -> float:
         """What the line costs in units of -2 log likelihood, by the prior odds.
 
-        A coefficient costs log N (Schwarz 1978). A joint may be at each of N logs, which are equally likely: 2 log N, together the
-        penalty of Zhang and Siegmund (2007). A joint, or a slope from the beginning on, is expected in one of all the series: 2 log of
-        their number (Chen and Chen 2008).
+        A coefficient costs log N (Schwarz 1978). A joint may be at each of N logs, which are equally likely, a slope from the first log on among
+        them: 2 log N, together the penalty of Zhang and Siegmund (2007). A joint is expected in one of all the series: 2 log of their number (Chen
+        and Chen 2008).
         """
-        coefficients = self.sloped + sum(1 + (joint.kind == "step_and_slope") for joint in self.joints)
-        places = 2 * len(self.joints) * np.log(count)
-        return float(coefficients * np.log(count) + places + 2 * (len(self.joints) + self.sloped) * np.log(series_count))
+        joints = len(self.joints) + self.sloped
+        coefficients = joints + sum(joint.kind == "step_and_slope" for joint in self.joints)
+        return float((coefficients + 2 * joints) * np.log(count) + 2 * joints * np.log(series_count))
 
 
 def by_deviation(variance: Array) -> Whiten:

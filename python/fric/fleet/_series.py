@@ -76,15 +76,20 @@ def gather(results: Any, operation: str | None) -> Gathered:
     dated = good.filter(has_date)
     told = tuple(LogFailure(*failure) for failure in sorted({(str(one["log"]), str(one["error"])) for one in failures}))
     logs = dated.group_by(["robot", "start", "log_hash"]).aggregate([]).num_rows
-    return Gathered(operation or "fit", _split(dated), told, tuple(sorted(undated)), logs)
+    operation = operation or "fit"
+    return Gathered(operation, _split(dated, operation), told, tuple(sorted(undated)), logs)
 
 
-def _split(table: Any) -> tuple[Values, ...]:
+def _split(table: Any, operation: str) -> tuple[Values, ...]:
     """The series of a table, by robot, cable and parameter."""
     pa, compute = need("pyarrow"), need("pyarrow.compute")
     measured = compute.invert(compute.is_in(table.column("state"), value_set=pa.array(_NOT_MEASURED)))
-    # The mean error goes with its rms.
-    apart = compute.invert(compute.ends_with(table.column("parameter"), ".mae_n"))
+    # The mean error goes with its rms, and the friction before compensation with its parameters, where there are any.
+    parameter = table.column("parameter")
+    doubled = compute.ends_with(parameter, ".mae_n")
+    if operation != "replay":
+        doubled = compute.or_(doubled, compute.starts_with(parameter, "before."))
+    apart = compute.invert(doubled)
     table = table.filter(compute.and_(compute.and_(measured, apart), compute.is_finite(table.column("value"))))
     table = table.sort_by([(name, "ascending") for name in ("robot", "cable", "parameter", "start")])
     robots, cables, parameters = (table.column(name).combine_chunks() for name in ("robot", "cable", "parameter"))
