@@ -7,7 +7,7 @@
 [0.4314, 0.0171]
 
 Numbers are SI, with the unit in the name, as in the robot file. Whatever is wrong raises a FricError. `fric.plot` draws
-(needs matplotlib: `pip install fric[plot]`).
+(needs matplotlib: `pip install fric[plot]`), `fric.fleet` works on many logs (`pip install 'fric[fleet]'`).
 """
 
 # Before all that would fail there in its own words.
@@ -15,7 +15,7 @@ from ._interpreter import refuse_sub_interpreters as _refuse_sub_interpreters
 
 _refuse_sub_interpreters()
 
-from . import continuum, plot  # noqa: E402
+from . import continuum, fleet, plot  # noqa: E402
 from ._errors import (  # noqa: E402
     ArrayTypeError,
     ConfigError,
@@ -106,6 +106,7 @@ __all__ = [
     "discover",
     "excite",
     "fit",
+    "fleet",
     "hysteresis",
     "plot",
     "read_log",

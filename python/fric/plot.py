@@ -7,6 +7,7 @@ apart by colour-blind readers too, and in grey.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from datetime import datetime
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -22,8 +23,9 @@ if TYPE_CHECKING:
 
     from ._fric import Log
     from ._results import CableDiscovery, Compensation, DiscoverResult, ReplayResult, ShapeResult
+    from .fleet import Trend
 
-__all__ = ["candidates", "forces", "friction_loop", "gap_ladder", "parameters", "residuals", "tendon_friction", "tendon_shape", "where"]
+__all__ = ["candidates", "forces", "friction_loop", "gap_ladder", "parameters", "residuals", "tendon_friction", "tendon_shape", "trend", "where"]
 
 _WAYS = {"none": "#9a9a9a", "coulomb": "#d55e00", "measured": "#009e73", "history": "#0072b2"}
 _MEASURED, _MODEL, _REFERENCE, _BAND = "#d55e00", "#0072b2", "#9a9a9a", "#c6dbef"
@@ -252,6 +254,34 @@ def tendon_friction(result: ShapeResult, place: int = 0, *, ax: _Axes | None = N
     ax.set(xlabel="hole", ylabel="friction [N]")
     _dress(ax, f"{shape['time_s']:g} s")
     return ax
+
+
+def trend(result: Trend, robot: str, cable: str, parameter: str, *, ax: _Axes | None = None) -> _Axes:
+    """Draws a parameter over the dates of the logs: values with their 95 % intervals, the line that describes them, the date of each change with
+    its interval, and limits. A value without a standard error has no bar."""
+    series = result.of(robot, cable, parameter)
+    if ax is None:
+        ax = _figure(1, (9.0, 4.0))[0]
+    bars = _SIGMAS * np.where(np.isfinite(series.standard_errors), series.standard_errors, 0.0)
+    ax.errorbar(series.date, series.values, yerr=bars, fmt="o", color=_MEASURED, markersize=3, linewidth=0.8, label="logs")
+    steps = [int(np.searchsorted(series.date, _utc(change.date))) for change in series.changes if change.kind == "step"]
+    for begin, end in zip([0, *steps], [*steps, len(series.date)]):
+        label = "" if begin else "level and slope"
+        ax.plot(series.date[begin:end], series.fitted[begin:end], color=_MODEL, linewidth=1.6, label=label)
+    for place, change in enumerate(series.changes):
+        ax.axvspan(_utc(change.earliest), _utc(change.latest), color=_BAND, alpha=0.7, linewidth=0)
+        ax.axvline(_utc(change.date), color="black", linewidth=1.0, linestyle="--", label="" if place else "change")
+    for place, bound in enumerate(one for one in series.limits if one is not None):
+        ax.axhline(bound, color=_REFERENCE, linestyle=":", linewidth=1.4, label="" if place else "limit")
+    ax.set(ylabel=parameter)
+    _dress(ax, f"{robot}, {cable}")
+    ax.tick_params(axis="x", rotation=20)
+    return ax
+
+
+def _utc(date: datetime) -> Any:
+    """A date as those of a series are."""
+    return np.datetime64(date.replace(tzinfo=None), "ns")
 
 
 def _picked(result: ShapeResult, place: int) -> dict[str, Any]:

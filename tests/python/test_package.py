@@ -26,7 +26,9 @@ def test_what_is_public_is_documented_and_examples_are_right(monkeypatch):
     assert [name for name, value in continuum.items() if not inspect.getdoc(value)] == []
     finder = doctest.DocTestFinder()
     found = finder.find(fric, "fric", module=False, globs=names)
-    for name, value in {"fric.continuum": fric.continuum, **continuum}.items():
+    fleet = {name: getattr(fric.fleet, name) for name in fric.fleet.__all__}
+    assert [name for name, value in fleet.items() if not inspect.getdoc(value)] == []
+    for name, value in {"fric.continuum": fric.continuum, **continuum, "fric.fleet": fric.fleet, **fleet}.items():
         found += finder.find(value, name, module=False, globs=names)
     for test in found:
         runner.run(test, clear_globs=False)

@@ -6,6 +6,9 @@ import re
 import subprocess
 from urllib.parse import urlencode
 
+import fric
+import numpy as np
+import pyarrow
 import pytest
 from support import LOG, ROBOT, ROOT, SLOW_BENCH, run
 from tools import hint, program
@@ -13,7 +16,7 @@ from tools import hint, program
 BROWSER = program("chromium")
 pytestmark = pytest.mark.skipif(BROWSER is None, reason=hint(["chromium"]))
 
-KINDS = ("replay", "discover", "excite", "calibrate", "shape", "friction", "tendon")
+KINDS = ("replay", "discover", "excite", "calibrate", "shape", "friction", "tendon", "fleet")
 # A laptop, a telephone.
 WIDTHS_PX = (1280, 360)
 LOOK = (ROOT / "tests" / "python" / "look.html").as_uri()
@@ -58,7 +61,23 @@ def pages(tmp_path_factory):
     smooth = place / "smooth.toml"
     smooth.write_text(arm.read_text(encoding="utf-8").replace("mu = 0.1753 ", "mu = 0.0 "), encoding="utf-8")
     run("discover", pull, "--model", smooth, "-o", place / "rubs.toml", "--report", page["tendon"])
+    page["fleet"].write_text(fleet_page(), encoding="utf-8")
     return page
+
+
+def fleet_page():
+    """A fleet on which one pulley dries, and one log could not be read."""
+    noise = np.random.default_rng(1)
+    day = np.datetime64("2025-01-01T08", "ns") + np.arange(40) * np.timedelta64(7, "D")
+    common = {"robot": "rig", "parameter": "mu", "standard_error": 1e-4}
+    dries = 0.02 + 2e-4 * np.maximum(0, np.arange(40) - 20)
+    rows = [{**common, "cable": "cable1", "start": int(at), "value": mu + 2e-4 * noise.normal()} for at, mu in zip(day.astype(np.int64), dries)]
+    rows += [{**row, "cable": "cable2", "value": 0.02 + 2e-4 * noise.normal()} for row in rows]
+    rows = [{**row, "log": f"{row['start']}.mcap", "error": None} for row in rows]
+    rows.append({**common, "start": None, "value": None, "log": "broken.mcap", "error": "broken.mcap is no MCAP file"})
+    found = fric.fleet.trend(pyarrow.Table.from_pylist(rows), limits={"mu": (None, 0.023)})
+    assert [alarm.reason for alarm in found.alarms] == ["limit", "history"]
+    return found.to_html()
 
 
 @pytest.mark.parametrize("name", KINDS)

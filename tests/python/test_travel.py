@@ -9,8 +9,9 @@ import sys
 
 import fric
 import numpy as np
+import pyarrow
 import pytest
-from fric import continuum
+from fric import continuum, fleet
 from support import BENCH, ROOT, SLOW_BENCH
 
 ARM = ROOT / "examples" / "tendon-prototype.toml"
@@ -37,6 +38,9 @@ def examples():
     tendon = continuum.simulate(arm, run="mixed", seed=5)
     calibration = continuum.calibrate(arm, tendon.load_n, tendon.load_shift_nm)
     calibrated, angle_rad = calibration.manipulator, np.full(4, 1.0)
+    failure = fleet.LogFailure("run.mcap", "run.mcap is no MCAP file")
+    steps = {"start": np.arange(20) * 10**15 + 10**18, "value": np.repeat([0.02, 0.03], 10) + 1e-5 * np.sin(np.arange(20.0))}
+    changed = fleet.trend(pyarrow.table({**{name: ["a"] * 20 for name in ("robot", "cable", "parameter")}, **steps}))
     objects = [
         robot,
         robot.platform,
@@ -70,6 +74,12 @@ def examples():
         continuum.hole(np.linspace(0.5, 2.0, 4), np.linspace(0.5, 2.0, 4) * 0.9, angle_rad, angle_rad),
         continuum.shape(calibrated, tendon.run, mixed=True, shapes=2),
         continuum.discover(calibrated, tendon.run),
+        fleet.FleetRun("fit", "results", 1, 0, 0, (failure,)),
+        failure,
+        changed,
+        changed.series[0],
+        changed.alarms[0],
+        changed.alarms[0].changes[0],
     ]
     errors = [value("what is wrong") for value in public_classes().values() if issubclass(value, Exception)]
     return {type(one).__name__: one for one in [*objects, *errors]}

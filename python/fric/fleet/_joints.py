@@ -1,0 +1,212 @@
+"""Where a line through a series has joints: steps, and dates from which it has another slope."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+
+from ._needs import need
+from ._noise import Array
+
+
+LEAST_LOGS = 3
+"""Logs on each side of a joint: of two alone none could be an outlier."""
+SINGLE: tuple[Literal["step", "slope"], ...] = ("step", "slope")
+"""What a joint by itself may be."""
+_KINDS: tuple[Literal["step", "slope", "step_and_slope"], ...] = (*SINGLE, "step_and_slope")
+_SWEEPS = 8
+# Columns that are tried at once, so that memory does not grow with the square of the logs.
+_BLOCK = 512
+
+
+Whiten = Callable[[Array], Array]
+"""Columns, (N, C), brought to independent noise of 1 in each row."""
+
+
+class Joint(NamedTuple):
+    """From the log `log_index` on the line is another."""
+
+    log_index: int
+    kind: Literal["step", "slope", "step_and_slope"]
+
+
+class Line(NamedTuple):
+    """A line with joints in order."""
+
+    joints: tuple[Joint, ...] = ()
+    sloped: bool = False
+    """Whether it has a slope from the first log on."""
+
+    def without(self, joint: Joint) -> Line:
+        """The same without one of its joints."""
+        return Line(tuple(one for one in self.joints if one != joint), self.sloped)
+
+    def with_joint(self, joint: Joint) -> Line:
+        """The same with one more."""
+        return Line(tuple(sorted((*self.joints, joint))), self.sloped)
+
+    def design(self, time: Array) -> Array:
+        """Its columns, (N, P): level, slope from the first log on, then those of each joint."""
+        columns = [np.ones(len(time))]
+        if self.sloped:
+            columns.append(time - time[0])
+        for joint in self.joints:
+            columns += _columns(time, joint)
+        return np.stack(columns, axis=1)
+
+    def column(self, change: int) -> int:
+        """Column of the design that is a change by its place: the slope from the first log on, where there is one, then the joints."""
+        joints = self.joints[: max(0, change - self.sloped)]
+        past = [1 + (joint.kind == "step_and_slope") for joint in joints]
+        return 1 if self.sloped and change == 0 else 1 + self.sloped + sum(past)
+
+    def cost(self, count: int, series_count: int) -> float:
+        """What the line costs in units of -2 log likelihood, by the prior odds.
+
+        A coefficient costs log N (Schwarz 1978). A joint may be at each of N logs, which are equally likely, a slope from the first log on among
+        them: 2 log N, together the penalty of Zhang and Siegmund (2007). A joint is expected in one of all the series: 2 log of their number (Chen
+        and Chen 2008).
+        """
+        joints = len(self.joints) + self.sloped
+        coefficients = joints + sum(joint.kind == "step_and_slope" for joint in self.joints)
+        return float((coefficients + 2 * joints) * np.log(count) + 2 * joints * np.log(series_count))
+
+
+def by_deviation(variance: Array) -> Whiten:
+    """Brings independent noise of a variance at each log to 1."""
+    root = 1 / np.sqrt(variance)
+    return lambda columns: columns * root[:, None]
+
+
+def squares(line: Line, time: Array, values: Array, whiten: Whiten) -> float:
+    """Sum of squares of the whitened noise that a line leaves."""
+    whitened = whiten(np.column_stack([line.design(time), values]))
+    q, _ = np.linalg.qr(whitened[:, :-1])
+    left = whitened[:, -1] - q @ (q.T @ whitened[:, -1])
+    return float(left @ left)
+
+
+def candidates(time: Array, values: Array, variance: Array, series_count: int) -> list[Line]:
+    """Lines that may be the best: from a segmentation and from single joints, each improved one joint after the other."""
+    count = len(time)
+    if count < 2 * LEAST_LOGS:
+        return [Line()]
+    starts = [Line(), Line(sloped=True), _segments(time, values, variance)]
+    starts += [Line((best,)) for kind in SINGLE if (best := _best_joint(Line(), kind, time, values, variance))]
+    improved = (_improved(start, time, values, variance, series_count) for start in starts)
+    return list(dict.fromkeys([Line(), Line(sloped=True), *improved]))
+
+
+def residual_sums(rest: Line, kind: Literal["step", "slope", "step_and_slope"], time: Array, values: Array, whiten: Whiten) -> Array:
+    """Sum of squares of the whitened noise that is left with one more joint of a kind, at each log; infinite where there is no room for
+    one."""
+    q, _ = np.linalg.qr(whiten(rest.design(time)))
+    left = whiten(values[:, None])
+    left = left - q @ (q.T @ left)
+    total = float((left**2).sum())
+    sums = np.full(len(time), np.inf)
+    room = _room(rest, len(time))
+    for begin in range(0, len(room), _BLOCK):
+        places = room[begin : begin + _BLOCK]
+        parts = [whiten(columns) for columns in _columns_at(time, places, kind)]
+        parts = [part - q @ (q.T @ part) for part in parts]
+        sums[places] = total - _explained(parts, left[:, 0])
+    return sums
+
+
+def _explained(parts: list[Array], left: Array) -> Array:
+    """How much of the squares of `left` one column, or two together, explain, for each place."""
+    first = parts[0]
+    size = np.maximum((first**2).sum(axis=0), 1e-300)
+    explained: Array = (left @ first) ** 2 / size
+    if len(parts) > 1:
+        second = parts[1] - first * ((first * parts[1]).sum(axis=0) / size)
+        explained = explained + (left @ second) ** 2 / np.maximum((second**2).sum(axis=0), 1e-300)
+    return explained
+
+
+def _room(rest: Line, count: int) -> np.ndarray[Any, np.dtype[np.int64]]:
+    """Logs at which another joint has enough logs on each side."""
+    allowed = np.zeros(count, dtype=bool)
+    allowed[LEAST_LOGS : count - LEAST_LOGS + 1] = True
+    for joint in rest.joints:
+        allowed[max(0, joint.log_index - LEAST_LOGS + 1) : joint.log_index + LEAST_LOGS] = False
+    return np.flatnonzero(allowed)
+
+
+def _columns(time: Array, joint: Joint) -> list[Array]:
+    return [columns[:, 0] for columns in _columns_at(time, np.array([joint.log_index]), joint.kind)]
+
+
+def _columns_at(
+    time: Array, places: np.ndarray[Any, np.dtype[np.int64]], kind: Literal["step", "slope", "step_and_slope"]
+) -> list[Array]:
+    step = (np.arange(len(time))[:, None] >= places[None, :]).astype(float)
+    slope = np.maximum(time[:, None] - time[places][None, :], 0.0)
+    return [step] * (kind != "slope") + [slope] * (kind != "step")
+
+
+def _best_joint(
+    rest: Line, kind: Literal["step", "slope", "step_and_slope"], time: Array, values: Array, variance: Array
+) -> Joint | None:
+    sums = residual_sums(rest, kind, time, values, by_deviation(variance))
+    return Joint(int(np.argmin(sums)), kind) if np.isfinite(sums).any() else None
+
+
+def _improved(line: Line, time: Array, values: Array, variance: Array, series_count: int) -> Line:
+    """Gives each joint in turn its best place and kind, or leaves it out, and tries one more, until nothing helps."""
+    whiten = by_deviation(variance)
+
+    def criterion(one: Line) -> float:
+        return squares(one, time, values, whiten) + one.cost(len(time), series_count)
+
+    best = criterion(line)
+    for _ in range(_SWEEPS):
+        rivals = [Line(line.joints, not line.sloped)]
+        for joint in (*line.joints, None):
+            rest = line if joint is None else line.without(joint)
+            rivals.append(rest)
+            found = (_best_joint(rest, kind, time, values, variance) for kind in _KINDS)
+            rivals += [rest.with_joint(one) for one in found if one]
+        ranked = min(rivals, key=criterion)
+        if criterion(ranked) >= best - 1e-9:
+            break
+        line, best = ranked, criterion(ranked)
+    return line
+
+
+def _segments(time: Array, values: Array, variance: Array) -> Line:
+    """A segmentation into levels and slopes, bottom up (Keogh et al. 2001), a joint with step and slope between any two."""
+    ruptures = need("ruptures")
+    weights = 1 / variance
+    terms = (np.append(0.0, weights * moment) for moment in _moments(time, values))
+    sums = np.cumsum(list(terms), axis=1)
+    worth = float(np.log(len(time)))
+
+    def fit(cost: Any, signal: Array) -> Any:
+        cost.signal = signal
+        return cost
+
+    def error(_: Any, start: int, end: int) -> float:
+        """Weighted squares about a level, or about a line where that is worth its slope."""
+        w, wt, wtt, wy, wty, wyy = sums[:, end] - sums[:, start]
+        level = wyy - wy * wy / w
+        spread = wtt - wt * wt / w
+        slope = level - (wty - wt * wy / w) ** 2 / spread if spread > 0 else level
+        return float(max(min(level, slope + worth), 0.0))
+
+    # The base class is there only with the library.
+    parts = {"model": "", "min_size": LEAST_LOGS, "fit": fit, "error": error}
+    cost = type("Segment", (ruptures.base.BaseCost,), parts)()
+    search = ruptures.BottomUp(custom_cost=cost, min_size=LEAST_LOGS, jump=1).fit(values.reshape(-1, 1))
+    # Fewer than the evidence asks for would be lost; too many are left out afterwards.
+    ends = search.predict(pen=3 * worth)
+    return Line(tuple(Joint(int(end), "step_and_slope") for end in ends[:-1]))
+
+
+def _moments(time: Array, values: Array) -> list[Array]:
+    since = time - time.mean()
+    about = values - values.mean()
+    return [np.ones(len(time)), since, since**2, about, since * about, about**2]

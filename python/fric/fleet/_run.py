@@ -1,0 +1,208 @@
+"""`run`: an operation over the logs of a fleet."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import islice
+from typing import Any, Literal
+
+from .._errors import ConfigError
+from .._fric import Robot, __version__
+from .._progress import Bar
+from .._results.base import Value
+from ._cluster import connected
+from ._errors import FleetError
+from ._logs import LogAddress, file_system, find
+from ._needs import need
+from ._operations import checked
+from ._store import FAILED, Store, key_of
+from ._task import Job, Outcome, model_hash, work
+
+Path = str | os.PathLike[str]
+# Tasks that wait at each thread: the scheduler's memory does not grow with the number of logs, and no thread waits.
+_TASKS_A_THREAD = 4
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class LogFailure(Value):
+    """A log that gave no result."""
+
+    log: str
+    """Its path or address."""
+    error: str
+    """What is wrong, in a sentence."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class FleetRun(Value):
+    """Outcome of `run`. `print(run)` says what was done, with every log that failed."""
+
+    operation: str
+    """"discover", "fit" or "replay"."""
+    results: str
+    """Path or address of the data set."""
+    logs: int
+    """Logs that the paths name."""
+    computed: int
+    """Logs that were computed."""
+    known: int
+    """Logs whose results were there, and not computed again."""
+    failures: tuple[LogFailure, ...]
+    """Logs without a result, by this run or by one before that gave the same error."""
+
+    def summary(self) -> str:
+        """Counts, and a line for every log that failed."""
+        head = f"{self.operation} of {self.logs} logs into {self.results}: {self.computed} computed, {self.known} there before"
+        lines = [f"{head}, {len(self.failures)} failed"] + [f"  {one.log}: {one.error}" for one in self.failures]
+        return "\n".join(lines) + "\n"
+
+    def __str__(self) -> str:
+        return self.summary()
+
+
+def run(
+    operation: Literal["discover", "fit", "replay"],
+    paths: Path | Sequence[Path],
+    *,
+    results: Path,
+    model: Robot | Path | None = None,
+    client: Any = None,
+    workers: int | None = None,
+    progress: bool | Callable[[float], object] | None = False,
+    **options: Any,
+) -> FleetRun:
+    """Runs `fric.fit`, `fric.discover` or `fric.replay` over many logs, a task each, and keeps the results.
+
+    `paths` are paths, globs and fsspec addresses ("s3://bucket/2026/**/*.mcap"); what is not on this machine is fetched by the worker
+    into a temporary file. `results` is a folder or an address that all workers can write to: a Parquet data set with a row a log, cable
+    and parameter. `model` is the robot of all logs, as an object, path or address; without it each log has its own attached. `options`
+    are those of the operation: `reference`, `parameters` and `huber` of a fit, `reference` and `empirical` of a discovery, `correct` of a
+    replay.
+
+    `client` is a `distributed.Client` or a scheduler's address. Without it, `workers` processes of this machine are started (as many as
+    it has cores) and ended; a script then needs `if __name__ == "__main__":`, as with every process pool. Workers of a scheduler have
+    `fric[fleet]` installed, and best one thread each (`dask worker --nthreads 1`).
+
+    What a log's result depends on are its bytes, the model, the options and the version of fric. A log for which such a result is there
+    is not computed again, so that a run that was cut off goes on, and new logs are added, by the same call. A worker that dies is
+    replaced, and its log is done by another. An error stays with its log: it is in `failures`, and, if it lies in the log's own bytes,
+    kept as its result; all others are tried again by the next run.
+
+    `progress` is True for a bar, or a function that is called with 0 … 1.
+
+    Raises ConfigError for an operation, option or model that is not right, LogFileNotFoundError where a path matches nothing, FleetError
+    where no scheduler or worker answers, ImportError where a library of the extra `fleet` is missing.
+    """
+    checked(operation, options)
+    text = _text_of(model)
+    key = key_of(__version__, operation, options, None if text is None else model_hash(text))
+    logs, store = find(paths), Store(_absolute(results))
+    there, seen = store.names(), store.seen()
+    missing, earlier = _missing(logs, seen, there, key)
+    states = {"computed": 0, "known": len(logs) - len(missing)}
+    failures = [LogFailure(*error) for error in store.errors(earlier)]
+    states["known"] -= len(failures)
+    show = Bar() if progress is True else progress or _nothing
+    show(1.0 if not missing else 1 - len(missing) / len(logs))
+    jobs = (Job(operation, log, text, options, store.address, key, __version__) for log in missing)
+    try:
+        if missing:
+            with connected(client, workers) as at:
+                for place, outcome in enumerate(_outcomes(at, jobs), start=1):
+                    _note(outcome, store, states, failures)
+                    show(1 - (len(missing) - place) / len(logs))
+    finally:
+        store.flush()
+    ordered = tuple(sorted(failures, key=lambda failure: failure.log))
+    return FleetRun(operation, store.address, len(logs), states["computed"], states["known"], ordered)
+
+
+def _note(outcome: Outcome, store: Store, states: dict[str, int], failures: list[LogFailure]) -> None:
+    if outcome.state == "wrong_call":
+        raise ConfigError(outcome.error)
+    if outcome.log_hash is not None:
+        store.remember(outcome.log, outcome.log_hash)
+    if outcome.error is not None:
+        failures.append(LogFailure(outcome.log.address, outcome.error))
+    else:
+        states[outcome.state] += 1
+
+
+def _missing(logs: list[LogAddress], seen: dict[str, str], there: dict[str, str], key: str) -> tuple[list[LogAddress], list[str]]:
+    """Logs without a result, and the paths of the errors of those that failed before."""
+    missing, failed = [], []
+    for log in logs:
+        name = f"{seen.get(log.stamp)}-{key}"
+        if name + FAILED in there:
+            failed.append(there[name + FAILED])
+        elif name not in there:
+            missing.append(log)
+    return missing, failed
+
+
+def _outcomes(client: Any, jobs: Iterator[Job]) -> Iterator[Outcome]:
+    """The outcomes of all jobs as they come, with a bounded number of them at the scheduler."""
+    distributed = need("distributed")
+    waiting: dict[Any, Job] = {}
+
+    def next_ones(count: int) -> list[Any]:
+        new = {
+            client.submit(work, job, key=f"fric-{job.operation}-{job.log.stamp}-{job.key}", pure=False): job
+            for job in islice(jobs, count)
+        }
+        waiting.update(new)
+        return list(new)
+
+    pool = distributed.as_completed(next_ones(_TASKS_A_THREAD * _threads(client)))
+    try:
+        for future in pool:
+            job = waiting.pop(future)
+            yield _outcome(distributed, future, job)
+            # Workers come and go.
+            for new in next_ones(max(0, _TASKS_A_THREAD * _threads(client) - len(waiting))):
+                pool.add(new)
+    finally:
+        client.cancel(list(waiting), force=True)
+
+
+def _outcome(distributed: Any, future: Any, job: Job) -> Outcome:
+    try:
+        outcome: Outcome = future.result()
+    except distributed.KilledWorker as error:
+        times = error.allowed_failures + 1
+        text = f"{times} workers died over it; it may need more memory than they have (it is tried again by the next run)"
+        return Outcome(job.log, "failed", error=text)
+    except Exception as error:
+        raise FleetError(
+            f"a worker cannot run fric: {type(error).__name__}: {error}; install fric[fleet] there, in the same version"
+        ) from error
+    return outcome
+
+
+def _threads(client: Any) -> int:
+    return max(1, sum(int(count) for count in client.nthreads().values()))
+
+
+def _text_of(model: Robot | Path | None) -> str | None:
+    """The robot file, checked; None where each log brings its own."""
+    if model is None or isinstance(model, Robot):
+        return model and model.to_toml()
+    fs, path = file_system(os.fspath(model))
+    if fs.protocol == "file" or "file" in fs.protocol:
+        return Robot.read(path).to_toml()
+    try:
+        return Robot.from_toml(fs.cat_file(path).decode()).to_toml()
+    except FileNotFoundError as error:
+        raise ConfigError(f"there is no robot file at {os.fspath(model)}") from error
+
+
+def _absolute(results: Path) -> str:
+    """A path that means the same to workers in other folders."""
+    address = os.fspath(results)
+    return address if "://" in address or "::" in address else os.path.abspath(os.path.expanduser(address))
+
+
+def _nothing(fraction: float) -> None:
+    """Shows no progress."""

@@ -1,0 +1,169 @@
+"""Results as a Parquet data set: one file a log, which is there whole or not at all.
+
+`operation=fit/robot=NAME/month=2026-03/HASH-KEY.parquet`: HASH is of the log's bytes, KEY of whatever else the numbers depend on (version
+of fric, operation, options, model). The same work has the same name, so that doing it again changes nothing. `_seen` remembers which log
+had which bytes when it was listed; without it logs are read once more to see that nothing is missing.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import json
+import os
+import time
+import uuid
+from collections.abc import Mapping
+from typing import Any
+from urllib.parse import quote
+
+from .._errors import ConfigError, OutputError
+from ._logs import LogAddress, file_system, is_local
+from ._needs import need
+
+FAILED = "-failed"
+"""Ends the name of a file that holds an error."""
+# Stores that show an object whole or not at all; elsewhere a file is written beside its place and renamed.
+_OBJECT_STORES = {"s3", "s3a", "gs", "gcs", "abfs", "az", "memory"}
+_SEEN = "_seen"
+# A run that is cut off reads at most what was finished in this time, or so many logs, once more.
+_FLUSH_S = 5.0
+_FLUSH_COUNT = 5000
+
+
+def key_of(version: str, operation: str, options: Mapping[str, Any], model_hash: str | None) -> str:
+    """Hash of what results depend on beside the log; `model_hash` is None where each log brings its model."""
+    text = json.dumps([version, operation, dict(options), model_hash], sort_keys=True, default=list)
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def schema() -> Any:
+    """Columns of a result: one row a log, cable and parameter."""
+    pa = need("pyarrow")
+    text, number = pa.string(), pa.float64()
+    return pa.schema(
+        [
+            ("log", text),
+            ("log_hash", text),
+            ("start", pa.timestamp("ns", tz="UTC")),
+            ("duration_s", number),
+            ("cable", text),
+            ("parameter", text),
+            ("value", number),
+            ("standard_error", number),
+            ("state", text),
+            ("verdict", text),
+            ("warnings", pa.list_(text)),
+            ("error", text),
+            ("fric_version", text),
+            ("model_hash", text),
+            ("options", text),
+            ("seconds", number),
+            ("computed", pa.timestamp("us", tz="UTC")),
+        ]
+    )
+
+
+class Store:
+    """A data set of results."""
+
+    def __init__(self, address: str | os.PathLike[str]) -> None:
+        self.address = os.fspath(address)
+        self._fs, self._root = file_system(self.address)
+        self._root = self._root.rstrip("/")
+        self._pending: list[str] = []
+        self._flushed_s = time.monotonic()
+
+    def path(self, operation: str, robot: str | None, month: str | None, log_hash: str, key: str) -> str:
+        """Where the result of a log belongs."""
+        parts = {"operation": operation, "robot": robot or "unknown", "month": month or "unknown"}
+        folders = "/".join(f"{name}={quote(value, safe=' ')}" for name, value in parts.items())
+        return f"{self._root}/{folders}/{log_hash}-{key}.parquet"
+
+    def written(self, path: str) -> bool:
+        """Whether there is a result at a path."""
+        return bool(self._fs.exists(path))
+
+    def error_at(self, path: str) -> str | None:
+        """The sentence of the error that stands in the place of a result; None where there is none."""
+        failed = _of_error(path)
+        return self.errors([failed])[0][1] if self._fs.exists(failed) else None
+
+    def write(self, path: str, rows: list[dict[str, Any]], *, failed: bool = False) -> None:
+        """Writes the rows of a log, whole or not at all."""
+        columns = schema()
+        sheet = io.BytesIO()
+        need("pyarrow.parquet").write_table(need("pyarrow").Table.from_pylist(rows, schema=columns), sheet, compression="zstd")
+        self._put(_of_error(path) if failed else path, sheet.getvalue())
+
+    def names(self) -> dict[str, str]:
+        """Paths of all results by their names without ending; those of errors end in `FAILED`."""
+        if not self._fs.exists(self._root):
+            return {}
+        # A folder may have been listed before, by this process or another.
+        self._fs.invalidate_cache()
+        paths = (path for path in self._fs.find(self._root) if path.endswith(".parquet"))
+        named = ((path, path.rpartition("/")[2]) for path in paths)
+        return {name.removesuffix(".parquet"): path for path, name in named if not name.startswith((".", "_"))}
+
+    def seen(self) -> dict[str, str]:
+        """Hashes of logs by the stamps that they were listed with."""
+        folder = f"{self._root}/{_SEEN}"
+        if not self._fs.exists(folder):
+            return {}
+        lines = (line for file in self._fs.find(folder) if file.endswith(".txt") for line in self._fs.cat_file(file).decode().split("\n"))
+        pairs = (line.split(" ") for line in lines)
+        return {pair[0]: pair[1] for pair in pairs if len(pair) == 2}
+
+    def remember(self, log: LogAddress, log_hash: str) -> None:
+        """Remembers the bytes of a log; `flush` keeps it."""
+        self._pending.append(f"{log.stamp} {log_hash}")
+        if len(self._pending) >= _FLUSH_COUNT or time.monotonic() - self._flushed_s > _FLUSH_S:
+            self.flush()
+
+    def flush(self) -> None:
+        """Writes what is to be remembered."""
+        if self._pending:
+            self._put(f"{self._root}/{_SEEN}/{uuid.uuid4().hex}.txt", "\n".join(self._pending).encode())
+        self._pending, self._flushed_s = [], time.monotonic()
+
+    def errors(self, paths: list[str]) -> list[tuple[str, str]]:
+        """Log and sentence of errors that were written."""
+        parquet = need("pyarrow.parquet")
+        rows = (parquet.read_table(io.BytesIO(self._fs.cat_file(path)), columns=["log", "error"]).to_pylist() for path in paths)
+        return [(row["log"], row["error"]) for table in rows for row in table]
+
+    def table(self) -> Any:
+        """All rows as a `pyarrow.Table`, with `operation`, `robot` and `month`."""
+        pa, dataset = need("pyarrow"), need("pyarrow.dataset")
+        parts = pa.schema([(name, pa.string()) for name in ("operation", "robot", "month")])
+        paths = sorted(self.names().values())
+        if not paths:
+            raise ConfigError(f"{self.address} has no results; fric.fleet.run writes them")
+        hive = dataset.partitioning(parts, flavor="hive")
+        every = pa.unify_schemas([schema(), parts])
+        return dataset.dataset(paths, schema=every, filesystem=self._fs, partitioning=hive, partition_base_dir=self._root).to_table()
+
+    def _put(self, path: str, content: bytes) -> None:
+        folder, _, name = path.rpartition("/")
+        try:
+            if _OBJECT_STORES.intersection([self._fs.protocol] if isinstance(self._fs.protocol, str) else self._fs.protocol):
+                self._fs.pipe_file(path, content)
+                return
+            self._fs.makedirs(folder, exist_ok=True)
+            beside = f"{folder}/.{name}.{uuid.uuid4().hex}.part"
+            if is_local(self._fs):
+                with open(beside, "wb") as stream:
+                    stream.write(content)
+                    stream.flush()
+                    os.fsync(stream.fileno())
+                os.replace(beside, path)
+            else:
+                self._fs.pipe_file(beside, content)
+                self._fs.mv(beside, path)
+        except OSError as error:
+            raise OutputError(f"the result {path} cannot be written: {error}; nothing of it was") from error
+
+
+def _of_error(path: str) -> str:
+    return f"{path.removesuffix('.parquet')}{FAILED}.parquet"

@@ -1,0 +1,237 @@
+"""`trend`: what has changed on a fleet, since when, and what to do about it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import datetime, timedelta, timezone
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._errors import ConfigError
+from .._fric import _unknown_name
+from .._results.base import Result, Shown, Value
+from ._changes import Change as Found
+from ._changes import Course, course
+from ._run import LogFailure
+from ._series import Gathered, Values, gather
+
+Limits = Mapping[str, tuple[float | None, float | None]]
+
+YEAR_NANOS = 365.25 * 86_400e9
+# Last values that are called out of line by chance: one in a hundred evaluations of a whole fleet.
+_FALSE_ALARMS = 0.01
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Change(Value):
+    """A date from which a parameter is another, or goes another way."""
+
+    parameter: str
+    """Name of the parameter."""
+    kind: Literal["step", "slope"]
+    """"step": something was replaced, set otherwise or has broken; "slope": something begins to dry, wear or drift."""
+    date: datetime
+    """Start of the first log after the step, or of the log from which the slope begins, UTC."""
+    earliest: datetime
+    """Start of the first log that may be that one, with 95 %."""
+    latest: datetime
+    """Start of the last log that may be that one."""
+    log: str
+    """The log of `date`."""
+    before: float
+    """Value before; of a slope, where it begins."""
+    after: float
+    """Value after the step; of a slope, where it is at its end."""
+    size: float
+    """Size of the step, or change of the slope a year."""
+    size_standard_error: float
+    """Its standard error."""
+    delta_bic: float
+    """Evidence: below zero speaks for the change, -10 very strongly. The odds of finding one by chance among all logs and series are in
+    it."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Series(Value):
+    """A parameter of a cable over the dates of the logs, (N,)."""
+
+    robot: str
+    """Name of the robot, from its model."""
+    cable: str
+    """Name of the cable; "platform" for what concerns all of them."""
+    parameter: str
+    """Name of the parameter, by the robot file's keys, or of an error such as "after.rms_n"."""
+    date: NDArray[np.datetime64]
+    """Start of each log, UTC."""
+    values: NDArray[np.float64]
+    """Its values."""
+    standard_errors: NDArray[np.float64]
+    """Their standard errors; NaN where the operation gives none."""
+    fitted: NDArray[np.float64]
+    """The line that describes them: levels, steps and slopes."""
+    scatter: float
+    """Standard deviation from log to log beyond the standard errors."""
+    wanders: bool
+    """Whether it wanders, which no date explains."""
+    changes: tuple[Change, ...]
+    """Its changes in order of date."""
+    limits: tuple[float | None, float | None]
+    """Least and greatest value that are allowed; None where there is no limit."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Alarm(Value):
+    """Something to be done on a machine."""
+
+    robot: str
+    """Name of the robot."""
+    cable: str
+    """Name of the cable."""
+    reason: Literal["history", "limit", "last_log"]
+    """"history": changed beyond what it was; "limit": beyond a limit given; "last_log": the last log alone is out of line."""
+    date: datetime
+    """Since when, UTC."""
+    parameters: tuple[str, ...]
+    """Parameters that show it, the strongest evidence first."""
+    changes: tuple[Change, ...]
+    """Their changes; empty for the other reasons."""
+    text: str
+    """What happened, in a sentence."""
+    cause: str
+    """What is likely behind it."""
+    remedy: str
+    """What to do about it on the machine."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Trend(Result):
+    """Outcome of `trend`. `print(trend)` shows the alarms; `to_html()` is a page for people."""
+
+    operation: str
+    """The operation whose results these are."""
+    logs: int
+    """Logs with a result and a date."""
+    series: tuple[Series, ...]
+    """All series, by robot, cable and parameter."""
+    alarms: tuple[Alarm, ...]
+    """What is to be done, the latest first."""
+    failures: tuple[LogFailure, ...]
+    """Logs without a result, with the reason."""
+    undated: tuple[str, ...]
+    """Logs that are left out because their clock has no date."""
+
+    def of(self, robot: str, cable: str, parameter: str) -> Series:
+        """The series of a robot, cable and parameter."""
+        chosen = self.series
+        for what, name in (("robot", robot), ("cable", cable), ("parameter", parameter)):
+            known = list(dict.fromkeys(getattr(one, what) for one in chosen))
+            chosen = tuple(one for one in chosen if getattr(one, what) == name)
+            if not chosen:
+                raise ConfigError(_unknown_name(what, name, known))
+        return chosen[0]
+
+
+def trend(results: Any, *, operation: Literal["discover", "fit", "replay"] | None = None, limits: Limits | None = None) -> Trend:
+    """Tells what has changed on each robot and cable, in which parameter, and since when.
+
+    `results` is what `run` returned, the address of its data set, or a table with the columns robot, cable, parameter, start and value,
+    and standard_error where there is one (a `pyarrow.Table`, or a data frame of pandas or polars). `operation` says which results are
+    meant where the data set has several. `limits` are least and greatest allowed values, None for none, by parameter (`{"mu": (None,
+    0.05)}`) or by robot, cable and parameter (`{"rig/cable1/mu": (None, 0.04)}`).
+
+    A change is a step or a slope that begins; it is told where the evidence is for it after the standard errors, the scatter from log to
+    log, outliers, a slow wander and the number of dates and series among which it was found. At least three logs have to lie on each side
+    of it. Of a log that was computed more than once, the last result counts.
+
+    Raises ConfigError where there are no results or a name is not right, ShapeError for a table without these columns.
+    """
+    gathered = gather(results, operation)
+    bounds = _checked(limits or {}, gathered.series)
+    courses = [_course(one, len(gathered.series)) for one in gathered.series]
+    series = tuple(_series(one, found, bounds) for one, found in zip(gathered.series, courses))
+    return _assembled(gathered, series, courses)
+
+
+def _course(values: Values, series_count: int) -> Course:
+    years = (values.stamp_nanos - values.stamp_nanos[0]) / YEAR_NANOS
+    return course(years, values.value, values.standard_error, series_count)
+
+
+def _series(values: Values, found: Course, bounds: dict[str, tuple[float | None, float | None]]) -> Series:
+    changes = tuple(_change(values, found, place, one) for place, one in enumerate(found.changes))
+    name = f"{values.robot}/{values.cable}/{values.parameter}"
+    limit = bounds.get(name, bounds.get(values.parameter, (None, None)))
+    dates = values.stamp_nanos.astype("datetime64[ns]")
+    return Series(
+        values.robot,
+        values.cable,
+        values.parameter,
+        dates,
+        values.value,
+        values.standard_error,
+        found.fitted,
+        found.scatter,
+        found.wanders,
+        changes,
+        limit,
+    )
+
+
+def _change(values: Values, found: Course, place: int, change: Found) -> Change:
+    begin = change.log_index
+    end = next((one.log_index for one in found.changes[place + 1 :]), len(values.value)) - 1
+    is_step = change.kind != "slope"
+    column = found.line.column(place)
+    return Change(
+        values.parameter,
+        "step" if is_step else "slope",
+        _date(values.stamp_nanos[begin]),
+        _date(values.stamp_nanos[change.earliest]),
+        _date(values.stamp_nanos[change.latest]),
+        values.logs[begin],
+        float(found.fitted[begin - 1 if is_step else begin]),
+        float(found.fitted[begin if is_step else end]),
+        float(found.coefficients[column]),
+        float(np.sqrt(found.covariance[column, column])),
+        change.delta_bic,
+    )
+
+
+def _assembled(gathered: Gathered, series: tuple[Series, ...], courses: list[Course]) -> Trend:
+    from ._alarms import alarms_of
+    from ._page import page
+    from ._words import json_of, summary_of, table_of
+
+    last_limit = _beyond_by_chance(_FALSE_ALARMS / max(1, len(series)))
+    alarms = alarms_of(series, [abs(one.last_t) > last_limit for one in courses])
+    bare = Trend(Shown("", "", "", ""), gathered.operation, gathered.logs, series, alarms, gathered.failures, gathered.undated)
+    shown = Shown(summary_of(bare), json_of(bare), page(bare), table_of(bare))
+    return Trend(shown, gathered.operation, gathered.logs, series, alarms, gathered.failures, gathered.undated)
+
+
+def _checked(limits: Limits, series: tuple[Values, ...]) -> dict[str, tuple[float | None, float | None]]:
+    known = {one.parameter for one in series} | {f"{one.robot}/{one.cable}/{one.parameter}" for one in series}
+    for name, bounds in limits.items():
+        if name not in known:
+            raise ConfigError(_unknown_name("parameter for a limit", name, sorted({one.parameter for one in series})))
+        pair = tuple(bounds)
+        if len(pair) != 2 or any(one is not None and not math.isfinite(one) for one in pair):
+            raise ConfigError(f"the limit of `{name}` is {bounds}; give least and greatest value, None for none")
+        if pair[0] is not None and pair[1] is not None and pair[0] >= pair[1]:
+            raise ConfigError(f"the limit of `{name}` is {bounds}; the least value comes first")
+    return {name: (bounds[0], bounds[1]) for name, bounds in limits.items()}
+
+
+def _date(stamp_nanos: Any) -> datetime:
+    return datetime(1970, 1, 1, tzinfo=timezone.utc) + timedelta(microseconds=int(stamp_nanos) // 1000)
+
+
+def _beyond_by_chance(probability: float) -> float:
+    """The quantile of Student's t with 4 degrees of freedom that is exceeded, on both sides together, with a probability (Shaw 2006)."""
+    upper = 1 - probability / 2
+    product = math.sqrt(4 * upper * (1 - upper))
+    return 2 * math.sqrt(math.cos(math.acos(product) / 3) / product - 1)

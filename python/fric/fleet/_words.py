@@ -1,0 +1,100 @@
+"""A trend as text, JSON and table."""
+
+from __future__ import annotations
+
+import json
+import math
+from datetime import datetime
+from html import escape
+from typing import Any
+
+from ._alarms import day
+from ._trend import Alarm, Change, Series, Trend
+
+FORMAT = "fric-trend/1"
+
+
+def between(change: Change) -> str:
+    """When a change was, as far as the logs tell."""
+    if change.earliest == change.latest:
+        return day(change.date)
+    return f"{day(change.date)} ({day(change.earliest)} to {day(change.latest)})"
+
+
+def since(alarm: Alarm) -> str:
+    """Since when an alarm holds."""
+    return between(alarm.changes[0]) if alarm.changes else day(alarm.date)
+
+
+def headline(trend: Trend) -> str:
+    """What was looked at, in a sentence."""
+    robots = len({one.robot for one in trend.series})
+    counted = f"{trend.logs} logs of {robots} robots, {len(trend.series)} series by fric {trend.operation}"
+    alarms = "nothing has changed" if not trend.alarms else f"{len(trend.alarms)} {'alarm' if len(trend.alarms) == 1 else 'alarms'}"
+    return f"{counted}: {alarms}"
+
+
+def remarks(trend: Trend) -> list[str]:
+    """What is left out of the series."""
+    texts = []
+    if trend.undated:
+        texts.append(f"{len(trend.undated)} logs have no date and are left out: their clock begins at 0 (such as {trend.undated[0]})")
+    if wandering := [one for one in trend.series if one.wanders]:
+        names = ", ".join(f"{one.robot} {one.cable} {one.parameter}" for one in wandering[:3])
+        texts.append(f"{len(wandering)} series wander, with no date at which they begin to: {names}{' …' if len(wandering) > 3 else ''}")
+    if trend.failures:
+        texts.append(f"{len(trend.failures)} logs gave no result")
+    return texts
+
+
+def summary_of(trend: Trend) -> str:
+    """The text of `print(trend)`."""
+    lines = [headline(trend)]
+    for alarm in trend.alarms:
+        lines += ["", f"{alarm.robot}, {alarm.cable}, since {since(alarm)}: {alarm.text}"]
+        lines += [f"  likely: {alarm.cause}", f"  to do:  {alarm.remedy}"]
+    notes = remarks(trend)
+    lines += [""] * bool(notes) + notes + [f"  {one.log}: {one.error}" for one in trend.failures]
+    return "\n".join(lines) + "\n"
+
+
+def json_of(trend: Trend) -> str:
+    """The trend for machines."""
+    found = {
+        "format": FORMAT,
+        "operation": trend.operation,
+        "logs": trend.logs,
+        "alarms": [{**_plain(vars(alarm)), "changes": [_plain(vars(change)) for change in alarm.changes]} for alarm in trend.alarms],
+        "series": [_series(one) for one in trend.series],
+        "failures": [vars(one) for one in trend.failures],
+        "undated": trend.undated,
+    }
+    return json.dumps(found, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def table_of(trend: Trend) -> str:
+    """The table of a notebook."""
+    head = "".join(f"<th>{name}</th>" for name in ("robot", "cable", "since", "what", "to do"))
+    rows = "".join(
+        "<tr>" + "".join(f"<td>{escape(text)}</td>" for text in (one.robot, one.cable, since(one), one.text, one.remedy)) + "</tr>"
+        for one in trend.alarms
+    )
+    return f"<p>{escape(headline(trend))}</p><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
+
+
+def _series(series: Series) -> dict[str, Any]:
+    found = {key: value for key, value in vars(series).items() if key not in ("date", "changes")}
+    dates = [f"{date}Z" for date in series.date.astype("datetime64[ms]").astype(str)]
+    return {**_plain(found), "date": dates, "changes": [_plain(vars(change)) for change in series.changes]}
+
+
+def _plain(values: dict[str, Any]) -> dict[str, Any]:
+    return {key: _value(value) for key, value in values.items() if key != "changes"}
+
+
+def _value(value: Any) -> Any:
+    if isinstance(value, datetime):
+        return value.isoformat()
+    if hasattr(value, "tolist"):
+        return [_value(one) for one in value.tolist()]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
