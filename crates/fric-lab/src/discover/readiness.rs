@@ -10,8 +10,8 @@ const LEAST_S: f64 = 8.0;
 const LEAST_RANGE_M: f64 = 1e-4;
 /// A way back shorter than this is no reversal, for friction would hardly turn round, m.
 const STROKE_M: f64 = 1e-4;
-/// Reversals without which friction cannot be told from an offset, neither in what is learned from nor in what judges.
-const FEWEST_REVERSALS: usize = 2;
+/// Strokes, not all in one direction, without which friction cannot be told from an offset, neither in what is learned from nor in what judges.
+const FEWEST_STROKES: usize = 3;
 /// Speeds are looked at over this time, s: shorter than any stroke, long enough for the steps of an encoder.
 const SPEED_OVER_S: f64 = 0.1;
 /// The cable moves where it does so at more than this share of its high speed.
@@ -61,8 +61,9 @@ pub fn lack_of(record: &CableRecord<'_>) -> Option<Lack> {
     if let Some(lack) = too_short(seconds(sound, record.interval_s)) {
         return Some(lack);
     }
-    if motion.reversals < FEWEST_REVERSALS {
-        let times = if motion.reversals == 0 { "never" } else { "only once" };
+    let [out, back] = motion.strokes;
+    if out.min(back) == 0 || out + back < FEWEST_STROKES {
+        let times = if out.min(back) == 0 { "never" } else { "only once" };
         return Some(Lack::new(
             format!("it {times} reverses, so that friction cannot be told from an offset of the sensors"),
             RUN,
@@ -129,7 +130,8 @@ fn seconds(samples: usize, interval_s: f64) -> f64 {
 struct Motion {
     /// Greatest length less the least, m.
     range_m: f64,
-    reversals: usize,
+    /// How often it pays out, and reels in, in all logs.
+    strokes: [usize; 2],
     /// High speed by low speed; 1 where there is one speed.
     speed_ratio: f64,
     /// The high one, m/s.
@@ -138,7 +140,7 @@ struct Motion {
 
 impl Motion {
     fn of(record: &CableRecord<'_>) -> Self {
-        let mut motion = Self { range_m: 0.0, reversals: 0, speed_ratio: 1.0, speed_m_per_s: 0.0 };
+        let mut motion = Self { range_m: 0.0, strokes: [0, 0], speed_ratio: 1.0, speed_m_per_s: 0.0 };
         let mut speeds = Vec::new();
         for (_, rows) in record.logs() {
             let mut turns = Turns::default();
@@ -146,7 +148,9 @@ impl Motion {
             for row in rows {
                 length_m += row.signals.displacement_m;
                 (least_m, greatest_m) = (least_m.min(length_m), greatest_m.max(length_m));
-                motion.reversals += usize::from(turns.at(length_m));
+                if turns.at(length_m) {
+                    motion.strokes[usize::from(turns.direction < 0.0)] += 1;
+                }
             }
             motion.range_m = motion.range_m.max(greatest_m - least_m);
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
@@ -176,7 +180,7 @@ fn quantile(sorted: &[f64], share: f64) -> f64 {
     sorted.get(place as usize).copied().unwrap_or(0.0)
 }
 
-/// Follows a length and tells where it turns round for good.
+/// Follows a length and tells where it sets out, or turns round for good.
 #[derive(Clone, Copy, Debug, Default)]
 struct Turns {
     extreme_m: f64,
@@ -193,9 +197,8 @@ impl Turns {
         if way_m.abs() < STROKE_M || self.direction * way_m > 0.0 {
             return false;
         }
-        let is_turn = self.direction != 0.0;
         (self.extreme_m, self.direction) = (length_m, way_m.signum());
-        is_turn
+        true
     }
 }
 
@@ -203,17 +206,17 @@ impl Turns {
 mod tests {
     use super::*;
 
-    fn reversals(lengths_m: impl IntoIterator<Item = f64>) -> usize {
+    fn strokes(lengths_m: impl IntoIterator<Item = f64>) -> usize {
         let mut turns = Turns::default();
         lengths_m.into_iter().filter(|length_m| turns.at(*length_m)).count()
     }
 
     #[test]
-    fn a_reversal_is_one_that_friction_follows() {
+    fn a_stroke_is_one_that_friction_follows() {
         let ramp = |count: i32| (0..count).map(|k| f64::from(k) * 1e-4);
-        assert_eq!(reversals(ramp(1000)), 0);
-        assert_eq!(reversals(ramp(1000).map(|way_m| way_m + 5e-5 * (way_m * 3e4).sin())), 0);
-        assert_eq!(reversals(ramp(1000).chain(ramp(1000).map(|way_m| 0.1 - way_m))), 1);
-        assert_eq!(reversals((0..10_000).map(|k| 0.01 * (f64::from(k) * std::f64::consts::TAU / 2000.0).sin())), 10);
+        assert_eq!(strokes(ramp(1000)), 1);
+        assert_eq!(strokes(ramp(1000).map(|way_m| way_m + 5e-5 * (way_m * 3e4).sin())), 1);
+        assert_eq!(strokes(ramp(1000).chain(ramp(1000).map(|way_m| 0.1 - way_m))), 2);
+        assert_eq!(strokes((0..10_000).map(|k| 0.01 * (f64::from(k) * std::f64::consts::TAU / 2000.0).sin())), 11);
     }
 }

@@ -73,7 +73,8 @@ impl HangingRows {
 
     /// The next row; `None` after the last.
     pub fn pop(&mut self) -> Option<Sample<'_>> {
-        while self.next > 0 && self.rows.front().is_some_and(|row| !self.is_around(row)) {
+        // What is before the window is needed up to its last row, from which the acceleration of the next one is told.
+        while self.next > 0 && self.rows.get(1).is_some_and(|second| self.is_behind(second)) {
             self.rows.pop_front();
             self.next -= 1;
         }
@@ -108,6 +109,11 @@ impl HangingRows {
         self.rows
             .get(self.next)
             .is_some_and(|next| row.time == next.time && row.after_nanos(next).abs() <= WINDOW_NANOS)
+    }
+
+    /// Whether a row is as far before the next as a difference takes, or of a time before its own.
+    fn is_behind(&self, row: &Waiting) -> bool {
+        self.rows.get(self.next).is_some_and(|next| row.time != next.time || next.after_nanos(row) >= WINDOW_NANOS)
     }
 
     /// Acceleration of each cable in a row, m/s².
