@@ -1,10 +1,13 @@
 //! `sensor_nonlinearity` in the simulated robot: a load cell that is mounted askew, whose lever changes with the load.
 
 use super::truth::{Cause, TruthEffect};
-use super::{Around, LabEffect, Sizing, Start, always};
+use fric_core::effects::sensor_nonlinearity::REFERENCE;
+use fric_core::parameters::Values;
+
+use super::{Around, LabEffect, Sizing, Start};
 
 /// What the lab knows of it.
-pub const LAB: LabEffect = LabEffect { truth, starts, typical, is_more_than_usual: always };
+pub const LAB: LabEffect = LabEffect { truth, starts, typical, is_more_than_usual };
 
 #[derive(Debug)]
 struct Askew {
@@ -24,6 +27,13 @@ impl TruthEffect for Askew {
         let from_reference_n = force_n / self.tension_ratio - self.reference_n;
         force_n + self.tension_ratio * self.curvature_per_n * from_reference_n * from_reference_n
     }
+}
+
+/// Whether the slope of the curve changes over the tensions, taken as four standard deviations of them, by more than it is off in their middle: where it
+/// does not, the curve is a gain and an offset by another name.
+fn is_more_than_usual(values: &Values, around: &Around) -> bool {
+    let variance = around.tension_n * around.tension_n - around.mean_tension_n * around.mean_tension_n;
+    (around.mean_tension_n - values[REFERENCE]).abs() < 4.0 * variance.max(0.0).sqrt()
 }
 
 fn starts(around: &Around) -> Vec<Start> {

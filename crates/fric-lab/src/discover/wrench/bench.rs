@@ -2,6 +2,7 @@
 
 use std::sync::atomic::AtomicBool;
 
+use fric_core::effects::Effect;
 use fric_core::parameters::Values;
 use nalgebra::{DMatrix, Matrix6, Vector6};
 
@@ -10,7 +11,7 @@ use crate::fit::engine::{Comparison, Coordinate, Gram, Loss, Member, Problem, Sc
 use crate::fit::noise::white_noise;
 use crate::fit::split::Block;
 use crate::fit::{CableRecord, Parameter};
-use crate::replay::Deviation;
+use crate::replay::{Deviation, WrenchReference};
 
 /// A number of a geometry is no further off than some such share of its size, and the friction than such a share of what is given. Each weighs as one
 /// more deviation, so that what the samples say nothing of stays.
@@ -258,12 +259,21 @@ impl<'a> Bench<'a> {
         model
     }
 
+    /// Square of the unit in which models are compared: that of the sensors. By the weight alone their noise is all that deviations have, and gains
+    /// make it smaller with the forces, which explains nothing.
+    pub fn unit_square(&self, model: &Model) -> f64 {
+        let gain = Effect::SensorGain.places().start;
+        let (sum, count) = model.values.iter().fold((0.0, 0.0), |(sum, count), of| (sum + of[gain].ln(), count + 1.0));
+        if self.description.reference == WrenchReference::Mass { (2.0 * sum / count).exp() } else { 1.0 }
+    }
+
     /// A model with its sums of squares.
     pub fn judged(&self, model: Model) -> Trial {
         let deviations = self.deviations(&model);
+        let unit_square = self.unit_square(&model);
         let of_block = |block: &Block| -> f64 {
             let of_block = deviations.get(block.cycles.clone()).unwrap_or_default();
-            of_block.iter().map(Vector6::norm_squared).filter(|square| square.is_finite()).sum()
+            unit_square * of_block.iter().map(Vector6::norm_squared).filter(|square| square.is_finite()).sum::<f64>()
         };
         let blocks: Vec<f64> = self.blocks.iter().map(of_block).collect();
         let sum = |held_out: bool| {

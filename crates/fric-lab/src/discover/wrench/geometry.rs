@@ -226,6 +226,16 @@ impl<'a> Description<'a> {
             Geometry::CenterOfMass | Geometry::Base(_) | Geometry::Attachment(_) => 1.0,
         }
     }
+
+    /// By how much a number may be off: a mass by as much as it is, for there are payloads, the vertical by 1°, a point by 10 mm.
+    pub fn usual(&self, of: Geometry) -> f64 {
+        let ratio = match of {
+            Geometry::Mass => 1.0,
+            Geometry::Gravity => 1_f64.to_radians(),
+            Geometry::CenterOfMass | Geometry::Base(_) | Geometry::Attachment(_) => 0.01,
+        };
+        ratio * self.size(of)
+    }
 }
 
 fn shifted(point: Vector3<f64>, by: Option<&[f64]>) -> [f64; 3] {

@@ -7,6 +7,7 @@
 
 use std::collections::BTreeMap;
 
+use fric_core::effects::Effect;
 use fric_core::parameters::MU;
 use nalgebra::DVector;
 use rayon::prelude::*;
@@ -20,6 +21,7 @@ use crate::fit::Parameter;
 use crate::fit::candidates::{around, fitted, has};
 use crate::fit::engine::inverse_of_normal;
 use crate::fit::ripple::periods;
+use crate::replay::WrenchReference;
 
 /// Candidates that are fitted of those that promise most.
 const FITTED: usize = 6;
@@ -29,6 +31,8 @@ const MOST: usize = 16;
 const NEAR_ERRORS: f64 = 0.5;
 /// What was found is away from its neutral value by so many standard errors.
 const LEAST_AWAY: f64 = 4.0;
+/// By how much the gains of all sensors are off alike.
+const USUAL_GAIN: f64 = 0.02;
 /// Rounds of entering, leaving and exchanging.
 const ROUNDS: usize = 6;
 
@@ -151,6 +155,7 @@ impl<'b, 'a> Search<'b, 'a> {
                 !self.refused.contains_key(candidate)
                     && trial.held_out - with.held_out > enough
                     && !self.is_at_end(*candidate, with)
+                    && self.is_more_than_usual(*candidate, with)
             });
             let cost = |(candidate, with): &(Candidate, Trial)| self.delta_bic(&trial, with, candidate.count(), 1.0);
             entrants.sort_by(|one, other| cost(one).total_cmp(&cost(other)));
@@ -160,6 +165,7 @@ impl<'b, 'a> Search<'b, 'a> {
             };
             let Some((candidate, _)) = entrants.iter().find(speaks_for_it) else { break };
             found.push(*candidate);
+            self.spread(found, *candidate);
         }
     }
 
@@ -188,19 +194,53 @@ impl<'b, 'a> Search<'b, 'a> {
     /// What all cables seem to have alike is taken apart where one of them differs.
     fn take_apart(&mut self, found: &mut Vec<Candidate>) {
         for candidate in found.clone() {
-            let Candidate::Alike(effect) = candidate else { continue };
-            let alike = self.fit(found);
-            let mut model = alike.model.clone();
-            let own = fitted(effect);
-            model.alike.retain(|of| !own.contains(of));
-            model.free.iter_mut().for_each(|free| free.extend(own.iter().copied()));
-            let apart = self.bench.fit(&model, NEAR_ERRORS);
-            let more = own.len() * (self.bench.records.len() - 1);
-            let inflation = self.inflation(candidate, &alike);
-            if self.delta_bic(&alike, &apart, more, inflation) < -STRONG_BIC {
-                found.retain(|of| *of != candidate);
-                found.extend((0..self.bench.records.len()).map(|cable| Candidate::Own(cable, effect)));
-                self.fits.insert(set_of(found), apart);
+            if matches!(candidate, Candidate::Alike(_)) {
+                self.spread(found, candidate);
+            }
+        }
+    }
+
+    /// Gives every cable its own value of an effect that one of them has, or all alike, where the evidence for that is strong. What a cable does not
+    /// need leaves afterwards; before, something else would have come in for it.
+    fn spread(&mut self, found: &mut Vec<Candidate>, candidate: Candidate) {
+        let Some(effect) = candidate.effect() else { return };
+        let trial = self.fit(found);
+        if scales_all(self.bench, &trial.model, Candidate::Alike(effect)) {
+            return;
+        }
+        let (own, count) = (fitted(effect), self.bench.records.len());
+        let others: Vec<Candidate> = found.iter().copied().filter(|of| of.effect() != Some(effect)).collect();
+        let is_alike = matches!(candidate, Candidate::Alike(_));
+        let before = if is_alike { 1 } else { found.len() - others.len() };
+        let mut model = trial.model.clone();
+        model.alike.retain(|of| !own.contains(of));
+        for cable in 0..count {
+            let start = (!has(effect, &model.values[cable])).then(|| {
+                self.promises(&others).iter().find(|of| of.candidate == Candidate::Own(cable, effect)).cloned()
+            });
+            match start {
+                Some(None) => return,
+                Some(Some(promise)) => Parameter::of(effect).for_each(|of| {
+                    model.values[cable][of.place()] = promise.model.values[cable][of.place()];
+                }),
+                None => {}
+            }
+            let free = &mut model.free[cable];
+            free.extend(own.iter().copied().filter(|of| !free.contains(of)).collect::<Vec<Parameter>>());
+        }
+        let more = own.len() * (count - before);
+        if more == 0 {
+            return;
+        }
+        let apart = self.bench.fit(&model, NEAR_ERRORS);
+        let each: Vec<Candidate> = (0..count).map(|cable| Candidate::Own(cable, effect)).collect();
+        let standings = standings(self.bench, &apart, &each);
+        let inflation = standings.iter().map(|standing| standing.inflation).fold(1.0, f64::max);
+        if apart.held_out < trial.held_out && self.delta_bic(&trial, &apart, more, inflation) < -STRONG_BIC {
+            *found = others;
+            found.extend(each);
+            self.fits.insert(set_of(found), apart);
+            if is_alike {
                 self.refused.insert(candidate, Refusal::Unsteady("cable"));
             }
         }
@@ -307,7 +347,7 @@ impl<'b, 'a> Search<'b, 'a> {
     fn cost(&self, trial: &Trial, candidate: Candidate) -> f64 {
         #[expect(clippy::cast_precision_loss, reason = "counts")]
         let (count, more) = (6.0 * self.bench.count(false) as f64, candidate.count() as f64);
-        count * trial.training.ln() + more * count.ln()
+        count * trial.training.ln() + more * count.ln() + self.oddity(trial)
     }
 
     fn alternative(&mut self, found: &[Candidate], place: usize) -> Option<(Candidate, Trial)> {
@@ -357,7 +397,24 @@ impl<'b, 'a> Search<'b, 'a> {
     fn delta_bic(&self, from: &Trial, to: &Trial, more: usize, inflation: f64) -> f64 {
         #[expect(clippy::cast_precision_loss, reason = "counts")]
         let (count, more) = (6.0 * self.bench.count(false) as f64 / inflation, more as f64);
-        delta_bic(count, to.training / from.training, more)
+        delta_bic(count, to.training / from.training, more) + self.oddity(to) - self.oddity(from)
+    }
+
+    /// What speaks against a model before the samples do: a point or the vertical is seldom far off, and gains of all sensors are seldom wrong
+    /// alike, which by the weight looks as a wrong mass does.
+    fn oddity(&self, trial: &Trial) -> f64 {
+        let model = &trial.model;
+        let of = |(of, numbers): (&Geometry, &Vec<f64>)| {
+            let usual = self.bench.description.usual(*of);
+            numbers.iter().map(|number| (number / usual).powi(2)).sum::<f64>()
+        };
+        let is_gain = |of: &&Parameter| of.effect() == Some(Effect::SensorGain);
+        let by_weight = self.bench.description.reference == WrenchReference::Mass;
+        let gain = model.alike.iter().find(is_gain).filter(|_| by_weight);
+        let of_gain = gain
+            .zip(model.values.first())
+            .map_or(0.0, |(of, values)| ((values[of.place()] - of.row().neutral) / USUAL_GAIN).powi(2));
+        model.changes.iter().map(of).sum::<f64>() + of_gain
     }
 
     /// The model with some names. One that has not been tried is fitted from the best that has one more.
@@ -424,11 +481,12 @@ impl<'b, 'a> Search<'b, 'a> {
             let around = self.around(&trial, true);
             let model = &trial.model;
             let has_effect = |cable: usize, effect| model.values.get(cable).is_some_and(|values| has(effect, values));
-            let is_wanted = |candidate: Candidate| match candidate {
+            let is_new = |candidate: Candidate| match candidate {
                 Candidate::Own(cable, effect) => !has_effect(cable, effect),
                 Candidate::Alike(effect) => (0..model.values.len()).all(|cable| !has_effect(cable, effect)),
                 Candidate::Geometry(of) => !model.changes.contains_key(&of),
             };
+            let is_wanted = |candidate: Candidate| is_new(candidate) && !scales_all(self.bench, model, candidate);
             let mut all = promises(self.bench, model, &around, is_wanted);
             // Per parameter: the criterion's price is nothing beside the gains that matter, yet of two equals the simpler goes first.
             all.retain(|promise| promise.gain > 0.0);
@@ -480,6 +538,19 @@ struct Standing {
 impl Standing {
     /// Where the samples do not tell them.
     const NONE: Self = Self { inflation: f64::INFINITY, away: 0.0 };
+}
+
+/// Whether with a candidate all forces of a model and the weight that they bear could shrink together, and with them all deviations.
+fn scales_all(bench: &Bench<'_>, model: &Model, candidate: Candidate) -> bool {
+    let has_gain = |cable: usize| {
+        let own = model.values.get(cable).is_some_and(|values| has(Effect::SensorGain, values));
+        own || matches!(candidate, Candidate::Own(of, Effect::SensorGain) if of == cable)
+            || candidate == Candidate::Alike(Effect::SensorGain)
+    };
+    let mass = Geometry::Mass;
+    bench.description.reference == WrenchReference::Mass
+        && (candidate == Candidate::Geometry(mass) || model.changes.contains_key(&mass))
+        && (0..bench.records.len()).all(has_gain)
 }
 
 /// How sure the parameters of each of a model's names are.
