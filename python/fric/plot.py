@@ -1,4 +1,4 @@
-"""Figures, drawn with matplotlib (`pip install fric[plot]`).
+"""Figures, drawn with matplotlib (`pip install matplotlib`).
 
 Each function draws into the axes given as `ax`, else into a figure of its own, and returns the axes. Colours are told
 apart by colour-blind readers too, and in grey.
@@ -351,7 +351,7 @@ def _figure(count: int, size: tuple[float, float], *, heights: Sequence[float] |
     try:
         pyplot = import_module("matplotlib.pyplot")
     except ImportError as error:
-        raise ImportError("fric.plot needs matplotlib; install it with `pip install fric[plot]`") from error
+        raise ImportError("fric.plot needs matplotlib; install it with `pip install matplotlib`") from error
     if heights is None:
         _, axes = pyplot.subplots(1, count, figsize=size, layout="constrained", squeeze=False)
     else:

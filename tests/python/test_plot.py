@@ -103,4 +103,4 @@ except ImportError as error:
     print(error)
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout == "fric.plot needs matplotlib; install it with `pip install fric[plot]`\n"
+    assert done.stdout == "fric.plot needs matplotlib; install it with `pip install matplotlib`\n"
