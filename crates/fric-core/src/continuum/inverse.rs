@@ -263,15 +263,15 @@ impl<const DISKS: usize> StaticModel<DISKS> {
             },
         };
         let Some(holes) = holes else { return self.unchanged(GoalStatus::NOT_USABLE) };
-        let (now_n, start) = match &holes {
-            Holes::Remembering(past) => (past.base_tension_n, past.point),
-            _ => {
-                let shape = self.shape();
-                (shape.base_tension_n, Point { bend_rad: shape.bend_rad, tension_n: shape.tension_n })
-            }
+        let (now_n, start) = if let Holes::Remembering(past) = &holes {
+            (past.base_tension_n, past.point)
+        } else {
+            let shape = self.shape();
+            (shape.base_tension_n, Point { bend_rad: shape.bend_rad, tension_n: shape.tension_n })
         };
         let begin_n = drive.nearest(now_n);
-        let is_there = drive.base_tension_n(begin_n) == now_n && matches!(holes, Holes::Remembering(_));
+        let is_same = drive.base_tension_n(begin_n).map(f64::to_bits) == now_n.map(f64::to_bits);
+        let is_there = is_same && matches!(holes, Holes::Remembering(_));
         let begin = if is_there {
             Some(self.measured(goal, &holes, drive, begin_n, start))
         } else {

@@ -33,6 +33,8 @@
 //! # }
 //! ```
 
+#[cfg(feature = "alloc")]
+mod any;
 mod arc;
 mod chain;
 #[cfg(feature = "robot-file")]
@@ -50,6 +52,8 @@ mod params;
 mod shape;
 mod tangent;
 
+#[cfg(feature = "alloc")]
+pub use any::AnyStaticModel;
 pub use friction::{Direction, Friction};
 pub use inverse::{Command, Drive, DriveOptions, Goal, GoalStatus};
 pub use model::StaticModel;

@@ -1,13 +1,12 @@
 //! A path of bends, followed through the inverse of the model on the simulated manipulator: how far the tip is from where it is
 //! wanted, by what is known of friction.
 //!
-//! Each goal is the tip of the arm without friction at a wanted bend. The inverse of [`StaticModel`] gives the tension at the base, the
-//! elastica with its sticking holes goes there in small steps, and nothing of where it ends comes back: what is
-//! wrong with a tension stays wrong.
+//! The goals are places of the tip that the simulated manipulator itself has had: it is pulled once, and the tip is recorded at each wanted
+//! bend. Then the inverse of the model ([`AnyStaticModel::tension_for`]) gives the tension at the base for one after the other, the elastica
+//! with its sticking holes goes there in small steps, and nothing of where it ends comes back: what is wrong with a tension stays wrong.
 
 use fric_core::continuum::{
-    Command, Direction, Drive, DriveOptions, Friction, Goal, GoalStatus, MAX_DISKS, ManipulatorParams, StaticModel,
-    Tendon,
+    AnyStaticModel, Direction, Drive, DriveOptions, Friction, Goal, GoalStatus, ManipulatorParams, Tendon,
 };
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -85,33 +84,92 @@ pub fn track(params: &ManipulatorParams, options: &TrackOptions) -> Result<Vec<T
     let spread = options.mu_spread_ratio;
     let mu: Vec<f64> =
         params.mu(Tendon::Agonist).iter().map(|mu| mu * (1.0 + uniform(&mut random, -spread, spread))).collect();
+    let start = Arm::new(params, options, mu)?;
+    let goals_m = recorded(start.clone(), params, &options.bend_rad)?;
     [Way::None, Way::Coulomb, Way::History]
         .into_iter()
-        .map(|way| Ok(Track { way, goals: follow(params, options, &mu, way)? }))
+        .map(|way| Ok(Track { way, goals: follow(start.clone(), params, options, &goals_m, way)? }))
+        .collect()
+}
+
+/// The simulated manipulator, and the tension at its base.
+#[derive(Clone)]
+struct Arm {
+    rubbing: Rubbing,
+    step_n: f64,
+    tension_base_n: f64,
+}
+
+impl Arm {
+    fn new(params: &ManipulatorParams, options: &TrackOptions, mu: Vec<f64>) -> Result<Self, ContinuumError> {
+        let rubbing = Rubbing::new(Elastica::new(params, options.link_count), mu).map_err(|_| no_shape(0.0))?;
+        Ok(Self { rubbing, step_n: STEP_RATIO * params.capacity_n(Tendon::Agonist), tension_base_n: 0.0 })
+    }
+
+    /// Goes to a tension at the base in small steps.
+    fn pull(&mut self, tension_base_n: f64) -> Result<(), ContinuumError> {
+        let from_n = self.tension_base_n;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small positive number")]
+        let parts = ((tension_base_n - from_n).abs() / self.step_n).ceil() as u32;
+        for part in 1..=parts {
+            let between_n = from_n + (tension_base_n - from_n) * f64::from(part) / f64::from(parts);
+            self.rubbing.step(between_n).map_err(|_| no_shape(between_n))?;
+        }
+        self.tension_base_n = tension_base_n;
+        Ok(())
+    }
+
+    fn bend_rad(&self) -> f64 {
+        self.rubbing.elastica().bend_rad()
+    }
+
+    fn tip_m(&self) -> [f64; 2] {
+        self.rubbing.elastica().disk_position_m().last().copied().unwrap_or([0.0; 2])
+    }
+}
+
+fn no_shape(tension_base_n: f64) -> ContinuumError {
+    ContinuumError::NoShape { time_s: 0.0, tension_base_n }
+}
+
+/// Where the tip is at each of these bends while the arm is pulled once; between two steps of the tension on a line.
+fn recorded(mut arm: Arm, params: &ManipulatorParams, bend_rad: &[f64]) -> Result<Vec<[f64; 2]>, ContinuumError> {
+    let min = arm.bend_rad();
+    let max_rad = bend_rad.iter().copied().fold(min, f64::max);
+    let mut goals_m = vec![None; bend_rad.len()];
+    while goals_m.contains(&None) {
+        let (from_rad, from_m) = (arm.bend_rad(), arm.tip_m());
+        let next_n = arm.tension_base_n + arm.step_n;
+        if from_rad > max_rad || next_n > params.capacity_n(Tendon::Agonist) {
+            break;
+        }
+        arm.pull(next_n)?;
+        let (to_rad, to_m) = (arm.bend_rad(), arm.tip_m());
+        for (goal_m, bend_rad) in goals_m.iter_mut().zip(bend_rad) {
+            if (from_rad..=to_rad).contains(bend_rad) {
+                let share = (bend_rad - from_rad) / (to_rad - from_rad);
+                *goal_m = Some([0, 1].map(|axis: usize| from_m[axis] + share * (to_m[axis] - from_m[axis])));
+            }
+        }
+    }
+    let max = arm.bend_rad();
+    let each = goals_m.into_iter().zip(bend_rad);
+    each.map(|(goal_m, &value)| goal_m.ok_or(ContinuumError::OptionOutOfRange { key: "bend_rad", value, min, max }))
         .collect()
 }
 
 fn follow(
+    mut arm: Arm,
     params: &ManipulatorParams,
     options: &TrackOptions,
-    mu: &[f64],
+    goals_m: &[[f64; 2]],
     way: Way,
 ) -> Result<Vec<TrackedGoal>, ContinuumError> {
     let drive = Drive::new(params, &DriveOptions::first_tendon(params))?;
-    let mut model = Box::new(StaticModel::<MAX_DISKS>::new(params)?);
-    let mut ideal = model.clone();
-    let no_shape = |tension_base_n: f64| ContinuumError::NoShape { time_s: 0.0, tension_base_n };
-    let mut arm = Rubbing::new(Elastica::new(params, options.link_count), mu.to_vec()).map_err(|_| no_shape(0.0))?;
-    let step_n = STEP_RATIO * params.capacity_n(Tendon::Agonist);
-    let (mut before_rad, mut now_n) = (0.0, 0.0);
-    let mut goals = Vec::with_capacity(options.bend_rad.len());
-    for &bend_rad in &options.bend_rad {
-        let Command { tip_m: wanted_m, status, .. } =
-            ideal.tension_for(Goal::BendRad(bend_rad), Friction::None, &drive);
-        if !status.is_reached() {
-            let max = ideal.tension_for(Goal::BendRad(10.0), Friction::None, &drive).bend_rad;
-            return Err(ContinuumError::OptionOutOfRange { key: "bend_rad", value: bend_rad, min: 0.0, max });
-        }
+    let mut model = AnyStaticModel::new(params)?;
+    let mut before_rad = 0.0;
+    let mut goals = Vec::with_capacity(goals_m.len());
+    for (&bend_rad, &wanted_m) in options.bend_rad.iter().zip(goals_m) {
         let friction = match way {
             Way::Coulomb => Friction::Coulomb(Direction::of_change(bend_rad - before_rad)),
             Way::History => Friction::History,
@@ -121,15 +179,9 @@ fn follow(
         let [tension_base_n, _] = command.base_tension_n;
         // The shape is where the next search starts; with the history it is the memory too.
         let _ = model.solve(command.base_tension_n, friction);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small positive number")]
-        let parts = ((tension_base_n - now_n).abs() / step_n).ceil() as u32;
-        for part in 1..=parts {
-            let between_n = now_n + (tension_base_n - now_n) * f64::from(part) / f64::from(parts);
-            arm.step(between_n).map_err(|_| no_shape(between_n))?;
-        }
-        (before_rad, now_n) = (bend_rad, tension_base_n);
-        let tip_m = arm.elastica().disk_position_m().last().copied().unwrap_or([0.0; 2]);
-        goals.push(TrackedGoal { wanted_m, tip_m, tension_base_n, status: command.status });
+        arm.pull(tension_base_n)?;
+        before_rad = bend_rad;
+        goals.push(TrackedGoal { wanted_m, tip_m: arm.tip_m(), tension_base_n, status: command.status });
     }
     Ok(goals)
 }
