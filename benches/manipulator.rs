@@ -1,4 +1,4 @@
-//! One static solution of the published manipulator by each way of friction, and a run of 60 s at 1 kHz by the history.
+//! One static solution of the published manipulator by each way of friction, its inverse, and a run of 60 s at 1 kHz by the history.
 //!
 //! `cargo bench -p fric-core --bench manipulator`
 
@@ -15,7 +15,9 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use criterion::Criterion;
-use fric_core::continuum::{Direction, Friction, ManipulatorOptions, ManipulatorParams, StaticModel};
+use fric_core::continuum::{
+    Direction, Drive, DriveOptions, Friction, Goal, ManipulatorOptions, ManipulatorParams, StaticModel,
+};
 
 fn model() -> StaticModel<8> {
     let params = ManipulatorParams::new(&ManipulatorOptions::published()).expect("published");
@@ -46,6 +48,17 @@ fn mean(criterion: &mut Criterion) {
             });
         });
     }
+    let mut inverse = model();
+    let drive = Drive::new(inverse.params(), &DriveOptions::first_tendon(inverse.params())).expect("a drive");
+    let mut sample = 0;
+    group.bench_function("inverse and history", |bencher| {
+        bencher.iter(|| {
+            sample = (sample + 1) % 60_000;
+            let goal = Goal::BendRad(black_box(tension_n(sample)));
+            let command = inverse.tension_for(goal, Friction::History, &drive);
+            inverse.solve(command.base_tension_n, Friction::History)
+        });
+    });
     let mut far = model();
     group.bench_function("coulomb from the unloaded manipulator", |bencher| {
         bencher.iter(|| {

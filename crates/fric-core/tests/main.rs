@@ -28,6 +28,7 @@ mod effects;
 mod faults;
 #[cfg(test)]
 mod forward;
+mod inverse;
 #[cfg(test)]
 mod oracle;
 #[cfg(test)]

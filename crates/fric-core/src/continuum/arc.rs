@@ -29,12 +29,6 @@ fn stumpff(angle_rad: f64) -> [f64; 8] {
     [1.0 - square * c2, 1.0 - square * c3, c2, c3, c4, c5, c6, c7]
 }
 
-/// Sine and cosine of an angle within ±3 rad.
-pub fn sin_cos(angle_rad: f64) -> (f64, f64) {
-    let [cos, sinc, ..] = stumpff(angle_rad);
-    (angle_rad * sinc, cos)
-}
-
 /// The straight tendon between the holes of two neighbouring disks.
 ///
 /// `ℓ = (L − rθ)·sin(θ/2)/(θ/2)`: the chord of the arc of radius `L/θ − r`. Its arm `m = −dℓ/dθ` is how much the tendon shortens with
@@ -51,18 +45,23 @@ pub struct Chord {
 }
 
 impl Chord {
-    /// For a backbone of length L, holes at the distance r (positive to +y) and the bend θ.
-    pub fn new(length_m: f64, hole_m: f64, bend_rad: f64) -> Self {
+    /// Of no segment.
+    pub const NONE: Self = Self { length_m: 0.0, arm_m: 0.0, arm_slope_m: 0.0 };
+
+    /// Of the tendons on both sides of a backbone of length L, with holes at the distance r (to +y, then to −y), for the bend θ.
+    pub fn both(length_m: f64, hole_m: f64, bend_rad: f64) -> [Self; 2] {
         let half_rad = 0.5 * bend_rad;
         let [_, c1, c2, c3, c4, c5, ..] = stumpff(half_rad);
-        let along_m = length_m - hole_m * bend_rad;
         let slope = 0.5 * half_rad * (c3 - c2);
         let curvature = 0.25 * ((c3 - c2) + half_rad * half_rad * (3.0 * (c5 - c4) + c3));
-        Self {
-            length_m: along_m * c1,
-            arm_m: hole_m * c1 - along_m * slope,
-            arm_slope_m: 2.0 * hole_m * slope - along_m * curvature,
-        }
+        [hole_m, -hole_m].map(|hole_m| {
+            let along_m = length_m - hole_m * bend_rad;
+            Self {
+                length_m: along_m * c1,
+                arm_m: hole_m * c1 - along_m * slope,
+                arm_slope_m: 2.0 * hole_m * slope - along_m * curvature,
+            }
+        })
     }
 }
 
@@ -109,9 +108,10 @@ mod tests {
     #[test]
     fn closed_forms_and_differences() {
         for bend in [-2.9, -0.7, -1e-3, 0.0, 1e-9, 0.05, 0.4, 1.3, 2.9_f64] {
-            let (sin, cos) = sin_cos(bend);
+            let (sin, cos) = Arc::new(0.04, bend).turn;
             assert!((sin - bend.sin()).abs() < 1e-14 && (cos - bend.cos()).abs() < 1e-14, "{bend}");
-            let chord = |at: f64| Chord::new(0.04, 0.015, at);
+            let chord = |at: f64| Chord::both(0.04, 0.015, at)[0];
+            assert_eq!(chord(-bend).length_m, Chord::both(0.04, 0.015, bend)[1].length_m);
             if bend.abs() > 1e-6 {
                 let length_m = 2.0 * (0.04 / bend - 0.015) * (0.5 * bend).sin();
                 assert!((chord(bend).length_m - length_m).abs() < 1e-15 * (1.0 + 1.0 / bend.abs()), "{bend}");

@@ -71,12 +71,14 @@ pub struct Passage {
 impl Passage {
     /// The tensions, the wrap factor and the motion as functions of the four numbers.
     fn tangents(&self) -> (Tangent, Tangent, Tangent, Tangent) {
-        let (_, cos) = super::arc::sin_cos(0.5 * self.wrap_rad);
         let side = if self.wrap_rad < 0.0 { -1.0 } else { 1.0 };
+        let factor = wrap_factor(side * self.wrap_rad);
+        // The cosine of half the angle, which is below a right angle, from its sine.
+        let cos = Scalar::sqrt((1.0 - 0.25 * factor * factor).max(0.0));
         (
             Tangent::variable(self.base_side_n, 0, 1.0),
             Tangent::variable(self.tip_side_n, 1, 1.0),
-            Tangent::variable(wrap_factor(side * self.wrap_rad), 2, side * cos),
+            Tangent::variable(factor, 2, side * cos),
             Tangent::variable(self.motion_m, 3, 1.0),
         )
     }

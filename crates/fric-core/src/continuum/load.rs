@@ -35,7 +35,8 @@ pub fn positions<const DISKS: usize>(pitch_m: f64, bend_rad: &[f64; DISKS]) -> [
     })
 }
 
-fn turned_further((sin, cos): (f64, f64), (other_sin, other_cos): (f64, f64)) -> (f64, f64) {
+/// One turn after another, as sine and cosine.
+pub fn turned_further((sin, cos): (f64, f64), (other_sin, other_cos): (f64, f64)) -> (f64, f64) {
     (sin * other_cos + cos * other_sin, cos * other_cos - sin * other_sin)
 }
 

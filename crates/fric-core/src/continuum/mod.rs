@@ -33,7 +33,10 @@
 //! # }
 //! ```
 
+#[cfg(feature = "alloc")]
+mod any;
 mod arc;
+mod chain;
 #[cfg(feature = "robot-file")]
 pub mod edit;
 #[cfg(feature = "robot-file")]
@@ -41,7 +44,7 @@ pub mod file;
 mod friction;
 #[cfg(feature = "robot-file")]
 pub mod gratings;
-mod linear;
+mod inverse;
 mod load;
 mod model;
 mod newton;
@@ -49,7 +52,10 @@ mod params;
 mod shape;
 mod tangent;
 
+#[cfg(feature = "alloc")]
+pub use any::AnyStaticModel;
 pub use friction::{Direction, Friction};
+pub use inverse::{Command, Drive, DriveOptions, Goal, GoalStatus};
 pub use model::StaticModel;
 pub use params::rectangle_bending_stiffness_n_m2;
 pub use params::{MAX_DISKS, ManipulatorError, ManipulatorOptions, ManipulatorParams, Tendon, TendonOptions};

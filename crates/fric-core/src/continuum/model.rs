@@ -2,7 +2,7 @@
 
 use super::friction::Friction;
 use super::load::positions;
-use super::newton::{Contacts, Law, Newton, Point, Target, chords, passages, travels_m};
+use super::newton::{Contacts, Law, Newton, Point, Target, chords, moved, passages, travels_m};
 use super::params::{ManipulatorError, ManipulatorParams, Tendon, count_error};
 use super::shape::{Shape, ShapeStatus};
 
@@ -32,10 +32,32 @@ pub struct StaticModel<const DISKS: usize> {
 
 /// The manipulator at the end of a history step.
 #[derive(Clone, Copy, Debug)]
-struct Past<const DISKS: usize> {
-    point: Point<DISKS>,
-    base_tension_n: [f64; 2],
-    contacts: Contacts<DISKS>,
+pub(super) struct Past<const DISKS: usize> {
+    pub point: Point<DISKS>,
+    pub base_tension_n: [f64; 2],
+    pub contacts: Contacts<DISKS>,
+    /// How the step changed the point and the tensions at the base: where the search of the next step starts, no memory.
+    change: Point<DISKS>,
+    change_n: [f64; 2],
+}
+
+impl<const DISKS: usize> Past<DISKS> {
+    /// Most of the last change that the next one is taken to repeat, and least change of a tension that tells a direction, N.
+    const FARTHEST: f64 = 2.0;
+    const LEAST_SQUARE_N2: f64 = 1e-18;
+
+    /// Where the next step ends if it goes on as the last one did: the search starts there. Where the tensions turn round it is
+    /// the point itself.
+    fn ahead(&self, base_tension_n: [f64; 2]) -> Point<DISKS> {
+        let ([first_n, second_n], [from_first_n, from_second_n]) = (base_tension_n, self.base_tension_n);
+        let [first_change_n, second_change_n] = self.change_n;
+        let along_n2 = (first_n - from_first_n) * first_change_n + (second_n - from_second_n) * second_change_n;
+        let square_n2 = first_change_n * first_change_n + second_change_n * second_change_n;
+        if square_n2 < Self::LEAST_SQUARE_N2 || along_n2 <= 0.0 {
+            return self.point;
+        }
+        moved(&self.point, &self.change, (along_n2 / square_n2).min(Self::FARTHEST))
+    }
 }
 
 impl<const DISKS: usize> StaticModel<DISKS> {
@@ -79,13 +101,15 @@ impl<const DISKS: usize> StaticModel<DISKS> {
         if !base_tension_n.iter().all(is_tension) {
             return ShapeStatus::NOT_FINITE;
         }
+        let bend_rad = self.shape.bend_rad;
         let found = match friction {
             Friction::None => {
-                self.statics(base_tension_n, base_tension_n.map(|tension_n| [tension_n; DISKS]), &Law::Given)
+                let tension_n = base_tension_n.map(|tension_n| [tension_n; DISKS]);
+                self.statics(&bend_rad, base_tension_n, tension_n, &Law::Given)
             }
             Friction::Coulomb(direction) => {
                 let tension_n = base_tension_n.map(|tension_n| [tension_n; DISKS]);
-                self.statics(base_tension_n, tension_n, &Law::Sliding(direction))
+                self.statics(&bend_rad, base_tension_n, tension_n, &Law::Sliding(direction))
             }
             Friction::Measured(given_n) => {
                 let mut tension_n = [[0.0; DISKS]; 2];
@@ -99,9 +123,12 @@ impl<const DISKS: usize> StaticModel<DISKS> {
                         *tension_n = *given_n;
                     }
                 }
-                self.statics(base_tension_n, tension_n, &Law::Given)
+                self.statics(&bend_rad, base_tension_n, tension_n, &Law::Given)
             }
-            Friction::History => self.advance(base_tension_n),
+            Friction::History => self.past_or_relaxed().and_then(|past| {
+                let start = past.ahead(base_tension_n);
+                self.advance(&past, &start, base_tension_n)
+            }),
         };
         let Some(mut point) = found else { return ShapeStatus::NOT_CONVERGED };
         for tension_n in &mut point.tension_n {
@@ -109,7 +136,7 @@ impl<const DISKS: usize> StaticModel<DISKS> {
                 *beyond = 0.0;
             }
         }
-        if !self.newton.is_stable(&self.params, &point, &Target { base_tension_n, load_share: 1.0 }) {
+        if !self.is_stable(&point, base_tension_n) {
             return ShapeStatus::UNSTABLE;
         }
         if let Friction::History = friction {
@@ -118,14 +145,51 @@ impl<const DISKS: usize> StaticModel<DISKS> {
         self.show(&point, base_tension_n)
     }
 
-    /// An equilibrium without memory: from the last shape, else in load steps from none.
-    fn statics(
+    pub(super) fn is_stable(&mut self, point: &Point<DISKS>, base_tension_n: [f64; 2]) -> bool {
+        self.newton.is_stable(&self.params, point, &Target { base_tension_n, load_share: 1.0 })
+    }
+
+    /// Whether disks would touch.
+    pub(super) fn disks_touch(&self, point: &Point<DISKS>) -> bool {
+        chords(&self.params, &point.bend_rad).iter().any(|chords| {
+            let mut segments = chords.iter().take(self.params.disk_count);
+            segments.any(|chord| chord.length_m <= self.params.disk_thickness_m)
+        })
+    }
+
+    /// How a point in equilibrium changes with the tensions at the base, by so much N.
+    pub(super) fn change_with(
         &mut self,
+        point: &Point<DISKS>,
+        target: &Target,
+        law: &Law<'_, DISKS>,
+        change_n: [f64; 2],
+    ) -> Point<DISKS> {
+        self.newton.change_with(&self.params, point, target, law, change_n)
+    }
+
+    /// Where the last history step ended, or the relaxed tendon before the first.
+    pub(super) fn past_or_relaxed(&mut self) -> Option<Past<DISKS>> {
+        match self.history {
+            Some(past) => Some(past),
+            None => self.relaxed(),
+        }
+    }
+
+    /// Tensions at the base of the last history step, else of the last shape, N.
+    pub(super) fn last_base_tension_n(&self) -> [f64; 2] {
+        self.history.as_ref().map_or(self.shape.base_tension_n, |past| past.base_tension_n)
+    }
+
+    /// An equilibrium without memory: from these bends, else in load steps from none.
+    pub(super) fn statics(
+        &mut self,
+        bend_rad: &[f64; DISKS],
         base_tension_n: [f64; 2],
         tension_n: [[f64; DISKS]; 2],
         law: &Law<'_, DISKS>,
     ) -> Option<Point<DISKS>> {
-        let start = Point { bend_rad: self.shape.bend_rad, tension_n };
+        let start = Point { bend_rad: *bend_rad, tension_n };
         let target = Target { base_tension_n, load_share: 1.0 };
         if let Some(point) = self.newton.solve(&self.params, &start, &target, law) {
             return Some(point);
@@ -141,31 +205,39 @@ impl<const DISKS: usize> StaticModel<DISKS> {
         Some(point)
     }
 
-    /// One step of the history: whole, or in parts where it finds no solution. The memory is the caller's to move on.
-    fn advance(&mut self, base_tension_n: [f64; 2]) -> Option<Point<DISKS>> {
-        let mut past = match self.history {
-            Some(past) => past,
-            None => self.relaxed()?,
-        };
+    /// One step of the history from where it ended: whole, searched from `start`, or in parts where it finds no solution. The
+    /// memory is the caller's to move on.
+    pub(super) fn advance(
+        &mut self,
+        past: &Past<DISKS>,
+        start: &Point<DISKS>,
+        base_tension_n: [f64; 2],
+    ) -> Option<Point<DISKS>> {
+        let (mut past, mut start) = (*past, *start);
         let [from_first_n, from_second_n] = past.base_tension_n;
         let [to_first_n, to_second_n] = base_tension_n;
         let (mut done, mut piece) = (0.0_f64, 1.0_f64);
-        for _ in 0..MOST_PARTS {
+        let is_ahead = start != past.point;
+        for part in 0..MOST_PARTS {
             let share = (done + piece).min(1.0);
             let between = |from_n: f64, to_n: f64| if share < 1.0 { from_n + share * (to_n - from_n) } else { to_n };
             let target = Target {
                 base_tension_n: [between(from_first_n, to_first_n), between(from_second_n, to_second_n)],
                 load_share: 1.0,
             };
-            let solved = self.newton.solve(&self.params, &past.point, &target, &Law::Presliding(&past.contacts));
+            let solved = self.newton.solve(&self.params, &start, &target, &Law::Presliding(&past.contacts));
             let Some(point) = solved else {
-                piece *= 0.5;
+                if part > 0 || !is_ahead {
+                    piece *= 0.5;
+                }
+                start = past.point;
                 continue;
             };
             if share >= 1.0 {
                 return Some(point);
             }
             past = self.past(&point, target.base_tension_n);
+            start = past.point;
             done = share;
         }
         None
@@ -173,7 +245,7 @@ impl<const DISKS: usize> StaticModel<DISKS> {
 
     /// Before the first step: the tendons lie in their holes without tension.
     fn relaxed(&mut self) -> Option<Past<DISKS>> {
-        let point = self.statics([0.0; 2], [[0.0; DISKS]; 2], &Law::Given)?;
+        let point = self.statics(&self.shape.bend_rad.clone(), [0.0; 2], [[0.0; DISKS]; 2], &Law::Given)?;
         Some(self.past(&point, [0.0; 2]))
     }
 
@@ -181,11 +253,19 @@ impl<const DISKS: usize> StaticModel<DISKS> {
     fn past(&self, point: &Point<DISKS>, base_tension_n: [f64; 2]) -> Past<DISKS> {
         let contacts =
             Contacts { friction_n: frictions(point, base_tension_n), travel_m: travels_m(&self.params, point) };
-        Past { point: *point, base_tension_n, contacts }
+        Past { point: *point, base_tension_n, contacts, change: Point::ZERO, change_n: [0.0; 2] }
     }
 
     fn remember(&mut self, point: &Point<DISKS>, base_tension_n: [f64; 2]) {
-        self.history = Some(self.past(point, base_tension_n));
+        let mut past = self.past(point, base_tension_n);
+        if let Some(before) = &self.history {
+            past.change = moved(point, &before.point, -1.0);
+            for ((change_n, now_n), before_n) in past.change_n.iter_mut().zip(base_tension_n).zip(before.base_tension_n)
+            {
+                *change_n = now_n - before_n;
+            }
+        }
+        self.history = Some(past);
     }
 
     /// Keeps a point as the shape, and says what is out of the ordinary about it.
@@ -193,7 +273,9 @@ impl<const DISKS: usize> StaticModel<DISKS> {
         let count = self.params.disk_count;
         let mut bound_n = [[0.0; DISKS]; 2];
         let mut status = ShapeStatus::OK;
-        let chords = chords(&self.params, &point.bend_rad);
+        if self.disks_touch(point) {
+            status = status | ShapeStatus::DISKS_TOUCH;
+        }
         let parts = Tendon::BOTH.into_iter().zip(&mut bound_n).zip(base_tension_n);
         for ((tendon, bound_n), base_tension_n) in parts {
             let params = tendon.of(&self.params.tendons);
@@ -203,10 +285,6 @@ impl<const DISKS: usize> StaticModel<DISKS> {
                 if passage.base_side_n.max(passage.tip_side_n) > params.capacity_n {
                     status = status | ShapeStatus::OVER_CAPACITY;
                 }
-            }
-            let mut segments = tendon.of(&chords).iter().take(count);
-            if segments.any(|chord| chord.length_m <= self.params.disk_thickness_m) {
-                status = status | ShapeStatus::DISKS_TOUCH;
             }
         }
         self.shape = Shape {
@@ -223,7 +301,7 @@ impl<const DISKS: usize> StaticModel<DISKS> {
 }
 
 /// `T_{i−1} − T_i`.
-fn frictions<const DISKS: usize>(point: &Point<DISKS>, base_tension_n: [f64; 2]) -> [[f64; DISKS]; 2] {
+pub(super) fn frictions<const DISKS: usize>(point: &Point<DISKS>, base_tension_n: [f64; 2]) -> [[f64; DISKS]; 2] {
     let mut friction_n = point.tension_n;
     for (friction_n, mut base_side_n) in friction_n.iter_mut().zip(base_tension_n) {
         for value in friction_n {

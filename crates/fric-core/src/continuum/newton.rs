@@ -12,8 +12,8 @@
 //! held bounds, and taken as far as the residual forces do work along it.
 
 use super::arc::{Chord, GREATEST_BEND_RAD};
+use super::chain::{BendRow, Chain, HoleRow, Link};
 use super::friction::{Direction, Passage};
-use super::linear;
 use super::load::{Moments, moments};
 use super::params::{ManipulatorParams, Tendon};
 use crate::scalar::Scalar;
@@ -69,14 +69,15 @@ pub struct Target {
     pub load_share: f64,
 }
 
-/// Signed distance of a tendon's holes from the backbone, m.
-fn hole_m(params: &ManipulatorParams, tendon: usize) -> f64 {
-    if tendon == 0 { params.hole_radius_m } else { -params.hole_radius_m }
-}
-
 /// Both tendons' chords.
 pub fn chords<const DISKS: usize>(params: &ManipulatorParams, bend_rad: &[f64; DISKS]) -> [[Chord; DISKS]; 2] {
-    [0, 1].map(|tendon| bend_rad.map(|bend_rad| Chord::new(params.pitch_m, hole_m(params, tendon), bend_rad)))
+    let mut both = [[Chord::NONE; DISKS]; 2];
+    let [first, second] = &mut both;
+    let segments = first.iter_mut().zip(second).zip(bend_rad);
+    for ((first, second), bend_rad) in segments.take(params.disk_count) {
+        [*first, *second] = Chord::both(params.pitch_m, params.hole_radius_m, *bend_rad);
+    }
+    both
 }
 
 /// How far a tendon has come through each hole towards the base: what the chords beyond have lost in length and the tendon
@@ -123,40 +124,18 @@ pub fn passages<const DISKS: usize>(
     })
 }
 
-/// Room for the equations of up to three unknowns a segment.
+/// The equations and room for their solution.
 #[derive(Clone, Debug)]
 pub struct Newton<const DISKS: usize> {
-    /// 9·DISKS² coefficients and 3·DISKS right sides; never more than this.
-    room: [[[f64; DISKS]; DISKS]; 12],
+    chain: Chain<DISKS>,
 }
 
-/// Rows of coefficients with the right side last.
-struct Rows<'a> {
-    data: &'a mut [f64],
-    stride: usize,
-}
-
-impl Rows<'_> {
-    fn add(&mut self, row: usize, column: usize, value: f64) {
-        if let Some(place) = self.data.get_mut(row * self.stride + column) {
-            *place += value;
-        }
-    }
-
-    fn set_right(&mut self, row: usize, value: f64) {
-        if let Some(place) = self.data.get_mut(row * self.stride + self.stride - 1) {
-            *place = value;
-        }
-    }
-}
-
-/// Which of the tendons have unknown tensions, and in which columns they stand.
+/// Which of the tendons have unknown tensions.
 #[derive(Clone, Copy, Debug)]
 struct Unknowns {
+    /// Segments.
     count: usize,
-    /// First column of each tendon.
-    tendons: [Option<usize>; 2],
-    total: usize,
+    tendons: [bool; 2],
 }
 
 impl Unknowns {
@@ -167,17 +146,14 @@ impl Unknowns {
         law: &Law<'_, DISKS>,
     ) -> Self {
         let count = params.disk_count.min(DISKS);
-        let mut total = count;
-        let mut tendons = [None; 2];
+        let mut tendons = [false; 2];
         if !matches!(law, Law::Given) {
-            for ((column, base_n), tension_n) in tendons.iter_mut().zip(target.base_tension_n).zip(&point.tension_n) {
-                if base_n > 0.0 || tension_n.iter().any(|&tension_n| tension_n != 0.0) {
-                    *column = Some(total);
-                    total += count;
-                }
+            for ((is_unknown, base_n), tension_n) in tendons.iter_mut().zip(target.base_tension_n).zip(&point.tension_n)
+            {
+                *is_unknown = base_n > 0.0 || tension_n.iter().any(|&tension_n| tension_n != 0.0);
             }
         }
-        Self { count, tendons, total }
+        Self { count, tendons }
     }
 }
 
@@ -218,18 +194,12 @@ impl<'a, const DISKS: usize> Problem<'a, DISKS> {
     }
 
     /// Writes the linearised equations at a point.
-    fn write(&self, point: &Point<DISKS>, step: &Point<DISKS>, room: &mut [f64]) -> Distance {
-        let stride = self.unknowns.total + 1;
-        let Some(data) = room.get_mut(..self.unknowns.total * stride) else {
-            return Distance { error: f64::NAN, work_nm: f64::NAN };
-        };
-        data.fill(0.0);
-        let mut rows = Rows { data, stride };
+    fn write(&self, point: &Point<DISKS>, step: &Point<DISKS>, chain: &mut Chain<DISKS>) -> Distance {
         let chords = chords(self.params, &point.bend_rad);
-        let (mut squares, mut work_nm) = self.bending(point, step, &chords, &mut rows);
-        for (tendon, column) in Tendon::BOTH.into_iter().zip(self.unknowns.tendons) {
-            if let Some(column) = column {
-                let (own_squares, own_nm) = self.passing(point, step, (tendon, column), &chords, &mut rows);
+        let (mut squares, mut work_nm) = self.bending(point, step, &chords, &mut chain.links);
+        for (tendon, is_unknown) in Tendon::BOTH.into_iter().zip(self.unknowns.tendons) {
+            if is_unknown {
+                let (own_squares, own_nm) = self.passing(point, step, tendon, &chords, &mut chain.links);
                 squares += own_squares;
                 work_nm += own_nm;
             }
@@ -243,11 +213,10 @@ impl<'a, const DISKS: usize> Problem<'a, DISKS> {
         point: &Point<DISKS>,
         step: &Point<DISKS>,
         chords: &[[Chord; DISKS]; 2],
-        rows: &mut Rows<'_>,
+        links: &mut [Link; DISKS],
     ) -> (f64, f64) {
         let compliance = self.params.pitch_m / self.params.bending_stiffness_n_m2;
-        let has_load = self.params.has_load();
-        let Moments { moment_nm, slope_nm, own_slope_nm } = if has_load {
+        let Moments { moment_nm, slope_nm, own_slope_nm } = if self.params.has_load() {
             moments(self.params, &point.bend_rad, self.target.load_share)
         } else {
             Moments { moment_nm: [0.0; DISKS], slope_nm: [0.0; DISKS], own_slope_nm: [0.0; DISKS] }
@@ -258,7 +227,9 @@ impl<'a, const DISKS: usize> Problem<'a, DISKS> {
         let loads = moment_nm.iter().zip(slope_nm.iter().zip(&own_slope_nm));
         let bends = point.bend_rad.iter().zip(&step.bend_rad);
         let (mut squares, mut work_nm) = (0.0, 0.0);
-        for (row, ((bend, load), tendons)) in bends.zip(loads).zip(tendons).take(self.unknowns.count).enumerate() {
+        for (link, ((bend, load), tendons)) in
+            links.iter_mut().zip(bends.zip(loads).zip(tendons)).take(self.unknowns.count)
+        {
             let (bend_rad, change_rad) = bend;
             let (outside_nm, (outside_slope, outside_own_slope)) = load;
             let ((first, first_n), (second, second_n)) = tendons;
@@ -267,19 +238,14 @@ impl<'a, const DISKS: usize> Problem<'a, DISKS> {
             let residual = bend_rad - compliance * moment_nm;
             squares += residual * residual;
             work_nm += residual / compliance * change_rad;
-            rows.set_right(row, -residual);
-            rows.add(row, row, 1.0 - compliance * slope);
-            for (column, chord) in self.unknowns.tendons.into_iter().zip([first, second]) {
-                if let Some(column) = column {
-                    rows.add(row, column + row, -compliance * chord.arm_m);
-                }
-            }
-            if has_load {
-                for nearer in 0..row {
-                    rows.add(row, nearer, -compliance * outside_slope);
-                    rows.add(nearer, row, -compliance * outside_slope);
-                }
-            }
+            link.bend = BendRow {
+                own: 1.0 - compliance * slope,
+                by_tension: [compliance * first.arm_m, compliance * second.arm_m],
+                compliance,
+                load_slope: *outside_slope,
+                right: -residual,
+            };
+            link.holes = [HoleRow::KNOWN; 2];
         }
         (squares, work_nm)
     }
@@ -289,23 +255,37 @@ impl<'a, const DISKS: usize> Problem<'a, DISKS> {
         &self,
         point: &Point<DISKS>,
         step: &Point<DISKS>,
-        (tendon, first): (Tendon, usize),
+        tendon: Tendon,
         chords: &[[Chord; DISKS]; 2],
-        rows: &mut Rows<'_>,
+        links: &mut [Link; DISKS],
     ) -> (f64, f64) {
         let count = self.unknowns.count;
         let chords = tendon.of(chords);
         let tension_n = tendon.of(&point.tension_n);
         let params = tendon.of(&self.params.tendons);
         let flexibility = 1.0 / params.axial_stiffness_n;
-        let travel_m = match self.law {
-            Law::Presliding(_) => travel_m(chords, tension_n, params.axial_stiffness_n, count),
-            _ => [0.0; DISKS],
-        };
+        let is_presliding = matches!(self.law, Law::Presliding(_));
+        // How far the tendon is through each hole, and how much further the step takes it.
+        let (mut travels_m, mut changes_m) = ([0.0; DISKS], [0.0; DISKS]);
+        if is_presliding {
+            travels_m = travel_m(chords, tension_n, params.axial_stiffness_n, count);
+            let mut sum_m = 0.0;
+            let changes = step.bend_rad.iter().zip(tendon.of(&step.tension_n));
+            let segments = changes_m.iter_mut().zip(chords.iter().zip(tension_n).zip(changes));
+            for (change_m, ((chord, tension_n), (change_rad, change_n))) in segments.take(count).rev() {
+                sum_m += chord.arm_m * (1.0 - tension_n * flexibility) * change_rad
+                    + chord.length_m * flexibility * change_n;
+                *change_m = sum_m;
+            }
+        }
         let per_unit = 1.0 / self.unit_n;
         let (mut squares, mut work_nm) = (0.0, 0.0);
         let holes = params.holes().zip(passages(point, tendon, *tendon.of(&self.target.base_tension_n)));
-        for (place, (hole, mut passage)) in holes.enumerate().take(count) {
+        let ways = travels_m.iter().zip(&changes_m).zip(chords.iter().zip(tension_n));
+        let segments = links.iter_mut().zip(holes).zip(ways);
+        for (place, ((link, (hole, mut passage)), ((travel_m, change_m), (chord, tension_n)))) in
+            segments.enumerate().take(count)
+        {
             let friction = match self.law {
                 Law::Given => continue,
                 Law::Sliding(direction) => {
@@ -313,7 +293,7 @@ impl<'a, const DISKS: usize> Problem<'a, DISKS> {
                 }
                 Law::Presliding(contacts) => {
                     let at = |all: &[f64; DISKS]| all.get(place).copied().unwrap_or(0.0);
-                    passage.motion_m = at(&travel_m) - at(tendon.of(&contacts.travel_m));
+                    passage.motion_m = travel_m - at(tendon.of(&contacts.travel_m));
                     hole.presliding(&passage, at(tendon.of(&contacts.friction_n)))
                 }
             };
@@ -321,27 +301,19 @@ impl<'a, const DISKS: usize> Problem<'a, DISKS> {
                 [.., motion_slope] if self.holds_bounds => [0.0, 0.0, 0.0, motion_slope],
                 slopes => slopes,
             };
-            let row = first + place;
             let left_n = passage.base_side_n - passage.tip_side_n - friction.friction_n;
             squares += left_n * left_n * per_unit * per_unit;
-            rows.set_right(row, -left_n * per_unit);
-            rows.add(row, row, -(1.0 + tip_slope) * per_unit);
-            rows.add(row, place, -0.5 * wrap_slope * per_unit);
-            if let Some(before) = place.checked_sub(1) {
-                rows.add(row, first + before, (1.0 - base_slope) * per_unit);
-                rows.add(row, before, -0.5 * wrap_slope * per_unit);
-            }
-            if matches!(self.law, Law::Presliding(_)) {
-                let changes = step.bend_rad.iter().zip(tendon.of(&step.tension_n));
-                let beyond = chords.iter().zip(tension_n).zip(changes).enumerate().take(count).skip(place);
-                for (beyond, ((chord, tension_n), (change_rad, change_n))) in beyond {
-                    let by_bend_m = chord.arm_m * (1.0 - tension_n * flexibility);
-                    let by_tension = chord.length_m * flexibility;
-                    rows.add(row, beyond, -motion_slope * by_bend_m * per_unit);
-                    rows.add(row, first + beyond, -motion_slope * by_tension * per_unit);
-                    work_nm -= left_n * (by_bend_m * change_rad + by_tension * change_n);
-                }
-            }
+            work_nm -= left_n * change_m;
+            let [first, second] = &mut link.holes;
+            *(if tendon == Tendon::Agonist { first } else { second }) = HoleRow {
+                base_side: (1.0 - base_slope) * per_unit,
+                tip_side: -(1.0 + tip_slope) * per_unit,
+                wrap: -0.5 * wrap_slope * per_unit,
+                motion: -motion_slope * per_unit,
+                way_by_bend: chord.arm_m * (1.0 - tension_n * flexibility),
+                way_by_tension: chord.length_m * flexibility,
+                right: -left_n * per_unit,
+            };
         }
         (squares, work_nm)
     }
@@ -349,11 +321,7 @@ impl<'a, const DISKS: usize> Problem<'a, DISKS> {
 
 impl<const DISKS: usize> Newton<DISKS> {
     pub const fn new() -> Self {
-        Self { room: [[[0.0; DISKS]; DISKS]; 12] }
-    }
-
-    fn room(&mut self) -> &mut [f64] {
-        self.room.as_flattened_mut().as_flattened_mut()
+        Self { chain: Chain::new() }
     }
 
     /// An equilibrium near `start`; `None` where none is found.
@@ -366,18 +334,18 @@ impl<const DISKS: usize> Newton<DISKS> {
     ) -> Option<Point<DISKS>> {
         let mut problem = Problem::new(params, start, target, law);
         let mut point = *start;
-        let mut error = problem.write(&point, &Point::ZERO, self.room()).error;
+        let mut error = problem.write(&point, &Point::ZERO, &mut self.chain).error;
         for _ in 0..MOST_STEPS {
             if error <= SOLVED {
                 return Some(point);
             }
-            if !error.is_finite() || !linear::solve(self.room(), problem.unknowns.total) {
+            if !error.is_finite() || !self.chain.eliminate(problem.unknowns.count) {
                 return None;
             }
-            let step = self.step(&problem.unknowns);
+            let step = self.chain.solution(problem.unknowns.count);
             let whole = whole_share(&step);
             let trial = moved(&point, &step, whole);
-            let trial_error = problem.write(&trial, &step, self.room()).error;
+            let trial_error = problem.write(&trial, &step, &mut self.chain).error;
             let next = if trial_error <= 0.5 * error {
                 Some((trial, trial_error))
             } else if error <= STALLED {
@@ -394,6 +362,27 @@ impl<const DISKS: usize> Newton<DISKS> {
         (error <= STALLED).then_some(point)
     }
 
+    /// How a point in equilibrium changes with the tensions at the base, by so much N.
+    pub fn change_with(
+        &mut self,
+        params: &ManipulatorParams,
+        point: &Point<DISKS>,
+        target: &Target,
+        law: &Law<'_, DISKS>,
+        change_n: [f64; 2],
+    ) -> Point<DISKS> {
+        let mut problem = Problem::new(params, point, target, law);
+        for (is_unknown, change_n) in problem.unknowns.tendons.iter_mut().zip(change_n) {
+            *is_unknown |= change_n != 0.0;
+        }
+        problem.write(point, &Point::ZERO, &mut self.chain);
+        if self.chain.eliminate(problem.unknowns.count) {
+            self.chain.by_base_tension(problem.unknowns.count, change_n)
+        } else {
+            Point::ZERO
+        }
+    }
+
     /// The first point along a step, halved again and again, at which the residual is smaller.
     fn smaller_error(
         &mut self,
@@ -405,7 +394,7 @@ impl<const DISKS: usize> Newton<DISKS> {
         let mut share = first;
         for _ in 0..MOST_TRIALS {
             let trial = moved(point, step, share);
-            let trial_error = problem.write(&trial, step, self.room()).error;
+            let trial_error = problem.write(&trial, step, &mut self.chain).error;
             if trial_error < error * (1.0 - 1e-3 * share) {
                 return Some((trial, trial_error));
             }
@@ -418,18 +407,18 @@ impl<const DISKS: usize> Newton<DISKS> {
     /// position with halved ends (Illinois).
     fn least_energy(&mut self, problem: &mut Problem<'_, DISKS>, point: &Point<DISKS>) -> Option<(Point<DISKS>, f64)> {
         problem.holds_bounds = true;
-        problem.write(point, &Point::ZERO, self.room());
-        let is_solved = linear::solve(self.room(), problem.unknowns.total);
+        problem.write(point, &Point::ZERO, &mut self.chain);
+        let is_solved = self.chain.eliminate(problem.unknowns.count);
         problem.holds_bounds = false;
         if !is_solved {
             return None;
         }
-        let step = self.step(&problem.unknowns);
-        let begin_nm = problem.write(point, &step, self.room()).work_nm;
+        let step = self.chain.solution(problem.unknowns.count);
+        let begin_nm = problem.write(point, &step, &mut self.chain).work_nm;
         let (mut near, mut near_nm) = (0.0, begin_nm);
         let mut share = whole_share(&step);
         let mut trial = moved(point, &step, share);
-        let mut distance = problem.write(&trial, &step, self.room());
+        let mut distance = problem.write(&trial, &step, &mut self.chain);
         if distance.work_nm <= 0.0 {
             return Some((trial, distance.error));
         }
@@ -441,7 +430,7 @@ impl<const DISKS: usize> Newton<DISKS> {
             let between = near - near_nm * (far - near) / (far_nm - near_nm);
             share = between.min(far - 0.02 * (far - near)).max(near + 0.02 * (far - near));
             trial = moved(point, &step, share);
-            distance = problem.write(&trial, &step, self.room());
+            distance = problem.write(&trial, &step, &mut self.chain);
             if distance.work_nm > 0.0 {
                 (far, far_nm) = (share, distance.work_nm);
                 near_nm *= 0.5;
@@ -456,23 +445,8 @@ impl<const DISKS: usize> Newton<DISKS> {
     /// Whether the manipulator comes back to this equilibrium while the tensions stay.
     pub fn is_stable(&mut self, params: &ManipulatorParams, point: &Point<DISKS>, target: &Target) -> bool {
         let problem = Problem::new(params, point, target, &Law::Given);
-        problem.write(point, &Point::ZERO, self.room()).error.is_finite()
-            && linear::is_positive_definite(self.room(), problem.unknowns.total)
-    }
-
-    /// The solution of the equations as a step.
-    fn step(&self, unknowns: &Unknowns) -> Point<DISKS> {
-        let stride = unknowns.total + 1;
-        let rows = self.room.as_flattened().as_flattened();
-        let part = |first: usize| {
-            let mut part = [0.0; DISKS];
-            let values = rows.chunks_exact(stride.max(1)).skip(first).filter_map(<[f64]>::last);
-            for (part, value) in part.iter_mut().zip(values).take(unknowns.count) {
-                *part = *value;
-            }
-            part
-        };
-        Point { bend_rad: part(0), tension_n: unknowns.tendons.map(|column| column.map_or([0.0; DISKS], part)) }
+        problem.write(point, &Point::ZERO, &mut self.chain).error.is_finite()
+            && self.chain.is_stiff(problem.unknowns.count)
     }
 }
 
@@ -482,7 +456,8 @@ fn whole_share<const DISKS: usize>(step: &Point<DISKS>) -> f64 {
     if longest_rad > LONGEST_STEP_RAD { LONGEST_STEP_RAD / longest_rad } else { 1.0 }
 }
 
-fn moved<const DISKS: usize>(point: &Point<DISKS>, step: &Point<DISKS>, share: f64) -> Point<DISKS> {
+/// A point after a share of a step; bends stay within what a segment can have.
+pub fn moved<const DISKS: usize>(point: &Point<DISKS>, step: &Point<DISKS>, share: f64) -> Point<DISKS> {
     let add = |from: &[f64; DISKS], change: &[f64; DISKS], most: f64| {
         let mut sum = *from;
         for (sum, change) in sum.iter_mut().zip(change) {

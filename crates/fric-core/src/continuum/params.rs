@@ -218,7 +218,7 @@ impl TendonParams {
     }
 
     pub fn holes(&self) -> impl Iterator<Item = Hole> {
-        self.mu.into_iter().zip(self.sigma_n_per_m).map(|(mu, sigma_n_per_m)| Hole { mu, sigma_n_per_m })
+        self.mu.iter().zip(&self.sigma_n_per_m).map(|(&mu, &sigma_n_per_m)| Hole { mu, sigma_n_per_m })
     }
 }
 

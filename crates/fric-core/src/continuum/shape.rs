@@ -82,18 +82,22 @@ impl BitOr for ShapeStatus {
 /// `ok`, or the names of the flags with `|` between them.
 impl fmt::Display for ShapeStatus {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.is_ok() {
-            return formatter.write_str("ok");
-        }
-        let mut separator = "";
-        for (name, flag) in Self::NAMES {
-            if self.contains(flag) {
-                write!(formatter, "{separator}{name}")?;
-                separator = "|";
-            }
-        }
-        Ok(())
+        write_flags(formatter, Self::NAMES.iter().filter(|(_, flag)| self.contains(*flag)).map(|(name, _)| *name))
     }
+}
+
+/// `ok`, or the names with `|` between them.
+pub(super) fn write_flags(
+    formatter: &mut fmt::Formatter<'_>,
+    names: impl Iterator<Item = &'static str>,
+) -> fmt::Result {
+    let mut is_first = true;
+    for name in names {
+        formatter.write_str(if is_first { "" } else { "|" })?;
+        formatter.write_str(name)?;
+        is_first = false;
+    }
+    if is_first { formatter.write_str("ok") } else { Ok(()) }
 }
 
 /// A manipulator in equilibrium.

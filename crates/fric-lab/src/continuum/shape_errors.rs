@@ -1,7 +1,7 @@
 //! How far the model's disks are from the markers, by the four ways of friction: the form of \[C\], figures 12 and 15.
 
 use fric_core::continuum::{
-    Direction, Friction, MAX_DISKS, ManipulatorError, ManipulatorParams, ShapeStatus, StaticModel, Tendon,
+    AnyStaticModel, Direction, Friction, MAX_DISKS, ManipulatorError, ManipulatorParams, ShapeStatus, Tendon,
 };
 
 use super::gratings::GratingSample;
@@ -64,7 +64,7 @@ pub fn shapes(
     way: Way,
     measured: &[GratingSample],
 ) -> Result<Vec<ComputedShape>, ManipulatorError> {
-    let mut model = Box::new(StaticModel::<MAX_DISKS>::new(params)?);
+    let mut model = AnyStaticModel::new(params)?;
     let mut measured = measured.iter();
     let mut tension_n = Vec::with_capacity(params.disk_count());
     let computed = samples.iter().map(|sample| {
@@ -85,14 +85,13 @@ pub fn shapes(
                 model.solve(base_n, Friction::Measured([given_n, &[]]))
             }
         };
-        let shape = model.shape();
         ComputedShape {
             status,
-            bend_rad: shape.bend_rad(),
-            disk_position_m: shape.disk_position_m().to_vec(),
-            tension_n: shape.tension_n(Tendon::Agonist).to_vec(),
-            friction_n: shape.friction_n(Tendon::Agonist).to_vec(),
-            bound_n: shape.bound_n(Tendon::Agonist).to_vec(),
+            bend_rad: model.bend_rad(),
+            disk_position_m: model.disk_position_m().to_vec(),
+            tension_n: model.tension_n(Tendon::Agonist).to_vec(),
+            friction_n: model.friction_n(Tendon::Agonist).to_vec(),
+            bound_n: model.bound_n(Tendon::Agonist).to_vec(),
         }
     });
     Ok(computed.collect())

@@ -5,3 +5,4 @@ mod experiments;
 mod gratings;
 mod runs;
 mod shapes;
+mod track;

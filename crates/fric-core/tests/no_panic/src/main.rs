@@ -4,7 +4,10 @@ use std::hint::black_box;
 
 use fric_core::effects::Effect;
 use fric_core::admittance::{Admittance, AdmittanceOptions, SetPoint};
-use fric_core::continuum::{Direction, Friction, ManipulatorOptions, ManipulatorParams, ShapeStatus, StaticModel};
+use fric_core::continuum::{
+    Command, Direction, Drive, DriveOptions, Friction, Goal, ManipulatorOptions, ManipulatorParams, ShapeStatus,
+    StaticModel,
+};
 use fric_core::robot::{
     CableOptions, FrictionOptions, GeometryOptions, MAX_PULLEYS, MonitorOptions, PlatformOptions, Presliding,
     PulleyOptions,
@@ -106,9 +109,18 @@ fn solve(model: &mut StaticModel<8>, base_tension_n: [f64; 2], friction: Frictio
     model.solve(base_tension_n, friction)
 }
 
+/// The tension for a goal.
+#[no_panic]
+#[inline(never)]
+fn tension_for(model: &mut StaticModel<8>, goal: Goal, friction: Friction<'_>, drive: &Drive) -> Command {
+    model.tension_for(goal, friction, drive)
+}
+
 fn manipulator() {
     let options = ManipulatorOptions { gravity_m_per_s2: black_box([0.0, -9.81]), ..ManipulatorOptions::published() };
-    let mut model = StaticModel::<8>::new(&ManipulatorParams::new(&options).unwrap()).unwrap();
+    let params = ManipulatorParams::new(&options).unwrap();
+    let mut model = StaticModel::<8>::new(&params).unwrap();
+    let drive = Drive::new(&params, &DriveOptions::first_tendon(&params)).unwrap();
     let measured = black_box([1.0; 8]);
     for friction in [
         Friction::None,
@@ -117,6 +129,9 @@ fn manipulator() {
         Friction::History,
     ] {
         black_box(solve(black_box(&mut model), black_box([1.0, 0.2]), black_box(friction)));
+        for goal in [Goal::BendRad(0.4), Goal::TipM([0.2, 0.1])] {
+            black_box(tension_for(black_box(&mut model), black_box(goal), black_box(friction), black_box(&drive)));
+        }
     }
     black_box(model.shape());
 }

@@ -10,6 +10,7 @@
 mod banded;
 mod elastica;
 mod holes;
+pub mod track;
 
 use fric_core::continuum::{ManipulatorParams, Tendon};
 use rand_chacha::ChaCha8Rng;
