@@ -43,6 +43,8 @@ mod friction;
 pub mod gratings;
 mod linear;
 mod load;
+#[cfg(feature = "robot-file")]
+pub mod measuring;
 mod model;
 mod newton;
 mod params;

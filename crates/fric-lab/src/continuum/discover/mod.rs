@@ -34,7 +34,7 @@ mod naming;
 mod noise;
 mod places;
 mod result;
-mod spread;
+pub(super) mod spread;
 mod summary;
 mod trials;
 mod worse;
@@ -48,6 +48,7 @@ use super::error::ContinuumError;
 use super::gratings::Gratings;
 use super::run::Run;
 
+pub(super) use case::thinned;
 pub use goes_with::GoesWith;
 pub use result::{
     MarkerError, TendonDiscoverResult, TendonEffect, TendonMarkers, TendonPlace, TendonRest, TendonResult, TendonTried,
