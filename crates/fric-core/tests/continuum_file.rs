@@ -140,14 +140,15 @@ fn backbone_markers_and_base_sensor_may_be_stated() {
     assert!((file.params().rest_bend_rad()[7] - 0.3 * 0.037).abs() < 1e-15);
     assert_eq!(file.tables().base_sensor.unwrap().offset_n, 0.0);
     assert_eq!(ManipulatorFile::parse(&file.to_toml().unwrap(), "again").unwrap(), file);
-    let said = |from: &str, to: &str| ManipulatorFile::parse(&text.replace(from, to), "arm.toml").unwrap_err().to_string();
+    let said =
+        |from: &str, to: &str| ManipulatorFile::parse(&text.replace(from, to), "arm.toml").unwrap_err().to_string();
     assert_eq!(
         said("1, 0.5, 1", "1, 0, 1"),
         "arm.toml, line 18: `segment_stiffness_ratio` at place 3 is 0; allowed is 0.01 to 100"
     );
     assert!(said("precurvature_per_m = 0.3", "precurvature_per_m = 30").contains("allowed is -27.0270"));
     assert_eq!(said("gain = 1.02", "gain = 0"), "arm.toml, line 32: `gain` is 0; allowed is 0.1 to 10");
-    assert!(said("angle_rad = 0.05", "angle_rad = inf").starts_with("arm.toml, line 29: `angle_rad` is infinite"));
+    assert!(said("angle_rad = 0.05", "angle_rad = inf").starts_with("arm.toml, line 29: `angle_rad` is inf"));
     assert!(said("lag_s", "lags").contains("did you mean `lag_s`?"));
 }
 
@@ -159,8 +160,7 @@ fn an_edit_makes_one_file_the_other() {
     tables.gravity_m_per_s2 = [1.0, -9.0];
     tables.backbone.youngs_modulus_pa = 1.9e11;
     tables.backbone.precurvature_per_m = Some(OneOrEach::One(0.2));
-    tables.backbone.segment_stiffness_ratio =
-        Some(OneOrEach::Each(vec![1.0, 0.5, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]));
+    tables.backbone.segment_stiffness_ratio = Some(OneOrEach::Each(vec![1.0, 0.5, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]));
     tables.tip.mass_kg = 0.001;
     tables.markers = Some(MarkersTable { offset_m: [0.001, 0.002], angle_rad: 0.1 });
     tables.base_sensor = Some(BaseSensorTable { gain: 1.1, offset_n: 0.1, lag_s: 0.0 });

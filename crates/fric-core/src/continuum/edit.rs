@@ -67,10 +67,7 @@ impl ManipulatorEdit {
             drift_nm_per_s: Vec::new(),
             common_step: changed(&step(given), &step(wanted)).flatten(),
             youngs_modulus_pa: changed(&backbone.youngs_modulus_pa, &wanted_backbone.youngs_modulus_pa),
-            segment_stiffness_ratio: list(
-                &backbone.segment_stiffness_ratio,
-                &wanted_backbone.segment_stiffness_ratio,
-            ),
+            segment_stiffness_ratio: list(&backbone.segment_stiffness_ratio, &wanted_backbone.segment_stiffness_ratio),
             precurvature_per_m: list(&backbone.precurvature_per_m, &wanted_backbone.precurvature_per_m),
             hole_radius_m: changed(&given.hole_radius_m, &wanted.hole_radius_m),
             gravity_m_per_s2: changed(&given.gravity_m_per_s2, &wanted.gravity_m_per_s2),
@@ -186,10 +183,9 @@ pub fn rewrite(text: &str, origin: &str, edit: &ManipulatorEdit) -> Result<Strin
             set(table, key, list(&value))?;
         }
     }
-    for (key, values) in [
-        ("segment_stiffness_ratio", &edit.segment_stiffness_ratio),
-        ("precurvature_per_m", &edit.precurvature_per_m),
-    ] {
+    for (key, values) in
+        [("segment_stiffness_ratio", &edit.segment_stiffness_ratio), ("precurvature_per_m", &edit.precurvature_per_m)]
+    {
         match values.as_slice() {
             [] => {}
             [one] => set("backbone", key, (*one).into())?,

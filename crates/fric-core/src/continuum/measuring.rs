@@ -73,9 +73,8 @@ pub(super) fn check(markers: Option<&MarkersTable>, sensor: Option<&BaseSensorTa
         ("base_sensor", "lag_s", sensor.lag_s, -10.0, 10.0),
     ];
     for (table, key, value, min, max) in numbers {
-        in_range(key, value, min, max).map_err(|error| {
-            TablesError::new(Vec::from([Step::Key(table), Step::Key(key)]), error.to_string())
-        })?;
+        in_range(key, value, min, max)
+            .map_err(|error| TablesError::new(Vec::from([Step::Key(table), Step::Key(key)]), error.to_string()))?;
     }
     Ok(())
 }

@@ -247,8 +247,7 @@ impl ManipulatorParams {
         }
         let pitch_m = checked("pitch_m", options.pitch_m, 1e-5, 10.0)?;
         let stiffness_n_m2 = checked("bending_stiffness_n_m2", options.bending_stiffness_n_m2, 1e-12, 1e9)?;
-        let stiffness_ratio =
-            spread("segment_stiffness_ratio", options.segment_stiffness_ratio, count, (0.01, 100.0))?;
+        let stiffness_ratio = spread("segment_stiffness_ratio", options.segment_stiffness_ratio, count, (0.01, 100.0))?;
         let most_per_m = GREATEST_REST_BEND_RAD / pitch_m;
         let curvature_per_m =
             spread("precurvature_per_m", options.precurvature_per_m, count, (-most_per_m, most_per_m))?;

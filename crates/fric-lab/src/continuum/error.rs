@@ -118,7 +118,9 @@ pub enum ContinuumError {
         time_s: f64,
     },
     /// The model has no shapes for the runs.
-    #[error("the model finds no shape for the runs, so that nothing can be identified; check stiffness, weight and tension against the manipulator file")]
+    #[error(
+        "the model finds no shape for the runs, so that nothing can be identified; check stiffness, weight and tension against the manipulator file"
+    )]
     NotIdentified,
     /// A tension at which the tendon may break.
     #[error(

@@ -64,7 +64,21 @@ pub fn shapes(
     way: Way,
     measured: &[GratingSample],
 ) -> Result<Vec<ComputedShape>, ManipulatorError> {
-    let mut model = Box::new(StaticModel::<MAX_DISKS>::new(params)?);
+    // The model's matrices are as large as its type says.
+    match params.disk_count() {
+        ..=8 => shapes_of::<8>(params, samples, way, measured),
+        9..=16 => shapes_of::<16>(params, samples, way, measured),
+        _ => shapes_of::<MAX_DISKS>(params, samples, way, measured),
+    }
+}
+
+fn shapes_of<const DISKS: usize>(
+    params: &ManipulatorParams,
+    samples: &[RunSample],
+    way: Way,
+    measured: &[GratingSample],
+) -> Result<Vec<ComputedShape>, ManipulatorError> {
+    let mut model = Box::new(StaticModel::<DISKS>::new(params)?);
     let mut measured = measured.iter();
     let mut tension_n = Vec::with_capacity(params.disk_count());
     let computed = samples.iter().map(|sample| {

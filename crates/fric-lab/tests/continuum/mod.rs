@@ -3,5 +3,6 @@
 mod discover;
 mod experiments;
 mod gratings;
+mod identify;
 mod runs;
 mod shapes;

@@ -46,6 +46,7 @@ use fric_core::continuum::file::ManipulatorFile;
 use self::case::Case;
 use super::error::ContinuumError;
 use super::gratings::Gratings;
+use super::measuring::corrected;
 use super::run::Run;
 
 pub(super) use case::thinned;
@@ -85,7 +86,8 @@ pub fn discover(file: &ManipulatorFile, run: &Run, log: &str) -> Result<TendonDi
     }
     run.check_capacity(file.params().capacity_n(Tendon::Agonist))?;
     let gratings = Gratings::from_file(file)?.ok_or(ContinuumError::NoGratings)?;
-    let case = Case::new(file, run, &gratings)?;
+    let run = corrected(run, file)?;
+    let case = Case::new(file, &run, &gratings)?;
     let outcome = naming::name(&case)?;
     Ok(assemble::told(&case, &outcome, log))
 }

@@ -8,25 +8,28 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::evaluation::Runs;
-use super::least_squares::{HeldOut, Normal, Solution};
+use super::least_squares::{Normal, Solution};
 use super::unknown::Unknown;
 use crate::continuum::discover::spread;
 use fric_core::continuum::file::OneOrEach;
 
-/// What the model is off by in tension as a share of the greatest, root mean square: 0.4 mN of 1.7 N in runs with both directions, measured against
-/// the elastica with each hole's own μ. At half of it the intervals of single holes hold in 8 of 10 runs, at twice they are wider than need be.
+/// What the model is off by in tension as a share of the greatest, root mean square: 0.4 mN of 1.7 N in runs with both directions, against the elastica with
+/// each hole's own μ (docs/manipulators.md).
 const MODEL_TENSION_RATIO: f64 = 0.00024;
 /// And of the disks as a share of the length, where the bend is 130°.
 const MODEL_MARKER_RATIO: f64 = 0.0002;
 /// Share of what the model is off by that goes along with one unknown: it is smooth, and so near to some combination of a handful of them.
 const ALONG_RATIO: f64 = 0.5;
 
+/// Of the two readings of the law of friction, as a standard error.
+const LAW_SHARE: f64 = 0.85;
+
 /// Covariance of the unknowns as distances, without the lines; `None` where the run says nothing.
-pub fn covariance(runs: &Runs, solution: &Solution, held_out: &HeldOut) -> Option<DMatrix<f64>> {
-    let normal = solution.normal(held_out, &[])?;
+pub fn covariance(runs: &Runs, solution: &Solution) -> Option<DMatrix<f64>> {
+    let normal = solution.normal(&[])?;
     let count = solution.state.unknowns.len();
     let mut covariance = statistical(&normal, count) + systematic(runs, solution, &normal).view((0, 0), (count, count));
-    if let Some(of_holes) = of_holes(runs, solution, held_out) {
+    if let Some(of_holes) = of_holes(runs, solution) {
         covariance += of_holes;
     }
     add_law(runs, solution, &mut covariance);
@@ -62,7 +65,7 @@ fn systematic(runs: &Runs, solution: &Solution, normal: &Normal) -> DMatrix<f64>
 
 /// Holes that differ while the model has one μ for all, or a list that is scaled: each moves the unknowns by its own slopes (delta method), by as much as the run
 /// cannot exclude.
-fn of_holes(runs: &Runs, solution: &Solution, held_out: &HeldOut) -> Option<DMatrix<f64>> {
+fn of_holes(runs: &Runs, solution: &Solution) -> Option<DMatrix<f64>> {
     let unknowns: Vec<Unknown> = solution.state.unknowns.iter().map(|(unknown, _)| *unknown).collect();
     let has_friction = match &runs.given.tendon.mu {
         OneOrEach::One(mu) => *mu > 0.0 || unknowns.contains(&Unknown::SharedMu),
@@ -74,7 +77,7 @@ fn of_holes(runs: &Runs, solution: &Solution, held_out: &HeldOut) -> Option<DMat
     let count = unknowns.len();
     let holes: Vec<Unknown> = (0..runs.given.disk_count).map(Unknown::HoleMu).collect();
     let slopes = solution.slopes_by(runs, &holes)?;
-    let with_holes = solution.normal(held_out, &slopes)?;
+    let with_holes = solution.normal(&slopes)?;
     let whole = DMatrix::from(&with_holes.matrices[0] + &with_holes.matrices[1]);
     let shared = unknowns.iter().position(|unknown| *unknown == Unknown::SharedMu);
     // The shared one is the mean of the others, so it leaves while each hole is looked at.
@@ -93,7 +96,7 @@ fn of_holes(runs: &Runs, solution: &Solution, held_out: &HeldOut) -> Option<DMat
         &step.rows(first, holes.len()).into_owned(),
         inverse.view((first, first), (holes.len(), holes.len())).into_owned(),
     );
-    let normal = solution.normal(held_out, &[])?;
+    let normal = solution.normal(&[])?;
     #[expect(clippy::cast_precision_loss, reason = "a small count")]
     let share = 1.0 / holes.len() as f64;
     let mut covariance = DMatrix::zeros(count, count);
@@ -110,14 +113,14 @@ fn of_holes(runs: &Runs, solution: &Solution, held_out: &HeldOut) -> Option<DMat
 }
 
 /// Whether a hole is pressed by the part of both tensions that stands on it, as the model has it, or by their whole sum, differs by `√(1 − μ²)`; a
-/// lab's value may be either (equal chances in between).
+/// lab's value may be either. The share is that with which the interval still holds both, beside a noise of about the same size.
 fn add_law(runs: &Runs, solution: &Solution, covariance: &mut DMatrix<f64>) {
     let tables = solution.state.tables(&runs.given);
     for (place, (unknown, _)) in solution.state.unknowns.iter().enumerate() {
         if let Unknown::SharedMu | Unknown::HoleMu(_) = unknown {
             let mu = unknown.value(&tables);
             let between = (1.0 - mu * mu).max(0.1).sqrt().recip() - 1.0;
-            covariance[(place, place)] += between * between / 3.0;
+            covariance[(place, place)] += (LAW_SHARE * between).powi(2);
         }
     }
 }

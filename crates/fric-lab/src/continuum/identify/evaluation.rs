@@ -10,7 +10,7 @@ use fric_core::continuum::file::{ManipulatorFile, ManipulatorTables, OneOrEach};
 
 use super::super::discover::thinned;
 use super::super::error::ContinuumError;
-use super::super::fbg::Tension;
+use super::super::fbg::{Calibration, LineError, Tension};
 use super::super::gratings::{GratingSample, Gratings};
 use super::super::measuring::corrected;
 use super::super::run::{Run, RunSample};
@@ -72,8 +72,6 @@ pub struct Row {
     pub tension_n: Vec<f64>,
     /// Markers less disks, x and y by turns, base frame, m.
     pub marker_m: Vec<f64>,
-    /// What one standard error of each line's constant and slope is, N.
-    pub line_n: Vec<[f64; 2]>,
 }
 
 /// Shapes with what they were computed from, so that they need not be computed again.
@@ -92,7 +90,8 @@ impl Runs {
     /// lines, [`ContinuumError::OverCapacity`].
     pub fn new(file: &ManipulatorFile, runs: &[Run]) -> Result<Self, ContinuumError> {
         let gratings = Gratings::from_file(file)?;
-        let lack = |what, remedy| ContinuumError::MissingGroup { what, consequence: "there is nothing to compare", remedy };
+        let lack =
+            |what, remedy| ContinuumError::MissingGroup { what, consequence: "there is nothing to compare", remedy };
         for run in runs {
             run.check_capacity(file.params().capacity_n(Tendon::Agonist))?;
             match (run.has_tension(), run.has_shifts(), run.has_markers()) {
@@ -128,20 +127,6 @@ impl Runs {
     /// Samples compared in each run.
     pub fn sample_counts(&self) -> Vec<usize> {
         self.runs.iter().map(|run| run.kept.len()).collect()
-    }
-
-    /// Times of the samples that are compared, run by run, s.
-    pub fn times_s(&self) -> Vec<Vec<f64>> {
-        let time = |run: &One, place: &usize| run.whole.samples().get(*place).map(|sample| sample.time_s);
-        self.runs.iter().map(|run| run.kept.iter().filter_map(|place| time(run, place)).collect()).collect()
-    }
-
-    pub fn has_gratings(&self) -> bool {
-        self.has_gratings
-    }
-
-    pub fn has_markers(&self) -> bool {
-        self.runs.iter().any(|run| run.whole.has_markers())
     }
 
     pub fn has_base_tension(&self) -> bool {
@@ -190,17 +175,17 @@ impl One {
             None
         };
         let observed: Vec<Vec<f64>>;
-        let mut line_n: Vec<Vec<[f64; 2]>> = vec![Vec::new(); samples.len()];
         if let Some(gratings) = gratings {
             let tensions = gratings.unbridged(&run).ok()?;
             let rows = self.kept.iter().filter_map(|place| tensions.get(*place));
             let mut all = Vec::with_capacity(samples.len());
-            for (row, line_n) in rows.zip(&mut line_n) {
-                let each = row.iter().zip(gratings.lines().iter().zip(gratings.line_errors()));
-                *line_n = each.map(|(tension, (line, error))| error.parts_n(line.shift_nm(tension.value_n))).collect();
-                let off = |(constant, slope): (&[f64; 2], &[f64; 2])| constant[0] * slope[0] + constant[1] * slope[1];
-                let tensions = row.iter().zip(line_n.iter().zip(lines).map(off));
-                all.push(tensions.map(|(tension, off_n)| tension.value_n - off_n).collect::<Vec<f64>>());
+            for row in rows {
+                let each = row.iter().zip(gratings.lines().iter().zip(gratings.line_errors())).zip(lines);
+                let right = |((tension, (line, error)), off): ((&Tension, (&Calibration, &LineError)), &[f64; 2])| {
+                    let [constant_n, slope_n] = error.parts_n(line.shift_nm(tension.value_n));
+                    tension.value_n - constant_n * off[0] - slope_n * off[1]
+                };
+                all.push(each.map(right).collect::<Vec<f64>>());
             }
             observed = all;
         } else {
@@ -219,7 +204,8 @@ impl One {
             let tension_n = match (observed.get(place), own) {
                 (Some(observed), Some(own)) => {
                     let has_shape = own.status.has_shape();
-                    let left = |(shown_n, tension_n): (&f64, &f64)| if has_shape { shown_n - tension_n } else { f64::NAN };
+                    let left =
+                        |(shown_n, tension_n): (&f64, &f64)| if has_shape { shown_n - tension_n } else { f64::NAN };
                     observed.iter().zip(&own.tension_n).map(left).collect()
                 }
                 _ => Vec::new(),
@@ -232,7 +218,7 @@ impl One {
                 };
                 places.flat_map(left).collect()
             });
-            Row { tension_n, marker_m, line_n: line_n.get(place).cloned().unwrap_or_default() }
+            Row { tension_n, marker_m }
         };
         let rows = samples.iter().enumerate().map(row).collect();
         Some(RunEvaluation { history, measured, rows })

@@ -6,7 +6,7 @@
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use super::evaluation::{Evaluation, Runs, State};
+use super::evaluation::{Evaluation, Row, Runs, State};
 use super::unknown::Unknown;
 use crate::discover::noise::white_noise_throughout;
 use crate::fit::engine::{Scores, inverse_of_normal};
@@ -27,9 +27,6 @@ pub struct Units {
     pub marker_m: f64,
 }
 
-/// Which samples are learned from, run by run; all if empty.
-pub type HeldOut = [Vec<bool>];
-
 /// An end of the search.
 pub struct Solution {
     pub state: State,
@@ -37,8 +34,6 @@ pub struct Solution {
     pub units: Units,
     /// Slopes of the residuals at the end, in the order of the unknowns, then of the lines' constants and slopes.
     slopes: Vec<Slopes>,
-    /// χ² over what is learned from, the lines included.
-    pub squares: f64,
 }
 
 /// Derivatives of all residuals by one number: run, sample, tensions before markers.
@@ -55,22 +50,21 @@ pub struct Normal {
 }
 
 /// Searches from a start.
-pub fn solve(runs: &Runs, start: State, held_out: &HeldOut) -> Option<Solution> {
+pub fn solve(runs: &Runs, start: State) -> Option<Solution> {
     let mut evaluation = runs.evaluate(&start, None)?;
     let mut units = white(&evaluation);
     let mut state = start;
     let of_lines = line_slopes(runs, &state, &evaluation)?;
     let mut slopes = Vec::new();
-    let mut cost = 0.0;
     for round in 0..ROUNDS {
         if round > 0 {
-            units = left(&evaluation, held_out, units);
+            units = left(&evaluation, units);
         }
-        cost = squares(&evaluation, &state, units, held_out);
+        let mut cost = squares(&evaluation, &state, units);
         for _ in 0..MOST_STEPS {
             slopes = unknown_slopes(runs, &state, &evaluation)?;
             slopes.extend(of_lines.iter().cloned());
-            let normal = normal(&evaluation, &state, &slopes, units, held_out)?;
+            let normal = normal(&evaluation, &state, &slopes, units)?;
             let step = -(&normal.inverse * &normal.gradient);
             if -step.dot(&normal.gradient) < SETTLED {
                 break;
@@ -78,10 +72,11 @@ pub fn solve(runs: &Runs, start: State, held_out: &HeldOut) -> Option<Solution> 
             let trial = |share: f64| {
                 let moved = moved(&state, &step, share);
                 let trial = runs.evaluate(&moved, Some(&evaluation))?;
-                let trial_cost = squares(&trial, &moved, units, held_out);
+                let trial_cost = squares(&trial, &moved, units);
                 (trial_cost < cost).then_some((moved, trial, trial_cost))
             };
-            let Some((next, trial, next_cost)) = (0..MOST_HALVINGS).find_map(|halving| trial(0.5_f64.powi(halving))) else {
+            let Some((next, trial, next_cost)) = (0..MOST_HALVINGS).find_map(|halving| trial(0.5_f64.powi(halving)))
+            else {
                 break;
             };
             let is_settled = cost - next_cost < SETTLED;
@@ -91,16 +86,16 @@ pub fn solve(runs: &Runs, start: State, held_out: &HeldOut) -> Option<Solution> 
             }
         }
     }
-    Some(Solution { state, evaluation, units, slopes, squares: cost })
+    Some(Solution { state, evaluation, units, slopes })
 }
 
 impl Solution {
     /// The normal equations at the end; `more` are slopes of further numbers, put before the lines.
-    pub fn normal(&self, held_out: &HeldOut, more: &[Slopes]) -> Option<Normal> {
+    pub fn normal(&self, more: &[Slopes]) -> Option<Normal> {
         let count = self.state.unknowns.len();
         let (own, lines) = self.slopes.split_at_checked(count)?;
         let slopes: Vec<Slopes> = own.iter().chain(more).chain(lines).cloned().collect();
-        normal(&self.evaluation, &self.state, &slopes, self.units, held_out)
+        normal(&self.evaluation, &self.state, &slopes, self.units)
     }
 
     /// Slopes by other unknowns than its own.
@@ -108,7 +103,8 @@ impl Solution {
         let mut state = self.state.clone();
         let own = state.unknowns.len();
         state.unknowns.extend(unknowns.iter().map(|unknown| (*unknown, 0.0)));
-        let all = (own..state.unknowns.len()).into_par_iter().map(|place| slope_by(runs, &state, &self.evaluation, place));
+        let all =
+            (own..state.unknowns.len()).into_par_iter().map(|place| slope_by(runs, &state, &self.evaluation, place));
         all.collect()
     }
 }
@@ -150,7 +146,7 @@ fn difference(moved: &Evaluation, now: &Evaluation, change: f64) -> Slopes {
     runs.map(|(moved, now)| {
         let rows = moved.rows.iter().zip(&now.rows);
         rows.map(|(moved, now)| {
-            let values = |row: &super::evaluation::Row| row.tension_n.iter().chain(&row.marker_m).copied().collect::<Vec<f64>>();
+            let values = |row: &Row| row.tension_n.iter().chain(&row.marker_m).copied().collect::<Vec<f64>>();
             values(moved).iter().zip(values(now)).map(|(moved, now)| (moved - now) / change).collect()
         })
         .collect()
@@ -160,7 +156,7 @@ fn difference(moved: &Evaluation, now: &Evaluation, change: f64) -> Slopes {
 
 /// Units of the signals from their white noise.
 fn white(evaluation: &Evaluation) -> Units {
-    let noise = |of: fn(&super::evaluation::Row) -> &Vec<f64>| {
+    let noise = |of: fn(&Row) -> &Vec<f64>| {
         let mut series = Vec::new();
         for run in &evaluation.runs {
             let width = run.rows.iter().map(|row| of(row).len()).max().unwrap_or(0);
@@ -178,9 +174,9 @@ fn white(evaluation: &Evaluation) -> Units {
 }
 
 /// Units from what is left.
-fn left(evaluation: &Evaluation, held_out: &HeldOut, units: Units) -> Units {
+fn left(evaluation: &Evaluation, units: Units) -> Units {
     let (mut squares, mut counts) = ([0.0; 2], [0.0; 2]);
-    each_row(evaluation, held_out, |row, _, _| {
+    each_row(evaluation, |row, _, _| {
         for (signal, values) in [&row.tension_n, &row.marker_m].into_iter().enumerate() {
             for value in values.iter().filter(|value| value.is_finite()) {
                 squares[signal] += value * value;
@@ -195,21 +191,19 @@ fn left(evaluation: &Evaluation, held_out: &HeldOut, units: Units) -> Units {
     Units { tension_n: rms(0, units.tension_n), marker_m: rms(1, units.marker_m) }
 }
 
-/// Calls with every row that is learned from, its run and its sample.
-fn each_row(evaluation: &Evaluation, held_out: &HeldOut, mut each: impl FnMut(&super::evaluation::Row, usize, usize)) {
+/// Calls with every row, its run and its sample.
+fn each_row(evaluation: &Evaluation, mut each: impl FnMut(&Row, usize, usize)) {
     for (run, of_run) in evaluation.runs.iter().enumerate() {
         for (sample, row) in of_run.rows.iter().enumerate() {
-            if held_out.get(run).and_then(|all| all.get(sample)) != Some(&true) {
-                each(row, run, sample);
-            }
+            each(row, run, sample);
         }
     }
 }
 
 /// χ² of a state.
-pub fn squares(evaluation: &Evaluation, state: &State, units: Units, held_out: &HeldOut) -> f64 {
+fn squares(evaluation: &Evaluation, state: &State, units: Units) -> f64 {
     let mut sum: f64 = state.lines.as_flattened().iter().map(|one| one * one).sum();
-    each_row(evaluation, held_out, |row, _, _| {
+    each_row(evaluation, |row, _, _| {
         let whole = row.tension_n.iter().map(|one| one / units.tension_n);
         let whole = whole.chain(row.marker_m.iter().map(|one| one / units.marker_m));
         sum += whole.filter(|one| one.is_finite()).map(|one| one * one).sum::<f64>();
@@ -217,20 +211,14 @@ pub fn squares(evaluation: &Evaluation, state: &State, units: Units, held_out: &
     sum
 }
 
-fn normal(
-    evaluation: &Evaluation,
-    state: &State,
-    slopes: &[Slopes],
-    units: Units,
-    held_out: &HeldOut,
-) -> Option<Normal> {
+fn normal(evaluation: &Evaluation, state: &State, slopes: &[Slopes], units: Units) -> Option<Normal> {
     let count = slopes.len();
     let first_line = count - 2 * state.lines.len();
     let mut matrices = [DMatrix::zeros(count, count), DMatrix::zeros(count, count)];
     let mut counts = [0.0; 2];
     let mut gradient = DVector::zeros(count);
     let mut scores = Scores::new(count);
-    each_row(evaluation, held_out, |row, run, sample| {
+    each_row(evaluation, |row, run, sample| {
         let mut score = vec![0.0; count];
         let tensions = row.tension_n.len();
         for (place, value) in row.tension_n.iter().chain(&row.marker_m).enumerate() {

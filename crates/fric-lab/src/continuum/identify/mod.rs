@@ -21,6 +21,7 @@ use self::least_squares::{Solution, solve};
 use super::error::ContinuumError;
 use super::gratings::Gratings;
 use super::run::Run;
+use crate::fit::HALF_INTERVAL;
 use crate::fit::engine::{OpenDirection, inverse_of_normal, open_directions};
 
 pub use quantity::Quantity;
@@ -74,33 +75,38 @@ pub fn identify(
         }
     }
     let before = runs.evaluate(&runs.start(&[]), None).ok_or(ContinuumError::NotIdentified)?;
+    let mut start = runs.start(&unknowns);
     let (solution, covariance) = loop {
-        let solution = solve(&runs, runs.start(&unknowns), &[]).ok_or(ContinuumError::NotIdentified)?;
+        let solution = solve(&runs, start).ok_or(ContinuumError::NotIdentified)?;
         let tables = solution.state.tables(&runs.given);
         if Unknown::TipMass.is_below_range(&runs.given, &solution.state.unknowns) {
             // A mass below zero is noise, or something else.
             runs.given.tip.mass_kg = 0.0;
             unknowns.retain(|unknown| *unknown != Unknown::TipMass);
             undetermined.push(Undetermined::at_bound(Unknown::TipMass));
+            start = runs.start(&unknowns);
             continue;
         }
         if unknowns.is_empty() {
             break (solution, DMatrix::zeros(0, 0));
         }
-        let covariance = errors::covariance(&runs, &solution, &[]).ok_or(ContinuumError::NotIdentified)?;
+        let covariance = errors::covariance(&runs, &solution).ok_or(ContinuumError::NotIdentified)?;
         let widest: Vec<f64> =
             unknowns.iter().map(|unknown| unknown.widest(&tables, runs.greatest_tension_n)).collect();
-        match open(&covariance, &widest).first() {
-            None => break (solution, covariance),
-            Some(direction) => {
-                let parts: Vec<Unknown> = direction.parts().iter().map(|place| unknowns[*place]).collect();
-                let Some(held) = parts.iter().copied().min_by_key(|unknown| unknown.rank()) else {
-                    break (solution, covariance);
-                };
-                undetermined.push(Undetermined::of(held, &parts));
-                unknowns.retain(|unknown| *unknown != held);
-            }
-        }
+        let Some(direction) = open(&covariance, &widest).into_iter().next() else { break (solution, covariance) };
+        // Where the file's value is contradicted another one has to stay.
+        let is_contradicted = |place: &usize| {
+            let distance = solution.state.unknowns.get(*place).map_or(0.0, |(_, distance)| *distance);
+            distance.abs() > HALF_INTERVAL * covariance[(*place, *place)].max(0.0).sqrt()
+        };
+        let parts = direction.parts();
+        let least = parts.iter().min_by_key(|place| (is_contradicted(place), unknowns[**place].rank()));
+        let Some(held) = least.map(|place| unknowns[*place]) else { break (solution, covariance) };
+        let parts: Vec<Unknown> = parts.iter().map(|place| unknowns[*place]).collect();
+        undetermined.push(Undetermined::of(held, &parts));
+        unknowns.retain(|unknown| *unknown != held);
+        start = solution.state;
+        start.unknowns.retain(|(unknown, _)| *unknown != held);
     };
     let mut wanted = solution.state.tables(&runs.given);
     tidy(&given, &mut wanted);
@@ -108,8 +114,14 @@ pub fn identify(
     if quantities.contains(&Quantity::Calibration) {
         edit.lines = lines(file, &solution)?;
     }
-    let result =
-        TendonFitResult::new(&given, names, &counts, (&before, &solution), (&unknowns, &wanted, &covariance), undetermined);
+    let result = TendonFitResult::new(
+        &given,
+        names,
+        &counts,
+        (&before, &solution),
+        (&unknowns, &wanted, &covariance),
+        undetermined,
+    );
     Ok(Identification { result, edit })
 }
 
@@ -123,11 +135,16 @@ fn open(covariance: &DMatrix<f64>, widest: &[f64]) -> Vec<OpenDirection> {
 }
 
 /// A frame or a sensor that is as good as none is not written.
-fn tidy(given: &fric_core::continuum::file::ManipulatorTables, wanted: &mut fric_core::continuum::file::ManipulatorTables) {
+fn tidy(
+    given: &fric_core::continuum::file::ManipulatorTables,
+    wanted: &mut fric_core::continuum::file::ManipulatorTables,
+) {
     if given.markers.is_none() && wanted.markers == Some(fric_core::continuum::measuring::MarkersTable::default()) {
         wanted.markers = None;
     }
-    if given.base_sensor.is_none() && wanted.base_sensor == Some(fric_core::continuum::measuring::BaseSensorTable::default()) {
+    if given.base_sensor.is_none()
+        && wanted.base_sensor == Some(fric_core::continuum::measuring::BaseSensorTable::default())
+    {
         wanted.base_sensor = None;
     }
 }

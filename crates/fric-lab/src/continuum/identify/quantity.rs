@@ -113,7 +113,9 @@ impl Quantity {
             Self::Mu,
             Self::Sigma,
         ];
-        usual.into_iter().filter(|quantity| !quantity.unknowns(tables).is_empty()).collect()
+        // A force on the tip that is no weight is not usual.
+        let is_usual = |quantity: &Self| *quantity != Self::TipLoad || tables.gravity_m_per_s2 != [0.0; 2];
+        usual.into_iter().filter(|quantity| is_usual(quantity) && !quantity.unknowns(tables).is_empty()).collect()
     }
 
     /// The numbers behind it; none where the manipulator leaves no place for it.

@@ -67,7 +67,8 @@ impl Disagreement {
             count += 1.0;
         }
         let (mut sum_mm, mut max_mm, mut places) = (0.0, 0.0_f64, 0.0);
-        let disks = |row: &Row| row.marker_m.chunks(2).map(|place| 1e3 * place[0].hypot(place[1])).collect::<Vec<f64>>();
+        let disks =
+            |row: &Row| row.marker_m.chunks(2).map(|place| 1e3 * place[0].hypot(place[1])).collect::<Vec<f64>>();
         for distance_mm in rows().flat_map(disks).filter(|distance| distance.is_finite()) {
             sum_mm += distance_mm;
             max_mm = max_mm.max(distance_mm);
@@ -83,7 +84,8 @@ impl Disagreement {
 
 impl Undetermined {
     pub(super) fn of(held: Unknown, parts: &[Unknown]) -> Self {
-        let others: Vec<String> = parts.iter().filter(|unknown| **unknown != held).map(|unknown| unknown.key()).collect();
+        let others: Vec<String> =
+            parts.iter().filter(|unknown| **unknown != held).map(|unknown| unknown.key()).collect();
         let sentence = if others.is_empty() {
             format!("the runs do not tell `{}`; it stays as the file states it", held.key())
         } else {
@@ -103,11 +105,16 @@ impl Undetermined {
 
     pub(super) fn impossible(quantity: Quantity) -> Self {
         let reason = match quantity {
-            Quantity::GravityDirection => "there is no weight in the plane of bending: state `gravity_m_per_s2` and the masses",
+            Quantity::GravityDirection => {
+                "there is no weight in the plane of bending: state `gravity_m_per_s2` and the masses"
+            }
             Quantity::Sigma => "the file has no single `sigma_n_per_m`",
             _ => "the file leaves no place for it",
         };
-        Self { parameters: vec![quantity.name().to_owned()], sentence: format!("`{}` is not identified: {reason}", quantity.name()) }
+        Self {
+            parameters: vec![quantity.name().to_owned()],
+            sentence: format!("`{}` is not identified: {reason}", quantity.name()),
+        }
     }
 }
 

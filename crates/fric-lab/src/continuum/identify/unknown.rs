@@ -46,8 +46,6 @@ pub enum Unknown {
     BaseOffset,
     /// Its lag.
     BaseLag,
-    /// A step of all shifts alike, at the time that the file states.
-    CommonStep,
 }
 
 impl Unknown {
@@ -70,7 +68,6 @@ impl Unknown {
             Self::BaseGain => "base_gain".to_owned(),
             Self::BaseOffset => "base_offset_n".to_owned(),
             Self::BaseLag => "base_lag_s".to_owned(),
-            Self::CommonStep => "common_step_nm".to_owned(),
         }
     }
 
@@ -84,7 +81,6 @@ impl Unknown {
             Self::TipForce(_) => !has_gravity,
             Self::GravityAngle => has_gravity && has_mass,
             Self::Sigma => matches!(tables.tendon.sigma_n_per_m, Some(OneOrEach::One(_))),
-            Self::CommonStep => tables.gratings.is_some(),
             _ => true,
         }
     }
@@ -170,11 +166,6 @@ impl Unknown {
                 let sensor = tables.base_sensor.unwrap_or_default();
                 tables.base_sensor = Some(BaseSensorTable { lag_s: sensor.lag_s + distance, ..sensor });
             }
-            Self::CommonStep => {
-                if let Some(gratings) = &mut tables.gratings {
-                    gratings.common_step_nm = Some(gratings.common_step_nm.unwrap_or(0.0) + distance);
-                }
-            }
         }
     }
 
@@ -215,7 +206,6 @@ impl Unknown {
             Self::BaseGain => sensor.gain,
             Self::BaseOffset => sensor.offset_n,
             Self::BaseLag => sensor.lag_s,
-            Self::CommonStep => tables.gratings.as_ref().and_then(|all| all.common_step_nm).unwrap_or(0.0),
         }
     }
 
@@ -255,7 +245,6 @@ impl Unknown {
             Self::Sigma => 0.7,
             Self::BaseOffset => 0.02 * greatest_tension_n,
             Self::BaseLag => 0.2,
-            Self::CommonStep => 0.01,
         }
     }
 
@@ -275,7 +264,7 @@ impl Unknown {
         found.is_some_and(|(_, distance)| self == Self::TipMass && given.tip.mass_kg + distance < 0.0)
     }
 
-    /// Which of several that a run cannot tell apart stays as the file states it: the least. Lengths are measured with a calliper; stiffness and
+    /// Which of several that a run cannot tell apart, and whose stated values it does not contradict, stays as the file states it: the least. Lengths are measured with a calliper; stiffness and
     /// friction are what a fit is done for.
     #[must_use]
     pub fn rank(self) -> u8 {
@@ -284,7 +273,6 @@ impl Unknown {
             Self::BaseLag => 1,
             Self::BaseOffset => 2,
             Self::BaseGain => 3,
-            Self::CommonStep => 4,
             Self::HoleRadius => 5,
             Self::TipForce(_) => 6,
             Self::GravityAngle => 7,

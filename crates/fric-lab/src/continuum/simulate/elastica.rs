@@ -301,7 +301,9 @@ fn joint(params: &ManipulatorParams, links: usize, link_m: f64, place: usize) ->
             let both_nm = if is_one { before_nm } else { 2.0 / (1.0 / before_nm + 1.0 / behind_nm) };
             (both_nm, before_rad + behind_rad)
         }
-        [Some((stiffness_nm, rest_rad)), None] | [None, Some((stiffness_nm, rest_rad))] => (2.0 * stiffness_nm, rest_rad),
+        [Some((stiffness_nm, rest_rad)), None] | [None, Some((stiffness_nm, rest_rad))] => {
+            (2.0 * stiffness_nm, rest_rad)
+        }
         [None, None] => (0.0, 0.0),
     }
 }
@@ -394,11 +396,8 @@ mod tests {
         assert!((bend_rad - expected_rad).abs() < 1e-9);
         assert!((x_m - expected_rad.sin() / 2.0).abs() < 1e-6 && (y_m - (1.0 - expected_rad.cos()) / 2.0).abs() < 1e-6);
         let ratio = [1.0, 1.0, 1.0, 1.0, 0.5, 0.5, 0.5, 0.5];
-        let ([_, y_m], _) = settled(&ManipulatorOptions {
-            segment_stiffness_ratio: &ratio,
-            tip_force_n: [0.0, 1e-4],
-            ..published
-        });
+        let ([_, y_m], _) =
+            settled(&ManipulatorOptions { segment_stiffness_ratio: &ratio, tip_force_n: [0.0, 1e-4], ..published });
         let (whole, half) = (0.296_f64.powi(3), 0.148_f64.powi(3));
         let expected_m = 1e-4 / 3.0 * ((whole - half) / 2.7e-3 + half / 1.35e-3);
         assert!((y_m / expected_m - 1.0).abs() < 1e-4, "{y_m} {expected_m}");
