@@ -18,6 +18,7 @@ from ._results import (
     ShapeResult,
     SimulatedTendon,
     TendonDiscovery,
+    TendonFit,
 )
 
 __all__ = [
@@ -39,6 +40,7 @@ __all__ = [
     "__version__",
     "continuum_calibrate",
     "continuum_discover",
+    "continuum_fit",
     "continuum_friction",
     "continuum_hole",
     "continuum_read_loads",
@@ -390,6 +392,12 @@ class TendonRun:
 
 def continuum_calibrate(manipulator: Manipulator, load_n: Any, shift_nm: Any) -> CalibrationResult: ...
 def continuum_discover(manipulator: Manipulator, run: TendonRun) -> TendonDiscovery: ...
+def continuum_fit(
+    manipulator: Manipulator,
+    runs: TendonRun | Sequence[TendonRun],
+    *,
+    parameters: Sequence[str] | None = None,
+) -> TendonFit: ...
 def continuum_friction(manipulator: Manipulator, run: TendonRun) -> FrictionResult: ...
 def continuum_hole(tension_1_n: Any, tension_2_n: Any, angle_1_rad: Any, angle_2_rad: Any) -> HoleResult: ...
 def continuum_read_loads(

@@ -14,6 +14,7 @@ Friction is positive where the base side of a hole is tighter. Holes count from 
 from ._fric import Manipulator, TendonRun
 from ._fric import continuum_calibrate as calibrate
 from ._fric import continuum_discover as discover
+from ._fric import continuum_fit as fit
 from ._fric import continuum_friction as friction
 from ._fric import continuum_hole as hole
 from ._fric import continuum_read_loads as read_loads
@@ -27,6 +28,7 @@ from ._results import (
     ShapeResult,
     SimulatedTendon,
     TendonDiscovery,
+    TendonFit,
 )
 
 __all__ = [
@@ -37,9 +39,11 @@ __all__ = [
     "ShapeResult",
     "SimulatedTendon",
     "TendonDiscovery",
+    "TendonFit",
     "TendonRun",
     "calibrate",
     "discover",
+    "fit",
     "friction",
     "hole",
     "read_loads",

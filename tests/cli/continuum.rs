@@ -482,6 +482,27 @@ fn discovery_names_the_memory_of_the_holes() {
 }
 
 #[test]
+fn fit_finds_a_stiffness_that_was_stated_wrong() {
+    let place = place();
+    place.write("soft.toml", text("cal.toml").replace("200e9", "180e9"));
+    let fit = ["continuum", "fit", "mixed.csv", "--model", "soft.toml", "-o", "fitted.toml", "--json", "f.json"];
+    let run = place.run(&[&fit[..], &["--parameters", "backbone_stiffness,tendon_offset,mu"]].concat()).succeeds();
+    assert!(run.stdout.contains("undetermined: the runs do not tell `hole_radius_m` apart"), "{run:#?}");
+    let result = place.json("f.json");
+    assert_eq!(result["format"], "fric-continuum-fit/1");
+    // The stiffness of the simulated one, E·b·h³/12.
+    let stiffness = result["parameters"]["bending_stiffness_n_m2"].as_f64().unwrap();
+    assert!((stiffness / 2.7e-3 - 1.0).abs() < 0.01, "{stiffness}");
+    let fitted = String::from_utf8(place.read("fitted.toml")).unwrap();
+    let modulus = fitted.lines().find_map(|line| line.strip_prefix("youngs_modulus_pa = ")).unwrap();
+    assert!((modulus.trim().parse::<f64>().unwrap() / 200e9 - 1.0).abs() < 0.01);
+    let misspelt = [&fit[..5], &["-o", "x.toml", "--parameters", "stiffness"]].concat();
+    place.run_in_vain(&misspelt).fails(2, &["--parameters", "backbone_stiffness"]);
+    let cables = ["fit", "mixed.csv", "--model", "cal.toml", "-o", "x.toml"];
+    place.run_in_vain(&cables).fails(2, &["cal.toml is a manipulator file"]).advises(&["continuum fit"]);
+}
+
+#[test]
 fn pages_escape_what_files_say() {
     let place = place();
     place.write("arm<b>.toml", text("cal.toml").replace("\"tendon-prototype\"", "\"<script>alert(1)</script>\""));

@@ -296,3 +296,26 @@ fn wrong_parameters_are_named() {
     let params = ManipulatorParams::new(&good).unwrap();
     assert!(StaticModel::<4>::new(&params).is_err());
 }
+
+/// A backbone that is curved without load is an arc; one whose segments differ bends in each as a uniform one of that stiffness.
+#[test]
+fn segments_have_stiffness_and_rest_bend_of_their_own() {
+    let curved = ManipulatorOptions { precurvature_per_m: &[2.0], ..ManipulatorOptions::published() };
+    let mut model = StaticModel::<8>::new(&ManipulatorParams::new(&curved).unwrap()).unwrap();
+    assert!(model.solve([0.0, 0.0], Friction::None).is_ok());
+    let [x_m, y_m] = model.shape().disk_position_m()[7];
+    let bend_rad = 2.0 * 0.296_f64;
+    assert!((x_m - bend_rad.sin() / 2.0).abs() < 1e-12 && (y_m - (1.0 - bend_rad.cos()) / 2.0).abs() < 1e-12);
+
+    // Without friction and weight each segment bears the tension alone.
+    let bends = |ratio: &[f64]| {
+        let options = ManipulatorOptions { segment_stiffness_ratio: ratio, ..ManipulatorOptions::published() };
+        let mut model = StaticModel::<8>::new(&ManipulatorParams::new(&options).unwrap()).unwrap();
+        assert!(model.solve([1.0, 0.0], Friction::None).is_ok());
+        model.shape().segment_bend_rad().to_vec()
+    };
+    let (stiff, soft) = (bends(&[1.0]), bends(&[0.5]));
+    let mixed = bends(&[1.0, 1.0, 0.5, 1.0, 1.0, 1.0, 1.0, 1.0]);
+    assert!((mixed[2] - soft[2]).abs() < 1e-12 && (mixed[3] - stiff[3]).abs() < 1e-12);
+    assert!(soft[2] > 1.8 * stiff[2]);
+}

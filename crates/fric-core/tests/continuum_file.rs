@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use fric_core::continuum::edit::{GratingLine, ManipulatorEdit, rewrite};
-use fric_core::continuum::file::ManipulatorFile;
+use fric_core::continuum::file::{ManipulatorFile, OneOrEach};
+use fric_core::continuum::measuring::{BaseSensorTable, MarkersTable};
 use fric_core::continuum::{ManipulatorOptions, ManipulatorParams, Tendon};
 
 const PROTOTYPE: &str = include_str!("../../../examples/tendon-prototype.toml");
@@ -125,4 +126,47 @@ fn a_calibration_goes_into_the_file_and_nothing_else_changes() {
     assert!(again.contains("photoelastic_ratio = 0.22"));
     assert!(with_calibration(PROTOTYPE, "arm.toml", &lines[..3]).unwrap_err().to_string().contains("8 are needed"));
     assert!(with_calibration("gratings = 3", "arm.toml", &lines).is_err());
+}
+
+#[test]
+fn backbone_markers_and_base_sensor_may_be_stated() {
+    let text = PROTOTYPE.replace(
+        "mass_kg_per_m = 0.01413",
+        "mass_kg_per_m = 0.01413\nsegment_stiffness_ratio = [1, 1, 0.5, 1, 1, 1, 1, 1]\nprecurvature_per_m = 0.3",
+    ) + "\n[markers]\noffset_m = [0.005, 0.0]\nangle_rad = 0.05\n\n[base_sensor]\ngain = 1.02\nlag_s = 0.1\n";
+    let file = ManipulatorFile::parse(&text, "arm.toml").unwrap();
+    let stiffness = file.params().segment_stiffness_n_m2();
+    assert_eq!((stiffness[2], stiffness.len()), (0.5 * stiffness[0], 8));
+    assert!((file.params().rest_bend_rad()[7] - 0.3 * 0.037).abs() < 1e-15);
+    assert_eq!(file.tables().base_sensor.unwrap().offset_n, 0.0);
+    assert_eq!(ManipulatorFile::parse(&file.to_toml().unwrap(), "again").unwrap(), file);
+    let said =
+        |from: &str, to: &str| ManipulatorFile::parse(&text.replace(from, to), "arm.toml").unwrap_err().to_string();
+    assert_eq!(
+        said("1, 0.5, 1", "1, 0, 1"),
+        "arm.toml, line 18: `segment_stiffness_ratio` at place 3 is 0; allowed is 0.01 to 100"
+    );
+    assert!(said("precurvature_per_m = 0.3", "precurvature_per_m = 30").contains("allowed is -27.0270"));
+    assert_eq!(said("gain = 1.02", "gain = 0"), "arm.toml, line 32: `gain` is 0; allowed is 0.1 to 10");
+    assert!(said("angle_rad = 0.05", "angle_rad = inf").starts_with("arm.toml, line 29: `angle_rad` is inf"));
+    assert!(said("lag_s", "lags").contains("did you mean `lag_s`?"));
+}
+
+#[test]
+fn an_edit_makes_one_file_the_other() {
+    let given = ManipulatorFile::parse(PROTOTYPE, "arm.toml").unwrap();
+    let mut tables = given.tables().clone();
+    tables.hole_radius_m = 0.0157;
+    tables.gravity_m_per_s2 = [1.0, -9.0];
+    tables.backbone.youngs_modulus_pa = 1.9e11;
+    tables.backbone.precurvature_per_m = Some(OneOrEach::One(0.2));
+    tables.backbone.segment_stiffness_ratio = Some(OneOrEach::Each(vec![1.0, 0.5, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]));
+    tables.tip.mass_kg = 0.001;
+    tables.markers = Some(MarkersTable { offset_m: [0.001, 0.002], angle_rad: 0.1 });
+    tables.base_sensor = Some(BaseSensorTable { gain: 1.1, offset_n: 0.1, lag_s: 0.0 });
+    let edit = ManipulatorEdit::between(given.tables(), &tables);
+    let text = rewrite(PROTOTYPE, "arm.toml", &edit).unwrap();
+    assert_eq!(*ManipulatorFile::parse(&text, "new").unwrap().tables(), tables);
+    assert!(text.contains("# holes on a circle of 30 mm"));
+    assert_eq!(ManipulatorEdit::between(given.tables(), given.tables()), ManipulatorEdit::default());
 }

@@ -36,8 +36,8 @@ mod _fric {
     use crate::compensator::{Compensator, Snapshot};
     #[pymodule_export]
     use crate::continuum::{
-        Manipulator, TendonRun, continuum_calibrate, continuum_discover, continuum_friction, continuum_hole,
-        continuum_read_loads, continuum_read_run, continuum_shape, continuum_simulate,
+        Manipulator, TendonRun, continuum_calibrate, continuum_discover, continuum_fit, continuum_friction,
+        continuum_hole, continuum_read_loads, continuum_read_run, continuum_shape, continuum_simulate,
     };
     #[pymodule_export]
     use crate::discover::discover;

@@ -1,6 +1,14 @@
 """Results: what the compiled part computes, as values that are compared, copied, pickled and shown."""
 
-from .continuum import CalibrationResult, FrictionResult, HoleResult, ShapeResult, SimulatedTendon, TendonDiscovery
+from .continuum import (
+    CalibrationResult,
+    FrictionResult,
+    HoleResult,
+    ShapeResult,
+    SimulatedTendon,
+    TendonDiscovery,
+    TendonFit,
+)
 from .discover import CableDiscovery, DiscoverResult
 from .excite import ExciteResult
 from .fit import CableFit, FitResult
@@ -25,6 +33,7 @@ __all__ = [
     "ShapeResult",
     "SimulatedTendon",
     "TendonDiscovery",
+    "TendonFit",
     "Width",
     "WrenchError",
 ]

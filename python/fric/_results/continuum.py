@@ -183,3 +183,30 @@ class TendonDiscovery(Result):
         keys = ("verdict", "effects", "markers", "tried", "kept", "unexplained")
         found = {key: tendon.get(key) for key in keys}
         return cls(shown, manipulator, time_s, residual_before_n, residual_after_n, **found)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class TendonFit(Result):
+    """Outcome of `fit`. Dicts go by keys such as "bending_stiffness_n_m2", which carry their unit."""
+
+    manipulator: Manipulator
+    """The manipulator with the values found; all else, comments included, is as in the one given."""
+    parameters: dict[str, float]
+    """Values found."""
+    standard_errors: dict[str, float]
+    """Their standard errors."""
+    given: dict[str, float]
+    """Values of the manipulator given."""
+    undetermined: list[dict[str, Any]]
+    """What the runs cannot tell, as dicts: parameters (the first stays as given), sentence."""
+    before: dict[str, float]
+    """How far the manipulator given is off, as a dict: tension_rms_n, marker_mean_mm, marker_max_mm; a key is absent where there is nothing to
+    compare."""
+    after: dict[str, float]
+    """The same of the fitted one."""
+
+    @classmethod
+    def _of(cls, shown: Shown, manipulator: Manipulator) -> TendonFit:
+        found = json.loads(shown.json)
+        keys = ("parameters", "standard_errors", "given", "undetermined", "before", "after")
+        return cls(shown, manipulator, **{key: found[key] for key in keys})

@@ -15,6 +15,14 @@ pub enum ContinuumCommand {
                       Example:\n  fric-cli continuum calibrate loads.csv --model examples/tendon-prototype.toml -o calibrated.toml"
     )]
     Calibrate(CalibrateArguments),
+    /// Identify stiffness, geometry, loads and friction from runs with markers or gratings, and write them into the manipulator file
+    #[command(
+        after_help = "Any two of tension at the base, gratings and markers will do; runs are CSV or MCAP, and several belong to the same \
+                      manipulator. What they cannot tell stays as the file states it and is reported.\n\n\
+                      Examples:\n  fric-cli continuum fit pull.csv --model calibrated.toml -o fitted.toml\n  \
+                      fric-cli continuum fit pull.csv mixed.csv --model calibrated.toml --parameters backbone_stiffness,hole_mu -o fitted.toml"
+    )]
+    Fit(TendonFitArguments),
     /// Show the friction at every hole over a run, from the gratings
     #[command(
         after_help = "Example:\n  fric-cli continuum friction pull.csv --model calibrated.toml --report friction.html"
@@ -75,6 +83,26 @@ pub struct CalibrateArguments {
     pub output: PathBuf,
     #[command(flatten)]
     pub page: ReportArguments,
+}
+
+#[derive(Debug, Args)]
+pub struct TendonFitArguments {
+    /// CSV, or MCAP with a message for each sample; several are runs of the same manipulator, each from a relaxed tendon on
+    #[arg(required = true, value_name = "RUN")]
+    pub runs: Vec<PathBuf>,
+    /// Manipulator file: where the search begins
+    #[arg(long, value_name = "M.toml", required = true)]
+    pub model: PathBuf,
+    /// Write the manipulator file with the identified values to this file
+    #[arg(short, long, value_name = "FITTED.toml", required = true, value_parser = a_file())]
+    pub output: PathBuf,
+    /// Identify these only: `backbone_stiffness`, `segment_stiffness`, `tendon_offset`, `precurvature`, `marker_frame`, `tip_load`,
+    /// `gravity_direction`, `mu`, `hole_mu`, `sigma`, `base_gain`, `base_offset`, `tension_lag`, `calibration` [default: all but those of
+    /// segments, single holes, the sensor at the base and the gratings]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub parameters: Option<Vec<String>>,
+    #[command(flatten)]
+    pub result: ResultArguments,
 }
 
 #[derive(Debug, Args)]

@@ -6,6 +6,7 @@ use fric_lab::fit::result::{FitResult, Fits};
 use fric_lab::fit::{FitOptions, Parameter, Reference, Weighing, fit_wrench, rewritten};
 use fric_log::output::OutputFile;
 
+use super::continuum;
 use crate::arguments::{FitArguments, ReferenceName};
 use crate::failure::{Failure, Outcome};
 use crate::measurements::{check_named_once, find_model, read, watched};
@@ -15,6 +16,13 @@ use crate::warnings::warn_all;
 /// Runs the command.
 pub fn run(arguments: &FitArguments) -> Outcome {
     let FitArguments { logs, model, part, output, reference, parameters, huber, result } = arguments;
+    if let Some(model) = model.as_deref().filter(|model| continuum::is_manipulator(Some(model))) {
+        return Err(Failure::usage(format!(
+            "{} is a manipulator file, and `fit` identifies cable robots",
+            model.display()
+        ))
+        .advise("Use `fric-cli continuum fit RUN --model M.toml -o FITTED.toml`."));
+    }
     let json_file = result.json.as_deref().filter(|path| !output::is_stdout(path));
     output::check_distinct(&[Some(output), json_file])?;
     check_named_once(logs)?;

@@ -16,6 +16,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::gratings::GratingsTable;
+use super::measuring::{self, BaseSensorTable, MarkersTable};
 use super::params::{
     ManipulatorError, ManipulatorOptions, ManipulatorParams, Tendon, TendonOptions, rectangle_bending_stiffness_n_m2,
 };
@@ -65,6 +66,12 @@ pub struct ManipulatorTables {
     /// The gratings of the first tendon.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gratings: Option<GratingsTable>,
+    /// The frame in which the markers are measured; the base frame if left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub markers: Option<MarkersTable>,
+    /// The sensor of the tension at the base; a right one if left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub base_sensor: Option<BaseSensorTable>,
 }
 
 /// `[backbone]`: a strip that bends about its wide side.
@@ -80,6 +87,12 @@ pub struct BackboneTable {
     /// Mass per length, kg/m; 0 if left out.
     #[serde(default)]
     pub mass_kg_per_m: f64,
+    /// Bending stiffness of a segment as a ratio of what the numbers above give, 0.01…100: one for all, or a list; 1 if left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub segment_stiffness_ratio: Option<OneOrEach>,
+    /// Curvature without load, 1/m, towards the first tendon, at most 1 rad in a segment: one for all, or a list; 0 if left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub precurvature_per_m: Option<OneOrEach>,
 }
 
 /// `[tip]`.
@@ -250,7 +263,7 @@ impl ManipulatorFile {
         if let Some(problem) = text_file::name_problem(&tables.name) {
             return Err(TablesError { path: Vec::from([Step::Key("name")]), problem: format!("`name` {problem}") });
         }
-        let BackboneTable { width_m, thickness_m, youngs_modulus_pa, mass_kg_per_m } = tables.backbone;
+        let BackboneTable { width_m, thickness_m, youngs_modulus_pa, mass_kg_per_m, .. } = tables.backbone;
         let lengths = [("width_m", width_m), ("thickness_m", thickness_m)].map(|(key, value)| (key, value, 1e-6, 1.0));
         let others = [("youngs_modulus_pa", youngs_modulus_pa, 1e5, 1e13), ("mass_kg_per_m", mass_kg_per_m, 0.0, 1e3)];
         for (key, value, min, max) in lengths.into_iter().chain(others) {
@@ -260,12 +273,17 @@ impl ManipulatorFile {
             })?;
         }
         let tendon = tables.tendon.options();
+        let stated = |list: &Option<OneOrEach>| list.as_ref().map_or_else(Vec::new, |all| all.as_slice().to_vec());
+        let ratio = stated(&tables.backbone.segment_stiffness_ratio);
+        let curvature_per_m = stated(&tables.backbone.precurvature_per_m);
         let params = ManipulatorParams::new(&ManipulatorOptions {
             disk_count: tables.disk_count,
             pitch_m: tables.pitch_m,
             disk_thickness_m: tables.disk_thickness_m,
             hole_radius_m: tables.hole_radius_m,
             bending_stiffness_n_m2: rectangle_bending_stiffness_n_m2(youngs_modulus_pa, width_m, thickness_m),
+            segment_stiffness_ratio: if tables.backbone.segment_stiffness_ratio.is_some() { &ratio } else { &[1.0] },
+            precurvature_per_m: if tables.backbone.precurvature_per_m.is_some() { &curvature_per_m } else { &[0.0] },
             disk_mass_kg: tables.disk_mass_kg,
             backbone_mass_kg_per_m: mass_kg_per_m,
             gravity_m_per_s2: tables.gravity_m_per_s2,
@@ -277,6 +295,7 @@ impl ManipulatorFile {
         if let Some(gratings) = &tables.gratings {
             gratings.check(tables.disk_count)?;
         }
+        measuring::check(tables.markers.as_ref(), tables.base_sensor.as_ref())?;
         Ok(Self { tables, params })
     }
 
@@ -324,7 +343,7 @@ fn locate(error: &ManipulatorError) -> TablesError {
             path.push(Step::Key("tip"));
             if key == "tip_mass_kg" { "mass_kg" } else { "force_n" }
         }
-        (None, key @ "bending_stiffness_n_m2") => {
+        (None, key @ ("bending_stiffness_n_m2" | "segment_stiffness_ratio" | "precurvature_per_m")) => {
             path.push(Step::Key("backbone"));
             key
         }

@@ -40,6 +40,13 @@ pub struct GratingsTable {
     /// Drift of the shift with the time of a run, nm/s, such as that of a fibre that warms up; 0 if left out.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub drift_nm_per_s: Vec<f64>,
+    /// A shift that all gratings have alike from a time of the run on, nm, such as that of a fibre that is touched by warm air; 0 if left
+    /// out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub common_step_nm: Option<f64>,
+    /// When that is, s in the run's time; from the beginning if left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub common_step_s: Option<f64>,
     /// Bragg wavelength λ_B, nm: for the strain form, and to take the temperature off.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub wavelength_nm: Option<OneOrEach>,
@@ -66,7 +73,7 @@ impl GratingsTable {
         };
         let one = |value: &Option<f64>| value.iter().copied().collect::<Vec<f64>>();
         let each = |values: &Option<OneOrEach>| values.iter().flat_map(|all| all.as_slice().to_vec()).collect();
-        let lists: [(&'static str, Vec<f64>, f64, f64); 12] = [
+        let lists: [(&'static str, Vec<f64>, f64, f64); 14] = [
             ("newton_per_nm", self.newton_per_nm.clone(), -1e6, 1e6),
             ("offset_n", self.offset_n.clone(), -1e6, 1e6),
             ("standard_error_n", self.standard_error_n.clone(), 0.0, 1e6),
@@ -74,6 +81,8 @@ impl GratingsTable {
             ("slope_error_n_per_nm", self.slope_error_n_per_nm.clone(), 0.0, 1e6),
             ("mean_shift_nm", self.mean_shift_nm.clone(), -1e3, 1e3),
             ("drift_nm_per_s", self.drift_nm_per_s.clone(), -1e3, 1e3),
+            ("common_step_nm", one(&self.common_step_nm), -1e3, 1e3),
+            ("common_step_s", one(&self.common_step_s), -1e12, 1e12),
             ("wavelength_nm", each(&self.wavelength_nm), 100.0, 1e4),
             ("reference_wavelength_nm", one(&self.reference_wavelength_nm), 100.0, 1e4),
             ("photoelastic_ratio", one(&self.photoelastic_ratio), 0.0, 0.9),
@@ -81,8 +90,15 @@ impl GratingsTable {
             ("length_m", each(&self.length_m), 0.0, 10.0),
         ];
         for (key, values, min, max) in &lists {
-            let may_be_one =
-                ["wavelength_nm", "reference_wavelength_nm", "photoelastic_ratio", "from_base_side_m", "length_m"];
+            let may_be_one = [
+                "common_step_nm",
+                "common_step_s",
+                "wavelength_nm",
+                "reference_wavelength_nm",
+                "photoelastic_ratio",
+                "from_base_side_m",
+                "length_m",
+            ];
             let may_be_one = may_be_one.contains(key);
             if !(values.is_empty() || values.len() == disk_count || may_be_one && values.len() == 1) {
                 let text =

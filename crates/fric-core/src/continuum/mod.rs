@@ -46,6 +46,8 @@ mod friction;
 pub mod gratings;
 mod inverse;
 mod load;
+#[cfg(feature = "robot-file")]
+pub mod measuring;
 mod model;
 mod newton;
 mod params;

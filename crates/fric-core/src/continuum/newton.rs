@@ -2,8 +2,9 @@
 //!
 //! Unknown are the bend of every segment and, where friction depends on the shape, the tension in every segment. The equations:
 //!
-//! - `θ_i = L/(E·I)·(Σ_tendons T_i·m(θ_i) + Q_i)` (\[C\] 9, 10, 15), with the moment averaged over the segment: the arm m of the
-//!   straight tendon ([`Chord`]) and the moment Q of weight and tip load ([`super::load`]);
+//! - `θ_i = θ_i,0 + L/(E·I)_i·(Σ_tendons T_i·m(θ_i) + Q_i)` (\[C\] 9, 10, 15), with the moment averaged over the segment: the arm m of
+//!   the straight tendon ([`Chord`]) and the moment Q of weight and tip load ([`super::load`]); beyond \[C\] a segment may have a
+//!   stiffness of its own and a bend θ_i,0 without load;
 //! - `T_{i−1} − T_i = f_i` (\[C\] 11, 14) with the friction of hole i.
 //!
 //! Slopes are exact, those of a contact by numbers that carry them along. A contact has a kink where its motion reverses, over which
@@ -215,7 +216,6 @@ impl<'a, const DISKS: usize> Problem<'a, DISKS> {
         chords: &[[Chord; DISKS]; 2],
         links: &mut [Link; DISKS],
     ) -> (f64, f64) {
-        let compliance = self.params.pitch_m / self.params.bending_stiffness_n_m2;
         let Moments { moment_nm, slope_nm, own_slope_nm } = if self.params.has_load() {
             moments(self.params, &point.bend_rad, self.target.load_share)
         } else {
@@ -226,16 +226,19 @@ impl<'a, const DISKS: usize> Problem<'a, DISKS> {
         let tendons = first_chords.iter().zip(first_n).zip(second_chords.iter().zip(second_n));
         let loads = moment_nm.iter().zip(slope_nm.iter().zip(&own_slope_nm));
         let bends = point.bend_rad.iter().zip(&step.bend_rad);
+        let segments = self.params.segment_stiffness_n_m2.iter().zip(&self.params.rest_bend_rad);
         let (mut squares, mut work_nm) = (0.0, 0.0);
-        for (link, ((bend, load), tendons)) in
-            links.iter_mut().zip(bends.zip(loads).zip(tendons)).take(self.unknowns.count)
+        for (link, (((bend, segment), load), tendons)) in
+            links.iter_mut().zip(bends.zip(segments).zip(loads).zip(tendons)).take(self.unknowns.count)
         {
             let (bend_rad, change_rad) = bend;
+            let (stiffness_n_m2, rest_rad) = segment;
+            let compliance = self.params.pitch_m / stiffness_n_m2;
             let (outside_nm, (outside_slope, outside_own_slope)) = load;
             let ((first, first_n), (second, second_n)) = tendons;
             let moment_nm = first_n * first.arm_m + second_n * second.arm_m + outside_nm;
             let slope = first_n * first.arm_slope_m + second_n * second.arm_slope_m + outside_own_slope;
-            let residual = bend_rad - compliance * moment_nm;
+            let residual = bend_rad - rest_rad - compliance * moment_nm;
             squares += residual * residual;
             work_nm += residual / compliance * change_rad;
             link.bend = BendRow {

@@ -11,6 +11,9 @@ use crate::robot::{ParamProblem, check};
 /// Most disks of a manipulator.
 pub const MAX_DISKS: usize = 32;
 
+/// Most bend of a segment without load, rad.
+const GREATEST_REST_BEND_RAD: f64 = 1.0;
+
 /// One of the two tendons of a plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tendon {
@@ -73,6 +76,10 @@ pub struct ManipulatorOptions<'a> {
     pub hole_radius_m: f64,
     /// E·I of the backbone, N m²; see [`rectangle_bending_stiffness_n_m2`].
     pub bending_stiffness_n_m2: f64,
+    /// E·I of a segment as a ratio of that, 0.01…100: one for all segments, or one for each from the base plate.
+    pub segment_stiffness_ratio: &'a [f64],
+    /// Curvature of the unloaded backbone, 1/m, towards +y, at most 1 rad in a segment: one for all segments, or one for each.
+    pub precurvature_per_m: &'a [f64],
     /// Mass of a disk, kg.
     pub disk_mass_kg: f64,
     /// Mass of the backbone per length, kg/m.
@@ -100,6 +107,8 @@ impl ManipulatorOptions<'static> {
             disk_thickness_m: 0.002,
             hole_radius_m: 0.015,
             bending_stiffness_n_m2: rectangle_bending_stiffness_n_m2(200e9, 0.006, 0.0003),
+            segment_stiffness_ratio: &[1.0],
+            precurvature_per_m: &[0.0],
             disk_mass_kg: 0.003,
             backbone_mass_kg_per_m: 7850.0 * 0.006 * 0.0003,
             gravity_m_per_s2: [0.0, 0.0],
@@ -133,6 +142,10 @@ pub struct ManipulatorParams {
     pub(crate) disk_thickness_m: f64,
     pub(crate) hole_radius_m: f64,
     pub(crate) bending_stiffness_n_m2: f64,
+    /// E·I of each segment, N m².
+    pub(crate) segment_stiffness_n_m2: [f64; MAX_DISKS],
+    /// Bend of each segment without load, rad.
+    pub(crate) rest_bend_rad: [f64; MAX_DISKS],
     /// Force on each disk, on the backbone of each segment and on the tip, N.
     pub(crate) disk_weight_n: Vector2<f64>,
     pub(crate) backbone_weight_n: Vector2<f64>,
@@ -233,6 +246,11 @@ impl ManipulatorParams {
             return Err(count_error("disk_count", count, 1, MAX_DISKS));
         }
         let pitch_m = checked("pitch_m", options.pitch_m, 1e-5, 10.0)?;
+        let stiffness_n_m2 = checked("bending_stiffness_n_m2", options.bending_stiffness_n_m2, 1e-12, 1e9)?;
+        let stiffness_ratio = spread("segment_stiffness_ratio", options.segment_stiffness_ratio, count, (0.01, 100.0))?;
+        let most_per_m = GREATEST_REST_BEND_RAD / pitch_m;
+        let curvature_per_m =
+            spread("precurvature_per_m", options.precurvature_per_m, count, (-most_per_m, most_per_m))?;
         let gravity = checked_vector("gravity_m_per_s2", options.gravity_m_per_s2, 1e3)?;
         let disk_mass_kg = checked("disk_mass_kg", options.disk_mass_kg, 0.0, 1e3)?;
         let backbone_mass_kg_per_m = checked("backbone_mass_kg_per_m", options.backbone_mass_kg_per_m, 0.0, 1e3)?;
@@ -247,7 +265,9 @@ impl ManipulatorParams {
             pitch_m,
             disk_thickness_m: checked("disk_thickness_m", options.disk_thickness_m, 0.0, pitch_m)?,
             hole_radius_m: checked("hole_radius_m", options.hole_radius_m, 1e-6, 10.0)?,
-            bending_stiffness_n_m2: checked("bending_stiffness_n_m2", options.bending_stiffness_n_m2, 1e-12, 1e9)?,
+            bending_stiffness_n_m2: stiffness_n_m2,
+            segment_stiffness_n_m2: stiffness_ratio.map(|ratio| stiffness_n_m2 * ratio),
+            rest_bend_rad: curvature_per_m.map(|per_m| per_m * pitch_m),
             disk_weight_n: disk_mass_kg * gravity,
             backbone_weight_n: backbone_mass_kg_per_m * pitch_m * gravity,
             tip_force_n: tip_force_n + tip_mass_kg * gravity,
@@ -292,10 +312,22 @@ impl ManipulatorParams {
         self.hole_radius_m
     }
 
-    /// E·I of the backbone, N m².
+    /// E·I of the backbone, N m², to which the ratios of its segments refer.
     #[must_use]
     pub fn bending_stiffness_n_m2(&self) -> f64 {
         self.bending_stiffness_n_m2
+    }
+
+    /// E·I of each segment from the base plate, N m².
+    #[must_use]
+    pub fn segment_stiffness_n_m2(&self) -> &[f64] {
+        self.segment_stiffness_n_m2.get(..self.disk_count).unwrap_or(&self.segment_stiffness_n_m2)
+    }
+
+    /// Bend of each segment without load, from the base plate, rad.
+    #[must_use]
+    pub fn rest_bend_rad(&self) -> &[f64] {
+        self.rest_bend_rad.get(..self.disk_count).unwrap_or(&self.rest_bend_rad)
     }
 
     /// Weight of a disk, of the backbone of a segment, and the force on the tip, base frame, N.

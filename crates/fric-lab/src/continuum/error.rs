@@ -117,6 +117,11 @@ pub enum ContinuumError {
         /// When, s.
         time_s: f64,
     },
+    /// The model has no shapes for the runs.
+    #[error(
+        "the model finds no shape for the runs, so that nothing can be identified; check stiffness, weight and tension against the manipulator file"
+    )]
+    NotIdentified,
     /// A tension at which the tendon may break.
     #[error(
         "`tension_base_n` is {tension_n} N at {time_s} s (sample {row}), above the tendon's capacity of {capacity_n} N; check the \

@@ -40,6 +40,8 @@ pub struct Gratings {
     line_errors: Vec<LineError>,
     /// Drift of each shift with the time of the run, nm/s.
     drift_nm_per_s: Vec<f64>,
+    /// Shift that all have alike from a time on, nm, and that time, s.
+    common_step: (f64, f64),
     /// Bragg wavelengths and that of the reference, nm.
     wavelength_nm: Option<(Vec<f64>, f64)>,
     places: Option<Vec<GratingPlace>>,
@@ -59,7 +61,14 @@ impl Gratings {
     #[must_use]
     pub fn new(lines: Vec<Calibration>) -> Self {
         let line_errors = lines.iter().map(Calibration::line_error).collect();
-        Self { drift_nm_per_s: vec![0.0; lines.len()], line_errors, lines, wavelength_nm: None, places: None }
+        Self {
+            drift_nm_per_s: vec![0.0; lines.len()],
+            common_step: (0.0, 0.0),
+            line_errors,
+            lines,
+            wavelength_nm: None,
+            places: None,
+        }
     }
 
     /// Those of a manipulator file; `None` where it has none.
@@ -115,6 +124,7 @@ impl Gratings {
             drift_nm_per_s: (0..count)
                 .map(|grating| table.drift_nm_per_s.get(grating).copied().unwrap_or(0.0))
                 .collect(),
+            common_step: (table.common_step_nm.unwrap_or(0.0), table.common_step_s.unwrap_or(f64::NEG_INFINITY)),
             wavelength_nm,
             places: (0..count).map(place).collect(),
         }))
@@ -146,7 +156,7 @@ impl Gratings {
         self.places.as_ref().map_or(Ok(()), |places| check_travel(params, places, greatest_bend_rad))
     }
 
-    /// Tensions of one sample as the lines give them, drift since the run's first sample and, where a reference and wavelengths
+    /// Tensions of one sample as the lines give them, the step that all have alike, drift since the run's first sample and, where a reference and wavelengths
     /// are there, temperature taken off.
     #[must_use]
     pub fn tensions(&self, sample: &RunSample, elapsed_s: f64) -> Vec<Tension> {
@@ -158,8 +168,10 @@ impl Gratings {
             _ => sample.shift_nm.clone(),
         };
         let drift_nm = self.drift_nm_per_s.iter().map(|drift_nm_per_s| drift_nm_per_s * elapsed_s);
+        let (step_nm, from_s) = self.common_step;
+        let step_nm = if sample.time_s >= from_s { step_nm } else { 0.0 };
         let lines = self.lines.iter().zip(shift_nm).zip(drift_nm);
-        lines.map(|((line, shift_nm), drift_nm)| line.tension(shift_nm - drift_nm)).collect()
+        lines.map(|((line, shift_nm), drift_nm)| line.tension(shift_nm - drift_nm - step_nm)).collect()
     }
 
     /// Tensions of a whole run with dead gratings bridged.

@@ -15,7 +15,9 @@ mod error;
 pub mod fbg;
 pub mod friction;
 pub mod gratings;
+pub mod identify;
 mod loads;
+mod measuring;
 pub mod result;
 mod run;
 pub mod shape_errors;
@@ -23,4 +25,5 @@ pub mod simulate;
 
 pub use error::ContinuumError;
 pub use loads::{hole_loads, load_steps};
+pub use measuring::{as_measured, corrected};
 pub use run::{Run, RunSample};

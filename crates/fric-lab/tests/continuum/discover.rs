@@ -10,7 +10,7 @@ use fric_lab::continuum::fbg::Calibration;
 use fric_lab::continuum::simulate::{Experiment, TendonSimulationOptions, simulate};
 use fric_lab::continuum::{ContinuumError, Run, RunSample};
 
-const PROTOTYPE: &str = include_str!("../../../../examples/tendon-prototype.toml");
+pub(super) const PROTOTYPE: &str = include_str!("../../../../examples/tendon-prototype.toml");
 
 /// The text of the calibrated prototype, and a run of it with these μ.
 fn measured(experiment: Experiment, seed: u64, mu: &[f64]) -> (String, Vec<RunSample>) {
@@ -20,7 +20,7 @@ fn measured(experiment: Experiment, seed: u64, mu: &[f64]) -> (String, Vec<RunSa
 }
 
 /// The text of the calibrated prototype, and a run of another manipulator.
-fn measured_of(truth: &str, options: &TendonSimulationOptions) -> (String, Vec<RunSample>) {
+pub(super) fn measured_of(truth: &str, options: &TendonSimulationOptions) -> (String, Vec<RunSample>) {
     let run = simulate(ManipulatorFile::parse(truth, "truth").unwrap().params(), options).unwrap();
     let lines = Calibration::fit_all(&run.calibration).unwrap();
     let line = |line: &Calibration| {

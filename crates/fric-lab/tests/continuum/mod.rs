@@ -3,6 +3,7 @@
 mod discover;
 mod experiments;
 mod gratings;
+mod identify;
 mod runs;
 mod shapes;
 mod track;

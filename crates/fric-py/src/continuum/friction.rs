@@ -7,7 +7,7 @@ use fric_lab::continuum::result::{FrictionResult, HoleResult};
 use fric_work::report::continuum as report;
 use pyo3::prelude::*;
 
-use super::{Manipulator, TendonRun, check_disks, flat, measured};
+use super::{Manipulator, TendonRun, flat, in_base_frame, measured};
 use crate::arrays::{Axis, Wanted, fixed, fixed_rows, numbers};
 use crate::errors::Outcome;
 use crate::log;
@@ -23,8 +23,8 @@ use crate::results;
 /// ((178, 8), True)
 #[pyfunction]
 pub fn continuum_friction(py: Python<'_>, manipulator: &Manipulator, run: &TendonRun) -> Outcome<Py<PyAny>> {
-    let (source, run) = (run.name(), &run.run);
-    check_disks(manipulator, run)?;
+    let source = run.name();
+    let run = &in_base_frame(manipulator, &run.run)?;
     run.check_capacity(manipulator.file.params().capacity_n(Tendon::Agonist))?;
     let measured = py.detach(|| measured(manipulator, run))?.ok_or(if run.has_shifts() {
         ContinuumError::NoGratings

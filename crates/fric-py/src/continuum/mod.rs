@@ -2,6 +2,7 @@
 
 mod calibration;
 mod discover;
+mod fit;
 mod friction;
 mod manipulator;
 mod run;
@@ -10,6 +11,7 @@ mod simulate;
 
 pub use calibration::continuum_calibrate;
 pub use discover::continuum_discover;
+pub use fit::continuum_fit;
 pub use friction::{continuum_friction, continuum_hole};
 pub use manipulator::Manipulator;
 pub use run::{TendonRun, continuum_read_loads, continuum_read_run};
@@ -17,7 +19,7 @@ pub use shape::continuum_shape;
 pub use simulate::continuum_simulate;
 
 use fric_lab::continuum::gratings::{GratingSample, Gratings};
-use fric_lab::continuum::{ContinuumError, Run};
+use fric_lab::continuum::{ContinuumError, Run, corrected};
 
 use crate::errors::Outcome;
 
@@ -35,6 +37,12 @@ fn measured(manipulator: &Manipulator, run: &Run) -> Result<Option<Vec<GratingSa
 /// Rows one after the other.
 fn flat(rows: &[Vec<f64>]) -> Vec<f64> {
     rows.iter().flatten().copied().collect()
+}
+
+/// The run in the base frame, with a right sensor at the base, as the file of the manipulator says.
+fn in_base_frame(manipulator: &Manipulator, run: &Run) -> Outcome<Run> {
+    check_disks(manipulator, run)?;
+    Ok(corrected(run, &manipulator.file)?)
 }
 
 /// A run that belongs to a manipulator.

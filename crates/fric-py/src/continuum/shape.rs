@@ -8,7 +8,7 @@ use fric_work::report::continuum as report;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::{Manipulator, TendonRun, check_disks, measured};
+use super::{Manipulator, TendonRun, in_base_frame, measured};
 use crate::arrays::{array, fixed, fixed_rows};
 use crate::errors::Outcome;
 use crate::log;
@@ -39,8 +39,8 @@ pub fn continuum_shape(
     at_s: Option<Vec<f64>>,
     mixed: bool,
 ) -> Outcome<Py<PyAny>> {
-    let (source, run) = (run.name(), &run.run);
-    check_disks(manipulator, run)?;
+    let source = run.name();
+    let run = &in_base_frame(manipulator, &run.run)?;
     let params = manipulator.file.params();
     let selection = match at_s {
         Some(times_s) => Selection::At(times_s),

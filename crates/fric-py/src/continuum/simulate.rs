@@ -1,8 +1,8 @@
 //! `simulate`: the run of a simulated manipulator.
 
 use fric_core::robot::unknown_name;
-use fric_lab::continuum::Run;
 use fric_lab::continuum::simulate::{Experiment, TendonSimulationOptions, TendonTruth, simulate as simulate_tendon};
+use fric_lab::continuum::{Run, as_measured};
 use pyo3::prelude::*;
 
 use super::{Manipulator, TendonRun};
@@ -47,7 +47,8 @@ pub fn continuum_simulate(
         ..TendonSimulationOptions::default()
     };
     let params = manipulator.file.params();
-    let simulated = py.detach(|| simulate_tendon(params, &options))?;
+    let mut simulated = py.detach(|| simulate_tendon(params, &options))?;
+    simulated.samples = as_measured(&simulated.samples, &manipulator.file);
     let disks = simulated.mu.len();
     let truths =
         |of: fn(&TendonTruth) -> &[f64]| fixed_rows(py, simulated.truth.iter().flat_map(of).copied().collect(), disks);

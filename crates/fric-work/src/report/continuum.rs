@@ -3,8 +3,10 @@
 use fric_lab::continuum::Run;
 use fric_lab::continuum::comparison::{WayShapes, spread};
 use fric_lab::continuum::discover::{TendonDiscoverResult, TendonDiscovery};
+use fric_lab::continuum::identify::TendonFitResult;
 use fric_lab::continuum::result::{CalibrationResult, FrictionResult, HoleResult, PickedShape, ShapeResult, WayShape};
 use fric_lab::continuum::shape_errors::{ShapeErrors, Way};
+use fric_lab::fit::result::Numbers;
 use maud::{Markup, PreEscaped, html};
 
 use super::chart::{Chart, Span};
@@ -203,6 +205,31 @@ fn coefficient(result: &HoleResult) -> Markup {
                 td { (format!("{from:.4} to {to:.4}")) }
             }
         }
+    }
+}
+
+/// The page of `continuum fit`.
+#[must_use]
+pub fn fit(result: &TendonFitResult) -> String {
+    super::shell(&format!("Identification of {}", result.manipulator), &identified(result))
+}
+
+/// Its values as a table by itself.
+#[must_use]
+pub fn fit_table(result: &TendonFitResult) -> String {
+    identified(result).into_string()
+}
+
+fn identified(result: &TendonFitResult) -> Markup {
+    let of = |numbers: &Numbers, key: &str| number(numbers.get(key));
+    html! {
+        table {
+            tr { th { "" } th { "given" } th { "found" } th { "±" } }
+            @for (key, value) in &result.parameters.0 {
+                tr { td { (key) } td { (of(&result.given, key)) } td { (number(Some(*value))) } td { (of(&result.standard_errors, key)) } }
+            }
+        }
+        @for open in &result.undetermined { p { (open.sentence) "." } }
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod calibrate;
 pub mod discover;
+mod fit;
 mod friction;
 mod hole;
 pub mod info;
@@ -15,7 +16,7 @@ use std::path::{Path, PathBuf};
 use fric_core::continuum::file::{FORMAT, ManipulatorFile};
 use fric_core::text_file;
 use fric_lab::continuum::gratings::{GratingSample, Gratings};
-use fric_lab::continuum::{ContinuumError, Run, columns};
+use fric_lab::continuum::{ContinuumError, Run, columns, corrected};
 use fric_log::output::{CompleteFile, OutputFile};
 use fric_log::table::NumberTable;
 
@@ -32,6 +33,7 @@ const LONGEST_HEADER: u64 = 4096;
 pub fn run(command: &ContinuumCommand) -> Outcome {
     match command {
         ContinuumCommand::Calibrate(arguments) => calibrate::run(arguments),
+        ContinuumCommand::Fit(arguments) => fit::run(arguments),
         ContinuumCommand::Friction(arguments) => friction::run(arguments),
         ContinuumCommand::Hole(arguments) => hole::run(arguments),
         ContinuumCommand::Shape(arguments) => shape::run(arguments),
@@ -96,11 +98,12 @@ fn about(path: &Path, error: ContinuumError) -> Failure {
     Failure::from(error).in_file(path)
 }
 
-/// A run and its manipulator.
+/// A run, in the base frame and with a right sensor as the file of its manipulator says, and that.
 fn read_run(arguments: &RunArguments) -> Outcome<(Model, Run)> {
     let model = Model::read(&arguments.model)?;
     let columns = read_table(&arguments.run, &columns::of_run(model.disk_count()))?;
     let run = Run::from_columns(&columns, model.disk_count()).map_err(|error| about(&arguments.run, error))?;
+    let run = corrected(&run, &model.file).map_err(|error| about(&arguments.run, error))?;
     Ok((model, run))
 }
 

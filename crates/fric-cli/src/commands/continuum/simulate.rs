@@ -4,7 +4,7 @@ use std::io::Write as _;
 use std::path::Path;
 
 use fric_lab::continuum::simulate::{Experiment, SimulatedRun, TendonSimulationOptions, simulate};
-use fric_lab::continuum::{ContinuumError, columns};
+use fric_lab::continuum::{ContinuumError, as_measured, columns};
 use fric_log::output::{CompleteFile, OutputError, OutputFile};
 use fric_log::write::LogWriter;
 use serde::Serialize;
@@ -59,7 +59,8 @@ pub fn run(arguments: &TendonSimulateArguments) -> Outcome {
         path.as_ref().map(|path| OutputFile::create(path, &inputs, *force)).transpose()
     };
     let (calibration, truth) = (create(calibration)?, create(truth)?);
-    let run = simulate(model.file.params(), &options).map_err(refused)?;
+    let mut run = simulate(model.file.params(), &options).map_err(refused)?;
+    run.samples = as_measured(&run.samples, &model.file);
     let mut files = vec![target.write(&run, model.disk_count())?];
     if let Some(file) = calibration {
         files.push(write_calibration(file, &run, model.disk_count())?);

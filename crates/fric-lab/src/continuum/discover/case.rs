@@ -232,7 +232,7 @@ pub fn off_markers(shape: &ComputedShape, sample: &RunSample) -> Vec<[f64; 2]> {
 }
 
 /// Places of samples: some, evenly, and all turning points of the tension.
-fn thinned(samples: &[RunSample]) -> Vec<usize> {
+pub fn thinned(samples: &[RunSample]) -> Vec<usize> {
     let stride = samples.len().div_ceil(MOST_SAMPLES).max(1);
     let greatest_n = samples.iter().map(|sample| sample.tension_base_n).fold(0.0, f64::max);
     let band_n = TURN_RATIO * greatest_n;

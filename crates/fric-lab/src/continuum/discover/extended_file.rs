@@ -29,6 +29,7 @@ pub fn edit(case: &Case<'_>, outcome: &Outcome) -> ManipulatorEdit {
         } else {
             Vec::new()
         },
+        ..ManipulatorEdit::default()
     }
 }
 

@@ -34,7 +34,7 @@ mod naming;
 mod noise;
 mod places;
 mod result;
-mod spread;
+pub(super) mod spread;
 mod summary;
 mod trials;
 mod worse;
@@ -46,8 +46,10 @@ use fric_core::continuum::file::ManipulatorFile;
 use self::case::Case;
 use super::error::ContinuumError;
 use super::gratings::Gratings;
+use super::measuring::corrected;
 use super::run::Run;
 
+pub(super) use case::thinned;
 pub use goes_with::GoesWith;
 pub use result::{
     MarkerError, TendonDiscoverResult, TendonEffect, TendonMarkers, TendonPlace, TendonRest, TendonResult, TendonTried,
@@ -84,7 +86,8 @@ pub fn discover(file: &ManipulatorFile, run: &Run, log: &str) -> Result<TendonDi
     }
     run.check_capacity(file.params().capacity_n(Tendon::Agonist))?;
     let gratings = Gratings::from_file(file)?.ok_or(ContinuumError::NoGratings)?;
-    let case = Case::new(file, run, &gratings)?;
+    let run = corrected(run, file)?;
+    let case = Case::new(file, &run, &gratings)?;
     let outcome = naming::name(&case)?;
     Ok(assemble::told(&case, &outcome, log))
 }

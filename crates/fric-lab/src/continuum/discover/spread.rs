@@ -22,7 +22,7 @@ pub fn shared_spread(problem: &Linearised, model: &Model, holes: &[usize]) -> f6
 
 /// `τ² = max(0, xᵀPx − (n − 1))/tr P + √(2(n − 1))/tr P` with `P = C⁻¹ − C⁻¹11ᵀC⁻¹/1ᵀC⁻¹1` of values x with covariance C: without a spread `xᵀPx` is
 /// χ² of n − 1. 0 where C has no inverse.
-fn spread(values: &DVector<f64>, covariance: DMatrix<f64>) -> f64 {
+pub fn spread(values: &DVector<f64>, covariance: DMatrix<f64>) -> f64 {
     let Some(weights) = covariance.cholesky().map(|factor| factor.inverse()) else { return 0.0 };
     let sums = weights.column_sum();
     let projector = &weights - &sums * sums.transpose() / sums.sum();

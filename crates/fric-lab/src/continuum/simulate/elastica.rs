@@ -28,6 +28,8 @@ pub struct Elastica {
     hole_m: f64,
     /// EI/h, N m.
     spring_nm: f64,
+    /// Stiffness of each joint, N m, and its angle without load, rad.
+    springs: Vec<(f64, f64)>,
     /// Force of all that is beyond a link, half its own weight included, N.
     beyond_n: Vec<Vector2<f64>>,
     /// Directions of the links, and of the last disk.
@@ -70,7 +72,9 @@ impl Elastica {
             *beyond_n = force_n + 0.5 * link_n;
             force_n += link_n;
         }
+        let springs = (0..=count).map(|place| joint(params, links, link_m, place)).collect();
         Self {
+            springs,
             segments,
             links,
             link_m,
@@ -150,13 +154,11 @@ impl Elastica {
         energy
     }
 
-    /// Calls with the places of both links of every joint (`None`: the base), its stiffness and its angle.
+    /// Calls with the places of both links of every joint (`None`: the base), its stiffness and its angle beyond that without load.
     fn joints(&self, mut each: impl FnMut(Option<usize>, usize, f64, f64)) {
-        let last = self.angle_rad.len() - 1;
-        for (place, angle) in self.angle_rad.iter().enumerate() {
-            let stiffness = if place == 0 || place == last { 2.0 * self.spring_nm } else { self.spring_nm };
+        for ((place, angle), (stiffness, rest_rad)) in self.angle_rad.iter().enumerate().zip(&self.springs) {
             let before = place.checked_sub(1);
-            each(before, place, stiffness, angle - before.map_or(0.0, |before| self.angle_rad[before]));
+            each(before, place, *stiffness, angle - before.map_or(0.0, |before| self.angle_rad[before]) - rest_rad);
         }
     }
 
@@ -284,6 +286,28 @@ impl Elastica {
     }
 }
 
+/// Stiffness of a joint, N m, and its angle without load, rad: half a link on either side, each of its own segment; at base and tip one half.
+fn joint(params: &ManipulatorParams, links: usize, link_m: f64, place: usize) -> (f64, f64) {
+    let half = |link: usize| {
+        let segment = link / links;
+        let stiffness_n_m2 = params.segment_stiffness_n_m2()[segment];
+        (stiffness_n_m2 / link_m, 0.5 * link_m * params.rest_bend_rad()[segment] / params.pitch_m())
+    };
+    let count = params.disk_count() * links;
+    let sides = [place.checked_sub(1), (place < count).then_some(place)].map(|link| link.map(half));
+    match sides {
+        [Some((before_nm, before_rad)), Some((behind_nm, behind_rad))] => {
+            let is_one = before_nm.to_bits() == behind_nm.to_bits();
+            let both_nm = if is_one { before_nm } else { 2.0 / (1.0 / before_nm + 1.0 / behind_nm) };
+            (both_nm, before_rad + behind_rad)
+        }
+        [Some((stiffness_nm, rest_rad)), None] | [None, Some((stiffness_nm, rest_rad))] => {
+            (2.0 * stiffness_nm, rest_rad)
+        }
+        [None, None] => (0.0, 0.0),
+    }
+}
+
 fn unit(angle_rad: f64) -> Vector2<f64> {
     Vector2::new(libm::cos(angle_rad), libm::sin(angle_rad))
 }
@@ -355,6 +379,28 @@ mod tests {
             let change = (elastica.strand(segment, 1.0).length_m - before[segment]) / 1e-5;
             assert!((change - compliance[2][segment]).abs() < 1e-6, "{segment}");
         }
+    }
+
+    #[test]
+    fn a_stepped_and_curved_backbone_is_that_of_the_formula() {
+        // Without load it is an arc; a tip moment's stand-in, a small force F across, deflects a cantilever of two stiffnesses, EI_1 over the
+        // half at the base, by F/3·((L³ − (L/2)³)/EI_1 + (L/2)³/EI_2).
+        let published = ManipulatorOptions { disk_mass_kg: 0.0, ..ManipulatorOptions::published() };
+        let settled = |options: &ManipulatorOptions<'_>| {
+            let mut elastica = Elastica::new(&ManipulatorParams::new(options).unwrap(), 40);
+            elastica.settle([&[], &[]]).unwrap();
+            (elastica.disk_position_m()[7], elastica.bend_rad())
+        };
+        let ([x_m, y_m], bend_rad) = settled(&ManipulatorOptions { precurvature_per_m: &[2.0], ..published });
+        let expected_rad = 2.0 * 0.296_f64;
+        assert!((bend_rad - expected_rad).abs() < 1e-9);
+        assert!((x_m - expected_rad.sin() / 2.0).abs() < 1e-6 && (y_m - (1.0 - expected_rad.cos()) / 2.0).abs() < 1e-6);
+        let ratio = [1.0, 1.0, 1.0, 1.0, 0.5, 0.5, 0.5, 0.5];
+        let ([_, y_m], _) =
+            settled(&ManipulatorOptions { segment_stiffness_ratio: &ratio, tip_force_n: [0.0, 1e-4], ..published });
+        let (whole, half) = (0.296_f64.powi(3), 0.148_f64.powi(3));
+        let expected_m = 1e-4 / 3.0 * ((whole - half) / 2.7e-3 + half / 1.35e-3);
+        assert!((y_m / expected_m - 1.0).abs() < 1e-4, "{y_m} {expected_m}");
     }
 
     #[test]

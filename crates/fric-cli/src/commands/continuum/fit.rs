@@ -1,0 +1,42 @@
+//! `continuum fit`: a manipulator's numbers from its runs.
+
+use fric_core::continuum::edit::rewrite;
+use fric_lab::continuum::identify::{Quantity, TendonFitOptions, identify};
+use fric_lab::continuum::{Run, columns};
+use fric_log::output::OutputFile;
+
+use super::{Model, about, read_table};
+use crate::arguments::continuum::TendonFitArguments;
+use crate::failure::{Failure, Outcome};
+use crate::measurements::check_named_once;
+use crate::output::{self, JsonTarget};
+
+/// Runs the command.
+pub fn run(arguments: &TendonFitArguments) -> Outcome {
+    let TendonFitArguments { runs, model, output, parameters, result } = arguments;
+    let json_file = result.json.as_deref().filter(|path| !output::is_stdout(path));
+    output::check_distinct(&[Some(output), json_file])?;
+    check_named_once(runs)?;
+    let named = |names: &Vec<String>| {
+        Quantity::all_named(names.iter().map(|name| name.trim()))
+            .map_err(|problem| Failure::usage(format!("--parameters: {problem}")))
+    };
+    let options = TendonFitOptions { quantities: parameters.as_ref().map(named).transpose()? };
+    let mut inputs = runs.clone();
+    inputs.push(model.clone());
+    let model = Model::read(model)?;
+    let json = JsonTarget::prepare(result.json.as_deref(), &inputs, result.force)?;
+    let file = OutputFile::create(output, &inputs, result.force)?;
+    let mut measured = Vec::with_capacity(runs.len());
+    for path in runs {
+        let table = read_table(path, &columns::of_run(model.disk_count()))?;
+        measured.push(Run::from_columns(&table, model.disk_count()).map_err(|error| about(path, error))?);
+    }
+    let names: Vec<String> = runs.iter().map(|path| path.display().to_string()).collect();
+    let found = identify(&model.file, &measured, &names, &options).map_err(|error| match runs.as_slice() {
+        [only] => about(only, error),
+        _ => Failure::from(error),
+    })?;
+    let fitted = file.complete_with(&rewrite(&model.text, &model.origin, &found.edit)?)?;
+    json.finish(&found.result, &found.result.summary(), vec![fitted])
+}

@@ -1,0 +1,53 @@
+//! `fit`: a manipulator's numbers from its runs.
+
+use fric_core::continuum::edit::rewrite;
+use fric_lab::continuum::Run;
+use fric_lab::continuum::identify::{Quantity, TendonFitOptions, identify};
+use fric_work::report::continuum as report;
+use pyo3::prelude::*;
+
+use super::{Manipulator, TendonRun, check_disks};
+use crate::errors::{Fault, Outcome};
+use crate::log;
+use crate::results;
+use crate::watch::with_own_threads;
+
+/// Identifies stiffness, geometry, loads and friction of a manipulator from runs that each have two of tension at the base, gratings and
+/// markers. `runs` is one or several, each from a relaxed tendon on.
+///
+/// `parameters` names what to identify: "backbone_stiffness", "segment_stiffness", "tendon_offset", "precurvature", "marker_frame", "tip_load",
+/// "gravity_direction", "mu", "hole_mu", "sigma", "base_gain", "base_offset", "tension_lag", "calibration". What the runs cannot tell stays as the
+/// manipulator has it, and is a LogWarning.
+///
+/// >>> arm = continuum.Manipulator.read("examples/tendon-prototype.toml")
+/// >>> stiffer = continuum.Manipulator.from_toml(arm.to_toml().replace("200e9", "220e9"))
+/// >>> run = continuum.simulate(stiffer, greatest_tension_n=1.0).run
+/// >>> result = continuum.fit(arm, run, parameters=["backbone_stiffness"])
+/// >>> round(result.parameters["bending_stiffness_n_m2"] / 0.0027, 1)
+/// 1.1
+#[pyfunction]
+#[pyo3(signature = (manipulator, runs, *, parameters=None))]
+pub fn continuum_fit(
+    py: Python<'_>,
+    manipulator: &Manipulator,
+    runs: &Bound<'_, PyAny>,
+    parameters: Option<Vec<String>>,
+) -> Outcome<Py<PyAny>> {
+    let all: Vec<Bound<'_, TendonRun>> = match runs.cast::<TendonRun>() {
+        Ok(one) => vec![one.clone()],
+        Err(_) => runs.extract()?,
+    };
+    let named = |names: Vec<String>| Quantity::all_named(names.iter().map(String::as_str)).map_err(Fault::config);
+    let options = TendonFitOptions { quantities: parameters.map(named).transpose()? };
+    let measured: Vec<Run> = all.iter().map(|run| run.get().run.clone()).collect();
+    let names: Vec<String> = all.iter().map(|run| run.get().name().to_owned()).collect();
+    measured.iter().try_for_each(|run| check_disks(manipulator, run))?;
+    let file = &manipulator.file;
+    let found = py.detach(|| with_own_threads(|| identify(file, &measured, &names, &options)))??;
+    log::warn(py, &found.result.warnings())?;
+    let text = rewrite(&manipulator.text, "manipulator", &found.edit)?;
+    let result = &found.result;
+    let shown = results::shown(py, result.summary(), result, report::fit(result), report::fit_table(result))?;
+    let fields = (shown, Py::new(py, Manipulator::parse(text, "manipulator")?)?);
+    Ok(results::of(py, "TendonFit", fields)?.unbind())
+}
