@@ -31,7 +31,7 @@ use hold::Hold;
 use loads::Loads;
 
 pub use crate::simulate::motion::CableMotion;
-pub use design::{Aim, Experiment, Forecast, Goal, LEAST_SCORE, Question, STANDARD_DURATION_S, design};
+pub use design::{Aim, Experiment, Forecast, Goal, KnownParameter, LEAST_SCORE, Question, STANDARD_DURATION_S, design};
 pub use error::ExcitationError;
 pub use options::ExcitationOptions;
 

@@ -526,7 +526,7 @@ mod tests {
             ..SimulationOptions::default()
         };
         let mut whole = Simulation::new(&robot, &options)?;
-        let mut one = Simulation::of(&robot, &options, 5..6)?;
+        let mut one = Simulation::of(&robot, &options, 5..6, None)?;
         while let Some(all) = whole.next_cycle() {
             let alone = one.next_cycle().ok_or("too short")?;
             assert_eq!((alone.cables, alone.reference_force_n), (&all.cables[5..6], &all.reference_force_n[5..6]));

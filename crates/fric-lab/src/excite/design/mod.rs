@@ -27,7 +27,7 @@ use super::{Excitation, ExcitationError, ExcitationOptions};
 use crate::discover::naming::STRONG_BIC;
 use crate::fit::candidates::has;
 use crate::fit::engine::{self, Comparison, Loss, Member, Problem};
-use crate::fit::{CableRecord, Measurements, Parameter, Progress};
+use crate::fit::{CableRecord, Measurements, Parameter, Progress, Reference};
 use crate::simulate::motion::Motion;
 use crate::trajectory::{LOAD_CHANGE_S, Piece, Trajectory};
 
@@ -39,8 +39,8 @@ pub const LEAST_SCORE: f64 = 1.0;
 const DURATIONS_S: [f64; 2] = [3.0, 600.0];
 /// Least and greatest noise, N.
 const NOISES_N: [f64; 2] = [1e-9, 1e6];
-/// Rounds of choice and refit.
-const ROUNDS: usize = 3;
+/// Rounds of choice and refit, after a first one that tells how large the second effects are.
+const ROUNDS: usize = 2;
 
 /// What a run is to tell about a cable.
 #[derive(Clone, Debug)]
@@ -173,8 +173,9 @@ struct Studio<'a> {
 
 /// A question with its models.
 enum Case {
-    /// The model that is right with those that are to be told from it, in the order of the question's effects.
-    Separate { base: Values, right: [Option<Hypothesis>; 2], wrong: [Vec<Hypothesis>; 2] },
+    /// The model that is right with those that are to be told from it, in the order of the question's effects. `first` is the place of the one
+    /// whose size is known or assumed; the other is as large as looks most like it, and takes part as soon as that is known.
+    Separate { base: Values, first: usize, right: [Option<Hypothesis>; 2], wrong: [Vec<Hypothesis>; 2] },
     Determine { model: Hypothesis, wanted: Vec<Parameter> },
 }
 
@@ -202,19 +203,15 @@ impl<'a> Studio<'a> {
             empty.work_box.is_some(),
             duration_s - lead_in_s - LOAD_CHANGE_S,
         );
-        let (mut pieces, mut runs, mut refusal) = (Vec::new(), Vec::new(), None);
+        let params = robot.params();
+        let (mut pieces, mut library, mut refusal) = (Vec::new(), Measurements::new(&params, Reference::Forces), None);
         for piece in all {
-            let of_piece = |run: &mut Excitation| -> Result<(), ExcitationError> {
-                while run.next_cycle()?.is_some() {}
-                Ok(())
-            };
             let mut run = Excitation::of_pieces(robot, options, &[piece], 0.0)?;
             // A piece that the cables cannot hold is none; where they hold none, the first says why.
-            match of_piece(&mut run.clone()) {
-                Ok(()) => {
+            match predicted::samples(&params, &mut run) {
+                Ok(samples) => {
                     pieces.push(piece);
-                    run.done_cycles = 0;
-                    runs.push(run);
+                    samples.enter(&mut library);
                 }
                 Err(error) => refusal = refusal.or(Some(error)),
             }
@@ -222,12 +219,10 @@ impl<'a> Studio<'a> {
         if let (true, Some(refusal)) = (pieces.is_empty(), refusal) {
             return Err(refusal);
         }
-        let params = robot.params();
-        let library = predicted::frictionless(&params, &mut runs)?;
         let change_s = if empty.states_loads() { LOAD_CHANGE_S } else { 0.0 };
         let duration_of = |piece: &Piece| pieces::duration_s(&work_box, &limits, piece) + change_s;
         let durations_s = pieces.iter().map(duration_of).collect();
-        let standard = predicted::frictionless(&params, &mut [standard_run(robot, options, duration_s)?])?;
+        let standard = predicted::frictionless(&params, &mut standard_run(robot, options, duration_s)?)?;
         Ok(Self {
             robot,
             options,
@@ -243,27 +238,34 @@ impl<'a> Studio<'a> {
     }
 
     fn design(&self) -> Result<Experiment, ExcitationError> {
-        self.progress.begin(2 + 2 * ROUNDS);
+        self.progress.begin(4 + 2 * ROUNDS);
         let in_all = |work: &(dyn Fn(&Question) -> Result<Case, ExcitationError> + Sync)| {
             self.questions.par_iter().map(work).collect::<Result<Vec<Case>, ExcitationError>>()
         };
         let mut cases = in_all(&|question| self.case(question))?;
         self.step_done()?;
-        let of_standard = self.forecast(&self.standard, &mut cases);
-        self.step_done()?;
         let mut best: Option<(f64, Excitation, Vec<Option<Goal>>)> = None;
-        for _ in 0..ROUNDS {
+        for round in 0..=ROUNDS {
             let run = self.chosen(&cases)?;
             self.step_done()?;
-            let measurements = predicted::frictionless(&self.robot.params(), &mut [run.clone()])?;
+            let measurements = predicted::frictionless(&self.robot.params(), &mut run.clone())?;
             let goals = self.forecast(&measurements, &mut cases);
             self.step_done()?;
+            if round == 0 {
+                // The first run is there to find how large the second effects are.
+                self.questions.par_iter().zip(&mut cases).for_each(|(question, case)| {
+                    self.establish(question, &measurements, case);
+                });
+                continue;
+            }
             let worth = |goal: &Option<Goal>| goal.as_ref().map_or(0.0, Goal::score).max(1e-6).ln();
             let value: f64 = goals.iter().map(worth).sum();
             if best.as_ref().is_none_or(|(best, ..)| value > *best) {
                 best = Some((value, run, goals));
             }
         }
+        let of_standard = self.forecast(&self.standard, &mut cases);
+        self.step_done()?;
         let Some((_, excitation, goals)) = best else { return Err(ExcitationError::Stopped) };
         let forecasts = self.questions.iter().zip(goals).zip(of_standard);
         let forecasts: Vec<Forecast> = forecasts
@@ -284,8 +286,7 @@ impl<'a> Studio<'a> {
         if is_stopped { Err(ExcitationError::Stopped) } else { Ok(()) }
     }
 
-    /// The models of a question. The first effect is as the model has it, or half as strong as machines have it; the second as looks most like
-    /// it on the identification run.
+    /// The models of a question. The first effect is as the model has it, or half as strong as machines have it.
     fn case(&self, question: &Question) -> Result<Case, ExcitationError> {
         let name = self.robot.cable_names().get(question.cable).copied().unwrap_or_default().to_owned();
         let bad = |problem: String| ExcitationError::BadQuestion { problem };
@@ -328,17 +329,29 @@ impl<'a> Studio<'a> {
                 let prediction = Prediction::new(&record, &right.values, stop).ok_or_else(unlikely)?;
                 let (alike, _) =
                     prediction.fitted(&base, second, question.noise_n, None).ok_or_else(unlikely)?;
-                // Whether there is an effect at all shows where it is there.
-                let other = second.is_some().then(|| alike.clone());
-                let mut right = [Some(right), other];
-                let mut wrong = [vec![alike], right[0].iter().cloned().collect()];
-                if swapped {
-                    right.swap(0, 1);
-                    wrong.swap(0, 1);
-                }
-                Ok(Case::Separate { base, right, wrong })
+                let first = usize::from(swapped);
+                let (mut both, mut wrong) = ([None, None], [Vec::new(), Vec::new()]);
+                wrong[1 - first].push(right.clone());
+                wrong[first].push(alike);
+                both[first] = Some(right);
+                Ok(Case::Separate { base, first, right: both, wrong })
             }
         }
+    }
+
+    /// Lets the second effect of a question be as large as looks most like the first on a run, which the last forecast was of. Where it is then
+    /// too small to be seen there, nothing is asked about it being there.
+    fn establish(&self, question: &Question, measurements: &Measurements<'_>, case: &mut Case) -> Option<()> {
+        let Case::Separate { base, first, right, wrong } = case else { return Some(()) };
+        let Aim::Separate(effects) = question.aim else { return Some(()) };
+        let (record, stop) = (measurements.cable(question.cable)?, self.progress.stop_flag());
+        let second = effects[1 - *first].and(wrong[*first].last())?.clone();
+        let prediction = Prediction::new(&record, &second.values, stop)?;
+        let (_, without_it) = prediction.fitted(base, None, question.noise_n, None)?;
+        if prediction.evidence(&second, &without_it, question.noise_n) >= STRONG_BIC {
+            right[1 - *first] = Some(second);
+        }
+        Some(())
     }
 
     /// The run that is worth most by what is known of the models so far.
@@ -353,7 +366,7 @@ impl<'a> Studio<'a> {
         let mut best: Option<(f64, Excitation)> = None;
         for order in [pieces, backwards, by_load] {
             let run = Excitation::of_pieces(self.robot, self.options, &order, self.duration_s)?;
-            let measurements = predicted::frictionless(&self.robot.params(), &mut [run.clone()])?;
+            let measurements = predicted::frictionless(&self.robot.params(), &mut run.clone())?;
             let whole = self.tests(cases, &measurements)?;
             let sums: Vec<Vec<Sums>> = whole
                 .iter()
@@ -410,7 +423,7 @@ impl<'a> Studio<'a> {
     fn forecast_one(&self, question: &Question, record: &CableRecord<'_>, case: &mut Case) -> Option<Goal> {
         let (stop, noise_n) = (self.progress.stop_flag(), question.noise_n);
         match case {
-            Case::Separate { base, right, wrong } => {
+            Case::Separate { base, right, wrong, .. } => {
                 let mut delta_bic = [None; 2];
                 let Aim::Separate(effects) = question.aim else { return None };
                 for (place, (right, wrong)) in right.iter().zip(wrong).enumerate() {
