@@ -65,8 +65,8 @@ pub enum Command {
     /// With --for, --separate or --determine the run is put together so that its log answers the question, and what evidence to expect is said;
     /// where no run within the limits can tell, there is none. On a test bench --max-tension-n lets the run state the load of the cables too.
     #[command(
-        after_help = "Examples:\n  fric-cli excite --model examples/mini-ipanema.toml -o tell.csv --separate stribeck,dwell_stiction \
-                      --cables cable1\n  fric-cli excite --model examples/mini-ipanema.toml -o run.csv --preview run.html\n  \
+        after_help = "Examples:\n  fric-cli excite --model examples/mini-ipanema.toml -o tell.csv --determine mu,sigma_n_per_m \
+                      --cables cable1 --duration 10\n  fric-cli excite --model examples/mini-ipanema.toml -o run.csv --preview run.html\n  \
                       fric-cli excite --model examples/mini-ipanema.toml -o gentle.csv --box=-0.1,-0.1,-0.1,0.1,0.1,0.1 \
                       --max-speed-m-per-s 0.5 --max-acceleration-m-per-s2 5 --min-tension-n 2 --max-tension-n 30"
     )]

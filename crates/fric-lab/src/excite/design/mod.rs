@@ -16,6 +16,8 @@ mod hypothesis;
 mod pieces;
 mod predicted;
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use fric_core::effects::Effect;
 use fric_core::parameters::Values;
 use fric_core::robot::file::RobotFile;
@@ -29,7 +31,7 @@ use crate::fit::candidates::has;
 use crate::fit::engine::{self, Comparison, Loss, Member, Problem};
 use crate::fit::{CableRecord, Measurements, Parameter, Progress, Reference};
 use crate::simulate::motion::Motion;
-use crate::trajectory::{LOAD_CHANGE_S, Piece, Trajectory};
+use crate::trajectory::{LOAD_CHANGE_S, Piece, Trajectory, WorkBox};
 
 /// How long a run is where nothing else is asked for, s.
 pub const STANDARD_DURATION_S: f64 = 20.0;
@@ -152,14 +154,13 @@ pub fn design(
     if !(min..=max).contains(&duration_s) {
         return Err(ExcitationError::OptionOutOfRange { key: "duration_s", value: duration_s, min, max });
     }
-    let studio = Studio::new(robot, options, duration_s, questions, progress)?;
-    studio.design()
+    Studio::new(robot, options, duration_s, questions, progress)?.design()
 }
 
 /// Everything that a design needs.
 struct Studio<'a> {
     robot: &'a RobotFile,
-    options: &'a ExcitationOptions,
+    options: ExcitationOptions,
     duration_s: f64,
     questions: &'a [Question],
     progress: &'a Progress,
@@ -195,7 +196,13 @@ impl<'a> Studio<'a> {
         }
         let empty = Excitation::of_pieces(robot, options, &[], 0.0)?;
         let (work_box, limits) = (empty.work_box.unwrap_or(Motion::BENCH), options.limits());
+        // The box is looked for once.
+        let corners_m = |of: WorkBox| [of.center_m - of.half_edges_m, of.center_m + of.half_edges_m].map(Into::into);
+        let options = ExcitationOptions { box_m: empty.work_box.map(corners_m), ..*options };
         let lead_in_s = Trajectory::designed(&work_box, &limits, &[], 0.0).duration_s();
+        if lead_in_s > duration_s {
+            return Err(ExcitationError::TooLong { duration_s: lead_in_s, longest_s: duration_s });
+        }
         let all = pieces::pieces(
             &work_box,
             &limits,
@@ -206,7 +213,7 @@ impl<'a> Studio<'a> {
         let params = robot.params();
         let (mut pieces, mut library, mut refusal) = (Vec::new(), Measurements::new(&params, Reference::Forces), None);
         for piece in all {
-            let mut run = Excitation::of_pieces(robot, options, &[piece], 0.0)?;
+            let mut run = Excitation::of_pieces(robot, &options, &[piece], 0.0)?;
             // A piece that the cables cannot hold is none; where they hold none, the first says why.
             match predicted::samples(&params, &mut run) {
                 Ok(samples) => {
@@ -222,7 +229,7 @@ impl<'a> Studio<'a> {
         let change_s = if empty.states_loads() { LOAD_CHANGE_S } else { 0.0 };
         let duration_of = |piece: &Piece| pieces::duration_s(&work_box, &limits, piece) + change_s;
         let durations_s = pieces.iter().map(duration_of).collect();
-        let standard = predicted::frictionless(&params, &mut standard_run(robot, options, duration_s)?)?;
+        let standard = predicted::frictionless(&params, &mut standard_run(robot, &options, duration_s)?)?;
         Ok(Self {
             robot,
             options,
@@ -266,7 +273,7 @@ impl<'a> Studio<'a> {
         }
         let of_standard = self.forecast(&self.standard, &mut cases);
         self.step_done()?;
-        let Some((_, excitation, goals)) = best else { return Err(ExcitationError::Stopped) };
+        let Some((_, excitation, goals)) = best else { return Err(self.broken_off()) };
         let forecasts = self.questions.iter().zip(goals).zip(of_standard);
         let forecasts: Vec<Forecast> = forecasts
             .filter_map(|((question, goal), standard)| {
@@ -282,8 +289,20 @@ impl<'a> Studio<'a> {
 
     fn step_done(&self) -> Result<(), ExcitationError> {
         self.progress.finish_one();
-        let is_stopped = self.progress.stop_flag().load(std::sync::atomic::Ordering::Relaxed);
-        if is_stopped { Err(ExcitationError::Stopped) } else { Ok(()) }
+        if self.is_stopped() { Err(ExcitationError::Stopped) } else { Ok(()) }
+    }
+
+    fn is_stopped(&self) -> bool {
+        self.progress.stop_flag().load(Ordering::Relaxed)
+    }
+
+    /// Why there are no figures: it was stopped, or a model gave none.
+    fn broken_off(&self) -> ExcitationError {
+        if self.is_stopped() {
+            return ExcitationError::Stopped;
+        }
+        let problem = "a model gives no finite forces on some movement; check the parameters in the robot file";
+        ExcitationError::BadQuestion { problem: problem.to_owned() }
     }
 
     /// The models of a question. The first effect is as the model has it, or half as strong as machines have it.
@@ -365,7 +384,7 @@ impl<'a> Studio<'a> {
         let backwards: Vec<Piece> = pieces.iter().rev().copied().collect();
         let mut best: Option<(f64, Excitation)> = None;
         for order in [pieces, backwards, by_load] {
-            let run = Excitation::of_pieces(self.robot, self.options, &order, self.duration_s)?;
+            let run = Excitation::of_pieces(self.robot, &self.options, &order, self.duration_s)?;
             let measurements = predicted::frictionless(&self.robot.params(), &mut run.clone())?;
             let whole = self.tests(cases, &measurements)?;
             let sums: Vec<Vec<Sums>> = whole
@@ -377,7 +396,7 @@ impl<'a> Studio<'a> {
                 best = Some((value, run));
             }
         }
-        best.map(|(_, run)| run).ok_or(ExcitationError::Stopped)
+        best.map(|(_, run)| run).ok_or_else(|| self.broken_off())
     }
 
     /// The tests of all questions with their sums over each log.
@@ -385,16 +404,17 @@ impl<'a> Studio<'a> {
         let of_case = |(question, case): (&Question, &Case)| {
             let record = measurements.cable(question.cable)?;
             let stop = self.progress.stop_flag();
-            let test = |truth: &Values, model: &Hypothesis, measure: Measure| {
-                let prediction = Prediction::new(&record, truth, stop)?;
-                let pieces = sums_of_logs(&problem_of(prediction.record(), &model.free, stop), &model.values)?;
-                Some(Test { measure, noise_n: question.noise_n, pieces })
-            };
+            let noise_n = question.noise_n;
             match case {
                 Case::Separate { right, wrong, .. } => {
                     let pairs = right.iter().zip(wrong).filter_map(|(right, wrong)| Some((right.as_ref()?, wrong)));
                     let pairs = pairs.flat_map(|(right, wrong)| wrong.iter().map(move |wrong| (right, wrong)));
-                    pairs.map(|(right, wrong)| test(&right.values, wrong, Measure::Evidence)).collect()
+                    let test = |(right, wrong): (&Hypothesis, &Hypothesis)| {
+                        let prediction = Prediction::new(&record, &right.values, stop)?;
+                        let pieces = sums_of_logs(&problem_of(prediction.record(), &wrong.free, stop), &wrong.values)?;
+                        Some(Test { measure: Measure::Evidence, noise_n, pieces })
+                    };
+                    pairs.map(test).collect()
                 }
                 Case::Determine { model, wanted } => {
                     let prediction = Prediction::new(&record, &model.values, stop)?;
@@ -403,12 +423,12 @@ impl<'a> Studio<'a> {
                     let place = |of: &Parameter| model.free.iter().position(|free| free == of);
                     let wanted = wanted.iter().filter_map(|of| Some((place(of)?, *of, model.values[of.place()])));
                     let measure = Measure::Knowledge { wanted: wanted.collect(), yardstick };
-                    Some(vec![test(&model.values, model, measure)?])
+                    Some(vec![Test { measure, noise_n, pieces: sums_of_logs(&problem, &model.values)? }])
                 }
             }
         };
         let all: Option<Tests> = self.questions.par_iter().zip(cases).map(of_case).collect();
-        all.ok_or(ExcitationError::Stopped)
+        all.ok_or_else(|| self.broken_off())
     }
 
     /// What a run is expected to tell; the models that come nearest on it join the cases.
@@ -486,7 +506,7 @@ impl<'a> Studio<'a> {
 }
 
 /// The least-squares problem of a cable over all its samples.
-fn problem_of<'r>(record: CableRecord<'r>, free: &[Parameter], stop: &'r std::sync::atomic::AtomicBool) -> Problem<'r> {
+fn problem_of<'r>(record: CableRecord<'r>, free: &[Parameter], stop: &'r AtomicBool) -> Problem<'r> {
     Problem {
         used: vec![true; record.rows.len()],
         members: vec![Member { record, free: free.to_vec() }],
