@@ -36,7 +36,8 @@ const LOADS: [f64; 2] = [0.5, 1.5];
 fn main() {
     let mut arguments = std::env::args().skip(1);
     let seeds: u64 = arguments.next().map_or(1, |text| text.parse().expect("a count of seeds"));
-    let words: Vec<String> = arguments.next().map_or_else(Vec::new, |text| text.split(',').map(str::to_owned).collect());
+    let words: Vec<String> =
+        arguments.next().map_or_else(Vec::new, |text| text.split(',').map(str::to_owned).collect());
     for [hidden, other] in PAIRS {
         let name = format!("{}/{}", hidden.kind(), other.kind());
         if !words.is_empty() && !words.iter().any(|word| name.contains(word.as_str())) {
@@ -74,7 +75,8 @@ fn tried(hidden: Effect, other: Effect, seed: u64) -> String {
     };
     let mean_n = mean_load_n(truth);
     let [least_n, greatest_n] = LOADS.map(|share| Some(share * mean_n));
-    let limits = ExcitationOptions { min_tension_n: least_n, max_tension_n: greatest_n, ..ExcitationOptions::default() };
+    let limits =
+        ExcitationOptions { min_tension_n: least_n, max_tension_n: greatest_n, ..ExcitationOptions::default() };
     let experiment = match design(user, &limits, STANDARD_DURATION_S, &[question], &Progress::new()) {
         Ok(experiment) => experiment,
         Err(error) => return format!("standard {first}; no run: {error}"),
@@ -98,9 +100,11 @@ fn following(truth: &CaseTruth, options: &SimulationOptions, run: &Excitation) -
 /// The load of the bench, N: the platform's weight with what viscous friction takes at 1 m/s, as the simulation has it.
 fn mean_load_n(truth: &CaseTruth) -> f64 {
     let options = truth.robot.options();
-    let viscous: f64 = options.cable.iter().map(|cable| {
-        cable.pulleys.iter().map(|_| cable.friction.viscous_n_s_per_m).sum::<f64>()
-    }).fold(0.0, f64::max);
+    let viscous: f64 = options
+        .cable
+        .iter()
+        .map(|cable| cable.pulleys.iter().map(|_| cable.friction.viscous_n_s_per_m).sum::<f64>())
+        .fold(0.0, f64::max);
     truth.robot.params().mass_kg() * 9.80665 + viscous
 }
 
@@ -121,7 +125,6 @@ fn told(found: &CableDiscovery, hidden: Effect, other: Effect) -> String {
     let margin = of(other).zip(of(hidden)).map_or(f64::NAN, |(other, hidden)| other.delta_bic - hidden.delta_bic);
     let finding = found.findings.iter().find(|finding| finding.effect == hidden);
     let is_sure = |runner_up: &Option<fric_lab::discover::RunnerUp>| runner_up.as_ref().is_none_or(|it| !it.is_as_good);
-    let is_told =
-        finding.is_some_and(|finding| is_sure(&finding.runner_up)) && !names.contains(&other.kind());
+    let is_told = finding.is_some_and(|finding| is_sure(&finding.runner_up)) && !names.contains(&other.kind());
     format!("{} [{}] margin {margin:.0}", if is_told { "tells" } else { "leaves it open" }, names.join(" "))
 }

@@ -202,7 +202,12 @@ fn a_run_is_designed_for_what_a_discovery_left_open() {
     assert!(columns["drive_tension_n"].iter().all(|tension_n| (2.0..=10.0).contains(tension_n)));
     assert_eq!(columns["time_s"].len(), 2000);
     let told = run.stdout.lines().nth(1).unwrap();
-    for words in ["drive: bearing_drag or load_nonlinearity", "if it is bearing_drag", "the identification run", "noise 0.0200 N"] {
+    for words in [
+        "drive: bearing_drag or load_nonlinearity",
+        "if it is bearing_drag",
+        "the identification run",
+        "noise 0.0200 N",
+    ] {
         assert!(told.contains(words), "{words} in {told}");
     }
     let page = String::from_utf8(place.read("run.html")).unwrap();

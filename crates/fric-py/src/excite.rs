@@ -2,9 +2,7 @@
 
 use std::path::PathBuf;
 
-use fric_lab::excite::{
-    Excitation, ExcitationOptions, ExcitedCycle, Experiment, STANDARD_DURATION_S, design,
-};
+use fric_lab::excite::{Excitation, ExcitationOptions, ExcitedCycle, Experiment, STANDARD_DURATION_S, design};
 use fric_log::output::OutputFile;
 use fric_work::excite::{describe, expectations};
 use fric_work::questions::{Request, questions};
@@ -114,7 +112,7 @@ pub fn excite(
         return Err(Fault::config(format!("`{name}` needs a question; give `for_`, `separate` or `determine`")));
     }
     let inputs: [PathBuf; 0] = [];
-    let created = output.map(|path| OutputFile::create(path, &inputs, force)).transpose()?;
+    let created = output.map(|path| OutputFile::create(&path, &inputs, force)).transpose()?;
     let (mut excitation, expected) = match request {
         Some(request) => {
             let questions = questions(&file, request, cables.as_deref(), noise_n);

@@ -71,7 +71,8 @@ fn in_figures(goal: &Goal) -> String {
             let of = |known: &KnownParameter| {
                 let KnownParameter { parameter, value, standard_error, .. } = known;
                 // Two digits of the error, and the value to the same place.
-                let digits = if *standard_error > 0.0 { (1.0 - standard_error.log10().floor()).clamp(0.0, 12.0) } else { 3.0 };
+                let digits =
+                    if *standard_error > 0.0 { (1.0 - standard_error.log10().floor()).clamp(0.0, 12.0) } else { 3.0 };
                 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to 0…12")]
                 let digits = digits as usize;
                 format!("{parameter} {value:.digits$} ± {standard_error:.digits$}")

@@ -186,7 +186,11 @@ fn of_found(
         return refused(format!("its format is `{}`; `discover --json` writes `{FORMAT}`", found.format));
     }
     if found.robot != robot.options().name {
-        return refused(format!("it is of the robot `{}`, and the robot file of `{}`", found.robot, robot.options().name));
+        return refused(format!(
+            "it is of the robot `{}`, and the robot file of `{}`",
+            found.robot,
+            robot.options().name
+        ));
     }
     if found.wrench.is_some() {
         return refused(

@@ -58,7 +58,10 @@ pub enum ExcitationError {
         cable: String,
     },
     /// The load of a test bench that the robot file knows, and is told to change.
-    #[error("`max_tension_n` is {greatest_n}, but the robot file knows the load of the cables and the run cannot change it; {}", advice::KNOWN)]
+    #[error(
+        "`max_tension_n` is {greatest_n}, but the robot file knows the load of the cables and the run cannot change it; {}",
+        advice::KNOWN
+    )]
     LoadIsKnown {
         /// The greatest load, N.
         greatest_n: f64,

@@ -51,7 +51,8 @@ impl Hold {
         if self.holds(set_point, &set_point.acceleration_m_per_s2, wanted_n) {
             return Ok(&self.forces_n);
         }
-        let worst = self.worst(set_point, wanted_n).and_then(|(cable, force_n)| Some((names.get(cable)?.clone(), force_n)));
+        let worst =
+            self.worst(set_point, wanted_n).and_then(|(cable, force_n)| Some((names.get(cable)?.clone(), force_n)));
         Err(ExcitationError::NotHeld {
             least_n: self.least_n,
             greatest_n: self.greatest_n,

@@ -40,11 +40,10 @@ impl Loads {
         if let (false, None, Some(least_n)) = (is_held, stated, options.min_tension_n) {
             return Err(ExcitationError::NoGreatestLoad { least_n });
         }
-        let least_n = options.min_tension_n.unwrap_or_else(|| {
-            stated.map_or(level.least_n, |greatest_n| level.least_n.min(0.5 * greatest_n))
-        });
-        let usual_n =
-            stated.map_or_else(|| level.mean_n.max(2.0 * least_n), |greatest_n| 0.5 * (least_n + greatest_n));
+        let least_n = options
+            .min_tension_n
+            .unwrap_or_else(|| stated.map_or(level.least_n, |greatest_n| level.least_n.min(0.5 * greatest_n)));
+        let usual_n = stated.map_or_else(|| level.mean_n.max(2.0 * least_n), |greatest_n| 0.5 * (least_n + greatest_n));
         let source = match stated {
             _ if is_held => Source::Platform { greatest_n: stated.unwrap_or(2.0 * usual_n - least_n) },
             Some(greatest_n) => Source::StatedBench { greatest_n },

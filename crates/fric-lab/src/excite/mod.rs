@@ -229,21 +229,18 @@ impl Excitation {
             })?;
         }
         let stated_n = self.stated_load_n(time_s);
-        let tensions_n = match (&mut self.hold, &platform) {
-            (Some(hold), Some(set_point)) => {
-                let wanted_n = stated_n.unwrap_or(self.loads.usual_n());
-                let forces_n = hold.forces_n(set_point, wanted_n, time_s, phase, &self.names)?;
-                self.expected_n.copy_from_slice(forces_n);
-                true
-            }
-            _ => {
-                let acceleration_m_per_s2 = self.motion.trajectory().at(time_s).acceleration_m_per_s2.x;
-                self.expected_n.fill(stated_n.unwrap_or_else(|| self.loads.expected_n(acceleration_m_per_s2)));
-                stated_n.is_some()
-            }
+        let is_stated = if let (Some(hold), Some(set_point)) = (&mut self.hold, &platform) {
+            let wanted_n = stated_n.unwrap_or(self.loads.usual_n());
+            let forces_n = hold.forces_n(set_point, wanted_n, time_s, phase, &self.names)?;
+            self.expected_n.copy_from_slice(forces_n);
+            true
+        } else {
+            let acceleration_m_per_s2 = self.motion.trajectory().at(time_s).acceleration_m_per_s2.x;
+            self.expected_n.fill(stated_n.unwrap_or_else(|| self.loads.expected_n(acceleration_m_per_s2)));
+            stated_n.is_some()
         };
         let expected_n = self.expected_n.as_slice();
-        let tensions_n = tensions_n.then_some(expected_n);
+        let tensions_n = is_stated.then_some(expected_n);
         Ok(Some(ExcitedCycle { time_s, phase, platform, cables: &self.motions, tensions_n, expected_n }))
     }
 }

@@ -53,8 +53,8 @@ mod wrench;
 pub(crate) mod engine {
     pub use super::bins::Bins;
     pub use super::cables::{Search, prepared, used};
-    pub use super::determined::Yardstick;
     pub use super::conditions::{Condition, Spacing, conditions, sign, time};
+    pub use super::determined::Yardstick;
     pub use super::gang::{Gang, Seat, forces_of};
     pub use super::gram::Gram;
     pub use super::interpolated::measured;

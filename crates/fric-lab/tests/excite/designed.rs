@@ -64,14 +64,21 @@ fn standard_errors_are_those_that_a_fit_then_finds_and_less_than_those_of_the_id
     let mu_and_sigma: Vec<usize> = expected.iter().map(|known| known.parameter.place()).collect();
     assert_eq!(mu_and_sigma, [MU, SIGMA]);
     let fit = &fit_cables(
-        &measured(&robot, &experiment.excitation, &SimulationOptions { duration_s: Some(DURATION_S), ..Default::default() }),
+        &measured(
+            &robot,
+            &experiment.excitation,
+            &SimulationOptions { duration_s: Some(DURATION_S), ..Default::default() },
+        ),
         &FitOptions::default(),
         &Progress::new(),
     )[0];
     for (known, standard) in expected.iter().zip(standard) {
         let KnownParameter { parameter, standard_error, .. } = *known;
         let found = fit.standard_error(&parameter).unwrap();
-        assert!((0.5..2.0).contains(&(found / standard_error)), "{parameter}: {standard_error} expected, {found} found");
+        assert!(
+            (0.5..2.0).contains(&(found / standard_error)),
+            "{parameter}: {standard_error} expected, {found} found"
+        );
         assert!(standard_error < standard.standard_error, "{parameter}");
     }
 }

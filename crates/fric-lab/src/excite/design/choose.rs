@@ -73,7 +73,10 @@ fn sums_of(tests: &Tests, chosen: &[usize]) -> Vec<Vec<Sums>> {
 /// What the run is worth with one more piece.
 fn with_piece(tests: &Tests, sums: &[Vec<Sums>], place: usize) -> f64 {
     let of_question = |(tests, sums): (&Vec<Test>, &Vec<Sums>)| {
-        let added = tests.iter().zip(sums).map(|(test, sum)| test.pieces.get(place).map_or_else(|| sum.clone(), |piece| sum.with(piece)));
+        let added = tests
+            .iter()
+            .zip(sums)
+            .map(|(test, sum)| test.pieces.get(place).map_or_else(|| sum.clone(), |piece| sum.with(piece)));
         added.collect::<Vec<Sums>>()
     };
     let sums: Vec<Vec<Sums>> = tests.iter().zip(sums).map(of_question).collect();

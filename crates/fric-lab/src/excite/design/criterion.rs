@@ -46,9 +46,8 @@ impl Sums {
 
     /// What a refit leaves of the squares, N².
     fn left(&self) -> f64 {
-        let explained = inverse_of_normal(&self.matrix).map_or(0.0, |inverse| {
-            (self.gradient.transpose() * inverse * &self.gradient)[(0, 0)]
-        });
+        let explained = inverse_of_normal(&self.matrix)
+            .map_or(0.0, |inverse| (self.gradient.transpose() * inverse * &self.gradient)[(0, 0)]);
         (self.squares - explained).max(0.0)
     }
 }

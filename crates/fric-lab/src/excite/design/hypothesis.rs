@@ -11,10 +11,10 @@ use super::predicted::sensed;
 use crate::discover::naming::delta_bic;
 use crate::discover::workbench::{Model, NEAR_ERRORS, Trial, Workbench};
 use crate::effects::{self, Around, Sizing};
-use crate::fit::{CableRecord, FitOptions, Parameter, Row};
 use crate::fit::candidates;
-use crate::fit::ripple::periods;
+use crate::fit::ripple::{period_of, periods};
 use crate::fit::split::split;
+use crate::fit::{CableRecord, FitOptions, Parameter, Row};
 use std::sync::atomic::AtomicBool;
 
 /// Strength of an effect whose size is not known, as a share of what machines have at most.
@@ -92,14 +92,6 @@ impl<'a> Prediction<'a> {
         self.record.with_signals(&self.rows)
     }
 
-    fn around(&self, bench: &Workbench<'_>, current: &Values, noise_n: f64, effect: Effect) -> Around {
-        let mut around = candidates::around(&bench.record, current[MU], noise_n);
-        if crate::fit::ripple::period_of(effect).is_some() {
-            around.periods = periods(&bench.record, &bench.residuals_n(current));
-        }
-        around
-    }
-
     /// The model that comes nearest to the log with an effect in place of the truth's; `None` when stopped, or where there is no
     /// start. `also` is another place to start from.
     pub fn fitted(
@@ -114,7 +106,7 @@ impl<'a> Prediction<'a> {
         let bench = Workbench { record, blocks: &blocks, counts: &counts, measured: &counts, stop: self.stop };
         let starts = match effect {
             Some(effect) => {
-                let around = self.around(&bench, base, noise_n, effect);
+                let around = around(&bench, base, noise_n, effect);
                 candidates::starts(effect, base, &around, &bench.record)
             }
             None => vec![*base],
@@ -136,10 +128,18 @@ impl<'a> Prediction<'a> {
     /// it learns from, with noise of the standard deviation `noise_n`.
     pub fn evidence(&self, truth: &Hypothesis, fitted: &Trial, noise_n: f64) -> f64 {
         #[expect(clippy::cast_precision_loss, reason = "counts")]
-        let (count, more) =
-            (0.5 * self.rows.len() as f64, fitted.free.len() as f64 - truth.free.len() as f64);
+        let (count, more) = (0.5 * self.rows.len() as f64, fitted.free.len() as f64 - truth.free.len() as f64);
         // Training and held-out blocks are half of the run each; both together depend less on which block is which.
         let squares_ratio = 1.0 + 0.5 * (fitted.training + fitted.held_out) / (count * noise_n * noise_n);
         delta_bic(count, squares_ratio, more)
     }
+}
+
+/// What a search begins from; of a ripple the periods too.
+fn around(bench: &Workbench<'_>, current: &Values, noise_n: f64, effect: Effect) -> Around {
+    let mut around = candidates::around(&bench.record, current[MU], noise_n);
+    if period_of(effect).is_some() {
+        around.periods = periods(&bench.record, &bench.residuals_n(current));
+    }
+    around
 }

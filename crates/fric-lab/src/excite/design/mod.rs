@@ -124,9 +124,7 @@ impl Goal {
             Self::Separated { delta_bic, .. } => {
                 delta_bic.iter().flatten().copied().fold(f64::INFINITY, f64::min) / STRONG_BIC
             }
-            Self::Determined(known) => {
-                known.iter().map(|known| known.vagueness.powi(-2)).fold(f64::INFINITY, f64::min)
-            }
+            Self::Determined(known) => known.iter().map(|known| known.vagueness.powi(-2)).fold(f64::INFINITY, f64::min),
         }
     }
 
@@ -166,7 +164,7 @@ struct Studio<'a> {
     progress: &'a Progress,
     pieces: Vec<Piece>,
     /// How long each takes, with a change of the load before it, s.
-    durations_s: Vec<f64>,
+    times_s: Vec<f64>,
     lead_in_s: f64,
     library: Measurements<'a>,
     standard: Measurements<'a>,
@@ -176,8 +174,16 @@ struct Studio<'a> {
 enum Case {
     /// The model that is right with those that are to be told from it, in the order of the question's effects. `first` is the place of the one
     /// whose size is known or assumed; the other is as large as looks most like it, and takes part as soon as that is known.
-    Separate { base: Values, first: usize, right: [Option<Hypothesis>; 2], wrong: [Vec<Hypothesis>; 2] },
-    Determine { model: Hypothesis, wanted: Vec<Parameter> },
+    Separate {
+        base: Values,
+        first: usize,
+        right: Box<[Option<Hypothesis>; 2]>,
+        wrong: [Vec<Hypothesis>; 2],
+    },
+    Determine {
+        model: Hypothesis,
+        wanted: Vec<Parameter>,
+    },
 }
 
 impl<'a> Studio<'a> {
@@ -228,7 +234,7 @@ impl<'a> Studio<'a> {
         }
         let change_s = if empty.states_loads() { LOAD_CHANGE_S } else { 0.0 };
         let duration_of = |piece: &Piece| pieces::duration_s(&work_box, &limits, piece) + change_s;
-        let durations_s = pieces.iter().map(duration_of).collect();
+        let times_s = pieces.iter().map(duration_of).collect();
         let standard = predicted::frictionless(&params, &mut standard_run(robot, &options, duration_s)?)?;
         Ok(Self {
             robot,
@@ -237,7 +243,7 @@ impl<'a> Studio<'a> {
             questions,
             progress,
             pieces,
-            durations_s,
+            times_s,
             lead_in_s: lead_in_s + change_s,
             library,
             standard,
@@ -346,14 +352,13 @@ impl<'a> Studio<'a> {
                 let right = Hypothesis::new(record.params, known, &with_known).ok_or_else(unlikely)?;
                 let stop = self.progress.stop_flag();
                 let prediction = Prediction::new(&record, &right.values, stop).ok_or_else(unlikely)?;
-                let (alike, _) =
-                    prediction.fitted(&base, second, question.noise_n, None).ok_or_else(unlikely)?;
+                let (alike, _) = prediction.fitted(&base, second, question.noise_n, None).ok_or_else(unlikely)?;
                 let first = usize::from(swapped);
                 let (mut both, mut wrong) = ([None, None], [Vec::new(), Vec::new()]);
                 wrong[1 - first].push(right.clone());
                 wrong[first].push(alike);
                 both[first] = Some(right);
-                Ok(Case::Separate { base, first, right: both, wrong })
+                Ok(Case::Separate { base, first, right: Box::new(both), wrong })
             }
         }
     }
@@ -377,7 +382,7 @@ impl<'a> Studio<'a> {
     fn chosen(&self, cases: &[Case]) -> Result<Excitation, ExcitationError> {
         let tests = self.tests(cases, &self.library)?;
         let time_s = self.duration_s - self.lead_in_s;
-        let chosen = choose::choose(&tests, &self.durations_s, time_s);
+        let chosen = choose::choose(&tests, &self.times_s, time_s);
         let pieces: Vec<Piece> = chosen.iter().filter_map(|place| self.pieces.get(*place)).copied().collect();
         let mut by_load = pieces.clone();
         by_load.sort_by(|one, other| one.load_share.total_cmp(&other.load_share));
@@ -462,8 +467,8 @@ impl<'a> Studio<'a> {
                 let yardstick = engine::yardsticks(&problem, &[model.values]).first().copied()?;
                 let (matrix, ..) = problem.gram(&[model.values])?.normal_equations();
                 let inverse = engine::inverse_of_normal(&matrix)?;
-                let covariance =
-                    &inverse * (noise_n * noise_n) + engine::unlike_pulleys_covariance(&problem, &[model.values], &inverse);
+                let covariance = &inverse * (noise_n * noise_n)
+                    + engine::unlike_pulleys_covariance(&problem, &[model.values], &inverse);
                 #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
                 let count = record.rows.len() as f64;
                 let known = |parameter: &Parameter| {

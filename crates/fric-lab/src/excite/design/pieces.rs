@@ -5,7 +5,9 @@
 //! the length of the cable and, along other axes, through wraps and tensions; loads from low to high tell what goes with the load
 //! from what does not.
 
-use crate::trajectory::{ACCELERATION_M_PER_S2, Limits, Piece, STROKE_ACCELERATION_M_PER_S2, Shape, Trajectory, WorkBox};
+use crate::trajectory::{
+    ACCELERATION_M_PER_S2, Limits, Piece, STROKE_ACCELERATION_M_PER_S2, Shape, Trajectory, WorkBox,
+};
 
 /// Loads that pieces are made for, as shares of the way from the least force to the greatest.
 const LOADS: [f64; 3] = [0.1, 0.5, 0.9];
@@ -64,8 +66,7 @@ fn shapes(work_box: &WorkBox, limits: &Limits, has_axes: bool) -> Vec<Shape> {
         // Both ramps together cover π·v²/(2·a).
         let ramps_m = 0.5 * core::f64::consts::PI * speed_m_per_s * speed_m_per_s / acceleration_m_per_s2;
         let length_m = speed_m_per_s * at_speed_s + ramps_m;
-        let stroke =
-            |count| Shape::Strokes { axis, length_m, speed_m_per_s, acceleration_m_per_s2, count };
+        let stroke = |count| Shape::Strokes { axis, length_m, speed_m_per_s, acceleration_m_per_s2, count };
         shapes.push(repeated(work_box, limits, stroke));
     };
     let fastest = limits.speed_m_per_s;

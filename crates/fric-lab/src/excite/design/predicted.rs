@@ -35,7 +35,8 @@ impl Samples {
     pub fn enter(&self, measurements: &mut Measurements<'_>) {
         measurements.start_log();
         let cables = self.inputs.chunks_exact(self.cable_count).zip(self.forces_n.chunks_exact(self.cable_count));
-        for ((stamp_nanos, pose), (cables, reference_force_n)) in self.stamps_nanos.iter().zip(&self.poses).zip(cables) {
+        for ((stamp_nanos, pose), (cables, reference_force_n)) in self.stamps_nanos.iter().zip(&self.poses).zip(cables)
+        {
             let (stamp_nanos, pose) = (*stamp_nanos, *pose);
             measurements.add(&Sample { stamp_nanos, cables, reference_force_n, pose, outside_wrench: None });
         }
@@ -63,10 +64,7 @@ pub fn samples(robot: &RobotParams<'_>, run: &mut Excitation) -> Result<Samples,
 }
 
 /// The same as a log.
-pub fn frictionless<'a>(
-    robot: &RobotParams<'a>,
-    run: &mut Excitation,
-) -> Result<Measurements<'a>, ExcitationError> {
+pub fn frictionless<'a>(robot: &RobotParams<'a>, run: &mut Excitation) -> Result<Measurements<'a>, ExcitationError> {
     let mut measurements = Measurements::new(robot, Reference::Forces);
     samples(robot, run)?.enter(&mut measurements);
     Ok(measurements)
