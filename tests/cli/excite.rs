@@ -179,3 +179,76 @@ fn outputs_appear_whole_or_not_at_all() {
     assert!(place.read("old").len() > 100_000);
     assert_eq!(place.names(), ["old", "robot.toml"]);
 }
+
+/// A drive whose cycle takes 4 ms.
+const DRIVE: &str = "format = 'fric-robot/1'\nname = 'bench'\ncycle_s = 0.004\n[platform]\nmass_kg = 0.5\n[[cable]]\nname = 'drive'\n\
+                     pulleys = [{ wrap_deg = 180.0, sensor = true }, { wrap_deg = 90.0 }]\n\
+                     friction = { mu = 0.019, sigma_n_per_m = 950.0, viscous_n_s_per_m = 0.2 }\n";
+
+/// What `discover --json` writes of a cable, as far as it matters: a drag of the bearings for which another effect would do as well.
+const FOUND: &str = r#"{ "format": "fric-discover/1", "robot": "bench", "log": ["a.csv"], "cables": [ { "name": "drive", "noise_floor_n": 0.02,
+    "effects": [ { "kind": "bearing_drag", "parameters": { "force_n": 0.012 },
+                   "runner_up": { "kind": "load_nonlinearity", "delta_bic": -50.0, "held_out_rms_n": 0.02, "as_good": true } } ],
+    "tried": [], "parameters": { "mu": 0.018, "bearing_drag.force_n": 0.012 },
+    "standard_errors": { "mu": 0.0001, "bearing_drag.force_n": 0.001 } } ] }"#;
+
+#[test]
+fn a_run_is_designed_for_what_a_discovery_left_open() {
+    let place = place_with(DRIVE);
+    place.write("found.json", FOUND);
+    let loads = ["--min-tension-n", "2", "--max-tension-n", "10", "--duration", "8"];
+    let run = excite(&place, &[&["--for", "found.json", "--preview", "run.html"], &loads[..]].concat()).succeeds();
+    let (columns, _) = columns(&place.read("run.csv"));
+    assert!(columns["drive_tension_n"].iter().all(|tension_n| (2.0..=10.0).contains(tension_n)));
+    assert_eq!(columns["time_s"].len(), 2000);
+    let told = run.stdout.lines().nth(1).unwrap();
+    for words in [
+        "drive: bearing_drag or load_nonlinearity",
+        "if it is bearing_drag",
+        "the identification run",
+        "noise 0.0200 N",
+    ] {
+        assert!(told.contains(words), "{words} in {told}");
+    }
+    let page = String::from_utf8(place.read("run.html")).unwrap();
+    assert!(page.contains("designed run") && page.contains(told.trim()), "{told}");
+    assert_self_contained(&page);
+    // Under one load they are the same.
+    place
+        .run_in_vain(&["excite", "--model", "robot.toml", "-o", "new.csv", "--for", "found.json", "--duration", "8"])
+        .fails(1, &["no run of 8 s within these limits tells bearing_drag from load_nonlinearity on drive"])
+        .advises(&["greater limits"]);
+}
+
+#[test]
+fn parameters_to_determine_may_go_without_their_units() {
+    let place = place_with(DRIVE);
+    let run = excite(&place, &["--determine", "sigma,mu", "--duration", "6", "--noise-n", "0.01"]).succeeds();
+    assert!(run.stdout.contains("sigma_n_per_m 950") && run.stdout.contains("mu 0.019"), "{run:#?}");
+}
+
+#[test]
+fn questions_that_cannot_be_asked_are_told() {
+    let place = place_with(DRIVE);
+    place.write("wrong.json", "{}");
+    place.write("other.json", FOUND.replace("bench", "another"));
+    place.write("by-wrench.json", FOUND.replacen('{', "{ \"wrench\": {},", 1));
+    place.write("nothing.json", FOUND.replace("true", "false"));
+    let refused = |options: &[&str]| {
+        place.run_in_vain(&[&["excite", "--model", "robot.toml", "-o", "run.csv"], options].concat())
+    };
+    refused(&["--separate", "stribeck,dwel_stiction"]).fails(2, &["--separate", "dwel_stiction", "did you mean"]);
+    refused(&["--separate", "stribeck"]).fails(2, &["--separate", "two effects"]);
+    refused(&["--determine", "mju"]).fails(2, &["--determine", "mju"]);
+    refused(&["--determine", "mu", "--cables", "drve"]).fails(2, &["drve", "did you mean `drive`"]);
+    refused(&["--determine", "mu", "--separate", "stribeck,coulomb"]).fails(2, &["cannot be used with"]);
+    refused(&["--duration", "8"]).fails(2, &["--for"]);
+    refused(&["--determine", "mu", "--duration", "1e9"]).fails(2, &["--duration is", "allowed is 3 to 600"]);
+    refused(&["--determine", "mu", "--noise-n", "0"]).fails(2, &["--noise-n is 0"]);
+    refused(&["--determine", "stribeck.ratio"]).fails(1, &["drive has no `stribeck`"]);
+    refused(&["--for", "missing.json"]).fails(1, &["missing.json"]);
+    refused(&["--for", "wrong.json"]).fails(1, &["wrong.json", "not what `discover --json` writes"]);
+    refused(&["--for", "other.json"]).fails(1, &["robot `another`"]);
+    refused(&["--for", "by-wrench.json"]).fails(1, &["by the wrench", "--separate"]);
+    refused(&["--for", "nothing.json"]).fails(1, &["leaves nothing open"]);
+}

@@ -70,7 +70,8 @@ fn each_command_has_an_example_that_runs() {
             "run.html",
             "shapes.html",
             "simulated.mcap",
-            "spoilt.mcap"
+            "spoilt.mcap",
+            "tell.csv"
         ]
     );
 }

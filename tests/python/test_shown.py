@@ -170,6 +170,27 @@ def test_set_points_are_those_of_the_command_line(folder, monkeypatch):
     assert bench.position_m is None and bench.tension_n is None and bench.length_m.shape == (len(bench), 1)
 
 
+def test_designed_runs_are_those_of_the_command_line(folder, monkeypatch):
+    monkeypatch.chdir(folder)
+    (folder / "bench.toml").write_text(SLOW_BENCH, encoding="utf-8")
+    options = ["--determine", "mu", "--duration", "4", "--preview", "told.html", "--force"]
+    told = command(folder, "excite", "--model", "bench.toml", "-o", "told.csv", *options).stdout
+    robot = fric.Robot.from_toml(SLOW_BENCH)
+    run = fric.excite(robot, determine=["mu"], duration_s=4.0, output="told-py.csv", force=True)
+    assert (folder / "told-py.csv").read_bytes() == (folder / "told.csv").read_bytes()
+    assert run.to_html() == (folder / "told.html").read_text(encoding="utf-8")
+    assert told == f"told.csv: {run.summary()}\n" and len(run.expectations) == 1
+    assert fric.excite(robot).expectations == ()
+    cable = {"name": robot.cables[0].name, "noise_floor_n": 0.02, "effects": [], "tried": [], "parameters": {"mu": 0.019}, "standard_errors": {}}
+    found = {"format": "fric-discover/1", "robot": robot.name, "cables": [cable]}
+    left_open = fric.excite(robot, for_=found, duration_s=4.0)
+    assert "mu 0.019" in left_open.expectations[0] and left_open == fric.excite(robot, for_=json.dumps(found), duration_s=4.0)
+    with pytest.raises(fric.ConfigError, match="three questions"):
+        fric.excite(robot, determine=["mu"], separate=["stribeck", "dwell_stiction"])
+    with pytest.raises(fric.ConfigError, match="`duration_s` needs a question"):
+        fric.excite(robot, duration_s=4.0)
+
+
 def test_the_command_line_runs_in_python(folder):
     assert command(folder, "--version").stdout == f"fric-cli {fric.__version__}\n"
     assert "Usage: fric-cli" in command(folder, "--help").stdout

@@ -60,9 +60,13 @@ pub enum Command {
                       --disturbance hum:amplitude_n=0.12,frequency_hz=50 --hand-n 3 --reference-wander-n 0.01\n  \
                       fric-cli simulate --model examples/mini-ipanema.toml --run crossing -o crossing.mcap")]
     Simulate(SimulateArguments),
-    /// Write the identification run as set points for a robot's controller
+    /// Write the identification run, or a run designed for a question, as set points for a robot's controller
+    ///
+    /// With --for, --separate or --determine the run is put together so that its log answers the question, and what evidence to expect is said;
+    /// where no run within the limits can tell, there is none. On a test bench --max-tension-n lets the run state the load of the cables too.
     #[command(
-        after_help = "Examples:\n  fric-cli excite --model examples/mini-ipanema.toml -o run.csv --preview run.html\n  \
+        after_help = "Examples:\n  fric-cli excite --model examples/mini-ipanema.toml -o tell.csv --determine mu,sigma_n_per_m \
+                      --cables cable1 --duration 10\n  fric-cli excite --model examples/mini-ipanema.toml -o run.csv --preview run.html\n  \
                       fric-cli excite --model examples/mini-ipanema.toml -o gentle.csv --box=-0.1,-0.1,-0.1,0.1,0.1,0.1 \
                       --max-speed-m-per-s 0.5 --max-acceleration-m-per-s2 5 --min-tension-n 2 --max-tension-n 30"
     )]
@@ -349,9 +353,35 @@ pub struct ExciteArguments {
     /// Draw the run on a page, this HTML file
     #[arg(long, value_name = "P.html", value_parser = a_file())]
     pub preview: Option<PathBuf>,
+    #[command(flatten)]
+    pub design: DesignArguments,
     /// Replace outputs that exist
     #[arg(long)]
     pub force: bool,
+}
+
+/// What a run is designed for, in place of the identification run.
+#[derive(Debug, Args)]
+pub struct DesignArguments {
+    /// Design the run that tells what a discovery left open: the file that `discover --json` wrote
+    #[arg(long = "for", value_name = "FOUND.json", group = "question")]
+    pub found: Option<PathBuf>,
+    /// Design the run that tells these two effects apart, such as `stribeck,dwell_stiction`
+    #[arg(long, value_name = "A,B", value_delimiter = ',', group = "question")]
+    pub separate: Option<Vec<String>>,
+    /// Design the run that determines these parameters best, such as `sigma_n_per_m,stribeck.ratio`
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', group = "question")]
+    pub determine: Option<Vec<String>>,
+    /// How long the designed run is, s [default: 20]
+    #[arg(long = "duration", value_name = "S", allow_negative_numbers = true, value_parser = a_number, requires = "question")]
+    pub duration_s: Option<f64>,
+    /// Design for these cables only [default: all]
+    #[arg(long = "cables", value_name = "NAMES", value_delimiter = ',', requires = "question")]
+    pub cables: Option<Vec<String>>,
+    /// Standard deviation of the noise of the force at the platform, N [default: what the discovery found; else 0.02 N at the sensor, 0.01 N at the
+    /// platform]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = a_number, requires = "question")]
+    pub noise_n: Option<f64>,
 }
 
 /// Six coordinates, m.

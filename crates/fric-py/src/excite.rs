@@ -1,17 +1,18 @@
-//! `excite`: the identification run as set points.
+//! `excite`: the identification run, or one that was designed for a question, as set points.
 
 use std::path::PathBuf;
 
-use fric_lab::excite::{Excitation, ExcitationOptions, ExcitedCycle};
+use fric_lab::excite::{Excitation, ExcitationOptions, ExcitedCycle, Experiment, STANDARD_DURATION_S, design};
 use fric_log::output::OutputFile;
-use fric_work::excite::describe;
+use fric_work::excite::{describe, expectations};
+use fric_work::questions::{Request, questions};
 use fric_work::report::{RunSeries, preview};
 use fric_work::set_points::SetPointTable;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
 use crate::arrays::{fixed, fixed_rows};
-use crate::errors::Outcome;
+use crate::errors::{Fault, Outcome};
 use crate::results;
 use crate::robot::Robot;
 use crate::watch::{STRIDE, Watch};
@@ -53,11 +54,16 @@ impl SetPoints {
     }
 }
 
-/// The identification run for a robot, cycle by cycle: `fric-cli excite`.
+/// The identification run for a robot, or a run designed for a question, cycle by cycle: `fric-cli excite`.
 ///
 /// `box_m` is two corners of the box in which the platform runs, base frame, m; the others cap its speed and acceleration and bound
 /// the cable forces at the platform. What is left out is the run's own, as on the command line. With `output` the set points are
 /// written to a CSV file, whole or not at all, with the units in its header; an existing file is replaced only with `force`.
+///
+/// One of these designs the run: `separate` names two effects to tell apart, `determine` parameters to determine, and `for_` is what a
+/// discovery left open (a DiscoverResult, or its JSON as a dict or text). Then `duration_s` is how long the run is (20 s if not given), `cables` the
+/// names of the cables that the question is about (all if not given), `noise_n` the standard deviation of the noise of the force
+/// at the platform. `result.expectations` says what to expect; where no run within the limits can tell, ConfigError says so.
 ///
 /// >>> robot = Robot.read("examples/mini-ipanema.toml")
 /// >>> run = excite(robot, max_speed_m_per_s=0.5)
@@ -67,8 +73,8 @@ impl SetPoints {
 /// 'stop_and_go'
 #[pyfunction]
 #[pyo3(
-    signature = (robot, *, box_m=None, max_speed_m_per_s=None, max_acceleration_m_per_s2=None, min_tension_n=None, max_tension_n=None, output=None, force=false, progress=None),
-    text_signature = "(robot, *, box_m=None, max_speed_m_per_s=None, max_acceleration_m_per_s2=None, min_tension_n=None, max_tension_n=None, output=None, force=False, progress=False)"
+    signature = (robot, *, box_m=None, max_speed_m_per_s=None, max_acceleration_m_per_s2=None, min_tension_n=None, max_tension_n=None, for_=None, separate=None, determine=None, duration_s=None, cables=None, noise_n=None, output=None, force=false, progress=None),
+    text_signature = "(robot, *, box_m=None, max_speed_m_per_s=None, max_acceleration_m_per_s2=None, min_tension_n=None, max_tension_n=None, for_=None, separate=None, determine=None, duration_s=None, cables=None, noise_n=None, output=None, force=False, progress=False)"
 )]
 pub fn excite(
     robot: &Bound<'_, Robot>,
@@ -77,6 +83,12 @@ pub fn excite(
     max_acceleration_m_per_s2: Option<f64>,
     min_tension_n: Option<f64>,
     max_tension_n: Option<f64>,
+    for_: Option<&Bound<'_, PyAny>>,
+    separate: Option<Vec<String>>,
+    determine: Option<Vec<String>>,
+    duration_s: Option<f64>,
+    cables: Option<Vec<String>>,
+    noise_n: Option<f64>,
     output: Option<PathBuf>,
     force: bool,
     progress: Option<&Bound<'_, PyAny>>,
@@ -86,9 +98,32 @@ pub fn excite(
     let file = robot.borrow().file.clone();
     let options =
         ExcitationOptions { box_m, max_speed_m_per_s, max_acceleration_m_per_s2, min_tension_n, max_tension_n };
-    let mut excitation = py.detach(|| Excitation::new(&file, &options))?;
+    let found = for_.map(found_text).transpose()?;
+    let request = match (&found, &separate, &determine) {
+        (None, None, None) => None,
+        (Some(text), None, None) => Some(Request::Found(text)),
+        (None, Some(kinds), None) => Some(Request::Separate(kinds)),
+        (None, None, Some(names)) => Some(Request::Determine(names)),
+        _ => return Err(Fault::config("`for_`, `separate` and `determine` are three questions; ask one of them")),
+    };
+    let unused = [("duration_s", duration_s.is_some()), ("cables", cables.is_some()), ("noise_n", noise_n.is_some())];
+    let unused = unused.into_iter().find(|(_, given)| *given && request.is_none());
+    if let Some((name, _)) = unused {
+        return Err(Fault::config(format!("`{name}` needs a question; give `for_`, `separate` or `determine`")));
+    }
     let inputs: [PathBuf; 0] = [];
     let created = output.map(|path| OutputFile::create(&path, &inputs, force)).transpose()?;
+    let (mut excitation, expected) = match request {
+        Some(request) => {
+            let questions = questions(&file, request, cables.as_deref(), noise_n);
+            let questions = questions.map_err(|error| Fault::config(error.to_string()))?;
+            let duration_s = duration_s.unwrap_or(STANDARD_DURATION_S);
+            let Experiment { excitation, forecasts } =
+                watch.fit(|progress| design(&file, &options, duration_s, &questions, progress))??;
+            (excitation, expectations(&file.cable_names(), &forecasts))
+        }
+        None => (py.detach(|| Excitation::new(&file, &options))?, Vec::new()),
+    };
     let mut table = created.map(SetPointTable::new);
     if let Some(table) = &mut table {
         table.write_header(&file.cable_names(), &excitation)?;
@@ -116,7 +151,9 @@ pub fn excite(
     if let Some(table) = table {
         table.complete()?.place()?;
     }
-    let page = preview::page(&file, &excitation, &series);
+    let page = preview::page(&file, &excitation, &series, &expected);
+    let told: String = expected.iter().map(|line| format!("\n  {line}")).collect();
+    let summary = format!("{}{told}", describe(&excitation, &series));
     let names = file.cable_names();
     let count = names.len();
     let of_platform =
@@ -134,7 +171,19 @@ pub fn excite(
         (position_m, orientation_xyzw, velocity_m_per_s, acceleration_m_per_s2),
         (fixed_rows(py, points.length_m, count)?, fixed_rows(py, points.speed_m_per_s, count)?),
         of_platform(points.tension_n, count)?,
-        (describe(&excitation, &series), page),
+        PyTuple::new(py, &expected)?,
+        (summary, page),
     );
     Ok(results::of(py, "ExciteResult", fields)?.unbind())
+}
+
+/// The JSON of a discovery: of its result, of a dict, or as it is.
+fn found_text(found: &Bound<'_, PyAny>) -> Outcome<String> {
+    if let Ok(text) = found.extract::<String>() {
+        return Ok(text);
+    }
+    if found.hasattr("to_json")? {
+        return Ok(found.call_method0("to_json")?.extract()?);
+    }
+    Ok(found.py().import("json")?.call_method1("dumps", (found,))?.extract()?)
 }

@@ -1,8 +1,9 @@
-//! What `excite` tells of an identification run.
+//! What `excite` tells of a run.
 
 use std::fmt::Write as _;
 
-use fric_lab::excite::Excitation;
+use fric_core::effects::Effect;
+use fric_lab::excite::{Excitation, Forecast, Goal, KnownParameter};
 use fric_lab::text::to_millimetre;
 
 use crate::report::RunSeries;
@@ -29,4 +30,54 @@ pub fn describe(excitation: &Excitation, series: &RunSeries) -> String {
         let _ = write!(text, ", cable forces {:.2} to {:.2} N", tension_n.least, tension_n.greatest);
     }
     text
+}
+
+/// For people: what a designed run is expected to tell, a line each.
+#[must_use]
+pub fn expectations(cable_names: &[&str], forecasts: &[Forecast]) -> Vec<String> {
+    let line = |forecast: &Forecast| {
+        let Forecast { cable, noise_n, goal, standard } = forecast;
+        let name = cable_names.get(*cable).copied().unwrap_or_default();
+        let open = if goal.tells() { "" } else { "; this run does not tell" };
+        let standard = standard.as_ref().map_or_else(String::new, |standard| {
+            format!("; the identification run of the same time: {}", in_figures(standard))
+        });
+        let question = match goal {
+            Goal::Separated { effects, .. } => {
+                let [one, other] = effects.map(kind_or_none);
+                format!("{one} or {other}: ")
+            }
+            Goal::Determined(_) => String::new(),
+        };
+        format!("{name}: {question}{}{open}{standard} (noise {noise_n:.4} N)", in_figures(goal))
+    };
+    forecasts.iter().map(line).collect()
+}
+
+fn kind_or_none(effect: Option<Effect>) -> &'static str {
+    effect.map_or("no effect", Effect::kind)
+}
+
+/// What is expected, in figures.
+fn in_figures(goal: &Goal) -> String {
+    match goal {
+        Goal::Separated { effects, delta_bic } => {
+            let of = |(effect, delta_bic): (&Option<Effect>, &Option<f64>)| {
+                delta_bic.map(|delta_bic| format!("ΔBIC {delta_bic:.0} if it is {}", kind_or_none(*effect)))
+            };
+            effects.iter().zip(delta_bic).filter_map(of).collect::<Vec<String>>().join(", ")
+        }
+        Goal::Determined(known) => {
+            let of = |known: &KnownParameter| {
+                let KnownParameter { parameter, value, standard_error, .. } = known;
+                // Two digits of the error, and the value to the same place.
+                let digits =
+                    if *standard_error > 0.0 { (1.0 - standard_error.log10().floor()).clamp(0.0, 12.0) } else { 3.0 };
+                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to 0…12")]
+                let digits = digits as usize;
+                format!("{parameter} {value:.digits$} ± {standard_error:.digits$}")
+            };
+            known.iter().map(of).collect::<Vec<String>>().join(", ")
+        }
+    }
 }

@@ -3,7 +3,7 @@
 //! The command line and the Python module compute with `fric-lab` on samples that `fric-log` reads, and show what comes out by
 //! what is here, so that both show the same: [`json`] is the text of a result for machines, [`report`] are the pages, each one
 //! file without network access, [`fit_report`] is a fit as
-//! users of lmfit read it, [`replay`] the result of a replay and [`set_points`] the file of an identification run. The texts of
+//! users of lmfit read it, [`replay`] the result of a replay, [`set_points`] the file of a run and [`questions`] what a designed run is to tell. The texts of
 //! the other results stand beside them in `fric-lab`.
 //!
 //! Nothing here reads a log or computes friction, and nothing knows a terminal or Python.
@@ -12,6 +12,7 @@
 
 pub mod excite;
 pub mod fit_report;
+pub mod questions;
 pub mod replay;
 pub mod report;
 pub mod set_points;

@@ -14,7 +14,7 @@ from .base import Value
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ExciteResult(Value):
-    """Set points of an identification run, a row a cycle; columns of cables are the robot's in order. `print(result)` says how hard it is."""
+    """Set points of an identification run, or of one designed for a question, a row a cycle; columns of cables are the robot's in order. `print(result)` says how hard it is."""
 
     robot: str
     """Name of the robot."""
@@ -39,7 +39,9 @@ class ExciteResult(Value):
     speed_m_per_s: NDArray[np.float64]
     """Its rate, m/s, (N, cables)."""
     tension_n: NDArray[np.float64] | None
-    """Cable forces at the platform, N, (N, cables); None where not all cables are attached to it."""
+    """Cable forces at the platform, N, (N, cables); None where not all cables are attached to it, and the run states no load of a test bench."""
+    expectations: tuple[str, ...]
+    """What a designed run is expected to tell, a line for each question; empty for the identification run."""
     _summary: str = field(repr=False, compare=False)
     _html: str = field(repr=False, compare=False)
 
@@ -68,6 +70,7 @@ class ExciteResult(Value):
         platform: tuple[Any, Any, Any, Any],
         cables: tuple[Any, Any],
         tension_n: Any,
+        expectations: tuple[str, ...],
         texts: tuple[str, str],
     ) -> ExciteResult:
-        return cls(*names, *times, *platform, *cables, tension_n, *texts)
+        return cls(*names, *times, *platform, *cables, tension_n, expectations, *texts)

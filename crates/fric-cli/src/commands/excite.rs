@@ -1,16 +1,20 @@
-//! `excite`: the identification run as set points.
+//! `excite`: the identification run, or one that was designed for a question, as set points.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use fric_lab::excite::{Excitation, ExcitationError, ExcitationOptions};
+use fric_lab::excite::{
+    Excitation, ExcitationError, ExcitationOptions, Experiment, Question, STANDARD_DURATION_S, design,
+};
 use fric_log::output::OutputFile;
-use fric_work::excite::describe;
+use fric_work::excite::{describe, expectations};
+use fric_work::questions::{QuestionError, Request, questions};
 use fric_work::report::{RunSeries, preview};
 use fric_work::set_points::SetPointTable;
 
-use crate::arguments::ExciteArguments;
+use crate::arguments::{DesignArguments, ExciteArguments};
 use crate::failure::{Failure, Outcome};
 use crate::interrupt;
+use crate::measurements::watched;
 use crate::model::Model;
 use crate::output;
 use crate::progress::{self, STRIDE};
@@ -26,11 +30,20 @@ pub fn run(arguments: &ExciteArguments) -> Outcome {
         min_tension_n: arguments.min_tension_n,
         max_tension_n: arguments.max_tension_n,
     };
-    let mut excitation = Excitation::new(&model.robot, &options).map_err(refused)?;
-    let inputs: [PathBuf; 1] = [arguments.model.clone()];
+    let mut inputs: Vec<PathBuf> = vec![arguments.model.clone()];
+    inputs.extend(arguments.design.found.clone());
     let file = OutputFile::create(&arguments.output, &inputs, arguments.force)?;
     let page = arguments.preview.as_ref().map(|path| OutputFile::create(path, &inputs, arguments.force)).transpose()?;
 
+    let (mut excitation, expected) = match asked(&model, &arguments.design)? {
+        Some(questions) => {
+            let duration_s = arguments.design.duration_s.unwrap_or(STANDARD_DURATION_S);
+            let work = |progress: &_| design(&model.robot, &options, duration_s, &questions, progress);
+            let Experiment { excitation, forecasts } = watched("steps of the design", work)?.map_err(refused)?;
+            (excitation, expectations(&model.robot.cable_names(), &forecasts))
+        }
+        None => (Excitation::new(&model.robot, &options).map_err(refused)?, Vec::new()),
+    };
     let mut table = SetPointTable::new(file);
     table.write_header(&model.robot.cable_names(), &excitation)?;
     let mut series = RunSeries::new(excitation.total_cycles());
@@ -48,15 +61,41 @@ pub fn run(arguments: &ExciteArguments) -> Outcome {
     bar.finish_and_clear();
     let mut files = vec![table.complete()?];
     if let Some(page) = page {
-        files.push(page.complete_with(&preview::page(&model.robot, &excitation, &series))?);
+        files.push(page.complete_with(&preview::page(&model.robot, &excitation, &series, &expected))?);
     }
     output::place(files)?;
-    output::show(&format!("{}: {}\n", arguments.output.display(), describe(&excitation, &series)))
+    let told: String = expected.iter().map(|line| format!("  {line}\n")).collect();
+    output::show(&format!("{}: {}\n{told}", arguments.output.display(), describe(&excitation, &series)))
+}
+
+/// What the run is to tell, if it is to be designed.
+fn asked(model: &Model, arguments: &DesignArguments) -> Outcome<Option<Vec<Question>>> {
+    let DesignArguments { found, separate, determine, cables, noise_n, .. } = arguments;
+    let text = found.as_deref().map(read_text).transpose()?;
+    let (request, flag) = match (separate, determine, &text) {
+        (Some(kinds), ..) => (Request::Separate(kinds), "--separate"),
+        (_, Some(names), _) => (Request::Determine(names), "--determine"),
+        (_, _, Some(text)) => (Request::Found(text), "--for"),
+        _ => return Ok(None),
+    };
+    match questions(&model.robot, request, cables.as_deref(), *noise_n) {
+        Ok(questions) => Ok(Some(questions)),
+        Err(QuestionError::Names(problem)) => Err(Failure::usage(format!("{flag}: {problem}"))),
+        Err(error) => Err(Failure::new(error).in_file(found.as_deref().unwrap_or(Path::new(flag)))),
+    }
+}
+
+fn read_text(path: &Path) -> Outcome<String> {
+    std::fs::read_to_string(path).map_err(|error| Failure::new(fric_log::reason(&error)).in_file(path))
 }
 
 /// A number on the command line is the command line's fault, the rest the robot's or the run's.
 fn refused(error: ExcitationError) -> Failure {
-    let flag = |key: &str| if key == "box_m" { "--box".to_owned() } else { format!("--{}", key.replace('_', "-")) };
+    let flag = |key: &str| match key {
+        "box_m" => "--box".to_owned(),
+        "duration_s" => "--duration".to_owned(),
+        key => format!("--{}", key.replace('_', "-")),
+    };
     match error {
         ExcitationError::OptionOutOfRange { key, value, min, max } => {
             Failure::usage(format!("{} is {value:?}; allowed is {min} to {max}", flag(key)))

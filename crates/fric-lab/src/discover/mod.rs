@@ -24,7 +24,7 @@ mod extended;
 mod foreign;
 mod length_noise;
 mod lines;
-mod naming;
+pub(crate) mod naming;
 mod neighbours;
 mod places;
 mod profile;
@@ -39,7 +39,7 @@ mod stretch;
 mod summary;
 mod timing;
 pub mod words;
-mod workbench;
+pub(crate) mod workbench;
 mod wrench;
 
 pub(crate) use crate::fit::{candidates, noise, ripple, split};

@@ -14,6 +14,9 @@ mod advice {
     pub const BALANCE: &str = "check `base_m`, `platform_m` and `center_of_mass_m`, for fewer than six cables hold only a \
                                platform that hangs in one point";
     pub const GENTLER: &str = "choose a lower acceleration, a smaller box, or other bounds";
+    pub const KNOWN: &str = "leave it out, or take `reference` out of `[log]` where the load can be changed";
+    pub const BOTH_BOUNDS: &str = "give `max_tension_n` too, the greatest load that the bench can put on the cable";
+    pub const MORE: &str = "give it more time, or greater limits of speed, acceleration and force";
     pub const ELSEWHERE: &str = "it cannot even rest there, so choose a smaller or another box, or other bounds";
 }
 
@@ -54,6 +57,38 @@ pub enum ExcitationError {
         /// The first cable without.
         cable: String,
     },
+    /// The load of a test bench that the robot file knows, and is told to change.
+    #[error(
+        "`max_tension_n` is {greatest_n}, but the robot file knows the load of the cables and the run cannot change it; {}",
+        advice::KNOWN
+    )]
+    LoadIsKnown {
+        /// The greatest load, N.
+        greatest_n: f64,
+    },
+    /// A least load of a test bench without a greatest.
+    #[error("`min_tension_n` is {least_n} without `max_tension_n`; {}", advice::BOTH_BOUNDS)]
+    NoGreatestLoad {
+        /// The least load, N.
+        least_n: f64,
+    },
+    /// A question that cannot be asked of this robot.
+    #[error("{problem}")]
+    BadQuestion {
+        /// What is wrong and what to do, without its full stop.
+        problem: String,
+    },
+    /// No run within the limits tells anything of what is asked.
+    #[error("no run of {duration_s} s within these limits tells {what}; {}", advice::MORE)]
+    CannotTell {
+        /// What is asked, with what the best run would give.
+        what: String,
+        /// How long a run may be, s.
+        duration_s: f64,
+    },
+    /// The design was stopped from outside.
+    #[error("the design of the run was stopped")]
+    Stopped,
     /// A run of more than an hour.
     #[error("the run would take {duration_s:.0} s, and more than {longest_s} s is not allowed; {}", advice::SHORTER)]
     TooLong {
@@ -106,7 +141,10 @@ impl ExcitationError {
     #[must_use]
     pub fn advice(&self) -> Option<&'static str> {
         match self {
-            Self::OptionOutOfRange { .. } => None,
+            Self::OptionOutOfRange { .. } | Self::BadQuestion { .. } | Self::Stopped => None,
+            Self::LoadIsKnown { .. } => Some(advice::KNOWN),
+            Self::NoGreatestLoad { .. } => Some(advice::BOTH_BOUNDS),
+            Self::CannotTell { .. } => Some(advice::MORE),
             Self::BadBox { .. } => Some(advice::BOX),
             Self::NeedsPlatform { .. } => Some(advice::OPTION),
             Self::TooLong { .. } => Some(advice::SHORTER),

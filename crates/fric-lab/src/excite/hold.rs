@@ -8,26 +8,23 @@ use crate::simulate::platform::Platform;
 use crate::trajectory::{Phase, SetPoint};
 
 /// The platform with bounds for the forces of its cables.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Hold {
     platform: Platform,
     distribution: Distribution,
     least_n: f64,
     greatest_n: Option<f64>,
-    /// Force that each cable is to have where there is a choice, N.
-    wanted_n: f64,
     columns: Vec<Vector6<f64>>,
     forces_n: Vec<f64>,
 }
 
 impl Hold {
-    /// Forces near the middle of the bounds, or near `mean_n` where there is no upper one.
-    pub fn new(platform: Platform, least_n: f64, greatest_n: Option<f64>, mean_n: f64) -> Self {
+    /// Without an upper bound where there is no `greatest_n`.
+    pub fn new(platform: Platform, least_n: f64, greatest_n: Option<f64>) -> Self {
         Self {
             distribution: Distribution::new(platform.arm_m(), least_n),
             least_n,
             greatest_n,
-            wanted_n: greatest_n.map_or_else(|| mean_n.max(2.0 * least_n), |greatest_n| 0.5 * (least_n + greatest_n)),
             columns: Vec::with_capacity(platform.cable_count()),
             forces_n: vec![0.0; platform.cable_count()],
             platform,
@@ -39,10 +36,11 @@ impl Hold {
         (self.least_n, self.greatest_n)
     }
 
-    /// The forces of the cables at a set point, N.
+    /// The forces of the cables at a set point, N, as near to `wanted_n` as they can be.
     pub fn forces_n(
         &mut self,
         set_point: &SetPoint,
+        wanted_n: f64,
         time_s: f64,
         phase: Phase,
         names: &[String],
@@ -50,10 +48,11 @@ impl Hold {
         let pose = set_point.pose();
         // Whoever asks has been through the kinematics: every cable leaves its pulley.
         self.platform.structure(&pose, &mut self.columns);
-        if self.holds(set_point, &set_point.acceleration_m_per_s2) {
+        if self.holds(set_point, &set_point.acceleration_m_per_s2, wanted_n) {
             return Ok(&self.forces_n);
         }
-        let worst = self.worst(set_point).and_then(|(cable, force_n)| Some((names.get(cable)?.clone(), force_n)));
+        let worst =
+            self.worst(set_point, wanted_n).and_then(|(cable, force_n)| Some((names.get(cable)?.clone(), force_n)));
         Err(ExcitationError::NotHeld {
             least_n: self.least_n,
             greatest_n: self.greatest_n,
@@ -61,23 +60,23 @@ impl Hold {
             time_s,
             phase,
             worst,
-            holds_at_rest: self.holds(set_point, &Vector3::zeros()),
+            holds_at_rest: self.holds(set_point, &Vector3::zeros(), wanted_n),
         })
     }
 
     /// Whether there are forces within the bounds at an acceleration; they are in `forces_n` then.
-    fn holds(&mut self, set_point: &SetPoint, acceleration_m_per_s2: &Vector3<f64>) -> bool {
+    fn holds(&mut self, set_point: &SetPoint, acceleration_m_per_s2: &Vector3<f64>, wanted_n: f64) -> bool {
         let wrench = self.platform.outside_wrench(&set_point.orientation, acceleration_m_per_s2);
         let bounds_n = [self.least_n, self.greatest_n.unwrap_or(f64::INFINITY)];
-        self.forces_n.fill(self.wanted_n);
+        self.forces_n.fill(wanted_n);
         self.distribution.solve_within(&self.columns, &wrench, bounds_n, &mut self.forces_n)
     }
 
     /// The cable furthest out of bounds by the forces nearest to those wanted, and its force, N; `None` where no forces
     /// of whatever sign hold the platform.
-    fn worst(&mut self, set_point: &SetPoint) -> Option<(usize, f64)> {
+    fn worst(&mut self, set_point: &SetPoint, wanted_n: f64) -> Option<(usize, f64)> {
         let wrench = self.platform.outside_wrench(&set_point.orientation, &set_point.acceleration_m_per_s2);
-        self.forces_n.fill(self.wanted_n);
+        self.forces_n.fill(wanted_n);
         let unbounded = [f64::NEG_INFINITY, f64::INFINITY];
         if !self.distribution.solve_within(&self.columns, &wrench, unbounded, &mut self.forces_n) {
             return None;

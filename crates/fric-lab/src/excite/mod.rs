@@ -12,8 +12,10 @@
 //! Input is checked at set-up; a place that cannot be reached or held shows when its turn comes. Memory does not depend
 //! on the length of the run.
 
+mod design;
 mod error;
 mod hold;
+mod loads;
 mod options;
 
 use fric_core::CableParams;
@@ -24,18 +26,20 @@ use crate::simulate::motion::Motion;
 use crate::simulate::platform::Platform;
 use crate::simulate::tension::TensionLevel;
 use crate::simulate::workspace::{Workspace, direction_in};
-use crate::trajectory::{Phase, SetPoint, Trajectory, WorkBox};
+use crate::trajectory::{Phase, Piece, SetPoint, Trajectory, WorkBox};
 use hold::Hold;
+use loads::Loads;
 
 pub use crate::simulate::motion::CableMotion;
+pub use design::{Aim, Experiment, Forecast, Goal, KnownParameter, LEAST_SCORE, Question, STANDARD_DURATION_S, design};
 pub use error::ExcitationError;
 pub use options::ExcitationOptions;
 
 /// The longest run, s.
 pub const LONGEST_S: f64 = 3600.0;
 
-/// An identification run in progress.
-#[derive(Debug)]
+/// A run in progress: the identification run, or one that was designed.
+#[derive(Clone, Debug)]
 pub struct Excitation {
     cycle_s: f64,
     total_cycles: u64,
@@ -45,7 +49,10 @@ pub struct Excitation {
     names: Vec<String>,
     cables: Vec<CableParams>,
     hold: Option<Hold>,
+    loads: Loads,
     motions: Vec<CableMotion>,
+    /// Force of each cable at the platform, N, as far as it is known.
+    expected_n: Vec<f64>,
 }
 
 /// What is to be done in one cycle.
@@ -59,46 +66,74 @@ pub struct ExcitedCycle<'a> {
     pub platform: Option<SetPoint>,
     /// Length and speed of the cables in the robot's order.
     pub cables: &'a [CableMotion],
-    /// Forces of the cables at the platform, N, where all are attached to it.
+    /// Forces of the cables at the platform, N, where all are attached to it, or where the run states the load of a test bench.
     pub tensions_n: Option<&'a [f64]>,
+    /// The same, and where the run does not state them those to be expected.
+    pub(crate) expected_n: &'a [f64],
 }
 
 impl Excitation {
-    /// Sets the run up.
+    /// Sets the identification run up.
     ///
     /// # Errors
     /// [`ExcitationError`] for an option out of range or without meaning for this robot, a run that takes too long, and a
     /// robot without a place where all its cables can run.
     pub fn new(robot: &RobotFile, options: &ExcitationOptions) -> Result<Self, ExcitationError> {
+        Self::of(robot, options, None)
+    }
+
+    /// A run of pieces that lasts `duration_s`, or longer where the pieces take longer; with `max_tension_n` it states the load of a
+    /// test bench too.
+    pub(crate) fn of_pieces(
+        robot: &RobotFile,
+        options: &ExcitationOptions,
+        pieces: &[Piece],
+        duration_s: f64,
+    ) -> Result<Self, ExcitationError> {
+        Self::of(robot, options, Some((pieces, duration_s)))
+    }
+
+    fn of(
+        robot: &RobotFile,
+        options: &ExcitationOptions,
+        pieces: Option<(&[Piece], f64)>,
+    ) -> Result<Self, ExcitationError> {
         options.check()?;
         let params = robot.params();
         let tables = &robot.options().cable;
         let platform = Platform::new(&params);
+        let is_bench = platform.cable_count() == 0;
         let loose = tables.iter().zip(params.cables()).find(|(_, params)| !params.has_geometry());
         if let Some(((table, _), key)) = loose.zip(options.about_platform()) {
-            // A box is of use as soon as one cable is attached, bounds only if all are.
-            if key != "box_m" || platform.cable_count() == 0 {
+            // A box is of use as soon as one cable is attached; bounds if all are, or if the run states the load of a bench.
+            let states_load = is_bench && pieces.is_some() && key != "box_m";
+            if !states_load && (key != "box_m" || is_bench) {
                 return Err(ExcitationError::NeedsPlatform { key, cable: table.name.clone() });
             }
         }
-        let level = TensionLevel::of_platform(&platform, tables);
+        let level = if is_bench {
+            TensionLevel::of_bench(platform.weight_n(), tables)
+        } else {
+            TensionLevel::of_platform(&platform, tables)
+        };
+        let loads = Loads::new(&level, options, params.known_reference(), loose.is_none())?;
         let work_box = match options.box_m {
-            _ if platform.cable_count() == 0 => None,
+            _ if is_bench => None,
             Some(corners_m) => Some(stated_box(&platform, corners_m, tables, params.cables())?),
             None => Some(Workspace::find(&platform, &level)?.work_box),
         };
         let limits = options.limits();
-        let run = work_box.as_ref().map(|work_box| Trajectory::identification(work_box, &limits));
-        let motion = Motion::new(run, &limits);
+        let run = |work_box: &WorkBox| match pieces {
+            Some((pieces, duration_s)) => Trajectory::designed(work_box, &limits, pieces, duration_s),
+            None => Trajectory::identification(work_box, &limits),
+        };
+        let motion = Motion::of(work_box.as_ref().map(run), run(&Motion::BENCH));
         let duration_s = motion.trajectory().duration_s();
         if duration_s > LONGEST_S {
             return Err(ExcitationError::TooLong { duration_s, longest_s: LONGEST_S });
         }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "checked: at most 10¹⁰")]
         let total_cycles = libm::ceil(duration_s / params.cycle_s()) as u64;
-        let least_n = options.min_tension_n.unwrap_or_else(|| {
-            options.max_tension_n.map_or(level.least_n, |greatest_n| level.least_n.min(0.5 * greatest_n))
-        });
         Ok(Self {
             cycle_s: params.cycle_s(),
             total_cycles,
@@ -107,8 +142,10 @@ impl Excitation {
             motion,
             names: tables.iter().map(|table| table.name.clone()).collect(),
             cables: params.cables().to_vec(),
-            hold: loose.is_none().then(|| Hold::new(platform, least_n, options.max_tension_n, level.mean_n)),
+            hold: loose.is_none().then(|| Hold::new(platform, loads.least_n(), options.max_tension_n)),
+            loads,
             motions: vec![CableMotion { length_m: 0.0, speed_m_per_s: 0.0 }; tables.len()],
+            expected_n: vec![0.0; tables.len()],
         })
     }
 
@@ -130,10 +167,25 @@ impl Excitation {
         self.work_box.as_ref()
     }
 
-    /// Least and greatest force allowed, N, where all cables hold a platform.
+    /// Least and greatest force allowed, N, where all cables hold a platform, or the run states the load of a test bench.
     #[must_use]
     pub fn tension_bounds_n(&self) -> Option<(f64, Option<f64>)> {
-        self.hold.as_ref().map(Hold::bounds_n)
+        self.hold.as_ref().map(Hold::bounds_n).or(self.loads.of_bench_n())
+    }
+
+    /// Force that each cable is to have where there is a choice, N, in a run that states it.
+    pub(crate) fn stated_load_n(&self, time_s: f64) -> Option<f64> {
+        self.motion.trajectory().load_share_at(time_s).and_then(|share| self.loads.stated_n(share))
+    }
+
+    /// The movements of the run.
+    pub(crate) fn motion(&self) -> &Motion {
+        &self.motion
+    }
+
+    /// Whether the run can change how tight the cables are.
+    pub(crate) fn states_loads(&self) -> bool {
+        self.loads.stated_n(0.5).is_some()
     }
 
     /// The next cycle; `None` after the last. What it lends is overwritten by the following one.
@@ -176,11 +228,20 @@ impl Excitation {
                 ExcitationError::Unreachable { cable: name.clone(), position_m }
             })?;
         }
-        let tensions_n = match (&mut self.hold, &platform) {
-            (Some(hold), Some(set_point)) => Some(hold.forces_n(set_point, time_s, phase, &self.names)?),
-            _ => None,
+        let stated_n = self.stated_load_n(time_s);
+        let is_stated = if let (Some(hold), Some(set_point)) = (&mut self.hold, &platform) {
+            let wanted_n = stated_n.unwrap_or(self.loads.usual_n());
+            let forces_n = hold.forces_n(set_point, wanted_n, time_s, phase, &self.names)?;
+            self.expected_n.copy_from_slice(forces_n);
+            true
+        } else {
+            let acceleration_m_per_s2 = self.motion.trajectory().at(time_s).acceleration_m_per_s2.x;
+            self.expected_n.fill(stated_n.unwrap_or_else(|| self.loads.expected_n(acceleration_m_per_s2)));
+            stated_n.is_some()
         };
-        Ok(Some(ExcitedCycle { time_s, phase, platform, cables: &self.motions, tensions_n }))
+        let expected_n = self.expected_n.as_slice();
+        let tensions_n = is_stated.then_some(expected_n);
+        Ok(Some(ExcitedCycle { time_s, phase, platform, cables: &self.motions, tensions_n, expected_n }))
     }
 }
 

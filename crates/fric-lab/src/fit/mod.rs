@@ -54,6 +54,7 @@ pub(crate) mod engine {
     pub use super::bins::Bins;
     pub use super::cables::{Search, prepared, used};
     pub use super::conditions::{Condition, Spacing, conditions, sign, time};
+    pub use super::determined::Yardstick;
     pub use super::directions::{OpenDirection, open_directions};
     pub use super::gang::{Gang, Seat, forces_of};
     pub use super::gram::Gram;
@@ -66,7 +67,8 @@ pub(crate) mod engine {
     pub use super::scores::Scores;
     pub use super::selection::{Standing, count};
     pub use super::solve::{Solution, Unknown, search_near};
-    pub use super::undetermined::{covariance, inverse_of_normal, vagueness};
+    pub use super::undetermined::{covariance, inverse_of_normal, vagueness, yardsticks};
+    pub use super::unlike_pulleys::covariance as unlike_pulleys_covariance;
     pub use super::vector::Coordinate;
     pub use super::wrench::{ReferenceWrenches, first_model};
 }

@@ -173,7 +173,7 @@ pub fn vagueness(problem: &Problem<'_>, values: &[Values]) -> (DMatrix<f64>, Vec
 }
 
 /// What matters for each cable of a problem.
-fn yardsticks(problem: &Problem<'_>, values: &[Values]) -> Vec<Yardstick> {
+pub fn yardsticks(problem: &Problem<'_>, values: &[Values]) -> Vec<Yardstick> {
     let forces = problem.forces(values).unwrap_or_default();
     let of = |((member, values), forces): ((&Member<'_>, &Values), &Arc<Forces>)| {
         let gain = member.record.params.frictionless_gain();

@@ -47,13 +47,21 @@ pub struct Winch {
 }
 
 impl Motion {
+    /// Where the length of a cable without geometry runs, as x.
+    pub const BENCH: WorkBox = WorkBox {
+        center_m: Vector3::new(BENCH_LENGTH_M, 0.0, 0.0),
+        half_edges_m: Vector3::new(BENCH_HALF_M, 0.0, 0.0),
+        direction: Vector3::new(1.0, 0.0, 0.0),
+    };
+
+    /// The platform on a run, cables without geometry on the identification run.
     pub fn new(platform: Option<Trajectory>, limits: &Limits) -> Self {
-        let bench = WorkBox {
-            center_m: Vector3::new(BENCH_LENGTH_M, 0.0, 0.0),
-            half_edges_m: Vector3::new(BENCH_HALF_M, 0.0, 0.0),
-            direction: Vector3::x(),
-        };
-        Self { platform, bench: Trajectory::identification(&bench, limits) }
+        Self::of(platform, Trajectory::identification(&Self::BENCH, limits))
+    }
+
+    /// The platform on one run, cables without geometry on another, with the length as x.
+    pub fn of(platform: Option<Trajectory>, bench: Trajectory) -> Self {
+        Self { platform, bench }
     }
 
     /// The run that sets the duration.

@@ -21,6 +21,7 @@ use super::truth::{CableCause, TruthEffects};
 use super::wander::Wander;
 use super::workspace::{SHORT_SHARE, Workspace};
 use crate::effects::truth::TruthEffect;
+use crate::excite::Excitation;
 use crate::random::uniform;
 use crate::trajectory::{Limits, SetPoint, Trajectory};
 
@@ -37,6 +38,8 @@ pub struct Simulation {
     total_cycles: u64,
     done_cycles: u64,
     motion: Motion,
+    /// The run that states the loads.
+    stated: Option<Excitation>,
     platform: Platform,
     tension: Tension,
     /// How the tension of each cable varies by itself.
@@ -140,7 +143,20 @@ impl Simulation {
     /// [`SimulationError`] for an option out of range, an effect that cannot be simulated, a robot without a place where
     /// all its cables can run, a known load of cables that hold a platform, and a crossing run without a platform.
     pub fn new(robot: &RobotFile, options: &SimulationOptions) -> Result<Self, SimulationError> {
-        Self::of(robot, options, 0..robot.options().cable.len())
+        Self::of(robot, options, 0..robot.options().cable.len(), None)
+    }
+
+    /// The log of a run that was made beforehand, with its movements and, where it states them, its loads;
+    /// [`SimulationOptions::run`] has no effect. The run repeats where `duration_s` is longer.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn following(
+        robot: &RobotFile,
+        options: &SimulationOptions,
+        run: &Excitation,
+    ) -> Result<Self, SimulationError> {
+        Self::of(robot, options, 0..robot.options().cable.len(), Some(run))
     }
 
     /// The log of some of the robot's cables, which pull as they do with all the others, but without the others' friction.
@@ -148,6 +164,7 @@ impl Simulation {
         robot: &RobotFile,
         options: &SimulationOptions,
         range: Range<usize>,
+        stated: Option<&Excitation>,
     ) -> Result<Self, SimulationError> {
         let params = robot.params();
         let cycle_s = params.cycle_s();
@@ -168,7 +185,7 @@ impl Simulation {
                 workspace.as_ref().map(|workspace| workspace.crossing(&platform, &level))
             }
         };
-        let motion = Motion::new(run, &Limits::NONE);
+        let motion = stated.map_or_else(|| Motion::new(run, &Limits::NONE), |stated| stated.motion().clone());
         let held = workspace.filter(|_| platform.cable_count() == tables.len());
         let tension = match held {
             Some(Workspace { balanced, .. }) => Tension::Platform {
@@ -207,6 +224,7 @@ impl Simulation {
             cycle_s,
             total_cycles,
             done_cycles: 0,
+            stated: stated.filter(|stated| stated.states_loads()).cloned(),
             motion,
             platform,
             tension,
@@ -345,9 +363,10 @@ impl Simulation {
             Tension::Platform { level, common, .. } => (level.mean_n, common.share(time_s), true),
             Tension::Bench { level, .. } => (level.mean_n, 0.0, true),
         };
+        let stated_n = self.stated.as_ref().and_then(|stated| stated.stated_load_n(time_s));
         for (force_n, variation) in self.forces_n.iter_mut().zip(&self.variations) {
             let own_share = if wanders { variation.share(time_s) } else { 0.0 };
-            *force_n = mean_n * (1.0 + common_share + own_share);
+            *force_n = stated_n.unwrap_or(mean_n * (1.0 + common_share + own_share));
         }
         let pushed_n = |push: &Variation| if self.hand_n > 0.0 { self.hand_n * push.share(time_s) } else { 0.0 };
         if let Tension::Bench { level, load } = &self.tension {
@@ -507,7 +526,7 @@ mod tests {
             ..SimulationOptions::default()
         };
         let mut whole = Simulation::new(&robot, &options)?;
-        let mut one = Simulation::of(&robot, &options, 5..6)?;
+        let mut one = Simulation::of(&robot, &options, 5..6, None)?;
         while let Some(all) = whole.next_cycle() {
             let alone = one.next_cycle().ok_or("too short")?;
             assert_eq!((alone.cables, alone.reference_force_n), (&all.cables[5..6], &all.reference_force_n[5..6]));

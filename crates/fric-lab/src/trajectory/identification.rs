@@ -39,12 +39,7 @@ impl Trajectory {
         let WorkBox { center_m, half_edges_m, direction } = *work_box;
         let mut run = Capped { run: Self::starting_at(center_m, BREAK_S), limits: *limits };
         // From the middle to the box's surface along the direction.
-        let reach_m = half_edges_m
-            .iter()
-            .zip(direction.iter())
-            .filter(|(_, part)| part.abs() > 1e-9)
-            .map(|(half_m, part)| half_m / part.abs())
-            .fold(f64::INFINITY, f64::min);
+        let reach_m = work_box.reach_m(&direction);
         let fit = |length_m: f64| length_m.min(2.0 * reach_m);
 
         let all_steps_m: f64 = AMPLITUDES_M.iter().sum();

@@ -6,6 +6,7 @@
 //! here knows of cables.
 
 mod crossing;
+mod designed;
 mod identification;
 mod stroke;
 
@@ -13,9 +14,11 @@ use fric_core::Pose;
 use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::axis::{CartesianAxis, rotation};
+use designed::Loads;
 use stroke::Stroke;
 
 pub use crossing::{CROSSING_CYCLES, CROSSING_HALF_M, CROSSING_HALF_RAD, CROSSING_RAD_PER_S, CROSSING_RAD_PER_S2};
+pub use designed::{LOAD_CHANGE_S, Piece, Shape};
 pub use identification::{
     ACCELERATION_M_PER_S2, AMPLITUDES_M, BREAK_S, FASTEST_M_PER_S, RECTANGLES_M_PER_S, STEP_M_PER_S,
     STROKE_ACCELERATION_M_PER_S2, STROKE_M, STROKES_M_PER_S,
@@ -30,6 +33,15 @@ pub struct WorkBox {
     pub half_edges_m: Vector3<f64>,
     /// Unit vector of the small movements and the strokes.
     pub direction: Vector3<f64>,
+}
+
+impl WorkBox {
+    /// From its middle to its surface along a unit vector, m.
+    #[must_use]
+    pub fn reach_m(&self, direction: &Vector3<f64>) -> f64 {
+        let along = self.half_edges_m.iter().zip(direction.iter()).filter(|(_, part)| part.abs() > 1e-9);
+        along.map(|(half_m, part)| half_m / part.abs()).fold(f64::INFINITY, f64::min)
+    }
 }
 
 /// Caps on a run's own speeds and accelerations.
@@ -152,12 +164,14 @@ pub struct Trajectory {
     legs: Vec<Leg>,
     start_m: Vector3<f64>,
     duration_s: f64,
+    /// Where the run states how tight the cables are.
+    loads: Option<Loads>,
 }
 
 impl Trajectory {
     /// A run that starts at rest at a place, with a rest before its first movement.
     fn starting_at(start_m: Vector3<f64>, rest_s: f64) -> Self {
-        Self { legs: Vec::new(), start_m, duration_s: rest_s }
+        Self { legs: Vec::new(), start_m, duration_s: rest_s, loads: None }
     }
 
     fn place_m(&self) -> Vector3<f64> {
@@ -221,6 +235,13 @@ impl Trajectory {
     #[must_use]
     pub fn phase_at(&self, time_s: f64) -> Option<Phase> {
         self.leg_at(self.within_s(time_s)).or(self.legs.first()).map(|leg| leg.phase)
+    }
+
+    /// How tight the cables are at a time, between the least force that they may have, 0, and the greatest, 1; `None` for a run
+    /// that leaves it open.
+    #[must_use]
+    pub fn load_share_at(&self, time_s: f64) -> Option<f64> {
+        self.loads.as_ref().map(|loads| loads.share_at(self.within_s(time_s)))
     }
 
     fn within_s(&self, time_s: f64) -> f64 {

@@ -1,5 +1,7 @@
 //! The identification run as set points: derivatives, limits, box, forces, lengths, and what cannot be run.
 
+mod designed;
+
 use fric_core::platform::structure_matrix;
 use fric_lab::excite::{CableMotion, Excitation, ExcitationError, ExcitationOptions};
 use fric_lab::trajectory::SetPoint;

@@ -1,4 +1,4 @@
-//! The page of `excite --preview`: where the run goes, how fast, and with which cable forces.
+//! The page of `excite --preview`: where the run goes, how fast, with which cable forces, and what it is expected to tell.
 
 use fric_core::robot::file::RobotFile;
 use fric_lab::excite::Excitation;
@@ -29,14 +29,21 @@ fn over_time(series: &RunSeries, pick: fn(&RunInterval) -> Extent) -> impl Itera
     series.intervals().iter().map(move |interval| (interval.start_s, pick(interval)))
 }
 
-/// The page.
+/// The page; `expectations` are those of a designed run, a line each, empty for the identification run.
 #[must_use]
-pub fn page(robot: &RobotFile, excitation: &Excitation, series: &RunSeries) -> String {
-    let title = format!("{}: identification run", robot.options().name);
+pub fn page(robot: &RobotFile, excitation: &Excitation, series: &RunSeries, expectations: &[String]) -> String {
+    let kind = if expectations.is_empty() { "identification run" } else { "designed run" };
+    let title = format!("{}: {kind}", robot.options().name);
     let duration_s = excitation.trajectory().duration_s();
     let content = html! {
         p.soft {
             (format!("{} set points in {duration_s:.1} s, one every {} s.", excitation.total_cycles(), robot.options().cycle_s))
+        }
+        @if !expectations.is_empty() {
+            section {
+                h2 { "What the run is expected to tell" }
+                ul { @for line in expectations { li { (line) } } }
+            }
         }
         @if let Some(work_box) = excitation.work_box() { (views(robot, excitation, work_box)) }
         @if excitation.work_box().is_none() {

@@ -59,7 +59,7 @@ impl RunSeries {
 
     /// Takes in one cycle.
     pub fn add(&mut self, cycle: &ExcitedCycle<'_>) {
-        let ExcitedCycle { time_s, phase, platform, cables, tensions_n } = *cycle;
+        let ExcitedCycle { time_s, phase, platform, cables, tensions_n, .. } = *cycle;
         let speed = platform.map_or_else(
             || cables.iter().map(|cable| cable.speed_m_per_s.abs()).fold(0.0, f64::max),
             |set_point| set_point.velocity_m_per_s.norm(),

@@ -126,7 +126,7 @@ impl Case {
             Simulation::new(&robot(&friction)?, &options)?
         } else {
             let whole = RobotFile::parse(&small_robot(0..CABLE_COUNT, mass_kg, &friction), "sweep")?;
-            Simulation::of(&whole, &options, cable..cable + 1)?
+            Simulation::of(&whole, &options, cable..cable + 1, None)?
         };
         // At 180° the sensor feels the cable twice.
         let floor_n = libm::hypot(0.5 * options.sensor_noise_n, options.reference_noise_n);

@@ -1,0 +1,84 @@
+//! Which pieces a run is put together from: one after the other is added that is worth most for its time, then each is exchanged for
+//! a better one as long as there is one (the exchange of V. V. Fedorov, *Theory of Optimal Experiments*, 1972, ch. 3).
+
+use super::criterion::{Sums, Test, Tests, objective};
+
+/// Rounds of exchange at most.
+const ROUNDS: usize = 6;
+/// An exchange has to be worth this much, in the logarithm of a score.
+const WORTH: f64 = 1e-3;
+
+/// The pieces of a run that takes no longer than `time_s`, by their places; a piece may be there several times. `durations_s` are those of
+/// the pieces.
+pub fn choose(tests: &Tests, durations_s: &[f64], time_s: f64) -> Vec<usize> {
+    let mut chosen: Vec<usize> = Vec::new();
+    for _ in 0..ROUNDS {
+        fill(tests, durations_s, time_s, &mut chosen);
+        if !exchange(tests, durations_s, time_s, &mut chosen) {
+            break;
+        }
+    }
+    chosen
+}
+
+/// Adds pieces as long as one fits.
+fn fill(tests: &Tests, durations_s: &[f64], time_s: f64, chosen: &mut Vec<usize>) {
+    loop {
+        let sums = sums_of(tests, chosen);
+        let before = objective(tests, &sums);
+        let worth = |place: usize| (with_piece(tests, &sums, place) - before) / durations_s[place];
+        let fitting = fitting(durations_s, chosen, time_s);
+        let Some((next, _)) = best(fitting.into_iter().map(|place| (place, worth(place)))) else { return };
+        chosen.push(next);
+    }
+}
+
+/// Exchanges each piece for the best in its place; whether one was.
+fn exchange(tests: &Tests, durations_s: &[f64], time_s: f64, chosen: &mut [usize]) -> bool {
+    let mut improved = false;
+    for slot in 0..chosen.len() {
+        let mut others = chosen.to_vec();
+        let present = others.swap_remove(slot);
+        let sums = sums_of(tests, &others);
+        let worth = |place: usize| with_piece(tests, &sums, place);
+        let fitting = fitting(durations_s, &others, time_s);
+        let Some((next, value)) = best(fitting.into_iter().map(|place| (place, worth(place)))) else { continue };
+        if next != present && value > worth(present) + WORTH {
+            chosen[slot] = next;
+            improved = true;
+        }
+    }
+    improved
+}
+
+/// Pieces that there is time for beside those chosen.
+fn fitting(durations_s: &[f64], chosen: &[usize], time_s: f64) -> Vec<usize> {
+    let taken_s: f64 = chosen.iter().filter_map(|place| durations_s.get(*place)).sum();
+    (0..durations_s.len()).filter(|place| durations_s[*place] <= time_s - taken_s).collect()
+}
+
+/// The first of the best.
+fn best(all: impl Iterator<Item = (usize, f64)>) -> Option<(usize, f64)> {
+    all.reduce(|best, other| if other.1 > best.1 { other } else { best })
+}
+
+fn sums_of(tests: &Tests, chosen: &[usize]) -> Vec<Vec<Sums>> {
+    let of_test = |test: &Test| {
+        let none = Sums::new(test.pieces.first().map_or(0, Sums::parameter_count));
+        chosen.iter().filter_map(|place| test.pieces.get(*place)).fold(none, |sum, piece| sum.with(piece))
+    };
+    tests.iter().map(|tests| tests.iter().map(of_test).collect()).collect()
+}
+
+/// What the run is worth with one more piece.
+fn with_piece(tests: &Tests, sums: &[Vec<Sums>], place: usize) -> f64 {
+    let of_question = |(tests, sums): (&Vec<Test>, &Vec<Sums>)| {
+        let added = tests
+            .iter()
+            .zip(sums)
+            .map(|(test, sum)| test.pieces.get(place).map_or_else(|| sum.clone(), |piece| sum.with(piece)));
+        added.collect::<Vec<Sums>>()
+    };
+    let sums: Vec<Vec<Sums>> = tests.iter().zip(sums).map(of_question).collect();
+    objective(tests, &sums)
+}

@@ -1,0 +1,145 @@
+//! Two models of a cable that a run is to tell apart: how large their effects are, what each predicts, and what evidence is to be
+//! expected against the wrong one.
+
+use fric_core::CableParams;
+use fric_core::effects::Effect;
+use fric_core::parameters::{MU, Values};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+
+use super::predicted::sensed;
+use crate::discover::naming::delta_bic;
+use crate::discover::workbench::{Model, NEAR_ERRORS, Trial, Workbench};
+use crate::effects::{self, Around, Sizing};
+use crate::fit::candidates;
+use crate::fit::ripple::{period_of, periods};
+use crate::fit::split::split;
+use crate::fit::{CableRecord, FitOptions, Parameter, Row};
+use std::sync::atomic::AtomicBool;
+
+/// Strength of an effect whose size is not known, as a share of what machines have at most.
+const STRENGTH_RATIO: f64 = 0.5;
+/// Mean normal force of a pulley per tension: 2 at 180°, √2 at 90°.
+const NORMAL_PER_TENSION: f64 = 1.6;
+
+/// One of the models: a base with an effect, or the base alone.
+#[derive(Clone, Debug)]
+pub struct Hypothesis {
+    pub values: Values,
+    /// What an identification varies.
+    pub free: Vec<Parameter>,
+}
+
+impl Hypothesis {
+    /// The model of these values, with an effect that is varied in any case.
+    pub fn new(params: &CableParams, effect: Option<Effect>, values: &Values) -> Option<Self> {
+        let params = params.with_values(values).ok()?;
+        let mut free = FitOptions::default().free(&params);
+        // Also where a refit has made it small.
+        for parameter in effect.into_iter().flat_map(candidates::fitted) {
+            if !free.contains(&parameter) {
+                free.push(parameter);
+            }
+        }
+        Some(Self { values: *values, free })
+    }
+}
+
+/// Values without an effect.
+pub fn without(values: &Values, effect: Option<Effect>) -> Values {
+    let mut values = *values;
+    for parameter in effect.into_iter().flat_map(Parameter::of) {
+        values[parameter.place()] = parameter.row().neutral;
+    }
+    values
+}
+
+/// Values with an effect as strong as half of what machines have; `None` for the friction that every model has.
+pub fn with_typical(record: &CableRecord<'_>, values: &Values, effect: Effect, duration_s: f64) -> Option<Values> {
+    let lab = effects::of(effect)?;
+    let around = candidates::around(record, values[MU], 0.0);
+    let mut sizing = Sizing {
+        strength_ratio: STRENGTH_RATIO,
+        mu: values[MU],
+        tension_n: around.mean_tension_n,
+        normal_n: NORMAL_PER_TENSION * around.mean_tension_n,
+        duration_s,
+        random: &mut ChaCha8Rng::seed_from_u64(0),
+    };
+    let mut values = *values;
+    for (key, value) in (lab.typical)(&mut sizing) {
+        let parameter = Parameter::of(effect).find(|parameter| parameter.row().key == key)?;
+        values[parameter.place()] = value.clamp(parameter.row().min, parameter.row().max);
+    }
+    Some(values)
+}
+
+/// The log of a cable, were a model the truth, and room to fit others to it.
+pub struct Prediction<'a> {
+    record: CableRecord<'a>,
+    rows: Vec<Row>,
+    stop: &'a AtomicBool,
+}
+
+impl<'a> Prediction<'a> {
+    /// `None` where the model gives no finite forces.
+    pub fn new(record: &CableRecord<'a>, truth: &Values, stop: &'a AtomicBool) -> Option<Self> {
+        Some(Self { record: *record, rows: sensed(record, truth)?, stop })
+    }
+
+    /// Its cycles.
+    pub fn record(&self) -> CableRecord<'_> {
+        self.record.with_signals(&self.rows)
+    }
+
+    /// The model that comes nearest to the log with an effect in place of the truth's; `None` when stopped, or where there is no
+    /// start. `also` is another place to start from.
+    pub fn fitted(
+        &self,
+        base: &Values,
+        effect: Option<Effect>,
+        noise_n: f64,
+        also: Option<&Hypothesis>,
+    ) -> Option<(Hypothesis, Trial)> {
+        let record = self.record();
+        let (blocks, counts) = (split(&record), vec![true; self.rows.len()]);
+        let bench = Workbench { record, blocks: &blocks, counts: &counts, measured: &counts, stop: self.stop };
+        let starts = match effect {
+            Some(effect) => {
+                let around = around(&bench, base, noise_n, effect);
+                candidates::starts(effect, base, &around, &bench.record)
+            }
+            None => vec![*base],
+        };
+        let mut models: Vec<Model> = Vec::new();
+        for values in starts.iter().chain(also.map(|also| &also.values)) {
+            let free = Hypothesis::new(record.params, effect, values)?.free;
+            models.push(Model { values: *values, free });
+        }
+        let trials = bench.try_all(&models, NEAR_ERRORS).into_iter();
+        let finite = trials.filter(|trial| trial.training.is_finite() && trial.held_out.is_finite());
+        let squares = |trial: &Trial| trial.training + trial.held_out;
+        let best = finite.min_by(|one, other| squares(one).total_cmp(&squares(other)))?;
+        let hypothesis = Hypothesis { values: best.values, free: best.free.clone() };
+        Some((hypothesis, best))
+    }
+
+    /// `ΔBIC` to be expected against a model that was fitted to this log, as the discovery computes it: over the half of the samples that
+    /// it learns from, with noise of the standard deviation `noise_n`.
+    pub fn evidence(&self, truth: &Hypothesis, fitted: &Trial, noise_n: f64) -> f64 {
+        #[expect(clippy::cast_precision_loss, reason = "counts")]
+        let (count, more) = (0.5 * self.rows.len() as f64, fitted.free.len() as f64 - truth.free.len() as f64);
+        // Training and held-out blocks are half of the run each; both together depend less on which block is which.
+        let squares_ratio = 1.0 + 0.5 * (fitted.training + fitted.held_out) / (count * noise_n * noise_n);
+        delta_bic(count, squares_ratio, more)
+    }
+}
+
+/// What a search begins from; of a ripple the periods too.
+fn around(bench: &Workbench<'_>, current: &Values, noise_n: f64, effect: Effect) -> Around {
+    let mut around = candidates::around(&bench.record, current[MU], noise_n);
+    if period_of(effect).is_some() {
+        around.periods = periods(&bench.record, &bench.residuals_n(current));
+    }
+    around
+}

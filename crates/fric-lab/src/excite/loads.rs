@@ -1,0 +1,90 @@
+//! How tight the cables are to be, and are to be expected, over a run.
+
+use fric_core::KnownReference;
+
+use super::error::ExcitationError;
+use super::options::ExcitationOptions;
+use crate::simulate::tension::TensionLevel;
+
+/// Where the load comes from.
+#[derive(Clone, Copy, Debug)]
+pub struct Loads {
+    least_n: f64,
+    usual_n: f64,
+    source: Source,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Source {
+    /// Cables that hold a platform, up to this force.
+    Platform { greatest_n: f64 },
+    /// A test bench whose load goes up to this force.
+    StatedBench { greatest_n: f64 },
+    /// A test bench with a load that the run has no say in, known or not.
+    Bench { load: Option<KnownReference> },
+}
+
+impl Loads {
+    /// Between the bounds of the options; `is_held` where the cables hold a platform. Without them the least force of a platform's cables is a tenth of their mean with the viscous
+    /// friction, and the greatest as far above the mean as the least is below.
+    pub fn new(
+        level: &TensionLevel,
+        options: &ExcitationOptions,
+        known: Option<KnownReference>,
+        is_held: bool,
+    ) -> Result<Self, ExcitationError> {
+        let stated = options.max_tension_n;
+        if let (false, Some(_), Some(greatest_n)) = (is_held, known, stated) {
+            return Err(ExcitationError::LoadIsKnown { greatest_n });
+        }
+        if let (false, None, Some(least_n)) = (is_held, stated, options.min_tension_n) {
+            return Err(ExcitationError::NoGreatestLoad { least_n });
+        }
+        let least_n = options
+            .min_tension_n
+            .unwrap_or_else(|| stated.map_or(level.least_n, |greatest_n| level.least_n.min(0.5 * greatest_n)));
+        let usual_n = stated.map_or_else(|| level.mean_n.max(2.0 * least_n), |greatest_n| 0.5 * (least_n + greatest_n));
+        let source = match stated {
+            _ if is_held => Source::Platform { greatest_n: stated.unwrap_or(2.0 * usual_n - least_n) },
+            Some(greatest_n) => Source::StatedBench { greatest_n },
+            None => Source::Bench { load: known },
+        };
+        Ok(Self { least_n, usual_n, source })
+    }
+
+    /// Least force of a cable, N.
+    pub fn least_n(&self) -> f64 {
+        self.least_n
+    }
+
+    /// Force of a cable where the run states none, N.
+    pub fn usual_n(&self) -> f64 {
+        self.usual_n
+    }
+
+    /// The force of a share, N; `None` where the run has no say in it.
+    pub fn stated_n(&self, share: f64) -> Option<f64> {
+        match self.source {
+            Source::Platform { greatest_n } | Source::StatedBench { greatest_n } => {
+                Some(self.least_n + share * (greatest_n - self.least_n))
+            }
+            Source::Bench { .. } => None,
+        }
+    }
+
+    /// The load of a test bench that the run has no say in, N, while its cable is accelerated.
+    pub fn expected_n(&self, acceleration_m_per_s2: f64) -> f64 {
+        match self.source {
+            Source::Bench { load: Some(load) } => load.force_n(acceleration_m_per_s2),
+            _ => self.usual_n,
+        }
+    }
+
+    /// Bounds of the load of a test bench that the run states, N.
+    pub fn of_bench_n(&self) -> Option<(f64, Option<f64>)> {
+        match self.source {
+            Source::StatedBench { greatest_n } => Some((self.least_n, Some(greatest_n))),
+            Source::Platform { .. } | Source::Bench { .. } => None,
+        }
+    }
+}
