@@ -2,13 +2,12 @@
 
 use std::error::Error;
 use std::fmt::Display;
-use std::io::{self, ErrorKind, Write as _};
+use std::io::{self, ErrorKind};
 use std::path::Path;
 
 use fric_core::ParamError;
 use fric_core::continuum::file::ManipulatorFileError;
 use fric_core::robot::file::RobotFileError;
-use fric_core::text_file::printable;
 use fric_lab::continuum::ContinuumError;
 use fric_lab::excite::ExcitationError;
 use fric_lab::fit::FitError;
@@ -21,6 +20,8 @@ use fric_log::signals::{SignalError, TimesApart};
 use fric_log::table::TableError;
 use fric_log::write::WriteError;
 use fric_log::{in_full, reason, with_sources};
+
+use crate::terminal::{self, Label};
 
 /// What `main` turns into an exit code.
 #[derive(Debug)]
@@ -78,12 +79,7 @@ impl Failure {
     }
 
     pub fn print(&self) {
-        let mut stderr = std::io::stderr().lock();
-        // There is nowhere left to report a broken stderr to.
-        let _ = writeln!(stderr, "error: {}", printable(&self.cause));
-        if let Some(advice) = &self.advice {
-            let _ = writeln!(stderr, "  {}", printable(advice));
-        }
+        terminal::say(Label::Error, &self.cause, self.advice.as_deref());
     }
 }
 

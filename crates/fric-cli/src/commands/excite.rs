@@ -12,7 +12,7 @@ use crate::arguments::ExciteArguments;
 use crate::failure::{Failure, Outcome};
 use crate::interrupt;
 use crate::model::Model;
-use crate::output;
+use crate::output::{self, Written};
 use crate::progress::{self, STRIDE};
 
 /// Runs the command.
@@ -45,13 +45,13 @@ pub fn run(arguments: &ExciteArguments) -> Outcome {
         table.write(&cycle)?;
         series.add(&cycle);
     }
-    bar.finish_and_clear();
-    let mut files = vec![table.complete()?];
+    progress::finish(&bar);
+    let mut files = vec![Written::new(table.complete()?, describe(&excitation, &series))];
     if let Some(page) = page {
-        files.push(page.complete_with(&preview::page(&model.robot, &excitation, &series))?);
+        let text = preview::page(&model.robot, &excitation, &series);
+        files.push(Written::new(page.complete_with(&text)?, "the run, drawn"));
     }
-    output::place(files)?;
-    output::show(&format!("{}: {}\n", arguments.output.display(), describe(&excitation, &series)))
+    output::show_with("", files, "")
 }
 
 /// A number on the command line is the command line's fault, the rest the robot's or the run's.

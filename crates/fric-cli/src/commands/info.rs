@@ -175,7 +175,7 @@ fn read_topics(log: &mut Log, part: Part) -> Outcome<Vec<TopicResult>> {
         times.encoding.clone_from(&channel.message_encoding);
         times.schema = channel.schema.as_ref().map_or_else(String::new, |schema| schema.name.clone());
     }
-    bar.finish_and_clear();
+    progress::finish(&bar);
     let start_nanos = start_nanos.unwrap_or(0);
     let topic = |(topic, times): (String, Times)| {
         #[expect(clippy::cast_precision_loss, reason = "a count of messages")]
@@ -217,7 +217,7 @@ fn read_signals(model: &Model, log: Log, part: Part) -> Outcome<(Vec<SignalResul
             Err(error) => break Some(error.to_string()),
         }
     };
-    bar.finish_and_clear();
+    progress::finish(&bar);
     let mut signals = signal_results(&reader);
     if reader.log().column_names().is_some() {
         warn_all(&reader.log().warnings());
