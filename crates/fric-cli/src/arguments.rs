@@ -171,6 +171,9 @@ pub struct ReplayArguments {
     /// lengths; reads the log twice and keeps its samples in memory
     #[arg(long)]
     pub correct: bool,
+    /// Show also the mean of the error's magnitude and the number of samples
+    #[arg(long)]
+    pub wide: bool,
     #[command(flatten)]
     pub result: ResultArguments,
 }
@@ -267,6 +270,9 @@ pub enum ReferenceName {
 pub struct InfoArguments {
     #[command(flatten)]
     pub log: LogArguments,
+    /// Show also encoding, jitter and time range of each topic
+    #[arg(long)]
+    pub wide: bool,
     #[command(flatten)]
     pub result: ResultArguments,
 }

@@ -165,8 +165,12 @@ impl From<OutputError> for Failure {
             OutputError::Exists { path } => Self::new(format!("{} exists already", path.display()))
                 .advise("Name another output file, or replace it with --force."),
             OutputError::NotRegular { path } => {
-                Failure::new(format!("{} is no regular file, and is never replaced", path.display()))
-                    .advise("Name another output file.")
+                let failure = Failure::new(format!("{} is no regular file, and is never replaced", path.display()));
+                if STREAMS.iter().any(|stream| path == Path::new(stream)) {
+                    failure.advise("Name another output file; only JSON goes to stdout, with `--json -`.")
+                } else {
+                    failure.advise("Name another output file.")
+                }
             }
             OutputError::Input { path, .. } => {
                 Self::new(format!("{} is an input of this command and would be overwritten", path.display()))
@@ -188,13 +192,18 @@ impl From<WriteError> for Failure {
     }
 }
 
+/// The names of the streams of a process.
+const STREAMS: [&str; 4] = ["/dev/stdout", "/dev/stderr", "/dev/fd/1", "/dev/fd/2"];
+
 /// The failure of an output that the operating system refuses.
 fn unwritable(path: &Path, error: &io::Error) -> Failure {
     let failure = Failure::new(format!("cannot write {}: {}", path.display(), reason(error)));
     match error.kind() {
-        ErrorKind::IsADirectory => failure.advise("Name a file in it."),
-        ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
-            failure.advise("Free some space, or name a file on another disk.")
+        ErrorKind::IsADirectory => {
+            failure.advise(format!("Name a file in it, such as {}.", path.join("result").display()))
+        }
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {
+            failure.advise("Make some space free, or name a file on another disk.")
         }
         ErrorKind::NotFound
         | ErrorKind::NotADirectory

@@ -8,12 +8,16 @@ use clap_mangen::Man;
 use fric_log::output::{OutputError, OutputFile};
 
 use crate::arguments::{Arguments, ManArguments};
-use crate::failure::Outcome;
+use crate::failure::{Failure, Outcome};
 use crate::output::{self, Written};
 
 /// Runs the command.
 pub fn run(arguments: &ManArguments) -> Outcome {
     let ManArguments { directory, force } = arguments;
+    if directory.exists() && !directory.is_dir() {
+        let failure = Failure::new(format!("{} is no directory", directory.display()));
+        return Err(failure.advise("Name a directory; it is made if it is missing."));
+    }
     let refused = |source| OutputError::File { path: directory.clone(), source };
     fs::create_dir_all(directory).map_err(refused)?;
     let mut program = Arguments::command();

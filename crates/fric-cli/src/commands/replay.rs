@@ -22,7 +22,7 @@ use crate::warnings::warn_all;
 
 /// Runs the command.
 pub fn run(arguments: &ReplayArguments) -> Outcome {
-    let ReplayArguments { log, output, report, correct, result } = arguments;
+    let ReplayArguments { log, output, report, correct, wide, result } = arguments;
     let json_file = result.json.as_deref().filter(|path| !output::is_stdout(path));
     output::check_distinct(&[output.as_deref(), report.as_deref(), json_file])?;
     let part = log.part.part()?;
@@ -100,5 +100,5 @@ pub fn run(arguments: &ReplayArguments) -> Outcome {
         let page = report::errors::page(&outcome, &series, &logs);
         files.push(Written::new(report.complete_with(&page)?, "the report"));
     }
-    json.finish(&outcome, &outcome.summary(), files)
+    json.finish(&outcome, &outcome.table(*wide), files)
 }

@@ -127,7 +127,7 @@ impl Column {
         let mean = mean(values.iter().flatten().copied())?;
         let shown = |value: &Option<f64>| cell(value.map(|value| number(value, digits)));
         let last = number(mean, digits);
-        Some(Self { header: format!("{header}\n[N]"), cells: values.iter().map(shown).collect(), last })
+        Some(Self { header: format!("{header} [N]"), cells: values.iter().map(shown).collect(), last })
     }
 }
 
@@ -148,9 +148,9 @@ fn table_of(result: &FitResult, title: &str, columns: &[Column], last: Option<&s
 fn paper_table(result: &FitResult) -> String {
     let parameters = FRICTION.iter().filter(|shown| shown.place != OFFSET);
     let mut columns: Vec<Column> = parameters.filter_map(|shown| Column::of_parameter(result, shown)).collect();
-    columns.extend(Column::of_forces(result, "|F_ref − F_s|", 4, |cable| Some(cable.before.as_ref()?.mae_n)));
-    columns.extend(Column::of_forces(result, "|F_ref − F_s − F_d|", 4, |cable| Some(cable.after.as_ref()?.mae_n)));
-    columns.extend(Column::of_forces(result, "F_ref", 2, |cable| cable.mean_reference_n));
+    columns.extend(Column::of_forces(result, "mean error\nbefore", 4, |cable| Some(cable.before.as_ref()?.mae_n)));
+    columns.extend(Column::of_forces(result, "mean error\nafter", 4, |cable| Some(cable.after.as_ref()?.mae_n)));
+    columns.extend(Column::of_forces(result, "mean\nforce", 2, |cable| cable.mean_reference_n));
     table_of(result, "cable", &columns, (result.cables.len() > 1).then_some("mean"))
 }
 
@@ -158,8 +158,9 @@ fn paper_table(result: &FitResult) -> String {
 fn legend(result: &FitResult) -> String {
     let mut text = String::new();
     if result.cables.iter().any(|cable| cable.before.is_some()) {
-        text += "\nMeans over all samples: |F_ref − F_s| is the error before compensation, as if\nnothing rubbed; \
-                 |F_ref − F_s − F_d| is the error after it, with these values.\n";
+        text += "\nμ is the friction of each bearing, σ the stiffness of the cable before it slides,\nF_pv the viscous friction \
+                 of each pulley. The error is the mean of |force − reference|\nover all samples: before, as if nothing rubbed; \
+                 after, with these values.\n";
     }
     let is_kept = |cable: &FitCableResult| {
         let friction =
@@ -179,8 +180,8 @@ fn error_table(result: &FitResult) -> String {
         columns.extend((shown.place == OFFSET).then(|| Column::of_parameter(result, shown)).flatten());
         columns.extend(Column::of_parameter_error(result, shown));
     }
-    columns.extend(Column::of_forces(result, "rms before", 4, |cable| Some(cable.before.as_ref()?.rms_n)));
-    columns.extend(Column::of_forces(result, "rms after", 4, |cable| Some(cable.after.as_ref()?.rms_n)));
+    columns.extend(Column::of_forces(result, "rms error\nbefore", 4, |cable| Some(cable.before.as_ref()?.rms_n)));
+    columns.extend(Column::of_forces(result, "rms error\nafter", 4, |cable| Some(cable.after.as_ref()?.rms_n)));
     table_of(result, "cable", &columns, None)
 }
 

@@ -153,10 +153,12 @@ impl FrictionResult {
                 ]
             })
             .collect();
-        let header = ["hole", "mean [N]", "least [N]", "greatest [N]", "± [N]", "positive", "negative"];
+        let header =
+            ["hole", "mean\n[N]", "least\n[N]", "greatest\n[N]", "standard\nerror [N]", "base side\ntighter", "tip side\ntighter"];
         let mut text = format!(
             "{}: friction at the holes over {} samples\n\n{}\n\
-             Positive where the base side is tighter. Directions count beyond two standard\nerrors.\n",
+             Friction is positive where the base side is tighter. The last columns are the\n\
+             share of samples in which that is sure (beyond two standard errors).\n",
             self.manipulator,
             self.samples,
             table(&header, 0, &rows)
