@@ -32,8 +32,9 @@ run() {
 }
 
 say "1. A winch, and something hidden in its log.
-   winch.toml describes a test bench: one cable, two pulleys. The simulated log has
-   an effect that the file does not know: more friction at low speed (Stribeck)."
+   winch.toml describes a test bench: one cable, two pulleys. The simulated log
+   has an effect that the file does not know: more friction at low speed
+   (Stribeck)."
 run simulate --model winch.toml -o run.mcap --duration 24 --seed 7 --effect stribeck:ratio=0.5,velocity_m_per_s=0.02
 
 say "2. What is in the log, and what is it good for?"
@@ -44,8 +45,8 @@ say "3. Replay: the compensator runs over the log as the control loop would.
 run replay run.mcap
 
 say "4. Fit: the parameters of the model, from the same log.
-   The error shrinks, but not to the noise: no value of these parameters is right
-   at low and at high speed."
+   The error shrinks, but not to the noise: no value of these parameters is
+   right at low and at high speed."
 run fit run.mcap -o fitted.toml
 run replay run.mcap --model fitted.toml
 
@@ -53,7 +54,9 @@ say "5. Discover: what does the model lack?
    The effect is named, with its size, its cause and the remedy on the machine."
 run discover run.mcap -o extended.toml --report discovery.html
 
-say "6. Replay again, with the extended file: what is left is the noise of the sensors."
+say "6. Replay again, with the extended file.
+   What is left is the noise of the sensors."
 run replay run.mcap --model extended.toml -o compensated.mcap --report errors.html
 
-say "All files are in $place; open discovery.html and errors.html in a browser."
+say "The end. Open discovery.html and errors.html in a browser; all files are in
+   $place"

@@ -159,7 +159,10 @@ fn how_the_log_is_kept_is_told() {
     let stored: u64 = summary.chunk_indexes.iter().map(|chunk| chunk.compressed_size).sum();
     let content: u64 = summary.chunk_indexes.iter().map(|chunk| chunk.uncompressed_size).sum();
     assert_eq!(storage["chunks"]["count"], summary.chunk_indexes.len());
-    assert_eq!((&storage["chunks"]["stored_bytes"], &storage["chunks"]["content_bytes"]), (&stored.into(), &content.into()));
+    assert_eq!(
+        (&storage["chunks"]["stored_bytes"], &storage["chunks"]["content_bytes"]),
+        (&stored.into(), &content.into())
+    );
     assert_eq!(storage["chunks"]["compression"], summary.chunk_indexes[0].compression.as_str());
     let stats = summary.stats.unwrap();
     let duration_ns = u32::try_from(stats.message_end_time - stats.message_start_time).unwrap();

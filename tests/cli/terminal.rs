@@ -42,7 +42,8 @@ fn quiet_leaves_the_result_and_errors() {
     place.write("cut.mcap", &place.read("log.mcap")[..20_000]);
     let loud = place.run(&["replay", "cut.mcap", "--model", "robot.toml", "--json", "j.json"]);
     assert!(loud.stderr.contains("warning:") && loud.stdout.contains("wrote j.json: the result as JSON"), "{loud:#?}");
-    let quiet = place.run(&["replay", "cut.mcap", "--model", "robot.toml", "--json", "j.json", "--force", "-q"]).succeeds();
+    let quiet =
+        place.run(&["replay", "cut.mcap", "--model", "robot.toml", "--json", "j.json", "--force", "-q"]).succeeds();
     assert!(quiet.stdout.contains("cable8") && !quiet.stdout.contains("wrote"), "{quiet:#?}");
     place.run_in_vain(&["replay", "no.mcap", "-q"]).fails(1, &["no.mcap"]);
     let json = place.run(&["replay", "cut.mcap", "--model", "robot.toml", "--json", "-", "--quiet"]).succeeds();
@@ -65,7 +66,10 @@ fn each_output_is_told_after_the_table() {
     let place = Place::with_log();
     let run = place.run(&["replay", "log.mcap", "-o", "o.mcap", "--report", "r.html", "--json", "j.json"]).succeeds();
     let told = run.stdout.split_once("\n\nwrote ").unwrap().1;
-    assert_eq!(told, "o.mcap: forces, friction, wrench and status\nwrote r.html: the report\nwrote j.json: the result as JSON\n");
+    assert_eq!(
+        told,
+        "o.mcap: forces, friction, wrench and status\nwrote r.html: the report\nwrote j.json: the result as JSON\n"
+    );
 }
 
 #[test]
@@ -84,7 +88,16 @@ fn a_simulation_tells_the_defaults_that_it_took() {
 #[test]
 fn tables_fit_into_80_columns() {
     let place = Place::empty();
-    let names = ["front_left_up", "front_left_lo", "front_rght_up", "front_rght_lo", "back_left_up", "back_left_lo", "back_rght_up", "back_rght_lo"];
+    let names = [
+        "front_left_up",
+        "front_left_lo",
+        "front_rght_up",
+        "front_rght_lo",
+        "back_left_up",
+        "back_left_lo",
+        "back_rght_up",
+        "back_rght_lo",
+    ];
     let named = names.iter().enumerate().fold(example_robot(), |text, (place, name)| {
         text.replace(&format!("\"cable{}\"", place + 1), &format!("\"{name}\""))
     });

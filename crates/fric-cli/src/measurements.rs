@@ -145,11 +145,7 @@ pub fn corrections(parts: &[PathBuf], part: Part, model: &Model) -> Outcome<Corr
 }
 
 /// Runs work beside a bar, until it is done or Ctrl-C is pressed; `doing` is the work, the bar counts its `steps`.
-pub fn watched<T: Send>(
-    doing: &'static str,
-    steps: &str,
-    work: impl FnOnce(&Progress) -> T + Send,
-) -> Outcome<T> {
+pub fn watched<T: Send>(doing: &'static str, steps: &str, work: impl FnOnce(&Progress) -> T + Send) -> Outcome<T> {
     let progress = Progress::new();
     let bar = progress::steps(doing, steps);
     let result = thread::scope(|scope| {

@@ -44,7 +44,11 @@ pub fn set_color(words: &[OsString]) {
     let text = |word: &OsString| word.to_str().map(ToOwned::to_owned);
     let value = words.iter().enumerate().filter_map(|(place, word)| {
         let word = text(word)?;
-        if word == "--color" { words.get(place + 1).and_then(text) } else { word.strip_prefix("--color=").map(Into::into) }
+        if word == "--color" {
+            words.get(place + 1).and_then(text)
+        } else {
+            word.strip_prefix("--color=").map(Into::into)
+        }
     });
     // The parser refuses what is no choice.
     let choice = value.last().and_then(|value| ColorName::from_str(&value, false).ok());

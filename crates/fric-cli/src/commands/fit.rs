@@ -34,7 +34,8 @@ pub fn run(arguments: &FitArguments) -> Outcome {
             let read = read(logs, part, &model, Reference::Forces)?;
             let readiness = readiness::by_forces(&model.robot, &read.holdings);
             warn_all(&read.check(&readiness)?);
-            let fit = watched("fitting", "cables", |progress| fit_cables_corrected(&read.measurements, &options, progress))?;
+            let fit =
+                watched("fitting", "cables", |progress| fit_cables_corrected(&read.measurements, &options, progress))?;
             (Fits::Forces(fit.cables), fit.faults, readiness)
         }
         ReferenceName::Wrench => {

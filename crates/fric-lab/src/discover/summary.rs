@@ -10,6 +10,10 @@ const MOST_PLACES: usize = 2;
 /// Candidates that did not suffice that are told.
 const MOST_TRIED: usize = 3;
 
+/// The columns in words.
+const LEGEND: &str = "Before and after are the rms error on samples that no fit has seen: before, of the given model fitted to the other \
+                      samples; after, of the extended one.";
+
 /// All of it.
 pub(super) fn describe(result: &DiscoverResult) -> String {
     let mut text = format!("{}: what the model lacks\n\n", result.robot);
@@ -18,8 +22,8 @@ pub(super) fn describe(result: &DiscoverResult) -> String {
         text += &of_wrench(gap);
     }
     if result.cables.iter().any(|cable| cable.before.is_some()) {
-        text += "\nBefore and after are the rms error on samples that no fit has seen: before, of the\ngiven model fitted to the \
-                 other samples; after, of the extended one.\n";
+        text.push('\n');
+        text += &wrapped("", LEGEND);
     }
     for effect in &result.common_effects {
         text += "\n";

@@ -8,7 +8,7 @@ use fric_core::parameters::{FRICTION_COUNT, MU, OFFSET, SIGMA, VISCOUS};
 use super::result::{FitCableResult, FitResult, Numbers, OpenPartResult, OpenResult};
 use super::vector::Parameter;
 use crate::discover::words::recording_lines;
-use crate::text::{digits_of, number, plain, table};
+use crate::text::{digits_of, number, plain, table, wrapped};
 
 /// \[P\] table I, how sure it is, and what the log does not tell.
 pub(super) fn describe(result: &FitResult) -> String {
@@ -17,7 +17,7 @@ pub(super) fn describe(result: &FitResult) -> String {
         "wrench" => "the wrench on the platform, all cables at once",
         _ => "the platform's mass and pose, all cables at once",
     };
-    let mut text = format!("{}: friction identified from {from}\n\n", result.robot);
+    let mut text = wrapped("", &format!("{}: friction identified from {from}", result.robot)) + "\n";
     text += &paper_table(result);
     text += &legend(result);
     text += "\nstandard errors; ± twice as much holds the value with 95 %\n\n";
@@ -154,13 +154,17 @@ fn paper_table(result: &FitResult) -> String {
     table_of(result, "cable", &columns, (result.cables.len() > 1).then_some("mean"))
 }
 
+/// The columns in words.
+const LEGEND: &str = "μ is the friction of each bearing, σ the stiffness of the cable before it slides, F_pv the viscous friction of each \
+                      pulley. The mean error is that of |force − reference| over all samples: before, as if nothing rubbed; after, \
+                      with these values.";
+
 /// What the columns are.
 fn legend(result: &FitResult) -> String {
     let mut text = String::new();
     if result.cables.iter().any(|cable| cable.before.is_some()) {
-        text += "\nμ is the friction of each bearing, σ the stiffness of the cable before it slides,\nF_pv the viscous friction \
-                 of each pulley. The error is the mean of |force − reference|\nover all samples: before, as if nothing rubbed; \
-                 after, with these values.\n";
+        text.push('\n');
+        text += &wrapped("", LEGEND);
     }
     let is_kept = |cable: &FitCableResult| {
         let friction =

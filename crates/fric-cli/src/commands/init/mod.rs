@@ -45,8 +45,9 @@ fn next_step(logs: &[std::path::PathBuf], output: &std::path::Path) -> String {
 }
 
 fn parsed(text: &str) -> Outcome<RobotFile> {
-    RobotFile::parse(text, "the robot file made of this log")
-        .map_err(|error| Failure::new(error).advise("Write the robot file by hand; docs/robot-file.md shows the format."))
+    RobotFile::parse(text, "the robot file made of this log").map_err(|error| {
+        Failure::new(error).advise("Write the robot file by hand; docs/robot-file.md shows the format.")
+    })
 }
 
 /// The usual interval of the samples; `None` where there are none.

@@ -34,8 +34,7 @@ impl TendonDiscoverResult {
             .collect();
         let header = ["", "verdict", "found", "noise\n[N]", "before\n[N]", "after\n[N]", "gap\nclosed"];
         let mut text = format!("{}: what the model lacks\n\n{}", self.robot, table(&header, 3, &rows));
-        text +=
-            "\nBefore and after are the rms difference of tension between gratings and model, on\nsamples that no fit has seen.\n";
+        text += "\nBefore and after are the rms difference of tension between gratings and model,\non samples that no fit has seen.\n";
         let effects: Vec<&TendonEffect> = self.cables.iter().flat_map(|tendon| &tendon.effects).collect();
         for (place, effect) in effects.iter().enumerate() {
             let values: Vec<String> = effect

@@ -101,7 +101,14 @@ impl CalibrationResult {
                 ]
             })
             .collect();
-        let header = ["grating", "slope a\n[N/nm]", "offset b\n[N]", "error of\nT [N]", "largest\nresidual [%]", "largest error\nleft out [%]"];
+        let header = [
+            "grating",
+            "slope a\n[N/nm]",
+            "offset b\n[N]",
+            "error of\nT [N]",
+            "largest\nresidual [%]",
+            "largest error\nleft out [%]",
+        ];
         let [least_n, most_n] = self
             .load_n
             .iter()

@@ -18,9 +18,8 @@ const PUBLISHED: [(&str, [[f64; 2]; 3]); 2] = [
     ("[C] fig. 15, mixed", [[15.1, 10.56], [19.11, 16.47], [2.87, 1.75]]),
 ];
 
-/// What the ways are.
-const LEGEND: [(Way, &str); 4] = [
-    (Way::None, "no friction"),
+/// What the ways are whose names do not say it.
+const LEGEND: [(Way, &str); 3] = [
     (Way::Coulomb, "friction with all holes sliding one way"),
     (Way::Measured, "friction from the gratings"),
     (Way::History, "friction from the run of the tension at the base"),
@@ -245,7 +244,15 @@ impl ShapeResult {
         let picked = |mean: String, max: String| if wide { vec![mean, max] } else { vec![mean] };
         let cells = |errors: ErrorResult| picked(millimetres(errors.mean_mm), millimetres(errors.max_mm));
         let mut header = ["", "time\n[s]", "tension\n[N]", "bend\n[°]"].map(ToOwned::to_owned).to_vec();
-        let head = |way: &WayErrors| picked(format!("{}\nmean", way.way), format!("{}\nmax", way.way));
+        let head = |way: &WayErrors| {
+            let lines = if way.way == Way::None.name() { ["no", "friction"] } else { ["", way.way] };
+            if wide {
+                let name = lines.join(" ");
+                vec![format!("{}\nmean", name.trim()), format!("{}\nmax", name.trim())]
+            } else {
+                vec![lines.join("\n")]
+            }
+        };
         header.extend(self.ways.iter().flat_map(head));
         let mut rows: Vec<Vec<String>> = Vec::new();
         for (place, shape) in self.shapes.iter().enumerate() {
@@ -282,12 +289,13 @@ impl ShapeResult {
         let columns: Vec<&str> = header.iter().map(String::as_str).collect();
         let legend = LEGEND.iter().filter(|(way, _)| self.ways.iter().any(|shown| shown.way == way.name()));
         let legend: Vec<String> = legend.map(|(way, what)| format!("{}: {what}", way.name())).collect();
+        let what = if wide { "mean and greatest" } else { "mean" };
         let published = if self.is_prototype { PUBLISHED_LEGEND } else { "" };
         let legend = wrapped("", &format!("{}{published}.", legend.join("; ")));
         let mut text = format!("{}: {} samples", self.manipulator, self.samples);
         // Writing to a String cannot fail.
         let _ = if has_markers {
-            write!(text, ", distance between disks and markers in mm\n\n{}\n{legend}", table(&columns, 1, &rows))
+            write!(text, ", {what} distance between disks and markers in mm\n\n{}\n{legend}", table(&columns, 1, &rows))
         } else {
             write!(text, "\n\n{}\nNo markers to compare with.\n", table(&columns, 1, &rows))
         };
