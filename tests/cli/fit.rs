@@ -163,7 +163,8 @@ fn the_robot_file_written_has_the_values_of_the_json_and_is_otherwise_untouched(
     assert!(run.stdout.lines().all(|line| line.chars().count() <= 80), "too wide for a terminal: {run:#?}");
     // The fit does not start from what the file says: from the fitted values it finds the same again.
     let again = place.run(&["fit", "log.mcap", "--model", "fitted.toml", "-o", "again.toml"]).succeeds();
-    assert_eq!(again.stdout, run.stdout);
+    let table = |run: &Run| run.stdout.split_once("\nwrote ").unwrap().0.to_owned();
+    assert_eq!(table(&again), table(&run));
 }
 
 /// `before` and `after` of each cable.

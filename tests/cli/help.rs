@@ -33,7 +33,9 @@ fn each_command_has_an_example_that_runs() {
     let log = ["-o", "examples/mini-ipanema.mcap", "--duration", "14", "--seed", "3"];
     place.run(&[&["simulate", "--model", "examples/platform.toml"], &log[..]].concat()).succeeds();
     let commands = commands(&place);
-    for expected in ["replay", "fit", "discover", "info", "simulate", "excite", "hysteresis", "continuum"] {
+    for expected in
+        ["replay", "fit", "completions", "man", "discover", "info", "simulate", "excite", "hysteresis", "continuum"]
+    {
         assert!(commands.iter().any(|command| command == expected), "{commands:?}");
     }
     for command in commands {
@@ -65,6 +67,7 @@ fn each_command_has_an_example_that_runs() {
             "fitted.toml",
             "gentle.csv",
             "loads.csv",
+            "man1",
             "pull.csv",
             "run.csv",
             "run.html",

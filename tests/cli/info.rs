@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::logs::{without, without_reference_of};
-use super::support::{Place, example_robot, short_log, slow_robot};
+use super::support::{Place, example_robot, short_log, slow_robot, unwrapped};
 
 /// Table and JSON of a log without some topics.
 fn info(topics: &[&str]) -> (String, Value) {
@@ -27,9 +27,8 @@ fn step((table, json): &(String, Value), name: &str) -> (bool, String) {
     let reasons: Vec<&str> =
         step["reasons"].as_array().unwrap().iter().map(|reason| reason.as_str().unwrap()).collect();
     let reasons = reasons.join("; ");
-    let row = table.lines().find(|line| line.trim_start().starts_with(&format!("{name} "))).unwrap();
-    let words = format!(" {} ", if possible { "possible" } else { "impossible" });
-    assert!(format!("{row} ").contains(&words) && row.contains(&reasons), "{row}");
+    let row = format!("{name} {} {reasons}", if possible { "possible" } else { "impossible" });
+    assert!(unwrapped(table).contains(row.trim_end()), "{row} {table}");
     (possible, reasons)
 }
 
@@ -41,7 +40,7 @@ fn a_complete_log_allows_everything() {
     }
     let (table, json) = &all;
     assert_eq!(json["robot"], "mini-ipanema");
-    assert!(table.contains("attached: fric-robot.toml"), "{table}");
+    assert!(unwrapped(table).contains("attached: fric-robot.toml"), "{table}");
     for (signal, path, messages) in [
         ("cable", "/cable_states", 400),
         ("reference", "/reference_forces", 400),
@@ -145,6 +144,31 @@ fn a_log_too_short_to_discover_is_told() {
         assert_eq!(step["possible"], possible, "{step}");
         assert_eq!(step["reasons"].to_string().contains("too few, 8 s are needed"), !possible, "{step}");
     }
+}
+
+#[test]
+fn how_the_log_is_kept_is_told() {
+    let place = Place::with_log();
+    let run = place.run(&["info", "log.mcap", "--json", "j.json"]).succeeds();
+    let storage = place.json("j.json")["storage"].clone();
+    let size_bytes = short_log().len();
+    assert_eq!((&storage["kind"], &storage["size_bytes"]), (&"MCAP".into(), &size_bytes.into()));
+    assert_eq!(storage["messages"], 400 + 400 + 101 + 101);
+    // The summary of another reader.
+    let summary = mcap::Summary::read(short_log()).unwrap().unwrap();
+    let stored: u64 = summary.chunk_indexes.iter().map(|chunk| chunk.compressed_size).sum();
+    let content: u64 = summary.chunk_indexes.iter().map(|chunk| chunk.uncompressed_size).sum();
+    assert_eq!(storage["chunks"]["count"], summary.chunk_indexes.len());
+    assert_eq!(
+        (&storage["chunks"]["stored_bytes"], &storage["chunks"]["content_bytes"]),
+        (&stored.into(), &content.into())
+    );
+    assert_eq!(storage["chunks"]["compression"], summary.chunk_indexes[0].compression.as_str());
+    let stats = summary.stats.unwrap();
+    let duration_ns = u32::try_from(stats.message_end_time - stats.message_start_time).unwrap();
+    let duration_s = f64::from(duration_ns) * 1e-9;
+    assert!((storage["duration_s"].as_f64().unwrap() - duration_s).abs() < 1e-9, "{storage}");
+    assert!(run.stdout.contains(&format!("{duration_s:.3} s")) && run.stdout.contains("start:"), "{run:#?}");
 }
 
 /// As of a file without a byte, there is nothing to tell of it.

@@ -66,7 +66,7 @@ fn a_log_without_a_robot_needs_one() {
     let named = place.run(&["replay", "bare.mcap", "--model", "robot.toml", "-o", "named.mcap"]).succeeds();
     let attached = place.run(&["replay", "log.mcap", "-o", "attached.mcap"]).succeeds();
     assert!(place.read("named.mcap") == place.read("attached.mcap"));
-    assert_eq!(named.stdout.lines().nth(3), attached.stdout.lines().nth(3));
+    assert_eq!(named.stdout.lines().nth(4), attached.stdout.lines().nth(4));
 }
 
 #[test]

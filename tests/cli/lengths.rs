@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use super::support::{Place, example_robot};
+use super::support::{Place, example_robot, unwrapped};
 
 /// The example with the poses from the lengths.
 fn robot() -> String {
@@ -41,7 +41,10 @@ fn every_command_takes_the_pose_from_the_lengths() {
     assert!((error(&lengths) / error(&measured) - 1.0).abs() < 0.05, "{lengths} {measured}");
 
     let run = place.run(&["info", "log.mcap", "--model", "lengths.toml", "--json", "info.json"]).succeeds();
-    assert!(run.stdout.contains("computed from the cable lengths") && run.stdout.contains("mm rms"), "{run:#?}");
+    assert!(
+        unwrapped(&run.stdout).contains("computed from the cable lengths") && unwrapped(&run.stdout).contains("mm rms"),
+        "{run:#?}"
+    );
     let info = place.json("info.json");
     let signal = info["signals"].as_array().unwrap().iter().find(|signal| signal["signal"] == "pose").unwrap();
     assert!(signal["path"] == "lengths" && number(signal, "residual_rms_m") < 1e-4, "{signal}");

@@ -38,3 +38,4 @@ mod robot_files;
 mod simulate;
 mod split;
 mod support;
+mod terminal;

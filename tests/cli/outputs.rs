@@ -70,7 +70,7 @@ fn places_that_cannot_be_written_are_told_before_the_work() {
         let run = |output| place.run_in_vain(&["replay", "log.mcap", option, output, "--force"]);
         run("no/such/out").fails(1, &["cannot write no/such/out", "No such file"]).advises(&["no/such", "exists"]);
         run("log.mcap/out").fails(1, &["cannot write log.mcap/out", "Not a directory"]);
-        run("folder").fails(1, &["cannot write folder", "directory"]).advises(&["file in it"]);
+        run("folder").fails(1, &["cannot write folder", "directory"]).advises(&["file in it", "folder/result"]);
     }
     let simulate = ["simulate", "--model", "robot.toml", "-o", "no/out.mcap"];
     place.run_in_vain(&simulate).fails(1, &["cannot write no/out.mcap"]).advises(&["directory no exists"]);
@@ -135,7 +135,8 @@ fn a_disk_that_fills_up_is_told_in_one_sentence_and_nothing_is_left() {
     ] {
         let mut shell = std::process::Command::new("sh");
         shell.current_dir(place.path("")).args(["-c", limited, super::support::PROGRAM]).args(arguments);
-        Run::new(shell.output().unwrap()).fails(1, &["cannot write out.mcap: File too large"]);
+        let run = Run::new(shell.output().unwrap()).fails(1, &["cannot write out.mcap: File too large"]);
+        run.advises(&["free", "another disk"]);
         assert_eq!(place.names(), ["log.mcap", "robot.toml"]);
     }
 }
@@ -159,6 +160,8 @@ fn what_is_no_regular_file_is_never_replaced() {
             let run = place.run_in_vain(&["replay", "log.mcap", option, output, "--force"]);
             run.fails(1, &[output, "no regular file"]).advises(&["another output"]);
         }
+        let run = place.run_in_vain(&["replay", "log.mcap", "-o", "/dev/stdout", "--force"]);
+        run.fails(1, &["/dev/stdout"]).advises(&["`--json -`"]);
         place.run_in_vain(&[&simulate[..], &[output, "--force"]].concat()).fails(1, &["no regular file"]);
         place.run_in_vain(&["info", "log.mcap", "--json", output, "--force"]).fails(1, &["no regular file"]);
     }

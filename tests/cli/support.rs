@@ -97,6 +97,11 @@ impl Run {
     }
 }
 
+/// A text in one line, as it was before it was wrapped; columns stand one space apart.
+pub fn unwrapped(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
 /// How long a test waits for what has to happen before it fails.
 const PATIENCE: Duration = Duration::from_secs(120);
 

@@ -1,6 +1,7 @@
 //! The command line.
 
 pub mod continuum;
+pub mod terminal;
 
 use std::path::PathBuf;
 
@@ -19,6 +20,8 @@ use crate::failure::{Failure, Outcome};
 pub struct Arguments {
     #[command(subcommand)]
     pub command: Command,
+    #[command(flatten)]
+    pub terminal: terminal::TerminalArguments,
 }
 
 #[derive(Debug, Subcommand)]
@@ -85,6 +88,32 @@ pub enum Command {
                       pull.csv --model calibrated.toml --report shapes.html"
     )]
     Continuum(continuum::ContinuumCommand),
+    /// Print the completions of a shell, so that its Tab key knows commands, options and their values
+    #[command(after_help = "bash:  fric-cli completions bash > ~/.local/share/bash-completion/completions/fric-cli\n\
+                      zsh:   fric-cli completions zsh > \"${fpath[1]}/_fric-cli\"\n\
+                      fish:  fric-cli completions fish > ~/.config/fish/completions/fric-cli.fish\n\n\
+                      Example:\n  fric-cli completions bash")]
+    Completions(CompletionsArguments),
+    /// Write the manual pages, one for each command, into a directory
+    #[command(after_help = "`man` finds those in ~/.local/share/man/man1 by name, as in `man fric-cli-replay`.\n\n\
+                      Example:\n  fric-cli man man1")]
+    Man(ManArguments),
+}
+
+#[derive(Debug, Args)]
+pub struct CompletionsArguments {
+    /// The shell
+    pub shell: clap_complete::Shell,
+}
+
+#[derive(Debug, Args)]
+pub struct ManArguments {
+    /// The directory, made if it is missing
+    #[arg(value_name = "DIR")]
+    pub directory: PathBuf,
+    /// Replace pages that exist
+    #[arg(long)]
+    pub force: bool,
 }
 
 /// The log and its robot.
@@ -146,6 +175,9 @@ pub struct ReplayArguments {
     /// lengths; reads the log twice and keeps its samples in memory
     #[arg(long)]
     pub correct: bool,
+    /// Show also the mean of the error's magnitude and the number of samples
+    #[arg(long)]
+    pub wide: bool,
     #[command(flatten)]
     pub result: ResultArguments,
 }
@@ -242,6 +274,9 @@ pub enum ReferenceName {
 pub struct InfoArguments {
     #[command(flatten)]
     pub log: LogArguments,
+    /// Show also encoding, jitter and time range of each topic
+    #[arg(long)]
+    pub wide: bool,
     #[command(flatten)]
     pub result: ResultArguments,
 }

@@ -2,13 +2,12 @@
 
 use std::error::Error;
 use std::fmt::Display;
-use std::io::{self, ErrorKind, Write as _};
+use std::io::{self, ErrorKind};
 use std::path::Path;
 
 use fric_core::ParamError;
 use fric_core::continuum::file::ManipulatorFileError;
 use fric_core::robot::file::RobotFileError;
-use fric_core::text_file::printable;
 use fric_lab::continuum::ContinuumError;
 use fric_lab::excite::ExcitationError;
 use fric_lab::fit::FitError;
@@ -21,6 +20,8 @@ use fric_log::signals::{SignalError, TimesApart};
 use fric_log::table::TableError;
 use fric_log::write::WriteError;
 use fric_log::{in_full, reason, with_sources};
+
+use crate::terminal::{self, Label};
 
 /// What `main` turns into an exit code.
 #[derive(Debug)]
@@ -78,12 +79,7 @@ impl Failure {
     }
 
     pub fn print(&self) {
-        let mut stderr = std::io::stderr().lock();
-        // There is nowhere left to report a broken stderr to.
-        let _ = writeln!(stderr, "error: {}", printable(&self.cause));
-        if let Some(advice) = &self.advice {
-            let _ = writeln!(stderr, "  {}", printable(advice));
-        }
+        terminal::say(Label::Error, &self.cause, self.advice.as_deref());
     }
 }
 
@@ -169,8 +165,12 @@ impl From<OutputError> for Failure {
             OutputError::Exists { path } => Self::new(format!("{} exists already", path.display()))
                 .advise("Name another output file, or replace it with --force."),
             OutputError::NotRegular { path } => {
-                Failure::new(format!("{} is no regular file, and is never replaced", path.display()))
-                    .advise("Name another output file.")
+                let failure = Failure::new(format!("{} is no regular file, and is never replaced", path.display()));
+                if STREAMS.iter().any(|stream| path == Path::new(stream)) {
+                    failure.advise("Name another output file; only JSON goes to stdout, with `--json -`.")
+                } else {
+                    failure.advise("Name another output file.")
+                }
             }
             OutputError::Input { path, .. } => {
                 Self::new(format!("{} is an input of this command and would be overwritten", path.display()))
@@ -192,13 +192,18 @@ impl From<WriteError> for Failure {
     }
 }
 
+/// The names of the streams of a process.
+const STREAMS: [&str; 4] = ["/dev/stdout", "/dev/stderr", "/dev/fd/1", "/dev/fd/2"];
+
 /// The failure of an output that the operating system refuses.
 fn unwritable(path: &Path, error: &io::Error) -> Failure {
     let failure = Failure::new(format!("cannot write {}: {}", path.display(), reason(error)));
     match error.kind() {
-        ErrorKind::IsADirectory => failure.advise("Name a file in it."),
-        ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
-            failure.advise("Free some space, or name a file on another disk.")
+        ErrorKind::IsADirectory => {
+            failure.advise(format!("Name a file in it, such as {}.", path.join("result").display()))
+        }
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {
+            failure.advise("Make some space free, or name a file on another disk.")
         }
         ErrorKind::NotFound
         | ErrorKind::NotADirectory

@@ -11,9 +11,11 @@ mod model;
 mod output;
 mod progress;
 mod steps;
+mod terminal;
 mod warnings;
 
 use std::ffi::OsString;
+use std::time::Instant;
 
 use clap::Parser;
 
@@ -25,6 +27,8 @@ use arguments::{Arguments, Command};
 /// Results go to stdout, what is wrong to stderr. From then on Ctrl-C ends the command, and a second one the process.
 #[must_use]
 pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
+    let words: Vec<OsString> = words.into_iter().collect();
+    terminal::set_color(&words);
     let arguments = match Arguments::try_parse_from(words) {
         Ok(arguments) => arguments,
         Err(error) => {
@@ -33,7 +37,9 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
             return u8::try_from(error.exit_code()).unwrap_or(2);
         }
     };
+    terminal::set_volume(&arguments.terminal);
     interrupt::listen();
+    let start = Instant::now();
     let result = match &arguments.command {
         Command::Fit(arguments) => commands::fit::run(arguments),
         Command::Convert(arguments) => commands::convert::run(arguments),
@@ -45,9 +51,14 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Excite(arguments) => commands::excite::run(arguments),
         Command::Hysteresis(arguments) => commands::hysteresis::run(arguments),
         Command::Continuum(command) => commands::continuum::run(command),
+        Command::Completions(arguments) => commands::completions::run(arguments),
+        Command::Man(arguments) => commands::man::run(arguments),
     };
     match result {
-        Ok(()) => 0,
+        Ok(()) => {
+            terminal::note(format_args!("done in {:.1} s", start.elapsed().as_secs_f64()));
+            0
+        }
         Err(failure) => {
             failure.print();
             failure.exit_code()

@@ -116,7 +116,7 @@ fn take_all(reader: &mut SignalReader, mut take: impl FnMut(&Sample<'_>)) -> Out
             Err(error) => break Err(error),
         }
     };
-    bar.finish_and_clear();
+    progress::finish(&bar);
     Ok(end)
 }
 
@@ -141,13 +141,13 @@ pub fn corrections(parts: &[PathBuf], part: Part, model: &Model) -> Outcome<Corr
     let mut reader = SignalReader::new(Log::open(parts)?, paths, &names).within(part);
     // An error comes again where the log is read for good.
     let _ = take_all(&mut reader, |sample| measurements.add(sample))?;
-    watched("checked", |progress| discover::corrections(&measurements, progress))
+    watched("checking", "cables", |progress| discover::corrections(&measurements, progress))
 }
 
-/// Runs work beside a bar, until it is done or Ctrl-C is pressed; the bar counts what is `done`.
-pub fn watched<T: Send>(done: &'static str, work: impl FnOnce(&Progress) -> T + Send) -> Outcome<T> {
+/// Runs work beside a bar, until it is done or Ctrl-C is pressed; `doing` is the work, the bar counts its `steps`.
+pub fn watched<T: Send>(doing: &'static str, steps: &str, work: impl FnOnce(&Progress) -> T + Send) -> Outcome<T> {
     let progress = Progress::new();
-    let bar = progress::steps(done);
+    let bar = progress::steps(doing, steps);
     let result = thread::scope(|scope| {
         let worker = scope.spawn(|| work(&progress));
         while !worker.is_finished() {
@@ -161,7 +161,7 @@ pub fn watched<T: Send>(done: &'static str, work: impl FnOnce(&Progress) -> T + 
         }
         worker.join()
     });
-    bar.finish_and_clear();
+    progress::finish(&bar);
     interrupt::check()?;
     result.map_err(|_| Failure::new("the work broke off: this is a defect of fric; please report it with the log"))
 }

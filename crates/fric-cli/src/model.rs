@@ -10,6 +10,7 @@ use fric_log::robot::{ATTACHED, AttachedRobot, AttachedRobotError, ROBOT_FILE};
 use fric_log::signals::SignalPaths;
 
 use crate::failure::{Failure, Outcome};
+use crate::terminal;
 
 /// The text of a model's file, and where it is from; `kind` is whose file it is.
 pub fn read_text(path: &Path, kind: &str) -> Outcome<(String, String)> {
@@ -55,9 +56,10 @@ impl Model {
             return Self::read(path).map(Some);
         }
         match AttachedRobot::find(log) {
-            Ok(attached) => {
-                Ok(attached.map(|AttachedRobot { robot, text }| Self { robot, text, origin: ATTACHED.to_owned() }))
-            }
+            Ok(attached) => Ok(attached.map(|AttachedRobot { robot, text }| {
+                terminal::note(format_args!("robot: {} from {ATTACHED}", robot.options().name));
+                Self { robot, text, origin: ATTACHED.to_owned() }
+            })),
             Err(AttachedRobotError::Robot(error)) => Err(error.into()),
             Err(error) => Err(Failure::new(error).advise("Name a robot file with --model.")),
         }
@@ -65,6 +67,7 @@ impl Model {
 
     fn parse(text: String, origin: String) -> Outcome<Self> {
         let robot = RobotFile::parse(&text, &origin)?;
+        terminal::note(format_args!("robot: {} from {origin}", robot.options().name));
         Ok(Self { robot, text, origin })
     }
 

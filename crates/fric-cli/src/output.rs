@@ -3,10 +3,12 @@
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
+use fric_lab::text::{WIDTH, wrapped};
 use fric_log::output::{CompleteFile, OutputFile, directory_of};
 use serde::Serialize;
 
 use crate::failure::{Failure, Outcome};
+use crate::terminal;
 
 /// Makes sure that no two outputs are to stand in the same place.
 pub fn check_distinct(outputs: &[Option<&Path>]) -> Outcome {
@@ -45,22 +47,25 @@ impl JsonTarget {
 
     /// Ends a command: puts its outputs in their places, all of them complete, and shows a text to people, on stdout, or on
     /// stderr where stdout takes the JSON.
-    pub fn finish(self, result: &impl Serialize, text: &str, mut files: Vec<CompleteFile>) -> Outcome {
+    pub fn finish(self, result: &impl Serialize, text: &str, files: Vec<Written>) -> Outcome {
+        self.finish_then(result, text, files, "")
+    }
+
+    /// The same with what to do next, a line below everything else.
+    pub fn finish_then(self, result: &impl Serialize, text: &str, mut files: Vec<Written>, next: &str) -> Outcome {
         match self {
-            Self::Nowhere => {
-                place(files)?;
-                show(text)
-            }
+            Self::Nowhere => show_with(text, files, next),
             Self::File(file) => {
-                files.push(file.complete_with(&as_json(result)?)?);
-                place(files)?;
-                show(text)
+                files.push(Written::new(file.complete_with(&as_json(result)?)?, "the result as JSON"));
+                show_with(text, files, next)
             }
             Self::Stdout => {
                 let json = as_json(result)?;
-                place(files)?;
-                print_to(std::io::stderr(), "stderr", &harmless(text))?;
-                print_to(std::io::stdout(), "stdout", &json)
+                let written = place(files)?;
+                if !terminal::is_quiet() {
+                    print_to(std::io::stderr(), "stderr", harmless(&joined(&[text, &written, next])).as_bytes())?;
+                }
+                print(json.as_bytes())
             }
         }
     }
@@ -71,20 +76,58 @@ pub fn as_json(result: &impl Serialize) -> Outcome<String> {
     fric_work::json(result).map_err(|error| Failure::new(format!("cannot write the result as JSON: {error}")))
 }
 
-/// Puts files in their places; where one cannot be, tells which stand there already.
-pub fn place(files: Vec<CompleteFile>) -> Outcome {
+/// A complete output, and what it holds in words.
+#[derive(Debug)]
+pub struct Written {
+    file: CompleteFile,
+    what: String,
+}
+
+impl Written {
+    pub fn new(file: CompleteFile, what: impl Into<String>) -> Self {
+        Self { file, what: what.into() }
+    }
+
+    /// For people, within 80 columns where the path allows.
+    fn told(path: &str, what: &str) -> String {
+        let line = format!("wrote {path}: {what}\n");
+        if line.chars().count() <= WIDTH { line } else { format!("wrote {path}:\n{}", wrapped("  ", what)) }
+    }
+}
+
+/// Puts files in their places and lists them; where one cannot be, tells which stand there already.
+fn place(files: Vec<Written>) -> Outcome<String> {
     let mut placed = Vec::new();
-    for file in files {
+    let mut list = String::new();
+    for Written { file, what } in files {
         let path = file.path().display().to_string();
         file.place().map_err(|error| Failure::from(error).although_written(&placed))?;
+        list += &Written::told(&path, &what);
         placed.push(path);
     }
-    Ok(())
+    Ok(if terminal::is_quiet() { String::new() } else { list })
+}
+
+/// Puts files in their places, and shows a text, the list of them, and what to do next.
+pub fn show_with(text: &str, files: Vec<Written>, next: &str) -> Outcome {
+    let written = place(files)?;
+    show(&joined(&[text, &written, next]))
+}
+
+/// Texts with an empty line between them.
+fn joined(texts: &[&str]) -> String {
+    let there: Vec<&str> = texts.iter().copied().filter(|text| !text.is_empty()).collect();
+    there.join("\n")
 }
 
 /// Shows a text to people on stdout.
 pub fn show(text: &str) -> Outcome {
-    print_to(std::io::stdout(), "stdout", &harmless(text))
+    print(harmless(text).as_bytes())
+}
+
+/// Prints bytes to stdout as they are.
+pub fn print(bytes: &[u8]) -> Outcome {
+    print_to(std::io::stdout(), "stdout", bytes)
 }
 
 /// Lines of text without what a terminal would take for an order.
@@ -102,8 +145,8 @@ pub fn is_stdout(path: &Path) -> bool {
 }
 
 /// A reader that has gone away (`| head`) is no failure.
-fn print_to(mut stream: impl Write, name: &str, text: &str) -> Outcome {
-    match stream.write_all(text.as_bytes()).and_then(|()| stream.flush()) {
+fn print_to(mut stream: impl Write, name: &str, bytes: &[u8]) -> Outcome {
+    match stream.write_all(bytes).and_then(|()| stream.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
             Err(Failure::new(format!("cannot print the result to {name}: {error}"))
                 .advise(format!("See where {name} leads; output files that were named are written.")))

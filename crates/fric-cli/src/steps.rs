@@ -1,6 +1,6 @@
 //! Which steps a recording is good for, in every `info`.
 
-use fric_lab::text::table;
+use fric_lab::text::table_with_text;
 use serde::Serialize;
 
 /// Whether a recording is good for a step.
@@ -24,5 +24,5 @@ pub fn step_table(title: &str, steps: &[StepResult]) -> String {
         let possible = if step.possible { "possible" } else { "impossible" };
         [step.step.to_owned(), possible.to_owned(), step.reasons.join("; ")]
     };
-    table(&[title, "", ""], 3, &steps.iter().map(row).collect::<Vec<_>>())
+    table_with_text(&[title, "", ""], 3, &steps.iter().map(row).collect::<Vec<_>>())
 }

@@ -1,13 +1,12 @@
 //! What is worth knowing, on stderr.
 
-use std::io::Write as _;
+use crate::terminal::{self, Label};
 
-use fric_core::text_file::printable;
-
-/// One line on stderr.
+/// One line on stderr, unless `--quiet` is given.
 pub fn warn(text: &str) {
-    // Nothing can be done about a stderr that is gone.
-    let _ = writeln!(std::io::stderr(), "warning: {}", printable(text));
+    if !terminal::is_quiet() {
+        terminal::say(Label::Warning, text, None);
+    }
 }
 
 /// A line each.

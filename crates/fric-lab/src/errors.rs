@@ -75,10 +75,10 @@ impl WrenchResult {
             std::iter::once(name.to_owned()).chain(errors.iter().map(|error| cell(error))).collect()
         };
         let rows = [
-            row("force", |error| format!("{:.4} N", error.force_rms_n)),
-            row("torque", |error| format!("{:.4} Nm", error.torque_rms_nm)),
+            row("force [N]", |error| format!("{:.4}", error.force_rms_n)),
+            row("torque [Nm]", |error| format!("{:.4}", error.torque_rms_nm)),
         ];
-        let header = [self.title(), "rms before", "after", "held out"];
+        let header = [self.title(), "rms error\nbefore", "rms error\nafter", "rms error\nheld out"];
         table(header.get(..=errors.len()).unwrap_or(&header), 1, &rows)
     }
 }

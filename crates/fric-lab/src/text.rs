@@ -1,10 +1,31 @@
 //! Numbers and tables for people.
 
-use comfy_table::{CellAlignment, Table, presets};
+use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, Table, presets};
 
-/// A table with a header; all columns but the first `left` are aligned right.
+/// A table with a header; all columns but the first `left` are aligned right. A line break in a head makes it two lines high.
 #[must_use]
 pub fn table(header: &[&str], left: usize, rows: &[impl AsRef<[String]>]) -> String {
+    lines_of(&aligned(header, left, rows))
+}
+
+/// The same with a text in the last column, which is aligned left and wrapped so that the table is at most [`WIDTH`] wide.
+#[must_use]
+pub fn table_with_text(header: &[&str], left: usize, rows: &[impl AsRef<[String]>]) -> String {
+    let mut table = aligned(header, left, rows);
+    let width = u16::try_from(WIDTH).unwrap_or(u16::MAX);
+    table.set_content_arrangement(ContentArrangement::Dynamic).set_width(width);
+    let last = header.len().saturating_sub(1);
+    for (place, column) in table.column_iter_mut().enumerate() {
+        if place < last {
+            column.set_constraint(ColumnConstraint::ContentWidth);
+        } else {
+            column.set_cell_alignment(CellAlignment::Left);
+        }
+    }
+    lines_of(&table)
+}
+
+fn aligned(header: &[&str], left: usize, rows: &[impl AsRef<[String]>]) -> Table {
     let mut table = Table::new();
     table.load_style(presets::NOTHING).set_header(header);
     for row in rows {
@@ -13,6 +34,10 @@ pub fn table(header: &[&str], left: usize, rows: &[impl AsRef<[String]>]) -> Str
     for column in table.column_iter_mut().skip(left) {
         column.set_cell_alignment(CellAlignment::Right);
     }
+    table
+}
+
+fn lines_of(table: &Table) -> String {
     let lines = table.lines().map(|line| line.trim_end().to_owned() + "\n");
     lines.collect()
 }
@@ -92,6 +117,24 @@ pub fn significant(value: f64) -> String {
     let digits = if magnitude > 0.0 { digits_of(magnitude) + 1 } else { 0 };
     let text = number(value, digits);
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+/// A duration in the unit that suits its size.
+///
+/// ```
+/// use fric_lab::text::duration;
+/// assert_eq!([410, 31_599, 2_500_000].map(duration), ["0.41 µs", "31.6 µs", "2.50 ms"]);
+/// ```
+#[must_use]
+pub fn duration(nanos: u64) -> String {
+    #[expect(clippy::cast_precision_loss, reason = "for people")]
+    let nanos = nanos as f64;
+    let (value, unit) = match nanos {
+        _ if nanos < 1e6 => (nanos * 1e-3, "µs"),
+        _ if nanos < 1e9 => (nanos * 1e-6, "ms"),
+        _ => (nanos * 1e-9, "s"),
+    };
+    format!("{} {unit}", number(value, if value < 10.0 { 2 } else { 1 }))
 }
 
 /// Names as one phrase.

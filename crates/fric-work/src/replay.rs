@@ -6,7 +6,7 @@ use fric_lab::discover::result::FaultResult;
 use fric_lab::discover::words::recording_lines;
 use fric_lab::errors::{ForceError, WrenchResult};
 use fric_lab::replay::{CableErrors, Replay};
-use fric_lab::text::table;
+use fric_lab::text::{duration, table};
 use fric_log::signals::LengthPoses;
 use hdrhistogram::{CreationError, Histogram};
 use serde::Serialize;
@@ -164,39 +164,31 @@ impl ReplayResult {
         self
     }
 
-    /// For people: a table.
+    /// For people: a table of at most 80 columns.
     #[must_use]
     pub fn summary(&self) -> String {
-        let rows: Vec<_> = self
-            .cables
-            .iter()
-            .map(|cable| {
-                let number = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.4}"));
-                let (before, after) = (cable.before.as_ref(), cable.after.as_ref());
-                let left = before.zip(after).map(|(before, after)| after.rms_n / before.rms_n * 100.0);
-                [
-                    cable.name.clone(),
-                    cable.samples.to_string(),
-                    cable.flagged.to_string(),
-                    number(before.map(|error| error.rms_n)),
-                    number(after.map(|error| error.rms_n)),
-                    left.filter(|left| left.is_finite()).map_or_else(|| "–".to_owned(), |left| format!("{left:.1} %")),
-                    number(before.map(|error| error.mae_n)),
-                    number(after.map(|error| error.mae_n)),
-                ]
-            })
-            .collect();
-        let header = [
-            "cable",
-            "samples",
-            "flagged",
-            "rms before [N]",
-            "after [N]",
-            "left",
-            "mean |error| before [N]",
-            "after [N]",
-        ];
-        let mut text = format!("{}: force at the platform against the reference\n\n", self.robot);
+        self.table(false)
+    }
+
+    /// For people: the same table; `wide` with the mean of the error's magnitude and the number of samples.
+    #[must_use]
+    pub fn table(&self, wide: bool) -> String {
+        let mut columns = vec![("rms error\nbefore [N]", 1), ("rms error\nafter [N]", 2), ("error\nleft", 3)];
+        if wide {
+            columns.extend([("mean |error|\nbefore [N]", 4), ("mean |error|\nafter [N]", 5), ("samples\n", 6)]);
+        }
+        columns.push(("flagged\nsamples", 7));
+        let header: Vec<&str> = std::iter::once("cable").chain(columns.iter().map(|(head, _)| *head)).collect();
+        let row = |cable: &CableResult| -> Vec<String> {
+            let all = cable.cells();
+            let picked = columns.iter().filter_map(|(_, place)| all.get(*place).cloned());
+            std::iter::once(cable.name.clone()).chain(picked).collect()
+        };
+        let rows: Vec<_> = self.cables.iter().map(row).collect();
+        let CycleResult { count, median_ns, p999_ns, max_ns } = self.cycle;
+        let has_errors = self.cables.iter().any(|cable| cable.before.is_some());
+        let what = if has_errors { "force at the platform against the reference" } else { "force at the platform" };
+        let mut text = format!("{}: {what}, {count} samples\n\n", self.robot);
         text += &table(&header, 1, &rows);
         text += &recording_lines(self.cables.iter().map(|cable| (cable.name.as_str(), cable.faults.as_slice())));
         if let Some(wrench) = &self.wrench {
@@ -204,9 +196,29 @@ impl ReplayResult {
             text += &wrench.table();
         }
         text += &self.pose.as_ref().map_or_else(String::new, PoseResult::line);
-        let CycleResult { count, median_ns, p999_ns, max_ns } = self.cycle;
+        let [median, p999, max] = [median_ns, p999_ns, max_ns].map(duration);
         text + &format!(
-            "\n{count} cycles; one takes {median_ns} ns (median), {p999_ns} ns (99.9 %), {max_ns} ns (longest)\n"
+            "\n{count} cycles; one takes {median} (median), {p999} (99.9 %), {max} (longest)\n\
+             on this computer, which is not a real-time machine.\n"
         )
+    }
+}
+
+impl CableResult {
+    /// All cells of the table: name, rms before and after, share left, mean before and after, samples, flagged.
+    fn cells(&self) -> [String; 8] {
+        let number = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.4}"));
+        let (before, after) = (self.before.as_ref(), self.after.as_ref());
+        let left = before.zip(after).map(|(before, after)| after.rms_n / before.rms_n * 100.0);
+        [
+            self.name.clone(),
+            number(before.map(|error| error.rms_n)),
+            number(after.map(|error| error.rms_n)),
+            left.filter(|left| left.is_finite()).map_or_else(|| "–".to_owned(), |left| format!("{left:.1} %")),
+            number(before.map(|error| error.mae_n)),
+            number(after.map(|error| error.mae_n)),
+            self.samples.to_string(),
+            self.flagged.to_string(),
+        ]
     }
 }

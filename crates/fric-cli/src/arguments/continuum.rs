@@ -135,6 +135,9 @@ pub struct ShapeArguments {
     /// Take them from the samples in which the gratings show friction of both directions
     #[arg(long)]
     pub mixed: bool,
+    /// Show also the greatest distances
+    #[arg(long)]
+    pub wide: bool,
     #[command(flatten)]
     pub page: ReportArguments,
 }

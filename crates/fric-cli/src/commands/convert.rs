@@ -10,7 +10,7 @@ use crate::arguments::ConvertArguments;
 use crate::failure::{Failure, Outcome};
 use crate::interrupt;
 use crate::model::{self, Model};
-use crate::output;
+use crate::output::{self, Written};
 use crate::progress::{self, STRIDE};
 use crate::warnings::warn_all;
 
@@ -58,12 +58,12 @@ pub fn run(arguments: &ConvertArguments) -> Outcome {
         }
         converted.write(&sample, true)?;
     };
-    bar.finish_and_clear();
+    progress::finish(&bar);
     warn_all(&reader.log().warnings());
     end?;
     warn_all(&reader.warnings());
-    converted.finish()?;
-    output::show(&format!("{}: {count} samples of {} cables, {ROBOT_FILE} attached\n", output.display(), names.len()))
+    let told = format!("{count} samples of {} cables, {ROBOT_FILE} attached", names.len());
+    output::show_with("", vec![Written::new(converted.complete()?, told)], "")
 }
 
 /// The robot file for a log with the default topics: as it is where it names no others, else without its `[log]`.

@@ -12,7 +12,7 @@ use super::continuum;
 use crate::arguments::{DiscoverArguments, ReferenceName};
 use crate::failure::{Failure, Outcome};
 use crate::measurements::{check_named_once, find_model, read, watched};
-use crate::output::{self, JsonTarget};
+use crate::output::{self, JsonTarget, Written};
 use fric_work::report;
 
 /// Runs the command.
@@ -52,8 +52,8 @@ pub fn run(arguments: &DiscoverArguments) -> Outcome {
     // What is missing for some cables only stands beside their verdicts.
     read.check(&readiness)?;
     let options = DiscoverOptions { empirical: !no_empirical };
-    let what = if reference == Reference::Forces { "cables looked at" } else { "searches done" };
-    let found = watched(what, |progress| Discoveries::of(&read.measurements, &options, progress))??;
+    let what = if reference == Reference::Forces { "stages" } else { "searches" };
+    let found = watched("discovering", what, |progress| Discoveries::of(&read.measurements, &options, progress))??;
 
     let names = logs.iter().map(|log| log.display().to_string());
     let logs: Vec<(String, f64)> = names.zip(read.measurements.log_starts_s()).collect();
@@ -61,20 +61,24 @@ pub fn run(arguments: &DiscoverArguments) -> Outcome {
     outcome.check_told()?;
     let mut files = Vec::new();
     if let Some(file) = extended_file {
-        files.push(file.complete_with(&found.extended(&model.text, &model.origin)?)?);
+        files.push(Written::new(
+            file.complete_with(&found.extended(&model.text, &model.origin)?)?,
+            "the robot file with what was found",
+        ));
     }
     if let Some(report) = report {
-        files.push(report.complete_with(&report::discovery::page(&outcome, found.cables()))?);
+        let page = report::discovery::page(&outcome, found.cables());
+        files.push(Written::new(report.complete_with(&page)?, "the report"));
     }
-    let summary = format!("{}\n{}\n", outcome.summary(), next_step(&logs, output.as_deref()));
-    json.finish(&outcome, &summary, files)
+    let next = next_step(&logs, output.as_deref());
+    json.finish_then(&outcome, &outcome.summary(), files, &next)
 }
 
 /// What a user would do with the result.
 fn next_step(logs: &[(String, f64)], output: Option<&Path>) -> String {
     let log = logs.first().map_or("LOG", |(name, _)| name.as_str());
     output.map_or_else(
-        || "Nothing is written; `-o extended.toml` writes the robot file with it.".to_owned(),
-        |path| format!("Next: fric-cli replay {log} --model {}", path.display()),
+        || "Nothing is written; `-o extended.toml` writes the robot file with it.\n".to_owned(),
+        |path| format!("Next: fric-cli replay {log} --model {}\n", path.display()),
     )
 }

@@ -16,7 +16,7 @@ use crate::failure::{Failure, Outcome};
 use crate::interrupt;
 use crate::measurements::watched;
 use crate::model::Model;
-use crate::output;
+use crate::output::{self, Written};
 use crate::progress::{self, STRIDE};
 
 /// Runs the command.
@@ -58,14 +58,14 @@ pub fn run(arguments: &ExciteArguments) -> Outcome {
         table.write(&cycle)?;
         series.add(&cycle);
     }
-    bar.finish_and_clear();
-    let mut files = vec![table.complete()?];
+    progress::finish(&bar);
+    let mut files = vec![Written::new(table.complete()?, describe(&excitation, &series))];
     if let Some(page) = page {
-        files.push(page.complete_with(&preview::page(&model.robot, &excitation, &series, &expected))?);
+        let text = preview::page(&model.robot, &excitation, &series, &expected);
+        files.push(Written::new(page.complete_with(&text)?, "the run, drawn"));
     }
-    output::place(files)?;
     let told: String = expected.iter().map(|line| format!("  {line}\n")).collect();
-    output::show(&format!("{}: {}\n{told}", arguments.output.display(), describe(&excitation, &series)))
+    output::show_with("", files, &told)
 }
 
 /// What the run is to tell, if it is to be designed.

@@ -10,7 +10,7 @@ use super::continuum;
 use crate::arguments::{FitArguments, ReferenceName};
 use crate::failure::{Failure, Outcome};
 use crate::measurements::{check_named_once, find_model, read, watched};
-use crate::output::{self, JsonTarget};
+use crate::output::{self, JsonTarget, Written};
 use crate::warnings::warn_all;
 
 /// Runs the command.
@@ -42,7 +42,8 @@ pub fn run(arguments: &FitArguments) -> Outcome {
             let read = read(logs, part, &model, Reference::Forces)?;
             let readiness = readiness::by_forces(&model.robot, &read.holdings);
             warn_all(&read.check(&readiness)?);
-            let fit = watched("fitted", |progress| fit_cables_corrected(&read.measurements, &options, progress))?;
+            let fit =
+                watched("fitting", "cables", |progress| fit_cables_corrected(&read.measurements, &options, progress))?;
             (Fits::Forces(fit.cables), fit.faults, readiness)
         }
         ReferenceName::Wrench => {
@@ -51,7 +52,7 @@ pub fn run(arguments: &FitArguments) -> Outcome {
             let read = read(logs, part, &model, Reference::Wrench)?;
             let readiness = readiness::by_wrench(&model.robot, &model.origin, &read.holdings);
             warn_all(&read.check(&readiness)?);
-            let fit = watched("fitted", |progress| fit_wrench(&read.measurements, &options, progress))??;
+            let fit = watched("fitting", "searches", |progress| fit_wrench(&read.measurements, &options, progress))??;
             (Fits::Wrench(fit), Vec::new(), readiness)
         }
     };
@@ -59,7 +60,8 @@ pub fn run(arguments: &FitArguments) -> Outcome {
     outcome.check_used()?;
     warn_all(&outcome.warnings(&fits, &readiness));
     let text = rewritten(&model.text, &model.origin, fits.cables())?;
-    json.finish(&outcome, &outcome.summary(), vec![fitted_file.complete_with(&text)?])
+    let fitted = Written::new(fitted_file.complete_with(&text)?, "the robot file with these values");
+    json.finish(&outcome, &outcome.summary(), vec![fitted])
 }
 
 /// The parameters that the command line names.

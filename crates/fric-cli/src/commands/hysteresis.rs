@@ -66,7 +66,7 @@ fn read(
             Err(error) => break Err(error),
         }
     };
-    bar.finish_and_clear();
+    progress::finish(&bar);
     // Damage may be why there is nothing to go on with.
     warn(&reader);
     Ok(end?)

@@ -1,6 +1,7 @@
 //! `info`: what is in a log, what maps to what, and which step is impossible and why.
 
 mod columns;
+mod storage;
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -8,7 +9,7 @@ use std::fmt::Write as _;
 use fric_core::robot::file::ReferenceTable;
 use fric_core::text_file::printable;
 use fric_lab::fit::readiness::{self, Holdings, Readiness, without_reference};
-use fric_lab::text::table;
+use fric_lab::text::{table, table_with_text};
 use fric_log::log::Log;
 use fric_log::signals::{Part, Role, SignalError, SignalReader};
 use serde::Serialize;
@@ -23,6 +24,7 @@ use crate::progress::{self, STRIDE};
 use crate::steps::{StepResult, step_table};
 use crate::warnings::warn_all;
 use columns::ColumnResult;
+use storage::StorageResult;
 
 /// `fric-info/1`.
 #[derive(Debug, Serialize)]
@@ -30,6 +32,7 @@ struct InfoResult {
     format: &'static str,
     #[serde(skip_serializing_if = "Option::is_none")]
     robot: Option<String>,
+    storage: StorageResult,
     topics: Vec<TopicResult>,
     /// Of a log of rows.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -106,7 +109,7 @@ fn seconds(nanos: u64) -> f64 {
 
 /// Runs the command.
 pub fn run(arguments: &InfoArguments) -> Outcome {
-    let InfoArguments { log, result } = arguments;
+    let InfoArguments { log, wide, result } = arguments;
     let mut inputs = log.logs.clone();
     inputs.extend(log.model.clone());
     let json = JsonTarget::prepare(result.json.as_deref(), &inputs, result.force)?;
@@ -119,7 +122,7 @@ pub fn run(arguments: &InfoArguments) -> Outcome {
     let part = log.part.part()?;
     let mut source = Log::open(&log.logs)?;
     let model = Model::find(log.model.as_deref(), &source)?;
-    let topics = read_topics(&mut source, part)?;
+    let (topics, first_nanos) = read_topics(&mut source, part)?;
     let columns = columns::results(&source, model.as_ref());
     warn_all(&source.warnings());
     if let Some(model) = &model {
@@ -130,22 +133,29 @@ pub fn run(arguments: &InfoArguments) -> Outcome {
         return Err(Failure::new("the log holds no topic, no message and no robot file, complete at least")
             .advise("Name a complete copy of it, or record again."));
     }
+    let mut storage = StorageResult::new(&source.storage(), &topics, first_nanos);
     let (signals, steps) = match &model {
-        Some(model) => read_signals(model, Log::open(&log.logs)?, part)?,
+        Some(model) => {
+            let read = read_signals(model, Log::open(&log.logs)?, part)?;
+            storage.set_rows(read.stamp_nanos);
+            (read.signals, read.steps)
+        }
         None => (Vec::new(), Vec::new()),
     };
     let outcome = InfoResult {
         format: "fric-info/1",
         robot: model.as_ref().map(|model| model.robot.options().name.clone()),
+        storage,
         topics,
         columns,
         signals,
         steps,
     };
-    json.finish(&outcome, &describe(&outcome, model.as_ref(), &attachments), Vec::new())
+    json.finish(&outcome, &describe(&outcome, model.as_ref(), &attachments, *wide), Vec::new())
 }
 
-fn read_topics(log: &mut Log, part: Part) -> Outcome<Vec<TopicResult>> {
+/// The topics, and when the first message was recorded.
+fn read_topics(log: &mut Log, part: Part) -> Outcome<(Vec<TopicResult>, Option<u64>)> {
     let bar = progress::bytes(log.total_bytes());
     let mut topics: BTreeMap<String, Times> = BTreeMap::new();
     for channel in log.channels() {
@@ -175,7 +185,8 @@ fn read_topics(log: &mut Log, part: Part) -> Outcome<Vec<TopicResult>> {
         times.encoding.clone_from(&channel.message_encoding);
         times.schema = channel.schema.as_ref().map_or_else(String::new, |schema| schema.name.clone());
     }
-    bar.finish_and_clear();
+    progress::finish(&bar);
+    let first_nanos = start_nanos;
     let start_nanos = start_nanos.unwrap_or(0);
     let topic = |(topic, times): (String, Times)| {
         #[expect(clippy::cast_precision_loss, reason = "a count of messages")]
@@ -195,29 +206,41 @@ fn read_topics(log: &mut Log, part: Part) -> Outcome<Vec<TopicResult>> {
             to_s: if times.count > 0 { seconds(times.last_nanos.saturating_sub(start_nanos)) } else { 0.0 },
         }
     };
-    Ok(topics.into_iter().map(topic).collect())
+    Ok((topics.into_iter().map(topic).collect(), first_nanos))
+}
+
+/// What the signals map to.
+struct SignalsRead {
+    signals: Vec<SignalResult>,
+    steps: Vec<StepResult>,
+    /// Of the first and the last sample.
+    stamp_nanos: Option<[i64; 2]>,
 }
 
 /// What the signals map to, found by joining them as the other commands do.
-fn read_signals(model: &Model, log: Log, part: Part) -> Outcome<(Vec<SignalResult>, Vec<StepResult>)> {
+fn read_signals(model: &Model, log: Log, part: Part) -> Outcome<SignalsRead> {
     let paths = model.signal_paths()?;
     let bar = progress::bytes(log.total_bytes());
     let mut reader = SignalReader::new(log, paths.clone(), &model.robot.cable_names()).within(part);
     let mut holdings = Holdings::new(model.robot.cable_names().len());
+    let mut stamp_nanos: Option<[i64; 2]> = None;
     let problem = loop {
         if holdings.rows.is_multiple_of(STRIDE) {
             interrupt::check()?;
             bar.set_position(reader.log().bytes_read());
         }
         match reader.next_row() {
-            Ok(Some(row)) => holdings.add(&row),
+            Ok(Some(row)) => {
+                stamp_nanos = Some([stamp_nanos.map_or(row.stamp_nanos, |[first, _]| first), row.stamp_nanos]);
+                holdings.add(&row);
+            }
             Ok(None) => break None,
             // That the disk refuses says nothing of the log.
             Err(SignalError::Recording(error)) => return Err(error.into()),
             Err(error) => break Some(error.to_string()),
         }
     };
-    bar.finish_and_clear();
+    progress::finish(&bar);
     let mut signals = signal_results(&reader);
     if reader.log().column_names().is_some() {
         warn_all(&reader.log().warnings());
@@ -239,7 +262,7 @@ fn read_signals(model: &Model, log: Log, part: Part) -> Outcome<(Vec<SignalResul
         residual_rms_m: poses.residual_rms_m(),
         remarks: [vec!["computed from the cable lengths".to_owned()], poses.remarks()].concat(),
     }));
-    Ok((signals, steps(model, &holdings, problem.as_deref())))
+    Ok(SignalsRead { signals, steps: steps(model, &holdings, problem.as_deref()), stamp_nanos })
 }
 
 fn signal_results(reader: &SignalReader) -> Vec<SignalResult> {
@@ -320,53 +343,52 @@ fn steps(model: &Model, holdings: &Holdings, problem: Option<&str>) -> Vec<StepR
 }
 
 /// The result as tables.
-fn describe(result: &InfoResult, model: Option<&Model>, attachments: &[String]) -> String {
-    let number =
-        |value: Option<f64>, digits: usize| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.digits$}"));
-    let rows: Vec<_> = result
-        .topics
-        .iter()
-        .map(|topic| {
-            let milliseconds = |value: Option<f64>| number(value.map(|seconds| seconds * 1e3), 3);
-            [
-                printable(&topic.topic),
-                printable(&topic.schema),
-                printable(&topic.encoding),
-                topic.messages.to_string(),
-                number(topic.rate_hz, 1),
-                milliseconds(topic.jitter_s),
-                milliseconds(topic.longest_interval_s),
-                format!("{:.3} … {:.3}", topic.from_s, topic.to_s),
-            ]
-        })
-        .collect();
-    let header =
-        ["topic", "schema", "encoding", "messages", "rate [Hz]", "jitter [ms]", "longest gap [ms]", "time [s]"];
-    // Writing to a String cannot fail, here and below.
-    let mut text = String::new();
+fn describe(result: &InfoResult, model: Option<&Model>, attachments: &[String], wide: bool) -> String {
+    let mut text = result.storage.lines(attachments);
+    text.push('\n');
     if !result.columns.is_empty() {
         text += &columns::table_of(&result.columns);
     }
-    if !rows.is_empty() || result.columns.is_empty() {
-        text += &table(&header, 3, &rows);
-    }
-    if !attachments.is_empty() {
-        let _ = writeln!(text, "\nattached: {}", printable(&attachments.join(", ")));
+    if !result.topics.is_empty() || result.columns.is_empty() {
+        text += &topic_table(&result.topics, wide);
     }
     let Some(model) = model else {
-        text += "\nWhich signal is which is in the robot file: none is attached to the log, name one with --model.\n";
+        text += "\nWhich signal is which is in the robot file: none is attached to the log, name one\nwith --model.\n";
         return text;
     };
+    // Writing to a String cannot fail.
     let _ = writeln!(text, "\nrobot: {} ({})\n", model.robot.options().name, model.origin);
-    let rows: Vec<_> = result
-        .signals
-        .iter()
-        .map(|signal| {
-            [signal.signal.to_owned(), signal.path.clone(), signal.messages.to_string(), signal.remarks.join(", ")]
-        })
-        .collect();
-    text += &table(&["signal", "path", "messages used", ""], 4, &rows);
+    let row = |signal: &SignalResult| {
+        [signal.signal.to_owned(), signal.path.clone(), signal.messages.to_string(), signal.remarks.join(", ")]
+    };
+    let rows: Vec<_> = result.signals.iter().map(row).collect();
+    text += &table_with_text(&["signal", "path", "messages used", ""], 2, &rows);
     text += "\n";
     text += &step_table("the log allows", &result.steps);
     text
+}
+
+fn topic_table(topics: &[TopicResult], wide: bool) -> String {
+    let number =
+        |value: Option<f64>, digits: usize| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.digits$}"));
+    let milliseconds = |value: Option<f64>| number(value.map(|seconds| seconds * 1e3), 3);
+    let row = |topic: &TopicResult| {
+        // Of `sensor_msgs/msg/JointState` the last word says enough.
+        let schema = if wide { &topic.schema } else { topic.schema.rsplit(['/', '.']).next().unwrap_or_default() };
+        let mut row = vec![printable(&topic.topic), printable(schema)];
+        if wide {
+            row.push(printable(&topic.encoding));
+        }
+        row.extend([topic.messages.to_string(), number(topic.rate_hz, 1), milliseconds(topic.longest_interval_s)]);
+        if wide {
+            row.extend([milliseconds(topic.jitter_s), format!("{:.3} … {:.3}", topic.from_s, topic.to_s)]);
+        }
+        row
+    };
+    let header: &[&str] = if wide {
+        &["topic", "type", "encoding", "messages", "rate [Hz]", "longest gap [ms]", "jitter [ms]", "time [s]"]
+    } else {
+        &["topic", "type", "messages", "rate\n[Hz]", "longest\ngap [ms]"]
+    };
+    table(header, if wide { 3 } else { 2 }, &topics.iter().map(row).collect::<Vec<_>>())
 }

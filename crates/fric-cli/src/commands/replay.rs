@@ -16,13 +16,13 @@ use crate::failure::{Failure, Outcome};
 use crate::interrupt;
 use crate::measurements;
 use crate::model::{self, Model};
-use crate::output::{self, JsonTarget};
+use crate::output::{self, JsonTarget, Written};
 use crate::progress::{self, STRIDE};
 use crate::warnings::warn_all;
 
 /// Runs the command.
 pub fn run(arguments: &ReplayArguments) -> Outcome {
-    let ReplayArguments { log, output, report, correct, result } = arguments;
+    let ReplayArguments { log, output, report, correct, wide, result } = arguments;
     let json_file = result.json.as_deref().filter(|path| !output::is_stdout(path));
     output::check_distinct(&[output.as_deref(), report.as_deref(), json_file])?;
     let part = log.part.part()?;
@@ -74,7 +74,7 @@ pub fn run(arguments: &ReplayArguments) -> Outcome {
             series.add(&sample, cycle.cables);
         }
     };
-    bar.finish_and_clear();
+    progress::finish(&bar);
     // Damage may be why there is nothing to go on with.
     warn_all(&reader.log().warnings());
     end?;
@@ -93,14 +93,12 @@ pub fn run(arguments: &ReplayArguments) -> Outcome {
         .with_corrections(corrections.as_ref());
     let mut files = Vec::new();
     if let Some(writer) = writer {
-        files.push(writer.complete()?);
+        files.push(Written::new(writer.complete()?, "forces, friction, wrench and status"));
     }
     if let (Some(report), Some(series)) = (report, series) {
-        files.push(report.complete_with(&report::errors::page(
-            &outcome,
-            &series,
-            &log.logs.iter().map(|log| log.display().to_string()).collect::<Vec<_>>(),
-        ))?);
+        let logs: Vec<String> = log.logs.iter().map(|log| log.display().to_string()).collect();
+        let page = report::errors::page(&outcome, &series, &logs);
+        files.push(Written::new(report.complete_with(&page)?, "the report"));
     }
-    json.finish(&outcome, &outcome.summary(), files)
+    json.finish(&outcome, &outcome.table(*wide), files)
 }

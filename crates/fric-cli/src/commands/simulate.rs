@@ -1,5 +1,6 @@
 //! `simulate`: the log of a simulated robot.
 
+use std::fmt::Display;
 use std::path::PathBuf;
 
 use fric_lab::simulate::{Disturbance, HiddenEffect, Run, Simulation, SimulationError, SimulationOptions};
@@ -11,7 +12,7 @@ use crate::arguments::{RunName, SimulateArguments};
 use crate::failure::{Failure, Outcome};
 use crate::interrupt;
 use crate::model::Model;
-use crate::output;
+use crate::output::{self, Written};
 use crate::progress::{self, STRIDE};
 use crate::warnings::warn_all;
 
@@ -67,17 +68,23 @@ pub fn run(arguments: &SimulateArguments) -> Outcome {
         let with_platform = (done_cycles - 1).is_multiple_of(simulated.platform_stride) || done_cycles == total_cycles;
         simulated.log.write(&sample, with_platform)?;
     }
-    bar.finish_and_clear();
+    progress::finish(&bar);
     warn_all(&simulation.warnings());
-    simulated.log.finish()?;
-    let effects = options.effects.iter().map(ToString::to_string);
-    let hidden: Vec<String> = effects.chain(options.disturbances.iter().map(ToString::to_string)).collect();
-    output::show(&format!(
-        "{}: {done_cycles} cycles, seed {}, {}\n",
-        arguments.output.display(),
-        options.seed,
-        if hidden.is_empty() { "no effect hidden".to_owned() } else { format!("hidden: {}", hidden.join(", ")) }
-    ))
+    let effects = options.effects.iter().map(|effect| hidden(effect, &effect.defaults()));
+    let disturbances = options.disturbances.iter().map(|one| hidden(one, &one.defaults()));
+    let all: Vec<String> = effects.chain(disturbances).collect();
+    let all = if all.is_empty() { "no effect hidden".to_owned() } else { format!("hidden: {}", all.join(", ")) };
+    let told = format!("{done_cycles} cycles, seed {}, {all}", options.seed);
+    output::show_with("", vec![Written::new(simulated.log.complete()?, told)], "")
+}
+
+/// What is hidden, with the values that were taken because none were given.
+fn hidden(given: &impl Display, defaults: &[(&'static str, f64)]) -> String {
+    if defaults.is_empty() {
+        return given.to_string();
+    }
+    let defaults: Vec<String> = defaults.iter().map(|(key, value)| format!("{key}={value}")).collect();
+    format!("{given} (by default {})", defaults.join(", "))
 }
 
 /// A number or an effect on the command line is the command line's fault, the rest the robot file's.

@@ -37,6 +37,9 @@ const LOOKS: usize = 3;
 /// No model is believed to less than this share of the tension, however little noise there is.
 pub const BELIEVED_RATIO: f64 = 1e-4;
 
+/// What is counted of the work on a cable: the given model fitted, the first search, the second one, the table for the rest.
+pub const STAGES: usize = 4;
+
 /// Looks at one cable.
 pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> CableDiscovery {
     let stop = task.progress.stop_flag();
@@ -48,6 +51,7 @@ pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> CableDiscove
     leave_out(&stretches, record.interval_s, &mut standings);
     let gang = engine::Gang::new(1, stop);
     let paper = engine::Search::run(record, &standings, &FitOptions::default(), stop, gang.seat(0));
+    task.stages.finish_one();
     let samples = engine::count(&paper.standings);
     if let Some(lack) = lack_of_samples(&samples, record.interval_s) {
         return CableDiscovery::untold(record, samples, lack);
@@ -89,6 +93,7 @@ pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> CableDiscove
     let Some(mut outcome) = look(&hum, &mut start) else {
         return CableDiscovery::untold(record, samples, lack_of_noise());
     };
+    task.stages.finish_one();
     // A wrong model may hide a line, or leave what only looks like one.
     let after = hum_left_by(&outcome.fitted.values);
     if !are_alike(&hum, &after)
@@ -96,6 +101,7 @@ pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> CableDiscove
     {
         (outcome, hum) = (again, after);
     }
+    task.stages.finish_one();
     let rows = without_lines(record, &hum, &times);
     let mut faults: Vec<RecordingFault> = hum.iter().map(Line::fault).collect();
     faults.extend(of_stretches(&stretches, |cycle| record.time_s(cycle)));

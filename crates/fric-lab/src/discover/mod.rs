@@ -46,7 +46,7 @@ pub(crate) use crate::fit::{candidates, noise, ripple, split};
 use fric_core::effects::Effect;
 use rayon::prelude::*;
 
-use crate::fit::{CableRecord, FitError, Measurements, Progress, Reference};
+use crate::fit::{CableRecord, FitError, Measurements, Progress, Reference, Stages};
 
 pub use correction::{CorrectedFit, Corrections, corrections, fit_cables_corrected};
 pub use extended::extended;
@@ -78,6 +78,7 @@ struct Task<'a> {
     own: usize,
     records: &'a [CableRecord<'a>],
     progress: &'a Progress,
+    stages: Stages<'a>,
 }
 
 /// Looks at a cable with its reference where it belongs: as far as the given model tells, and then as far as the one that has what it lacked.
@@ -162,17 +163,17 @@ pub fn discover(
     progress: &Progress,
 ) -> Vec<CableDiscovery> {
     let given: Vec<CableRecord<'_>> = measurements.cables().collect();
-    progress.begin(given.len());
+    progress.begin(cable::STAGES * given.len());
     let steadied = length_noise::steadied(measurements, progress.stop_flag());
     let records = length_noise::records(&given, steadied.as_ref());
     let of_cable = |(place, record): (usize, &CableRecord<'_>)| {
         let noisy = steadied.as_ref().and_then(|steadied| steadied.faults.get(place)?.clone());
-        let task = Task { options: *options, own: place, records: &records, progress };
+        let stages = Stages::new(progress, cable::STAGES);
+        let task = Task { options: *options, own: place, records: &records, progress, stages };
         let (mut found, late) = discover_retimed(record, &task);
         for fault in late.into_iter().chain(noisy) {
             cable::tell_of(&mut found, &given[place], fault, progress.stop_flag());
         }
-        progress.finish_one();
         found
     };
     let mut cables: Vec<CableDiscovery> = records.par_iter().enumerate().map(of_cable).collect();

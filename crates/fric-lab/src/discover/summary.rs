@@ -10,6 +10,10 @@ const MOST_PLACES: usize = 2;
 /// Candidates that did not suffice that are told.
 const MOST_TRIED: usize = 3;
 
+/// The columns in words.
+const LEGEND: &str = "Before and after are the rms error on samples that no fit has seen: before, of the given model fitted to the other \
+                      samples; after, of the extended one.";
+
 /// All of it.
 pub(super) fn describe(result: &DiscoverResult) -> String {
     let mut text = format!("{}: what the model lacks\n\n", result.robot);
@@ -18,8 +22,8 @@ pub(super) fn describe(result: &DiscoverResult) -> String {
         text += &of_wrench(gap);
     }
     if result.cables.iter().any(|cable| cable.before.is_some()) {
-        text += "\nrms in N over samples that no fit has seen, of the given model fitted to the\nothers, and of the \
-                 extended one.\n";
+        text.push('\n');
+        text += &wrapped("", LEGEND);
     }
     for effect in &result.common_effects {
         text += "\n";
@@ -49,7 +53,7 @@ pub(super) fn describe(result: &DiscoverResult) -> String {
 /// What concerns all cables together.
 fn of_wrench(gap: &WrenchGap) -> String {
     let rows: Vec<_> = gap.components.iter().map(WrenchComponent::cells).collect();
-    let mut text = format!("\n{}", table(&[gap.title(), "noise", "rms before", "after"], 1, &rows));
+    let mut text = format!("\n{}", table(&[gap.title(), "noise\nrms", "before\nrms", "after\nrms"], 1, &rows));
     text += "\nrms over samples that no fit has seen. All cables together: ";
     text += gap.verdict;
     text += ".\n";
@@ -74,7 +78,7 @@ fn overview(result: &DiscoverResult) -> String {
         ]
     };
     let rows: Vec<_> = result.cables.iter().map(row).collect();
-    table(&["cable", "verdict", "found", "noise", "before", "after", "closed"], 3, &rows)
+    table(&["cable", "verdict", "found", "noise\n[N]", "before\n[N]", "after\n[N]", "gap\nclosed"], 3, &rows)
 }
 
 fn line(label: &str, text: &str) -> String {

@@ -81,6 +81,7 @@ pub use error::FitError;
 pub use optimizer::Termination;
 pub use options::FitOptions;
 pub use progress::Progress;
+pub(crate) use progress::Stages;
 pub use record::{CableRecord, Measurements, Reference, Row};
 pub use report::{CableFit, ForceErrors, OpenCombination, OpenPart, WrenchFit};
 pub use residual_function::{KeptFunction, ResidualFunction};

@@ -37,7 +37,39 @@ impl Progress {
         self.total.fetch_add(total, Ordering::Relaxed);
     }
 
+    pub(crate) fn finish(&self, count: usize) {
+        self.done.fetch_add(count, Ordering::Relaxed);
+    }
+
     pub(crate) fn finish_one(&self) {
-        self.done.fetch_add(1, Ordering::Relaxed);
+        self.finish(1);
+    }
+}
+
+/// The steps of one part of the work, of which fewer may be needed than were announced: all count as done when it is dropped.
+#[derive(Debug)]
+pub(crate) struct Stages<'a> {
+    progress: &'a Progress,
+    left: AtomicUsize,
+}
+
+impl<'a> Stages<'a> {
+    /// So many of the steps announced with [`Progress::begin`].
+    pub(crate) fn new(progress: &'a Progress, count: usize) -> Self {
+        Self { progress, left: AtomicUsize::new(count) }
+    }
+
+    /// One is done. Work that is done again is not counted twice.
+    pub(crate) fn finish_one(&self) {
+        let one_less = |left: usize| left.checked_sub(1);
+        if self.left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, one_less).is_ok() {
+            self.progress.finish_one();
+        }
+    }
+}
+
+impl Drop for Stages<'_> {
+    fn drop(&mut self) {
+        self.progress.finish(self.left.load(Ordering::Relaxed));
     }
 }

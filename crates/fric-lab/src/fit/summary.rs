@@ -8,7 +8,7 @@ use fric_core::parameters::{FRICTION_COUNT, MU, OFFSET, SIGMA, VISCOUS};
 use super::result::{FitCableResult, FitResult, Numbers, OpenPartResult, OpenResult};
 use super::vector::Parameter;
 use crate::discover::words::recording_lines;
-use crate::text::{digits_of, number, plain, table};
+use crate::text::{digits_of, number, plain, table, wrapped};
 
 /// \[P\] table I, how sure it is, and what the log does not tell.
 pub(super) fn describe(result: &FitResult) -> String {
@@ -17,7 +17,7 @@ pub(super) fn describe(result: &FitResult) -> String {
         "wrench" => "the wrench on the platform, all cables at once",
         _ => "the platform's mass and pose, all cables at once",
     };
-    let mut text = format!("{}: friction identified from {from}\n\n", result.robot);
+    let mut text = wrapped("", &format!("{}: friction identified from {from}", result.robot)) + "\n";
     text += &paper_table(result);
     text += &legend(result);
     text += "\nstandard errors; ± twice as much holds the value with 95 %\n\n";
@@ -127,7 +127,7 @@ impl Column {
         let mean = mean(values.iter().flatten().copied())?;
         let shown = |value: &Option<f64>| cell(value.map(|value| number(value, digits)));
         let last = number(mean, digits);
-        Some(Self { header: format!("{header}\n[N]"), cells: values.iter().map(shown).collect(), last })
+        Some(Self { header: format!("{header} [N]"), cells: values.iter().map(shown).collect(), last })
     }
 }
 
@@ -148,18 +148,23 @@ fn table_of(result: &FitResult, title: &str, columns: &[Column], last: Option<&s
 fn paper_table(result: &FitResult) -> String {
     let parameters = FRICTION.iter().filter(|shown| shown.place != OFFSET);
     let mut columns: Vec<Column> = parameters.filter_map(|shown| Column::of_parameter(result, shown)).collect();
-    columns.extend(Column::of_forces(result, "|F_ref − F_s|", 4, |cable| Some(cable.before.as_ref()?.mae_n)));
-    columns.extend(Column::of_forces(result, "|F_ref − F_s − F_d|", 4, |cable| Some(cable.after.as_ref()?.mae_n)));
-    columns.extend(Column::of_forces(result, "F_ref", 2, |cable| cable.mean_reference_n));
+    columns.extend(Column::of_forces(result, "mean error\nbefore", 4, |cable| Some(cable.before.as_ref()?.mae_n)));
+    columns.extend(Column::of_forces(result, "mean error\nafter", 4, |cable| Some(cable.after.as_ref()?.mae_n)));
+    columns.extend(Column::of_forces(result, "mean\nforce", 2, |cable| cable.mean_reference_n));
     table_of(result, "cable", &columns, (result.cables.len() > 1).then_some("mean"))
 }
+
+/// The columns in words.
+const LEGEND: &str = "μ is the friction of each bearing, σ the stiffness of the cable before it slides, F_pv the viscous friction of each \
+                      pulley. The mean error is that of |force − reference| over all samples: before, as if nothing rubbed; after, \
+                      with these values.";
 
 /// What the columns are.
 fn legend(result: &FitResult) -> String {
     let mut text = String::new();
     if result.cables.iter().any(|cable| cable.before.is_some()) {
-        text += "\nMeans over all samples: |F_ref − F_s| is the error before compensation, as if\nnothing rubbed; \
-                 |F_ref − F_s − F_d| is the error after it, with these values.\n";
+        text.push('\n');
+        text += &wrapped("", LEGEND);
     }
     let is_kept = |cable: &FitCableResult| {
         let friction =
@@ -179,8 +184,8 @@ fn error_table(result: &FitResult) -> String {
         columns.extend((shown.place == OFFSET).then(|| Column::of_parameter(result, shown)).flatten());
         columns.extend(Column::of_parameter_error(result, shown));
     }
-    columns.extend(Column::of_forces(result, "rms before", 4, |cable| Some(cable.before.as_ref()?.rms_n)));
-    columns.extend(Column::of_forces(result, "rms after", 4, |cable| Some(cable.after.as_ref()?.rms_n)));
+    columns.extend(Column::of_forces(result, "rms error\nbefore", 4, |cable| Some(cable.before.as_ref()?.rms_n)));
+    columns.extend(Column::of_forces(result, "rms error\nafter", 4, |cable| Some(cable.after.as_ref()?.rms_n)));
     table_of(result, "cable", &columns, None)
 }
 

@@ -115,7 +115,7 @@ fn describe(result: &HysteresisResult) -> String {
         .collect();
     let mut text =
         format!("{}: width of the wrench's hysteresis at ({x_m:.3}, {y_m:.3}, {z_m:.3}) m\n\n", result.robot);
-    text += &table(&["axis", "passes", "without compensation", "±", "with", "±", "lasting"], 1, &rows);
+    text += &table(&["axis", "passes", "without\ncompensation", "±", "with\ncompensation", "±", "left"], 1, &rows);
     text += "\n";
     let named = |wanted: fn(&AxisResult) -> bool| {
         let names: Vec<&str> = result.axes.iter().filter(|axis| wanted(axis)).map(|axis| axis.axis).collect();
@@ -125,18 +125,18 @@ fn describe(result: &HysteresisResult) -> String {
     if let Some(names) = named(|axis| axis.applied_subtracted == Some(true)) {
         let _ = writeln!(
             text,
-            "The log's outside wrench is taken off, so that what is really applied does not count: {names}."
+            "The log's outside wrench is taken off, so that what is really applied does not\ncount: {names}."
         );
     }
     if let Some(names) = named(|axis| axis.applied_subtracted == Some(false)) {
         let _ =
-            writeln!(text, "The log's outside wrench is not known, so that forces from outside count too: {names}.");
+            writeln!(text, "The log's outside wrench is not known, so that forces from outside count too:\n{names}.");
     }
     if let Some(names) = named(|axis| axis.passes == 0) {
         let _ = writeln!(
             text,
-            "Not crossed: {names}. Record the platform going to and fro across this position along (x, y, z) or about \
-             (a, b, c) these axes, several times, with nothing else moving."
+            "Not crossed: {names}. Record the platform going to and fro across this position\nalong (x, y, z) or about \
+             (a, b, c) these axes, several times, with nothing else\nmoving."
         );
     }
     text

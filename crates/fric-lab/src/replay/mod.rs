@@ -26,6 +26,10 @@ pub struct CableErrors {
     pub flagged_count: u64,
     /// Each flag that has been raised, as bits.
     pub flags: u32,
+    /// How many of the last cycles miss their pose and nothing else: a log ends between two poses.
+    pub(crate) poseless_end_count: u64,
+    /// The flags before these.
+    pub(crate) flags_before_end: u32,
     /// Frictionless force less reference, N.
     pub before_n: Deviation,
     /// Compensated force less reference, N.
@@ -89,6 +93,7 @@ pub struct Replay {
     /// `None` without mass or geometry, and from the first measured wrench on.
     by_mass: Option<ByMass>,
     cycle_count: u64,
+    cycle_s: f64,
     clock: Clock,
 }
 
@@ -150,6 +155,7 @@ impl Replay {
             wrench_after: WrenchErrors::default(),
             by_mass: ByMass::new(robot),
             cycle_count: 0,
+            cycle_s: robot.cycle_s(),
             clock: Clock::new(robot.cycle_s()),
         })
     }
@@ -178,6 +184,12 @@ impl Replay {
         for ((errors, output), reference_n) in self.cables.iter_mut().zip(outputs).zip(sample.reference_force_n) {
             errors.flagged_count += u64::from(!output.status.is_ok());
             errors.flags |= output.status.bits();
+            if output.status == CableStatus::POSE_MISSING {
+                errors.poseless_end_count += 1;
+            } else {
+                errors.flags_before_end = errors.flags;
+                errors.poseless_end_count = 0;
+            }
             errors.before_n.add(output.frictionless_n - reference_n);
             errors.after_n.add(output.force_at_platform_n - reference_n);
         }

@@ -6,7 +6,17 @@ use fric_core::robot::file::{CableTable, RobotFile};
 use super::Replay;
 use crate::fit::readiness::without_reference;
 
+/// Poses come at 10 Hz or faster: a log ends no further than this behind the last one.
+const POSE_INTERVAL_S: f64 = 0.1;
+
 impl Replay {
+    /// Cycles that a log may go on behind its last pose.
+    fn cycles_between_poses(&self) -> u64 {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive, and saturates")]
+        let cycles = (POSE_INTERVAL_S / self.cycle_s).ceil() as u64;
+        cycles
+    }
+
     /// What does nothing, what there is no error of, what is not compensated and what was flagged, so far; `robot` is the
     /// one replayed.
     #[must_use]
@@ -37,12 +47,17 @@ impl Replay {
             let names = names.join(", ");
             warnings.push(format!("the robot file gives no `friction` for {names}: nothing is compensated there"));
         }
+        // Nothing is extrapolated past the last pose, which is no trouble.
+        let end_count = |count: u64| if count <= self.cycles_between_poses() { count } else { 0 };
         // Cables with the same trouble share a line.
         let mut flagged: Vec<(u64, u32, Vec<&str>)> = Vec::new();
         for (name, cable) in robot.cable_names().into_iter().zip(self.cables()) {
-            match flagged.iter_mut().find(|(count, flags, _)| (*count, *flags) == (cable.flagged_count, cable.flags)) {
+            let end_count = end_count(cable.poseless_end_count);
+            let flags = if end_count > 0 { cable.flags_before_end } else { cable.flags };
+            let trouble = (cable.flagged_count - end_count, flags);
+            match flagged.iter_mut().find(|(count, flags, _)| (*count, *flags) == trouble) {
                 Some((.., names)) => names.push(name),
-                None if cable.flagged_count > 0 => flagged.push((cable.flagged_count, cable.flags, vec![name])),
+                None if trouble.0 > 0 => flagged.push((trouble.0, trouble.1, vec![name])),
                 None => {}
             }
         }

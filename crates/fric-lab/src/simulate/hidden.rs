@@ -78,6 +78,14 @@ impl HiddenEffect {
         &self.values
     }
 
+    /// The parameters that were not given, by key, with the values that they have instead.
+    #[must_use]
+    pub fn defaults(&self) -> Vec<(&'static str, f64)> {
+        let missing = |key: &str| self.values.iter().all(|(given, _)| *given != key);
+        let all = self.effect.row().parameters.iter().filter(|parameter| missing(parameter.key));
+        all.filter_map(|parameter| Some((parameter.key, self.params.get(self.effect, parameter.key)?))).collect()
+    }
+
     /// The effect as the compensator's parameters would state it; all other effects are neutral.
     #[must_use]
     pub fn params(&self) -> &EffectParams {

@@ -4,11 +4,13 @@
 //! makes rows of any of them, so that nothing beyond needs to know which it was.
 
 mod error;
+mod storage;
 
 use std::path::Path;
 use std::sync::Arc;
 
 pub use self::error::LogError;
+pub use self::storage::{Chunks, Storage};
 
 use crate::bag::{self, Bag, Opened, Unpacker};
 use crate::csv_log::CsvLog;

@@ -55,6 +55,7 @@ use self::reader::Reader;
 pub(crate) use self::reader::SourceFile;
 use self::scan::AttachmentPlace;
 use self::segment::Segment;
+use crate::log::Chunks;
 
 /// A message, borrowed from the recording until the next one is asked for.
 #[derive(Debug, Clone, Copy)]
@@ -202,6 +203,22 @@ impl Recording {
         let start = segments().map(|segment| segment.start_time_nanos).min()?;
         let end = segments().map(|segment| segment.end_time_nanos).max()?;
         Some((start, end))
+    }
+
+    /// Its chunks, by their headers; `None` without any.
+    #[must_use]
+    pub fn chunks(&self) -> Option<Chunks> {
+        let mut chunks = Chunks::default();
+        for segment in self.segments.iter().filter(|segment| segment.is_chunk) {
+            chunks.count += 1;
+            chunks.stored_bytes += segment.stored_len;
+            chunks.content_bytes = chunks.content_bytes.saturating_add(segment.content_len);
+            let compression = segment.compression.name();
+            if !chunks.compressions.contains(&compression) {
+                chunks.compressions.push(compression);
+            }
+        }
+        (chunks.count > 0).then_some(chunks)
     }
 
     /// Files that are hardly parts of one recording: each with the one before it that lasts longest, where the times in

@@ -148,6 +148,17 @@ pub(super) enum Compression {
     Zstd,
 }
 
+impl Compression {
+    /// For people.
+    pub(super) const fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Lz4 => "lz4",
+            Self::Zstd => "zstd",
+        }
+    }
+}
+
 /// A chunk record up to its content.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct ChunkFields {

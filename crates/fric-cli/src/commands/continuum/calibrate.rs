@@ -10,6 +10,7 @@ use fric_log::output::OutputFile;
 use super::{Model, Outputs, about, read_table};
 use crate::arguments::continuum::CalibrateArguments;
 use crate::failure::Outcome;
+use crate::output::Written;
 use fric_work::report::continuum;
 
 /// Runs the command.
@@ -31,6 +32,6 @@ pub fn run(arguments: &CalibrateArguments) -> Outcome {
         &result,
         &result.summary(),
         || continuum::calibration(&result, &loads.display().to_string()),
-        vec![calibrated],
+        vec![Written::new(calibrated, "the manipulator file with the coefficients of its gratings")],
     )
 }

@@ -8,7 +8,7 @@ use fric_log::output::OutputFile;
 use super::{Model, about, read_table};
 use crate::arguments::{DiscoverArguments, ReferenceName};
 use crate::failure::{Failure, Outcome};
-use crate::output::{self, JsonTarget};
+use crate::output::{self, JsonTarget, Written};
 use fric_work::report;
 
 /// Runs the command.
@@ -40,10 +40,12 @@ pub fn run(arguments: &DiscoverArguments) -> Outcome {
     let found = discover(&model.file, &run, &log.display().to_string()).map_err(|error| about(log, error))?;
     let mut files = Vec::new();
     if let Some(file) = extended {
-        files.push(file.complete_with(&rewrite(&model.text, &model.origin, &found.edit)?)?);
+        let text = rewrite(&model.text, &model.origin, &found.edit)?;
+        files.push(Written::new(file.complete_with(&text)?, "the manipulator file with what was found"));
     }
     if let Some(report) = report {
-        files.push(report.complete_with(&report::continuum::discovery(&found))?);
+        let page = report::continuum::discovery(&found);
+        files.push(Written::new(report.complete_with(&page)?, "the report"));
     }
     json.finish(&found.result, &found.result.summary(), files)
 }

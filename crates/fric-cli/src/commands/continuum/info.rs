@@ -4,7 +4,7 @@ use std::path::Path;
 
 use fric_lab::continuum::gratings::Gratings;
 use fric_lab::continuum::{Run, columns};
-use fric_lab::text::table;
+use fric_lab::text::table_with_text;
 use fric_log::table::NumberTable;
 use serde::Serialize;
 
@@ -144,7 +144,7 @@ fn describe(result: &InfoResult, path: &Path) -> String {
         result.samples,
         result.from_s,
         result.to_s,
-        table(&["group", "columns", ""], 3, &groups),
+        table_with_text(&["group", "columns", ""], 1, &groups),
         step_table("the run allows", &result.steps)
     )
 }

@@ -17,13 +17,13 @@ use fric_core::continuum::file::{FORMAT, ManipulatorFile};
 use fric_core::text_file;
 use fric_lab::continuum::gratings::{GratingSample, Gratings};
 use fric_lab::continuum::{ContinuumError, Run, columns, corrected};
-use fric_log::output::{CompleteFile, OutputFile};
+use fric_log::output::OutputFile;
 use fric_log::table::NumberTable;
 
 use crate::arguments::continuum::{ContinuumCommand, ReportArguments, RunArguments};
 use crate::failure::{Failure, Outcome};
 use crate::model::{has_format, read_text};
-use crate::output::{self, JsonTarget};
+use crate::output::{self, JsonTarget, Written};
 use crate::warnings::warn_all;
 
 /// Bytes in which the header of a run as text ends.
@@ -146,10 +146,10 @@ impl Outputs {
         result: &impl serde::Serialize,
         summary: &str,
         page: impl FnOnce() -> String,
-        mut files: Vec<CompleteFile>,
+        mut files: Vec<Written>,
     ) -> Outcome {
         if let Some(report) = self.report {
-            files.push(report.complete_with(&page())?);
+            files.push(Written::new(report.complete_with(&page())?, "the report"));
         }
         self.json.finish(result, summary, files)
     }

@@ -14,7 +14,7 @@ use fric_work::report::continuum;
 
 /// Runs the command.
 pub fn run(arguments: &ShapeArguments) -> Outcome {
-    let ShapeArguments { run: paths, shapes, at_s, mixed, page } = arguments;
+    let ShapeArguments { run: paths, shapes, at_s, mixed, wide, page } = arguments;
     let outputs = Outputs::prepare(page, &[paths.run.clone(), paths.model.clone()], None)?;
     let (model, run) = read_run(paths)?;
     let params = model.file.params();
@@ -49,7 +49,7 @@ pub fn run(arguments: &ShapeArguments) -> Outcome {
     }
     outputs.finish(
         &result,
-        &result.summary(),
+        &result.table(*wide),
         || continuum::shape(&result, &run, &ways, &paths.run.display().to_string()),
         Vec::new(),
     )

@@ -12,7 +12,7 @@ use serde::Serialize;
 use super::Model;
 use crate::arguments::continuum::{ExperimentName, TendonSimulateArguments};
 use crate::failure::{Failure, Outcome};
-use crate::output;
+use crate::output::{self, Written};
 
 /// The topic of a run in MCAP.
 const TOPIC: &str = "/tendon_run";
@@ -61,22 +61,23 @@ pub fn run(arguments: &TendonSimulateArguments) -> Outcome {
     let (calibration, truth) = (create(calibration)?, create(truth)?);
     let mut run = simulate(model.file.params(), &options).map_err(refused)?;
     run.samples = as_measured(&run.samples, &model.file);
-    let mut files = vec![target.write(&run, model.disk_count())?];
+    let last_deg = run.truth.last().map_or(0.0, |truth| truth.bend_rad.to_degrees());
+    let told = format!(
+        "{} samples, {} of them with friction of both directions, bent by {last_deg:.1}° at the end; seed {}",
+        run.samples.len(),
+        run.truth.iter().filter(|truth| truth.is_mixed()).count(),
+        options.seed,
+    );
+    let mut files = vec![Written::new(target.write(&run, model.disk_count())?, told)];
     if let Some(file) = calibration {
-        files.push(write_calibration(file, &run, model.disk_count())?);
+        let told = format!("{} load steps on the same gratings", run.calibration.len());
+        files.push(Written::new(write_calibration(file, &run, model.disk_count())?, told));
     }
     if let Some(file) = truth {
-        files.push(file.complete_with(&output::as_json(&truth_of(model.name(), &run))?)?);
+        let text = output::as_json(&truth_of(model.name(), &run))?;
+        files.push(Written::new(file.complete_with(&text)?, "the true friction, tension and bend"));
     }
-    output::place(files)?;
-    let last = run.truth.last().map_or(0.0, |truth| truth.bend_rad.to_degrees());
-    output::show(&format!(
-        "{}: {} samples, seed {}, {} of them with friction of both directions, {last:.1}° at the end\n",
-        output.display(),
-        run.samples.len(),
-        options.seed,
-        run.truth.iter().filter(|truth| truth.is_mixed()).count(),
-    ))
+    output::show_with("", files, "")
 }
 
 /// A number on the command line is the command line's fault.

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use fric_core::text_file::name_problem;
+use fric_lab::text::wrapped;
 
 /// A column of a CSV log and the signal that it seems to be.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,9 +56,9 @@ impl Draft {
         let Self { cables, notes, interval_s, .. } = self;
         let rate = interval_s.map_or_else(String::new, |it| format!(", a sample every {} s", rounded(it)));
         let plural = if cables.len() == 1 { "" } else { "s" };
-        let mut text = format!("{} cable{plural}: {}{rate}\n", cables.len(), cables.join(", "));
+        let mut text = wrapped("", &format!("{} cable{plural}: {}{rate}", cables.len(), cables.join(", ")));
         for note in notes {
-            let _ = writeln!(text, "  {note}");
+            text += &wrapped("  ", note);
         }
         text
     }

@@ -11,7 +11,7 @@ use fric_log::signals::{Role, SignalPaths, SignalReader};
 
 use crate::arguments::InitArguments;
 use crate::failure::{Failure, Outcome};
-use crate::output;
+use crate::output::{self, Written};
 use draft::Draft;
 
 /// So many samples tell how far they are apart.
@@ -34,18 +34,20 @@ pub fn run(arguments: &InitArguments) -> Outcome {
     draft.set_interval_s(interval_s);
     let text = draft.text();
     parsed(&text)?;
-    output::place(vec![file.complete_with(&text)?])?;
-    output::show(&format!("{}{}\n", draft.summary(), next_step(logs, output)))
+    let written = Written::new(file.complete_with(&text)?, "a robot file to start from");
+    output::show_with(&draft.summary(), vec![written], &next_step(logs, output))
 }
 
 fn next_step(logs: &[std::path::PathBuf], output: &std::path::Path) -> String {
     let log = logs.first().map_or_else(String::new, |log| log.display().to_string());
-    format!("Next: see what is marked with `?` in {0}, then fric-cli info {log} --model {0}", output.display())
+    let output = output.display();
+    format!("Next: check what is marked with `?` in {output}, then\n  fric-cli info {log} --model {output}\n")
 }
 
 fn parsed(text: &str) -> Outcome<RobotFile> {
-    RobotFile::parse(text, "the robot file made of this log")
-        .map_err(|error| Failure::new(error).advise("Write the robot file by hand; README.md shows the format."))
+    RobotFile::parse(text, "the robot file made of this log").map_err(|error| {
+        Failure::new(error).advise("Write the robot file by hand; docs/robot-file.md shows the format.")
+    })
 }
 
 /// The usual interval of the samples; `None` where there are none.

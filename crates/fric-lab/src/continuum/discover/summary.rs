@@ -32,10 +32,9 @@ impl TendonDiscoverResult {
                 ]
             })
             .collect();
-        let header = ["", "verdict", "found", "noise", "before", "after", "closed"];
+        let header = ["", "verdict", "found", "noise\n[N]", "before\n[N]", "after\n[N]", "gap\nclosed"];
         let mut text = format!("{}: what the model lacks\n\n{}", self.robot, table(&header, 3, &rows));
-        text +=
-            "\nrms of the tension in the segments, gratings less model, in N, over samples that\nno fit has seen.\n";
+        text += "\nBefore and after are the rms difference of tension between gratings and model,\non samples that no fit has seen.\n";
         let effects: Vec<&TendonEffect> = self.cables.iter().flat_map(|tendon| &tendon.effects).collect();
         for (place, effect) in effects.iter().enumerate() {
             let values: Vec<String> = effect

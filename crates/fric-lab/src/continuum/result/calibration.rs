@@ -101,15 +101,22 @@ impl CalibrationResult {
                 ]
             })
             .collect();
-        let header = ["grating", "a [N/nm]", "b [N]", "± T [N]", "residual [%]", "left out [%]"];
+        let header = [
+            "grating",
+            "slope a\n[N/nm]",
+            "offset b\n[N]",
+            "error of\nT [N]",
+            "largest\nresidual [%]",
+            "largest error\nleft out [%]",
+        ];
         let [least_n, most_n] = self
             .load_n
             .iter()
             .fold([f64::INFINITY, 0.0_f64], |[least, most], load_n| [least.min(*load_n), most.max(*load_n)]);
         format!(
             "{}: {} gratings calibrated with {} loads, {least_n:.3} … {most_n:.3} N\n\n{}\n\
-             T = a·Δλ + b. Per cent of the greatest load: the largest residual, and the\n\
-             largest error at a load of the line through all others.\n",
+             T = a·Δλ + b, with the standard error of T. Per cent are of the greatest load:\n\
+             the largest residual, and the largest error at a load that was left out.\n",
             self.manipulator,
             self.gratings.len(),
             self.load_n.len(),

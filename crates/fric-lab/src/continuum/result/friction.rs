@@ -8,7 +8,7 @@ use super::{intervals_s, intervals_text};
 use crate::continuum::friction::{FrictionDistribution, MeasuredFriction, distributions};
 use crate::continuum::gratings::GratingSample;
 use crate::continuum::run::Run;
-use crate::text::table;
+use crate::text::{table, wrapped};
 
 /// `fric-continuum-friction/1`. Friction is positive where the base side is tighter; null where it is not known.
 #[derive(Clone, Debug, Serialize)]
@@ -153,10 +153,19 @@ impl FrictionResult {
                 ]
             })
             .collect();
-        let header = ["hole", "mean [N]", "least [N]", "greatest [N]", "± [N]", "positive", "negative"];
+        let header = [
+            "hole",
+            "mean\n[N]",
+            "least\n[N]",
+            "greatest\n[N]",
+            "standard\nerror [N]",
+            "base side\ntighter",
+            "tip side\ntighter",
+        ];
         let mut text = format!(
             "{}: friction at the holes over {} samples\n\n{}\n\
-             Positive where the base side is tighter. Directions count beyond two standard\nerrors.\n",
+             Friction is positive where the base side is tighter. The last columns are the\n\
+             share of samples in which that is sure (beyond two standard errors).\n",
             self.manipulator,
             self.samples,
             table(&header, 0, &rows)
@@ -164,11 +173,11 @@ impl FrictionResult {
         // Writing to a String cannot fail.
         let _ = match self.directions_differ_samples {
             0 => writeln!(text, "No sample has both directions beyond doubt."),
-            count => writeln!(
-                text,
-                "Directions differ along the tendon in {count} samples: {}.",
-                intervals_text(&self.directions_differ_s)
-            ),
+            count => {
+                let intervals = intervals_text(&self.directions_differ_s);
+                let told = format!("Directions differ along the tendon in {count} samples: {intervals}.");
+                write!(text, "{}", wrapped("", &told))
+            }
         };
         text
     }

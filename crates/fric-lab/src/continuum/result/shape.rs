@@ -10,13 +10,21 @@ use crate::continuum::comparison::{WayShapes, is_beyond};
 use crate::continuum::gratings::GratingSample;
 use crate::continuum::run::Run;
 use crate::continuum::shape_errors::{ShapeErrors, Way};
-use crate::text::table;
+use crate::text::{table, wrapped};
 
 /// Errors that \[C\] has measured on its prototype, mm: what they are of, and max and mean of none, Coulomb and measured.
 const PUBLISHED: [(&str, [[f64; 2]; 3]); 2] = [
     ("[C] fig. 12, one way", [[9.37, 5.03], [3.06, 2.21], [2.84, 2.03]]),
     ("[C] fig. 15, mixed", [[15.1, 10.56], [19.11, 16.47], [2.87, 1.75]]),
 ];
+
+/// What the ways are whose names do not say it.
+const LEGEND: [(Way, &str); 3] = [
+    (Way::Coulomb, "friction with all holes sliding one way"),
+    (Way::Measured, "friction from the gratings"),
+    (Way::History, "friction from the run of the tension at the base"),
+];
+const PUBLISHED_LEGEND: &str = "; [C] is what the paper measured on its prototype, of which this is a model";
 
 /// `fric-continuum-shape/1`. Distances are absent where there are no markers.
 #[derive(Clone, Debug, Serialize)]
@@ -224,12 +232,28 @@ impl ShapeResult {
         warnings
     }
 
-    /// For people.
+    /// For people: a table of at most 80 columns, with mean distances.
     #[must_use]
     pub fn summary(&self) -> String {
-        let cells = |errors: ErrorResult| [millimetres(errors.max_mm), millimetres(errors.mean_mm)];
-        let mut header = vec![String::new(), "time [s]".to_owned(), "T_0 [N]".to_owned(), "bend [°]".to_owned()];
-        header.extend(self.ways.iter().flat_map(|way| [format!("{} max", way.way), "mean".to_owned()]));
+        self.table(false)
+    }
+
+    /// For people: the same table; `wide` with the greatest distances too.
+    #[must_use]
+    pub fn table(&self, wide: bool) -> String {
+        let picked = |mean: String, max: String| if wide { vec![mean, max] } else { vec![mean] };
+        let cells = |errors: ErrorResult| picked(millimetres(errors.mean_mm), millimetres(errors.max_mm));
+        let mut header = ["", "time\n[s]", "tension\n[N]", "bend\n[°]"].map(ToOwned::to_owned).to_vec();
+        let head = |way: &WayErrors| {
+            let lines = if way.way == Way::None.name() { ["no", "friction"] } else { ["", way.way] };
+            if wide {
+                let name = lines.join(" ");
+                vec![format!("{}\nmean", name.trim()), format!("{}\nmax", name.trim())]
+            } else {
+                vec![lines.join("\n")]
+            }
+        };
+        header.extend(self.ways.iter().flat_map(head));
         let mut rows: Vec<Vec<String>> = Vec::new();
         for (place, shape) in self.shapes.iter().enumerate() {
             let bend_rad = shape.ways.iter().rev().find(|way| way.way != Way::Coulomb.name()).map(|way| way.bend_rad);
@@ -244,7 +268,7 @@ impl ShapeResult {
             row.extend(shape.ways.iter().flat_map(|way| cells(way.errors)));
             rows.push(row);
         }
-        let mut sum = |name: String, of: &dyn Fn(&WayErrors) -> [String; 2]| {
+        let mut sum = |name: String, of: &dyn Fn(&WayErrors) -> Vec<String>| {
             let mut row = vec![name, String::new(), String::new(), String::new()];
             row.extend(self.ways.iter().flat_map(of));
             rows.push(row);
@@ -257,17 +281,23 @@ impl ShapeResult {
                 sum(name.to_owned(), &|way| {
                     let place = Way::ALL.iter().position(|other| other.name() == way.way);
                     let found = place.and_then(|place| published.get(place));
-                    [0, 1].map(|end| millimetres(found.map(|pair| pair[end])))
+                    let [max, mean] = [0, 1].map(|end| millimetres(found.map(|pair| pair[end])));
+                    picked(mean, max)
                 });
             }
         }
         let columns: Vec<&str> = header.iter().map(String::as_str).collect();
+        let legend = LEGEND.iter().filter(|(way, _)| self.ways.iter().any(|shown| shown.way == way.name()));
+        let legend: Vec<String> = legend.map(|(way, what)| format!("{}: {what}", way.name())).collect();
+        let what = if wide { "mean and greatest" } else { "mean" };
+        let published = if self.is_prototype { PUBLISHED_LEGEND } else { "" };
+        let legend = wrapped("", &format!("{}{published}.", legend.join("; ")));
         let mut text = format!("{}: {} samples", self.manipulator, self.samples);
         // Writing to a String cannot fail.
         let _ = if has_markers {
-            writeln!(text, ", distance between disks and markers in mm\n\n{}", table(&columns, 1, &rows))
+            write!(text, ", {what} distance between disks and markers in mm\n\n{}\n{legend}", table(&columns, 1, &rows))
         } else {
-            writeln!(text, "\n\n{}\nNo markers to compare with.", table(&columns, 1, &rows))
+            write!(text, "\n\n{}\nNo markers to compare with.\n", table(&columns, 1, &rows))
         };
         text
     }

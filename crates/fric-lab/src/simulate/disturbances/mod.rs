@@ -112,6 +112,14 @@ impl Disturbance {
         given.or_else(|| Some(row(self.kind)?.parameters.iter().find(|parameter| parameter.key == key)?.usual))
     }
 
+    /// The parameters that were not given, by key, with the values that they have instead.
+    #[must_use]
+    pub fn defaults(&self) -> Vec<(&'static str, f64)> {
+        let missing = |key: &str| self.values.iter().all(|(given, _)| *given != key);
+        let all = row(self.kind).into_iter().flat_map(|row| row.parameters);
+        all.filter(|parameter| missing(parameter.key)).map(|parameter| (parameter.key, parameter.usual)).collect()
+    }
+
     /// At work on a cable.
     pub(super) fn build(&self, start_length_m: f64, random: &mut ChaCha8Rng) -> Box<dyn TruthEffect> {
         let value = |key: &str| self.value(key).unwrap_or_default();

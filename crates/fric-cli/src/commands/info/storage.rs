@@ -1,0 +1,98 @@
+//! How a log is kept, how long it is and when it begins.
+
+use std::fmt::Write as _;
+use std::time::{Duration, UNIX_EPOCH};
+
+use fric_core::text_file::printable;
+use fric_log::log::Storage;
+use indicatif::DecimalBytes;
+use serde::Serialize;
+
+use super::{TopicResult, seconds};
+
+/// Of all files together.
+#[derive(Debug, Serialize)]
+pub struct StorageResult {
+    kind: &'static str,
+    size_bytes: u64,
+    messages: u64,
+    /// Time of the first message or row, since 1970.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    start_s: Option<f64>,
+    /// From the first message or row to the last.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    duration_s: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    chunks: Option<ChunkResult>,
+    #[serde(skip)]
+    start_nanos: Option<u64>,
+}
+
+#[derive(Debug, Serialize)]
+struct ChunkResult {
+    count: u64,
+    compression: String,
+    stored_bytes: u64,
+    content_bytes: u64,
+}
+
+impl StorageResult {
+    /// Of a log whose topics have been read, from its first message on.
+    pub fn new(storage: &Storage, topics: &[TopicResult], start_nanos: Option<u64>) -> Self {
+        let read: Vec<&TopicResult> = topics.iter().filter(|topic| topic.messages > 0).collect();
+        let from_s = read.iter().map(|topic| topic.from_s).reduce(f64::min);
+        let to_s = read.iter().map(|topic| topic.to_s).reduce(f64::max);
+        let chunks = storage.chunks.as_ref().map(|chunks| ChunkResult {
+            count: chunks.count,
+            compression: chunks.compressions.join(", "),
+            stored_bytes: chunks.stored_bytes,
+            content_bytes: chunks.content_bytes,
+        });
+        Self {
+            kind: storage.kind,
+            size_bytes: storage.size_bytes,
+            messages: read.iter().map(|topic| topic.messages).sum(),
+            start_s: start_nanos.map(seconds),
+            duration_s: from_s.zip(to_s).map(|(from_s, to_s)| to_s - from_s),
+            chunks,
+            start_nanos,
+        }
+    }
+
+    /// Of a log of rows, the times of the first and the last sample.
+    pub fn set_rows(&mut self, stamp_nanos: Option<[i64; 2]>) {
+        if let (None, Some([first, last])) = (self.start_nanos, stamp_nanos) {
+            self.start_nanos = u64::try_from(first).ok();
+            self.start_s = self.start_nanos.map(seconds);
+            self.duration_s = u64::try_from(last.saturating_sub(first)).ok().map(seconds);
+        }
+    }
+
+    /// For people, a line each.
+    pub fn lines(&self, attachments: &[String]) -> String {
+        let mut text = String::new();
+        // Writing to a String cannot fail.
+        let mut line = |label: &str, value: &str| {
+            let _ = writeln!(text, "{label:<12} {value}");
+        };
+        line("size:", &format!("{} ({})", DecimalBytes(self.size_bytes), self.kind));
+        if let Some(ChunkResult { count, compression, stored_bytes, content_bytes }) = &self.chunks {
+            let sizes = format!("{} of {}", DecimalBytes(*stored_bytes), DecimalBytes(*content_bytes));
+            line("compression:", &format!("{compression}, {sizes} in {count} chunks"));
+        }
+        if let Some(start_nanos) = self.start_nanos {
+            let start = UNIX_EPOCH + Duration::from_nanos(start_nanos);
+            line("start:", &humantime::format_rfc3339_millis(start).to_string());
+        }
+        if let Some(duration_s) = self.duration_s {
+            line("duration:", &format!("{duration_s:.3} s"));
+        }
+        if self.messages > 0 {
+            line("messages:", &self.messages.to_string());
+        }
+        if !attachments.is_empty() {
+            line("attached:", &printable(&attachments.join(", ")));
+        }
+        text
+    }
+}
