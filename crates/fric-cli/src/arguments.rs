@@ -169,6 +169,9 @@ pub struct FitArguments {
     /// Weigh deviations that are far out less (Huber's loss) instead of leaving out what cannot be a measurement
     #[arg(long)]
     pub huber: bool,
+    /// Write a page with the values, their errors and what is left to this HTML file
+    #[arg(long, value_name = "R.html", value_parser = a_file())]
+    pub report: Option<PathBuf>,
     #[command(flatten)]
     pub result: ResultArguments,
 }
@@ -238,6 +241,9 @@ pub enum ReferenceName {
 pub struct InfoArguments {
     #[command(flatten)]
     pub log: LogArguments,
+    /// Write a page with what is in the log and its signals over time to this HTML file
+    #[arg(long, value_name = "R.html", value_parser = a_file())]
+    pub report: Option<PathBuf>,
     #[command(flatten)]
     pub result: ResultArguments,
 }
@@ -369,6 +375,9 @@ fn corners(text: &str) -> Result<Corners, String> {
 pub struct HysteresisArguments {
     #[command(flatten)]
     pub log: LogArguments,
+    /// Write a page with the widths and the loops to this HTML file
+    #[arg(long, value_name = "R.html", value_parser = a_file())]
+    pub report: Option<PathBuf>,
     #[command(flatten)]
     pub result: ResultArguments,
 }

@@ -3,6 +3,7 @@
 //! The program is [`run`]: its own `main` calls it with the process's arguments, `python -m fric` with Python's.
 
 mod arguments;
+mod command;
 mod commands;
 mod failure;
 mod interrupt;
@@ -25,6 +26,8 @@ use arguments::{Arguments, Command};
 /// Results go to stdout, what is wrong to stderr. From then on Ctrl-C ends the command, and a second one the process.
 #[must_use]
 pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
+    let words: Vec<OsString> = words.into_iter().collect();
+    command::remember(&words);
     let arguments = match Arguments::try_parse_from(words) {
         Ok(arguments) => arguments,
         Err(error) => {

@@ -4,8 +4,10 @@ use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use fric_log::output::{CompleteFile, OutputFile, directory_of};
+use fric_work::provenance::Provenance;
 use serde::Serialize;
 
+use crate::command;
 use crate::failure::{Failure, Outcome};
 
 /// Makes sure that no two outputs are to stand in the same place.
@@ -26,9 +28,15 @@ pub fn check_distinct(outputs: &[Option<&Path>]) -> Outcome {
     Ok(())
 }
 
-/// Where the machine-readable result goes.
+/// Where the machine-readable result goes, and what it says of its origin.
 #[derive(Debug)]
-pub enum JsonTarget {
+pub struct JsonTarget {
+    place: JsonPlace,
+    inputs: Vec<PathBuf>,
+}
+
+#[derive(Debug)]
+enum JsonPlace {
     Nowhere,
     Stdout,
     File(OutputFile),
@@ -36,28 +44,36 @@ pub enum JsonTarget {
 
 impl JsonTarget {
     pub fn prepare(path: Option<&Path>, inputs: &[PathBuf], force: bool) -> Outcome<Self> {
-        match path {
-            None => Ok(Self::Nowhere),
-            Some(path) if is_stdout(path) => Ok(Self::Stdout),
-            Some(path) => Ok(Self::File(OutputFile::create(path, inputs, force)?)),
-        }
+        let place = match path {
+            None => JsonPlace::Nowhere,
+            Some(path) if is_stdout(path) => JsonPlace::Stdout,
+            Some(path) => JsonPlace::File(OutputFile::create(path, inputs, force)?),
+        };
+        Ok(Self { place, inputs: inputs.to_vec() })
+    }
+
+    /// Program, command and inputs of the result; reads the inputs for their hashes.
+    pub fn provenance(&self) -> Provenance {
+        provenance(&self.inputs)
     }
 
     /// Ends a command: puts its outputs in their places, all of them complete, and shows a text to people, on stdout, or on
     /// stderr where stdout takes the JSON.
     pub fn finish(self, result: &impl Serialize, text: &str, mut files: Vec<CompleteFile>) -> Outcome {
-        match self {
-            Self::Nowhere => {
+        let Self { place: target, inputs } = self;
+        let as_json = || as_json(result, &provenance(&inputs));
+        match target {
+            JsonPlace::Nowhere => {
                 place(files)?;
                 show(text)
             }
-            Self::File(file) => {
-                files.push(file.complete_with(&as_json(result)?)?);
+            JsonPlace::File(file) => {
+                files.push(file.complete_with(&as_json()?)?);
                 place(files)?;
                 show(text)
             }
-            Self::Stdout => {
-                let json = as_json(result)?;
+            JsonPlace::Stdout => {
+                let json = as_json()?;
                 place(files)?;
                 print_to(std::io::stderr(), "stderr", &harmless(text))?;
                 print_to(std::io::stdout(), "stdout", &json)
@@ -66,9 +82,15 @@ impl JsonTarget {
     }
 }
 
+/// Program, command and inputs of a result; reads the inputs for their hashes.
+pub fn provenance(inputs: &[PathBuf]) -> Provenance {
+    Provenance::of_command(&command::words(), inputs)
+}
+
 /// A result for machines.
-pub fn as_json(result: &impl Serialize) -> Outcome<String> {
-    fric_work::json(result).map_err(|error| Failure::new(format!("cannot write the result as JSON: {error}")))
+pub fn as_json(result: &impl Serialize, provenance: &Provenance) -> Outcome<String> {
+    fric_work::json(result, provenance)
+        .map_err(|error| Failure::new(format!("cannot write the result as JSON: {error}")))
 }
 
 /// Puts files in their places; where one cannot be, tells which stand there already.

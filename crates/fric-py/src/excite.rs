@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use fric_lab::excite::{Excitation, ExcitationOptions, ExcitedCycle};
 use fric_log::output::OutputFile;
 use fric_work::excite::describe;
+use fric_work::provenance::Provenance;
 use fric_work::report::{RunSeries, preview};
 use fric_work::set_points::SetPointTable;
 use pyo3::prelude::*;
@@ -116,7 +117,9 @@ pub fn excite(
     if let Some(table) = table {
         table.complete()?.place()?;
     }
-    let page = preview::page(&file, &excitation, &series);
+    let text = robot.borrow().to_toml()?;
+    let provenance = Provenance::of_call("fric.excite", &[], Some((&file.options().name, &text)));
+    let page = preview::page(&file, &excitation, &series, &provenance);
     let names = file.cable_names();
     let count = names.len();
     let of_platform =

@@ -69,6 +69,11 @@ impl<'py> Runs<'py> {
         self.0.iter().enumerate().map(name).collect()
     }
 
+    /// The files of all of them.
+    pub fn files(&self) -> Vec<PathBuf> {
+        self.0.iter().flat_map(sources).collect()
+    }
+
     /// Reads all of them into the measurements, with one more part left to be watched.
     pub fn read(
         &self,

@@ -6,10 +6,12 @@ use fric_lab::discover::result::FaultResult;
 use fric_lab::discover::words::recording_lines;
 use fric_lab::errors::{ForceError, WrenchResult};
 use fric_lab::replay::{CableErrors, Replay};
-use fric_lab::text::table;
+use fric_lab::text::{table, wrapped};
 use fric_log::signals::LengthPoses;
 use hdrhistogram::{CreationError, Histogram};
 use serde::Serialize;
+
+use crate::verdict::left_in_words;
 
 /// How long cycles take, in bounded memory.
 #[derive(Clone, Debug)]
@@ -173,14 +175,13 @@ impl ReplayResult {
             .map(|cable| {
                 let number = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.4}"));
                 let (before, after) = (cable.before.as_ref(), cable.after.as_ref());
-                let left = before.zip(after).map(|(before, after)| after.rms_n / before.rms_n * 100.0);
                 [
                     cable.name.clone(),
                     cable.samples.to_string(),
                     cable.flagged.to_string(),
                     number(before.map(|error| error.rms_n)),
                     number(after.map(|error| error.rms_n)),
-                    left.filter(|left| left.is_finite()).map_or_else(|| "–".to_owned(), |left| format!("{left:.1} %")),
+                    cable.left().map_or_else(|| "–".to_owned(), left_in_words),
                     number(before.map(|error| error.mae_n)),
                     number(after.map(|error| error.mae_n)),
                 ]
@@ -196,7 +197,8 @@ impl ReplayResult {
             "mean |error| before [N]",
             "after [N]",
         ];
-        let mut text = format!("{}: force at the platform against the reference\n\n", self.robot);
+        let mut text = wrapped("", &self.verdict().sentence);
+        text += &format!("\n{}: force at the platform against the reference\n\n", self.robot);
         text += &table(&header, 1, &rows);
         text += &recording_lines(self.cables.iter().map(|cable| (cable.name.as_str(), cable.faults.as_slice())));
         if let Some(wrench) = &self.wrench {

@@ -64,7 +64,7 @@ pub fn run(arguments: &DiscoverArguments) -> Outcome {
         files.push(file.complete_with(&found.extended(&model.text, &model.origin)?)?);
     }
     if let Some(report) = report {
-        files.push(report.complete_with(&report::discovery::page(&outcome, found.cables()))?);
+        files.push(report.complete_with(&report::discovery::page(&outcome, found.cables(), &json.provenance()))?);
     }
     let summary = format!("{}\n{}\n", outcome.summary(), next_step(&logs, output.as_deref()));
     json.finish(&outcome, &summary, files)

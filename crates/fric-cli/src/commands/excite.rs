@@ -48,7 +48,12 @@ pub fn run(arguments: &ExciteArguments) -> Outcome {
     bar.finish_and_clear();
     let mut files = vec![table.complete()?];
     if let Some(page) = page {
-        files.push(page.complete_with(&preview::page(&model.robot, &excitation, &series))?);
+        files.push(page.complete_with(&preview::page(
+            &model.robot,
+            &excitation,
+            &series,
+            &output::provenance(&inputs),
+        ))?);
     }
     output::place(files)?;
     output::show(&format!("{}: {}\n", arguments.output.display(), describe(&excitation, &series)))

@@ -5,6 +5,7 @@ use fric_lab::fit::readiness;
 use fric_lab::fit::result::{FitResult, Fits};
 use fric_lab::fit::{FitOptions, Parameter, Reference, Weighing, fit_wrench, rewritten};
 use fric_log::output::OutputFile;
+use fric_work::report;
 
 use crate::arguments::{FitArguments, ReferenceName};
 use crate::failure::{Failure, Outcome};
@@ -14,9 +15,9 @@ use crate::warnings::warn_all;
 
 /// Runs the command.
 pub fn run(arguments: &FitArguments) -> Outcome {
-    let FitArguments { logs, model, part, output, reference, parameters, huber, result } = arguments;
+    let FitArguments { logs, model, part, output, reference, report, parameters, huber, result } = arguments;
     let json_file = result.json.as_deref().filter(|path| !output::is_stdout(path));
-    output::check_distinct(&[Some(output), json_file])?;
+    output::check_distinct(&[Some(output), report.as_deref(), json_file])?;
     check_named_once(logs)?;
     let part = part.part()?;
     let options = FitOptions {
@@ -28,6 +29,7 @@ pub fn run(arguments: &FitArguments) -> Outcome {
     let model = find_model(model.as_deref(), logs)?;
     let json = JsonTarget::prepare(result.json.as_deref(), &inputs, result.force)?;
     let fitted_file = OutputFile::create(output, &inputs, result.force)?;
+    let report = report.as_ref().map(|path| OutputFile::create(path, &inputs, result.force)).transpose()?;
 
     let (fits, faults, readiness) = match reference {
         ReferenceName::Forces => {
@@ -51,7 +53,11 @@ pub fn run(arguments: &FitArguments) -> Outcome {
     outcome.check_used()?;
     warn_all(&outcome.warnings(&fits, &readiness));
     let text = rewritten(&model.text, &model.origin, fits.cables())?;
-    json.finish(&outcome, &outcome.summary(), vec![fitted_file.complete_with(&text)?])
+    let mut files = vec![fitted_file.complete_with(&text)?];
+    if let Some(report) = report {
+        files.push(report.complete_with(&report::fit::page(&outcome, fits.cables(), &json.provenance()))?);
+    }
+    json.finish(&outcome, &outcome.summary(), files)
 }
 
 /// The parameters that the command line names.

@@ -71,7 +71,7 @@ pub fn run(arguments: &ReplayArguments) -> Outcome {
             writer.write(sample.stamp_nanos, cycle.cables, cycle.outside_wrench.as_ref())?;
         }
         if let Some(series) = &mut series {
-            series.add(&sample, cycle.cables);
+            series.add(&sample, &cycle);
         }
     };
     bar.finish_and_clear();
@@ -96,11 +96,7 @@ pub fn run(arguments: &ReplayArguments) -> Outcome {
         files.push(writer.complete()?);
     }
     if let (Some(report), Some(series)) = (report, series) {
-        files.push(report.complete_with(&report::errors::page(
-            &outcome,
-            &series,
-            &log.logs.iter().map(|log| log.display().to_string()).collect::<Vec<_>>(),
-        ))?);
+        files.push(report.complete_with(&report::errors::page(&outcome, &series, &json.provenance()))?);
     }
     json.finish(&outcome, &outcome.summary(), files)
 }

@@ -43,7 +43,7 @@ pub fn run(arguments: &DiscoverArguments) -> Outcome {
         files.push(file.complete_with(&rewrite(&model.text, &model.origin, &found.edit)?)?);
     }
     if let Some(report) = report {
-        files.push(report.complete_with(&report::continuum::discovery(&found))?);
+        files.push(report.complete_with(&report::continuum::discovery(&found, &json.provenance()))?);
     }
     json.finish(&found.result, &found.result.summary(), files)
 }

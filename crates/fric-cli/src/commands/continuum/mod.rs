@@ -18,6 +18,7 @@ use fric_lab::continuum::gratings::{GratingSample, Gratings};
 use fric_lab::continuum::{ContinuumError, Run, columns};
 use fric_log::output::{CompleteFile, OutputFile};
 use fric_log::table::NumberTable;
+use fric_work::provenance::Provenance;
 
 use crate::arguments::continuum::{ContinuumCommand, ReportArguments, RunArguments};
 use crate::failure::{Failure, Outcome};
@@ -142,11 +143,11 @@ impl Outputs {
         self,
         result: &impl serde::Serialize,
         summary: &str,
-        page: impl FnOnce() -> String,
+        page: impl FnOnce(&Provenance) -> String,
         mut files: Vec<CompleteFile>,
     ) -> Outcome {
         if let Some(report) = self.report {
-            files.push(report.complete_with(&page())?);
+            files.push(report.complete_with(&page(&self.json.provenance()))?);
         }
         self.json.finish(result, summary, files)
     }

@@ -65,7 +65,7 @@ pub fn run(arguments: &TendonSimulateArguments) -> Outcome {
         files.push(write_calibration(file, &run, model.disk_count())?);
     }
     if let Some(file) = truth {
-        files.push(file.complete_with(&output::as_json(&truth_of(model.name(), &run))?)?);
+        files.push(file.complete_with(&output::as_json(&truth_of(model.name(), &run), &output::provenance(&inputs))?)?);
     }
     output::place(files)?;
     let last = run.truth.last().map_or(0.0, |truth| truth.bend_rad.to_degrees());
