@@ -1,6 +1,6 @@
 //! `replay --report`: one page that needs nothing else.
 
-use super::logs::without;
+use super::logs::{Storage, rewrite, without};
 use super::support::{Place, example_robot, short_log};
 
 fn report(place: &Place, arguments: &[&str]) -> String {
@@ -91,4 +91,81 @@ fn names_are_text_and_no_markup() {
         assert!(!page.contains(markup), "{markup}");
     }
     assert!(page.contains("&lt;b&gt;&amp;&quot;1") && page.contains("&lt;i&gt;&amp;.mcap"), "the names are there");
+}
+
+/// The text of the first element of a name.
+fn element<'a>(page: &'a str, name: &str) -> &'a str {
+    let (_, after) = page.split_once(&format!("<{name}")).unwrap();
+    let (_, text) = after.split_once('>').unwrap();
+    text.split_once('<').unwrap().0
+}
+
+#[test]
+fn what_gets_worse_is_said_first() {
+    let place = Place::with_log();
+    place.write("rough.toml", example_robot().replace("mu = 0.0", "mu = 0.4"));
+    let run = place
+        .run(&["replay", "log.mcap", "--model", "rough.toml", "--report", "r.html", "--json", "j.json"])
+        .succeeds();
+    let page = String::from_utf8(place.read("r.html")).unwrap();
+    let result = place.json("j.json");
+    let rms = |of: &serde_json::Value, when: &str, key: &str| of[when][key].as_f64().unwrap();
+    let mut expected: Vec<String> = result["cables"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter(|cable| rms(cable, "after", "rms_n") > rms(cable, "before", "rms_n"))
+        .map(|cable| {
+            let [before, after] = ["before", "after"].map(|when| rms(cable, when, "rms_n"));
+            format!("{} (rms {before:.4} N before, {after:.4} N after)", cable["name"].as_str().unwrap())
+        })
+        .collect();
+    assert!(expected.len() > 1, "{result}");
+    let torque = ["before", "after"].map(|when| rms(&result["wrench"], when, "torque_rms_nm"));
+    assert!(torque[1] > torque[0]);
+    expected.push(format!("the torque on the platform (rms {:.4} Nm before, {:.4} Nm after)", torque[0], torque[1]));
+    let verdict = element(&page, "h1");
+    assert!(verdict.starts_with(&format!("Compensation makes {}", expected[0])), "{verdict}");
+    for worse in &expected {
+        assert!(verdict.contains(worse), "{worse}: {verdict}");
+    }
+    let told = run.stdout.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(told.starts_with(verdict), "{told}");
+}
+
+#[test]
+fn a_page_of_a_log_says_what_it_allows() {
+    let place = Place::with_log();
+    let info = ["info", "log.mcap", "--report", "r.html", "--json", "j.json"];
+    place.run(&info).succeeds();
+    let page = String::from_utf8(place.read("r.html")).unwrap();
+    assert_self_contained(&page);
+    assert_eq!(page.matches("<svg").count(), 3);
+    for step in place.json("j.json")["steps"].as_array().unwrap() {
+        assert!(page.contains(step["step"].as_str().unwrap()));
+    }
+    place.run_in_vain(&["info", "log.mcap", "--report", "x", "--json", "x"]).fails(2, &["two outputs"]);
+    place.write("bare.mcap", rewrite(short_log(), Storage::Zstd, None, |_, _| true));
+    place.run(&["info", "bare.mcap", "--report", "bare.html"]).succeeds();
+    let page = String::from_utf8(place.read("bare.html")).unwrap();
+    assert!(element(&page, "h1").contains("not known without a robot file"), "{}", element(&page, "h1"));
+}
+
+#[test]
+fn results_name_their_inputs_and_no_machine() {
+    let place = Place::with_log();
+    let log = place.path("log.mcap");
+    place.run(&["replay", log.to_str().unwrap(), "--report", "r.html", "--json", "j.json"]).succeeds();
+    let made = &place.json("j.json")["provenance"];
+    assert_eq!(made["command"], "fric-cli replay log.mcap --report r.html --json j.json");
+    assert_eq!((&made["program"], &made["version"]), (&"fric".into(), &env!("CARGO_PKG_VERSION").into()));
+    let folder = log.parent().unwrap().to_str().unwrap();
+    for name in ["r.html", "j.json"] {
+        let text = String::from_utf8(place.read(name)).unwrap();
+        assert!(!text.contains(folder) && text.contains("log.mcap"), "{name}");
+    }
+    let (input, page) = (&made["inputs"][0], String::from_utf8(place.read("r.html")).unwrap());
+    let hash = input["sha256"].as_str().unwrap();
+    assert_eq!((&input["role"], &input["name"], hash.len()), (&"log".into(), &"log.mcap".into(), 64));
+    assert!(page.contains(hash) && page.contains(made["made"].as_str().unwrap().split_once('T').unwrap().0));
 }

@@ -1,6 +1,6 @@
 //! The page of `replay --report`: the errors as tables and over time, the friction over its conditions, the forces and the wrench.
 
-use fric_lab::errors::WrenchResult;
+use fric_lab::errors::{WrenchError, WrenchResult};
 use maud::{Markup, html};
 
 use super::friction::{CableFriction, Friction};
@@ -84,22 +84,27 @@ fn cables(result: &ReplayResult) -> Markup {
 }
 
 pub(super) fn wrench_table(wrench: &WrenchResult) -> Markup {
-    let WrenchResult { before, after, .. } = wrench;
+    let WrenchResult { before, after, held_out, .. } = wrench;
+    let rows = [
+        ("force", "N", (|error| error.force_rms_n) as fn(&WrenchError) -> f64),
+        ("torque", "Nm", |error| error.torque_rms_nm),
+    ];
     html! {
         table {
             thead {
-                tr { th scope="col" { (wrench.title()) } th scope="col" { "rms before" } th scope="col" { "after" } th scope="col" { "left" } }
+                tr {
+                    th scope="col" { (wrench.title()) } th scope="col" { "rms before" } th scope="col" { "after" } th scope="col" { "left" }
+                    @if held_out.is_some() { th scope="col" { "held out" } }
+                }
             }
             tbody {
-                tr {
-                    th scope="row" { "force" }
-                    td { (format!("{:.4} N", before.force_rms_n)) } td { (format!("{:.4} N", after.force_rms_n)) }
-                    td { (left_in_words(after.force_rms_n / before.force_rms_n)) }
-                }
-                tr {
-                    th scope="row" { "torque" }
-                    td { (format!("{:.4} Nm", before.torque_rms_nm)) } td { (format!("{:.4} Nm", after.torque_rms_nm)) }
-                    td { (left_in_words(after.torque_rms_nm / before.torque_rms_nm)) }
+                @for (name, unit, pick) in rows {
+                    tr {
+                        th scope="row" { (name) }
+                        td { (format!("{:.4} {unit}", pick(before))) } td { (format!("{:.4} {unit}", pick(after))) }
+                        td { (left_in_words(pick(after) / pick(before))) }
+                        @if let Some(held_out) = held_out { td { (format!("{:.4} {unit}", pick(held_out))) } }
+                    }
                 }
             }
         }

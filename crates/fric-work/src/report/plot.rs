@@ -154,13 +154,18 @@ impl Plot {
 
     /// Title and axes in a sentence.
     fn caption(&self) -> String {
+        format!("{}: {}", self.title, self.axes())
+    }
+
+    /// What is drawn over what, on which scales.
+    fn axes(&self) -> String {
         let scale = |axis: Axis| if axis.is_log { "logarithmic" } else { "linear" };
         let scales = if self.x.is_log == self.y.is_log {
             format!("both axes {}", scale(self.x))
         } else {
             format!("{} axis {}, {} axis {}", self.x.name, scale(self.x), self.y.name, scale(self.y))
         };
-        format!("{}: {} over {}, {scales}", self.title, self.y.in_words(), self.x.in_words())
+        format!("{} over {}, {scales}", self.y.in_words(), self.x.in_words())
     }
 }
 
@@ -203,7 +208,7 @@ impl Plots {
         }));
         html! {
             figure.plot id=(id) {
-                figcaption { (plot.title) span.soft { " " (plot.caption().split_once(": ").map_or("", |(_, rest)| rest)) } }
+                figcaption { (plot.title) span.soft { " " (plot.axes()) } }
                 p.legend {
                     @for trace in &plot.traces {
                         span.keys {

@@ -9,6 +9,7 @@ use super::{Model, about, read_table};
 use crate::arguments::{DiscoverArguments, ReferenceName};
 use crate::failure::{Failure, Outcome};
 use crate::output::{self, JsonTarget};
+use fric_work::provenance::shown_path;
 use fric_work::report;
 
 /// Runs the command.
@@ -37,7 +38,7 @@ pub fn run(arguments: &DiscoverArguments) -> Outcome {
     let extended = output.as_ref().map(|path| OutputFile::create(path, &inputs, result.force)).transpose()?;
     let table = read_table(log, &columns::of_run(model.disk_count()))?;
     let run = Run::from_columns(&table, model.disk_count()).map_err(|error| about(log, error))?;
-    let found = discover(&model.file, &run, &log.display().to_string()).map_err(|error| about(log, error))?;
+    let found = discover(&model.file, &run, &shown_path(log)).map_err(|error| about(log, error))?;
     let mut files = Vec::new();
     if let Some(file) = extended {
         files.push(file.complete_with(&rewrite(&model.text, &model.origin, &found.edit)?)?);
