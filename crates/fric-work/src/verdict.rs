@@ -122,14 +122,17 @@ impl ReplayResult {
         let wrench: Vec<Compared> =
             self.wrench.iter().flat_map(|wrench| Compared::of_wrench(&wrench.before, &wrench.after)).collect();
         let of_cables = share_left("the force error", &cables);
-        let of_cables = of_cables.map(|words| format!("{words} ({})", counted(cables.len(), "cable")));
+        let of_cables = of_cables.map(|words| {
+            let count = cables.iter().filter(|cable| !cable.is_worse()).count();
+            format!("{words} ({})", counted(count, "cable"))
+        });
         let of_wrench = if cables.is_empty() { wrench_left(&wrench) } else { None };
         let all: Vec<Compared> = cables.into_iter().chain(wrench).collect();
         let greatest = all.iter().map(Compared::left).filter(|left| left.is_finite()).fold(0.0, f64::max);
         let left = of_cables.or(of_wrench);
         let (tone, sentence) = match (worse(&all), left) {
             (Some(worse), left) => {
-                (Tone::Bad, left.map_or(worse.clone(), |left| format!("{worse} Compensation leaves {left}.")))
+                (Tone::Bad, left.map_or(worse.clone(), |left| format!("{worse} Elsewhere it leaves {left}.")))
             }
             (None, Some(left)) if greatest <= WORKS => (Tone::Well, format!("Compensation works: it leaves {left}.")),
             (None, Some(left)) => (Tone::Mixed, format!("Compensation helps in part: it leaves {left}.")),
@@ -176,8 +179,10 @@ impl ReplayResult {
     }
 }
 
+/// What is left of errors that got no worse; `None` without any.
 fn share_left(of: &str, all: &[Compared]) -> Option<String> {
-    let shares: Vec<f64> = all.iter().map(Compared::left).filter(|left| left.is_finite()).collect();
+    let better = all.iter().filter(|one| !one.is_worse());
+    let shares: Vec<f64> = better.map(Compared::left).filter(|left| left.is_finite()).collect();
     (!shares.is_empty()).then(|| format!("{} of {of} that friction causes", range_in_words(shares.into_iter())))
 }
 
@@ -209,8 +214,10 @@ pub fn of_fit(result: &FitResult) -> Verdict {
     let all: Vec<Compared> = cables.into_iter().chain(wrench).collect();
     let greatest = all.iter().map(Compared::left).filter(|left| left.is_finite()).fold(0.0, f64::max);
     let fitted = format!("Friction is fitted on {}", counted(result.cables.len(), "cable"));
-    let left = left.map_or_else(|| format!("{fitted}."), |left| format!("{fitted}; it leaves {left}."));
-    let (tone, sentence) = match worse(&all) {
+    let worse = worse(&all);
+    let it = if worse.is_some() { "elsewhere it" } else { "it" };
+    let left = left.map_or_else(|| format!("{fitted}."), |left| format!("{fitted}; {it} leaves {left}."));
+    let (tone, sentence) = match worse {
         Some(worse) => (Tone::Bad, format!("{worse} {left}")),
         None if greatest <= WORKS => (Tone::Well, left),
         None => (Tone::Mixed, left),
@@ -423,7 +430,8 @@ pub fn of_hole_frictions(result: &FrictionResult) -> Verdict {
             )
         },
     );
-    let todo = result.bridged.iter().map(|one| one.warning(result.samples)).collect();
+    let mut todo: Vec<String> = result.bridged.iter().map(|one| one.warning(result.samples)).collect();
+    todo.push("See what this friction does to the shape: fric-cli continuum shape.".to_owned());
     Verdict { tone: Tone::Mixed, sentence, todo }
 }
 

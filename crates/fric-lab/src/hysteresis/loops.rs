@@ -25,7 +25,7 @@ pub(super) struct LoopSums {
     tolerance_m: f64,
     /// Back and forwards: count, without, with.
     bins: [Vec<[f64; 3]>; 2],
-    /// 1 forwards, −1 back, and the furthest way since.
+    /// 1 forwards, −1 back, 0 before it moves, and the furthest way since.
     heading: Option<(f64, f64)>,
 }
 
@@ -40,7 +40,16 @@ impl LoopSums {
             self.heading = None;
             return;
         };
-        let (sign, furthest_m) = self.heading.unwrap_or((1.0, along_m));
+        let (mut sign, furthest_m) = self.heading.unwrap_or((0.0, along_m));
+        if sign == 0.0 {
+            // A platform at rest goes in no direction yet.
+            let moved_m = along_m - furthest_m;
+            if moved_m.abs() <= self.tolerance_m {
+                self.heading = Some((0.0, furthest_m));
+                return;
+            }
+            sign = moved_m.signum();
+        }
         let onward_m = sign * (along_m - furthest_m);
         let is_back = onward_m < -self.tolerance_m;
         let sign = if is_back { -sign } else { sign };
