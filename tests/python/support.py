@@ -1,5 +1,6 @@
 """What several tests need."""
 
+import json
 import os
 import subprocess
 import sys
@@ -28,6 +29,13 @@ def run(*arguments):
     done = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", check=False)
     assert done.returncode == 0, done
     return done.stderr
+
+
+def without_origin(text):
+    """What the JSON of a result says, but for when it was made and by which command."""
+    told = json.loads(text)
+    assert told.pop("provenance")["program"] == "fric"
+    return told
 
 
 @contextmanager

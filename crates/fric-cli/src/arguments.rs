@@ -205,6 +205,9 @@ pub struct FitArguments {
     /// Weigh deviations that are far out less (Huber's loss) instead of leaving out what cannot be a measurement
     #[arg(long)]
     pub huber: bool,
+    /// Write a page with the values, their errors and what is left to this HTML file
+    #[arg(long, value_name = "R.html", value_parser = a_file())]
+    pub report: Option<PathBuf>,
     #[command(flatten)]
     pub result: ResultArguments,
 }
@@ -277,6 +280,9 @@ pub struct InfoArguments {
     /// Show also encoding, jitter and time range of each topic
     #[arg(long)]
     pub wide: bool,
+    /// Write a page with what is in the log and its signals over time to this HTML file
+    #[arg(long, value_name = "R.html", value_parser = a_file())]
+    pub report: Option<PathBuf>,
     #[command(flatten)]
     pub result: ResultArguments,
 }
@@ -434,6 +440,9 @@ fn corners(text: &str) -> Result<Corners, String> {
 pub struct HysteresisArguments {
     #[command(flatten)]
     pub log: LogArguments,
+    /// Write a page with the widths and the loops to this HTML file
+    #[arg(long, value_name = "R.html", value_parser = a_file())]
+    pub report: Option<PathBuf>,
     #[command(flatten)]
     pub result: ResultArguments,
 }

@@ -3,6 +3,7 @@
 //! The program is [`run`]: its own `main` calls it with the process's arguments, `python -m fric` with Python's.
 
 mod arguments;
+mod command;
 mod commands;
 mod failure;
 mod interrupt;
@@ -29,6 +30,7 @@ use arguments::{Arguments, Command};
 pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
     let words: Vec<OsString> = words.into_iter().collect();
     terminal::set_color(&words);
+    command::remember(&words);
     let arguments = match Arguments::try_parse_from(words) {
         Ok(arguments) => arguments,
         Err(error) => {

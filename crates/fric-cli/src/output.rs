@@ -5,8 +5,10 @@ use std::path::{Path, PathBuf};
 
 use fric_lab::text::{WIDTH, wrapped};
 use fric_log::output::{CompleteFile, OutputFile, directory_of};
+use fric_work::provenance::Provenance;
 use serde::Serialize;
 
+use crate::command;
 use crate::failure::{Failure, Outcome};
 use crate::terminal;
 
@@ -28,9 +30,15 @@ pub fn check_distinct(outputs: &[Option<&Path>]) -> Outcome {
     Ok(())
 }
 
-/// Where the machine-readable result goes.
+/// Where the machine-readable result goes, and what it says of its origin.
 #[derive(Debug)]
-pub enum JsonTarget {
+pub struct JsonTarget {
+    place: JsonPlace,
+    inputs: Vec<PathBuf>,
+}
+
+#[derive(Debug)]
+enum JsonPlace {
     Nowhere,
     Stdout,
     File(OutputFile),
@@ -38,11 +46,17 @@ pub enum JsonTarget {
 
 impl JsonTarget {
     pub fn prepare(path: Option<&Path>, inputs: &[PathBuf], force: bool) -> Outcome<Self> {
-        match path {
-            None => Ok(Self::Nowhere),
-            Some(path) if is_stdout(path) => Ok(Self::Stdout),
-            Some(path) => Ok(Self::File(OutputFile::create(path, inputs, force)?)),
-        }
+        let place = match path {
+            None => JsonPlace::Nowhere,
+            Some(path) if is_stdout(path) => JsonPlace::Stdout,
+            Some(path) => JsonPlace::File(OutputFile::create(path, inputs, force)?),
+        };
+        Ok(Self { place, inputs: inputs.to_vec() })
+    }
+
+    /// Program, command and inputs of the result; reads the inputs for their hashes.
+    pub fn provenance(&self) -> Provenance {
+        provenance(&self.inputs)
     }
 
     /// Ends a command: puts its outputs in their places, all of them complete, and shows a text to people, on stdout, or on
@@ -53,14 +67,16 @@ impl JsonTarget {
 
     /// The same with what to do next, a line below everything else.
     pub fn finish_then(self, result: &impl Serialize, text: &str, mut files: Vec<Written>, next: &str) -> Outcome {
-        match self {
-            Self::Nowhere => show_with(text, files, next),
-            Self::File(file) => {
-                files.push(Written::new(file.complete_with(&as_json(result)?)?, "the result as JSON"));
+        let Self { place: target, inputs } = self;
+        let as_json = || as_json(result, &provenance(&inputs));
+        match target {
+            JsonPlace::Nowhere => show_with(text, files, next),
+            JsonPlace::File(file) => {
+                files.push(Written::new(file.complete_with(&as_json()?)?, "the result as JSON"));
                 show_with(text, files, next)
             }
-            Self::Stdout => {
-                let json = as_json(result)?;
+            JsonPlace::Stdout => {
+                let json = as_json()?;
                 let written = place(files)?;
                 if !terminal::is_quiet() {
                     print_to(std::io::stderr(), "stderr", harmless(&joined(&[text, &written, next])).as_bytes())?;
@@ -71,9 +87,15 @@ impl JsonTarget {
     }
 }
 
+/// Program, command and inputs of a result; reads the inputs for their hashes.
+pub fn provenance(inputs: &[PathBuf]) -> Provenance {
+    Provenance::of_command(&command::words(), inputs)
+}
+
 /// A result for machines.
-pub fn as_json(result: &impl Serialize) -> Outcome<String> {
-    fric_work::json(result).map_err(|error| Failure::new(format!("cannot write the result as JSON: {error}")))
+pub fn as_json(result: &impl Serialize, provenance: &Provenance) -> Outcome<String> {
+    fric_work::json(result, provenance)
+        .map_err(|error| Failure::new(format!("cannot write the result as JSON: {error}")))
 }
 
 /// A complete output, and what it holds in words.

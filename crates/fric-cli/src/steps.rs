@@ -1,6 +1,7 @@
 //! Which steps a recording is good for, in every `info`.
 
 use fric_lab::text::table_with_text;
+use fric_work::report::info::InfoStep;
 use serde::Serialize;
 
 /// Whether a recording is good for a step.
@@ -15,6 +16,11 @@ pub struct StepResult {
 impl StepResult {
     pub fn new(step: &'static str, possible: bool, reasons: Vec<String>) -> Self {
         Self { step, possible, reasons }
+    }
+
+    /// As a page shows it.
+    pub fn on_page(&self) -> InfoStep {
+        InfoStep { name: self.step.to_owned(), is_possible: self.possible, remarks: self.reasons.clone() }
     }
 }
 

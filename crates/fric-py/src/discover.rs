@@ -4,6 +4,7 @@ use fric_lab::discover::result::{DiscoverCableResult, DiscoverResult, WhereResul
 use fric_lab::discover::{CableDiscovery, DiscoverOptions, Discoveries};
 use fric_lab::fit::readiness;
 use fric_lab::fit::{Measurements, Reference};
+use fric_work::provenance::Provenance;
 use fric_work::report::discovery;
 use pyo3::prelude::*;
 
@@ -77,8 +78,9 @@ pub fn discover(
     let result = DiscoverResult::new(file, &logs, &readiness, found.cables()).with_wrench(found.wrench());
     result.check_told()?;
     let text = found.extended(&given.to_toml()?, ORIGIN)?;
-    let page = discovery::page(&result, found.cables());
-    let shown = results::shown(py, result.summary(), &result, page, discovery::table(&result))?;
+    let provenance = Provenance::of_call("fric.discover", &runs.files(), Some((&result.robot, &given.to_toml()?)));
+    let page = |provenance: &Provenance| discovery::page(&result, found.cables(), provenance);
+    let shown = results::shown(py, result.summary(), &result, page, discovery::table(&result), &provenance)?;
     let cable = |(found, result): (&CableDiscovery, &DiscoverCableResult)| {
         let words: Vec<String> = result.places.iter().map(WhereResult::range_in_words).collect();
         let arrays = [&found.times_s, &found.residual_before_n, &found.residual_after_n]

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use fric_lab::excite::{Excitation, ExcitationOptions, ExcitedCycle, Experiment, STANDARD_DURATION_S, design};
 use fric_log::output::OutputFile;
 use fric_work::excite::{describe, expectations};
+use fric_work::provenance::Provenance;
 use fric_work::questions::{Request, questions};
 use fric_work::report::{RunSeries, preview};
 use fric_work::set_points::SetPointTable;
@@ -151,7 +152,9 @@ pub fn excite(
     if let Some(table) = table {
         table.complete()?.place()?;
     }
-    let page = preview::page(&file, &excitation, &series, &expected);
+    let text = robot.borrow().to_toml()?;
+    let provenance = Provenance::of_call("fric.excite", &[], Some((&file.options().name, &text)));
+    let page = preview::page(&file, &excitation, &series, &expected, &provenance);
     let told: String = expected.iter().map(|line| format!("\n  {line}")).collect();
     let summary = format!("{}{told}", describe(&excitation, &series));
     let names = file.cable_names();

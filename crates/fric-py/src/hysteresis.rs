@@ -1,6 +1,7 @@
 //! `hysteresis`: what is left of the wrench's hysteresis.
 
 use fric_lab::hysteresis::{Hysteresis, HysteresisResult, Survey};
+use fric_work::provenance::Provenance;
 use fric_work::report::hysteresis as report;
 use pyo3::prelude::*;
 
@@ -62,6 +63,9 @@ pub fn hysteresis(
     log::warn(py, &file.warnings())?;
     log::warn(py, &hysteresis.replay().cable_warnings(&file))?;
     let result = HysteresisResult::new(&file, &crossed, &hysteresis.axes()?);
-    let shown = results::shown(py, result.summary(), &result, report::page(&result), report::table(&result))?;
+    let text = robot.borrow().to_toml()?;
+    let provenance = Provenance::of_call("fric.hysteresis", &log.sources, Some((&result.robot, &text)));
+    let page = |provenance: &Provenance| report::page(&result, &hysteresis.loops(), provenance);
+    let shown = results::shown(py, result.summary(), &result, page, report::table(&result), &provenance)?;
     Ok(results::of(py, "HysteresisResult", (shown, <(f64, f64, f64)>::from(result.position_m)))?.unbind())
 }

@@ -8,6 +8,7 @@ use fric_lab::discover::{self, Corrections};
 use fric_lab::fit::{Measurements, Reference};
 use fric_lab::replay::Replay;
 use fric_log::write::ReplayedLog;
+use fric_work::provenance::Provenance;
 use fric_work::replay::{CycleTimes, ReplayResult};
 use fric_work::report::{Series, errors};
 use pyo3::exceptions::PyRuntimeError;
@@ -84,7 +85,7 @@ pub fn replay(
                 if let Some(writer) = &mut writer {
                     writer.write(sample.stamp_nanos, cycle.cables, cycle.outside_wrench.as_ref())?;
                 }
-                series.add(&sample, cycle.cables);
+                series.add(&sample, &cycle);
                 columns.push(cycle.cables, cycle.outside_wrench.as_ref());
             }
             Ok(())
@@ -96,8 +97,9 @@ pub fn replay(
     }
     log::warn(py, &replay.warnings(&file))?;
     let result = ReplayResult::new(&file, &replay, &times).with_corrections(corrections.as_ref());
-    let page = errors::page(&result, &series, &log.source_names());
-    let shown = results::shown(py, result.summary(), &result, page, errors::table(&result))?;
+    let provenance = Provenance::of_call("fric.replay", &log.sources, Some((&result.robot, &text)));
+    let page = |provenance: &Provenance| errors::page(&result, &series, provenance);
+    let shown = results::shown(py, result.summary(), &result, page, errors::table(&result), &provenance)?;
     let flags: Vec<u32> = replay.cables().iter().map(|errors| errors.flags).collect();
     let cycles = compensation(py, columns, Some(row_count), names.len())?;
     Ok(results::of(py, "ReplayResult", (shown, flags, cycles))?.unbind())

@@ -1,5 +1,6 @@
 //! Results as the classes of `fric._results`, which hold what is computed here.
 
+use fric_work::provenance::Provenance;
 use pyo3::call::PyCallArgs;
 use pyo3::prelude::*;
 use serde::Serialize;
@@ -11,12 +12,13 @@ pub fn shown<'py>(
     py: Python<'py>,
     summary: String,
     result: &impl Serialize,
-    page: String,
+    page: impl FnOnce(&Provenance) -> String,
     table: String,
+    provenance: &Provenance,
 ) -> Outcome<Bound<'py, PyAny>> {
-    let json = fric_work::json(result);
+    let json = fric_work::json(result, provenance);
     let json = json.map_err(|error| Fault::output(format!("cannot write the result as JSON: {error}")))?;
-    Ok(py.import("fric._results.base")?.getattr("Shown")?.call1((summary, json, page, table))?)
+    Ok(py.import("fric._results.base")?.getattr("Shown")?.call1((summary, json, page(provenance), table))?)
 }
 
 /// An object of a class of `fric._results` with these fields.

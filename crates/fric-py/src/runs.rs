@@ -3,6 +3,7 @@
 use fric_lab::fit::readiness::Holdings;
 use fric_lab::fit::{Measurements, Parameter, Reference};
 use fric_log::signals::Role;
+use fric_work::provenance::shown_path;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use std::path::{Path, PathBuf};
@@ -63,10 +64,15 @@ impl<'py> Runs<'py> {
     pub fn names(&self) -> Vec<String> {
         let name = |(place, item): (usize, &Bound<'_, PyAny>)| {
             let sources = sources(item);
-            let names: Vec<String> = sources.iter().map(|path| path.display().to_string()).collect();
+            let names: Vec<String> = sources.iter().map(|path| shown_path(path)).collect();
             if names.is_empty() { format!("log {}", place + 1) } else { names.join(", ") }
         };
         self.0.iter().enumerate().map(name).collect()
+    }
+
+    /// The files of all of them.
+    pub fn files(&self) -> Vec<PathBuf> {
+        self.0.iter().flat_map(sources).collect()
     }
 
     /// Reads all of them into the measurements, with one more part left to be watched.

@@ -6,10 +6,12 @@ use fric_lab::discover::result::FaultResult;
 use fric_lab::discover::words::recording_lines;
 use fric_lab::errors::{ForceError, WrenchResult};
 use fric_lab::replay::{CableErrors, Replay};
-use fric_lab::text::{duration, table};
+use fric_lab::text::{duration, table, wrapped};
 use fric_log::signals::LengthPoses;
 use hdrhistogram::{CreationError, Histogram};
 use serde::Serialize;
+
+use crate::verdict::left_in_words;
 
 /// How long cycles take, in bounded memory.
 #[derive(Clone, Debug)]
@@ -188,7 +190,8 @@ impl ReplayResult {
         let CycleResult { count, median_ns, p999_ns, max_ns } = self.cycle;
         let has_errors = self.cables.iter().any(|cable| cable.before.is_some());
         let what = if has_errors { "force at the platform against the reference" } else { "force at the platform" };
-        let mut text = format!("{}: {what}, {count} samples\n\n", self.robot);
+        let mut text = wrapped("", &self.verdict().sentence);
+        text += &format!("\n{}: {what}, {count} samples\n\n", self.robot);
         text += &table(&header, 1, &rows);
         text += &recording_lines(self.cables.iter().map(|cable| (cable.name.as_str(), cable.faults.as_slice())));
         if let Some(wrench) = &self.wrench {
@@ -209,12 +212,11 @@ impl CableResult {
     fn cells(&self) -> [String; 8] {
         let number = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.4}"));
         let (before, after) = (self.before.as_ref(), self.after.as_ref());
-        let left = before.zip(after).map(|(before, after)| after.rms_n / before.rms_n * 100.0);
         [
             self.name.clone(),
             number(before.map(|error| error.rms_n)),
             number(after.map(|error| error.rms_n)),
-            left.filter(|left| left.is_finite()).map_or_else(|| "–".to_owned(), |left| format!("{left:.1} %")),
+            self.left().map_or_else(|| "–".to_owned(), left_in_words),
             number(before.map(|error| error.mae_n)),
             number(after.map(|error| error.mae_n)),
             self.samples.to_string(),

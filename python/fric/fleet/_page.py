@@ -8,7 +8,7 @@ from html import escape
 from ._alarms import day
 from ._chart import chart
 from ._trend import Alarm, Series, Trend
-from ._words import between, headline, remarks, since
+from ._words import between, headline, provenance, remarks, since, verdict
 
 # The look of the other pages of fric.
 _STYLE = """
@@ -26,6 +26,8 @@ caption { text-align: left; color: var(--soft); padding-bottom: .2rem; }
 th, td { padding: .2rem .9rem .2rem 0; text-align: right; border-bottom: 1px solid var(--line); vertical-align: top; }
 th { font-weight: 600; color: var(--soft); } th.words, td.words, tbody th { text-align: left; } tbody th { color: var(--text); }
 td.number, .day { white-space: nowrap; }
+footer { margin-top: 2.5rem; border-top: 1px solid var(--line); color: var(--soft); font-size: .8rem; }
+.todo { border-left: 4px solid var(--after); padding: .1rem 0 .1rem .9rem; margin: 1rem 0; break-inside: avoid; } .todo h2 { margin: 0 0 .2rem; }
 section.alarm { border-top: 2px solid var(--line); margin-top: 1.6rem; }
 dl { display: grid; grid-template-columns: max-content 1fr; gap: .15rem 1rem; margin: .4rem 0; }
 dt { color: var(--soft); } dd { margin: 0; }
@@ -48,7 +50,7 @@ def page(trend: Trend) -> str:
     """The whole page."""
     robots = list(dict.fromkeys(one.robot for one in trend.series))
     title = f"Fleet: {', '.join(robots) if len(robots) <= 3 else f'{len(robots)} robots'}"
-    parts = [f"<p>{escape(headline(trend))}</p>", *(f'<p class="soft">{escape(text)}</p>' for text in remarks(trend))]
+    parts = [_to_do(trend), *(f'<p class="soft">{escape(text)}</p>' for text in remarks(trend))]
     parts += [
         _overview(trend),
         *(_alarm(trend, place, alarm) for place, alarm in enumerate(trend.alarms)),
@@ -57,8 +59,20 @@ def page(trend: Trend) -> str:
     ]
     return (
         '<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">'
-        f"<title>{escape(title)}</title><style>{_STYLE}</style></head><body><main><h1>{escape(title)}</h1>{''.join(parts)}</main></body></html>\n"
+        f"<title>{escape(title)}</title><style>{_STYLE}</style></head><body><main><h1>{escape(verdict(trend))}</h1>"
+        f'<p class="soft">{escape(title)} · {escape(headline(trend))}</p>{"".join(parts)}</main>{_made()}</body></html>\n'
     )
+
+
+def _to_do(trend: Trend) -> str:
+    named = [f"{one.robot}, {one.cable}: {one.remedy}" for one in trend.alarms]
+    sentences = named or ["Nothing: go on recording."]
+    return f'<div class="todo"><h2>What to do</h2><ul>{"".join(f"<li>{escape(text)}</li>" for text in sentences)}</ul></div><h2>Evidence</h2>'
+
+
+def _made() -> str:
+    made = provenance()
+    return f"<footer><p>Made by {made['program']} {made['version']} on {made['made']} with <code>{made['command']}</code></p></footer>"
 
 
 def _overview(trend: Trend) -> str:

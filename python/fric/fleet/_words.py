@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import json
 import math
-from datetime import datetime
+from datetime import datetime, timezone
 from html import escape
 from typing import Any
 
+from .._fric import __version__
 from ._alarms import day
 from ._trend import Alarm, Change, Series, Trend
 
@@ -32,6 +33,23 @@ def headline(trend: Trend) -> str:
     counted = f"{trend.logs} logs of {robots} robots, {len(trend.series)} series by fric {trend.operation}"
     alarms = "nothing has changed" if not trend.alarms else f"{len(trend.alarms)} {'alarm' if len(trend.alarms) == 1 else 'alarms'}"
     return f"{counted}: {alarms}"
+
+
+def verdict(trend: Trend) -> str:
+    """The outcome in a sentence for people who do not run the robots."""
+    robots = list(dict.fromkeys(one.robot for one in trend.series))
+    fleet = f"{len(robots)} robots" if len(robots) != 1 else "the robot"
+    if not trend.alarms:
+        return f"Nothing has changed on {fleet}."
+    places = list(dict.fromkeys(f"{one.robot} {one.cable}" for one in trend.alarms))
+    named = ", ".join(places[:3]) + (f" and {len(places) - 3} more" if len(places) > 3 else "")
+    return f"Something is to be done at {len(places)} {'place' if len(places) == 1 else 'places'} of {fleet}: {named}."
+
+
+def provenance() -> dict[str, Any]:
+    """Program, version, date and command, as in the other results."""
+    made = datetime.now(timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ")
+    return {"program": "fric", "version": __version__, "made": made, "command": "fric.fleet.trend", "inputs": []}
 
 
 def remarks(trend: Trend) -> list[str]:
@@ -68,6 +86,7 @@ def json_of(trend: Trend) -> str:
         "series": [_series(one) for one in trend.series],
         "failures": [vars(one) for one in trend.failures],
         "undated": trend.undated,
+        "provenance": provenance(),
     }
     return json.dumps(found, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 

@@ -1,6 +1,6 @@
 //! `discover`: where the model and a log disagree, which effect is missing, and the robot file with it.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use fric_lab::discover::result::DiscoverResult;
 use fric_lab::discover::{DiscoverOptions, Discoveries};
@@ -13,6 +13,7 @@ use crate::arguments::{DiscoverArguments, ReferenceName};
 use crate::failure::{Failure, Outcome};
 use crate::measurements::{check_named_once, find_model, read, watched};
 use crate::output::{self, JsonTarget, Written};
+use fric_work::provenance::shown_path;
 use fric_work::report;
 
 /// Runs the command.
@@ -55,9 +56,9 @@ pub fn run(arguments: &DiscoverArguments) -> Outcome {
     let what = if reference == Reference::Forces { "stages" } else { "searches" };
     let found = watched("discovering", what, |progress| Discoveries::of(&read.measurements, &options, progress))??;
 
-    let names = logs.iter().map(|log| log.display().to_string());
-    let logs: Vec<(String, f64)> = names.zip(read.measurements.log_starts_s()).collect();
-    let outcome = DiscoverResult::new(&model.robot, &logs, &readiness, found.cables()).with_wrench(found.wrench());
+    let names = logs.iter().map(|log| shown_path(log));
+    let starts: Vec<(String, f64)> = names.zip(read.measurements.log_starts_s()).collect();
+    let outcome = DiscoverResult::new(&model.robot, &starts, &readiness, found.cables()).with_wrench(found.wrench());
     outcome.check_told()?;
     let mut files = Vec::new();
     if let Some(file) = extended_file {
@@ -67,7 +68,7 @@ pub fn run(arguments: &DiscoverArguments) -> Outcome {
         ));
     }
     if let Some(report) = report {
-        let page = report::discovery::page(&outcome, found.cables());
+        let page = report::discovery::page(&outcome, found.cables(), &json.provenance());
         files.push(Written::new(report.complete_with(&page)?, "the report"));
     }
     let next = next_step(&logs, output.as_deref());
@@ -75,8 +76,8 @@ pub fn run(arguments: &DiscoverArguments) -> Outcome {
 }
 
 /// What a user would do with the result.
-fn next_step(logs: &[(String, f64)], output: Option<&Path>) -> String {
-    let log = logs.first().map_or("LOG", |(name, _)| name.as_str());
+fn next_step(logs: &[PathBuf], output: Option<&Path>) -> String {
+    let log = logs.first().map_or_else(|| "LOG".to_owned(), |log| log.display().to_string());
     output.map_or_else(
         || "Nothing is written; `-o extended.toml` writes the robot file with it.\n".to_owned(),
         |path| format!("Next: fric-cli replay {log} --model {}\n", path.display()),

@@ -61,7 +61,7 @@ pub fn run(arguments: &ExciteArguments) -> Outcome {
     progress::finish(&bar);
     let mut files = vec![Written::new(table.complete()?, describe(&excitation, &series))];
     if let Some(page) = page {
-        let text = preview::page(&model.robot, &excitation, &series, &expected);
+        let text = preview::page(&model.robot, &excitation, &series, &expected, &output::provenance(&inputs));
         files.push(Written::new(page.complete_with(&text)?, "the run, drawn"));
     }
     let told: String = expected.iter().map(|line| format!("  {line}\n")).collect();

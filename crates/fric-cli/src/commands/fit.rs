@@ -5,6 +5,7 @@ use fric_lab::fit::readiness;
 use fric_lab::fit::result::{FitResult, Fits};
 use fric_lab::fit::{FitOptions, Parameter, Reference, Weighing, fit_wrench, rewritten};
 use fric_log::output::OutputFile;
+use fric_work::report;
 
 use super::continuum;
 use crate::arguments::{FitArguments, ReferenceName};
@@ -15,7 +16,7 @@ use crate::warnings::warn_all;
 
 /// Runs the command.
 pub fn run(arguments: &FitArguments) -> Outcome {
-    let FitArguments { logs, model, part, output, reference, parameters, huber, result } = arguments;
+    let FitArguments { logs, model, part, output, reference, report, parameters, huber, result } = arguments;
     if let Some(model) = model.as_deref().filter(|model| continuum::is_manipulator(Some(model))) {
         return Err(Failure::usage(format!(
             "{} is a manipulator file, and `fit` identifies cable robots",
@@ -24,7 +25,7 @@ pub fn run(arguments: &FitArguments) -> Outcome {
         .advise("Use `fric-cli continuum fit RUN --model M.toml -o FITTED.toml`."));
     }
     let json_file = result.json.as_deref().filter(|path| !output::is_stdout(path));
-    output::check_distinct(&[Some(output), json_file])?;
+    output::check_distinct(&[Some(output), report.as_deref(), json_file])?;
     check_named_once(logs)?;
     let part = part.part()?;
     let options = FitOptions {
@@ -36,6 +37,7 @@ pub fn run(arguments: &FitArguments) -> Outcome {
     let model = find_model(model.as_deref(), logs)?;
     let json = JsonTarget::prepare(result.json.as_deref(), &inputs, result.force)?;
     let fitted_file = OutputFile::create(output, &inputs, result.force)?;
+    let report = report.as_ref().map(|path| OutputFile::create(path, &inputs, result.force)).transpose()?;
 
     let (fits, faults, readiness) = match reference {
         ReferenceName::Forces => {
@@ -60,8 +62,12 @@ pub fn run(arguments: &FitArguments) -> Outcome {
     outcome.check_used()?;
     warn_all(&outcome.warnings(&fits, &readiness));
     let text = rewritten(&model.text, &model.origin, fits.cables())?;
-    let fitted = Written::new(fitted_file.complete_with(&text)?, "the robot file with these values");
-    json.finish(&outcome, &outcome.summary(), vec![fitted])
+    let mut files = vec![Written::new(fitted_file.complete_with(&text)?, "the robot file with these values")];
+    if let Some(report) = report {
+        let page = report::fit::page(&outcome, fits.cables(), &json.provenance());
+        files.push(Written::new(report.complete_with(&page)?, "the report"));
+    }
+    json.finish(&outcome, &outcome.summary(), files)
 }
 
 /// The parameters that the command line names.

@@ -3,25 +3,30 @@
 use fric_core::Sample;
 use fric_lab::hysteresis::{Hysteresis, HysteresisResult, Survey};
 use fric_log::log::Log;
+use fric_log::output::OutputFile;
 use fric_log::signals::{Part, SignalReader};
+use fric_work::report;
 
 use crate::arguments::HysteresisArguments;
 use crate::failure::Outcome;
 use crate::interrupt;
 use crate::model::{self, Model};
-use crate::output::JsonTarget;
+use crate::output::{self, JsonTarget};
 use crate::progress::{self, STRIDE};
 use crate::warnings::warn_all;
 
 /// Runs the command.
 pub fn run(arguments: &HysteresisArguments) -> Outcome {
-    let HysteresisArguments { log, result } = arguments;
+    let HysteresisArguments { log, report, result } = arguments;
+    let json_file = result.json.as_deref().filter(|path| !output::is_stdout(path));
+    output::check_distinct(&[report.as_deref(), json_file])?;
     let part = log.part.part()?;
     let source = Log::open(&log.logs)?;
     let model = Model::find(log.model.as_deref(), &source)?.ok_or_else(model::missing)?;
     let mut inputs = log.logs.clone();
     inputs.extend(log.model.clone());
     let json = JsonTarget::prepare(result.json.as_deref(), &inputs, result.force)?;
+    let report = report.as_ref().map(|path| OutputFile::create(path, &inputs, result.force)).transpose()?;
 
     // The first reading finds the position, the second runs the compensator; what the log is like is told once.
     let mut survey = Survey::new(&model.robot)?;
@@ -39,7 +44,9 @@ pub fn run(arguments: &HysteresisArguments) -> Outcome {
 
     let axes = hysteresis.axes()?;
     let outcome = HysteresisResult::new(&model.robot, &crossed, &axes);
-    json.finish(&outcome, &outcome.summary(), Vec::new())
+    let page = || report::hysteresis::page(&outcome, &hysteresis.loops(), &json.provenance());
+    let page = report.map(|report| report.complete_with(&page())).transpose()?;
+    json.finish(&outcome, &outcome.summary(), page.into_iter().collect())
 }
 
 /// All samples of the log one after the other.

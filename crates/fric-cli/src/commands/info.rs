@@ -1,6 +1,7 @@
 //! `info`: what is in a log, what maps to what, and which step is impossible and why.
 
 mod columns;
+mod overview;
 mod storage;
 
 use std::collections::BTreeMap;
@@ -11,7 +12,9 @@ use fric_core::text_file::printable;
 use fric_lab::fit::readiness::{self, Holdings, Readiness, without_reference};
 use fric_lab::text::{table, table_with_text};
 use fric_log::log::Log;
+use fric_log::output::OutputFile;
 use fric_log::signals::{Part, Role, SignalError, SignalReader};
+use fric_work::report::SignalSeries;
 use serde::Serialize;
 
 use super::continuum;
@@ -19,7 +22,7 @@ use crate::arguments::InfoArguments;
 use crate::failure::{Failure, Outcome};
 use crate::interrupt;
 use crate::model::Model;
-use crate::output::JsonTarget;
+use crate::output::{self, JsonTarget};
 use crate::progress::{self, STRIDE};
 use crate::steps::{StepResult, step_table};
 use crate::warnings::warn_all;
@@ -109,15 +112,18 @@ fn seconds(nanos: u64) -> f64 {
 
 /// Runs the command.
 pub fn run(arguments: &InfoArguments) -> Outcome {
-    let InfoArguments { log, wide, result } = arguments;
+    let InfoArguments { log, report, wide, result } = arguments;
+    let json_file = result.json.as_deref().filter(|path| !output::is_stdout(path));
+    output::check_distinct(&[report.as_deref(), json_file])?;
     let mut inputs = log.logs.clone();
     inputs.extend(log.model.clone());
     let json = JsonTarget::prepare(result.json.as_deref(), &inputs, result.force)?;
+    let report = report.as_ref().map(|path| OutputFile::create(path, &inputs, result.force)).transpose()?;
     if let [only] = log.logs.as_slice()
         && (continuum::is_manipulator(log.model.as_deref()) || log.model.is_none() && continuum::is_text_run(only))
     {
         log.part.check_none()?;
-        return continuum::info::run(only, log.model.as_deref(), json);
+        return continuum::info::run(only, log.model.as_deref(), json, report);
     }
     let part = log.part.part()?;
     let mut source = Log::open(&log.logs)?;
@@ -134,9 +140,11 @@ pub fn run(arguments: &InfoArguments) -> Outcome {
             .advise("Name a complete copy of it, or record again."));
     }
     let mut storage = StorageResult::new(&source.storage(), &topics, first_nanos);
+    let cables = model.as_ref().map_or_else(Vec::new, |model| model.robot.cable_names());
+    let mut series = report.as_ref().filter(|_| model.is_some()).map(|_| SignalSeries::new(cables.len()));
     let (signals, steps) = match &model {
         Some(model) => {
-            let read = read_signals(model, Log::open(&log.logs)?, part)?;
+            let read = read_signals(model, Log::open(&log.logs)?, part, series.as_mut())?;
             storage.set_rows(read.stamp_nanos);
             (read.signals, read.steps)
         }
@@ -151,7 +159,11 @@ pub fn run(arguments: &InfoArguments) -> Outcome {
         signals,
         steps,
     };
-    json.finish(&outcome, &describe(&outcome, model.as_ref(), &attachments, *wide), Vec::new())
+    let page =
+        |report: OutputFile| report.complete_with(&overview::page(&outcome, &cables, series, &json.provenance()));
+    let page = report.map(page).transpose()?.map(|page| Written::new(page, "the report"));
+    let text = describe(&outcome, model.as_ref(), &attachments, *wide);
+    json.finish(&outcome, &text, page.into_iter().collect())
 }
 
 /// The topics, and when the first message was recorded.
@@ -218,7 +230,12 @@ struct SignalsRead {
 }
 
 /// What the signals map to, found by joining them as the other commands do.
-fn read_signals(model: &Model, log: Log, part: Part) -> Outcome<SignalsRead> {
+fn read_signals(
+    model: &Model,
+    log: Log,
+    part: Part,
+    mut series: Option<&mut SignalSeries>,
+) -> Outcome<SignalsRead> {
     let paths = model.signal_paths()?;
     let bar = progress::bytes(log.total_bytes());
     let mut reader = SignalReader::new(log, paths.clone(), &model.robot.cable_names()).within(part);
@@ -233,6 +250,9 @@ fn read_signals(model: &Model, log: Log, part: Part) -> Outcome<SignalsRead> {
             Ok(Some(row)) => {
                 stamp_nanos = Some([stamp_nanos.map_or(row.stamp_nanos, |[first, _]| first), row.stamp_nanos]);
                 holdings.add(&row);
+                if let Some(series) = &mut series {
+                    series.add(&row);
+                }
             }
             Ok(None) => break None,
             // That the disk refuses says nothing of the log.

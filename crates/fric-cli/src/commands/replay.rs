@@ -71,7 +71,7 @@ pub fn run(arguments: &ReplayArguments) -> Outcome {
             writer.write(sample.stamp_nanos, cycle.cables, cycle.outside_wrench.as_ref())?;
         }
         if let Some(series) = &mut series {
-            series.add(&sample, cycle.cables);
+            series.add(&sample, &cycle);
         }
     };
     progress::finish(&bar);
@@ -96,8 +96,7 @@ pub fn run(arguments: &ReplayArguments) -> Outcome {
         files.push(Written::new(writer.complete()?, "forces, friction, wrench and status"));
     }
     if let (Some(report), Some(series)) = (report, series) {
-        let logs: Vec<String> = log.logs.iter().map(|log| log.display().to_string()).collect();
-        let page = report::errors::page(&outcome, &series, &logs);
+        let page = report::errors::page(&outcome, &series, &json.provenance());
         files.push(Written::new(report.complete_with(&page)?, "the report"));
     }
     json.finish(&outcome, &outcome.table(*wide), files)

@@ -8,6 +8,7 @@ use nalgebra::DMatrix;
 
 use super::Task;
 use super::candidates::around;
+use super::curve::curves;
 use super::empirical::{Table, has_table, table, without_table};
 use super::foreign::{Fault, RecordingFault, coarse_step_n, faulty_stretches, leave_out, of_stretches};
 use super::lines::{Line, Times, lines, motion_and_load};
@@ -510,7 +511,9 @@ impl<'a> Case<'a> {
             let condition = self.conditions.iter().find(|condition| condition.signal == signal)?;
             profile(&self.record, condition, &residual_before_n, &residual_after_n)
         });
+        let curves = curves(&self.record, &residual_before_n, &residual_after_n);
         CableDiscovery {
+            curves,
             samples,
             reference_variation_n: raw.reference_variation_n(),
             held_out: rest::ranges(throughout.used(true).into_iter())

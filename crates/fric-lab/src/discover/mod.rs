@@ -18,6 +18,7 @@
 
 mod cable;
 mod correction;
+mod curve;
 mod empirical;
 mod evidence;
 mod extended;
@@ -34,6 +35,7 @@ mod report;
 mod rest;
 pub mod result;
 mod rivals;
+mod spectrum;
 mod steadiness;
 mod stretch;
 mod summary;
@@ -49,6 +51,7 @@ use rayon::prelude::*;
 use crate::fit::{CableRecord, FitError, Measurements, Progress, Reference, Stages};
 
 pub use correction::{CorrectedFit, Corrections, corrections, fit_cables_corrected};
+pub use curve::{FrictionCurves, FrictionPoint};
 pub use extended::extended;
 pub use foreign::{Fault, RecordingFault};
 pub use naming::Refusal;
@@ -57,6 +60,7 @@ pub use places::Place;
 pub use profile::{Profile, ProfileBin, ProfileCell};
 pub use readiness::Lack;
 pub use report::{CableDiscovery, Candidate, Finding, Model, RunnerUp, Tried, Unexplained, Verdict};
+pub use spectrum::{Autocorrelation, Spectrum, autocorrelation, spectrum};
 pub use wrench::{Geometry, GeometryFinding, WrenchDeviation, WrenchDiscovery, discover_wrench};
 
 /// What a discovery can be told.

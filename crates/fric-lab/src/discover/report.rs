@@ -4,6 +4,7 @@ use fric_core::effects::Effect;
 use fric_core::parameters::Values;
 use nalgebra::DMatrix;
 
+use super::curve::FrictionCurves;
 use super::foreign::RecordingFault;
 use super::naming::Refusal;
 use super::neighbours::Neighbour;
@@ -137,6 +138,8 @@ pub struct CableDiscovery {
     pub lack: Option<Lack>,
     /// The residuals over the condition that tells most, of the given model and of what is left.
     pub profiles: Vec<Profile>,
+    /// Friction over speed and length, measured and by both models.
+    pub curves: FrictionCurves,
     /// When each cycle is, s since the first sample; several logs one after the other.
     pub times_s: Vec<f64>,
     /// Residual of the given model in each cycle, N; NaN where a sample does not count.
@@ -180,6 +183,7 @@ impl CableDiscovery {
             unexplained: None,
             lack: Some(lack),
             profiles: Vec::new(),
+            curves: FrictionCurves::default(),
             times_s: Vec::new(),
             residual_before_n: Vec::new(),
             residual_after_n: Vec::new(),

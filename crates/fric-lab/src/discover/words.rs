@@ -13,7 +13,7 @@ use super::result::{
 };
 use crate::fit::HALF_INTERVAL;
 use crate::replay::WrenchReference;
-use crate::text::{listed, quantity, significant, wrapped};
+use crate::text::{listed, number, quantity, significant, wrapped};
 
 /// Units at the end of keys; the longer ones first.
 const UNITS: [&str; 13] = [
@@ -46,8 +46,8 @@ pub fn name_of(key: &str) -> String {
 #[must_use]
 pub fn percent(share: f64) -> String {
     let percent = 100.0 * share.clamp(0.0, 1.0);
-    // All but a rest that shows is not all.
-    if percent > 99.0 && percent < 99.95 { format!("{percent:.1} %") } else { format!("{percent:.0} %") }
+    // All but a rest that shows is not all: what would be rounded to 99 or 100 has a digit more.
+    if (98.5..99.95).contains(&percent) { format!("{percent:.1} %") } else { format!("{percent:.0} %") }
 }
 
 /// A force.
@@ -59,18 +59,31 @@ pub fn newtons(force_n: f64) -> String {
 /// A difference of Schwarz's criterion.
 #[must_use]
 pub fn evidence(delta_bic: Option<f64>) -> String {
-    delta_bic.map_or_else(|| "–".to_owned(), |number| format!("{number:.0}").replace('-', "−"))
+    delta_bic.map_or_else(|| "–".to_owned(), |of| number(of, 0).replace('-', "−"))
+}
+
+/// How far above chance something is, in standard errors; cut and not rounded, so that it stays on its side of a limit.
+#[must_use]
+pub fn significance(errors: f64) -> String {
+    if errors < 10.0 {
+        format!("{:.1} σ", (10.0 * errors).floor() / 10.0)
+    } else {
+        format!("{:.0} σ", errors.floor())
+    }
+}
+
+/// A stretch of time, without its unit.
+#[must_use]
+pub fn interval([from_s, to_s]: &[f64; 2]) -> String {
+    let digits = if to_s - from_s < 0.2 { 2 } else { 1 };
+    let (from, to) = (format!("{from_s:.digits$}"), format!("{to_s:.digits$}"));
+    if from == to { from } else { format!("{from}…{to}") }
 }
 
 /// Stretches of time.
 #[must_use]
 pub fn intervals(intervals_s: &[[f64; 2]]) -> String {
-    let one = |[from_s, to_s]: &[f64; 2]| {
-        let digits = if to_s - from_s < 0.2 { 2 } else { 1 };
-        let (from, to) = (format!("{from_s:.digits$}"), format!("{to_s:.digits$}"));
-        if from == to { from } else { format!("{from}…{to}") }
-    };
-    let all: Vec<String> = intervals_s.iter().map(one).collect();
+    let all: Vec<String> = intervals_s.iter().map(interval).collect();
     format!("{} s", all.join(", "))
 }
 

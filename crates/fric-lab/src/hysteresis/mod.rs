@@ -14,6 +14,7 @@
 //! pass that they are in and nothing else.
 
 mod error;
+mod loops;
 mod movement;
 mod pass;
 mod result;
@@ -24,9 +25,11 @@ use fric_core::{Pose, Sample};
 
 use crate::axis::CartesianAxis;
 use crate::replay::Replay;
+use loops::LoopSums;
 use pass::{Components, Pass, PassFinder};
 
 pub use error::HysteresisError;
+pub use loops::HysteresisLoop;
 pub use result::{AxisResult, HysteresisResult, WidthResult};
 pub use survey::{CrossedPose, Survey};
 
@@ -82,6 +85,7 @@ pub struct Hysteresis {
 struct AxisPasses {
     axis: CartesianAxis,
     finder: PassFinder,
+    loops: LoopSums,
     /// Against and in the direction of the axis.
     directions: [Gathered; 2],
 }
@@ -103,8 +107,9 @@ impl Hysteresis {
     /// [`HysteresisError::Robot`] as [`Replay::new`].
     pub fn new(robot: &RobotFile, crossed: &CrossedPose) -> Result<Self, HysteresisError> {
         let finder = |axis: CartesianAxis| {
-            let finder = PassFinder::new(crossed.reach_m(axis)?, crossed.scale.tolerance_m);
-            Some(AxisPasses { axis, finder, directions: [Gathered::default(); 2] })
+            let (reach_m, tolerance_m) = (crossed.reach_m(axis)?, crossed.scale.tolerance_m);
+            let (finder, loops) = (PassFinder::new(reach_m, tolerance_m), LoopSums::new(reach_m, tolerance_m));
+            Some(AxisPasses { axis, finder, loops, directions: [Gathered::default(); 2] })
         };
         let axes = CartesianAxis::ALL.into_iter().filter_map(finder).collect();
         Ok(Self { replay: Replay::new(&robot.params())?, crossed: crossed.clone(), axes })
@@ -141,6 +146,14 @@ impl Hysteresis {
         if axes.is_empty() { Err(HysteresisError::NoWrench) } else { Ok(axes) }
     }
 
+    /// The loops of the axes crossed both ways, in the same order.
+    #[must_use]
+    pub fn loops(&self) -> Vec<HysteresisLoop> {
+        let crossed = self.axes.iter().filter(|passes| passes.hysteresis().is_some());
+        let lever_m = |axis: CartesianAxis| if axis.is_rotation() { self.crossed.scale.lever_m } else { 1.0 };
+        crossed.map(|passes| passes.loops.finish(passes.axis, lever_m(passes.axis))).collect()
+    }
+
     /// The replay behind it, for what it has to say about the cables.
     #[must_use]
     pub fn replay(&self) -> &Replay {
@@ -150,6 +163,7 @@ impl Hysteresis {
 
 impl AxisPasses {
     fn add(&mut self, along_m: f64, components: Option<Components>) {
+        self.loops.add(along_m, components.as_ref());
         let Some(Pass { is_forward, components }) = self.finder.add(along_m, components) else { return };
         let Components { without, with, applied } = components;
         let [back, forward] = &mut self.directions;

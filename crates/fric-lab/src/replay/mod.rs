@@ -138,6 +138,8 @@ pub struct ReplayedCycle<'a> {
     pub cables: &'a [CableOutput],
     /// Wrench from outside by the compensated forces; `None` also while the pose or a cable's force is not known.
     pub outside_wrench: Option<Wrench>,
+    /// The same as if nothing rubbed.
+    pub frictionless_wrench: Option<Wrench>,
     /// How long the cycle took, the compensator alone, ns.
     pub cycle_ns: u64,
 }
@@ -172,7 +174,8 @@ impl Replay {
         if sample.outside_wrench.is_some() {
             self.by_mass = None;
         }
-        let wrenches = self.frictionless_wrench().zip(outside_wrench);
+        let frictionless_wrench = self.frictionless_wrench();
+        let wrenches = frictionless_wrench.zip(outside_wrench);
         if let (Some(reference), Some((before, after))) = (&sample.outside_wrench, wrenches) {
             self.wrench_before.add(&(before - *reference));
             self.wrench_after.add(&(after - *reference));
@@ -193,7 +196,7 @@ impl Replay {
             errors.before_n.add(output.frictionless_n - reference_n);
             errors.after_n.add(output.force_at_platform_n - reference_n);
         }
-        ReplayedCycle { cables: self.compensator.outputs(), outside_wrench, cycle_ns }
+        ReplayedCycle { cables: self.compensator.outputs(), outside_wrench, frictionless_wrench, cycle_ns }
     }
 
     /// Wrench from outside in the last cycle as if nothing rubbed; `None` as [`ReplayedCycle::outside_wrench`].

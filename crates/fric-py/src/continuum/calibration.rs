@@ -3,10 +3,11 @@
 use fric_core::continuum::edit::{ManipulatorEdit, rewrite};
 use fric_lab::continuum::fbg::{Calibration, LoadStep};
 use fric_lab::continuum::result::CalibrationResult;
+use fric_work::provenance::Provenance;
 use fric_work::report::continuum as report;
 use pyo3::prelude::*;
 
-use super::{ARRAYS, Manipulator};
+use super::Manipulator;
 use crate::arrays::{Axis, Wanted, numbers};
 use crate::errors::Outcome;
 use crate::results;
@@ -37,8 +38,9 @@ pub fn continuum_calibrate(
     let result = CalibrationResult::new(&manipulator.file.tables().name, &steps, &lines);
     let edit = ManipulatorEdit { lines: result.lines(), ..ManipulatorEdit::default() };
     let text = rewrite(&manipulator.text, "manipulator", &edit)?;
-    let page = report::calibration(&result, ARRAYS);
-    let shown = results::shown(py, result.summary(), &result, page, report::calibration_table(&result))?;
+    let provenance = manipulator.provenance("fric.continuum.calibrate", &[]);
+    let page = |provenance: &Provenance| report::calibration(&result, provenance);
+    let shown = results::shown(py, result.summary(), &result, page, report::calibration_table(&result), &provenance)?;
     let calibrated = Py::new(py, Manipulator::parse(text, "manipulator")?)?;
     Ok(results::of(py, "CalibrationResult", (shown, calibrated))?.unbind())
 }

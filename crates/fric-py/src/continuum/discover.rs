@@ -2,10 +2,11 @@
 
 use fric_core::continuum::edit::rewrite;
 use fric_lab::continuum::discover::discover;
+use fric_work::provenance::{Provenance, shown_path};
 use fric_work::report::continuum as report;
 use pyo3::prelude::*;
 
-use super::{Manipulator, TendonRun, check_disks, flat};
+use super::{ARRAYS, Manipulator, TendonRun, check_disks, flat};
 use crate::arrays::{fixed, fixed_rows};
 use crate::errors::Outcome;
 use crate::results;
@@ -16,13 +17,15 @@ use crate::watch::with_own_threads;
 #[pyfunction]
 pub fn continuum_discover(py: Python<'_>, manipulator: &Manipulator, run: &TendonRun) -> Outcome<Py<PyAny>> {
     check_disks(manipulator, &run.run)?;
-    let (file, source, run) = (&manipulator.file, run.name(), &run.run);
-    let found = py.detach(|| with_own_threads(|| discover(file, run, source)))??;
+    let (file, files, run) = (&manipulator.file, run.files(), &run.run);
+    let source = files.first().map_or_else(|| ARRAYS.to_owned(), |path| shown_path(path));
+    let found = py.detach(|| with_own_threads(|| discover(file, run, &source)))??;
     let text = rewrite(&manipulator.text, "manipulator", &found.edit)?;
     let disks = file.params().disk_count();
-    let page = report::discovery(&found);
-    let shown =
-        results::shown(py, found.result.summary(), &found.result, page, report::discovery_table(&found.result))?;
+    let provenance = manipulator.provenance("fric.continuum.discover", &files);
+    let page = |provenance: &Provenance| report::discovery(&found, provenance);
+    let table = report::discovery_table(&found.result);
+    let shown = results::shown(py, found.result.summary(), &found.result, page, table, &provenance)?;
     let fields = (
         shown,
         Py::new(py, Manipulator::parse(text, "manipulator")?)?,

@@ -4,6 +4,7 @@ use fric_core::continuum::Tendon;
 use fric_lab::continuum::ContinuumError;
 use fric_lab::continuum::friction::{HoleLoad, hole_coefficient};
 use fric_lab::continuum::result::{FrictionResult, HoleResult};
+use fric_work::provenance::Provenance;
 use fric_work::report::continuum as report;
 use pyo3::prelude::*;
 
@@ -23,7 +24,7 @@ use crate::results;
 /// ((178, 8), True)
 #[pyfunction]
 pub fn continuum_friction(py: Python<'_>, manipulator: &Manipulator, run: &TendonRun) -> Outcome<Py<PyAny>> {
-    let source = run.name();
+    let files = run.files();
     let run = &in_base_frame(manipulator, &run.run)?;
     run.check_capacity(manipulator.file.params().capacity_n(Tendon::Agonist))?;
     let measured = py.detach(|| measured(manipulator, run))?.ok_or(if run.has_shifts() {
@@ -37,8 +38,9 @@ pub fn continuum_friction(py: Python<'_>, manipulator: &Manipulator, run: &Tendo
     })?;
     let result = FrictionResult::new(&manipulator.file.tables().name, run, &measured);
     log::warn(py, &result.bridged.iter().map(|one| one.warning(result.samples)).collect::<Vec<_>>())?;
-    let page = report::friction(&result, source);
-    let shown = results::shown(py, result.summary(), &result, page, report::friction_table(&result))?;
+    let provenance = manipulator.provenance("fric.continuum.friction", &files);
+    let page = |provenance: &Provenance| report::friction(&result, provenance);
+    let shown = results::shown(py, result.summary(), &result, page, report::friction_table(&result), &provenance)?;
     let (series, holes) = (&result.series, result.holes.len());
     let fields = (
         shown,
@@ -82,7 +84,9 @@ pub fn continuum_hole(
         })
         .collect();
     let result = HoleResult::new(&hole_coefficient(&loads)?);
-    let shown = results::shown(py, result.summary(), &result, report::hole(&result), report::hole_table(&result))?;
+    let provenance = Provenance::of_call("fric.continuum.hole", &[], None);
+    let page = |provenance: &Provenance| report::hole(&result, provenance);
+    let shown = results::shown(py, result.summary(), &result, page, report::hole_table(&result), &provenance)?;
     let fields = (shown, result.mu, result.standard_error, <(f64, f64)>::from(result.interval));
     Ok(results::new(py, "HoleResult", fields)?.unbind())
 }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use fric_core::continuum::Tendon;
 use fric_core::continuum::file::{ManipulatorFile, ManipulatorFileError};
 use fric_log::output::OutputFile;
+use fric_work::provenance::Provenance;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
@@ -30,6 +31,11 @@ pub struct Manipulator {
 impl Manipulator {
     pub fn parse(text: String, origin: &str) -> Outcome<Self> {
         Ok(Self { file: ManipulatorFile::parse(&text, origin)?, text })
+    }
+
+    /// Where the result of a function comes from that took this manipulator and runs of these files.
+    pub fn provenance(&self, function: &str, files: &[PathBuf]) -> Provenance {
+        Provenance::of_call(function, files, Some((&self.file.tables().name, &self.text)))
     }
 }
 

@@ -154,6 +154,11 @@ impl TendonRun {
         self.source.as_deref().unwrap_or(ARRAYS)
     }
 
+    /// The file it was read from, where there is one.
+    pub fn files(&self) -> Vec<PathBuf> {
+        self.source.iter().map(PathBuf::from).collect()
+    }
+
     fn column(&self, py: Python<'_>, of: fn(&RunSample) -> f64) -> Py<PyArray1<f64>> {
         fixed(py, self.run.samples().iter().map(of).collect())
     }

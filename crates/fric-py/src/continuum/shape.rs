@@ -4,6 +4,7 @@ use fric_lab::continuum::comparison::{Selection, WayShapes, compare};
 use fric_lab::continuum::gratings::Gratings;
 use fric_lab::continuum::result::ShapeResult;
 use fric_lab::continuum::shape_errors::ComputedShape;
+use fric_work::provenance::Provenance;
 use fric_work::report::continuum as report;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -39,7 +40,7 @@ pub fn continuum_shape(
     at_s: Option<Vec<f64>>,
     mixed: bool,
 ) -> Outcome<Py<PyAny>> {
-    let source = run.name();
+    let files = run.files();
     let run = &in_base_frame(manipulator, &run.run)?;
     let params = manipulator.file.params();
     let selection = match at_s {
@@ -57,8 +58,9 @@ pub fn continuum_shape(
         gratings.check_travel(params, greatest_rad)?;
     }
     log::warn(py, &result.warnings(&ways))?;
-    let page = report::shape(&result, run, &ways, source);
-    let shown = results::shown(py, result.summary(), &result, page, report::shape_table(&result))?;
+    let provenance = manipulator.provenance("fric.continuum.shape", &files);
+    let page = |provenance: &Provenance| report::shape(&result, run, &ways, provenance);
+    let shown = results::shown(py, result.summary(), &result, page, report::shape_table(&result), &provenance)?;
     let series = PyDict::new(py);
     for way in &ways {
         series.set_item(way.way.name(), series_of(py, way, run.disk_count())?)?;

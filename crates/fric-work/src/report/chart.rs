@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use fric_lab::text::significant;
-use maud::html;
+use maud::{PreEscaped, html};
 
 use super::series::Extent;
 
@@ -40,6 +40,29 @@ impl Span {
     fn length(self) -> f64 {
         self.greatest - self.least
     }
+
+    /// Where a value is between the ends, 0 to 1.
+    fn share(self, value: f64, is_log: bool) -> f64 {
+        if is_log {
+            (value / self.least).ln() / (self.greatest / self.least).ln()
+        } else {
+            (value - self.least) / self.length()
+        }
+    }
+
+    /// Round values, about `most` of them, with their labels.
+    fn ticks(self, is_log: bool, most: f64) -> Vec<(f64, String)> {
+        if is_log {
+            decades(self.least, self.greatest, most).into_iter().map(|tick| (tick, significant(tick))).collect()
+        } else {
+            ticks(self.least, self.greatest, most).map(|tick| (tick, label(tick))).collect()
+        }
+    }
+}
+
+/// A unit in brackets; what is counted has none.
+fn bracketed(unit: &str) -> String {
+    if matches!(unit, "" | "hole" | "grating") { unit.to_owned() } else { format!("[{unit}]") }
 }
 
 /// A chart in the making: what is drawn later lies above.
@@ -48,6 +71,8 @@ pub struct Chart {
     svg: String,
     x: Span,
     y: Span,
+    /// Whether x and y are logarithmic.
+    is_log: [bool; 2],
     /// Inner edges: left, right, top, bottom.
     frame: [f64; 4],
 }
@@ -55,7 +80,12 @@ pub struct Chart {
 impl Chart {
     /// Of a given size in pixels of its own, shown as wide as the page.
     pub fn new(x: Span, y: Span, width: f64, height: f64) -> Self {
-        let mut chart = Self::empty(x, y, LEFT, width, height);
+        Self::with_scales(x, y, [false; 2], width, height)
+    }
+
+    /// The same with x, y or both on a logarithmic scale; such a span is above 0.
+    pub fn with_scales(x: Span, y: Span, is_log: [bool; 2], width: f64, height: f64) -> Self {
+        let mut chart = Self { is_log, ..Self::empty(x, y, LEFT, width, height) };
         chart.draw_y_axis();
         chart.draw_x_axis();
         chart
@@ -95,10 +125,7 @@ impl Chart {
     /// Without anything in it.
     fn empty(x: Span, y: Span, left: f64, width: f64, height: f64) -> Self {
         let frame = [left, width - RIGHT, TOP, height - BOTTOM];
-        let least = LEAST_SCALE * width;
-        let open = "<div class=\"chart\"><svg";
-        let svg = format!("{open} viewBox=\"0 0 {width} {height:.0}\" style=\"min-width: {least:.0}px\" role=\"img\">");
-        Self { svg, x, y, frame }
+        Self { svg: String::new(), x, y, is_log: [false; 2], frame }
     }
 
     /// With both axes in the same scale, at most so high; what is left of the width shows more of x.
@@ -112,42 +139,43 @@ impl Chart {
 
     fn at_x(&self, value: f64) -> f64 {
         let [left, right, ..] = self.frame;
-        left + (value - self.x.least) / self.x.length() * (right - left)
+        left + self.x.share(value, self.is_log[0]) * (right - left)
     }
 
     fn at_y(&self, value: f64) -> f64 {
         let [.., top, bottom] = self.frame;
-        top + (self.y.greatest - value) / self.y.length() * (bottom - top)
+        bottom - self.y.share(value, self.is_log[1]) * (bottom - top)
     }
 
     fn draw_y_axis(&mut self) {
         let [left, right, top, bottom] = self.frame;
         // Writing to a String cannot fail, here and below.
-        for tick in ticks(self.y.least, self.y.greatest, (bottom - top) / TICK_Y) {
+        for (tick, text) in self.y.ticks(self.is_log[1], (bottom - top) / TICK_Y) {
             let at = self.at_y(tick);
             let _ = write!(
                 self.svg,
                 "<path class=\"axis\" d=\"M{left} {at:.1}H{right:.1}\"/><text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>",
                 left - 6.0,
                 at + 4.0,
-                label(tick)
+                text
             );
         }
-        let _ = write!(self.svg, "<text x=\"4\" y=\"{:.1}\">{}</text>", top - 9.0, self.y.unit);
+        let _ = write!(self.svg, "<text x=\"4\" y=\"{:.1}\">{}</text>", top - 9.0, bracketed(self.y.unit));
     }
 
     fn draw_x_axis(&mut self) {
         let [left, right, ..] = self.frame;
-        let all = ticks(self.x.least, self.x.greatest, (right - left) / TICK_X);
-        self.draw_x_ticks(all.map(|tick| (tick, label(tick))));
+        let all = self.x.ticks(self.is_log[0], (right - left) / TICK_X);
+        self.draw_x_ticks(all.into_iter());
     }
 
     fn draw_x_ticks(&mut self, ticks: impl Iterator<Item = (f64, String)>) {
         let [_, right, _, bottom] = self.frame;
+        let unit = bracketed(self.x.unit);
         for (tick, text) in ticks {
             let at = self.at_x(tick);
             // The unit stands at the end.
-            let is_far_right = at + 0.5 * width_of(&text) > right + 2.0 - width_of(self.x.unit);
+            let is_far_right = at + 0.5 * width_of(&text) > right + 2.0 - width_of(&unit);
             let text = if is_far_right { String::new() } else { text };
             let _ = write!(
                 self.svg,
@@ -160,7 +188,7 @@ impl Chart {
             "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>",
             right + 6.0,
             bottom + 18.0,
-            self.x.unit
+            unit
         );
     }
 
@@ -190,6 +218,26 @@ impl Chart {
         let _ = write!(self.svg, "<path class=\"{class}\" d=\"{path}\"/>");
     }
 
+    /// A band between the least and the greatest at each x, broken where one of them is not finite.
+    pub fn band(&mut self, class: &str, xs: &[f64], least: &[f64], greatest: &[f64]) {
+        let is_there = |place: usize| least[place].is_finite() && greatest[place].is_finite();
+        let mut path = String::new();
+        let mut from = 0;
+        while from < xs.len() {
+            let Some(start) = (from..xs.len()).find(|place| is_there(*place)) else { break };
+            let end = (start..xs.len()).find(|place| !is_there(*place)).unwrap_or(xs.len());
+            for (command, place) in std::iter::once('M').chain(std::iter::repeat('L')).zip(start..end) {
+                let _ = write!(path, "{command}{:.1} {:.1}", self.at_x(xs[place]), self.at_y(greatest[place]));
+            }
+            for place in (start..end).rev() {
+                let _ = write!(path, "L{:.1} {:.1}", self.at_x(xs[place]), self.at_y(least[place]));
+            }
+            path.push('Z');
+            from = end;
+        }
+        let _ = write!(self.svg, "<path class=\"{class}\" d=\"{path}\"/>");
+    }
+
     /// A level line from end to end, with a word above or below it.
     pub fn level(&mut self, class: &str, y: f64, text: &str, is_above: bool) {
         let [left, right, ..] = self.frame;
@@ -200,9 +248,19 @@ impl Chart {
 
     /// An upright line from top to bottom.
     pub fn upright(&mut self, class: &str, x: f64) {
-        let [.., top, bottom] = self.frame;
+        self.upright_with(class, x, "");
+    }
+
+    /// The same with a word at its top.
+    pub fn upright_with(&mut self, class: &str, x: f64, text: &str) {
+        let [left, right, top, bottom] = self.frame;
         let at = self.at_x(x);
+        if !(left..=right).contains(&at) {
+            return;
+        }
         let _ = write!(self.svg, "<path class=\"{class}\" d=\"M{at:.1} {top}V{bottom:.1}\"/>");
+        let is_right = at + width_of(text) + 4.0 > right;
+        self.text(if is_right { at - 4.0 } else { at + 4.0 }, top + 10.0, if is_right { "end" } else { "start" }, text);
     }
 
     /// A bar along a row of [`Self::in_rows`] from x = 0 on, with a word behind it that an upright line at `line` does not cross.
@@ -217,6 +275,16 @@ impl Chart {
         let (words, line) = (to + GAP, self.at_x(line));
         let is_crossed = (words - GAP..words + width_of(text)).contains(&line);
         self.text(if is_crossed { line + GAP } else { words }, at + 4.0, "start", text);
+    }
+
+    /// A cell of a map: a row of [`Self::in_rows`] between two x, by how strong it is, 0 to 1.
+    pub fn cell(&mut self, class: &str, row: usize, [from, to]: [f64; 2], strength: f64) {
+        let (start, end) = (self.at_x(from), self.at_x(to));
+        let (top, height, width) = (self.at_y(middle_of(row)) - 0.45 * ROW, 0.9 * ROW, (end - start).max(0.5));
+        let _ = write!(
+            self.svg,
+            "<rect class=\"{class}\" x=\"{start:.1}\" y=\"{top:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" fill-opacity=\"{strength:.2}\"/>"
+        );
     }
 
     /// A stretch of x as a strip along the foot.
@@ -260,19 +328,22 @@ impl Chart {
         }
     }
 
-    /// A short mark at the top.
-    pub fn mark(&mut self, class: &str, x: f64) {
-        let _ =
-            write!(self.svg, "<rect class=\"{class}\" x=\"{:.1}\" y=\"0\" width=\"1.5\" height=\"5\"/>", self.at_x(x));
-    }
-
     fn text(&mut self, x: f64, y: f64, anchor: &str, text: &str) {
+        if text.is_empty() {
+            return;
+        }
         let (x, y) = (format!("{x:.1}"), format!("{y:.1}"));
         self.svg += &html! { text x=(x) y=(y) text-anchor=(anchor) { (text) } }.into_string();
     }
 
-    pub fn into_svg(self) -> String {
-        self.svg + "</svg></div>"
+    /// The drawing; the label is what a screen reader says of it.
+    pub fn into_svg(self, label: &str) -> String {
+        let [_, right, _, bottom] = self.frame;
+        let (width, height) = (right + RIGHT, bottom + BOTTOM);
+        let size = format!("0 0 {width} {height:.0}");
+        let style = format!("min-width: {:.0}px", LEAST_SCALE * width);
+        let drawn = PreEscaped(self.svg);
+        html! { div.chart { svg viewBox=(size) style=(style) role="img" aria-label=(label) { (drawn) } } }.into_string()
     }
 }
 
@@ -303,6 +374,15 @@ fn ticks(least: f64, greatest: f64, most: f64) -> impl Iterator<Item = f64> {
     let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|factor| factor * power).find(|step| *step >= raw).unwrap_or(raw);
     let first = (least / step).ceil();
     (0..1000).map(move |index| (first + f64::from(index)) * step).take_while(move |tick| *tick <= greatest)
+}
+
+/// Powers of ten between two bounds, and twice and five times them where there are few.
+fn decades(least: f64, greatest: f64, most: f64) -> Vec<f64> {
+    #[expect(clippy::cast_possible_truncation, reason = "exponents of ten")]
+    let (first, last) = (least.log10().floor() as i32, greatest.log10().ceil() as i32);
+    let factors: &[f64] = if f64::from(last - first) * 3.0 <= most { &[1.0, 2.0, 5.0] } else { &[1.0] };
+    let all = (first..=last).flat_map(|exponent| factors.iter().map(move |factor| factor * 10.0_f64.powi(exponent)));
+    all.filter(|tick| (least..=greatest).contains(tick)).collect()
 }
 
 /// A tick without the noise of binary fractions.

@@ -6,21 +6,26 @@ use fric_lab::continuum::discover::{TendonDiscoverResult, TendonDiscovery};
 use fric_lab::continuum::identify::TendonFitResult;
 use fric_lab::continuum::result::{CalibrationResult, FrictionResult, HoleResult, PickedShape, ShapeResult, WayShape};
 use fric_lab::continuum::shape_errors::{ShapeErrors, Way};
+use fric_lab::discover::words::percent;
 use fric_lab::fit::result::Numbers;
 use maud::{Markup, PreEscaped, html};
 
 use super::chart::{Chart, Span};
-use super::number;
+use super::errors::COLORS;
+use super::plot::{Axis, Plot, Plots, Trace, Values};
 use super::series::Extent;
+use super::{Page, number};
+use crate::provenance::Provenance;
+use crate::verdict::{self, Verdict};
 
-/// Most points of a line over time.
-const MOST_POINTS: usize = 1200;
+/// Columns of a map.
+const MAP_COLUMNS: usize = 240;
 /// Shapes of a friction page.
 const SHOWN_TIMES: usize = 6;
 
-/// The page of `continuum calibrate`; `loads` names the load steps.
+/// The page of `continuum calibrate`.
 #[must_use]
-pub fn calibration(result: &CalibrationResult, loads: &str) -> String {
+pub fn calibration(result: &CalibrationResult, provenance: &Provenance) -> String {
     let count = result.gratings.len();
     let most =
         result.gratings.iter().flat_map(|one| &one.residual_ratio).fold(0.01_f64, |most, one| most.max(one.abs()));
@@ -38,24 +43,28 @@ pub fn calibration(result: &CalibrationResult, loads: &str) -> String {
         }
     }
     let content = html! {
-        p.soft { (loads) ", " (result.load_n.len()) " loads" }
+        p.soft { (result.load_n.len()) " loads" }
         (gratings(result))
-        section { h2 { "Residuals in per cent of the greatest load, load by load" } (PreEscaped(chart.into_svg())) }
+        section { h2 { "Residuals in per cent of the greatest load, load by load" } (PreEscaped(chart.into_svg("Residuals of each grating in per cent of the greatest load"))) }
     };
-    super::shell(&format!("{}: calibration of the gratings", result.manipulator), &content)
+    let title = format!("{}: calibration of the gratings", result.manipulator);
+    plain(title, verdict::of_calibration(result), content, Plots::default(), provenance)
 }
 
-/// The page of `continuum friction`; `run` names the run.
+/// The page of `continuum friction`.
 #[must_use]
-pub fn friction(result: &FrictionResult, run: &str) -> String {
-    let series = &result.series;
+pub fn friction(result: &FrictionResult, provenance: &Provenance) -> String {
+    let (series, mut plots) = (&result.series, Plots::default());
     let places = spread(series.time_s.len(), SHOWN_TIMES, |_| true);
     let shown = places.iter().filter_map(|place| Some((series.time_s.get(*place)?, series.friction_n.get(*place)?)));
     let content = html! {
-        p.soft { (run) ", " (result.samples) " samples. Friction is positive where the base side is tighter." }
+        p.soft { (result.samples) " samples. Friction is positive where the base side is tighter." }
         (bridged(result.bridged.iter().map(|one| one.warning(result.samples))))
         (friction_by_hole(result))
         p { "Directions differ along the tendon in " (result.directions_differ_samples) " of " (result.samples) " samples." }
+        section { h2 { "Friction over holes and time" } (map(result)) }
+        section { (plots.figure(&friction_over_time(result), &series.time_s)) }
+        h2 { "Friction at some times" }
         div.views {
             @for (time_s, friction_n) in shown {
                 section {
@@ -65,21 +74,23 @@ pub fn friction(result: &FrictionResult, run: &str) -> String {
             }
         }
     };
-    super::shell(&format!("{}: friction at the holes", result.manipulator), &content)
+    let title = format!("{}: friction at the holes", result.manipulator);
+    plain(title, verdict::of_hole_frictions(result), content, plots, provenance)
 }
 
-/// The page of `continuum shape`; `source` names the run.
+/// The page of `continuum shape`.
 #[must_use]
-pub fn shape(result: &ShapeResult, run: &Run, ways: &[WayShapes], source: &str) -> String {
+pub fn shape(result: &ShapeResult, run: &Run, ways: &[WayShapes], provenance: &Provenance) -> String {
+    let mut plots = Plots::default();
     let has_markers = result.ways.iter().any(|way| way.all.mean_mm.is_some());
     let content = html! {
-        p.soft { (source) ", " (result.samples) " samples." }
+        p.soft { (result.samples) " samples." }
         (bridged(result.bridged.iter().map(|one| one.warning(result.samples))))
         p { (keys(result.ways.iter().map(|way| way.way))) @if has_markers { (key("marker", "markers")) } }
         p.soft { "Dashed over the bars: the most that a hole holds by the model's μ; what is measured may be more." }
         (errors_by_way(result))
         @if has_markers {
-            section { h2 { "Mean distance between disks and markers over time" } (PreEscaped(errors(run, ways))) }
+            section { h2 { "Mean distance between disks and markers over time" } (errors(&mut plots, run, ways)) }
         }
         @for (place, shape) in result.shapes.iter().enumerate() {
             section {
@@ -99,16 +110,16 @@ pub fn shape(result: &ShapeResult, run: &Run, ways: &[WayShapes], source: &str) 
             }
         }
     };
-    super::shell(&format!("{}: shapes by four ways of friction", result.manipulator), &content)
+    let title = format!("{}: shapes by four ways of friction", result.manipulator);
+    plain(title, verdict::of_shapes(result), content, plots, provenance)
 }
 
 /// The page of `discover` with a manipulator.
 #[must_use]
-pub fn discovery(found: &TendonDiscovery) -> String {
-    let result = &found.result;
-    let percent = |share: Option<f64>| share.map_or_else(|| "–".to_owned(), |share| format!("{:.0} %", 100.0 * share));
+pub fn discovery(found: &TendonDiscovery, provenance: &Provenance) -> String {
+    let (result, mut plots) = (&found.result, Plots::default());
+    let percent = |share: Option<f64>| share.map_or_else(|| "–".to_owned(), percent);
     let content = html! {
-        p.soft { (result.log.join(", ")) }
         @for tendon in &result.cables {
             p { "Verdict: " span class=(format!("verdict {}", tendon.verdict)) { (tendon.verdict) } }
             dl {
@@ -135,15 +146,11 @@ pub fn discovery(found: &TendonDiscovery) -> String {
             @if let Some(kept) = &tendon.kept { p.soft { "Kept: " (kept) } }
             @if let Some(rest) = &tendon.unexplained { p.unexplained { (rest.sentence()) } }
         }
-        p {
-            "Gratings less model in each segment over time:"
-            (key("before", "given model, fitted")) (key("after", "extended"))
-        }
-        @for segment in 0..found.residual_before_n.first().map_or(0, Vec::len) {
-            section { h2 { "Grating " (segment + 1) } (PreEscaped(residuals(found, segment))) }
-        }
+        h2 { "Gratings less model over time" }
+        @for plot in residuals(found) { (plots.figure(&plot, &found.time_s)) }
     };
-    super::shell(&format!("{}: what the model lacks", result.robot), &content)
+    let title = format!("{}: what the model lacks", result.robot);
+    plain(title, verdict::of_tendon(result), content, plots, provenance)
 }
 
 /// The lines of the gratings as a table by themselves.
@@ -185,8 +192,9 @@ pub fn discovery_table(result: &TendonDiscoverResult) -> String {
 
 /// The page of a single hole.
 #[must_use]
-pub fn hole(result: &HoleResult) -> String {
-    super::shell("Friction of a hole", &coefficient(result))
+pub fn hole(result: &HoleResult, provenance: &Provenance) -> String {
+    let verdict = verdict::of_hole(result);
+    plain("Friction of a hole".to_owned(), verdict, coefficient(result), Plots::default(), provenance)
 }
 
 /// Its coefficient as a table by itself.
@@ -286,25 +294,86 @@ fn errors_by_way(result: &ShapeResult) -> Markup {
     }
 }
 
-/// Residuals of one segment before and after.
-fn residuals(found: &TendonDiscovery, segment: usize) -> String {
-    let line = |rows: &[Vec<f64>]| -> Vec<[f64; 2]> {
-        let values = rows.iter().map(|row| row.get(segment).copied().unwrap_or(f64::NAN));
-        found.time_s.iter().copied().zip(values).map(|(time_s, value)| [time_s, value]).collect()
+/// A page without cables to switch off.
+fn plain(title: String, verdict: Verdict, content: Markup, plots: Plots, provenance: &Provenance) -> String {
+    Page { title, verdict, content, plots, cables: Vec::new(), provenance }.into_html()
+}
+
+/// Residuals of each segment before and after, in one scale.
+fn residuals(found: &TendonDiscovery) -> Vec<Plot> {
+    let of = |rows: &[Vec<f64>], segment: usize| {
+        Values::Line(rows.iter().map(|row| row.get(segment).copied().unwrap_or(f64::NAN)).collect())
     };
-    let lines = [("trace before", line(&found.residual_before_n)), ("trace after", line(&found.residual_after_n))];
-    let mut extents = [Extent::NOTHING; 2];
-    extents[1].add(0.0);
-    for [time_s, value] in lines.iter().flat_map(|(_, points)| points) {
-        extents[0].add(*time_s);
-        extents[1].add(*value);
+    let plot = |segment: usize| {
+        let mut plot = Plot::new(format!("Grating {}", segment + 1), Axis::TIME, Axis::new("residual", "N"));
+        plot.size[1] = 160.0;
+        plot.traces = vec![
+            Trace::new("before: given model, fitted", "before", of(&found.residual_before_n, segment)),
+            Trace::new("after: extended model", "after", of(&found.residual_after_n, segment)),
+        ];
+        plot
+    };
+    let mut plots: Vec<Plot> = (0..found.residual_before_n.first().map_or(0, Vec::len)).map(plot).collect();
+    let mut all = Extent { least: 0.0, greatest: 0.0 };
+    plots.iter().for_each(|plot| all.merge(plot.extent()));
+    plots.iter_mut().for_each(|plot| plot.span = Some(all));
+    plots
+}
+
+/// Friction of each hole over time as lines.
+fn friction_over_time(result: &FrictionResult) -> Plot {
+    let mut plot = Plot::new("Friction of each hole", Axis::TIME, Axis::new("friction", "N"));
+    let holes = result.series.friction_n.iter().map(Vec::len).max().unwrap_or(0);
+    for hole in 0..holes {
+        let values = result.series.friction_n.iter().map(|row| row.get(hole).copied().unwrap_or(f64::NAN)).collect();
+        let trace = Trace::new(&format!("hole {}", hole + 1), COLORS[hole % COLORS.len()], Values::Line(values));
+        plot.traces.push(Trace { is_dashed: hole >= COLORS.len(), ..trace });
     }
-    let [time, value] = [Span::with_margin(extents[0], 0.0, "s"), Span::with_margin(extents[1], 0.05, "N")];
-    let mut chart = Chart::new(time, value, 960.0, 160.0);
-    for (class, points) in lines {
-        chart.line(class, points.into_iter());
+    plot.size[1] = 280.0;
+    plot
+}
+
+/// Friction over holes and time as a map: color by sign, strength by size.
+fn map(result: &FrictionResult) -> Markup {
+    let series = &result.series;
+    let holes = series.friction_n.iter().map(Vec::len).max().unwrap_or(0);
+    let greatest = series
+        .friction_n
+        .iter()
+        .flatten()
+        .filter(|value| value.is_finite())
+        .fold(0.0_f64, |most, one| most.max(one.abs()));
+    let (Some(first), Some(last)) = (series.time_s.first(), series.time_s.last()) else { return html! {} };
+    if holes == 0 || greatest <= 0.0 || last <= first {
+        return html! {};
     }
-    chart.into_svg()
+    let names: Vec<String> = (1..=holes).map(|hole| format!("hole {hole}")).collect();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let time = Span { least: *first, greatest: *last, unit: "s" };
+    let mut chart = Chart::in_rows(time, &names, 960.0);
+    let per_cell = series.time_s.len().div_ceil(MAP_COLUMNS).max(1);
+    for (column, rows) in series.friction_n.chunks(per_cell).enumerate() {
+        let start = column * per_cell;
+        let from_s = series.time_s[start];
+        let to_s = series.time_s.get(start + per_cell).copied().unwrap_or(*last);
+        for hole in 0..holes {
+            let values: Vec<f64> =
+                rows.iter().filter_map(|row| row.get(hole)).copied().filter(|value| value.is_finite()).collect();
+            if values.is_empty() {
+                continue;
+            }
+            let mean = values.iter().sum::<f64>() / count_as_number(values.len());
+            chart.cell(if mean < 0.0 { "negative" } else { "positive" }, hole, [from_s, to_s], mean.abs() / greatest);
+        }
+    }
+    let label = "Friction of each hole over time; the lines below have the numbers";
+    html! {
+        p.legend {
+            (key("after", "positive: the base side is tighter")) (key("before", "negative"))
+            span.keys { (format!("full color: {greatest:.4} N, linear")) }
+        }
+        (PreEscaped(chart.into_svg(label)))
+    }
 }
 
 fn newtons(value: f64) -> String {
@@ -370,7 +439,7 @@ fn bars(ways: &[(&'static str, &[f64], &[f64])], width: f64) -> String {
             }
         }
     }
-    chart.into_svg()
+    chart.into_svg("Friction in newtons at each hole, with what the hole can hold")
 }
 
 fn frictions(shape: &PickedShape) -> String {
@@ -408,33 +477,21 @@ fn drawn(shape: &PickedShape) -> String {
     for marker in markers {
         chart.dot("marker", marker, "");
     }
-    chart.into_svg()
+    chart.into_svg("Shape of the manipulator in metres, to scale")
 }
 
 /// Mean distance of each way over time.
-fn errors(run: &Run, ways: &[WayShapes]) -> String {
+fn errors(plots: &mut Plots, run: &Run, ways: &[WayShapes]) -> Markup {
     let samples = run.samples();
-    let stride = samples.len().div_ceil(MOST_POINTS).max(1);
-    let lines: Vec<(&str, Vec<[f64; 2]>)> = ways
-        .iter()
-        .map(|way| {
-            let pairs = samples.iter().zip(&way.shapes).step_by(stride);
-            let mean_mm = |(sample, shape): (&fric_lab::continuum::RunSample, _)| {
-                [sample.time_s, ShapeErrors::of(shape, &sample.marker_m).mean_mm().unwrap_or(f64::NAN)]
-            };
-            (way.way.name(), pairs.map(mean_mm).collect())
-        })
-        .collect();
-    let mut extents = [Extent::NOTHING; 2];
-    extents[1].add(0.0);
-    for [time_s, mean_mm] in lines.iter().flat_map(|(_, points)| points) {
-        extents[0].add(*time_s);
-        extents[1].add(*mean_mm);
+    let mut plot = Plot::new("Mean distance", Axis::TIME, Axis::new("distance", "mm"));
+    plot.digits = 2;
+    for way in ways {
+        let mean_mm = |(sample, shape): (&fric_lab::continuum::RunSample, _)| {
+            ShapeErrors::of(shape, &sample.marker_m).mean_mm().unwrap_or(f64::NAN)
+        };
+        let values = samples.iter().zip(&way.shapes).map(mean_mm).collect();
+        plot.traces.push(Trace::new(way.way.name(), way.way.name(), Values::Line(values)));
     }
-    let [time, mean] = [Span::with_margin(extents[0], 0.0, "s"), Span::with_margin(extents[1], 0.05, "mm")];
-    let mut chart = Chart::new(time, mean, 960.0, 240.0);
-    for (way, points) in lines {
-        chart.line(&format!("trace {way}"), points.into_iter());
-    }
-    chart.into_svg()
+    let times_s: Vec<f64> = samples.iter().map(|sample| sample.time_s).collect();
+    plots.figure(&plot, &times_s)
 }

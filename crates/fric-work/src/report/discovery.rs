@@ -3,28 +3,37 @@
 use fric_lab::discover::result::{
     Candidate, DiscoverCableResult, DiscoverResult, EffectResult, TablePoint, TableResult, WhereResult, WrenchGap,
 };
-use fric_lab::discover::words::{condition, evidence, intervals, name_of, newtons, percent};
-use fric_lab::discover::{CableDiscovery, Model, Profile, ProfileCell};
+use fric_lab::discover::words::{condition, evidence, interval, name_of, newtons, percent, significance};
+use fric_lab::discover::{
+    Autocorrelation, CableDiscovery, FrictionPoint, Model, Profile, ProfileCell, Spectrum, autocorrelation, spectrum,
+};
 use fric_lab::fit::{HALF_INTERVAL, Parameter};
 use fric_lab::text::{quantity, scaled_unit};
 use maud::{Markup, PreEscaped, html};
 
 use super::chart::{Chart, Span};
-use super::number;
+use super::plot::{Axis, Plot, Plots, Trace, Values};
 use super::series::Extent;
+use super::{Page, number};
+use crate::provenance::Provenance;
+use crate::verdict;
 
-/// As many intervals of time as a chart has pixels to show.
-const INTERVALS: usize = 900;
+/// Intervals of residuals that a page keeps at most, of all cables together: it stays below 3 MB.
+const MOST_INTERVALS: usize = 130_000;
+/// Longest lag of an autocorrelation that is shown, s.
+const LONGEST_LAG_S: f64 = 2.0;
+/// Points of a spectrum that are shown: as many of each octave.
+const PER_OCTAVE: f64 = 24.0;
 /// Widths of a chart that is alone, and of one of two.
 const WIDE: f64 = 960.0;
 const HALF: f64 = 470.0;
 
 /// The page.
 #[must_use]
-pub fn page(result: &DiscoverResult, discoveries: &[CableDiscovery]) -> String {
-    let title = format!("{}: what the model lacks", result.robot);
+pub fn page(result: &DiscoverResult, discoveries: &[CableDiscovery], provenance: &Provenance) -> String {
+    let mut plots = Plots::default();
+    let common = Common::of(discoveries);
     let content = html! {
-        p.soft { (result.log.join(", ")) }
         @if result.cables.len() > 1 {
             nav {
                 @for (place, cable) in result.cables.iter().enumerate() {
@@ -38,14 +47,50 @@ pub fn page(result: &DiscoverResult, discoveries: &[CableDiscovery]) -> String {
             p { (effect.in_words(result.cables.len())) "." }
         }
         @for (place, (cable, found)) in result.cables.iter().zip(discoveries).enumerate() {
-            section.cable id=(format!("cable-{place}")) {
+            section.cable id=(format!("cable-{place}")) data-cable=(place) {
                 h2 { (cable.name) ": " span class={ "verdict " (cable.verdict) } { (cable.verdict) } }
                 p { (cable.verdict_in_words()) }
-                @if cable.noise_floor_n.is_some() { (details(cable, found)) }
+                @if cable.noise_floor_n.is_some() { (details(&mut plots, &common, cable, found)) }
             }
         }
     };
-    super::shell(&title, &content)
+    let title = format!("{}: what the model lacks", result.robot);
+    let names = result.cables.iter().map(|cable| cable.name.as_str()).collect();
+    Page { title, verdict: verdict::of_discovery(result), content, plots, cables: names, provenance }.into_html()
+}
+
+/// What the plots over time of all cables have in common, so that they can be compared.
+struct Common {
+    /// Both ends of the residuals, N.
+    scale: Extent,
+    /// Samples in one of the intervals that the page keeps.
+    per_interval: usize,
+}
+
+impl Common {
+    fn of(discoveries: &[CableDiscovery]) -> Self {
+        let mut scale = Extent { least: 0.0, greatest: 0.0 };
+        for found in discoveries {
+            found.residual_before_n.iter().chain(&found.residual_after_n).for_each(|value| scale.add(*value));
+        }
+        let samples: usize = discoveries.iter().map(|found| found.times_s.len()).sum();
+        Self { scale, per_interval: samples.div_ceil(MOST_INTERVALS).max(1) }
+    }
+
+    fn starts_s(&self, times_s: &[f64]) -> Vec<f64> {
+        times_s.iter().copied().step_by(self.per_interval).collect()
+    }
+
+    /// Least and greatest of a residual in each interval.
+    fn band(&self, residual_n: &[f64]) -> Values {
+        let extent = |values: &[f64]| {
+            let mut extent = Extent::NOTHING;
+            values.iter().for_each(|value| extent.add(*value));
+            extent.ends()
+        };
+        let (least, greatest) = residual_n.chunks(self.per_interval).map(extent).unzip();
+        Values::Band(least, greatest)
+    }
 }
 
 /// The verdicts as a table by themselves.
@@ -59,8 +104,8 @@ fn overview(result: &DiscoverResult, named: impl Fn(usize, &str) -> Markup) -> M
     html! {
         table {
             tr {
-                th { "cable" } th.words { "verdict" } th.words { "found" } th { "noise [N]" } th { "rms before [N]" }
-                th { "after [N]" } th { "gap closed" }
+                th scope="col" { "cable" } th.words scope="col" { "verdict" } th.words scope="col" { "found" } th scope="col" { "noise [N]" }
+                th scope="col" { "rms before [N]" } th scope="col" { "after [N]" } th scope="col" { "gap closed" }
             }
             @for (place, cable) in result.cables.iter().enumerate() {
                 tr {
@@ -104,7 +149,9 @@ fn of_wrench(gap: &WrenchGap) -> Markup {
     }
 }
 
-fn details(cable: &DiscoverCableResult, found: &CableDiscovery) -> Markup {
+fn details(plots: &mut Plots, common: &Common, cable: &DiscoverCableResult, found: &CableDiscovery) -> Markup {
+    // The plot that a stretch of time leads to.
+    let over_time_id = plots.next_id();
     html! {
         @for effect in &cable.effects { (effect_in_words(effect)) }
         @if !cable.faults.is_empty() {
@@ -121,16 +168,15 @@ fn details(cable: &DiscoverCableResult, found: &CableDiscovery) -> Markup {
                 (PreEscaped(ladder(cable)))
             }
         }
-        figure {
-            h3 { "Residual over time" }
-            (time_keys(cable))
-            (PreEscaped(over_time(cable, found)))
-        }
+        h3 { "Residual over time" }
+        (plots.figure(&over_time(common, cable, found), &common.starts_s(&found.times_s)))
+        (curves(plots, cable, found))
+        (periodic(plots, cable, found))
         @for profile in &found.profiles { (over_condition(cable, profile)) }
-        (places("Where the given model disagrees", &cable.places))
+        (places("Where the given model disagrees", &cable.places, &over_time_id))
         // Without an effect the rest is all of the gap.
         @if let Some(rest) = cable.unexplained.as_ref().filter(|_| !cable.effects.is_empty() || cable.places.is_empty()) {
-            (places("Where the rest lies", &rest.places))
+            (places("Where the rest lies", &rest.places, &over_time_id))
         }
         (candidates(cable))
         (parameters(found))
@@ -175,7 +221,7 @@ fn of_table(table: &TableResult) -> String {
     chart.bars("after", table.points.iter().map(bar));
     chart.line("trace after", table.points.iter().map(|point| [point.at, value(point)]));
     chart.level("floor", 0.0, "", true);
-    chart.into_svg()
+    chart.into_svg("What the table adds, with its 95 % interval")
 }
 
 fn key(color: &str, text: &str) -> Markup {
@@ -201,19 +247,8 @@ fn ladder(cable: &DiscoverCableResult) -> String {
         chart.bar(if row == 0 { "before" } else { "after" }, row, *rms_n, &words, floor_n);
     }
     chart.upright("floor", floor_n);
-    chart.into_svg() + &html! { p.soft { "Dotted: the noise, " (newtons(floor_n)) "." } }.into_string()
-}
-
-fn time_keys(cable: &DiscoverCableResult) -> Markup {
-    html! {
-        p {
-            "Least and greatest in each interval:"
-            (key("before", "given model"))
-            @if !cable.effects.is_empty() { (key("after", "extended model")) }
-            @if !looked_at(cable).is_empty() { (key("flag", "where to look")) }
-            (key("soft", "along the foot: samples held out"))
-        }
-    }
+    chart.into_svg("The gap by the effects that entered: root mean square of the error held out")
+        + &html! { p.soft { "Dotted: the noise, " (newtons(floor_n)) "." } }.into_string()
 }
 
 /// The intervals to look at: of the rest where there is one, else of the condition that tells most.
@@ -230,45 +265,122 @@ fn looked_at(cable: &DiscoverCableResult) -> Vec<[f64; 2]> {
     all
 }
 
-fn over_time(cable: &DiscoverCableResult, found: &CableDiscovery) -> String {
-    let end_s = found.times_s.last().copied().unwrap_or(0.0).max(1e-9);
-    let mut all = Extent { least: 0.0, greatest: 0.0 };
-    let [before, after] = [&found.residual_before_n, &found.residual_after_n]
-        .map(|residual_n| envelope(&found.times_s, residual_n, end_s));
-    for (_, extent) in before.iter().chain(&after) {
-        all.merge(*extent);
-    }
-    let time = Span { least: 0.0, greatest: end_s, unit: "s" };
-    let mut chart = Chart::new(time, Span::with_margin(all, 0.08, "N"), WIDE, 240.0);
-    for [from_s, to_s] in looked_at(cable) {
-        // As wide as can be seen.
-        let more = (0.5 * (2e-3 * end_s - (to_s - from_s))).max(0.0);
-        chart.stretch("look", from_s - more, to_s + more, "");
-    }
-    chart.bars("before solid", before.into_iter());
+fn over_time(common: &Common, cable: &DiscoverCableResult, found: &CableDiscovery) -> Plot {
+    let mut plot = Plot::new("Residual: model less reference", Axis::TIME, Axis::new("residual", "N"));
+    let band = |name, color, residual_n: &[f64]| Trace::new(name, color, common.band(residual_n));
+    plot.traces.push(band("before: given model, fitted", "before", &found.residual_before_n));
     if !cable.effects.is_empty() {
-        chart.bars("after solid", after.into_iter());
+        plot.traces.push(band("after: extended model", "after", &found.residual_after_n));
     }
-    for [from_s, to_s] in &cable.held_out_s {
-        chart.strip("held", *from_s, *to_s);
-    }
-    chart.into_svg()
+    plot.looks = looked_at(cable);
+    plot.strips.clone_from(&cable.held_out_s);
+    plot.span = Some(common.scale);
+    plot
 }
 
-/// Least and greatest of a residual in each of some intervals of time.
-fn envelope(times_s: &[f64], residual_n: &[f64], end_s: f64) -> Vec<(f64, Extent)> {
-    #[expect(clippy::cast_precision_loss, reason = "a small constant")]
-    let width_s = end_s / INTERVALS as f64;
-    let mut all: Vec<(f64, Extent)> = Vec::with_capacity(INTERVALS + 1);
-    for (time_s, number) in times_s.iter().zip(residual_n) {
-        if all.last().is_none_or(|(start_s, _)| time_s - start_s >= width_s) {
-            all.push((*time_s, Extent::NOTHING));
+/// Friction over speed and over length, measured and by both models.
+fn curves(plots: &mut Plots, cable: &DiscoverCableResult, found: &CableDiscovery) -> Markup {
+    let is_extended = !cable.effects.is_empty();
+    let speeds = &found.curves.over_speed;
+    let [back, out] = &found.curves.over_length;
+    let pick =
+        |points: &[FrictionPoint], pick: fn(&FrictionPoint) -> f64| points.iter().map(pick).collect::<Vec<f64>>();
+    let friction = Axis::new("friction", "N");
+    let mut over_speed =
+        Plot::new("Friction over speed, positive paying out", Axis::new("speed", "mm/s"), friction).half();
+    let measured = Values::Spread(pick(speeds, |point| point.measured_n), pick(speeds, |point| point.deviation_n));
+    over_speed.traces.push(Trace::new("measured ± standard deviation", "text", measured));
+    over_speed.traces.push(Trace::new("given model", "before", Values::Line(pick(speeds, |point| point.before_n))));
+    if is_extended {
+        over_speed.traces.push(Trace::new(
+            "extended model",
+            "after",
+            Values::Line(pick(speeds, |point| point.after_n)),
+        ));
+    }
+    let mut loops = Plot::new("Hysteresis over the cable length", Axis::new("length", "m"), friction).half();
+    for (points, direction, is_dashed) in [(out, "paying out", false), (back, "reeling in", true)] {
+        let mut add = |name: &str, color, pick: fn(&FrictionPoint) -> f64| {
+            let values = points.iter().map(pick).collect();
+            let trace = Trace::new(&format!("{name}, {direction}"), color, Values::Line(values));
+            loops.traces.push(Trace { is_dashed, ..trace });
+        };
+        if points.is_empty() {
+            continue;
         }
-        if let Some((_, extent)) = all.last_mut() {
-            extent.add(*number);
+        add("measured", "text", |point| point.measured_n);
+        add("given model", "before", |point| point.before_n);
+        if is_extended {
+            add("extended model", "after", |point| point.after_n);
         }
     }
-    all
+    let lengths = if out.is_empty() { back } else { out };
+    html! {
+        @if !speeds.is_empty() {
+            div.views {
+                (plots.figure(&over_speed, &pick(speeds, |point| 1e3 * point.at)))
+                @if !loops.traces.is_empty() { (plots.figure(&loops, &pick(lengths, |point| point.at))) }
+            }
+            p.soft {
+                "Means over the samples that count. Measured friction is the reference less the force without friction, negative where the \
+                 platform feels less than the sensor."
+            }
+        }
+    }
+}
+
+/// The spectrum of the residual with the lines that were found, and its autocorrelation.
+fn periodic(plots: &mut Plots, cable: &DiscoverCableResult, found: &CableDiscovery) -> Markup {
+    let is_extended = !cable.effects.is_empty();
+    let residuals = [
+        ("before: given model", "before", &found.residual_before_n),
+        ("after: extended model", "after", &found.residual_after_n),
+    ];
+    let shown = &residuals[..if is_extended { 2 } else { 1 }];
+    let mut density =
+        Plot::new("Spectrum of the residual", Axis::log("frequency", "Hz"), Axis::log("density", "N/√Hz")).half();
+    density.digits = 6;
+    let mut memory =
+        Plot::new("Autocorrelation of the residual", Axis::new("lag", "s"), Axis::new("correlation", "")).half();
+    let (mut frequencies, mut lags) = (Vec::new(), Vec::new());
+    for (name, color, residual_n) in shown {
+        let (frequency_hz, values) = per_octave(&spectrum(&found.times_s, residual_n));
+        if !frequency_hz.is_empty() {
+            frequencies = frequency_hz;
+            density.traces.push(Trace::new(name, color, Values::Line(values)));
+        }
+        let Autocorrelation { lag_s, correlation, white } = autocorrelation(&found.times_s, residual_n, LONGEST_LAG_S);
+        if lag_s.len() > 1 {
+            lags = lag_s;
+            memory.traces.push(Trace::new(name, color, Values::Line(correlation)));
+            memory.levels = vec![(white, "95 % of white noise".to_owned()), (-white, String::new())];
+        }
+    }
+    let lines = cable.faults.iter().filter_map(|fault| fault.parameters.get("frequency_hz"));
+    density.uprights = lines.map(|line_hz| (line_hz, format!("{line_hz:.2} Hz"))).collect();
+    html! {
+        div.views {
+            @if !density.traces.is_empty() { (plots.figure(&density, &frequencies)) }
+            @if !memory.traces.is_empty() { (plots.figure(&memory, &lags)) }
+        }
+    }
+}
+
+/// A spectrum by as many points for each octave, the mean power of each.
+fn per_octave(spectrum: &Spectrum) -> (Vec<f64>, Vec<f64>) {
+    let mut points: Vec<(f64, f64, f64, f64)> = Vec::new();
+    for (frequency_hz, density) in spectrum.frequency_hz.iter().zip(&spectrum.density) {
+        let place = (frequency_hz.log2() * PER_OCTAVE).floor();
+        match points.last_mut().filter(|(last, ..)| (*last - place).abs() < 0.5) {
+            Some((_, sum_hz, power, count)) => {
+                *sum_hz += frequency_hz;
+                *power += density * density;
+                *count += 1.0;
+            }
+            None => points.push((place, *frequency_hz, density * density, 1.0)),
+        }
+    }
+    points.into_iter().map(|(_, sum_hz, power, count)| (sum_hz / count, (power / count).sqrt())).unzip()
 }
 
 /// The residuals over a condition: how large, and in which direction.
@@ -336,7 +448,7 @@ fn sizes(cable: &DiscoverCableResult, profile: &Profile) -> String {
         chart.line(&format!("trace {class}"), steps(values));
     }
     chart.level("floor", cable.noise_floor_n.unwrap_or(0.0), "", true);
-    chart.into_svg()
+    chart.into_svg(&format!("Root mean square of the residual in newtons over the {}", condition(profile.signal)))
 }
 
 fn means(is_extended: bool, profile: &Profile) -> String {
@@ -350,10 +462,10 @@ fn means(is_extended: bool, profile: &Profile) -> String {
         chart.line(&format!("trace back {class}"), steps(back));
         chart.line(&format!("trace {class}"), steps(out));
     }
-    chart.into_svg()
+    chart.into_svg(&format!("Mean residual in newtons over the {}, by direction", condition(profile.signal)))
 }
 
-fn places(title: &str, places: &[WhereResult]) -> Markup {
+fn places(title: &str, places: &[WhereResult], plot: &str) -> Markup {
     let share = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), percent);
     html! {
         @if !places.is_empty() {
@@ -369,9 +481,9 @@ fn places(title: &str, places: &[WhereResult]) -> Markup {
                         td.words { (place.range_in_words()) }
                         td { (share(place.share_of_excess)) } td { (share(place.share_of_samples)) }
                         td { (share(place.explains)) }
-                        td { (place.significance.map_or_else(|| "–".to_owned(), |of| format!("{of:.0} σ"))) }
+                        td { (place.significance.map_or_else(|| "–".to_owned(), significance)) }
                         td.words {
-                            @if place.intervals_s.is_empty() { "–" } @else { (intervals(&place.intervals_s)) }
+                            @if place.intervals_s.is_empty() { "–" } @else { (looks(&place.intervals_s, plot)) }
                         }
                     }
                 }
@@ -384,6 +496,30 @@ fn places(title: &str, places: &[WhereResult]) -> Markup {
     }
 }
 
+/// Stretches of time that lead there in a plot.
+fn looks(intervals_s: &[[f64; 2]], plot: &str) -> Markup {
+    html! {
+        @for (place, one) in intervals_s.iter().enumerate() {
+            @if place > 0 { ", " }
+            a href=(format!("#{plot}")) data-look=(format!("{} {}", one[0], one[1])) { (interval(one)) }
+        }
+        " s"
+    }
+}
+
+/// What became of a candidate.
+fn outcome(cable: &DiscoverCableResult, candidate: &Candidate) -> String {
+    if cable.effects.iter().any(|effect| effect.kind == candidate.kind) {
+        return "named".to_owned();
+    }
+    match cable.tried.iter().find(|tried| tried.kind == candidate.kind) {
+        Some(tried) => tried.reason.clone(),
+        None if candidate.delta_bic.is_none_or(|delta_bic| delta_bic >= 0.0) => "does not help".to_owned(),
+        None if cable.effects.is_empty() => "no better than what noise that wanders may give".to_owned(),
+        None => "not needed beside what is named".to_owned(),
+    }
+}
+
 fn candidates(cable: &DiscoverCableResult) -> Markup {
     let is_found = |of: &Candidate| cable.effects.iter().any(|effect| effect.kind == of.kind);
     html! {
@@ -391,17 +527,21 @@ fn candidates(cable: &DiscoverCableResult) -> Markup {
             figure {
                 h3 { "Candidates" }
                 table {
-                    tr { th { "effect" } th { "ΔBIC" } th { "rms held out [N]" } }
+                    tr {
+                        th scope="col" { "effect" } th scope="col" { "ΔBIC alone" } th scope="col" { "rms held out [N]" }
+                        th.words scope="col" { "outcome" }
+                    }
                     @for candidate in &cable.candidates {
                         tr class=[is_found(candidate).then_some("found")] {
                             td { (candidate.kind) } td { (evidence(candidate.delta_bic)) }
                             td { (number(candidate.held_out_rms_n)) }
+                            td.words { (outcome(cable, candidate)) }
                         }
                     }
                 }
                 p.soft {
-                    "ΔBIC here is that of each by itself beside the given model, as the search began; the sentences above give that \
-                     within the extended model, which is another figure. Below zero the evidence speaks for it; a name needs −30 there. Bold: found."
+                    "ΔBIC of each by itself beside the given model, as the search began: below zero it helps. Several may help for one \
+                     cause; which is named is decided beside the others, so that a low ΔBIC here is not yet a name."
                 }
             }
         }

@@ -4,12 +4,16 @@ use fric_lab::fit::result::{FitCableResult, FitResult};
 use fric_lab::text::plain;
 use maud::{Markup, html};
 
+use super::Page;
 use super::errors::wrench_table;
+use super::plot::Plots;
 use crate::fit_report::{Correlation, correlations, value_text};
+use crate::provenance::Provenance;
+use crate::verdict::{self, left_in_words};
 
 /// The page; `fits` are those of the result.
 #[must_use]
-pub fn page(result: &FitResult, fits: &[fric_lab::fit::CableFit]) -> String {
+pub fn page(result: &FitResult, fits: &[fric_lab::fit::CableFit], provenance: &Provenance) -> String {
     let content = html! {
         p.soft { "Fitted to " (reference_in_words(result.reference)) ". ± is one standard error." }
         (errors(result))
@@ -29,7 +33,9 @@ pub fn page(result: &FitResult, fits: &[fric_lab::fit::CableFit]) -> String {
         }
         @if let Some(wrench) = &result.wrench { (wrench_table(wrench)) }
     };
-    super::shell(&format!("{}: friction fitted", result.robot), &content)
+    let title = format!("{}: friction fitted", result.robot);
+    let (verdict, plots) = (verdict::of_fit(result), Plots::default());
+    Page { title, verdict, content, plots, cables: Vec::new(), provenance }.into_html()
 }
 
 /// The values as a table by itself.
@@ -77,16 +83,26 @@ pub(crate) fn remark(cable: &FitCableResult, name: &str) -> &'static str {
     }
 }
 
+/// What the fitted model leaves of the error, a share.
+pub(crate) fn left(cable: &FitCableResult) -> Option<f64> {
+    let (before, after) = cable.before.zip(cable.after)?;
+    Some(after.rms_n / before.rms_n).filter(|left| left.is_finite())
+}
+
 fn errors(result: &FitResult) -> Markup {
     html! {
         @if result.cables.iter().any(|cable| cable.before.is_some()) {
             table {
-                tr { th { "cable" } th { "samples" } th { "rms before [N]" } th { "after [N]" } }
+                tr {
+                    th scope="col" { "cable" } th scope="col" { "samples" } th scope="col" { "rms before [N]" } th scope="col" { "after [N]" }
+                    th scope="col" { "left" }
+                }
                 @for cable in &result.cables {
                     tr {
                         td { (cable.name) } td { (cable.samples) }
                         td { (super::number(cable.before.map(|error| error.rms_n))) }
                         td { (super::number(cable.after.map(|error| error.rms_n))) }
+                        td { (left(cable).map_or_else(|| "–".to_owned(), left_in_words)) }
                     }
                 }
             }

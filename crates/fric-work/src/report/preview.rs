@@ -5,9 +5,13 @@ use fric_lab::excite::Excitation;
 use fric_lab::trajectory::{Phase, WorkBox};
 use maud::{Markup, PreEscaped, html};
 
+use super::Page;
 use super::chart::{Chart, Span};
+use super::plot::Plots;
 use super::run::{RunInterval, RunSeries};
 use super::series::Extent;
+use crate::provenance::Provenance;
+use crate::verdict::{Tone, Verdict};
 
 fn in_words(phase: Phase) -> String {
     phase.name().replace('_', " ")
@@ -31,14 +35,17 @@ fn over_time(series: &RunSeries, pick: fn(&RunInterval) -> Extent) -> impl Itera
 
 /// The page; `expectations` are those of a designed run, a line each, empty for the identification run.
 #[must_use]
-pub fn page(robot: &RobotFile, excitation: &Excitation, series: &RunSeries, expectations: &[String]) -> String {
+pub fn page(
+    robot: &RobotFile,
+    excitation: &Excitation,
+    series: &RunSeries,
+    expectations: &[String],
+    provenance: &Provenance,
+) -> String {
     let kind = if expectations.is_empty() { "identification run" } else { "designed run" };
     let title = format!("{}: {kind}", robot.options().name);
     let duration_s = excitation.trajectory().duration_s();
     let content = html! {
-        p.soft {
-            (format!("{} set points in {duration_s:.1} s, one every {} s.", excitation.total_cycles(), robot.options().cycle_s))
-        }
         @if !expectations.is_empty() {
             section {
                 h2 { "What the run is expected to tell" }
@@ -69,7 +76,14 @@ pub fn page(robot: &RobotFile, excitation: &Excitation, series: &RunSeries, expe
         }
         (phases(series))
     };
-    super::shell(&title, &content)
+    let sentence = format!(
+        "{} set points in {duration_s:.1} s, one every {} s.",
+        excitation.total_cycles(),
+        robot.options().cycle_s
+    );
+    let todo = vec!["Look whether the path is free, then run it and record a log for fric-cli fit.".to_owned()];
+    let verdict = Verdict { tone: Tone::Mixed, sentence, todo };
+    Page { title, verdict, content, plots: Plots::default(), cables: Vec::new(), provenance }.into_html()
 }
 
 /// Plan view and side view.
@@ -119,7 +133,7 @@ fn view(robot: &RobotFile, excitation: &Excitation, work_box: &WorkBox, up: usiz
     for (place, names) in bases {
         chart.dot("base", place, &names.join(", "));
     }
-    chart.into_svg()
+    chart.into_svg("Path of the platform and where the cables enter their last pulleys, to scale")
 }
 
 fn length(series: &RunSeries) -> String {
@@ -130,7 +144,7 @@ fn length(series: &RunSeries) -> String {
     let mut chart = Chart::new(time(series), Span::with_margin(shown_m, 0.15, "m"), 960.0, 220.0);
     draw_phases(series, &mut chart);
     chart.bars("least", over_time(series, |interval| interval.length_m));
-    chart.into_svg()
+    chart.into_svg("Length of the cables in metres over time")
 }
 
 fn speed(series: &RunSeries) -> String {
@@ -140,7 +154,7 @@ fn speed(series: &RunSeries) -> String {
     let mut chart = Chart::new(time(series), Span::with_margin(greatest, 0.02, "m/s"), 960.0, 220.0);
     draw_phases(series, &mut chart);
     chart.bars("least", over_time(series, |interval| interval.speed));
-    chart.into_svg()
+    chart.into_svg("Speed in metres per second over time")
 }
 
 fn tension(excitation: &Excitation, series: &RunSeries, mut shown_n: Extent) -> String {
@@ -158,7 +172,7 @@ fn tension(excitation: &Excitation, series: &RunSeries, mut shown_n: Extent) -> 
     if let Some(greatest_n) = greatest_n {
         chart.level("bound", greatest_n, &format!("{greatest_n:.2} N"), true);
     }
-    chart.into_svg()
+    chart.into_svg("Least and greatest cable force in newtons over time")
 }
 
 fn phases(series: &RunSeries) -> Markup {

@@ -31,7 +31,7 @@ pub fn run(arguments: &CalibrateArguments) -> Outcome {
     outputs.finish(
         &result,
         &result.summary(),
-        || continuum::calibration(&result, &loads.display().to_string()),
+        |provenance| continuum::calibration(&result, provenance),
         vec![Written::new(calibrated, "the manipulator file with the coefficients of its gratings")],
     )
 }

@@ -9,6 +9,7 @@ use super::{Model, about, read_table};
 use crate::arguments::{DiscoverArguments, ReferenceName};
 use crate::failure::{Failure, Outcome};
 use crate::output::{self, JsonTarget, Written};
+use fric_work::provenance::shown_path;
 use fric_work::report;
 
 /// Runs the command.
@@ -37,14 +38,14 @@ pub fn run(arguments: &DiscoverArguments) -> Outcome {
     let extended = output.as_ref().map(|path| OutputFile::create(path, &inputs, result.force)).transpose()?;
     let table = read_table(log, &columns::of_run(model.disk_count()))?;
     let run = Run::from_columns(&table, model.disk_count()).map_err(|error| about(log, error))?;
-    let found = discover(&model.file, &run, &log.display().to_string()).map_err(|error| about(log, error))?;
+    let found = discover(&model.file, &run, &shown_path(log)).map_err(|error| about(log, error))?;
     let mut files = Vec::new();
     if let Some(file) = extended {
         let text = rewrite(&model.text, &model.origin, &found.edit)?;
         files.push(Written::new(file.complete_with(&text)?, "the manipulator file with what was found"));
     }
     if let Some(report) = report {
-        let page = report::continuum::discovery(&found);
+        let page = report::continuum::discovery(&found, &json.provenance());
         files.push(Written::new(report.complete_with(&page)?, "the report"));
     }
     json.finish(&found.result, &found.result.summary(), files)

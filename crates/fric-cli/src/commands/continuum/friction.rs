@@ -33,10 +33,5 @@ pub fn run(arguments: &FrictionArguments) -> Outcome {
     if !run.has_tension() {
         warn("the run has no `tension_base_n`: friction at hole 1 is not known");
     }
-    outputs.finish(
-        &result,
-        &result.summary(),
-        || continuum::friction(&result, &paths.run.display().to_string()),
-        Vec::new(),
-    )
+    outputs.finish(&result, &result.summary(), |provenance| continuum::friction(&result, provenance), Vec::new())
 }

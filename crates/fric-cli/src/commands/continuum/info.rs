@@ -5,7 +5,9 @@ use std::path::Path;
 use fric_lab::continuum::gratings::Gratings;
 use fric_lab::continuum::{Run, columns};
 use fric_lab::text::table_with_text;
+use fric_log::output::OutputFile;
 use fric_log::table::NumberTable;
+use fric_work::report::info::{self, InfoTable, Overview};
 use serde::Serialize;
 
 use super::{Model, about};
@@ -39,7 +41,7 @@ struct GroupResult {
 const DISKS: usize = fric_core::continuum::MAX_DISKS;
 
 /// Shows what is in a run. Without a model the number of disks is that of its columns.
-pub fn run(path: &Path, model: Option<&Path>, json: JsonTarget) -> Outcome {
+pub fn run(path: &Path, model: Option<&Path>, json: JsonTarget, report: Option<OutputFile>) -> Outcome {
     let model = model.map(Model::read).transpose()?;
     let disk_count = model.as_ref().map(Model::disk_count);
     let read = NumberTable::read(path, &columns::of_run(disk_count.unwrap_or(DISKS)))?;
@@ -64,7 +66,27 @@ pub fn run(path: &Path, model: Option<&Path>, json: JsonTarget) -> Outcome {
         groups: groups(&run, gratings.as_ref()),
         steps: steps(&run, gratings.as_ref()),
     };
-    json.finish(&outcome, &describe(&outcome, path), Vec::new())
+    let page =
+        report.map(|report| report.complete_with(&info::page(&overview(&outcome), &json.provenance()))).transpose()?;
+    json.finish(&outcome, &describe(&outcome, path), page.into_iter().collect())
+}
+
+/// What the page tells.
+fn overview(result: &InfoResult) -> Overview<'_> {
+    let groups = result.groups.iter().map(|group| {
+        let columns = if group.present { group.columns.to_string() } else { "–".to_owned() };
+        vec![group.group.to_owned(), columns, group.remarks.join(", ")]
+    });
+    Overview {
+        model: result.manipulator.as_deref(),
+        tables: vec![InfoTable {
+            title: "Groups of columns",
+            heads: vec!["group", "columns", "remarks"],
+            rows: groups.collect(),
+        }],
+        steps: result.steps.iter().map(StepResult::on_page).collect(),
+        ..Overview::default()
+    }
 }
 
 fn groups(run: &Run, gratings: Option<&Gratings>) -> Vec<GroupResult> {

@@ -19,6 +19,7 @@ use fric_lab::continuum::gratings::{GratingSample, Gratings};
 use fric_lab::continuum::{ContinuumError, Run, columns, corrected};
 use fric_log::output::OutputFile;
 use fric_log::table::NumberTable;
+use fric_work::provenance::Provenance;
 
 use crate::arguments::continuum::{ContinuumCommand, ReportArguments, RunArguments};
 use crate::failure::{Failure, Outcome};
@@ -145,11 +146,11 @@ impl Outputs {
         self,
         result: &impl serde::Serialize,
         summary: &str,
-        page: impl FnOnce() -> String,
+        page: impl FnOnce(&Provenance) -> String,
         mut files: Vec<Written>,
     ) -> Outcome {
         if let Some(report) = self.report {
-            files.push(Written::new(report.complete_with(&page())?, "the report"));
+            files.push(Written::new(report.complete_with(&page(&self.json.provenance()))?, "the report"));
         }
         self.json.finish(result, summary, files)
     }

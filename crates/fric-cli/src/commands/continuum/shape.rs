@@ -50,7 +50,7 @@ pub fn run(arguments: &ShapeArguments) -> Outcome {
     outputs.finish(
         &result,
         &result.table(*wide),
-        || continuum::shape(&result, &run, &ways, &paths.run.display().to_string()),
+        |provenance| continuum::shape(&result, &run, &ways, provenance),
         Vec::new(),
     )
 }

@@ -74,7 +74,7 @@ pub fn run(arguments: &TendonSimulateArguments) -> Outcome {
         files.push(Written::new(write_calibration(file, &run, model.disk_count())?, told));
     }
     if let Some(file) = truth {
-        let text = output::as_json(&truth_of(model.name(), &run))?;
+        let text = output::as_json(&truth_of(model.name(), &run), &output::provenance(&inputs))?;
         files.push(Written::new(file.complete_with(&text)?, "the true friction, tension and bend"));
     }
     output::show_with("", files, "")

@@ -21,6 +21,15 @@ pub struct ColumnResult {
     offset: Option<f64>,
 }
 
+impl ColumnResult {
+    /// For people.
+    pub fn cells(&self) -> [String; 4] {
+        let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
+        let signal = self.signal.clone().unwrap_or_else(|| "–".to_owned());
+        [printable(&self.column), signal, number(self.factor), number(self.offset)]
+    }
+}
+
 /// The columns of a log; none of a log of messages.
 pub fn results(log: &Log, model: Option<&Model>) -> Vec<ColumnResult> {
     let stated = model.map(|model| &model.robot.options().log.columns);
@@ -39,15 +48,6 @@ pub fn results(log: &Log, model: Option<&Model>) -> Vec<ColumnResult> {
 
 /// For people.
 pub fn table_of(columns: &[ColumnResult]) -> String {
-    let row = |column: &ColumnResult| {
-        let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
-        [
-            printable(&column.column),
-            column.signal.clone().unwrap_or_else(|| "–".to_owned()),
-            number(column.factor),
-            number(column.offset),
-        ]
-    };
-    let rows: Vec<_> = columns.iter().map(row).collect();
+    let rows: Vec<_> = columns.iter().map(ColumnResult::cells).collect();
     table(&["column", "signal", "factor", "offset"], 2, &rows)
 }

@@ -23,6 +23,7 @@ use self::geometry::{Changes, Description};
 use self::naming::{Named, Naming, Search};
 use self::screen::Candidate;
 use super::cable::{BELIEVED_RATIO, acts};
+use super::curve::curves;
 use super::extended::extended;
 use super::naming::Refusal;
 use super::places::Excess;
@@ -345,6 +346,7 @@ impl Case<'_, '_> {
             unexplained,
             lack: None,
             profiles: Vec::new(),
+            curves: curves(record, &residual_before_n, &residual_after_n),
             times_s: (0..record.rows.len()).map(|cycle| record.time_s(cycle)).collect(),
             residual_before_n,
             residual_after_n,

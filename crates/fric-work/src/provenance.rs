@@ -1,0 +1,190 @@
+//! Where a result comes from: program, version, date, command, and the files it was made of, by name and hash.
+//!
+//! Every JSON result and every page carries it, from one [`Provenance`]. It names no user and no machine: a path that is absolute, or
+//! leads out of the working directory, is reduced to the name of its file.
+
+use std::collections::HashMap;
+use std::ffi::OsStr;
+use std::fmt::Write as _;
+use std::fs::{self, File};
+use std::io::{self, Read as _};
+use std::path::{Component, Path, PathBuf};
+use std::sync::{LazyLock, Mutex, PoisonError};
+use std::time::SystemTime;
+
+use serde::Serialize;
+use sha2::{Digest as _, Sha256};
+
+/// Bytes that are read at once to be hashed.
+const BLOCK: usize = 1 << 20;
+
+/// Where a result comes from.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Provenance {
+    /// `fric`.
+    pub program: &'static str,
+    /// Its version.
+    pub version: &'static str,
+    /// When the result was made, UTC, as RFC 3339 to the second.
+    pub made: String,
+    /// The command line, or the name of the function in Python.
+    pub command: String,
+    /// The files that were read.
+    pub inputs: Vec<Input>,
+}
+
+/// A file that was read.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Input {
+    /// `log` or `model`.
+    pub role: &'static str,
+    /// Its name, without the way to it.
+    pub name: String,
+    /// SHA-256 of its contents in hexadecimal; `None` where it cannot be read again, as a pipe cannot.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sha256: Option<String>,
+}
+
+impl Provenance {
+    /// Of a command line, from the name of the program on, and the files that it read.
+    #[must_use]
+    pub fn of_command(words: &[impl AsRef<OsStr>], files: &[PathBuf]) -> Self {
+        let mut words = words.iter().map(AsRef::as_ref);
+        let program = words.next().map_or_else(String::new, |program| file_name(Path::new(program)));
+        let command = words.fold(program, |command, word| command + " " + &quoted(&host_free(word)));
+        Self::new(command, files.iter().flat_map(|path| inputs(path)).collect())
+    }
+
+    /// Of a function in Python: the files of its log, and the text of its model under the model's name.
+    #[must_use]
+    pub fn of_call(function: &str, logs: &[PathBuf], model: Option<(&str, &str)>) -> Self {
+        let model = model.map(|(name, text)| Input {
+            role: "model",
+            name: name.to_owned(),
+            sha256: Some(hexadecimal(&Sha256::digest(text))),
+        });
+        let logs = logs.iter().flat_map(|path| inputs(path));
+        Self::new(function.to_owned(), logs.chain(model).collect())
+    }
+
+    fn new(command: String, inputs: Vec<Input>) -> Self {
+        let now = jiff::Timestamp::now();
+        let made = jiff::Timestamp::from_second(now.as_second()).unwrap_or(now).to_string();
+        Self { program: "fric", version: env!("CARGO_PKG_VERSION"), made, command, inputs }
+    }
+
+    /// Names of the logs as a phrase; `arrays` where there is no file.
+    #[must_use]
+    pub fn logs(&self) -> String {
+        let names: Vec<&str> =
+            self.inputs.iter().filter(|input| input.role == "log").map(|input| input.name.as_str()).collect();
+        if names.is_empty() { "arrays".to_owned() } else { names.join(", ") }
+    }
+}
+
+/// A path as it may be shown: as it was given where it stays below the working directory, else the name of the file alone.
+#[must_use]
+pub fn shown_path(path: &Path) -> String {
+    let leaves = path.is_absolute() || path.components().any(|part| matches!(part, Component::ParentDir));
+    if leaves { file_name(path) } else { path.display().to_string() }
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned())
+}
+
+/// A word of a command line whose path, also behind `--option=`, is shown as [`shown_path`] has it.
+fn host_free(word: &OsStr) -> String {
+    let text = word.to_string_lossy();
+    match text.split_once('=') {
+        Some((option, path)) if option.starts_with("--") => format!("{option}={}", shown_path(Path::new(path))),
+        _ => shown_path(Path::new(text.as_ref())),
+    }
+}
+
+/// A word as a shell takes it.
+fn quoted(word: &str) -> String {
+    let is_plain = |letter: char| letter.is_alphanumeric() || "-_./=:,+@%".contains(letter);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', "'\\''"))
+    }
+}
+
+/// A file, or every file of a folder, which a recording of rosbag2 is.
+fn inputs(path: &Path) -> Vec<Input> {
+    let Ok(entries) = fs::read_dir(path) else { return vec![input(path, file_name(path))] };
+    let mut files: Vec<PathBuf> =
+        entries.filter_map(|entry| Some(entry.ok()?.path())).filter(|path| path.is_file()).collect();
+    files.sort();
+    let folder = file_name(path);
+    files.iter().map(|file| input(file, format!("{folder}/{}", file_name(file)))).collect()
+}
+
+fn input(path: &Path, name: String) -> Input {
+    let is_model = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
+    Input { role: if is_model { "model" } else { "log" }, name, sha256: hash(path) }
+}
+
+/// Files that were hashed, as they were then: a log that is worked on again and again is read for its hash once.
+static HASHES: LazyLock<Mutex<HashMap<(PathBuf, u64, SystemTime), String>>> = LazyLock::new(Mutex::default);
+
+fn hash(path: &Path) -> Option<String> {
+    let about = fs::metadata(path).ok().filter(fs::Metadata::is_file)?;
+    let key = (path.canonicalize().ok()?, about.len(), about.modified().ok()?);
+    let known = || HASHES.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(hash) = known().get(&key) {
+        return Some(hash.clone());
+    }
+    let hash = hash_of_file(path).ok()?;
+    known().insert(key, hash.clone());
+    Some(hash)
+}
+
+fn hash_of_file(path: &Path) -> io::Result<String> {
+    let (mut file, mut hasher, mut block) = (File::open(path)?, Sha256::new(), vec![0; BLOCK]);
+    loop {
+        match file.read(&mut block)? {
+            0 => return Ok(hexadecimal(&hasher.finalize())),
+            count => hasher.update(block.get(..count).unwrap_or_default()),
+        }
+    }
+}
+
+fn hexadecimal(bytes: &[u8]) -> String {
+    bytes.iter().fold(String::new(), |mut text, byte| {
+        // Writing to a String cannot fail.
+        let _ = write!(text, "{byte:02x}");
+        text
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_of_the_machine_is_told() {
+        let words = [
+            "/home/ann/bin/fric-cli",
+            "replay",
+            "/home/ann/a log.mcap",
+            "--report=/tmp/r.html",
+            "../x/m.toml",
+            "runs/b.mcap",
+        ];
+        let made = Provenance::of_command(&words, &[]);
+        assert_eq!(made.command, "fric-cli replay 'a log.mcap' --report=r.html m.toml runs/b.mcap");
+        assert!(made.made.ends_with('Z') && made.made.len() == 20, "{}", made.made);
+    }
+
+    #[test]
+    fn a_model_is_known_by_its_hash() {
+        // The test vector of FIPS 180-4 for "abc".
+        let made = Provenance::of_call("fric.replay", &[], Some(("rig", "abc")));
+        let hash = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
+        assert_eq!(made.inputs, [Input { role: "model", name: "rig".to_owned(), sha256: Some(hash.to_owned()) }]);
+        assert_eq!(made.logs(), "arrays");
+    }
+}
