@@ -12,7 +12,7 @@
 //! rely on it.
 
 use fric_core::Wrench;
-use fric_core::parameters::{OFFSET, Values};
+use fric_core::parameters::{MU, OFFSET, Values};
 use nalgebra::{Matrix6, Vector6};
 
 use super::balance;
@@ -278,6 +278,9 @@ impl<'a> Case<'a> {
         }
         let standings = together(&of_cables);
         problem.used = used(&standings);
+        // All cables together have more than one minimum, and the given friction may be nearer to the least than what the samples suggest.
+        let has_friction = given.iter().all(|values| values[MU] > 0.0);
+        let starts: Vec<Vec<Values>> = starts.into_iter().chain(has_friction.then(|| given.clone())).collect();
         let starts = with_newcomers(&problem, starts, &given, self.cycle_s());
         Prepared { problem, starts, standings }
     }
