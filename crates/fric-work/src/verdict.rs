@@ -3,6 +3,7 @@
 //! Numbers in the sentences are those of the tables, in the same rounding.
 
 use fric_lab::continuum::discover::TendonDiscoverResult;
+use fric_lab::continuum::identify::TendonFitResult;
 use fric_lab::continuum::result::{CalibrationResult, FrictionResult, HoleResult, ShapeResult};
 use fric_lab::discover::result::{DiscoverCableResult, DiscoverResult};
 use fric_lab::errors::{ForceError, WrenchError};
@@ -413,6 +414,36 @@ pub fn of_calibration(result: &CalibrationResult) -> Verdict {
     let todo =
         vec!["Measure the friction at the holes with the calibrated file: fric-cli continuum friction.".to_owned()];
     Verdict { tone: Tone::Well, sentence, todo }
+}
+
+/// Of the identification of a manipulator: what is left between model and markers, or between model and gratings.
+#[must_use]
+pub fn of_tendon_fit(result: &TendonFitResult) -> Verdict {
+    let (before, after) = (result.before, result.after);
+    let markers = before.marker_mean_mm.zip(after.marker_mean_mm);
+    let tensions = before.tension_rms_n.zip(after.tension_rms_n);
+    let left = match (markers, tensions) {
+        (Some((before, after)), _) => {
+            format!("the disks are {after:.2} mm from their markers in the mean, {before:.2} mm with the given file")
+        }
+        (None, Some((before, after))) => {
+            format!("the tensions are {after:.4} N off (rms), {before:.4} N with the given file")
+        }
+        (None, None) => "model and measurement cannot be compared".to_owned(),
+    };
+    let sentence = format!(
+        "{} identified from {}: {left}.",
+        counted(result.parameters.0.len(), "number"),
+        counted(result.runs.len(), "run")
+    );
+    let is_worse = markers.or(tensions).is_none_or(|(before, after)| after > before);
+    let tone = match (is_worse, result.undetermined.is_empty()) {
+        (true, _) => Tone::Bad,
+        (false, false) => Tone::Mixed,
+        (false, true) => Tone::Well,
+    };
+    let todo = result.undetermined.iter().map(|open| format!("{}.", open.sentence)).collect();
+    Verdict { tone, sentence, todo }
 }
 
 /// Of friction at the holes: the hole with the most.

@@ -39,7 +39,7 @@ pub fn run(arguments: &ExciteArguments) -> Outcome {
         Some(questions) => {
             let duration_s = arguments.design.duration_s.unwrap_or(STANDARD_DURATION_S);
             let work = |progress: &_| design(&model.robot, &options, duration_s, &questions, progress);
-            let Experiment { excitation, forecasts } = watched("steps of the design", work)?.map_err(refused)?;
+            let Experiment { excitation, forecasts } = watched("designing", "steps", work)?.map_err(refused)?;
             (excitation, expectations(&model.robot.cable_names(), &forecasts))
         }
         None => (Excitation::new(&model.robot, &options).map_err(refused)?, Vec::new()),

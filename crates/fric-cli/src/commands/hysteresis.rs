@@ -11,7 +11,7 @@ use crate::arguments::HysteresisArguments;
 use crate::failure::Outcome;
 use crate::interrupt;
 use crate::model::{self, Model};
-use crate::output::{self, JsonTarget};
+use crate::output::{self, JsonTarget, Written};
 use crate::progress::{self, STRIDE};
 use crate::warnings::warn_all;
 
@@ -45,7 +45,8 @@ pub fn run(arguments: &HysteresisArguments) -> Outcome {
     let axes = hysteresis.axes()?;
     let outcome = HysteresisResult::new(&model.robot, &crossed, &axes);
     let page = || report::hysteresis::page(&outcome, &hysteresis.loops(), &json.provenance());
-    let page = report.map(|report| report.complete_with(&page())).transpose()?;
+    let page =
+        report.map(|report| report.complete_with(&page())).transpose()?.map(|page| Written::new(page, "the report"));
     json.finish(&outcome, &outcome.summary(), page.into_iter().collect())
 }
 

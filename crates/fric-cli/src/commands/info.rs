@@ -22,7 +22,7 @@ use crate::arguments::InfoArguments;
 use crate::failure::{Failure, Outcome};
 use crate::interrupt;
 use crate::model::Model;
-use crate::output::{self, JsonTarget};
+use crate::output::{self, JsonTarget, Written};
 use crate::progress::{self, STRIDE};
 use crate::steps::{StepResult, step_table};
 use crate::warnings::warn_all;
@@ -230,12 +230,7 @@ struct SignalsRead {
 }
 
 /// What the signals map to, found by joining them as the other commands do.
-fn read_signals(
-    model: &Model,
-    log: Log,
-    part: Part,
-    mut series: Option<&mut SignalSeries>,
-) -> Outcome<SignalsRead> {
+fn read_signals(model: &Model, log: Log, part: Part, mut series: Option<&mut SignalSeries>) -> Outcome<SignalsRead> {
     let paths = model.signal_paths()?;
     let bar = progress::bytes(log.total_bytes());
     let mut reader = SignalReader::new(log, paths.clone(), &model.robot.cable_names()).within(part);

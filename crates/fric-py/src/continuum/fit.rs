@@ -1,8 +1,11 @@
 //! `fit`: a manipulator's numbers from its runs.
 
+use std::path::PathBuf;
+
 use fric_core::continuum::edit::rewrite;
 use fric_lab::continuum::Run;
 use fric_lab::continuum::identify::{Quantity, TendonFitOptions, identify};
+use fric_work::provenance::Provenance;
 use fric_work::report::continuum as report;
 use pyo3::prelude::*;
 
@@ -47,7 +50,10 @@ pub fn continuum_fit(
     log::warn(py, &found.result.warnings())?;
     let text = rewrite(&manipulator.text, "manipulator", &found.edit)?;
     let result = &found.result;
-    let shown = results::shown(py, result.summary(), result, report::fit(result), report::fit_table(result))?;
+    let files: Vec<PathBuf> = all.iter().flat_map(|run| run.get().files()).collect();
+    let provenance = manipulator.provenance("fric.continuum.fit", &files);
+    let page = |provenance: &Provenance| report::fit(result, provenance);
+    let shown = results::shown(py, result.summary(), result, page, report::fit_table(result), &provenance)?;
     let fields = (shown, Py::new(py, Manipulator::parse(text, "manipulator")?)?);
     Ok(results::of(py, "TendonFit", fields)?.unbind())
 }

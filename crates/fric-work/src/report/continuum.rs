@@ -218,8 +218,9 @@ fn coefficient(result: &HoleResult) -> Markup {
 
 /// The page of `continuum fit`.
 #[must_use]
-pub fn fit(result: &TendonFitResult) -> String {
-    super::shell(&format!("Identification of {}", result.manipulator), &identified(result))
+pub fn fit(result: &TendonFitResult, provenance: &Provenance) -> String {
+    let title = format!("{}: identification", result.manipulator);
+    plain(title, verdict::of_tendon_fit(result), identified(result), Plots::default(), provenance)
 }
 
 /// Its values as a table by itself.

@@ -9,7 +9,7 @@ use super::{Model, about, read_table};
 use crate::arguments::continuum::TendonFitArguments;
 use crate::failure::{Failure, Outcome};
 use crate::measurements::check_named_once;
-use crate::output::{self, JsonTarget};
+use crate::output::{self, JsonTarget, Written};
 
 /// Runs the command.
 pub fn run(arguments: &TendonFitArguments) -> Outcome {
@@ -38,5 +38,6 @@ pub fn run(arguments: &TendonFitArguments) -> Outcome {
         _ => Failure::from(error),
     })?;
     let fitted = file.complete_with(&rewrite(&model.text, &model.origin, &found.edit)?)?;
-    json.finish(&found.result, &found.result.summary(), vec![fitted])
+    let files = vec![Written::new(fitted, "the manipulator file with these values")];
+    json.finish(&found.result, &found.result.summary(), files)
 }

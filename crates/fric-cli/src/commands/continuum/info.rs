@@ -12,7 +12,7 @@ use serde::Serialize;
 
 use super::{Model, about};
 use crate::failure::Outcome;
-use crate::output::JsonTarget;
+use crate::output::{JsonTarget, Written};
 use crate::steps::{StepResult, step_table};
 use crate::warnings::warn_all;
 
@@ -66,8 +66,8 @@ pub fn run(path: &Path, model: Option<&Path>, json: JsonTarget, report: Option<O
         groups: groups(&run, gratings.as_ref()),
         steps: steps(&run, gratings.as_ref()),
     };
-    let page =
-        report.map(|report| report.complete_with(&info::page(&overview(&outcome), &json.provenance()))).transpose()?;
+    let page = report.map(|report| report.complete_with(&info::page(&overview(&outcome), &json.provenance())));
+    let page = page.transpose()?.map(|page| Written::new(page, "the report"));
     json.finish(&outcome, &describe(&outcome, path), page.into_iter().collect())
 }
 
