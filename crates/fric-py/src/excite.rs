@@ -152,7 +152,7 @@ pub fn excite(
         table.complete()?.place()?;
     }
     let page = preview::page(&file, &excitation, &series, &expected);
-    let told: String = expected.iter().map(|line| format!("\n  {line}")).collect();
+    let told: String = expected.iter().flat_map(|line| ["\n  ", line]).collect();
     let summary = format!("{}{told}", describe(&excitation, &series));
     let names = file.cable_names();
     let count = names.len();

@@ -64,7 +64,7 @@ pub fn run(arguments: &ExciteArguments) -> Outcome {
         files.push(page.complete_with(&preview::page(&model.robot, &excitation, &series, &expected))?);
     }
     output::place(files)?;
-    let told: String = expected.iter().map(|line| format!("  {line}\n")).collect();
+    let told: String = expected.iter().flat_map(|line| ["  ", line, "\n"]).collect();
     output::show(&format!("{}: {}\n{told}", arguments.output.display(), describe(&excitation, &series)))
 }
 
