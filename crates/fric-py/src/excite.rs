@@ -155,7 +155,7 @@ pub fn excite(
     let text = robot.borrow().to_toml()?;
     let provenance = Provenance::of_call("fric.excite", &[], Some((&file.options().name, &text)));
     let page = preview::page(&file, &excitation, &series, &expected, &provenance);
-    let told: String = expected.iter().map(|line| format!("\n  {line}")).collect();
+    let told: String = expected.iter().flat_map(|line| ["\n  ", line]).collect();
     let summary = format!("{}{told}", describe(&excitation, &series));
     let names = file.cable_names();
     let count = names.len();

@@ -64,7 +64,7 @@ pub fn run(arguments: &ExciteArguments) -> Outcome {
         let text = preview::page(&model.robot, &excitation, &series, &expected, &output::provenance(&inputs));
         files.push(Written::new(page.complete_with(&text)?, "the run, drawn"));
     }
-    let told: String = expected.iter().map(|line| format!("  {line}\n")).collect();
+    let told: String = expected.iter().flat_map(|line| ["  ", line, "\n"]).collect();
     output::show_with("", files, &told)
 }
 
