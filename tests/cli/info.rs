@@ -150,24 +150,24 @@ fn a_log_too_short_to_discover_is_told() {
 fn how_the_log_is_kept_is_told() {
     let place = Place::with_log();
     let run = place.run(&["info", "log.mcap", "--json", "j.json"]).succeeds();
-    let storage = place.json("j.json")["storage"].clone();
+    let kept = place.json("j.json")["storage"].clone();
     let size_bytes = short_log().len();
-    assert_eq!((&storage["kind"], &storage["size_bytes"]), (&"MCAP".into(), &size_bytes.into()));
-    assert_eq!(storage["messages"], 400 + 400 + 101 + 101);
+    assert_eq!((&kept["kind"], &kept["size_bytes"]), (&"MCAP".into(), &size_bytes.into()));
+    assert_eq!(kept["messages"], 400 + 400 + 101 + 101);
     // The summary of another reader.
     let summary = mcap::Summary::read(short_log()).unwrap().unwrap();
-    let stored: u64 = summary.chunk_indexes.iter().map(|chunk| chunk.compressed_size).sum();
-    let content: u64 = summary.chunk_indexes.iter().map(|chunk| chunk.uncompressed_size).sum();
-    assert_eq!(storage["chunks"]["count"], summary.chunk_indexes.len());
+    let in_file: u64 = summary.chunk_indexes.iter().map(|chunk| chunk.compressed_size).sum();
+    let unpacked: u64 = summary.chunk_indexes.iter().map(|chunk| chunk.uncompressed_size).sum();
+    assert_eq!(kept["chunks"]["count"], summary.chunk_indexes.len());
     assert_eq!(
-        (&storage["chunks"]["stored_bytes"], &storage["chunks"]["content_bytes"]),
-        (&stored.into(), &content.into())
+        (&kept["chunks"]["stored_bytes"], &kept["chunks"]["content_bytes"]),
+        (&in_file.into(), &unpacked.into())
     );
-    assert_eq!(storage["chunks"]["compression"], summary.chunk_indexes[0].compression.as_str());
-    let stats = summary.stats.unwrap();
-    let duration_ns = u32::try_from(stats.message_end_time - stats.message_start_time).unwrap();
-    let duration_s = f64::from(duration_ns) * 1e-9;
-    assert!((storage["duration_s"].as_f64().unwrap() - duration_s).abs() < 1e-9, "{storage}");
+    assert_eq!(kept["chunks"]["compression"], summary.chunk_indexes[0].compression.as_str());
+    let counted = summary.stats.unwrap();
+    let nanos = u32::try_from(counted.message_end_time - counted.message_start_time).unwrap();
+    let duration_s = f64::from(nanos) * 1e-9;
+    assert!((kept["duration_s"].as_f64().unwrap() - duration_s).abs() < 1e-9, "{kept}");
     assert!(run.stdout.contains(&format!("{duration_s:.3} s")) && run.stdout.contains("start:"), "{run:#?}");
 }
 

@@ -42,7 +42,7 @@ impl Label {
 /// Without `--color`, and with `auto`, there are colours on a terminal unless `NO_COLOR` is set.
 pub fn set_color(words: &[OsString]) {
     let text = |word: &OsString| word.to_str().map(ToOwned::to_owned);
-    let value = words.iter().enumerate().filter_map(|(place, word)| {
+    let mut values = words.iter().enumerate().filter_map(|(place, word)| {
         let word = text(word)?;
         if word == "--color" {
             words.get(place + 1).and_then(text)
@@ -51,7 +51,7 @@ pub fn set_color(words: &[OsString]) {
         }
     });
     // The parser refuses what is no choice.
-    let choice = value.last().and_then(|value| ColorName::from_str(&value, false).ok());
+    let choice = values.next_back().and_then(|value| ColorName::from_str(&value, false).ok());
     match choice.unwrap_or_default() {
         ColorName::Auto => ColorChoice::Auto,
         ColorName::Always => ColorChoice::AlwaysAnsi,

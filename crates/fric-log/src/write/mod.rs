@@ -135,19 +135,19 @@ impl LogWriter {
 
 fn mcap_error(path: &Path, source: McapError) -> WriteError {
     let path = path.to_owned();
-    match source {
-        McapError::Io(source) => OutputError::File { path, source }.into(),
-        source => match refused(&source) {
-            Some(source) => OutputError::File { path, source }.into(),
-            None => WriteError::Mcap { path, source },
-        },
+    match (refused(&source), source) {
+        (Some(source), _) | (None, McapError::Io(source)) => OutputError::File { path, source }.into(),
+        (None, source) => WriteError::Mcap { path, source },
     }
 }
 
-/// What the operating system said, of which the writer of records (`binrw`) leaves the text alone.
+/// What the operating system said, of which the writers of records (`binrw`) and of chunks leave the text alone.
 fn refused(error: &McapError) -> Option<io::Error> {
-    let McapError::Parse(error) = error else { return None };
-    let text = error.to_string();
+    let text = match error {
+        McapError::Parse(error) => error.to_string(),
+        McapError::Io(error) if error.kind() == io::ErrorKind::Other => error.to_string(),
+        _ => return None,
+    };
     let (code, _) = text.split_once("(os error ")?.1.split_once(')')?;
     code.parse().ok().map(io::Error::from_raw_os_error)
 }
