@@ -197,8 +197,8 @@ impl ReplayResult {
             "mean |error| before [N]",
             "after [N]",
         ];
-        let mut text = wrapped("", &self.verdict().sentence);
-        text += &format!("\n{}: force at the platform against the reference\n\n", self.robot);
+        let verdict = wrapped("", &self.verdict().sentence);
+        let mut text = format!("{verdict}\n{}: force at the platform against the reference\n\n", self.robot);
         text += &table(&header, 1, &rows);
         text += &recording_lines(self.cables.iter().map(|cable| (cable.name.as_str(), cable.faults.as_slice())));
         if let Some(wrench) = &self.wrench {
