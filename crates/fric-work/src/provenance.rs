@@ -127,8 +127,11 @@ fn input(path: &Path, name: String) -> Input {
     Input { role: if is_model { "model" } else { "log" }, name, sha256: hash(path) }
 }
 
-/// Files that were hashed, as they were then: a log that is worked on again and again is read for its hash once.
-static HASHES: LazyLock<Mutex<HashMap<(PathBuf, u64, SystemTime), String>>> = LazyLock::new(Mutex::default);
+/// A file as it was: its place, its size and when it was written.
+type FileState = (PathBuf, u64, SystemTime);
+
+/// Files that were hashed: a log that is worked on again and again is read for its hash once.
+static HASHES: LazyLock<Mutex<HashMap<FileState, String>>> = LazyLock::new(Mutex::default);
 
 fn hash(path: &Path) -> Option<String> {
     let about = fs::metadata(path).ok().filter(fs::Metadata::is_file)?;

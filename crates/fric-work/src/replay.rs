@@ -190,8 +190,8 @@ impl ReplayResult {
         let CycleResult { count, median_ns, p999_ns, max_ns } = self.cycle;
         let has_errors = self.cables.iter().any(|cable| cable.before.is_some());
         let what = if has_errors { "force at the platform against the reference" } else { "force at the platform" };
-        let mut text = wrapped("", &self.verdict().sentence);
-        text += &format!("\n{}: {what}, {count} samples\n\n", self.robot);
+        let verdict = wrapped("", &self.verdict().sentence);
+        let mut text = format!("{verdict}\n{}: {what}, {count} samples\n\n", self.robot);
         text += &table(&header, 1, &rows);
         text += &recording_lines(self.cables.iter().map(|cable| (cable.name.as_str(), cable.faults.as_slice())));
         if let Some(wrench) = &self.wrench {

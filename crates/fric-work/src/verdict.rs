@@ -513,7 +513,7 @@ pub fn of_tendon(result: &TendonDiscoverResult) -> Verdict {
             parts.push("Something is left without a name.".to_owned());
         }
         todo.extend(tendon.effects.iter().map(|effect| format!("{}: {}", effect.kind, effect.words[1])));
-        todo.extend(tendon.unexplained.iter().map(|rest| rest.sentence()));
+        todo.extend(tendon.unexplained.iter().map(fric_lab::continuum::discover::TendonRest::sentence));
     }
     if todo.is_empty() {
         todo.push("Nothing: keep the model.".to_owned());

@@ -121,7 +121,7 @@ pub fn autocorrelation(times_s: &[f64], residual_n: &[f64], longest_s: f64) -> A
     if variance.is_nan() || variance <= 0.0 {
         return Autocorrelation::default();
     }
-    #[expect(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts")]
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts")]
     let longest = ((longest_s / interval_s) as usize).min(residual_n.len() / 4);
     let step = longest.div_ceil(LAGS).max(1);
     let stride = residual_n.len().div_ceil(MOST_PRODUCTS).max(1);

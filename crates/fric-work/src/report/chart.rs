@@ -379,9 +379,9 @@ fn ticks(least: f64, greatest: f64, most: f64) -> impl Iterator<Item = f64> {
 /// Powers of ten between two bounds, and twice and five times them where there are few.
 fn decades(least: f64, greatest: f64, most: f64) -> Vec<f64> {
     #[expect(clippy::cast_possible_truncation, reason = "exponents of ten")]
-    let (first, last) = (least.log10().floor() as i32, greatest.log10().ceil() as i32);
-    let factors: &[f64] = if f64::from(last - first) * 3.0 <= most { &[1.0, 2.0, 5.0] } else { &[1.0] };
-    let all = (first..=last).flat_map(|exponent| factors.iter().map(move |factor| factor * 10.0_f64.powi(exponent)));
+    let (from, to) = (least.log10().floor() as i32, greatest.log10().ceil() as i32);
+    let factors: &[f64] = if f64::from(to - from) * 3.0 <= most { &[1.0, 2.0, 5.0] } else { &[1.0] };
+    let all = (from..=to).flat_map(|exponent| factors.iter().map(move |factor| factor * 10.0_f64.powi(exponent)));
     all.filter(|tick| (least..=greatest).contains(tick)).collect()
 }
 

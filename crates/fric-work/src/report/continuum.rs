@@ -316,8 +316,12 @@ fn residuals(found: &TendonDiscovery) -> Vec<Plot> {
     };
     let mut plots: Vec<Plot> = (0..found.residual_before_n.first().map_or(0, Vec::len)).map(plot).collect();
     let mut all = Extent { least: 0.0, greatest: 0.0 };
-    plots.iter().for_each(|plot| all.merge(plot.extent()));
-    plots.iter_mut().for_each(|plot| plot.span = Some(all));
+    for plot in &plots {
+        all.merge(plot.extent());
+    }
+    for plot in &mut plots {
+        plot.span = Some(all);
+    }
     plots
 }
 

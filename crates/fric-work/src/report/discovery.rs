@@ -85,7 +85,9 @@ impl Common {
     fn band(&self, residual_n: &[f64]) -> Values {
         let extent = |values: &[f64]| {
             let mut extent = Extent::NOTHING;
-            values.iter().for_each(|value| extent.add(*value));
+            for value in values {
+                extent.add(*value);
+            }
             extent.ends()
         };
         let (least, greatest) = residual_n.chunks(self.per_interval).map(extent).unzip();

@@ -167,7 +167,9 @@ fn frictions(plots: &mut Plots, friction: &CableFriction) -> Markup {
         ("after", "after", |bin| bin.left.mean()),
     ] {
         for (bins, direction, is_dashed) in [(&out, "paying out", false), (&back, "reeling in", true)] {
-            let value = |at: &f64| bins.iter().find(|(other, _)| other == at).map_or(f64::NAN, |(_, bin)| pick(bin));
+            let value = |at: &f64| {
+                bins.iter().find(|(other, _)| other.total_cmp(at).is_eq()).map_or(f64::NAN, |(_, bin)| pick(bin))
+            };
             let values: Vec<f64> = lengths.iter().map(value).collect();
             if values.iter().any(|value| value.is_finite()) {
                 let trace = Trace::new(&format!("{name}, {direction}"), color, Values::Line(values));

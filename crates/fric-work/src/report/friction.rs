@@ -104,7 +104,7 @@ impl Binned {
         let mut wide = vec![Friction::default(); BINS];
         for (place, bin) in self.bins.iter().enumerate() {
             // Two bins become one, and zero stays an edge.
-            if let Some(both) = wide.get_mut((place + BINS / 2) / 2) {
+            if let Some(both) = wide.get_mut(place.midpoint(BINS / 2)) {
                 both.merge(*bin);
             }
         }
@@ -151,7 +151,8 @@ impl CableFriction {
             return;
         }
         let first_m = *self.first_length_m.get_or_insert(length_m);
-        if let Some((_, last_m)) = self.last.replace((stamp_nanos, length_m)).filter(|(_, last_m)| *last_m != length_m)
+        if let Some((_, last_m)) =
+            self.last.replace((stamp_nanos, length_m)).filter(|(_, last_m)| (*last_m - length_m).abs() > 0.0)
         {
             self.is_paying_out = Some(length_m > last_m);
         }
@@ -183,7 +184,7 @@ mod tests {
         for (middle, bin) in filled {
             let inside: Vec<f64> = samples
                 .iter()
-                .filter(|(at, _)| (at / binned.width).floor() == (middle / binned.width).floor())
+                .filter(|(at, _)| ((at / binned.width).floor() - (middle / binned.width).floor()).abs() < 0.5)
                 .map(|(_, value)| *value)
                 .collect();
             let count = f64::from(u32::try_from(inside.len()).unwrap());

@@ -3,6 +3,8 @@
 //! The three show the same numbers: values are rounded once, to the digits of the plot. Over time there are too many to be listed or
 //! written as text; they go to the script in 16 bits between the least and the greatest, as least and greatest of intervals.
 
+use std::fmt::Write as _;
+
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use fric_lab::text::{number, significant};
@@ -13,7 +15,7 @@ use super::chart::{Chart, Span};
 use super::series::Extent;
 
 /// Most points of a line as SVG.
-const MOST_POINTS: usize = 700;
+const MOST_POINTS: usize = 480;
 /// Most rows of a table.
 const MOST_ROWS: usize = 40;
 /// Steps between the least and the greatest value of what is written in 16 bits; one more stands for none.
@@ -174,13 +176,13 @@ impl Plot {
 pub struct Plots {
     xs: Vec<Vec<f64>>,
     coded_xs: Vec<Value>,
-    plots: Vec<Value>,
+    drawn: Vec<Value>,
 }
 
 impl Plots {
     /// Names the next plot, to lead to it.
     pub fn next_id(&self) -> String {
-        format!("plot-{}", self.plots.len())
+        format!("plot-{}", self.drawn.len())
     }
 
     /// The figure; all traces have their values at `xs`.
@@ -199,7 +201,7 @@ impl Plots {
             json!({"name": trace.name, "color": trace.color, "role": trace.role, "cable": trace.cable,
                    "dashed": trace.is_dashed, "values": parts})
         });
-        self.plots.push(json!({
+        self.drawn.push(json!({
             "id": id, "caption": plot.caption(), "xs": place, "height": plot.size[1], "digits": plot.digits,
             "x": {"name": plot.x.name, "unit": plot.x.unit, "log": plot.x.is_log, "time": is_time},
             "y": {"name": plot.y.name, "unit": plot.y.unit, "log": plot.y.is_log, "span": [y.least, y.greatest]},
@@ -238,15 +240,16 @@ impl Plots {
 
     /// The numbers for the script, as JSON that no letter ends; `None` without a plot.
     pub fn into_json(self, cables: &[&str]) -> Option<String> {
-        if self.plots.is_empty() {
+        if self.drawn.is_empty() {
             return None;
         }
-        let all = json!({"cables": cables, "xs": self.coded_xs, "plots": self.plots});
+        let all = json!({"cables": cables, "xs": self.coded_xs, "plots": self.drawn});
         let escaped = |letter: char| matches!(letter, '<' | '>' | '&' | '\u{2028}' | '\u{2029}');
         let mut text = String::new();
         for letter in all.to_string().chars() {
             if escaped(letter) {
-                text += &format!("\\u{:04x}", u32::from(letter));
+                // Writing to a String cannot fail.
+                let _ = write!(text, "\\u{:04x}", u32::from(letter));
             } else {
                 text.push(letter);
             }
@@ -276,7 +279,9 @@ fn rounded(values: &[f64], digits: usize) -> Value {
 /// In 16 bits between the least and the greatest.
 fn coded(values: &[f64]) -> Value {
     let mut extent = Extent::NOTHING;
-    values.iter().for_each(|value| extent.add(*value));
+    for value in values {
+        extent.add(*value);
+    }
     if !extent.is_something() {
         extent = Extent { least: 0.0, greatest: 0.0 };
     }

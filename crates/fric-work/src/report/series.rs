@@ -6,7 +6,7 @@ use fric_lab::replay::ReplayedCycle;
 use super::friction::CableFriction;
 
 /// Extents that are kept at most: their page is below 3 MB, two numbers of 16 bits each, written in base64.
-const MOST_EXTENTS: usize = 400_000;
+const MOST_EXTENTS: usize = 320_000;
 /// Intervals are merged in pairs when there would be more, whatever the number of channels.
 const MOST_INTERVALS: usize = 40_000;
 /// Stretches that are told apart at most.
