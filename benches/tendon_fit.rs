@@ -28,35 +28,35 @@ struct Case {
     experiment: Experiment,
     hangs: bool,
     has_gratings: bool,
-    truth: fn(String) -> String,
+    truth: fn(&str) -> String,
 }
 
-fn stiffer(text: String) -> String {
+fn stiffer(text: &str) -> String {
     text.replace("youngs_modulus_pa = 200e9", "youngs_modulus_pa = 220e9")
 }
 
-fn wider(text: String) -> String {
+fn wider(text: &str) -> String {
     text.replace("hole_radius_m = 0.015 ", "hole_radius_m = 0.01575 ")
 }
 
-fn turned(text: String) -> String {
-    text + "\n[markers]\noffset_m = [0.005, -0.002]\nangle_rad = 0.0524\n"
+fn turned(text: &str) -> String {
+    text.to_owned() + "\n[markers]\noffset_m = [0.005, -0.002]\nangle_rad = 0.0524\n"
 }
 
-fn loaded(text: String) -> String {
-    text + "\n[tip]\nmass_kg = 0.001\n"
+fn loaded(text: &str) -> String {
+    text.to_owned() + "\n[tip]\nmass_kg = 0.001\n"
 }
 
-fn curved(text: String) -> String {
+fn curved(text: &str) -> String {
     text.replace("mass_kg_per_m = 0.01413", "mass_kg_per_m = 0.01413\nprecurvature_per_m = 0.3")
 }
 
-fn tilted(text: String) -> String {
+fn tilted(text: &str) -> String {
     text.replace("[-9.80665, 0.0]", "[-9.4725, -2.5381]")
 }
 
-fn same(text: String) -> String {
-    text
+fn same(text: &str) -> String {
+    text.to_owned()
 }
 
 const CASES: [Case; 9] = [
@@ -101,7 +101,7 @@ fn main() {
         let mut shape_mm = Vec::new();
         for seed in first..first + count {
             let given = prototype(case.hangs);
-            let truth = parsed(&(case.truth)(given.clone()));
+            let truth = parsed(&(case.truth)(&given));
             let options =
                 TendonSimulationOptions { experiment: case.experiment, seed, ..TendonSimulationOptions::default() };
             let run = simulate(truth.params(), &options).unwrap();
@@ -121,12 +121,15 @@ fn main() {
             let file = parsed(&text);
             let mut samples: Vec<RunSample> = as_measured(&run.samples, &truth);
             if !case.has_gratings {
-                samples.iter_mut().for_each(|sample| sample.shift_nm.clear());
+                for sample in &mut samples {
+                    sample.shift_nm.clear();
+                }
             }
             let measured = Run::new(samples, 8).unwrap();
             let began = std::time::Instant::now();
             let found =
-                identify(&file, &[measured.clone()], &["run".to_owned()], &TendonFitOptions::default()).unwrap();
+                identify(&file, std::slice::from_ref(&measured), &["run".to_owned()], &TendonFitOptions::default())
+                    .unwrap();
             if std::env::var("VERBOSE").is_ok() {
                 println!("{}\n{:.1} s", found.result.summary(), began.elapsed().as_secs_f64());
             }

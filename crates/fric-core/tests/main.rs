@@ -28,6 +28,7 @@ mod effects;
 mod faults;
 #[cfg(test)]
 mod forward;
+#[cfg(test)]
 mod inverse;
 #[cfg(test)]
 mod oracle;

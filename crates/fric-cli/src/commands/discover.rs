@@ -71,7 +71,7 @@ pub fn run(arguments: &DiscoverArguments) -> Outcome {
         let page = report::discovery::page(&outcome, found.cables(), &json.provenance());
         files.push(Written::new(report.complete_with(&page)?, "the report"));
     }
-    let next = next_step(&logs, output.as_deref());
+    let next = next_step(logs, output.as_deref());
     json.finish_then(&outcome, &outcome.summary(), files, &next)
 }
 

@@ -26,16 +26,16 @@ impl MarkersTable {
     #[must_use]
     pub fn measured(&self, [x_m, y_m]: [f64; 2]) -> [f64; 2] {
         let (sin, cos) = (libm::sin(self.angle_rad), libm::cos(self.angle_rad));
-        let [offset_x_m, offset_y_m] = self.offset_m;
-        [offset_x_m + cos * x_m - sin * y_m, offset_y_m + sin * x_m + cos * y_m]
+        let [right_m, up_m] = self.offset_m;
+        [right_m + cos * x_m - sin * y_m, up_m + sin * x_m + cos * y_m]
     }
 
     /// The point of the base frame that is measured here, m. NaN stays NaN.
     #[must_use]
     pub fn in_base_frame(&self, [x_m, y_m]: [f64; 2]) -> [f64; 2] {
         let (sin, cos) = (libm::sin(self.angle_rad), libm::cos(self.angle_rad));
-        let [offset_x_m, offset_y_m] = self.offset_m;
-        let (x_m, y_m) = (x_m - offset_x_m, y_m - offset_y_m);
+        let [right_m, up_m] = self.offset_m;
+        let (x_m, y_m) = (x_m - right_m, y_m - up_m);
         [cos * x_m + sin * y_m, cos * y_m - sin * x_m]
     }
 }

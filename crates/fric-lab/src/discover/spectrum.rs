@@ -177,6 +177,6 @@ mod tests {
         assert_eq!(stretch_lengths, [1000, 1999]);
         assert_eq!(spectrum(&times_s, &residual_n).frequency_hz.len(), 512);
         assert_eq!(spectrum(&times_s[..100], &residual_n[..100]), Spectrum::default());
-        assert_eq!(autocorrelation(&times_s, &[0.0; 3000], 1.0), Autocorrelation::default());
+        assert_eq!(autocorrelation(&times_s, &vec![0.0; 3000], 1.0), Autocorrelation::default());
     }
 }

@@ -43,10 +43,10 @@ pub fn continuum_fit(
     let named = |names: Vec<String>| Quantity::all_named(names.iter().map(String::as_str)).map_err(Fault::config);
     let options = TendonFitOptions { quantities: parameters.map(named).transpose()? };
     let measured: Vec<Run> = all.iter().map(|run| run.get().run.clone()).collect();
-    let names: Vec<String> = all.iter().map(|run| run.get().name().to_owned()).collect();
+    let sources: Vec<String> = all.iter().map(|run| run.get().name().to_owned()).collect();
     measured.iter().try_for_each(|run| check_disks(manipulator, run))?;
     let file = &manipulator.file;
-    let found = py.detach(|| with_own_threads(|| identify(file, &measured, &names, &options)))??;
+    let found = py.detach(|| with_own_threads(|| identify(file, &measured, &sources, &options)))??;
     log::warn(py, &found.result.warnings())?;
     let text = rewrite(&manipulator.text, "manipulator", &found.edit)?;
     let result = &found.result;

@@ -4,6 +4,7 @@ use fric_core::continuum::edit::rewrite;
 use fric_lab::continuum::identify::{Quantity, TendonFitOptions, identify};
 use fric_lab::continuum::{Run, columns};
 use fric_log::output::OutputFile;
+use fric_work::provenance::shown_path;
 
 use super::{Model, about, read_table};
 use crate::arguments::continuum::TendonFitArguments;
@@ -32,8 +33,8 @@ pub fn run(arguments: &TendonFitArguments) -> Outcome {
         let table = read_table(path, &columns::of_run(model.disk_count()))?;
         measured.push(Run::from_columns(&table, model.disk_count()).map_err(|error| about(path, error))?);
     }
-    let names: Vec<String> = runs.iter().map(|path| path.display().to_string()).collect();
-    let found = identify(&model.file, &measured, &names, &options).map_err(|error| match runs.as_slice() {
+    let shown: Vec<String> = runs.iter().map(|path| shown_path(path)).collect();
+    let found = identify(&model.file, &measured, &shown, &options).map_err(|error| match runs.as_slice() {
         [only] => about(only, error),
         _ => Failure::from(error),
     })?;

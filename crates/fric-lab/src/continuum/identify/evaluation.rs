@@ -20,7 +20,7 @@ use super::unknown::Unknown;
 /// Runs to compare with, and the file at which the search begins.
 pub struct Runs {
     pub given: ManipulatorTables,
-    runs: Vec<One>,
+    all: Vec<One>,
     has_gratings: bool,
     pub greatest_tension_n: f64,
 }
@@ -117,20 +117,20 @@ impl Runs {
             };
             Ok(One { whole: run.clone(), kept, is_dead })
         };
-        let runs: Vec<One> = runs.iter().map(one).collect::<Result<_, _>>()?;
-        let samples = runs.iter().flat_map(|run| run.whole.samples());
+        let all: Vec<One> = runs.iter().map(one).collect::<Result<_, _>>()?;
+        let samples = all.iter().flat_map(|run| run.whole.samples());
         let greatest_tension_n = samples.map(|sample| sample.tension_base_n).fold(0.0, f64::max);
         let greatest_tension_n = if greatest_tension_n > 0.0 { greatest_tension_n } else { 1.0 };
-        Ok(Self { given: file.tables().clone(), runs, has_gratings, greatest_tension_n })
+        Ok(Self { given: file.tables().clone(), all, has_gratings, greatest_tension_n })
     }
 
     /// Samples compared in each run.
     pub fn sample_counts(&self) -> Vec<usize> {
-        self.runs.iter().map(|run| run.kept.len()).collect()
+        self.all.iter().map(|run| run.kept.len()).collect()
     }
 
     pub fn has_base_tension(&self) -> bool {
-        self.runs.iter().all(|run| run.whole.has_tension())
+        self.all.iter().all(|run| run.whole.has_tension())
     }
 
     /// The start: the file as it is, with right lines.
@@ -146,7 +146,7 @@ impl Runs {
         let mut smooth = file.tables().clone();
         smooth.tendon.mu = OneOrEach::One(0.0);
         let smooth = *ManipulatorFile::check(smooth).ok()?.params();
-        let runs = self.runs.iter().enumerate().map(|(place, run)| {
+        let runs = self.all.iter().enumerate().map(|(place, run)| {
             let near = near.and_then(|near| near.runs.get(place));
             let gratings = gratings.as_ref().filter(|_| run.whole.has_shifts());
             run.evaluate(&file, &smooth, gratings, &state.lines, near)

@@ -114,7 +114,8 @@ impl Quantity {
             Self::Sigma,
         ];
         // A force on the tip that is no weight is not usual.
-        let is_usual = |quantity: &Self| *quantity != Self::TipLoad || tables.gravity_m_per_s2 != [0.0; 2];
+        let is_usual =
+            |quantity: &Self| *quantity != Self::TipLoad || tables.gravity_m_per_s2.iter().any(|part| *part != 0.0);
         usual.into_iter().filter(|quantity| is_usual(quantity) && !quantity.unknowns(tables).is_empty()).collect()
     }
 

@@ -74,7 +74,7 @@ impl Unknown {
     /// Whether the tables leave a place for it: no gravity can be turned where there is none.
     #[must_use]
     pub fn is_possible(self, tables: &ManipulatorTables) -> bool {
-        let has_gravity = tables.gravity_m_per_s2 != [0.0; 2];
+        let has_gravity = tables.gravity_m_per_s2.iter().any(|part| *part != 0.0);
         let has_mass = tables.disk_mass_kg > 0.0 || tables.backbone.mass_kg_per_m > 0.0 || tables.tip.mass_kg > 0.0;
         match self {
             Self::TipMass => has_gravity,
