@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use serde_json::Value;
 
 use super::report::{assert_self_contained, without_scripts};
-use super::support::{Place, assert_close, example_robot, root, unwrapped};
+use super::support::{Place, Run, assert_close, example_robot, root, unwrapped};
 
 /// The example manipulator.
 fn prototype() -> String {
@@ -290,7 +290,7 @@ fn info_says_what_is_impossible() {
         assert_eq!(possible(file), expected, "without {word}");
     }
     let bare = place.run(&["info", "mixed.csv"]).succeeds();
-    assert!(bare.stdout.contains("name a manipulator file"), "{bare:#?}");
+    assert!(unwrapped(&bare.stdout).contains("name a manipulator file"), "{bare:#?}");
 }
 
 #[test]
@@ -300,12 +300,13 @@ fn groups_that_are_missing_are_told() {
         place.write("part.csv", without(&text("mixed.csv"), word));
         place.run(&["continuum", "shape", "part.csv", "--model", "cal.toml"])
     };
+    let head = |run: &Run| run.stdout.lines().take(5).collect::<String>();
     let run = shape("shift").warns(&["`measured` is left out", "no gratings"]);
-    assert!(run.stdout.contains("history") && !run.stdout.contains("measured"), "{run:#?}");
+    assert!(head(&run).contains("history") && !head(&run).contains("measured"), "{run:#?}");
     let run = shape("marker").succeeds();
     assert!(run.stdout.contains("No markers to compare with."), "{run:#?}");
     let run = shape("tension").warns(&["no `tension_base_n`", "`history` are left out"]);
-    assert!(run.stdout.contains("measured") && !run.stdout.contains("history"), "{run:#?}");
+    assert!(head(&run).contains("measured") && !head(&run).contains("history"), "{run:#?}");
     let friction = ["continuum", "friction", "part.csv", "--model", "cal.toml"];
     place.run(&friction).warns(&["hole 1 is not known"]);
     place.write("part.csv", without(&text("mixed.csv"), "shift"));

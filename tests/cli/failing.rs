@@ -80,7 +80,19 @@ struct Outcome {
     files: BTreeMap<String, Vec<u8>>,
 }
 
+/// A JSON result or a page without when and how it was made; whether that is there to its end counts.
+fn without_origin(text: &str) -> String {
+    if let Some((result, origin)) = text.split_once("\"provenance\": {") {
+        return result.to_owned() + if origin.ends_with("}\n}\n") { "whole" } else { "" };
+    }
+    match text.split_once("<footer>").and_then(|(page, rest)| Some((page, rest.split_once("</footer>")?.1))) {
+        Some((page, end)) => page.to_owned() + end,
+        None => text.to_owned(),
+    }
+}
+
 fn without_times(text: &str) -> String {
+    let text = without_origin(text);
     let without_numbers: String = text.split_inclusive('\n').filter(|line| !line.contains("_ns\": ")).collect();
     let mut parts = without_numbers.split("one takes ");
     let begin = parts.next().unwrap_or_default().to_owned();

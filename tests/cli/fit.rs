@@ -7,7 +7,7 @@ use serde_json::Value;
 use super::logs::{with_data, without, without_reference_of};
 use super::replay::shape;
 use super::simulate::bench_robot;
-use super::support::{Place, Run, assert_close, example_robot};
+use super::support::{Place, Run, assert_close, example_robot, result_of};
 
 /// A log of a robot, simulated; made once for each cell.
 fn simulated(cell: &'static OnceLock<Vec<u8>>, robot: &str, options: &[&str]) -> &'static [u8] {
@@ -282,9 +282,9 @@ fn the_attached_robot_file_is_the_one_that_is_rewritten() {
     let place = bench();
     place.write("robot.toml", bench_robot());
     fit(&place, &["log.mcap", "--model", "robot.toml"]).succeeds();
-    let named = (place.read("fitted.toml"), place.read("fit.json"));
+    let named = (place.read("fitted.toml"), place.json("fit.json"));
     fit(&place, &["log.mcap"]).succeeds();
-    assert!((place.read("fitted.toml"), place.read("fit.json")) == named);
+    assert!((place.read("fitted.toml"), place.json("fit.json")) == named);
     // Whichever of several logs has it.
     place.write("bare.mcap", super::logs::rewrite(bench_log(), super::logs::Storage::Zstd, None, |_, _| true));
     let run = fit(&place, &["bare.mcap", "log.mcap"]).succeeds();
@@ -466,7 +466,7 @@ fn stdout_is_nothing_but_json_where_it_is_asked_for() {
     let place = bench();
     let run = place.run(&["fit", "log.mcap", "-o", "fitted.toml", "--json", "-"]);
     assert_eq!(run.code, Some(0), "{run:#?}");
-    assert_shape(&serde_json::from_str(&run.stdout).unwrap(), &[&CABLE, &FORCES]);
+    assert_shape(&result_of(run.stdout.as_bytes()), &[&CABLE, &FORCES]);
     assert!(run.stderr.contains("winch") && run.stderr.contains("F_pv"), "{run:#?}");
     assert_eq!(place.names(), ["fitted.toml", "guess.toml", "log.mcap"]);
 }

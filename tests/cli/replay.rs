@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::logs::without;
-use super::support::{Place, command, example_robot, root, short_log};
+use super::support::{Place, command, example_robot, result_of, root, short_log};
 
 /// All keys of a JSON value as paths, items of lists under `[]`.
 fn keys(value: &Value, path: &str, all: &mut Vec<String>) {
@@ -118,8 +118,7 @@ fn stdout_is_nothing_but_json_where_it_is_asked_for() {
     let place = Place::with_log();
     let run = place.run(&["replay", "log.mcap", "--json", "-"]);
     assert_eq!(run.code, Some(0), "{run:#?}");
-    let result: Value = serde_json::from_str(&run.stdout).unwrap();
-    assert_shape(&result, &[&ALWAYS, &ERRORS, &WRENCH]);
+    assert_shape(&result_of(run.stdout.as_bytes()), &[&ALWAYS, &ERRORS, &WRENCH]);
     // The table is not lost.
     assert!(run.stderr.contains("cable8") && run.stderr.contains("cycles; one takes"), "{run:#?}");
     assert_eq!(place.names(), ["log.mcap", "robot.toml"]);

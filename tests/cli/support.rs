@@ -97,6 +97,15 @@ impl Run {
     }
 }
 
+/// What a JSON says, without where it comes from: time and command differ from run to run.
+pub fn result_of(json: &[u8]) -> Value {
+    let mut result: Value = serde_json::from_slice(json).unwrap();
+    if let Some(origin) = result.as_object_mut().unwrap().remove("provenance") {
+        assert_eq!(origin["program"], "fric");
+    }
+    result
+}
+
 /// A text in one line, as it was before it was wrapped; columns stand one space apart.
 pub fn unwrapped(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
@@ -191,8 +200,9 @@ impl Place {
         fs::read(self.path(name)).unwrap()
     }
 
+    /// A result, see [`result_of`].
     pub fn json(&self, name: &str) -> Value {
-        serde_json::from_slice(&self.read(name)).unwrap()
+        result_of(&self.read(name))
     }
 
     /// The program's command line, to be changed before it runs.

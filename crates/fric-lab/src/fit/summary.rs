@@ -315,11 +315,13 @@ fn open_combination(cable: &FitCableResult, open: &OpenResult) -> String {
     let mut listed = vec![part(held).replacen(&held.parameter, &format!("{} of {}", held.parameter, cable.name), 1)];
     listed.extend(others.iter().map(part));
     let excitation = Parameter::named(&held.parameter).map_or("", |parameter| parameter.row().excitation);
+    let advice = format!(
+        "{} of {} is kept as given, and the others hold with it. To tell them apart record {excitation}.",
+        held.parameter, cable.name
+    );
     format!(
-        "\nThe log leaves a combination open: these together change nothing that it shows.\n  {}\n  {} of {} is kept as given, and \
-         the others hold with it. To tell them apart\n  record {excitation}.\n",
-        listed.join(", "),
-        held.parameter,
-        cable.name,
+        "\nThe log leaves a combination open: these together change nothing that it shows.\n{}{}",
+        wrapped("  ", &listed.join(", ")),
+        wrapped("  ", &advice)
     )
 }

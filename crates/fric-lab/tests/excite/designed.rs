@@ -86,7 +86,7 @@ fn standard_errors_are_those_that_a_fit_then_finds_and_less_than_those_of_the_id
 /// Of two effects that look alike, the evidence between them is what the fits of both models to a simulated log come to.
 #[test]
 fn evidence_is_what_fits_of_both_models_then_come_to() {
-    let hidden = "effects = [{ kind = \"bearing_drag\", force_n = 0.012 }]\n";
+    let hidden = "effects = [{ kind = \"bearing_drag\", drag_n = 0.012 }]\n";
     let robot = drive(hidden);
     let aim = Aim::Separate([Some(Effect::BearingDrag), Some(Effect::LoadNonlinearity)]);
     let experiment = designed(&robot, &loads(2.0, 10.0), question(aim)).unwrap();
@@ -106,7 +106,7 @@ fn evidence_is_what_fits_of_both_models_then_come_to() {
         let options = FitOptions { parameters: Some(Parameter::all_named(names).unwrap()), ..FitOptions::default() };
         fit_cables(&measurements, &options, &Progress::new())[0].errors.after_n.rms().unwrap().powi(2)
     };
-    let [right, wrong] = ["bearing_drag.force_n", "load_nonlinearity.exponent"].map(square);
+    let [right, wrong] = ["bearing_drag.drag_n", "load_nonlinearity.exponent"].map(square);
     #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
     let found = 0.5 * measurements.len() as f64 * (wrong / right).ln();
     assert!((0.5..2.0).contains(&(found / expected)), "{expected} expected, {found} found");
