@@ -187,9 +187,9 @@ const DRIVE: &str = "format = 'fric-robot/1'\nname = 'bench'\ncycle_s = 0.004\n[
 
 /// What `discover --json` writes of a cable, as far as it matters: a drag of the bearings for which another effect would do as well.
 const FOUND: &str = r#"{ "format": "fric-discover/1", "robot": "bench", "log": ["a.csv"], "cables": [ { "name": "drive", "noise_floor_n": 0.02,
-    "effects": [ { "kind": "bearing_drag", "parameters": { "drag_n": 0.012 },
+    "effects": [ { "kind": "bearing_drag", "parameters": { "drag_n": 0.05 },
                    "runner_up": { "kind": "load_nonlinearity", "delta_bic": -50.0, "held_out_rms_n": 0.02, "as_good": true } } ],
-    "tried": [], "parameters": { "mu": 0.018, "bearing_drag.drag_n": 0.012 },
+    "tried": [], "parameters": { "mu": 0.018, "bearing_drag.drag_n": 0.05 },
     "standard_errors": { "mu": 0.0001, "bearing_drag.drag_n": 0.001 } } ] }"#;
 
 #[test]

@@ -21,7 +21,8 @@ fn the_history_brings_the_tip_where_it_is_wanted() {
     let tracks = tracks(3);
     let mean_m = |way: Way| tracks.iter().find(|track| track.way == way).unwrap().mean_error_m();
     let [none_m, coulomb_m, history_m] = [Way::None, Way::Coulomb, Way::History].map(mean_m);
-    assert!(none_m > 0.01, "{none_m}: without friction there is nothing to compensate");
+    // Friction of the published μ costs millimetres on an arm of 0.3 m.
+    assert!(none_m > 0.004, "{none_m}");
     assert!(history_m <= 0.15 * none_m, "{history_m} {none_m}");
     // What is left is mostly across the tip's curve, where friction of both directions bends the arm unevenly and no tension helps.
     assert!(history_m <= 0.7 * coulomb_m, "{history_m} {coulomb_m}");

