@@ -14,6 +14,8 @@
 #![allow(clippy::doc_markdown, reason = "symbols of equations are no code items")]
 
 mod axis;
+mod candidates;
+mod certainty;
 mod clock;
 pub mod columns;
 pub mod continuum;
@@ -25,6 +27,8 @@ pub mod fit;
 pub mod hysteresis;
 mod random;
 pub mod replay;
+mod samples;
+mod search;
 pub mod simulate;
 pub mod text;
 pub mod trajectory;

@@ -7,26 +7,27 @@ use fric_core::parameters::{MU, NO_PRESLIDING_N_PER_M, OFFSET, SIGMA, VISCOUS, V
 use nalgebra::DMatrix;
 
 use super::Task;
-use super::candidates::around;
-use super::curve::curves;
-use super::empirical::{Table, has_table, table, without_table};
-use super::foreign::{Fault, RecordingFault, coarse_step_n, faulty_stretches, leave_out, of_stretches};
-use super::lines::{Line, Times, lines, motion_and_load};
+use super::faults::lines::{Line, Times, lines, motion_and_load};
+use super::faults::{Fault, RecordingFault, coarse_step_n, faulty_stretches, leave_out, of_stretches};
+use super::figures::curve::curves;
+use super::figures::profile::profile;
 use super::naming::{self, Named, Naming, STRONG_BIC, Search};
-use super::neighbours::neighbours_of;
-use super::noise::white_noise;
-use super::places::{Excess, Place};
-use super::profile::profile;
 use super::readiness::{lack_of, lack_of_noise, lack_of_samples};
 use super::report::{CableDiscovery, Candidate, Finding, Model, RunnerUp, Tried, Unexplained, Verdict};
+use super::rest::empirical::{Table, has_table, table, without_table};
+use super::rest::neighbours::neighbours_of;
+use super::rest::places::{Excess, Place};
+use super::rest::stretch::{Stretch, stretch_of_cable};
 use super::rest::{self, WORTH, wander};
-use super::split::{Block, split};
-use super::stretch::{Stretch, stretch_of_cable};
 use super::workbench::{self, Trial, Workbench};
+use crate::candidates::catalogue::around;
 use crate::effects::Around;
-use crate::fit::engine::{self, Condition, Standing, conditions, time};
 use crate::fit::{CableRecord, FitOptions, HALF_INTERVAL, Parameter, Row, SampleCounts};
 use crate::replay::Deviation;
+use crate::samples::conditions::{Condition, conditions, time};
+use crate::samples::noise::white_noise;
+use crate::samples::selection::Standing;
+use crate::samples::split::{Block, split};
 
 /// Lines whose frequencies differ by less than this share are the same.
 const SAME_LINE_RATIO: f64 = 1e-3;
@@ -45,19 +46,23 @@ pub const STAGES: usize = 4;
 pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> CableDiscovery {
     let stop = task.progress.stop_flag();
     if let Some(lack) = lack_of(record) {
-        return CableDiscovery::untold(record, engine::count(&engine::prepared(record)), lack);
+        return CableDiscovery::untold(
+            record,
+            crate::samples::selection::count(&crate::fit::cables::prepared(record)),
+            lack,
+        );
     }
     let stretches = faulty_stretches(record);
-    let mut standings = engine::prepared(record);
+    let mut standings = crate::fit::cables::prepared(record);
     leave_out(&stretches, record.interval_s, &mut standings);
-    let gang = engine::Gang::new(1, stop);
-    let paper = engine::Search::run(record, &standings, &FitOptions::default(), stop, gang.seat(0));
+    let gang = crate::search::gang::Gang::new(1, stop);
+    let paper = crate::fit::cables::Search::run(record, &standings, &FitOptions::default(), stop, gang.seat(0));
     task.stages.finish_one();
-    let samples = engine::count(&paper.standings);
+    let samples = crate::samples::selection::count(&paper.standings);
     if let Some(lack) = lack_of_samples(&samples, record.interval_s) {
         return CableDiscovery::untold(record, samples, lack);
     }
-    let counts = engine::used(&paper.standings);
+    let counts = crate::fit::cables::used(&paper.standings);
     let blocks = split(record);
     let conditions = conditions(record);
     // A rate has the sensor's noise in it, which the residual has too: no effect is steady over it.
@@ -65,7 +70,7 @@ pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> CableDiscove
     let with_time: Vec<Condition> = steady.cloned().chain([time(record)]).collect();
     let (mut start, held) = given_model(record, &paper.solution);
 
-    let measured = engine::measured(record);
+    let measured = crate::samples::interpolated::measured(record);
     let times = Times::of(record);
     let bench = Workbench { record: *record, blocks: &blocks, counts: &counts, measured: &measured, stop };
     // Between two measurements too: a line may be faster than they are.
@@ -125,7 +130,7 @@ pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> CableDiscove
 /// Sum of squares of the given model, fitted to the samples learned from, over those held out, N²; `None` where the log tells nothing.
 pub fn held_out_squares(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<f64> {
     let (counts, start) = given_to(record, stop)?;
-    let (blocks, measured) = (split(record), engine::measured(record));
+    let (blocks, measured) = (split(record), crate::samples::interpolated::measured(record));
     let bench = Workbench { record: *record, blocks: &blocks, counts: &counts, measured: &measured, stop };
     Some(bench.try_one(&start).held_out)
 }
@@ -135,25 +140,25 @@ pub fn given_to(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<(Vec<bool
     if lack_of(record).is_some() {
         return None;
     }
-    let mut standings = engine::prepared(record);
+    let mut standings = crate::fit::cables::prepared(record);
     leave_out(&faulty_stretches(record), record.interval_s, &mut standings);
-    let gang = engine::Gang::new(1, stop);
-    let paper = engine::Search::run(record, &standings, &FitOptions::default(), stop, gang.seat(0));
+    let gang = crate::search::gang::Gang::new(1, stop);
+    let paper = crate::fit::cables::Search::run(record, &standings, &FitOptions::default(), stop, gang.seat(0));
     let (start, _) = given_model(record, &paper.solution);
-    Some((engine::used(&paper.standings), start))
+    Some((crate::fit::cables::used(&paper.standings), start))
 }
 
 /// Adds a fault that was corrected for the whole log: the given model is the one that does not know of it.
 pub fn tell_of(found: &mut CableDiscovery, given: &CableRecord<'_>, fault: RecordingFault, stop: &AtomicBool) {
     found.faults.insert(0, fault);
     let Some((counts, start)) = given_to(given, stop) else { return };
-    let (blocks, measured) = (split(given), engine::measured(given));
+    let (blocks, measured) = (split(given), crate::samples::interpolated::measured(given));
     let bench = Workbench { record: *given, blocks: &blocks, counts: &counts, measured: &measured, stop };
     let base = bench.try_one(&start);
     found.residual_before_n = bench.residuals_n(&base.values);
     found.before = Model {
         held_out_n: judged(&found.residual_before_n, &bench.used(true)),
-        covariance: engine::covariance(&bench.problem(&base.free, None), &[base.values]),
+        covariance: crate::certainty::undetermined::covariance(&bench.problem(&base.free, None), &[base.values]),
         fitted: base.free,
         values: base.values,
     };
@@ -177,7 +182,7 @@ fn are_alike(one: &[Line], other: &[Line]) -> bool {
 
 /// The given model, with start values from the data for what it has of its own: of friction what acts, an offset if it has one (a
 /// sensor that was not tared is to be found, not to be fitted away), and the parameters of its effects; without what the log does not determine, which comes beside it.
-fn given_model(record: &CableRecord<'_>, paper: &engine::Solution) -> (workbench::Model, Vec<Parameter>) {
+fn given_model(record: &CableRecord<'_>, paper: &crate::search::solve::Solution) -> (workbench::Model, Vec<Parameter>) {
     let given = record.params.values();
     let undetermined = |parameter: &Parameter| paper.undetermined.iter().any(|unknown| unknown.parameter == *parameter);
     let all = FitOptions::default().free(record.params);
@@ -378,9 +383,10 @@ impl<'a> Case<'a> {
             let left_out = self.counts.iter().zip(counts).map(|(all, counts)| *all && !counts);
             let standing = |(standing, left_out)| if left_out { Standing::Flagged } else { standing };
             let standings: Vec<Standing> = self.standings.iter().copied().zip(left_out).map(standing).collect();
-            let gang = engine::Gang::new(1, self.stop);
+            let gang = crate::search::gang::Gang::new(1, self.stop);
             let record = self.record.with_params(&params);
-            let solution = engine::Search::run(&record, &standings, &options, self.stop, gang.seat(0)).solution;
+            let solution =
+                crate::fit::cables::Search::run(&record, &standings, &options, self.stop, gang.seat(0)).solution;
             let parameters = solution.unknowns.iter().map(|unknown| unknown.parameter).collect();
             Some(Fitted { values: *solution.values.first()?, parameters, covariance: solution.covariance })
         };
@@ -392,7 +398,7 @@ impl<'a> Case<'a> {
         of(|parameter| parameter.place() == OFFSET).filter(has_chance_offset).or_else(|| of(|_| false)).unwrap_or_else(
             || {
                 let problem = self.bench(counts).problem(&model.free, None);
-                let covariance = engine::covariance(&problem, &[model.values]);
+                let covariance = crate::certainty::undetermined::covariance(&problem, &[model.values]);
                 Fitted { values: model.values, parameters: model.free.clone(), covariance }
             },
         )
@@ -407,8 +413,9 @@ impl<'a> Case<'a> {
         let mut with_all = naming.model.model();
         with_all.free.extend(held);
         let trial = bench.try_one(&with_all);
-        let (_, all) = engine::vagueness(&bench.problem(&trial.free, None), &[trial.values]);
-        let is_told = |(vagueness, of): &(f64, engine::Unknown)| *vagueness <= 1.0 && held.contains(&of.parameter);
+        let (_, all) = crate::certainty::undetermined::vagueness(&bench.problem(&trial.free, None), &[trial.values]);
+        let is_told =
+            |(vagueness, of): &(f64, crate::search::solve::Unknown)| *vagueness <= 1.0 && held.contains(&of.parameter);
         all.into_iter().filter(is_told).map(|(_, of)| of.parameter).collect()
     }
 
@@ -450,7 +457,10 @@ impl<'a> Case<'a> {
         let before = Model {
             values: base.values,
             fitted: base.free.clone(),
-            covariance: engine::covariance(&self.bench(&outcome.counts).problem(&base.free, None), &[base.values]),
+            covariance: crate::certainty::undetermined::covariance(
+                &self.bench(&outcome.counts).problem(&base.free, None),
+                &[base.values],
+            ),
             held_out_n: held_out_of(&base.values),
         };
         let (values, parameters, covariance) = match table {

@@ -3,11 +3,11 @@
 use fric_core::robot::edit::set_monitor;
 use fric_core::robot::file::RobotFileError;
 
-use super::empirical::is_idle;
-use super::foreign::Fault;
+use super::faults::Fault;
 use super::report::CableDiscovery;
+use super::rest::empirical::is_idle;
 use crate::fit::Parameter;
-use crate::fit::engine::{NewValues, with_values};
+use crate::fit::rewritten::{NewValues, with_values};
 
 /// The text of a robot file with the extended models of its cables, in order: fitted values, and every parameter of each
 /// effect that was found; the monitor's `length_noise_m` where the lengths bear noise. A cable without a verdict keeps its values; everything else stays as it is written. `origin`

@@ -17,50 +17,35 @@
 //! The model is the control cycle's own; what is found runs in it as it is.
 
 mod cable;
-mod correction;
-mod curve;
-mod empirical;
-mod evidence;
 mod extended;
-mod foreign;
-mod length_noise;
-mod lines;
+mod faults;
+mod figures;
 pub(crate) mod naming;
-mod neighbours;
-mod places;
-mod profile;
-mod projection;
 pub(crate) mod readiness;
 mod report;
 mod rest;
 pub mod result;
-mod rivals;
-mod spectrum;
-mod steadiness;
-mod stretch;
 mod summary;
-mod timing;
 pub mod words;
 pub(crate) mod workbench;
 mod wrench;
 
-pub(crate) use crate::fit::{candidates, noise, ripple, split};
 use fric_core::effects::Effect;
 use rayon::prelude::*;
 
 use crate::fit::{CableRecord, FitError, Measurements, Progress, Reference, Stages};
 
-pub use correction::{CorrectedFit, Corrections, corrections, fit_cables_corrected};
-pub use curve::{FrictionCurves, FrictionPoint};
 pub use extended::extended;
-pub use foreign::{Fault, RecordingFault};
+pub use faults::correction::{CorrectedFit, Corrections, corrections, fit_cables_corrected};
+pub use faults::{Fault, RecordingFault};
+pub use figures::curve::{FrictionCurves, FrictionPoint};
+pub use figures::profile::{Profile, ProfileBin, ProfileCell};
+pub use figures::spectrum::{Autocorrelation, Spectrum, autocorrelation, spectrum};
 pub use naming::Refusal;
-pub use neighbours::Neighbour;
-pub use places::Place;
-pub use profile::{Profile, ProfileBin, ProfileCell};
 pub use readiness::Lack;
 pub use report::{CableDiscovery, Candidate, Finding, Model, RunnerUp, Tried, Unexplained, Verdict};
-pub use spectrum::{Autocorrelation, Spectrum, autocorrelation, spectrum};
+pub use rest::neighbours::Neighbour;
+pub use rest::places::Place;
 pub use wrench::{Geometry, GeometryFinding, WrenchDeviation, WrenchDiscovery, discover_wrench};
 
 /// What a discovery can be told.
@@ -88,17 +73,17 @@ struct Task<'a> {
 /// Looks at a cable with its reference where it belongs: as far as the given model tells, and then as far as the one that has what it lacked.
 fn discover_retimed(record: &CableRecord<'_>, task: &Task<'_>) -> (CableDiscovery, Option<RecordingFault>) {
     let stop = task.progress.stop_flag();
-    let Some((rows, fault)) = timing::retimed(record, stop) else {
+    let Some((rows, fault)) = faults::timing::retimed(record, stop) else {
         return (cable::discover_cable(record, task), None);
     };
     let found = cable::discover_cable(&record.with_signals(&rows), task);
     let named = found.findings.iter().any(|finding| finding.effect != Effect::Empirical);
     // What a table stands for may be the late reference itself.
-    let values = empirical::without_table(&found.after.values);
+    let values = rest::empirical::without_table(&found.after.values);
     let extended = record.params.with_values(&values).ok().filter(|_| named);
     let Some(params) = extended else { return (found, Some(fault)) };
     // What the given model lacks may have looked like it.
-    match timing::retimed(&record.with_params(&params), stop) {
+    match faults::timing::retimed(&record.with_params(&params), stop) {
         Some((rows, fault)) => (cable::discover_cable(&record.with_signals(&rows), task), Some(fault)),
         None => (cable::discover_cable(record, task), None),
     }
@@ -168,8 +153,8 @@ pub fn discover(
 ) -> Vec<CableDiscovery> {
     let given: Vec<CableRecord<'_>> = measurements.cables().collect();
     progress.begin(cable::STAGES * given.len());
-    let steadied = length_noise::steadied(measurements, progress.stop_flag());
-    let records = length_noise::records(&given, steadied.as_ref());
+    let steadied = faults::length_noise::steadied(measurements, progress.stop_flag());
+    let records = faults::length_noise::records(&given, steadied.as_ref());
     let of_cable = |(place, record): (usize, &CableRecord<'_>)| {
         let noisy = steadied.as_ref().and_then(|steadied| steadied.faults.get(place)?.clone());
         let stages = Stages::new(progress, cable::STAGES);
@@ -183,7 +168,7 @@ pub fn discover(
     let mut cables: Vec<CableDiscovery> = records.par_iter().enumerate().map(of_cable).collect();
     for (place, cable) in cables.iter_mut().enumerate() {
         if let Some(unexplained) = &mut cable.unexplained {
-            unexplained.neighbours = neighbours::neighbours_of(&cable.residual_after_n, place, &records);
+            unexplained.neighbours = rest::neighbours::neighbours_of(&cable.residual_after_n, place, &records);
         }
     }
     cables

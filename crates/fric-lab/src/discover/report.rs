@@ -4,13 +4,13 @@ use fric_core::effects::Effect;
 use fric_core::parameters::Values;
 use nalgebra::DMatrix;
 
-use super::curve::FrictionCurves;
-use super::foreign::RecordingFault;
+use super::faults::RecordingFault;
+use super::figures::curve::FrictionCurves;
+use super::figures::profile::Profile;
 use super::naming::Refusal;
-use super::neighbours::Neighbour;
-use super::places::Place;
-use super::profile::Profile;
 use super::readiness::Lack;
+use super::rest::neighbours::Neighbour;
+use super::rest::places::Place;
 use crate::fit::{CableRecord, Parameter, SampleCounts};
 use crate::replay::Deviation;
 
@@ -159,7 +159,7 @@ impl Model {
 
 impl CableDiscovery {
     /// A cable of which nothing can be told.
-    pub(super) fn untold(record: &CableRecord<'_>, samples: SampleCounts, lack: Lack) -> Self {
+    pub(crate) fn untold(record: &CableRecord<'_>, samples: SampleCounts, lack: Lack) -> Self {
         let model = Model {
             values: record.params.values(),
             fitted: Vec::new(),

@@ -10,11 +10,11 @@ use fric_core::parameters::NO_PRESLIDING_N_PER_M;
 use fric_core::robot::file::RobotFile;
 use serde::Serialize;
 
-use super::empirical;
-use super::foreign::{Fault, RecordingFault};
-use super::neighbours::Neighbour;
-use super::places::Place;
+use super::faults::{Fault, RecordingFault};
 use super::report::{self, CableDiscovery, Finding, Model, Tried, Unexplained, Verdict};
+use super::rest::empirical;
+use super::rest::neighbours::Neighbour;
+use super::rest::places::Place;
 use super::summary;
 use super::wrench::{GeometryFinding, WrenchDiscovery};
 use crate::errors::{ForceError, WrenchError};

@@ -15,7 +15,7 @@ const LEGEND: &str = "Before and after are the rms error on samples that no fit 
                       samples; after, of the extended one.";
 
 /// All of it.
-pub(super) fn describe(result: &DiscoverResult) -> String {
+pub(crate) fn describe(result: &DiscoverResult) -> String {
     let mut text = format!("{}: what the model lacks\n\n", result.robot);
     text += &overview(result);
     if let Some(gap) = &result.wrench {

@@ -4,9 +4,9 @@ use std::fmt::Write as _;
 
 use fric_core::effects::Effect;
 
-use super::foreign::Fault;
+use super::faults::Fault;
 use super::naming::Refusal;
-use super::places::LEAST_CONCENTRATION;
+use super::rest::places::LEAST_CONCENTRATION;
 use super::result::{
     CommonEffect, CommonParameter, DiscoverCableResult, EffectResult, Evidence, FaultResult, RunnerUpResult,
     TablePoint, TableResult, TriedResult, UnexplainedResult, WhereResult, WrenchComponent, WrenchGap,

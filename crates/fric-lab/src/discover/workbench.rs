@@ -10,9 +10,12 @@ use fric_core::parameters::{OFFSET, Values};
 use nalgebra::DVector;
 use rayon::prelude::*;
 
-use super::split::Block;
-use crate::fit::engine::{Comparison, Gang, Loss, Member, Problem, Seat, inverse_of_normal, search_near};
+use crate::certainty::undetermined::inverse_of_normal;
 use crate::fit::{CableRecord, Parameter, Row};
+use crate::samples::split::Block;
+use crate::search::gang::{Gang, Seat};
+use crate::search::problem::{Comparison, Loss, Member, Problem};
+use crate::search::solve::search_near;
 
 /// A model is judged this near to its minimum, in standard errors: the sum of squares changes by less than noise does.
 pub const NEAR_ERRORS: f64 = 0.5;

@@ -8,17 +8,18 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::thread;
 
-use super::gang::{Gang, Seat};
-use super::interpolated::measured;
-use super::newcomers::with_newcomers;
-use super::pass::Forces;
-use super::problem::{Comparison, Loss, Member, Problem};
-use super::record::{CableRecord, Measurements};
 use super::report::{CableFit, ForceErrors, OpenCombination};
-use super::selection::{self, Standing};
-use super::solve::{Solution, solve};
-use super::vector::Parameter;
 use super::{FitOptions, Progress, start};
+use crate::candidates::newcomers::with_newcomers;
+use crate::samples::interpolated::measured;
+use crate::samples::record::{CableRecord, Measurements};
+use crate::samples::selection;
+use crate::samples::selection::Standing;
+use crate::search::gang::{Gang, Seat};
+use crate::search::pass::Forces;
+use crate::search::problem::{Comparison, Loss, Member, Problem};
+use crate::search::solve::{Solution, solve};
+use crate::search::vector::Parameter;
 
 /// A warm-up that is wrong by more than this share of the samples, in per cent, is worth another fit.
 const MISJUDGED_PERCENT: usize = 1;
@@ -152,7 +153,7 @@ pub fn used(standings: &[Standing]) -> Vec<bool> {
 
 /// Takes out what the cables still remember of the time before each log, by what they would at the best start. One cable
 /// of several that never forgets it keeps it all along, and it adds up with its offset: the others can be told.
-pub(super) fn leave_out_warm_up(problem: &Problem<'_>, starts: &[Vec<Values>], standings: &mut [Standing]) {
+pub(crate) fn leave_out_warm_up(problem: &Problem<'_>, starts: &[Vec<Values>], standings: &mut [Standing]) {
     let best = starts.first().into_iter().flatten();
     for (member, values) in problem.members.iter().zip(best) {
         let mut left = standings.to_vec();
@@ -164,7 +165,7 @@ pub(super) fn leave_out_warm_up(problem: &Problem<'_>, starts: &[Vec<Values>], s
 }
 
 /// The results of the cables of a solved problem.
-pub(super) fn cable_fits(
+pub(crate) fn cable_fits(
     problem: &Problem<'_>,
     given: &[Values],
     solution: &Solution,

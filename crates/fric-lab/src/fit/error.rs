@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::record::Reference;
+use crate::samples::record::Reference;
 
 /// Data that no cable can be identified from.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]

@@ -4,9 +4,9 @@ use fric_core::CableParams;
 use fric_core::effects::Effect;
 use fric_core::parameters::OFFSET;
 
-use super::ripple::is_period;
-use super::solve::Weighing;
-use super::vector::Parameter;
+use crate::candidates::ripple::is_period;
+use crate::search::solve::Weighing;
+use crate::search::vector::Parameter;
 
 /// How to fit.
 #[derive(Clone, Debug, Default, PartialEq)]

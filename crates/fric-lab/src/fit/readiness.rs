@@ -5,8 +5,8 @@ use fric_core::robot::file::{LogTable, ReferenceTable, RobotFile};
 
 use super::balance::{ONE_LINE, ONE_LINE_ADVICE};
 use super::error::FitError;
-use super::record::Reference;
 use crate::discover::readiness::too_short;
+use crate::samples::record::Reference;
 
 /// How many rows of one or several logs have which signal.
 #[derive(Clone, Debug)]

@@ -3,10 +3,10 @@
 use fric_core::parameters::Values;
 use nalgebra::DMatrix;
 
-use super::optimizer::Termination;
-use super::selection::SampleCounts;
-use super::vector::Parameter;
 use crate::replay::{Deviation, WrenchErrors, WrenchReference};
+use crate::samples::selection::SampleCounts;
+use crate::search::optimizer::Termination;
+use crate::search::vector::Parameter;
 
 /// Errors of a cable's force at the platform.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

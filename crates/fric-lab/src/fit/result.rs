@@ -6,14 +6,14 @@ use serde::ser::SerializeMap as _;
 use serde::{Serialize, Serializer};
 
 use super::error::FitError;
-use super::optimizer::Termination;
 use super::readiness::Readiness;
 use super::report::{CableFit, OpenCombination, OpenPart, WrenchFit};
 use super::summary;
-use super::vector::Parameter;
 use crate::discover::RecordingFault;
 use crate::discover::result::FaultResult;
 use crate::errors::{ForceError, WrenchError, WrenchResult};
+use crate::search::optimizer::Termination;
+use crate::search::vector::Parameter;
 
 /// What was fitted to what.
 #[derive(Clone, Debug)]
@@ -95,7 +95,7 @@ pub struct OpenResult(pub Vec<OpenPartResult>);
 
 impl OpenResult {
     /// Whether a parameter is the one that is kept.
-    pub(super) fn is_held(&self, name: &str) -> bool {
+    pub(crate) fn is_held(&self, name: &str) -> bool {
         self.0.first().is_some_and(|held| held.parameter == name)
     }
 }

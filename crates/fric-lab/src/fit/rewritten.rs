@@ -7,7 +7,7 @@ use fric_core::robot::edit::{CableEdit, EffectEdit, FrictionEdit, rewrite};
 use fric_core::robot::file::{RobotFile, RobotFileError};
 
 use super::report::CableFit;
-use super::vector::Parameter;
+use crate::search::vector::Parameter;
 
 /// The text of a robot file with the fitted values of its cables, in order; everything else stays as it is written.
 /// `origin` says where it is from, for errors.

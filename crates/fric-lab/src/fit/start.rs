@@ -10,11 +10,11 @@ use std::ops::Range;
 use fric_core::parameters::{MU, NO_PRESLIDING_N_PER_M, OFFSET, SIGMA, VISCOUS, Values};
 use nalgebra::DMatrix;
 
-use super::gram::Gram;
-use super::problem::{Comparison, Member, Problem};
-use super::record::Row;
-use super::solve::search;
-use super::vector::{Coordinate, Parameter, with};
+use crate::samples::record::Row;
+use crate::search::gram::Gram;
+use crate::search::problem::{Comparison, Member, Problem};
+use crate::search::solve::search;
+use crate::search::vector::{Coordinate, Parameter, with};
 
 /// μ about which friction is linearised.
 const TYPICAL_MU: f64 = 0.02;

@@ -6,12 +6,12 @@ use fric_core::effects::Effect;
 use fric_core::parameters::{FRICTION_COUNT, MU, OFFSET, SIGMA, VISCOUS};
 
 use super::result::{FitCableResult, FitResult, Numbers, OpenPartResult, OpenResult};
-use super::vector::Parameter;
 use crate::discover::words::recording_lines;
+use crate::search::vector::Parameter;
 use crate::text::{digits_of, number, plain, table, wrapped};
 
 /// \[P\] table I, how sure it is, and what the log does not tell.
-pub(super) fn describe(result: &FitResult) -> String {
+pub(crate) fn describe(result: &FitResult) -> String {
     let from = match result.reference {
         "forces" => "the cable forces at the platform",
         "wrench" => "the wrench on the platform, all cables at once",

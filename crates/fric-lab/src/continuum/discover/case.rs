@@ -9,9 +9,9 @@ use crate::continuum::error::ContinuumError;
 use crate::continuum::gratings::Gratings;
 use crate::continuum::run::{Run, RunSample};
 use crate::continuum::shape_errors::{ComputedShape, Way, shapes};
-use crate::discover::noise::white_noise_in;
-use crate::discover::split::{DRAW, cut};
 use crate::replay::Deviation;
+use crate::samples::noise::white_noise_in;
+use crate::samples::split::{DRAW, cut};
 
 /// Samples compared at most; the history may take long steps while the tension moves one way.
 const MOST_SAMPLES: usize = 800;

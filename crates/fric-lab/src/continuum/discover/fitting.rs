@@ -7,8 +7,10 @@ use rayon::prelude::*;
 use super::case::{Case, Fit};
 use super::model::{Model, Parameter};
 use super::spread::shared_spread;
+use crate::certainty::scores::Scores;
+use crate::certainty::undetermined::inverse_of_normal;
 use crate::continuum::shape_errors::Way;
-use crate::fit::engine::{Gram, Scores, inverse_of_normal};
+use crate::search::gram::Gram;
 
 const MOST_STEPS: u32 = 8;
 const MOST_HALVINGS: u32 = 6;

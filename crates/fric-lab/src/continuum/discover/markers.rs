@@ -9,8 +9,8 @@ use crate::continuum::fbg::Tension;
 use crate::continuum::gratings::GratingSample;
 use crate::continuum::run::RunSample;
 use crate::continuum::shape_errors::{Way, shapes};
-use crate::discover::noise::white_noise_throughout;
 use crate::replay::Deviation;
+use crate::samples::noise::white_noise_throughout;
 
 /// What counts as noise: so many standard errors of the gratings' lines, and an error of the noise's own estimate.
 const LINE_ERRORS: f64 = 2.0;

@@ -88,7 +88,7 @@ fn of_holes(runs: &Runs, solution: &Solution) -> Option<DMatrix<f64>> {
         let prior = if row == column && row >= count + holes.len() { 1.0 } else { 0.0 };
         whole[(row, column)] + prior
     });
-    let inverse = crate::fit::engine::inverse_of_normal(&picked)?;
+    let inverse = crate::certainty::undetermined::inverse_of_normal(&picked)?;
     let gradient = DVector::from_iterator(others.len(), others.iter().map(|place| with_holes.gradient[*place]));
     let step = -(&inverse * gradient);
     let first = count - usize::from(shared.is_some());

@@ -8,8 +8,9 @@ use rayon::prelude::*;
 
 use super::evaluation::{Evaluation, Row, Runs, State};
 use super::unknown::Unknown;
-use crate::discover::noise::white_noise_throughout;
-use crate::fit::engine::{Scores, inverse_of_normal};
+use crate::certainty::scores::Scores;
+use crate::certainty::undetermined::inverse_of_normal;
+use crate::samples::noise::white_noise_throughout;
 
 /// Steps of one search.
 const MOST_STEPS: usize = 12;

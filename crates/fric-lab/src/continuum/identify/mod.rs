@@ -21,8 +21,9 @@ use self::least_squares::{Solution, solve};
 use super::error::ContinuumError;
 use super::gratings::Gratings;
 use super::run::Run;
+use crate::certainty::directions::{OpenDirection, open_directions};
+use crate::certainty::undetermined::inverse_of_normal;
 use crate::fit::HALF_INTERVAL;
-use crate::fit::engine::{OpenDirection, inverse_of_normal, open_directions};
 
 pub use quantity::Quantity;
 pub use result::{Disagreement, TendonFitResult, Undetermined};

@@ -7,11 +7,16 @@ use fric_core::parameters::Values;
 use nalgebra::{DMatrix, Matrix6, Vector6};
 
 use super::geometry::{Changes, Description, Geometry};
-use crate::fit::engine::{Comparison, Coordinate, Gram, Loss, Member, Problem, Scores, inverse_of_normal, minimize};
-use crate::fit::noise::white_noise;
-use crate::fit::split::Block;
+use crate::certainty::scores::Scores;
+use crate::certainty::undetermined::inverse_of_normal;
 use crate::fit::{CableRecord, Parameter};
 use crate::replay::{Deviation, WrenchReference};
+use crate::samples::noise::white_noise;
+use crate::samples::split::Block;
+use crate::search::gram::Gram;
+use crate::search::optimizer::minimize;
+use crate::search::problem::{Comparison, Loss, Member, Problem};
+use crate::search::vector::Coordinate;
 
 /// A number of a geometry is no further off than some such share of its size, and the friction than such a share of what is given. Each weighs as one
 /// more deviation, so that what the samples say nothing of stays.

@@ -23,16 +23,17 @@ use self::geometry::{Changes, Description};
 use self::naming::{Named, Naming, Search};
 use self::screen::Candidate;
 use super::cable::{BELIEVED_RATIO, acts};
-use super::curve::curves;
 use super::extended::extended;
+use super::figures::curve::curves;
 use super::naming::Refusal;
-use super::places::Excess;
 use super::report::{CableDiscovery, Finding, Model, RunnerUp, Tried, Unexplained, Verdict};
+use super::rest::places::Excess;
 use super::rest::{WORTH, ranges, wander, with_interpolated};
-use super::split::split;
-use crate::fit::engine::{self, ReferenceWrenches, conditions, first_model};
+use crate::fit::wrench::{ReferenceWrenches, first_model};
 use crate::fit::{CableRecord, FitError, Measurements, Parameter, Progress, Row};
 use crate::replay::{Deviation, WrenchErrors, WrenchReference};
+use crate::samples::conditions::conditions;
+use crate::samples::split::split;
 
 pub use geometry::Geometry;
 
@@ -116,7 +117,7 @@ pub fn discover_wrench(measurements: &Measurements<'_>, progress: &Progress) -> 
         blocks: records.first().map(split).unwrap_or_default(),
         records,
         description,
-        counts: engine::used(&first.standings),
+        counts: crate::fit::cables::used(&first.standings),
         measured: &references.measured,
         whitening: Matrix6::identity(),
         stop: progress.stop_flag(),
@@ -145,13 +146,21 @@ pub fn discover_wrench(measurements: &Measurements<'_>, progress: &Progress) -> 
     all.blocks.iter_mut().for_each(|block| block.held_out = false);
     let fitted = naming.confirmed(&all, |model| all.fit(&with_given(&all, model), AT_MINIMUM));
     let covariances = all.covariances(&fitted.model);
-    Case { bench: &bench, base: &base, naming: &naming, fitted: &fitted, samples: engine::count(&first.standings) }
-        .report(covariances.map(|[covariance, _]| covariance))
+    Case {
+        bench: &bench,
+        base: &base,
+        naming: &naming,
+        fitted: &fitted,
+        samples: crate::samples::selection::count(&first.standings),
+    }
+    .report(covariances.map(|[covariance, _]| covariance))
 }
 
 /// A model with the given friction where the samples do not determine it, now that it has what it lacked.
 fn with_given(bench: &Bench<'_>, model: &bench::Model) -> bench::Model {
-    let (_, all) = bench.with_problem(model, bench.used(false), |problem| engine::vagueness(problem, &model.values));
+    let (_, all) = bench.with_problem(model, bench.used(false), |problem| {
+        crate::certainty::undetermined::vagueness(problem, &model.values)
+    });
     let mut held = model.clone();
     for (_, of) in all.into_iter().filter(|(vagueness, of)| *vagueness > 1.0 && of.parameter.effect().is_none()) {
         let place = of.parameter.place();

@@ -15,12 +15,12 @@ use rayon::prelude::*;
 use super::bench::{Bench, Model, Trial, Unknown};
 use super::geometry::Geometry;
 use super::screen::{Candidate, Promise, promises};
+use crate::candidates::catalogue::{around, fitted, has};
+use crate::candidates::ripple::periods;
+use crate::certainty::undetermined::inverse_of_normal;
 use crate::discover::naming::{LEAST_GAIN, LEAST_SIZE, NEGLIGIBLE, Refusal, STRONG_BIC, delta_bic, is_at_end};
 use crate::effects::{self, Around};
 use crate::fit::Parameter;
-use crate::fit::candidates::{around, fitted, has};
-use crate::fit::engine::inverse_of_normal;
-use crate::fit::ripple::periods;
 use crate::replay::WrenchReference;
 
 /// Candidates that are fitted of those that promise most.

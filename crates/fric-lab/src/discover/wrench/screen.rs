@@ -11,10 +11,13 @@ use nalgebra::{DMatrix, DVector, Vector6};
 
 use super::bench::{Bench, Model};
 use super::geometry::Geometry;
+use crate::candidates::catalogue::{fitted, starts};
+use crate::certainty::undetermined::inverse_of_normal;
 use crate::effects::Around;
 use crate::fit::Parameter;
-use crate::fit::candidates::{fitted, starts};
-use crate::fit::engine::{Forces, Gram, Part, forces_of, inverse_of_normal};
+use crate::search::gang::forces_of;
+use crate::search::gram::Gram;
+use crate::search::pass::{Forces, Part};
 
 /// A direction of which less than this share is its own is one that the model has.
 const OWN_RATIO: f64 = 1e-6;

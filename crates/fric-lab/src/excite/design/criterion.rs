@@ -8,9 +8,12 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::certainty::determined::Yardstick;
+use crate::certainty::undetermined::inverse_of_normal;
 use crate::discover::naming::STRONG_BIC;
 use crate::fit::Parameter;
-use crate::fit::engine::{Gram, Problem, Yardstick, inverse_of_normal};
+use crate::search::gram::Gram;
+use crate::search::problem::Problem;
 use fric_core::parameters::Values;
 
 /// `JᵀJ`, `Jᵀr`, `rᵀr` and `N`.

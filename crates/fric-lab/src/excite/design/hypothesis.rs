@@ -8,13 +8,13 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 
 use super::predicted::sensed;
+use crate::candidates::catalogue;
+use crate::candidates::ripple::{period_of, periods};
 use crate::discover::naming::delta_bic;
 use crate::discover::workbench::{Model, NEAR_ERRORS, Trial, Workbench};
 use crate::effects::{self, Around, Sizing};
-use crate::fit::candidates;
-use crate::fit::ripple::{period_of, periods};
-use crate::fit::split::split;
 use crate::fit::{CableRecord, FitOptions, Parameter, Row};
+use crate::samples::split::split;
 use std::sync::atomic::AtomicBool;
 
 /// Strength of an effect whose size is not known, as a share of what machines have at most.
@@ -36,7 +36,7 @@ impl Hypothesis {
         let params = params.with_values(values).ok()?;
         let mut free = FitOptions::default().free(&params);
         // Also where a refit has made it small.
-        for parameter in effect.into_iter().flat_map(candidates::fitted) {
+        for parameter in effect.into_iter().flat_map(catalogue::fitted) {
             if !free.contains(&parameter) {
                 free.push(parameter);
             }
@@ -57,7 +57,7 @@ pub fn without(values: &Values, effect: Option<Effect>) -> Values {
 /// Values with an effect as strong as half of what machines have; `None` for the friction that every model has.
 pub fn with_typical(record: &CableRecord<'_>, values: &Values, effect: Effect, duration_s: f64) -> Option<Values> {
     let lab = effects::of(effect)?;
-    let around = candidates::around(record, values[MU], 0.0);
+    let around = catalogue::around(record, values[MU], 0.0);
     let mut sizing = Sizing {
         strength_ratio: STRENGTH_RATIO,
         mu: values[MU],
@@ -107,7 +107,7 @@ impl<'a> Prediction<'a> {
         let starts = match effect {
             Some(effect) => {
                 let around = around(&bench, base, noise_n, effect);
-                candidates::starts(effect, base, &around, &bench.record)
+                catalogue::starts(effect, base, &around, &bench.record)
             }
             None => vec![*base],
         };
@@ -137,7 +137,7 @@ impl<'a> Prediction<'a> {
 
 /// What a search begins from; of a ripple the periods too.
 fn around(bench: &Workbench<'_>, current: &Values, noise_n: f64, effect: Effect) -> Around {
-    let mut around = candidates::around(&bench.record, current[MU], noise_n);
+    let mut around = catalogue::around(&bench.record, current[MU], noise_n);
     if period_of(effect).is_some() {
         around.periods = periods(&bench.record, &bench.residuals_n(current));
     }

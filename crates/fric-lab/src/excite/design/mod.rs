@@ -26,10 +26,10 @@ use rayon::prelude::*;
 use self::criterion::{Measure, Sums, Test, Tests, objective, sums_of_logs};
 use self::hypothesis::{Hypothesis, Prediction, with_typical, without};
 use super::{Excitation, ExcitationError, ExcitationOptions};
+use crate::candidates::catalogue::has;
 use crate::discover::naming::STRONG_BIC;
-use crate::fit::candidates::has;
-use crate::fit::engine::{self, Comparison, Loss, Member, Problem};
 use crate::fit::{CableRecord, Measurements, Parameter, Progress, Reference};
+use crate::search::problem::{Comparison, Loss, Member, Problem};
 use crate::simulate::motion::Motion;
 use crate::trajectory::{LOAD_CHANGE_S, Piece, Trajectory, WorkBox};
 
@@ -424,7 +424,8 @@ impl<'a> Studio<'a> {
                 Case::Determine { model, wanted } => {
                     let prediction = Prediction::new(&record, &model.values, stop)?;
                     let problem = problem_of(prediction.record(), &model.free, stop);
-                    let yardstick = engine::yardsticks(&problem, &[model.values]).first().copied()?;
+                    let yardstick =
+                        crate::certainty::undetermined::yardsticks(&problem, &[model.values]).first().copied()?;
                     let place = |of: &Parameter| model.free.iter().position(|free| free == of);
                     let wanted = wanted.iter().filter_map(|of| Some((place(of)?, *of, model.values[of.place()])));
                     let measure = Measure::Knowledge { wanted: wanted.collect(), yardstick };
@@ -464,11 +465,12 @@ impl<'a> Studio<'a> {
             Case::Determine { model, wanted } => {
                 let prediction = Prediction::new(record, &model.values, stop)?;
                 let problem = problem_of(prediction.record(), &model.free, stop);
-                let yardstick = engine::yardsticks(&problem, &[model.values]).first().copied()?;
+                let yardstick =
+                    crate::certainty::undetermined::yardsticks(&problem, &[model.values]).first().copied()?;
                 let (matrix, ..) = problem.gram(&[model.values])?.normal_equations();
-                let inverse = engine::inverse_of_normal(&matrix)?;
+                let inverse = crate::certainty::undetermined::inverse_of_normal(&matrix)?;
                 let covariance = &inverse * (noise_n * noise_n)
-                    + engine::unlike_pulleys_covariance(&problem, &[model.values], &inverse);
+                    + crate::certainty::unlike_pulleys::covariance(&problem, &[model.values], &inverse);
                 #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
                 let count = record.rows.len() as f64;
                 let known = |parameter: &Parameter| {

@@ -124,7 +124,8 @@ mod tests {
     use super::*;
     use crate::excite::ExcitationOptions;
     use crate::excite::design::hypothesis::with_typical;
-    use crate::fit::engine::{Part, forces_of};
+    use crate::search::gang::forces_of;
+    use crate::search::pass::Part;
 
     /// Whatever the model, the cycle makes the platform force of the run of what the sensor is predicted to show.
     #[test]

@@ -6,8 +6,8 @@ use fric_core::signals::Conditioned;
 use fric_core::{CableParams, PoseWrap};
 
 use super::{Cable, ResidualFunction};
-use crate::fit::record::Row;
-use crate::fit::vector::Parameter;
+use crate::samples::record::Row;
+use crate::search::vector::Parameter;
 
 /// All that a residual function keeps beside the parameters of its cable.
 #[derive(Clone, Debug)]

@@ -12,11 +12,11 @@ pub use kept::KeptFunction;
 
 use super::FitOptions;
 use super::cables::{Search, prepared};
-use super::gang::Gang;
-use super::problem::{Comparison, Loss, Member, Problem};
-use super::record::{CableRecord, Row};
-use super::selection::Standing;
-use super::vector::{Coordinate, Parameter, with};
+use crate::samples::record::{CableRecord, Row};
+use crate::samples::selection::Standing;
+use crate::search::gang::Gang;
+use crate::search::problem::{Comparison, Loss, Member, Problem};
+use crate::search::vector::{Coordinate, Parameter, with};
 
 /// Residuals `f(p) − f_ref` in N of a cable's sound samples, and their derivatives, as functions of its free parameters.
 ///

@@ -1,0 +1,88 @@
+//! What may be missing: the rows of the catalogue, each with where its search starts.
+//!
+//! An effect whose parameters say nothing at their neutral values, or whose sum of squares has several valleys, is started
+//! from several places; the data tell which.
+
+use fric_core::effects::Effect;
+use fric_core::parameters::{MU, NO_PRESLIDING_N_PER_M, SIGMA, VISCOUS, Values};
+
+use crate::effects;
+use crate::effects::{Around, Periods};
+use crate::replay::Deviation;
+use crate::samples::record::{CableRecord, PLAY_OF_NOISE};
+use crate::search::vector::Parameter;
+
+/// μ that a frictionless model starts from.
+const TYPICAL_MU: f64 = 0.02;
+/// Presliding distances that a model without presliding starts from, m.
+const PRESLIDING_M: [f64; 4] = [3e-5, 2e-4, 1e-3, 6e-3];
+
+/// Of a cable whose friction has come to a coefficient of `mu`, with this much noise; no ripple.
+pub fn around(record: &CableRecord<'_>, mu: f64, noise_n: f64) -> Around {
+    let gain = record.params.frictionless_gain();
+    let (mut tension, mut speed) = (Deviation::default(), Deviation::default());
+    let (mut sum_n, mut count) = (0.0, 0.0_f64);
+    for row in record.rows.iter().filter(|row| row.is_sound()) {
+        tension.add(row.signals.sensor_force_n * gain);
+        (sum_n, count) = (sum_n + row.signals.sensor_force_n * gain, count + 1.0);
+        if row.signals.displacement_m.abs() > 0.0 {
+            speed.add(row.signals.speed_m_per_s);
+        }
+    }
+    let tension_n = tension.rms().unwrap_or(1.0);
+    Around {
+        cycle_s: record.cycle_s,
+        tension_n,
+        mean_tension_n: sum_n / count.max(1.0),
+        noise_n,
+        friction_n: mu * tension_n,
+        speed_m_per_s: speed.rms().unwrap_or(0.1).max(1e-4),
+        end_s: record.rows.iter().map(|row| row.cycle).fold(0.0, f64::max) * record.cycle_s,
+        mu,
+        length_noise_m: record.length_noise_m().unwrap_or(0.0).max(record.length_play_m / PLAY_OF_NOISE),
+        pulley_count: u32::try_from(record.params.pulley_count()).unwrap_or(0),
+        periods: Periods::default(),
+    }
+}
+
+/// Whether a model has what an effect adds.
+pub fn has(effect: Effect, values: &Values) -> bool {
+    match effect {
+        Effect::Coulomb => values[MU] > 0.0,
+        Effect::Viscous => values[VISCOUS] > 0.0,
+        Effect::Presliding => values[SIGMA] < NO_PRESLIDING_N_PER_M,
+        _ => Parameter::of(effect)
+            .filter(|parameter| parameter.row().fitted)
+            .any(|parameter| values[parameter.place()].to_bits() != parameter.row().neutral.to_bits()),
+    }
+}
+
+/// Parameters that a fit varies for an effect.
+pub fn fitted(effect: Effect) -> Vec<Parameter> {
+    Parameter::of(effect).filter(|parameter| parameter.row().fitted).collect()
+}
+
+/// Values to start from when an effect joins a model that has come to `current`.
+pub fn starts(effect: Effect, current: &Values, around: &Around, record: &CableRecord<'_>) -> Vec<Values> {
+    let set = |changes: &[(&str, f64)]| {
+        let mut values = *current;
+        for (key, value) in changes {
+            if let Some(parameter) = Parameter::of(effect).find(|parameter| parameter.row().key == *key) {
+                values[parameter.place()] = value.clamp(parameter.row().min, parameter.row().max);
+            }
+        }
+        values
+    };
+    #[expect(clippy::cast_precision_loss, reason = "at most MAX_PULLEYS")]
+    let pulleys = record.params.pulley_count() as f64;
+    let tenth_n = 0.1 * around.friction_n.max(0.01 * around.tension_n) / pulleys;
+    match effect {
+        Effect::Coulomb => vec![set(&[("mu", TYPICAL_MU)])],
+        Effect::Viscous => vec![set(&[("viscous_n_s_per_m", tenth_n / around.speed_m_per_s)])],
+        Effect::Presliding => {
+            let one_n_per_m = record.params.memory_m_per_n(current[MU].max(1e-4), 1.0) * around.tension_n;
+            PRESLIDING_M.map(|way_m| set(&[("sigma_n_per_m", one_n_per_m / way_m)])).to_vec()
+        }
+        _ => effects::of(effect).iter().flat_map(|lab| (lab.starts)(around)).map(|start| set(&start)).collect(),
+    }
+}

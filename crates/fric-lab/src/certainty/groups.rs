@@ -1,0 +1,72 @@
+//! Samples grouped by operating conditions, to see how an estimate depends on which of them a log happens to have.
+
+use crate::samples::conditions::{Spacing, conditions, sign, time};
+use crate::samples::record::CableRecord;
+
+/// Samples that tell where the bins of a condition end.
+const ENOUGH: usize = 4096;
+/// No group: a sample that has no value of the condition.
+const NONE: u16 = u16::MAX;
+
+/// One grouping for each operating condition, by its bins and the direction of motion.
+#[derive(Clone, Debug)]
+pub struct Groups {
+    /// Of each condition, the group of every sample.
+    pub groupings: Vec<Grouping>,
+}
+
+/// The groups of one condition.
+#[derive(Clone, Debug)]
+pub struct Grouping {
+    groups: Vec<u16>,
+    /// How many groups there are.
+    pub count: usize,
+}
+
+impl Groups {
+    /// Of a cable's samples.
+    pub fn of(record: &CableRecord<'_>) -> Self {
+        // What has the sensor's noise in it is grouped by what the residual has in it too.
+        let has_noise = |condition: &crate::samples::conditions::Condition| {
+            ["sensor_force", "force_rate"].contains(&condition.signal)
+        };
+        let mut all = conditions(record);
+        all.retain(|condition| !has_noise(condition));
+        all.push(time(record));
+        let grouping = |condition: crate::samples::conditions::Condition| {
+            let (Spacing::Crowds(bins) | Spacing::Widths(bins)) = condition.bins;
+            let stride = condition.values.len() / ENOUGH + 1;
+            let mut few: Vec<f64> =
+                condition.values.iter().step_by(stride).copied().filter(|value| value.is_finite()).collect();
+            few.sort_by(f64::total_cmp);
+            let edge = |bin: usize| few.get(bin * few.len() / bins).copied();
+            let mut edges: Vec<f64> = (1..bins).filter_map(edge).collect();
+            edges.dedup_by(|one, other| one.to_bits() == other.to_bits());
+            let group = |(value, row): (&f64, &crate::samples::record::Row)| {
+                let bin = edges.partition_point(|edge| edge <= value);
+                let direction = sign(row.signals.displacement_m);
+                let direction = if direction > 0.0 { 2 } else { usize::from(direction < 0.0) };
+                if value.is_finite() { u16::try_from(3 * bin + direction).unwrap_or(NONE) } else { NONE }
+            };
+            let groups = condition.values.iter().zip(record.rows).map(group).collect();
+            Grouping { groups, count: 3 * (edges.len() + 1) }
+        };
+        Self { groupings: all.into_iter().map(grouping).collect() }
+    }
+}
+
+#[cfg(test)]
+impl Groups {
+    /// So many groups that the samples belong to in turn.
+    pub fn every(count: usize, samples: usize) -> Self {
+        let groups = (0..samples).map(|place| u16::try_from(place % count).unwrap_or(NONE)).collect();
+        Self { groupings: vec![Grouping { groups, count }] }
+    }
+}
+
+impl Grouping {
+    /// The group of a sample.
+    pub fn of_sample(&self, place: usize) -> Option<usize> {
+        self.groups.get(place).filter(|group| **group != NONE).map(|group| usize::from(*group))
+    }
+}

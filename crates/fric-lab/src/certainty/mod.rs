@@ -1,0 +1,12 @@
+//! How well the samples determine an estimate.
+//!
+//! [`scores`] gives the covariance under correlated residuals, over the [`groups`] of samples in one operating condition;
+//! [`unlike_pulleys`] adds what differences between a cable's pulleys can do. [`determined`] and [`undetermined`] decide which parameters the
+//! samples determine, [`directions`] finds the combinations that they leave open.
+
+pub mod determined;
+pub mod directions;
+pub mod groups;
+pub mod scores;
+pub mod undetermined;
+pub mod unlike_pulleys;

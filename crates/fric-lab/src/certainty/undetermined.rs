@@ -1,0 +1,249 @@
+//! What the samples leave open: how sure each parameter is, which are held at their given values, and what each of those is
+//! confused with.
+//!
+//! As long as a parameter is undetermined (see [`Yardstick`]) one is held, and the rest fitted again. Which one, the open
+//! directions of the information matrix say ([`open_directions`]): of the least known direction the parameter with the most
+//! weight. Of the parameters of one cable an offset comes last, for it does no harm elsewhere; of the offsets of several cables
+//! that only together have an effect (an inner tension of the platform) the one with the most weight is held, for the others
+//! make up for what it is wrong by.
+
+use std::sync::Arc;
+
+use fric_core::parameters::{OFFSET, SIGMA, Values};
+use nalgebra::DMatrix;
+
+use super::determined::{HALF_INTERVAL, Yardstick};
+use super::directions::{LEAST_WEIGHT, OpenDirection, open_directions};
+use super::groups::Groups;
+use super::unlike_pulleys;
+use crate::fit::report::{OpenCombination, OpenPart};
+use crate::replay::Deviation;
+use crate::search::optimizer::Termination;
+use crate::search::pass::Forces;
+use crate::search::problem::{Comparison, Member, Problem};
+use crate::search::solve::{CONTRADICTION_RATIO, NEAR_ERRORS, Solution, Unknown, hold, squares, unknowns};
+use crate::search::vector::Coordinate;
+
+/// What is known of the parameters at some values.
+struct Knowledge {
+    unknowns: Vec<Unknown>,
+    /// `JᵀJ`; `None` where it is not of numbers.
+    normal: Option<DMatrix<f64>>,
+    covariance: DMatrix<f64>,
+    /// Of each parameter; above 1 it is undetermined.
+    vagueness: Vec<f64>,
+}
+
+impl Knowledge {
+    fn of(problem: &Problem<'_>, values: &[Values]) -> Self {
+        let (normal, covariance, leverages) = uncertainty(problem, values, None);
+        let sticks = yardsticks(problem, values);
+        let of = |(place, unknown): (usize, &Unknown)| {
+            let value = values.get(unknown.member).map_or(f64::NAN, |values| values[unknown.parameter.place()]);
+            let standard_error = covariance[(place, place)].sqrt();
+            let leverage = leverages.get(place).copied().unwrap_or(0.0);
+            sticks
+                .get(unknown.member)
+                .map_or(f64::INFINITY, |stick| stick.vagueness(&unknown.parameter, value, standard_error, leverage))
+        };
+        let unknowns = unknowns(problem);
+        let vagueness = unknowns.iter().enumerate().map(of).collect();
+        Self { unknowns, normal, covariance, vagueness }
+    }
+
+    /// The open directions; the scale of each parameter is what makes its own interval as wide as it is vague.
+    fn directions(&self) -> Vec<OpenDirection> {
+        let count = self.unknowns.len();
+        let Some((normal, inverse)) =
+            self.normal.as_ref().and_then(|normal| Some((normal, inverse_of_normal(normal)?)))
+        else {
+            return open_directions(&DMatrix::from_element(count, count, f64::NAN));
+        };
+        let scale = |place: usize| {
+            let vagueness = self.vagueness.get(place).copied().unwrap_or(f64::INFINITY);
+            let scale = HALF_INTERVAL * inverse[(place, place)].sqrt() / vagueness;
+            if scale.is_finite() { scale } else { 0.0 }
+        };
+        open_directions(&DMatrix::from_fn(count, count, |row, column| {
+            normal[(row, column)] * scale(row) * scale(column)
+        }))
+    }
+
+    /// Which parameter to hold, and the combination that it stands for; `None` where all are determined, or to be varied in any
+    /// case.
+    fn to_hold(&self, kept: &[Unknown]) -> Option<(Unknown, OpenCombination)> {
+        let is_kept = |place: usize| self.unknowns.get(place).is_none_or(|unknown| kept.contains(unknown));
+        let vagueness = |place: usize| self.vagueness.get(place).copied().unwrap_or(f64::INFINITY);
+        if !(0..self.unknowns.len()).any(|place| vagueness(place) > 1.0 && !is_kept(place)) {
+            return None;
+        }
+        let is_offset =
+            |place: usize| self.unknowns.get(place).is_some_and(|unknown| unknown.parameter.place() == OFFSET);
+        let of_direction = |direction: &OpenDirection| {
+            let parts = direction.parts();
+            let (offsets, others): (Vec<usize>, Vec<usize>) = parts.iter().partition(|place| is_offset(**place));
+            let first_of = |places: Vec<usize>| places.into_iter().find(|place| !is_kept(*place));
+            let held = if offsets.len() > 1 {
+                first_of(offsets).or_else(|| first_of(others))
+            } else {
+                first_of(others).or_else(|| first_of(offsets))
+            };
+            Some((held?, parts, direction.clone()))
+        };
+        let (held, mut parts, direction) = self.directions().iter().find_map(of_direction)?;
+        // Along the direction each parameter moves in proportion to its weight and its own standard error.
+        let step = |place: usize| {
+            let weight = direction.weights.get(place).copied().unwrap_or(0.0);
+            weight * self.covariance[(place, place)].sqrt() / vagueness(place)
+        };
+        // Of what is held the step is 1.96 standard errors.
+        let factor = HALF_INTERVAL * self.covariance[(held, held)].sqrt() / step(held);
+        // Parameters of one kind count by their own unit.
+        let is_alike = |place: usize| {
+            self.unknowns.get(place).map(|unknown| unknown.parameter)
+                == self.unknowns.get(held).map(|held| held.parameter)
+                && step(place).abs() >= LEAST_WEIGHT * step(held).abs()
+        };
+        parts.extend((0..self.unknowns.len()).filter(|place| is_alike(*place)));
+        parts.sort_unstable();
+        parts.dedup();
+        parts.retain(|place| *place != held);
+        parts.insert(0, held);
+        let part = |place: &usize| {
+            let Unknown { member, parameter } = *self.unknowns.get(*place)?;
+            Some(OpenPart { cable: member, parameter, step: factor * step(*place) })
+        };
+        let held = *self.unknowns.get(held)?;
+        Some((held, OpenCombination { parts: parts.iter().filter_map(part).collect() }))
+    }
+}
+
+impl Solution {
+    /// Puts what the search was driven to an end of its range for at that end.
+    fn settle_at_bounds(&mut self, knowledge: &Knowledge, cycle_s: f64) {
+        self.at_bound.clear();
+        for (place, unknown) in knowledge.unknowns.iter().enumerate() {
+            let Some(values) = self.values.get_mut(unknown.member) else { continue };
+            let value = &mut values[unknown.parameter.place()];
+            // Of what is determined a hundredth of a standard error is nothing.
+            let is_determined = knowledge.vagueness.get(place).is_some_and(|vagueness| *vagueness <= 1.0);
+            let near = if is_determined { NEAR_ERRORS * knowledge.covariance[(place, place)].sqrt() } else { 0.0 };
+            let bound = Coordinate::of(&unknown.parameter, cycle_s).bound_at(*value, near);
+            // Beyond all stiffness there is none, which a file says by leaving it out.
+            if let Some(bound) = bound.filter(|bound| unknown.parameter.place() != SIGMA || *bound < *value) {
+                *value = bound;
+                self.at_bound.push(*unknown);
+            }
+        }
+    }
+
+    /// Holds one parameter after the other that the samples do not determine. One whose given value the samples contradict
+    /// stays as found: they know that much.
+    pub(crate) fn hold_undetermined(&mut self, problem: &mut Problem<'_>, given: &[Values], cycle_s: f64) {
+        let mut kept = Vec::new();
+        let mut least = None;
+        loop {
+            let knowledge = Knowledge::of(problem, &self.values);
+            let stopped = self.termination == Termination::Stopped;
+            self.settle_at_bounds(&knowledge, cycle_s);
+            let next = knowledge.to_hold(&kept).filter(|_| !stopped);
+            (self.covariance, self.unknowns) = (knowledge.covariance, knowledge.unknowns);
+            let Some((held, combination)) = next else { return };
+            let (members, found, termination) = (problem.members.clone(), self.values.clone(), self.termination);
+            // By what all were before the first was held: many small steps are one big one.
+            let bound = *least.get_or_insert_with(|| squares(problem, &self.values)) * (1.0 + CONTRADICTION_RATIO);
+            hold(problem, held, &mut self.values, given);
+            self.search_on(problem, cycle_s);
+            if squares(problem, &self.values) > bound {
+                (problem.members, self.values, self.termination) = (members, found, termination);
+                kept.push(held);
+            } else {
+                self.undetermined.push(held);
+                self.open.push(combination);
+            }
+        }
+    }
+}
+
+/// Covariance of what a problem varies at some values, and in its order how vague each parameter is: above 1 where the samples do
+/// not determine it, see [`Yardstick`].
+pub fn vagueness(problem: &Problem<'_>, values: &[Values]) -> (DMatrix<f64>, Vec<(f64, Unknown)>) {
+    let Knowledge { unknowns, covariance, vagueness, .. } = Knowledge::of(problem, values);
+    (covariance, vagueness.into_iter().zip(unknowns).collect())
+}
+
+/// What matters for each cable of a problem.
+pub fn yardsticks(problem: &Problem<'_>, values: &[Values]) -> Vec<Yardstick> {
+    let forces = problem.forces(values).unwrap_or_default();
+    let of = |((member, values), forces): ((&Member<'_>, &Values), &Arc<Forces>)| {
+        let gain = member.record.params.frictionless_gain();
+        let (mut friction, mut tension) = (Deviation::default(), Deviation::default());
+        for (cycle, row) in member.record.rows.iter().enumerate().filter(|(_, row)| row.is_sound()) {
+            let frictionless_n = row.signals.sensor_force_n * gain;
+            friction.add(forces.at(cycle).0 - values[OFFSET] - frictionless_n);
+            tension.add(frictionless_n);
+        }
+        let [friction_n, tension_n] = [friction, tension].map(|force| force.rms().unwrap_or(0.0));
+        Yardstick::new(friction_n, tension_n, member.record.params.pulley_count())
+    };
+    problem.members.iter().zip(values).zip(&forces).map(of).collect()
+}
+
+/// Covariance of what a problem varies, infinite where the samples say nothing.
+pub fn covariance(problem: &Problem<'_>, values: &[Values]) -> DMatrix<f64> {
+    uncertainty(problem, values, None).1
+}
+
+/// The same as it is reported: a single cable's is also taken over groups of samples in the same condition, and what unlike pulleys do
+/// comes on top.
+pub fn reported_covariance(problem: &Problem<'_>, values: &[Values]) -> DMatrix<f64> {
+    let groups = match (&problem.comparison, problem.members.as_slice()) {
+        (Comparison::Forces, [member]) => Some(Groups::of(&member.record)),
+        _ => None,
+    };
+    let (normal, covariance, _) = uncertainty(problem, values, groups);
+    match normal.as_ref().and_then(inverse_of_normal) {
+        Some(inverse) => covariance + unlike_pulleys::covariance(problem, values, &inverse),
+        None => covariance,
+    }
+}
+
+/// Matrix `JᵀJ`, `None` where it is not of numbers; covariance; and by how much each parameter moves for residuals of 1 N in every
+/// sample, at worst.
+fn uncertainty(
+    problem: &Problem<'_>,
+    values: &[Values],
+    groups: Option<Groups>,
+) -> (Option<DMatrix<f64>>, DMatrix<f64>, Vec<f64>) {
+    let count = problem.parameter_count();
+    let unknown = || (None, DMatrix::from_diagonal_element(count, count, f64::INFINITY), vec![f64::INFINITY; count]);
+    let Some((gram, scores)) = problem.gram_and_scores(values, groups) else { return unknown() };
+    let (matrix, ..) = gram.normal_equations();
+    let Some(inverse) = inverse_of_normal(&matrix) else { return unknown() };
+    let covariance = scores.covariance(&inverse);
+    let silent = |place: usize| matrix[(place, place)] <= 0.0;
+    let finite = |row, column| if row == column && silent(row) { f64::INFINITY } else { covariance[(row, column)] };
+    // Residuals of a wrench are no forces of a cable.
+    #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
+    let samples = match problem.comparison {
+        Comparison::Forces => problem.used.iter().filter(|used| **used).count() as f64,
+        Comparison::Wrench { .. } => 0.0,
+    };
+    let leverages = inverse.diagonal().iter().map(|variance| (samples * variance).sqrt()).collect();
+    let covariance = DMatrix::from_fn(count, count, finite);
+    (Some(matrix), covariance, leverages)
+}
+
+/// Inverse of a matrix `JᵀJ`, scaled meanwhile; what has no effect at all gets an all but infinite variance of its own. `None` where
+/// the matrix is not of numbers.
+pub fn inverse_of_normal(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    let count = matrix.nrows();
+    let scale: Vec<f64> =
+        matrix.diagonal().iter().map(|square| if *square > 0.0 { square.sqrt().recip() } else { 1.0 }).collect();
+    let scaled = DMatrix::from_fn(count, count, |row, column| {
+        let vanishing = if row == column { 1e-12 } else { 0.0 };
+        matrix[(row, column)] * scale[row] * scale[column] + vanishing
+    });
+    let inverse = scaled.cholesky()?.inverse();
+    Some(DMatrix::from_fn(count, count, |row, column| inverse[(row, column)] * scale[row] * scale[column]))
+}

@@ -1,0 +1,5 @@
+//! What figures show of a discovery: residuals over a condition, friction over speed and length, spectrum and autocorrelation.
+
+pub mod curve;
+pub mod profile;
+pub mod spectrum;

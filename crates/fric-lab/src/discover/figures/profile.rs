@@ -1,0 +1,98 @@
+//! A residual over one operating condition, before and after: what a figure shows of a place.
+
+use crate::fit::CableRecord;
+use crate::samples::bins::Bins;
+use crate::samples::conditions::{Condition, Spacing, sign};
+
+/// Most bins of a figure.
+const MOST_BINS: usize = 32;
+
+/// Two residuals over one condition.
+#[derive(Clone, Debug)]
+pub struct Profile {
+    /// The condition.
+    pub signal: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// In the order of the condition.
+    pub bins: Vec<ProfileBin>,
+    /// The bins are as wide as each other; otherwise they hold as many samples.
+    pub are_even: bool,
+}
+
+/// One bin of the condition.
+#[derive(Clone, Copy, Debug)]
+pub struct ProfileBin {
+    /// Where it begins, in the condition's unit.
+    pub from: f64,
+    /// Where it ends.
+    pub to: f64,
+    /// Residual of the given model.
+    pub before: ProfileCell,
+    /// And of the extended one.
+    pub after: ProfileCell,
+}
+
+/// A residual in one bin.
+#[derive(Clone, Copy, Debug)]
+pub struct ProfileCell {
+    /// Mean while the cable is paid out, N; NaN without a sample.
+    pub paying_out_n: f64,
+    /// And while it is reeled in.
+    pub reeling_in_n: f64,
+    /// Root mean square in any direction, N.
+    pub rms_n: f64,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums {
+    /// Paying out, reeling in, any direction.
+    counts: [f64; 3],
+    totals: [f64; 2],
+    squares: f64,
+}
+
+impl Sums {
+    fn add(&mut self, direction: f64, residual_n: f64) {
+        let place = if direction > 0.0 { Some(0) } else { (direction < 0.0).then_some(1) };
+        if let Some(place) = place {
+            self.counts[place] += 1.0;
+            self.totals[place] += residual_n;
+        }
+        self.counts[2] += 1.0;
+        self.squares += residual_n * residual_n;
+    }
+
+    fn cell(&self) -> ProfileCell {
+        let [out, back, all] = self.counts;
+        ProfileCell {
+            paying_out_n: self.totals[0] / out,
+            reeling_in_n: self.totals[1] / back,
+            rms_n: (self.squares / all).sqrt(),
+        }
+    }
+}
+
+/// Both residuals, N, NaN where a sample does not count, over a condition; `None` where it is the same all along.
+pub fn profile(record: &CableRecord<'_>, condition: &Condition, before_n: &[f64], after_n: &[f64]) -> Option<Profile> {
+    let condition = &Condition { bins: condition.bins.at_most(MOST_BINS), ..condition.clone() };
+    let bins = Bins::new(condition, before_n)?;
+    let mut sums = vec![[Sums::default(); 2]; bins.count()];
+    let samples = condition.values.iter().zip(record.rows).zip(before_n.iter().zip(after_n));
+    for ((value, row), (before_n, after_n)) in samples {
+        let direction = sign(row.signals.displacement_m);
+        let Some(sums) = bins.of(*value).and_then(|bin| sums.get_mut(bin)) else { continue };
+        for (sums, residual_n) in sums.iter_mut().zip([before_n, after_n]) {
+            if residual_n.is_finite() {
+                sums.add(direction, *residual_n);
+            }
+        }
+    }
+    let edges = bins.edges.windows(2).zip(&sums);
+    let bins = edges.filter_map(|(edges, [before, after])| {
+        let [from, to] = *edges else { return None };
+        Some(ProfileBin { from, to, before: before.cell(), after: after.cell() })
+    });
+    let are_even = matches!(condition.bins, Spacing::Widths(_));
+    Some(Profile { signal: condition.signal, unit: condition.unit, bins: bins.collect(), are_even })
+}

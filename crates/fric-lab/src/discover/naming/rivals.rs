@@ -1,0 +1,208 @@
+//! Plain laws that the names of a catalogue may stand in for.
+//!
+//! Where a force sensor's curve is bent, say, a gain, an offset and a nonlinear load explain nearly all of it together, each
+//! with strong evidence, and none of them is there. So a few plain laws are tried as rivals, each as one more column of the
+//! least-squares problem beside what the named effects add. If it makes names superfluous, and what is left explains as much as all names did, these names stand in
+//! for it, and are set aside. Where the law is that of an effect, this has its turn then.
+
+use fric_core::effects::Effect;
+use fric_core::parameters::Values;
+use nalgebra::{DMatrix, DVector};
+
+use super::projection::less_projection;
+use crate::discover::workbench::{Trial, Workbench};
+use crate::fit::{Parameter, Row};
+use crate::search::problem::Problem;
+
+/// Rates are taken over so many cycles on either side.
+const RATE_CYCLES: usize = 5;
+/// Time constants of what warms up, as shares of the log's duration.
+const TIME_CONSTANT_RATIOS: [f64; 4] = [0.06, 0.12, 0.25, 0.5];
+
+/// Of what is above the noise, a law takes away more than this share where it bends that of an effect,
+const MOST_BENT: f64 = 0.25;
+/// which explains less than this share of what it does by itself beside it.
+const LEAST_BESIDE_RATIO: f64 = 0.5;
+
+/// A law that makes some of the effects superfluous.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rival {
+    /// What it goes with.
+    pub signal: &'static str,
+    /// Places of the effects.
+    pub replaces: Vec<usize>,
+    /// What it explains with the effects that remain, N².
+    gain: f64,
+}
+
+/// What chance makes of sums of squares.
+#[derive(Clone, Copy, Debug)]
+pub struct Chance {
+    /// By how much one has to fall for it to be evidence, N²,
+    pub enough: f64,
+    /// and where what is left is white, N².
+    pub white: f64,
+    /// Standard deviation of the noise, N.
+    pub noise_n: f64,
+}
+
+/// The rival that explains most, of effects with their parameters and the model's values without each; a law that an effect states is none to that effect.
+pub fn best_rival(
+    bench: &Workbench<'_>,
+    model: &Trial,
+    (kinds, effects): (&[Effect], &[(Vec<Parameter>, Values)]),
+    noise: &Chance,
+) -> Option<Rival> {
+    let Chance { enough, white, noise_n } = *noise;
+    let is_other = |parameter: &&Parameter| !effects.iter().any(|(of, _)| of.contains(parameter));
+    let others: Vec<Parameter> = model.free.iter().filter(is_other).copied().collect();
+    let problem = Problem { used: bench.counts.to_vec(), ..bench.problem(&others, None) };
+    let residual_n = bench.residuals_n(&model.values);
+    let finite = residual_n.iter().filter(|number| number.is_finite());
+    let excess: f64 = finite.map(|number| number * number - noise_n * noise_n).sum();
+    let added_by = |(_, neutral): &(Vec<Parameter>, Values)| -> Vec<f64> {
+        let without_n = bench.residuals_n(neutral);
+        residual_n.iter().zip(&without_n).map(|(with, without)| with - without).collect()
+    };
+    let mut signals: Vec<Vec<f64>> = effects.iter().map(added_by).collect();
+    // What warms up is friction, and not, say, the inertia that is on trial.
+    let mut without = model.values;
+    for (parameters, neutral) in effects {
+        for place in parameters.iter().filter(|parameter| !parameter.is_friction()).map(Parameter::place) {
+            without[place] = neutral[place];
+        }
+    }
+    let laws = laws(bench, &bench.added_n(&without));
+    let laws: Vec<Law> = laws.into_iter().filter(|law| !kinds.contains(&law.of)).collect();
+    let names: Vec<&'static str> = laws.iter().map(|law| law.signal).collect();
+    signals.extend(laws.into_iter().map(|law| law.values));
+    let columns = less_projection(&problem, &model.values, &signals)?;
+    let (matrix, right) = products(&columns, effects.len(), &residual_n);
+    let gain = |places: &[usize]| gain(&matrix, &right, places);
+    let all: Vec<usize> = (0..effects.len()).collect();
+    let by_name = gain(&all);
+    let of_law = |(law, signal): (usize, &&'static str)| {
+        let mut places: Vec<usize> = all.iter().copied().chain([effects.len() + law]).collect();
+        loop {
+            let now = gain(&places);
+            let without = |place: usize| {
+                let others: Vec<usize> = places.iter().copied().filter(|other| *other != place).collect();
+                (now - gain(&others), place)
+            };
+            let names = places.iter().copied().filter(|place| *place < effects.len());
+            let weakest = names.map(without).min_by(|one, other| one.0.total_cmp(&other.0));
+            let Some((_, place)) = weakest.filter(|(loss, _)| *loss < enough) else { break };
+            places.retain(|other| *other != place);
+        }
+        let replaces: Vec<usize> = all.iter().copied().filter(|place| !places.contains(place)).collect();
+        let (together, gain) = (gain(&[&all[..], &[effects.len() + law]].concat()), gain(&places));
+        if replaces.is_empty() && together - by_name > enough.max(MOST_BENT * excess) {
+            // Much of what is left goes with the law, more than chance makes of it, and one of the names shares what it explains with it.
+            let of_name = |name: &usize| {
+                let others: Vec<usize> = all.iter().copied().filter(|other| other != name).collect();
+                let beside = [&others[..], &[effects.len() + law]].concat();
+                (together - self::gain(&matrix, &right, &beside)) / (by_name - self::gain(&matrix, &right, &others))
+            };
+            let shares = all.iter().map(|name| (of_name(name), *name)).min_by(|one, other| one.0.total_cmp(&other.0));
+            let (_, name) = shares.filter(|(share, _)| *share < LEAST_BESIDE_RATIO)?;
+            return Some(Rival { signal, replaces: vec![name], gain: together });
+        }
+        // One more for each name less.
+        #[expect(clippy::cast_precision_loss, reason = "a small count")]
+        let is_better = match replaces.len() {
+            0 => false,
+            1 => gain > by_name + white,
+            count => gain + (count - 1) as f64 * enough > by_name,
+        };
+        is_better.then_some(Rival { signal, replaces, gain })
+    };
+    names.iter().enumerate().filter_map(of_law).max_by(|one, other| one.gain.total_cmp(&other.gain))
+}
+
+/// By how much some columns make the sum of squares fall.
+fn gain(matrix: &DMatrix<f64>, right: &DVector<f64>, places: &[usize]) -> f64 {
+    let part = DMatrix::from_fn(places.len(), places.len(), |row, column| {
+        // Columns that are all but the same are as good as one.
+        let ridge = if row == column { 1.0 + 1e-9 } else { 1.0 };
+        matrix[(places[row], places[column])] * ridge
+    });
+    let of = DVector::from_fn(places.len(), |row, _| right[places[row]]);
+    part.cholesky().map_or(0.0, |factor| factor.solve(&of).dot(&of))
+}
+
+/// Products of all columns with each other, and with what is left without the first `effects` of them.
+fn products(columns: &[Vec<f64>], effects: usize, residual_n: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
+    let count = columns.len();
+    let (mut matrix, mut right) = (DMatrix::<f64>::zeros(count, count), DVector::<f64>::zeros(count));
+    let mut row = vec![0.0; count];
+    for (sample, residual_n) in residual_n.iter().enumerate().filter(|(_, number)| number.is_finite()) {
+        for (number, column) in row.iter_mut().zip(columns) {
+            *number = column.get(sample).copied().filter(|number| number.is_finite()).unwrap_or(0.0);
+        }
+        // Without the effects the residual is what it is now less what they add.
+        let without_n = residual_n - row.iter().take(effects).sum::<f64>();
+        for (one, number) in row.iter().enumerate() {
+            right[one] -= number * without_n;
+            for (other, factor) in row.iter().enumerate() {
+                matrix[(one, other)] += number * factor;
+            }
+        }
+    }
+    (matrix, right)
+}
+
+/// A plain law.
+struct Law {
+    /// What it goes with.
+    signal: &'static str,
+    /// The effect that it is to first order.
+    of: Effect,
+    /// In each cycle, of any unit.
+    values: Vec<f64>,
+}
+
+/// The laws: sensor and reference that follow late, a bent sensor, a drag of turbulence, and what warms up, of the sensor and of the friction.
+fn laws(bench: &Workbench<'_>, friction_n: &[f64]) -> Vec<Law> {
+    let record = &bench.record;
+    let of = |value: &dyn Fn(&Row) -> f64| record.rows.iter().map(value).collect::<Vec<f64>>();
+    let sensor_n = of(&|row| row.signals.sensor_force_n);
+    let sound = || sensor_n.iter().zip(bench.counts).filter(|(_, counts)| **counts).map(|(force_n, _)| *force_n);
+    #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
+    let mean_n = sound().sum::<f64>() / sound().count().max(1) as f64;
+    let logs = || record.logs().map(|(start, rows)| start..start + rows.len());
+    let law = |signal, of, values| Law { signal, of, values };
+    let mut laws = vec![
+        law("force_rate", Effect::SensorLag, rates(logs(), &sensor_n)),
+        law("reference_rate", Effect::SensorLag, rates(logs(), &of(&|row| row.reference_n))),
+        law(
+            "sensor_force",
+            Effect::SensorNonlinearity,
+            sensor_n.iter().map(|force_n| (force_n - mean_n).powi(2)).collect(),
+        ),
+        law(
+            "speed",
+            Effect::ViscousNonlinearity,
+            of(&|row| row.signals.speed_m_per_s * row.signals.speed_m_per_s.abs()),
+        ),
+    ];
+    let end_s = record.rows.iter().map(|row| row.cycle).fold(0.0, f64::max) * record.cycle_s;
+    for ratio in TIME_CONSTANT_RATIOS {
+        let decay = of(&|row| (-row.cycle * record.cycle_s / (ratio * end_s)).exp());
+        let of_friction = decay.iter().zip(friction_n).map(|(decay, friction_n)| decay * friction_n).collect();
+        laws.push(law("time", Effect::FrictionWarmup, of_friction));
+        laws.push(law("time", Effect::SensorWarmup, decay));
+    }
+    laws
+}
+
+/// Differences of a signal over some cycles on either side, within each log.
+fn rates(logs: impl Iterator<Item = std::ops::Range<usize>>, signal: &[f64]) -> Vec<f64> {
+    let mut rates = vec![f64::NAN; signal.len()];
+    for log in logs {
+        for place in log.clone() {
+            let (from, to) = (place.saturating_sub(RATE_CYCLES).max(log.start), (place + RATE_CYCLES).min(log.end - 1));
+            rates[place] = signal[to] - signal[from];
+        }
+    }
+    rates
+}

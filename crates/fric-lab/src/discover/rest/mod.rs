@@ -1,0 +1,224 @@
+//! What is left when all names are given: noise that wanders, or something that has no name.
+//!
+//! A sensor's wander is noise: it goes on while the cable rests as it does while it moves, and is spread over the log. What
+//! changes with the motion or with the load, is a function of a condition, sits in a narrow stretch of time, or is many times the noise, is not.
+
+pub mod empirical;
+pub mod neighbours;
+pub mod places;
+pub mod stretch;
+
+use std::ops::Range;
+
+use self::places::{Excess, Place};
+use crate::candidates::ripple::ripple_power;
+use crate::fit::Row;
+
+/// Of a wander, no more than this share lies in a tenth of the log.
+const MOST_IN_TENTH: f64 = 0.6;
+/// Nor is more than this share one level and one wave, of a period above this, s, seen by means over this time: noise forgets.
+const MOST_WAVE: f64 = 0.7;
+const QUICKEST_S: f64 = 4.0;
+const WINDOW_S: f64 = 0.25;
+/// And it is no more than this many times the noise: what is greater needs another cause.
+const MOST_WANDER: f64 = 2.0;
+/// Windows over which slow changes are seen, s: below the memory of a wander.
+const CHANGE_S: f64 = 0.1;
+/// Fewer windows tell no mean.
+const FEWEST_QUIET: usize = 16;
+/// Changes with and without motion are alike up to this many standard deviations of chance.
+const LEAST_RANKS_APART: f64 = 3.0;
+/// An excess above this share of the noise's mean square is worth an explanation: the rms is 5 % above the floor.
+pub const WORTH: f64 = 0.1;
+
+/// Mean square of the sensors' wander in an excess, as a share of the noise's; `places` are the conditions that it is a function of.
+pub fn wander(excess: &Excess<'_>, places: &[Place]) -> f64 {
+    let is_wander = excess.share() < MOST_WANDER * MOST_WANDER
+        && places.is_empty()
+        && share_of_tenth(excess) < MOST_IN_TENTH
+        && share_of_wave(excess) < MOST_WAVE;
+    if is_wander { excess.share() * (1.0 - share_of_motion(excess)) } else { 0.0 }
+}
+
+/// Share of the slow changes of a residual that come with motion of the cable or change of its load.
+///
+/// Means over windows of [`CHANGE_S`] change from one to the next by white noise, by the wander, and by what the model misses of motion and load. The
+/// first is known, the second is the same in all, and the third is not in windows in which neither changes. So the mean
+/// square in these tells the wander's. What chance makes of the difference counts as none: ranks of both kinds of windows are compared by the test of Mann and
+/// Whitney.
+fn share_of_motion(excess: &Excess<'_>) -> f64 {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
+    let length = (CHANGE_S / excess.record.interval_s).ceil().max(1.0) as usize;
+    let mut changes: Vec<Change> = Vec::new();
+    for (start, rows) in excess.record.logs() {
+        let windows: Vec<Window> = rows
+            .chunks_exact(length)
+            .enumerate()
+            .map(|(place, rows)| {
+                let from = start + place * length;
+                Window::of(rows, excess.residual_n.get(from..from + length).unwrap_or_default())
+            })
+            .collect();
+        changes.extend(windows.windows(2).filter_map(|pair| {
+            let [one, next] = pair else { return None };
+            let noise = excess.noise_n * excess.noise_n * (1.0 / one.count + 1.0 / next.count);
+            let change = Change {
+                residual_n: next.mean_n - one.mean_n,
+                square: (next.mean_n - one.mean_n).powi(2) - noise,
+                way_m: one.way_m + next.way_m,
+                length_m: next.length_m - one.length_m,
+                load_n: next.load_n - one.load_n,
+            };
+            change.square.is_finite().then_some(change)
+        }));
+    }
+    // The quietest quarter of the quarter that moves least, or as many as tell a mean.
+    let mut all: Vec<&Change> = changes.iter().collect();
+    all.sort_by(|one, other| one.way_m.total_cmp(&other.way_m));
+    let moves = all.split_off((all.len() / 4).max(FEWEST_QUIET).min(all.len()));
+    // Even the micro motion of a winch that holds a force shows what the model misses.
+    let with_motion =
+        correlated_share(&all, |change| change.length_m).max(correlated_share(&all, |change| change.load_n));
+    all.sort_by(|one, other| one.load_n.abs().total_cmp(&other.load_n.abs()));
+    let loaded = all.split_off((all.len() / 4).max(FEWEST_QUIET).min(all.len()));
+    let (quiet, busy) = (all, [moves, loaded].concat());
+    #[expect(clippy::cast_precision_loss, reason = "counts of windows")]
+    let mean = |of: &[&Change]| of.iter().map(|change| change.square).sum::<f64>() / of.len() as f64;
+    let (of_quiet, of_all) = (mean(&quiet), mean(&changes.iter().collect::<Vec<_>>()));
+    if !(ranks_apart(&quiet, &busy) > LEAST_RANKS_APART && of_all > 0.0) {
+        return with_motion;
+    }
+    (1.0 - of_quiet.max(0.0) / of_all).clamp(with_motion, 1.0)
+}
+
+/// A short window of a log.
+struct Window {
+    mean_n: f64,
+    count: f64,
+    way_m: f64,
+    length_m: f64,
+    load_n: f64,
+}
+
+impl Window {
+    /// Of rows with their residual; without a mean where half of it is missing.
+    fn of(rows: &[Row], residual_n: &[f64]) -> Self {
+        let finite = || residual_n.iter().filter(|number| number.is_finite());
+        #[expect(clippy::cast_precision_loss, reason = "small counts")]
+        let (count, all) = (finite().count() as f64, rows.len() as f64);
+        Self {
+            mean_n: if 2.0 * count > all { finite().sum::<f64>() / count } else { f64::NAN },
+            count,
+            way_m: rows.iter().map(|row| row.signals.displacement_m.abs()).sum(),
+            length_m: rows.iter().map(|row| row.signals.length_m).sum::<f64>() / all,
+            load_n: rows.iter().map(|row| row.signals.sensor_force_n).sum::<f64>() / all,
+        }
+    }
+}
+
+/// From one window to the next.
+struct Change {
+    /// Change of the mean residual, N.
+    residual_n: f64,
+    /// Squared change of the mean residual less what white noise makes of it, N².
+    square: f64,
+    way_m: f64,
+    /// Change of the mean length, m, and of the mean load, N.
+    length_m: f64,
+    load_n: f64,
+}
+
+/// Share of the squared changes of a residual that goes with another change, where that is more than chance.
+fn correlated_share(changes: &[&Change], other: fn(&Change) -> f64) -> f64 {
+    let [mut squares, mut others, mut products, mut count] = [0.0_f64; 4];
+    for change in changes {
+        let number = other(change);
+        squares += change.residual_n * change.residual_n;
+        others += number * number;
+        products += change.residual_n * number;
+        count += 1.0;
+    }
+    let share = products * products / (squares * others);
+    if share * count > LEAST_RANKS_APART * LEAST_RANKS_APART { share } else { 0.0 }
+}
+
+/// By how many standard deviations of chance the changes of the one kind rank below those of the other.
+fn ranks_apart(low: &[&Change], high: &[&Change]) -> f64 {
+    let mut all: Vec<(f64, bool)> = low.iter().map(|change| (change.square, true)).collect();
+    all.extend(high.iter().map(|change| (change.square, false)));
+    all.sort_by(|one, other| one.0.total_cmp(&other.0));
+    #[expect(clippy::cast_precision_loss, reason = "counts of windows")]
+    let (of_low, of_high) = (low.len() as f64, high.len() as f64);
+    #[expect(clippy::cast_precision_loss, reason = "counts of windows")]
+    let ranks: f64 = all.iter().enumerate().filter(|(_, (_, is_low))| *is_low).map(|(rank, _)| rank as f64 + 1.0).sum();
+    let expected = of_low * (of_low + of_high + 1.0) / 2.0;
+    (expected - ranks) / (of_low * of_high * (of_low + of_high + 1.0) / 12.0).sqrt()
+}
+
+/// Share of the excess that is one level and one slow wave.
+fn share_of_wave(excess: &Excess<'_>) -> f64 {
+    let interval_s = excess.record.interval_s;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
+    let length = (WINDOW_S / interval_s).ceil().max(1.0) as usize;
+    let mut samples = 0.0;
+    let mean = |(window, numbers): (usize, &[f64])| {
+        let finite = || numbers.iter().filter(|number| number.is_finite());
+        #[expect(clippy::cast_precision_loss, reason = "counts")]
+        let (count, time_s) = (finite().count() as f64, (window * length) as f64 * interval_s);
+        samples += count;
+        (count > 0.0).then(|| (time_s, finite().sum::<f64>() / count))
+    };
+    let means: Vec<(f64, f64)> = excess.residual_n.chunks(length).enumerate().filter_map(mean).collect();
+    #[expect(clippy::cast_precision_loss, reason = "a count of windows")]
+    let count = means.len() as f64;
+    let level_n = means.iter().map(|(_, mean_n)| mean_n).sum::<f64>() / count;
+    let duration_s = count * WINDOW_S;
+    let half_waves = std::iter::successors(Some(1.0), |half_waves| Some(half_waves + 0.5));
+    let periods_s =
+        half_waves.map(|half_waves| 2.0 * duration_s / half_waves).take_while(|period_s| *period_s > QUICKEST_S);
+    let wave = periods_s.map(|period_s| ripple_power(&means, period_s)).fold(0.0, f64::max);
+    samples / count * (count * level_n * level_n + wave) / excess.sum()
+}
+
+/// Share of the excess in the tenth of the blocks that have most of it.
+fn share_of_tenth(excess: &Excess<'_>) -> f64 {
+    let mut sums: Vec<f64> = excess
+        .blocks
+        .iter()
+        .map(|block| {
+            let of_block = excess.residual_n.get(block.cycles.clone()).unwrap_or_default();
+            let count = of_block.iter().filter(|number| number.is_finite());
+            count.map(|number| number * number - excess.noise_n * excess.noise_n).sum()
+        })
+        .collect();
+    sums.sort_by(|one: &f64, other| other.total_cmp(one));
+    let tenth = sums.len().div_ceil(10);
+    sums.iter().take(tenth).sum::<f64>() / excess.sum()
+}
+
+/// What counts, and what is sound between two neighbours of it, on the line from one measurement to the next.
+pub fn with_interpolated(counts: &[bool], measured: &[bool], is_sound: impl Fn(usize) -> bool) -> Vec<bool> {
+    let mut all = counts.to_vec();
+    let mut before = 0;
+    for (place, counts_too) in counts.iter().enumerate().filter(|(place, _)| measured.get(*place) == Some(&true)) {
+        let is_between = *counts_too && counts.get(before) == Some(&true);
+        let between = before + 1..place;
+        before = place;
+        if is_between && let Some(all) = all.get_mut(between.clone()) {
+            all.iter_mut().zip(between).for_each(|(counts, place)| *counts = is_sound(place));
+        }
+    }
+    all
+}
+
+/// Cycles as stretches, for results.
+pub fn ranges(cycles: impl Iterator<Item = bool>) -> Vec<Range<usize>> {
+    let mut ranges: Vec<Range<usize>> = Vec::new();
+    for (cycle, _) in cycles.enumerate().filter(|(_, wanted)| *wanted) {
+        match ranges.last_mut().filter(|range| range.end == cycle) {
+            Some(range) => range.end += 1,
+            None => ranges.push(cycle..cycle + 1),
+        }
+    }
+    ranges
+}

@@ -1,0 +1,385 @@
+//! The least-squares problem of \[P\] 18, and the same with the platform's wrench in place of force sensors.
+//!
+//! - Cable forces: one residual a sample, `f(p) − f_ref`, for one cable.
+//! - Wrench: six residuals a sample, `w + A^T f(p)` (\[P\] 3), for all cables together; forces and torques are brought to
+//!   one scale by a [`whitening`](Comparison::Wrench) matrix.
+
+use std::ops::Range;
+use std::rc::Rc;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use fric_core::parameters::{SIGMA, Values};
+use fric_core::scalar::Scalar;
+use fric_core::{LANES, Lanes};
+use nalgebra::{DMatrix, Matrix6, Vector6};
+use rayon::prelude::*;
+
+use super::gang::{Seat, all_forces};
+use super::gram::Gram;
+use super::pass::{CandidatePass, Forces, LanePass, Part, with_room_for};
+use super::vector::Parameter;
+use crate::certainty::groups::Groups;
+use crate::certainty::scores::Scores;
+use crate::samples::record::CableRecord;
+
+/// Samples that are evaluated before they are assembled.
+const CHUNK: usize = 2048;
+
+/// A cable of the problem.
+#[derive(Clone, Debug)]
+pub struct Member<'a> {
+    pub record: CableRecord<'a>,
+    /// The parameters that vary.
+    pub free: Vec<Parameter>,
+}
+
+impl<'a> Member<'a> {
+    /// Its part in a pass.
+    fn part(&self, values: &Values, derivatives: bool) -> Part<'a> {
+        let free = if derivatives { self.free.clone() } else { Vec::new() };
+        Part { record: self.record, values: *values, free }
+    }
+}
+
+/// What the model is compared with.
+#[derive(Clone, Debug)]
+pub enum Comparison<'a> {
+    /// The cable force at the platform, of a single cable.
+    Forces,
+    /// The outside wrench.
+    Wrench {
+        /// Columns of the structure matrix, all cables of a sample one after the other.
+        structure: &'a [Vector6<f64>],
+        /// The wrench of each sample; NaN where there is none.
+        outside: &'a [Vector6<f64>],
+        /// Turns deviations into numbers of variance 1 that do not depend on each other.
+        whitening: Box<Matrix6<f64>>,
+    },
+}
+
+/// How deviations are weighed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Loss {
+    /// By their square.
+    Squares,
+    /// By their square up to a bound, linearly beyond (Huber), in the unit of the residuals.
+    Huber(f64),
+}
+
+impl Loss {
+    /// The number whose square is the loss, and its slope: `r`, or `±√(2b|r| − b²)` beyond the bound `b`.
+    fn root(self, residual: f64) -> (f64, f64) {
+        match self {
+            Self::Huber(bound) if residual.abs() > bound => {
+                let root = (2.0 * bound * residual.abs() - bound * bound).sqrt();
+                (root.copysign(residual), bound / root)
+            }
+            _ => (residual, 1.0),
+        }
+    }
+
+    /// The slope where the root is this.
+    fn slope_at(self, root: f64) -> f64 {
+        match self {
+            Self::Huber(bound) if root.abs() > bound => bound / root.abs(),
+            _ => 1.0,
+        }
+    }
+}
+
+/// Samples, model, comparison.
+#[derive(Clone, Debug)]
+pub struct Problem<'a> {
+    pub members: Vec<Member<'a>>,
+    pub comparison: Comparison<'a>,
+    pub loss: Loss,
+    /// Which samples count.
+    pub used: Vec<bool>,
+    /// Set from outside to end every evaluation.
+    pub stop: &'a AtomicBool,
+    /// Where a single cable has its passes run beside those of others.
+    pub seat: Option<Rc<Seat<'a>>>,
+}
+
+/// The rows of a sample: derivatives by every free parameter, then the residual.
+pub type Rows<'a> = std::slice::ChunksExact<'a, f64>;
+
+impl Problem<'_> {
+    /// How many parameters vary, of all cables.
+    pub fn parameter_count(&self) -> usize {
+        self.members.iter().map(|member| member.free.len()).sum()
+    }
+
+    /// How many residuals count.
+    pub fn residual_count(&self) -> usize {
+        let of_sample = match self.comparison {
+            Comparison::Forces => 1,
+            Comparison::Wrench { .. } => 6,
+        };
+        self.used.iter().filter(|used| **used).count() * of_sample
+    }
+
+    /// Residuals and Jacobian at the values of each cable, reduced; `None` when stopped.
+    pub fn gram(&self, values: &[Values]) -> Option<Gram> {
+        let mut gram = Gram::new(self.parameter_count());
+        self.visit(values, true, |_, rows| rows.for_each(|row| gram.add(row))).then_some(gram)
+    }
+
+    /// The same with the samples' scores, which are also summed up in groups if there are any.
+    pub fn gram_and_scores(&self, values: &[Values], groups: Option<Groups>) -> Option<(Gram, Scores)> {
+        let count = self.parameter_count();
+        let mut gram = Gram::new(count);
+        let mut scores = groups.map_or_else(|| Scores::new(count), |groups| Scores::grouped(count, groups));
+        let mut score = vec![0.0; count];
+        let completed = self.visit(values, true, |place, rows| {
+            score.fill(0.0);
+            for row in rows {
+                gram.add(row);
+                let Some((residual, derivatives)) = row.split_last() else { continue };
+                for (sum, derivative) in score.iter_mut().zip(derivatives) {
+                    *sum += derivative * residual;
+                }
+            }
+            scores.add_of(place, &score);
+        });
+        completed.then_some((gram, scores))
+    }
+
+    /// Residuals of every sample that counts, with the sample's place: one, or six whitened.
+    pub fn residuals(&self, values: &[Values], mut visit: impl FnMut(usize, &[f64])) {
+        let mut residuals = Vec::new();
+        self.visit(values, false, |place, rows| {
+            residuals.clear();
+            residuals.extend(rows.filter_map(|row| row.last()));
+            visit(place, &residuals);
+        });
+    }
+
+    /// Every row: derivatives by the free parameters, then the residual.
+    pub fn rows(&self, values: &[Values], mut visit: impl FnMut(&[f64])) {
+        self.visit(values, true, |_, rows| rows.for_each(&mut visit));
+    }
+
+    /// `Jᵀd` for several changes `d` of the force of one member, given side by side for every cycle: a column each.
+    pub fn projected(&self, values: &[Values], member: usize, changes_n: &[f64], count: usize) -> DMatrix<f64> {
+        let mut sums = DMatrix::zeros(self.parameter_count(), count);
+        let mut levers = Vec::new();
+        self.visit(values, true, |place, rows| {
+            let changes_n = changes_n.get(place * count..(place + 1) * count).unwrap_or_default();
+            self.levers(place, &mut levers);
+            let Some(lever) = levers.get(member) else { return };
+            for ((root, derivatives), lever) in rows.filter_map(<[f64]>::split_last).zip(lever.iter()) {
+                let factor = self.loss.slope_at(*root) * lever;
+                for (mut column, change_n) in sums.column_iter_mut().zip(changes_n) {
+                    column.iter_mut().zip(derivatives).for_each(|(sum, part)| *sum += part * factor * change_n);
+                }
+            }
+        });
+        sums
+    }
+
+    fn stopped(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+
+    /// Sum of the losses for several σ at once, of all cables: `sigmas_n_per_m[candidate][cable]`; over consecutive cycles of
+    /// a log, of which the first eighth lets the cables forget that they began at rest; of the cycles until it is stopped.
+    pub fn losses_by_sigma(&self, values: &[Values], sigmas_n_per_m: &[Vec<f64>], cycles: &Range<usize>) -> Vec<f64> {
+        let count = sigmas_n_per_m.len();
+        let pass_of = |(index, (member, values)): (usize, (&Member<'_>, &Values))| {
+            let of_candidates = |candidates: &[Vec<f64>]| {
+                let mut lanes = values.map(Lanes::splat);
+                let of = |lane: usize| candidates.get(lane).and_then(|sigmas| sigmas.get(index));
+                lanes[SIGMA] = Lanes::from_lanes(|lane| of(lane).copied().unwrap_or(values[SIGMA]));
+                lanes
+            };
+            let candidates: Vec<Values<Lanes>> = sigmas_n_per_m.chunks(LANES).map(of_candidates).collect();
+            CandidatePass::new(&member.record, &candidates)
+        };
+        let mut passes: Vec<CandidatePass> = self.members.iter().zip(values).enumerate().map(pass_of).collect();
+        let mut forces = vec![Vec::new(); passes.len()];
+        let width = count.next_multiple_of(LANES);
+        let counted_from = cycles.start + cycles.len() / 8;
+        let mut sums = vec![0.0; count];
+        let mut of_sample = vec![0.0; self.members.len()];
+        let mut residuals = Vec::new();
+        for from in cycles.clone().step_by(CHUNK) {
+            if self.stopped() {
+                break;
+            }
+            let chunk = from..(from + CHUNK).min(cycles.end);
+            for ((pass, member), forces) in passes.iter_mut().zip(&self.members).zip(&mut forces) {
+                pass.advance(member.record.rows.get(chunk.clone()).unwrap_or_default(), forces);
+            }
+            for (offset, place) in chunk.enumerate() {
+                if place < counted_from || !self.used.get(place).copied().unwrap_or(false) {
+                    continue;
+                }
+                for (candidate, sum) in sums.iter_mut().enumerate() {
+                    for (force_n, of_cable) in of_sample.iter_mut().zip(&forces) {
+                        *force_n = of_cable.get(offset * width + candidate).copied().unwrap_or(f64::NAN);
+                    }
+                    self.compare(place, &of_sample, &mut residuals);
+                    *sum += residuals.iter().map(|residual| self.loss.root(*residual).0.powi(2)).sum::<f64>();
+                }
+            }
+        }
+        sums
+    }
+
+    /// Residuals of a sample from the forces of all cables.
+    fn compare(&self, place: usize, forces_n: &[f64], residuals: &mut Vec<f64>) {
+        residuals.clear();
+        match &self.comparison {
+            Comparison::Forces => {
+                let rows = self.members.first().and_then(|member| member.record.rows.get(place));
+                residuals.extend(rows.zip(forces_n.first()).map(|(row, force_n)| force_n - row.reference_n));
+            }
+            Comparison::Wrench { structure, outside, whitening } => {
+                let count = self.members.len();
+                let columns = structure.iter().skip(place * count).zip(forces_n);
+                let start = outside.get(place).copied().unwrap_or_else(|| Vector6::repeat(f64::NAN));
+                let balance = columns.fold(start, |sum, (column, force_n)| sum + column * *force_n);
+                residuals.extend((**whitening * balance).iter());
+            }
+        }
+    }
+
+    /// Derivatives of a sample's residuals by the force of each cable: one column a cable.
+    pub fn levers(&self, place: usize, levers: &mut Vec<Vector6<f64>>) {
+        levers.clear();
+        match &self.comparison {
+            Comparison::Forces => levers.push(Vector6::repeat(1.0)),
+            Comparison::Wrench { structure, whitening, .. } => {
+                let count = self.members.len();
+                levers.extend(structure.iter().skip(place * count).take(count).map(|column| **whitening * column));
+            }
+        }
+    }
+}
+
+/// Room for what is made of each sample.
+#[derive(Default)]
+struct Assembly {
+    forces_n: Vec<f64>,
+    residuals: Vec<f64>,
+    levers: Vec<Vector6<f64>>,
+    rows: Vec<f64>,
+}
+
+impl Assembly {
+    /// Rows of a sample from the forces of all cables with their derivatives; without derivatives, residuals alone.
+    fn assemble(&mut self, problem: &Problem<'_>, place: usize, forces: &[Forces], cycle: usize, derivatives: bool) {
+        let Self { forces_n, residuals, levers, rows } = self;
+        forces_n.clear();
+        forces_n.extend(forces.iter().map(|of_cable| of_cable.at(cycle).0));
+        problem.compare(place, forces_n, residuals);
+        problem.levers(place, levers);
+        rows.clear();
+        for (component, residual) in residuals.iter().enumerate() {
+            let (root, slope) = problem.loss.root(*residual);
+            if derivatives {
+                for ((member, of_cable), lever) in problem.members.iter().zip(forces).zip(&*levers) {
+                    let factor = slope * lever[component];
+                    rows.extend(of_cable.at(cycle).1.iter().take(member.free.len()).map(|part| factor * part));
+                }
+            }
+            rows.push(root);
+        }
+    }
+}
+
+impl<'a> Problem<'a> {
+    /// Forces of every cable in every cycle, without derivatives; `None` when stopped.
+    pub fn forces(&self, values: &[Values]) -> Option<Vec<Arc<Forces>>> {
+        let parts: Vec<Part<'_>> =
+            self.members.iter().zip(values).map(|(member, values)| member.part(values, false)).collect();
+        if let (Some(seat), [part]) = (&self.seat, parts.as_slice()) {
+            return seat.forces(part).map(|forces| vec![forces]);
+        }
+        let of_parts = |parts: &[Part<'_>]| all_forces::<0>(parts, vec![Forces::default(); parts.len()], self.stop);
+        let of_lanes: Option<Vec<Vec<Forces>>> = parts.par_chunks(LANES).map(of_parts).collect();
+        of_lanes.map(|forces| forces.into_iter().flatten().map(Arc::new).collect())
+    }
+
+    /// Lets the next forces be those of a pass again, after [`step`](Self::step).
+    pub fn forget_step(&self) {
+        self.seat.iter().for_each(|seat| seat.forget_moved());
+    }
+
+    /// Goes from values that were evaluated last to others by the derivatives there.
+    pub fn step(&self, at: &[Values], to: &[Values]) {
+        if let (Some(seat), [member], [at], [to]) = (&self.seat, self.members.as_slice(), at, to) {
+            seat.step(&member.part(at, true), to);
+        }
+    }
+
+    /// Evaluates all samples that count, with the derivatives by the free parameters or without; false when stopped.
+    pub fn visit(&self, values: &[Values], derivatives: bool, visit: impl FnMut(usize, Rows<'_>)) -> bool {
+        let parts: Vec<Part<'a>> =
+            self.members.iter().zip(values).map(|(member, values)| member.part(values, derivatives)).collect();
+        if let (Some(seat), [part]) = (&self.seat, parts.as_slice()) {
+            let Some(forces) = seat.forces(part) else { return false };
+            self.visit_single(part, &forces, visit);
+            return true;
+        }
+        let most = parts.iter().map(Part::carried).max().unwrap_or(0);
+        with_room_for!(most, visit_chunks(self, &parts, derivatives, visit))
+    }
+}
+
+impl Problem<'_> {
+    /// Evaluates a single cable by forces at hand, of which a row is all but made.
+    fn visit_single(&self, part: &Part<'_>, forces: &Forces, mut visit: impl FnMut(usize, Rows<'_>)) {
+        let mut of_sample = vec![0.0; part.free.len() + 1];
+        for (place, (row, _)) in part.record.rows.iter().zip(&self.used).enumerate().filter(|(_, (_, used))| **used) {
+            let (force_n, gradient) = forces.at(place);
+            let (root, slope) = self.loss.root(force_n - row.reference_n);
+            for (entry, part) in of_sample.iter_mut().zip(gradient) {
+                *entry = slope * part;
+            }
+            of_sample.last_mut().into_iter().for_each(|entry| *entry = root);
+            visit(place, of_sample.chunks_exact(of_sample.len()));
+        }
+    }
+}
+
+/// Chunk by chunk, so that memory does not grow with the log.
+fn visit_chunks<const N: usize>(
+    problem: &Problem<'_>,
+    parts: &[Part<'_>],
+    derivatives: bool,
+    mut visit: impl FnMut(usize, Rows<'_>),
+) -> bool {
+    let Some(first) = parts.first() else { return true };
+    let width = parts.iter().map(|part| part.free.len()).sum::<usize>() + 1;
+    let mut assembly = Assembly::default();
+    let mut passes: Vec<LanePass<'_, N>> =
+        parts.chunks(LANES).map(|parts| LanePass::new(parts.iter().cloned())).collect();
+    let mut forces = vec![Forces::default(); parts.len()];
+    for (start, log) in first.record.logs() {
+        passes.iter_mut().for_each(LanePass::rest);
+        let end = start + log.len();
+        for from in (start..end).step_by(CHUNK) {
+            if problem.stopped() {
+                return false;
+            }
+            let to = (from + CHUNK).min(end);
+            for (forces, part) in forces.iter_mut().zip(parts) {
+                forces.clear(part.free.len(), CHUNK);
+            }
+            passes
+                .par_iter_mut()
+                .zip(forces.par_chunks_mut(LANES))
+                .for_each(|(pass, forces)| pass.advance(from, to, forces));
+            for (cycle, place) in (from..to).enumerate() {
+                if problem.used.get(place).copied().unwrap_or(false) {
+                    assembly.assemble(problem, place, &forces, cycle, derivatives);
+                    visit(place, assembly.rows.chunks_exact(width));
+                }
+            }
+        }
+    }
+    true
+}

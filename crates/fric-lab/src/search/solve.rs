@@ -1,0 +1,271 @@
+//! From a problem and a start to values with their covariance: search, outliers, what is not determined.
+
+use fric_core::parameters::Values;
+use nalgebra::DMatrix;
+
+use super::optimizer;
+use super::optimizer::{Minimum, Termination};
+use super::problem::{Comparison, Loss, Member, Problem};
+use super::vector::{Coordinate, Parameter, with};
+use crate::certainty::undetermined::reported_covariance;
+use crate::fit::report::OpenCombination;
+use crate::samples::selection::Standing;
+
+/// Deviations beyond this many standard deviations that their neighbours do not share are no measurements.
+const OUTLIER_RATIO: f64 = 8.0;
+/// So many samples to either side are neighbours: of what is shorter than them it cannot be told that it lasts.
+const NEIGHBOURS: usize = 2;
+/// More outliers than this share of the samples are no outliers: the model does not describe them.
+const MOST_OUTLIERS_RATIO: f64 = 0.02;
+/// Huber's bound in standard deviations: 95 % efficient for normal noise.
+const HUBER_RATIO: f64 = 1.345;
+/// Standard deviation of a normal distribution per median of the magnitude.
+const DEVIATION_PER_MEDIAN: f64 = 1.482_602_218_505_602;
+/// A given value that raises the sum of squares by more than this share contradicts the samples.
+pub(crate) const CONTRADICTION_RATIO: f64 = 0.01;
+/// A search goes on to within so many standard errors of the minimum.
+pub(crate) const NEAR_ERRORS: f64 = 0.01;
+/// Rounds of search and new look at the deviations.
+const ROUNDS: usize = 3;
+
+/// How to weigh deviations that are far out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Weighing {
+    /// Least squares; deviations that cannot be measurements are left out.
+    #[default]
+    LeastSquares,
+    /// Huber's loss: squares up to 1.345 standard deviations, linear beyond.
+    Huber,
+}
+
+/// A parameter of one of the problem's cables.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Unknown {
+    /// Which cable of the problem.
+    pub member: usize,
+    /// Which parameter.
+    pub parameter: Parameter,
+}
+
+/// What came out.
+#[derive(Clone, Debug)]
+pub struct Solution {
+    /// Values of each cable.
+    pub values: Vec<Values>,
+    /// What was varied at last, in the order of the covariance.
+    pub unknowns: Vec<Unknown>,
+    /// What the samples do not determine; held at the given values.
+    pub undetermined: Vec<Unknown>,
+    /// What each of them is confused with.
+    pub open: Vec<OpenCombination>,
+    /// What is at an end of its range, where the samples would have it beyond.
+    pub at_bound: Vec<Unknown>,
+    /// Covariance of the estimates.
+    pub covariance: DMatrix<f64>,
+    pub termination: Termination,
+    pub evaluation_count: usize,
+}
+
+/// Solves a problem from the starts given, the most promising first, and holds what the samples do not determine. `standings` of its
+/// samples are updated with the outliers.
+pub fn solve(
+    problem: &mut Problem<'_>,
+    starts: Vec<Vec<Values>>,
+    given: &[Values],
+    cycle_s: f64,
+    weighing: Weighing,
+    standings: &mut [Standing],
+) -> Solution {
+    let mut solution = settle(problem, starts, given, cycle_s, weighing, standings);
+    solution.hold_undetermined(problem, given, cycle_s);
+    if matches!(problem.comparison, Comparison::Forces) && !solution.unknowns.is_empty() {
+        solution.covariance = reported_covariance(problem, &solution.values);
+    }
+    solution
+}
+
+/// The same with all varied, determined or not.
+pub(crate) fn settle(
+    problem: &mut Problem<'_>,
+    starts: Vec<Vec<Values>>,
+    given: &[Values],
+    cycle_s: f64,
+    weighing: Weighing,
+    standings: &mut [Standing],
+) -> Solution {
+    let mut solution = Solution {
+        values: given.to_vec(),
+        unknowns: unknowns(problem),
+        undetermined: Vec::new(),
+        open: Vec::new(),
+        at_bound: Vec::new(),
+        covariance: DMatrix::zeros(0, 0),
+        termination: Termination::NothingToFit,
+        evaluation_count: 0,
+    };
+    if problem.used.contains(&true) {
+        let best = starts
+            .into_iter()
+            .map(|start| search(problem, &start, cycle_s))
+            .inspect(|(_, minimum)| solution.evaluation_count += minimum.evaluation_count)
+            .min_by(|(_, one), (_, other)| one.squares.total_cmp(&other.squares));
+        if let Some((found, minimum)) = best {
+            (solution.values, solution.termination) = (found, minimum.termination);
+        }
+        for _ in 0..ROUNDS {
+            if !look_again(problem, &solution.values, weighing, standings) {
+                break;
+            }
+            solution.search_on(problem, cycle_s);
+        }
+    }
+    solution
+}
+
+impl Solution {
+    /// Goes on from where the last search has ended.
+    pub(crate) fn search_on(&mut self, problem: &Problem<'_>, cycle_s: f64) {
+        let (found, minimum) = search(problem, &self.values, cycle_s);
+        self.evaluation_count += minimum.evaluation_count;
+        (self.values, self.termination) = (found, minimum.termination);
+    }
+}
+
+/// Whether the samples contradict values that were held: with them free the sum of squares is smaller by far.
+pub(crate) fn contradicts(held: &Problem<'_>, at: &[Values], free: &Problem<'_>, found: &[Values]) -> bool {
+    squares(held, at) > squares(free, found) * (1.0 + CONTRADICTION_RATIO)
+}
+
+/// Sum of squares at some values; NaN when stopped.
+pub(crate) fn squares(problem: &Problem<'_>, values: &[Values]) -> f64 {
+    problem.gram(values).map_or(f64::NAN, |gram| gram.normal_equations().2)
+}
+
+/// What a problem varies.
+pub(crate) fn unknowns(problem: &Problem<'_>) -> Vec<Unknown> {
+    let of_member = |(member, of): (usize, &Member<'_>)| {
+        of.free.iter().map(|parameter| Unknown { member, parameter: *parameter }).collect::<Vec<_>>()
+    };
+    problem.members.iter().enumerate().flat_map(of_member).collect()
+}
+
+/// Varies a parameter no longer: it takes its given value.
+pub(crate) fn hold(problem: &mut Problem<'_>, unknown: Unknown, values: &mut [Values], given: &[Values]) {
+    let place = unknown.parameter.place();
+    if let Some(member) = problem.members.get_mut(unknown.member) {
+        member.free.retain(|parameter| *parameter != unknown.parameter);
+    }
+    if let (Some(values), Some(given)) = (values.get_mut(unknown.member), given.get(unknown.member)) {
+        values[place] = given[place];
+    }
+}
+
+/// The minimum from a start.
+pub(crate) fn search(problem: &Problem<'_>, start: &[Values], cycle_s: f64) -> (Vec<Values>, Minimum) {
+    search_near(problem, start, cycle_s, NEAR_ERRORS)
+}
+
+/// A place no further from the minimum than so many standard errors, see [`optimizer::minimize`].
+pub fn search_near(problem: &Problem<'_>, start: &[Values], cycle_s: f64, near_errors: f64) -> (Vec<Values>, Minimum) {
+    let unknowns = unknowns(problem);
+    let coordinates: Vec<Coordinate> =
+        unknowns.iter().map(|unknown| Coordinate::of(&unknown.parameter, cycle_s)).collect();
+    let number =
+        |unknown: &Unknown| start.get(unknown.member).map_or(f64::NAN, |values| values[unknown.parameter.place()]);
+    let values_of = |numbers: &[f64]| -> Vec<Values> {
+        let mut numbers = numbers.iter().copied();
+        let members = problem.members.iter().zip(start);
+        members.map(|(member, values)| with(values, &member.free, numbers.by_ref().take(member.free.len()))).collect()
+    };
+    let from: Vec<f64> = unknowns.iter().map(number).collect();
+    let minimum = optimizer::minimize(&coordinates, &from, problem.residual_count(), near_errors, |numbers| {
+        problem.gram(&values_of(numbers)).map(|gram| gram.normal_equations())
+    });
+    let values = values_of(&minimum.values);
+    if minimum.values != minimum.evaluated {
+        problem.step(&values_of(&minimum.evaluated), &values);
+    }
+    (values, minimum)
+}
+
+/// Looks at the deviations anew: leaves out what cannot be a measurement, or sets Huber's bound. Whether something has
+/// changed.
+fn look_again(problem: &mut Problem<'_>, values: &[Values], weighing: Weighing, standings: &mut [Standing]) -> bool {
+    problem.loss = Loss::Squares;
+    // What was left out before is judged again: a worse fit may have been at fault.
+    let mut before = Vec::new();
+    for (place, (standing, used)) in standings.iter_mut().zip(&mut problem.used).enumerate() {
+        if *standing == Standing::Outlier {
+            (*standing, *used) = (Standing::Used, true);
+            before.push(place);
+        }
+    }
+    let most = problem.used.len();
+    let mut places = Vec::with_capacity(most);
+    // One of a cable's force, six of a wrench.
+    let mut series: Vec<Vec<f64>> = Vec::new();
+    problem.residuals(values, |place, residuals| {
+        series.resize_with(residuals.len(), || Vec::with_capacity(most));
+        series.iter_mut().zip(residuals).for_each(|(series, residual)| series.push(*residual));
+        places.push(place);
+    });
+    let most =
+        |sample: usize| series.iter().filter_map(|of| of.get(sample)).fold(0.0, |most: f64, of| most.max(of.abs()));
+    let mut magnitudes: Vec<f64> = (0..places.len()).map(most).collect();
+    if magnitudes.is_empty() {
+        return false;
+    }
+    let middle = magnitudes.len() / 2;
+    let (_, median, _) = magnitudes.select_nth_unstable_by(middle, f64::total_cmp);
+    let deviation = *median * DEVIATION_PER_MEDIAN;
+    if weighing == Weighing::Huber {
+        problem.loss = Loss::Huber(HUBER_RATIO * deviation);
+        return true;
+    }
+    let is_spike =
+        |sample: usize| series.iter().any(|residuals| is_spike(residuals, sample, OUTLIER_RATIO * deviation));
+    let spikes = places.iter().enumerate().filter(|(sample, _)| is_spike(*sample));
+    let mut outliers: Vec<usize> = spikes.map(|(_, place)| *place).collect();
+    #[expect(clippy::cast_precision_loss, reason = "counts of samples")]
+    let few = outliers.len() as f64 <= MOST_OUTLIERS_RATIO * places.len() as f64;
+    if !few {
+        outliers.clear();
+    }
+    for place in &outliers {
+        if let (Some(used), Some(standing)) = (problem.used.get_mut(*place), standings.get_mut(*place)) {
+            (*used, *standing) = (false, Standing::Outlier);
+        }
+    }
+    outliers != before
+}
+
+/// Whether a residual is far out, and its neighbours are not: less than half as far, by their median. What lasts is no spike but
+/// something that the model misses, and the samples have a right to be fitted.
+fn is_spike(residuals: &[f64], place: usize, far: f64) -> bool {
+    let Some(residual) = residuals.get(place).filter(|residual| residual.abs() > far) else { return false };
+    let around = residuals.iter().skip(place.saturating_sub(NEIGHBOURS)).take(NEIGHBOURS + place.min(NEIGHBOURS) + 1);
+    let mut shares: Vec<f64> = around.map(|other| other / residual).collect();
+    let middle = shares.len() / 2;
+    let (_, median, _) = shares.select_nth_unstable_by(middle, f64::total_cmp);
+    *median < 0.5
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_spike;
+
+    #[test]
+    fn a_spike_is_alone_and_an_excursion_is_not() {
+        let is_found = |residuals: &[f64]| -> Vec<usize> {
+            (0..residuals.len()).filter(|place| is_spike(residuals, *place, 8.0)).collect()
+        };
+        assert_eq!(is_found(&[0.1, -0.2, 0.1, 50.0, 0.3, -0.1, 0.2]), [3]);
+        assert_eq!(is_found(&[0.1, -0.2, 0.1, -50.0, -40.0, -0.1, 0.2, 0.1]), [3, 4]);
+        assert_eq!(is_found(&[50.0, 0.1, 0.2, 0.1, -0.1, 50.0]), [0, 5]);
+        // A step, a pulse of three samples, the top of a triangle, and a spike on an excursion.
+        assert!(is_found(&[0.1, 0.0, 0.1, 9.0, 9.2, 9.1, 9.0]).is_empty());
+        assert!(is_found(&[0.1, 0.0, 0.1, 9.0, 9.2, 9.1, 0.1, 0.0]).is_empty());
+        assert!(is_found(&[0.0, 3.0, 6.0, 9.0, 12.0, 9.0, 6.0, 3.0, 0.0]).is_empty());
+        assert_eq!(is_found(&[9.0, 9.1, 9.2, 60.0, 9.1, 9.2, 9.1]), [3]);
+    }
+}
