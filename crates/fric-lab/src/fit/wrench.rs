@@ -12,7 +12,7 @@
 //! rely on it.
 
 use fric_core::Wrench;
-use fric_core::parameters::{MU, OFFSET, Values};
+use fric_core::parameters::{OFFSET, Values};
 use nalgebra::{Matrix6, Vector6};
 
 use super::balance;
@@ -279,9 +279,6 @@ impl<'a> Case<'a> {
         }
         let standings = together(&of_cables);
         problem.used = used(&standings);
-        // All cables together have more than one minimum, and the given friction may be nearer to the least than what the samples suggest.
-        let has_friction = given.iter().all(|values| values[MU] > 0.0);
-        let starts: Vec<Vec<Values>> = starts.into_iter().chain(has_friction.then(|| given.clone())).collect();
         let starts = with_newcomers(&problem, starts, &given, self.cycle_s());
         Prepared { problem, starts, standings }
     }
@@ -297,10 +294,11 @@ impl<'a> Case<'a> {
         let mut earlier = Earlier::default();
         match self.offsets(&problem, &solution, cycle_s) {
             Offsets::Contradicted => {
-                // What friction seemed undetermined beside wrong offsets gets another chance, and another start.
+                // Friction that seemed undetermined beside wrong offsets gets another chance, and other starts: offsets that look wrong may also
+                // mean that the first search ended far from the least minimum, to which the given friction may be nearer.
                 problem.members = self.members(&|_, _| true);
                 earlier.evaluation_count += solution.evaluation_count;
-                let mut starts = vec![solution.values];
+                let mut starts = vec![solution.values, given.clone()];
                 starts.extend(start::starts(&problem, &given, cycle_s));
                 let starts = with_newcomers(&problem, starts, &given, cycle_s);
                 solution = solve(&mut problem, starts, &given, cycle_s, options.weighing, &mut standings);
