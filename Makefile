@@ -48,7 +48,8 @@ docs:
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --workspace --no-deps --quiet
 
 test-python: $(VENV)/ready
-	$(CARGO) build --quiet -p fric-cli
+	# The command line as the tests in Rust have built it; alone, cargo would build all of it again with other features of dependencies.
+	$(CARGO) test --workspace --no-run --quiet
 	# As `pip install .` does, but with what has been built for the other tests.
 	PATH="$(CURDIR)/$(VENV)/bin:$$PATH" MATURIN_PEP517_ARGS="--profile dev" $(PIP) install --no-build-isolation --no-deps .
 	$(VENV)/bin/python -m pytest -rs tests/python
