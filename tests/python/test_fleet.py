@@ -99,7 +99,8 @@ def test_a_worker_killed_in_the_middle_costs_no_log(place, whole, cluster):
             os.kill(killed[0], signal.SIGKILL)
 
     done = fit_all(place, place / "killed", cluster, progress=kill)
-    assert killed and done.computed == COUNT and done.failures == whole.failures
+    # What the killed worker had written is known to the one that does its work again.
+    assert killed and done.computed + done.known == COUNT and done.failures == whole.failures
     assert without_time(rows(place / "killed")) == without_time(rows(place / "whole"))
 
 

@@ -160,7 +160,7 @@ def test_numbers_of_a_replay_agree(pages):
         assert " ".join(map(str, row)) in text
     log = fric.read_log(LOG)
     result = fric.replay(fric.Robot.read(ROBOT), log)
-    deviation = result.cycles.force_at_platform_n - log.reference_force_n
+    deviation = result.force_at_platform_n - log.reference_force_n
     errors = [plot for plot in charts["plots"] if plot["caption"].startswith("Error of the force at the platform")]
     assert len(errors) == 8
     for place, plot in enumerate(errors):
