@@ -9,7 +9,7 @@ use nalgebra::{SVector, Vector3, Vector6};
 
 use super::report::assert_self_contained;
 use super::simulate::bench_robot;
-use super::support::{Place, Run, slow_robot};
+use super::support::{Place, Run, slow_robot, unwrapped};
 
 /// The columns of a CSV file by name, the phases apart.
 fn columns(file: &[u8]) -> (BTreeMap<String, Vec<f64>>, Vec<String>) {
@@ -201,7 +201,8 @@ fn a_run_is_designed_for_what_a_discovery_left_open() {
     let (columns, _) = columns(&place.read("run.csv"));
     assert!(columns["drive_tension_n"].iter().all(|tension_n| (2.0..=10.0).contains(tension_n)));
     assert_eq!(columns["time_s"].len(), 2000);
-    let told = run.stdout.lines().nth(1).unwrap();
+    let shown = unwrapped(&run.stdout);
+    let (_, told) = shown.split_once("the run, drawn ").unwrap();
     for words in [
         "drive: bearing_drag or load_nonlinearity",
         "if it is bearing_drag",
@@ -211,7 +212,7 @@ fn a_run_is_designed_for_what_a_discovery_left_open() {
         assert!(told.contains(words), "{words} in {told}");
     }
     let page = String::from_utf8(place.read("run.html")).unwrap();
-    assert!(page.contains("designed run") && page.contains(told.trim()), "{told}");
+    assert!(page.contains("designed run") && page.contains(told), "{told}");
     assert_self_contained(&page);
     // Under one load they are the same.
     place

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use fric_lab::excite::{
     Excitation, ExcitationError, ExcitationOptions, Experiment, Question, STANDARD_DURATION_S, design,
 };
+use fric_lab::text::wrapped;
 use fric_log::output::OutputFile;
 use fric_work::excite::{describe, expectations};
 use fric_work::questions::{QuestionError, Request, questions};
@@ -64,7 +65,7 @@ pub fn run(arguments: &ExciteArguments) -> Outcome {
         let text = preview::page(&model.robot, &excitation, &series, &expected, &output::provenance(&inputs));
         files.push(Written::new(page.complete_with(&text)?, "the run, drawn"));
     }
-    let told: String = expected.iter().flat_map(|line| ["  ", line, "\n"]).collect();
+    let told: String = expected.iter().map(|line| wrapped("  ", line)).collect();
     output::show_with("", files, &told)
 }
 
