@@ -316,23 +316,28 @@ impl<'a> Case<'a> {
     fn look(&self, counts: &[bool], start: &workbench::Model) -> Option<Outcome> {
         let bench = self.bench(counts);
         let base = bench.try_one(start);
-        let mut before: Vec<Effect> = Vec::new();
+        let noise_n = self.noise_n(&bench, &base)?;
+        let mut search = Search::new(&bench, noise_n, self.around(&base, noise_n), &base, self.with_time);
+        let (mut before, mut rows): (Vec<Effect>, Vec<Effect>) = (Vec::new(), Vec::new());
         let mut looks = 0;
         loop {
             looks += 1;
-            let noise_n = self.noise_n(&bench, &base)?;
-            let around = self.around(&base, noise_n);
-            let naming = Search::new(&bench, noise_n, around, &base, self.with_time).run(&before);
+            let naming = search.run(&before);
             let fitted = self.fitted(counts, &naming.model);
-            let again = workbench::Model { values: fitted.values, free: fitted.parameters.clone() };
-            let rows: Vec<Effect> = naming.named.iter().map(|named| named.effect).collect();
-            let more = if rows.is_empty() || looks == LOOKS { Vec::new() } else { self.missing(&bench, &again)? };
+            let found: Vec<Effect> = naming.named.iter().map(|named| named.effect).collect();
+            // What was offered and has not stayed would be offered again.
+            let more = if found == rows || looks == LOOKS {
+                Vec::new()
+            } else {
+                self.missing(&bench, &workbench::Model { values: fitted.values, free: fitted.parameters.clone() })?
+            };
             if more.is_empty() {
                 let residual_n = bench.residuals_n(&fitted.values);
                 let rest = self.rest(&bench, residual_n, self.least_n(&base))?;
                 return Some(Outcome { counts: counts.to_vec(), base, naming, fitted, rest, stretch: None });
             }
-            before = rows.into_iter().chain(more).collect();
+            before = found.iter().copied().chain(more).collect();
+            rows = found;
         }
     }
 

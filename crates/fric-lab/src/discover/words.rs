@@ -399,6 +399,9 @@ impl Refusal {
                 condition(signal)
             ),
             Self::Usual => "it is no more than what robots without it have".to_owned(),
+            Self::UsualInstead(usual) => {
+                format!("{} of a size that robots usually have leaves little for it to explain", usual.kind())
+            }
             Self::Bent(signal) => {
                 format!(
                     "what is left would go away if its size went with the {}: its law is another one",

@@ -27,7 +27,7 @@ impl TruthEffect for SwitchedOn {
 }
 
 fn starts(around: &Around) -> Vec<Start> {
-    around.time_constants_s().map(|time_s| vec![("final_n", around.noise_n), ("time_constant_s", time_s)]).to_vec()
+    around.time_constants_s().map(|time_s| vec![("time_constant_s", time_s)]).to_vec()
 }
 
 fn typical(scale: &mut Sizing<'_>) -> Start {

@@ -77,6 +77,9 @@ pub type NormalEquations = (DMatrix<f64>, DVector<f64>, f64);
 /// residuals did not remember: true ones are no smaller. Within one standard error a step over which all coordinates are
 /// [straight](Coordinate::is_straight) is the last: what it misses the minimum by goes with its square, and is not evaluated any more.
 ///
+/// A coordinate by which nothing changes at the start waits until the others have come to their minimum: the time in which something grows tells
+/// nothing before it has a size, and with a size that is a guess the first step leads the time anywhere.
+///
 /// A coordinate that a step leads beyond its range stays at that end, and the search goes on with the others; at its minimum those have
 /// their turn again that would rather be inside (an active set; J. Nocedal, S. J. Wright, *Numerical Optimization*, 2006, ch. 16.7).
 pub fn minimize(
@@ -97,7 +100,8 @@ pub fn minimize(
     let is_compared = near_errors >= NEAR_TO_COMPARE;
     let most = (patience * (start.len() + 1)).min(if is_compared { MOST_TO_COMPARE } else { usize::MAX });
     let patience = most.div_ceil(start.len() + 1);
-    let mut held = vec![false; start.len()];
+    let mut held: Vec<bool> = (0..start.len()).map(|place| !search.tells(place)).collect();
+    let mut waiting = held.clone();
     loop {
         let free: Vec<usize> = (0..start.len()).filter(|place| !held[*place]).collect();
         let (termination, arrival) = search.among(free, patience);
@@ -110,6 +114,17 @@ pub fn minimize(
                 held[place] = true;
             }
             search.keep_in();
+            continue;
+        }
+        if waiting.contains(&true) {
+            if let Some(places) = &arrival {
+                search.places.clone_from(places);
+                search.evaluate();
+            }
+            for place in 0..start.len() {
+                held[place] &= !waiting[place] || !search.tells(place);
+            }
+            waiting.fill(false);
             continue;
         }
         let there = arrival.as_deref().unwrap_or(&search.places);
@@ -158,6 +173,11 @@ impl<E: FnMut(&[f64]) -> Option<NormalEquations>> Search<'_, E> {
             }
             (matrix, gradient, squares)
         });
+    }
+
+    /// Whether anything changes by a coordinate here.
+    fn tells(&self, index: usize) -> bool {
+        self.at.as_ref().is_none_or(|(matrix, _, _)| matrix[(index, index)] > 0.0)
     }
 
     /// Which coordinates are beyond their ends.
@@ -308,5 +328,42 @@ impl<E: FnMut(&[f64]) -> Option<NormalEquations>> LeastSquaresProblem<f64, Dyn, 
         }
         let jacobian = &self.triangle.as_ref()?.jacobian;
         Some(DMatrix::from_column_slice(jacobian.nrows(), jacobian.ncols(), jacobian.as_slice()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use fric_core::effects::Effect;
+    use nalgebra::{DMatrix, DVector};
+
+    use super::{Termination, minimize};
+    use crate::search::vector::{Coordinate, Parameter};
+
+    /// `size·(1 − exp(−t/time))` over 28 s against one of −0.3 and 12 s.
+    #[test]
+    fn a_time_constant_waits_for_the_size_of_what_it_is_of() {
+        let at = |size: f64, time_s: f64, t_s: f64| size * (1.0 - (-t_s / time_s).exp());
+        let evaluate = |values: &[f64]| {
+            let (size, time_s) = (values[0], values[1]);
+            let (mut matrix, mut gradient, mut squares) = (DMatrix::zeros(2, 2), DVector::zeros(2), 0.0);
+            for t_s in (0..2800).map(|sample| 0.01 * f64::from(sample)) {
+                let decay = (-t_s / time_s).exp();
+                let slopes = DVector::from_vec(vec![1.0 - decay, -size * decay * t_s / (time_s * time_s)]);
+                // A disturbance that no size or time accounts for.
+                let residual = at(size, time_s, t_s) - at(-0.3, 12.0, t_s) - 0.01 * (40.0 * t_s).sin();
+                matrix += &slopes * slopes.transpose();
+                gradient += &slopes * residual;
+                squares += residual * residual;
+            }
+            Some((matrix, gradient, squares))
+        };
+        let parameters: Vec<Parameter> = Parameter::of(Effect::FrictionWarmup).collect();
+        let coordinates: Vec<Coordinate> = parameters.iter().map(|of| Coordinate::of(of, 1e-3)).collect();
+        for start_s in [0.5, 2.0, 8.0, 30.0] {
+            let found = minimize(&coordinates, &[0.0, start_s], 2800, 0.01, evaluate);
+            assert_eq!(found.termination, Termination::Converged, "from {start_s} s");
+            assert!((found.values[0] + 0.3).abs() < 1e-3, "from {start_s} s: {:?}", found.values);
+            assert!((found.values[1] - 12.0).abs() < 0.05, "from {start_s} s: {:?}", found.values);
+        }
     }
 }

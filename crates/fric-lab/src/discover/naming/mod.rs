@@ -1,10 +1,10 @@
 //! Which effects are missing: candidates enter, are exchanged, and have to justify themselves.
 //!
-//! 1. *Enter.* Every candidate is fitted together with all that the model has. The best on the samples learned from
-//!    enters if it also helps on those held out; leniently, for what is still missing colours the residual.
+//! 1. *Enter.* Every candidate is fitted together with all that the model has. The best on the samples learned from with strong evidence
+//!    enters if it also helps on those held out. Where none has strong evidence alone, those enter that have it beside each other.
 //! 2. *Leave.* An effect stays if the evidence for it is strong, if it is large enough to matter, if its parameters keep clear of the
-//!    ends of their ranges and can be told from the others, if it has one size in every operating condition, and if no law without a name makes it
-//!    superfluous. One that cannot stay is set aside, and the next has its turn.
+//!    ends of their ranges and can be told from the others, if it has one size in every operating condition, and if neither a law without a name
+//!    nor an effect of a size that robots usually have makes it superfluous. One that cannot stay is set aside, and the next has its turn.
 //! 3. *Exchange.* For every effect that stays, all others are tried in its place.
 //!
 //! What was set aside gets another turn beside all that has been found since.
@@ -22,6 +22,7 @@ use fric_core::effects::sensor_offset::OFFSET as OFFSET_OF_SENSOR;
 use fric_core::parameters::{MU, OFFSET, Values};
 
 use self::evidence::inflation;
+use self::projection::{Columns, less_projection};
 use self::rivals::{Chance, Rival, best_rival};
 use self::steadiness::{Portrait, Steadiness};
 use super::rest::WORTH;
@@ -96,6 +97,8 @@ pub enum Refusal {
     StandsIn(&'static str),
     /// It is no more than what robots without it have.
     Usual,
+    /// What it explains is not more than what another one of a usual size does.
+    UsualInstead(Effect),
     /// What is left would go away if its size went with this condition: its law is another one.
     Bent(&'static str),
 }
@@ -126,6 +129,15 @@ pub struct Tried {
     pub inflation: f64,
     /// Why it is not named.
     pub refusal: Refusal,
+}
+
+/// A candidate that something speaks for.
+struct Entrant {
+    effect: Effect,
+    trial: Trial,
+    /// By how much memory in the residual weakens the evidence, at least 1.
+    inflation: f64,
+    delta_bic: f64,
 }
 
 /// The search on one cable. Every set of effects is fitted once.
@@ -178,11 +190,7 @@ impl<'b, 'a> Search<'b, 'a> {
         let base = self.fit(&[]);
         let first_round = if self.excess(&base) > NEGLIGIBLE { self.round(&[]) } else { Vec::new() };
         let mut found = Vec::new();
-        for effect in before.iter().copied() {
-            // Each beside those before it, from its own starts.
-            self.beside(&found, &[effect]);
-            found.push(effect);
-        }
+        self.add(&mut found, before);
         let mut named = Vec::new();
         for _ in 0..PASSES {
             let before = set_of(&found);
@@ -257,7 +265,8 @@ impl<'b, 'a> Search<'b, 'a> {
         trial.held_out / self.noise_squares - 1.0
     }
 
-    /// Lets the best candidates in as long as they help, but for those that were refused.
+    /// Lets candidates in as long as they help, but for those that were refused: the best with strong evidence, or, where none has it alone, those
+    /// that have it together.
     fn enter(&mut self, found: &mut Vec<Effect>) {
         while found.len() < MOST_EFFECTS {
             let model = self.fit(found);
@@ -274,11 +283,63 @@ impl<'b, 'a> Search<'b, 'a> {
             };
             let mut entrants: Vec<(Effect, Trial)> = candidates.into_iter().filter(may_enter).collect();
             entrants.sort_by(|(_, one), (_, other)| one.training.total_cmp(&other.training));
-            // What memory in the residual makes of chance is no reason to go on.
-            let speaks_for_it = |(effect, trial): &&(Effect, Trial)| {
-                self.delta_bic(&model, trial, inflation(self.bench, trial, &fitted(*effect))) < 0.0
+            let entrants: Vec<Entrant> = entrants
+                .into_iter()
+                .map(|(effect, trial)| {
+                    let inflation = inflation(self.bench, &trial, &fitted(effect));
+                    Entrant { effect, delta_bic: self.delta_bic(&model, &trial, inflation), inflation, trial }
+                })
+                // What memory in the residual makes of chance is no reason to go on.
+                .filter(|entrant| entrant.delta_bic < 0.0)
+                .collect();
+            let entering = match entrants.iter().find(|entrant| entrant.delta_bic < -STRONG_BIC) {
+                Some(strong) => vec![strong.effect],
+                None => self.strong_together(&model, &entrants),
             };
-            let Some((effect, _)) = entrants.iter().find(speaks_for_it) else { break };
+            if entering.is_empty() {
+                break;
+            }
+            self.add(found, &entering);
+        }
+    }
+
+    /// Those of some candidates for each of which there is strong evidence beside the others, by linear steps from the model.
+    fn strong_together(&self, model: &Trial, entrants: &[Entrant]) -> Vec<Effect> {
+        let problem = self.bench.problem(&model.free, None);
+        let mut residual_n = self.bench.residuals_n(&model.values);
+        for (residual_n, _) in residual_n.iter_mut().zip(&problem.used).filter(|(_, used)| !**used) {
+            *residual_n = f64::NAN;
+        }
+        let adds = |entrant: &Entrant| -> Vec<f64> {
+            let with_n = self.bench.residuals_n(&entrant.trial.values);
+            with_n.iter().zip(&residual_n).map(|(with, without)| with - without).collect()
+        };
+        let signals: Vec<Vec<f64>> = entrants.iter().map(adds).collect();
+        let Some(columns) = less_projection(&problem, &model.values, &signals) else { return Vec::new() };
+        let columns = Columns::new(&columns, 0, &residual_n);
+        #[expect(clippy::cast_precision_loss, reason = "counts")]
+        let evidence = |place: usize, all: &[usize]| {
+            let others: Vec<usize> = all.iter().copied().filter(|other| *other != place).collect();
+            let [with, without] = [all, &others].map(|places| model.training - columns.gain(places));
+            let more = fitted(entrants[place].effect).len() as f64;
+            delta_bic(self.bench.count(false) as f64 / entrants[place].inflation, with / without, more)
+        };
+        let mut places: Vec<usize> = (0..entrants.len()).collect();
+        while places.len() > 1 {
+            let each = places.iter().map(|place| (evidence(*place, &places), *place));
+            let Some((delta_bic, weakest)) = each.max_by(|one, other| one.0.total_cmp(&other.0)) else { break };
+            if delta_bic < -STRONG_BIC {
+                return places.iter().map(|place| entrants[*place].effect).collect();
+            }
+            places.retain(|place| *place != weakest);
+        }
+        Vec::new()
+    }
+
+    /// Adds effects to a model, each beside those before it, from its own starts.
+    fn add(&mut self, found: &mut Vec<Effect>, effects: &[Effect]) {
+        for effect in effects {
+            self.beside(found, &[*effect]);
             found.push(*effect);
         }
     }
@@ -364,13 +425,19 @@ impl<'b, 'a> Search<'b, 'a> {
         candidates.iter().filter_map(|effect| Some((*effect, self.fits.get(&with(effect))?.clone()))).collect()
     }
 
-    /// Brings the models with some sets of effects to their minima.
+    /// Brings the models with some sets of effects to their minima, the periods of ripples with them: a scan finds these only nearly.
     fn refine(&mut self, sets: impl Iterator<Item = Set>) {
-        let coarse: Vec<Set> =
-            sets.filter(|set| self.fits.get(set).is_some_and(|trial| trial.near_errors > NEAR_ERRORS)).collect();
-        let models: Vec<Model> = coarse.iter().filter_map(|set| self.fits.get(set)).map(Trial::model).collect();
+        let refined = |set: Set| {
+            let trial = self.fits.get(&set)?;
+            let mut model = trial.model();
+            let periods = set.iter().filter_map(|effect| period_of(*effect));
+            model.free.extend(periods.filter(|period| !trial.free.contains(period)));
+            let is_coarse = trial.near_errors > NEAR_ERRORS || model.free.len() > trial.free.len();
+            is_coarse.then_some((set, model))
+        };
+        let (sets, models): (Vec<Set>, Vec<Model>) = sets.filter_map(refined).unzip();
         let fits = self.bench.try_all(&models, NEAR_ERRORS);
-        self.fits.extend(coarse.into_iter().zip(fits));
+        self.fits.extend(sets.into_iter().zip(fits));
     }
 
     /// The model with a set of effects. One that has not been tried yet is fitted from the best that has one more.
@@ -388,10 +455,8 @@ impl<'b, 'a> Search<'b, 'a> {
         let Some((larger, of_larger)) = larger else { return self.fit(&[]) };
         let mut model = of_larger.model();
         for effect in Effect::ALL.iter().copied().filter(|effect| larger.contains(effect) && !set.contains(effect)) {
-            for parameter in Parameter::of(effect) {
-                model.values[parameter.place()] = parameter.row().neutral;
-            }
-            let of_effect = fitted(effect);
+            model.values = without(effect, &model.values);
+            let of_effect: Vec<Parameter> = Parameter::of(effect).collect();
             model.free.retain(|parameter| !of_effect.contains(parameter));
         }
         let trial = self.bench.try_one(&model);
@@ -399,10 +464,9 @@ impl<'b, 'a> Search<'b, 'a> {
         trial
     }
 
-    /// Brings the model with a set of effects to its minimum, the periods of ripples with it: they were found by a scan.
+    /// Brings the model with a set of effects to its very minimum.
     fn polish(&mut self, found: &[Effect]) {
-        let mut model = self.fit(found).model();
-        model.free.extend(found.iter().filter_map(|effect| period_of(*effect)));
+        let model = self.fit(found).model();
         self.fits.insert(set_of(found), self.bench.fit(&model, AT_MINIMUM));
     }
 
@@ -449,6 +513,7 @@ impl<'b, 'a> Search<'b, 'a> {
                 (inflation, self.refusal(&model, effect, &without, inflation))
             });
             self.judged.insert((set.clone(), effect), (inflation, refusal));
+            let refusal = refusal.or_else(|| self.usual_instead(found, effect, inflation));
             named.push(Named { effect, without, runner_up: None, inflation, refusal });
         }
         if named.iter().all(|named| named.refusal.is_none()) && !self.unrivalled.contains(&set) {
@@ -466,6 +531,20 @@ impl<'b, 'a> Search<'b, 'a> {
             }
         }
         named
+    }
+
+    /// Whether there is no strong evidence for an effect beside another one of a size that robots usually have.
+    fn usual_instead(&mut self, found: &[Effect], effect: Effect, inflation: f64) -> Option<Refusal> {
+        let is_usual = |(other, refusal): (&Effect, &Refusal)| {
+            (*refusal == Refusal::Usual && !found.contains(other)).then_some(*other)
+        };
+        let usual: Vec<Effect> = self.refused.iter().filter_map(is_usual).collect();
+        let others: Vec<Effect> = found.iter().copied().filter(|other| *other != effect).collect();
+        usual.into_iter().find_map(|usual| {
+            let (_, with) = self.beside(found, &[usual]).pop()?;
+            let (_, without) = self.beside(&others, &[usual]).pop()?;
+            (self.delta_bic(&without, &with, inflation) >= -STRONG_BIC).then_some(Refusal::UsualInstead(usual))
+        })
     }
 
     /// A law without a name that makes some of the effects superfluous.

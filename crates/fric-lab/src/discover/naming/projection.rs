@@ -1,7 +1,7 @@
 //! What is left of a signal when the parameters of a model make up for what they can of it.
 
 use fric_core::parameters::Values;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use crate::certainty::undetermined::inverse_of_normal;
 use crate::search::problem::Problem;
@@ -40,4 +40,44 @@ pub fn less_projection(problem: &Problem<'_>, values: &Values, signals: &[Vec<f6
         }
     });
     Some(left)
+}
+
+/// A linear least-squares problem of a few columns, reduced to their products with each other and with what they have to account for.
+#[derive(Clone, Debug)]
+pub struct Columns {
+    matrix: DMatrix<f64>,
+    right: DVector<f64>,
+}
+
+impl Columns {
+    /// Of columns of which the first `included` are in the residual already; samples whose residual is NaN do not count.
+    pub fn new(columns: &[Vec<f64>], included: usize, residual_n: &[f64]) -> Self {
+        let count = columns.len();
+        let (mut matrix, mut right) = (DMatrix::<f64>::zeros(count, count), DVector::<f64>::zeros(count));
+        let mut row = vec![0.0; count];
+        for (sample, residual_n) in residual_n.iter().enumerate().filter(|(_, number)| number.is_finite()) {
+            for (number, column) in row.iter_mut().zip(columns) {
+                *number = column.get(sample).copied().filter(|number| number.is_finite()).unwrap_or(0.0);
+            }
+            let without_n = residual_n - row.iter().take(included).sum::<f64>();
+            for (one, number) in row.iter().enumerate() {
+                right[one] -= number * without_n;
+                for (other, factor) in row.iter().enumerate() {
+                    matrix[(one, other)] += number * factor;
+                }
+            }
+        }
+        Self { matrix, right }
+    }
+
+    /// By how much some of the columns make the sum of squares fall.
+    pub fn gain(&self, places: &[usize]) -> f64 {
+        let part = DMatrix::from_fn(places.len(), places.len(), |row, column| {
+            // Columns that are all but the same are as good as one.
+            let ridge = if row == column { 1.0 + 1e-9 } else { 1.0 };
+            self.matrix[(places[row], places[column])] * ridge
+        });
+        let of = DVector::from_fn(places.len(), |row, _| self.right[places[row]]);
+        part.cholesky().map_or(0.0, |factor| factor.solve(&of).dot(&of))
+    }
 }

@@ -7,9 +7,8 @@
 
 use fric_core::effects::Effect;
 use fric_core::parameters::Values;
-use nalgebra::{DMatrix, DVector};
 
-use super::projection::less_projection;
+use super::projection::{Columns, less_projection};
 use crate::discover::workbench::{Trial, Workbench};
 use crate::fit::{Parameter, Row};
 use crate::search::problem::Problem;
@@ -77,8 +76,8 @@ pub fn best_rival(
     let names: Vec<&'static str> = laws.iter().map(|law| law.signal).collect();
     signals.extend(laws.into_iter().map(|law| law.values));
     let columns = less_projection(&problem, &model.values, &signals)?;
-    let (matrix, right) = products(&columns, effects.len(), &residual_n);
-    let gain = |places: &[usize]| gain(&matrix, &right, places);
+    let columns = Columns::new(&columns, effects.len(), &residual_n);
+    let gain = |places: &[usize]| columns.gain(places);
     let all: Vec<usize> = (0..effects.len()).collect();
     let by_name = gain(&all);
     let of_law = |(law, signal): (usize, &&'static str)| {
@@ -101,7 +100,7 @@ pub fn best_rival(
             let of_name = |name: &usize| {
                 let others: Vec<usize> = all.iter().copied().filter(|other| other != name).collect();
                 let beside = [&others[..], &[effects.len() + law]].concat();
-                (together - self::gain(&matrix, &right, &beside)) / (by_name - self::gain(&matrix, &right, &others))
+                (together - columns.gain(&beside)) / (by_name - columns.gain(&others))
             };
             let shares = all.iter().map(|name| (of_name(name), *name)).min_by(|one, other| one.0.total_cmp(&other.0));
             let (_, name) = shares.filter(|(share, _)| *share < LEAST_BESIDE_RATIO)?;
@@ -117,38 +116,6 @@ pub fn best_rival(
         is_better.then_some(Rival { signal, replaces, gain })
     };
     names.iter().enumerate().filter_map(of_law).max_by(|one, other| one.gain.total_cmp(&other.gain))
-}
-
-/// By how much some columns make the sum of squares fall.
-fn gain(matrix: &DMatrix<f64>, right: &DVector<f64>, places: &[usize]) -> f64 {
-    let part = DMatrix::from_fn(places.len(), places.len(), |row, column| {
-        // Columns that are all but the same are as good as one.
-        let ridge = if row == column { 1.0 + 1e-9 } else { 1.0 };
-        matrix[(places[row], places[column])] * ridge
-    });
-    let of = DVector::from_fn(places.len(), |row, _| right[places[row]]);
-    part.cholesky().map_or(0.0, |factor| factor.solve(&of).dot(&of))
-}
-
-/// Products of all columns with each other, and with what is left without the first `effects` of them.
-fn products(columns: &[Vec<f64>], effects: usize, residual_n: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
-    let count = columns.len();
-    let (mut matrix, mut right) = (DMatrix::<f64>::zeros(count, count), DVector::<f64>::zeros(count));
-    let mut row = vec![0.0; count];
-    for (sample, residual_n) in residual_n.iter().enumerate().filter(|(_, number)| number.is_finite()) {
-        for (number, column) in row.iter_mut().zip(columns) {
-            *number = column.get(sample).copied().filter(|number| number.is_finite()).unwrap_or(0.0);
-        }
-        // Without the effects the residual is what it is now less what they add.
-        let without_n = residual_n - row.iter().take(effects).sum::<f64>();
-        for (one, number) in row.iter().enumerate() {
-            right[one] -= number * without_n;
-            for (other, factor) in row.iter().enumerate() {
-                matrix[(one, other)] += number * factor;
-            }
-        }
-    }
-    (matrix, right)
 }
 
 /// A plain law.
