@@ -19,3 +19,21 @@ pub fn inflation(bench: &Workbench<'_>, model: &Trial, of: &[Parameter]) -> f64 
         .map(|(place, _)| covariance[(place, place)] / (variance * inverse[(place, place)]))
         .fold(1.0, |most, ratio| if ratio.is_finite() { most.max(ratio) } else { f64::INFINITY })
 }
+
+/// Difference of Schwarz's criterion for so many samples that do not depend on each other, a ratio of the sums of squares, and so many
+/// more parameters; of less than two samples there is no evidence.
+pub fn delta_bic(count: f64, squares_ratio: f64, more: f64) -> f64 {
+    if count < 2.0 { f64::INFINITY } else { count * squares_ratio.ln() + more * count.ln() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::delta_bic;
+
+    #[test]
+    fn what_nothing_is_known_of_is_no_evidence() {
+        let few = delta_bic(10.0, 0.5, 1.0);
+        assert!((few - (10.0 * 0.5_f64.ln() + 10.0_f64.ln())).abs() < 1e-12);
+        assert!(delta_bic(0.0, 0.5, 1.0) > 0.0 && delta_bic(1.5, 0.01, 1.0) > 0.0);
+    }
+}

@@ -10,7 +10,7 @@ use rand_chacha::rand_core::SeedableRng;
 use super::predicted::sensed;
 use crate::candidates::catalogue;
 use crate::candidates::ripple::{period_of, periods};
-use crate::discover::naming::delta_bic;
+use crate::discover::naming::evidence::delta_bic;
 use crate::discover::workbench::{Model, NEAR_ERRORS, Trial, Workbench};
 use crate::effects::{self, Around, Sizing};
 use crate::fit::{CableRecord, FitOptions, Parameter, Row};

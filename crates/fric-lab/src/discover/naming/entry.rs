@@ -1,0 +1,104 @@
+//! Which candidates a model lets in.
+
+use fric_core::effects::Effect;
+
+use super::evidence::{delta_bic, inflation};
+use super::fits::gains;
+use super::justification::is_at_end;
+use super::projection::{Columns, less_projection};
+use super::{NEGLIGIBLE, STRONG_BIC, Search};
+use crate::candidates::catalogue::fitted;
+use crate::discover::workbench::Trial;
+
+/// Most effects of one cable.
+const MOST_EFFECTS: usize = 8;
+
+/// A candidate that something speaks for.
+struct Entrant {
+    effect: Effect,
+    trial: Trial,
+    /// By how much memory in the residual weakens the evidence, at least 1.
+    inflation: f64,
+    delta_bic: f64,
+}
+
+impl Search<'_, '_> {
+    /// Lets candidates in as long as they help, but for those that were refused: the best with strong evidence, or, where none has it alone, those
+    /// that have it together.
+    pub(super) fn enter(&mut self, found: &mut Vec<Effect>) {
+        while found.len() < MOST_EFFECTS {
+            let model = self.fit(found);
+            if self.excess(&model) <= NEGLIGIBLE {
+                break;
+            }
+            let enough = self.least_gain(&model);
+            let candidates = self.round(found);
+            let cycle_s = self.bench.record.cycle_s;
+            let may_enter = |(effect, trial): &(Effect, Trial)| {
+                !self.refused.contains_key(effect)
+                    && gains(&model, trial, enough)
+                    && !is_at_end(*effect, &trial.values, cycle_s)
+            };
+            let mut entrants: Vec<(Effect, Trial)> = candidates.into_iter().filter(may_enter).collect();
+            entrants.sort_by(|(_, one), (_, other)| one.training.total_cmp(&other.training));
+            let entrants: Vec<Entrant> = entrants
+                .into_iter()
+                .map(|(effect, trial)| {
+                    let inflation = inflation(self.bench, &trial, &fitted(effect));
+                    Entrant { effect, delta_bic: self.delta_bic(&model, &trial, inflation), inflation, trial }
+                })
+                // What memory in the residual makes of chance is no reason to go on.
+                .filter(|entrant| entrant.delta_bic < 0.0)
+                .collect();
+            let entering = match entrants.iter().find(|entrant| entrant.delta_bic < -STRONG_BIC) {
+                Some(strong) => vec![strong.effect],
+                None => self.strong_together(&model, &entrants),
+            };
+            if entering.is_empty() {
+                break;
+            }
+            self.add(found, &entering);
+        }
+    }
+
+    /// Those of some candidates for each of which there is strong evidence beside the others, by linear steps from the model.
+    fn strong_together(&self, model: &Trial, entrants: &[Entrant]) -> Vec<Effect> {
+        let problem = self.bench.problem(&model.free, None);
+        let mut residual_n = self.bench.residuals_n(&model.values);
+        for (residual_n, _) in residual_n.iter_mut().zip(&problem.used).filter(|(_, used)| !**used) {
+            *residual_n = f64::NAN;
+        }
+        let adds = |entrant: &Entrant| -> Vec<f64> {
+            let with_n = self.bench.residuals_n(&entrant.trial.values);
+            with_n.iter().zip(&residual_n).map(|(with, without)| with - without).collect()
+        };
+        let signals: Vec<Vec<f64>> = entrants.iter().map(adds).collect();
+        let Some(columns) = less_projection(&problem, &model.values, &signals) else { return Vec::new() };
+        let columns = Columns::new(&columns, 0, &residual_n);
+        #[expect(clippy::cast_precision_loss, reason = "counts")]
+        let evidence = |place: usize, all: &[usize]| {
+            let others: Vec<usize> = all.iter().copied().filter(|other| *other != place).collect();
+            let [with, without] = [all, &others].map(|places| model.training - columns.gain(places));
+            let more = fitted(entrants[place].effect).len() as f64;
+            delta_bic(self.bench.count(false) as f64 / entrants[place].inflation, with / without, more)
+        };
+        let mut places: Vec<usize> = (0..entrants.len()).collect();
+        while places.len() > 1 {
+            let each = places.iter().map(|place| (evidence(*place, &places), *place));
+            let Some((delta_bic, weakest)) = each.max_by(|one, other| one.0.total_cmp(&other.0)) else { break };
+            if delta_bic < -STRONG_BIC {
+                return places.iter().map(|place| entrants[*place].effect).collect();
+            }
+            places.retain(|place| *place != weakest);
+        }
+        Vec::new()
+    }
+
+    /// Adds effects to a model, each beside those before it, from its own starts.
+    pub(super) fn add(&mut self, found: &mut Vec<Effect>, effects: &[Effect]) {
+        for effect in effects {
+            self.beside(found, &[*effect]);
+            found.push(*effect);
+        }
+    }
+}

@@ -1,0 +1,202 @@
+//! What an effect in a model has to show in order to stay.
+
+use fric_core::effects::Effect;
+use fric_core::effects::sensor_offset::OFFSET as OFFSET_OF_SENSOR;
+use fric_core::parameters::{OFFSET, Values};
+
+use super::evidence::inflation;
+use super::rivals::{Chance, Rival, best_rival};
+use super::steadiness::{Portrait, Steadiness};
+use super::{LEAST_SIZE, Named, Refusal, STRONG_BIC, Search, set_of, without};
+use crate::candidates::catalogue::fitted;
+use crate::discover::rest::WORTH;
+use crate::discover::workbench::Trial;
+use crate::effects;
+use crate::fit::Parameter;
+use crate::search::vector::Coordinate;
+
+/// A parameter within this fraction of its bound counts as stuck at the bound, by the way from its neutral value.
+const END_RATIO: f64 = 0.01;
+/// The size of an effect, as a share of itself, differs between operating conditions by less than this (root mean square): it then explains as one constant
+/// four fifths of what it would with one in each condition.
+const MOST_SCATTER_RATIO: f64 = 0.5;
+/// Of what is above the noise, no more than this share is what the effect would explain if its size went with a condition.
+const MOST_BENT: f64 = 0.5;
+
+impl Search<'_, '_> {
+    /// Every effect of a model with what speaks for it, and why it cannot stay if it cannot.
+    pub(super) fn justified(&mut self, found: &[Effect]) -> Vec<Named> {
+        let set = set_of(found);
+        let model = self.fit(found);
+        let mut named = Vec::new();
+        for effect in found.iter().copied() {
+            let others: Vec<Effect> = found.iter().copied().filter(|other| *other != effect).collect();
+            let without = self.fit(&others);
+            let known = self.judged.get(&(set.clone(), effect)).copied();
+            let (inflation, refusal) = known.unwrap_or_else(|| {
+                let inflation = inflation(self.bench, &model, &fitted(effect));
+                (inflation, self.refusal(&model, effect, &without, inflation))
+            });
+            self.judged.insert((set.clone(), effect), (inflation, refusal));
+            let refusal = refusal.or_else(|| self.usual_instead(found, effect, inflation));
+            named.push(Named { effect, without, runner_up: None, inflation, refusal });
+        }
+        if named.iter().all(|named| named.refusal.is_none()) && !self.unrivalled.contains(&set) {
+            match self.rival(&model, &named) {
+                Some(rival) => {
+                    for place in rival.replaces {
+                        let named = &mut named[place];
+                        named.refusal = Some(Refusal::StandsIn(rival.signal));
+                        self.judged.insert((set.clone(), named.effect), (named.inflation, named.refusal));
+                    }
+                }
+                None => {
+                    self.unrivalled.insert(set);
+                }
+            }
+        }
+        named
+    }
+
+    /// Whether there is no strong evidence for an effect beside another one of a size that robots usually have.
+    fn usual_instead(&mut self, found: &[Effect], effect: Effect, inflation: f64) -> Option<Refusal> {
+        let is_usual = |(other, refusal): (&Effect, &Refusal)| {
+            (*refusal == Refusal::Usual && !found.contains(other)).then_some(*other)
+        };
+        let usual: Vec<Effect> = self.refused.iter().filter_map(is_usual).collect();
+        let others: Vec<Effect> = found.iter().copied().filter(|other| *other != effect).collect();
+        usual.into_iter().find_map(|usual| {
+            let (_, with) = self.beside(found, &[usual]).pop()?;
+            let (_, without) = self.beside(&others, &[usual]).pop()?;
+            (self.delta_bic(&without, &with, inflation) >= -STRONG_BIC).then_some(Refusal::UsualInstead(usual))
+        })
+    }
+
+    /// A law without a name that makes some of the effects superfluous.
+    fn rival(&self, model: &Trial, named: &[Named]) -> Option<Rival> {
+        let effects: Vec<(Vec<Parameter>, Values)> =
+            named.iter().map(|named| (fitted(named.effect), without(named.effect, &model.values))).collect();
+        let inflation = named.iter().fold(1.0, |most: f64, named| most.max(named.inflation));
+        let is_friction_only = named.iter().all(|named| named.effect.is_friction());
+        let white = STRONG_BIC * self.noise_n * self.noise_n;
+        let chance = Chance { enough: white * inflation, white, noise_n: self.noise_n };
+        let kinds: Vec<Effect> = named.iter().map(|named| named.effect).collect();
+        let rival = (!is_friction_only).then(|| best_rival(self.bench, model, (&kinds, &effects), &chance))??;
+        (!rival.replaces.iter().any(|place| named[*place].effect.is_friction())).then_some(rival)
+    }
+
+    /// Why an effect cannot stay in a model.
+    fn refusal(&self, model: &Trial, effect: Effect, without_it: &Trial, inflation: f64) -> Option<Refusal> {
+        let cycle_s = self.bench.record.cycle_s;
+        if is_at_end(effect, &model.values, cycle_s) {
+            return Some(Refusal::AtBound);
+        }
+        let gain = without_it.held_out - model.held_out;
+        let is_strong = self.delta_bic(without_it, model, inflation) < -STRONG_BIC;
+        if !is_strong || gain <= LEAST_SIZE * self.noise_squares {
+            return Some(Refusal::Weak);
+        }
+        let lab = effects::of(effect)?;
+        if !(lab.is_more_than_usual)(&model.values, &self.around) {
+            return Some(Refusal::Usual);
+        }
+        if let Some(other) = self.confused_with(model, effect) {
+            return Some(Refusal::Open(other));
+        }
+        let neutral = without(effect, &model.values);
+        let noise = (self.noise_n, inflation);
+        let portrait = Portrait::of(self.bench, model, &fitted(effect), &neutral, self.conditions, noise)?;
+        let is_noise = self.excess(model) <= WORTH;
+        doubt(&portrait, is_noise)
+    }
+
+    /// The parameter that an effect cannot be told from, where the log determines none of the effect's own, be the others of them known; an offset at the platform is one
+    /// that every cable may have.
+    fn confused_with(&self, model: &Trial, effect: Effect) -> Option<&'static str> {
+        let mut free = model.free.clone();
+        let has_offset = free.iter().any(|parameter| [OFFSET, OFFSET_OF_SENSOR].contains(&parameter.place()));
+        free.extend(Parameter::all().filter(|parameter| parameter.place() == OFFSET && !has_offset));
+        let of_effect = fitted(effect);
+        let (covariance, all) =
+            crate::certainty::undetermined::vagueness(&self.bench.problem(&free, None), &[model.values]);
+        let own = |of: &crate::search::solve::Unknown| of_effect.contains(&of.parameter);
+        // What only the effect's own parameters share is no matter of another's.
+        let alone = |of: &Parameter| {
+            let free: Vec<Parameter> =
+                free.iter().copied().filter(|other| other == of || !of_effect.contains(other)).collect();
+            let (_, all) = crate::certainty::undetermined::vagueness(&self.bench.problem(&free, None), &[model.values]);
+            all.iter().any(|(vagueness, unknown)| unknown.parameter == *of && *vagueness <= 1.0)
+        };
+        if all.iter().any(|(vagueness, of)| own(of) && *vagueness <= 1.0)
+            || of_effect.len() > 1 && of_effect.iter().any(alone)
+        {
+            return None;
+        }
+        let correlation = |one: usize, other: usize| {
+            (covariance[(one, other)] / (covariance[(one, one)] * covariance[(other, other)]).sqrt()).abs()
+        };
+        let (own, others): (Vec<usize>, Vec<usize>) = (0..all.len()).partition(|place| own(&all[*place].1));
+        let nearest = |other: &usize| own.iter().map(|own| correlation(*own, *other)).fold(0.0, f64::max);
+        let other = others.into_iter().max_by(|one, other| nearest(one).total_cmp(&nearest(other)))?;
+        Some(all[other].1.parameter.row().key)
+    }
+}
+
+/// Whether something else is taken for an effect, whose size then is not one constant.
+fn doubt(portrait: &Portrait<'_>, is_noise: bool) -> Option<Refusal> {
+    let all = portrait.steadiness();
+    let scatters = |of: &&Steadiness| of.scatter > MOST_SCATTER_RATIO * MOST_SCATTER_RATIO;
+    let unsteady = all.iter().filter(scatters).max_by(|one, other| one.scatter.total_cmp(&other.scatter));
+    if let Some(unsteady) = unsteady {
+        return Some(Refusal::Unsteady(unsteady.signal));
+    }
+    let bent = all.iter().filter(|of| !is_noise && of.bent > MOST_BENT);
+    bent.max_by(|one, other| one.bent.total_cmp(&other.bent)).map(|bent| Refusal::Bent(bent.signal))
+}
+
+/// Whether a parameter of an effect has run into an end of its range that is not its neutral value; of friction that every model
+/// has the ranges are orders of magnitude.
+pub fn is_at_end(effect: Effect, values: &Values, cycle_s: f64) -> bool {
+    let has_run = |parameter: &Parameter| {
+        let (least, greatest) = Coordinate::of(parameter, cycle_s).range();
+        let neutral = parameter.row().neutral;
+        let left = |end: f64| (end - values[parameter.place()]).abs() / (end - neutral).abs();
+        [least, greatest].into_iter().any(|end| left(end) < END_RATIO)
+    };
+    !effect.is_friction() && fitted(effect).iter().any(has_run)
+}
+
+#[cfg(test)]
+mod tests {
+    use fric_core::effects::Effect;
+    use fric_core::parameters::{PARAMETER_COUNT, Values};
+
+    use super::{fitted, is_at_end};
+    use crate::fit::Parameter;
+
+    const CYCLE_S: f64 = 1e-3;
+
+    fn neutral() -> Values {
+        let mut values = [0.0; PARAMETER_COUNT];
+        for parameter in Parameter::all() {
+            values[parameter.place()] = parameter.row().neutral;
+        }
+        values
+    }
+
+    #[test]
+    fn a_parameter_at_the_end_of_its_range_has_run_into_it() {
+        for (effect, inside, end) in
+            [(Effect::PreslidingShape, 0.5, 0.3), (Effect::Stribeck, 2.0, 5.0), (Effect::TimeDelay, 0.02, 0.063)]
+        {
+            let place = fitted(effect)[0].place();
+            for (value, has_run) in [(inside, false), (end, true), (end * (1.0 - 1e-6), true)] {
+                let mut values = neutral();
+                values[place] = value;
+                assert_eq!(is_at_end(effect, &values, CYCLE_S), has_run, "{effect:?}: {value}");
+            }
+        }
+        // At an end that is the neutral value there is only little of the effect.
+        assert!(!is_at_end(Effect::PulleyInertia, &neutral(), CYCLE_S));
+    }
+}
