@@ -323,7 +323,7 @@ impl<'a> Case<'a> {
         loop {
             looks += 1;
             let naming = search.run(&before);
-            let fitted = self.fitted(counts, &naming.model);
+            let fitted = self.fitted(counts, &naming.model, noise_n);
             let found: Vec<Effect> = naming.named.iter().map(|named| named.effect).collect();
             // What was offered and has not stayed would be offered again.
             let more = if found == rows || looks == LOOKS {
@@ -375,7 +375,7 @@ impl<'a> Case<'a> {
 
     /// The model with all that was found as an identification of the robot file with it gives it: fitted to all samples that count. Friction that
     /// neither the file has nor was found stays out, and so does an offset that is more than chance: naming has refused it.
-    fn fitted(&self, counts: &[bool], model: &Trial) -> Fitted {
+    fn fitted(&self, counts: &[bool], model: &Trial, noise_n: f64) -> Fitted {
         let given = self.record.params.values();
         let is_known = |parameter: &Parameter| {
             !parameter.is_friction() || acts(parameter, &model.values) || acts(parameter, &given)
@@ -398,7 +398,10 @@ impl<'a> Case<'a> {
         let has_chance_offset = |fitted: &Fitted| {
             let place = fitted.parameters.iter().position(|parameter| parameter.place() == OFFSET);
             let error_n = place.map_or(0.0, |place| fitted.covariance[(place, place)].sqrt());
-            model.values[OFFSET].abs() > 0.0 || fitted.values[OFFSET].abs() <= HALF_INTERVAL * error_n
+            // One that is known less well than a single sample is another word for something else.
+            let is_chance =
+                fitted.values[OFFSET].abs() <= HALF_INTERVAL * error_n && HALF_INTERVAL * error_n <= noise_n;
+            model.values[OFFSET].abs() > 0.0 || is_chance
         };
         of(|parameter| parameter.place() == OFFSET).filter(has_chance_offset).or_else(|| of(|_| false)).unwrap_or_else(
             || {

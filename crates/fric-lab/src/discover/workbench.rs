@@ -99,6 +99,12 @@ impl<'a> Workbench<'a> {
         mean(&mut known_n.map(|force_n| (force_n - middle_n).powi(2))).sqrt()
     }
 
+    /// Whether the reference tells more loads than one, with noise of this standard deviation. If not, a sensor agrees with it best that shows this load
+    /// whatever the force is: nothing is known of the sensor's curve, and a gain is another word for an offset.
+    pub fn knows_load(&self, noise_n: f64) -> bool {
+        self.reference_variation_n() > noise_n
+    }
+
     /// The least-squares problem over the samples learned from.
     pub fn problem(&self, free: &[Parameter], seat: Option<Rc<Seat<'a>>>) -> Problem<'a> {
         Problem {

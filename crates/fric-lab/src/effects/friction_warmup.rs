@@ -2,12 +2,15 @@
 //!
 //! The temperature goes towards its final one as a body does that is heated evenly and cools in proportion; μ follows it.
 
+use fric_core::effects::friction_warmup::TIME_CONSTANT;
+use fric_core::parameters::Values;
+
 use super::truth::{Cause, Contact, TruthEffect, warmed};
-use super::{Around, LabEffect, Sizing, Start, always};
+use super::{Around, LabEffect, Sizing, Start};
 use crate::random::uniform;
 
 /// What the lab knows of it.
-pub const LAB: LabEffect = LabEffect { truth, starts, typical, is_more_than_usual: always };
+pub const LAB: LabEffect = LabEffect { truth, starts, typical, is_more_than_usual: lasts };
 
 #[derive(Debug)]
 struct Warming {
@@ -33,4 +36,8 @@ fn starts(around: &Around) -> Vec<Start> {
 fn typical(scale: &mut Sizing<'_>) -> Start {
     let ratio = scale.either(0.4);
     vec![("ratio", ratio), ("time_constant_s", scale.duration_s * uniform(scale.random, 0.1, 0.3))]
+}
+
+fn lasts(values: &Values, around: &Around) -> bool {
+    around.lasts_s(values[TIME_CONSTANT])
 }

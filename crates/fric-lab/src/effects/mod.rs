@@ -71,7 +71,16 @@ pub struct Periods {
 /// Time constants of what warms up that a search begins from, as shares of the log.
 const WARM_UP_RATIOS: [f64; 2] = [0.08, 0.3];
 
+/// What warms up does so for more than this share of the log: two of the blocks that it is cut into, one of which is held out. What is over
+/// sooner is the beginning of the run, in which friction from before is still stored.
+const LEAST_WARM_UP_RATIO: f64 = 0.05;
+
 impl Around {
+    /// Whether what warms up with a time constant does so for long enough to be told from the beginning of the run.
+    fn lasts_s(&self, time_constant_s: f64) -> bool {
+        time_constant_s > LEAST_WARM_UP_RATIO * self.end_s
+    }
+
     fn time_constants_s(&self) -> [f64; 2] {
         WARM_UP_RATIOS.map(|ratio| ratio * self.end_s)
     }

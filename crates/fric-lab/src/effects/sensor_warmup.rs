@@ -2,12 +2,15 @@
 //!
 //! Its temperature goes towards the final one as a body does that is heated evenly and cools in proportion; its zero follows it.
 
+use fric_core::effects::sensor_warmup::TIME_CONSTANT;
+use fric_core::parameters::Values;
+
 use super::truth::{Cause, TruthEffect, warmed};
-use super::{Around, LabEffect, Sizing, Start, always};
+use super::{Around, LabEffect, Sizing, Start};
 use crate::random::uniform;
 
 /// What the lab knows of it.
-pub const LAB: LabEffect = LabEffect { truth, starts, typical, is_more_than_usual: always };
+pub const LAB: LabEffect = LabEffect { truth, starts, typical, is_more_than_usual: lasts };
 
 #[derive(Debug)]
 struct SwitchedOn {
@@ -33,4 +36,8 @@ fn starts(around: &Around) -> Vec<Start> {
 fn typical(scale: &mut Sizing<'_>) -> Start {
     let final_n = scale.either(0.3);
     vec![("final_n", final_n), ("time_constant_s", scale.duration_s * uniform(scale.random, 0.1, 0.3))]
+}
+
+fn lasts(values: &Values, around: &Around) -> bool {
+    around.lasts_s(values[TIME_CONSTANT])
 }

@@ -22,6 +22,9 @@ const PATIENCE_AFAR: usize = 2;
 const NEAR_TO_COMPARE: f64 = 0.5;
 const MOST_TO_COMPARE: usize = 100;
 
+/// A coordinate that changes the residuals by less than so many standard errors over its whole range does nothing.
+const IDLE_ERRORS: f64 = 1e-3;
+
 /// Why a search has ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -78,7 +81,8 @@ pub type NormalEquations = (DMatrix<f64>, DVector<f64>, f64);
 /// [straight](Coordinate::is_straight) is the last: what it misses the minimum by goes with its square, and is not evaluated any more.
 ///
 /// A coordinate by which nothing changes at the start waits until the others have come to their minimum: the time in which something grows tells
-/// nothing before it has a size, and with a size that is a guess the first step leads the time anywhere.
+/// nothing before it has a size, and with a size that is a guess the first step leads the time anywhere. One that does nothing there either stays:
+/// the ratio of a friction that there is not would run to an end of its range.
 ///
 /// A coordinate that a step leads beyond its range stays at that end, and the search goes on with the others; at its minimum those have
 /// their turn again that would rather be inside (an active set; J. Nocedal, S. J. Wright, *Numerical Optimization*, 2006, ch. 16.7).
@@ -175,9 +179,15 @@ impl<E: FnMut(&[f64]) -> Option<NormalEquations>> Search<'_, E> {
         });
     }
 
-    /// Whether anything changes by a coordinate here.
+    /// Whether anything changes by a coordinate here: over its whole range more than a part of a standard error.
     fn tells(&self, index: usize) -> bool {
-        self.at.as_ref().is_none_or(|(matrix, _, _)| matrix[(index, index)] > 0.0)
+        let Some((matrix, _, squares)) = &self.at else { return true };
+        let (of, slopes) = (self.coordinates[index], matrix[(index, index)]);
+        let ((least, greatest), (_, slope)) = (of.range(), of.value_at(of.kept_in(self.places[index])));
+        let whole = (greatest - least) / slope;
+        #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
+        let variance = squares / self.residual_count as f64;
+        slopes > 0.0 && slopes * whole * whole > IDLE_ERRORS * IDLE_ERRORS * variance
     }
 
     /// Which coordinates are beyond their ends.

@@ -20,8 +20,10 @@ const END_RATIO: f64 = 0.01;
 /// The size of an effect, as a share of itself, differs between operating conditions by less than this (root mean square): it then explains as one constant
 /// four fifths of what it would with one in each condition.
 const MOST_SCATTER_RATIO: f64 = 0.5;
-/// Of what is above the noise, no more than this share is what the effect would explain if its size went with a condition.
+/// Of what is above the noise, no more than this share is what the effect would explain if its size went with a condition,
 const MOST_BENT: f64 = 0.5;
+/// unless it would hardly change over the condition, as a share of itself: then the name is right, and what is left is another, smaller effect.
+const MOST_TILT: f64 = 0.2;
 
 impl Search<'_, '_> {
     /// Every effect of a model with what speaks for it, and why it cannot stay if it cannot.
@@ -150,7 +152,7 @@ fn doubt(portrait: &Portrait<'_>, is_noise: bool) -> Option<Refusal> {
     if let Some(unsteady) = unsteady {
         return Some(Refusal::Unsteady(unsteady.signal));
     }
-    let bent = all.iter().filter(|of| !is_noise && of.bent > MOST_BENT);
+    let bent = all.iter().filter(|of| !is_noise && of.bent > MOST_BENT && of.tilt > MOST_TILT);
     bent.max_by(|one, other| one.bent.total_cmp(&other.bent)).map(|bent| Refusal::Bent(bent.signal))
 }
 

@@ -120,9 +120,6 @@ pub struct Search<'b, 'a> {
     around: Around,
     conditions: &'b [Condition],
     fits: BTreeMap<Set, Trial>,
-    /// Whether the reference tells more loads than one; if not, a sensor of no gain that is off by that load agrees with it best, and a
-    /// gain is another word for an offset.
-    knows_load: bool,
     /// Candidates that were refused, and why.
     refused: BTreeMap<Effect, Refusal>,
     /// Of effects in sets: by how much memory weakens the evidence, and why they cannot stay.
@@ -150,7 +147,6 @@ impl<'b, 'a> Search<'b, 'a> {
             around,
             conditions,
             fits,
-            knows_load: bench.reference_variation_n() > noise_n,
             refused: BTreeMap::new(),
             judged: BTreeMap::new(),
             unrivalled: BTreeSet::new(),
@@ -183,8 +179,11 @@ impl<'b, 'a> Search<'b, 'a> {
 
     /// Candidates that no log like this can justify.
     fn beyond_the_log(&self) -> BTreeMap<Effect, Refusal> {
-        let of_gain = (Effect::SensorGain, Refusal::Open("offset_n"));
-        if self.knows_load { BTreeMap::new() } else { BTreeMap::from([of_gain]) }
+        if self.bench.knows_load(self.noise_n) {
+            return BTreeMap::new();
+        }
+        let of_the_curve = [Effect::SensorGain, Effect::SensorNonlinearity];
+        of_the_curve.into_iter().map(|effect| (effect, Refusal::Open("offset_n"))).collect()
     }
 
     /// Lets candidates in and has them justify themselves until nothing changes; what cannot is set aside, and the next has its turn. What

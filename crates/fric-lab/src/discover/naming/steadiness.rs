@@ -26,6 +26,8 @@ pub struct Steadiness {
     pub scatter: f64,
     /// What is above the noise that the effect would explain if it grew or fell in proportion to the condition, as a share.
     pub bent: f64,
+    /// By how much it would then grow or fall over the range of the condition, as a share of its fitted size.
+    pub tilt: f64,
 }
 
 /// What an effect adds to a model, with everything else allowed for.
@@ -95,6 +97,7 @@ impl<'a> Portrait<'a> {
             signal: condition.signal,
             scatter: sums.iter().filter(|(_, square)| *square > 0.0).map(scatter).sum(),
             bent: if lever > 0.0 { (bend * bend / lever - self.variance()) / excess } else { 0.0 },
+            tilt: if lever > 0.0 { (bend / lever).abs() } else { 0.0 },
         })
     }
 }

@@ -88,7 +88,9 @@ pub fn table(bench: &Workbench<'_>, model: &Model, noise_n: f64, places: &[Place
         return None;
     }
     let base = without.model();
-    let candidates = candidates(bench, &base, &residual_n, places);
+    let mut candidates = candidates(bench, &base, &residual_n, places);
+    // One load tells nothing of what goes with the load: a table over it would make any force that one.
+    candidates.retain(|candidate| candidate.over != Over::Load || bench.knows_load(noise_n));
     let chosen = candidates.iter().filter_map(|candidate| candidate.tried(bench, &base));
     let chosen = chosen.min_by(|one, other| one.predicted.total_cmp(&other.predicted))?;
     let holds_elsewhere = chosen.holds_elsewhere(bench, noise_n);
