@@ -114,8 +114,8 @@ pub fn step(
 pub const ARM: &str = r#"
 format = "fric-continuum/1"
 name = "arm"
-disk_count = 5
-pitch_m = 0.06
+disk_count = 3
+pitch_m = 0.1
 disk_thickness_m = 0.002
 hole_radius_m = 0.015
 [backbone]
@@ -130,7 +130,7 @@ axial_stiffness_n = 13700.0
 capacity_n = 4.0
 "#;
 
-pub const DISKS: usize = 5;
+pub const DISKS: usize = 3;
 
 /// A static model that is given back.
 pub struct Model(pub *mut ModelHandle);
