@@ -79,8 +79,8 @@ class HoleResult(Result):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Shape(Value):
-    """Outcome of `StaticModel.solve`, or of `run` with a row a step in front. Index 0 of (2, disks) is the first tendon; holes count from the base plate. All numbers are
-    finite, whatever went in."""
+    """Outcome of `StaticModel.solve`; of `run` with one more axis in front, a row a step. Index 0 of (2, disks) is the first tendon. All numbers
+    are finite, whatever went in."""
 
     disk_position_m: NDArray[np.float64]
     """Centres of the disks, base frame, m, (disks, 2)."""
@@ -102,8 +102,8 @@ class Shape(Value):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Command(Value):
-    """Outcome of `StaticModel.tension_for`, or of `follow` with a row a goal in front: what to set at the base, and what the model expects of
-    it."""
+    """Outcome of `StaticModel.tension_for`; of `follow` with one more axis in front, a row a goal. It holds what to set at the base, and what the
+    model expects of it."""
 
     base_tension_n: NDArray[np.float64]
     """Tensions at the base of the first and the second tendon, N, (2,)."""

@@ -16,8 +16,8 @@ use crate::outcome::Outcome;
 /// fric_static_model_free.
 ///
 /// Tensions are those of the tendons at the base plate, and positions stand in the base frame. The tables `[base_sensor]` and `[markers]` of
-/// the manipulator file are not applied: what such a sensor shows becomes a tension by (shown − offset_n)/gain. One thread at a time may use a model. Others may ask for its name and its number of
-/// disks meanwhile. Several models are independent of each other.
+/// the manipulator file are not applied: what such a sensor shows becomes a tension by (shown − offset_n)/gain. One thread at a time may
+/// use a model. Others may ask for its name and its number of disks meanwhile. Several models are independent of each other.
 pub struct ModelHandle {
     pub(crate) work: Work,
     description: Description,
