@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._results import (
     CalibrationResult,
+    Command,
     Compensation,
     DiscoverResult,
     ExciteResult,
@@ -15,6 +16,7 @@ from ._results import (
     HoleResult,
     HysteresisResult,
     ReplayResult,
+    Shape,
     ShapeResult,
     SimulatedTendon,
     TendonDiscovery,
@@ -25,6 +27,7 @@ __all__ = [
     "Cable",
     "Compensator",
     "Friction",
+    "GOAL_STATUS_BITS",
     "Log",
     "LogPaths",
     "Manipulator",
@@ -32,10 +35,13 @@ __all__ = [
     "Platform",
     "ResidualFunction",
     "Robot",
+    "SHAPE_STATUS_BITS",
     "STATUS_BITS",
     "_command_line",
     "_unknown_name",
     "Snapshot",
+    "StaticModel",
+    "StaticSnapshot",
     "TendonRun",
     "__version__",
     "continuum_calibrate",
@@ -57,12 +63,16 @@ __all__ = [
     "simulate",
 ]
 
+GOAL_STATUS_BITS: Final[dict[str, int]]
+SHAPE_STATUS_BITS: Final[dict[str, int]]
 STATUS_BITS: Final[dict[str, int]]
 __version__: Final[str]
 
 _Path = str | PathLike[str]
 _Vector = Sequence[float] | NDArray[Any]
 _Progress = bool | Callable[[float], object] | None
+_GoalWay = Literal["history", "none", "pulling", "releasing"]
+_Way = Literal["history", "none", "pulling", "releasing", "measured"]
 
 @final
 class Platform:
@@ -396,6 +406,53 @@ class TendonRun:
     def __len__(self) -> int: ...
     def __eq__(self, other: object, /) -> bool: ...
 
+@final
+class StaticSnapshot:
+    def __eq__(self, other: object, /) -> bool: ...
+
+@final
+class StaticModel:
+    def __new__(
+        cls,
+        manipulator: Manipulator,
+        *,
+        least_tension_n: _Vector = (0.0, 0.0),
+        greatest_tension_n: _Vector | None = None,
+        hold_rad: float = 0.0,
+    ) -> StaticModel: ...
+    def solve(
+        self, base_tension_n: ArrayLike, *, friction: _Way = "history", tension_n: ArrayLike | None = None
+    ) -> Shape: ...
+    def run(
+        self,
+        base_tension_n: ArrayLike,
+        *,
+        friction: _Way = "history",
+        tension_n: ArrayLike | None = None,
+        progress: _Progress = False,
+    ) -> Shape: ...
+    def tension_for(
+        self,
+        *,
+        bend_rad: ArrayLike | None = None,
+        tip_m: ArrayLike | None = None,
+        friction: _GoalWay = "history",
+    ) -> Command: ...
+    def follow(
+        self,
+        *,
+        bend_rad: ArrayLike | None = None,
+        tip_m: ArrayLike | None = None,
+        friction: _GoalWay = "history",
+        progress: _Progress = False,
+    ) -> Command: ...
+    def reset(self) -> None: ...
+    def snapshot(self) -> StaticSnapshot: ...
+    def restore(self, snapshot: StaticSnapshot) -> None: ...
+    @property
+    def manipulator(self) -> Manipulator: ...
+    def __eq__(self, other: object, /) -> bool: ...
+
 def continuum_calibrate(manipulator: Manipulator, load_n: Any, shift_nm: Any) -> CalibrationResult: ...
 def continuum_discover(manipulator: Manipulator, run: TendonRun) -> TendonDiscovery: ...
 def continuum_fit(
@@ -417,6 +474,7 @@ def continuum_shape(
     shapes: int = 6,
     at_s: Sequence[float] | None = None,
     mixed: bool = False,
+    ways: Sequence[Literal["none", "coulomb", "measured", "history"]] | None = None,
 ) -> ShapeResult: ...
 def continuum_simulate(
     manipulator: Manipulator,

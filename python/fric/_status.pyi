@@ -12,3 +12,18 @@ class Status(IntFlag):
     POSE_UNREACHABLE = 256
     SENSOR_JUMP = 512
     UNSETTLED = 1024
+
+class ShapeStatus(IntFlag):
+    NOT_FINITE = 1
+    NOT_CONVERGED = 2
+    UNSTABLE = 4
+    OVER_CAPACITY = 8
+    DISKS_TOUCH = 16
+
+class GoalStatus(IntFlag):
+    NOT_USABLE = 1
+    NOT_CONVERGED = 2
+    OUT_OF_REACH = 4
+    HELD = 8
+    REVERSAL = 16
+    DEAD_BAND = 32

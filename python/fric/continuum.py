@@ -11,7 +11,7 @@ True
 Friction is positive where the base side of a hole is tighter. Holes count from the base plate, disks from the base.
 """
 
-from ._fric import Manipulator, TendonRun
+from ._fric import Manipulator, StaticModel, StaticSnapshot, TendonRun
 from ._fric import continuum_calibrate as calibrate
 from ._fric import continuum_discover as discover
 from ._fric import continuum_fit as fit
@@ -23,21 +23,30 @@ from ._fric import continuum_shape as shape
 from ._fric import continuum_simulate as simulate
 from ._results import (
     CalibrationResult,
+    Command,
     FrictionResult,
     HoleResult,
+    Shape,
     ShapeResult,
     SimulatedTendon,
     TendonDiscovery,
     TendonFit,
 )
+from ._status import GoalStatus, ShapeStatus
 
 __all__ = [
     "CalibrationResult",
+    "Command",
     "FrictionResult",
+    "GoalStatus",
     "HoleResult",
     "Manipulator",
+    "Shape",
     "ShapeResult",
+    "ShapeStatus",
     "SimulatedTendon",
+    "StaticModel",
+    "StaticSnapshot",
     "TendonDiscovery",
     "TendonFit",
     "TendonRun",

@@ -197,6 +197,26 @@ fn four_ways_are_compared_with_the_markers() {
 }
 
 #[test]
+fn ways_can_be_chosen() {
+    let place = place();
+    let shape = ["continuum", "shape", "mixed.csv", "--model", "arm.toml"];
+    let run = |more: &[&str]| place.run(&[&shape[..], more].concat());
+    let in_vain = |ways: &str| place.run_in_vain(&[&shape[..], &["--ways", ways]].concat());
+    run(&["--json", "all.json"]).warns(&["`measured` is left out"]);
+    // Nothing is missed that is not wanted.
+    let chosen = ["--ways", "history,none", "--json", "some.json", "--report", "some.html"];
+    run(&chosen).succeeds();
+    let (all, some) = (place.json("all.json"), place.json("some.json"));
+    assert_eq!(some["series"], Value::Array(vec![all["series"][0].clone(), all["series"][2].clone()]));
+    let html = String::from_utf8(place.read("some.html")).unwrap();
+    assert!(html.contains("shapes by none, history") && !html.contains("<td>coulomb</td>"));
+    let one = run(&["--ways", "none", "--report", "none.html"]).succeeds();
+    assert!(one.stdout.contains("all 178"), "{one:#?}");
+    in_vain("measured").fails(1, &["no shape follows", "calibrated gratings"]);
+    in_vain("histry").fails(2, &["--ways"]);
+}
+
+#[test]
 fn a_log_says_the_same_as_text() {
     let place = place();
     place

@@ -10,6 +10,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 ROBOT = ROOT / "examples" / "mini-ipanema.toml"
 LOG = ROOT / "examples" / "mini-ipanema.mcap"
+ARM = ROOT / "examples" / "tendon-prototype.toml"
 BENCH = """# The bench in the cellar.
 format = "fric-robot/1"
 name = "bench"

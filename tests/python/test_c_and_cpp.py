@@ -15,10 +15,11 @@ import pandas as pd
 import pytest
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
-from support import LOG, ROBOT, ROOT, run, started
+from support import ARM, LOG, ROBOT, ROOT, run, started
 from tools import hint, program
 
 import fric
+from fric import continuum
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="`make install` is for Linux")
 
@@ -145,6 +146,52 @@ def test_the_c_example_agrees_with_python(examples):
     assert "applied force" in text
 
 
+# Bends with reversals of all sizes, one that repeats itself within what is held, and one out of reach.
+PATH_RAD = [0.3, 0.9, 0.9004, 0.88, 0.89, 0.5, 0.52, 9.0, 1.4, 1.1, 0.2]
+
+
+def model(**drive):
+    """The static model as the examples have it."""
+    return continuum.StaticModel(continuum.Manipulator.read(ARM), greatest_tension_n=[3.0, 0.0], **drive)
+
+
+def test_the_c_example_of_an_arm_has_the_bits_of_python(examples):
+    name, *lines = call(examples["c"] / "arm", ARM).splitlines()
+    assert name == "tendon-prototype"
+    python = model()
+    for line, bend_rad in zip(lines, [0.3, 0.9, 0.88, 0.89, 0.5, 0.52, 1.4, 1.1, 0.2], strict=True):
+        command = python.tension_for(bend_rad=bend_rad)
+        shape = python.solve(command.base_tension_n)
+        lost_n = command.base_tension_n[0] - shape.tension_n[0, -1]
+        numbers = [float(number) for number in re.findall(r"-?[\d.]+(?:e-?\d+)?", line)]
+        assert numbers == [shape.bend_rad, command.base_tension_n[0], *shape.disk_position_m[-1], lost_n]
+        assert ("turns round" in line) == bool(command.status & continuum.GoalStatus.REVERSAL)
+        assert ("dead band" in line) == bool(command.status & continuum.GoalStatus.DEAD_BAND)
+        assert "missed" not in line
+    assert sum("turns round" in line for line in lines) >= 4
+
+
+@pytest.fixture(scope="module")
+def path(tmp_path_factory):
+    """A path of bends for the loop around an arm."""
+    path = tmp_path_factory.mktemp("path") / "path.csv"
+    path.write_text("bend_rad\n" + "".join(f"{bend_rad}\n" for bend_rad in PATH_RAD), encoding="utf-8")
+    return path
+
+
+def test_the_cpp_example_of_an_arm_has_the_bits_of_python(examples, path, tmp_path):
+    told = call(examples["cpp"] / "arm_loop", ARM, path, tmp_path / "out.csv")
+    assert told == f"tendon-prototype: {len(PATH_RAD)} goals, 1 out of reach\n"
+    python = model(hold_rad=1e-3)
+    for row in numbers(tmp_path / "out.csv").itertuples():
+        command = python.tension_for(bend_rad=row.wanted_rad)
+        shape = python.solve([1e-4 * float(int(command.base_tension_n[0] / 1e-4 + 0.5)), 0.0])
+        ours = [command.base_tension_n[0], shape.bend_rad, *shape.disk_position_m[-1], shape.tension_n[0, -1]]
+        assert ours == [row.tension_n, row.bend_rad, row.tip_x_m, row.tip_y_m, row.tip_tension_n]
+        assert (command.status, shape.status) == (row.goal_status, row.shape_status)
+        assert (row.goal_status == continuum.GoalStatus.HELD) == (row.wanted_rad == 0.9004)
+
+
 def test_the_cpp_example_has_the_bits_of_the_command_line(outcome, tmp_path):
     replayed = tmp_path / "replayed.mcap"
     run("replay", LOG, "-o", replayed)
@@ -169,10 +216,11 @@ def test_the_cpp_example_has_the_bits_of_the_command_line(outcome, tmp_path):
     assert all(np.array_equal(one.view(np.int64), other.view(np.int64)) for one, other in both)
 
 
-def test_under_valgrind_there_is_no_error_and_no_leak(examples, few_rows, outcome, tmp_path):
+def test_under_valgrind_there_is_no_error_and_no_leak(examples, few_rows, path, outcome, tmp_path):
     arguments = [ROBOT, few_rows, tmp_path / "out.csv"]
+    arm = [examples["cpp"] / "arm_loop", ARM, path, tmp_path / "arm.csv"]
     checks = ["--error-exitcode=9", "--leak-check=full", "--errors-for-leak-kinds=definite,indirect,possible"]
-    for program in [[examples["cpp"] / "replay", *arguments], [examples["c"] / "cycle", ROBOT]]:
+    for program in [[examples["cpp"] / "replay", *arguments], [examples["c"] / "cycle", ROBOT], arm]:
         call(tool("valgrind"), "--quiet", *checks, *program)
     under_valgrind = numbers(tmp_path / "out.csv")
     assert under_valgrind.equals(outcome.iloc[: len(under_valgrind)])
@@ -183,23 +231,28 @@ def functions(profile):
     return set(re.findall(r"^c?fn=\(\d+\) (.+)$", profile.read_text(encoding="utf-8"), re.MULTILINE))
 
 
-def test_after_set_up_nothing_allocates(examples, few_rows, tmp_path):
+def test_after_set_up_nothing_allocates(examples, few_rows, path, tmp_path):
     """Every function that runs between the first cycle and the last, by callgrind; `malloc` and the kernel are not there."""
 
-    def seen(start):
+    replay = [examples["cpp"] / "replay", ROBOT, few_rows, tmp_path / "out.csv"]
+
+    def seen(start, program):
         profile = tmp_path / f"{start}.out"
         options = ["--tool=callgrind", f"--toggle-collect={start}", f"--callgrind-out-file={profile}"]
-        call(tool("valgrind"), *options, examples["cpp"] / "replay", ROBOT, few_rows, tmp_path / "out.csv")
+        call(tool("valgrind"), *options, *program)
         return functions(profile)
 
     def allocating(names):
         plain = r"_*(malloc|calloc|realloc|free|posix_memalign|aligned_alloc|mmap|munmap|s?brk)"
         return {name for name in names if re.match(rf"({plain}$|operator (new|delete)|.*__rust_(alloc|realloc))", name)}
 
-    cycle = seen("run_cycles*")
+    arm = seen("run_cycles*", [examples["cpp"] / "arm_loop", ARM, path, tmp_path / "arm.csv"])
+    assert any("fric_static_model_solve" in name for name in arm) and any("tension_for" in name for name in arm)
+    assert allocating(arm) == set()
+    cycle = seen("run_cycles*", replay)
     assert any("fric_step" in name for name in cycle) and any("step_into" in name for name in cycle)
     assert allocating(cycle) == set()
-    assert "malloc" in allocating(seen("fric_load_file")), "the check does not see allocations"
+    assert "malloc" in allocating(seen("fric_load_file", replay)), "the check does not see allocations"
 
 
 def test_the_control_loop_takes_no_page_and_no_memory(examples, few_rows):
@@ -316,6 +369,17 @@ def test_a_file_is_loaded_with_the_stack_that_is_stated(shipped, tmp_path):
     for cable_count, kib in [(64, most_kib), (16, few_kib), (8, few_kib)]:
         worst = write_robot(tmp_path / f"{cable_count}.toml", cable_count, ALL_EFFECTS, LIMITED, pulleys=pulleys)
         call(program, str(kib * 1024), ROBOT if cable_count == 8 else worst, worst)
+
+
+def test_a_static_model_takes_the_stack_that_is_stated(shipped, tmp_path):
+    """As many disks as there may be, each hole with its own friction, under weight."""
+    header = (shipped / "include/fric.h").read_text(encoding="utf-8")
+    kib = int(re.search(r"(\d+) KiB of stack, as all functions of a static model do", header)[1])
+    text = ARM.read_text(encoding="utf-8").replace("disk_count = 8", "disk_count = 32").replace("0.037", "0.00925")
+    text = text.replace("[0.0, 0.0]", "[0.0, -9.81]").replace("mu = 0.1753", f"mu = {[0.1 + 0.002 * hole for hole in range(32)]}")
+    worst = tmp_path / "arm.toml"
+    worst.write_text(text, encoding="utf-8")
+    call(compiled("stack.c", shipped, tmp_path), str(kib * 1024), ARM, worst)
 
 
 def test_pkg_config_finds_the_library(prefix, tmp_path):

@@ -116,6 +116,9 @@ def test_what_is_wrong_is_named(arm, calibrated, tendon, shapes, tmp_path):
         continuum.friction(calibrated, made(arm, time_s=[0.0], tension_base_n=[1.0]))
     with pytest.raises(fric.ConfigError, match="did you mean `history`"):
         shapes.friction_n("histry")
+    with pytest.raises(fric.ConfigError, match="did you mean `history`"):
+        continuum.shape(calibrated, tendon.run, ways=["histry"])
+    assert continuum.shape(calibrated, tendon.run, ways=["history"]).ways == ("history",)
     with pytest.raises(fric.ConfigError, match="99 s is not within the run"):
         continuum.shape(calibrated, tendon.run, at_s=[99.0])
     with pytest.raises(fric.ConfigError, match="did you mean `mixed`"):

@@ -38,6 +38,8 @@ def examples():
     tendon = continuum.simulate(arm, run="mixed", seed=5)
     calibration = continuum.calibrate(arm, tendon.load_n, tendon.load_shift_nm)
     calibrated, angle_rad = calibration.manipulator, np.full(4, 1.0)
+    model = continuum.StaticModel(arm, greatest_tension_n=[3.0, 0.0], hold_rad=0.001)
+    shapes = model.run([0.5, 0.7, 0.6])
     failure = fleet.LogFailure("run.mcap", "run.mcap is no MCAP file")
     steps = {"start": np.arange(20) * 10**15 + 10**18, "value": np.repeat([0.02, 0.03], 10) + 1e-5 * np.sin(np.arange(20.0))}
     changed = fleet.trend(pyarrow.table({**{name: ["a"] * 20 for name in ("robot", "cable", "parameter")}, **steps}))
@@ -70,6 +72,12 @@ def examples():
         tendon,
         tendon.run,
         calibration,
+        model,
+        model.snapshot(),
+        shapes,
+        model.tension_for(bend_rad=0.5),
+        continuum.ShapeStatus.UNSTABLE | continuum.ShapeStatus.OVER_CAPACITY,
+        continuum.GoalStatus.REVERSAL | continuum.GoalStatus.DEAD_BAND,
         continuum.friction(calibrated, tendon.run),
         continuum.hole(np.linspace(0.5, 2.0, 4), np.linspace(0.5, 2.0, 4) * 0.9, angle_rad, angle_rad),
         continuum.shape(calibrated, tendon.run, mixed=True, shapes=2),

@@ -97,7 +97,7 @@ impl PlatformWrench {
 }
 
 /// Whether a pointer can be followed at all.
-fn usable<T>(pointer: *const T) -> bool {
+pub(crate) fn usable<T>(pointer: *const T) -> bool {
     !pointer.is_null() && pointer.is_aligned()
 }
 

@@ -1,17 +1,18 @@
-//! `libfric`: the compensator of `fric-core` for C and C++.
+//! `libfric`: the compensator of `fric-core`, and its static model of continuum manipulators, for C and C++.
 //!
 //! For: control loops that are not written in Rust. Nothing is computed here; a cycle has the bits of
-//! [`fric_core::Compensator`]. What a C programmer reads is `include/fric.h`, made from these sources by cbindgen; the
+//! [`fric_core::Compensator`], a shape and a command those of [`fric_core::continuum::StaticModel`]. What a C programmer reads is `include/fric.h`, made from these sources by cbindgen; the
 //! C++ interface is `include/fric.hpp`.
 //!
 //! - **Set-up** may fail: it gives a code and one sentence. What fails in a way that it should not is caught
 //!   (`catch_unwind`), so that a mistake of ours at set-up costs no machine.
-//! - **The cycle** ([`fric_step`]) does not allocate, lock, or fail on any signal. A wrong pointer or size is a code. It has
+//! - **The cycle** ([`fric_step`], [`fric_static_model_solve`], [`fric_static_model_tension_for`]) does not allocate, lock, or fail on any signal. A wrong pointer or size is a code. It has
 //!   no panic to unwind; and were there one, a function of `extern "C"` ends the process and never unwinds into C.
 //!   That is why the cycle needs no `catch_unwind`, and the release profile no `panic = "abort"`, which would take
 //!   Python its exceptions.
 //!
-//! Non-finite input is flagged as in [`fric_core::CableStatus`]; no number that comes out is non-finite.
+//! Non-finite input is flagged as in [`fric_core::CableStatus`], [`fric_core::continuum::ShapeStatus`] and
+//! [`fric_core::continuum::GoalStatus`]; no number that comes out is non-finite.
 #![allow(clippy::doc_markdown, reason = "the documentation is for C, where names stand bare")]
 
 mod abi;
@@ -21,6 +22,7 @@ mod error_text;
 mod handle;
 mod load;
 mod outcome;
+mod static_model;
 mod status;
 
 pub use abi::FRIC_ABI_VERSION;
@@ -31,4 +33,5 @@ pub use cycle::{
 pub use handle::{Handle, fric_cable_count, fric_cable_name, fric_cycle_s, fric_free, fric_robot_name};
 pub use load::{fric_load_file, fric_load_text};
 pub use outcome::{Outcome, fric_abi_version, fric_version};
+pub use static_model::*;
 pub use status::*;

@@ -4,7 +4,7 @@ use std::ffi::{CStr, c_char};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
-use fric_core::robot::file::RobotFile;
+use fric_core::robot::file::{RobotFile, RobotFileError};
 
 use crate::error_text::ErrorText;
 use crate::handle::{Handle, Unfit};
@@ -31,10 +31,9 @@ pub unsafe extern "C" fn fric_load_file(
     let error = unsafe { ErrorText::new(error, error_size) };
     // SAFETY: the same is promised here.
     let path = unsafe { text(path, "path") };
+    let set_up = || compensator_of(RobotFile::read(Path::new(path?)));
     // SAFETY: the same is promised here.
-    unsafe {
-        load(path, |path| RobotFile::read(Path::new(path)).map_err(|error| error.to_string()), compensator, error)
-    }
+    unsafe { load(set_up, compensator, "compensator", error) }
 }
 
 /// The same for the text of a robot file, which has no place of its own: errors name line and key.
@@ -52,10 +51,9 @@ pub unsafe extern "C" fn fric_load_text(
     let error = unsafe { ErrorText::new(error, error_size) };
     // SAFETY: the same is promised here.
     let toml = unsafe { text(toml, "toml") };
+    let set_up = || compensator_of(RobotFile::parse(toml?, "robot file"));
     // SAFETY: the same is promised here.
-    unsafe {
-        load(toml, |toml| RobotFile::parse(toml, "robot file").map_err(|error| error.to_string()), compensator, error)
-    }
+    unsafe { load(set_up, compensator, "compensator", error) }
 }
 
 /// A text of the caller's.
@@ -71,39 +69,39 @@ pub(crate) unsafe fn text<'a>(pointer: *const c_char, name: &str) -> Result<&'a 
     bytes.to_str().map_err(|error| (Outcome::RobotFile, format!("`{name}` is not UTF-8: {error}")))
 }
 
-/// Hands out a compensator, or a code and a text.
+/// A compensator for a robot file that was read, or a code and a text.
+fn compensator_of(robot: Result<RobotFile, RobotFileError>) -> Result<Handle, (Outcome, String)> {
+    let robot = robot.map_err(|error| (Outcome::RobotFile, error.to_string()))?;
+    Handle::new(&robot).map_err(|unfit| match unfit {
+        Unfit::Robot(error) => (Outcome::RobotFile, error.to_string()),
+        Unfit::Name(error) => (Outcome::RobotFile, format!("`name` has a zero in it, which no C string can: {error}")),
+    })
+}
+
+/// Hands out what is made, or a code and a text. `name` is what the caller's pointer is called.
 ///
 /// # Safety
-/// `compensator` is null or may be written to.
-unsafe fn load(
-    source: Result<&str, (Outcome, String)>,
-    read: impl FnOnce(&str) -> Result<RobotFile, String>,
-    compensator: *mut *mut Handle,
+/// `handle` is null or may be written to.
+pub(crate) unsafe fn load<T>(
+    set_up: impl FnOnce() -> Result<T, (Outcome, String)>,
+    handle: *mut *mut T,
+    name: &str,
     error: ErrorText,
 ) -> Outcome {
     error.write("");
-    if compensator.is_null() || !compensator.is_aligned() {
-        error.write("`compensator` is a null pointer or not aligned");
+    if handle.is_null() || !handle.is_aligned() {
+        error.write(&format!("`{name}` is a null pointer or not aligned"));
         return Outcome::BadPointer;
     }
-    let set_up = || {
-        let robot = read(source?).map_err(|text| (Outcome::RobotFile, text))?;
-        Handle::new(&robot).map_err(|unfit| match unfit {
-            Unfit::Robot(error) => (Outcome::RobotFile, error.to_string()),
-            Unfit::Name(error) => {
-                (Outcome::RobotFile, format!("`name` has a zero in it, which no C string can: {error}"))
-            }
-        })
-    };
-    let (outcome, handle) = match guarded(set_up) {
-        Ok(handle) => (Outcome::Ok, Box::into_raw(Box::new(handle))),
+    let (outcome, made) = match guarded(set_up) {
+        Ok(made) => (Outcome::Ok, Box::into_raw(Box::new(made))),
         Err((outcome, text)) => {
             error.write(&text);
             (outcome, std::ptr::null_mut())
         }
     };
     // SAFETY: neither null nor misaligned, so it may be written to by the caller's promise.
-    unsafe { compensator.write(handle) };
+    unsafe { handle.write(made) };
     outcome
 }
 
@@ -111,6 +109,6 @@ unsafe fn load(
 pub(crate) fn guarded<T>(work: impl FnOnce() -> Result<T, (Outcome, String)>) -> Result<T, (Outcome, String)> {
     // What a panic leaves behind is not looked at again: it was on its way to the caller, or is behind a lock that tells.
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| {
-        Err((Outcome::Internal, "a mistake inside of fric; please report it with the robot file".to_owned()))
+        Err((Outcome::Internal, "a mistake inside of fric; please report it with the file".to_owned()))
     })
 }

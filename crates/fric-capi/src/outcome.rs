@@ -4,7 +4,7 @@ use std::ffi::{CStr, c_char};
 
 use crate::abi::FRIC_ABI_VERSION;
 
-/// Outcome of a call. Anything but FRIC_RESULT_OK has left the compensator, and the output of a step, as they were.
+/// Outcome of a call. Anything but FRIC_RESULT_OK has left the compensator or static model, and the output of a step, as they were.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
@@ -13,14 +13,16 @@ pub enum Outcome {
     Ok = 0,
     /// A pointer is null, or not aligned for what it points to.
     BadPointer = 1,
-    /// `struct_size` is not that of this ABI version, or `cable_count` is not the robot's.
+    /// `struct_size` is not that of this ABI version, `cable_count` not the robot's, or a number of disks not the manipulator's.
     WrongSize = 2,
-    /// The robot file cannot be read, or something in it is wrong; the error text says what, where and what is allowed.
+    /// The robot or manipulator file cannot be read, or something in it is wrong; the error text says what, where and what is allowed.
     RobotFile = 3,
     /// The change of parameters given before is not over; try again some steps later.
     Busy = 4,
     /// A mistake inside of the library, caught; please report it.
     Internal = 5,
+    /// A number that chooses is none of the header's, or one that limits is out of its range.
+    BadValue = 6,
 }
 
 /// Version of the interface that this library has; FRIC_ABI_VERSION of the header that it goes with.

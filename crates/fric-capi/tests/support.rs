@@ -1,11 +1,13 @@
-//! A robot, and the structures of a cycle around it.
+//! A robot and the structures of a cycle around it; a manipulator and those of its static model.
 
 use std::ffi::{CStr, CString, c_char};
 use std::ptr;
 
 use fric::{
-    CableResult, CableSignals, CycleResult, CycleSignals, Handle, Outcome, PlatformPose, PlatformWrench, fric_free,
-    fric_load_text, fric_step,
+    CableResult, CableSignals, CycleResult, CycleSignals, DiskResult, FRIC_FRICTION_HISTORY, FRIC_GOAL_BEND, Handle,
+    ModelCommand, ModelGoal, ModelHandle, Outcome, PlatformPose, PlatformWrench, ShapeResult, ShapeSignals, fric_free,
+    fric_load_text, fric_static_model_free, fric_static_model_load_text, fric_static_model_solve,
+    fric_static_model_tension_for, fric_step,
 };
 
 /// Two cables, one of which follows the pose.
@@ -106,4 +108,106 @@ pub fn step(
     let outcome = unsafe { fric_step(handle.0, &raw const input, &raw mut output) };
     assert_eq!(outcome, Outcome::Ok);
     (results, output)
+}
+
+/// An arm of a few disks, so that Miri can interpret its solution.
+pub const ARM: &str = r#"
+format = "fric-continuum/1"
+name = "arm"
+disk_count = 3
+pitch_m = 0.1
+disk_thickness_m = 0.002
+hole_radius_m = 0.015
+[backbone]
+width_m = 0.006
+thickness_m = 0.0003
+youngs_modulus_pa = 200e9
+mass_kg_per_m = 0.014
+[tendon]
+mu = 0.2
+sigma_n_per_m = 20000.0
+axial_stiffness_n = 13700.0
+capacity_n = 4.0
+"#;
+
+pub const DISKS: usize = 3;
+
+/// A static model that is given back.
+pub struct Model(pub *mut ModelHandle);
+
+impl Drop for Model {
+    fn drop(&mut self) {
+        unsafe { fric_static_model_free(self.0) };
+    }
+}
+
+/// Loads a text; the outcome with its error text.
+pub fn model_of(toml: &str) -> Result<Model, (Outcome, String)> {
+    let toml = CString::new(toml).unwrap();
+    let mut handle = ptr::null_mut();
+    let mut error = [c_char::MAX; 512];
+    let outcome =
+        unsafe { fric_static_model_load_text(toml.as_ptr(), &raw mut handle, error.as_mut_ptr(), error.len()) };
+    let text = unsafe { CStr::from_ptr(error.as_ptr()) }.to_str().unwrap().to_owned();
+    if outcome == Outcome::Ok {
+        assert_eq!(text, "");
+        return Ok(Model(handle));
+    }
+    assert!(handle.is_null());
+    Err((outcome, text))
+}
+
+/// The arm.
+pub fn model() -> Model {
+    model_of(ARM).unwrap_or_else(|(outcome, text)| unreachable!("{outcome:?} {text}"))
+}
+
+/// Tensions at the base with the friction of the history.
+pub fn shape_input(base_tension_n: [f64; 2]) -> ShapeSignals {
+    ShapeSignals {
+        struct_size: size_of::<ShapeSignals>(),
+        base_tension_n,
+        measured: ptr::null(),
+        measured_count: 0,
+        friction: FRIC_FRICTION_HISTORY,
+    }
+}
+
+pub fn shape_output(disks: &mut [DiskResult]) -> ShapeResult {
+    let (disk_count, disks) = (disks.len(), disks.as_mut_ptr());
+    ShapeResult { struct_size: size_of::<ShapeResult>(), disks, disk_count, bend_rad: 0.0, status: 0 }
+}
+
+/// One solution that has to work.
+pub fn solve(model: &Model, input: &ShapeSignals) -> ([DiskResult; DISKS], ShapeResult) {
+    let mut disks = [DiskResult::default(); DISKS];
+    let mut output = shape_output(&mut disks);
+    let outcome = unsafe { fric_static_model_solve(model.0, ptr::from_ref(input), &raw mut output) };
+    assert_eq!(outcome, Outcome::Ok);
+    (disks, output)
+}
+
+/// A bend that is wanted, from what the holes remember.
+pub fn goal(bend_rad: f64) -> ModelGoal {
+    ModelGoal {
+        struct_size: size_of::<ModelGoal>(),
+        bend_rad,
+        tip_m: [0.0; 2],
+        kind: FRIC_GOAL_BEND,
+        friction: FRIC_FRICTION_HISTORY,
+    }
+}
+
+/// The command for a goal; has to work.
+pub fn command_for(model: &Model, goal: &ModelGoal) -> ModelCommand {
+    let mut command = ModelCommand {
+        struct_size: size_of::<ModelCommand>(),
+        base_tension_n: [0.0; 2],
+        bend_rad: 0.0,
+        tip_m: [0.0; 2],
+        status: 0,
+    };
+    let outcome = unsafe { fric_static_model_tension_for(model.0, ptr::from_ref(goal), &raw mut command) };
+    assert_eq!(outcome, Outcome::Ok);
+    command
 }

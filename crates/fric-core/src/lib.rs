@@ -70,7 +70,10 @@ pub mod swivel;
 #[cfg(feature = "robot-file")]
 pub mod text_file;
 mod tunable;
-#[cfg_attr(not(feature = "alloc"), allow(dead_code, reason = "`AnyCompensator` alone gives its state away"))]
+#[cfg_attr(
+    not(feature = "alloc"),
+    allow(dead_code, reason = "only `AnyCompensator` and `AnyStaticModel` give their state away")
+)]
 mod words;
 
 #[cfg(feature = "alloc")]

@@ -1,6 +1,6 @@
-//! The state of a compensator as plain words, to be kept elsewhere and gone on from with the same bits.
+//! The state of a compensator or of a manipulator's model as plain words, to be kept elsewhere and gone on from with the same bits.
 //!
-//! For: programs that hand a running compensator to another process. Numbers keep their bits, NaN included. Which word is what
+//! For: programs that hand a running compensator or model to another process. Numbers keep their bits, NaN included. Which word is what
 //! follows from the order of the fields, so that words are of use to the version of this crate that they are from.
 
 use crate::columns::StateColumns;
@@ -40,6 +40,14 @@ impl Words for bool {
         let mut word = u64::from(*self);
         show(&mut word);
         *self = word != 0;
+    }
+}
+
+impl Words for usize {
+    fn each_word(&mut self, show: &mut dyn FnMut(&mut u64)) {
+        let mut word = *self as u64;
+        show(&mut word);
+        *self = Self::try_from(word).unwrap_or_default();
     }
 }
 

@@ -15,6 +15,8 @@ mod continuum;
 #[cfg(test)]
 mod continuum_file;
 #[cfg(test)]
+mod continuum_state;
+#[cfg(test)]
 mod cycle;
 #[cfg(test)]
 mod dahl;

@@ -4,6 +4,7 @@ use std::io;
 use std::path::Path;
 
 use fric_core::continuum::file::ManipulatorFileError;
+use fric_core::continuum::{ManipulatorError, StateMismatch};
 use fric_core::robot::file::RobotFileError;
 use fric_core::{ParamError, SnapshotMismatch};
 use fric_lab::continuum::ContinuumError;
@@ -116,12 +117,14 @@ macro_rules! fault_from {
 
 fault_from!(
     ParamError => config,
+    ManipulatorError => config,
     SimulationError => config,
     HiddenError => config,
     ExcitationError => config,
     SignalPathError => config,
     SignalError => log,
     SnapshotMismatch => shape,
+    StateMismatch => shape,
 );
 
 impl From<RobotFileError> for Fault {

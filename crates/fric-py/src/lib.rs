@@ -29,6 +29,7 @@ mod watch;
 #[pyo3::pymodule(gil_used = true)]
 mod _fric {
     use fric_core::CableStatus;
+    use fric_core::continuum::{GoalStatus, ShapeStatus};
     use pyo3::prelude::*;
     use pyo3::types::PyDict;
 
@@ -36,8 +37,9 @@ mod _fric {
     use crate::compensator::{Compensator, Snapshot};
     #[pymodule_export]
     use crate::continuum::{
-        Manipulator, TendonRun, continuum_calibrate, continuum_discover, continuum_fit, continuum_friction,
-        continuum_hole, continuum_read_loads, continuum_read_run, continuum_shape, continuum_simulate,
+        Manipulator, StaticModel, StaticSnapshot, TendonRun, continuum_calibrate, continuum_discover, continuum_fit,
+        continuum_friction, continuum_hole, continuum_read_loads, continuum_read_run, continuum_shape,
+        continuum_simulate,
     };
     #[pymodule_export]
     use crate::discover::discover;
@@ -77,6 +79,16 @@ mod _fric {
             bits.set_item(name, flag.bits())?;
         }
         module.add("STATUS_BITS", bits)?;
+        let bits = PyDict::new(module.py());
+        for (name, flag) in ShapeStatus::NAMES {
+            bits.set_item(name, flag.bits())?;
+        }
+        module.add("SHAPE_STATUS_BITS", bits)?;
+        let bits = PyDict::new(module.py());
+        for (name, flag) in GoalStatus::NAMES {
+            bits.set_item(name, flag.bits())?;
+        }
+        module.add("GOAL_STATUS_BITS", bits)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

@@ -2,8 +2,10 @@
 
 from .continuum import (
     CalibrationResult,
+    Command,
     FrictionResult,
     HoleResult,
+    Shape,
     ShapeResult,
     SimulatedTendon,
     TendonDiscovery,
@@ -21,6 +23,7 @@ __all__ = [
     "CableErrors",
     "CableFit",
     "CalibrationResult",
+    "Command",
     "Compensation",
     "DiscoverResult",
     "ExciteResult",
@@ -30,6 +33,7 @@ __all__ = [
     "HoleResult",
     "HysteresisResult",
     "ReplayResult",
+    "Shape",
     "ShapeResult",
     "SimulatedTendon",
     "TendonDiscovery",

@@ -78,6 +78,46 @@ class HoleResult(Result):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class Shape(Value):
+    """Outcome of `StaticModel.solve`; of `run` with one more axis in front, a row a step. Index 0 of (2, disks) is the first tendon. All numbers
+    are finite, whatever went in."""
+
+    disk_position_m: NDArray[np.float64]
+    """Centres of the disks, base frame, m, (disks, 2)."""
+    segment_bend_rad: NDArray[np.float64]
+    """Bend of each segment, rad, (disks,)."""
+    bend_rad: NDArray[np.float64]
+    """Bend of the whole manipulator, rad, ()."""
+    tension_n: NDArray[np.float64]
+    """Tension in each segment, N, (2, disks)."""
+    friction_n: NDArray[np.float64]
+    """Friction at each hole, N, (2, disks); positive where the base side is tighter."""
+    bound_n: NDArray[np.float64]
+    """Greatest friction at each hole, N, (2, disks)."""
+    status: NDArray[np.uint32]
+    """Bits of `ShapeStatus`, ()."""
+    is_new: NDArray[np.bool_]
+    """Whether this is the shape for the tensions given, (); otherwise it is the last one that was right."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Command(Value):
+    """Outcome of `StaticModel.tension_for`; of `follow` with one more axis in front, a row a goal. It holds what to set at the base, and what the
+    model expects of it."""
+
+    base_tension_n: NDArray[np.float64]
+    """Tensions at the base of the first and the second tendon, N, (2,)."""
+    bend_rad: NDArray[np.float64]
+    """Bend of the whole manipulator then, rad, ()."""
+    tip_m: NDArray[np.float64]
+    """Centre of the last disk then, base frame, m, (2,)."""
+    status: NDArray[np.uint32]
+    """Bits of `GoalStatus`, ()."""
+    is_reached: NDArray[np.bool_]
+    """Whether the goal is reached, ()."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class ShapeResult(Result):
     """Outcome of `shape`. `ways` names the ways of friction that the run allows; arrays of a way have a row a sample."""
 

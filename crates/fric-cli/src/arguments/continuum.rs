@@ -135,6 +135,9 @@ pub struct ShapeArguments {
     /// Take them from the samples in which the gratings show friction of both directions
     #[arg(long)]
     pub mixed: bool,
+    /// Compute by these ways of friction only
+    #[arg(long, value_name = "WAYS", value_enum, value_delimiter = ',', default_values_t = WayName::ALL, hide_default_value = true)]
+    pub ways: Vec<WayName>,
     /// Show also the greatest distances
     #[arg(long)]
     pub wide: bool,
@@ -177,6 +180,23 @@ pub struct TendonSimulateArguments {
     /// Replace outputs that exist
     #[arg(long)]
     pub force: bool,
+}
+
+/// The ways of friction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum WayName {
+    /// No friction
+    None,
+    /// All holes slide one way
+    Coulomb,
+    /// By the gratings
+    Measured,
+    /// By the run of the tension at the base
+    History,
+}
+
+impl WayName {
+    const ALL: [Self; 4] = [Self::None, Self::Coulomb, Self::Measured, Self::History];
 }
 
 /// The runs of a simulated manipulator.

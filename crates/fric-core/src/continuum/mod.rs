@@ -58,7 +58,7 @@ mod tangent;
 pub use any::AnyStaticModel;
 pub use friction::{Direction, Friction};
 pub use inverse::{Command, Drive, DriveOptions, Goal, GoalStatus};
-pub use model::StaticModel;
+pub use model::{StateMismatch, StaticModel, StaticSnapshot};
 pub use params::rectangle_bending_stiffness_n_m2;
 pub use params::{MAX_DISKS, ManipulatorError, ManipulatorOptions, ManipulatorParams, Tendon, TendonOptions};
 pub use shape::{Shape, ShapeStatus};

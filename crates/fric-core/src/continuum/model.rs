@@ -1,10 +1,13 @@
 //! The manipulator: base tensions in, shape out.
 
+use core::fmt;
+
 use super::friction::Friction;
 use super::load::positions;
 use super::newton::{Contacts, Law, Newton, Point, Target, chords, moved, passages, travels_m};
 use super::params::{ManipulatorError, ManipulatorParams, Tendon, count_error};
 use super::shape::{Shape, ShapeStatus};
+use crate::words::{Words, words_of};
 
 /// Load steps from the straight, unloaded manipulator, where the last shape is no good start.
 const LOAD_STEPS: u32 = 32;
@@ -25,13 +28,49 @@ const MOST_PARTS: u32 = 48;
 pub struct StaticModel<const DISKS: usize> {
     params: ManipulatorParams,
     newton: Newton<DISKS>,
+    state: State<DISKS>,
+}
+
+/// What one solution leaves for the next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct State<const DISKS: usize> {
     shape: Shape<DISKS>,
     /// Where the last history step ended; `None` before the first.
     history: Option<Past<DISKS>>,
 }
 
+words_of!(State<const DISKS> { shape, history });
+
+/// The state of a [`StaticModel`] at one moment, for [`StaticModel::restore`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StaticSnapshot<const DISKS: usize>(State<DISKS>);
+
+/// A state that was taken of a manipulator with another number of disks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StateMismatch {
+    /// How many disks the manipulator has.
+    pub expected: usize,
+    /// How many that of the state had.
+    pub found: usize,
+}
+
+impl fmt::Display for StateMismatch {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { expected, found } = self;
+        write!(formatter, "the state is of a manipulator with {found} disks, this one has {expected}")
+    }
+}
+
+impl core::error::Error for StateMismatch {}
+
+impl<const DISKS: usize> Words for StaticSnapshot<DISKS> {
+    fn each_word(&mut self, show: &mut dyn FnMut(&mut u64)) {
+        self.0.each_word(show);
+    }
+}
+
 /// The manipulator at the end of a history step.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Past<const DISKS: usize> {
     pub point: Point<DISKS>,
     pub base_tension_n: [f64; 2],
@@ -41,7 +80,25 @@ pub(super) struct Past<const DISKS: usize> {
     change_n: [f64; 2],
 }
 
+words_of!(Past<const DISKS> { point, base_tension_n, contacts, change, change_n });
+
+impl<const DISKS: usize> Words for Option<Past<DISKS>> {
+    fn each_word(&mut self, show: &mut dyn FnMut(&mut u64)) {
+        let (mut is_known, mut past) = (self.is_some(), self.unwrap_or(Past::ZERO));
+        is_known.each_word(show);
+        past.each_word(show);
+        *self = is_known.then_some(past);
+    }
+}
+
 impl<const DISKS: usize> Past<DISKS> {
+    const ZERO: Self = Self {
+        point: Point::ZERO,
+        base_tension_n: [0.0; 2],
+        contacts: Contacts { friction_n: [[0.0; DISKS]; 2], travel_m: [[0.0; DISKS]; 2] },
+        change: Point::ZERO,
+        change_n: [0.0; 2],
+    };
     /// Most of the last change that the next one is taken to repeat, and least change of a tension that tells a direction, N.
     const FARTHEST: f64 = 2.0;
     const LEAST_SQUARE_N2: f64 = 1e-18;
@@ -60,6 +117,13 @@ impl<const DISKS: usize> Past<DISKS> {
     }
 }
 
+impl<const DISKS: usize> State<DISKS> {
+    /// Straight, without tension, with relaxed holes.
+    fn relaxed(disk_count: usize, pitch_m: f64) -> Self {
+        Self { shape: Shape::straight(disk_count, pitch_m), history: None }
+    }
+}
+
 impl<const DISKS: usize> StaticModel<DISKS> {
     /// Straight, without tension, with relaxed holes.
     ///
@@ -70,8 +134,7 @@ impl<const DISKS: usize> StaticModel<DISKS> {
         if count > DISKS {
             return Err(count_error("disk_count", count, 1, DISKS));
         }
-        let shape = Shape::straight(count, params.pitch_m);
-        Ok(Self { params: *params, newton: Newton::new(), shape, history: None })
+        Ok(Self { params: *params, newton: Newton::new(), state: State::relaxed(count, params.pitch_m) })
     }
 
     /// The parameters.
@@ -83,13 +146,31 @@ impl<const DISKS: usize> StaticModel<DISKS> {
     /// The last shape that was right; straight before the first.
     #[must_use]
     pub fn shape(&self) -> &Shape<DISKS> {
-        &self.shape
+        &self.state.shape
     }
 
     /// Forgets the holes' history and the last shape.
     pub fn reset(&mut self) {
-        self.shape = Shape::straight(self.params.disk_count, self.params.pitch_m);
-        self.history = None;
+        self.state = State::relaxed(self.params.disk_count, self.params.pitch_m);
+    }
+
+    /// A copy of everything that one solution leaves for the next: the shape and what the holes remember.
+    #[must_use]
+    pub fn snapshot(&self) -> StaticSnapshot<DISKS> {
+        StaticSnapshot(self.state)
+    }
+
+    /// Goes on from a snapshot of the same manipulator as if nothing had happened since.
+    ///
+    /// # Errors
+    /// [`StateMismatch`] if the manipulator of the snapshot has another number of disks; nothing is changed then.
+    pub fn restore(&mut self, snapshot: &StaticSnapshot<DISKS>) -> Result<(), StateMismatch> {
+        let (expected, found) = (self.params.disk_count, snapshot.0.shape.count);
+        if expected != found {
+            return Err(StateMismatch { expected, found });
+        }
+        self.state = snapshot.0;
+        Ok(())
     }
 
     /// Finds the shape for the tensions at the base, N, of the first and the second tendon.
@@ -101,7 +182,7 @@ impl<const DISKS: usize> StaticModel<DISKS> {
         if !base_tension_n.iter().all(is_tension) {
             return ShapeStatus::NOT_FINITE;
         }
-        let bend_rad = self.shape.bend_rad;
+        let bend_rad = self.state.shape.bend_rad;
         let found = match friction {
             Friction::None => {
                 let tension_n = base_tension_n.map(|tension_n| [tension_n; DISKS]);
@@ -170,7 +251,7 @@ impl<const DISKS: usize> StaticModel<DISKS> {
 
     /// Where the last history step ended, or the relaxed tendon before the first.
     pub(super) fn past_or_relaxed(&mut self) -> Option<Past<DISKS>> {
-        match self.history {
+        match self.state.history {
             Some(past) => Some(past),
             None => self.relaxed(),
         }
@@ -178,7 +259,7 @@ impl<const DISKS: usize> StaticModel<DISKS> {
 
     /// Tensions at the base of the last history step, else of the last shape, N.
     pub(super) fn last_base_tension_n(&self) -> [f64; 2] {
-        self.history.as_ref().map_or(self.shape.base_tension_n, |past| past.base_tension_n)
+        self.state.history.as_ref().map_or(self.state.shape.base_tension_n, |past| past.base_tension_n)
     }
 
     /// An equilibrium without memory: from these bends, else in load steps from none.
@@ -245,7 +326,7 @@ impl<const DISKS: usize> StaticModel<DISKS> {
 
     /// Before the first step: the tendons lie in their holes without tension.
     fn relaxed(&mut self) -> Option<Past<DISKS>> {
-        let point = self.statics(&self.shape.bend_rad.clone(), [0.0; 2], [[0.0; DISKS]; 2], &Law::Given)?;
+        let point = self.statics(&self.state.shape.bend_rad.clone(), [0.0; 2], [[0.0; DISKS]; 2], &Law::Given)?;
         Some(self.past(&point, [0.0; 2]))
     }
 
@@ -258,14 +339,14 @@ impl<const DISKS: usize> StaticModel<DISKS> {
 
     fn remember(&mut self, point: &Point<DISKS>, base_tension_n: [f64; 2]) {
         let mut past = self.past(point, base_tension_n);
-        if let Some(before) = &self.history {
+        if let Some(before) = &self.state.history {
             past.change = moved(point, &before.point, -1.0);
             for ((change_n, now_n), before_n) in past.change_n.iter_mut().zip(base_tension_n).zip(before.base_tension_n)
             {
                 *change_n = now_n - before_n;
             }
         }
-        self.history = Some(past);
+        self.state.history = Some(past);
     }
 
     /// Keeps a point as the shape, and says what is out of the ordinary about it.
@@ -287,7 +368,7 @@ impl<const DISKS: usize> StaticModel<DISKS> {
                 }
             }
         }
-        self.shape = Shape {
+        self.state.shape = Shape {
             count,
             bend_rad: point.bend_rad,
             position_m: positions(self.params.pitch_m, &point.bend_rad),

@@ -18,6 +18,7 @@ use super::friction::{Direction, Passage};
 use super::load::{Moments, moments};
 use super::params::{ManipulatorParams, Tendon};
 use crate::scalar::Scalar;
+use crate::words::words_of;
 
 /// Newton steps of one solution.
 const MOST_STEPS: u32 = 60;
@@ -42,6 +43,8 @@ impl<const DISKS: usize> Point<DISKS> {
     pub const ZERO: Self = Self { bend_rad: [0.0; DISKS], tension_n: [[0.0; DISKS]; 2] };
 }
 
+words_of!(Point<const DISKS> { bend_rad, tension_n });
+
 /// What holes do.
 #[derive(Clone, Copy, Debug)]
 pub enum Law<'a, const DISKS: usize> {
@@ -61,6 +64,8 @@ pub struct Contacts<const DISKS: usize> {
     /// How far each tendon has come through each hole towards the base, m, from any origin.
     pub travel_m: [[f64; DISKS]; 2],
 }
+
+words_of!(Contacts<const DISKS> { friction_n, travel_m });
 
 /// What is asked for.
 #[derive(Clone, Copy, Debug)]

@@ -6,6 +6,7 @@ use core::ops::BitOr;
 use nalgebra::Vector2;
 
 use super::params::Tendon;
+use crate::words::words_of;
 
 /// Flags of one solution; [`ShapeStatus::OK`] where nothing is the matter.
 ///
@@ -111,6 +112,8 @@ pub struct Shape<const DISKS: usize> {
     pub(super) friction_n: [[f64; DISKS]; 2],
     pub(super) bound_n: [[f64; DISKS]; 2],
 }
+
+words_of!(Shape<const DISKS> { count, bend_rad, position_m, base_tension_n, tension_n, friction_n, bound_n });
 
 impl<const DISKS: usize> Shape<DISKS> {
     /// Straight and without tension.

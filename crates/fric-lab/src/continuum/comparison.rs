@@ -19,30 +19,32 @@ pub struct WayShapes {
     pub errors: ShapeErrors,
 }
 
-/// Computes a run by all ways for which it has what they need: `none`, `coulomb` and `history` the tension at the base, `measured` the
+/// Computes a run by those of the ways for which it has what they need: `none`, `coulomb` and `history` the tension at the base, `measured` the
 /// gratings, in the order of [`Way::ALL`].
 ///
 /// # Errors
-/// [`ContinuumError::MissingGroup`] if it has neither, [`ContinuumError::OverCapacity`] for a tension at which the tendon may break, and
+/// [`ContinuumError::MissingGroup`] if it has what none of them needs, [`ContinuumError::OverCapacity`] for a tension at which the tendon may break, and
 /// [`ContinuumError::BeyondModel`] for a sample for which no way has a shape within the model.
 pub fn compare(
     params: &ManipulatorParams,
     run: &Run,
     measured: Option<&[GratingSample]>,
+    wanted: &[Way],
 ) -> Result<Vec<WayShapes>, ContinuumError> {
-    if !run.has_tension() && measured.is_none() {
-        return Err(ContinuumError::MissingGroup {
-            what: "tension",
-            consequence: "no shape follows from it",
-            remedy: "`tension_base_n`, or the shifts of calibrated gratings",
-        });
+    let is_possible = |way: Way| if way == Way::Measured { measured.is_some() } else { run.has_tension() };
+    let ways: Vec<Way> = Way::ALL.into_iter().filter(|way| wanted.contains(way) && is_possible(*way)).collect();
+    if ways.is_empty() {
+        let remedy = match (wanted.contains(&Way::Measured), wanted == [Way::Measured]) {
+            (_, true) => "the shifts of calibrated gratings",
+            (true, false) => "`tension_base_n`, or the shifts of calibrated gratings",
+            (false, false) => "`tension_base_n`",
+        };
+        return Err(ContinuumError::MissingGroup { what: "tension", consequence: "no shape follows from it", remedy });
     }
     run.check_capacity(params.capacity_n(Tendon::Agonist))?;
     let samples = run.samples();
-    let is_possible = |way: Way| if way == Way::Measured { measured.is_some() } else { run.has_tension() };
-    let all: Vec<WayShapes> = Way::ALL
+    let all: Vec<WayShapes> = ways
         .into_iter()
-        .filter(|way| is_possible(*way))
         .map(|way| {
             let shapes = shapes(params, samples, way, measured.unwrap_or_default())?;
             let mut errors = ShapeErrors::default();

@@ -24,6 +24,12 @@ impl Way {
     /// All there are.
     pub const ALL: [Self; 4] = [Self::None, Self::Coulomb, Self::Measured, Self::History];
 
+    /// The one of a name.
+    #[must_use]
+    pub fn of_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|way| way.name() == name)
+    }
+
     /// In one word.
     #[must_use]
     pub fn name(self) -> &'static str {

@@ -21,7 +21,7 @@ fn all_ways(params: &ManipulatorParams, run: &SimulatedRun) -> Vec<WayShapes> {
     let samples = Run::new(run.samples.clone(), 8).unwrap();
     let measured = gratings.read(&samples).unwrap();
     assert!(measured.iter().all(|sample| sample.is_bridged == [false; 8]), "a live grating is taken for dead");
-    compare(params, &samples, Some(&measured)).unwrap()
+    compare(params, &samples, Some(&measured), &Way::ALL).unwrap()
 }
 
 /// Mean errors of all ways over chosen samples, mm.

@@ -101,10 +101,10 @@ fn bad_runs_get_their_sentence() {
     let over = run.check_capacity(0.1).unwrap_err().to_string();
     assert!(over.contains("above the tendon's capacity of 0.1 N"), "{over}");
     let limp = ManipulatorOptions { bending_stiffness_n_m2: 2e-6, ..ManipulatorOptions::published() };
-    let beyond = compare(&ManipulatorParams::new(&limp).unwrap(), &run, None).unwrap_err();
+    let beyond = compare(&ManipulatorParams::new(&limp).unwrap(), &run, None, &Way::ALL).unwrap_err();
     assert!(matches!(beyond, ContinuumError::BeyondModel { .. }), "{beyond}");
     let nothing = Run::from_columns(&[good[0].clone()], 8).unwrap();
-    let nothing = compare(&published(), &nothing, None).unwrap_err().to_string();
+    let nothing = compare(&published(), &nothing, None, &Way::ALL).unwrap_err().to_string();
     assert!(nothing.starts_with("the run has no tension: "), "{nothing}");
 }
 
@@ -181,7 +181,7 @@ fn without_the_tension_at_the_base_the_first_hole_is_not_known() {
     let measured = gratings.read(&samples).unwrap();
     let result = FrictionResult::new("arm", &samples, &measured);
     assert!(result.holes[0].mean_n.is_nan() && result.holes[1].mean_n.is_finite());
-    let ways = compare(&published(), &samples, Some(&measured)).unwrap();
+    let ways = compare(&published(), &samples, Some(&measured), &Way::ALL).unwrap();
     assert_eq!(ways.iter().map(|way| way.way.name()).collect::<Vec<_>>(), ["measured"]);
     assert!(ways[0].errors.mean_mm().unwrap() < 1.0);
 }

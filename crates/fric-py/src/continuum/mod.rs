@@ -8,6 +8,8 @@ mod manipulator;
 mod run;
 mod shape;
 mod simulate;
+mod static_model;
+mod static_rows;
 
 pub use calibration::continuum_calibrate;
 pub use discover::continuum_discover;
@@ -17,6 +19,7 @@ pub use manipulator::Manipulator;
 pub use run::{TendonRun, continuum_read_loads, continuum_read_run};
 pub use shape::continuum_shape;
 pub use simulate::continuum_simulate;
+pub use static_model::{StaticModel, StaticSnapshot};
 
 use fric_lab::continuum::gratings::{GratingSample, Gratings};
 use fric_lab::continuum::{ContinuumError, Run, corrected};

@@ -1,9 +1,10 @@
 //! `shape`: shapes by four ways of friction.
 
+use fric_core::robot::unknown_name;
 use fric_lab::continuum::comparison::{Selection, WayShapes, compare};
 use fric_lab::continuum::gratings::Gratings;
 use fric_lab::continuum::result::ShapeResult;
-use fric_lab::continuum::shape_errors::ComputedShape;
+use fric_lab::continuum::shape_errors::{ComputedShape, Way};
 use fric_work::provenance::Provenance;
 use fric_work::report::continuum as report;
 use pyo3::prelude::*;
@@ -11,14 +12,15 @@ use pyo3::types::PyDict;
 
 use super::{Manipulator, TendonRun, in_base_frame, measured};
 use crate::arrays::{array, fixed, fixed_rows};
-use crate::errors::Outcome;
+use crate::errors::{Fault, Outcome};
 use crate::log;
 use crate::results;
 
 /// The shapes of a run by all ways of friction for which it has what they need, compared with the markers.
 ///
 /// `shapes` are picked, spread over the run; with `mixed`, from the samples in which the gratings show friction of both
-/// directions; with `at_s` those at these times.
+/// directions; with `at_s` those at these times. `ways` names the ways of friction to compute: "none", "coulomb", "measured", "history"; all
+/// by default.
 ///
 /// >>> import numpy as np
 /// >>> arm = continuum.Manipulator.read("examples/tendon-prototype.toml")
@@ -31,7 +33,7 @@ use crate::results;
 /// >>> bool(friction_n[0] < 0 < friction_n[-1])      # the base side has turned round, the tip not yet
 /// True
 #[pyfunction]
-#[pyo3(signature = (manipulator, run, *, shapes=6, at_s=None, mixed=false))]
+#[pyo3(signature = (manipulator, run, *, shapes=6, at_s=None, mixed=false, ways=None))]
 pub fn continuum_shape(
     py: Python<'_>,
     manipulator: &Manipulator,
@@ -39,6 +41,7 @@ pub fn continuum_shape(
     shapes: usize,
     at_s: Option<Vec<f64>>,
     mixed: bool,
+    ways: Option<Vec<String>>,
 ) -> Outcome<Py<PyAny>> {
     let files = run.files();
     let run = &in_base_frame(manipulator, &run.run)?;
@@ -48,8 +51,9 @@ pub fn continuum_shape(
         None if mixed => Selection::Mixed(shapes),
         None => Selection::Spread(shapes),
     };
+    let wanted = wanted_ways(ways)?;
     let measured = py.detach(|| measured(manipulator, run))?;
-    let ways = py.detach(|| compare(params, run, measured.as_deref()))?;
+    let ways = py.detach(|| compare(params, run, measured.as_deref(), &wanted))?;
     let picked = selection.places(run, measured.as_deref())?;
     let name = &manipulator.file.tables().name;
     let result = ShapeResult::new(name, params, run, measured.as_deref(), &ways, &picked);
@@ -66,6 +70,15 @@ pub fn continuum_shape(
         series.set_item(way.way.name(), series_of(py, way, run.disk_count())?)?;
     }
     Ok(results::of(py, "ShapeResult", (shown, fixed(py, result.time_s.clone()), series))?.unbind())
+}
+
+/// The ways of these names; all where none are named.
+fn wanted_ways(names: Option<Vec<String>>) -> Outcome<Vec<Way>> {
+    let Some(names) = names else { return Ok(Way::ALL.to_vec()) };
+    let of_name = |name: &String| {
+        Way::of_name(name).ok_or_else(|| Fault::config(unknown_name("way", name, Way::ALL.into_iter().map(Way::name))))
+    };
+    names.iter().map(of_name).collect()
 }
 
 /// The arrays of a way by their names.

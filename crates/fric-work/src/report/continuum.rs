@@ -105,12 +105,16 @@ pub fn shape(result: &ShapeResult, run: &Run, ways: &[WayShapes], provenance: &P
                 }
                 div.views {
                     figure { (PreEscaped(drawn(shape))) }
-                    figure { (PreEscaped(frictions(shape))) }
+                    @if shape.ways.iter().any(|way| way.way != Way::None.name()) {
+                        figure { (PreEscaped(frictions(shape))) }
+                    }
                 }
             }
         }
     };
-    let title = format!("{}: shapes by four ways of friction", result.manipulator);
+    let names: Vec<&str> = result.ways.iter().map(|way| way.way).collect();
+    let by = if names.len() == Way::ALL.len() { "four ways of friction".to_owned() } else { names.join(", ") };
+    let title = format!("{}: shapes by {by}", result.manipulator);
     plain(title, verdict::of_shapes(result), content, plots, provenance)
 }
 

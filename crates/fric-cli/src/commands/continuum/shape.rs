@@ -5,30 +5,43 @@ use fric_lab::continuum::ContinuumError;
 use fric_lab::continuum::comparison::{Selection, compare};
 use fric_lab::continuum::gratings::Gratings;
 use fric_lab::continuum::result::ShapeResult;
+use fric_lab::continuum::shape_errors::Way;
 
 use super::{Outputs, about, read_gratings, read_run};
-use crate::arguments::continuum::ShapeArguments;
+use crate::arguments::continuum::{ShapeArguments, WayName};
 use crate::failure::{Failure, Outcome};
 use crate::warnings::{warn, warn_all};
 use fric_work::report::continuum;
 
+fn way_of(name: WayName) -> Way {
+    match name {
+        WayName::None => Way::None,
+        WayName::Coulomb => Way::Coulomb,
+        WayName::Measured => Way::Measured,
+        WayName::History => Way::History,
+    }
+}
+
 /// Runs the command.
 pub fn run(arguments: &ShapeArguments) -> Outcome {
-    let ShapeArguments { run: paths, shapes, at_s, mixed, wide, page } = arguments;
+    let ShapeArguments { run: paths, shapes, at_s, mixed, ways, wide, page } = arguments;
+    let wanted: Vec<Way> = ways.iter().map(|way| way_of(*way)).collect();
     let outputs = Outputs::prepare(page, &[paths.run.clone(), paths.model.clone()], None)?;
     let (model, run) = read_run(paths)?;
     let params = model.file.params();
     run.check_capacity(params.capacity_n(Tendon::Agonist)).map_err(|error| about(&paths.run, error))?;
     let measured = read_gratings(&paths.run, &model, &run)?;
+    let wants_others = wanted.iter().any(|way| *way != Way::Measured);
     match (&measured, run.has_shifts()) {
+        (None, _) if !wanted.contains(&Way::Measured) => {}
         (None, true) => warn(&format!("the way `measured` is left out: {}", ContinuumError::NoGratings)),
         (None, false) => warn("the way `measured` is left out: the run has no gratings"),
-        (Some(_), _) if !run.has_tension() => {
+        (Some(_), _) if !run.has_tension() && wants_others => {
             warn("the run has no `tension_base_n`: the ways `none`, `coulomb` and `history` are left out");
         }
         _ => {}
     }
-    let ways = compare(params, &run, measured.as_deref()).map_err(|error| about(&paths.run, error))?;
+    let ways = compare(params, &run, measured.as_deref(), &wanted).map_err(|error| about(&paths.run, error))?;
     let selection = match at_s {
         Some(times_s) => Selection::At(times_s.clone()),
         None if *mixed => Selection::Mixed(usize::from(*shapes)),

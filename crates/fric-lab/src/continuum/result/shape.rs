@@ -256,7 +256,8 @@ impl ShapeResult {
         header.extend(self.ways.iter().flat_map(head));
         let mut rows: Vec<Vec<String>> = Vec::new();
         for (place, shape) in self.shapes.iter().enumerate() {
-            let bend_rad = shape.ways.iter().rev().find(|way| way.way != Way::Coulomb.name()).map(|way| way.bend_rad);
+            let best = shape.ways.iter().rev().find(|way| way.way != Way::Coulomb.name()).or(shape.ways.last());
+            let bend_rad = best.map(|way| way.bend_rad);
             let tension =
                 if shape.tension_base_n.is_nan() { "–".to_owned() } else { format!("{:.3}", shape.tension_base_n) };
             let mut row = vec![

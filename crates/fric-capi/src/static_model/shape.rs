@@ -1,0 +1,163 @@
+//! Forward: the shape for the tensions at the base.
+
+use fric_core::continuum::{Direction, Friction, MAX_DISKS, Tendon};
+
+use super::handle::{ModelHandle, Work};
+use crate::cycle::usable;
+use crate::outcome::Outcome;
+
+/// Friction by what each hole remembers of the run of the tensions at the base.
+pub const FRIC_FRICTION_HISTORY: u32 = 0;
+/// No friction.
+pub const FRIC_FRICTION_NONE: u32 = 1;
+/// Coulomb friction with every hole sliding as pulled: the first tendon is pulled, the second pays out.
+pub const FRIC_FRICTION_PULLING: u32 = 2;
+/// Coulomb friction with every hole sliding the other way.
+pub const FRIC_FRICTION_RELEASING: u32 = 3;
+/// Friction as the tensions measured in the segments give it.
+pub const FRIC_FRICTION_MEASURED: u32 = 4;
+
+/// Tensions measured in the segment that ends in a disk.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct DiskTensions {
+    /// Of the first and the second tendon, N; 0 in a slack one.
+    pub tension_n: [f64; 2],
+}
+
+/// Tensions of which a shape is wanted.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct ShapeSignals {
+    /// sizeof(fric_shape_input).
+    pub struct_size: usize,
+    /// Tension at the base of the first and the second tendon, N; 0 is a slack tendon.
+    pub base_tension_n: [f64; 2],
+    /// With FRIC_FRICTION_MEASURED the tensions in the segments from the base, else not looked at.
+    pub measured: *const DiskTensions,
+    /// How many of these; the manipulator's fric_static_model_disk_count. Not looked at without them.
+    pub measured_count: usize,
+    /// FRIC_FRICTION_…; that of a zeroed structure is FRIC_FRICTION_HISTORY.
+    pub friction: u32,
+}
+
+/// A disk, the segment that ends in it, and the hole with which that segment begins.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DiskResult {
+    /// Centre of the disk, base frame: x along the straight manipulator, y to the side of the first tendon, m.
+    pub position_m: [f64; 2],
+    /// Bend of the segment, rad; positive towards the first tendon.
+    pub bend_rad: f64,
+    /// Tension in the segment of the first and the second tendon, N.
+    pub tension_n: [f64; 2],
+    /// Friction of each tendon at the hole, N; positive where the base side is tighter.
+    pub friction_n: [f64; 2],
+    /// Greatest friction of each tendon at the hole, N.
+    pub bound_n: [f64; 2],
+}
+
+/// A shape. Set `struct_size`, `disks` and `disk_count`; the solution sets the rest. All numbers are finite, whatever went in.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct ShapeResult {
+    /// sizeof(fric_shape_output).
+    pub struct_size: usize,
+    /// Where disks, segments and holes go, from the base.
+    pub disks: *mut DiskResult,
+    /// How many; the manipulator's, fric_static_model_disk_count.
+    pub disk_count: usize,
+    /// Bend of the whole manipulator, the direction of the last disk, rad.
+    pub bend_rad: f64,
+    /// FRIC_SHAPE_… flags, FRIC_SHAPE_OK if nothing is the matter. With one of FRIC_SHAPE_FAILED the shape is the last one that was right,
+    /// straight before the first.
+    pub status: u32,
+}
+
+/// The friction that a number of the header chooses, but for the measured one; `None` for any other number.
+pub(super) fn friction_of(number: u32) -> Option<Friction<'static>> {
+    match number {
+        FRIC_FRICTION_HISTORY => Some(Friction::History),
+        FRIC_FRICTION_NONE => Some(Friction::None),
+        FRIC_FRICTION_PULLING => Some(Friction::Coulomb(Direction::Pulling)),
+        FRIC_FRICTION_RELEASING => Some(Friction::Coulomb(Direction::Releasing)),
+        _ => None,
+    }
+}
+
+/// The shape for tensions at the base: for the inside of the control loop. It does not allocate, lock or wait, takes any numbers, NaN
+/// included, and its iterations are bounded.
+///
+/// With FRIC_FRICTION_HISTORY this is one step of the run, which begins with the relaxed tendon: call it in every cycle. The other ways of friction
+/// may be solved in between and leave what the holes remember as it is. FRIC_RESULT_BAD_VALUE for a `friction` that is none of FRIC_FRICTION_….
+/// On anything but FRIC_RESULT_OK nothing has happened and the output is as it was. Input and output may share no memory.
+///
+/// # Safety
+/// `model` is null or a model that has not been given back and that nobody else uses now. `input` and `output` are null or structures
+/// whose `struct_size` can be read; if that is right, the rest can be too; `measured` is null or, with FRIC_FRICTION_MEASURED, as many as
+/// `measured_count` says, `disks` null or as many as `disk_count` says and writable.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fric_static_model_solve(
+    model: *mut ModelHandle,
+    input: *const ShapeSignals,
+    output: *mut ShapeResult,
+) -> Outcome {
+    if !(usable(model) && usable(input) && usable(output)) {
+        return Outcome::BadPointer;
+    }
+    // SAFETY: promised to be readable; the rest of the structure is not touched before its size is known to be right.
+    let input_size = unsafe { (&raw const (*input).struct_size).read() };
+    // SAFETY: as above.
+    let output_size = unsafe { (&raw const (*output).struct_size).read() };
+    if input_size != size_of::<ShapeSignals>() || output_size != size_of::<ShapeResult>() {
+        return Outcome::WrongSize;
+    }
+    // SAFETY: of the right size, so all of it can be read.
+    let input = unsafe { input.read() };
+    // SAFETY: of the right size. Only what the caller sets is read: the rest may never have been written to.
+    let disks = unsafe { (&raw const (*output).disks).read() };
+    // SAFETY: as above.
+    let disk_count = unsafe { (&raw const (*output).disk_count).read() };
+    let is_measured = input.friction == FRIC_FRICTION_MEASURED;
+    if !usable(disks) || (is_measured && !usable(input.measured)) {
+        return Outcome::BadPointer;
+    }
+    // SAFETY: a live handle that nobody else uses; no other reference to what it works on exists.
+    let Work { model, .. } = unsafe { &mut (*model).work };
+    let count = model.params().disk_count();
+    if disk_count != count || (is_measured && input.measured_count != count) {
+        return Outcome::WrongSize;
+    }
+    let status = if is_measured {
+        let (mut first_n, mut second_n) = ([0.0; MAX_DISKS], [0.0; MAX_DISKS]);
+        for (place, (first_n, second_n)) in first_n.iter_mut().zip(&mut second_n).enumerate().take(count) {
+            // SAFETY: `place` < `measured_count`, and so many can be read.
+            let DiskTensions { tension_n } = unsafe { input.measured.add(place).read() };
+            [*first_n, *second_n] = tension_n;
+        }
+        let measured_n = [&first_n, &second_n].map(|all| all.get(..count).unwrap_or_default());
+        model.solve(input.base_tension_n, Friction::Measured(measured_n))
+    } else {
+        let Some(friction) = friction_of(input.friction) else { return Outcome::BadValue };
+        model.solve(input.base_tension_n, friction)
+    };
+    let of_both = |list: fn(&fric_core::continuum::AnyStaticModel, Tendon) -> &[f64], place: usize| {
+        Tendon::BOTH.map(|tendon| list(model, tendon).get(place).copied().unwrap_or_default())
+    };
+    for (place, (position_m, bend_rad)) in model.disk_position_m().iter().zip(model.segment_bend_rad()).enumerate() {
+        let result = DiskResult {
+            position_m: *position_m,
+            bend_rad: *bend_rad,
+            tension_n: of_both(|model, tendon| model.tension_n(tendon), place),
+            friction_n: of_both(|model, tendon| model.friction_n(tendon), place),
+            bound_n: of_both(|model, tendon| model.bound_n(tendon), place),
+        };
+        // SAFETY: `place` < `disk_count`, and so many can be written to.
+        unsafe { disks.add(place).write(result) };
+    }
+    let result =
+        ShapeResult { struct_size: output_size, disks, disk_count, bend_rad: model.bend_rad(), status: status.bits() };
+    // SAFETY: of the right size, so all of it can be written to.
+    unsafe { output.write(result) };
+    Outcome::Ok
+}

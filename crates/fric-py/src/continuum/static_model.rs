@@ -1,0 +1,386 @@
+//! `StaticModel`: shapes and commands of a manipulator, one at a time or over arrays.
+
+use fric_core::continuum::{AnyStaticModel, Direction, Drive, DriveOptions, Friction, Goal};
+use fric_core::robot::unknown_name;
+use numpy::{PyUntypedArray, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+
+use super::Manipulator;
+use super::static_rows::{CommandRows, ShapeRows};
+use crate::arrays::{Axis, Wanted, numbers};
+use crate::errors::{Fault, Outcome};
+use crate::travel::{self, Reduced};
+use crate::watch::Watch;
+
+/// Static model of a manipulator, as in the control loop: the same code, the same bits.
+///
+/// `solve` is one step: tensions at the base in, the shape out. `tension_for` is the inverse: a bend, or a position of the tip, in, the tension
+/// at the base out. `run` and `follow` do the same over arrays. With `friction="history"`, the default, each hole remembers how the
+/// tendon has moved through it: give every step of the run, from the relaxed tendon on. The other ways of friction are "none", Coulomb's with every hole
+/// sliding as pulled ("pulling") or the other way ("releasing"), and "measured" by `tension_n` in the segments.
+///
+/// Tensions at the base are numbers for the first tendon alone, or pairs for both. They are those of the tendons; `[base_sensor]` of the file is not
+/// applied. What is not finite is flagged in `status`, and the model stays as it was.
+///
+/// The drive: `least_tension_n` is what each tendon keeps while the other one is pulled, `greatest_tension_n` the most that each may have (by default the
+/// first tendon's capacity, and nothing for the second). A goal nearer than `hold_rad` (for the tip: this share of the arm's length) leaves the tensions as
+/// they are.
+///
+/// >>> arm = continuum.Manipulator.read("examples/tendon-prototype.toml")
+/// >>> model = continuum.StaticModel(arm)
+/// >>> for bend_rad in [0.2, 0.6, 0.59]:
+/// ...     command = model.tension_for(bend_rad=bend_rad)
+/// ...     shape = model.solve(command.base_tension_n)
+/// >>> round(float(shape.bend_rad), 6), continuum.GoalStatus(int(command.status))
+/// (0.59, <GoalStatus.REVERSAL|DEAD_BAND: 48>)
+/// >>> model.run([0.4, 0.8, 0.7]).disk_position_m.shape
+/// (3, 8, 2)
+#[pyclass(module = "fric.continuum")]
+pub struct StaticModel {
+    model: AnyStaticModel,
+    drive: Drive,
+    options: DriveOptions,
+    manipulator: Py<Manipulator>,
+}
+
+/// The state of a static model at one moment: the last shape and what the holes remember.
+#[pyclass(module = "fric.continuum", frozen, eq)]
+#[derive(PartialEq)]
+pub struct StaticSnapshot {
+    /// All of it, bit for bit; the number of disks first.
+    words: Vec<u64>,
+}
+
+/// The friction of a call.
+enum Way {
+    Given(Friction<'static>),
+    /// Tensions in the segments, row by row, of one tendon or of both.
+    Measured {
+        tension_n: Vec<f64>,
+        tendons: usize,
+    },
+}
+
+const HISTORY: &str = "history";
+const MEASURED: &str = "measured";
+
+/// The ways of friction by their names.
+fn friction_of(name: &str) -> Option<Friction<'static>> {
+    match name {
+        HISTORY => Some(Friction::History),
+        "none" => Some(Friction::None),
+        "pulling" => Some(Friction::Coulomb(Direction::Pulling)),
+        "releasing" => Some(Friction::Coulomb(Direction::Releasing)),
+        _ => None,
+    }
+}
+
+fn unknown_friction(name: &str, known: &[&str]) -> Fault {
+    Fault::config(unknown_name("friction", name, known.iter().copied()))
+}
+
+/// How many axes an argument has.
+fn axis_count(value: &Bound<'_, PyAny>) -> Outcome<usize> {
+    let array = value.py().import("numpy")?.call_method1("asarray", (value,))?;
+    Ok(array.cast::<PyUntypedArray>()?.ndim())
+}
+
+/// Tensions at the base of both tendons, row by row.
+fn base_tensions(value: &Bound<'_, PyAny>, rows: &[Axis]) -> Outcome<Vec<[f64; 2]>> {
+    let entries = "of the first tendon, or pairs of both";
+    if axis_count(value)? > rows.len() {
+        let shape: Vec<Axis> = rows.iter().copied().chain([Axis::Exactly(2)]).collect();
+        let pairs = numbers(&Wanted { name: "base_tension_n", shape: &shape, entries }, value)?;
+        Ok(pairs.as_chunks().0.to_vec())
+    } else {
+        let first = numbers(&Wanted { name: "base_tension_n", shape: rows, entries }, value)?;
+        Ok(first.into_iter().map(|first_n| [first_n, 0.0]).collect())
+    }
+}
+
+impl Way {
+    fn read(name: &str, tension_n: Option<&Bound<'_, PyAny>>, rows: &[Axis], disk_count: usize) -> Outcome<Self> {
+        match (name, tension_n) {
+            (MEASURED, Some(value)) => {
+                let has_both = axis_count(value)? > rows.len() + 1;
+                let tendons = if has_both { 2 } else { 1 };
+                let pair = if has_both { &[Axis::Exactly(2)][..] } else { &[] };
+                let shape: Vec<Axis> = rows.iter().chain(pair).copied().chain([Axis::Exactly(disk_count)]).collect();
+                let entries = "one tension per segment";
+                Ok(Self::Measured {
+                    tension_n: numbers(&Wanted { name: "tension_n", shape: &shape, entries }, value)?,
+                    tendons,
+                })
+            }
+            (MEASURED, None) => {
+                Err(Fault::shape("friction=\"measured\" needs `tension_n`, the tension in each segment"))
+            }
+            (_, Some(_)) => Err(Fault::shape("`tension_n` goes with friction=\"measured\" alone; leave it out")),
+            (name, None) => friction_of(name)
+                .map(Self::Given)
+                .ok_or_else(|| unknown_friction(name, &[HISTORY, "none", "pulling", "releasing", MEASURED])),
+        }
+    }
+
+    /// That of a row.
+    fn of_row(&self, row: usize, disk_count: usize) -> Friction<'_> {
+        match self {
+            Self::Given(friction) => *friction,
+            Self::Measured { tension_n, tendons } => {
+                let of_tendon = |tendon: usize| {
+                    let begin = (row * tendons + tendon) * disk_count;
+                    tension_n.get(begin..begin + disk_count).filter(|_| tendon < *tendons).unwrap_or_default()
+                };
+                Friction::Measured([of_tendon(0), of_tendon(1)])
+            }
+        }
+    }
+}
+
+/// Goals, row by row: bends or positions of the tip.
+fn goals(bend_rad: Option<&Bound<'_, PyAny>>, tip_m: Option<&Bound<'_, PyAny>>, rows: &[Axis]) -> Outcome<Vec<Goal>> {
+    match (bend_rad, tip_m) {
+        (Some(value), None) => {
+            let wanted = Wanted { name: "bend_rad", shape: rows, entries: "a bend of the whole manipulator" };
+            Ok(numbers(&wanted, value)?.into_iter().map(Goal::BendRad).collect())
+        }
+        (None, Some(value)) => {
+            let shape: Vec<Axis> = rows.iter().copied().chain([Axis::Exactly(2)]).collect();
+            let tips = numbers(&Wanted { name: "tip_m", shape: &shape, entries: "x, y in the base frame" }, value)?;
+            Ok(tips.as_chunks().0.iter().copied().map(Goal::TipM).collect())
+        }
+        _ => Err(Fault::shape("a goal is `bend_rad` or `tip_m`; give one of them")),
+    }
+}
+
+/// The friction of a goal.
+fn goal_friction(name: &str) -> Outcome<Friction<'static>> {
+    friction_of(name).ok_or_else(|| unknown_friction(name, &[HISTORY, "none", "pulling", "releasing"]))
+}
+
+impl StaticModel {
+    fn disk_count(&self) -> usize {
+        self.model.params().disk_count()
+    }
+
+    /// Work over rows; ended by Ctrl-C, the model is as it was before.
+    fn work(
+        &mut self,
+        py: Python<'_>,
+        progress: Option<&Bound<'_, PyAny>>,
+        count: usize,
+        mut row: impl FnMut(&mut AnyStaticModel, &Drive, usize) + Send,
+    ) -> Outcome {
+        let before = self.model.clone();
+        let (model, drive) = (&mut self.model, &self.drive);
+        let done = Watch::new(py, progress)?.work(count, |rows| {
+            rows.for_each(|place| row(model, drive, place));
+            Ok(())
+        });
+        if done.is_err() {
+            self.model = before;
+        }
+        done
+    }
+
+    fn state_words(&self) -> Vec<u64> {
+        self.model.state_words()
+    }
+}
+
+#[pymethods]
+impl StaticModel {
+    #[new]
+    #[pyo3(
+        signature = (manipulator, *, least_tension_n=None, greatest_tension_n=None, hold_rad=0.0),
+        text_signature = "(manipulator, *, least_tension_n=(0.0, 0.0), greatest_tension_n=None, hold_rad=0.0)"
+    )]
+    fn new(
+        manipulator: Py<Manipulator>,
+        least_tension_n: Option<[f64; 2]>,
+        greatest_tension_n: Option<[f64; 2]>,
+        hold_rad: f64,
+    ) -> Outcome<Self> {
+        let params = manipulator.get().file.params();
+        let usual = DriveOptions::first_tendon(params);
+        let options = DriveOptions {
+            least_tension_n: least_tension_n.unwrap_or(usual.least_tension_n),
+            greatest_tension_n: greatest_tension_n.unwrap_or(usual.greatest_tension_n),
+            hold_rad,
+        };
+        let (model, drive) = (AnyStaticModel::new(params)?, Drive::new(params, &options)?);
+        Ok(Self { model, drive, options, manipulator })
+    }
+
+    /// The shape for the tension at the base, N: a number for the first tendon, or a pair for both. With `friction="measured"` `tension_n` has the
+    /// tension in each segment, (disks,) or (2, disks).
+    #[pyo3(signature = (base_tension_n, *, friction="history", tension_n=None))]
+    fn solve(
+        &mut self,
+        py: Python<'_>,
+        base_tension_n: &Bound<'_, PyAny>,
+        friction: &str,
+        tension_n: Option<&Bound<'_, PyAny>>,
+    ) -> Outcome<Py<PyAny>> {
+        let base_n = base_tensions(base_tension_n, &[])?;
+        let way = Way::read(friction, tension_n, &[], self.disk_count())?;
+        let mut rows = ShapeRows::default();
+        for base_n in base_n {
+            rows.push(self.model.solve(base_n, way.of_row(0, self.disk_count())), &self.model);
+        }
+        rows.into_python(py, None, self.disk_count())
+    }
+
+    /// As many steps as the array has rows; other threads run meanwhile.
+    ///
+    /// `base_tension_n` is (N,) or (N, 2), `tension_n` of `friction="measured"` (N, disks) or (N, 2, disks). Ended by Ctrl-C, the model
+    /// is as it was before.
+    #[pyo3(
+        signature = (base_tension_n, *, friction="history", tension_n=None, progress=None),
+        text_signature = "(self, base_tension_n, *, friction='history', tension_n=None, progress=False)"
+    )]
+    fn run(
+        &mut self,
+        py: Python<'_>,
+        base_tension_n: &Bound<'_, PyAny>,
+        friction: &str,
+        tension_n: Option<&Bound<'_, PyAny>>,
+        progress: Option<&Bound<'_, PyAny>>,
+    ) -> Outcome<Py<PyAny>> {
+        let base_n = base_tensions(base_tension_n, &[Axis::Rows])?;
+        let disk_count = self.disk_count();
+        let way = Way::read(friction, tension_n, &[Axis::Exactly(base_n.len())], disk_count)?;
+        let mut rows = ShapeRows::default();
+        self.work(py, progress, base_n.len(), |model, _, row| {
+            let base_n = base_n.get(row).copied().unwrap_or([f64::NAN; 2]);
+            let status = model.solve(base_n, way.of_row(row, disk_count));
+            rows.push(status, model);
+        })?;
+        rows.into_python(py, Some(base_n.len()), disk_count)
+    }
+
+    /// The tensions at the base that bring the arm to a bend, rad, or its tip to a position, base frame, m; give one of them.
+    ///
+    /// What the holes remember stays as it is: `solve`, with the tension that was set or measured then, moves it on.
+    #[pyo3(signature = (*, bend_rad=None, tip_m=None, friction="history"))]
+    fn tension_for(
+        &mut self,
+        py: Python<'_>,
+        bend_rad: Option<&Bound<'_, PyAny>>,
+        tip_m: Option<&Bound<'_, PyAny>>,
+        friction: &str,
+    ) -> Outcome<Py<PyAny>> {
+        let (goals, friction) = (goals(bend_rad, tip_m, &[])?, goal_friction(friction)?);
+        let mut rows = CommandRows::default();
+        for goal in goals {
+            rows.push(&self.model.tension_for(goal, friction, &self.drive));
+        }
+        rows.into_python(py, None)
+    }
+
+    /// The tensions at the base for a whole path: bends, (N,), or positions of the tip, (N, 2). Each goal starts from where the command
+    /// of the one before has brought the arm. Other threads run meanwhile; ended by Ctrl-C, the model is as it was before.
+    #[pyo3(
+        signature = (*, bend_rad=None, tip_m=None, friction="history", progress=None),
+        text_signature = "(self, *, bend_rad=None, tip_m=None, friction='history', progress=False)"
+    )]
+    fn follow(
+        &mut self,
+        py: Python<'_>,
+        bend_rad: Option<&Bound<'_, PyAny>>,
+        tip_m: Option<&Bound<'_, PyAny>>,
+        friction: &str,
+        progress: Option<&Bound<'_, PyAny>>,
+    ) -> Outcome<Py<PyAny>> {
+        let (goals, friction) = (goals(bend_rad, tip_m, &[Axis::Rows])?, goal_friction(friction)?);
+        let mut rows = CommandRows::default();
+        self.work(py, progress, goals.len(), |model, drive, row| {
+            let goal = goals.get(row).copied().unwrap_or(Goal::BendRad(f64::NAN));
+            let command = model.tension_for(goal, friction, drive);
+            rows.push(&command);
+            // What is the matter with the shape is so with the command.
+            let _ = model.solve(command.base_tension_n, friction);
+        })?;
+        rows.into_python(py, Some(goals.len()))
+    }
+
+    /// Back to the state after set-up: straight, without tension, with relaxed holes.
+    fn reset(&mut self) {
+        self.model.reset();
+    }
+
+    /// The state at this moment.
+    fn snapshot(&self) -> StaticSnapshot {
+        StaticSnapshot { words: self.state_words() }
+    }
+
+    /// Goes on from a snapshot of the same manipulator as if nothing had happened since.
+    fn restore(&mut self, snapshot: &StaticSnapshot) -> Outcome {
+        Ok(self.model.restore_words(&snapshot.words)?)
+    }
+
+    /// The manipulator.
+    #[getter]
+    fn manipulator(&self, py: Python<'_>) -> Py<Manipulator> {
+        self.manipulator.clone_ref(py)
+    }
+
+    fn __eq__(&self, other: &Bound<'_, PyAny>) -> Outcome<bool> {
+        let Ok(other) = other.cast::<Self>() else { return Ok(false) };
+        let other = other.try_borrow().map_err(PyErr::from)?;
+        let is_same_arm = self.manipulator.get().text == other.manipulator.get().text;
+        Ok(is_same_arm && self.options == other.options && self.state_words() == other.state_words())
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<StaticModel of {:?}: {} disks>", self.manipulator.get().file.tables().name, self.disk_count())
+    }
+
+    /// Pickled, and copied, as its manipulator, its drive and its state: it goes on with the same bits.
+    #[expect(clippy::type_complexity, reason = "a tuple for Python")]
+    fn __reduce__<'py>(
+        slf: &Bound<'py, Self>,
+    ) -> Outcome<Reduced<'py, (String, Py<Manipulator>, [f64; 2], [f64; 2], f64, Vec<u64>)>> {
+        let one = slf.borrow();
+        let DriveOptions { least_tension_n, greatest_tension_n, hold_rad } = one.options;
+        let manipulator = one.manipulator.clone_ref(slf.py());
+        let state =
+            (travel::VERSION.to_owned(), manipulator, least_tension_n, greatest_tension_n, hold_rad, one.state_words());
+        Ok((slf.getattr("_unpickled")?, state))
+    }
+
+    /// The one that was pickled.
+    #[staticmethod]
+    fn _unpickled(
+        version: &str,
+        manipulator: Py<Manipulator>,
+        least_tension_n: [f64; 2],
+        greatest_tension_n: [f64; 2],
+        hold_rad: f64,
+        words: Vec<u64>,
+    ) -> Outcome<Self> {
+        travel::check_version(version)?;
+        let mut one = Self::new(manipulator, Some(least_tension_n), Some(greatest_tension_n), hold_rad)?;
+        one.model.restore_words(&words)?;
+        Ok(one)
+    }
+}
+
+#[pymethods]
+impl StaticSnapshot {
+    fn __repr__(&self) -> String {
+        format!("<StaticSnapshot: {} disks>", self.words.first().copied().unwrap_or(0))
+    }
+
+    /// Pickled, and copied, as the numbers it holds.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> Outcome<Reduced<'py, (String, Vec<u64>)>> {
+        Ok((slf.getattr("_unpickled")?, (travel::VERSION.to_owned(), slf.get().words.clone())))
+    }
+
+    /// The one that was pickled.
+    #[staticmethod]
+    fn _unpickled(version: &str, words: Vec<u64>) -> Outcome<Self> {
+        travel::check_version(version)?;
+        Ok(Self { words })
+    }
+}
