@@ -22,6 +22,7 @@ from ._results import (
 )
 
 __all__ = [
+    "CATALOGUE",
     "Cable",
     "Compensator",
     "Friction",
@@ -57,6 +58,7 @@ __all__ = [
     "simulate",
 ]
 
+CATALOGUE: Final[list[dict[str, Any]]]
 STATUS_BITS: Final[dict[str, int]]
 __version__: Final[str]
 
