@@ -11,8 +11,8 @@ folder=$1
 target=${CARGO_TARGET_DIR:-target}
 tools=$target/wheel-tools
 python=${PYTHON:-python3}
-rm -rf "$folder"
 mkdir -p "$folder"
+rm -f "$folder"/fric-*
 
 [ -x "$tools/bin/maturin" ] || { "$python" -m venv "$tools" && "$tools/bin/python" -m pip install --quiet --disable-pip-version-check 'maturin>=1.9,<2' ziglang; }
 # The Python of the tools has zig, which maturin asks it for.

@@ -180,6 +180,9 @@ def build(folder: Path, drawn: list[str]) -> None:
     subprocess.run([mdbook(), "build", str(source), "--dest-dir", str(folder.resolve())], check=True)
 
 
+# As wide as a page of the book.
+os.environ["COLUMNS"] = "84"
+
 if __name__ == "__main__":
     build(Path(sys.argv[1]), list(drawings.LOOKS))
     print(f"the book is {sys.argv[1]}/index.html")
