@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 
@@ -95,6 +96,17 @@ def test_a_version_is_released_once(tree):
     done = release(tree)
     assert done.returncode == 1
     assert "the tag v1.2.3 exists; raise the version in Cargo.toml" in done.stderr
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="paths of Linux")
+def test_a_platform_without_its_tools_is_named_as_not_checked(tmp_path):
+    for program in ("bash", "dirname", "mktemp", "rm", "uname"):
+        (tmp_path / program).symlink_to(shutil.which(program))
+    command = ["bash", ROOT / "packaging" / "platforms.sh"]
+    done = subprocess.run(command, env={"PATH": str(tmp_path)}, capture_output=True, text=True, check=True)
+    aarch64, windows = done.stdout.splitlines()
+    assert aarch64.startswith("not checked: the bits of a replay on aarch64; ")
+    assert windows == "not checked: the command line for Windows; x86_64-w64-mingw32-gcc is missing"
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="paths of Linux")
