@@ -30,7 +30,7 @@ outcome() {
     shift
     "$@" replay examples/mini-ipanema.mcap -o "$place/$name.mcap" --json "$place/$name-replay.json" -q >/dev/null
     "$@" fit examples/mini-ipanema.mcap --end 12 -o "$place/$name.toml" --json "$place/$name-fit.json" -q >/dev/null
-    "$@" simulate --model examples/mini-ipanema.toml --duration 3 --effect stribeck -o "$place/$name-simulated.mcap" -q >/dev/null
+    "$@" simulate --model examples/mini-ipanema.toml --duration 3 --effect stribeck:ratio=0.5 -o "$place/$name-simulated.mcap" -q >/dev/null
     # Times of this computer and names of outputs are no results.
     python3 - "$place/$name-replay.json" "$place/$name-fit.json" <<'PYTHON'
 import json, sys
