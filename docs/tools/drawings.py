@@ -38,7 +38,7 @@ class Look:
 
 
 LOOKS = {
-    "coulomb": Look("load", SLOW, "The file has no friction, so all of it is left. It grows in proportion to the load and changes its sign with the direction: two lines that open from zero."),
+    "coulomb": Look("load", SLOW, "Without `mu` in the file, all friction of the bearings is left. It grows in proportion to the load and changes its sign with the direction: two lines that open from zero."),
     "viscous": Look("speed", STROKES, "What is left grows in proportion to the speed. At low speed nothing is missing."),
     "presliding": Look("reversal", STEPS, "A model without `sigma_n_per_m` jumps from one side to the other at each reversal. The measured friction takes some tenths of a millimetre."),
     "stribeck": Look("speed", SLOW, "What is left is largest near standstill and is gone at a few times `velocity_m_per_s`. It changes its sign with the direction.", {"velocity_m_per_s": 0.15}),
