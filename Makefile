@@ -18,7 +18,8 @@ MIRI_TARGET := riscv64gc-unknown-linux-gnu
 # What `make test` does, the tools first, so that what is missing shows at once.
 STEPS := tools format lint test-rust docs test-python instructions bare-metal miri
 
-.PHONY: test check format lint test-rust docs test-python instructions bare-metal miri bench install tools coverage notices deny
+.PHONY: test check format lint test-rust docs test-python instructions bare-metal miri bench install install-cli tools coverage notices deny book
+.PHONY: wheel release platforms python-package
 
 # One after the other; in the end, where the time went.
 test:
@@ -47,12 +48,14 @@ test-rust:
 docs:
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --workspace --no-deps --quiet
 
-test-python: $(VENV)/ready
+test-python: python-package
+	$(VENV)/bin/python -m pytest -rs tests/python
+
+python-package: $(VENV)/ready
 	# The command line as the tests in Rust have built it; alone, cargo would build all of it again with other features of dependencies.
 	$(CARGO) test --workspace --no-run --quiet
 	# As `pip install .` does, but with what has been built for the other tests.
 	PATH="$(CURDIR)/$(VENV)/bin:$$PATH" MATURIN_PEP517_ARGS="--profile dev" $(PIP) install --no-build-isolation --no-deps .
-	$(VENV)/bin/python -m pytest -rs tests/python
 
 $(VENV)/ready: tests/python/requirements.txt | tools
 	$(PYTHON) -m venv $(VENV)
@@ -77,6 +80,27 @@ miri:
 install:
 	$(CARGO) build --quiet --profile $(PROFILE) -p fric-capi
 	PREFIX="$(PREFIX)" DESTDIR="$(DESTDIR)" crates/fric-capi/packaging/install.sh "$(TARGET)/$(if $(filter dev,$(PROFILE)),debug,$(PROFILE))"
+
+# The command line with its manual pages and completions. Where the directories are not on a path yet, the last line says so.
+install-cli:
+	$(CARGO) build --quiet --profile $(PROFILE) -p fric-cli
+	PREFIX="$(PREFIX)" DESTDIR="$(DESTDIR)" packaging/install-cli.sh "$(TARGET)/$(if $(filter dev,$(PROFILE)),debug,$(PROFILE))/fric-cli"
+
+# The book, with every effect drawn, into target/book.
+book: python-package
+	$(VENV)/bin/python docs/tools/book.py "$(TARGET)/book"
+
+# Wheels and source distribution into target/wheels, tried in an environment without Rust.
+wheel:
+	packaging/wheel.sh "$(TARGET)/wheels"
+
+# A replay on aarch64 has the bits of one on x86-64, and the command line builds for Windows.
+platforms:
+	PROFILE="$(PROFILE)" packaging/platforms.sh
+
+# All of a release that publishes nothing, after `make test`: checks, packages of the crates, wheels, the tag.
+release:
+	packaging/release.sh
 
 bench:
 	$(CARGO) bench

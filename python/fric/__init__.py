@@ -7,7 +7,7 @@
 [0.4314, 0.0171]
 
 Numbers are SI, with the unit in the name, as in the robot file. Whatever is wrong raises a FricError. `fric.plot` draws
-(needs matplotlib: `pip install matplotlib`), `fric.fleet` works on many logs (`pip install 'fric[fleet]'`, where fric is installed).
+(needs matplotlib: `pip install matplotlib`), `fric.fleet` works on many logs (needs `pip install dask distributed fsspec pyarrow ruptures`).
 """
 
 # Before all that would fail there in its own words.

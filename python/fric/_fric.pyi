@@ -24,6 +24,7 @@ from ._results import (
 )
 
 __all__ = [
+    "CATALOGUE",
     "Cable",
     "Compensator",
     "Friction",
@@ -65,6 +66,7 @@ __all__ = [
 
 GOAL_STATUS_BITS: Final[dict[str, int]]
 SHAPE_STATUS_BITS: Final[dict[str, int]]
+CATALOGUE: Final[list[dict[str, Any]]]
 STATUS_BITS: Final[dict[str, int]]
 __version__: Final[str]
 

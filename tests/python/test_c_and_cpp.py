@@ -95,6 +95,52 @@ def numbers(path):
     return table.astype({name: np.int64 if name == "stamp_nanos" else float for name in table})
 
 
+COMPILERS = {"c": ("gcc", "c", "c11"), "cpp": ("g++", "c++", "c++17")}
+
+
+def blocks_of_the_docs(language):
+    """Page and text of each block of a language in the docs."""
+    pages = sorted((ROOT / "docs").glob("*.md"))
+    pattern = rf"^```{language}\n(.*?)^```$"
+    return [(page.name, text) for page in pages for text in re.findall(pattern, page.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)]
+
+
+@pytest.mark.parametrize("language", COMPILERS)
+def test_what_the_docs_show_compiles(language, prefix, tmp_path):
+    compiler, name, standard = COMPILERS[language]
+    tool("g++")
+    blocks = blocks_of_the_docs(language)
+    assert blocks
+    for page, text in blocks:
+        # What is no program is the inside of a function.
+        includes, body = ("".join(line for line in text.splitlines(keepends=True) if line.startswith("#") == is_include) for is_include in (True, False))
+        source = text if " main(" in text else f"{includes}void shown();\nvoid shown() {{\n{body}}}\n"
+        program = tmp_path / f"{page}.out"
+        libraries = [f"-I{prefix}/include", f"-L{prefix}/lib", f"-Wl,-rpath,{prefix}/lib"]
+        mode = ["-o", program] if " main(" in text else ["-c", "-o", tmp_path / "shown.o"]
+        call(compiler, f"-std={standard}", "-x", name, "-", "-x", "none", *libraries, *mode, "-lfric", input=source)
+
+
+def test_the_tutorial_s_programs_print_what_the_model_s_equations_give(prefix, tmp_path):
+    """Equations 10 and 11 of the paper by hand: 10 N on a sensor pulley of 180°, then 90°, μ = 0.02, F_pv = 0.3 N s/m, 0.05 m/s."""
+    text = (ROOT / "docs" / "tutorial-control.md").read_text(encoding="utf-8")
+    (tmp_path / "winch.toml").write_text(re.search(r"^```toml\n(format.*?)^```$", text, re.MULTILINE | re.DOTALL)[1], encoding="utf-8")
+    expected = []
+    for speed in (0.05, -0.05):
+        sense = math.copysign(1.0, speed)
+        behind_sensor = (10.0 * (2.0 + sense * 0.02 * 2.0) + 2.0 * 0.3 * speed) / 4.0
+        behind = sense * 0.02 * 2.0 * math.sin(math.radians(45.0))
+        expected.append((behind_sensor * (2.0 + behind) + 2.0 * 0.3 * speed) / (2.0 - behind))
+    for language, forces in (("c", expected[:1]), ("cpp", expected)):
+        compiler, name, standard = COMPILERS[language]
+        [source] = [block for page, block in blocks_of_the_docs(language) if page == "tutorial-control.md"]
+        libraries = [f"-I{prefix}/include", f"-L{prefix}/lib", f"-Wl,-rpath,{prefix}/lib"]
+        flags = WARNINGS.split()
+        call(compiler, f"-std={standard}", *flags, "-x", name, "-", "-x", "none", *libraries, "-o", tmp_path / language, "-lfric", input=source)
+        printed = call(tmp_path / language, cwd=tmp_path)
+        assert printed == "".join(f"{force:.3f} N at the platform, status 0\n" for force in forces)
+
+
 STANDARDS = {
     "fric.h": ("c", ["c99", "c11", "c17", "c2x"], ["gcc", "clang"], ""),
     "fric.hpp": ("c++", ["c++17", "c++20", "c++2b"], ["g++", "clang++"], "-Wold-style-cast"),

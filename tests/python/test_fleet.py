@@ -8,6 +8,7 @@ import subprocess
 import sys
 import threading
 import time
+from importlib.metadata import requires
 
 import fric
 import numpy as np
@@ -15,6 +16,7 @@ import pyarrow
 import pytest
 from distributed import Client, LocalCluster
 from fric import fleet
+from fric.fleet._needs import LIBRARIES
 from matplotlib.colors import to_hex
 from support import BENCH
 
@@ -221,7 +223,12 @@ except ImportError as error:
     print(error)
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout == "fric.fleet needs fsspec; install it with `pip install 'fric[fleet]'`\n"
+    assert done.stdout == "fric.fleet needs fsspec; install what fleets need with `pip install dask distributed fsspec pyarrow ruptures`\n"
+
+
+def test_the_advice_names_the_libraries_of_the_extra():
+    extra = {needed.partition(">")[0] for needed in requires("fric") if "fleet" in needed.partition(";")[2]}
+    assert extra == set(LIBRARIES.split())
 
 
 def made(seed, kind, *, count=60, size=8.0, outliers=0.0):

@@ -95,3 +95,8 @@ pub use tunable::TunableCompensator;
 #[cfg(all(doctest, feature = "robot-file"))]
 #[doc = include_str!("../../../README.md")]
 struct Readme;
+
+/// Runs the programs of the control engineer's tutorial.
+#[cfg(all(doctest, feature = "robot-file"))]
+#[doc = include_str!("../../../docs/tutorial-control.md")]
+struct Tutorial;

@@ -8,6 +8,7 @@
 #![allow(clippy::too_many_arguments, reason = "they are keywords in Python")]
 
 mod arrays;
+mod catalogue;
 mod compensator;
 mod continuum;
 mod discover;
@@ -89,6 +90,7 @@ mod _fric {
             bits.set_item(name, flag.bits())?;
         }
         module.add("GOAL_STATUS_BITS", bits)?;
+        module.add("CATALOGUE", crate::catalogue::catalogue(module.py())?)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

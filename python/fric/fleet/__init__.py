@@ -1,6 +1,6 @@
 """Many machines, many logs, over years: an operation on all of them, and what has changed since when.
 
-Needs `pip install 'fric[fleet]'`: Dask for the workers, fsspec for addresses, pyarrow for results, ruptures for change points.
+Needs `pip install dask distributed fsspec pyarrow ruptures`: Dask for the workers, fsspec for addresses, pyarrow for results, ruptures for change points.
 
 >>> import datetime, random
 >>> import fric

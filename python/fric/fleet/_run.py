@@ -15,7 +15,7 @@ from .._results.base import Value
 from ._cluster import connected
 from ._errors import FleetError
 from ._logs import LogAddress, file_system, find
-from ._needs import need
+from ._needs import LIBRARIES, need
 from ._operations import checked
 from ._store import FAILED, Store, key_of
 from ._task import Job, Outcome, model_hash, work
@@ -83,7 +83,7 @@ def run(
 
     `client` is a `distributed.Client` or a scheduler's address. Without it, `workers` processes of this machine are started (as many as
     it has cores) and ended; a script then needs `if __name__ == "__main__":`, as with every process pool. Workers of a scheduler have
-    `fric[fleet]` installed, and best one thread each (`dask worker --nthreads 1`).
+    fric and what fleets need installed, and best one thread each (`dask worker --nthreads 1`).
 
     What a log's result depends on are its bytes, the model, the options and the version of fric. A log for which such a result is there
     is not computed again, so that a run that was cut off goes on, and new logs are added, by the same call. A worker that dies is
@@ -176,7 +176,7 @@ def _outcome(distributed: Any, future: Any, job: Job) -> Outcome:
         return Outcome(job.log, "failed", error=text)
     except Exception as error:
         raise FleetError(
-            f"a worker cannot run fric: {type(error).__name__}: {error}; install fric[fleet] there, in the same version"
+            f"a worker cannot run fric: {type(error).__name__}: {error}; install fric there in the same version, and `pip install {LIBRARIES}`"
         ) from error
     return outcome
 
