@@ -22,12 +22,15 @@
 //! share a μ do differ (`spread`).
 
 mod assemble;
+mod candidate;
 mod case;
 mod extended_file;
 mod final_fit;
 mod fitting;
 mod goes_with;
+mod joint;
 mod lines;
+mod machine;
 mod markers;
 mod model;
 mod naming;
@@ -86,8 +89,22 @@ pub fn discover(file: &ManipulatorFile, run: &Run, log: &str) -> Result<TendonDi
     }
     run.check_capacity(file.params().capacity_n(Tendon::Agonist))?;
     let gratings = Gratings::from_file(file)?.ok_or(ContinuumError::NoGratings)?;
-    let run = corrected(run, file)?;
-    let case = Case::new(file, &run, &gratings)?;
-    let outcome = naming::name(&case)?;
-    Ok(assemble::told(&case, &outcome, log))
+    let kept = thinned(run.samples());
+    let as_given = corrected(run, file)?;
+    let case = Case::new(file, &as_given, &gratings, &kept)?;
+    let machine = machine::search(file, run).filter(|machine| !machine.named.is_empty());
+    let extended = machine.and_then(|machine| Some((ManipulatorFile::check(machine.tables).ok()?, machine.named)));
+    let Some((extended, named)) = extended else {
+        return Ok(assemble::told(&case, &naming::name(&case)?, &[], log));
+    };
+    // Friction is looked for with what was found in the file.
+    let run = corrected(run, &extended)?;
+    let gratings = Gratings::from_file(&extended)?.ok_or(ContinuumError::NoGratings)?;
+    let with_found = Case::new(&extended, &run, &gratings, &kept)?;
+    let outcome = naming::name(&with_found)?.beside(&case)?;
+    let mut discovery = assemble::told(&with_found, &outcome, &named, log);
+    let bending = ManipulatorEdit::between(file.tables(), extended.tables());
+    let ManipulatorEdit { mu, sigma_n_per_m, drift_nm_per_s, .. } = discovery.edit;
+    discovery.edit = ManipulatorEdit { mu, sigma_n_per_m, drift_nm_per_s, ..bending };
+    Ok(discovery)
 }

@@ -60,6 +60,21 @@ pub struct Outcome {
     pub markers: [Option<MarkerFit>; 2],
 }
 
+impl Outcome {
+    /// The outcome of a search in an extended file, told beside the file that was given: what it was before, and that it is extended.
+    ///
+    /// # Errors
+    /// [`ContinuumError::UntoldNoise`] where the given file has no shapes.
+    pub fn beside(self, given_case: &Case<'_>) -> Result<Self, ContinuumError> {
+        let given = given_case.given();
+        let stated = given_case.fit(&given).ok_or(ContinuumError::UntoldNoise)?;
+        let before = fitted(given_case, &given).unwrap_or_else(|| stated.clone());
+        let [_, after] = self.markers;
+        let verdict = if self.verdict == Verdict::Complete { Verdict::Extended } else { self.verdict };
+        Ok(Self { before, markers: [MarkerFit::new(given_case, &stated), after], verdict, ..self })
+    }
+}
+
 /// Searches for what is missing.
 ///
 /// Where the disks are off their markers no hole is named, for its μ is found from the bend; that tensions fit with holes of their own leaves the
