@@ -70,7 +70,16 @@ pub struct Set {
 }
 
 /// Slopes of what is left by all numbers.
+#[derive(Clone)]
 pub struct Jacobian(Vec<Vec<f64>>);
+
+/// Of a free number: with all that is counted, and with white noise alone.
+#[derive(Clone, Copy, Debug)]
+pub struct StandardError {
+    pub place: usize,
+    pub whole: f64,
+    pub white: f64,
+}
 
 /// Sums of squares by signal, m² and N², and the numbers that were added.
 #[derive(Clone, Copy, Debug, Default)]
@@ -117,6 +126,12 @@ impl Joint {
     /// The file as it is.
     pub fn start(&self) -> Option<Point> {
         self.point(self.runs.start(&self.unknowns), None)
+    }
+
+    /// The file as it is but for one number, at a distance from what it states.
+    pub fn at(&self, unknown: Unknown, distance: f64) -> Option<Point> {
+        let start = self.runs.start(&self.unknowns);
+        self.point(self.moved(&start, self.place(unknown)?, distance), None)
     }
 
     fn point(&self, state: State, near: Option<&Point>) -> Option<Point> {
@@ -403,9 +418,9 @@ impl Joint {
         (matrix, right)
     }
 
-    /// Standard error of each free number of a set at its minimum, by place: white noise or, where residuals remember, what blocks of the run tell, and
-    /// what the model is not.
-    pub fn errors(&self, point: &Point, set: &Set, jacobian: &Jacobian) -> Option<Vec<(usize, f64)>> {
+    /// Standard error of each free number of a set at its minimum, by place. Noise of a grating moves all disks beyond it, and residuals remember: the
+    /// scatter of the scores of whole samples and of blocks counts where it is greater than that of white noise; and what the model is not.
+    pub fn errors(&self, point: &Point, set: &Set, jacobian: &Jacobian) -> Option<Vec<StandardError>> {
         let sums = self.sums(point);
         let rms = |square: f64, count: f64, unit: f64| if count > 0.0 && square > 0.0 { (square / count).sqrt() } else { unit };
         let given = self.units(point);
@@ -446,12 +461,13 @@ impl Joint {
         }
         let systematic = &inverse * systematic * &inverse;
         let in_blocks = scores.covariance(&inverse) + &inverse * known * &inverse;
-        let error = |at: usize| {
+        let error = |(at, place): (usize, &usize)| {
             let ratio: f64 = in_blocks[(at, at)] / inverse[(at, at)];
             let factor = if ratio.is_finite() { ratio.max(1.0) } else { 1.0 };
-            (factor * inverse[(at, at)] + systematic[(at, at)]).max(0.0).sqrt()
+            let whole = (factor * inverse[(at, at)] + systematic[(at, at)]).max(0.0).sqrt();
+            StandardError { place: *place, whole, white: inverse[(at, at)].max(0.0).sqrt() }
         };
-        Some(set.active.iter().enumerate().map(|(at, place)| (*place, error(at))).collect())
+        Some(set.active.iter().enumerate().map(error).collect())
     }
 
     /// The sample from which on a shift of all gratings lowers the cost most, beside a set.

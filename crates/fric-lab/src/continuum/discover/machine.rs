@@ -23,6 +23,11 @@ const MOST_SAMPLES: usize = 200;
 const MOST_TRIALS: usize = 4;
 const MOST_OTHER_TRIALS: usize = 3;
 const MOST_CANDIDATES: usize = 4;
+/// Left squares per number above which a fit counts as stuck, and where it is begun again, in widest intervals.
+const STUCK_RATIO: f64 = 2.0;
+const RESTARTS: [f64; 6] = [-6.0, -4.0, -2.0, 2.0, 4.0, 6.0];
+/// Candidates that promise this share of the best one's evidence are fitted to the end before they are compared.
+const NEAR_RATIO: f64 = 0.8;
 /// What is practically nothing: this share of the greatest tension, and of the length.
 const PRACTICAL_RATIO: f64 = 0.0005;
 /// What the model is off by, as shares of the same.
@@ -37,6 +42,8 @@ pub struct Machine {
     pub named: Vec<Named>,
     /// The tables of the file with it.
     pub tables: ManipulatorTables,
+    /// μ of each hole beside it, as far as the run tells it from the one that the holes share; empty where the file has no friction that remembers.
+    pub mu: Vec<f64>,
 }
 
 /// A candidate that is named.
@@ -56,9 +63,10 @@ pub struct Named {
 /// A candidate that was fitted.
 struct Trial {
     candidate: Candidate,
-    point: Point,
-    set: Set,
-    /// Schwarz's criterion with it less without it.
+    at: Place,
+    /// By how much it lowers the cost.
+    gain: f64,
+    /// Schwarz's criterion with it less without it, as if all noise was white.
     delta_bic: f64,
 }
 
@@ -66,12 +74,14 @@ struct Trial {
 #[derive(Clone)]
 struct Entry {
     candidate: Candidate,
+    gain: f64,
     delta_bic: f64,
     runner_up: Option<(Candidate, f64)>,
     alike: Vec<Candidate>,
 }
 
 /// A minimum with its slopes.
+#[derive(Clone)]
 struct Place {
     point: Point,
     set: Set,
@@ -90,14 +100,14 @@ pub fn search(file: &ManipulatorFile, run: &Run) -> Option<Machine> {
     let (common, units) = (search.joint.common(), search.joint.units(&start));
     let jacobian = search.joint.jacobian(&start)?;
     let point = search.joint.fitted(&start, &common, &jacobian, &[Unknown::SharedMu], units)?;
-    let before = search.place(point, common)?;
+    let before = search.settled(point, common)?;
     let mut entries: Vec<Entry> = Vec::new();
-    let mut now = search.place(before.point.clone(), before.set.clone())?;
+    let mut now = before.clone();
     while entries.len() < MOST_CANDIDATES {
         let chosen: Vec<Candidate> = entries.iter().map(|entry| entry.candidate).collect();
-        let Some((entry, point, set)) = search.enter(&mut now, &chosen) else { break };
+        let Some((entry, place)) = search.enter(&mut now, &chosen) else { break };
         entries.push(entry);
-        now = search.settled(point, set)?;
+        now = place;
     }
     if entries.len() > 1 {
         (entries, now) = search.reconsidered(entries, now, &before)?;
@@ -130,7 +140,7 @@ impl Search {
     }
 
     /// The candidate that lowers the cost most beside those that are there, if one is worth it.
-    fn enter(&mut self, now: &mut Place, chosen: &[Candidate]) -> Option<(Entry, Point, Set)> {
+    fn enter(&mut self, now: &mut Place, chosen: &[Candidate]) -> Option<(Entry, Place)> {
         self.begin_step(now, chosen);
         let gram = self.joint.gram(&now.point, &now.jacobian, now.units);
         let count = self.count(&now.point);
@@ -151,43 +161,91 @@ impl Search {
         let trial = |(candidate, set, _): (Candidate, Set, f64)| {
             let fresh = candidate.frees(&self.joint.runs.given);
             let point = self.joint.fitted(&now.point, &set, &now.jacobian, &fresh, now.units)?;
+            let point = self.restarted(point, &set, &fresh, now.units);
             let gain = cost - self.joint.cost(&point, &set, now.units);
             let delta_bic = self.joint.numbers(candidate) * count.ln() - gain;
             let is_possible = candidate != Candidate::TipLoad || self.has_possible_tip(&point);
-            (is_possible && delta_bic < -LEAST_EVIDENCE && self.is_practical(&now.point, &point)).then_some(Trial {
-                candidate,
-                point,
-                set,
-                delta_bic,
-            })
+            let is_enough = delta_bic < -LEAST_EVIDENCE && self.is_practical(&now.point, &point);
+            (is_possible && is_enough).then_some((candidate, point, set, delta_bic))
         };
-        let mut trials: Vec<Trial> = picked.into_par_iter().filter_map(trial).collect();
+        let trials: Vec<(Candidate, Point, Set, f64)> = picked.into_par_iter().filter_map(trial).collect();
+        // What is near to the best is fitted with slopes of its own.
+        let best = trials.iter().map(|(.., delta_bic)| *delta_bic).fold(0.0, f64::min);
+        let near = trials.into_par_iter().filter(|(.., delta_bic)| *delta_bic <= NEAR_RATIO * best);
+        let sharpened = |(candidate, point, set, _): (Candidate, Point, Set, f64)| {
+            let at = self.settled(point, set)?;
+            let gain = cost - self.joint.cost(&at.point, &at.set, now.units);
+            let delta_bic = self.joint.numbers(candidate) * count.ln() - gain;
+            Some(Trial { candidate, at, gain, delta_bic })
+        };
+        let mut trials: Vec<Trial> = near.filter_map(sharpened).collect();
         trials.sort_by(|one, other| one.delta_bic.total_cmp(&other.delta_bic));
-        if std::env::var("MACHINE").is_ok() {
-            for trial in &trials {
-                eprintln!("  {chosen:?} + {:?}: {:.0}, n {count}, margin {:.0}", trial.candidate, trial.delta_bic, self.margin(now));
+        while !trials.is_empty() {
+            let taken = self.taken(&trials, self.margin(now));
+            let design = self.design(trials.get(taken)?);
+            let evidence = |trial: &Trial| self.joint.numbers(trial.candidate) * count.ln() - trial.gain / design;
+            let trial = trials.get(taken)?;
+            if evidence(trial) > -LEAST_EVIDENCE {
+                trials.remove(taken);
+                continue;
             }
+            let bound = trials.first()?.delta_bic + self.margin(now);
+            let others = || trials.iter().filter(|other| other.candidate != trial.candidate);
+            let alike = others().filter(|other| other.candidate.is_named() && other.delta_bic < bound);
+            let entry = Entry {
+                candidate: trial.candidate,
+                gain: trial.gain,
+                delta_bic: evidence(trial),
+                runner_up: others().next().map(|other| (other.candidate, evidence(other))),
+                alike: alike.map(|other| other.candidate).collect(),
+            };
+            return Some((entry, trials.swap_remove(taken).at));
         }
-        let best = trials.first()?;
-        let close: Vec<&Trial> =
-            trials.iter().filter(|trial| trial.delta_bic < best.delta_bic + self.margin(now)).collect();
-        // What has no name here comes first where it is as good.
-        let unnamed = close
-            .iter()
-            .find(|trial| !trial.candidate.is_named() && trial.delta_bic < best.delta_bic + LEAST_EVIDENCE);
-        let taken = match unnamed {
-            Some(trial) => *trial,
-            None => *close.iter().max_by_key(|trial| trial.candidate.rank())?,
+        None
+    }
+
+    /// Which of some trials, the best first, enters: of those that are alike what has no name here where it is as good, else what is least likely to be stated
+    /// right.
+    fn taken(&self, trials: &[Trial], margin: f64) -> usize {
+        let best = trials.first().map_or(0.0, |trial| trial.delta_bic);
+        let is_unnamed =
+            |trial: &Trial| !trial.candidate.is_named() && trial.delta_bic < best + LEAST_EVIDENCE;
+        let close = || trials.iter().enumerate().filter(|(_, trial)| trial.delta_bic < best + margin);
+        let by_rank = || close().max_by_key(|(place, trial)| (trial.candidate.rank(), std::cmp::Reverse(*place)));
+        trials.iter().position(is_unnamed).or_else(|| by_rank().map(|(place, _)| place)).unwrap_or(0)
+    }
+
+    /// How many times the variance of a candidate's numbers is that by white noise: what its gain is to be divided by before it is evidence.
+    fn design(&self, trial: &Trial) -> f64 {
+        let joint = &self.joint;
+        let Some(errors) = joint.errors(&trial.at.point, &trial.at.set, &trial.at.jacobian) else { return f64::INFINITY };
+        let unknowns = trial.candidate.frees(&joint.runs.given);
+        let places: Vec<usize> = unknowns.iter().filter_map(|unknown| joint.place(*unknown)).collect();
+        let own = errors.iter().filter(|error| places.contains(&error.place));
+        own.map(|error| (error.whole / error.white).powi(2)).filter(|ratio| ratio.is_finite()).fold(1.0, f64::max)
+    }
+
+    /// A better minimum, where a fit by slopes got stuck: a manipulator under its weight can fall to another side within the range that is searched. Tried from the
+    /// values of the file, with the candidate's number at some distances from the stated one.
+    fn restarted(&self, point: Point, set: &Set, fresh: &[Unknown], units: Units) -> Point {
+        let cost = self.joint.cost(&point, set, units);
+        let [unknown] = fresh else { return point };
+        if cost < STUCK_RATIO * self.count(&point) {
+            return point;
+        }
+        let given = &self.joint.runs.given;
+        let widest = unknown.widest(given, self.joint.runs.greatest_tension_n);
+        let at = |share: f64| self.joint.at(*unknown, share * widest);
+        let starts: Vec<Point> = RESTARTS.into_par_iter().filter_map(at).collect();
+        let by_cost = |one: &&Point, other: &&Point| {
+            self.joint.cost(one, set, units).total_cmp(&self.joint.cost(other, set, units))
         };
-        let alike = close.iter().map(|trial| trial.candidate).filter(|other| *other != taken.candidate);
-        let others = trials.iter().find(|trial| trial.candidate != taken.candidate);
-        let entry = Entry {
-            candidate: taken.candidate,
-            delta_bic: taken.delta_bic,
-            runner_up: others.map(|trial| (trial.candidate, trial.delta_bic)),
-            alike: alike.filter(|other| other.is_named()).collect(),
-        };
-        Some((entry, taken.point.clone(), taken.set.clone()))
+        let Some(best) = starts.iter().min_by(by_cost) else { return point };
+        let settled = self.settled(best.clone(), set.clone()).and_then(|near| self.settled(near.point, near.set));
+        match settled {
+            Some(other) if self.joint.cost(&other.point, set, units) < cost => other.point,
+            _ => point,
+        }
     }
 
     /// From when on a shift of all gratings would explain most, where the file has none.
@@ -221,21 +279,21 @@ impl Search {
                 others.iter().flat_map(|candidate| candidate.frees(&self.joint.runs.given)).collect();
             let step_s = self.joint.runs.given.gratings.as_ref().and_then(|table| table.common_step_s);
             let point = self.joint.fitted(&now.point, &set, &now.jacobian, &fresh, now.units)?;
-            let mut without = self.place(point, set)?;
+            let mut without = self.settled(point, set)?;
             match self.enter(&mut without, &others) {
                 None => {
                     entries.remove(at);
                     now = without;
                     continue;
                 }
-                Some((entry, point, set)) => {
-                    let is_same = entry.candidate == entries[at].candidate;
-                    if !is_same && others.contains(&Candidate::Temperature) {
-                        if let Some(gratings) = &mut self.joint.runs.given.gratings {
-                            gratings.common_step_s = step_s;
-                        }
+                Some((entry, place)) => {
+                    if entry.candidate != entries[at].candidate
+                        && others.contains(&Candidate::Temperature)
+                        && let Some(gratings) = &mut self.joint.runs.given.gratings
+                    {
+                        gratings.common_step_s = step_s;
                     }
-                    now = self.settled(point, set)?;
+                    now = place;
                     entries[at] = entry;
                 }
             }
@@ -247,30 +305,26 @@ impl Search {
     /// What is named in the end.
     fn named(&self, file: &ManipulatorFile, entries: &[Entry], before: &Place, now: &Place) -> Option<Machine> {
         let joint = &self.joint;
-        let nothing = Machine { named: Vec::new(), tables: file.tables().clone() };
-        let sums = joint.sums(&now.point);
+        let nothing = Machine { named: Vec::new(), tables: file.tables().clone(), mu: Vec::new() };
         let count = self.count(&now.point);
         let squares = |point: &Point| {
             let sums = joint.sums(point);
             sums.tension_n2 / now.units.tension_n.powi(2) + sums.marker_m2 / now.units.marker_m.powi(2)
         };
         let left = (squares(&now.point) - count).max(0.0);
-        if std::env::var("MACHINE").is_ok() {
-            eprintln!("  left {left:.0} of {count}, before {:.0}; {:?}; sums {sums:?} units {:?}", squares(&before.point), entries.iter().map(|e| e.candidate).collect::<Vec<_>>(), now.units);
-        }
         if entries.iter().any(|entry| entry.candidate == Candidate::AllLines) {
             return Some(nothing);
         }
         let errors = joint.errors(&now.point, &now.set, &now.jacobian)?;
         let error = |unknown: Unknown| {
             let place = joint.place(unknown)?;
-            errors.iter().find(|(other, _)| *other == place).map(|(_, error)| *error)
+            errors.iter().find(|error| error.place == place).map(|error| error.whole)
         };
         let is_clear = |entry: &&Entry| {
             let unknowns = entry.candidate.frees(&joint.runs.given);
             let mut off = unknowns.iter().map(|unknown| (joint.found(&now.point, *unknown), error(*unknown)));
             entry.candidate.is_named()
-                && -entry.delta_bic > left
+                && entry.gain > left
                 && off.any(|(distance, error)| error.is_some_and(|error| distance.abs() > HALF_INTERVAL * error))
         };
         let clear: Vec<&Entry> = entries.iter().filter(is_clear).collect();
@@ -297,7 +351,9 @@ impl Search {
                 alike: entry.alike.clone(),
             }
         });
-        Some(Machine { named: named.collect(), tables })
+        let remembers = file.tables().tendon.mu == joint.runs.given.tendon.mu && file.tables().tendon.sigma_n_per_m.is_some();
+        let mu = if remembers { now.point.state.tables(&joint.runs.given).tendon.mu.as_slice().to_vec() } else { Vec::new() };
+        Some(Machine { named: named.collect(), tables, mu })
     }
 
     fn count(&self, point: &Point) -> f64 {

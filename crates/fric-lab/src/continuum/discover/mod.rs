@@ -51,6 +51,7 @@ use super::error::ContinuumError;
 use super::gratings::Gratings;
 use super::measuring::corrected;
 use super::run::Run;
+use crate::discover::Verdict;
 
 pub(super) use case::thinned;
 pub use goes_with::GoesWith;
@@ -93,8 +94,9 @@ pub fn discover(file: &ManipulatorFile, run: &Run, log: &str) -> Result<TendonDi
     let as_given = corrected(run, file)?;
     let case = Case::new(file, &as_given, &gratings, &kept)?;
     let machine = machine::search(file, run).filter(|machine| !machine.named.is_empty());
-    let extended = machine.and_then(|machine| Some((ManipulatorFile::check(machine.tables).ok()?, machine.named)));
-    let Some((extended, named)) = extended else {
+    let extended = machine
+        .and_then(|machine| Some((ManipulatorFile::check(machine.tables).ok()?, machine.named, machine.mu)));
+    let Some((extended, named, mu_of_holes)) = extended else {
         return Ok(assemble::told(&case, &naming::name(&case)?, &[], log));
     };
     // Friction is looked for with what was found in the file.
@@ -105,6 +107,9 @@ pub fn discover(file: &ManipulatorFile, run: &Run, log: &str) -> Result<TendonDi
     let mut discovery = assemble::told(&with_found, &outcome, &named, log);
     let bending = ManipulatorEdit::between(file.tables(), extended.tables());
     let ManipulatorEdit { mu, sigma_n_per_m, drift_nm_per_s, .. } = discovery.edit;
+    // Where the search for friction has nothing to say, the holes are as the fit has them in which the rest was found.
+    let is_settled = outcome.findings.is_empty() && outcome.verdict != Verdict::Unexplained;
+    let mu = if is_settled && !mu_of_holes.is_empty() { mu_of_holes } else { mu };
     discovery.edit = ManipulatorEdit { mu, sigma_n_per_m, drift_nm_per_s, ..bending };
     Ok(discovery)
 }

@@ -273,7 +273,7 @@ fn ranked(mut trials: Vec<Trial>) -> Vec<Trial> {
     trials
 }
 
-/// Leaves only those holes named whose 95 % interval does not hold the μ of the others. Beside a named one they keep a μ of their own, for the
+/// Leaves only those holes named whose μ is clear from that of the others ([`is_own_mu`]). Beside a named one they keep a μ of their own, for the
 /// evidence is that of all that entered. Without any all share one again, and nothing is written of holes: that they differ may account for what is
 /// left all the same, only that the run does not tell which.
 fn clear(case: &Case<'_>, mut now: Fit, mut findings: Vec<Finding>, tried: &mut Vec<Tried>) -> (Fit, Vec<Finding>) {
@@ -291,7 +291,7 @@ fn clear(case: &Case<'_>, mut now: Fit, mut findings: Vec<Finding>, tried: &mut 
         effect: finding.effect,
         delta_bic: finding.delta_bic,
         rms_n: rms_n(&finding.fit),
-        reason: "the 95 % interval of its μ holds that of the others".to_owned(),
+        reason: "its μ is not clear from that of the others: beyond its 95 % interval and by a fifth".to_owned(),
     }));
     if !findings.iter().any(is_hole)
         && let Some(shared) = with_shared_mu(case, &now.model)
