@@ -276,6 +276,9 @@ fn main() {
             let began = std::time::Instant::now();
             let discovery = found(&text, &run);
             slowest_s = slowest_s.max(began.elapsed().as_secs_f64());
+            if std::env::var("VERBOSE").is_ok() {
+                println!("{}", discovery.result.summary());
+            }
             let tendon = &discovery.result.cables[0];
             *verdicts.entry(told_in_full(tendon)).or_default() += 1;
             for (name, value, error, truth) in compared(&discovery, &run) {

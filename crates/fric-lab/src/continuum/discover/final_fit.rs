@@ -105,9 +105,9 @@ pub fn shared_mu(model: &Model) -> f64 {
     shared.map_or(mean, |(mu, _)| *mu)
 }
 
-/// Holes that are alike differ by ±10 %: one whose μ is within this share of that of the others has none of its own. At half of it runs of right files
-/// have holes named.
-const OWN_RATIO: f64 = 0.2;
+/// Holes that are alike differ by ±10 %: one whose μ is within this share of that of the others has none of its own. At 0.2 some right files
+/// have holes named, at twice the share a hole half as rough again as the others is passed over.
+const OWN_RATIO: f64 = 0.3;
 
 /// How clear the μ of a hole of its own is from that of the others, from 1 on: in half widths of the 95 % interval of the difference, and in
 /// [`OWN_RATIO`]. Each μ counts as a share of what the file states, where it states any.
