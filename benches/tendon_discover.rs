@@ -223,7 +223,12 @@ fn main() {
                 Case { name: "late", truth: |text| text + "\n[base_sensor]\nlag_s = 0.3\n", ..usual() },
                 Case { name: "stands", stands: true, ..usual() },
                 Case { name: "stands_soft", stands: true, truth: |text| text.replace("= 200e9", "= 180e9"), ..usual() },
-                Case { name: "stands_stiff20", stands: true, truth: |text| text.replace("= 200e9", "= 240e9"), ..usual() },
+                Case {
+                    name: "stands_stiff20",
+                    stands: true,
+                    truth: |text| text.replace("= 200e9", "= 240e9"),
+                    ..usual()
+                },
                 Case {
                     name: "stands_far",
                     stands: true,

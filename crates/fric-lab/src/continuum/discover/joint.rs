@@ -150,9 +150,8 @@ impl Joint {
                     let row = run.rows.get(row)?;
                     if is_marker { row.marker_m.get(place) } else { row.tension_n.get(place) }.copied()
                 };
-                let width = run.rows.first().map_or(0, |row| {
-                    if is_marker { row.marker_m.len() } else { row.tension_n.len() }
-                });
+                let width =
+                    run.rows.first().map_or(0, |row| if is_marker { row.marker_m.len() } else { row.tension_n.len() });
                 for place in 0..width {
                     series.extend((0..run.rows.len()).filter_map(|row| of(row, place)).filter(|one| one.is_finite()));
                     series.push(f64::NAN);
@@ -315,9 +314,11 @@ impl Joint {
     /// χ² and what is known of the free numbers.
     pub fn cost(&self, point: &Point, set: &Set, units: Units) -> f64 {
         let sums = self.sums(point);
-        let known = set.active.iter().zip(&set.precision).map(|(place, precision)| {
-            precision * self.distance(&point.state, *place).powi(2)
-        });
+        let known = set
+            .active
+            .iter()
+            .zip(&set.precision)
+            .map(|(place, precision)| precision * self.distance(&point.state, *place).powi(2));
         sums.tension_n2 / units.tension_n.powi(2) + sums.marker_m2 / units.marker_m.powi(2) + known.sum::<f64>()
     }
 
@@ -330,7 +331,11 @@ impl Joint {
         let count = columns.len();
         let rows: Vec<Vec<f64>> = (0..count)
             .into_par_iter()
-            .map(|row| (0..count).map(|column| if column <= row { dot(&columns[row], &columns[column]) } else { 0.0 }).collect())
+            .map(|row| {
+                (0..count)
+                    .map(|column| if column <= row { dot(&columns[row], &columns[column]) } else { 0.0 })
+                    .collect()
+            })
             .collect();
         let matrix = DMatrix::from_fn(count, count, |row, column| rows[row.max(column)][row.min(column)]);
         let right = DVector::from_iterator(count, columns.iter().map(|column| dot(column, &left)));
@@ -338,7 +343,12 @@ impl Joint {
     }
 
     /// By how much a set lowers the cost as the slopes have it, and its step.
-    pub fn linear(&self, point: &Point, set: &Set, (matrix, right): (&DMatrix<f64>, &DVector<f64>)) -> Option<(f64, DVector<f64>)> {
+    pub fn linear(
+        &self,
+        point: &Point,
+        set: &Set,
+        (matrix, right): (&DMatrix<f64>, &DVector<f64>),
+    ) -> Option<(f64, DVector<f64>)> {
         let count = set.active.len();
         let picked = DMatrix::from_fn(count, count, |row, column| {
             let known = if row == column { set.precision[row] } else { 0.0 };
@@ -352,7 +362,14 @@ impl Joint {
     }
 
     /// The minimum of a set; `jacobian` is that of a point near by, of which only the slopes by the numbers of `fresh` are taken anew.
-    pub fn fitted(&self, start: &Point, set: &Set, jacobian: &Jacobian, fresh: &[Unknown], units: Units) -> Option<Point> {
+    pub fn fitted(
+        &self,
+        start: &Point,
+        set: &Set,
+        jacobian: &Jacobian,
+        fresh: &[Unknown],
+        units: Units,
+    ) -> Option<Point> {
         let mut now = self.neutral(start, set)?;
         let mut own = Jacobian(jacobian.0.clone());
         let mut cost = self.cost(&now, set, units);
@@ -369,9 +386,11 @@ impl Joint {
             }
             let finite = now.left.iter().filter(|left| left.is_finite()).count();
             let trial = |share: f64| {
-                let state = set.active.iter().zip(step.iter()).fold(now.state.clone(), |state, (place, change)| {
-                    self.moved(&state, *place, share * change)
-                });
+                let state = set
+                    .active
+                    .iter()
+                    .zip(step.iter())
+                    .fold(now.state.clone(), |state, (place, change)| self.moved(&state, *place, share * change));
                 let trial = self.point(state, Some(&now))?;
                 let is_whole = trial.left.iter().filter(|left| left.is_finite()).count() >= finite;
                 let trial_cost = self.cost(&trial, set, units);
@@ -422,7 +441,9 @@ impl Joint {
     /// scatter of the scores of whole samples and of blocks counts where it is greater than that of white noise; and what the model is not.
     pub fn errors(&self, point: &Point, set: &Set, jacobian: &Jacobian) -> Option<Vec<StandardError>> {
         let sums = self.sums(point);
-        let rms = |square: f64, count: f64, unit: f64| if count > 0.0 && square > 0.0 { (square / count).sqrt() } else { unit };
+        let rms = |square: f64, count: f64, unit: f64| {
+            if count > 0.0 && square > 0.0 { (square / count).sqrt() } else { unit }
+        };
         let given = self.units(point);
         let units = Units {
             tension_n: rms(sums.tension_n2, sums.tension_count, given.tension_n),
@@ -480,9 +501,8 @@ impl Joint {
         let left = weighted(&point.left, &weights);
         let (matrix, right) = self.gram_of(point, jacobian, set, units);
         let count = others.len();
-        let precision = |row: usize| {
-            set.active.iter().position(|place| *place == others[row]).map_or(0.0, |at| set.precision[at])
-        };
+        let precision =
+            |row: usize| set.active.iter().position(|place| *place == others[row]).map_or(0.0, |at| set.precision[at]);
         let picked = DMatrix::from_fn(count, count, |row, other| {
             matrix[(others[row], others[other])] + if row == other { precision(row) } else { 0.0 }
         });

@@ -46,6 +46,13 @@ pub struct Machine {
     pub mu: Vec<f64>,
 }
 
+impl Machine {
+    /// That nothing was found.
+    pub fn none(file: &ManipulatorFile) -> Self {
+        Self { named: Vec::new(), tables: file.tables().clone(), mu: Vec::new() }
+    }
+}
+
 /// A candidate that is named.
 #[derive(Clone, Debug)]
 pub struct Named {
@@ -208,8 +215,7 @@ impl Search {
     /// right.
     fn taken(&self, trials: &[Trial], margin: f64) -> usize {
         let best = trials.first().map_or(0.0, |trial| trial.delta_bic);
-        let is_unnamed =
-            |trial: &Trial| !trial.candidate.is_named() && trial.delta_bic < best + LEAST_EVIDENCE;
+        let is_unnamed = |trial: &Trial| !trial.candidate.is_named() && trial.delta_bic < best + LEAST_EVIDENCE;
         let close = || trials.iter().enumerate().filter(|(_, trial)| trial.delta_bic < best + margin);
         let by_rank = || close().max_by_key(|(place, trial)| (trial.candidate.rank(), std::cmp::Reverse(*place)));
         trials.iter().position(is_unnamed).or_else(|| by_rank().map(|(place, _)| place)).unwrap_or(0)
@@ -218,7 +224,9 @@ impl Search {
     /// How many times the variance of a candidate's numbers is that by white noise: what its gain is to be divided by before it is evidence.
     fn design(&self, trial: &Trial) -> f64 {
         let joint = &self.joint;
-        let Some(errors) = joint.errors(&trial.at.point, &trial.at.set, &trial.at.jacobian) else { return f64::INFINITY };
+        let Some(errors) = joint.errors(&trial.at.point, &trial.at.set, &trial.at.jacobian) else {
+            return f64::INFINITY;
+        };
         let unknowns = trial.candidate.frees(&joint.runs.given);
         let places: Vec<usize> = unknowns.iter().filter_map(|unknown| joint.place(*unknown)).collect();
         let own = errors.iter().filter(|error| places.contains(&error.place));
@@ -272,8 +280,12 @@ impl Search {
     fn reconsidered(&mut self, mut entries: Vec<Entry>, mut now: Place, before: &Place) -> Option<(Vec<Entry>, Place)> {
         let mut at = 0;
         while at < entries.len() {
-            let others: Vec<Candidate> =
-                entries.iter().enumerate().filter(|(place, _)| *place != at).map(|(_, entry)| entry.candidate).collect();
+            let others: Vec<Candidate> = entries
+                .iter()
+                .enumerate()
+                .filter(|(place, _)| *place != at)
+                .map(|(_, entry)| entry.candidate)
+                .collect();
             let set = self.set_of(&before.set, &others);
             let fresh: Vec<Unknown> =
                 others.iter().flat_map(|candidate| candidate.frees(&self.joint.runs.given)).collect();
@@ -305,15 +317,17 @@ impl Search {
     /// What is named in the end.
     fn named(&self, file: &ManipulatorFile, entries: &[Entry], before: &Place, now: &Place) -> Option<Machine> {
         let joint = &self.joint;
-        let nothing = Machine { named: Vec::new(), tables: file.tables().clone(), mu: Vec::new() };
         let count = self.count(&now.point);
         let squares = |point: &Point| {
             let sums = joint.sums(point);
             sums.tension_n2 / now.units.tension_n.powi(2) + sums.marker_m2 / now.units.marker_m.powi(2)
         };
         let left = (squares(&now.point) - count).max(0.0);
-        if entries.iter().any(|entry| entry.candidate == Candidate::AllLines) {
-            return Some(nothing);
+        // Lines that are wrong make shapes wrong, and a rest that is more than the noise may be anything.
+        let has_wrong_lines =
+            entries.iter().any(|entry| matches!(entry.candidate, Candidate::AllLines | Candidate::Line(_)));
+        if has_wrong_lines || left > count {
+            return Some(Machine::none(file));
         }
         let errors = joint.errors(&now.point, &now.set, &now.jacobian)?;
         let error = |unknown: Unknown| {
@@ -351,8 +365,13 @@ impl Search {
                 alike: entry.alike.clone(),
             }
         });
-        let remembers = file.tables().tendon.mu == joint.runs.given.tendon.mu && file.tables().tendon.sigma_n_per_m.is_some();
-        let mu = if remembers { now.point.state.tables(&joint.runs.given).tendon.mu.as_slice().to_vec() } else { Vec::new() };
+        let remembers =
+            file.tables().tendon.mu == joint.runs.given.tendon.mu && file.tables().tendon.sigma_n_per_m.is_some();
+        let mu = if remembers {
+            now.point.state.tables(&joint.runs.given).tendon.mu.as_slice().to_vec()
+        } else {
+            Vec::new()
+        };
         Some(Machine { named: named.collect(), tables, mu })
     }
 

@@ -1,4 +1,7 @@
-//! Discovery on a manipulator: what of the tendon's friction, or of its gratings, a manipulator file lacks.
+//! Discovery on a manipulator: what a manipulator file lacks, or has wrong.
+//!
+//! First bending, loads and measurement: `machine` searches among the `candidate`s on one cost of tensions and markers (`joint`), with friction and the lines of
+//! the gratings free within what is known of them. With what it names in the file follows the search for friction, on the tensions alone.
 //!
 //! The workflow is that of [`crate::discover`]: the given model, fitted to half of the run in blocks, leaves a gap above the noise on
 //! the other half; candidates enter one after the other where they help on the samples held out; what is left is noise, or
@@ -16,7 +19,7 @@
 //!
 //! What the gratings' calibration leaves open of their lines is estimated along with each model (`lines`), and what then remains is noise where samples that
 //! follow each other have nothing in common (`noise`). Where the run has markers
-//! they take part: shapes under the tensions that the gratings show (`markers`) have to meet them within the noise of both. What is left goes
+//! they take part in the verdict too: shapes under the tensions that the gratings show (`markers`) have to meet them within the noise of both. What is left goes
 //! with one of a few physical things, or with none (`goes_with`). No effect enters the file that makes shapes or tensions worse
 //! than as given (`worse`), and no value that the run does not contradict (`final_fit`). Intervals hold the calibration's error and that holes which
 //! share a μ do differ (`spread`).
@@ -47,6 +50,7 @@ use fric_core::continuum::edit::ManipulatorEdit;
 use fric_core::continuum::file::ManipulatorFile;
 
 use self::case::Case;
+use self::machine::Machine;
 use super::error::ContinuumError;
 use super::gratings::Gratings;
 use super::measuring::corrected;
@@ -93,23 +97,28 @@ pub fn discover(file: &ManipulatorFile, run: &Run, log: &str) -> Result<TendonDi
     let kept = thinned(run.samples());
     let as_given = corrected(run, file)?;
     let case = Case::new(file, &as_given, &gratings, &kept)?;
-    let machine = machine::search(file, run).filter(|machine| !machine.named.is_empty());
-    let extended = machine
-        .and_then(|machine| Some((ManipulatorFile::check(machine.tables).ok()?, machine.named, machine.mu)));
-    let Some((extended, named, mu_of_holes)) = extended else {
-        return Ok(assemble::told(&case, &naming::name(&case)?, &[], log));
+    let Machine { named, tables, mu: mu_of_holes } = machine::search(file, run).unwrap_or_else(|| Machine::none(file));
+    let extended = if named.is_empty() { None } else { ManipulatorFile::check(tables).ok() };
+    let (outcome, mut discovery) = if let Some(extended) = extended {
+        // Friction is looked for with what was found in the file.
+        let run = corrected(run, &extended)?;
+        let gratings = Gratings::from_file(&extended)?.ok_or(ContinuumError::NoGratings)?;
+        let with_found = Case::new(&extended, &run, &gratings, &kept)?;
+        let outcome = naming::name(&with_found)?.beside(&case)?;
+        let mut discovery = assemble::told(&with_found, &outcome, &named, log);
+        let ManipulatorEdit { mu, sigma_n_per_m, drift_nm_per_s, .. } = discovery.edit;
+        let bending = ManipulatorEdit::between(file.tables(), extended.tables());
+        discovery.edit = ManipulatorEdit { mu, sigma_n_per_m, drift_nm_per_s, ..bending };
+        (outcome, discovery)
+    } else {
+        let outcome = naming::name(&case)?;
+        let discovery = assemble::told(&case, &outcome, &[], log);
+        (outcome, discovery)
     };
-    // Friction is looked for with what was found in the file.
-    let run = corrected(run, &extended)?;
-    let gratings = Gratings::from_file(&extended)?.ok_or(ContinuumError::NoGratings)?;
-    let with_found = Case::new(&extended, &run, &gratings, &kept)?;
-    let outcome = naming::name(&with_found)?.beside(&case)?;
-    let mut discovery = assemble::told(&with_found, &outcome, &named, log);
-    let bending = ManipulatorEdit::between(file.tables(), extended.tables());
-    let ManipulatorEdit { mu, sigma_n_per_m, drift_nm_per_s, .. } = discovery.edit;
-    // Where the search for friction has nothing to say, the holes are as the fit has them in which the rest was found.
+    // Where the search for friction names nothing and the file changes all the same, the holes are as the joint fit has them.
     let is_settled = outcome.findings.is_empty() && outcome.verdict != Verdict::Unexplained;
-    let mu = if is_settled && !mu_of_holes.is_empty() { mu_of_holes } else { mu };
-    discovery.edit = ManipulatorEdit { mu, sigma_n_per_m, drift_nm_per_s, ..bending };
+    if is_settled && !mu_of_holes.is_empty() && discovery.edit != ManipulatorEdit::default() {
+        discovery.edit.mu = mu_of_holes;
+    }
     Ok(discovery)
 }

@@ -76,8 +76,10 @@ fn a_bending_that_is_not_the_models_is_named() {
 /// Its friction does not explain what a segment does that is half as stiff as the others.
 #[test]
 fn a_soft_segment_is_no_hole() {
-    let truth = PROTOTYPE
-        .replace("youngs_modulus_pa = 200e9", "youngs_modulus_pa = 200e9\nsegment_stiffness_ratio = [1, 1, 1, 0.5, 1, 1, 1, 1]");
+    let truth = PROTOTYPE.replace(
+        "youngs_modulus_pa = 200e9",
+        "youngs_modulus_pa = 200e9\nsegment_stiffness_ratio = [1, 1, 1, 0.5, 1, 1, 1, 1]",
+    );
     let (text, samples) = measured_of(&truth, &options(Experiment::OneWay, 29));
     let discovery = found(&text, &samples);
     assert_eq!(told(&discovery), ("extended", vec!["backbone_stiffness"]));
