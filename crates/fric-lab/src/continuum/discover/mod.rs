@@ -49,6 +49,7 @@ use fric_core::continuum::Tendon;
 use fric_core::continuum::edit::ManipulatorEdit;
 use fric_core::continuum::file::ManipulatorFile;
 
+use self::candidate::Candidate;
 use self::case::Case;
 use self::machine::Machine;
 use super::error::ContinuumError;
@@ -99,12 +100,20 @@ pub fn discover(file: &ManipulatorFile, run: &Run, log: &str) -> Result<TendonDi
     let case = Case::new(file, &as_given, &gratings, &kept)?;
     let Machine { named, tables, mu: mu_of_holes } = machine::search(file, run).unwrap_or_else(|| Machine::none(file));
     let extended = if named.is_empty() { None } else { ManipulatorFile::check(tables).ok() };
-    let (outcome, mut discovery) = if let Some(extended) = extended {
-        // Friction is looked for with what was found in the file.
-        let run = corrected(run, &extended)?;
-        let gratings = Gratings::from_file(&extended)?.ok_or(ContinuumError::NoGratings)?;
-        let with_found = Case::new(&extended, &run, &gratings, &kept)?;
-        let outcome = naming::name(&with_found)?.beside(&case)?;
+    // Friction is looked for with what was found in the file.
+    let with_found = match &extended {
+        Some(extended) => {
+            let run = corrected(run, extended)?;
+            let gratings = Gratings::from_file(extended)?.ok_or(ContinuumError::NoGratings)?;
+            let with_found = Case::new(extended, &run, &gratings, &kept)?;
+            let outcome = naming::name(&with_found)?.beside(&case)?;
+            // A lag with which the tensions still do not meet is something else, as the ends of a pull in one direction are.
+            let is_lag = named.iter().any(|one| one.candidate == Candidate::TensionLag);
+            (outcome.verdict != Verdict::Unexplained || !is_lag).then_some((extended, with_found, outcome))
+        }
+        None => None,
+    };
+    let (outcome, mut discovery) = if let Some((extended, with_found, outcome)) = with_found {
         let mut discovery = assemble::told(&with_found, &outcome, &named, log);
         let ManipulatorEdit { mu, sigma_n_per_m, drift_nm_per_s, .. } = discovery.edit;
         let bending = ManipulatorEdit::between(file.tables(), extended.tables());
