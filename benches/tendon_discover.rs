@@ -99,8 +99,9 @@ fn told(tendon: &TendonResult) -> String {
 fn told_in_full(tendon: &TendonResult) -> String {
     let name = |effect: &fric_lab::continuum::discover::TendonEffect| {
         let segment = effect.parameters.get("segment").map_or_else(String::new, |segment| format!(":{segment}"));
-        let alike = effect.alike.iter().map(|other| format!("~{other}")).collect::<String>();
-        format!("{}{segment}{alike}", effect.kind)
+        let mut names = vec![format!("{}{segment}", effect.kind)];
+        names.extend(effect.alike.iter().map(|other| (*other).to_owned()));
+        names.join("~")
     };
     let mut names: Vec<String> = tendon.effects.iter().map(name).collect();
     names.dedup();

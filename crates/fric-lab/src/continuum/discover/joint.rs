@@ -223,10 +223,9 @@ impl Joint {
         let count = match candidate {
             Candidate::Hole(_) => 1,
             Candidate::AllHoles => self.runs.given.disk_count,
-            Candidate::Line(_) => 2,
-            Candidate::AllLines => 2 * self.line_count,
             // The time of the step is a number too.
-            Candidate::Temperature => 2,
+            Candidate::Line(_) | Candidate::Temperature => 2,
+            Candidate::AllLines => 2 * self.line_count,
             _ => candidate.frees(&self.runs.given).len(),
         };
         #[expect(clippy::cast_precision_loss, reason = "a small count")]

@@ -188,12 +188,12 @@ impl Search {
         let mut trials: Vec<Trial> = near.filter_map(sharpened).collect();
         trials.sort_by(|one, other| one.delta_bic.total_cmp(&other.delta_bic));
         while !trials.is_empty() {
-            let taken = self.taken(&trials, self.margin(now));
-            let design = self.design(trials.get(taken)?);
+            let place = taken(&trials, self.margin(now));
+            let design = self.design(trials.get(place)?);
             let evidence = |trial: &Trial| self.joint.numbers(trial.candidate) * count.ln() - trial.gain / design;
-            let trial = trials.get(taken)?;
+            let trial = trials.get(place)?;
             if evidence(trial) > -LEAST_EVIDENCE {
-                trials.remove(taken);
+                trials.remove(place);
                 continue;
             }
             let bound = trials.first()?.delta_bic + self.margin(now);
@@ -206,19 +206,9 @@ impl Search {
                 runner_up: others().next().map(|other| (other.candidate, evidence(other))),
                 alike: alike.map(|other| other.candidate).collect(),
             };
-            return Some((entry, trials.swap_remove(taken).at));
+            return Some((entry, trials.swap_remove(place).at));
         }
         None
-    }
-
-    /// Which of some trials, the best first, enters: of those that are alike what has no name here where it is as good, else what is least likely to be stated
-    /// right.
-    fn taken(&self, trials: &[Trial], margin: f64) -> usize {
-        let best = trials.first().map_or(0.0, |trial| trial.delta_bic);
-        let is_unnamed = |trial: &Trial| !trial.candidate.is_named() && trial.delta_bic < best + LEAST_EVIDENCE;
-        let close = || trials.iter().enumerate().filter(|(_, trial)| trial.delta_bic < best + margin);
-        let by_rank = || close().max_by_key(|(place, trial)| (trial.candidate.rank(), std::cmp::Reverse(*place)));
-        trials.iter().position(is_unnamed).or_else(|| by_rank().map(|(place, _)| place)).unwrap_or(0)
     }
 
     /// How many times the variance of a candidate's numbers is that by white noise: what its gain is to be divided by before it is evidence.
@@ -400,6 +390,16 @@ impl Search {
         let marker = MODEL_MARKER_RATIO * self.joint.length_m / now.units.marker_m;
         LEAST_EVIDENCE + sums.tension_count * tension * tension + sums.marker_count * marker * marker
     }
+}
+
+/// Which of some trials, the best first, enters: of those that are alike what has no name here where it is as good, else what is least likely to be stated
+/// right.
+fn taken(trials: &[Trial], margin: f64) -> usize {
+    let best = trials.first().map_or(0.0, |trial| trial.delta_bic);
+    let is_unnamed = |trial: &Trial| !trial.candidate.is_named() && trial.delta_bic < best + LEAST_EVIDENCE;
+    let close = || trials.iter().enumerate().filter(|(_, trial)| trial.delta_bic < best + margin);
+    let by_rank = || close().max_by_key(|(place, trial)| (trial.candidate.rank(), std::cmp::Reverse(*place)));
+    trials.iter().position(is_unnamed).or_else(|| by_rank().map(|(place, _)| place)).unwrap_or(0)
 }
 
 /// Parameters of a candidate and their standard errors.
