@@ -17,8 +17,9 @@ use fric_core::continuum::edit::{GratingLine, ManipulatorEdit, rewrite};
 use fric_core::continuum::file::ManipulatorFile;
 use fric_lab::continuum::discover::{TendonDiscovery, TendonResult, discover};
 use fric_lab::continuum::fbg::Calibration;
+use fric_lab::continuum::shape_errors::{ShapeErrors, Way, shapes};
 use fric_lab::continuum::simulate::{Experiment, SimulatedRun, TendonSimulationOptions, simulate};
-use fric_lab::continuum::{Run, RunSample};
+use fric_lab::continuum::{Run, RunSample, as_measured, corrected};
 
 const PROTOTYPE: &str = include_str!("../examples/tendon-prototype.toml");
 /// Half a 95 % interval in standard errors.
@@ -30,9 +31,19 @@ struct Case {
     experiment: Experiment,
     noise_ratio: f64,
     mu_spread_ratio: f64,
+    /// Upright in gravity, with light disks; else it lies flat.
+    stands: bool,
     truth: fn(String) -> String,
     given: fn(String) -> String,
     spoil: fn(&mut [RunSample]),
+}
+
+fn prototype(stands: bool) -> String {
+    if stands {
+        PROTOTYPE.replace("[0.0, 0.0]", "[-9.80665, 0.0]").replace("disk_mass_kg = 0.003 ", "disk_mass_kg = 0.0003 ")
+    } else {
+        PROTOTYPE.to_owned()
+    }
 }
 
 fn edited(text: &str, mu: &[f64], lines: Vec<GratingLine>) -> String {
@@ -54,7 +65,9 @@ fn simulated(case: &Case, seed: u64) -> (SimulatedRun, String) {
         marker_noise_m: case.noise_ratio * usual.marker_noise_m,
         ..usual
     };
-    let mut run = simulate(parsed(&(case.truth)(PROTOTYPE.to_owned())).params(), &options).unwrap();
+    let truth = parsed(&(case.truth)(prototype(case.stands)));
+    let mut run = simulate(truth.params(), &options).unwrap();
+    run.samples = as_measured(&run.samples, &truth);
     (case.spoil)(&mut run.samples);
     let line = |line: &Calibration| {
         let error = line.line_error();
@@ -68,7 +81,7 @@ fn simulated(case: &Case, seed: u64) -> (SimulatedRun, String) {
         }
     };
     let lines = Calibration::fit_all(&run.calibration).unwrap().iter().map(line).collect();
-    let text = (case.given)(edited(PROTOTYPE, &[], lines));
+    let text = (case.given)(edited(&prototype(case.stands), &[], lines));
     (run, text)
 }
 
@@ -80,6 +93,55 @@ fn told(tendon: &TendonResult) -> String {
     let mut kinds: Vec<&str> = tendon.effects.iter().map(|effect| effect.kind).collect();
     kinds.dedup();
     format!("{} {}", tendon.verdict, kinds.join(" "))
+}
+
+/// The same with segments and with what is not told apart.
+fn told_in_full(tendon: &TendonResult) -> String {
+    let name = |effect: &fric_lab::continuum::discover::TendonEffect| {
+        let segment = effect.parameters.get("segment").map_or_else(String::new, |segment| format!(":{segment}"));
+        let mut names = vec![format!("{}{segment}", effect.kind)];
+        names.extend(effect.alike.iter().map(|other| (*other).to_owned()));
+        names.join("~")
+    };
+    let mut names: Vec<String> = tendon.effects.iter().map(name).collect();
+    names.dedup();
+    format!("{} {}", tendon.verdict, names.join(" "))
+}
+
+/// What a file states of bending, loads and measurement, by key of the results.
+fn stated(text: &str, key: &str, segment: Option<f64>) -> Option<f64> {
+    let file = parsed(text);
+    let tables = file.tables();
+    let (markers, sensor) = (tables.markers.unwrap_or_default(), tables.base_sensor.unwrap_or_default());
+    let [x, y] = tables.gravity_m_per_s2;
+    Some(match key {
+        "bending_stiffness_n_m2" => file.params().bending_stiffness_n_m2(),
+        "stiffness_ratio" => {
+            let ratios = tables.backbone.segment_stiffness_ratio.as_ref()?;
+            *ratios.as_slice().get(hole(segment)?)?
+        }
+        "hole_radius_m" => tables.hole_radius_m,
+        "precurvature_per_m" => file.params().rest_bend_rad()[0] / tables.pitch_m,
+        "marker_offset_x_m" => markers.offset_m[0],
+        "marker_offset_y_m" => markers.offset_m[1],
+        "marker_angle_rad" => markers.angle_rad,
+        "tip_mass_kg" => tables.tip.mass_kg,
+        "gravity_angle_rad" => y.atan2(x),
+        "base_gain" => sensor.gain,
+        "base_offset_n" => sensor.offset_n,
+        "base_lag_s" => sensor.lag_s,
+        _ => return None,
+    })
+}
+
+/// Mean distance of the disks from their markers by the history with a file, mm.
+fn shape_mm(text: &str, run: &SimulatedRun) -> f64 {
+    let file = parsed(text);
+    let run = corrected(&Run::new(run.samples.clone(), 8).unwrap(), &file).unwrap();
+    let mut errors = ShapeErrors::default();
+    let computed = shapes(file.params(), run.samples(), Way::History, &[]).unwrap();
+    computed.iter().zip(run.samples()).for_each(|(shape, sample)| errors.add(shape, &sample.marker_m));
+    errors.mean_mm().unwrap_or(f64::NAN)
 }
 
 /// What the model's μ is where the simulated hole presses with the whole vector sum of both tensions, friction included.
@@ -126,6 +188,7 @@ fn main() {
         experiment: Experiment::OneWay,
         noise_ratio: 1.0,
         mu_spread_ratio: 0.1,
+        stands: false,
         truth: |text| text,
         given: |text| text,
         spoil: |_| (),
@@ -140,6 +203,46 @@ fn main() {
                 Case { name: "even", mu_spread_ratio: 0.0, ..usual() },
                 Case { name: "soft", truth: |text| text.replace("= 200e9", "= 180e9"), ..usual() },
                 Case { name: "stiff", truth: |text| text.replace("= 200e9", "= 220e9"), ..usual() },
+                Case { name: "soft20", truth: |text| text.replace("= 200e9", "= 160e9"), ..usual() },
+                Case { name: "stiff20", truth: |text| text.replace("= 200e9", "= 240e9"), ..usual() },
+                Case {
+                    name: "cracked",
+                    truth: |text| {
+                        text.replace("= 200e9", "= 200e9\nsegment_stiffness_ratio = [1, 1, 1, 0.5, 1, 1, 1, 1]")
+                    },
+                    ..usual()
+                },
+                Case {
+                    name: "curved",
+                    truth: |text| text.replace("= 200e9", "= 200e9\nprecurvature_per_m = 0.3"),
+                    ..usual()
+                },
+                Case { name: "turned", truth: |text| text + "\n[markers]\nangle_rad = 0.0524\n", ..usual() },
+                Case { name: "moved", truth: |text| text + "\n[markers]\noffset_m = [0.003, -0.004]\n", ..usual() },
+                Case { name: "gain", truth: |text| text + "\n[base_sensor]\ngain = 1.05\n", ..usual() },
+                Case { name: "tare", truth: |text| text + "\n[base_sensor]\noffset_n = 0.05\n", ..usual() },
+                Case { name: "late", truth: |text| text + "\n[base_sensor]\nlag_s = 0.3\n", ..usual() },
+                Case { name: "stands", stands: true, ..usual() },
+                Case { name: "stands_soft", stands: true, truth: |text| text.replace("= 200e9", "= 180e9"), ..usual() },
+                Case {
+                    name: "stands_stiff20",
+                    stands: true,
+                    truth: |text| text.replace("= 200e9", "= 240e9"),
+                    ..usual()
+                },
+                Case {
+                    name: "stands_far",
+                    stands: true,
+                    truth: |text| text.replace("hole_radius_m = 0.015 ", "hole_radius_m = 0.01575 "),
+                    ..usual()
+                },
+                Case { name: "loaded", stands: true, truth: |text| text + "\n[tip]\nmass_kg = 0.001\n", ..usual() },
+                Case {
+                    name: "tilted",
+                    stands: true,
+                    truth: |text| text.replace("[-9.80665, 0.0]", "[-9.4725, -2.5381]"),
+                    ..usual()
+                },
                 Case {
                     name: "near",
                     truth: |text| text.replace("hole_radius_m = 0.015 ", "hole_radius_m = 0.01425 "),
@@ -171,20 +274,56 @@ fn main() {
     }
     for case in cases.iter().filter(|case| words.is_empty() || words.iter().any(|word| word == case.name)) {
         let (mut verdicts, mut numbers) = (BTreeMap::<String, u32>::new(), BTreeMap::<&str, Vec<[f64; 2]>>::new());
-        let mut same = 0;
+        let (mut same, mut shapes_mm, mut values) = (0, Vec::new(), BTreeMap::<String, Vec<[f64; 3]>>::new());
+        let mut slowest_s = 0.0_f64;
+        let stated_truth = (case.truth)(prototype(case.stands));
         for seed in first_seed..first_seed + count {
             let (run, text) = simulated(case, seed);
+            let began = std::time::Instant::now();
             let discovery = found(&text, &run);
+            slowest_s = slowest_s.max(began.elapsed().as_secs_f64());
+            if std::env::var("VERBOSE").is_ok() {
+                println!("{}", discovery.result.summary());
+            }
             let tendon = &discovery.result.cables[0];
-            *verdicts.entry(told(tendon)).or_default() += 1;
+            *verdicts.entry(told_in_full(tendon)).or_default() += 1;
             for (name, value, error, truth) in compared(&discovery, &run) {
                 numbers.entry(name).or_default().push([(value - truth) / error, error / truth.abs()]);
             }
-            let again = found(&rewrite(&text, "arm", &discovery.edit).unwrap(), &run);
+            let written = rewrite(&text, "arm", &discovery.edit).unwrap();
+            shapes_mm.push(shape_mm(&written, &run));
+            for effect in &tendon.effects {
+                let segment = effect.parameters.get("segment");
+                for (key, value) in &effect.parameters.0 {
+                    if let Some(truth) = stated(&stated_truth, key, segment) {
+                        let error = effect.standard_errors.get(key).unwrap_or(f64::NAN);
+                        values.entry(key.clone()).or_default().push([*value, error, truth]);
+                    } else if ["temperature_k", "from_s"].contains(&key.as_str()) {
+                        values.entry(key.clone()).or_default().push([*value, f64::NAN, f64::NAN]);
+                    }
+                }
+            }
+            let again = found(&written, &run);
             let expected = if tendon.verdict == "extended" { "complete" } else { tendon.verdict };
             same += u32::from(told(&again.result.cables[0]) == format!("{expected} "));
         }
         println!("{} {}: {verdicts:?}; given again as told: {same}", case.experiment.name(), case.name);
+        println!(
+            "    shapes {:.3} mm in the mean, {:.3} at most; {slowest_s:.1} s at most",
+            shapes_mm.iter().sum::<f64>() / shapes_mm.len() as f64,
+            shapes_mm.iter().copied().fold(0.0, f64::max)
+        );
+        for (key, all) in values {
+            let mean = all.iter().map(|one| one[0]).sum::<f64>() / all.len() as f64;
+            let most = all.iter().map(|[value, _, truth]| (value - truth).abs()).fold(0.0, f64::max);
+            let within = all.iter().filter(|[value, error, truth]| (value - truth).abs() <= HALF_INTERVAL * error);
+            println!(
+                "    {key}: {mean:.5} in the mean of {}, truth {:.5}, off by {most:.5} at most, {} within 95 % interval",
+                all.len(),
+                all[0][2],
+                within.count()
+            );
+        }
         for (name, all) in numbers {
             let of = |at: f64| 100.0 * all.iter().filter(|[off, _]| off.abs() <= at).count() as f64 / all.len() as f64;
             let mean = |place: usize| all.iter().map(|pair| pair[place]).sum::<f64>() / all.len() as f64;

@@ -199,7 +199,8 @@ class TendonDiscovery(Result):
     verdict: Literal["complete", "extended", "unexplained"]
     """"complete", "extended" by what was found, with which what is left is noise, or "unexplained"."""
     effects: list[dict[str, Any]]
-    """What was found, as dicts: kind, parameters, standard_errors, gap_closed, evidence, runner_up."""
+    """What was found, as dicts: kind, parameters, standard_errors, gap_closed, evidence, runner_up, and alike, the names of effects
+    that the run does not tell from it, where there are any."""
     markers: dict[str, Any] | None
     """Distances between disks and markers under the tensions that the gratings show, as a dict: noise_mm, calibration_error_mm, before,
     after; None where too few markers tell their noise."""

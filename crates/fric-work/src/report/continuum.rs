@@ -145,6 +145,7 @@ pub fn discovery(found: &TendonDiscovery, provenance: &Provenance) -> String {
                     @for (name, value) in &effect.parameters.0 { (name) " = " (fric_lab::text::significant(*value)) ". " }
                     (effect.words.join(" "))
                 }
+                @if !effect.alike.is_empty() { p.soft { "Or " (effect.alternatives()) } }
             }
             @for tried in &tendon.tried { p.soft { "Not named: " (tried.sentence()) } }
             @if let Some(kept) = &tendon.kept { p.soft { "Kept: " (kept) } }

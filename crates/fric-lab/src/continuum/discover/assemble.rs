@@ -7,6 +7,7 @@ use super::case::{Case, Fit};
 use super::extended_file::{drift, edit};
 use super::final_fit::{Final, shared_mu};
 use super::goes_with::{of_markers, of_tensions};
+use super::machine::Named;
 use super::markers::MarkerFit;
 use super::model::{Effect, Model, Parameter};
 use super::naming::{Finding, Outcome, Tried};
@@ -22,8 +23,8 @@ use crate::discover::result::{DiscoverResult, Evidence};
 use crate::errors::ForceError;
 use crate::fit::result::Numbers;
 
-/// The result of an outcome, with what to write.
-pub fn told(case: &Case<'_>, outcome: &Outcome, log: &str) -> TendonDiscovery {
+/// The result of an outcome, with what to write; `named` is what is in the file of the case already, and was found.
+pub fn told(case: &Case<'_>, outcome: &Outcome, named: &[Named], log: &str) -> TendonDiscovery {
     let Outcome { noise_n, verdict, before, after, last, findings, tried, markers, .. } = outcome;
     let closed = |fit: &Fit| {
         let gap_n = rms_n(before) - noise_n;
@@ -37,7 +38,18 @@ pub fn told(case: &Case<'_>, outcome: &Outcome, log: &str) -> TendonDiscovery {
         gap_closed: closed(&finding.fit),
         evidence: evidence(finding.delta_bic, finding.fit.held_out_n.rms()),
         runner_up: finding.runner_up.map(|(effect, delta_bic)| TendonRunnerUp { kind: effect.kind(), delta_bic }),
+        alike: Vec::new(),
         words: finding.effect.cause_and_remedy(),
+    };
+    let of_machine = |one: &Named| TendonEffect {
+        kind: one.candidate.kind(),
+        parameters: one.parameters.clone(),
+        standard_errors: one.standard_errors.clone(),
+        gap_closed: Some(one.gap_closed),
+        evidence: evidence(one.delta_bic, after.held_out_n.rms()),
+        runner_up: one.runner_up.map(|(other, delta_bic)| TendonRunnerUp { kind: other.kind(), delta_bic }),
+        alike: one.alike.iter().map(|other| other.kind()).collect(),
+        words: one.candidate.cause_and_remedy(),
     };
     let helped = |tried: &Tried| TendonTried {
         kind: tried.effect.kind(),
@@ -58,7 +70,7 @@ pub fn told(case: &Case<'_>, outcome: &Outcome, log: &str) -> TendonDiscovery {
         verdict: verdict.name(),
         places: if *verdict == Verdict::Complete { Vec::new() } else { segments(before) },
         markers: marker_errors(markers),
-        effects: findings.iter().map(effect).collect(),
+        effects: named.iter().map(of_machine).chain(findings.iter().map(effect)).collect(),
         tried: tried.into_iter().map(helped).collect(),
         kept: last.kept.map(|(worse, mu)| kept(&worse, mu)),
         unexplained: (*verdict == Verdict::Unexplained).then(|| rest(case, outcome)),

@@ -59,10 +59,15 @@ pub struct Fit {
 }
 
 impl<'a> Case<'a> {
-    pub fn new(file: &'a ManipulatorFile, run: &Run, gratings: &Gratings) -> Result<Self, ContinuumError> {
+    /// `kept` are the samples that are compared.
+    pub fn new(
+        file: &'a ManipulatorFile,
+        run: &Run,
+        gratings: &Gratings,
+        kept: &[usize],
+    ) -> Result<Self, ContinuumError> {
         let tensions = gratings.unbridged(run)?;
         let judged = gratings.read(run)?;
-        let kept = thinned(run.samples());
         if kept.len() < LEAST_SAMPLES {
             return Err(ContinuumError::TooShort { count: kept.len(), needed: LEAST_SAMPLES });
         }
@@ -233,7 +238,12 @@ pub fn off_markers(shape: &ComputedShape, sample: &RunSample) -> Vec<[f64; 2]> {
 
 /// Places of samples: some, evenly, and all turning points of the tension.
 pub fn thinned(samples: &[RunSample]) -> Vec<usize> {
-    let stride = samples.len().div_ceil(MOST_SAMPLES).max(1);
+    thinned_to(samples, MOST_SAMPLES)
+}
+
+/// The same with so many samples at most beside the turning points.
+pub fn thinned_to(samples: &[RunSample], most: usize) -> Vec<usize> {
+    let stride = samples.len().div_ceil(most).max(1);
     let greatest_n = samples.iter().map(|sample| sample.tension_base_n).fold(0.0, f64::max);
     let band_n = TURN_RATIO * greatest_n;
     let mut turns = Vec::new();

@@ -1,4 +1,7 @@
-//! Discovery on a manipulator: what of the tendon's friction, or of its gratings, a manipulator file lacks.
+//! Discovery on a manipulator: what a manipulator file lacks, or has wrong.
+//!
+//! First bending, loads and measurement: `machine` searches among the `candidate`s on one cost of tensions and markers (`joint`), with friction and the lines of
+//! the gratings free within what is known of them. With what it names in the file follows the search for friction, on the tensions alone.
 //!
 //! The workflow is that of [`crate::discover`]: the given model, fitted to half of the run in blocks, leaves a gap above the noise on
 //! the other half; candidates enter one after the other where they help on the samples held out; what is left is noise, or
@@ -16,18 +19,21 @@
 //!
 //! What the gratings' calibration leaves open of their lines is estimated along with each model (`lines`), and what then remains is noise where samples that
 //! follow each other have nothing in common (`noise`). Where the run has markers
-//! they take part: shapes under the tensions that the gratings show (`markers`) have to meet them within the noise of both. What is left goes
+//! they take part in the verdict too: shapes under the tensions that the gratings show (`markers`) have to meet them within the noise of both. What is left goes
 //! with one of a few physical things, or with none (`goes_with`). No effect enters the file that makes shapes or tensions worse
 //! than as given (`worse`), and no value that the run does not contradict (`final_fit`). Intervals hold the calibration's error and that holes which
 //! share a μ do differ (`spread`).
 
 mod assemble;
+mod candidate;
 mod case;
 mod extended_file;
 mod final_fit;
 mod fitting;
 mod goes_with;
+mod joint;
 mod lines;
+mod machine;
 mod markers;
 mod model;
 mod naming;
@@ -43,11 +49,14 @@ use fric_core::continuum::Tendon;
 use fric_core::continuum::edit::ManipulatorEdit;
 use fric_core::continuum::file::ManipulatorFile;
 
+use self::candidate::Candidate;
 use self::case::Case;
+use self::machine::Machine;
 use super::error::ContinuumError;
 use super::gratings::Gratings;
 use super::measuring::corrected;
 use super::run::Run;
+use crate::discover::Verdict;
 
 pub(super) use case::thinned;
 pub use goes_with::GoesWith;
@@ -86,8 +95,39 @@ pub fn discover(file: &ManipulatorFile, run: &Run, log: &str) -> Result<TendonDi
     }
     run.check_capacity(file.params().capacity_n(Tendon::Agonist))?;
     let gratings = Gratings::from_file(file)?.ok_or(ContinuumError::NoGratings)?;
-    let run = corrected(run, file)?;
-    let case = Case::new(file, &run, &gratings)?;
-    let outcome = naming::name(&case)?;
-    Ok(assemble::told(&case, &outcome, log))
+    let kept = thinned(run.samples());
+    let as_given = corrected(run, file)?;
+    let case = Case::new(file, &as_given, &gratings, &kept)?;
+    let Machine { named, tables, mu: mu_of_holes } = machine::search(file, run).unwrap_or_else(|| Machine::none(file));
+    let extended = if named.is_empty() { None } else { ManipulatorFile::check(tables).ok() };
+    // Friction is looked for with what was found in the file.
+    let with_found = match &extended {
+        Some(extended) => {
+            let run = corrected(run, extended)?;
+            let gratings = Gratings::from_file(extended)?.ok_or(ContinuumError::NoGratings)?;
+            let with_found = Case::new(extended, &run, &gratings, &kept)?;
+            let outcome = naming::name(&with_found)?.beside(&case)?;
+            // A lag with which the tensions still do not meet is something else, as the ends of a pull in one direction are.
+            let is_lag = named.iter().any(|one| one.candidate == Candidate::TensionLag);
+            (outcome.verdict != Verdict::Unexplained || !is_lag).then_some((extended, with_found, outcome))
+        }
+        None => None,
+    };
+    let (outcome, mut discovery) = if let Some((extended, with_found, outcome)) = with_found {
+        let mut discovery = assemble::told(&with_found, &outcome, &named, log);
+        let ManipulatorEdit { mu, sigma_n_per_m, drift_nm_per_s, .. } = discovery.edit;
+        let bending = ManipulatorEdit::between(file.tables(), extended.tables());
+        discovery.edit = ManipulatorEdit { mu, sigma_n_per_m, drift_nm_per_s, ..bending };
+        (outcome, discovery)
+    } else {
+        let outcome = naming::name(&case)?;
+        let discovery = assemble::told(&case, &outcome, &[], log);
+        (outcome, discovery)
+    };
+    // Where the search for friction names nothing and the file changes all the same, the holes are as the joint fit has them.
+    let is_settled = outcome.findings.is_empty() && outcome.verdict != Verdict::Unexplained;
+    if is_settled && !mu_of_holes.is_empty() && discovery.edit != ManipulatorEdit::default() {
+        discovery.edit.mu = mu_of_holes;
+    }
+    Ok(discovery)
 }

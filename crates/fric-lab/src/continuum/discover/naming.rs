@@ -60,6 +60,21 @@ pub struct Outcome {
     pub markers: [Option<MarkerFit>; 2],
 }
 
+impl Outcome {
+    /// The outcome of a search in an extended file, told beside the file that was given: what it was before, and that it is extended.
+    ///
+    /// # Errors
+    /// [`ContinuumError::UntoldNoise`] where the given file has no shapes.
+    pub fn beside(self, given_case: &Case<'_>) -> Result<Self, ContinuumError> {
+        let given = given_case.given();
+        let stated = given_case.fit(&given).ok_or(ContinuumError::UntoldNoise)?;
+        let before = fitted(given_case, &given).unwrap_or_else(|| stated.clone());
+        let [_, after] = self.markers;
+        let verdict = if self.verdict == Verdict::Complete { Verdict::Extended } else { self.verdict };
+        Ok(Self { before, markers: [MarkerFit::new(given_case, &stated), after], verdict, ..self })
+    }
+}
+
 /// Searches for what is missing.
 ///
 /// Where the disks are off their markers no hole is named, for its μ is found from the bend; that tensions fit with holes of their own leaves the
@@ -258,7 +273,7 @@ fn ranked(mut trials: Vec<Trial>) -> Vec<Trial> {
     trials
 }
 
-/// Leaves only those holes named whose 95 % interval does not hold the μ of the others. Beside a named one they keep a μ of their own, for the
+/// Leaves only those holes named whose μ is clear from that of the others ([`is_own_mu`]). Beside a named one they keep a μ of their own, for the
 /// evidence is that of all that entered. Without any all share one again, and nothing is written of holes: that they differ may account for what is
 /// left all the same, only that the run does not tell which.
 fn clear(case: &Case<'_>, mut now: Fit, mut findings: Vec<Finding>, tried: &mut Vec<Tried>) -> (Fit, Vec<Finding>) {
@@ -276,7 +291,7 @@ fn clear(case: &Case<'_>, mut now: Fit, mut findings: Vec<Finding>, tried: &mut 
         effect: finding.effect,
         delta_bic: finding.delta_bic,
         rms_n: rms_n(&finding.fit),
-        reason: "the 95 % interval of its μ holds that of the others".to_owned(),
+        reason: "its μ is not clear from that of the others: beyond its 95 % interval and by 30 %".to_owned(),
     }));
     if !findings.iter().any(is_hole)
         && let Some(shared) = with_shared_mu(case, &now.model)

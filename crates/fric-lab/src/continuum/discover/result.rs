@@ -121,6 +121,9 @@ pub struct TendonEffect {
     pub evidence: Evidence,
     /// The best other candidate.
     pub runner_up: Option<TendonRunnerUp>,
+    /// Effects that the run does not tell from it: any one of them may be there in its place.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub alike: Vec<&'static str>,
     /// Cause and remedy.
     #[serde(skip)]
     pub words: [&'static str; 2],

@@ -48,6 +48,9 @@ impl TendonDiscoverResult {
                 .collect();
             // Writing to a String cannot fail.
             let _ = writeln!(text, "\n{}: {}", effect.kind, values.join(", "));
+            if !effect.alike.is_empty() {
+                text += &wrapped("  or      ", &effect.alternatives());
+            }
             // Once for holes that were found together.
             if effects.get(place + 1).is_none_or(|next| next.kind != effect.kind) {
                 let [cause, remedy] = effect.words;
@@ -74,6 +77,18 @@ impl TendonDiscoverResult {
             }
         }
         text
+    }
+}
+
+impl TendonEffect {
+    /// What may be there in its place, for people.
+    #[must_use]
+    pub fn alternatives(&self) -> String {
+        format!(
+            "{}: the run does not tell them apart. The file gets {}; shapes are right with either.",
+            self.alike.join(", or "),
+            self.kind
+        )
     }
 }
 

@@ -124,6 +124,17 @@ impl Runs {
         Ok(Self { given: file.tables().clone(), all, has_gratings, greatest_tension_n })
     }
 
+    /// Times of the samples of the first run that are compared, s.
+    pub fn times_s(&self) -> Vec<f64> {
+        let first = self.all.first();
+        let time_s = |run: &One, place: &usize| run.whole.samples().get(*place).map(|sample| sample.time_s);
+        first.map_or_else(Vec::new, |run| run.kept.iter().filter_map(|place| time_s(run, place)).collect())
+    }
+
+    pub fn has_markers(&self) -> bool {
+        self.all.iter().all(|run| run.whole.has_markers())
+    }
+
     /// Samples compared in each run.
     pub fn sample_counts(&self) -> Vec<usize> {
         self.all.iter().map(|run| run.kept.len()).collect()

@@ -5,12 +5,12 @@
 //! directions of small eigenvalues of the information, as the identification of cables finds them.
 
 mod errors;
-mod evaluation;
+pub(super) mod evaluation;
 mod least_squares;
 mod quantity;
 mod result;
 mod summary;
-mod unknown;
+pub(super) mod unknown;
 
 use fric_core::continuum::edit::{GratingLine, ManipulatorEdit};
 use fric_core::continuum::file::ManipulatorFile;

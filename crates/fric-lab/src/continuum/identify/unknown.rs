@@ -46,6 +46,10 @@ pub enum Unknown {
     BaseOffset,
     /// Its lag.
     BaseLag,
+    /// Shift that all gratings have alike from a time on.
+    CommonShift,
+    /// Drift of the shift of one grating.
+    Drift(usize),
 }
 
 impl Unknown {
@@ -68,6 +72,8 @@ impl Unknown {
             Self::BaseGain => "base_gain".to_owned(),
             Self::BaseOffset => "base_offset_n".to_owned(),
             Self::BaseLag => "base_lag_s".to_owned(),
+            Self::CommonShift => "shift_nm".to_owned(),
+            Self::Drift(grating) => format!("drift_{}_nm_per_s", grating + 1),
         }
     }
 
@@ -81,6 +87,7 @@ impl Unknown {
             Self::TipForce(_) => !has_gravity,
             Self::GravityAngle => has_gravity && has_mass,
             Self::Sigma => matches!(tables.tendon.sigma_n_per_m, Some(OneOrEach::One(_))),
+            Self::CommonShift | Self::Drift(_) => tables.gratings.is_some(),
             _ => true,
         }
     }
@@ -166,6 +173,17 @@ impl Unknown {
                 let sensor = tables.base_sensor.unwrap_or_default();
                 tables.base_sensor = Some(BaseSensorTable { lag_s: sensor.lag_s + distance, ..sensor });
             }
+            Self::CommonShift => {
+                if let Some(gratings) = &mut tables.gratings {
+                    gratings.common_step_nm = Some(gratings.common_step_nm.unwrap_or(0.0) + distance);
+                }
+            }
+            Self::Drift(grating) => {
+                if let Some(gratings) = &mut tables.gratings {
+                    gratings.drift_nm_per_s.resize(count, 0.0);
+                    gratings.drift_nm_per_s[grating] += distance;
+                }
+            }
         }
     }
 
@@ -206,6 +224,11 @@ impl Unknown {
             Self::BaseGain => sensor.gain,
             Self::BaseOffset => sensor.offset_n,
             Self::BaseLag => sensor.lag_s,
+            Self::CommonShift => tables.gratings.as_ref().and_then(|table| table.common_step_nm).unwrap_or(0.0),
+            Self::Drift(grating) => {
+                let stated = tables.gratings.as_ref().and_then(|table| table.drift_nm_per_s.get(grating)).copied();
+                stated.unwrap_or(0.0)
+            }
         }
     }
 
@@ -245,6 +268,8 @@ impl Unknown {
             Self::Sigma => 0.7,
             Self::BaseOffset => 0.02 * greatest_tension_n,
             Self::BaseLag => 0.2,
+            Self::CommonShift => 0.01,
+            Self::Drift(_) => 0.001,
         }
     }
 
@@ -269,7 +294,7 @@ impl Unknown {
     #[must_use]
     pub fn rank(self) -> u8 {
         match self {
-            Self::Sigma => 0,
+            Self::Sigma | Self::Drift(_) | Self::CommonShift => 0,
             Self::BaseLag => 1,
             Self::BaseOffset => 2,
             Self::BaseGain => 3,
