@@ -113,7 +113,9 @@ fn loads_are_named() {
 #[test]
 fn a_gain_of_the_sensor_at_the_base_is_named() {
     let (text, mut samples) = measured(Experiment::Mixed, 31, &[0.1753]);
-    samples.iter_mut().for_each(|sample| sample.tension_base_n *= 1.05);
+    for sample in &mut samples {
+        sample.tension_base_n *= 1.05;
+    }
     let discovery = found(&text, &samples);
     assert_eq!(told(&discovery), ("extended", vec!["base_gain"]));
     assert!((discovery.edit.base_sensor.unwrap().gain / 1.05 - 1.0).abs() < 0.005);
