@@ -152,7 +152,7 @@ impl<'a> Workbench<'a> {
                 let place = next.fetch_add(1, Ordering::Relaxed);
                 let Some(model) = models.get(place) else { return trials };
                 // What a lane has left of another search must not show.
-                seat.forget_moved();
+                seat.forget();
                 trials.push((place, self.try_on(model, &seat, near_errors)));
             }
         };
