@@ -2,7 +2,7 @@
 
 use std::panic::resume_unwind;
 use std::rc::Rc;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::thread;
 
 use fric_core::LANES;
@@ -120,15 +120,9 @@ impl<'a> Workbench<'a> {
     /// Fits several models, as many side by side as there are lanes, each as near to its minimum as asked for, in standard errors; in
     /// the order given.
     pub fn try_all(&self, models: &[Model], near_errors: f64) -> Vec<Trial> {
-        let next = AtomicUsize::new(0);
-        let gang_count = models.len().div_ceil(LANES).min(rayon::current_num_threads());
-        let trials: Vec<(usize, Trial)> =
-            (0..gang_count).into_par_iter().flat_map_iter(|_| self.try_together(models, &next, near_errors)).collect();
-        let mut in_order: Vec<Option<Trial>> = vec![None; models.len()];
-        for (place, trial) in trials {
-            in_order[place] = Some(trial);
-        }
-        in_order.into_iter().flatten().collect()
+        let together = |models: &[Model]| self.try_together(models, near_errors);
+        let groups: Vec<Vec<Trial>> = models.par_chunks(LANES).map(together).collect();
+        groups.into_iter().flatten().collect()
     }
 
     /// Fits one model.
@@ -139,35 +133,30 @@ impl<'a> Workbench<'a> {
     /// Fits one model as near to its minimum as asked for, in standard errors.
     pub fn fit(&self, model: &Model, near_errors: f64) -> Trial {
         let gang = Gang::new(1, self.stop);
-        self.try_on(model, &Rc::new(gang.seat(0)), near_errors)
+        self.try_on(model, gang.seat(0), near_errors)
     }
 
-    /// Takes models that nobody has taken yet, until there are none; a lane whose search has ended goes on with the next.
-    fn try_together(&self, models: &[Model], next: &AtomicUsize, near_errors: f64) -> Vec<(usize, Trial)> {
-        let gang = Gang::new(LANES, self.stop);
-        let of_lane = &|lane: usize| {
-            let seat = Rc::new(gang.seat(lane));
-            let mut trials = Vec::new();
-            loop {
-                let place = next.fetch_add(1, Ordering::Relaxed);
-                let Some(model) = models.get(place) else { return trials };
-                // What a lane has left of another search must not show.
-                seat.forget();
-                trials.push((place, self.try_on(model, &seat, near_errors)));
-            }
-        };
+    fn try_together(&self, models: &[Model], near_errors: f64) -> Vec<Trial> {
+        let gang = Gang::new(models.len(), self.stop);
         thread::scope(|scope| {
-            let lanes: Vec<_> = (0..LANES).map(|lane| scope.spawn(move || of_lane(lane))).collect();
-            lanes.into_iter().flat_map(|lane| lane.join().unwrap_or_else(|panic| resume_unwind(panic))).collect()
+            let searches: Vec<_> = models
+                .iter()
+                .enumerate()
+                .map(|(place, model)| {
+                    let seat = gang.seat(place);
+                    scope.spawn(|| self.try_on(model, seat, near_errors))
+                })
+                .collect();
+            searches.into_iter().map(|search| search.join().unwrap_or_else(|panic| resume_unwind(panic))).collect()
         })
     }
 
-    fn try_on<'b>(&'b self, model: &Model, seat: &Rc<Seat<'b>>, near_errors: f64) -> Trial
+    fn try_on<'b>(&'b self, model: &Model, seat: Seat<'b>, near_errors: f64) -> Trial
     where
         'a: 'b,
     {
         let bench: &Workbench<'b> = self;
-        let mut problem = bench.problem(&model.free, Some(Rc::clone(seat)));
+        let mut problem = bench.problem(&model.free, Some(Rc::new(seat)));
         let mut values = model.values;
         if !model.free.is_empty() {
             let start = within_bounds(&mut problem, &model.values);

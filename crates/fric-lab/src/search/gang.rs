@@ -100,11 +100,6 @@ impl<'a> Seat<'a> {
         }
     }
 
-    /// Forgets the last pass: another search begins.
-    pub fn forget(&self) {
-        self.last.take();
-    }
-
     /// Forgets forces that were moved: the next are those of a pass, to the last bit.
     pub fn forget_moved(&self) {
         self.last.borrow_mut().take_if(|last| last.moved);
