@@ -50,8 +50,10 @@ impl Search<'_, '_> {
                 // What memory in the residual makes of chance is no reason to go on.
                 .filter(|entrant| entrant.delta_bic < 0.0)
                 .collect();
-            let entering = match entrants.iter().find(|entrant| entrant.delta_bic < -STRONG_BIC) {
-                Some(strong) => vec![strong.effect],
+            // Of friction every model has its own: what is still missing of it hides the evidence for the rest.
+            let enters = |entrant: &&Entrant| entrant.delta_bic < -STRONG_BIC || entrant.effect.is_friction();
+            let entering = match entrants.iter().find(enters) {
+                Some(entrant) => vec![entrant.effect],
                 None => self.strong_together(&model, &entrants),
             };
             if entering.is_empty() {
