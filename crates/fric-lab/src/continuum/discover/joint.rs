@@ -13,6 +13,7 @@ use rayon::prelude::*;
 use super::candidate::Candidate;
 use crate::certainty::scores::Scores;
 use crate::certainty::undetermined::inverse_of_normal;
+use crate::continuum::identify::errors::{MODEL_MARKER_RATIO, MODEL_TENSION_RATIO};
 use crate::continuum::identify::evaluation::{Evaluation, Runs, State};
 use crate::continuum::identify::unknown::Unknown;
 use crate::continuum::run::Run;
@@ -28,9 +29,6 @@ const LOOSE: f64 = 1.0;
 const LOOSE_LINE: f64 = 1000.0;
 /// A free number is this many times its widest interval from the stated value at most, as a standard deviation: no bound, but what keeps normal equations regular.
 const WIDE: f64 = 20.0;
-/// What the model is off by: as in `identify::errors`, where both are explained.
-const MODEL_TENSION_RATIO: f64 = 0.00024;
-const MODEL_MARKER_RATIO: f64 = 0.0002;
 
 const MOST_STEPS: usize = 8;
 const MOST_HALVINGS: i32 = 5;

@@ -12,6 +12,7 @@ use super::candidate::Candidate;
 use super::case::thinned_to;
 use super::joint::{Jacobian, Joint, Point, Set, Units};
 use super::naming::LEAST_EVIDENCE;
+use crate::continuum::identify::errors::{MODEL_MARKER_RATIO, MODEL_TENSION_RATIO};
 use crate::continuum::identify::unknown::Unknown;
 use crate::continuum::run::{Run, RunSample};
 use crate::fit::HALF_INTERVAL;
@@ -30,9 +31,6 @@ const RESTARTS: [f64; 6] = [-6.0, -4.0, -2.0, 2.0, 4.0, 6.0];
 const NEAR_RATIO: f64 = 0.8;
 /// What is practically nothing: this share of the greatest tension, and of the length.
 const PRACTICAL_RATIO: f64 = 0.0005;
-/// What the model is off by, as shares of the same.
-const MODEL_TENSION_RATIO: f64 = 0.00024;
-const MODEL_MARKER_RATIO: f64 = 0.0002;
 /// What a kelvin does to a grating of silica, `α_Λ + α_n`, 1/K, and where the file states no wavelength, that of the C band, nm.
 const SILICA_PER_K: f64 = 6.85e-6;
 const USUAL_WAVELENGTH_NM: f64 = 1550.0;

@@ -15,9 +15,9 @@ use fric_core::continuum::file::OneOrEach;
 
 /// What the model is off by in tension as a share of the greatest, root mean square: 0.4 mN of 1.7 N in runs with both directions, against the elastica with
 /// each hole's own μ (docs/manipulators.md).
-const MODEL_TENSION_RATIO: f64 = 0.00024;
+pub const MODEL_TENSION_RATIO: f64 = 0.00024;
 /// And of the disks as a share of the length, where the bend is 130°.
-const MODEL_MARKER_RATIO: f64 = 0.0002;
+pub const MODEL_MARKER_RATIO: f64 = 0.0002;
 /// Share of what the model is off by that goes along with one unknown: it is smooth, and so near to some combination of a handful of them.
 const ALONG_RATIO: f64 = 0.5;
 

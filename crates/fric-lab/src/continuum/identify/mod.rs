@@ -4,7 +4,7 @@
 //! compared, `least_squares` searches, `errors` has the intervals). What the runs cannot tell is held as the file states it and reported: the
 //! directions of small eigenvalues of the information, as the identification of cables finds them.
 
-mod errors;
+pub(super) mod errors;
 pub(super) mod evaluation;
 mod least_squares;
 mod quantity;

@@ -1,7 +1,8 @@
 //! Which effects are missing: candidates enter, are exchanged, and have to justify themselves.
 //!
 //! 1. *Enter.* Every candidate is fitted together with all that the model has. The best on the samples learned from with strong evidence
-//!    enters if it also helps on those held out. Where none has strong evidence alone, those enter that have it beside each other.
+//!    enters if it also helps on those held out. Where none has strong evidence alone, those enter that have it beside each other. Friction that
+//!    every model has needs no strong evidence here: what is missing of it hides the rest.
 //! 2. *Leave.* An effect stays if the evidence for it is strong, if it is large enough to matter, if its parameters keep clear of the
 //!    ends of their ranges and can be told from the others, if it has one size in every operating condition, and if neither a law without a name
 //!    nor an effect of a size that robots usually have makes it superfluous. One that cannot stay is set aside, and the next has its turn.
