@@ -7,7 +7,8 @@ use fric_core::parameters::{MU, NO_PRESLIDING_N_PER_M, OFFSET, SIGMA, VISCOUS, V
 use nalgebra::DMatrix;
 
 use super::Task;
-use super::faults::lines::{Line, Times, lines, motion_and_load};
+use super::faults::oscillations::Oscillations;
+use super::faults::spectrum::{Times, motion_and_load};
 use super::faults::{Fault, RecordingFault, coarse_step_n, faulty_stretches, leave_out, of_stretches};
 use super::figures::curve::curves;
 use super::figures::profile::profile;
@@ -29,8 +30,6 @@ use crate::samples::noise::white_noise;
 use crate::samples::selection::Standing;
 use crate::samples::split::{Block, split};
 
-/// Lines whose frequencies differ by less than this share are the same.
-const SAME_LINE_RATIO: f64 = 1e-3;
 /// The steps of a converter are told of where they make this part of the noise, as squares: a twentieth of its size.
 const LEAST_ROUNDING: f64 = 0.1;
 /// Looks at a cable with what was found taken for given, until nothing more is found.
@@ -75,10 +74,7 @@ pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> CableDiscove
     let bench = Workbench { record: *record, blocks: &blocks, counts: &counts, measured: &measured, stop };
     // Between two measurements too: a line may be faster than they are.
     let throughout = rest::with_interpolated(&counts, &measured, |place| has_reference(record, place));
-    let hum_left_by = |values: &Values| {
-        let residual_n = Workbench { counts: &throughout, ..bench.clone() }.residuals_n(values);
-        lines(&residual_n, &times, &motion_and_load(record))
-    };
+    let left_by = |values: &Values| Workbench { counts: &throughout, ..bench.clone() }.residuals_n(values);
     let raw = Case {
         record: *record,
         raw: *record,
@@ -90,26 +86,27 @@ pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> CableDiscove
         with_time: &with_time,
         stop,
     };
-    let look = |hum: &[Line], start: &mut workbench::Model| {
-        // What hums is no matter of friction: it comes off the reference.
-        let rows = without_lines(record, hum, &times);
+    let look = |heard: &Oscillations, start: &mut workbench::Model| {
+        // What oscillates by itself is no matter of friction: it comes off the reference.
+        let rows = heard.taken_off(record, &times);
         raw.with_rows(&rows).look_closely(start, &held)
     };
-    let mut hum = hum_left_by(&bench.try_one(&start).values);
-    let Some(mut outcome) = look(&hum, &mut start) else {
+    let signals = motion_and_load(record);
+    let mut heard = Oscillations::lines_of(&left_by(&bench.try_one(&start).values), &times, &signals);
+    let Some(mut outcome) = look(&heard, &mut start) else {
         return CableDiscovery::untold(record, samples, lack_of_noise());
     };
     task.stages.finish_one();
-    // A wrong model may hide a line, or leave what only looks like one.
-    let after = hum_left_by(&outcome.fitted.values);
-    if !are_alike(&hum, &after)
+    // A wrong model may hide a line, or leave what only looks like one; a vibration shows in what a right one leaves.
+    let after = Oscillations::of(&left_by(&outcome.fitted.values), &times, record, &signals);
+    if !heard.are_like(&after)
         && let Some(again) = look(&after, &mut start)
     {
-        (outcome, hum) = (again, after);
+        (outcome, heard) = (again, after);
     }
     task.stages.finish_one();
-    let rows = without_lines(record, &hum, &times);
-    let mut faults: Vec<RecordingFault> = hum.iter().map(Line::fault).collect();
+    let rows = heard.taken_off(record, &times);
+    let mut faults = heard.faults();
     faults.extend(of_stretches(&stretches, |cycle| record.time_s(cycle)));
     let step_n = coarse_step_n(record).filter(|step_n| {
         // Rounding is noise, evenly within ± half a step.
@@ -173,13 +170,6 @@ fn judged(residual_n: &[f64], held_out: &[bool]) -> Deviation {
     })
 }
 
-/// Whether two looks found lines at the same frequencies.
-fn are_alike(one: &[Line], other: &[Line]) -> bool {
-    let is_in =
-        |line: &Line| other.iter().any(|of| (of.frequency_hz / line.frequency_hz - 1.0).abs() < SAME_LINE_RATIO);
-    one.len() == other.len() && one.iter().all(is_in)
-}
-
 /// The given model, with start values from the data for what it has of its own: of friction what acts, an offset if it has one (a
 /// sensor that was not tared is to be found, not to be fitted away), and the parameters of its effects; without what the log does not determine, which comes beside it.
 fn given_model(record: &CableRecord<'_>, paper: &crate::search::solve::Solution) -> (workbench::Model, Vec<Parameter>) {
@@ -209,15 +199,6 @@ pub fn acts(parameter: &Parameter, values: &Values) -> bool {
 
 fn has_reference(record: &CableRecord<'_>, place: usize) -> bool {
     record.rows.get(place).is_some_and(|row| row.is_sound() && row.reference_n.is_finite())
-}
-
-/// The rows with lines taken off the reference.
-fn without_lines(record: &CableRecord<'_>, lines: &[Line], times: &Times) -> Vec<Row> {
-    let mut rows = record.rows.to_vec();
-    for line in lines {
-        line.add_to(rows.iter_mut().map(|row| &mut row.reference_n), 1.0, times);
-    }
-    rows
 }
 
 /// A cable with its log.

@@ -367,6 +367,7 @@ impl Fault {
     pub const fn name(self) -> &'static str {
         match self {
             Self::Hum => "hum",
+            Self::Vibration => "vibration",
             Self::NoisyLength => "noisy_length",
             Self::Frozen => "frozen",
             Self::Clipped => "clipped",

@@ -433,6 +433,13 @@ impl FaultResult {
                 value("frequency_hz"),
                 newtons(value("amplitude_n"))
             ),
+            Fault::Vibration => format!(
+                "it vibrates at {:.2} Hz, damped by {} of the critical, {} rms: a mount or a frame that rings; stiffen it, fix the sensor nearer to the \
+                 pulley, or drive it with less jerk; what it shows was taken off the reference",
+                value("frequency_hz"),
+                significant(value("damping_ratio")),
+                newtons(value("rms_n"))
+            ),
             Fault::NoisyLength => format!(
                 "the length trembles by {} m (standard deviation), which the model takes for motion; `length_noise_m` = {} m of the monitor keeps \
                  it out, which an extended file sets; look at the encoder's resolution, supply and shielding",

@@ -1,90 +1,23 @@
 //! Lines in the spectrum of a residual: a hum, as from the mains.
 //!
-//! The periodogram of Welch: spectra of overlapping stretches under Hann's window, averaged. A line stands out from its
-//! neighbours by many times their median, everywhere in the log; what a moving cable does is broad.
+//! A line stands out from its neighbours by many times their median, everywhere in the log; what a moving cable does is broad.
 //!
 //! Its phase follows the time, lost samples or not. Over a long pause, and from one log to the next, it begins anew.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-use realfft::RealFftPlanner;
-
+use super::spectrum::{NEIGHBOURS, STRETCH, Spectrum, Times, Together, have_line};
 use super::{Fault, RecordingFault};
-use crate::fit::{CableRecord, Row};
-use crate::samples::conditions::sign;
 
-/// Cycles of a stretch, and of a pause after which a line begins anew.
-const STRETCH: usize = 4096;
-/// Neighbours on either side that a line is compared with.
-const NEIGHBOURS: usize = 24;
-/// A line's own width, in places of the spectrum.
-const WIDTH: usize = 3;
 /// By how many times their median it stands out.
 const LEAST_RATIO: f64 = 12.0;
-/// The same for a line of the motion or the load: less than this, and it may be chance in a few tens of spectra averaged.
-const MOTION_RATIO: f64 = 4.0;
 /// A line below this many turns in a stretch is no line but a slow change, and as many tell its phase.
 const FEWEST_TURNS: usize = 8;
 /// Lines that are looked for.
 const MOST_LINES: usize = 8;
 /// And the least share of the noise's power that one has to have.
-const LEAST_SHARE: f64 = 0.01;
-
-/// A log whose samples are as far apart as the cycles, but for this share, is that of the loop.
-const RATE_TOLERANCE: f64 = 0.1;
-
-/// When a record's rows are, and over which of them a line keeps its phase.
-pub struct Times {
-    /// Of each row, its place since the first of its log, in rows of a log without gaps.
-    places: Vec<f64>,
-    /// Rows of one phase.
-    runs: Vec<Range<usize>>,
-    interval_s: f64,
-}
-
-impl Times {
-    /// Of a record.
-    #[must_use]
-    pub fn of(record: &CableRecord<'_>) -> Self {
-        #[expect(clippy::cast_precision_loss, reason = "a small constant")]
-        let is_near = |one: &f64, next: &f64| next - one < STRETCH as f64;
-        // A loop that logs each cycle does not jitter as its stamps do; of a log at another rate the stamps are all there is.
-        let is_of_loop = (record.interval_s / record.cycle_s - 1.0).abs() < RATE_TOLERANCE;
-        let interval_s = if is_of_loop { record.cycle_s } else { record.interval_s };
-        let (mut places, mut runs) = (Vec::with_capacity(record.rows.len()), Vec::new());
-        for (mut start, rows) in record.logs() {
-            let first_s = record.time_s(start);
-            let by_stamp = |place: usize| (record.time_s(start + place) - first_s) / interval_s;
-            let of_log =
-                rows.iter().enumerate().map(|(place, row)| if is_of_loop { row.cycle } else { by_stamp(place) });
-            places.extend(of_log);
-            for run in places.get(start..).unwrap_or_default().chunk_by(is_near) {
-                runs.push(start..start + run.len());
-                start += run.len();
-            }
-        }
-        Self { places, runs, interval_s }
-    }
-
-    /// The places of the rows of a run.
-    fn places(&self, run: &Range<usize>) -> &[f64] {
-        self.places.get(run.clone()).unwrap_or_default()
-    }
-
-    fn phase(&self, frequency_hz: f64, place: f64) -> f64 {
-        TAU * frequency_hz * (place * self.interval_s)
-    }
-
-    /// Rows from the first to the last of the longest run, had it no gaps.
-    fn longest(&self) -> f64 {
-        let length = |run: &Range<usize>| match self.places(run) {
-            [first, .., last] => last - first + 1.0,
-            _ => 1.0,
-        };
-        self.runs.iter().map(length).fold(1.0, f64::max)
-    }
-}
+pub const LEAST_SHARE: f64 = 0.01;
 
 /// A sine of fixed frequency.
 #[derive(Clone, Debug, PartialEq)]
@@ -128,7 +61,7 @@ impl Line {
     /// Adds it, times a factor, to a number of each row.
     pub fn add_to<'a>(&self, numbers: impl Iterator<Item = &'a mut f64>, factor: f64, times: &Times) {
         let values = self.waves.iter().flat_map(|wave| {
-            times.places(&wave.rows).iter().map(|place| {
+            times.of_run(&wave.rows).iter().map(|place| {
                 let (sin, cos) = times.phase(self.frequency_hz, *place).sin_cos();
                 wave.sine * sin + wave.cosine * cos
             })
@@ -147,108 +80,32 @@ pub fn lines(residual: &[f64], times: &Times, signals: &[Together]) -> Vec<Line>
         lines.push(line);
     }
     if !lines.is_empty() {
-        let spectra: Vec<Vec<Vec<f64>>> =
-            signals.iter().map(|of| of.iter().filter_map(|signal| spectrum(signal, times)).collect()).collect();
-        let have = |of: &Vec<Vec<f64>>, line: &Line| {
-            !of.is_empty() && of.iter().all(|spectrum| has_line(spectrum, line.frequency_hz, times))
-        };
-        lines.retain(|line| !spectra.iter().any(|of| have(of, line)));
+        let frequencies: Vec<f64> = lines.iter().map(|line: &Line| line.frequency_hz).collect();
+        let mut of_motion = have_line(&frequencies, signals, times).into_iter();
+        lines.retain(|_| !of_motion.next().unwrap_or(false));
     }
     lines
 }
 
-/// Signals that only together tell a line: each may hum by itself.
-pub type Together = Vec<Vec<f64>>;
-
-/// What a cable does and bears: the motion, with the harmonics that a law of friction makes of a periodic one, and the load as both of its sensors
-/// see it.
-pub fn motion_and_load(record: &CableRecord<'_>) -> Vec<Together> {
-    let of = |value: &dyn Fn(&Row) -> f64| record.rows.iter().map(value).collect::<Vec<f64>>();
-    let speed_m_per_s = of(&|row| row.signals.speed_m_per_s);
-    let change = |pair: &[f64]| pair[1] - pair[0];
-    let acceleration = std::iter::once(0.0).chain(speed_m_per_s.windows(2).map(change)).collect();
-    vec![
-        vec![of(&|row| row.signals.displacement_m)],
-        vec![of(&|row| row.signals.displacement_m.abs())],
-        vec![of(&|row| sign(row.signals.displacement_m))],
-        vec![speed_m_per_s],
-        vec![acceleration],
-        vec![of(&|row| row.signals.sensor_force_n), of(&|row| row.reference_n)],
-    ]
-}
-
-/// Whether a spectrum has a line at a frequency.
-fn has_line(spectrum: &[f64], frequency_hz: f64, times: &Times) -> bool {
-    #[expect(clippy::cast_precision_loss, reason = "a small constant")]
-    let place = (frequency_hz * STRETCH as f64 * times.interval_s).round();
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a place of the spectrum")]
-    let place = place as usize;
-    (place.saturating_sub(1)..=place + 1)
-        .any(|place| over_median(spectrum, place).is_some_and(|ratio| ratio > MOTION_RATIO))
-}
-
-/// By how many times the median of its neighbours a place of a spectrum stands out.
-fn over_median(spectrum: &[f64], place: usize) -> Option<f64> {
-    let around = place.checked_sub(NEIGHBOURS)?..(place + NEIGHBOURS + 1).min(spectrum.len());
-    let others = around.filter(|other| other.abs_diff(place) > WIDTH);
-    let mut others: Vec<f64> = others.filter_map(|other| spectrum.get(other).copied()).collect();
-    if others.is_empty() {
-        return None;
-    }
-    let middle = others.len() / 2;
-    let (_, median, _) = others.select_nth_unstable_by(middle, f64::total_cmp);
-    Some(spectrum.get(place)? / *median)
-}
-
 fn strongest(residual: &[f64], times: &Times) -> Option<Line> {
-    let spectrum = spectrum(residual, times)?;
+    let spectrum = Spectrum::of(residual, times)?;
     let first = FEWEST_TURNS.max(NEIGHBOURS);
-    let candidates =
-        (first..spectrum.len().saturating_sub(1)).filter_map(|place| Some((place, over_median(&spectrum, place)?)));
-    let (place, _) = candidates
-        .filter(|(_, ratio)| *ratio > LEAST_RATIO)
-        .max_by(|a, b| spectrum.get(a.0).unwrap_or(&0.0).total_cmp(spectrum.get(b.0).unwrap_or(&0.0)))?;
-    #[expect(clippy::cast_precision_loss, reason = "small counts")]
-    let (place, stretch_s) = (place as f64, STRETCH as f64 * times.interval_s);
-    let line = refine(residual, place / stretch_s, 1.0 / stretch_s, times);
-    let (squares, count) = residual
+    let candidates = (first..spectrum.powers.len().saturating_sub(1))
+        .filter_map(|place| Some((place, *spectrum.powers.get(place)?, spectrum.over_median(place)?)));
+    let (place, ..) =
+        candidates.filter(|(_, _, ratio)| *ratio > LEAST_RATIO).max_by(|one, other| one.1.total_cmp(&other.1))?;
+    #[expect(clippy::cast_precision_loss, reason = "a small count")]
+    let line = refine(residual, place as f64 * times.place_hz(), times.place_hz(), times);
+    (0.5 * line.amplitude().powi(2) > LEAST_SHARE * mean_square(residual)).then_some(line)
+}
+
+/// Of the numbers that there are.
+pub fn mean_square(numbers: &[f64]) -> f64 {
+    let (sum, count) = numbers
         .iter()
         .filter(|number| number.is_finite())
-        .fold((0.0, 0.0), |(squares, count), number| (squares + number * number, count + 1.0));
-    (line.amplitude().powi(2) * 0.5 > LEAST_SHARE * squares / count).then_some(line)
-}
-
-/// Averaged periodogram; `None` where no run is as long as a stretch.
-fn spectrum(residual: &[f64], times: &Times) -> Option<Vec<f64>> {
-    let transform = RealFftPlanner::<f64>::new().plan_fft_forward(STRETCH);
-    let mut input = transform.make_input_vec();
-    let mut output = transform.make_output_vec();
-    let mut sums = vec![0.0; output.len()];
-    let mut any = false;
-    #[expect(clippy::cast_precision_loss, reason = "a small constant")]
-    let window = |place: usize| 0.5 - 0.5 * (TAU * place as f64 / STRETCH as f64).cos();
-    for run in &times.runs {
-        for start in (run.start..(run.end + 1).saturating_sub(STRETCH)).step_by(STRETCH / 2) {
-            let stretch = start..start + STRETCH;
-            input.fill(0.0);
-            let places = times.places(&stretch);
-            let first = places.first()?;
-            for (place, number) in places.iter().zip(residual.get(stretch.clone())?).filter(|(_, of)| of.is_finite()) {
-                // Lost rows leave their places empty, and those after them move on, the last out of the stretch.
-                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
-                let place = (place - first).round() as usize;
-                if let Some(input) = input.get_mut(place) {
-                    *input = number * window(place);
-                }
-            }
-            transform.process(&mut input, &mut output).ok()?;
-            for (sum, number) in sums.iter_mut().zip(&output) {
-                *sum += number.norm_sqr();
-            }
-            any = true;
-        }
-    }
-    any.then_some(sums)
+        .fold((0.0, 0.0), |(sum, count), number| (sum + number * number, count + 1.0));
+    sum / count
 }
 
 /// The frequency near a coarse one at which a sine fits best over all runs.
@@ -285,7 +142,7 @@ fn project_run(residual: &[f64], frequency_hz: f64, times: &Times, run: &Range<u
     let (step_sin, step_cos) = (TAU * frequency_hz * times.interval_s).sin_cos();
     let (mut sin, mut cos, mut expected) = (0.0_f64, 1.0_f64, f64::NAN);
     let (mut ss, mut cc, mut sc, mut sr, mut cr, mut count) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
-    for (row, (number, place)) in residual.iter().zip(times.places(run)).enumerate() {
+    for (row, (number, place)) in residual.iter().zip(times.of_run(run)).enumerate() {
         if row % STRETCH == 0 || place.to_bits() != expected.to_bits() {
             (sin, cos) = times.phase(frequency_hz, *place).sin_cos();
         }

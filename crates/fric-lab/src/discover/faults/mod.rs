@@ -1,13 +1,16 @@
 //! What is wrong with a log itself and no matter of friction.
 //!
 //! Each such fault has a name, values and a place in time, and is corrected before model and log are compared: stretches in which a sensor stands still or is at the
-//! end of its range, or where it spikes, are left out, hum (`lines`) comes off the reference, the noise of the length (`length_noise`) is kept from being motion, and a reference
+//! end of its range, or where it spikes, are left out, hum (`lines`) and vibrations (`vibration`) come off the reference, the noise of the length (`length_noise`) is kept from being motion, and a reference
 //! that comes late goes where it belongs (`timing`). The steps of a coarse converter are noise, and told.
 
 pub mod correction;
 pub mod length_noise;
 pub mod lines;
+pub mod oscillations;
+pub mod spectrum;
 pub mod timing;
+pub mod vibration;
 
 use std::ops::Range;
 
@@ -40,6 +43,8 @@ const MERGED_S: f64 = 0.1;
 pub enum Fault {
     /// A line in the spectrum that goes with nothing the cable does.
     Hum,
+    /// A damped oscillation of one frequency, as of a sensor on a mount that gives way.
+    Vibration,
     /// The length trembles, and the model takes it for motion.
     NoisyLength,
     /// The force sensor repeats itself.

@@ -9,6 +9,7 @@ mod hum;
 mod local_defect;
 mod quantised;
 mod step;
+mod vibration;
 mod warming;
 
 use std::fmt;
@@ -51,7 +52,7 @@ pub struct DisturbanceParameter {
 
 /// Every disturbance there is.
 pub const DISTURBANCES: &[DisturbanceRow] =
-    &[hum::ROW, frozen::ROW, clipped::ROW, step::ROW, quantised::ROW, warming::ROW, local_defect::ROW];
+    &[hum::ROW, frozen::ROW, clipped::ROW, step::ROW, quantised::ROW, warming::ROW, local_defect::ROW, vibration::ROW];
 
 /// A disturbance with values, checked against its row.
 ///

@@ -31,6 +31,11 @@ pub fn disturbance(kind: &str, strength: &mut Sizing<'_>) -> Result<Disturbance,
             let from_start_m = uniform(strength.random, -0.03, 0.03);
             vec![("drag_n", strength.about(0.25)), ("from_start_m", from_start_m), ("width_m", 0.01)]
         }
+        "vibration" => vec![
+            ("amplitude_n", strength.about(1.0)),
+            ("frequency_hz", uniform(strength.random, 8.0, 40.0)),
+            ("damping_ratio", uniform(strength.random, 0.01, 0.05)),
+        ],
         // Refused by name.
         _ => Vec::new(),
     };

@@ -1,0 +1,70 @@
+//! What oscillates in a residual by itself: lines and a vibration.
+
+use super::RecordingFault;
+use super::lines::{Line, lines};
+use super::spectrum::{Times, Together};
+use super::vibration::{Vibration, Way, steady, vibration};
+use crate::fit::{CableRecord, Row};
+
+/// Frequencies that differ by less than this share are the same; of a vibration, which is broader, by less than its second number.
+const SAME_RATIO: [f64; 2] = [1e-3, 1e-2];
+
+/// Oscillations that have nothing to do with motion and load.
+#[derive(Default)]
+pub struct Oscillations {
+    lines: Vec<Line>,
+    /// With what it is in each row, N.
+    vibration: Option<(Vibration, Vec<f64>)>,
+}
+
+impl Oscillations {
+    /// The lines of a residual, N, NaN where there is no sample.
+    pub fn lines_of(residual_n: &[f64], times: &Times, signals: &[Together]) -> Self {
+        Self { lines: lines(residual_n, times, signals), vibration: None }
+    }
+
+    /// The lines and the vibration of a residual. Where there is a vibration, lines within its peak are parts of it.
+    pub fn of(residual_n: &[f64], times: &Times, record: &CableRecord<'_>, signals: &[Together]) -> Self {
+        let lines_only = Self::lines_of(residual_n, times, signals);
+        let mut rest = residual_n.to_vec();
+        for line in steady(&lines_only.lines, residual_n, times) {
+            line.add_to(rest.iter_mut(), -1.0, times);
+        }
+        let way = |row: &Row| Way { length_m: row.signals.length_m, speed_m_per_s: row.signals.speed_m_per_s };
+        let way: Vec<Way> = record.rows.iter().map(way).collect();
+        let Some(found) = vibration(&rest, times, &way, signals) else { return lines_only };
+        let shown_n = found.in_signal(&rest, times);
+        let without: Vec<f64> = residual_n.iter().zip(&shown_n).map(|(residual, shown)| residual - shown).collect();
+        Self { lines: lines(&without, times, signals), vibration: Some((found, shown_n)) }
+    }
+
+    /// Whether others are at the same frequencies.
+    pub fn are_like(&self, other: &Self) -> bool {
+        let same = |one: f64, other: f64, ratio: f64| (one / other - 1.0).abs() < ratio;
+        let [narrow, broad] = SAME_RATIO;
+        let is_in = |line: &Line| other.lines.iter().any(|of| same(of.frequency_hz, line.frequency_hz, narrow));
+        let vibrations = match (&self.vibration, &other.vibration) {
+            (None, None) => true,
+            (Some((one, _)), Some((other, _))) => same(one.frequency_hz, other.frequency_hz, broad),
+            _ => false,
+        };
+        vibrations && self.lines.len() == other.lines.len() && self.lines.iter().all(is_in)
+    }
+
+    /// A record's rows with all of it taken off the reference: the residual is what the model says less the reference.
+    pub fn taken_off(&self, record: &CableRecord<'_>, times: &Times) -> Vec<Row> {
+        let mut rows = record.rows.to_vec();
+        for line in &self.lines {
+            line.add_to(rows.iter_mut().map(|row| &mut row.reference_n), 1.0, times);
+        }
+        let shown_n = self.vibration.iter().flat_map(|(_, shown_n)| shown_n);
+        rows.iter_mut().zip(shown_n).for_each(|(row, shown_n)| row.reference_n += shown_n);
+        rows
+    }
+
+    /// The faults of the recording that they are.
+    pub fn faults(&self) -> Vec<RecordingFault> {
+        let vibration = self.vibration.iter().map(|(vibration, _)| vibration.fault());
+        self.lines.iter().map(Line::fault).chain(vibration).collect()
+    }
+}

@@ -1,0 +1,198 @@
+//! Power spectra of a log's signals, over rows that may be missing.
+//!
+//! The periodogram of Welch: spectra of overlapping stretches under Hann's window, averaged.
+
+use std::f64::consts::TAU;
+use std::ops::Range;
+
+use realfft::RealFftPlanner;
+
+use crate::fit::{CableRecord, Row};
+use crate::samples::conditions::sign;
+
+/// Cycles of a stretch, and of a pause after which a phase begins anew.
+pub const STRETCH: usize = 4096;
+/// Neighbours on either side that a place is compared with.
+pub const NEIGHBOURS: usize = 24;
+/// Width of a line on either side, in places.
+pub const LINE_WIDTH: usize = 3;
+/// By how many times their median a line of the motion or the load stands out: less than this may be chance in a few tens of spectra averaged.
+const MOTION_RATIO: f64 = 4.0;
+/// A log whose samples are as far apart as the cycles, but for this share, is that of the loop.
+const RATE_TOLERANCE: f64 = 0.1;
+
+/// When a record's rows are, and over which of them a line keeps its phase.
+pub struct Times {
+    /// Of each row, its place since the first of its log, in rows of a log without gaps.
+    pub places: Vec<f64>,
+    /// Rows of one phase.
+    pub runs: Vec<Range<usize>>,
+    /// From one place to the next, s.
+    pub interval_s: f64,
+}
+
+impl Times {
+    /// Of a record.
+    #[must_use]
+    pub fn of(record: &CableRecord<'_>) -> Self {
+        #[expect(clippy::cast_precision_loss, reason = "a small constant")]
+        let is_near = |one: &f64, next: &f64| next - one < STRETCH as f64;
+        // A loop that logs each cycle does not jitter as its stamps do; of a log at another rate the stamps are all there is.
+        let is_of_loop = (record.interval_s / record.cycle_s - 1.0).abs() < RATE_TOLERANCE;
+        let interval_s = if is_of_loop { record.cycle_s } else { record.interval_s };
+        let (mut places, mut runs) = (Vec::with_capacity(record.rows.len()), Vec::new());
+        for (mut start, rows) in record.logs() {
+            let first_s = record.time_s(start);
+            let by_stamp = |place: usize| (record.time_s(start + place) - first_s) / interval_s;
+            let of_log =
+                rows.iter().enumerate().map(|(place, row)| if is_of_loop { row.cycle } else { by_stamp(place) });
+            places.extend(of_log);
+            for run in places.get(start..).unwrap_or_default().chunk_by(is_near) {
+                runs.push(start..start + run.len());
+                start += run.len();
+            }
+        }
+        Self { places, runs, interval_s }
+    }
+
+    /// The places of the rows of a run.
+    pub fn of_run(&self, run: &Range<usize>) -> &[f64] {
+        self.places.get(run.clone()).unwrap_or_default()
+    }
+
+    /// Phase of a line at a place, rad.
+    pub fn phase(&self, frequency_hz: f64, place: f64) -> f64 {
+        TAU * frequency_hz * (place * self.interval_s)
+    }
+
+    /// From one place of a [`Spectrum`] to the next, Hz.
+    pub fn place_hz(&self) -> f64 {
+        #[expect(clippy::cast_precision_loss, reason = "a small constant")]
+        let length = STRETCH as f64;
+        1.0 / (length * self.interval_s)
+    }
+
+    /// Puts the numbers of rows where these would be had they no gaps, and 0 where there is none.
+    pub fn spread(&self, rows: &Range<usize>, numbers: &[f64], room: &mut [f64]) {
+        room.fill(0.0);
+        let places = self.of_run(rows);
+        let Some(first) = places.first() else { return };
+        for (place, number) in places.iter().zip(numbers).filter(|(_, number)| number.is_finite()) {
+            // Those after lost rows move on, the last out of the room.
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
+            let place = (place - first).round() as usize;
+            if let Some(room) = room.get_mut(place) {
+                *room = *number;
+            }
+        }
+    }
+
+    /// Rows from the first to the last of the longest run, had it no gaps.
+    pub fn longest(&self) -> f64 {
+        let length = |run: &Range<usize>| match self.of_run(run) {
+            [first, .., last] => last - first + 1.0,
+            _ => 1.0,
+        };
+        self.runs.iter().map(length).fold(1.0, f64::max)
+    }
+}
+
+/// Mean squares of a signal by frequency.
+pub struct Spectrum {
+    /// Of each place, from frequency 0 up; they sum up to the signal's.
+    pub powers: Vec<f64>,
+    /// How many spectra were averaged.
+    pub stretches: f64,
+}
+
+impl Spectrum {
+    /// Of a signal with a number for each row, NaN where there is none; `None` where no run is as long as a stretch.
+    pub fn of(signal: &[f64], times: &Times) -> Option<Self> {
+        let transform = RealFftPlanner::<f64>::new().plan_fft_forward(STRETCH);
+        let mut input = transform.make_input_vec();
+        let mut output = transform.make_output_vec();
+        let mut powers = vec![0.0; output.len()];
+        let mut stretches = 0.0;
+        #[expect(clippy::cast_precision_loss, reason = "a small constant")]
+        let window = |place: usize| 0.5 - 0.5 * (TAU * place as f64 / STRETCH as f64).cos();
+        for run in &times.runs {
+            for start in (run.start..(run.end + 1).saturating_sub(STRETCH)).step_by(STRETCH / 2) {
+                let stretch = start..start + STRETCH;
+                times.spread(&stretch, signal.get(stretch.clone())?, &mut input);
+                input.iter_mut().enumerate().for_each(|(place, number)| *number *= window(place));
+                transform.process(&mut input, &mut output).ok()?;
+                powers.iter_mut().zip(&output).for_each(|(sum, number)| *sum += number.norm_sqr());
+                stretches += 1.0;
+            }
+        }
+        // Half of the places of the transform are here; Hann's window leaves three eighths of the mean square.
+        #[expect(clippy::cast_precision_loss, reason = "a small constant")]
+        let length = STRETCH as f64;
+        let scale = 2.0 / (length * length * 0.375 * stretches);
+        powers.iter_mut().for_each(|power| *power *= scale);
+        (stretches > 0.0).then_some(Self { powers, stretches })
+    }
+
+    /// Whether it has a line at a frequency.
+    pub fn has_line(&self, frequency_hz: f64, times: &Times) -> bool {
+        let place = frequency_hz / times.place_hz();
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a place of the spectrum")]
+        let place = place.round() as usize;
+        (place.saturating_sub(1)..=place + 1)
+            .any(|place| self.over_median(place).is_some_and(|ratio| ratio > MOTION_RATIO))
+    }
+
+    /// By how many times the median of its neighbours a place stands out.
+    pub fn over_median(&self, place: usize) -> Option<f64> {
+        Some(self.powers.get(place)? / self.median_around(place)?)
+    }
+
+    /// Mean square of a line at a place: what is more there than around.
+    pub fn line_power(&self, place: usize) -> Option<f64> {
+        let median = self.median_around(place)?;
+        let line = self.powers.get(place.checked_sub(LINE_WIDTH)?..=place + LINE_WIDTH)?;
+        Some(line.iter().map(|power| power - median).sum())
+    }
+
+    fn median_around(&self, place: usize) -> Option<f64> {
+        let around = place.checked_sub(NEIGHBOURS)?..(place + NEIGHBOURS + 1).min(self.powers.len());
+        let others = around.filter(|other| other.abs_diff(place) > LINE_WIDTH);
+        let mut others: Vec<f64> = others.filter_map(|other| self.powers.get(other).copied()).collect();
+        if others.is_empty() {
+            return None;
+        }
+        let middle = others.len() / 2;
+        Some(*others.select_nth_unstable_by(middle, f64::total_cmp).1)
+    }
+}
+
+/// Signals that only together tell a line: each may hum by itself.
+pub type Together = Vec<Vec<f64>>;
+
+/// Whether any of the signals has a line at a frequency, for each of some.
+pub fn have_line(frequencies_hz: &[f64], signals: &[Together], times: &Times) -> Vec<bool> {
+    let spectra_of =
+        |of: &Together| of.iter().filter_map(|signal| Spectrum::of(signal, times)).collect::<Vec<Spectrum>>();
+    let spectra: Vec<Vec<Spectrum>> = signals.iter().map(spectra_of).collect();
+    let has = |frequency_hz: &f64| {
+        spectra.iter().any(|of| !of.is_empty() && of.iter().all(|spectrum| spectrum.has_line(*frequency_hz, times)))
+    };
+    frequencies_hz.iter().map(has).collect()
+}
+
+/// What a cable does and bears: the motion, with the harmonics that a law of friction makes of a periodic one, and the load as both of its sensors
+/// see it.
+pub fn motion_and_load(record: &CableRecord<'_>) -> Vec<Together> {
+    let of = |value: &dyn Fn(&Row) -> f64| record.rows.iter().map(value).collect::<Vec<f64>>();
+    let speed_m_per_s = of(&|row| row.signals.speed_m_per_s);
+    let change = |pair: &[f64]| pair[1] - pair[0];
+    let acceleration = std::iter::once(0.0).chain(speed_m_per_s.windows(2).map(change)).collect();
+    vec![
+        vec![of(&|row| row.signals.displacement_m)],
+        vec![of(&|row| row.signals.displacement_m.abs())],
+        vec![of(&|row| sign(row.signals.displacement_m))],
+        vec![speed_m_per_s],
+        vec![acceleration],
+        vec![of(&|row| row.signals.sensor_force_n), of(&|row| row.reference_n)],
+    ]
+}
