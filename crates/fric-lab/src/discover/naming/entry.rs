@@ -41,7 +41,7 @@ impl Search<'_, '_> {
             };
             let mut entrants: Vec<(Effect, Trial)> = candidates.into_iter().filter(may_enter).collect();
             entrants.sort_by(|(_, one), (_, other)| one.training.total_cmp(&other.training));
-            let entrants: Vec<Entrant> = entrants
+            let mut entrants: Vec<Entrant> = entrants
                 .into_iter()
                 .map(|(effect, trial)| {
                     let inflation = inflation(self.bench, &trial, &fitted(effect));
@@ -50,6 +50,10 @@ impl Search<'_, '_> {
                 // What memory in the residual makes of chance is no reason to go on.
                 .filter(|entrant| entrant.delta_bic < 0.0)
                 .collect();
+            // The best is the one with the most evidence for its number of parameters, whatever the memory: one for all, that of the best fit.
+            let memory = entrants.first().map_or(1.0, |best| best.inflation);
+            let evidence = |entrant: &Entrant| self.delta_bic(&model, &entrant.trial, memory);
+            entrants.sort_by(|one, other| evidence(one).total_cmp(&evidence(other)));
             // Of friction every model has its own: what is still missing of it hides the evidence for the rest.
             let enters = |entrant: &&Entrant| entrant.delta_bic < -STRONG_BIC || entrant.effect.is_friction();
             let entering = match entrants.iter().find(enters) {

@@ -238,8 +238,10 @@ impl<'b, 'a> Search<'b, 'a> {
         for place in 0..found.len() {
             let Some((other, trial)) = self.alternative(found, place) else { continue };
             let model = self.fit(found);
-            if !self.refused.contains_key(&other) && trial.training < model.training && trial.held_out < model.held_out
-            {
+            let is_better = trial.training < model.training && trial.held_out < model.held_out;
+            // More parameters fit a little better anyway.
+            let memory = inflation(self.bench, &trial, &fitted(other));
+            if !self.refused.contains_key(&other) && is_better && self.delta_bic(&model, &trial, memory) < 0.0 {
                 found[place] = other;
                 is_changed = true;
             }
