@@ -30,15 +30,19 @@ pub fn around(record: &CableRecord<'_>, mu: f64, noise_n: f64) -> Around {
         }
     }
     let tension_n = tension.rms().unwrap_or(1.0);
+    let mean_tension_n = sum_n / count.max(1.0);
+    let varies_n = (tension_n * tension_n - mean_tension_n * mean_tension_n).max(0.0).sqrt();
+    let presliding_m = mu * tension_n / record.params.values()[SIGMA];
     Around {
         cycle_s: record.cycle_s,
         tension_n,
-        mean_tension_n: sum_n / count.max(1.0),
+        mean_tension_n,
         noise_n,
         friction_n: mu * tension_n,
         speed_m_per_s: speed.rms().unwrap_or(0.1).max(1e-4),
         end_s: record.rows.iter().map(|row| row.cycle).fold(0.0, f64::max) * record.cycle_s,
         mu,
+        compliance_m_per_n: if varies_n > 0.0 { presliding_m / varies_n } else { 0.0 },
         length_noise_m: record.length_noise_m().unwrap_or(0.0).max(record.length_play_m / PLAY_OF_NOISE),
         pulley_count: u32::try_from(record.params.pulley_count()).unwrap_or(0),
         periods: Periods::default(),

@@ -24,9 +24,11 @@ impl TruthEffect for Spring {
     }
 }
 
-/// Plays of twice the noise of the sensor; that of the reference is in what is known of it too.
+/// Plays of twice the noise of the sensor; that of the reference is in what is known of it too. A friction that was fitted to a cable that does not give may have
+/// no slope towards one that gives a little.
 fn starts(around: &Around) -> Vec<Start> {
-    [1.0, 1.6].map(|plays| vec![("play_n", plays * around.noise_n)]).to_vec()
+    let compliance = ("compliance_m_per_n", around.compliance_m_per_n);
+    [1.0, 1.6].map(|plays| vec![("play_n", plays * around.noise_n), compliance]).to_vec()
 }
 
 fn typical(scale: &mut Sizing<'_>) -> Start {

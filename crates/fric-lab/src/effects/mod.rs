@@ -49,6 +49,8 @@ pub struct Around {
     pub end_s: f64,
     /// μ found so far, 1.
     pub mu: f64,
+    /// Compliance at which the cable stretches by as much as the friction takes to build up, while its tension changes by its standard deviation, m/N.
+    pub compliance_m_per_n: f64,
     /// Standard deviation of the noise of the length, m.
     pub length_noise_m: f64,
     /// How many pulleys the cable has.
