@@ -82,7 +82,9 @@ impl Outcome {
     fn is_right(&self) -> bool {
         let verdict = match (self.case.disturbance, self.case.effects.is_empty()) {
             // A fault of the recording that has a name is not the model's.
-            (Some(disturbance), _) if !["hum", "vibration", "frozen", "clipped", "quantised"].contains(&disturbance) => {
+            (Some(disturbance), _)
+                if !["hum", "vibration", "frozen", "clipped", "quantised"].contains(&disturbance) =>
+            {
                 Verdict::Unexplained
             }
             (_, true) => Verdict::Complete,

@@ -7,7 +7,7 @@
 //!
 //! With `cable_elasticity` the play of the stretch may stay off by 3·`play_n`·`compliance_m_per_n`·σ, which is left out.
 //! What cannot be told is counted and left out: a spike of no more than [`greatest_change_n`] is what the cable can do, from its
-//! first cycle until, after its last, the force has come back to the twin's. The twin's own force changes by at most half of that in a cycle.
+//! first cycle until, after its last, the force has come back to the twin's. The twin's own force changes by at most 0.4 of that in a cycle.
 
 use fric_core::robot::{MonitorOptions, Presliding};
 use fric_core::{CableInput, CableParams, CableStatus, CycleInput, Pose};

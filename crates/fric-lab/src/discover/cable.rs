@@ -97,16 +97,22 @@ pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> CableDiscove
         return CableDiscovery::untold(record, samples, lack_of_noise());
     };
     task.stages.finish_one();
-    // A wrong model may hide a line, or leave what only looks like one; a vibration shows in what a right one leaves.
+    // A wrong model may hide an oscillation, or leave what only looks like one.
     let after = Oscillations::of(&left_by(&outcome.fitted.values), &times, record, &signals);
+    let mut faults = after.faults();
     if !heard.are_like(&after)
         && let Some(again) = look(&after, &mut start)
     {
-        (outcome, heard) = (again, after);
+        // No filter takes off the onset of a vibration: a name that comes with its removal stands for what is left of it.
+        let was_named = |named: &Named| outcome.naming.named.iter().any(|before| before.effect == named.effect);
+        if !after.vibrate() || again.naming.named.iter().all(was_named) {
+            (outcome, heard) = (again, after);
+        }
+    } else {
+        faults = heard.faults();
     }
     task.stages.finish_one();
     let rows = heard.taken_off(record, &times);
-    let mut faults = heard.faults();
     faults.extend(of_stretches(&stretches, |cycle| record.time_s(cycle)));
     let step_n = coarse_step_n(record).filter(|step_n| {
         // Rounding is noise, evenly within ± half a step.

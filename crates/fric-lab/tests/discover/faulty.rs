@@ -112,6 +112,37 @@ fn hum_is_one_line_with_lost_rows_and_in_several_logs() {
     }
 }
 
+/// A mount that rings after each reversal is a fault of the recording beside the effect, which is named by itself.
+#[test]
+fn a_vibration_is_told_beside_an_effect() {
+    let case = Case {
+        disturbance: Some("vibration"),
+        seed: 70_017,
+        ..Case::hiding(Group::Mixed, &[Effect::DirectionAsymmetry])
+    };
+    let (points, truth) = points_of(&case);
+    let value = |key: &str| truth.disturbances[0].value(key).unwrap();
+    let found = look(&[&points], &truth);
+    let names: Vec<Effect> = found.findings.iter().map(|finding| finding.effect).collect();
+    assert_eq!((names, found.verdict), (vec![Effect::DirectionAsymmetry], Verdict::Extended), "{:?}", found.tried);
+    let fault = &found.faults[0];
+    let told = |key: &str| fault.parameters.iter().find(|(of, _)| *of == key).unwrap().1;
+    assert_eq!((found.faults.len(), fault.fault), (1, Fault::Vibration), "{:?}", found.faults);
+    assert!((told("frequency_hz") / value("frequency_hz") - 1.0).abs() < 0.02, "{fault:?} {:?}", truth.disturbances);
+    assert!((told("damping_ratio") / value("damping_ratio") - 1.0).abs() < 0.6, "{fault:?} {:?}", truth.disturbances);
+    assert!((found.noise_floor_n / truth.floor_n - 1.0).abs() < 0.05, "{} {}", found.noise_floor_n, truth.floor_n);
+}
+
+/// A zero that jumps once, or friction that does, is no drift and no warm-up: it goes with the time, and no effect of the catalogue does so at once.
+#[test]
+fn one_jump_of_the_zero_is_no_drift() {
+    let (mut points, truth) = points_of(&Case { seed: 70_018, ..Case::of(Group::Nothing) });
+    points[23_000..].iter_mut().for_each(|point| point.cable.sensor_force_n += 0.15);
+    let found = look(&[&points], &truth);
+    let names: Vec<Effect> = found.findings.iter().map(|finding| finding.effect).collect();
+    assert_eq!((names, found.verdict), (vec![], Verdict::Unexplained), "{:?}", found.tried);
+}
+
 /// References of every so many cycles, with so much more noise, joined to the cycles as a reader of logs does.
 fn with_slow_reference(points: &mut [Point], distance: usize, noise_n: f64, seed: u64) {
     let mut random = ChaCha8Rng::seed_from_u64(seed);

@@ -242,6 +242,35 @@ fn steps_come_and_go() {
     assert!((5000..=8000).contains(&count), "{count}");
 }
 
+/// Between two blows what the sensor shows in addition is a damped sine, which answers `x₂ − 2r·cos θ·x₁ + r²·x₀ = 0`; a blow comes with each start and
+/// reversal of the winch, and nothing before the first.
+#[test]
+fn a_mount_rings_after_each_start_and_reversal() {
+    const FREQUENCY_HZ: f64 = 12.0;
+    const DAMPING_RATIO: f64 = 0.05;
+    let plain = Signals::of(&rubbing(), &short());
+    let ringing = Signals::of(&rubbing(), &spoilt("vibration:amplitude_n=0.4,frequency_hz=12,damping_ratio=0.05"));
+    let shown_n = differences(&ringing.sensor_n, &plain.sensor_n);
+    let undamped = std::f64::consts::TAU * FREQUENCY_HZ * 1e-3;
+    let (r, turn) = ((-DAMPING_RATIO * undamped).exp(), undamped * (1.0 - DAMPING_RATIO * DAMPING_RATIO).sqrt());
+    let answer = |shown_n: &[f64]| shown_n[2] - 2.0 * r * turn.cos() * shown_n[1] + r * r * shown_n[0];
+    let struck: Vec<usize> = shown_n
+        .windows(3)
+        .enumerate()
+        .filter(|(_, shown_n)| answer(shown_n).abs() > 1e-9)
+        .map(|(cycle, _)| cycle + 2)
+        .collect();
+    let starts = |cycle: &usize| {
+        let before = plain.speed_m_per_s[cycle.saturating_sub(3)];
+        let after = plain.speed_m_per_s[(cycle + 2).min(plain.speed_m_per_s.len() - 1)];
+        before.abs() < 5e-3 || before.signum() != after.signum()
+    };
+    assert!(struck.len() > 6 && struck.iter().all(starts), "{struck:?}");
+    let greatest_n = shown_n.iter().fold(0.0_f64, |most, shown_n| most.max(shown_n.abs()));
+    assert!(greatest_n > 0.3 && greatest_n < 0.8, "{greatest_n}");
+    assert!(shown_n[..struck[0] - 1].iter().all(|shown_n| shown_n.abs() < 1e-12));
+}
+
 /// Far from the piece nothing changes; where it passes, the last pulley rubs more by the drag, which the sensor at 180°
 /// feels twice.
 #[test]
@@ -398,7 +427,7 @@ fn disturbances_are_read_as_they_are_written_and_errors_name_what_is_known() {
     assert_eq!(
         problem("hmu:amplitude_n=1"),
         "there is no disturbance `hmu`; did you mean `hum`? known are `hum`, `frozen`, `clipped`, `step`, `quantised`, `warming`, \
-         `local_defect`"
+         `local_defect`, `vibration`"
     );
     assert!(problem("hum").starts_with("the disturbance `hum` has no value, which would hide nothing"));
     assert_eq!(

@@ -10,7 +10,6 @@ use crate::fit::{CableRecord, Row};
 const SAME_RATIO: [f64; 2] = [1e-3, 1e-2];
 
 /// Oscillations that have nothing to do with motion and load.
-#[derive(Default)]
 pub struct Oscillations {
     lines: Vec<Line>,
     /// With what it is in each row, N.
@@ -23,19 +22,30 @@ impl Oscillations {
         Self { lines: lines(residual_n, times, signals), vibration: None }
     }
 
-    /// The lines and the vibration of a residual. Where there is a vibration, lines within its peak are parts of it.
+    /// The lines and the vibration of a residual, N, NaN where there is no sample. Where there is a vibration, lines within its peak are parts of it.
     pub fn of(residual_n: &[f64], times: &Times, record: &CableRecord<'_>, signals: &[Together]) -> Self {
-        let lines_only = Self::lines_of(residual_n, times, signals);
+        let all = Self::lines_of(residual_n, times, signals);
+        let humming = steady(&all.lines, residual_n, times);
         let mut rest = residual_n.to_vec();
-        for line in steady(&lines_only.lines, residual_n, times) {
+        for line in &humming {
             line.add_to(rest.iter_mut(), -1.0, times);
         }
         let way = |row: &Row| Way { length_m: row.signals.length_m, speed_m_per_s: row.signals.speed_m_per_s };
         let way: Vec<Way> = record.rows.iter().map(way).collect();
-        let Some(found) = vibration(&rest, times, &way, signals) else { return lines_only };
+        // A hum that swells leaves a peak where it was.
+        let is_of_hum =
+            |found: &Vibration| humming.iter().any(|line| found.overlaps(line.frequency_hz, times.place_hz()));
+        let Some(found) = vibration(&rest, times, &way, signals).filter(|found| !is_of_hum(found)) else {
+            return all;
+        };
         let shown_n = found.in_signal(&rest, times);
         let without: Vec<f64> = residual_n.iter().zip(&shown_n).map(|(residual, shown)| residual - shown).collect();
         Self { lines: lines(&without, times, signals), vibration: Some((found, shown_n)) }
+    }
+
+    /// Whether there is a vibration among them.
+    pub fn vibrate(&self) -> bool {
+        self.vibration.is_some()
     }
 
     /// Whether others are at the same frequencies.

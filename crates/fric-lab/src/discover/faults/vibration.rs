@@ -1,10 +1,10 @@
 //! A sensor that vibrates: its mount, or the frame that carries it, rings when it is struck.
 //!
-//! What shows is the displacement of a damped oscillator. Struck again and again, at times that are its own, it has the spectrum of a phasor that
-//! turns by θ and decays by r from one sample to the next,
+//! What shows is the displacement of a damped oscillator. Struck again and again, at times that are its own, it has the spectrum of a process of
+//! second order, whose poles turn by θ and decay by r from one sample to the next,
 //!
 //! ```text
-//! S(ω) = P/2·(|1 − r·exp(i(θ − ω))|⁻² + |1 − r·exp(i(θ + ω))|⁻²)
+//! S(ω) = P·|1 − r·exp(i(θ − ω))|⁻²·|1 − r·exp(−i(θ + ω))|⁻²
 //! θ = 2πf·dt·√(1 − ζ²)    r = exp(−2πζf·dt)
 //! ```
 //!
@@ -22,15 +22,20 @@ use realfft::RealFftPlanner;
 use realfft::num_complex::Complex;
 
 use super::lines::{LEAST_SHARE, Line, mean_square};
-use super::spectrum::{Spectrum, Times, Together, have_line};
+use super::spectrum::{LINE_WIDTH, Spectrum, Times, Together, have_line};
 use super::{Fault, RecordingFault};
+use crate::discover::naming::STRONG_BIC;
 use crate::samples::conditions::sign;
 
 /// Damping ratios that are tried: a bell, and half a turn until nothing is left of it.
 const DAMPING: [f64; 2] = [1e-3, 0.12];
-/// How many of them, evenly by their logarithm, and how many frequencies beside the loudest, to either side.
-const DAMPINGS: u32 = 16;
+/// How many of them, evenly by their logarithm, and how many frequencies beside a peak, to either side; where the search for one ends, in places of the spectrum.
+const DAMPINGS: f64 = 16.0;
 const FREQUENCIES: i32 = 6;
+const FINEST: f64 = 0.02;
+/// Peaks that are looked at, a fifth of the frequency and more apart, and parameters of an oscillator.
+const PEAKS: usize = 3;
+const PARAMETERS: f64 = 3.0;
 /// Below so many places of the spectrum a peak is not told from what falls with the frequency.
 const FIRST_PLACE: usize = 12;
 /// Above this share of the sampling frequency differences of neighbouring samples are noise.
@@ -39,8 +44,6 @@ const MOST_OF_RATE: f64 = 0.4;
 const STEPS: usize = 40;
 /// Independent numbers in a place of the periodogram, each stretch: Hann's window makes neighbours alike, and stretches overlap by half.
 const INDEPENDENT: f64 = 0.49;
-/// How much its evidence must be, as of every name.
-const STRONG_BIC: f64 = crate::discover::naming::STRONG_BIC;
 /// A wave that follows the length and explains this share of it is a ripple. Of strokes that repeat themselves a vibration goes with the length by up to a
 /// third.
 const MOST_OF_LENGTH: f64 = 0.5;
@@ -75,8 +78,15 @@ impl Vibration {
     /// Root mean square, N.
     #[must_use]
     pub fn rms_n(&self) -> f64 {
-        let decay = self.phasor().norm_sqr();
-        (self.sizes[0] / (1.0 - decay)).sqrt()
+        let [blows, ..] = self.sizes;
+        (blows * mean_square_of(self.pole())).sqrt()
+    }
+
+    /// Whether a line at a frequency, as broad as a spectrum with places so far apart shows it, lies within its peak.
+    pub fn overlaps(&self, line_hz: f64, place_hz: f64) -> bool {
+        #[expect(clippy::cast_precision_loss, reason = "a small constant")]
+        let width_hz = LINE_WIDTH as f64 * place_hz;
+        (self.frequency_hz - line_hz).abs() < width_hz + self.damping_ratio * self.frequency_hz
     }
 
     /// The fault of the recording that it is.
@@ -123,27 +133,32 @@ impl Vibration {
     /// What share of a wave is the vibration's; `rad` is its turn from one sample to the next.
     fn share(&self, rad: f64) -> f64 {
         let [blows, level, slow] = self.sizes;
-        let own = blows * resonance(self.phasor(), rad);
+        let own = blows * resonance(self.pole(), rad);
         let turn = TAU * self.frequency_hz * self.interval_s;
-        // What falls with the frequency is not known below half of the vibration's, and is all there is there.
         own / (own + level + slow * (turn / rad.max(f64::MIN_POSITIVE)).powi(2))
     }
 
-    fn phasor(&self) -> Complex<f64> {
-        phasor(self.frequency_hz, self.damping_ratio, self.interval_s)
+    fn pole(&self) -> Complex<f64> {
+        pole(self.frequency_hz, self.damping_ratio, self.interval_s)
     }
 }
 
 /// How the oscillator turns and decays in a sample.
-fn phasor(frequency_hz: f64, damping_ratio: f64, interval_s: f64) -> Complex<f64> {
+fn pole(frequency_hz: f64, damping_ratio: f64, interval_s: f64) -> Complex<f64> {
     let turn = TAU * frequency_hz * interval_s;
     Complex::from_polar((-damping_ratio * turn).exp(), turn * (1.0 - damping_ratio * damping_ratio).sqrt())
 }
 
 /// Power spectrum of the oscillator, of blows of mean square 1 each sample.
-fn resonance(phasor: Complex<f64>, rad: f64) -> f64 {
+fn resonance(pole: Complex<f64>, rad: f64) -> f64 {
     let wave = Complex::from_polar(1.0, -rad);
-    0.5 * (1.0 / (1.0 - phasor * wave).norm_sqr() + 1.0 / (1.0 - phasor.conj() * wave).norm_sqr())
+    1.0 / ((1.0 - pole * wave).norm_sqr() * (1.0 - pole.conj() * wave).norm_sqr())
+}
+
+/// Its mean square.
+fn mean_square_of(pole: Complex<f64>) -> f64 {
+    let (first, second) = (2.0 * pole.re, pole.norm_sqr());
+    (1.0 + second) / ((1.0 - second) * ((1.0 + second).powi(2) - first * first))
 }
 
 /// The vibration in a residual, N, NaN where there is no sample; `None` where there is none. `way` is of the cable by rows, `signals` what it does and bears.
@@ -179,11 +194,11 @@ struct Band<'a> {
 impl Band<'_> {
     /// The spectra of level, slow part and vibration by place, as Hann's window shows them.
     fn shapes(&self, frequency_hz: f64, damping_ratio: f64) -> [Vec<f64>; 3] {
-        let phasor = phasor(frequency_hz, damping_ratio, self.times.interval_s);
+        let pole = pole(frequency_hz, damping_ratio, self.times.interval_s);
         #[expect(clippy::cast_precision_loss, reason = "a place of the spectrum")]
         let at = |place: usize| place as f64 * self.times.place_hz();
         let places = self.first..self.first + self.powers.len();
-        let own = |place: usize| resonance(phasor, TAU * at(place) * self.times.interval_s);
+        let own = |place: usize| resonance(pole, TAU * at(place) * self.times.interval_s);
         let seen = |place: usize| (own(place - 1) + 4.0 * own(place) + own(place + 1)) / 6.0;
         [
             places.clone().map(seen).collect(),
@@ -194,13 +209,13 @@ impl Band<'_> {
 
     /// The sizes of greatest likelihood, and −2 times its logarithm. Each step multiplies a size, which makes the likelihood greater
     /// (C. Févotte, J. Idier, *Algorithms for nonnegative matrix factorization with the β-divergence*, Neural Computation 23, 2011).
-    fn fit(&self, shapes: &[Vec<f64>; 3], with: usize) -> ([f64; 3], f64) {
+    fn fit(&self, shapes: &[Vec<f64>; 3], with_oscillator: bool) -> ([f64; 3], f64) {
         #[expect(clippy::cast_precision_loss, reason = "a small count")]
         let mean = self.powers.iter().sum::<f64>() / self.powers.len() as f64;
         #[expect(clippy::cast_precision_loss, reason = "a small count")]
         let start = |shape: &Vec<f64>| 0.3 * mean * shape.len() as f64 / shape.iter().sum::<f64>();
         let mut sizes = shapes.each_ref().map(start);
-        if with == 0 {
+        if !with_oscillator {
             sizes[0] = 0.0;
         }
         let model = |sizes: &[f64; 3], place: usize| -> f64 {
@@ -226,27 +241,44 @@ impl Band<'_> {
     }
 }
 
-/// The oscillator that explains most of a spectrum, if it is one.
+/// The oscillator with the most evidence in a spectrum, if there is one.
 fn loudest(spectrum: &Spectrum, times: &Times) -> Option<Vibration> {
+    let evidence = peaks(spectrum).into_iter().filter_map(|place| oscillator(spectrum, times, place));
+    let (found, _) = evidence.min_by(|(_, one), (_, other)| one.total_cmp(other))?;
+    Some(found)
+}
+
+/// Places where a spectrum stands out from what lies beside, the most first.
+fn peaks(spectrum: &Spectrum) -> Vec<usize> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss, reason = "a place")]
     let last = (2.0 * MOST_OF_RATE * spectrum.powers.len() as f64) as usize;
-    // A place of the spectrum has the power of both of its signs, in so many samples.
-    #[expect(clippy::cast_precision_loss, reason = "a small count")]
-    let samples = (spectrum.powers.len() - 1) as f64;
     let sum = |from: usize, to: usize| spectrum.powers.get(from..to).map(|part| part.iter().sum::<f64>());
-    // By how much a fiftieth of the frequency to either side is louder than what lies beside it.
+    // By how much a fiftieth of the frequency to either side is louder than what lies beside it, where chance makes less of a mean of many.
     let stands_out = |place: usize| {
         let half = (place / 50).max(1);
         let inside = sum(place - half, place + half + 1)?;
         let beside = sum(place - 4 * half, place - 2 * half)? + sum(place + 2 * half + 1, place + 4 * half + 1)?;
         #[expect(clippy::cast_precision_loss, reason = "small counts")]
-        let ratio = inside / beside * (4 * half) as f64 / (2 * half + 1) as f64;
-        // Chance makes less of it where it is the mean of many.
-        #[expect(clippy::cast_precision_loss, reason = "small counts")]
-        let spread = (1.0 / (spectrum.stretches * half as f64)).sqrt();
-        ratio.is_finite().then_some((place, (ratio - 1.0) / spread))
+        let [inside, beside, half] = [inside / (2 * half + 1) as f64, beside / (4 * half) as f64, half as f64];
+        let by = (inside / beside - 1.0) * (spectrum.stretches * half).sqrt();
+        by.is_finite().then_some((place, by))
     };
-    let (place, _) = (FIRST_PLACE..last).filter_map(stands_out).max_by(|(_, one), (_, other)| one.total_cmp(other))?;
+    let mut places: Vec<(usize, f64)> = (FIRST_PLACE..last).filter_map(stands_out).collect();
+    places.sort_by(|(_, one), (_, other)| other.total_cmp(one));
+    let mut peaks: Vec<usize> = Vec::new();
+    for (place, _) in places {
+        if peaks.len() < PEAKS && peaks.iter().all(|peak| 5 * peak.abs_diff(place) > *peak) {
+            peaks.push(place);
+        }
+    }
+    peaks
+}
+
+/// The oscillator near a place of a spectrum with the evidence for it; `None` where it is not enough.
+fn oscillator(spectrum: &Spectrum, times: &Times, place: usize) -> Option<(Vibration, f64)> {
+    // A place of the spectrum has the power of both of its signs, in so many samples.
+    #[expect(clippy::cast_precision_loss, reason = "a small count")]
+    let samples = (spectrum.powers.len() - 1) as f64;
     let (first, end) = (place / 2, (2 * place).min(spectrum.powers.len() - 1));
     let band = Band {
         powers: spectrum.powers.get(first..end)?.iter().map(|power| samples * power).collect(),
@@ -254,42 +286,37 @@ fn loudest(spectrum: &Spectrum, times: &Times) -> Option<Vibration> {
         weight: INDEPENDENT * spectrum.stretches,
         times,
     };
-    let damping = |step: f64| DAMPING[0] * (DAMPING[1] / DAMPING[0]).powf(step / f64::from(DAMPINGS));
-    #[expect(clippy::cast_precision_loss, reason = "a place of the spectrum")]
-    let coarse_hz = place as f64 * times.place_hz();
+    let damping = |step: f64| DAMPING[0] * (DAMPING[1] / DAMPING[0]).powf(step / DAMPINGS);
     let fit = |frequency_hz: f64, step: f64| {
-        let shapes = band.shapes(frequency_hz, damping(step));
-        let (sizes, deviance) = band.fit(&shapes, 1);
+        let (sizes, deviance) = band.fit(&band.shapes(frequency_hz, damping(step)), true);
         (Tried { frequency_hz, step, sizes }, deviance)
     };
-    let best = |tried: Vec<(Tried, f64)>| tried.into_iter().min_by(|(_, one), (_, other)| one.total_cmp(other));
     // A grid as wide as the peak may be, then finer around what is best there.
-    let (mut around, mut step_hz, mut steps) =
-        ((coarse_hz, f64::from(DAMPINGS) / 2.0), times.place_hz(), f64::from(DAMPINGS) / 2.0);
+    #[expect(clippy::cast_precision_loss, reason = "a place of the spectrum")]
+    let (mut hz, mut step) = (place as f64 * times.place_hz(), 0.5 * DAMPINGS);
+    let (mut width_hz, mut width) = (times.place_hz(), 0.125 * DAMPINGS);
     let mut found = None;
-    while step_hz > 0.02 * times.place_hz() {
-        let grid = (-FREQUENCIES..=FREQUENCIES).flat_map(|side| (-4..=4).map(move |damping| (side, damping)));
-        let tried = grid.filter_map(|(side, damping)| {
-            let step = around.1 + f64::from(damping) * steps / 4.0;
-            let frequency_hz = around.0 + f64::from(side) * step_hz;
-            (0.0..=f64::from(DAMPINGS)).contains(&step).then(|| fit(frequency_hz, step))
-        });
-        let (tried, deviance) = best(tried.collect())?;
-        around = (tried.frequency_hz, tried.step);
-        found = Some((tried, deviance));
-        (step_hz, steps) = (step_hz / 4.0, steps / 3.0);
+    while width_hz > FINEST * times.place_hz() {
+        let grid = (-FREQUENCIES..=FREQUENCIES).flat_map(|side| (-4..=4).map(move |more| (side, more)));
+        let near = grid.map(|(side, more)| (hz + f64::from(side) * width_hz, step + f64::from(more) * width));
+        let tried = near.filter(|(_, step)| (0.0..=DAMPINGS).contains(step)).map(|(hz, step)| fit(hz, step));
+        let best = tried.min_by(|(_, one), (_, other)| one.total_cmp(other))?;
+        (hz, step) = (best.0.frequency_hz, best.0.step);
+        found = Some(best);
+        (width_hz, width) = (0.25 * width_hz, width / 3.0);
     }
     let (tried, deviance) = found?;
-    let (_, without) = band.fit(&band.shapes(tried.frequency_hz, damping(tried.step)), 0);
+    let (_, without) = band.fit(&band.shapes(tried.frequency_hz, damping(tried.step)), false);
     #[expect(clippy::cast_precision_loss, reason = "a small count")]
-    let price = 3.0 * (band.weight * band.powers.len() as f64).ln();
-    let is_within = tried.step > 0.5 && tried.step < f64::from(DAMPINGS) - 0.5;
-    (is_within && deviance - without + price < -STRONG_BIC).then(|| Vibration {
+    let evidence = deviance - without + PARAMETERS * (band.weight * band.powers.len() as f64).ln();
+    let is_within = tried.step > 0.5 && tried.step < DAMPINGS - 0.5;
+    let vibration = || Vibration {
         frequency_hz: tried.frequency_hz,
         damping_ratio: damping(tried.step),
         sizes: tried.sizes,
         interval_s: times.interval_s,
-    })
+    };
+    (is_within && evidence < -STRONG_BIC).then(|| (vibration(), evidence))
 }
 
 /// An oscillator that was tried.

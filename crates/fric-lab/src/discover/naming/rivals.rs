@@ -3,7 +3,7 @@
 //! Where a force sensor's curve is bent, say, a gain, an offset and a nonlinear load explain nearly all of it together, each
 //! with strong evidence, and none of them is there. So a few plain laws are tried as rivals, each as one more column of the
 //! least-squares problem beside what the named effects add. If it makes names superfluous, and what is left explains as much as all names did, these names stand in
-//! for it, and are set aside. Where the law is that of an effect, this has its turn then.
+//! for it, and are set aside. Where the law is that of an effect, this has its turn then. A jump of the sensor or of the friction is that of none.
 
 use fric_core::effects::Effect;
 use fric_core::parameters::Values;
@@ -72,7 +72,14 @@ pub fn best_rival(
         }
     }
     let laws = laws(bench, &bench.added_n(&without));
-    let laws: Vec<Law> = laws.into_iter().filter(|law| !kinds.contains(&law.of)).collect();
+    let mut laws: Vec<Law> = laws.into_iter().filter(|law| law.of.is_none_or(|of| !kinds.contains(&of))).collect();
+    // What goes with the time may be one jump.
+    let of_time = kinds.iter().zip(effects).filter_map(|(kind, (_, neutral))| match kind {
+        Effect::SensorDrift | Effect::SensorWarmup => Some((neutral, vec![1.0; residual_n.len()])),
+        Effect::FrictionDrift | Effect::FrictionWarmup => Some((neutral, bench.added_n(neutral))),
+        _ => None,
+    });
+    laws.extend(of_time.map(|(neutral, jumping)| jump(&bench.residuals_n(neutral), jumping)));
     let names: Vec<&'static str> = laws.iter().map(|law| law.signal).collect();
     signals.extend(laws.into_iter().map(|law| law.values));
     let columns = less_projection(&problem, &model.values, &signals)?;
@@ -122,10 +129,33 @@ pub fn best_rival(
 struct Law {
     /// What it goes with.
     signal: &'static str,
-    /// The effect that it is to first order.
-    of: Effect,
+    /// The effect that it is to first order, if it is one.
+    of: Option<Effect>,
     /// In each cycle, of any unit.
     values: Vec<f64>,
+}
+
+/// A signal that sets in at once, where that makes most of a residual; NaN where there is no sample.
+fn jump(residual_n: &[f64], signal: Vec<f64>) -> Law {
+    let sum_up = |to: &mut [f64; 2], residual_n: f64, signal: f64| {
+        if residual_n.is_finite() && signal.is_finite() {
+            to[0] += residual_n * signal;
+            to[1] += signal * signal;
+        }
+    };
+    let mut all = [0.0; 2];
+    residual_n.iter().zip(&signal).for_each(|(residual_n, signal)| sum_up(&mut all, *residual_n, *signal));
+    let (mut before, mut best, mut start) = ([0.0; 2], 0.0, residual_n.len());
+    for (place, (residual_n, signal)) in residual_n.iter().zip(&signal).enumerate() {
+        let after = [all[0] - before[0], all[1] - before[1]];
+        let explained = [before, after].map(|[product, square]| product * product / square).iter().sum::<f64>();
+        if explained > best {
+            (best, start) = (explained, place);
+        }
+        sum_up(&mut before, *residual_n, *signal);
+    }
+    let sets_in = |(place, signal): (usize, f64)| if place < start { 0.0 } else { signal };
+    Law { signal: "time", of: None, values: signal.into_iter().enumerate().map(sets_in).collect() }
 }
 
 /// The laws: sensor and reference that follow late, a bent sensor, a drag of turbulence, and what warms up, of the sensor and of the friction.
@@ -137,7 +167,7 @@ fn laws(bench: &Workbench<'_>, friction_n: &[f64]) -> Vec<Law> {
     #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
     let mean_n = sound().sum::<f64>() / sound().count().max(1) as f64;
     let logs = || record.logs().map(|(start, rows)| start..start + rows.len());
-    let law = |signal, of, values| Law { signal, of, values };
+    let law = |signal, of, values| Law { signal, of: Some(of), values };
     let mut laws = vec![
         law("force_rate", Effect::SensorLag, rates(logs(), &sensor_n)),
         law("reference_rate", Effect::SensorLag, rates(logs(), &of(&|row| row.reference_n))),

@@ -32,7 +32,7 @@ pub fn disturbance(kind: &str, strength: &mut Sizing<'_>) -> Result<Disturbance,
             vec![("drag_n", strength.about(0.25)), ("from_start_m", from_start_m), ("width_m", 0.01)]
         }
         "vibration" => vec![
-            ("amplitude_n", strength.about(1.0)),
+            ("amplitude_n", strength.about(0.15)),
             ("frequency_hz", uniform(strength.random, 8.0, 40.0)),
             ("damping_ratio", uniform(strength.random, 0.01, 0.05)),
         ],
