@@ -1,9 +1,9 @@
-//! Lines in the spectrum of a residual: a hum, as from the mains.
+//! Spectral lines of a residual: hum, for instance from the mains.
 //!
-//! The periodogram of Welch: spectra of overlapping stretches under Hann's window, averaged. A line stands out from its
-//! neighbours by many times their median, everywhere in the log; what a moving cable does is broad.
+//! The spectrum is Welch's periodogram: the average over overlapping segments under a Hann window. A line exceeds the median of its neighbours many
+//! times, everywhere in the log. The motion of a cable is broadband.
 //!
-//! Its phase follows the time, lost samples or not. Over a long pause, and from one log to the next, it begins anew.
+//! The phase of a line follows the time, even across lost samples. It starts anew after a long pause and with each log.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -14,42 +14,42 @@ use super::{Fault, RecordingFault};
 use crate::fit::{CableRecord, Row};
 use crate::samples::conditions::sign;
 
-/// Cycles of a stretch, and of a pause after which a line begins anew.
+/// Cycles in a segment, and the pause in cycles after which a line starts anew.
 const STRETCH: usize = 4096;
-/// Neighbours on either side that a line is compared with.
+/// Number of neighbouring bins on either side that a line is compared with.
 const NEIGHBOURS: usize = 24;
-/// A line's own width, in places of the spectrum.
+/// Width of a line, in bins of the spectrum.
 const WIDTH: usize = 3;
-/// By how many times their median it stands out.
+/// Minimum ratio of a line to the median of its neighbours.
 const LEAST_RATIO: f64 = 12.0;
-/// The same for a line of the motion or the load: less than this, and it may be chance in a few tens of spectra averaged.
+/// The same minimum for a line of the motion or the load. A lower ratio may be chance in an average of a few tens of spectra.
 const MOTION_RATIO: f64 = 4.0;
-/// A line below this many turns in a stretch is no line but a slow change, and as many tell its phase.
+/// A line has at least this many periods in a segment; below that it is a slow change. The same number of periods is needed to determine its phase.
 const FEWEST_TURNS: usize = 8;
-/// Lines that are looked for.
+/// Maximum number of lines.
 const MOST_LINES: usize = 8;
-/// And the least share of the noise's power that one has to have.
+/// Minimum fraction of the noise power that a line must have.
 const LEAST_SHARE: f64 = 0.01;
 
-/// A log whose samples are as far apart as the cycles, but for this share, is that of the loop.
+/// A log belongs to the control loop if its sample interval equals the cycle time within this fraction.
 const RATE_TOLERANCE: f64 = 0.1;
 
-/// When a record's rows are, and over which of them a line keeps its phase.
+/// The times of a record's rows, and the runs of rows over which a line keeps its phase.
 pub struct Times {
-    /// Of each row, its place since the first of its log, in rows of a log without gaps.
+    /// The position of each row since the first of its log, counted in rows of a log without gaps.
     places: Vec<f64>,
-    /// Rows of one phase.
+    /// Runs of rows with one phase.
     runs: Vec<Range<usize>>,
     interval_s: f64,
 }
 
 impl Times {
-    /// Of a record.
+    /// Returns the times of a record.
     #[must_use]
     pub fn of(record: &CableRecord<'_>) -> Self {
         #[expect(clippy::cast_precision_loss, reason = "a small constant")]
         let is_near = |one: &f64, next: &f64| next - one < STRETCH as f64;
-        // A loop that logs each cycle does not jitter as its stamps do; of a log at another rate the stamps are all there is.
+        // A loop that logs each cycle does not jitter as its stamps do. In a log at another rate the stamps are the only information.
         let is_of_loop = (record.interval_s / record.cycle_s - 1.0).abs() < RATE_TOLERANCE;
         let interval_s = if is_of_loop { record.cycle_s } else { record.interval_s };
         let (mut places, mut runs) = (Vec::with_capacity(record.rows.len()), Vec::new());
@@ -76,7 +76,7 @@ impl Times {
         TAU * frequency_hz * (place * self.interval_s)
     }
 
-    /// Rows from the first to the last of the longest run, had it no gaps.
+    /// Returns the length of the longest run in rows, including its gaps.
     fn longest(&self) -> f64 {
         let length = |run: &Range<usize>| match self.places(run) {
             [first, .., last] => last - first + 1.0,
@@ -86,12 +86,12 @@ impl Times {
     }
 }
 
-/// A sine of fixed frequency.
+/// A sine of a fixed frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
     /// Its frequency, Hz.
     pub frequency_hz: f64,
-    /// In each run of rows.
+    /// The wave in each run of rows.
     waves: Vec<Wave>,
 }
 
@@ -99,7 +99,7 @@ pub struct Line {
 #[derive(Clone, Debug, PartialEq)]
 struct Wave {
     rows: Range<usize>,
-    /// Samples that it was seen in.
+    /// Number of samples that contain it.
     count: f64,
     /// Factors of sine and cosine, in the residual's unit.
     sine: f64,
@@ -107,7 +107,7 @@ struct Wave {
 }
 
 impl Line {
-    /// Half its height from peak to peak; the root mean square of several.
+    /// Returns half the peak-to-peak height, as the root mean square over the runs.
     #[must_use]
     pub fn amplitude(&self) -> f64 {
         if let [wave] = self.waves.as_slice() {
@@ -119,13 +119,13 @@ impl Line {
         if count > 0.0 { (squares / count).sqrt() } else { 0.0 }
     }
 
-    /// The fault of the recording that it is.
+    /// Returns the line as a recording fault.
     pub fn fault(&self) -> RecordingFault {
         let parameters = vec![("frequency_hz", self.frequency_hz), ("amplitude_n", self.amplitude())];
         RecordingFault { fault: Fault::Hum, parameters, intervals_s: Vec::new() }
     }
 
-    /// Adds it, times a factor, to a number of each row.
+    /// Adds the line, times a factor, to one number per row.
     pub fn add_to<'a>(&self, numbers: impl Iterator<Item = &'a mut f64>, factor: f64, times: &Times) {
         let values = self.waves.iter().flat_map(|wave| {
             times.places(&wave.rows).iter().map(|place| {
@@ -137,7 +137,7 @@ impl Line {
     }
 }
 
-/// The lines of a residual that have nothing to do with motion and load, the strongest first; NaN where there is no sample.
+/// Returns the lines of a residual that are unrelated to motion and load, the strongest first. The residual is NaN where there is no sample.
 pub fn lines(residual: &[f64], times: &Times, signals: &[Together]) -> Vec<Line> {
     let mut rest = residual.to_vec();
     let mut lines = Vec::new();
@@ -157,11 +157,11 @@ pub fn lines(residual: &[f64], times: &Times, signals: &[Together]) -> Vec<Line>
     lines
 }
 
-/// Signals that only together tell a line: each may hum by itself.
+/// Signals that indicate a line only if all of them contain it, because each may hum by itself.
 pub type Together = Vec<Vec<f64>>;
 
-/// What a cable does and bears: the motion, with the harmonics that a law of friction makes of a periodic one, and the load as both of its sensors
-/// see it.
+/// Returns the signals of a cable's motion and load: the motion with the harmonics that a friction law generates from a periodic one, and the load as
+/// both of the cable's sensors measure it.
 pub fn motion_and_load(record: &CableRecord<'_>) -> Vec<Together> {
     let of = |value: &dyn Fn(&Row) -> f64| record.rows.iter().map(value).collect::<Vec<f64>>();
     let speed_m_per_s = of(&|row| row.signals.speed_m_per_s);
@@ -187,7 +187,7 @@ fn has_line(spectrum: &[f64], frequency_hz: f64, times: &Times) -> bool {
         .any(|place| over_median(spectrum, place).is_some_and(|ratio| ratio > MOTION_RATIO))
 }
 
-/// By how many times the median of its neighbours a place of a spectrum stands out.
+/// Returns the ratio of a bin of a spectrum to the median of its neighbours.
 fn over_median(spectrum: &[f64], place: usize) -> Option<f64> {
     let around = place.checked_sub(NEIGHBOURS)?..(place + NEIGHBOURS + 1).min(spectrum.len());
     let others = around.filter(|other| other.abs_diff(place) > WIDTH);
@@ -218,7 +218,7 @@ fn strongest(residual: &[f64], times: &Times) -> Option<Line> {
     (line.amplitude().powi(2) * 0.5 > LEAST_SHARE * squares / count).then_some(line)
 }
 
-/// Averaged periodogram; `None` where no run is as long as a stretch.
+/// Returns the averaged periodogram; `None` if no run is as long as a segment.
 fn spectrum(residual: &[f64], times: &Times) -> Option<Vec<f64>> {
     let transform = RealFftPlanner::<f64>::new().plan_fft_forward(STRETCH);
     let mut input = transform.make_input_vec();
@@ -234,7 +234,7 @@ fn spectrum(residual: &[f64], times: &Times) -> Option<Vec<f64>> {
             let places = times.places(&stretch);
             let first = places.first()?;
             for (place, number) in places.iter().zip(residual.get(stretch.clone())?).filter(|(_, of)| of.is_finite()) {
-                // Lost rows leave their places empty, and those after them move on, the last out of the stretch.
+                // Lost rows leave their positions empty and move the later rows on, the last ones out of the segment.
                 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
                 let place = (place - first).round() as usize;
                 if let Some(input) = input.get_mut(place) {
@@ -251,9 +251,9 @@ fn spectrum(residual: &[f64], times: &Times) -> Option<Vec<f64>> {
     any.then_some(sums)
 }
 
-/// The frequency near a coarse one at which a sine fits best over all runs.
+/// Returns the frequency near a coarse one at which a sine fits best over all runs.
 fn refine(residual: &[f64], coarse_hz: f64, width_hz: f64, times: &Times) -> Line {
-    // Over a whole run a sine is far narrower than over a stretch: a grid first, then golden section.
+    // A sine is far narrower in frequency over a whole run than over a segment, so a grid search comes first, then golden section.
     let narrow_hz = 1.0 / (times.longest() * times.interval_s);
     let fit = |frequency_hz: f64| project(residual, frequency_hz, times);
     let (mut low_hz, mut high_hz) = (coarse_hz - 1.5 * width_hz, coarse_hz + 1.5 * width_hz);
@@ -273,7 +273,7 @@ fn refine(residual: &[f64], coarse_hz: f64, width_hz: f64, times: &Times) -> Lin
     fit(0.5 * (low_hz + high_hz))
 }
 
-/// The sine of a frequency that fits best, in each run.
+/// Fits a sine of the given frequency in each run.
 fn project(residual: &[f64], frequency_hz: f64, times: &Times) -> Line {
     let wave =
         |run: &Range<usize>| project_run(residual.get(run.clone()).unwrap_or_default(), frequency_hz, times, run);
@@ -281,7 +281,7 @@ fn project(residual: &[f64], frequency_hz: f64, times: &Times) -> Line {
 }
 
 fn project_run(residual: &[f64], frequency_hz: f64, times: &Times, run: &Range<usize>) -> Wave {
-    // The angle grows by one step a row: a rotation costs less than a sine and a cosine.
+    // The angle grows by one step per row. A rotation costs less than a sine and a cosine.
     let (step_sin, step_cos) = (TAU * frequency_hz * times.interval_s).sin_cos();
     let (mut sin, mut cos, mut expected) = (0.0_f64, 1.0_f64, f64::NAN);
     let (mut ss, mut cc, mut sc, mut sr, mut cr, mut count) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
@@ -318,14 +318,14 @@ mod tests {
         (0..50_000).map(|_| StandardNormal.sample(&mut random)).collect()
     }
 
-    /// Of one log without gaps.
+    /// Returns the times of one log without gaps.
     fn times(count: usize) -> Times {
         #[expect(clippy::cast_precision_loss, reason = "a small count")]
         let places = (0..count).map(|place| place as f64).collect();
         Times { places, runs: std::iter::once(0..count).collect(), interval_s: 1e-3 }
     }
 
-    /// Seven rows are lost, and there is a second log, in which the hum is twice as high.
+    /// Seven rows are lost, and the hum in a second log is twice as high.
     #[test]
     fn hum_keeps_its_phase_over_lost_rows_and_has_one_in_each_log() {
         let mut residual = noise(3);
@@ -340,7 +340,7 @@ mod tests {
         let found = lines(&residual, &of_logs, &[]);
         assert_eq!(found.len(), 1, "{found:?}");
         assert!((found[0].frequency_hz - 50.02).abs() < 1e-3);
-        // Of 30,000 samples with the height 1 and 20,000 with 2.
+        // 30,000 samples have the height 1, and 20,000 have the height 2.
         assert!((found[0].amplitude() - 2.2_f64.sqrt()).abs() < 0.03, "{}", found[0].amplitude());
         found[0].add_to(residual.iter_mut(), -1.0, &of_logs);
         let left = residual.iter().map(|number| number * number).sum::<f64>() / 50_000.0;
@@ -362,7 +362,7 @@ mod tests {
         assert!((found[0].waves[0].sine - 1.3 * 0.4_f64.cos()).abs() < 0.05);
     }
 
-    /// A train of pulses has a line at every whole multiple of its frequency, and so has what friction makes of it.
+    /// A train of pulses has a line at every integer multiple of its frequency, and so has the friction that it causes.
     #[test]
     fn harmonics_of_the_motion_are_no_hum() {
         let mut residual = noise(5);
@@ -377,7 +377,7 @@ mod tests {
         let found = lines(&residual, &of_log, &[vec![motion.clone()]]);
         assert_eq!(found.len(), 1, "{found:?}");
         assert!((found[0].frequency_hz - 50.0).abs() < 1e-2);
-        // A line of one sensor alone may be its own hum.
+        // A line in one sensor alone may be that sensor's own hum.
         assert_eq!(lines(&residual, &of_log, &[vec![motion, noise(6)]]).len(), 2);
     }
 
