@@ -52,7 +52,7 @@ pub fn as_measured(samples: &[RunSample], file: &ManipulatorFile) -> Vec<RunSamp
     samples.iter().map(measure).collect()
 }
 
-/// Returns the tension at the base at any time, N; `own_n` at the time of the sample itself.
+/// Returns the tension at the base at any time, N; `own_n` if there are no samples.
 fn tension_n(samples: &[RunSample], time_s: f64, own_n: f64) -> f64 {
     let behind = samples.partition_point(|sample| sample.time_s < time_s);
     let (before, after) = (behind.checked_sub(1).and_then(|before| samples.get(before)), samples.get(behind));
