@@ -7,8 +7,8 @@
 //! - **Set-up** may fail: it returns a code and one sentence. Panics, which indicate a bug, are caught (`catch_unwind`), so that a bug at set-up does
 //!   not stop a machine.
 //! - **The cycle** ([`fric_step`], [`fric_static_model_solve`], [`fric_static_model_tension_for`]) does not allocate, lock, or fail on any signal. A
-//!   wrong pointer or size gives a code. The cycle cannot panic; if it could, a function of `extern "C"` would end the process and never unwind into C.
-//!   Therefore the cycle needs no `catch_unwind`, and the release profile no `panic = "abort"`, which would deprive Python of its exceptions.
+//!   wrong pointer or size gives a code. The cycle cannot panic; if it could, a function of `extern "C"` would end the process and never unwind into
+//!   C. Therefore the cycle needs no `catch_unwind`, and the release profile no `panic = "abort"`, which would deprive Python of its exceptions.
 //!
 //! Non-finite input is flagged as in [`fric_core::CableStatus`], [`fric_core::continuum::ShapeStatus`] and [`fric_core::continuum::GoalStatus`]; the
 //! output is always finite.
