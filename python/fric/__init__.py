@@ -10,7 +10,7 @@ Numbers are SI, with the unit in the name, as in the robot file. Whatever is wro
 (needs matplotlib: `pip install matplotlib`), `fric.fleet` works on many logs (needs `pip install dask distributed fsspec pyarrow ruptures`).
 """
 
-# Before all that would fail there in its own words.
+# Runs before the other imports, which would fail in a sub-interpreter with less clear messages.
 from ._interpreter import refuse_sub_interpreters as _refuse_sub_interpreters
 
 _refuse_sub_interpreters()
@@ -115,7 +115,7 @@ __all__ = [
     "simulate",
 ]
 
-# Results are of the package, not of the file they stand in.
+# Results report the package as their module, not the file in which they are defined.
 for _name in __all__:
     if getattr(globals()[_name], "__module__", "").startswith("fric._results"):
         globals()[_name].__module__ = "fric"

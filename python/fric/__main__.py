@@ -1,4 +1,4 @@
-"""`python -m fric` is the command line, as `fric-cli`."""
+"""Runs the command line as `python -m fric`, like `fric-cli`."""
 
 import sys
 
@@ -6,7 +6,7 @@ from ._fric import _command_line
 
 
 def main() -> int:
-    """Runs the command line on the arguments of this process and gives its exit code."""
+    """Runs the command line with the arguments of this process and returns its exit code."""
     return _command_line(["fric-cli", *sys.argv[1:]])
 
 

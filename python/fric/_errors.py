@@ -1,51 +1,51 @@
-"""What fric raises and warns of."""
+"""Exceptions and warnings of fric."""
 
 
 class FricError(Exception):
-    """Anything that fric refuses or cannot do."""
+    """Base class of all errors of fric."""
 
 
 class ConfigError(FricError, ValueError):
-    """A robot file, a parameter or an option is not right; says which, its value and what is allowed."""
+    """A robot file, a parameter, or an option is invalid. The message states which one, its value, and what is allowed."""
 
 
 class ShapeError(FricError, ValueError):
-    """An array is not of the shape, type or content that is needed; says what was expected and what came."""
+    """An array has the wrong shape, type, or content. The message states what was expected and what was given."""
 
 
 class ArrayTypeError(ShapeError, TypeError):
-    """What was given for an array is none of numbers; says what was expected and what came."""
+    """An array argument is not an array of numbers. The message states what was expected and what was given."""
 
 
 class LogError(FricError):
-    """A log cannot be read, or lacks what is needed."""
+    """A log cannot be read or lacks required data."""
 
 
 class FitError(FricError):
-    """Data allow no fit; says what is missing and what to do."""
+    """The data do not allow a fit. The message states what is missing and what to do."""
 
 
 class OutputError(FricError, OSError):
-    """A file cannot be written: it exists, is an input, or the disk says no. Nothing was written."""
+    """A file cannot be written, because it exists, is an input, or the disk refuses. Nothing was written."""
 
 
 class _Missing(FileNotFoundError):
-    """Its text is the sentence alone; `filename` is the file."""
+    """Error of a missing file. Its text is only the sentence; `filename` is the file."""
 
     def __str__(self) -> str:
         return self.strerror or super().__str__()
 
 
 class ConfigFileNotFoundError(_Missing, ConfigError):
-    """A robot or manipulator file is not there; `filename` says which."""
+    """A robot or manipulator file does not exist; `filename` states which."""
 
 
 class LogFileNotFoundError(_Missing, LogError):
-    """A log is not there; `filename` says which."""
+    """A log does not exist; `filename` states which."""
 
 
 class LogWarning(UserWarning):
-    """Something in a log is worth knowing: damage, gaps, flags, a signal that is missing."""
+    """A log has a property worth knowing: damage, gaps, flags, or a missing signal."""
 
 
 for _public in (

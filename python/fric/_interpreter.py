@@ -1,11 +1,11 @@
-"""Which interpreter of the process this is."""
+"""Detection of sub-interpreters."""
 
 from importlib import import_module
 
 
 def refuse_sub_interpreters() -> None:
-    """Raises ImportError in any interpreter but the main one."""
-    # The first is of Python 3.13 and newer.
+    """Raises ImportError in any interpreter other than the main one."""
+    # The first name exists in Python 3.13 and newer.
     for name in ("_interpreters", "_xxsubinterpreters"):
         try:
             interpreters = import_module(name)

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 
 def parameters(function: ResidualFunction) -> Any:
-    """`lmfit.Parameters` with start values and bounds."""
+    """Returns `lmfit.Parameters` with start values and bounds."""
     try:
         lmfit = import_module("lmfit")
     except ImportError as error:

@@ -1,10 +1,10 @@
-"""The progress bar of long calls."""
+"""Progress bar of long calls."""
 
 import sys
 
 
 class Bar:
-    """Draws on stderr how far a call is."""
+    """Draws the progress of a call on stderr."""
 
     def __call__(self, fraction: float) -> None:
         full = int(40 * fraction)
@@ -14,5 +14,5 @@ class Bar:
         sys.stderr.flush()
 
     def close(self) -> None:
-        """Leaves the bar's line."""
+        """Ends the line of the bar."""
         sys.stderr.write("\n")

@@ -1,4 +1,4 @@
-"""The flags of a cable, of a manipulator's shape and of a goal, by name."""
+"""Flags of a cable, of a manipulator's shape, and of a goal, by name."""
 
 from enum import IntFlag
 

@@ -1,7 +1,7 @@
 """Figures, drawn with matplotlib (`pip install matplotlib`).
 
-Each function draws into the axes given as `ax`, else into a figure of its own, and returns the axes. Colours are told
-apart by colour-blind readers too, and in grey.
+Each function draws into the axes given as `ax`, or into a new figure if none are given, and returns the axes. The colours can be distinguished by
+colour-blind readers and in grey.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from ._errors import ConfigError, FitError, ShapeError
 from ._results import FitResult
 
 if TYPE_CHECKING:
-    # Whoever checks types without matplotlib takes axes as they come.
+    # Type checks without matplotlib accept any axes.
     from matplotlib.axes import Axes as _Axes  # type: ignore[import-not-found, unused-ignore]
 
     from ._fric import Log
@@ -29,12 +29,12 @@ __all__ = ["candidates", "forces", "friction_loop", "gap_ladder", "parameters", 
 
 _WAYS = {"none": "#9a9a9a", "coulomb": "#d55e00", "measured": "#009e73", "history": "#0072b2"}
 _MEASURED, _MODEL, _REFERENCE, _BAND = "#d55e00", "#0072b2", "#9a9a9a", "#c6dbef"
-# Two-sided 95 % of a normal distribution.
+# Two-sided 95 % quantile of the normal distribution.
 _SIGMAS = 1.96
 
 
 class FittedCable(Protocol):
-    """What `parameters` wants to know of a cable: values and standard errors by the robot file's keys."""
+    """Cable of a fit that `parameters` can draw: values and standard errors by the keys of the robot file."""
 
     @property
     def name(self) -> str: ...
@@ -45,14 +45,14 @@ class FittedCable(Protocol):
 
 
 class Fitted(Protocol):
-    """What `parameters` wants to know of a fit."""
+    """Fit that `parameters` can draw."""
 
     @property
     def cables(self) -> Sequence[FittedCable]: ...
 
 
 def forces(log: Log, result: ReplayResult | Compensation, cable: str, *, ax: _Axes | None = None) -> _Axes:
-    """Draws a cable's force over time: as the sensor has it, compensated, and the reference where there is one."""
+    """Draws a cable's force over time: the sensor's force, the compensated force, and the reference if there is one."""
     column = _column(log, result, cable)
     if ax is None:
         ax = _figure(1, (9.0, 4.0))[0]
@@ -68,8 +68,8 @@ def forces(log: Log, result: ReplayResult | Compensation, cable: str, *, ax: _Ax
 
 
 def friction_loop(log: Log, result: ReplayResult | Compensation, cable: str, *, ax: _Axes | None = None) -> _Axes:
-    """Draws a cable's friction over its displacement, the hysteresis loop: measured (reference less what the sensor
-    would show without friction) and the model's, the offset included in both."""
+    """Draws a cable's friction over its displacement (the hysteresis loop): the measured friction, which is the reference minus the sensor force
+    expected without friction, and that of the model. Both include the offset."""
     column = _column(log, result, cable)
     if ax is None:
         ax = _figure(1, (6.5, 4.5))[0]
@@ -93,9 +93,8 @@ def residuals(
     ax: Sequence[_Axes] | None = None,
     lag_count: int = 200,
 ) -> tuple[_Axes, _Axes]:
-    """Draws what the compensation leaves of a cable's error, into two axes: its distribution beside the normal one of
-    the same width, and its autocorrelation with the band in which that of white noise stays (95 %).
-    The result of a fit has all the residuals of its logs in it."""
+    """Draws the residual error of a cable after compensation into two axes: its distribution with the normal distribution of the same width, and its
+    autocorrelation with the 95 % band of white noise. The result of a fit holds all the residuals of its logs."""
     if isinstance(result, FitResult):
         left_n = result.cable(cable).residuals_n
     else:
@@ -125,8 +124,8 @@ def residuals(
 
 
 def parameters(fit_result: Fitted, *, ax: Sequence[_Axes] | None = None) -> tuple[_Axes, ...]:
-    """Draws fitted parameters with their 95 % intervals, one of `ax` for each parameter, a line for each cable. A value
-    without a standard error has an open mark."""
+    """Draws fitted parameters with their 95 % intervals: one of `ax` for each parameter, one line for each cable. A value without a standard error
+    has an open mark."""
     cables = fit_result.cables
     keys = list(dict.fromkeys(key for cable in cables for key in cable.values))
     panels = _figure(len(keys), (2.9 * len(keys), 1.2 + 0.32 * len(cables))) if ax is None else ax
@@ -152,8 +151,8 @@ def parameters(fit_result: Fitted, *, ax: Sequence[_Axes] | None = None) -> tupl
 
 
 def gap_ladder(result: DiscoverResult, cable: str, *, ax: _Axes | None = None) -> _Axes:
-    """Draws how the error on the samples held out comes down to the noise: a bar for the given model, fitted, and one
-    for each effect that was found, with the share of the gap that it and those above it close."""
+    """Draws how the error on the held-out samples falls towards the noise: a bar for the given model after a fit, and one for each effect found, with
+    the fraction of the gap that it and the effects above it close."""
     found = _told(result, cable)
     if ax is None:
         ax = _figure(1, (7.0, 1.4 + 0.4 * (1 + len(found.effects))))[0]
@@ -169,15 +168,15 @@ def gap_ladder(result: DiscoverResult, cable: str, *, ax: _Axes | None = None) -
     ax.bar_label(bars, [end + share for end, share in zip(ends, closed)], padding=4, fontsize="small")
     _noise(ax, found)
     _rows(ax, [name for name, *_ in steps], cable)
-    # Room for the words behind the longest bar.
+    # Leave room for the text to the right of the longest bar.
     ax.set_xlim(0, 1.6 * max(np.nanmax(errors_n), found.noise_floor_n or 0.0))
     ax.set_xlabel("rms on samples held out [N]")
     return ax
 
 
 def where(result: DiscoverResult, cable: str, *, ax: _Axes | None = None) -> _Axes:
-    """Draws where the given model disagrees, what tells most first: the share of what is above the noise that sits in a
-    range of a condition, beside the share of the samples there."""
+    """Draws where the given model disagrees, most significant first: the fraction of the error above the noise that lies in a range of a condition,
+    beside the fraction of the samples there."""
     found = _told(result, cable)
     places = found.where
     if ax is None:
@@ -194,9 +193,9 @@ def where(result: DiscoverResult, cable: str, *, ax: _Axes | None = None) -> _Ax
 
 
 def candidates(result: DiscoverResult, cable: str, *, ax: _Axes | None = None) -> _Axes:
-    """Draws the effects that were tried, each by itself beside the given model, the best first: the error on the
-    samples held out, with the difference of Schwarz's criterion (below zero speaks for the effect, -10 strongly). Those
-    that were found are darker; an effect may be found for what it does beside another."""
+    """Draws the effects that were tried, each added alone to the given model, best first: the error on the held-out samples, with the difference of
+    the BIC (negative values favour the effect, -10 strongly). The effects found are darker. An effect may also be found for its contribution in
+    addition to another."""
     found = _told(result, cable)
     tried = found.candidates
     if ax is None:
@@ -215,14 +214,14 @@ def candidates(result: DiscoverResult, cable: str, *, ax: _Axes | None = None) -
         limits_n.append(found.before.rms_n)
     _noise(ax, found)
     _rows(ax, [of["kind"] for of in tried], cable, or_else="nothing was tried")
-    # Room for the evidence behind the longest bar.
+    # Leave room for the evidence to the right of the longest bar.
     ax.set_xlim(0, 1.35 * max(limits_n))
     ax.set_xlabel("rms on samples held out [N]")
     return ax
 
 
 def tendon_shape(result: ShapeResult, place: int = 0, *, ax: _Axes | None = None) -> _Axes:
-    """Draws one of the shapes that were picked, to scale: the disks by each way of friction, and the markers."""
+    """Draws one of the selected shapes to scale: the disks for each source of friction, and the markers."""
     shape = _picked(result, place)
     if ax is None:
         ax = _figure(1, (6.5, 5.0))[0]
@@ -239,8 +238,8 @@ def tendon_shape(result: ShapeResult, place: int = 0, *, ax: _Axes | None = None
 
 
 def tendon_friction(result: ShapeResult, place: int = 0, *, ax: _Axes | None = None) -> _Axes:
-    """Draws the friction at every hole of one of the shapes that were picked, as signed bars for each way; positive where
-    the base side is tighter."""
+    """Draws the friction at every hole of one of the selected shapes, as signed bars for each source of friction; positive if the tension on the base
+    side is greater."""
     shape = _picked(result, place)
     if ax is None:
         ax = _figure(1, (8.0, 4.0))[0]
@@ -257,8 +256,8 @@ def tendon_friction(result: ShapeResult, place: int = 0, *, ax: _Axes | None = N
 
 
 def trend(result: Trend, robot: str, cable: str, parameter: str, *, ax: _Axes | None = None) -> _Axes:
-    """Draws a parameter over the dates of the logs: values with their 95 % intervals, the line that describes them, the date of each change with
-    its interval, and limits. A value without a standard error has no bar."""
+    """Draws a parameter over the dates of the logs: values with their 95 % intervals, the line fitted to them, the date of each change with its
+    interval, and limits. A value without a standard error has no bar."""
     series = result.of(robot, cable, parameter)
     if ax is None:
         ax = _figure(1, (9.0, 4.0))[0]
@@ -280,7 +279,7 @@ def trend(result: Trend, robot: str, cable: str, parameter: str, *, ax: _Axes | 
 
 
 def _utc(date: datetime) -> Any:
-    """A date as those of a series are."""
+    """Converts a date to the form of the dates of a series."""
     return np.datetime64(date.replace(tzinfo=None), "ns")
 
 
@@ -292,7 +291,7 @@ def _picked(result: ShapeResult, place: int) -> dict[str, Any]:
 
 
 def _discovery(result: DiscoverResult, cable: str) -> Any:
-    """The figure of `DiscoverResult.plot`."""
+    """Draws the figure of `DiscoverResult.plot`."""
     found = _told(result, cable)
     heights = [1.4 + 0.4 * len(found.effects), 1.2 + 0.4 * len(found.where), 1.2 + 0.24 * len(found.candidates)]
     axes = _figure(3, (7.5, 0.6 + sum(heights)), heights=heights)
@@ -302,7 +301,7 @@ def _discovery(result: DiscoverResult, cable: str) -> Any:
 
 
 def _told(result: DiscoverResult, cable: str) -> CableDiscovery:
-    """What was found for a cable, if anything can be told of it."""
+    """Returns the findings for a cable. Raises an error if no verdict is possible."""
     found = result.cable(cable)
     if found.missing is not None:
         raise FitError(f"nothing can be told of {cable}: {found.missing['cause']}. {found.missing['advice']}")
@@ -310,18 +309,18 @@ def _told(result: DiscoverResult, cable: str) -> CableDiscovery:
 
 
 def _share(share: float | None) -> float:
-    """A share within what one can be; 0 where it is not known."""
+    """Limits a fraction to the range 0 to 1; returns 0 if it is not known."""
     return 0.0 if share is None else max(0.0, min(1.0, share))
 
 
 def _noise(ax: _Axes, found: CableDiscovery) -> None:
-    """The noise as a line that no model comes below."""
+    """Draws the noise as a line that no model can fall below."""
     if found.noise_floor_n is not None:
         ax.axvline(found.noise_floor_n, color="black", linestyle=":", linewidth=1.2, label="noise")
 
 
 def _rows(ax: _Axes, names: Sequence[str], cable: str, *, or_else: str = "") -> None:
-    """Names of the rows of bars, the first on top; a word in the middle where there is none."""
+    """Labels the rows of bars, the first on top; shows a word in the middle if there are none."""
     _dress(ax, cable)
     ax.grid(axis="y", visible=False)
     ax.set_yticks(range(len(names)), names)
@@ -331,7 +330,7 @@ def _rows(ax: _Axes, names: Sequence[str], cable: str, *, or_else: str = "") -> 
 
 
 def _autocorrelation(signal: NDArray[np.float64], lag_count: int) -> NDArray[np.float64]:
-    """The autocorrelation at lags 1 to `lag_count`; zeros for a signal that is zero."""
+    """Returns the autocorrelation at lags 1 to `lag_count`, or zeros for a signal that is zero."""
     spectrum = np.fft.rfft(signal, 2 * signal.size)
     covariance = np.fft.irfft(np.abs(spectrum) ** 2)[: lag_count + 1]
     return covariance[1:] / covariance[0] if covariance[0] > 0 else np.zeros(lag_count)
@@ -347,7 +346,7 @@ def _column(log: Log, result: ReplayResult | Compensation, cable: str) -> int:
 
 
 def _figure(count: int, size: tuple[float, float], *, heights: Sequence[float] | None = None) -> Sequence[Any]:
-    """A figure with axes side by side, or one below the other with these heights."""
+    """Creates a figure with axes side by side, or one below the other with these heights."""
     try:
         pyplot = import_module("matplotlib.pyplot")
     except ImportError as error:
@@ -361,7 +360,7 @@ def _figure(count: int, size: tuple[float, float], *, heights: Sequence[float] |
 
 
 def _dress(ax: _Axes, cable: str) -> None:
-    """The legend above the data, the cable's name beside it."""
+    """Places the legend above the data, beside the cable's name."""
     if ax.get_legend_handles_labels()[0]:
         ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, frameon=False, borderaxespad=0.2)
     ax.set_title(cable, loc="right", fontsize="medium")

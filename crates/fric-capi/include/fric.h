@@ -19,68 +19,68 @@
 /// The goal is a position of the tip, the centre of the last disk.
 #define FRIC_GOAL_TIP 1
 
-/// Friction by what each hole remembers of the run of the tensions at the base.
+/// Friction from each hole's memory of the history of the tensions at the base.
 #define FRIC_FRICTION_HISTORY 0
 
 /// No friction.
 #define FRIC_FRICTION_NONE 1
 
-/// Coulomb friction with every hole sliding as pulled: the first tendon is pulled, the second pays out.
+/// Coulomb friction with every hole sliding as in pulling: the first tendon is pulled, the second pays out.
 #define FRIC_FRICTION_PULLING 2
 
-/// Coulomb friction with every hole sliding the other way.
+/// Coulomb friction with every hole sliding in the opposite direction.
 #define FRIC_FRICTION_RELEASING 3
 
-/// Friction as the tensions measured in the segments give it.
+/// Friction from the tensions measured in the segments.
 #define FRIC_FRICTION_MEASURED 4
 
-/// Nothing is the matter with the shape.
+/// The shape has no fault.
 #define FRIC_SHAPE_OK 0
 
-/// A tension is negative, NaN, infinite or beyond 1e9 N: the shape and what the holes remember stay as they were.
+/// A tension is negative, NaN, infinite or beyond 1e9 N: the shape and the memory of the holes are unchanged.
 #define FRIC_SHAPE_NOT_FINITE 1
 
-/// No equilibrium was found: the shape and what the holes remember stay as they were.
+/// No equilibrium was found: the shape and the memory of the holes are unchanged.
 #define FRIC_SHAPE_NOT_CONVERGED 2
 
-/// The equilibrium is not stable, the arm would leave it: the shape and what the holes remember stay as they were.
+/// The equilibrium is unstable, and the manipulator would leave it: the shape and the memory of the holes are unchanged.
 #define FRIC_SHAPE_UNSTABLE 4
 
-/// A tension is above what the tendon can bear; computed as usual.
+/// A tension exceeds the tendon's capacity; computed as usual.
 #define FRIC_SHAPE_OVER_CAPACITY 8
 
-/// Disks would touch, the bend is beyond the model; computed as usual.
+/// Disks would touch, and the bend is beyond the model; computed as usual.
 #define FRIC_SHAPE_DISKS_TOUCH 16
 
-/// The flags with which there is no new shape.
+/// The flags without a new shape.
 #define FRIC_SHAPE_FAILED 7
 
-/// The command reaches the goal, and the arm moves on in the direction in which it moved before.
+/// The command reaches the goal, and the manipulator continues in its previous direction.
 #define FRIC_COMMAND_OK 0
 
-/// The goal is not finite, or the friction is FRIC_FRICTION_MEASURED: the tensions as they were.
+/// The goal is not finite, or the friction is FRIC_FRICTION_MEASURED: the tensions are unchanged.
 #define FRIC_COMMAND_NOT_USABLE 1
 
-/// No tension was found: the tensions as they were.
+/// No tension was found: the tensions are unchanged.
 #define FRIC_COMMAND_NOT_CONVERGED 2
 
-/// The tensions of the drive end before the goal, disks would touch, there is no stable shape, or the tip passes the goal by more than 1 %
-/// of the arm's length: the tensions that come nearest.
+/// The tensions of the drive end before the goal, disks would touch, there is no stable shape, or the tip passes the goal by more than 1 % of the
+/// manipulator's length: the command is the nearest possible one.
 #define FRIC_COMMAND_OUT_OF_REACH 4
 
-/// The goal is nearer than `hold_rad` of the drive: the tensions as they were.
+/// The goal is nearer than `hold_rad` of the drive: the tensions are unchanged.
 #define FRIC_COMMAND_HELD 8
 
-/// The tendon turns round: friction at the base plate was against this motion before. The goal is reached.
+/// The tendon reverses: friction at the base plate was against this motion before. The goal is reached.
 #define FRIC_COMMAND_REVERSAL 16
 
-/// Some hole still has the friction of the motion before, so that much tension moves little. The goal is reached.
+/// Some hole still has the friction of the previous motion, so that much tension moves little. The goal is reached.
 #define FRIC_COMMAND_DEAD_BAND 32
 
 /// The flags with which the command does not reach the goal.
 #define FRIC_COMMAND_MISSED 7
 
-/// Nothing is the matter.
+/// No fault.
 #define FRIC_STATUS_OK 0
 
 /// The cable carries no tension.
@@ -89,10 +89,10 @@
 /// The cable slips on a pulley.
 #define FRIC_STATUS_SLIP 2
 
-/// The sensor force is NaN, infinite or beyond 1e9 N: last good force and friction are held.
+/// The sensor force is NaN, infinite or beyond 1e9 N: the last valid force and friction are held.
 #define FRIC_STATUS_SENSOR_NOT_FINITE 4
 
-/// The sensor repeats itself to the last bit while the cable moves: last good force and friction are held.
+/// The sensor is bit-identical while the cable moves: the last valid force and friction are held.
 #define FRIC_STATUS_SENSOR_FROZEN 8
 
 /// The length changed by more than `length_jump_m` of the robot file: the friction is held.
@@ -101,61 +101,61 @@
 /// Length or speed is NaN, infinite or beyond 1e6: the friction is held.
 #define FRIC_STATUS_MOTION_NOT_FINITE 32
 
-/// Outside the range in which the parameters were identified; computed as usual.
+/// The signals are outside the range in which the parameters were identified; computed as usual.
 #define FRIC_STATUS_OUT_OF_RANGE 64
 
-/// No usable pose for a cable that needs it: last wrap and direction are held.
+/// There is no usable pose for a cable that needs it: last wrap and direction are held.
 #define FRIC_STATUS_POSE_MISSING 128
 
 /// The pose leaves the cable no way out of its last pulley: last wrap and direction are held.
 #define FRIC_STATUS_POSE_UNREACHABLE 256
 
-/// The sensor force has jumped by more than the cable can do, and not yet back; computed as usual.
+/// The sensor force has jumped by more than the cable can change, and not yet returned; computed as usual.
 #define FRIC_STATUS_SENSOR_JUMP 512
 
-/// The stored friction is beyond what the load bears by more than 25 % of the tension + 0.1 N, or a jump of the sensor may have left an error of 5 % + 0.1 N.
+/// The stored friction exceeds what the load allows by more than 25 % of the tension + 0.1 N, or a jump of the sensor may have left an error of 5 % +
+/// 0.1 N.
 #define FRIC_STATUS_UNSETTLED 1024
 
-/// Outcome of a call. Anything but FRIC_RESULT_OK has left the compensator or static model, and the output of a step, as they were.
+/// Result of a call. Anything but FRIC_RESULT_OK has left the compensator or static model, and the output of a step, unchanged.
 typedef enum fric_result {
-  /// Done.
+  /// Success.
   FRIC_RESULT_OK = 0,
-  /// A pointer is null, or not aligned for what it points to.
+  /// A pointer is null, or misaligned for its type.
   FRIC_RESULT_BAD_POINTER = 1,
-  /// `struct_size` is not that of this ABI version, `cable_count` not the robot's, or a number of disks not the manipulator's.
+  /// `struct_size` is not that of this ABI version, `cable_count` is not the robot's, or a number of disks is not the manipulator's.
   FRIC_RESULT_WRONG_SIZE = 2,
-  /// The robot or manipulator file cannot be read, or something in it is wrong; the error text says what, where and what is allowed.
+  /// The robot or manipulator file cannot be read, or is invalid; the error text says what is wrong, where and what is allowed.
   FRIC_RESULT_ROBOT_FILE = 3,
-  /// The change of parameters given before is not over; try again some steps later.
+  /// The previous change of parameters is not over; try again some steps later.
   FRIC_RESULT_BUSY = 4,
-  /// A mistake inside of the library, caught; please report it.
+  /// A bug inside the library was caught; please report it.
   FRIC_RESULT_INTERNAL = 5,
-  /// A number that chooses is none of the header's, or one that limits is out of its range.
+  /// A selecting number is none of the header's, or a limit is out of its range.
   FRIC_RESULT_BAD_VALUE = 6,
 } fric_result;
 
-/// Friction compensation of one robot: made by fric_load_file or fric_load_text, given back by fric_free.
+/// Friction compensation of one robot: created by fric_load_file or fric_load_text, freed by fric_free.
 ///
-/// One thread at a time may step or reset it. Others may ask for names and numbers and change parameters meanwhile. Several
-/// compensators are independent of each other.
+/// Only one thread at a time may step or reset it. Others may query names and numbers and change parameters meanwhile. Several compensators are
+/// independent of each other.
 typedef struct fric_compensator fric_compensator;
 
-/// Static model of one continuum manipulator: made by fric_static_model_load_file or fric_static_model_load_text, given back by
-/// fric_static_model_free.
+/// Static model of one continuum manipulator: created by fric_static_model_load_file or fric_static_model_load_text, freed by fric_static_model_free.
 ///
-/// Tensions are those of the tendons at the base plate, and positions stand in the base frame. The tables `[base_sensor]` and `[markers]` of
-/// the manipulator file are not applied: what such a sensor shows becomes a tension by (shown − offset_n)/gain. One thread at a time may
-/// use a model. Others may ask for its name and its number of disks meanwhile. Several models are independent of each other.
+/// Tensions are those of the tendons at the base plate, and positions are in the base frame. The tables `[base_sensor]` and `[markers]` of the
+/// manipulator file are not applied: a signal of such a sensor becomes a tension by (shown − offset_n)/gain. Only one thread at a time may use a
+/// model. Others may query its name and its number of disks meanwhile. Several models are independent of each other.
 typedef struct fric_static_model fric_static_model;
 
 /// Signals of one cable.
 typedef struct fric_cable_input {
-  /// Force that the sensor shows, N.
+  /// Force shown by the sensor, N.
   double sensor_force_n;
-  /// Cable length, m; any zero, only changes count. Positive paying out. The winch's set point, or a measured length of
+  /// Cable length, m, positive paying out; its zero is arbitrary, because only changes count. The winch's set point, or a measured length with
   /// little noise.
   double length_m;
-  /// Its rate, m/s.
+  /// Rate of the length, m/s.
   double speed_m_per_s;
 } fric_cable_input;
 
@@ -163,8 +163,8 @@ typedef struct fric_cable_input {
 typedef struct fric_pose {
   /// Platform origin, m.
   double position_m[3];
-  /// Rotation from platform to base axes as a quaternion x, y, z, w; normalised here. One whose norm is not within 10 % of 1
-  /// is no pose.
+  /// Rotation from platform to base axes as a quaternion x, y, z, w, which is normalised here. A quaternion whose norm is not within 10 % of 1 is
+  /// no pose.
   double orientation_xyzw[4];
 } fric_pose;
 
@@ -174,24 +174,24 @@ typedef struct fric_input {
   size_t struct_size;
   /// Cables in the robot's order.
   const struct fric_cable_input *cables;
-  /// How many; the robot's, fric_cable_count.
+  /// Number of cables, which must be fric_cable_count.
   size_t cable_count;
-  /// Pose of the platform; null where it is not known.
+  /// Pose of the platform; null if it is unknown.
   const struct fric_pose *pose;
-  /// Cycles since the last step, 1 unless some were skipped: a longer pause allows a longer way before a change of length
-  /// counts as a jump. Less than 1 (0, as in a zeroed structure) and NaN count as 1.
+  /// Cycles since the last step, 1 unless some were skipped. A longer pause allows a longer distance before a change of length counts as a jump.
+  /// Values below 1 (0, as in a zeroed structure) and NaN count as 1.
   double elapsed_cycles;
 } fric_input;
 
-/// Outcome for one cable. All numbers are finite, whatever went in.
+/// Output for one cable. All numbers are finite, whatever the input.
 typedef struct fric_cable_output {
-  /// Cable force at the platform, N, the offset included.
+  /// Cable force at the platform including the offset, N.
   double force_at_platform_n;
-  /// Estimated friction, N; positive where it makes the platform side tighter.
+  /// Estimated friction, N; positive if it makes the platform side tighter.
   double friction_n;
-  /// The sensor force turned into cable tension as if nothing rubbed, N.
+  /// Cable tension computed from the sensor force without friction, N.
   double frictionless_n;
-  /// FRIC_STATUS_… flags, FRIC_STATUS_OK if nothing is the matter.
+  /// FRIC_STATUS_… flags, FRIC_STATUS_OK if there is no fault.
   uint32_t status;
 } fric_cable_output;
 
@@ -203,113 +203,114 @@ typedef struct fric_wrench {
   double torque_nm[3];
 } fric_wrench;
 
-/// Outcome of one cycle. Set `struct_size`, `cables` and `cable_count`; the step sets the rest.
+/// Output of one cycle. Set `struct_size`, `cables` and `cable_count`; the step sets the rest.
 typedef struct fric_output {
   /// sizeof(fric_output).
   size_t struct_size;
-  /// Where the outcome for the cables goes, in the robot's order.
+  /// Output for the cables, in the robot's order.
   struct fric_cable_output *cables;
-  /// How many; the robot's, fric_cable_count.
+  /// Number of cables, which must be fric_cable_count.
   size_t cable_count;
-  /// What acts on the platform from outside, gravity included; zero without a wrench.
+  /// External wrench on the platform including gravity; zero without a wrench.
   struct fric_wrench outside_wrench;
-  /// The same less gravity: what a hand, a tool or acceleration applies; zero without a wrench.
+  /// External wrench without gravity: the contribution of a hand, a tool or acceleration; zero without a wrench.
   struct fric_wrench applied_wrench;
   /// Whether there are wrenches: not before the first pose, and not for a robot file that lacks the attachment of a cable.
   bool has_wrench;
-  /// Every FRIC_STATUS_… flag of any cable that the wrenches are made of.
+  /// Every FRIC_STATUS_… flag of any cable that contributes to the wrenches.
   uint32_t wrench_status;
 } fric_output;
 
-/// What the drives at the base can do.
+/// The limits of the drives at the base.
 typedef struct fric_drive {
   /// sizeof(fric_drive).
   size_t struct_size;
   /// Tension that each tendon keeps while the other one is pulled, N, at least 0.
   double least_tension_n[2];
-  /// Greatest tension of each tendon, N, from the least up to the tendon's capacity. A tendon for which it is the least is not pulled.
+  /// Greatest tension of each tendon, N, from the least tension up to the tendon's capacity. If it equals the least tension, that tendon is not
+  /// pulled.
   double greatest_tension_n[2];
-  /// A goal nearer than this, rad (for the tip: this share of the arm's length), leaves the tensions as they are, so that noise on the goal does not
-  /// send them to and fro across the friction of all holes. 0…1.
+  /// A goal nearer than this, rad (for the tip: relative to the manipulator's length), keeps the tensions, so that noise on the goal does not move
+  /// them back and forth across the friction of all holes. 0…1.
   double hold_rad;
 } fric_drive;
 
-/// What is wanted of the manipulator.
+/// The goal of the manipulator.
 typedef struct fric_goal {
   /// sizeof(fric_goal).
   size_t struct_size;
-  /// With FRIC_GOAL_BEND the bend of the whole manipulator, rad, positive towards the first tendon.
+  /// With FRIC_GOAL_BEND: the bend of the whole manipulator, rad, positive towards the first tendon.
   double bend_rad;
-  /// With FRIC_GOAL_TIP the centre of the last disk, base frame, m. One tension moves the tip on a curve; the command brings it as near as that curve
-  /// comes.
+  /// With FRIC_GOAL_TIP: the centre of the last disk, base frame, m. One tension moves the tip along a curve; the command brings it to the nearest
+  /// point of that curve.
   double tip_m[2];
   /// FRIC_GOAL_BEND or FRIC_GOAL_TIP.
   uint32_t kind;
-  /// FRIC_FRICTION_…, but not FRIC_FRICTION_MEASURED, which knows nothing of other tensions. That of a zeroed structure is FRIC_FRICTION_HISTORY.
+  /// FRIC_FRICTION_…, except FRIC_FRICTION_MEASURED, which cannot predict other tensions. That of a zeroed structure is FRIC_FRICTION_HISTORY.
   uint32_t friction;
 } fric_goal;
 
-/// The tensions to set at the base, and what the model expects of them. Set `struct_size`; the call sets the rest. All numbers are
-/// finite, whatever went in.
+/// The tensions to set at the base, and the model's prediction. Set `struct_size`; the call sets the rest. All numbers are finite, whatever the
+/// input.
 typedef struct fric_command {
   /// sizeof(fric_command).
   size_t struct_size;
   /// Tension at the base of the first and the second tendon, N.
   double base_tension_n[2];
-  /// Bend of the whole manipulator then, rad.
+  /// Predicted bend of the whole manipulator, rad.
   double bend_rad;
-  /// Centre of the last disk then, base frame, m.
+  /// Predicted centre of the last disk, base frame, m.
   double tip_m[2];
-  /// FRIC_COMMAND_… flags, FRIC_COMMAND_OK if there is nothing to say.
+  /// FRIC_COMMAND_… flags, FRIC_COMMAND_OK if there is none.
   uint32_t status;
 } fric_command;
 
 /// Tensions measured in the segment that ends in a disk.
 typedef struct fric_disk_input {
-  /// Of the first and the second tendon, N; 0 in a slack one.
+  /// Tensions of the first and the second tendon, N; 0 for a slack one.
   double tension_n[2];
 } fric_disk_input;
 
-/// Tensions of which a shape is wanted.
+/// The tensions of a wanted shape.
 typedef struct fric_shape_input {
   /// sizeof(fric_shape_input).
   size_t struct_size;
-  /// Tension at the base of the first and the second tendon, N; 0 is a slack tendon.
+  /// Tension at the base of the first and the second tendon, N; 0 for a slack tendon.
   double base_tension_n[2];
-  /// With FRIC_FRICTION_MEASURED the tensions in the segments from the base, else not looked at.
+  /// With FRIC_FRICTION_MEASURED: the tensions in the segments, starting at the base; otherwise ignored.
   const struct fric_disk_input *measured;
-  /// How many of these; the manipulator's fric_static_model_disk_count. Not looked at without them.
+  /// Number of these, which must be fric_static_model_disk_count. Ignored without them.
   size_t measured_count;
   /// FRIC_FRICTION_…; that of a zeroed structure is FRIC_FRICTION_HISTORY.
   uint32_t friction;
 } fric_shape_input;
 
-/// A disk, the segment that ends in it, and the hole with which that segment begins.
+/// A disk, the segment that ends in it, and the hole at the beginning of that segment.
 typedef struct fric_disk_output {
-  /// Centre of the disk, base frame: x along the straight manipulator, y to the side of the first tendon, m.
+  /// Centre of the disk, base frame: x along the straight manipulator, y towards the first tendon, m.
   double position_m[2];
-  /// Bend of the segment, rad; positive towards the first tendon.
+  /// Bend of the segment, rad, positive towards the first tendon.
   double bend_rad;
   /// Tension in the segment of the first and the second tendon, N.
   double tension_n[2];
-  /// Friction of each tendon at the hole, N; positive where the base side is tighter.
+  /// Friction of each tendon at the hole, N; positive if the base side is tighter.
   double friction_n[2];
   /// Greatest friction of each tendon at the hole, N.
   double bound_n[2];
 } fric_disk_output;
 
-/// A shape. Set `struct_size`, `disks` and `disk_count`; the solution sets the rest. All numbers are finite, whatever went in.
+/// A shape. Set `struct_size`, `disks` and `disk_count`; the solution sets the rest. All numbers are finite, whatever the input.
 typedef struct fric_shape_output {
   /// sizeof(fric_shape_output).
   size_t struct_size;
-  /// Where disks, segments and holes go, from the base.
+  /// Disks, segments and holes, starting at the base.
   struct fric_disk_output *disks;
-  /// How many; the manipulator's, fric_static_model_disk_count.
+  /// Number of disks, which must be fric_static_model_disk_count.
   size_t disk_count;
   /// Bend of the whole manipulator, the direction of the last disk, rad.
   double bend_rad;
-  /// FRIC_SHAPE_… flags, FRIC_SHAPE_OK if nothing is the matter. With one of FRIC_SHAPE_FAILED the shape is the last one that was right,
-  /// straight before the first.
+  /// FRIC_SHAPE_… flags, FRIC_SHAPE_OK if there is no fault. With one of FRIC_SHAPE_FAILED the shape is the last valid one, straight before the
+  /// first.
   uint32_t status;
 } fric_shape_output;
 
@@ -317,213 +318,210 @@ typedef struct fric_shape_output {
 extern "C" {
 #endif // __cplusplus
 
-/// Changes to the parameters of another robot file while a thread steps: without stopping it, without a lock in the step, and without a
-/// jump in the output.
+/// Changes to the parameters of another robot file while a thread steps: without stopping it, without a lock in the step, and without a jump in the
+/// output.
 ///
-/// The steps after it take the parameters over: within `blend_s` seconds (0…3600; one cycle at least) the output goes over from
-/// the old parameters to the new ones, and a step takes twice as long, the first up to six times. The file is that of the same robot: friction,
-/// effects, wraps, geometry, masses and limits may differ; cycle time, the cables' names and order, how many pulleys each
-/// has, which of them follow the pose, and which cables have an attachment may not. One change at a time:
-/// FRIC_RESULT_BUSY until the first step after the blend of the change before. FRIC_RESULT_ROBOT_FILE also where the file is that
-/// of another robot, or `blend_s` out of its range or NaN. `error` is as in fric_load_file. Not for the cycle: it reads a file
-/// and allocates.
+/// The following steps take the parameters over: within `blend_s` seconds (0…3600; at least one cycle) the output blends from the old parameters to
+/// the new ones, and a step takes twice as long, the first up to six times. The file must be that of the same robot: friction, effects, wraps,
+/// geometry, masses and limits may differ; cycle time, the cables' names and order, their numbers of pulleys, which pulleys follow the pose, and
+/// which cables have an attachment may not. One change at a time: FRIC_RESULT_BUSY until the first step after the blend of the previous change.
+/// FRIC_RESULT_ROBOT_FILE also if the file is that of another robot, or `blend_s` is NaN or out of its range. `error` is as in fric_load_file. Not
+/// for the cycle: it reads a file and allocates.
 ///
 /// # Safety
-/// `compensator` is null or a compensator that has not been given back and is not while this runs; `path` is null or a
-/// string that ends with zero; `error` is null or `error_size` bytes may be written to there.
+/// `compensator` is null or a compensator that has not been freed and is not freed during the call; `path` is null or a zero-terminated string;
+/// `error` is null or points to `error_size` writable bytes.
 enum fric_result fric_change_file(const struct fric_compensator *compensator,
                                   const char *path,
                                   double blend_s,
                                   char *error,
                                   size_t error_size);
 
-/// The same with the text of a robot file.
+/// Does the same with the text of a robot file.
 ///
 /// # Safety
-/// `toml` is null or a string that ends with zero; the rest as for fric_change_file.
+/// `toml` is null or a zero-terminated string; the rest as for fric_change_file.
 enum fric_result fric_change_text(const struct fric_compensator *compensator,
                                   const char *toml,
                                   double blend_s,
                                   char *error,
                                   size_t error_size);
 
-/// One cycle: for the inside of the control loop. It does not allocate, lock or wait, and takes any numbers, NaN
-/// included.
+/// Runs one cycle, inside the control loop. It does not allocate, lock or wait, and accepts any numbers, including NaN.
 ///
-/// On anything but FRIC_RESULT_OK nothing has happened and the output is as it was. Input and output may share no memory.
+/// On anything but FRIC_RESULT_OK nothing has happened and the output is unchanged. Input and output must not share memory.
 ///
 /// # Safety
-/// `compensator` is null or a compensator that has not been given back and that nobody else steps or resets now. `input`
-/// and `output` are null or structures whose `struct_size` can be read; if that is right, the rest can be too, and
-/// `cables` are null or as many as `cable_count` says, `pose` null or a pose, those of the output writable.
+/// `compensator` is null or a compensator that has not been freed and that nobody else steps or resets now. `input` and `output` are null or
+/// structures whose `struct_size` is readable; if that is right, the rest is readable too, `cables` are null or `cable_count` elements, `pose` is
+/// null or a pose, and those of the output are writable.
 enum fric_result fric_step(struct fric_compensator *compensator,
                            const struct fric_input *input,
                            struct fric_output *output);
 
-/// Back to the state after set-up: at rest, nothing stored, no pose. The parameters stay; those of a change that has been given
-/// hold at once, without a blend. It does not allocate, lock or wait.
+/// Resets to the state after set-up: at rest, nothing stored, no pose. The parameters are kept; those of a pending change apply at once, without a
+/// blend. It does not allocate, lock or wait.
 ///
 /// # Safety
-/// `compensator` is null or a compensator that has not been given back and that nobody else steps or resets now.
+/// `compensator` is null or a compensator that has not been freed and that nobody else steps or resets now.
 enum fric_result fric_reset(struct fric_compensator *compensator);
 
-/// How many cables the robot has; 0 for a null pointer.
+/// Returns the number of cables of the robot; 0 for a null pointer.
 ///
 /// # Safety
-/// `compensator` is null or a compensator that has not been given back.
+/// `compensator` is null or a compensator that has not been freed.
 size_t fric_cable_count(const struct fric_compensator *compensator);
 
-/// Cycle time of the robot, s; 0 for a null pointer.
+/// Returns the cycle time of the robot, s; 0 for a null pointer.
 ///
 /// # Safety
-/// `compensator` is null or a compensator that has not been given back.
+/// `compensator` is null or a compensator that has not been freed.
 double fric_cycle_s(const struct fric_compensator *compensator);
 
-/// Name of the robot in UTF-8; null for a null pointer. The text lives until fric_free.
+/// Returns the name of the robot in UTF-8; null for a null pointer. The text is valid until fric_free.
 ///
 /// # Safety
-/// `compensator` is null or a compensator that has not been given back.
+/// `compensator` is null or a compensator that has not been freed.
 const char *fric_robot_name(const struct fric_compensator *compensator);
 
-/// Name of a cable, counted from 0, in UTF-8; null for a null pointer or a cable that the robot does not have. The text
-/// lives until fric_free.
+/// Returns the name of a cable, counted from 0, in UTF-8; null for a null pointer or a cable that the robot does not have. The text is valid until
+/// fric_free.
 ///
 /// # Safety
-/// `compensator` is null or a compensator that has not been given back.
+/// `compensator` is null or a compensator that has not been freed.
 const char *fric_cable_name(const struct fric_compensator *compensator,
                             size_t cable);
 
-/// Gives a compensator back. Null does nothing. Not for the cycle: it frees memory.
+/// Frees a compensator. Null does nothing. Not for the cycle: it frees memory.
 ///
 /// # Safety
-/// `compensator` is null or a compensator that has not been given back; it is not used afterwards.
+/// `compensator` is null or a compensator that has not been freed; it must not be used afterwards.
 void fric_free(struct fric_compensator *compensator);
 
-/// Makes a compensator for the robot of a robot file (TOML, `format = "fric-robot/1"`).
+/// Creates a compensator for the robot of a robot file (TOML, `format = "fric-robot/1"`).
 ///
-/// `path` is UTF-8. On FRIC_RESULT_OK `*compensator` is the new compensator, else null. `error` takes one sentence that
-/// says what is wrong, where and what is allowed, cut to `error_size` bytes with the final zero, and is empty without
-/// an error; it may be null with size 0. Not for the cycle: it reads a file and allocates. The optimised library takes
-/// at most 1024 KiB of stack, 256 KiB for a robot of 16 cables or fewer; so do fric_load_text, fric_change_file and fric_change_text.
+/// `path` is UTF-8. On FRIC_RESULT_OK `*compensator` is the new compensator, else null. `error` receives one sentence that says what is wrong, where
+/// and what is allowed, cut to `error_size` bytes including the final zero, and is empty without an error; it may be null with size 0. Not for the
+/// cycle: it reads a file and allocates. The optimised library uses at most 1024 KiB of stack, 256 KiB for a robot of 16 cables or fewer; so do
+/// fric_load_text, fric_change_file and fric_change_text.
 ///
 /// # Safety
-/// `path` is null or a string that ends with zero; `compensator` is null or may be written to; `error` is null or
-/// `error_size` bytes may be written to there.
+/// `path` is null or a zero-terminated string; `compensator` is null or writable; `error` is null or points to `error_size` writable bytes.
 enum fric_result fric_load_file(const char *path,
                                 struct fric_compensator **compensator,
                                 char *error,
                                 size_t error_size);
 
-/// The same for the text of a robot file, which has no place of its own: errors name line and key.
+/// Does the same with the text of a robot file, which has no path: errors name line and key.
 ///
 /// # Safety
-/// `toml` is null or a string that ends with zero; the rest as for fric_load_file.
+/// `toml` is null or a zero-terminated string; the rest as for fric_load_file.
 enum fric_result fric_load_text(const char *toml,
                                 struct fric_compensator **compensator,
                                 char *error,
                                 size_t error_size);
 
-/// Version of the interface that this library has; FRIC_ABI_VERSION of the header that it goes with.
+/// Returns the version of this library's interface, FRIC_ABI_VERSION of the matching header.
 uint32_t fric_abi_version(void);
 
-/// Version of the library, "0.1.0"; the text lives as long as the program.
+/// Returns the version of the library, "0.1.0"; the text is always valid.
 const char *fric_version(void);
 
-/// States what the drives at the base can do; after set-up the first tendon is pulled from 0 N up to its capacity, and every goal is followed.
+/// Sets the limits of the drives at the base. After set-up the first tendon is pulled from 0 N up to its capacity, and every goal is followed.
 ///
-/// FRIC_RESULT_BAD_VALUE, and the drive stays as it was, where a number is NaN or out of its range; `error` then names the number, its value and what
-/// is allowed, and is otherwise as in fric_load_file. Only that text allocates.
+/// FRIC_RESULT_BAD_VALUE, with the drive unchanged, if a number is NaN or out of its range; `error` then names the number, its value and what is
+/// allowed, and is otherwise as in fric_load_file. Only that text allocates.
 ///
 /// # Safety
-/// `model` is null or a model that has not been given back and that nobody else uses now. `drive` is null or a structure whose
-/// `struct_size` can be read; if that is right, the rest can be too. `error` is null or `error_size` bytes may be written to there.
+/// `model` is null or a model that has not been freed and that nobody else uses now. `drive` is null or a structure whose `struct_size` is readable;
+/// if that is right, the rest is readable too. `error` is null or points to `error_size` writable bytes.
 enum fric_result fric_static_model_set_drive(struct fric_static_model *model,
                                              const struct fric_drive *drive,
                                              char *error,
                                              size_t error_size);
 
-/// The tensions at the base that bring the manipulator to a goal, from where the last step of the history left it: for the inside of the control
-/// loop. It does not allocate, lock or wait, takes any numbers, NaN included, and its iterations are bounded.
+/// Computes the tensions at the base that bring the manipulator to a goal, from the end of the last step of the history. It may run inside the
+/// control loop: it does not allocate, lock or wait, accepts any numbers, including NaN, and its iterations are bounded.
 ///
-/// The shape and what the holes remember stay as they are: fric_static_model_solve, with the tensions that were set or measured then, moves them
-/// on. FRIC_RESULT_BAD_VALUE for a `kind` or `friction` that is none of the header's. On anything but FRIC_RESULT_OK nothing has
-/// happened and the command is as it was. Goal and command may share no memory.
+/// The shape and the memory of the holes are unchanged: fric_static_model_solve, with the tensions that were then set or measured, advances them.
+/// FRIC_RESULT_BAD_VALUE for a `kind` or `friction` that is none of the header's. On anything but FRIC_RESULT_OK nothing has happened and the command
+/// is unchanged. Goal and command must not share memory.
 ///
 /// # Safety
-/// `model` is null or a model that has not been given back and that nobody else uses now. `goal` and `command` are null or structures whose
-/// `struct_size` can be read; if that is right, the rest of the goal can be too, and the rest of the command can be written to.
+/// `model` is null or a model that has not been freed and that nobody else uses now. `goal` and `command` are null or structures whose `struct_size`
+/// is readable; if that is right, the rest of the goal is readable too, and the rest of the command is writable.
 enum fric_result fric_static_model_tension_for(struct fric_static_model *model,
                                                const struct fric_goal *goal,
                                                struct fric_command *command);
 
-/// Makes a static model of the manipulator of a manipulator file (TOML, `format = "fric-continuum/1"`): straight, without tension, with
-/// relaxed holes.
+/// Creates a static model of the manipulator of a manipulator file (TOML, `format = "fric-continuum/1"`): straight, without tension, with relaxed
+/// holes.
 ///
-/// `path` is UTF-8. On FRIC_RESULT_OK `*model` is the new model, else null. `error` is as in fric_load_file. Not for the loop: it reads a file
-/// and allocates. The optimised library takes at most 256 KiB of stack, as all functions of a static model do.
+/// `path` is UTF-8. On FRIC_RESULT_OK `*model` is the new model, else null. `error` is as in fric_load_file. Not for the loop: it reads a file and
+/// allocates. The optimised library uses at most 256 KiB of stack, as all functions of a static model do.
 ///
 /// # Safety
-/// `path` is null or a string that ends with zero; `model` is null or may be written to; `error` is null or `error_size` bytes
-/// may be written to there.
+/// `path` is null or a zero-terminated string; `model` is null or writable; `error` is null or points to `error_size` writable bytes.
 enum fric_result fric_static_model_load_file(const char *path,
                                              struct fric_static_model **model,
                                              char *error,
                                              size_t error_size);
 
-/// The same for the text of a manipulator file, which has no place of its own: errors name line and key.
+/// Does the same with the text of a manipulator file, which has no path: errors name line and key.
 ///
 /// # Safety
-/// `toml` is null or a string that ends with zero; the rest as for fric_static_model_load_file.
+/// `toml` is null or a zero-terminated string; the rest as for fric_static_model_load_file.
 enum fric_result fric_static_model_load_text(const char *toml,
                                              struct fric_static_model **model,
                                              char *error,
                                              size_t error_size);
 
-/// How many disks the manipulator has beyond the base plate, as many segments, and holes of a tendon; 0 for a null pointer.
+/// Returns the manipulator's number of disks without the base plate, which is also the number of segments and of a tendon's holes; 0 for a null
+/// pointer.
 ///
 /// # Safety
-/// `model` is null or a model that has not been given back.
+/// `model` is null or a model that has not been freed.
 size_t fric_static_model_disk_count(const struct fric_static_model *model);
 
-/// Name of the manipulator in UTF-8; null for a null pointer. The text lives until fric_static_model_free.
+/// Returns the name of the manipulator in UTF-8; null for a null pointer. The text is valid until fric_static_model_free.
 ///
 /// # Safety
-/// `model` is null or a model that has not been given back.
+/// `model` is null or a model that has not been freed.
 const char *fric_static_model_name(const struct fric_static_model *model);
 
-/// Back to the state after set-up: straight, without tension, with relaxed holes. The drive stays. It does not allocate, lock or wait.
+/// Resets to the state after set-up: straight, without tension, with relaxed holes. The drive is kept. It does not allocate, lock or wait.
 ///
 /// # Safety
-/// `model` is null or a model that has not been given back and that nobody else uses now.
+/// `model` is null or a model that has not been freed and that nobody else uses now.
 enum fric_result fric_static_model_reset(struct fric_static_model *model);
 
-/// Brings a model into the state of another one of the same manipulator: its shape and what its holes remember. The drive stays. So a second model
-/// keeps a state to come back to, or looks ahead while the first one stays. It does not allocate, lock or wait.
+/// Copies the state of another model of the same manipulator: its shape and the memory of its holes. The drive is kept. With it, a second model can
+/// store a state to return to, or look ahead while the first one stays. It does not allocate, lock or wait.
 ///
-/// FRIC_RESULT_WRONG_SIZE, and nothing is changed, where the other manipulator has another number of disks.
+/// FRIC_RESULT_WRONG_SIZE, with nothing changed, if the other manipulator has another number of disks.
 ///
 /// # Safety
-/// `model` and `from` are each null or a model that has not been given back and that nobody else uses now; they may be the same.
+/// `model` and `from` are each null or a model that has not been freed and that nobody else uses now; they may be the same.
 enum fric_result fric_static_model_copy_state(struct fric_static_model *model,
                                               const struct fric_static_model *from);
 
-/// Gives a model back. Null does nothing. Not for the loop: it frees memory.
+/// Frees a model. Null does nothing. Not for the loop: it frees memory.
 ///
 /// # Safety
-/// `model` is null or a model that has not been given back; it is not used afterwards.
+/// `model` is null or a model that has not been freed; it must not be used afterwards.
 void fric_static_model_free(struct fric_static_model *model);
 
-/// The shape for tensions at the base: for the inside of the control loop. It does not allocate, lock or wait, takes any numbers, NaN
-/// included, and its iterations are bounded.
+/// Computes the shape for tensions at the base. It may run inside the control loop: it does not allocate, lock or wait, accepts any numbers,
+/// including NaN, and its iterations are bounded.
 ///
-/// With FRIC_FRICTION_HISTORY this is one step of the run, which begins with the relaxed tendon: call it in every cycle. The other ways of friction
-/// may be solved in between and leave what the holes remember as it is. FRIC_RESULT_BAD_VALUE for a `friction` that is none of FRIC_FRICTION_….
-/// On anything but FRIC_RESULT_OK nothing has happened and the output is as it was. Input and output may share no memory.
+/// With FRIC_FRICTION_HISTORY this is one step of the run, which begins with the relaxed tendon: call it in every cycle. The other friction models
+/// may be solved in between and leave the memory of the holes unchanged. FRIC_RESULT_BAD_VALUE for a `friction` that is none of FRIC_FRICTION_…. On
+/// anything but FRIC_RESULT_OK nothing has happened and the output is unchanged. Input and output must not share memory.
 ///
 /// # Safety
-/// `model` is null or a model that has not been given back and that nobody else uses now. `input` and `output` are null or structures
-/// whose `struct_size` can be read; if that is right, the rest can be too; `measured` is null or, with FRIC_FRICTION_MEASURED, as many as
-/// `measured_count` says, `disks` null or as many as `disk_count` says and writable.
+/// `model` is null or a model that has not been freed and that nobody else uses now. `input` and `output` are null or structures whose `struct_size`
+/// is readable; if that is right, the rest is readable too; `measured` is null or, with FRIC_FRICTION_MEASURED, `measured_count` elements, `disks` is
+/// null or `disk_count` writable elements.
 enum fric_result fric_static_model_solve(struct fric_static_model *model,
                                          const struct fric_shape_input *input,
                                          struct fric_shape_output *output);

@@ -1,9 +1,9 @@
 /// fric: friction compensation for cable robots, the interface in C++17. Header only, over fric.h.
 ///
-/// Set-up throws fric::Error with a sentence that says what is wrong and where. Nothing in the cycle throws, allocates or
-/// locks: `step`, `solve`, `tension_for_…` and `reset` are noexcept and give a code, which only buffers of the wrong size can make
-/// other than OK.
-/// SI units, in the names. SPDX-License-Identifier: MIT OR Apache-2.0
+/// Set-up throws fric::Error with a sentence that states the problem and its place. Nothing in the cycle throws, allocates, or
+/// locks: `step`, `solve`, `tension_for_…`, and `reset` are noexcept and return a code. The code differs from OK only if a
+/// buffer has the wrong size.
+/// All quantities are in SI units, which the names state. SPDX-License-Identifier: MIT OR Apache-2.0
 
 #ifndef FRIC_HPP
 #define FRIC_HPP
@@ -28,12 +28,12 @@ using Pose = ::fric_pose;
 using Wrench = ::fric_wrench;
 using Result = ::fric_result;
 
-/// Why a compensator or a static model could not be set up.
+/// Error of the set-up of a compensator or a static model.
 class Error : public std::runtime_error {
 public:
     Error(Result result, const std::string& text) : std::runtime_error(text), result_(result) {}
 
-    /// The code beside the text.
+    /// Code of the error, in addition to the text.
     [[nodiscard]] Result result() const noexcept { return result_; }
 
 private:
@@ -42,7 +42,7 @@ private:
 
 namespace detail {
 
-// A string of C++ may hold zeros; for C it would end there, and the rest would be lost without a word.
+// A C++ string may contain zero bytes. In C the string would end there, and the rest would be lost silently.
 inline const char* c_text(const std::string& source) {
     if (source.find('\0') != std::string::npos) {
         throw Error(FRIC_RESULT_ROBOT_FILE, "the text or path has a zero byte in it");
@@ -69,39 +69,39 @@ Handle* load(Load c_load, const std::string& source) {
 
 }  // namespace detail
 
-/// Signals of one cycle. Make it at set-up with Compensator::make_input and keep it.
+/// Signals of one cycle. Create it at set-up with Compensator::make_input and reuse it.
 struct Input {
-    /// Cables in the robot's order.
+    /// Signals of the cables, in the order of the robot.
     std::vector<CableInput> cables;
-    /// Pose of the platform, where it is known.
+    /// Pose of the platform, if known.
     std::optional<Pose> pose;
-    /// Cycles since the last step, 1 unless some were skipped.
+    /// Number of cycles since the last step: 1 unless cycles were skipped.
     double elapsed_cycles = 1.0;
 };
 
-/// Outcome of one cycle. Make it at set-up with Compensator::make_output and keep it.
+/// Output of one cycle. Create it at set-up with Compensator::make_output and reuse it.
 struct Output {
-    /// Cables in the robot's order.
+    /// Outputs of the cables, in the order of the robot.
     std::vector<CableOutput> cables;
-    /// What acts on the platform from outside, gravity included, base axes, about the platform origin.
+    /// External wrench on the platform including gravity, in base axes, about the platform origin.
     std::optional<Wrench> outside_wrench;
-    /// The same less gravity.
+    /// External wrench without gravity.
     std::optional<Wrench> applied_wrench;
-    /// Every FRIC_STATUS_… flag of any cable that the wrenches are made of.
+    /// All FRIC_STATUS_… flags of the cables from which the wrenches are computed.
     std::uint32_t wrench_status = FRIC_STATUS_OK;
 };
 
-/// Friction compensation of one robot. It can be moved, not copied. One thread at a time may step or reset it;
-/// others may ask and change parameters meanwhile.
+/// Friction compensation of one robot. It can be moved, not copied. Only one thread at a time may step or reset it;
+/// other threads may query it and change parameters meanwhile.
 class Compensator {
 public:
-    /// For the robot of a robot file. Throws Error.
+    /// Creates the compensator of the robot in a robot file. Throws Error.
     [[nodiscard]] static Compensator from_file(const std::string& path) { return load(::fric_load_file, path); }
 
-    /// For the robot of a robot file's text. Throws Error.
+    /// Creates the compensator of the robot in the text of a robot file. Throws Error.
     [[nodiscard]] static Compensator from_text(const std::string& toml) { return load(::fric_load_text, toml); }
 
-    /// One cycle. On anything but FRIC_RESULT_OK nothing has happened and the output is as it was.
+    /// Computes one cycle. If the code is not FRIC_RESULT_OK, nothing has happened and the output is unchanged.
     [[nodiscard]] Result step(const Input& input, Output& output) noexcept {
         ::fric_input c_input{};
         c_input.struct_size = sizeof c_input;
@@ -122,39 +122,39 @@ public:
         return result;
     }
 
-    /// Back to the state after set-up; the parameters of a change that has been given hold at once.
+    /// Resets to the state after set-up. The parameters of a requested change apply at once.
     Result reset() noexcept { return ::fric_reset(handle_.get()); }
 
-    /// Changes to the parameters of another robot file of the same robot within `blend_s` seconds, from any thread, while
-    /// another one steps. Gives false, and changes nothing, until the first step after the blend of the change before.
+    /// Changes to the parameters of another robot file of the same robot within `blend_s` seconds. Any thread may call it while
+    /// another one steps. Returns false and changes nothing until the first step after the blend of the previous change.
     /// Throws Error.
     [[nodiscard]] bool change_to_file(const std::string& path, double blend_s) const {
         return change(::fric_change_file, path, blend_s);
     }
 
-    /// The same with the text of a robot file.
+    /// Changes to the parameters in the text of a robot file, like `change_parameters`.
     [[nodiscard]] bool change_to_text(const std::string& toml, double blend_s) const {
         return change(::fric_change_text, toml, blend_s);
     }
 
-    /// How many cables the robot has; 0 once moved from.
+    /// Returns the number of cables of the robot, or 0 after a move.
     [[nodiscard]] std::size_t cable_count() const noexcept { return ::fric_cable_count(handle_.get()); }
 
-    /// Cycle time of the robot, s.
+    /// Returns the cycle time of the robot in s.
     [[nodiscard]] double cycle_s() const noexcept { return ::fric_cycle_s(handle_.get()); }
 
-    /// Name of the robot.
+    /// Returns the name of the robot.
     [[nodiscard]] std::string robot_name() const { return detail::text(::fric_robot_name(handle_.get())); }
 
-    /// Name of a cable, counted from 0; empty where there is none.
+    /// Returns the name of a cable, counted from 0, or an empty string if there is no such cable.
     [[nodiscard]] std::string cable_name(std::size_t cable) const {
         return detail::text(::fric_cable_name(handle_.get(), cable));
     }
 
-    /// Room for the signals of a cycle; allocates.
+    /// Creates the signals of a cycle. Allocates.
     [[nodiscard]] Input make_input() const { return Input{std::vector<CableInput>(cable_count()), std::nullopt, 1.0}; }
 
-    /// Room for the outcome of a cycle; allocates.
+    /// Creates the output of a cycle. Allocates.
     [[nodiscard]] Output make_output() const {
         return Output{std::vector<CableOutput>(cable_count()), std::nullopt, std::nullopt, FRIC_STATUS_OK};
     }
@@ -187,71 +187,71 @@ private:
 using DiskTensions = ::fric_disk_input;
 using Disk = ::fric_disk_output;
 
-/// How the friction at the holes of a manipulator is found.
+/// Source of the friction at the holes of a manipulator.
 enum class Friction : std::uint32_t {
-    /// By what each hole remembers of the run of the tensions at the base.
+    /// The friction follows from the state of each hole, which depends on the history of the tensions at the base.
     history = FRIC_FRICTION_HISTORY,
-    /// There is none.
+    /// No friction.
     none = FRIC_FRICTION_NONE,
-    /// Coulomb's, every hole sliding as pulled.
+    /// Coulomb friction, with every hole sliding in the direction of the pull.
     pulling = FRIC_FRICTION_PULLING,
-    /// Coulomb's, every hole sliding the other way.
+    /// Coulomb friction, with every hole sliding against the direction of the pull.
     releasing = FRIC_FRICTION_RELEASING,
 };
 
-/// A shape of a manipulator. Make it at set-up with StaticModel::make_shape and keep it.
+/// Shape of a manipulator. Create it at set-up with StaticModel::make_shape and reuse it.
 struct Shape {
-    /// Disks, the segments that end in them, and the holes these begin with, from the base.
+    /// Disks, the segments that end at them, and the holes at which the segments begin, from the base.
     std::vector<Disk> disks;
     /// Bend of the whole manipulator, rad.
     double bend_rad = 0.0;
     /// FRIC_SHAPE_… flags.
     std::uint32_t status = FRIC_SHAPE_OK;
 
-    /// Whether this is the shape for the tensions given; otherwise it is the last one that was right.
+    /// Returns whether this is the shape for the given tensions. Otherwise it is the last valid shape.
     [[nodiscard]] bool is_new() const noexcept { return (status & FRIC_SHAPE_FAILED) == 0; }
 };
 
-/// The tensions to set at the base of a manipulator, and what the model expects of them.
+/// Tensions to set at the base of a manipulator, and the prediction of the model for them.
 struct Command {
-    /// Of the first and the second tendon, N.
+    /// Tensions of the first and the second tendon, N.
     std::array<double, 2> base_tension_n{};
-    /// Bend of the whole manipulator then, rad.
+    /// Predicted bend of the whole manipulator, rad.
     double bend_rad = 0.0;
-    /// Centre of the last disk then, base frame, m.
+    /// Predicted centre of the last disk, base frame, m.
     std::array<double, 2> tip_m{};
     /// FRIC_COMMAND_… flags.
     std::uint32_t status = FRIC_COMMAND_OK;
 
-    /// Whether the goal is reached.
+    /// Returns whether the goal is reached.
     [[nodiscard]] bool is_reached() const noexcept { return (status & FRIC_COMMAND_MISSED) == 0; }
 };
 
-/// What the drives at the base of a manipulator can do.
+/// Limits of the drives at the base of a manipulator.
 struct Drive {
     /// Tension that each tendon keeps while the other one is pulled, N.
     std::array<double, 2> least_tension_n{};
-    /// Greatest tension of each tendon, N; one for which it is the least is not pulled.
+    /// Greatest tension of each tendon, N. A tendon whose greatest tension equals its least is not pulled.
     std::array<double, 2> greatest_tension_n{};
-    /// A goal nearer than this, rad (for the tip: this share of the arm's length), leaves the tensions as they are.
+    /// If a goal is nearer than this, the tensions stay unchanged: rad, or for the tip a fraction of the arm's length.
     double hold_rad = 0.0;
 };
 
 /// Static model of one continuum manipulator: shapes for tensions at the base, and tensions for goals. It can be moved, not
-/// copied. One thread at a time may use it.
+/// copied. Only one thread at a time may use it.
 class StaticModel {
 public:
-    /// Of the manipulator of a manipulator file. Throws Error.
+    /// Creates the model of the manipulator in a manipulator file. Throws Error.
     [[nodiscard]] static StaticModel from_file(const std::string& path) {
         return StaticModel(detail::load<::fric_static_model>(::fric_static_model_load_file, path));
     }
 
-    /// Of the manipulator of a manipulator file's text. Throws Error.
+    /// Creates the model of the manipulator in the text of a manipulator file. Throws Error.
     [[nodiscard]] static StaticModel from_text(const std::string& toml) {
         return StaticModel(detail::load<::fric_static_model>(::fric_static_model_load_text, toml));
     }
 
-    /// States what the drives can do; after set-up the first tendon is pulled from 0 N to its capacity. Throws Error.
+    /// Sets the limits of the drives. After set-up, the first tendon is pulled from 0 N to its capacity. Throws Error.
     void set_drive(const Drive& drive) {
         ::fric_drive c_drive{};
         c_drive.struct_size = sizeof c_drive;
@@ -267,47 +267,47 @@ public:
         }
     }
 
-    /// The shape for the tensions at the base, N. With Friction::history this is one step of the run: call it in every cycle. On
-    /// anything but FRIC_RESULT_OK nothing has happened and the shape is as it was.
+    /// Computes the shape for the tensions at the base, N. With Friction::history, each call is one step of the history: call it
+    /// in every cycle. If the code is not FRIC_RESULT_OK, nothing has happened and the shape is unchanged.
     [[nodiscard]] Result solve(const std::array<double, 2>& base_tension_n, Shape& shape,
                                Friction friction = Friction::history) noexcept {
         return solve(base_tension_n, nullptr, 0, static_cast<std::uint32_t>(friction), shape);
     }
 
-    /// The same with the friction that the tensions measured in the segments give, one entry per disk.
+    /// Computes the shape with the friction that follows from the tensions measured in the segments, one entry per disk.
     [[nodiscard]] Result solve_measured(const std::array<double, 2>& base_tension_n,
                                         const std::vector<DiskTensions>& measured, Shape& shape) noexcept {
         return solve(base_tension_n, measured.data(), measured.size(), FRIC_FRICTION_MEASURED, shape);
     }
 
-    /// The tensions at the base for a bend of the whole manipulator, rad, from where the last step of the history left it. `solve`, with the
-    /// tensions that were set or measured then, moves on what the holes remember.
+    /// Computes the tensions at the base for a bend of the whole manipulator, rad, from the state after the last step of the history.
+    /// The state of the holes advances only when `solve` is called with the tensions that were then set or measured.
     [[nodiscard]] Result tension_for_bend(double bend_rad, Command& command,
                                           Friction friction = Friction::history) noexcept {
         return tension_for(FRIC_GOAL_BEND, bend_rad, {}, friction, command);
     }
 
-    /// The same for a position of the tip, base frame, m.
+    /// Computes the tensions at the base for a position of the tip, base frame, m.
     [[nodiscard]] Result tension_for_tip(const std::array<double, 2>& tip_m, Command& command,
                                          Friction friction = Friction::history) noexcept {
         return tension_for(FRIC_GOAL_TIP, 0.0, tip_m, friction, command);
     }
 
-    /// Back to the state after set-up; the drive stays.
+    /// Resets to the state after set-up. The limits of the drives are kept.
     Result reset() noexcept { return ::fric_static_model_reset(handle_.get()); }
 
-    /// Goes on from where another model of the same manipulator is; the drive stays.
+    /// Copies the state of another model of the same manipulator. The limits of the drives are kept.
     Result copy_state(const StaticModel& from) noexcept {
         return ::fric_static_model_copy_state(handle_.get(), from.handle_.get());
     }
 
-    /// How many disks the manipulator has; 0 once moved from.
+    /// Returns the number of disks of the manipulator, or 0 after a move.
     [[nodiscard]] std::size_t disk_count() const noexcept { return ::fric_static_model_disk_count(handle_.get()); }
 
-    /// Name of the manipulator.
+    /// Returns the name of the manipulator.
     [[nodiscard]] std::string name() const { return detail::text(::fric_static_model_name(handle_.get())); }
 
-    /// Room for a shape; allocates.
+    /// Creates a shape. Allocates.
     [[nodiscard]] Shape make_shape() const { return Shape{std::vector<Disk>(disk_count()), 0.0, FRIC_SHAPE_OK}; }
 
 private:

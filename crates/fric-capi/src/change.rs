@@ -1,4 +1,4 @@
-//! New parameters while another thread steps.
+//! Changes parameters while another thread steps.
 
 use std::ffi::c_char;
 use std::path::Path;
@@ -12,20 +12,19 @@ use crate::handle::{Handle, description};
 use crate::load::{guarded, text};
 use crate::outcome::Outcome;
 
-/// Changes to the parameters of another robot file while a thread steps: without stopping it, without a lock in the step, and without a
-/// jump in the output.
+/// Changes to the parameters of another robot file while a thread steps: without stopping it, without a lock in the step, and without a jump in the
+/// output.
 ///
-/// The steps after it take the parameters over: within `blend_s` seconds (0…3600; one cycle at least) the output goes over from
-/// the old parameters to the new ones, and a step takes twice as long, the first up to six times. The file is that of the same robot: friction,
-/// effects, wraps, geometry, masses and limits may differ; cycle time, the cables' names and order, how many pulleys each
-/// has, which of them follow the pose, and which cables have an attachment may not. One change at a time:
-/// FRIC_RESULT_BUSY until the first step after the blend of the change before. FRIC_RESULT_ROBOT_FILE also where the file is that
-/// of another robot, or `blend_s` out of its range or NaN. `error` is as in fric_load_file. Not for the cycle: it reads a file
-/// and allocates.
+/// The following steps take the parameters over: within `blend_s` seconds (0…3600; at least one cycle) the output blends from the old parameters to
+/// the new ones, and a step takes twice as long, the first up to six times. The file must be that of the same robot: friction, effects, wraps,
+/// geometry, masses and limits may differ; cycle time, the cables' names and order, their numbers of pulleys, which pulleys follow the pose, and
+/// which cables have an attachment may not. One change at a time: FRIC_RESULT_BUSY until the first step after the blend of the previous change.
+/// FRIC_RESULT_ROBOT_FILE also if the file is that of another robot, or `blend_s` is NaN or out of its range. `error` is as in fric_load_file. Not
+/// for the cycle: it reads a file and allocates.
 ///
 /// # Safety
-/// `compensator` is null or a compensator that has not been given back and is not while this runs; `path` is null or a
-/// string that ends with zero; `error` is null or `error_size` bytes may be written to there.
+/// `compensator` is null or a compensator that has not been freed and is not freed during the call; `path` is null or a zero-terminated string;
+/// `error` is null or points to `error_size` writable bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fric_change_file(
     compensator: *const Handle,
@@ -34,11 +33,11 @@ pub unsafe extern "C" fn fric_change_file(
     error: *mut c_char,
     error_size: usize,
 ) -> Outcome {
-    // SAFETY: the same is promised here.
+    // SAFETY: the caller of this function promises the same.
     let error = unsafe { ErrorText::new(error, error_size) };
-    // SAFETY: the same is promised here.
+    // SAFETY: the caller of this function promises the same.
     let path = unsafe { text(path, "path") };
-    // SAFETY: the same is promised here.
+    // SAFETY: the caller of this function promises the same.
     unsafe {
         change(
             compensator,
@@ -50,10 +49,10 @@ pub unsafe extern "C" fn fric_change_file(
     }
 }
 
-/// The same with the text of a robot file.
+/// Does the same with the text of a robot file.
 ///
 /// # Safety
-/// `toml` is null or a string that ends with zero; the rest as for fric_change_file.
+/// `toml` is null or a zero-terminated string; the rest as for fric_change_file.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fric_change_text(
     compensator: *const Handle,
@@ -62,11 +61,11 @@ pub unsafe extern "C" fn fric_change_text(
     error: *mut c_char,
     error_size: usize,
 ) -> Outcome {
-    // SAFETY: the same is promised here.
+    // SAFETY: the caller of this function promises the same.
     let error = unsafe { ErrorText::new(error, error_size) };
-    // SAFETY: the same is promised here.
+    // SAFETY: the caller of this function promises the same.
     let toml = unsafe { text(toml, "toml") };
-    // SAFETY: the same is promised here.
+    // SAFETY: the caller of this function promises the same.
     unsafe {
         change(
             compensator,
@@ -78,10 +77,10 @@ pub unsafe extern "C" fn fric_change_text(
     }
 }
 
-/// Sends parameters, or gives a code and a text.
+/// Sends parameters, or returns a code and a text.
 ///
 /// # Safety
-/// `compensator` is null or a compensator that has not been given back and is not while this runs.
+/// `compensator` is null or a compensator that has not been freed and is not freed during the call.
 unsafe fn change(
     compensator: *const Handle,
     source: Result<&str, (Outcome, String)>,
@@ -90,12 +89,12 @@ unsafe fn change(
     error: ErrorText,
 ) -> Outcome {
     error.write("");
-    // SAFETY: the same is promised here.
+    // SAFETY: the caller of this function promises the same.
     let Some(description) = (unsafe { description(compensator) }) else {
         error.write("`compensator` is a null pointer or not aligned");
         return Outcome::BadPointer;
     };
-    // SAFETY: a handle that lives; the step looks at other fields only, and no reference to those is made here.
+    // SAFETY: a live handle; the step uses other fields only, and no reference to those is made here.
     let parameters = unsafe { &(*compensator).parameters };
     let sent = guarded(|| {
         let robot = read(source?).map_err(|text| (Outcome::RobotFile, text))?;
@@ -104,7 +103,7 @@ unsafe fn change(
             let text = format!("`name` of the cables, in order: {names}; they have to be those of the robot that runs");
             return Err((Outcome::RobotFile, text));
         }
-        // After a panic the two rings are whole all the same.
+        // The two rings are consistent even after a panic.
         let mut sender = parameters.lock().unwrap_or_else(PoisonError::into_inner);
         sender.send(&robot.params(), blend_s).map_err(|refused| {
             let outcome = if refused == SendError::Busy { Outcome::Busy } else { Outcome::RobotFile };

@@ -9,12 +9,12 @@ use crate::outcome::Outcome;
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct CableSignals {
-    /// Force that the sensor shows, N.
+    /// Force shown by the sensor, N.
     pub sensor_force_n: f64,
-    /// Cable length, m; any zero, only changes count. Positive paying out. The winch's set point, or a measured length of
+    /// Cable length, m, positive paying out; its zero is arbitrary, because only changes count. The winch's set point, or a measured length with
     /// little noise.
     pub length_m: f64,
-    /// Its rate, m/s.
+    /// Rate of the length, m/s.
     pub speed_m_per_s: f64,
 }
 
@@ -24,8 +24,8 @@ pub struct CableSignals {
 pub struct PlatformPose {
     /// Platform origin, m.
     pub position_m: [f64; 3],
-    /// Rotation from platform to base axes as a quaternion x, y, z, w; normalised here. One whose norm is not within 10 % of 1
-    /// is no pose.
+    /// Rotation from platform to base axes as a quaternion x, y, z, w, which is normalised here. A quaternion whose norm is not within 10 % of 1 is
+    /// no pose.
     pub orientation_xyzw: [f64; 4],
 }
 
@@ -39,17 +39,17 @@ pub struct PlatformWrench {
     pub torque_nm: [f64; 3],
 }
 
-/// Outcome for one cable. All numbers are finite, whatever went in.
+/// Output for one cable. All numbers are finite, whatever the input.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CableResult {
-    /// Cable force at the platform, N, the offset included.
+    /// Cable force at the platform including the offset, N.
     pub force_at_platform_n: f64,
-    /// Estimated friction, N; positive where it makes the platform side tighter.
+    /// Estimated friction, N; positive if it makes the platform side tighter.
     pub friction_n: f64,
-    /// The sensor force turned into cable tension as if nothing rubbed, N.
+    /// Cable tension computed from the sensor force without friction, N.
     pub frictionless_n: f64,
-    /// FRIC_STATUS_… flags, FRIC_STATUS_OK if nothing is the matter.
+    /// FRIC_STATUS_… flags, FRIC_STATUS_OK if there is no fault.
     pub status: u32,
 }
 
@@ -61,32 +61,32 @@ pub struct CycleSignals {
     pub struct_size: usize,
     /// Cables in the robot's order.
     pub cables: *const CableSignals,
-    /// How many; the robot's, fric_cable_count.
+    /// Number of cables, which must be fric_cable_count.
     pub cable_count: usize,
-    /// Pose of the platform; null where it is not known.
+    /// Pose of the platform; null if it is unknown.
     pub pose: *const PlatformPose,
-    /// Cycles since the last step, 1 unless some were skipped: a longer pause allows a longer way before a change of length
-    /// counts as a jump. Less than 1 (0, as in a zeroed structure) and NaN count as 1.
+    /// Cycles since the last step, 1 unless some were skipped. A longer pause allows a longer distance before a change of length counts as a jump.
+    /// Values below 1 (0, as in a zeroed structure) and NaN count as 1.
     pub elapsed_cycles: f64,
 }
 
-/// Outcome of one cycle. Set `struct_size`, `cables` and `cable_count`; the step sets the rest.
+/// Output of one cycle. Set `struct_size`, `cables` and `cable_count`; the step sets the rest.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct CycleResult {
     /// sizeof(fric_output).
     pub struct_size: usize,
-    /// Where the outcome for the cables goes, in the robot's order.
+    /// Output for the cables, in the robot's order.
     pub cables: *mut CableResult,
-    /// How many; the robot's, fric_cable_count.
+    /// Number of cables, which must be fric_cable_count.
     pub cable_count: usize,
-    /// What acts on the platform from outside, gravity included; zero without a wrench.
+    /// External wrench on the platform including gravity; zero without a wrench.
     pub outside_wrench: PlatformWrench,
-    /// The same less gravity: what a hand, a tool or acceleration applies; zero without a wrench.
+    /// External wrench without gravity: the contribution of a hand, a tool or acceleration; zero without a wrench.
     pub applied_wrench: PlatformWrench,
     /// Whether there are wrenches: not before the first pose, and not for a robot file that lacks the attachment of a cable.
     pub has_wrench: bool,
-    /// Every FRIC_STATUS_… flag of any cable that the wrenches are made of.
+    /// Every FRIC_STATUS_… flag of any cable that contributes to the wrenches.
     pub wrench_status: u32,
 }
 
@@ -96,20 +96,19 @@ impl PlatformWrench {
     }
 }
 
-/// Whether a pointer can be followed at all.
+/// Whether a pointer may be dereferenced: not null and aligned.
 pub(crate) fn usable<T>(pointer: *const T) -> bool {
     !pointer.is_null() && pointer.is_aligned()
 }
 
-/// One cycle: for the inside of the control loop. It does not allocate, lock or wait, and takes any numbers, NaN
-/// included.
+/// Runs one cycle, inside the control loop. It does not allocate, lock or wait, and accepts any numbers, including NaN.
 ///
-/// On anything but FRIC_RESULT_OK nothing has happened and the output is as it was. Input and output may share no memory.
+/// On anything but FRIC_RESULT_OK nothing has happened and the output is unchanged. Input and output must not share memory.
 ///
 /// # Safety
-/// `compensator` is null or a compensator that has not been given back and that nobody else steps or resets now. `input`
-/// and `output` are null or structures whose `struct_size` can be read; if that is right, the rest can be too, and
-/// `cables` are null or as many as `cable_count` says, `pose` null or a pose, those of the output writable.
+/// `compensator` is null or a compensator that has not been freed and that nobody else steps or resets now. `input` and `output` are null or
+/// structures whose `struct_size` is readable; if that is right, the rest is readable too, `cables` are null or `cable_count` elements, `pose` is
+/// null or a pose, and those of the output are writable.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fric_step(
     compensator: *mut Handle,
@@ -126,9 +125,9 @@ pub unsafe extern "C" fn fric_step(
     if input_size != size_of::<CycleSignals>() || output_size != size_of::<CycleResult>() {
         return Outcome::WrongSize;
     }
-    // SAFETY: of the right size, so all of it can be read.
+    // SAFETY: of the right size, so all of it is readable.
     let input = unsafe { input.read() };
-    // SAFETY: of the right size. Only what the caller sets is read: the rest may never have been written to.
+    // SAFETY: of the right size. Only what the caller sets is read: the rest may be uninitialised.
     let results = unsafe { (&raw const (*output).cables).read() };
     // SAFETY: as above.
     let result_count = unsafe { (&raw const (*output).cable_count).read() };
@@ -142,11 +141,11 @@ pub unsafe extern "C" fn fric_step(
         return Outcome::WrongSize;
     }
     for (place, signal) in cycle.signals.iter_mut().enumerate() {
-        // SAFETY: `place` < `cable_count`, and so many can be read.
+        // SAFETY: `place` < `cable_count`, and this many are readable.
         let CableSignals { sensor_force_n, length_m, speed_m_per_s } = unsafe { input.cables.add(place).read() };
         *signal = CableInput { sensor_force_n, length_m, speed_m_per_s };
     }
-    // SAFETY: null, or a pose that can be read.
+    // SAFETY: null, or a readable pose.
     let pose = unsafe { input.pose.as_ref() }.copied();
     let Ok(outside) = cycle.step(pose, input.elapsed_cycles) else { return Outcome::Internal };
     for (place, outcome) in cycle.compensator.outputs().iter().enumerate() {
@@ -156,7 +155,7 @@ pub unsafe extern "C" fn fric_step(
             frictionless_n: outcome.frictionless_n,
             status: outcome.status.bits(),
         };
-        // SAFETY: `place` < `cable_count`, and so many can be written to.
+        // SAFETY: `place` < `cable_count`, and this many are writable.
         unsafe { results.add(place).write(result) };
     }
     let of = |wrench: Option<Wrench>| wrench.as_ref().map_or_else(PlatformWrench::default, PlatformWrench::new);
@@ -169,13 +168,13 @@ pub unsafe extern "C" fn fric_step(
         has_wrench: outside.is_some(),
         wrench_status: cycle.compensator.wrench_status().bits(),
     };
-    // SAFETY: of the right size, so all of it can be written to.
+    // SAFETY: of the right size, so all of it is writable.
     unsafe { output.write(result) };
     Outcome::Ok
 }
 
 impl Cycle {
-    /// Both ends of the exchange are of the same robot, so that an error here and in `reset` is a mistake of ours.
+    /// Runs one cycle. Both ends of the exchange belong to the same robot, so an error here and in `reset` is a bug.
     fn step(&mut self, pose: Option<PlatformPose>, elapsed_cycles: f64) -> Result<Option<Wrench>, ParamError> {
         let pose = pose.and_then(|pose| Pose::from_parts(pose.position_m, pose.orientation_xyzw));
         self.parameters.deliver_to(&mut self.compensator)?;
@@ -190,11 +189,11 @@ impl Cycle {
     }
 }
 
-/// Back to the state after set-up: at rest, nothing stored, no pose. The parameters stay; those of a change that has been given
-/// hold at once, without a blend. It does not allocate, lock or wait.
+/// Resets to the state after set-up: at rest, nothing stored, no pose. The parameters are kept; those of a pending change apply at once, without a
+/// blend. It does not allocate, lock or wait.
 ///
 /// # Safety
-/// `compensator` is null or a compensator that has not been given back and that nobody else steps or resets now.
+/// `compensator` is null or a compensator that has not been freed and that nobody else steps or resets now.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fric_reset(compensator: *mut Handle) -> Outcome {
     if !usable(compensator) {

@@ -1,8 +1,8 @@
-//! Text for a buffer of the caller's.
+//! Writes text into a buffer of the caller.
 
 use std::ffi::c_char;
 
-/// A buffer for an error text; none where the pointer is null or the size 0.
+/// A buffer for an error text; none if the pointer is null or the size 0.
 #[derive(Clone, Copy)]
 pub struct ErrorText {
     buffer: *mut c_char,
@@ -10,15 +10,15 @@ pub struct ErrorText {
 }
 
 impl ErrorText {
-    /// The caller's buffer.
+    /// Wraps the caller's buffer.
     ///
     /// # Safety
-    /// `buffer` is null or points to `size` bytes that may be written to for as long as this is used.
+    /// `buffer` is null or points to `size` bytes that are writable as long as this is used.
     pub unsafe fn new(buffer: *mut c_char, size: usize) -> Self {
         Self { buffer, size: if buffer.is_null() { 0 } else { size } }
     }
 
-    /// As much of the text as there is room for, cut between two characters, with a zero behind it.
+    /// Writes as much of the text as fits, cut between two characters, with a final zero.
     pub fn write(self, text: &str) {
         let Some(room) = self.size.checked_sub(1) else { return };
         let length = (0..=room.min(text.len())).rev().find(|end| text.is_char_boundary(*end)).unwrap_or(0);

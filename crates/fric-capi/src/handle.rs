@@ -1,4 +1,4 @@
-//! The opaque handle and what may be asked of it.
+//! The opaque handle and its queries.
 
 use std::ffi::{CString, NulError, c_char};
 use std::ptr;
@@ -7,26 +7,26 @@ use std::sync::Mutex;
 use fric_core::robot::file::RobotFile;
 use fric_core::{AnyCompensator, CableInput, ParamError, ParameterReceiver, ParameterSender, parameter_exchange};
 
-/// Friction compensation of one robot: made by fric_load_file or fric_load_text, given back by fric_free.
+/// Friction compensation of one robot: created by fric_load_file or fric_load_text, freed by fric_free.
 ///
-/// One thread at a time may step or reset it. Others may ask for names and numbers and change parameters meanwhile. Several
-/// compensators are independent of each other.
+/// Only one thread at a time may step or reset it. Others may query names and numbers and change parameters meanwhile. Several compensators are
+/// independent of each other.
 pub struct Handle {
     pub(crate) cycle: Cycle,
-    /// The end of those who change parameters, among whom the lock is; a step never looks at it.
+    /// The end for parameter changes, which the lock serialises; a step never uses it.
     pub(crate) parameters: Mutex<ParameterSender>,
     description: Description,
 }
 
-/// What a step works on.
+/// The data of a step.
 pub(crate) struct Cycle {
     pub compensator: AnyCompensator,
-    /// The signals of a cycle, as many as the robot has cables.
+    /// The signals of a cycle, one entry per cable of the robot.
     pub signals: Vec<CableInput>,
     pub parameters: ParameterReceiver,
 }
 
-/// What does not change after set-up.
+/// The data that do not change after set-up.
 pub(crate) struct Description {
     robot_name: CString,
     cable_names: Vec<CString>,
@@ -42,19 +42,19 @@ impl Description {
     }
 }
 
-/// Why a checked robot file makes no handle.
+/// The reason why a checked robot file gives no handle.
 pub(crate) enum Unfit {
-    /// More cables than the library takes.
+    /// The robot has more cables than the library supports.
     Robot(ParamError),
-    /// A name that C cannot hold.
+    /// A name contains a zero byte, which C cannot represent.
     Name(NulError),
 }
 
 impl Handle {
-    /// A compensator for the robot of a file.
+    /// Creates a compensator for the robot of a file.
     ///
     /// # Errors
-    /// [`Unfit`] if the library or C cannot take the robot.
+    /// Returns an [`Unfit`] if the library or C cannot represent the robot.
     pub(crate) fn new(robot: &RobotFile) -> Result<Self, Unfit> {
         let params = robot.params();
         let compensator = AnyCompensator::new(&params).map_err(Unfit::Robot)?;
@@ -69,68 +69,68 @@ impl Handle {
     }
 }
 
-/// The description behind a handle; `None` where the pointer cannot be one.
+/// Returns the description behind a handle; `None` if the pointer cannot be one.
 ///
 /// # Safety
-/// `compensator` is null or a handle that has not been given back.
+/// `compensator` is null or a handle that has not been freed.
 pub(crate) unsafe fn description<'a>(compensator: *const Handle) -> Option<&'a Description> {
     if compensator.is_null() || !compensator.is_aligned() {
         return None;
     }
-    // SAFETY: a handle that lives. Nothing writes to its description, and no reference to the rest is made.
+    // SAFETY: a live handle. Nothing writes to its description, and no reference to the rest is made.
     Some(unsafe { &(*compensator).description })
 }
 
-/// How many cables the robot has; 0 for a null pointer.
+/// Returns the number of cables of the robot; 0 for a null pointer.
 ///
 /// # Safety
-/// `compensator` is null or a compensator that has not been given back.
+/// `compensator` is null or a compensator that has not been freed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fric_cable_count(compensator: *const Handle) -> usize {
-    // SAFETY: the same is promised here.
+    // SAFETY: the caller of this function promises the same.
     unsafe { description(compensator) }.map_or(0, |description| description.cable_names.len())
 }
 
-/// Cycle time of the robot, s; 0 for a null pointer.
+/// Returns the cycle time of the robot, s; 0 for a null pointer.
 ///
 /// # Safety
-/// `compensator` is null or a compensator that has not been given back.
+/// `compensator` is null or a compensator that has not been freed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fric_cycle_s(compensator: *const Handle) -> f64 {
-    // SAFETY: the same is promised here.
+    // SAFETY: the caller of this function promises the same.
     unsafe { description(compensator) }.map_or(0.0, |description| description.cycle_s)
 }
 
-/// Name of the robot in UTF-8; null for a null pointer. The text lives until fric_free.
+/// Returns the name of the robot in UTF-8; null for a null pointer. The text is valid until fric_free.
 ///
 /// # Safety
-/// `compensator` is null or a compensator that has not been given back.
+/// `compensator` is null or a compensator that has not been freed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fric_robot_name(compensator: *const Handle) -> *const c_char {
-    // SAFETY: the same is promised here.
+    // SAFETY: the caller of this function promises the same.
     unsafe { description(compensator) }.map_or(ptr::null(), |description| description.robot_name.as_ptr())
 }
 
-/// Name of a cable, counted from 0, in UTF-8; null for a null pointer or a cable that the robot does not have. The text
-/// lives until fric_free.
+/// Returns the name of a cable, counted from 0, in UTF-8; null for a null pointer or a cable that the robot does not have. The text is valid until
+/// fric_free.
 ///
 /// # Safety
-/// `compensator` is null or a compensator that has not been given back.
+/// `compensator` is null or a compensator that has not been freed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fric_cable_name(compensator: *const Handle, cable: usize) -> *const c_char {
-    // SAFETY: the same is promised here.
+    // SAFETY: the caller of this function promises the same.
     let description = unsafe { description(compensator) };
     description.and_then(|description| description.cable_names.get(cable)).map_or(ptr::null(), |name| name.as_ptr())
 }
 
-/// Gives a compensator back. Null does nothing. Not for the cycle: it frees memory.
+/// Frees a compensator. Null does nothing. Not for the cycle: it frees memory.
 ///
 /// # Safety
-/// `compensator` is null or a compensator that has not been given back; it is not used afterwards.
+/// `compensator` is null or a compensator that has not been freed; it must not be used afterwards.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fric_free(compensator: *mut Handle) {
     if !compensator.is_null() && compensator.is_aligned() {
-        // SAFETY: it came from `Box::into_raw` in `load`, and is given back once.
+        // SAFETY: it came from `Box::into_raw` in `load`, and is freed once.
         drop(unsafe { Box::from_raw(compensator) });
     }
 }

@@ -1,18 +1,17 @@
 //! `libfric`: the compensator of `fric-core`, and its static model of continuum manipulators, for C and C++.
 //!
-//! For: control loops that are not written in Rust. Nothing is computed here; a cycle has the bits of
-//! [`fric_core::Compensator`], a shape and a command those of [`fric_core::continuum::StaticModel`]. What a C programmer reads is `include/fric.h`, made from these sources by cbindgen; the
-//! C++ interface is `include/fric.hpp`.
+//! It serves control loops that are not written in Rust. Nothing is computed here: a cycle has the bits of [`fric_core::Compensator`], a shape and a
+//! command those of [`fric_core::continuum::StaticModel`]. The documentation for C is in `include/fric.h`, generated from these sources by cbindgen;
+//! the C++ interface is `include/fric.hpp`.
 //!
-//! - **Set-up** may fail: it gives a code and one sentence. What fails in a way that it should not is caught
-//!   (`catch_unwind`), so that a mistake of ours at set-up costs no machine.
-//! - **The cycle** ([`fric_step`], [`fric_static_model_solve`], [`fric_static_model_tension_for`]) does not allocate, lock, or fail on any signal. A wrong pointer or size is a code. It has
-//!   no panic to unwind; and were there one, a function of `extern "C"` ends the process and never unwinds into C.
-//!   That is why the cycle needs no `catch_unwind`, and the release profile no `panic = "abort"`, which would take
-//!   Python its exceptions.
+//! - **Set-up** may fail: it returns a code and one sentence. Panics, which indicate a bug, are caught (`catch_unwind`), so that a bug at set-up does
+//!   not stop a machine.
+//! - **The cycle** ([`fric_step`], [`fric_static_model_solve`], [`fric_static_model_tension_for`]) does not allocate, lock, or fail on any signal. A
+//!   wrong pointer or size gives a code. The cycle cannot panic; if it could, a function of `extern "C"` would end the process and never unwind into
+//!   C. Therefore the cycle needs no `catch_unwind`, and the release profile no `panic = "abort"`, which would deprive Python of its exceptions.
 //!
-//! Non-finite input is flagged as in [`fric_core::CableStatus`], [`fric_core::continuum::ShapeStatus`] and
-//! [`fric_core::continuum::GoalStatus`]; no number that comes out is non-finite.
+//! Non-finite input is flagged as in [`fric_core::CableStatus`], [`fric_core::continuum::ShapeStatus`] and [`fric_core::continuum::GoalStatus`]; the
+//! output is always finite.
 #![allow(clippy::doc_markdown, reason = "the documentation is for C, where names stand bare")]
 
 mod abi;

@@ -1,31 +1,31 @@
-//! What a call says, and of which version it is.
+//! The result of a call, and the version.
 
 use std::ffi::{CStr, c_char};
 
 use crate::abi::FRIC_ABI_VERSION;
 
-/// Outcome of a call. Anything but FRIC_RESULT_OK has left the compensator or static model, and the output of a step, as they were.
+/// Result of a call. Anything but FRIC_RESULT_OK has left the compensator or static model, and the output of a step, unchanged.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
 pub enum Outcome {
-    /// Done.
+    /// Success.
     Ok = 0,
-    /// A pointer is null, or not aligned for what it points to.
+    /// A pointer is null, or misaligned for its type.
     BadPointer = 1,
-    /// `struct_size` is not that of this ABI version, `cable_count` not the robot's, or a number of disks not the manipulator's.
+    /// `struct_size` is not that of this ABI version, `cable_count` is not the robot's, or a number of disks is not the manipulator's.
     WrongSize = 2,
-    /// The robot or manipulator file cannot be read, or something in it is wrong; the error text says what, where and what is allowed.
+    /// The robot or manipulator file cannot be read, or is invalid; the error text says what is wrong, where and what is allowed.
     RobotFile = 3,
-    /// The change of parameters given before is not over; try again some steps later.
+    /// The previous change of parameters is not over; try again some steps later.
     Busy = 4,
-    /// A mistake inside of the library, caught; please report it.
+    /// A bug inside the library was caught; please report it.
     Internal = 5,
-    /// A number that chooses is none of the header's, or one that limits is out of its range.
+    /// A selecting number is none of the header's, or a limit is out of its range.
     BadValue = 6,
 }
 
-/// Version of the interface that this library has; FRIC_ABI_VERSION of the header that it goes with.
+/// Returns the version of this library's interface, FRIC_ABI_VERSION of the matching header.
 #[unsafe(no_mangle)]
 pub extern "C" fn fric_abi_version() -> u32 {
     FRIC_ABI_VERSION
@@ -36,7 +36,7 @@ const VERSION: &CStr = match CStr::from_bytes_with_nul(concat!(env!("CARGO_PKG_V
     Err(_) => c"",
 };
 
-/// Version of the library, "0.1.0"; the text lives as long as the program.
+/// Returns the version of the library, "0.1.0"; the text is always valid.
 #[unsafe(no_mangle)]
 pub extern "C" fn fric_version() -> *const c_char {
     VERSION.as_ptr()

@@ -1,30 +1,31 @@
-//! The flags of a cable's status, those of [`CableStatus`].
+//! The flags of a cable's status, equal to those of [`CableStatus`].
 
 use fric_core::CableStatus;
 
-/// Nothing is the matter.
+/// No fault.
 pub const FRIC_STATUS_OK: u32 = 0;
 /// The cable carries no tension.
 pub const FRIC_STATUS_SLACK: u32 = 1;
 /// The cable slips on a pulley.
 pub const FRIC_STATUS_SLIP: u32 = 2;
-/// The sensor force is NaN, infinite or beyond 1e9 N: last good force and friction are held.
+/// The sensor force is NaN, infinite or beyond 1e9 N: the last valid force and friction are held.
 pub const FRIC_STATUS_SENSOR_NOT_FINITE: u32 = 4;
-/// The sensor repeats itself to the last bit while the cable moves: last good force and friction are held.
+/// The sensor is bit-identical while the cable moves: the last valid force and friction are held.
 pub const FRIC_STATUS_SENSOR_FROZEN: u32 = 8;
 /// The length changed by more than `length_jump_m` of the robot file: the friction is held.
 pub const FRIC_STATUS_LENGTH_JUMP: u32 = 16;
 /// Length or speed is NaN, infinite or beyond 1e6: the friction is held.
 pub const FRIC_STATUS_MOTION_NOT_FINITE: u32 = 32;
-/// Outside the range in which the parameters were identified; computed as usual.
+/// The signals are outside the range in which the parameters were identified; computed as usual.
 pub const FRIC_STATUS_OUT_OF_RANGE: u32 = 64;
-/// No usable pose for a cable that needs it: last wrap and direction are held.
+/// There is no usable pose for a cable that needs it: last wrap and direction are held.
 pub const FRIC_STATUS_POSE_MISSING: u32 = 128;
 /// The pose leaves the cable no way out of its last pulley: last wrap and direction are held.
 pub const FRIC_STATUS_POSE_UNREACHABLE: u32 = 256;
-/// The sensor force has jumped by more than the cable can do, and not yet back; computed as usual.
+/// The sensor force has jumped by more than the cable can change, and not yet returned; computed as usual.
 pub const FRIC_STATUS_SENSOR_JUMP: u32 = 512;
-/// The stored friction is beyond what the load bears by more than 25 % of the tension + 0.1 N, or a jump of the sensor may have left an error of 5 % + 0.1 N.
+/// The stored friction exceeds what the load allows by more than 25 % of the tension + 0.1 N, or a jump of the sensor may have left an error of 5 % +
+/// 0.1 N.
 pub const FRIC_STATUS_UNSETTLED: u32 = 1024;
 
 /// The flags in the order of [`CableStatus::NAMES`].
@@ -42,7 +43,7 @@ const FLAGS: [u32; 11] = [
     FRIC_STATUS_UNSETTLED,
 ];
 
-// cbindgen takes numbers only; that they are the core's is checked here.
+// cbindgen accepts numbers only, so their equality with the core's is checked here.
 const _: () = {
     let mut place = 0;
     while place < FLAGS.len() {

@@ -1,4 +1,4 @@
-//! Why a command stopped, for people: one line with the cause, one with what to do.
+//! The reason why a command stopped, for people: one line with the cause, one with what to do.
 
 use std::error::Error;
 use std::fmt::Display;
@@ -23,7 +23,7 @@ use fric_log::{in_full, reason, with_sources};
 
 use crate::terminal::{self, Label};
 
-/// What `main` turns into an exit code.
+/// The failure of a command, which `main` converts to an exit code.
 #[derive(Debug)]
 pub struct Failure {
     cause: String,
@@ -31,21 +31,21 @@ pub struct Failure {
     is_usage: bool,
 }
 
-/// Result of a command.
+/// The result of a command.
 pub type Outcome<T = ()> = Result<T, Failure>;
 
 impl Failure {
-    /// The work failed: exit code 1.
+    /// Creates a failure of the work: exit code 1.
     pub fn new(cause: impl Display) -> Self {
         Self { cause: cause.to_string(), advice: None, is_usage: false }
     }
 
-    /// The command line is wrong: exit code 2.
+    /// Creates a failure of the command line: exit code 2.
     pub fn usage(cause: impl Display) -> Self {
         Self { is_usage: true, ..Self::new(cause) }
     }
 
-    /// The work failed, for a reason that ends with what to do, if with anything.
+    /// Creates a failure of the work from an error whose sentence may end with advice.
     fn with_advice(error: &dyn Error, advice: Option<&str>) -> Self {
         let Some(advice) = advice else { return Self::new(in_full(error)) };
         let sentence = error.to_string();
@@ -60,13 +60,13 @@ impl Failure {
         self
     }
 
-    /// Says in which file.
+    /// Adds the file.
     pub fn in_file(mut self, path: &Path) -> Self {
         self.cause = format!("{}: {}", path.display(), self.cause);
         self
     }
 
-    /// Says which outputs are in their places all the same.
+    /// Adds which outputs were written nevertheless.
     pub fn although_written(mut self, paths: &[String]) -> Self {
         if !paths.is_empty() {
             self.cause = format!("{}; written before: {}", self.cause, paths.join(", "));
@@ -114,7 +114,7 @@ impl From<FitError> for Failure {
     }
 }
 
-/// The failure of an error whose sentence ends with what to do, behind its last semicolon.
+/// Creates the failure of an error whose sentence ends with advice, after its last semicolon.
 fn with_own_advice(error: &dyn Error) -> Failure {
     let sentence = in_full(error);
     let Some((cause, advice)) = sentence.rsplit_once("; ") else { return Failure::new(sentence) };
@@ -192,10 +192,10 @@ impl From<WriteError> for Failure {
     }
 }
 
-/// The names of the streams of a process.
+/// The names of a process's streams.
 const STREAMS: [&str; 4] = ["/dev/stdout", "/dev/stderr", "/dev/fd/1", "/dev/fd/2"];
 
-/// The failure of an output that the operating system refuses.
+/// Creates the failure of an output that the operating system refuses.
 fn unwritable(path: &Path, error: &io::Error) -> Failure {
     let failure = Failure::new(format!("cannot write {}: {}", path.display(), reason(error)));
     match error.kind() {

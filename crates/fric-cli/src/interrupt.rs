@@ -1,4 +1,4 @@
-//! Ctrl-C: loops look here and stop, so that outputs in the making are taken away.
+//! Ctrl-C: loops check a flag and stop, so that unfinished outputs are removed.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -6,9 +6,9 @@ use crate::failure::{Failure, Outcome};
 
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
-/// Starts listening; a second Ctrl-C ends the process at once.
+/// Installs the handler; a second Ctrl-C ends the process at once.
 pub fn listen() {
-    // Without a handler Ctrl-C ends the process as ever; a temporary file may then stay.
+    // Without a handler Ctrl-C ends the process as usual; a temporary file may then remain.
     let _ = ctrlc::set_handler(|| {
         if INTERRUPTED.swap(true, Ordering::Relaxed) {
             std::process::exit(1);
@@ -16,7 +16,7 @@ pub fn listen() {
     });
 }
 
-/// An error once Ctrl-C has been pressed.
+/// Returns an error once Ctrl-C has been pressed.
 pub fn check() -> Outcome {
     if INTERRUPTED.load(Ordering::Relaxed) {
         return Err(Failure::new("interrupted before the end: nothing was written"));

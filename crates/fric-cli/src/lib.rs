@@ -22,10 +22,10 @@ use clap::Parser;
 
 use arguments::{Arguments, Command};
 
-/// Runs a command line, whose first word is the name of the program, and gives the exit code: 0, 1 where the work failed, 2 where the
-/// command line is wrong.
+/// Runs a command line, whose first word is the name of the program, and returns the exit code: 0, 1 if the work failed, 2 if the command line is
+/// wrong.
 ///
-/// Results go to stdout, what is wrong to stderr. From then on Ctrl-C ends the command, and a second one the process.
+/// Results go to stdout, errors and warnings to stderr. From then on Ctrl-C ends the command, and a second one the process.
 #[must_use]
 pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
     let words: Vec<OsString> = words.into_iter().collect();
@@ -34,7 +34,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
     let arguments = match Arguments::try_parse_from(words) {
         Ok(arguments) => arguments,
         Err(error) => {
-            // There is nowhere left to report a broken stream to.
+            // A broken stream cannot be reported anywhere.
             let _ = error.print();
             return u8::try_from(error.exit_code()).unwrap_or(2);
         }

@@ -1,4 +1,4 @@
-//! The samples of logs for what works on all of them at once, and the watch over such work.
+//! The samples of several logs for work on all of them at once, and the supervision of such work.
 
 use std::path::{Path, PathBuf};
 use std::thread;
@@ -17,10 +17,10 @@ use crate::model::{self, Model};
 use crate::progress::{self, STRIDE};
 use crate::warnings::{warn, warn_all};
 
-/// How often the bar moves and Ctrl-C is looked at while all cores compute.
+/// Interval of updating the progress bar and checking Ctrl-C while all cores compute.
 const WATCH_INTERVAL: Duration = Duration::from_millis(20);
 
-/// Makes sure that no sample counts twice.
+/// Checks that no sample counts twice.
 pub fn check_named_once(logs: &[PathBuf]) -> Outcome {
     for (count, log) in logs.iter().enumerate() {
         let is_same =
@@ -33,7 +33,7 @@ pub fn check_named_once(logs: &[PathBuf]) -> Outcome {
     Ok(())
 }
 
-/// The robot file named, or else the first that is attached to a log.
+/// Returns the named robot file, or else the first that is attached to a log.
 pub fn find_model(named: Option<&Path>, logs: &[PathBuf]) -> Outcome<Model> {
     for log in logs {
         if let Some(model) = Model::find(named, &Log::open(&[log])?)? {
@@ -43,24 +43,24 @@ pub fn find_model(named: Option<&Path>, logs: &[PathBuf]) -> Outcome<Model> {
     Err(model::missing())
 }
 
-/// What was read of all logs.
+/// The data read from all logs.
 pub struct LogsRead<'a> {
     pub measurements: Measurements<'a>,
     pub holdings: Holdings,
-    /// A signal that is needed and, in all logs, of other times than the cable signal.
+    /// A required signal whose times in all logs differ from those of the cable signal.
     apart: Option<TimesApart>,
 }
 
 impl LogsRead<'_> {
-    /// What to warn of: what is missing for some cables.
+    /// Returns warnings about what is missing for some cables.
     pub fn check(&self, readiness: &Readiness) -> Outcome<Vec<String>> {
         readiness.check().map_err(|error| self.apart.map_or_else(|| error.into(), Failure::from))
     }
 }
 
-/// Reads the same part of all logs, each by itself.
+/// Reads the same part of all logs, each as a log of its own.
 pub fn read<'a>(logs: &[PathBuf], part: Part, model: &'a Model, reference: Reference) -> Outcome<LogsRead<'a>> {
-    // What is not compared with is not even read.
+    // Signals that are not compared with are not read.
     let (unread, compared) = match reference {
         Reference::Forces => (Role::Wrench, Role::Reference),
         Reference::Wrench => (Role::Reference, Role::Wrench),
@@ -71,7 +71,7 @@ pub fn read<'a>(logs: &[PathBuf], part: Part, model: &'a Model, reference: Refer
     let params = model.robot.params();
     let is_needed = |role: &Role| match role {
         Role::Pose => reference == Reference::Wrench || params.cables().iter().any(CableParams::needs_pose),
-        // The platform's mass may stand in for it.
+        // The platform's mass may replace it.
         Role::Wrench => params.mass_kg() <= 0.0,
         _ => true,
     };
@@ -100,7 +100,7 @@ pub fn read<'a>(logs: &[PathBuf], part: Part, model: &'a Model, reference: Refer
     Ok(LogsRead { measurements, holdings, apart })
 }
 
-/// Reads all rows beside a bar; the inner error is the log's.
+/// Reads all rows with a progress bar; the inner error is that of the log.
 fn take_all(reader: &mut SignalReader, mut take: impl FnMut(&Sample<'_>)) -> Outcome<Result<(), SignalError>> {
     let bar = progress::bytes(reader.log().total_bytes());
     let mut count = 0_u64;
@@ -132,19 +132,19 @@ fn read_one(reader: &mut SignalReader, measurements: &mut Measurements<'_>, cabl
     Ok(holdings)
 }
 
-/// What has to be corrected in the parts of one log before it is compared with its reference. What is out of the ordinary is left to whoever reads it next to tell.
+/// Returns the corrections of the parts of one log before it is compared with its reference. Warnings are left to the next reading.
 pub fn corrections(parts: &[PathBuf], part: Part, model: &Model) -> Outcome<Corrections> {
     let paths = model.signal_paths()?.with(Role::Wrench, None);
     let names = model.robot.cable_names();
     let params = model.robot.params();
     let mut measurements = Measurements::new(&params, Reference::Forces);
     let mut reader = SignalReader::new(Log::open(parts)?, paths, &names).within(part);
-    // An error comes again where the log is read for good.
+    // An error occurs again in the actual reading.
     let _ = take_all(&mut reader, |sample| measurements.add(sample))?;
     watched("checking", "cables", |progress| discover::corrections(&measurements, progress))
 }
 
-/// Runs work beside a bar, until it is done or Ctrl-C is pressed; `doing` is the work, the bar counts its `steps`.
+/// Runs work with a progress bar, until it is done or Ctrl-C is pressed; `doing` names the work, and the bar counts its `steps`.
 pub fn watched<T: Send>(doing: &'static str, steps: &str, work: impl FnOnce(&Progress) -> T + Send) -> Outcome<T> {
     let progress = Progress::new();
     let bar = progress::steps(doing, steps);

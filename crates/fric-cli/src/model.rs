@@ -12,7 +12,7 @@ use fric_log::signals::SignalPaths;
 use crate::failure::{Failure, Outcome};
 use crate::terminal;
 
-/// The text of a model's file, and where it is from; `kind` is whose file it is.
+/// Returns the text of a model's file, and its origin; `kind` names the kind of file.
 pub fn read_text(path: &Path, kind: &str) -> Outcome<(String, String)> {
     let origin = path.display().to_string();
     let text = text_file::read(path).map_err(|error| {
@@ -29,28 +29,28 @@ pub fn read_text(path: &Path, kind: &str) -> Outcome<(String, String)> {
     }
 }
 
-/// Whether the text of a model's file says that it is of a format.
+/// Whether the text of a model's file states a format.
 pub fn has_format(text: &str, format: &str) -> bool {
     text.lines().any(|line| line.trim_start().starts_with("format") && line.contains(format))
 }
 
-/// A robot and the text it was read from.
+/// A robot and the text of its file.
 #[derive(Debug)]
 pub struct Model {
     pub robot: RobotFile,
     pub text: String,
-    /// For people: where it is from.
+    /// Its origin, for people.
     pub origin: String,
 }
 
 impl Model {
-    /// The robot file at a path.
+    /// Reads the robot file at a path.
     pub fn read(path: &Path) -> Outcome<Self> {
         let (text, origin) = read_text(path, "robot")?;
         Self::parse(text, origin)
     }
 
-    /// The robot file named, or else the one attached to the log; `None` where there is neither.
+    /// Returns the named robot file, or else the one attached to the log; `None` if there is neither.
     pub fn find(named: Option<&Path>, log: &Log) -> Outcome<Option<Self>> {
         if let Some(path) = named {
             return Self::read(path).map(Some);
@@ -71,7 +71,7 @@ impl Model {
         Ok(Self { robot, text, origin })
     }
 
-    /// The signals' paths as the robot file has them.
+    /// Returns the signals' paths from the robot file.
     pub fn signal_paths(&self) -> Outcome<SignalPaths> {
         SignalPaths::of_robot(&self.robot).map_err(|error| {
             Failure::new(format!("{}: {error}", self.origin))
@@ -80,7 +80,7 @@ impl Model {
     }
 }
 
-/// What to say where a command needs a robot and has none.
+/// Returns the failure of a command that needs a robot and has none.
 pub fn missing() -> Failure {
     Failure::new(format!("the log has no robot file attached ({ROBOT_FILE}), and none is named"))
         .advise("Name one with --model robot.toml; examples/mini-ipanema.toml shows the format.")

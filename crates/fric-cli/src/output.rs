@@ -1,4 +1,4 @@
-//! Where results go: tables to stdout, JSON and pages to files that appear whole or not at all.
+//! The destinations of results: tables go to stdout, JSON and pages to files that appear completely or not at all.
 
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ use crate::command;
 use crate::failure::{Failure, Outcome};
 use crate::terminal;
 
-/// Makes sure that no two outputs are to stand in the same place.
+/// Checks that no two outputs have the same place.
 pub fn check_distinct(outputs: &[Option<&Path>]) -> Outcome {
     let place = |path: &Path| {
         let directory = directory_of(path).canonicalize().ok()?;
@@ -30,7 +30,7 @@ pub fn check_distinct(outputs: &[Option<&Path>]) -> Outcome {
     Ok(())
 }
 
-/// Where the machine-readable result goes, and what it says of its origin.
+/// The destination of the machine-readable result, and the origin that it states.
 #[derive(Debug)]
 pub struct JsonTarget {
     place: JsonPlace,
@@ -54,18 +54,17 @@ impl JsonTarget {
         Ok(Self { place, inputs: inputs.to_vec() })
     }
 
-    /// Program, command and inputs of the result; reads the inputs for their hashes.
+    /// Returns program, command and inputs of the result; reads the inputs for their hashes.
     pub fn provenance(&self) -> Provenance {
         provenance(&self.inputs)
     }
 
-    /// Ends a command: puts its outputs in their places, all of them complete, and shows a text to people, on stdout, or on
-    /// stderr where stdout takes the JSON.
+    /// Ends a command: puts its complete outputs in their places and shows a text to people, on stdout, or on stderr if stdout takes the JSON.
     pub fn finish(self, result: &impl Serialize, text: &str, files: Vec<Written>) -> Outcome {
         self.finish_then(result, text, files, "")
     }
 
-    /// The same with what to do next, a line below everything else.
+    /// Does the same with the next step on a final line.
     pub fn finish_then(self, result: &impl Serialize, text: &str, mut files: Vec<Written>, next: &str) -> Outcome {
         let Self { place: target, inputs } = self;
         let as_json = || as_json(result, &provenance(&inputs));
@@ -87,18 +86,18 @@ impl JsonTarget {
     }
 }
 
-/// Program, command and inputs of a result; reads the inputs for their hashes.
+/// Returns program, command and inputs of a result; reads the inputs for their hashes.
 pub fn provenance(inputs: &[PathBuf]) -> Provenance {
     Provenance::of_command(&command::words(), inputs)
 }
 
-/// A result for machines.
+/// Returns a result for machines.
 pub fn as_json(result: &impl Serialize, provenance: &Provenance) -> Outcome<String> {
     fric_work::json(result, provenance)
         .map_err(|error| Failure::new(format!("cannot write the result as JSON: {error}")))
 }
 
-/// A complete output, and what it holds in words.
+/// A complete output with a description of its content.
 #[derive(Debug)]
 pub struct Written {
     file: CompleteFile,
@@ -110,14 +109,14 @@ impl Written {
         Self { file, what: what.into() }
     }
 
-    /// For people, within 80 columns where the path allows.
+    /// Returns a line for people, within 80 columns if the path allows.
     fn told(path: &str, what: &str) -> String {
         let line = format!("wrote {path}: {what}\n");
         if line.chars().count() <= WIDTH { line } else { format!("wrote {path}:\n{}", wrapped("  ", what)) }
     }
 }
 
-/// Puts files in their places and lists them; where one cannot be, tells which stand there already.
+/// Puts files in their places and lists them; on failure, reports which are already there.
 fn place(files: Vec<Written>) -> Outcome<String> {
     let mut placed = Vec::new();
     let mut list = String::new();
@@ -130,13 +129,13 @@ fn place(files: Vec<Written>) -> Outcome<String> {
     Ok(if terminal::is_quiet() { String::new() } else { list })
 }
 
-/// Puts files in their places, and shows a text, the list of them, and what to do next.
+/// Puts files in their places and shows a text, their list, and what to do next.
 pub fn show_with(text: &str, files: Vec<Written>, next: &str) -> Outcome {
     let written = place(files)?;
     show(&joined(&[text, &written, next]))
 }
 
-/// Texts with an empty line between them.
+/// Joins texts with an empty line between them.
 fn joined(texts: &[&str]) -> String {
     let there: Vec<&str> = texts.iter().copied().filter(|text| !text.is_empty()).collect();
     there.join("\n")
@@ -152,7 +151,7 @@ pub fn print(bytes: &[u8]) -> Outcome {
     print_to(std::io::stdout(), "stdout", bytes)
 }
 
-/// Lines of text without what a terminal would take for an order.
+/// Removes characters that a terminal would interpret as commands.
 fn harmless(text: &str) -> String {
     let is_order = |character: char| character.is_control() && character != '\n';
     let escaped = |character: char| {
@@ -161,12 +160,12 @@ fn harmless(text: &str) -> String {
     if text.contains(is_order) { text.chars().map(escaped).collect() } else { text.to_owned() }
 }
 
-/// `-`, where stdout is meant.
+/// Whether the path is `-`, which means stdout.
 pub fn is_stdout(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-/// A reader that has gone away (`| head`) is no failure.
+/// Prints to a stream. A closed reader (`| head`) is no failure.
 fn print_to(mut stream: impl Write, name: &str, bytes: &[u8]) -> Outcome {
     match stream.write_all(bytes).and_then(|()| stream.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {

@@ -1,15 +1,15 @@
-//! Which steps a recording is good for, in every `info`.
+//! The steps that a recording allows, for every `info`.
 
 use fric_lab::text::table_with_text;
 use fric_work::report::info::InfoStep;
 use serde::Serialize;
 
-/// Whether a recording is good for a step.
+/// Whether a recording allows a step.
 #[derive(Debug, Serialize)]
 pub struct StepResult {
     step: &'static str,
     possible: bool,
-    /// What is missing, or what is missing for all of it.
+    /// What is missing, or what is missing for all cables.
     reasons: Vec<String>,
 }
 
@@ -18,13 +18,13 @@ impl StepResult {
         Self { step, possible, reasons }
     }
 
-    /// As a page shows it.
+    /// Returns the step for a page.
     pub fn on_page(&self) -> InfoStep {
         InfoStep { name: self.step.to_owned(), is_possible: self.possible, remarks: self.reasons.clone() }
     }
 }
 
-/// Steps as a table.
+/// Formats steps as a table.
 pub fn step_table(title: &str, steps: &[StepResult]) -> String {
     let row = |step: &StepResult| {
         let possible = if step.possible { "possible" } else { "impossible" };

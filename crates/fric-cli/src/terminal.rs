@@ -1,4 +1,4 @@
-//! How much a command says and in which colours: `--color`, `--quiet`, `--verbose`.
+//! Verbosity and colours: `--color`, `--quiet`, `--verbose`.
 
 use std::ffi::OsString;
 use std::fmt::Display;
@@ -16,7 +16,7 @@ const QUIET: u8 = 0;
 const NORMAL: u8 = 1;
 const VERBOSE: u8 = 2;
 
-/// The volume of this process, which runs one command.
+/// The verbosity of this process, which runs one command.
 static VOLUME: AtomicU8 = AtomicU8::new(NORMAL);
 
 /// The label of a line on stderr.
@@ -37,9 +37,9 @@ impl Label {
     }
 }
 
-/// Sets the colours before the command line is parsed, since its errors and `--help` have colours too.
+/// Sets the colours before the command line is parsed, because its errors and `--help` have colours too.
 ///
-/// Without `--color`, and with `auto`, there are colours on a terminal unless `NO_COLOR` is set.
+/// Without `--color`, and with `auto`, colours are used on a terminal unless `NO_COLOR` is set.
 pub fn set_color(words: &[OsString]) {
     let text = |word: &OsString| word.to_str().map(ToOwned::to_owned);
     let mut values = words.iter().enumerate().filter_map(|(place, word)| {
@@ -50,7 +50,7 @@ pub fn set_color(words: &[OsString]) {
             word.strip_prefix("--color=").map(Into::into)
         }
     });
-    // The parser refuses what is no choice.
+    // The parser rejects invalid values.
     let choice = values.next_back().and_then(|value| ColorName::from_str(&value, false).ok());
     match choice.unwrap_or_default() {
         ColorName::Auto => ColorChoice::Auto,
@@ -60,18 +60,18 @@ pub fn set_color(words: &[OsString]) {
     .write_global();
 }
 
-/// Sets how much is said.
+/// Sets the verbosity.
 pub fn set_volume(arguments: &TerminalArguments) {
     let volume = if arguments.quiet { QUIET } else { NORMAL + u8::from(arguments.verbose) };
     VOLUME.store(volume, Ordering::Relaxed);
 }
 
-/// Whether errors and the result alone are wanted.
+/// Whether only errors and the result are printed.
 pub fn is_quiet() -> bool {
     VOLUME.load(Ordering::Relaxed) == QUIET
 }
 
-/// One labelled line on stderr, in one piece, with `below` on a second line.
+/// Prints one labelled line on stderr, in one piece, with `below` on a second line.
 pub fn say(label: Label, text: &str, below: Option<&str>) {
     let (word, style) = label.word_and_style();
     let mut lines = format!("{style}{word}:{style:#} {}\n", printable(text));
@@ -80,11 +80,11 @@ pub fn say(label: Label, text: &str, below: Option<&str>) {
         lines += &printable(below);
         lines.push('\n');
     }
-    // Nothing can be done about a stderr that is gone.
+    // If stderr is gone, nothing can be done.
     let _ = anstream::stderr().write_all(lines.as_bytes());
 }
 
-/// Says what a command does, with `--verbose`.
+/// Prints what a command does, with `--verbose`.
 pub fn note(text: impl Display) {
     if VOLUME.load(Ordering::Relaxed) >= VERBOSE {
         say(Label::Note, &text.to_string(), None);

@@ -1,56 +1,56 @@
-//! Admittance control: the wrench of a hand becomes a motion of the platform, in six axes.
+//! Admittance control: converts the wrench of a hand to a motion of the platform, in six axes.
 //!
-//! For: set points in a control loop whose wrench comes from compensated cable forces
-//! ([`CycleOutput::applied_wrench`](crate::CycleOutput::applied_wrench)). It moves no winch and knows no limits of a
-//! workspace but its reach. A wrench that is not finite counts as none, and is told. State: two numbers an axis.
+//! It produces set points in a control loop whose wrench comes from compensated cable forces
+//! ([`CycleOutput::applied_wrench`](crate::CycleOutput::applied_wrench)). It moves no winch, and the only workspace limit that it knows is its reach.
+//! A non-finite wrench counts as none and is reported. State: two numbers per axis.
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3, Vector6};
 
 use crate::platform::{Pose, Wrench};
 use crate::robot::{ParamError, check};
 
-/// Components of a wrench beyond this are none, N and N m.
+/// Wrench components beyond this are invalid, N and N m.
 const GREATEST_WRENCH: f64 = 1e9;
 /// Greatest `C·T²/I`.
 const GREATEST_SPRING: f64 = 10.0;
 /// Greatest `D·T/I`.
 const GREATEST_DRAG: f64 = 100.0;
 
-/// The virtual body, as stated: diagonal in base axes, in x, y, z.
+/// Options of the virtual body: diagonal in base axes, in x, y, z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AdmittanceOptions {
     /// Virtual mass, kg, 10⁻⁶…10⁶.
     pub mass_kg: [f64; 3],
     /// Virtual damping, N s/m, 0…10⁹.
     pub damping_n_s_per_m: [f64; 3],
-    /// Virtual spring towards the rest pose, N/m, 0…10⁹; 0 lets the platform stay where it is led.
+    /// Virtual spring towards the rest pose, N/m, 0…10⁹; with 0 the platform stays where it is led.
     pub stiffness_n_per_m: [f64; 3],
-    /// Farthest from the rest pose on each axis, m, 10⁻⁶…10⁴.
+    /// Greatest displacement from the rest pose on each axis, m, 10⁻⁶…10⁴.
     pub reach_m: f64,
     /// Virtual inertia, kg m², 10⁻⁹…10⁶.
     pub inertia_kg_m2: [f64; 3],
-    /// Virtual damping of turns, N m s/rad, 0…10⁹.
+    /// Virtual rotational damping, N m s/rad, 0…10⁹.
     pub damping_nm_s_per_rad: [f64; 3],
-    /// Virtual spring of turns, N m/rad, 0…10⁹.
+    /// Virtual rotational spring, N m/rad, 0…10⁹.
     pub stiffness_nm_per_rad: [f64; 3],
-    /// Farthest turn about each axis, rad, 10⁻⁶…3.
+    /// Greatest rotation about each axis, rad, 10⁻⁶…3.
     pub reach_rad: f64,
 }
 
-/// Set point of one cycle. All numbers are finite, whatever went in.
+/// Set point of one cycle. All numbers are finite, whatever the input.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SetPoint {
     /// Pose of the platform.
     pub pose: Pose,
     /// Displacement from the rest pose: x, y, z in m, and the rotation vector in rad, base axes.
     pub displacement: Vector6<f64>,
-    /// Its rate, m/s and rad/s.
+    /// Rate of the displacement, m/s and rad/s.
     pub rate: Vector6<f64>,
-    /// Whether there was a wrench that is one; without, the virtual body moves as if nothing pushed.
+    /// Whether a valid wrench was given; without one, the virtual body moves as if nobody pushed it.
     pub wrench_used: bool,
 }
 
-/// A virtual body of inertia I, damping D and stiffness C that a wrench moves, \[P\] 20:
+/// A virtual body of inertia I, damping D and stiffness C under a wrench, \[P\] 20:
 ///
 /// `I·ẍ + D·ẋ + C·x = w`
 ///
@@ -62,14 +62,14 @@ pub struct SetPoint {
 /// | x | [`SetPoint::displacement`] | m, rad | ± reach |
 /// | w | the wrench on the platform, gravity left out, base axes | N, N m | |
 ///
-/// Each axis is advanced by its exact solution over a cycle in which the wrench is constant: `[x; ẋ] ← Φ·[x; ẋ] + Γ·w`,
-/// Φ and Γ from the matrix exponential at set-up. So every eigenvalue of Φ is `e^{λT}` of one of the equation's, which
-/// lies left of or on the imaginary axis: nothing that set-up takes makes the virtual body unstable by itself. (In a
-/// loop with a real robot, delays can.) Set-up refuses a body that the cycle does not resolve: `C·T²/I ≤ 10`, a natural
-/// period of two cycles at least, and `D·T/I ≤ 100`. At the end of its reach an axis stands still until it is pushed back.
+/// Each axis is advanced by its exact solution over a cycle with a constant wrench: `[x; ẋ] ← Φ·[x; ẋ] + Γ·w`, with Φ and Γ from the matrix
+/// exponential at set-up. Every eigenvalue of Φ is therefore `e^{λT}` of an eigenvalue of the equation, which lies left of or on the imaginary axis:
+/// no accepted parameters make the virtual body unstable by itself. (In a loop with a real robot, delays can.) Set-up refuses a body that the cycle
+/// does not resolve: it requires `C·T²/I ≤ 10`, which is a natural period of at least two cycles, and `D·T/I ≤ 100`. At the end of its reach an axis
+/// stands still until it is pushed back.
 ///
-/// Deviation from \[P\]: I, D and C are diagonal; turns are described by the rotation vector from the rest orientation, whose
-/// rate is the angular velocity for turns of little size.
+/// Deviation from \[P\]: I, D and C are diagonal; rotations are described by the rotation vector from the rest orientation, whose rate equals the
+/// angular velocity for small rotations.
 ///
 /// ```
 /// use fric_core::admittance::{Admittance, AdmittanceOptions};
@@ -100,7 +100,7 @@ pub struct Admittance {
     rest: Pose,
 }
 
-/// One axis: its exact step, and where it is.
+/// One axis: its exact step and its state.
 #[derive(Clone, Copy, Debug)]
 struct Axis {
     /// Φ, row by row.
@@ -116,14 +116,14 @@ impl Axis {
     const STILL: Self =
         Self { transition: [[1.0, 0.0], [0.0, 1.0]], of_wrench: [0.0; 2], reach: 0.0, displacement: 0.0, rate: 0.0 };
 
-    /// `None` for a body that the cycle does not resolve.
+    /// Creates an axis; `None` for a body that the cycle does not resolve.
     fn new(inertia: f64, damping: f64, stiffness: f64, reach: f64, cycle_s: f64) -> Option<Self> {
         let spring = stiffness * cycle_s * cycle_s / inertia;
         let drag = damping * cycle_s / inertia;
         if spring > GREATEST_SPRING || drag > GREATEST_DRAG {
             return None;
         }
-        // T·d/dt [x, T·ẋ, T²·w/I] with w constant: plain numbers, none of them large; the exponential holds Φ and Γ.
+        // T·d/dt [x, T·ẋ, T²·w/I] with constant w: dimensionless numbers, none of them large. Its exponential contains Φ and Γ.
         #[rustfmt::skip]
         let step = exponential(&Matrix3::new(
             0.0, 1.0, 0.0,
@@ -149,7 +149,7 @@ impl Axis {
     }
 }
 
-/// `e^M`: Taylor's series of M/2^k, squared k times, with ‖M/2^k‖ ≤ 1/2, where 20 terms leave less than rounding.
+/// Returns `e^M`: Taylor's series of M/2^k, squared k times, with ‖M/2^k‖ ≤ 1/2, where 20 terms leave less than rounding.
 fn exponential(matrix: &Matrix3<f64>) -> Matrix3<f64> {
     let norm = matrix.row_iter().map(|row| row.abs().sum()).fold(0.0, f64::max);
     let halvings = if norm > 0.5 { libm::ceil(libm::log2(2.0 * norm)) } else { 0.0 };
@@ -167,20 +167,20 @@ fn exponential(matrix: &Matrix3<f64>) -> Matrix3<f64> {
     sum
 }
 
-/// The rotation of a rotation vector, rad: by the `libm` crate's functions, so that its bits are the same everywhere.
+/// Returns the rotation for a rotation vector, rad, using functions of the `libm` crate, so that its bits are the same everywhere.
 fn rotation(turn: &Vector3<f64>) -> UnitQuaternion<f64> {
     let angle = libm::sqrt(turn.norm_squared());
-    // sin(φ/2)/φ, whose series leaves less than rounding below 10⁻⁴.
+    // sin(φ/2)/φ; below 10⁻⁴ the error of the series is less than rounding.
     let share = if angle < 1e-4 { 0.5 - angle * angle / 48.0 } else { libm::sin(0.5 * angle) / angle };
     UnitQuaternion::new_unchecked(Quaternion::from_parts(libm::cos(0.5 * angle), turn * share))
 }
 
 impl Admittance {
-    /// A virtual body at rest at `rest`, advanced by `cycle_s` (10⁻⁶…10 s) each step.
+    /// Creates a virtual body at rest at `rest`, advanced by `cycle_s` (10⁻⁶…10 s) in each step.
     ///
     /// # Errors
-    /// [`ParamError`] names the first value that is not finite, out of its range or at odds with the cycle time, and a rest
-    /// pose that is none.
+    /// Returns a [`ParamError`] for the first value that is not finite, out of its range or inconsistent with the cycle time, and for an invalid rest
+    /// pose.
     pub fn new(options: &AdmittanceOptions, cycle_s: f64, rest: &Pose) -> Result<Self, ParamError> {
         check("cycle_s", cycle_s, 1e-6, 10.0)?;
         if !rest.is_usable() {
@@ -215,7 +215,7 @@ impl Admittance {
         Ok(Self { axes, rest: *rest })
     }
 
-    /// Back to rest at a pose; one that is none leaves the rest pose as it is.
+    /// Resets the body to rest at a pose. An invalid pose keeps the present rest pose.
     pub fn reset(&mut self, rest: &Pose) {
         if rest.is_usable() {
             self.rest = *rest;
@@ -225,7 +225,7 @@ impl Admittance {
         }
     }
 
-    /// One cycle under a wrench (gravity left out); total over all inputs, allocation-free, panic-free.
+    /// Runs one cycle under a wrench without gravity. Total over all inputs, allocation-free, panic-free.
     pub fn step(&mut self, wrench: Option<&Wrench>) -> SetPoint {
         let usable = |wrench: &Vector6<f64>| wrench.iter().all(|component| component.abs() <= GREATEST_WRENCH);
         let wrench = wrench.map(Wrench::to_vector).filter(usable);

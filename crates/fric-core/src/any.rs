@@ -1,7 +1,7 @@
 //! A compensator for a robot whose number of cables is known only at run time.
 //!
-//! For: programs that read a robot file and take the robot as it comes. Set-up allocates once; the cycle does not.
-//! Behaviour with non-finite input and state are those of [`Compensator`]. Needs the feature `alloc`.
+//! For programs that read a robot file at run time. Set-up allocates once; the cycle does not. Non-finite input and state behave as in
+//! [`Compensator`]. Needs the feature `alloc`.
 
 use alloc::boxed::Box;
 use alloc::vec;
@@ -18,24 +18,24 @@ use crate::status::CableStatus;
 use crate::tunable::TunableCompensator;
 use crate::words::Words as _;
 
-/// [`Compensator`] for any number of cables up to [`AnyCompensator::MOST_CABLES`]: the smallest of a few sizes that
-/// holds the robot. The size does not change a bit of the result.
+/// A [`Compensator`] for any number of cables up to [`AnyCompensator::MOST_CABLES`]: it uses the smallest of a few sizes that holds the robot. The
+/// size does not change a bit of the result.
 #[derive(Debug)]
 pub struct AnyCompensator(Box<dyn Cycle>);
 
-/// The state of an [`AnyCompensator`] at one moment, for [`AnyCompensator::restore`].
+/// The state of an [`AnyCompensator`] at one time, for [`AnyCompensator::restore`].
 #[derive(Debug)]
 pub struct AnySnapshot {
     cable_count: usize,
     state: Box<dyn Any + Send + Sync>,
 }
 
-/// A snapshot that was taken of a robot with another number of cables.
+/// The error for a snapshot of a robot with another number of cables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SnapshotMismatch {
-    /// How many cables the robot has.
+    /// Number of cables of the robot.
     pub expected: usize,
-    /// How many that of the snapshot had.
+    /// Number of cables in the snapshot.
     pub found: usize,
 }
 
@@ -49,13 +49,13 @@ impl fmt::Display for SnapshotMismatch {
 impl core::error::Error for SnapshotMismatch {}
 
 impl AnyCompensator {
-    /// The largest robot.
+    /// Maximum number of cables.
     pub const MOST_CABLES: usize = MOST_CABLES;
 
-    /// Set-up from checked parameters.
+    /// Creates a compensator from checked parameters.
     ///
     /// # Errors
-    /// [`ParamError`] if the robot has more than [`MOST_CABLES`](Self::MOST_CABLES) cables.
+    /// Returns a [`ParamError`] if the robot has more than [`MOST_CABLES`](Self::MOST_CABLES) cables.
     pub fn new(robot: &RobotParams<'_>) -> Result<Self, ParamError> {
         Ok(Self(match robot.cables().len() {
             0..=4 => Fixed::<4>::boxed(robot)?,
@@ -65,35 +65,35 @@ impl AnyCompensator {
         }))
     }
 
-    /// How many cables the robot has.
+    /// Returns the number of cables of the robot.
     #[must_use]
     pub fn cable_count(&self) -> usize {
         self.0.outputs().len()
     }
 
-    /// Back to the state after set-up, see [`Compensator::reset`].
+    /// Resets to the state after set-up; see [`Compensator::reset`].
     pub fn reset(&mut self) {
         self.0.reset();
     }
 
-    /// A copy of everything that a cycle leaves for the next, its outcome included.
+    /// Returns a copy of the full state, including the last output.
     #[must_use]
     pub fn snapshot(&self) -> AnySnapshot {
         AnySnapshot { cable_count: self.cable_count(), state: self.0.snapshot() }
     }
 
-    /// Goes on from a snapshot as if nothing had happened since.
+    /// Restores the state of a snapshot; the following cycles have the same bits as after the snapshot.
     ///
     /// # Errors
-    /// [`SnapshotMismatch`] if it is of a robot with another number of cables; nothing is changed then.
+    /// Returns a [`SnapshotMismatch`] if the snapshot belongs to a robot with another number of cables; nothing is changed then.
     pub fn restore(&mut self, snapshot: &AnySnapshot) -> Result<(), SnapshotMismatch> {
         let (expected, found) = (self.cable_count(), snapshot.cable_count);
         let is_restored = expected == found && self.0.restore(snapshot.state.as_ref());
         if is_restored { Ok(()) } else { Err(SnapshotMismatch { expected, found }) }
     }
 
-    /// The state as words, the number of cables first: all that a snapshot holds, bit for bit, for another process. They are of
-    /// use to this version of the crate.
+    /// Returns the state as words, the number of cables first: the full content of a snapshot, bit for bit, for another process. The words are valid
+    /// only for this version of the crate.
     #[must_use]
     pub fn state_words(&self) -> Vec<u64> {
         let mut words = vec![self.cable_count() as u64];
@@ -101,10 +101,10 @@ impl AnyCompensator {
         words
     }
 
-    /// Goes on from the words that [`state_words`](Self::state_words) gave for the same robot.
+    /// Restores the state from the words of [`state_words`](Self::state_words) of the same robot.
     ///
     /// # Errors
-    /// [`SnapshotMismatch`] if they are of a robot with another number of cables, or of another version; nothing is changed then.
+    /// Returns a [`SnapshotMismatch`] if the words belong to a robot with another number of cables, or to another version; nothing is changed then.
     pub fn restore_words(&mut self, words: &[u64]) -> Result<(), SnapshotMismatch> {
         let expected = self.cable_count();
         let found = words.first().and_then(|count| usize::try_from(*count).ok()).unwrap_or(0);
@@ -118,65 +118,63 @@ impl AnyCompensator {
         Ok(())
     }
 
-    /// Whether the parameters of `next` can take over, see [`Compensator::check_exchange`].
+    /// Checks whether the parameters of `next` can take over; see [`Compensator::check_exchange`].
     ///
     /// # Errors
-    /// [`ParamError`] as there.
+    /// Returns the [`ParamError`] of that function.
     pub fn check_exchange(&self, next: &Self) -> Result<(), ParamError> {
         self.0.check_exchange(next.0.as_any())
     }
 
-    /// Takes over the parameters of `next` in the course of the next `blend_cycles`, see [`TunableCompensator::change`].
+    /// Blends over to the parameters of `next` during the next `blend_cycles`; see [`TunableCompensator::change`].
     ///
     /// # Errors
-    /// [`ParamError`] as there.
+    /// Returns the [`ParamError`] of that function.
     pub fn change(&mut self, next: &Self, blend_cycles: u32) -> Result<(), ParamError> {
         self.0.change(next.0.as_any(), blend_cycles)
     }
 
-    /// Whether the output is still on its way from old parameters to new ones.
+    /// Whether the output is still being blended from old parameters to new ones.
     #[must_use]
     pub fn is_changing(&self) -> bool {
         self.0.is_changing()
     }
 
-    /// Friction stored at each pulley of a cable, see [`Compensator::pulley_friction_n`].
+    /// Returns the friction stored at each pulley of a cable, N; see [`Compensator::pulley_friction_n`].
     #[must_use]
     pub fn pulley_friction_n(&self, cable: usize) -> [f64; MAX_PULLEYS] {
         self.0.pulley_friction_n(cable)
     }
 
-    /// Takes in the signals of a cycle; cables that `cables` lacks count as not finite. `elapsed_cycles` is that of
-    /// [`CycleInput`].
+    /// Sets the signals of a cycle. Cables missing in `cables` count as not finite. `elapsed_cycles` is as in [`CycleInput`].
     pub fn set_input(&mut self, cables: &[CableInput], pose: Option<Pose>, elapsed_cycles: f64) {
         self.0.set_input(cables, pose, elapsed_cycles);
     }
 
-    /// One cycle on the signals taken in last; gives the wrench from outside.
+    /// Runs one cycle on the signals set last and returns the external wrench.
     pub fn step(&mut self) -> Option<Wrench> {
         self.0.step()
     }
 
-    /// What is the matter with the wrench of the last cycle, see [`CycleOutput::wrench_status`].
+    /// Returns the faults of the last cycle's wrench; see [`CycleOutput::wrench_status`].
     #[must_use]
     pub fn wrench_status(&self) -> CableStatus {
         self.0.wrench_status()
     }
 
-    /// The outside wrench of the last cycle less gravity, see [`CycleOutput::applied_wrench`].
+    /// Returns the external wrench of the last cycle without gravity; see [`CycleOutput::applied_wrench`].
     #[must_use]
     pub fn applied_wrench(&self) -> Option<Wrench> {
         self.0.applied_wrench()
     }
 
-    /// Outcome of the last cycle for the robot's cables.
+    /// Returns the output of the last cycle for the robot's cables.
     #[must_use]
     pub fn outputs(&self) -> &[CableOutput] {
         self.0.outputs()
     }
 
-    /// The wrench from outside that balances given cable forces at the pose of the last cycle; `None` as
-    /// [`CycleOutput::outside_wrench`].
+    /// Returns the external wrench that balances given cable forces at the pose of the last cycle; `None` as for [`CycleOutput::outside_wrench`].
     #[must_use]
     pub fn outside_wrench_of(&self, forces_n: impl Iterator<Item = f64>) -> Option<Wrench> {
         self.0.outside_wrench_of(&mut { forces_n })
@@ -186,11 +184,11 @@ impl AnyCompensator {
 trait Cycle: Send + Sync + fmt::Debug {
     fn reset(&mut self);
     fn snapshot(&self) -> Box<dyn Any + Send + Sync>;
-    /// Shows the words of the state.
+    /// Visits the words of the state.
     fn each_state_word(&self, show: &mut dyn FnMut(&u64));
-    /// Replaces them.
+    /// Replaces the words of the state.
     fn restore_words(&mut self, replace: &mut dyn FnMut(&mut u64));
-    /// Whether the snapshot is one of this size.
+    /// Restores a snapshot. Returns whether it has this size.
     fn restore(&mut self, state: &(dyn Any + Send + Sync)) -> bool;
     fn as_any(&self) -> &dyn Any;
     fn check_exchange(&self, next: &dyn Any) -> Result<(), ParamError>;
@@ -219,8 +217,8 @@ impl<const CABLES: usize> Fixed<CABLES> {
         Ok(Self::around(Self::set_up(robot)?))
     }
 
-    /// A function of its own, as the next one, so that a robot takes the stack of its own size, not of the largest, and one after the
-    /// other.
+    /// Creates a compensator of one size. This and the next are functions of their own, so that a robot uses the stack of its own size only, and the
+    /// sizes do not add up.
     #[inline(never)]
     fn set_up(robot: &RobotParams<'_>) -> Result<Box<Compensator<CABLES>>, ParamError> {
         Ok(Box::new(Compensator::new(robot)?))
@@ -234,7 +232,7 @@ impl<const CABLES: usize> Fixed<CABLES> {
     }
 }
 
-/// The compensator in a [`Fixed`] of the same size; robots of different sizes differ in their number of cables.
+/// Returns the compensator in a [`Fixed`] of the same size; robots of different sizes differ in their number of cables.
 fn of_size<const CABLES: usize>(next: &dyn Any) -> Result<&Compensator<CABLES>, ParamError> {
     let fixed = next.downcast_ref::<Fixed<CABLES>>().map(|fixed| fixed.compensator.compensator());
     fixed.ok_or(ParamError::conflict("cable", "differ in number from those of the robot that runs"))
@@ -294,7 +292,7 @@ impl<const CABLES: usize> Cycle for Fixed<CABLES> {
 
     fn set_input(&mut self, cables: &[CableInput], pose: Option<Pose>, elapsed_cycles: f64) {
         let count = self.compensator.compensator().cable_count();
-        // Places beyond the robot's cables rest.
+        // Entries beyond the robot's cables are at rest.
         let signals = cables.iter().copied().chain(repeat(NOTHING)).take(count).chain(repeat(CableInput::default()));
         for (place, signal) in self.input.cables.iter_mut().zip(signals) {
             *place = signal;

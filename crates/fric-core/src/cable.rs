@@ -1,8 +1,7 @@
-//! What a cable is to the equations of the cycle: its parameters, its pulleys and what it remembers.
+//! The cable as the equations of the cycle see it: its parameters, its pulleys and its state.
 //!
-//! Generic over [`Scalar`], so that the control cycle (several cables at once) and a fit that carries derivatives run the very same
-//! code. State: one number per pulley, or one per cable, and [`MEMORY`](crate::effects::MEMORY) of effects, kept by the caller
-//! behind [`Cable`].
+//! The trait is generic over [`Scalar`], so that the control cycle (several cables at once) and a fit with derivatives run the same code. State: one
+//! number per pulley, or one per cable, and [`MEMORY`](crate::effects::MEMORY) numbers of effects, stored by the caller behind [`Cable`].
 //!
 //! Symbols and sign convention are those of [`pulley`](crate::pulley).
 
@@ -17,20 +16,20 @@ use crate::scalar::Scalar;
 pub struct CableModel<T: Scalar> {
     /// Bearing friction μ on the normal force, 1.
     pub mu: T,
-    /// Presliding stiffness σ of one Dahl state: the whole cable's for `lumped`, its n-th part for `per_pulley`, N/m.
+    /// Presliding stiffness σ of one Dahl state, N/m: that of the whole cable for `lumped`, an n-th of it for `per_pulley` with n pulleys.
     pub sigma_n_per_m: T,
     /// Force added at the platform, ε of \[P\] 18, N.
     pub offset_n: T,
     /// cos α₁ of the sensor pulley; 0 for a sensor in line with the cable.
     pub sensor_cos: T,
-    /// `1/(1 − cos α₁)`: from sensor force to cable tension without friction, 1.
+    /// `1/(1 − cos α₁)`: ratio of the cable tension without friction to the sensor force.
     pub frictionless_gain: T,
-    /// One state per cable (\[P\]'s) instead of one per pulley.
+    /// Whether there is one state per cable (as in \[P\]) instead of one per pulley.
     pub lumped: T::Mask,
 }
 
 impl<T: Scalar> CableModel<T> {
-    /// The model of cables, one a lane, with `values` in place of the cables' own.
+    /// Creates the model of several cables, one per lane, with `values` replacing the cables' own.
     #[must_use]
     pub fn new<'a>(of_lane: impl Fn(usize) -> &'a CableParams, values: &Values<T>) -> Self {
         #[expect(clippy::cast_precision_loss, reason = "at most MAX_PULLEYS")]
@@ -52,14 +51,14 @@ impl<T: Scalar> CableModel<T> {
 }
 
 impl CableParams {
-    /// From sensor force to cable tension without friction: `1/(1 − cos α₁)`, 1.
+    /// Returns the ratio of the cable tension without friction to the sensor force: `1/(1 − cos α₁)`.
     #[must_use]
     pub fn frictionless_gain(&self) -> f64 {
         CableModel::<f64>::new(|_| self, &self.values()).frictionless_gain
     }
 
-    /// The way over which the pulley that remembers longest forgets its stored friction to 1/e, for each newton of sensor
-    /// force: `f_c/σ` of one Dahl state with `F_N = k·F`, m/N. Without presliding it is 0.
+    /// Returns the distance over which the pulley with the longest memory forgets its stored friction to 1/e, per newton of sensor force: `f_c/σ` of
+    /// one Dahl state with `F_N = k·F`, m/N. It is 0 without presliding.
     #[must_use]
     pub fn memory_m_per_n(&self, mu: f64, sigma_n_per_m: f64) -> f64 {
         let mut values = self.values();
@@ -73,49 +72,48 @@ impl CableParams {
     }
 }
 
-/// A cable, or several in lanes: its pulleys in order from the winch, its effects, and what it remembers.
+/// A cable, or several in lanes: its pulleys in order from the winch, its effects, and its state.
 ///
-/// Pulley 0 is the sensor pulley; a sensor in line with the cable is a sensor pulley without wrap.
+/// Pulley 0 is the sensor pulley; a sensor in line with the cable counts as a sensor pulley without wrap.
 pub trait Cable<T: Scalar> {
-    /// How many pulleys, at least 1.
+    /// Returns the number of pulley positions, at least 1.
     fn count(&self) -> usize;
-    /// `2 sin(α/2)` of the wrap of the pulley at a place; 0 where there is none.
+    /// Returns `2 sin(α/2)` of the wrap of the pulley at a position; 0 if there is none.
     fn wrap_factor(&self, place: usize) -> T;
-    /// Its viscous friction `F_pv·v` at a speed, N; 0 where there is none.
+    /// Returns its viscous friction `F_pv·v` at a speed, N; 0 if there is none.
     fn viscous_n(&self, place: usize, speed_m_per_s: T) -> T;
-    /// `e^{μ_p α}` there, the tension ratio at which the cable slips; beyond
-    /// [`NO_LIMIT_RATIO`](crate::pulley::NO_LIMIT_RATIO) where it cannot.
+    /// Returns `e^{μ_p α}` there, the tension ratio at which the cable slips; beyond [`NO_LIMIT_RATIO`](crate::pulley::NO_LIMIT_RATIO) if it cannot.
     fn traction_ratio(&self, place: usize) -> T;
-    /// 1 where there is a pulley, else 0.
+    /// Returns 1 if there is a pulley, else 0.
     fn present(&self, place: usize) -> T;
-    /// Number of the pulley there, counted from 1 at the sensor; 0 where there is none.
+    /// Returns the number of the pulley there, counted from 1 at the sensor; 0 if there is none.
     fn pulley_number(&self, place: usize) -> T;
-    /// How much of the cable's stretch lies between the winch and there, 0…1: `j/n` at pulley j of n.
+    /// Returns the fraction of the cable's stretch between the winch and this position, 0…1: `j/n` at pulley j of n.
     fn stretch_ratio(&self, place: usize) -> T;
-    /// The greatest μ that the sensor pulley bears, see [`CableParams`].
+    /// Returns the greatest μ that the sensor pulley allows; see [`CableParams`].
     fn greatest_mu(&self) -> T;
-    /// A parameter of an effect, by its place in [`Values`].
+    /// Returns a parameter of an effect, by its index in [`Values`].
     fn effect(&self, place: usize) -> T;
-    /// What an effect remembers, by its place in [`MEMORY`](crate::effects::MEMORY); [`UNKNOWN`](crate::effects::UNKNOWN) before the first
-    /// cycle.
+    /// Returns a state variable of an effect, by its index in [`MEMORY`](crate::effects::MEMORY); [`UNKNOWN`](crate::effects::UNKNOWN) before the
+    /// first cycle.
     fn memory(&self, place: usize) -> T;
-    /// Keeps it.
+    /// Stores a state variable of an effect.
     fn set_memory(&mut self, place: usize, value: T);
-    /// Coulomb friction stored at a pulley (`per_pulley`), N.
+    /// Returns the Coulomb friction stored at a pulley (`per_pulley`), N.
     fn pulley_friction_n(&self, place: usize) -> T;
-    /// Stores it.
+    /// Stores the Coulomb friction of a pulley.
     fn set_pulley_friction_n(&mut self, place: usize, friction_n: T);
-    /// Coulomb friction stored in the cable (`lumped`), N.
+    /// Returns the Coulomb friction stored in the cable (`lumped`), N.
     fn lumped_friction_n(&self) -> T;
-    /// Stores it.
+    /// Stores the Coulomb friction of the cable.
     fn set_lumped_friction_n(&mut self, friction_n: T);
-    /// Last good friction in all, N.
+    /// Returns the last valid total friction, N.
     fn held_friction_n(&self) -> T;
-    /// Keeps it.
+    /// Stores the last valid total friction.
     fn set_held_friction_n(&mut self, friction_n: T);
 }
 
-/// A cable whose state is looked at, and stays as it is.
+/// A read-only view of a cable: changes of its state are discarded.
 pub(crate) struct Looked<'a, C>(pub &'a C);
 
 impl<T: Scalar, C: Cable<T>> Cable<T> for Looked<'_, C> {
@@ -181,36 +179,36 @@ impl<T: Scalar, C: Cable<T>> Cable<T> for Looked<'_, C> {
     fn set_held_friction_n(&mut self, _: T) {}
 }
 
-/// What may differ between robots but not between the lanes of one: decided once a cycle, outside the arithmetic.
+/// Properties that may differ between robots but not between the lanes of one. They are decided once per cycle, outside the arithmetic.
 #[derive(Clone, Copy, Debug, Default)]
 #[expect(clippy::struct_excessive_bools, reason = "each is there or not, whatever the others are")]
 pub struct Features {
-    /// Some cable has one Dahl state per pulley.
+    /// Whether any cable has one Dahl state per pulley.
     pub per_pulley: bool,
-    /// Some cable has one Dahl state in all.
+    /// Whether any cable has a single Dahl state.
     pub lumped: bool,
-    /// Some cable has a slip limit.
+    /// Whether any cable has a slip limit.
     pub traction: bool,
-    /// Some cable's motion is known too late, and led.
+    /// Whether the motion of any cable is known too late and extrapolated.
     pub(crate) leads: bool,
-    /// Effects that some cable has.
+    /// Effects that any cable has.
     pub(crate) acting: Acting,
 }
 
 impl Features {
-    /// Whether the cycle has anything to do with effects; a delay is in its signals already.
+    /// Whether the cycle must compute any effects; a delay is already applied to its signals.
     #[inline(always)]
     pub(crate) fn has_effects(self) -> bool {
         self.leads || self.acting.without(time_delay::ACTS) != Acting::NONE
     }
 
-    /// These; if not `EFFECTS` without any, which the compiler then leaves out.
+    /// Returns these features; if not `EFFECTS`, without any effect, so that the compiler removes them.
     #[inline(always)]
     pub(crate) fn limited_to<const EFFECTS: bool>(self) -> Self {
         if EFFECTS { self } else { Self { acting: Acting::NONE, leads: false, ..self } }
     }
 
-    /// These and what a cable needs, but for its effects.
+    /// Returns these features together with those that a cable needs, except its effects.
     pub(crate) fn with(mut self, params: &CableParams) -> Self {
         self.per_pulley |= params.presliding == Presliding::PerPulley;
         self.lumped |= params.presliding == Presliding::Lumped;
@@ -218,30 +216,30 @@ impl Features {
         self
     }
 
-    /// These, and a lead if there is one.
+    /// Returns these features together with a lead, if there is one.
     pub(crate) fn with_lead(mut self, leads: bool) -> Self {
         self.leads |= leads;
         self
     }
 
-    /// These and the effects of which a parameter is `active`: not neutral, or varied.
+    /// Returns these features together with the effects that have an `active` parameter: one that is not neutral, or is varied.
     pub(crate) fn and_acting(mut self, active: impl Fn(&ParameterRow, usize) -> bool) -> Self {
         self.acting = self.acting.and(Acting::of(active));
         self
     }
 }
 
-/// Where the run stands.
+/// The present time of the run.
 #[derive(Clone, Copy, Debug)]
 pub struct Moment<T> {
-    /// Time since its first cycle, s.
+    /// Time since the first cycle, s.
     pub time_s: T,
-    /// Time since the cycle before, s; the cycle time in the first.
+    /// Time since the previous cycle, s; the cycle time in the first cycle.
     pub step_s: T,
 }
 
 impl<T: Scalar> Moment<T> {
-    /// The moment `cycle` cycles after the first, where the cycle before was `last`; NaN if that is not known.
+    /// Returns the time at `cycle` cycles after the first, with the previous cycle at `last`; NaN if that is unknown.
     #[inline(always)]
     pub fn new(cycle: T, last: T, cycle_s: f64) -> Self {
         let elapsed = T::select(last.lt(cycle), cycle - last, T::splat(1.0));

@@ -1,4 +1,4 @@
-//! The chain of a cable's pulleys in one cycle, in the two forms of presliding.
+//! The chain of a cable's pulleys in one cycle, for both forms of presliding.
 //!
 //! Symbols and sign convention are those of [`pulley`].
 
@@ -8,7 +8,7 @@ use crate::effects::cable_elasticity;
 use crate::pulley;
 use crate::scalar::{Mask, Scalar};
 
-/// What the chain is computed from.
+/// The inputs of the chain.
 #[derive(Clone, Copy, Debug)]
 pub struct Chain<'a, T: Scalar> {
     pub model: &'a CableModel<T>,
@@ -18,16 +18,15 @@ pub struct Chain<'a, T: Scalar> {
     pub sensor_force_n: T,
     /// Displacement of the cable at the winch, m.
     pub displacement_m: T,
-    /// What the stretch of the whole cable adds to it, m.
+    /// Additional displacement due to the stretch of the whole cable, m.
     pub stretch_m: T,
 }
 
 impl<T: Scalar> Chain<'_, T> {
-    /// `per_pulley`: one Dahl state on each bearing; its normal force includes the friction it has stored.
+    /// `per_pulley`: one Dahl state per bearing, whose normal force includes the stored friction.
     ///
-    /// With the stored Coulomb friction `f_j`: `F_1 = (F_s − c(f_1 + F_pv v))/(1 − c)` (\[P\] 11), then
-    /// `F_j = F_{j−1} + f_j + F_pv v`. In steady sliding this is \[P\] 10. Gives the tension
-    /// behind the last pulley, the magnitudes stored, and slip.
+    /// With the stored Coulomb friction `f_j`: `F_1 = (F_s − c(f_1 + F_pv v))/(1 − c)` (\[P\] 11), then `F_j = F_{j−1} + f_j + F_pv v`. In steady
+    /// sliding this is \[P\] 10. Returns the tension behind the last pulley, the stored magnitudes, and whether the cable slips.
     #[inline(always)]
     pub fn per_pulley(&self, release: T::Mask, cable: &mut impl Cable<T>) -> (T, T, T::Mask) {
         let Self { model, features, bearing, sensor_force_n, .. } = self;
@@ -71,7 +70,7 @@ impl<T: Scalar> Chain<'_, T> {
         (tension_n, sum_n, slip)
     }
 
-    /// Displacement of the cable at a pulley, m.
+    /// Returns the displacement of the cable at a pulley, m.
     #[inline(always)]
     fn displacement_at(&self, place: usize, cable: &impl Cable<T>) -> T {
         if self.features.acting.has(cable_elasticity::ACTS) {
@@ -81,7 +80,7 @@ impl<T: Scalar> Chain<'_, T> {
         }
     }
 
-    /// Displacement of the cable over all its pulleys, m: their mean.
+    /// Returns the mean displacement of the cable over all its pulleys, m.
     #[inline(always)]
     fn mean_displacement(&self, cable: &impl Cable<T>) -> T {
         if !self.features.acting.has(cable_elasticity::ACTS) {
@@ -94,8 +93,8 @@ impl<T: Scalar> Chain<'_, T> {
         self.displacement_m + self.stretch_m.scale(ratios / pulleys.max(T::splat(1.0)))
     }
 
-    /// `lumped`: one Dahl state for the whole cable on the macroscopic Coulomb friction, as the paper has it. Gives the tension
-    /// behind the last pulley, the friction stored, and slip.
+    /// `lumped`: one Dahl state for the whole cable on the macroscopic Coulomb friction, as in the paper. Returns the tension behind the last pulley,
+    /// the stored friction, and whether the cable slips.
     #[inline(always)]
     pub fn lumped(&self, cable: &impl Cable<T>) -> (T, T, T::Mask) {
         let Self { model, features, bearing, sensor_force_n, .. } = self;
@@ -105,9 +104,8 @@ impl<T: Scalar> Chain<'_, T> {
         let direction = bearing.direction(displacement_m, cable.lumped_friction_n(), cable);
         let frictionless_n = sensor_force_n.scale(model.frictionless_gain);
         let mut slip = T::Mask::NONE;
-        // Coulomb and viscous part of the tension over a common divisor: one division for the whole cable. Only what depends on
-        // the tension at each pulley divides there, and leaves these numbers as they are: a cable's bits are not to hang on
-        // what another cable needs.
+        // Coulomb and viscous part of the tension have a common divisor, so the whole cable needs one division. Only terms that depend on the tension
+        // at each pulley divide there, and they leave these numbers unchanged: the bits of a cable must not depend on what another cable needs.
         let needs_tensions = features.traction || bearing.depends_on_load();
         let (mut coulomb_n, mut viscous_n, mut divisor) = (zero, zero, one);
         for place in 0..cable.count() {
@@ -124,7 +122,7 @@ impl<T: Scalar> Chain<'_, T> {
             };
             let coupling = mu.scale(direction).scale(wrap_factor);
             let (plus, minus) = (two + coupling, two - coupling);
-            // What a resisting force is multiplied by ([`pulley::sensor_gains`], [`pulley::sliding_gains`]).
+            // The factor on a resisting force ([`pulley::sensor_gains`], [`pulley::sliding_gains`]).
             let share = if place == 0 { -(two.scale(model.sensor_cos)) } else { divisor.scale(two) };
             if place == 0 {
                 coulomb_n = sensor_force_n * plus;
@@ -142,7 +140,7 @@ impl<T: Scalar> Chain<'_, T> {
                 let traction_ratio = cable.traction_ratio(place);
                 let behind_n = tension_n(coulomb_n, viscous_n, divisor);
                 let (held_n, slips) = if place == 0 {
-                    // [P] 10 the other way round: the tension on the winch side from the one behind.
+                    // [P] 10 inverted: the tension on the winch side from the one behind the pulley.
                     let (inverse_gain, inverse_viscous) = pulley::sliding_gains(-direction, mu, wrap_factor);
                     let before_n = behind_n * inverse_gain - resisting_n * inverse_viscous;
                     let (_, slips) = pulley::limit_traction(before_n, behind_n, traction_ratio);
@@ -153,7 +151,7 @@ impl<T: Scalar> Chain<'_, T> {
                 } else {
                     pulley::limit_traction(before_n, behind_n, traction_ratio)
                 };
-                // The slip limit holds the sum; what it takes away is Coulomb friction.
+                // The slip limit applies to the sum; what it removes is Coulomb friction.
                 coulomb_n = T::select(slips, held_n * divisor - viscous_n, coulomb_n);
                 slip = slip.or(slips);
             }
@@ -161,17 +159,17 @@ impl<T: Scalar> Chain<'_, T> {
         let inverse = one / divisor;
         let viscous_n = viscous_n * inverse;
         let sliding_n = coulomb_n * inverse - frictionless_n;
-        // Sliding this way leads to `sliding_n`, whose sign is not the motion's where a sensor pulley of less than 90°
-        // outweighs the others: its friction lowers the tension behind it.
+        // Sliding in this direction leads to `sliding_n`. Its sign differs from that of the motion if a sensor pulley of less than 90° outweighs the
+        // others, because its friction lowers the tension behind it.
         let distance_m = displacement_m.abs();
         let toward_m = T::select(sliding_n.lt(zero), -distance_m, distance_m);
         let moved_n = bearing.preslide(cable.lumped_friction_n(), sliding_n.abs(), toward_m, cable);
         (frictionless_n + moved_n + viscous_n, moved_n, slip)
     }
 
-    /// μ of the sensor pulley in steady sliding.
+    /// Returns μ of the sensor pulley in steady sliding.
     ///
-    /// Where μ depends on the load it is first that of the frictionless tension, then that of the tensions which this gives.
+    /// If μ depends on the load, it is first evaluated at the frictionless tension and then at the resulting tensions.
     #[inline(always)]
     fn mu_of_sensor_pulley(
         &self,
@@ -193,7 +191,7 @@ impl<T: Scalar> Chain<'_, T> {
         mu
     }
 
-    /// μ of another pulley in steady sliding, likewise.
+    /// Returns μ of another pulley in steady sliding, in the same way.
     #[inline(always)]
     fn mu_of_guide_pulley(
         &self,
@@ -215,5 +213,5 @@ impl<T: Scalar> Chain<'_, T> {
     }
 }
 
-/// How often μ and the load that it depends on are worked out from each other; each time the error becomes smaller by some `μ/2`.
+/// Number of fixed-point iterations between μ and the load that it depends on; each reduces the error by a factor of about `μ/2`.
 const LOAD_STEPS: usize = 2;

@@ -1,4 +1,4 @@
-//! What goes into a cycle and what comes out.
+//! Input and output of a cycle.
 
 use crate::platform::{Pose, Wrench};
 use crate::status::CableStatus;
@@ -6,27 +6,27 @@ use crate::status::CableStatus;
 /// Signals of one cable.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CableInput {
-    /// Force that the sensor shows, N.
+    /// Force shown by the sensor, N.
     pub sensor_force_n: f64,
-    /// Cable length, m; any zero, only changes count. Positive paying out.
+    /// Cable length, m, positive paying out. Its zero is arbitrary, because only changes count.
     ///
-    /// The winch's set point, as in \[P\], or a measured length whose noise is far below the presliding distance f_c/σ:
-    /// back-and-forth noise δ releases the stored friction at standstill within some f_c/(2σδ) cycle pairs. For coarser
-    /// encoders give the noise as `length_noise_m` of the robot's monitor.
+    /// The winch's set point, as in \[P\], or a measured length with noise far below the presliding distance f_c/σ: alternating noise of amplitude δ
+    /// releases the stored friction at standstill within about f_c/(2σδ) pairs of cycles. For coarser encoders, state the noise as `length_noise_m`
+    /// of the robot's monitor.
     pub length_m: f64,
-    /// Its rate, m/s.
+    /// Rate of the length, m/s.
     pub speed_m_per_s: f64,
 }
 
-/// Signals of one cycle for a robot of up to `CABLES` cables; entries past the robot's cables are not looked at.
+/// Signals of one cycle for a robot of up to `CABLES` cables; entries past the robot's cables are ignored.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CycleInput<const CABLES: usize> {
     /// Cables in the robot's order.
     pub cables: [CableInput; CABLES],
-    /// Pose of the platform, where it is known.
+    /// Pose of the platform, if it is known.
     pub pose: Option<Pose>,
-    /// Cycles since the last call, 1 unless some were skipped: a longer pause allows a longer way before a change of
-    /// length counts as a jump. Friction itself knows no time. Less than 1 and NaN count as 1.
+    /// Cycles since the last call, 1 unless some were skipped. A longer pause allows a longer distance before a change of length counts as a jump.
+    /// Friction itself does not depend on time. Values below 1 and NaN count as 1.
     pub elapsed_cycles: f64,
 }
 
@@ -36,30 +36,30 @@ impl<const CABLES: usize> Default for CycleInput<CABLES> {
     }
 }
 
-/// Outcome for one cable. All numbers are finite, whatever went in.
+/// Output for one cable. All numbers are finite, whatever the input.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CableOutput {
-    /// Cable force at the platform, N, the offset ε included.
+    /// Cable force at the platform including the offset ε, N.
     pub force_at_platform_n: f64,
-    /// Estimated friction, N: force at the platform less the frictionless one, without ε; 0 where the sensor shows no tension, or less.
+    /// Estimated friction, N: force at the platform minus the frictionless one, without ε; 0 if the sensor shows no positive tension.
     pub friction_n: f64,
-    /// The sensor force turned into cable tension as if nothing rubbed, N.
+    /// Cable tension computed from the sensor force without friction, N.
     pub frictionless_n: f64,
-    /// What is the matter with the cable, and so with these numbers.
+    /// Faults of the cable, which also apply to these numbers.
     pub status: CableStatus,
 }
 
-/// Outcome of one cycle.
+/// Output of one cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CycleOutput<const CABLES: usize> {
-    /// Cables in the robot's order; entries past them are zero.
+    /// Cables in the robot's order; entries past the robot's cables are zero.
     pub cables: [CableOutput; CABLES],
-    /// Wrench `−A^T f` that acts on the platform from outside, gravity included, base axes, about the platform origin.
-    /// `None` until a pose has let every cable leave its last pulley, and for a robot with a cable whose attachment is not given.
+    /// External wrench `−A^T f` on the platform including gravity, base axes, about the platform origin. `None` until a pose has let every cable
+    /// leave its last pulley, and for a robot with a cable without attachment.
     pub outside_wrench: Option<Wrench>,
-    /// What is the matter with any of the cables that the wrenches are made of; [`CableStatus::OK`] if nothing.
+    /// Faults of any cable that contributes to the wrenches; [`CableStatus::OK`] if there are none.
     pub wrench_status: CableStatus,
-    /// The outside wrench less gravity: what a hand, a tool or acceleration applies.
+    /// External wrench without gravity: the contribution of a hand, a tool or acceleration.
     pub applied_wrench: Option<Wrench>,
 }
 

@@ -1,12 +1,11 @@
-//! Presliding after Dahl: what friction does within the first fractions of a millimetre after a reversal.
+//! Presliding after Dahl: the friction within the first fractions of a millimetre after a reversal.
 //!
-//! For: one state, the friction *force* that a contact stores, moved on by one step of displacement (\[P\] 16–17). No time
-//! in it: half the displacement twice is the whole displacement. Non-finite input gives non-finite output; the caller
-//! keeps it out. State: one number per contact.
+//! The state is the friction *force* that a contact stores; one step advances it by a displacement (\[P\] 16–17). The law does not depend on time:
+//! two half displacements equal one whole. Non-finite input gives non-finite output; the caller must exclude it. State: one number per contact.
 
 use crate::scalar::Scalar;
 
-/// Friction force after a displacement.
+/// Returns the friction force after a displacement.
 ///
 /// `f ← s·f_c + (f − s·f_c)·exp(−σ|Δl|/f_c)`, the exact solution of `df/dx = σ(1 − s·f/f_c)` over one step.
 ///
@@ -17,12 +16,11 @@ use crate::scalar::Scalar;
 /// | `σ` | `sigma_n_per_m`, presliding stiffness | N/m | > 0 |
 /// | `Δl` | `displacement_m`, positive paying out; `s` is its sign | m | |
 ///
-/// Sign convention: see [`pulley`](crate::pulley). Source: \[P\] 16 with exponent 1; the printed (17) has lost a bracket,
-/// this is the solution of (16). Deviation: the force is stored, not the ratio `f/f_c`, so that a load that changes at
-/// rest does not move the stored force.
+/// Sign convention: see [`pulley`](crate::pulley). Source: \[P\] 16 with exponent 1. The printed (17) has lost a bracket; this is the solution of
+/// (16). Deviation: the force is stored, not the ratio `f/f_c`, so that a load change at rest does not change the stored force.
 ///
-/// - At zero displacement the state stays as it is, bit for bit, also if `f_c` has changed meanwhile.
-/// - Saturates at `±f_c`; if `f_c` has dropped below `|f|`, motion brings `f` back, never a jump.
+/// - At zero displacement the state is unchanged, bit for bit, even if `f_c` has changed.
+/// - Saturates at `±f_c`. If `f_c` has dropped below `|f|`, motion brings `f` back without a jump.
 /// - `f_c = 0` (no load): any motion releases the contact, `f = 0`.
 ///
 /// ```
@@ -36,8 +34,8 @@ pub fn dahl_step<T: Scalar>(friction_n: T, sliding_n: T, sigma_n_per_m: T, displ
     dahl_step_over(friction_n, sliding_n, sigma_n_per_m, displacement_m, |way, _| way)
 }
 
-/// [`dahl_step`] for another law: `exponential_way` gives, for a way in units of `f_c/σ` and `|1 − s·f/f_c|` before it, the way over
-/// which the exponential comes as far.
+/// Does the same as [`dahl_step`] for another law. `exponential_way` converts a distance in units of `f_c/σ`, together with the preceding `|1 −
+/// s·f/f_c|`, to the distance over which the exponential law has the same effect.
 #[inline(always)]
 pub(crate) fn dahl_step_over<T: Scalar>(
     friction_n: T,
@@ -50,12 +48,12 @@ pub(crate) fn dahl_step_over<T: Scalar>(
     let softness = T::splat(SMALLEST_SLIDING_N).max(sliding_n);
     let way = sigma_n_per_m * displacement_m.abs() / softness;
     let decay = (-exponential_way(way, (friction_n - target_n).abs() / softness)).exp_negative();
-    // At rest the target is 0 and the decay 1: the state comes out as it went in, without a case of its own. Past the
-    // decay's last bit the state is the bound itself, so that |f| ≤ f_c holds exactly.
+    // At rest the target is 0 and the decay 1, so the state is unchanged without a special case. Once the decay vanishes, the state equals the bound,
+    // so that |f| ≤ f_c holds exactly.
     target_n + (friction_n - target_n) * decay.keep(T::splat(VANISHED).lt(decay))
 }
 
-/// Stands in for `f_c = 0` in the quotient; far below any friction that can be measured.
+/// Replaces `f_c = 0` in the quotient; far below any measurable friction.
 const SMALLEST_SLIDING_N: f64 = 1e-30;
-/// A decay of which nothing is left; above the smallest that [`exp_negative`](crate::scalar::exp_negative) gives.
+/// A decay below this counts as zero; it is above the smallest value of [`exp_negative`](crate::scalar::exp_negative).
 const VANISHED: f64 = 1e-300;

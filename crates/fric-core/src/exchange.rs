@@ -1,9 +1,8 @@
-//! New parameters from one thread into the cycle of another.
+//! Passes new parameters from one thread to the cycle of another.
 //!
-//! For: [`AnyCompensator`] in a control loop, and whoever identifies, tunes or reads files beside it. Both ends are
-//! wait-free (two rings of the `rtrb` crate): the loop looks at a pointer, copies, and gives the pointer back, so that it
-//! neither allocates nor frees. One change at a time: its parameters leave their ring of one place when it is over, and
-//! until then nothing else can be sent. Needs the feature `alloc`.
+//! It connects an [`AnyCompensator`] in a control loop with a thread that identifies, tunes or reads files. Both ends are wait-free (two rings of the
+//! `rtrb` crate): the loop reads a pointer, copies, and returns the pointer, so that it neither allocates nor frees. There is one change at a time:
+//! its parameters stay in their ring, which has one slot, until it is over, and until then nothing else can be sent. Needs the feature `alloc`.
 
 use alloc::boxed::Box;
 use core::fmt;
@@ -13,41 +12,41 @@ use rtrb::{Consumer, Producer, RingBuffer};
 use crate::any::AnyCompensator;
 use crate::robot::{ParamError, ParamProblem, RobotParams};
 
-/// The longest blend, s.
+/// Maximum duration of a blend, s.
 const LONGEST_BLEND_S: f64 = 3600.0;
 
-/// Parameters on their way.
+/// Parameters in transit.
 #[derive(Debug)]
 struct Parcel {
     next: AnyCompensator,
     blend_cycles: u32,
 }
 
-/// The end outside of the loop.
+/// The end outside the loop.
 #[derive(Debug)]
 pub struct ParameterSender {
-    /// Has the cables and pulleys of the robot that runs.
+    /// A compensator with the cables and pulleys of the running robot, to compare with.
     pattern: AnyCompensator,
     outward: Producer<Box<Parcel>>,
     back: Consumer<Box<Parcel>>,
 }
 
-/// The end inside of the loop.
+/// The end inside the loop.
 #[derive(Debug)]
 pub struct ParameterReceiver {
     inward: Consumer<Box<Parcel>>,
-    /// The change to the parameters in `inward` has begun.
+    /// Whether the change to the parameters in `inward` has begun.
     has_begun: bool,
     back: Producer<Box<Parcel>>,
 }
 
-/// Why parameters were not sent.
+/// The reason why parameters were not sent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum SendError {
-    /// The change to those sent before is not over; try again some cycles later.
+    /// The previous change is not over; try again some cycles later.
     Busy,
-    /// They are not for the robot that runs, or the blend is no time.
+    /// The parameters do not fit the running robot, or the blend time is invalid.
     Param(ParamError),
 }
 
@@ -64,27 +63,27 @@ impl fmt::Display for SendError {
 
 impl core::error::Error for SendError {}
 
-/// Both ends for a compensator of `robot`, the robot that runs. Allocates.
+/// Creates both ends for a compensator of `robot`, the running robot. Allocates.
 ///
 /// # Errors
-/// As [`AnyCompensator::new`].
+/// Returns the errors of [`AnyCompensator::new`].
 pub fn parameter_exchange(robot: &RobotParams<'_>) -> Result<(ParameterSender, ParameterReceiver), ParamError> {
     let pattern = AnyCompensator::new(robot)?;
     let (outward, inward) = RingBuffer::new(1);
-    // Between two looks of the sender at what has come back, the parcel sent before may come and the one sent last.
+    // Between two reads of the return ring, both the previous parcel and the last one may arrive.
     let (back_in, back) = RingBuffer::new(2);
     let receiver = ParameterReceiver { inward, has_begun: false, back: back_in };
     Ok((ParameterSender { pattern, outward, back }, receiver))
 }
 
 impl ParameterSender {
-    /// Sends the parameters of `robot` into the loop, whose output goes over to them within `blend_s` seconds (0…3600, one
-    /// cycle at least). The change begins with the next [`deliver_to`](ParameterReceiver::deliver_to); it is over, and others
-    /// can be sent, with the first one after its blend. Allocates, and frees what has come back; never waits. Names of cables are
-    /// not known here: that these are the same cables in the same order is the caller's to see to.
+    /// Sends the parameters of `robot` to the loop, whose output blends over to them within `blend_s` seconds (0…3600, at least one cycle). The
+    /// change begins with the next [`deliver_to`](ParameterReceiver::deliver_to). It is over, and others can be sent, with the first call of that
+    /// function after the blend. Allocates, and frees returned parameters; never waits. Names of cables are not checked: the caller must ensure that
+    /// these are the same cables in the same order.
     ///
     /// # Errors
-    /// [`SendError`]; nothing has been sent then.
+    /// Returns a [`SendError`]; nothing has been sent then.
     pub fn send(&mut self, robot: &RobotParams<'_>, blend_s: f64) -> Result<(), SendError> {
         while self.back.pop().is_ok() {}
         if !(0.0..=LONGEST_BLEND_S).contains(&blend_s) {
@@ -104,12 +103,12 @@ impl ParameterSender {
 }
 
 impl ParameterReceiver {
-    /// To be called before each cycle: ends the change whose blend is over, and begins the one to parameters that have come.
-    /// Wait-free; neither allocates nor frees.
+    /// Call this before each cycle. It ends the change whose blend is over, and begins the one to parameters that have arrived. Wait-free; neither
+    /// allocates nor frees.
     ///
     /// # Errors
-    /// [`ParamError`] if the parameters do not fit, as with a `compensator` of another robot than [`parameter_exchange`] was
-    /// given; nothing is changed then, and the sender is told nothing.
+    /// Returns a [`ParamError`] if the parameters do not fit, as with a `compensator` of another robot than [`parameter_exchange`] was given. Nothing
+    /// is changed then, and the sender is not notified.
     pub fn deliver_to(&mut self, compensator: &mut AnyCompensator) -> Result<(), ParamError> {
         if compensator.is_changing() {
             return Ok(());
@@ -126,7 +125,7 @@ impl ParameterReceiver {
         self.has_begun = false;
         let Ok(parcel) = self.inward.pop() else { return };
         if let Err(rtrb::PushError::Full(parcel)) = self.back.push(parcel) {
-            // There was room; were there none, losing memory would do less harm here than freeing it.
+            // There is always room. If there were none, leaking memory would be less harmful here than freeing it.
             core::mem::forget(parcel);
         }
     }

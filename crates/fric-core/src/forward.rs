@@ -1,11 +1,12 @@
 //! Forward kinematics: the pose of the platform from the lengths of its cables.
 //!
-//! For: logs without a measured pose, sample by sample, outside the control cycle. [`pose_near`] starts from a pose that is nearly known, [`pose_anywhere`]
-//! from nothing, [`PoseFollower`] does what fits over the samples of a log; its state is a pose and two counts. No allocation. Non-finite lengths count as not given; nothing that is not finite comes out.
+//! It serves logs without a measured pose, sample by sample, outside the control cycle. [`pose_near`] starts from an approximately known pose,
+//! [`pose_anywhere`] needs no start, and [`PoseFollower`] chooses between them over the samples of a log; its state is a pose and two counts. No
+//! allocation. Non-finite lengths count as not given; the output is always finite.
 //!
-//! The pose is the one that leaves least of `Σ r_i²`, `r_i = l_i(pose) − l_i` (m), where `l_i(pose)` is the length of cable i from `base_m`, where it enters
-//! its last pulley, to its attachment, what lies on the swivelling pulley included ([`CableParams::length_m`]), and `l_i` the given one. The given lengths have to be these,
-//! not ones from a zero of the winch's own; a constant that is off by δ moves the pose by as much.
+//! The pose minimises `Σ r_i²`, `r_i = l_i(pose) − l_i` (m). `l_i(pose)` is the length of cable i from `base_m`, where it enters its last pulley, to
+//! its attachment, including the part on the swivelling pulley ([`CableParams::length_m`]); `l_i` is the given length. The given lengths must be
+//! absolute in this sense, not relative to an arbitrary zero of the winch; a constant error δ moves the pose by as much.
 //!
 //! | symbol | identifier | unit | range |
 //! |---|---|---|---|
@@ -13,9 +14,10 @@
 //! | `r` | `residual_rms_m`, over the cables used | m | 0…5 % of the lengths |
 //! | `∂l_i/∂pose` | −column i of the structure matrix, `−[u_i; (R b_i) × u_i]` (\[P\] 2) | | |
 //!
-//! The search is Levenberg's and Marquardt's, near its end Newton's with the second derivatives of a cable from a fixed point
-//! (`E^T (1 − u u^T) E/free + (u·R b) 1 − sym(u (R b)^T)` with `E = [1, −[R b]×]`), so that it also ends where lengths that are off leave much; on six numbers, a shift and a turn in base axes; the turn goes onto the quaternion from the left. Turns count in metres of the mean
-//! lever arm, so that both have one scale. With six cables a length that is wrong makes a wrong pose and no residual; each further cable checks the others.
+//! The search is Levenberg–Marquardt. Near its end it is Newton's method with the second derivatives of a cable from a fixed point (`E^T (1 − u u^T)
+//! E/free + (u·R b) 1 − sym(u (R b)^T)` with `E = [1, −[R b]×]`), so that it also converges if wrong lengths leave a large residual. The unknowns are
+//! a translation and a rotation in base axes; the rotation multiplies the quaternion from the left. Rotations count in metres of the mean lever arm,
+//! so that both have one scale. With six cables a wrong length gives a wrong pose without a residual; each further cable checks the others.
 
 use nalgebra::{Matrix3, Matrix6, Quaternion, UnitQuaternion, Vector3, Vector6};
 
@@ -24,28 +26,29 @@ use crate::platform::{Pose, attachment};
 use crate::robot::{CableParams, RobotParams};
 use crate::swivel;
 
-/// Fewest cables with a geometry and a length: a pose is six numbers.
+/// Minimum number of cables with a geometry and a length, because a pose has six unknowns.
 pub const FEWEST_CABLES: usize = 6;
 
-/// A residual beyond this share of the lengths (both rms) is no pose: robot file and lengths do not belong together. At half, lengths off by 10 % on one of eight cables
-/// are refused; at double, any lengths have a pose.
+/// Maximum residual relative to the lengths (both rms) for a valid pose; beyond it robot file and lengths are inconsistent. At half this value,
+/// lengths that are 10 % wrong on one of eight cables are refused; at double, any lengths have a pose.
 const GREATEST_RESIDUAL_RATIO: f64 = 0.05;
-/// A start from nothing is as good as any from here on: far above what noise leaves, far below what another pose does.
+/// A pose found without a start is accepted below this residual, which is far above the effect of noise and far below that of another pose.
 const AGREEING_RATIO: f64 = 1e-3;
-/// A step below this has arrived, m. Steps shrink by a factor of 100 and more each, so the pose is nearer than that.
+/// Step size at which the search has converged, m. Each step shrinks by a factor of 100 or more, so the pose is more accurate than that.
 const ARRIVED_M: f64 = 1e-9;
 const MOST_STEPS: usize = 40;
-/// Least pivot of the normal matrix beside the greatest. Below, noise of the lengths comes back a thousand times as large in some direction of the pose.
+/// Least pivot of the normal matrix relative to the greatest. Below it, noise of the lengths is amplified a thousand times in some direction of the
+/// pose.
 const LEAST_PIVOT_RATIO: f64 = 1e-6;
-/// Damping, as a share of the mean diagonal: where it starts from nothing, and beyond what no step is found.
+/// Damping relative to the mean diagonal: its start value without a start pose, and the value beyond which no step is found.
 const FIRST_DAMPING: f64 = 1e-3;
 const LEAST_DAMPING: f64 = 1e-9;
 const GREATEST_DAMPING: f64 = 1e9;
-/// Squares that are alike but for rounding.
+/// Relative difference of squares that is only rounding.
 const ROUNDING: f64 = 1e-12;
-/// A turn in one step, rad: about half a right angle.
+/// Greatest rotation in one step, rad: about half a right angle.
 const GREATEST_TURN_RAD: f64 = 0.8;
-/// Longer cables are none.
+/// Maximum valid cable length.
 const GREATEST_LENGTH_M: f64 = 1e4;
 
 /// A pose from lengths.
@@ -53,46 +56,46 @@ const GREATEST_LENGTH_M: f64 = 1e4;
 pub struct LengthPose {
     /// The pose.
     pub pose: Pose,
-    /// Root mean square of what the lengths of the cables used are off at that pose, m. Rounding with six cables.
+    /// Root mean square error of the used cables' lengths at that pose, m. Only rounding with six cables.
     pub residual_rms_m: f64,
     /// Root mean square of their lengths, m.
     pub length_rms_m: f64,
-    /// Cables used: those with a geometry and a finite length.
+    /// Number of used cables: those with a geometry and a finite length.
     pub cable_count: usize,
 }
 
 impl LengthPose {
-    /// Whether the lengths agree with the pose as far as measured ones do: to 0.1 %.
+    /// Whether the lengths agree with the pose as well as measured ones do: to 0.1 %.
     #[must_use]
     pub fn agrees(&self) -> bool {
         self.residual_rms_m <= AGREEING_RATIO * self.length_rms_m
     }
 }
 
-/// Why lengths give no pose.
+/// The reason why lengths give no pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum NoPose {
     /// Fewer than [`FEWEST_CABLES`] cables have a geometry and a length.
     TooFew {
-        /// How many have.
+        /// Number of such cables.
         cable_count: usize,
     },
-    /// The search came to no end.
+    /// The search did not converge.
     NotConverged,
-    /// The lengths leave a direction of the pose open, as where all cables meet in one point of the platform.
+    /// The lengths do not determine a direction of the pose, for instance if all cables meet in one point of the platform.
     Undetermined,
     /// No pose has lengths near these.
     Apart {
-        /// What is left at the best one, rms, m.
+        /// Residual at the best pose, rms, m.
         residual_rms_m: f64,
     },
 }
 
-/// The pose of these lengths that is found from `near`, as a platform cannot have got far since the last sample.
+/// Returns the pose of these lengths, starting from `near`, because a platform cannot have moved far since the last sample.
 ///
 /// # Errors
-/// [`NoPose`] says why there is none.
+/// Returns a [`NoPose`] with the reason if there is none.
 ///
 /// ```
 /// use fric_core::forward::pose_near;
@@ -120,37 +123,40 @@ pub fn pose_near(robot: &RobotParams<'_>, inputs: &[CableInput], near: &Pose) ->
     Search::new(robot, inputs)?.run(near, LEAST_DAMPING)
 }
 
-/// The pose of these lengths, from nothing: the first of several starts whose residual is below 0.1 % of the lengths, else the one that leaves least.
+/// Returns the pose of these lengths without a start: the first of several starts whose residual is below 0.1 % of the lengths, else the one with the
+/// smallest residual.
 ///
-/// Starts are below the middle of the pulleys (along gravity) by 0.3 of the mean length, in it, and above it; upright first, then turned by 40° about the axes. Lengths have several poses, as
-/// beside the platform that hangs below its pulleys the one above them: the one found is that of the first start.
+/// Starts are below the middle of the pulleys (along gravity) by 0.3 of the mean length, in the middle, and above it; upright first, then rotated by
+/// 40° about the axes. Lengths have several poses, for instance the mirrored one above the pulleys for a platform that hangs below them. The pose of
+/// the first successful start is returned.
 ///
 /// # Errors
-/// [`NoPose`] says why there is none.
+/// Returns a [`NoPose`] with the reason if there is none.
 pub fn pose_anywhere(robot: &RobotParams<'_>, inputs: &[CableInput]) -> Result<LengthPose, NoPose> {
     Search::new(robot, inputs)?.anywhere()
 }
 
-/// Poses of samples that follow one another.
+/// Finds the poses of consecutive samples.
 ///
-/// Each starts from the last pose that was found. Where that leads to none, or to one whose residual is beyond 0.1 % of the lengths (another pose of the same lengths, after a pause), the
-/// sample is looked at from nothing. Looking from nothing takes a hundred times as long: where it does not help either, it is tried again after one sample, then after 3, 7, …, 255.
+/// Each search starts from the last pose that was found. If that leads to none, or to one with a residual beyond 0.1 % of the lengths (another pose
+/// of the same lengths, after a pause), the sample is searched without a start. This takes a hundred times as long; if it does not help either, it is
+/// tried again after one sample, then after 3, 7, …, 255.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PoseFollower {
     last: Option<Pose>,
-    /// Times in a row that nothing was gained from nothing.
+    /// Number of consecutive searches without a start that did not help.
     failure_count: u32,
-    /// Samples until it is tried again.
+    /// Samples until the next such search.
     pause: u32,
 }
 
 impl PoseFollower {
     const MOST_FAILURES: u32 = 8;
 
-    /// The pose of the next sample.
+    /// Returns the pose of the next sample.
     ///
     /// # Errors
-    /// [`NoPose`] says why there is none; the sample after starts where the last pose was.
+    /// Returns a [`NoPose`] with the reason if there is none; the next search starts at the last pose.
     pub fn next_pose(&mut self, robot: &RobotParams<'_>, inputs: &[CableInput]) -> Result<LengthPose, NoPose> {
         let search = Search::new(robot, inputs)?;
         let followed = match &self.last {
@@ -190,18 +196,18 @@ struct Search<'a> {
     robot: &'a RobotParams<'a>,
     inputs: &'a [CableInput],
     cable_count: usize,
-    /// Sums over the cables used: root mean square of lengths and lever arms.
+    /// Root mean square of the used cables' lengths, and of their lever arms.
     rms_length_m: f64,
     arm_m: f64,
 }
 
-/// The squares at a pose, with half of their first and second derivative, turns in lever arms.
+/// The sum of squares at a pose, with half of its first and second derivatives; rotations are scaled by lever arms.
 struct Squares {
     sum_m2: f64,
     gradient: Vector6<f64>,
-    /// By the first derivatives of the lengths alone.
+    /// Second derivatives from the first derivatives of the lengths alone.
     normal: Matrix6<f64>,
-    /// What their second derivatives make of what is left.
+    /// Contribution of the second derivatives of the lengths times the residuals.
     curvature: Matrix6<f64>,
 }
 
@@ -225,7 +231,7 @@ impl<'a> Search<'a> {
         Ok(search)
     }
 
-    /// Cables with their lengths.
+    /// Returns the used cables with their lengths.
     fn used(&self) -> impl Iterator<Item = (&'a CableParams, f64)> + use<'a> {
         let is_length = |length_m: &f64| length_m.abs() <= GREATEST_LENGTH_M;
         let cables = self.robot.cables.iter().zip(self.inputs);
@@ -240,7 +246,7 @@ impl<'a> Search<'a> {
         self.cable_count as f64
     }
 
-    /// Where a search from nothing starts.
+    /// Returns the start poses of a search.
     fn starts(&self) -> impl Iterator<Item = Pose> + use<'a> {
         const HEIGHTS: [f64; 3] = [0.3, 0.0, -0.3];
         /// Sine and cosine of half of 40°.
@@ -276,7 +282,7 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// The best of all starts; of several that agree with the lengths, the first.
+    /// Returns the best result of all starts; of several that agree with the lengths, the first.
     fn anywhere(&self) -> Result<LengthPose, NoPose> {
         let mut best: Result<LengthPose, NoPose> = Err(NoPose::NotConverged);
         for start in self.starts() {
@@ -300,7 +306,7 @@ impl<'a> Search<'a> {
         let (mut pose, mut damping) = (*start, first_damping);
         let mut squares = self.squares(&pose).ok_or(NoPose::NotConverged)?;
         for _ in 0..MOST_STEPS {
-            // From far away only the first derivatives point downhill.
+            // Far from the solution only the first derivatives point downhill.
             let is_near = squares.sum_m2 <= self.greatest_sum_m2();
             let mut damped = if is_near { squares.normal + squares.curvature } else { squares.normal };
             let lift = damping * squares.normal.trace() / 6.0;
@@ -314,7 +320,7 @@ impl<'a> Search<'a> {
             // Damping makes small steps far from the end.
             let has_arrived = damping <= FIRST_DAMPING && step.is_some_and(|step| step.norm() <= ARRIVED_M);
             let Some((next, of_next)) = better else {
-                // A step that is all rounding may lead uphill.
+                // A step that consists of rounding may increase the squares.
                 if has_arrived {
                     return self.judged(&pose, &squares);
                 }
@@ -333,16 +339,16 @@ impl<'a> Search<'a> {
         Err(NoPose::NotConverged)
     }
 
-    /// The most that a pose may leave, m².
+    /// Returns the greatest sum of squares for a valid pose, m².
     fn greatest_sum_m2(&self) -> f64 {
         let greatest_m = GREATEST_RESIDUAL_RATIO * self.rms_length_m;
         self.count() * greatest_m * greatest_m
     }
 
-    /// The end of a search, if it is a pose.
+    /// Returns the end of a search, if it is a valid pose.
     fn judged(&self, pose: &Pose, squares: &Squares) -> Result<LengthPose, NoPose> {
         let residual_rms_m = libm::sqrt(squares.sum_m2 / self.count());
-        // Not so of NaN either.
+        // NaN does not agree either.
         let agrees = squares.sum_m2 <= self.greatest_sum_m2();
         if !agrees || !pose.is_usable() {
             return Err(NoPose::Apart { residual_rms_m });
@@ -355,7 +361,7 @@ impl<'a> Search<'a> {
         Ok(LengthPose { pose: *pose, residual_rms_m, length_rms_m: self.rms_length_m, cable_count: self.cable_count })
     }
 
-    /// A pose a step further; `None` where that is no pose.
+    /// Returns a pose after a step; `None` if it is not a valid pose.
     fn moved(&self, pose: &Pose, step: &Vector6<f64>) -> Option<Pose> {
         let turn = step.fixed_rows::<3>(3) / self.arm_m;
         let size = turn.norm();
@@ -367,7 +373,7 @@ impl<'a> Search<'a> {
         moved.is_usable().then_some(moved)
     }
 
-    /// The squares at a pose; `None` where a cable cannot leave its last pulley.
+    /// Returns the squares at a pose; `None` if a cable cannot leave its last pulley.
     fn squares(&self, pose: &Pose) -> Option<Squares> {
         let rotation = pose.orientation.to_rotation_matrix().into_inner();
         let (normal, curvature) = (Matrix6::zeros(), Matrix6::zeros());
@@ -393,7 +399,7 @@ impl<'a> Search<'a> {
         squares.sum_m2.is_finite().then_some(squares)
     }
 
-    /// Second derivatives of a cable's length; `arm` is its lever arm by [`arm_m`](Self::arm_m).
+    /// Returns the second derivatives of a cable's length; `arm` is its lever arm divided by [`arm_m`](Self::arm_m).
     fn curvature(&self, direction: &Vector3<f64>, arm: &Vector3<f64>, free_length_m: f64) -> Matrix6<f64> {
         let across = (Matrix3::identity() - direction * direction.transpose()) / free_length_m;
         let turn = -arm.cross_matrix();

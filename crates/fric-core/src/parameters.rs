@@ -1,7 +1,7 @@
-//! Every number of a cable's friction in one list: what an identification may vary.
+//! The list of all parameters of a cable's friction, which an identification may vary.
 //!
-//! First the four of the robot file's `friction`, then those of each effect in the order of the catalogue. The order is
-//! that of [`Values`]; a [`ParameterRow`] says what each is.
+//! The four parameters of the robot file's `friction` come first, then those of each effect in the order of the catalogue. The order is that of
+//! [`Values`]; a [`ParameterRow`] describes each.
 
 use crate::effects::{self, EFFECT_PARAMETER_COUNT, Effect};
 use crate::robot::{CableParams, FrictionOptions, ParamError};
@@ -10,25 +10,25 @@ use crate::robot::{CableParams, FrictionOptions, ParamError};
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct ParameterRow {
-    /// Its key in robot files, with the unit in it.
+    /// Its key in robot files, including the unit.
     pub key: &'static str,
     /// Its unit.
     pub unit: &'static str,
-    /// The value without effect; also what a file that leaves it out means.
+    /// The value without effect, which is also the default in a file.
     pub neutral: f64,
     /// Least value.
     pub min: f64,
     /// Greatest value.
     pub max: f64,
-    /// Whether an identification varies it unless told otherwise; if not it is a setting, or has to be found by other means.
+    /// Whether an identification varies it by default; if not, it is a setting or must be found by other means.
     pub fitted: bool,
-    /// What a log has to hold for it to be identified.
+    /// What a log must contain to identify it.
     pub excitation: &'static str,
 }
 
-/// Stands for "no presliding": motion of a picometre reverses any friction.
+/// Represents "no presliding": motion of a picometre reverses any friction.
 pub const NO_PRESLIDING_N_PER_M: f64 = 1e15;
-/// `2 − μk` of \[P\] 10 stays well above zero for every wrap.
+/// Greatest μ; `2 − μk` of \[P\] 10 stays well above zero for every wrap.
 pub(crate) const GREATEST_MU: f64 = 0.9;
 
 /// Parameters of the robot file's `friction`, the vector p of \[P\] 18.
@@ -70,31 +70,31 @@ pub const FRICTION: [ParameterRow; FRICTION_COUNT] = [
         excitation: "a long run with a force sensor at the platform, or with poses throughout the workspace",
     },
 ];
-/// How many there are.
+/// Number of parameters of the robot file's `friction`.
 pub const FRICTION_COUNT: usize = 4;
-/// Place of μ.
+/// Index of μ.
 pub const MU: usize = 0;
-/// Place of σ of the whole cable.
+/// Index of σ of the whole cable.
 pub const SIGMA: usize = 1;
-/// Place of F_pv.
+/// Index of F_pv.
 pub const VISCOUS: usize = 2;
-/// Place of ε.
+/// Index of ε.
 pub const OFFSET: usize = 3;
 
-/// Parameters of a cable in all.
+/// Number of parameters of a cable.
 pub const PARAMETER_COUNT: usize = FRICTION_COUNT + EFFECT_PARAMETER_COUNT;
 
-/// A value for each parameter of a cable; `T` is a number, or one that carries derivatives along.
+/// A value for each parameter of a cable; `T` is a plain number or one that carries derivatives.
 pub type Values<T = f64> = [T; PARAMETER_COUNT];
 
-/// Each parameter in the order of [`Values`], with its effect; `None` for those of `friction`.
+/// Returns each parameter in the order of [`Values`], with its effect; `None` for those of `friction`.
 pub fn parameters() -> impl Iterator<Item = (Option<Effect>, &'static ParameterRow)> {
     let of_effects = effects::parameters().map(|(effect, parameter)| (Some(effect), parameter));
     FRICTION.iter().map(|parameter| (None, parameter)).chain(of_effects)
 }
 
 impl CableParams {
-    /// The values of all parameters.
+    /// Returns the values of all parameters.
     #[must_use]
     pub fn values(&self) -> Values {
         let FrictionOptions { mu, sigma_n_per_m, viscous_n_s_per_m, offset_n } = self.friction;
@@ -103,11 +103,11 @@ impl CableParams {
         core::array::from_fn(|_| all.next().unwrap_or(0.0))
     }
 
-    /// The same cable with other values.
+    /// Returns the same cable with other values.
     ///
     /// # Errors
-    /// [`ParamError`] names the first that is out of range or at odds with the rest of the cable. A σ of
-    /// [`NO_PRESLIDING_N_PER_M`] is none.
+    /// Returns a [`ParamError`] with the first value that is out of range or inconsistent with the rest of the cable. A σ of
+    /// [`NO_PRESLIDING_N_PER_M`] means no presliding.
     pub fn with_values(&self, values: &Values) -> Result<Self, ParamError> {
         let &[mu, sigma_n_per_m, viscous_n_s_per_m, offset_n, ref effects @ ..] = values;
         let sigma_n_per_m = (sigma_n_per_m < NO_PRESLIDING_N_PER_M).then_some(sigma_n_per_m);

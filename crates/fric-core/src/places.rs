@@ -1,42 +1,42 @@
-//! Where the pulleys of a cable stand in the order of the cycle.
+//! The positions of a cable's pulleys in the order of the cycle.
 
 use crate::pulley::{traction_ratio, wrap_factor};
 use crate::robot::{CableParams, MAX_PULLEYS, Wrap};
 
-/// Places of pulleys: a sensor in line with the cable takes one of its own.
+/// Number of pulley positions: a sensor in line with the cable takes one of its own.
 pub const PLACES: usize = MAX_PULLEYS + 1;
-/// Far beyond every tension ratio, and its inverse still a normal number.
+/// Beyond every tension ratio, with an inverse that is still a normal number.
 pub const NO_SLIP: f64 = 1e200;
-/// Of a wrap that follows the pose, before the first pose: 90°.
+/// Wrap factor of a pulley that follows the pose, before the first pose: 90°.
 pub const START_WRAP_FACTOR: f64 = core::f64::consts::SQRT_2;
 
-/// The pulleys of one cable, place by place.
+/// The pulleys of one cable, position by position.
 ///
-/// They stand from the first place on, but one that follows the pose at the last: there it is for all cables of a robot,
-/// and places without a pulley lie before it.
+/// Pulleys occupy the positions from the first on, except that a pulley that follows the pose is at the last position, which is the same for all
+/// cables of a robot. Positions without a pulley lie before it.
 #[derive(Clone, Copy, Debug)]
 pub struct Places {
-    /// 1 where a pulley stands, else 0.
+    /// 1 where there is a pulley, else 0.
     pub has_pulley: [f64; PLACES],
-    /// Number of the pulley, counted from 1 at the sensor; 0 where none stands.
+    /// Number of the pulley, counted from 1 at the sensor; 0 where there is none.
     pub number: [f64; PLACES],
-    /// `j/n` at pulley j of n, from the winch: how much of the cable's stretch lies before it.
+    /// `j/n` at pulley j of n, from the winch: the fraction of the cable's stretch before it.
     pub stretch_ratio: [f64; PLACES],
     /// `2 sin(α/2)` of fixed wraps.
     pub wrap_factor: [f64; PLACES],
     /// `e^{μ_p α}` of fixed wraps; [`NO_SLIP`] without a slip limit.
     pub traction_ratio: [f64; PLACES],
-    /// Where each pulley stands; [`PLACES`] for those that the cable does not have.
+    /// Position of each pulley; [`PLACES`] for those that the cable does not have.
     pub of_pulley: [usize; MAX_PULLEYS],
 }
 
 impl Places {
-    /// How many places a cable needs.
+    /// Returns the number of positions that a cable needs.
     pub fn needed(params: &CableParams) -> usize {
         params.pulley_count + usize::from(params.sensor_wrap_rad.is_none())
     }
 
-    /// The places of a cable, `place_count` of them at least [`needed`](Self::needed).
+    /// Returns the positions of a cable; `place_count` must be at least [`needed`](Self::needed).
     pub fn new(params: &CableParams, place_count: usize) -> Self {
         let mut places = Self {
             has_pulley: [0.0; PLACES],

@@ -1,8 +1,8 @@
 //! The platform: pose, wrench, structure matrix, inverse kinematics.
 //!
-//! For: types that the cycle takes and gives, and the kinematics of a whole robot outside the cycle. The cycle itself
-//! computes the columns of `A^T` four at a time ([`Compensator`](crate::Compensator)); [`structure_matrix`] is the same
-//! from the validated parameters, with `nalgebra`.
+//! It contains the types of the cycle's input and output, and the kinematics of a whole robot outside the cycle. The cycle itself computes the
+//! columns of `A^T` four at a time ([`Compensator`](crate::Compensator)); [`structure_matrix`] computes the same from the validated parameters, with
+//! `nalgebra`.
 
 use nalgebra::{Matrix3, Quaternion, SMatrix, SVector, UnitQuaternion, Vector3};
 
@@ -10,9 +10,9 @@ use crate::robot::{CableParams, Geometry, RobotParams};
 use crate::scalar::Scalar;
 use crate::swivel::{self, Swivel};
 
-/// A normalised quaternion's norm is no further from 1: four rounded squares and a root, four rounded quotients.
+/// Greatest deviation of a normalised quaternion's norm from 1: four rounded squares and a root, four rounded quotients.
 const NORM_ROUNDING: f64 = 4.0 * f64::EPSILON;
-/// No part of a quaternion of norm 1.1 or less is beyond this.
+/// Greatest magnitude of a component of a quaternion with a norm of at most 1.1.
 const GREATEST_PART: f64 = 1.2;
 
 /// Pose of the platform in the base frame.
@@ -25,20 +25,20 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// The platform frame on the base frame.
+    /// Returns the pose in which platform frame and base frame coincide.
     #[must_use]
     pub fn identity() -> Self {
         Self { position_m: Vector3::zeros(), orientation: UnitQuaternion::identity() }
     }
 
-    /// A pose from position (m) and quaternion `x, y, z, w`; the quaternion is normalised. One that has norm 1 but for
-    /// rounding is taken as it is, so that the parts of a pose give that pose again, to the bit.
+    /// Creates a pose from position (m) and quaternion `x, y, z, w`; the quaternion is normalised. A quaternion whose norm is 1 up to rounding is
+    /// taken unchanged, so that the parts of a pose give that pose again, to the bit.
     ///
-    /// `None` where a number is not finite or the quaternion's norm is further than 10 % from 1: an all-zero
-    /// quaternion, as an unset message has it, is no rotation.
+    /// Returns `None` if a number is not finite or the quaternion's norm differs from 1 by more than 10 %: an all-zero quaternion, as in an unset
+    /// message, is no rotation.
     #[must_use]
     pub fn from_parts(position_m: [f64; 3], [x, y, z, w]: [f64; 4]) -> Option<Self> {
-        // Before anything is squared or divided by: a square may overflow, the norm may be 0.
+        // This check precedes squares and divisions: a square may overflow, the norm may be 0.
         if ![x, y, z, w].into_iter().all(|part| part.abs() <= GREATEST_PART) {
             return None;
         }
@@ -53,8 +53,8 @@ impl Pose {
         pose.is_usable().then_some(pose)
     }
 
-    /// The pose a share `ratio` (0…1) of the way to `other`: position linear, orientation along the shorter arc
-    /// (normalised linear, which is exact to second order in the angle between the two).
+    /// Interpolates a fraction `ratio` (0…1) of the way to `other`: position linear, orientation along the shorter arc (normalised linear, which is
+    /// exact to second order in the angle between the two).
     #[must_use]
     pub fn interpolate(&self, other: &Self, ratio: f64) -> Self {
         Self {
@@ -70,7 +70,7 @@ impl Pose {
         }
     }
 
-    /// Whether the cycle takes the pose: position finite and within ±10⁶ m, orientation of a norm within 10 % of 1.
+    /// Whether the cycle accepts the pose: position finite and within ±10⁶ m, orientation with a norm within 10 % of 1.
     #[inline]
     #[must_use]
     pub fn is_usable(&self) -> bool {
@@ -89,14 +89,14 @@ pub struct Wrench {
 }
 
 impl Wrench {
-    /// The wrench that gravity exerts on the platform: `m·g` at the centre of mass.
+    /// Returns the wrench of gravity on the platform: `m·g` at the centre of mass.
     #[must_use]
     pub fn of_gravity(robot: &RobotParams<'_>, orientation: &UnitQuaternion<f64>) -> Self {
         let force_n = robot.gravity_m_per_s2 * robot.mass_kg;
         Self { force_n, torque_nm: (orientation * robot.center_of_mass_m).cross(&force_n) }
     }
 
-    /// As one vector, force first.
+    /// Returns the wrench as one vector, force first.
     #[must_use]
     pub fn to_vector(&self) -> SVector<f64, 6> {
         let (force, torque) = (&self.force_n, &self.torque_nm);
@@ -112,16 +112,16 @@ impl core::ops::Sub for Wrench {
 }
 
 impl CableParams {
-    /// Cable length from the entry into the last pulley to the platform, m: `r·β + free` (\[P\] 1 with the pulley).
+    /// Returns the cable length from the entry into the last pulley to the platform, m: `r·β + free` (\[P\] 1 with the pulley).
     ///
-    /// `None` without geometry, or where the attachment lies inside the last pulley.
+    /// Returns `None` without geometry, or if the attachment lies inside the last pulley.
     #[must_use]
     pub fn length_m(&self, pose: &Pose) -> Option<f64> {
         let geometry = self.geometry.as_ref()?;
         swivel::cable_length_m(&geometry.swivel(), &geometry.attachment_m(pose))
     }
 
-    /// Unit vector from the attachment to where the cable leaves its last pulley, base axes; `None` as for
+    /// Returns the unit vector from the attachment to the point where the cable leaves its last pulley, base axes; `None` as for
     /// [`length_m`](Self::length_m).
     #[must_use]
     pub fn direction(&self, pose: &Pose) -> Option<Vector3<f64>> {
@@ -130,8 +130,8 @@ impl CableParams {
         exit.reachable.then(|| exit.direction.into())
     }
 
-    /// The cable's column of the structure matrix `A^T`, `[u; (R b) × u]` (\[P\] 2): the wrench on the platform by 1 N of
-    /// tension, force first, torque about the platform origin; `None` as for [`length_m`](Self::length_m).
+    /// Returns the cable's column of the structure matrix `A^T`, `[u; (R b) × u]` (\[P\] 2): the wrench on the platform per newton of tension, force
+    /// first, torque about the platform origin; `None` as for [`length_m`](Self::length_m).
     #[must_use]
     pub fn structure_column(&self, pose: &Pose) -> Option<SVector<f64, 6>> {
         let direction = self.direction(pose)?;
@@ -139,8 +139,8 @@ impl CableParams {
         Some(Wrench { force_n: direction, torque_nm: arm_m.cross(&direction) }.to_vector())
     }
 
-    /// Wrap angle of the swivelling last pulley, rad, 0…2π; `None` as for [`length_m`](Self::length_m) and where the
-    /// last pulley does not swivel.
+    /// Returns the wrap angle of the swivelling last pulley, rad, 0…2π; `None` as for [`length_m`](Self::length_m), or if the last pulley does not
+    /// swivel.
     #[must_use]
     pub fn pose_wrap_rad(&self, pose: &Pose) -> Option<f64> {
         let geometry = self.geometry.as_ref().filter(|_| self.needs_pose())?;
@@ -160,8 +160,7 @@ impl Geometry {
     }
 }
 
-/// Attachment point in the base frame, m, and its distance from the platform origin in base axes (`R·b`), m; `rotation`
-/// is the pose's.
+/// Returns the attachment point in the base frame, m, and its offset from the platform origin in base axes (`R·b`), m; `rotation` is the pose's.
 #[inline(always)]
 pub(crate) fn attachment<T: Scalar>(pose: &Pose, rotation: &Matrix3<f64>, platform_m: [T; 3]) -> ([T; 3], [T; 3]) {
     let [px, py, pz] = platform_m;
@@ -175,11 +174,11 @@ pub(crate) fn attachment<T: Scalar>(pose: &Pose, rotation: &Matrix3<f64>, platfo
     ([x + ax, y + ay, z + az], arm_m)
 }
 
-/// Structure matrix `A^T = [u_i; (R b_i) × u_i]` (\[P\] 2): the wrench of the cables on the platform is `A^T f`, the one
-/// from outside that balances it `−A^T f` (\[P\] 3).
+/// Returns the structure matrix `A^T = [u_i; (R b_i) × u_i]` (\[P\] 2). The wrench of the cables on the platform is `A^T f`; the external wrench that
+/// balances it is `−A^T f` (\[P\] 3).
 ///
-/// `CABLES` columns; those past the robot's cables are zero. `None` where a cable has no geometry or cannot leave its
-/// last pulley, or where the robot has more than `CABLES` cables.
+/// It has `CABLES` columns; those past the robot's cables are zero. Returns `None` if a cable has no geometry or cannot leave its last pulley, or if
+/// the robot has more than `CABLES` cables.
 #[must_use]
 pub fn structure_matrix<const CABLES: usize>(robot: &RobotParams<'_>, pose: &Pose) -> Option<SMatrix<f64, 6, CABLES>> {
     if robot.cables.len() > CABLES {

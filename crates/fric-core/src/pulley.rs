@@ -1,8 +1,7 @@
 //! Macroscopic friction of cable pulleys: bearing friction, the sensor pulley, the slip limit.
 //!
-//! For: the tension behind a pulley from the tension before it, in steady motion (\[P\] 4–14). Presliding, which blurs the
-//! reversal, is [`dahl`](crate::dahl)'s. No state; non-finite input gives non-finite output, the caller
-//! ([`Compensator`](crate::Compensator)) keeps it out.
+//! It computes the tension behind a pulley from the tension before it, in steady motion (\[P\] 4–14). Presliding, which smooths the reversal, is in
+//! [`dahl`](crate::dahl). No state. Non-finite input gives non-finite output; the caller ([`Compensator`](crate::Compensator)) excludes it.
 //!
 //! | symbol | identifier | unit | range |
 //! |---|---|---|---|
@@ -15,15 +14,14 @@
 //! | `k` | `wrap_factor` = `2 sin(α/2)` | 1 | 0…2 |
 //! | `c` | `sensor_cos` = `cos α₁` | 1 | −1…0.99 |
 //!
-//! **Sign convention**, here and everywhere: cable length grows when the cable pays out, `v = dl/dt`; paying out, friction
-//! makes the platform side tighter than the winch side. \[P\] is the paper that the crate's
-//! documentation names; the numbers are its equations.
+//! **Sign convention**, here and everywhere: cable length grows when the cable pays out, `v = dl/dt`; when paying out, friction makes the platform
+//! side tighter than the winch side. \[P\] is the paper named in the crate's documentation; the numbers are its equations.
 
 use crate::scalar::{Mask, Scalar};
 
-/// Normal force on a bearing per mean cable tension: `k = √(2(1 − cos α)) = 2 sin(α/2)` (\[P\] 8).
+/// Returns the ratio of the normal force on a bearing to the mean cable tension: `k = √(2(1 − cos α)) = 2 sin(α/2)` (\[P\] 8).
 ///
-/// `wrap_rad` is the wrap angle α in `0…2π`; 0 gives 0, a pulley that carries nothing.
+/// `wrap_rad` is the wrap angle α in `0…2π`; 0 gives 0, a pulley without load.
 ///
 /// ```
 /// let right_angle = fric_core::pulley::wrap_factor(core::f64::consts::FRAC_PI_2);
@@ -34,10 +32,10 @@ pub fn wrap_factor(wrap_rad: f64) -> f64 {
     2.0 * libm::sin(0.5 * wrap_rad)
 }
 
-/// Gain and viscous share of one pulley in steady sliding.
+/// Returns gain and viscous gain of one pulley in steady sliding.
 ///
-/// `F_j = gain·F_{j−1} + viscous_gain·F_pv·v` is \[P\] 10 with `gain = (2 + sμk)/(2 − sμk)` and
-/// `viscous_gain = 2/(2 − sμk)`. At `s = 0` both are 1. `μk < 2` is the caller's to guarantee.
+/// `F_j = gain·F_{j−1} + viscous_gain·F_pv·v` is \[P\] 10 with `gain = (2 + sμk)/(2 − sμk)` and `viscous_gain = 2/(2 − sμk)`. At `s = 0` both are 1.
+/// The caller must ensure `μk < 2`.
 #[inline(always)]
 pub fn sliding_gains<T: Scalar>(direction: T, mu: T, wrap_factor: T) -> (T, T) {
     let two = T::splat(2.0);
@@ -46,13 +44,13 @@ pub fn sliding_gains<T: Scalar>(direction: T, mu: T, wrap_factor: T) -> (T, T) {
     ((two + coulomb) * inverse, two * inverse)
 }
 
-/// Gain and viscous share behind the sensor pulley in steady sliding.
+/// Returns gain and viscous gain behind the sensor pulley in steady sliding.
 ///
 /// `F_1 = gain·F_s + viscous_gain·F_pv·v`, from the equilibrium of the sensor pulley `F_1 − F_0 cos α₁ = F_s` (\[P\] 11)
 /// and \[P\] 10: `gain = (2 + sμk)/d`, `viscous_gain = −2c/d`, `d = (2 + sμk) − c(2 − sμk)`.
 ///
-/// The paper solves 90° (`F_1 = F_s`, \[P\] 12) and 180° (`F_1 = F_s(1 + sμ)/2`, \[P\] 14); this is every angle. It is
-/// singular where the wrap vanishes, which [`CableParams`](crate::CableParams) refuses.
+/// The paper solves 90° (`F_1 = F_s`, \[P\] 12) and 180° (`F_1 = F_s(1 + sμ)/2`, \[P\] 14); this is the solution for every angle. It is singular
+/// where the wrap vanishes, which [`CableParams`](crate::CableParams) refuses.
 #[inline(always)]
 pub fn sensor_gains<T: Scalar>(direction: T, mu: T, wrap_factor: T, sensor_cos: T) -> (T, T) {
     let two = T::splat(2.0);
@@ -62,30 +60,29 @@ pub fn sensor_gains<T: Scalar>(direction: T, mu: T, wrap_factor: T, sensor_cos: 
     (plus * inverse, -(two * sensor_cos) * inverse)
 }
 
-/// Bearing friction at which a pulley slides: `μ·F_N` with `F_N = k(F_{j−1} + F_j)/2` (\[P\] 8).
+/// Returns the bearing friction at which a pulley slides: `μ·F_N` with `F_N = k(F_{j−1} + F_j)/2` (\[P\] 8).
 ///
-/// Never negative: where a tension computed with large viscous friction falls below zero, the bearing carries nothing.
+/// It is never negative: if a tension computed with large viscous friction falls below zero, the bearing has no load.
 #[inline(always)]
 pub fn sliding_friction<T: Scalar>(mu: T, wrap_factor: T, upstream_n: T, downstream_n: T) -> T {
     (mu.scale(T::splat(0.5)).scale(wrap_factor) * (upstream_n + downstream_n)).max(T::splat(0.0))
 }
 
-/// Tension ratio at which the cable slips on a pulley: `e^{μ_p α}` (\[P\] 4, Eytelwein), with the friction coefficient
-/// `traction_mu` between cable and pulley and the wrap angle `wrap_rad`.
+/// Returns the tension ratio at which the cable slips on a pulley: `e^{μ_p α}` (\[P\] 4, Eytelwein), with the friction coefficient `traction_mu`
+/// between cable and pulley and the wrap angle `wrap_rad`.
 #[must_use]
 pub fn traction_ratio(traction_mu: f64, wrap_rad: f64) -> f64 {
     libm::exp(traction_mu * wrap_rad)
 }
 
-/// A traction ratio beyond this stands for a pulley on which the cable cannot slip; `e^{μ_p α}` is below 3·10⁵.
+/// A traction ratio beyond this means that the cable cannot slip; `e^{μ_p α}` is below 3·10⁵.
 pub const NO_LIMIT_RATIO: f64 = 1e6;
 
-/// The tension behind a pulley held within the slip limit, and whether it had to be (\[P\] 4, Eytelwein).
+/// Returns the tension behind a pulley limited to the slip limit, and whether it was limited (\[P\] 4, Eytelwein).
 ///
-/// `traction_ratio = e^{μ_p α}` with the friction coefficient `μ_p` between cable and pulley: the cable slips when
-/// `F_j/F_{j−1}` leaves `[1/traction_ratio, traction_ratio]`; the ratio is then held at that bound. Where the cable
-/// arrives without tension there is nothing to hold: no slip, and `downstream_n` as it is. So it is where the ratio is
-/// beyond [`NO_LIMIT_RATIO`].
+/// `traction_ratio = e^{μ_p α}` with the friction coefficient `μ_p` between cable and pulley: the cable slips when `F_j/F_{j−1}` leaves
+/// `[1/traction_ratio, traction_ratio]`; the ratio is then held at that bound. If the cable arrives without tension, or if the ratio is beyond
+/// [`NO_LIMIT_RATIO`], there is no slip and `downstream_n` is unchanged.
 #[inline(always)]
 pub fn limit_traction<T: Scalar>(upstream_n: T, downstream_n: T, traction_ratio: T) -> (T, T::Mask) {
     let greatest = upstream_n * traction_ratio;
@@ -95,10 +92,10 @@ pub fn limit_traction<T: Scalar>(upstream_n: T, downstream_n: T, traction_ratio:
     (T::select(slips, downstream_n.min(greatest).max(least), downstream_n), slips)
 }
 
-/// The tensions before and behind a sensor pulley on which the cable slips.
+/// Returns the tensions before and behind a sensor pulley on which the cable slips.
 ///
-/// Neither is given there, only `F_1 − c·F_0 = F_s` (\[P\] 11); with `F_1/F_0` at the bound that the tensions without slip
-/// exceed (\[P\] 4), `F_1 = F_s/(1 − c·F_0/F_1)`.
+/// Neither tension is given there, only `F_1 − c·F_0 = F_s` (\[P\] 11). With `F_1/F_0` at the bound that the tensions without slip exceed (\[P\] 4),
+/// `F_1 = F_s/(1 − c·F_0/F_1)`.
 #[inline(always)]
 pub fn slipping_sensor<T: Scalar>(
     sensor_force_n: T,
@@ -108,7 +105,7 @@ pub fn slipping_sensor<T: Scalar>(
 ) -> (T, T) {
     let one = T::splat(1.0);
     let inverse = T::select(downstream_n.lt(upstream_n), traction_ratio, one / traction_ratio);
-    // Positive wherever the cable slips; the bound keeps a vanishing sensor force from dividing by zero.
+    // The divisor is positive wherever the cable slips; the bound keeps a vanishing sensor force from dividing by zero.
     let held_n = sensor_force_n / (one - sensor_cos * inverse).max(T::splat(1e-9));
     (held_n * inverse, held_n)
 }

@@ -1,13 +1,13 @@
-//! What a cycle has to say about a cable, as flags.
+//! Status flags of a cable in a cycle.
 
 use core::fmt;
 use core::ops::BitOr;
 
-/// Flags of one cable in one cycle; [`CableStatus::OK`] where nothing is the matter.
+/// Flags of one cable in one cycle; [`CableStatus::OK`] if there is no fault.
 ///
-/// Every flag is about its own cable; no flag of one cable changes a bit of another. All of them clear by
-/// themselves in the first cycle in which their cause is gone. A cable that has moved by more than `length_jump_m` while
-/// its motion was not finite comes back with one cycle of `LENGTH_JUMP`. `SENSOR_JUMP` and `UNSETTLED` remember: what they are about lasts.
+/// Every flag concerns its own cable; no flag of one cable changes a bit of another. All of them clear by themselves in the first cycle in which
+/// their cause is gone. A cable that has moved by more than `length_jump_m` while its motion was not finite returns with one cycle of `LENGTH_JUMP`.
+/// `SENSOR_JUMP` and `UNSETTLED` have memory, because their causes last.
 ///
 /// | flag | cause | what the output is |
 /// |---|---|---|
@@ -27,29 +27,29 @@ use core::ops::BitOr;
 pub struct CableStatus(u32);
 
 impl CableStatus {
-    /// Nothing is the matter.
+    /// No fault.
     pub const OK: Self = Self(0);
     /// The cable carries no tension.
     pub const SLACK: Self = Self(1);
     /// The cable slips on a pulley.
     pub const SLIP: Self = Self(1 << 1);
-    /// The sensor force is no number.
+    /// The sensor force is not a number.
     pub const SENSOR_NOT_FINITE: Self = Self(1 << 2);
-    /// The sensor repeats itself.
+    /// The sensor is frozen.
     pub const SENSOR_FROZEN: Self = Self(1 << 3);
     /// The length jumped.
     pub const LENGTH_JUMP: Self = Self(1 << 4);
-    /// Length or speed is no number.
+    /// Length or speed is not a number.
     pub const MOTION_NOT_FINITE: Self = Self(1 << 5);
-    /// Outside the range in which the parameters were identified.
+    /// The signals are outside the range in which the parameters were identified.
     pub const OUT_OF_RANGE: Self = Self(1 << 6);
     /// The pose is missing.
     pub const POSE_MISSING: Self = Self(1 << 7);
     /// The pose leaves the cable no way out of its last pulley.
     pub const POSE_UNREACHABLE: Self = Self(1 << 8);
-    /// The sensor force has jumped, and not yet back.
+    /// The sensor force has jumped and not yet returned.
     pub const SENSOR_JUMP: Self = Self(1 << 9);
-    /// What is stored is beyond what the load bears, or left by a jump.
+    /// The stored friction exceeds what the load allows, or is uncertain after a jump.
     pub const UNSETTLED: Self = Self(1 << 10);
 
     /// Every flag with its name, lowest bit first.
@@ -67,19 +67,19 @@ impl CableStatus {
         ("UNSETTLED", Self::UNSETTLED),
     ];
 
-    /// The flags as a number, as it stands in `/fric/status`.
+    /// Returns the flags as a number, as in `/fric/status`.
     #[must_use]
     pub const fn bits(self) -> u32 {
         self.0
     }
 
-    /// The flags that a number of `/fric/status` holds.
+    /// Creates the flags from a number of `/fric/status`.
     #[must_use]
     pub const fn from_bits(bits: u32) -> Self {
         Self(bits)
     }
 
-    /// Whether nothing is the matter.
+    /// Whether there is no fault.
     #[must_use]
     pub const fn is_ok(self) -> bool {
         self.0 == 0
@@ -97,13 +97,13 @@ impl CableStatus {
         self.0 & other.0 != 0
     }
 
-    /// The flags of both.
+    /// Returns the flags of both.
     #[must_use]
     pub const fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
-    /// `self` where `condition` holds, else [`OK`](Self::OK).
+    /// Returns `self` where the condition holds, else [`OK`](Self::OK).
     #[inline(always)]
     pub(crate) const fn if_set(self, lanes: u32, lane: usize) -> Self {
         Self(self.0 * ((lanes >> lane) & 1))
@@ -118,7 +118,7 @@ impl BitOr for CableStatus {
     }
 }
 
-/// `ok`, or the names of the flags with `|` between them.
+/// Writes `ok`, or the names of the flags separated by `|`.
 impl fmt::Display for CableStatus {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.is_ok() {

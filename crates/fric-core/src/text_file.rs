@@ -1,5 +1,4 @@
-//! Small texts from outside: read so that nothing that a path may lead to holds the process up, and quoted so that nothing in them reaches a
-//! terminal as more than text.
+//! Small texts from outside the program: reading never blocks, whatever the path leads to, and quoting lets nothing but plain text reach a terminal.
 
 use std::borrow::ToOwned;
 use std::format;
@@ -8,16 +7,16 @@ use std::io::{Error, ErrorKind, Read as _, Result};
 use std::path::Path;
 use std::string::String;
 
-/// Bytes of the longest text that is taken for a model's; a robot of 64 cables is below a tenth of it.
+/// Maximum size of a model's text in bytes; a robot of 64 cables takes less than a tenth of it.
 pub const MOST_BYTES: usize = 1 << 20;
 
 /// Reads a regular file of at most [`MOST_BYTES`].
 ///
 /// # Errors
-/// Those of the operating system; what is no regular file, for a pipe may never have a writer and a device never end; what is larger; what is
-/// no UTF-8.
+/// Returns the errors of the operating system, and errors for anything that is not a regular file (a pipe may never have a writer, a device may never
+/// end), is larger, or is not UTF-8.
 pub fn read(path: &Path) -> Result<String> {
-    // By name first: opening a pipe would wait for its writer.
+    // The path is checked first, because opening a pipe would wait for its writer.
     let metadata = fs::metadata(path)?;
     if metadata.is_dir() {
         return Err(ErrorKind::IsADirectory.into());
@@ -29,27 +28,27 @@ pub fn read(path: &Path) -> Result<String> {
         return Err(Error::new(ErrorKind::FileTooLarge, "it has more than 1 MiB"));
     }
     let mut text = String::new();
-    // What grows while it is read has an end too.
+    // The limit also applies to a file that grows while it is read.
     File::open(path)?.take(MOST_BYTES as u64).read_to_string(&mut text)?;
     Ok(text)
 }
 
-/// What is wrong with the length of a text that is to be a model's, if anything.
+/// Returns the problem if a text is too long for a model.
 #[must_use]
 pub fn excess(text: &str) -> Option<String> {
     (text.len() > MOST_BYTES).then(|| format!("has {} bytes; a model's file has {MOST_BYTES} at most", text.len()))
 }
 
-/// What is wrong with a name, if anything: it is shown on terminals, in tables and in files.
+/// Returns the problem of a name, if any: names are shown on terminals, in tables and in files.
 #[must_use]
 pub fn name_problem(name: &str) -> Option<String> {
     name.contains(char::is_control).then(|| "has a line break or another control character; leave it out".to_owned())
 }
 
-/// The most that is quoted in one sentence, characters.
+/// Maximum length of a quotation in one sentence, in characters.
 const MOST_QUOTED: usize = 1000;
 
-/// A text as one line for people: control characters as escapes, and of a long one the beginning.
+/// Returns a text as one printable line: control characters escaped, and a long text cut to its beginning.
 #[must_use]
 pub fn printable(text: &str) -> String {
     let mut line = String::with_capacity(text.len().min(MOST_QUOTED));

@@ -1,9 +1,9 @@
-//! New parameters while the cycle runs, without a step in the output.
+//! Changes parameters while the cycle runs, without a step in the output.
 //!
-//! For: a control loop that must not stop for a new identification. The new parameters start from the state that the old
-//! have left, and both run side by side while the output goes over from one to the other; those cycles take twice as
-//! long, the first of them up to six times. It knows no threads: how parameters get here is the caller's matter, or `ParameterSender`'s. Non-finite input
-//! is treated as by [`Compensator`]. Size: two compensators.
+//! It serves a control loop that must not stop for a new identification. The new parameters start from the state of the old ones, and both run side
+//! by side while the output blends from one to the other. These cycles take twice as long, the first of them up to six times. The module is
+//! independent of threads: the caller, or `ParameterSender`, passes the parameters in. Non-finite input is treated as in [`Compensator`]. Size: two
+//! compensators.
 
 use crate::compensator::Compensator;
 use crate::cycle::{CableOutput, CycleInput, CycleOutput};
@@ -12,19 +12,18 @@ use crate::robot::ParamError;
 
 /// A [`Compensator`] whose parameters can be changed between two cycles.
 ///
-/// In cycle k of the N of a change each number of the output is `(1 − k/N)·old + (k/N)·new`, and a cable has the flags of
-/// both; from cycle N on it has the bits that the new parameters give. In no cycle does an output change by more than
-/// the larger of the changes of old and new, and an N-th of their difference.
+/// In cycle k of the N of a change, each number of the output is `(1 − k/N)·old + (k/N)·new`, and a cable has the flags of both. From cycle N on, the
+/// output has the bits of the new parameters. In no cycle does an output change by more than the larger of the changes of old and new plus 1/N of
+/// their difference.
 ///
-/// What the new parameters cannot know of the past they learn as any compensator does, in a few presliding distances
-/// f_c/σ of motion: the friction that is stored is the one that the old parameters have stored. Where a cable changes from
-/// `per_pulley` to `lumped`, it is summed up as it tells at the platform; the other way it is shared out to the pulleys in the
-/// proportion of their wrap factors `2 sin(α/2)`. Effects that the old parameters do not have start as in the first cycle: a delay with
-/// the cable at rest in its place until the delay is over, inertia without acceleration.
+/// The stored friction is taken over from the old parameters; what it lacks, the new parameters learn like any compensator, over a few presliding
+/// distances f_c/σ of motion. If a cable changes from `per_pulley` to `lumped`, the stored friction is summed by its influence at the platform; in
+/// the other direction it is distributed to the pulleys in proportion to their wrap factors `2 sin(α/2)`. Effects that the old parameters do not have
+/// start as in the first cycle: a delay with the cable at rest at its position until the delay is over, inertia without acceleration.
 #[derive(Clone, Debug)]
 pub struct TunableCompensator<const CABLES: usize> {
     running: Compensator<CABLES>,
-    /// Runs on while a change is under way.
+    /// Keeps running during a change.
     leaving: Compensator<CABLES>,
     leaving_output: CycleOutput<CABLES>,
     total_cycles: u32,
@@ -32,31 +31,31 @@ pub struct TunableCompensator<const CABLES: usize> {
 }
 
 impl<const CABLES: usize> TunableCompensator<CABLES> {
-    /// Starts with the parameters and in the state of a compensator.
+    /// Starts with the parameters and the state of a compensator.
     #[must_use]
     pub fn new(compensator: Compensator<CABLES>) -> Self {
         let leaving = compensator.clone();
         Self { running: compensator, leaving, leaving_output: CycleOutput::default(), total_cycles: 0, done_cycles: 0 }
     }
 
-    /// The compensator with the parameters set last.
+    /// Returns the compensator with the parameters set last.
     #[must_use]
     pub fn compensator(&self) -> &Compensator<CABLES> {
         &self.running
     }
 
-    /// Whether the output is still on its way from the old parameters to the new ones.
+    /// Whether the output is still being blended from the old parameters to the new ones.
     #[must_use]
     pub fn is_changing(&self) -> bool {
         self.done_cycles < self.total_cycles
     }
 
-    /// Takes over the parameters of `next`, not its state, in the course of the next `blend_cycles` (at least 1). Allocation-free,
-    /// panic-free: for the inside of the loop, where it costs a copy of the parameters and of the state. In the midst of a
-    /// change the output sets out anew from the parameters that are set, so wait for its end ([`is_changing`](Self::is_changing)).
+    /// Takes over the parameters of `next`, not its state, during the next `blend_cycles` (at least 1). Allocation-free and panic-free, for use
+    /// inside the loop, where it costs a copy of the parameters and of the state. During a change the output restarts from the parameters that are
+    /// set, so wait for the end of the change ([`is_changing`](Self::is_changing)).
     ///
     /// # Errors
-    /// As [`Compensator::check_exchange`]; nothing is changed then.
+    /// Returns the errors of [`Compensator::check_exchange`]; nothing is changed then.
     pub fn change(&mut self, next: &Compensator<CABLES>, blend_cycles: u32) -> Result<(), ParamError> {
         self.running.check_exchange(next)?;
         self.leaving.copy_from(&self.running);
@@ -66,7 +65,7 @@ impl<const CABLES: usize> TunableCompensator<CABLES> {
         Ok(())
     }
 
-    /// One cycle, as [`Compensator::step_into`].
+    /// Runs one cycle, like [`Compensator::step_into`].
     pub fn step_into(&mut self, input: &CycleInput<CABLES>, output: &mut CycleOutput<CABLES>) {
         self.running.step_into(input, output);
         if self.is_changing() {
@@ -79,20 +78,20 @@ impl<const CABLES: usize> TunableCompensator<CABLES> {
         }
     }
 
-    /// Back to the state after set-up; a change that is under way is over, with the new parameters.
+    /// Resets to the state after set-up; a change in progress ends with the new parameters.
     pub fn reset(&mut self) {
         self.running.reset();
         self.done_cycles = self.total_cycles;
     }
 
-    /// As [`Compensator::restore`]; a change that is under way is over, with the new parameters.
+    /// Restores a snapshot like [`Compensator::restore`]; a change in progress ends with the new parameters.
     pub fn restore(&mut self, snapshot: &crate::compensator::Snapshot<CABLES>) {
         self.running.restore(snapshot);
         self.done_cycles = self.total_cycles;
     }
 }
 
-/// `new_share` (0…1) of the new output and the rest of the old one.
+/// Blends `new_share` (0…1) of the new output with the rest of the old one.
 fn blend<const CABLES: usize>(output: &mut CycleOutput<CABLES>, old: &CycleOutput<CABLES>, new_share: f64) {
     let mix = |new: f64, old: f64| (1.0 - new_share) * old + new_share * new;
     for (new, old) in output.cables.iter_mut().zip(&old.cables) {

@@ -1,20 +1,20 @@
-//! The state of a compensator or of a manipulator's model as plain words, to be kept elsewhere and gone on from with the same bits.
+//! Converts the state of a compensator or of a manipulator's model to plain words and back, bit for bit.
 //!
-//! For: programs that hand a running compensator or model to another process. Numbers keep their bits, NaN included. Which word is what
-//! follows from the order of the fields, so that words are of use to the version of this crate that they are from.
+//! It serves programs that pass a running compensator or model to another process. Numbers keep their bits, including NaN. The meaning of a word
+//! follows from the order of the fields, so words are valid only for the version of this crate that produced them.
 
 use crate::columns::StateColumns;
 use crate::cycle::{CableOutput, CycleOutput};
 use crate::platform::Wrench;
 use crate::status::CableStatus;
 
-/// What consists of words.
+/// A type that consists of words.
 pub(crate) trait Words {
-    /// Shows each word in turn, to be read or replaced; there are as many, whatever the values.
+    /// Visits each word in turn, to be read or replaced; their number does not depend on the values.
     fn each_word(&mut self, show: &mut dyn FnMut(&mut u64));
 }
 
-/// [`Words`] of a structure, field by field; one that is left out does not compile.
+/// Implements [`Words`] for a structure, field by field; a missing field does not compile.
 macro_rules! words_of {
     ($name:ident $(<const $parameter:ident>)? { $($field:ident),* $(,)? }) => {
         impl $(<const $parameter: usize>)? $crate::words::Words for $name $(<$parameter>)? {

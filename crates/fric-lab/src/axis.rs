@@ -3,7 +3,7 @@
 use fric_core::{Pose, Wrench};
 use nalgebra::{UnitQuaternion, Vector3, Vector6};
 
-/// An axis along which the platform moves, or about which it turns, named as in table II of \[P\].
+/// An axis along or about which the platform moves, named as in table II of \[P\].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum CartesianAxis {
     /// Along base x.
@@ -21,10 +21,10 @@ pub enum CartesianAxis {
 }
 
 impl CartesianAxis {
-    /// All six in the order of a wrench: force, then torque.
+    /// All six axes in the order of a wrench: force, then torque.
     pub const ALL: [Self; 6] = [Self::X, Self::Y, Self::Z, Self::A, Self::B, Self::C];
 
-    /// `x`, `y`, `z`, `a`, `b` or `c`.
+    /// Returns `x`, `y`, `z`, `a`, `b` or `c`.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -37,19 +37,19 @@ impl CartesianAxis {
         }
     }
 
-    /// Unit of the wrench's component along it.
+    /// Returns the unit of the wrench component along it.
     #[must_use]
     pub fn wrench_unit(self) -> &'static str {
         if self.is_rotation() { "Nm" } else { "N" }
     }
 
-    /// Whether the platform turns about it.
+    /// Whether it is a rotation.
     #[must_use]
     pub fn is_rotation(self) -> bool {
         matches!(self, Self::A | Self::B | Self::C)
     }
 
-    /// The base axis along or about which it goes.
+    /// Returns the base axis along or about which it acts.
     #[must_use]
     pub fn direction(self) -> Vector3<f64> {
         match self {
@@ -59,27 +59,27 @@ impl CartesianAxis {
         }
     }
 
-    /// The component of a wrench along it, N or N m.
+    /// Returns the component of a wrench along it, N or N m.
     #[must_use]
     pub fn component(self, wrench: &Wrench) -> f64 {
         let part = if self.is_rotation() { &wrench.torque_nm } else { &wrench.force_n };
         part.dot(&self.direction())
     }
 
-    /// Its place in a wrench.
+    /// Returns its index in a wrench.
     pub(crate) fn index(self) -> usize {
         self as usize
     }
 }
 
-/// How far a pose is from another: position, m, and rotation vector in base axes, rad (`R = exp(θ)·R_other`).
+/// Returns the displacement of a pose from another: position, m, and rotation vector in base axes, rad (`R = exp(θ)·R_other`).
 pub(crate) fn displacement(pose: &Pose, from: &Pose) -> Vector6<f64> {
     let moved_m = pose.position_m - from.position_m;
     let turned_rad = (pose.orientation * from.orientation.inverse()).scaled_axis();
     Vector6::new(moved_m.x, moved_m.y, moved_m.z, turned_rad.x, turned_rad.y, turned_rad.z)
 }
 
-/// The rotation by a rotation vector, rad; on every platform the same to the bit.
+/// Returns the rotation for a rotation vector, rad; bit-identical on every computer platform.
 pub(crate) fn rotation(rotation_rad: &Vector3<f64>) -> UnitQuaternion<f64> {
     let angle_rad = libm::sqrt(rotation_rad.dot(rotation_rad));
     if angle_rad <= 0.0 {

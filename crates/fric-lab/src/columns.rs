@@ -1,8 +1,8 @@
-//! Samples and outcomes of a whole log in memory, one quantity after the other.
+//! Samples and outputs of a whole log in memory, one column per quantity.
 //!
-//! For work that needs all of a log at once: arrays for Python, fits. [`SampleColumns`] takes samples in, [`SampleRows`]
-//! gives them out again to the bit, from columns wherever they lie. Rows stand one after the other, a number per cable or
-//! coordinate; what is not known is NaN. Nothing is checked here and nothing computed; memory grows with the log.
+//! They serve work that needs a whole log at once: arrays for Python, fits. [`SampleColumns`] collects samples, and [`SampleRows`] returns them
+//! bit-identically from columns at any place in memory. Rows follow one another, with one number per cable or coordinate; unknown values are NaN.
+//! Nothing is checked or computed here, and memory grows with the log.
 
 use std::ops::Range;
 
@@ -11,28 +11,28 @@ use fric_core::{CableInput, CableOutput, Pose, Sample, Wrench};
 /// Samples, column by column.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SampleColumns {
-    /// Times, ns since 1970.
+    /// Stamps, ns since 1970.
     pub stamp_nanos: Vec<i64>,
-    /// Sensor forces, N; so many a row as there are cables, as are the next three.
+    /// Sensor forces, N. This and the next three columns have one value per cable and row.
     pub sensor_force_n: Vec<f64>,
     /// Cable lengths, m.
     pub length_m: Vec<f64>,
-    /// Their rates, m/s.
+    /// Rates of the lengths, m/s.
     pub speed_m_per_s: Vec<f64>,
     /// Forces measured at the platform, N.
     pub reference_force_n: Vec<f64>,
-    /// Positions of the platform, m; three a row.
+    /// Positions of the platform, m; three values per row.
     pub position_m: Vec<f64>,
-    /// Its orientations as unit quaternions x, y, z, w; four a row.
+    /// Orientations of the platform as unit quaternions x, y, z, w; four values per row.
     pub orientation_xyzw: Vec<f64>,
-    /// Forces on the platform from outside, N; three a row.
+    /// External forces on the platform, N; three values per row.
     pub outside_force_n: Vec<f64>,
-    /// Torques likewise, N m.
+    /// External torques on the platform, N m; three values per row.
     pub outside_torque_nm: Vec<f64>,
 }
 
 impl SampleColumns {
-    /// Takes in a sample.
+    /// Adds a sample.
     pub fn push(&mut self, sample: &Sample<'_>) {
         self.stamp_nanos.push(sample.stamp_nanos);
         self.sensor_force_n.extend(sample.cables.iter().map(|cable| cable.sensor_force_n));
@@ -51,7 +51,7 @@ impl SampleColumns {
         self.outside_torque_nm.extend(torque_nm);
     }
 
-    /// Times since the first row, s.
+    /// Returns the times since the first row, s.
     #[must_use]
     pub fn time_s(&self) -> Vec<f64> {
         let start_nanos = self.stamp_nanos.first().copied().unwrap_or_default();
@@ -60,7 +60,7 @@ impl SampleColumns {
         self.stamp_nanos.iter().map(since_start_s).collect()
     }
 
-    /// The samples taken in.
+    /// Returns the collected samples.
     #[must_use]
     pub fn rows(&self) -> SampleRows<'_> {
         SampleRows {
@@ -77,7 +77,7 @@ impl SampleColumns {
     }
 }
 
-/// The columns of [`SampleColumns`], borrowed from wherever they are kept.
+/// The columns of [`SampleColumns`], borrowed from any place.
 #[derive(Clone, Copy, Debug)]
 pub struct SampleRows<'a> {
     /// See [`SampleColumns::stamp_nanos`].
@@ -101,19 +101,19 @@ pub struct SampleRows<'a> {
 }
 
 impl<'a> SampleRows<'a> {
-    /// How many rows there are.
+    /// Returns the number of rows.
     #[must_use]
     pub fn len(&self) -> usize {
         self.stamp_nanos.len()
     }
 
-    /// Whether there is none.
+    /// Whether there are no rows.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.stamp_nanos.is_empty()
     }
 
-    /// The rows of a range, which has to be within.
+    /// Copies the rows of a range, which must be within bounds.
     #[must_use]
     pub fn copied(&self, rows: Range<usize>) -> SampleColumns {
         let row_count = self.stamp_nanos.len().max(1);
@@ -134,7 +134,7 @@ impl<'a> SampleRows<'a> {
         }
     }
 
-    /// The sample of a row; `cables` is room for its signals. `None` past the last row.
+    /// Returns the sample of a row; `cables` is a buffer for its signals. Returns `None` past the last row.
     pub fn sample<'b>(&self, row: usize, cables: &'b mut Vec<CableInput>) -> Option<Sample<'b>>
     where
         'a: 'b,
@@ -175,23 +175,23 @@ fn wrench(force_n: &[f64], torque_nm: &[f64]) -> Option<Wrench> {
     is_known.then(|| Wrench { force_n: force.into(), torque_nm: torque.into() })
 }
 
-/// Outcomes of cycles, column by column.
+/// Outputs of cycles, column by column.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OutputColumns {
-    /// Forces at the platform, N; so many a row as there are cables, as are the next three.
+    /// Forces at the platform, N. This and the next three columns have one value per cable and row.
     pub force_at_platform_n: Vec<f64>,
     /// Estimated friction, N.
     pub friction_n: Vec<f64>,
-    /// Sensor forces turned into tension as if nothing rubbed, N.
+    /// Tensions computed from the sensor forces without friction, N.
     pub frictionless_n: Vec<f64>,
     /// Bits of [`CableStatus`](fric_core::CableStatus).
     pub status: Vec<u32>,
-    /// Wrenches from outside: force in N, torque in N m; six a row.
+    /// External wrenches, force in N and torque in N m; six values per row.
     pub outside_wrench: Vec<f64>,
 }
 
 impl OutputColumns {
-    /// Takes in the outcome of a cycle.
+    /// Adds the output of a cycle.
     pub fn push(&mut self, cables: &[CableOutput], outside_wrench: Option<&Wrench>) {
         self.force_at_platform_n.extend(cables.iter().map(|cable| cable.force_at_platform_n));
         self.friction_n.extend(cables.iter().map(|cable| cable.friction_n));

@@ -1,11 +1,11 @@
-//! Errors of forces and wrenches, as the results for machines have them.
+//! Errors of forces and wrenches, in the form of the machine-readable results.
 
 use serde::Serialize;
 
 use crate::replay::{Deviation, WrenchErrors, WrenchReference};
 use crate::text::table;
 
-/// Deviation of a force from the reference.
+/// Error of a force against the reference.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ForceError {
     /// Root mean square, N.
@@ -15,38 +15,38 @@ pub struct ForceError {
 }
 
 impl ForceError {
-    /// Of deviations; `None` without any.
+    /// Creates the error from deviations; `None` if there are none.
     #[must_use]
     pub fn of(deviation: &Deviation) -> Option<Self> {
         Some(Self { rms_n: deviation.rms()?, mae_n: deviation.mean_magnitude()? })
     }
 }
 
-/// Deviation of the wrench.
+/// Error of the wrench.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct WrenchError {
-    /// Root mean square of the force deviation's length, N.
+    /// Root mean square of the force error's magnitude, N.
     pub force_rms_n: f64,
-    /// The same of the torque, N m.
+    /// Root mean square of the torque error's magnitude, N m.
     pub torque_rms_nm: f64,
 }
 
-/// Deviation of the wrench without and with compensation.
+/// Error of the wrench without and with compensation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct WrenchResult {
-    /// `wrench`, or `mass` where it is compared with the wrench of the platform's mass and pose.
+    /// `wrench`, or `mass` if the reference is the wrench computed from the platform's mass and pose.
     pub reference: &'static str,
-    /// By the frictionless forces.
+    /// Error with the frictionless forces.
     pub before: WrenchError,
-    /// By the compensated forces.
+    /// Error with the compensated forces.
     pub after: WrenchError,
-    /// By the compensated forces on blocks of the log held out, with parameters of a fit to the other blocks.
+    /// Error with the compensated forces on held-out blocks of the log, with parameters from a fit to the other blocks.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub held_out: Option<WrenchError>,
 }
 
 impl WrenchError {
-    /// Of deviations; `None` without any.
+    /// Creates the error from deviations; `None` if there are none.
     #[must_use]
     pub fn of(errors: &WrenchErrors) -> Option<Self> {
         errors.rms().map(|(force_rms_n, torque_rms_nm)| Self { force_rms_n, torque_rms_nm })
@@ -54,20 +54,20 @@ impl WrenchError {
 }
 
 impl WrenchResult {
-    /// Of deviations; `None` without any.
+    /// Creates the result from deviations; `None` if there are none.
     #[must_use]
     pub fn of(reference: WrenchReference, before: &WrenchErrors, after: &WrenchErrors) -> Option<Self> {
         let (before, after) = (WrenchError::of(before)?, WrenchError::of(after)?);
         Some(Self { reference: reference.name(), before, after, held_out: None })
     }
 
-    /// Heading of a table, with what the wrench is compared with where that is not the measured one.
+    /// Returns the heading of a table; it names the reference if that is not the measured wrench.
     #[must_use]
     pub fn title(&self) -> &'static str {
         if self.reference == WrenchReference::Mass.name() { "wrench, by mass" } else { "wrench" }
     }
 
-    /// As a table.
+    /// Returns a table.
     #[must_use]
     pub fn table(&self) -> String {
         let errors: Vec<&WrenchError> = [&self.before, &self.after].into_iter().chain(&self.held_out).collect();

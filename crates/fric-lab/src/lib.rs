@@ -1,15 +1,14 @@
-//! Offline work on samples of cable robots with pulley friction.
+//! Offline analysis of samples of cable robots with pulley friction.
 //!
-//! [`trajectory`] holds the runs of a platform: identification, and crossing for the hysteresis of the wrench.
-//! [`simulate`] is a robot with known friction: the samples of a log, as a stream, with effects hidden in them on
-//! request. Its friction is computed in another way than the compensator's, so that each is a check of the other.
+//! [`trajectory`] holds the runs of a platform: identification, and crossing for the hysteresis of the wrench. [`simulate`] is a robot with known
+//! friction that streams the samples of a log, with hidden effects on request. Its friction is computed independently of the compensator, so that
+//! each verifies the other.
 //!
-//! [`excite`] gives the identification run as set points for a real robot; [`fit`] identifies the parameters of the
-//! friction model from its log. [`replay`] runs the control loop's cycle over samples and sums up the errors, [`hysteresis`]
-//! tells what is left of the wrench's hysteresis. [`columns`] keeps the samples of a whole log in memory;
-//! [`errors`] and [`text`] are what results for machines and people share.
+//! [`excite`] gives the identification run as set points for a real robot. [`fit`] identifies the parameters of the friction model from its log.
+//! [`replay`] runs the control loop's cycle over samples and sums the errors. [`hysteresis`] computes the remaining hysteresis of the wrench.
+//! [`columns`] keeps the samples of a whole log in memory. [`errors`] and [`text`] are shared by the results for machines and people.
 //!
-//! Nothing here reads or writes logs, and nothing here belongs into a control cycle.
+//! This crate neither reads nor writes logs, and none of it is meant to run in a control cycle.
 
 #![allow(clippy::doc_markdown, reason = "symbols of equations are no code items")]
 

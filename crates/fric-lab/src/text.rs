@@ -1,14 +1,14 @@
-//! Numbers and tables for people.
+//! Formats numbers and tables for people.
 
 use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, Table, presets};
 
-/// A table with a header; all columns but the first `left` are aligned right. A line break in a head makes it two lines high.
+/// Returns a table with a header. All columns but the first `left` are right-aligned. A line break in a heading makes the header two lines high.
 #[must_use]
 pub fn table(header: &[&str], left: usize, rows: &[impl AsRef<[String]>]) -> String {
     lines_of(&aligned(header, left, rows))
 }
 
-/// The same with a text in the last column, which is aligned left and wrapped so that the table is at most [`WIDTH`] wide.
+/// Returns the same with a text in the last column, which is left-aligned and wrapped so that the table is at most [`WIDTH`] wide.
 #[must_use]
 pub fn table_with_text(header: &[&str], left: usize, rows: &[impl AsRef<[String]>]) -> String {
     let mut table = aligned(header, left, rows);
@@ -42,13 +42,13 @@ fn lines_of(table: &Table) -> String {
     lines.collect()
 }
 
-/// A coordinate to the millimetre, without a minus before a zero.
+/// Returns a coordinate rounded to the millimetre, without a negative zero.
 #[must_use]
 pub fn to_millimetre(part_m: f64) -> f64 {
     (part_m * 1e3).round() / 1e3 + 0.0
 }
 
-/// A number, without the sign of nothing.
+/// Formats a number without a negative zero.
 #[must_use]
 pub fn number(value: f64, digits: usize) -> String {
     let text = format!("{value:.digits$}");
@@ -58,7 +58,7 @@ pub fn number(value: f64, digits: usize) -> String {
     }
 }
 
-/// Digits behind the point that show two of an error.
+/// Returns the number of decimals that show two digits of an error.
 #[must_use]
 pub fn digits_of(error: f64) -> usize {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within 0 and 12")]
@@ -66,13 +66,13 @@ pub fn digits_of(error: f64) -> usize {
     digits
 }
 
-/// A standard error with two digits that count, without an exponent where that can be read.
+/// Formats a standard error with two significant digits, without an exponent if that is legible.
 #[must_use]
 pub fn plain(error: f64) -> String {
     if (1e-7..1e7).contains(&error) { number(error, digits_of(error)) } else { format!("{error:.1e}") }
 }
 
-/// A value with half its interval, in a unit that suits its size; a unit of `1` is not written.
+/// Formats a value with its half interval, in a unit that suits its size; a unit of `1` is omitted.
 ///
 /// ```
 /// use fric_lab::text::quantity;
@@ -91,7 +91,7 @@ pub fn quantity(value: f64, half_interval: Option<f64>, unit: &str) -> String {
     if unit == "1" { text } else { format!("{text} {unit}") }
 }
 
-/// Factor to, and name of, the unit in which a value reads well.
+/// Returns the factor to, and the name of, the unit in which a value is easy to read.
 #[must_use]
 pub fn scaled_unit(value: f64, unit: &str) -> (f64, &str) {
     let small = value.abs() < 0.1;
@@ -107,7 +107,7 @@ pub fn scaled_unit(value: f64, unit: &str) -> (f64, &str) {
     }
 }
 
-/// Three digits that count, without an exponent where that can be read.
+/// Formats three significant digits, without an exponent if that is legible.
 #[must_use]
 pub fn significant(value: f64) -> String {
     let magnitude = value.abs();
@@ -119,7 +119,7 @@ pub fn significant(value: f64) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
-/// A duration in the unit that suits its size.
+/// Formats a duration in the unit that suits its size.
 ///
 /// ```
 /// use fric_lab::text::duration;
@@ -137,7 +137,7 @@ pub fn duration(nanos: u64) -> String {
     format!("{} {unit}", number(value, if value < 10.0 { 2 } else { 1 }))
 }
 
-/// Names as one phrase.
+/// Joins names to one phrase.
 #[must_use]
 pub fn listed(names: &[impl AsRef<str>]) -> String {
     match names {
@@ -150,7 +150,7 @@ pub fn listed(names: &[impl AsRef<str>]) -> String {
     }
 }
 
-/// A text in lines of at most [`WIDTH`] letters; the first begins with `start`, the others below the text.
+/// Wraps a text to lines of at most [`WIDTH`] characters. The first line begins with `start`; the others are indented to the text.
 #[must_use]
 pub fn wrapped(start: &str, text: &str) -> String {
     let indent = start.chars().count();
@@ -173,7 +173,7 @@ pub fn wrapped(start: &str, text: &str) -> String {
     lines + line.trim_end() + "\n"
 }
 
-/// Letters of a line on a terminal.
+/// Width of a terminal line, in characters.
 pub const WIDTH: usize = 80;
-/// Kept for a per cent sign behind the last word.
+/// Space reserved for a per cent sign after the last word.
 const ROOM: usize = 3;

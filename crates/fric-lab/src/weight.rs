@@ -1,8 +1,8 @@
-//! The outside wrench where none was measured: weight and inertia of the platform, by its mass and its pose alone.
+//! Computes the external wrench if it was not measured: weight and inertia of the platform, from its mass and pose alone.
 //!
-//! `w = m·(g − a)` at the centre of mass. The acceleration comes from the pose: second difference of the centre of mass over
-//! ± [`WINDOW_S`], which is its mean under a triangle of that width. Where it, or the rotation's, is not small the wrench
-//! is not known well enough (jerk within the window; the robot file has no moments of inertia) and the sample is left out.
+//! The wrench is `w = m·(g − a)` at the centre of mass. The acceleration is the second difference of the centre of mass over ± [`WINDOW_S`], which is
+//! its mean under a triangular window of that width. If it or the angular acceleration is not small, the wrench is not known well enough (jerk within
+//! the window; the robot file has no moments of inertia), and the sample is left out.
 
 use std::collections::VecDeque;
 
@@ -12,28 +12,28 @@ use nalgebra::Vector3;
 
 /// Half the width of the window, s.
 const WINDOW_S: f64 = 0.02;
-/// Beyond this the motion is not quasi-static: acceleration of the centre of mass, m/s².
+/// Limits of quasi-static motion: acceleration of the centre of mass, m/s²,
 const GREATEST_ACCELERATION_M_PER_S2: f64 = 0.5;
-/// And of the rotation, rad/s².
+/// and angular acceleration, rad/s².
 const GREATEST_ROTATION_RAD_PER_S2: f64 = 2.0;
 
-/// The wrench by the mass, pose by pose; it comes [`delay`](Self::delay) poses later than its own.
+/// The wrench computed from the mass, pose by pose, with a latency of [`delay`](Self::delay) poses.
 #[derive(Clone, Debug)]
 pub struct Weight {
     mass_kg: f64,
     gravity_m_per_s2: Vector3<f64>,
     center_of_mass_m: Vector3<f64>,
-    /// Samples in the window's half.
+    /// Number of samples in half the window.
     window: usize,
     window_s: f64,
-    /// The last poses, the newest at the back: as many as a window has.
+    /// The last poses, the newest at the back: one window.
     poses: VecDeque<Option<Pose>>,
-    /// The last accelerations, likewise; `None` where they are not known or not small.
+    /// The last accelerations, the newest at the back; `None` if they are unknown or not small.
     accelerations: VecDeque<Option<Vector3<f64>>>,
 }
 
 impl Weight {
-    /// Of a robot's platform, before the first pose.
+    /// Creates the computation for a robot's platform, before the first pose.
     pub fn new(robot: &RobotParams<'_>) -> Self {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few samples")]
         let window = (WINDOW_S / robot.cycle_s()).ceil().max(1.0) as usize;
@@ -50,30 +50,30 @@ impl Weight {
         }
     }
 
-    /// How many poses later a wrench comes.
+    /// Returns the latency in poses.
     pub fn delay(&self) -> usize {
         2 * self.window
     }
 
-    /// Takes in the next pose; gives the wrench of the one so many poses before, `None` where it is not known.
+    /// Adds the next pose and returns the wrench of the one `delay` poses before; `None` if it is unknown.
     pub fn push(&mut self, pose: Option<Pose>) -> Option<Wrench> {
         self.poses.pop_front();
         self.poses.push_back(pose);
         let acceleration_m_per_s2 = self.quiet_acceleration();
         self.accelerations.pop_front();
         self.accelerations.push_back(acceleration_m_per_s2);
-        // Quiet all around: a mean over the window may vanish by chance.
+        // All accelerations must be small, because the mean over the window may vanish by chance.
         if self.accelerations.iter().any(Option::is_none) {
             return None;
         }
         let acceleration_m_per_s2 = (*self.accelerations.get(self.window)?)?;
-        // The acceleration in the middle is of the pose at the front.
+        // The acceleration in the middle belongs to the pose at the front.
         let pose = (*self.poses.front()?)?;
         let force_n = (self.gravity_m_per_s2 - acceleration_m_per_s2) * self.mass_kg;
         Some(Wrench { force_n, torque_nm: (pose.orientation * self.center_of_mass_m).cross(&force_n) })
     }
 
-    /// Acceleration of the centre of mass at the pose in the middle, m/s².
+    /// Returns the acceleration of the centre of mass at the pose in the middle, m/s²; `None` if it is not small.
     fn quiet_acceleration(&self) -> Option<Vector3<f64>> {
         let pose = |place: usize| self.poses.get(place).copied().flatten();
         let (before, now, after) = (pose(0)?, pose(self.window)?, pose(2 * self.window)?);
@@ -88,7 +88,7 @@ impl Weight {
     }
 }
 
-/// The wrench of each pose of one log, `None` where it is not known.
+/// Returns the wrench of each pose of one log; `None` if it is unknown.
 pub fn wrenches(robot: &RobotParams<'_>, poses: &[Option<Pose>]) -> Vec<Option<Wrench>> {
     let mut weight = Weight::new(robot);
     let delay = weight.delay();
@@ -115,14 +115,14 @@ mod tests {
         let pose = |cycle: u32| {
             let time_s = f64::from(cycle) * 0.004;
             let orientation = UnitQuaternion::from_scaled_axis(Vector3::z() * (0.5 * time_s));
-            // The centre of mass accelerates by 0.3 m/s² upwards; the origin turns about it.
+            // The centre of mass accelerates upwards at 0.3 m/s², and the origin rotates about it.
             let center_m = Vector3::new(0.2, 0.3, 0.15 * time_s * time_s);
             Some(Pose { position_m: center_m - orientation * Vector3::new(0.1, 0.0, 0.0), orientation })
         };
         let poses: Vec<Option<Pose>> = (0..100).map(pose).collect();
         let found = wrenches(&robot.params(), &poses);
         assert_eq!(found.len(), 100);
-        // A window of 5 cycles twice at either end.
+        // A window of 5 cycles, twice at either end.
         assert!((0..100).all(|cycle| found[cycle].is_some() == (10..90).contains(&cycle)));
         let force_n = -2.0 * (9.80665 + 0.3);
         for cycle in [10_u32, 50, 89] {

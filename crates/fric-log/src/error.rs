@@ -1,15 +1,15 @@
-//! Errors for people.
+//! Formats errors for people.
 
 use std::error::Error;
 use std::io;
 
-/// What an error says, and what its sources add.
+/// Returns the text of an error and of its sources.
 #[must_use]
 pub fn in_full(error: &dyn Error) -> String {
     with_sources(error.to_string(), error)
 }
 
-/// A text that stands for what an error says, and what its sources add.
+/// Returns a text in place of the error's own, with the texts of its sources.
 #[must_use]
 pub fn with_sources(mut text: String, error: &dyn Error) -> String {
     let mut source = error.source();
@@ -23,7 +23,7 @@ pub fn with_sources(mut text: String, error: &dyn Error) -> String {
     text
 }
 
-/// What the operating system said, without the name of a temporary file that means nothing to people.
+/// Returns the message of the operating system, without the name of a temporary file, which means nothing to people.
 #[must_use]
 pub fn reason(error: &io::Error) -> String {
     let text = error.to_string();

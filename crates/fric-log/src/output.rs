@@ -1,7 +1,6 @@
-//! Files that appear whole or not at all: written beside their place, renamed when they are complete.
+//! Files that appear completely or not at all: they are written to a temporary file beside their place and renamed when complete.
 //!
-//! Neither an input nor, unless told so, any other existing file is overwritten; of a file that is never finished nothing
-//! is left.
+//! An input is never overwritten, and another existing file only on request. A file that is never finished leaves nothing behind.
 
 use std::fs::{self, File, Metadata};
 use std::io::{self, Seek, SeekFrom, Write};
@@ -10,7 +9,7 @@ use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 use thiserror::Error;
 
-/// An output that cannot be put in its place.
+/// The error that an output cannot be put in its place.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum OutputError {
@@ -20,7 +19,7 @@ pub enum OutputError {
         /// The place.
         path: PathBuf,
     },
-    /// The place is taken by what is no regular file: a device, a pipe, a symbolic link.
+    /// The place is taken by something other than a regular file: a device, a pipe, a symbolic link.
     #[error("`{}` is no regular file, and is never replaced; choose another name", path.display())]
     NotRegular {
         /// The place.
@@ -34,7 +33,7 @@ pub enum OutputError {
         /// The input, as given.
         input: PathBuf,
     },
-    /// The file system refuses.
+    /// The file system reports an error.
     #[error("`{}` cannot be written", path.display())]
     File {
         /// The place.
@@ -45,7 +44,7 @@ pub enum OutputError {
     },
 }
 
-/// A file in the making.
+/// A file under construction.
 ///
 /// ```
 /// use std::io::Write as _;
@@ -70,11 +69,11 @@ pub struct OutputFile {
 impl OutputFile {
     /// Checks the place and opens a temporary file in the same directory.
     ///
-    /// An existing file is replaced only with `force`, one of the `inputs` never: neither under its own name nor under
-    /// another one (symbolic or hard link).
+    /// An existing file is replaced only with `force`, one of the `inputs` never: neither under its own name nor under another one (symbolic or hard
+    /// link).
     ///
     /// # Errors
-    /// Where the place is an input's, or is taken and `force` is not set, or its directory cannot be written to.
+    /// Returns an [`OutputError`] if the place is that of an input, is taken and `force` is not set, or if its directory is not writable.
     pub fn create(path: &Path, inputs: &[impl AsRef<Path>], force: bool) -> Result<Self, OutputError> {
         let path = path.to_owned();
         if let Some(input) = inputs.iter().map(AsRef::as_ref).find(|input| is_same_file(&path, input)) {
@@ -99,12 +98,12 @@ impl OutputFile {
         remove_orphans(directory_of(&path), &prefix);
         let mut builder = tempfile::Builder::new();
         builder.prefix(&prefix).suffix(PART);
-        // Temporary files are private; this one becomes an ordinary file, which the umask restricts.
+        // Temporary files are private, but this one becomes an ordinary file, which the umask restricts.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
         match builder.tempfile_in(directory_of(&path)) {
             Ok(file) => {
-                // Until the process ends, however it does. A file system without locks leaves its orphans.
+                // The lock lasts until the process ends in any way. A file system without locks keeps its orphans.
                 let _ = file.as_file().try_lock();
                 Ok(Self { path, file, force })
             }
@@ -112,7 +111,7 @@ impl OutputFile {
         }
     }
 
-    /// Where the file will be.
+    /// Returns the final path of the file.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
@@ -121,7 +120,7 @@ impl OutputFile {
     /// Writes a text and puts the file in its place.
     ///
     /// # Errors
-    /// As [`finish`](Self::finish).
+    /// Returns the errors of [`finish`](Self::finish).
     pub fn finish_with(self, text: &str) -> Result<(), OutputError> {
         self.complete_with(text)?.place()
     }
@@ -129,15 +128,15 @@ impl OutputFile {
     /// Puts the file in its place.
     ///
     /// # Errors
-    /// Where it cannot be written to the end, or another one has appeared in its place and `force` is not set.
+    /// Returns an [`OutputError`] if the file cannot be fully written, or if another one has appeared in its place and `force` is not set.
     pub fn finish(self) -> Result<(), OutputError> {
         self.complete()?.place()
     }
 
-    /// Writes a text, which is all of the file.
+    /// Writes a text as the whole content of the file.
     ///
     /// # Errors
-    /// Where it cannot be written to the end.
+    /// Returns an [`OutputError`] if the file cannot be fully written.
     pub fn complete_with(mut self, text: &str) -> Result<CompleteFile, OutputError> {
         match self.file.write_all(text.as_bytes()) {
             Ok(()) => self.complete(),
@@ -145,11 +144,10 @@ impl OutputFile {
         }
     }
 
-    /// Ends the writing: what was written is on the disk. Outputs that belong together are all complete before the first of
-    /// them is put in its place.
+    /// Finishes writing: the content is on the disk. Of several outputs that belong together, all are completed before the first is put in its place.
     ///
     /// # Errors
-    /// Where it cannot be written to the end.
+    /// Returns an [`OutputError`] if the file cannot be fully written.
     pub fn complete(self) -> Result<CompleteFile, OutputError> {
         match self.file.as_file().sync_all() {
             Ok(()) => Ok(CompleteFile(self)),
@@ -158,12 +156,12 @@ impl OutputFile {
     }
 }
 
-/// A file with all its bytes that is not in its place yet.
+/// A complete file that is not in its place yet.
 #[derive(Debug)]
 pub struct CompleteFile(OutputFile);
 
 impl CompleteFile {
-    /// Where the file will be.
+    /// Returns the final path of the file.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.0.path
@@ -172,7 +170,7 @@ impl CompleteFile {
     /// Puts the file in its place.
     ///
     /// # Errors
-    /// Where the file system refuses, or another one has appeared in its place and `force` is not set.
+    /// Returns an [`OutputError`] if the file system reports an error, or if another file has appeared in its place and `force` is not set.
     pub fn place(self) -> Result<(), OutputError> {
         let OutputFile { path, file, force } = self.0;
         let placed = if force { file.persist(&path) } else { file.persist_noclobber(&path) };
@@ -200,10 +198,10 @@ impl Seek for OutputFile {
     }
 }
 
-/// What the name of a file in the making ends with.
+/// Suffix of the name of an unfinished file.
 const PART: &str = ".part";
 
-/// Removes files in the making whose process was killed: nobody holds their lock.
+/// Removes unfinished files of killed processes, whose lock nobody holds.
 fn remove_orphans(directory: &Path, prefix: &str) {
     for entry in fs::read_dir(directory).into_iter().flatten().flatten() {
         let is_part = |name: &str| name.starts_with(prefix) && name.ends_with(PART);
@@ -211,13 +209,13 @@ fn remove_orphans(directory: &Path, prefix: &str) {
             && entry.file_type().is_ok_and(|file_type| file_type.is_file());
         let is_orphan = || File::open(entry.path()).is_ok_and(|file| file.try_lock().is_ok());
         if is_part && is_orphan() {
-            // One that stays disturbs nobody.
+            // A file that cannot be removed does no harm.
             let _ = fs::remove_file(entry.path());
         }
     }
 }
 
-/// The directory in which a path stands; the working directory for a bare name.
+/// Returns the directory of a path; the working directory for a bare name.
 #[must_use]
 pub fn directory_of(path: &Path) -> &Path {
     match path.parent() {

@@ -1,4 +1,4 @@
-//! What a robot file has to do with a log: it may be attached, and it says where the signals are.
+//! The relation between a robot file and a log: the file may be attached to the log, and it states where the signals are.
 
 use std::sync::Arc;
 
@@ -12,10 +12,10 @@ use crate::signals::{Role, SignalPaths};
 
 /// Name of the attachment that holds the robot file.
 pub const ROBOT_FILE: &str = "fric-robot.toml";
-/// Where an attached robot file is from, for people.
+/// Origin of an attached robot file, for people.
 pub const ATTACHED: &str = "fric-robot.toml attached to the log";
 
-/// A robot file and the text it was read from.
+/// A robot file and its text.
 #[derive(Clone, Debug)]
 pub struct AttachedRobot {
     /// The file, checked.
@@ -24,36 +24,36 @@ pub struct AttachedRobot {
     pub text: String,
 }
 
-/// Why an attached robot file cannot be used.
+/// The reason why an attached robot file cannot be used.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum AttachedRobotError {
     /// The attachment cannot be read.
     #[error(transparent)]
     Recording(#[from] RecordingError),
-    /// It is no text.
+    /// The attachment is not text.
     #[error("{ATTACHED} is not UTF-8 text")]
     NotText,
-    /// It is no robot file.
+    /// The attachment is not a valid robot file.
     #[error(transparent)]
     Robot(#[from] RobotFileError),
 }
 
-/// A signal's path in the robot file that is none.
+/// The error of an invalid signal path in the robot file.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("`{}` under [log]: {source}", role.key())]
 pub struct SignalPathError {
     /// The signal.
     pub role: Role,
-    /// What is wrong with its path.
+    /// The error of its path.
     pub source: PathError,
 }
 
 impl AttachedRobot {
-    /// The robot file attached to a log; `None` if there is none.
+    /// Returns the robot file attached to a log; `None` if there is none.
     ///
     /// # Errors
-    /// [`AttachedRobotError`] if it cannot be read or is not right.
+    /// Returns an [`AttachedRobotError`] if it cannot be read or is invalid.
     pub fn find(log: &Log) -> Result<Option<Self>, AttachedRobotError> {
         let Some(attachment) = log.attachment(ROBOT_FILE)? else { return Ok(None) };
         let text = String::from_utf8(attachment.data).map_err(|_| AttachedRobotError::NotText)?;
@@ -62,10 +62,10 @@ impl AttachedRobot {
 }
 
 impl SignalPaths {
-    /// The paths that a robot file names under `[log]`, with the reference that is known and the pose that comes from the lengths, where they do.
+    /// Returns the paths that a robot file states under `[log]`, with a known reference and a pose from the lengths if it states them.
     ///
     /// # Errors
-    /// [`SignalPathError`] for the first that is no path.
+    /// Returns a [`SignalPathError`] for the first invalid path.
     pub fn of_robot(robot: &RobotFile) -> Result<Self, SignalPathError> {
         let LogTable { cable, length, speed, reference, pose, wrench, columns } = &robot.options().log;
         let reference = match reference {

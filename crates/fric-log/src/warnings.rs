@@ -1,4 +1,4 @@
-//! What is worth knowing about a log that was read, a sentence each.
+//! Warnings about a log that was read, one sentence each.
 
 use fric_core::CableParams;
 use fric_core::robot::file::RobotFile;
@@ -7,7 +7,7 @@ use crate::recording::{Overlap, Recording};
 use crate::signals::{LengthPoses, Role, SignalReader, TrackCounts};
 
 impl Recording {
-    /// What could not be read, what is there twice, and what came late. Complete when all messages have been read.
+    /// Returns warnings about unreadable, duplicate and late data, complete when all messages have been read.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings: Vec<String> = self.damage().to_string().lines().map(ToOwned::to_owned).collect();
@@ -37,7 +37,7 @@ impl Recording {
 }
 
 impl SignalReader {
-    /// What the signals' topics did out of the ordinary. Complete when all rows have been read.
+    /// Returns warnings about unusual behaviour of the signals' topics, complete when all rows have been read.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
@@ -64,7 +64,7 @@ impl SignalReader {
         warnings
     }
 
-    /// What the robot file and the signals do not agree about. Complete when all rows have been read.
+    /// Returns warnings about disagreements between the robot file and the signals, complete when all rows have been read.
     #[must_use]
     pub fn robot_warnings(&self, robot: &RobotFile) -> Vec<String> {
         let mut warnings = Vec::new();
@@ -94,7 +94,7 @@ impl SignalReader {
         warnings
     }
 
-    /// A cable signal at another pace than the robot file says.
+    /// Returns a warning if the rate of the cable signal differs from the robot file.
     #[must_use]
     pub fn cycle_warning(&self, robot: &RobotFile) -> Option<String> {
         let interval_s = self.counts(Role::Cable).interval_nanos * 1e-9;
@@ -111,7 +111,7 @@ impl SignalReader {
 }
 
 impl TrackCounts {
-    /// What a topic did out of the ordinary, in words.
+    /// Describes the unusual behaviour of a topic.
     #[must_use]
     pub fn remarks(&self) -> Vec<String> {
         let Self { duplicate_count, late_count, clock_step_count, gap_count, undecodable_count, partial_count, .. } =

@@ -1,4 +1,4 @@
-//! NumPy arrays in, checked, and out.
+//! Converts NumPy arrays: checked input, and output.
 
 use numpy::{
     Element, IntoPyArray, PyArray1, PyArray2, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyUntypedArray,
@@ -8,31 +8,31 @@ use pyo3::prelude::*;
 
 use crate::errors::{Fault, Outcome};
 
-/// How long an axis of an array has to be.
+/// The required length of an axis.
 #[derive(Clone, Copy)]
 pub enum Axis {
-    /// So long.
+    /// Exactly this length.
     Exactly(usize),
-    /// As long as it likes: as many rows as there are.
+    /// Any length: the number of rows.
     Rows,
 }
 
-/// What an argument has to be.
+/// The requirements of an argument.
 pub struct Wanted<'a> {
-    /// The argument.
+    /// Name of the argument.
     pub name: &'a str,
     /// Its axes.
     pub shape: &'a [Axis],
-    /// What an entry is, for people: "one number per cable".
+    /// Meaning of an entry, for people: "one number per cable".
     pub entries: &'a str,
 }
 
-/// A copy of an argument's numbers, row by row; a copy, so that nobody changes them while the interpreter is released.
+/// Returns a copy of an argument's numbers, row by row. It is a copy so that nobody changes it while the interpreter is released.
 pub fn numbers(wanted: &Wanted<'_>, value: &Bound<'_, PyAny>) -> Outcome<Vec<f64>> {
     checked(wanted, value, b"fiu", "real numbers", "float64")
 }
 
-/// The same for whole numbers.
+/// Returns the same for integers.
 pub fn integers(wanted: &Wanted<'_>, value: &Bound<'_, PyAny>) -> Outcome<Vec<i64>> {
     checked(wanted, value, b"iu", "whole numbers", "int64")
 }
@@ -76,7 +76,7 @@ fn shape_text(shape: &[Axis]) -> String {
     tuple_text(&shape.iter().map(length).collect::<Vec<_>>())
 }
 
-/// As Python writes a tuple.
+/// Formats a tuple as Python does.
 fn tuple_text(parts: &[String]) -> String {
     match parts {
         [part] => format!("({part},)"),
@@ -84,12 +84,12 @@ fn tuple_text(parts: &[String]) -> String {
     }
 }
 
-/// Numbers as an array of a shape; without copying them.
+/// Returns numbers as an array of a shape, without copying them.
 pub fn array<T: Element>(py: Python<'_>, numbers: Vec<T>, shape: &[usize]) -> Outcome<Py<PyArrayDyn<T>>> {
     Ok(numbers.into_pyarray(py).reshape(shape)?.unbind())
 }
 
-/// Rows of `width` numbers as an array that nobody can write to.
+/// Returns rows of `width` numbers as a read-only array.
 pub fn fixed_rows(py: Python<'_>, numbers: Vec<f64>, width: usize) -> Outcome<Py<PyArray2<f64>>> {
     let row_count = numbers.len() / width.max(1);
     let flat = numbers.into_pyarray(py);
@@ -99,7 +99,7 @@ pub fn fixed_rows(py: Python<'_>, numbers: Vec<f64>, width: usize) -> Outcome<Py
     Ok(rows.unbind())
 }
 
-/// Numbers as an array that nobody can write to.
+/// Returns numbers as a read-only array.
 pub fn fixed<T: Element>(py: Python<'_>, numbers: Vec<T>) -> Py<PyArray1<T>> {
     let array = numbers.into_pyarray(py);
     array.readwrite().make_nonwriteable();

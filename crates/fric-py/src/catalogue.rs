@@ -5,7 +5,7 @@ use fric_core::parameters::ParameterRow;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// The rows of the catalogue in its order, what every model has first.
+/// Returns the rows of the catalogue in order, starting with the friction that every model has.
 pub fn catalogue(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
     Effect::ALL.iter().map(|effect| entry(py, *effect)).collect()
 }

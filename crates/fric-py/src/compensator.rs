@@ -14,9 +14,8 @@ use crate::watch::Watch;
 
 /// Friction compensation, as in the control loop: the same code, the same bits.
 ///
-/// It is built for the robot as it is now; what is changed in the robot later does not reach it. Signals may be NaN or
-/// infinite: what is wrong with one is told in `status` and harms no other cable. The speed has to be given; where
-/// none is measured, `Log.from_arrays` derives it from the length.
+/// It is built for the robot as it is now; later changes of the robot do not affect it. Signals may be NaN or infinite: `status` reports the fault of
+/// a signal, which affects no other cable. The speed is required; if none is measured, `Log.from_arrays` derives it from the length.
 ///
 /// >>> import numpy as np
 /// >>> compensator = Compensator(Robot.read("examples/mini-ipanema.toml"))
@@ -29,21 +28,21 @@ use crate::watch::Watch;
 #[pyclass(module = "fric")]
 pub struct Compensator {
     cycles: AnyCompensator,
-    /// The robot as it was at set-up.
+    /// The robot at set-up.
     robot: Robot,
-    /// Names of the cables and how many pulleys each has.
+    /// Names of the cables and their numbers of pulleys.
     cables: Vec<(String, usize)>,
 }
 
-/// The state of a compensator at one moment.
+/// The state of a compensator at one time.
 #[pyclass(module = "fric", frozen, eq)]
 #[derive(PartialEq)]
 pub struct Snapshot {
-    /// All of it, bit for bit.
+    /// The full state, bit for bit.
     words: Vec<u64>,
 }
 
-/// A `Compensation`: arrays with a row per cycle; just one row where `row_count` is `None`.
+/// Returns a `Compensation`: arrays with one row per cycle, or a single row if `row_count` is `None`.
 pub fn compensation(
     py: Python<'_>,
     columns: OutputColumns,
@@ -74,7 +73,7 @@ impl Compensator {
         Ok(Self { cycles: AnyCompensator::new(&params)?, robot: robot.clone(), cables })
     }
 
-    /// One cycle: a number per cable in each array. `elapsed_cycles` is more than 1 after skipped cycles.
+    /// Runs one cycle with one number per cable in each array. `elapsed_cycles` is more than 1 after skipped cycles.
     #[pyo3(signature = (sensor_force_n, length_m, speed_m_per_s, *, position_m=None, orientation_xyzw=None, elapsed_cycles=1.0))]
     fn step(
         &mut self,
@@ -94,10 +93,10 @@ impl Compensator {
         compensation(py, columns, None, self.cables.len())
     }
 
-    /// As many cycles as the arrays have rows, one column per cable; other threads run meanwhile.
+    /// Runs as many cycles as the arrays have rows, with one column per cable; other threads run meanwhile.
     ///
-    /// A row of `position_m` and `orientation_xyzw` that is NaN is a cycle without pose. `elapsed_cycles` is one number
-    /// for all cycles or one for each. Ended by Ctrl-C, the compensator is as it was before.
+    /// A row of `position_m` and `orientation_xyzw` that is NaN is a cycle without pose. `elapsed_cycles` is one number for all cycles or one per
+    /// cycle. If Ctrl-C ends the call, the compensator is unchanged.
     #[pyo3(
         signature = (sensor_force_n, length_m, speed_m_per_s, *, position_m=None, orientation_xyzw=None, elapsed_cycles=None, progress=None),
         text_signature = "(self, sensor_force_n, length_m, speed_m_per_s, *, position_m=None, orientation_xyzw=None, elapsed_cycles=1.0, progress=False)"
@@ -143,17 +142,17 @@ impl Compensator {
         compensation(py, columns, Some(row_count), cable_count)
     }
 
-    /// Back to the state after set-up: at rest, nothing stored, no pose.
+    /// Resets to the state after set-up: at rest, nothing stored, no pose.
     fn reset(&mut self) {
         self.cycles.reset();
     }
 
-    /// The state at this moment.
+    /// Returns the present state.
     fn snapshot(&self) -> Snapshot {
         Snapshot { words: self.cycles.state_words() }
     }
 
-    /// Goes on from a snapshot as if nothing had happened since.
+    /// Restores a snapshot; the following cycles have the same bits as after the snapshot.
     fn restore(&mut self, snapshot: &Snapshot) -> Outcome {
         Ok(self.cycles.restore_words(&snapshot.words)?)
     }
@@ -180,14 +179,14 @@ impl Compensator {
         format!("<Compensator of {:?}: cables {}>", self.robot.file.options().name, names.join(", "))
     }
 
-    /// Pickled, and copied, as its robot and its state: it goes on with the same bits.
+    /// Pickles, and copies, the robot and the state; the copy continues with the same bits.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> Outcome<Reduced<'py, (String, Robot, Vec<u64>)>> {
         let one = slf.borrow();
         let state = (travel::VERSION.to_owned(), one.robot.clone(), one.cycles.state_words());
         Ok((slf.getattr("_unpickled")?, state))
     }
 
-    /// The one that was pickled.
+    /// Creates the pickled compensator.
     #[staticmethod]
     fn _unpickled(version: &str, robot: &Robot, words: Vec<u64>) -> Outcome<Self> {
         travel::check_version(version)?;
@@ -203,12 +202,12 @@ impl Snapshot {
         format!("<Snapshot: {} cables>", self.words.first().copied().unwrap_or(0))
     }
 
-    /// Pickled, and copied, as the numbers it holds.
+    /// Pickles, and copies, the numbers of the state.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> Outcome<Reduced<'py, (String, Vec<u64>)>> {
         Ok((slf.getattr("_unpickled")?, (travel::VERSION.to_owned(), slf.get().words.clone())))
     }
 
-    /// The one that was pickled.
+    /// Creates the pickled snapshot.
     #[staticmethod]
     fn _unpickled(version: &str, words: Vec<u64>) -> Outcome<Self> {
         travel::check_version(version)?;
@@ -298,7 +297,7 @@ fn checked_elapsed(elapsed_cycles: Vec<f64>) -> Outcome<Vec<f64>> {
     }
 }
 
-/// One row through the compensator.
+/// Runs one row through the compensator.
 fn cycle(
     compensator: &mut AnyCompensator,
     columns: &mut OutputColumns,

@@ -1,4 +1,4 @@
-//! `discover`: what a model lacks, from logs.
+//! `discover`: finds what a model lacks, from logs.
 
 use fric_lab::discover::result::{DiscoverCableResult, DiscoverResult, WhereResult};
 use fric_lab::discover::{CableDiscovery, DiscoverOptions, Discoveries};
@@ -17,15 +17,15 @@ use crate::robot::Robot;
 use crate::runs::Runs;
 use crate::watch::Watch;
 
-/// Looks where the model and logs disagree, and for the effect that is missing: `fric-cli discover`.
+/// Finds where the model and logs disagree, and the missing effect: `fric-cli discover`.
 ///
-/// `log` is a Log, a path, or a list of them, each a run of its own. `reference` is what the model is compared with: the cable
-/// forces measured at the platform, or the wrench on the platform (measured, else that of its mass), for all cables at once. Half
-/// of the log, in blocks, judges what was learned from the other. A cable of which the log tells too little says so in its verdict; a log
-/// that tells nothing of any cable raises FitError.
+/// `log` is a Log, a path, or a list of them, each a run of its own. `reference` is what the model is compared with: the cable forces measured at the
+/// platform, or the wrench on the platform (measured, else that of its mass), for all cables at once. Half of the log, in blocks, judges what was
+/// learned from the other half. A cable with too little information in the log says so in its verdict; a log without information about any cable
+/// raises FitError.
 ///
-/// What is left and has no name, but goes with the speed, the length or the load of the cable, becomes a table, the effect `empirical`, told as unnamed;
-/// `empirical=False` leaves it as it is.
+/// A rest without a name that depends on the speed, the length or the load of the cable becomes a table, the effect `empirical`, reported as unnamed;
+/// `empirical=False` turns this off.
 ///
 /// >>> robot = Robot.from_toml('''
 /// ... format = "fric-robot/1"
@@ -70,7 +70,7 @@ pub fn discover(
         Reference::Forces => readiness::to_discover(file, &holdings),
         Reference::Wrench => readiness::by_wrench(file, ORIGIN, &holdings),
     };
-    // What is missing for some cables only stands beside their verdicts.
+    // Missing data of some cables are reported only beside their verdicts.
     readiness.check()?;
     let options = DiscoverOptions { empirical };
     let found = watch.fit(|progress| Discoveries::of(&measurements, &options, progress))??;

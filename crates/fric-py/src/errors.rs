@@ -1,4 +1,4 @@
-//! Errors of the crates below as the exceptions of `fric._errors`.
+//! Converts errors of the crates below to the exceptions of `fric._errors`.
 
 use std::io;
 use std::path::Path;
@@ -30,52 +30,52 @@ pyo3::import_exception!(fric._errors, LogFileNotFoundError);
 pyo3::import_exception!(fric._errors, OutputError);
 pyo3::import_exception!(fric._errors, ShapeError);
 
-/// `errno.ENOENT`, the same on every system.
+/// `errno.ENOENT`, which is the same on every system.
 const NO_ENTRY: i32 = 2;
 
-/// What a call ends with that does not succeed.
+/// The exception of a failed call.
 pub struct Fault(PyErr);
 
-/// Result of a call.
+/// The result of a call.
 pub type Outcome<T = ()> = Result<T, Fault>;
 
 impl Fault {
-    /// A parameter, key or option that is not right.
+    /// Creates the error of an invalid parameter, key or option.
     pub fn config(text: impl Into<String>) -> Self {
         Self(ConfigError::new_err(text.into()))
     }
 
-    /// A robot or manipulator file that is not there.
+    /// Creates the error of a missing robot or manipulator file.
     fn no_config(text: String, path: &Path) -> Self {
         Self(ConfigFileNotFoundError::new_err((NO_ENTRY, text, path.to_owned())))
     }
 
-    /// A log that is not there.
+    /// Creates the error of a missing log.
     fn no_log(text: String, path: &Path) -> Self {
         Self(LogFileNotFoundError::new_err((NO_ENTRY, text, path.to_owned())))
     }
 
-    /// What is no array of numbers.
+    /// Creates the error of an argument that is not an array of numbers.
     pub fn array_type(text: impl Into<String>) -> Self {
         Self(ArrayTypeError::new_err(text.into()))
     }
 
-    /// Data that allow no fit.
+    /// Creates the error of data that allow no fit.
     pub fn fit(text: impl Into<String>) -> Self {
         Self(FitError::new_err(text.into()))
     }
 
-    /// A log that cannot be used.
+    /// Creates the error of an unusable log.
     pub fn log(text: impl Into<String>) -> Self {
         Self(LogError::new_err(text.into()))
     }
 
-    /// A file that cannot be written.
+    /// Creates the error of a file that cannot be written.
     pub fn output(text: impl Into<String>) -> Self {
         Self(OutputError::new_err(text.into()))
     }
 
-    /// An array of the wrong shape, type or content.
+    /// Creates the error of an array with the wrong shape, type or content.
     pub fn shape(text: impl Into<String>) -> Self {
         Self(ShapeError::new_err(text.into()))
     }

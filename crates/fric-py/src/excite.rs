@@ -18,10 +18,10 @@ use crate::results;
 use crate::robot::Robot;
 use crate::watch::{STRIDE, Watch};
 
-/// Set points, one quantity after the other.
+/// Set points, one column per quantity.
 #[derive(Default)]
 struct SetPoints {
-    /// Names of the phases in the order in which they come first.
+    /// Names of the phases in the order of their first occurrence.
     phases: Vec<&'static str>,
     phase: Vec<u8>,
     time_s: Vec<f64>,
@@ -57,14 +57,14 @@ impl SetPoints {
 
 /// The identification run for a robot, or a run designed for a question, cycle by cycle: `fric-cli excite`.
 ///
-/// `box_m` is two corners of the box in which the platform runs, base frame, m; the others cap its speed and acceleration and bound
-/// the cable forces at the platform. What is left out is the run's own, as on the command line. With `output` the set points are
-/// written to a CSV file, whole or not at all, with the units in its header; an existing file is replaced only with `force`.
+/// `box_m` is two corners of the box in which the platform runs, base frame, m; the other options limit its speed and acceleration and the cable
+/// forces at the platform. Defaults are those of the run, as on the command line. With `output` the set points are written to a CSV file, completely
+/// or not at all, with the units in its header; an existing file is replaced only with `force`.
 ///
-/// One of these designs the run: `separate` names two effects to tell apart, `determine` parameters to determine, and `for_` is what a
-/// discovery left open (a DiscoverResult, or its JSON as a dict or text). Then `duration_s` is how long the run is (20 s if not given), `cables` the
-/// names of the cables that the question is about (all if not given), `noise_n` the standard deviation of the noise of the force
-/// at the platform. `result.expectations` says what to expect; where no run within the limits can tell, ConfigError says so.
+/// One of these options designs the run: `separate` names two effects to distinguish, `determine` names parameters to determine, and `for_` is a
+/// discovery with open questions (a DiscoverResult, or its JSON as a dict or text). Then `duration_s` is the duration of the run (20 s by default),
+/// `cables` the names of the cables of the question (all by default), `noise_n` the standard deviation of the noise of the force at the platform.
+/// `result.expectations` contains the expected result; if no run within the limits can answer the question, ConfigError says so.
 ///
 /// >>> robot = Robot.read("examples/mini-ipanema.toml")
 /// >>> run = excite(robot, max_speed_m_per_s=0.5)
@@ -180,7 +180,7 @@ pub fn excite(
     Ok(results::of(py, "ExciteResult", fields)?.unbind())
 }
 
-/// The JSON of a discovery: of its result, of a dict, or as it is.
+/// Returns the JSON of a discovery: from its result, from a dict, or as given.
 fn found_text(found: &Bound<'_, PyAny>) -> Outcome<String> {
     if let Ok(text) = found.extract::<String>() {
         return Ok(text);

@@ -1,4 +1,4 @@
-//! `fit`: the parameters of the friction model from logs.
+//! `fit`: identifies the parameters of the friction model from logs.
 
 use fric_lab::discover::{CorrectedFit, fit_cables_corrected};
 use fric_lab::fit::readiness;
@@ -17,10 +17,10 @@ use crate::robot::Robot;
 use crate::runs::{Runs, named_parameters};
 use crate::watch::Watch;
 
-/// Where the robot is from, in what is said about it.
+/// The origin of the robot in messages.
 pub const ORIGIN: &str = "the robot";
 
-/// What the model is compared with, by name.
+/// Returns the reference of a name.
 pub fn named_reference(name: &str) -> Outcome<Reference> {
     Reference::ALL.into_iter().find(|known| known.name() == name).ok_or_else(|| {
         let names = Reference::ALL.into_iter().map(Reference::name);
@@ -30,10 +30,10 @@ pub fn named_reference(name: &str) -> Outcome<Reference> {
 
 /// Identifies the friction of a robot's cables from logs: `fric-cli fit`.
 ///
-/// `log` is a Log, a path, or a list of them, each a run of its own. `reference` is what the model is compared with: the
-/// cable forces measured at the platform, or the wrench on the platform (measured, else that of its mass), for all cables
-/// at once. `parameters` are varied, such as "mu" or "stribeck.ratio"; without, it is the friction and each effect that
-/// the cable has. `huber` weighs deviations that are far out linearly. Data that allow no fit raise FitError.
+/// `log` is a Log, a path, or a list of them, each a run of its own. `reference` is what the model is compared with: the cable forces measured at the
+/// platform, or the wrench on the platform (measured, else that of its mass), for all cables at once. `parameters` names those to vary, such as "mu"
+/// or "stribeck.ratio"; by default the friction and each effect of the cable. `huber` weights large deviations linearly. Data that allow no fit raise
+/// FitError.
 ///
 /// >>> robot = Robot.read("examples/mini-ipanema.toml")
 /// >>> robot.cable("cable1").friction.mu = 0.03
@@ -93,7 +93,7 @@ pub fn fit(
     let text = rewritten(&given.to_toml()?, ORIGIN, fits.cables())?;
     let cable = |(fit, residuals_n): (&CableFit, Vec<f64>)| {
         let count = fit.fitted.len();
-        // Matrices stand column by column, arrays row by row.
+        // Matrices are stored by columns, arrays by rows.
         let [covariance, correlation] = [fit.covariance.transpose(), fit.correlation().transpose()]
             .map(|matrix| array(py, matrix.as_slice().to_vec(), &[count, count]));
         let names: Vec<String> = fit.fitted.iter().map(ToString::to_string).collect();

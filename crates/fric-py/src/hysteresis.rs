@@ -1,4 +1,4 @@
-//! `hysteresis`: what is left of the wrench's hysteresis.
+//! `hysteresis`: the remaining hysteresis of the wrench.
 
 use fric_lab::hysteresis::{Hysteresis, HysteresisResult, Survey};
 use fric_work::provenance::Provenance;

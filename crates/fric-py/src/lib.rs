@@ -1,8 +1,8 @@
 //! `fric._fric`, the compiled part of the Python package `fric`.
 //!
-//! One file per function or class that Python sees. Each class wraps one Rust value; what is computed is computed in the
-//! crates below. Results are dataclasses of `python/fric/_results`, which `results.rs` fills. Long calls release the interpreter, look for Ctrl-C every few thousand cycles (`watch.rs`) and
-//! leave nothing half done. `python/fric/_fric.pyi` declares what is here.
+//! There is one file per function or class of the Python module. Each class wraps one Rust value; all computation is in the crates below. Results are
+//! dataclasses of `python/fric/_results`, which `results.rs` fills. Long calls release the interpreter, check for Ctrl-C every few thousand cycles
+//! (`watch.rs`) and leave nothing half done. `python/fric/_fric.pyi` declares the content of this module.
 #![allow(clippy::doc_markdown, clippy::doc_link_with_quotes, reason = "documentation here is read in Python")]
 #![allow(clippy::needless_pass_by_value, reason = "values come as the interpreter passes them")]
 #![allow(clippy::too_many_arguments, reason = "they are keywords in Python")]
@@ -26,7 +26,7 @@ mod simulate;
 mod travel;
 mod watch;
 
-/// The module. It is tried with the interpreter's lock alone: one that runs threads without it (free-threaded) takes it on again.
+/// The module. It is tested only with the interpreter's global lock; a free-threaded interpreter enables the lock again.
 #[pyo3::pymodule(gil_used = true)]
 mod _fric {
     use fric_core::CableStatus;
@@ -61,13 +61,13 @@ mod _fric {
     #[pymodule_export]
     use crate::simulate::simulate;
 
-    /// The sentence for a name that is none of those known.
+    /// Returns the sentence for an unknown name.
     #[pyfunction]
     fn _unknown_name(what: &str, name: &str, known: Vec<String>) -> String {
         fric_core::robot::unknown_name(what, name, known.iter().map(String::as_str))
     }
 
-    /// Runs the command line, whose first word is the name of the program, and gives the exit code; Ctrl-C ends it from then on.
+    /// Runs the command line, whose first word is the name of the program, and returns the exit code; Ctrl-C ends it from then on.
     #[pyfunction]
     fn _command_line(py: Python<'_>, words: Vec<std::ffi::OsString>) -> u8 {
         py.detach(|| fric_cli::run(words))

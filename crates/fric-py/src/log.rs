@@ -20,10 +20,10 @@ use crate::errors::{Fault, Outcome};
 use crate::robot::Robot;
 use crate::watch::{STRIDE, Watch};
 
-/// The samples of a log, joined on the time of the cable signal: arrays with a row per sample that cannot be written to.
+/// The samples of a log, joined on the times of the cable signal: read-only arrays with one row per sample.
 ///
-/// Columns of cable arrays are the cables in the order of `cable_names`. What is not known at a time is NaN. `log[2.0:8.5]` is the part
-/// between two times, `len(log)` the number of rows; `"position_m" in log` tells whether a signal is known, iteration gives the names of those.
+/// Columns of cable arrays are the cables in the order of `cable_names`. Unknown values are NaN. `log[2.0:8.5]` is the part between two times,
+/// `len(log)` the number of rows; `"position_m" in log` says whether a signal is known, and iteration gives the names of the known ones.
 ///
 /// >>> import numpy as np
 /// >>> log = Log.from_arrays(
@@ -42,44 +42,44 @@ pub struct Log {
     /// Time since the first row, s.
     #[pyo3(get)]
     time_s: Py<PyArray1<f64>>,
-    /// Force that the sensor shows, N, a column per cable.
+    /// Force shown by the sensor, N, one column per cable.
     #[pyo3(get)]
     sensor_force_n: Py<PyArray2<f64>>,
-    /// Cable length, m, growing as the cable pays out.
+    /// Cable length, m, which grows when the cable pays out.
     #[pyo3(get)]
     length_m: Py<PyArray2<f64>>,
-    /// Its rate, m/s.
+    /// Rate of the length, m/s.
     #[pyo3(get)]
     speed_m_per_s: Py<PyArray2<f64>>,
-    /// Cable force measured at the platform, N; NaN where there is none.
+    /// Cable force measured at the platform, N; NaN if there is none.
     #[pyo3(get)]
     reference_force_n: Py<PyArray2<f64>>,
-    /// Position of the platform in the base frame, m, (N, 3); NaN where it is not known.
+    /// Position of the platform in the base frame, m, (N, 3); NaN if it is unknown.
     #[pyo3(get)]
     position_m: Py<PyArray2<f64>>,
-    /// Orientation of the platform as a unit quaternion x, y, z, w, (N, 4); NaN where it is not known.
+    /// Orientation of the platform as a unit quaternion x, y, z, w, (N, 4); NaN if it is unknown.
     #[pyo3(get)]
     orientation_xyzw: Py<PyArray2<f64>>,
-    /// Force on the platform from outside, gravity included, N, (N, 3); NaN where it is not known.
+    /// External force on the platform including gravity, N, (N, 3); NaN if it is unknown.
     #[pyo3(get)]
     outside_force_n: Py<PyArray2<f64>>,
-    /// The torque likewise, about the platform origin, N m, (N, 3).
+    /// External torque on the platform about its origin, N m, (N, 3); NaN if it is unknown.
     #[pyo3(get)]
     outside_torque_nm: Py<PyArray2<f64>>,
-    /// The robot: the one it was read for, else the one attached to the log; None for arrays of one's own.
+    /// The robot: the one that the log was read for, else the one attached to the log; None for arrays.
     #[pyo3(get)]
     robot: Option<Py<Robot>>,
     cable_names: Vec<String>,
-    /// The files it was read from, which no output may overwrite.
+    /// The files that it was read from, which no output may overwrite.
     pub sources: Vec<PathBuf>,
 }
 
 #[pymethods]
 impl Log {
-    /// A log of arrays of one's own, copied and checked.
+    /// A log from arrays, which are copied and checked.
     ///
-    /// `stamp_nanos` ascends. Without `speed_m_per_s` the speed is the change of length over time, as where a log file
-    /// has none. A row without reference, pose or wrench is NaN; a pose or wrench is given whole or not at all.
+    /// `stamp_nanos` must ascend. Without `speed_m_per_s` the speed is derived from the length, as for a log file without speed. A row without
+    /// reference, pose or wrench is NaN; a pose or wrench must be complete or absent.
     #[staticmethod]
     #[pyo3(signature = (*, cable_names, stamp_nanos, sensor_force_n, length_m, speed_m_per_s=None, reference_force_n=None, position_m=None, orientation_xyzw=None, outside_force_n=None, outside_torque_nm=None))]
     fn from_arrays(
@@ -133,12 +133,12 @@ impl Log {
         PyTuple::new(py, &self.cable_names)
     }
 
-    /// The log as a polars data frame, a column per cable and coordinate; needs polars.
+    /// The log as a polars data frame, with one column per cable and coordinate; needs polars.
     fn to_polars<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         slf.py().import("fric._frames")?.call_method1("frame", (slf, "polars"))
     }
 
-    /// The log as a pandas data frame, a column per cable and coordinate; needs pandas.
+    /// The log as a pandas data frame, with one column per cable and coordinate; needs pandas.
     fn to_pandas<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         slf.py().import("fric._frames")?.call_method1("frame", (slf, "pandas"))
     }
@@ -147,9 +147,9 @@ impl Log {
         self.stamp_nanos.bind(py).len()
     }
 
-    /// The part between two times, s since the first row, the second itself left out; or the array of a signal.
+    /// The part between two times, s since the first row, the second one excluded; or the array of a signal.
     ///
-    /// The rows are those of the whole log: a speed that was derived there stays as it is.
+    /// The rows are those of the whole log: a derived speed is unchanged.
     fn __getitem__<'py>(slf: &Bound<'py, Self>, key: &Bound<'py, PyAny>) -> Outcome<Bound<'py, PyAny>> {
         let (py, log) = (slf.py(), slf.get());
         if let Ok(slice) = key.cast::<PySlice>() {
@@ -173,7 +173,7 @@ impl Log {
         Ok(self.signals(py)?.contains(&name))
     }
 
-    /// The names of the signals that the log has: those that are known at any time.
+    /// The names of the signals that are known at any time of the log.
     fn __iter__<'py>(&self, py: Python<'py>) -> Outcome<Bound<'py, PyIterator>> {
         Ok(PyTuple::new(py, self.signals(py)?)?.try_iter()?)
     }
@@ -183,7 +183,7 @@ impl Log {
     }
 }
 
-/// The signals that a log may have, by the names of their arrays.
+/// The possible signals of a log, by the names of their arrays.
 const SIGNALS: [&str; 8] = [
     "sensor_force_n",
     "length_m",
@@ -196,7 +196,7 @@ const SIGNALS: [&str; 8] = [
 ];
 
 impl Log {
-    /// The signals of which any value is known.
+    /// Returns the signals with any known value.
     fn signals(&self, py: Python<'_>) -> Outcome<Vec<&'static str>> {
         self.with_rows(py, |rows| {
             let columns = [
@@ -215,7 +215,7 @@ impl Log {
         })
     }
 
-    /// The rows from a time on and before another.
+    /// Returns the rows from one time up to another.
     fn part(&self, py: Python<'_>, slice: &Bound<'_, PySlice>) -> Outcome<Self> {
         let bound = |name: &str| {
             let value = slice.getattr(name)?;
@@ -238,12 +238,12 @@ impl Log {
         Self::new(py, columns, &names, robot, self.sources.clone())
     }
 
-    /// The first and the last time, ns; `None` without rows.
+    /// Returns the first and the last stamp, ns; `None` without rows.
     pub fn stamps_nanos(&self, py: Python<'_>) -> Outcome<Option<(i64, i64)>> {
         self.with_rows(py, |rows| Ok(rows.stamp_nanos.first().copied().zip(rows.stamp_nanos.last().copied())))
     }
 
-    /// Samples for Python, without copying them.
+    /// Creates a log for Python, without copying the samples.
     pub fn new(
         py: Python<'_>,
         columns: SampleColumns,
@@ -269,13 +269,13 @@ impl Log {
         })
     }
 
-    /// What it was read from, for people.
+    /// Returns the names of its sources, for people.
     pub fn source_names(&self) -> Vec<String> {
         let names = self.sources.iter().map(|path| path.display().to_string());
         if self.sources.is_empty() { vec!["arrays".to_owned()] } else { names.collect() }
     }
 
-    /// Lends the samples.
+    /// Lends the samples to `work`.
     pub fn with_rows<T>(&self, py: Python<'_>, work: impl FnOnce(SampleRows<'_>) -> Outcome<T>) -> Outcome<T> {
         let stamp_nanos = self.stamp_nanos.bind(py).readonly();
         let [sensor, length, speed, reference, position, orientation, force, torque] = [
@@ -302,7 +302,7 @@ impl Log {
         })
     }
 
-    /// Makes sure that the columns are a robot's cables.
+    /// Checks that the columns are a robot's cables.
     pub fn check_cables(&self, names: &[&str]) -> Outcome {
         if self.cable_names == names {
             return Ok(());
@@ -312,10 +312,10 @@ impl Log {
     }
 }
 
-/// Reads an MCAP or CSV log, or the files of one split recording, for a robot: the one given, else the one attached to the log.
+/// Reads an MCAP or CSV log, or the files of one split recording, for a robot: the given one, else the one attached to the log.
 ///
-/// What is out of the ordinary in the log is told as LogWarning. Samples are joined on the time of the cable signal; speed
-/// that the log does not have is derived from the length.
+/// Unusual content of the log is reported as LogWarning. Samples are joined on the times of the cable signal; a missing speed is derived from the
+/// length.
 ///
 /// >>> log = read_log("examples/mini-ipanema.mcap")
 /// >>> len(log), log.robot
@@ -336,8 +336,8 @@ pub fn read_log(
     read(py, paths, robot, None, &mut Watch::new(py, progress)?)
 }
 
-/// [`read_log`] as a part of a longer call, for a fit without the signal that it does not compare with, of whose lacks it
-/// tells itself.
+/// Does the same as [`read_log`], as a part of a longer call: for a fit, without the signal that it does not use, and without warnings that the fit
+/// gives itself.
 pub fn read(
     py: Python<'_>,
     paths: &Bound<'_, PyAny>,
@@ -386,7 +386,7 @@ pub fn read(
         }
     };
     watch.look(total_bytes, total_bytes)?;
-    // Damage may be why there is nothing to go on with.
+    // Damage may be the reason why the log cannot be used.
     warn(py, &reader.log().warnings())?;
     end?;
     warn(py, &reader.warnings())?;
@@ -424,7 +424,7 @@ fn ascending(stamp_nanos: &Bound<'_, PyAny>) -> Outcome<Vec<i64>> {
     }
 }
 
-/// Speeds as where a log file has none.
+/// Returns derived speeds, as for a log file without speed.
 fn derived_speed_m_per_s(stamp_nanos: &[i64], length_m: &[f64], cable_count: usize) -> Vec<f64> {
     let rows: Vec<(i64, &[f64])> = stamp_nanos.iter().copied().zip(length_m.chunks(cable_count)).collect();
     let length =
@@ -442,7 +442,7 @@ fn derived_speed_m_per_s(stamp_nanos: &[i64], length_m: &[f64], cable_count: usi
     speed_m_per_s
 }
 
-/// Normalises the quaternions; a pose that is none is refused unless all of it is NaN.
+/// Normalises the quaternions. An invalid pose is refused unless all of it is NaN.
 fn check_poses(columns: &mut SampleColumns) -> Outcome {
     let rows = columns.position_m.chunks_exact(3).zip(columns.orientation_xyzw.chunks_exact_mut(4));
     for (row, (position_m, orientation_xyzw)) in rows.enumerate() {
@@ -462,7 +462,7 @@ fn check_poses(columns: &mut SampleColumns) -> Outcome {
     Ok(())
 }
 
-/// Refuses wrenches that are known in part.
+/// Refuses partially known wrenches.
 fn check_wrenches(columns: &SampleColumns) -> Outcome {
     let rows = columns.outside_force_n.chunks_exact(3).zip(columns.outside_torque_nm.chunks_exact(3));
     for (row, (force_n, torque_nm)) in rows.enumerate() {

@@ -1,4 +1,4 @@
-//! `replay`: the compensator over a log, as the control loop would run it.
+//! `replay`: runs the compensator over a log, as the control loop would.
 
 use std::path::PathBuf;
 
@@ -23,10 +23,9 @@ use crate::watch::Watch;
 
 /// Runs the compensator over a log, as the control loop would, and compares with the reference: `fric-cli replay`.
 ///
-/// `log` is a Log, a path or several paths of one split recording. With `output` the compensated forces, friction,
-/// wrench and status are written to an MCAP file, whole or not at all; an existing file is replaced only with `force`.
-/// With `correct` faults of the recording are corrected before it is compared, and stand in `faults` of each cable: a
-/// reference that comes late or runs by another clock, noise of the lengths.
+/// `log` is a Log, a path or several paths of one split recording. With `output` the compensated forces, friction, wrench and status are written to
+/// an MCAP file, completely or not at all; an existing file is replaced only with `force`. With `correct`, faults of the recording are corrected
+/// before the comparison, and are listed in `faults` of each cable: a reference that is late or runs on another clock, noise of the lengths.
 ///
 /// >>> robot = Robot.read("examples/mini-ipanema.toml")
 /// >>> result = replay(robot, simulate(robot, duration_s=2.0))
@@ -105,7 +104,7 @@ pub fn replay(
     Ok(results::of(py, "ReplayResult", (shown, flags, cycles))?.unbind())
 }
 
-/// What has to be corrected in a log before it is compared with its reference.
+/// Returns the corrections of a log before it is compared with its reference.
 fn corrections(py: Python<'_>, log: &Log, params: &RobotParams<'_>, watch: &mut Watch<'_>) -> Outcome<Corrections> {
     let mut measurements = Measurements::new(params, Reference::Forces);
     let mut cables = Vec::new();

@@ -1,4 +1,4 @@
-//! `residual_function`: the fit's problem for optimisers of one's own.
+//! `residual_function`: the fit's problem, for other optimisers.
 
 use fric_lab::fit::readiness;
 use fric_lab::fit::{self, FitOptions, KeptFunction, Measurements, Reference};
@@ -13,42 +13,41 @@ use crate::runs::{Runs, named_parameters};
 use crate::travel::{self, Reduced};
 use crate::watch::Watch;
 
-/// Compensated force less reference in N, of a cable's samples that can be learned from, as a function of its parameters.
+/// Compensated force minus reference, N, of a cable's usable samples, as a function of its parameters.
 ///
-/// It goes straight into `scipy.optimize.least_squares(f, f.x0, jac=f.jac, bounds=f.bounds, x_scale="jac")` and
-/// `lmfit.minimize(f, f.lmfit_parameters(), method="least_squares", jac=f.jac, x_scale="jac")`. It keeps its samples itself.
-/// How long a cable remembers the time before the log is judged by `x0`; where `fit` judges that again by what it found, it
-/// learns from other samples.
+/// It can be passed to `scipy.optimize.least_squares(f, f.x0, jac=f.jac, bounds=f.bounds, x_scale="jac")` and `lmfit.minimize(f,
+/// f.lmfit_parameters(), method="least_squares", jac=f.jac, x_scale="jac")`. It owns its samples. The length of the warm-up at the start of the log
+/// is estimated with `x0`; if `fit` estimates it again with the fitted values, it uses other samples.
 #[pyclass(module = "fric", frozen)]
 pub struct ResidualFunction {
     function: fit::ResidualFunction,
-    /// The robot as it was given, and its cable.
+    /// The given robot, and its cable.
     robot: Robot,
     cable: String,
 }
 
 #[pymethods]
 impl ResidualFunction {
-    /// What varies, in the order of `x`.
+    /// The free parameters, in the order of `x`.
     #[getter]
     fn names<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, self.names_of())
     }
 
-    /// Values to start from, by the data.
+    /// Start values from the data.
     #[getter]
     fn x0(&self, py: Python<'_>) -> Py<PyArray1<f64>> {
         fixed(py, self.function.start())
     }
 
-    /// Least and greatest values: two arrays.
+    /// Least and greatest values, as two arrays.
     #[getter]
     fn bounds(&self, py: Python<'_>) -> (Py<PyArray1<f64>>, Py<PyArray1<f64>>) {
         let (least, greatest) = self.function.bounds().into_iter().unzip();
         (fixed(py, least), fixed(py, greatest))
     }
 
-    /// Row of each residual in the logs, one after the other.
+    /// Row of each residual in the concatenated logs.
     #[getter]
     fn rows(&self, py: Python<'_>) -> Py<PyArray1<i64>> {
         #[expect(clippy::cast_possible_wrap, reason = "a row of a log in memory")]
@@ -56,7 +55,7 @@ impl ResidualFunction {
         fixed(py, rows)
     }
 
-    /// The parameters for lmfit, their names made identifiers (`stribeck_ratio`); needs lmfit.
+    /// The parameters for lmfit, with names that are identifiers (`stribeck_ratio`); needs lmfit.
     fn lmfit_parameters<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         slf.py().import("fric._lmfit")?.call_method1("parameters", (slf,))
     }
@@ -69,7 +68,7 @@ impl ResidualFunction {
         array(py, residuals, &[count])
     }
 
-    /// Their derivatives, N per unit: a row per residual, a column per parameter.
+    /// The derivatives of the residuals, N per unit: one row per residual, one column per parameter.
     fn jac(&self, py: Python<'_>, x: &Bound<'_, PyAny>) -> Outcome<Py<PyArrayDyn<f64>>> {
         let x = self.values(x)?;
         let rows = py.detach(|| self.function.jacobian(&x));
@@ -84,7 +83,7 @@ impl ResidualFunction {
         let kept = |one: &Self| {
             let KeptFunction { free, start, rows, log_starts, cycle_s, interval_s, reference_is_known } =
                 one.function.kept();
-            // To the bit, so that NaN is NaN.
+            // Compares bits, so that NaN equals NaN.
             let bits: Vec<u64> = rows.as_flattened().iter().chain(&start).map(|number| number.to_bits()).collect();
             (free, bits, log_starts, cycle_s.to_bits(), interval_s.to_bits(), reference_is_known)
         };
@@ -99,7 +98,7 @@ impl ResidualFunction {
         format!("<ResidualFunction of {:?}: {names}; {count} residuals>", self.cable)
     }
 
-    /// Pickled, and copied, with its samples.
+    /// Pickles, and copies, its samples.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> Outcome<Reduced<'py, Pickled>> {
         let (py, one) = (slf.py(), slf.get());
         let kept = one.function.kept();
@@ -117,7 +116,7 @@ impl ResidualFunction {
         Ok((slf.getattr("_unpickled")?, state))
     }
 
-    /// The one that was pickled.
+    /// Creates the pickled function.
     #[staticmethod]
     fn _unpickled(
         version: &str,
@@ -143,7 +142,7 @@ impl ResidualFunction {
     }
 }
 
-/// Where the logs begin, cycle time, time between rows, and whether the reference is known rather than measured.
+/// The starts of the logs, cycle time, time between rows, and whether the reference is known rather than measured.
 type Context = (Vec<usize>, f64, f64, bool);
 
 /// Version, robot, cable, names of the parameters, start, context and rows.
@@ -175,7 +174,7 @@ impl ResidualFunction {
     }
 }
 
-/// The residuals of a cable, for optimisers of one's own; `log` and `parameters` as for `fit`.
+/// The residuals of a cable, for other optimisers; `log` and `parameters` are as in `fit`.
 ///
 /// >>> robot = Robot.read("examples/mini-ipanema.toml")
 /// >>> f = residual_function(robot, simulate(robot, duration_s=4.0), "cable1")

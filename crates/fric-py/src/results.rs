@@ -1,4 +1,4 @@
-//! Results as the classes of `fric._results`, which hold what is computed here.
+//! Converts results to the classes of `fric._results`.
 
 use fric_work::provenance::Provenance;
 use pyo3::call::PyCallArgs;
@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::errors::{Fault, Outcome};
 
-/// The texts of a result: what people and machines see of it.
+/// Returns the presentations of a result, for people and machines.
 pub fn shown<'py>(
     py: Python<'py>,
     summary: String,
@@ -21,12 +21,12 @@ pub fn shown<'py>(
     Ok(py.import("fric._results.base")?.getattr("Shown")?.call1((summary, json, page(provenance), table))?)
 }
 
-/// An object of a class of `fric._results` with these fields.
+/// Creates an object of a class of `fric._results` with these fields.
 pub fn new<'py>(py: Python<'py>, class: &str, fields: impl PyCallArgs<'py>) -> PyResult<Bound<'py, PyAny>> {
     py.import("fric._results")?.getattr(class)?.call1(fields)
 }
 
-/// An object of a class that reads its fields in the JSON of its texts.
+/// Creates an object of a class that reads its fields from the JSON of its texts.
 pub fn of<'py>(py: Python<'py>, class: &str, fields: impl PyCallArgs<'py>) -> PyResult<Bound<'py, PyAny>> {
     py.import("fric._results")?.getattr(class)?.call_method1("_of", fields)
 }

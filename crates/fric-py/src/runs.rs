@@ -1,4 +1,4 @@
-//! The logs that a fit or a discovery learns from.
+//! The logs of a fit or a discovery.
 
 use fric_lab::fit::readiness::Holdings;
 use fric_lab::fit::{Measurements, Parameter, Reference};
@@ -17,7 +17,7 @@ use crate::watch::Watch;
 pub struct Runs<'py>(Vec<Bound<'py, PyAny>>);
 
 impl<'py> Runs<'py> {
-    /// A Log, a path, or several of them.
+    /// Accepts a Log, a path, or several of them.
     pub fn new(given: &Bound<'py, PyAny>) -> Outcome<Self> {
         let is_one = |item: &Bound<'py, PyAny>| item.is_instance_of::<Log>() || item.extract::<PathBuf>().is_ok();
         let refuse =
@@ -39,7 +39,7 @@ impl<'py> Runs<'py> {
         Ok(runs)
     }
 
-    /// Makes sure that no sample counts twice.
+    /// Checks that no sample counts twice.
     fn check_given_once(&self) -> Outcome {
         let files = |item: &Bound<'_, PyAny>| -> Vec<PathBuf> {
             sources(item).iter().filter_map(|path| Path::canonicalize(path).ok()).collect()
@@ -60,7 +60,7 @@ impl<'py> Runs<'py> {
         Ok(())
     }
 
-    /// Names for people: the path, or the number of a log that is no file.
+    /// Returns names for people: the path, or the number of a log without a file.
     pub fn names(&self) -> Vec<String> {
         let name = |(place, item): (usize, &Bound<'_, PyAny>)| {
             let sources = sources(item);
@@ -70,12 +70,12 @@ impl<'py> Runs<'py> {
         self.0.iter().enumerate().map(name).collect()
     }
 
-    /// The files of all of them.
+    /// Returns the files of all logs.
     pub fn files(&self) -> Vec<PathBuf> {
         self.0.iter().flat_map(sources).collect()
     }
 
-    /// Reads all of them into the measurements, with one more part left to be watched.
+    /// Reads all logs into the measurements, leaving one more part of the progress to the caller.
     pub fn read(
         &self,
         robot: &Bound<'py, Robot>,
@@ -84,7 +84,7 @@ impl<'py> Runs<'py> {
     ) -> Outcome<Holdings> {
         let py = robot.py();
         let names = measurements.robot().cables().len();
-        // What is not compared with is not even read.
+        // Signals that are not compared with are not read.
         let (unread, compared) = match measurements.reference() {
             Reference::Forces => (Role::Wrench, Role::Reference),
             Reference::Wrench => (Role::Reference, Role::Wrench),
@@ -112,7 +112,7 @@ impl<'py> Runs<'py> {
     }
 }
 
-/// The files of a log.
+/// Returns the files of a log.
 fn sources(item: &Bound<'_, PyAny>) -> Vec<PathBuf> {
     match item.cast::<Log>() {
         Ok(log) => log.get().sources.clone(),
@@ -120,17 +120,17 @@ fn sources(item: &Bound<'_, PyAny>) -> Vec<PathBuf> {
     }
 }
 
-/// The first and the last time of a log that has been read, ns.
+/// Returns the first and the last stamp of a log that has been read, ns.
 fn times(item: &Bound<'_, PyAny>) -> Outcome<Option<(i64, i64)>> {
     item.cast::<Log>().map_or(Ok(None), |log| log.get().stamps_nanos(item.py()))
 }
 
-/// Whether two parts of a log may have a time in common; what has not been read is all of it.
+/// Whether two parts of a log may overlap in time; a log that has not been read counts as a whole.
 fn overlap(one: Option<(i64, i64)>, other: Option<(i64, i64)>) -> bool {
     one.zip(other).is_none_or(|((from, to), (other_from, other_to))| from <= other_to && other_from <= to)
 }
 
-/// Takes in a log.
+/// Adds a log.
 fn add(
     py: Python<'_>,
     log: &Log,
@@ -160,7 +160,7 @@ fn add(
     Ok(holdings)
 }
 
-/// Parameters by their names.
+/// Returns parameters by name.
 pub fn named_parameters(names: &[String]) -> Outcome<Vec<Parameter>> {
     Parameter::all_named(names.iter().map(String::as_str))
         .map_err(|problem| Fault::config(format!("`parameters`: {problem}")))

@@ -1,4 +1,4 @@
-//! `simulate`: the log of a robot whose friction is known.
+//! `simulate`: the log of a robot with known friction.
 
 use fric_core::robot::unknown_name;
 use fric_lab::columns::SampleColumns;
@@ -12,15 +12,14 @@ use crate::log::{self, Log};
 use crate::robot::Robot;
 use crate::watch::{STRIDE, Watch};
 
-/// The log of a simulated robot; its friction is the robot file's, computed in another way than the compensator's.
+/// The log of a simulated robot. Its friction is that of the robot file, computed independently of the compensator.
 ///
-/// `run` is what the platform does, `"identification"` or `"crossing"`: one position crossed along and about all axes, for
-/// the hysteresis of the wrench. `effects` are hidden in all cables, each a dict as in the robot file or a text as for
-/// `fric-cli simulate`; `disturbances`, which are in no catalogue of effects, are stated likewise. Noise is white, what
-/// wanders does so with the correlation time `wander_s`; a hand pushes the platform by `hand_n` at most. With
-/// `length_noise_m` or `length_resolution_m` the speed is the difference of two lengths. The same `seed` gives the same bits,
-/// which are those of `fric-cli simulate`, except that this log has pose and wrench in every row, where the file has them
-/// every 4 ms. Without `duration_s` it is one run. What of it no real robot could do is told as LogWarning.
+/// `run` is the movement of the platform, `"identification"` or `"crossing"`: one position crossed along and about all axes, for the hysteresis of
+/// the wrench. `effects` are hidden in all cables, each a dict as in the robot file or a text as for `fric-cli simulate`; `disturbances`, which are
+/// not in the catalogue of effects, have the same form. Noise is white; drifts have the correlation time `wander_s`; a hand pushes the platform with
+/// at most `hand_n`. With `length_noise_m` or `length_resolution_m` the speed is the difference of two lengths. Equal `seed`s give equal bits, which
+/// are those of `fric-cli simulate`, except that this log has pose and wrench in every row, whereas the file has them every 4 ms. The default
+/// duration is one run. Anything that no real robot could do is reported as LogWarning.
 ///
 /// >>> robot = Robot.read("examples/mini-ipanema.toml")
 /// >>> log = simulate(robot, seed=7, duration_s=0.5, effects=[{"kind": "stribeck", "ratio": 0.5}])
@@ -92,7 +91,7 @@ pub fn simulate(
     Log::new(py, columns, &file.cable_names(), Some(robot), Vec::new())
 }
 
-/// A run by its name.
+/// Returns a run by its name.
 fn named(name: &str) -> Outcome<Run> {
     let known = || Run::ALL.into_iter();
     known()
@@ -100,16 +99,16 @@ fn named(name: &str) -> Outcome<Run> {
         .ok_or_else(|| Fault::config(unknown_name("run", name, known().map(Run::name))))
 }
 
-/// Makes one from its name and values by key.
+/// A constructor from name and values by key.
 type New<T> = fn(&str, &[(&str, f64)]) -> Result<T, HiddenError>;
 
-/// Something that can be hidden in a log.
+/// A kind of content that can be hidden in a log.
 struct Kind<T> {
-    /// The argument that lists them.
+    /// The argument that lists it.
     argument: &'static str,
-    /// With its article.
+    /// The noun with its article.
     noun: &'static str,
-    /// As a dict.
+    /// An example as a dict.
     example: &'static str,
     parse: fn(&str) -> Result<T, HiddenError>,
     new: New<T>,
@@ -140,7 +139,7 @@ fn all_hidden<T>(given: Option<&Bound<'_, PyAny>>, kind: &Kind<T>) -> Outcome<Ve
     items.map(|item| hidden(&item?, kind)).collect()
 }
 
-/// One of them as a dict, an effect as in the robot file, or as text.
+/// Converts a dict, in the form of the robot file, or a text.
 fn hidden<T>(item: &Bound<'_, PyAny>, kind: &Kind<T>) -> Outcome<T> {
     let Kind { noun, example, parse, new, .. } = kind;
     if let Ok(text) = item.cast::<PyString>() {

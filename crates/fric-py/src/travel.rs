@@ -1,16 +1,16 @@
-//! What pickles hold: `__reduce__` gives a function and its arguments, by which `pickle` and `copy` make the object anew.
+//! The content of pickles: `__reduce__` returns a function and its arguments, with which `pickle` and `copy` recreate the object.
 
 use pyo3::prelude::*;
 
 use crate::errors::{Fault, Outcome};
 
-/// What `__reduce__` gives.
+/// The return value of `__reduce__`.
 pub type Reduced<'py, T> = (Bound<'py, PyAny>, T);
 
-/// This version, which states of the inside are for.
+/// This version; internal states are valid only for it.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// Refuses the inside of another version.
+/// Refuses the internal state of another version.
 pub fn check_version(version: &str) -> Outcome {
     if version == VERSION {
         return Ok(());

@@ -1,4 +1,4 @@
-//! Long calls: progress, Ctrl-C, and the interpreter for others meanwhile.
+//! Long calls: progress, Ctrl-C, and the interpreter for other threads meanwhile.
 
 use std::ops::Range;
 use std::panic::resume_unwind;
@@ -12,23 +12,23 @@ use rayon::ThreadPoolBuilder;
 
 use crate::errors::Outcome;
 
-/// So many cycles pass between two looks at Ctrl-C and progress: a few milliseconds.
+/// Number of cycles between two checks of Ctrl-C and progress: a few milliseconds.
 pub const STRIDE: usize = 4096;
 
-/// How often Ctrl-C and progress are looked at while other threads compute.
+/// Interval of checking Ctrl-C and progress while other threads compute.
 const INTERVAL: Duration = Duration::from_millis(10);
 
-/// Watches over a long call.
+/// Supervises a long call.
 pub struct Watch<'py> {
     py: Python<'py>,
     progress: Option<Bound<'py, PyAny>>,
     last_percent: Option<u64>,
-    /// Which part of how many equal ones of the work is being done.
+    /// The present part of the work, and the number of equal parts.
     part: (u64, u64),
 }
 
 impl<'py> Watch<'py> {
-    /// `progress` is what the caller gave: false, true for a bar on stderr, or something to call with a share of 0…1.
+    /// Creates the supervision. `progress` is the caller's argument: false, true for a bar on stderr, or a function to call with a fraction of 0…1.
     pub fn new(py: Python<'py>, progress: Option<&Bound<'py, PyAny>>) -> Outcome<Self> {
         let progress = match progress {
             Some(given) if given.is_callable() => Some(given.clone()),
@@ -38,12 +38,12 @@ impl<'py> Watch<'py> {
         Ok(Self { py, progress, last_percent: None, part: (0, 1) })
     }
 
-    /// Says which part of how many is being done, from 0.
+    /// Sets the present part, from 0, and the number of parts.
     pub fn part(&mut self, part: u64, count: u64) {
         self.part = (part, count);
     }
 
-    /// Raises what Ctrl-C raises, and shows how far the work is.
+    /// Raises the exception of Ctrl-C, and shows the progress.
     pub fn look(&mut self, done: u64, total: u64) -> Outcome {
         self.py.check_signals()?;
         let Some(progress) = &self.progress else { return Ok(()) };
@@ -57,7 +57,7 @@ impl<'py> Watch<'py> {
         Ok(())
     }
 
-    /// Runs a fit in threads of its own, the interpreter released, and ends it on Ctrl-C.
+    /// Runs a fit in separate threads with the interpreter released, and ends it on Ctrl-C.
     pub fn fit<T: Send>(&mut self, fit: impl FnOnce(&Progress) -> T + Send) -> Outcome<T> {
         let (py, progress) = (self.py, Progress::new());
         thread::scope(|scope| {
@@ -77,7 +77,7 @@ impl<'py> Watch<'py> {
         })
     }
 
-    /// Does the work of `0..count` in pieces, the interpreter released during each.
+    /// Processes `0..count` in pieces, with the interpreter released during each.
     pub fn work(&mut self, count: usize, mut piece: impl FnMut(Range<usize>) -> Outcome + Send) -> Outcome {
         let mut done = 0;
         while done < count {
@@ -90,14 +90,14 @@ impl<'py> Watch<'py> {
     }
 }
 
-/// Works with threads that end with the work. A pool that lives on is lost to a child that the process forks, which would wait for it for ever.
+/// Works with threads that end with the work. A permanent pool would be missing in a forked child process, which would wait for it forever.
 pub fn with_own_threads<T: Send>(work: impl FnOnce() -> T + Send) -> Outcome<T> {
     let pool = ThreadPoolBuilder::new().build();
     let pool = pool.map_err(|error| PyRuntimeError::new_err(format!("no threads can be started: {error}")))?;
     Ok(pool.install(work))
 }
 
-/// A bar that was being drawn leaves its line.
+/// Ends the line of a bar that was being drawn.
 impl Drop for Watch<'_> {
     fn drop(&mut self) {
         if let Some(close) = self.progress.as_ref().and_then(|progress| progress.getattr("close").ok())

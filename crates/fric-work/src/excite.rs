@@ -1,4 +1,4 @@
-//! What `excite` tells of a run.
+//! Descriptions of runs for `excite`.
 
 use std::fmt::Write as _;
 
@@ -8,7 +8,7 @@ use fric_lab::text::to_millimetre;
 
 use crate::report::RunSeries;
 
-/// For people: how long the run is, where it goes and how hard.
+/// Describes for people how long the run is, where it goes and how fast.
 #[must_use]
 pub fn describe(excitation: &Excitation, series: &RunSeries) -> String {
     let duration_s = excitation.trajectory().duration_s();
@@ -32,7 +32,7 @@ pub fn describe(excitation: &Excitation, series: &RunSeries) -> String {
     text
 }
 
-/// For people: what a designed run is expected to tell, a line each.
+/// Describes for people what a designed run is expected to answer, one line each.
 #[must_use]
 pub fn expectations(cable_names: &[&str], forecasts: &[Forecast]) -> Vec<String> {
     let line = |forecast: &Forecast| {
@@ -58,7 +58,7 @@ fn kind_or_none(effect: Option<Effect>) -> &'static str {
     effect.map_or("no effect", Effect::kind)
 }
 
-/// What is expected, in figures.
+/// Returns the expectation in figures.
 fn in_figures(goal: &Goal) -> String {
     match goal {
         Goal::Separated { effects, delta_bic } => {
@@ -70,7 +70,7 @@ fn in_figures(goal: &Goal) -> String {
         Goal::Determined(known) => {
             let of = |known: &KnownParameter| {
                 let KnownParameter { parameter, value, standard_error, .. } = known;
-                // Two digits of the error, and the value to the same place.
+                // Two digits of the error, and the value to the same digit.
                 let digits =
                     if *standard_error > 0.0 { (1.0 - standard_error.log10().floor()).clamp(0.0, 12.0) } else { 3.0 };
                 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to 0…12")]

@@ -1,4 +1,4 @@
-//! A fit as those who know lmfit expect to read it: values with errors, correlations, what is not determined.
+//! A fit report in the style of lmfit: values with errors, correlations, undetermined parameters.
 
 use std::fmt::Write as _;
 
@@ -9,21 +9,21 @@ use fric_lab::text::{digits_of, number, plain, significant};
 
 use crate::report::fit::remark;
 
-/// Correlations of less than this are not reported.
+/// Minimum magnitude of a reported correlation.
 const LEAST_CORRELATION: f64 = 0.5;
 
-/// Two parameters that the samples do not tell apart well.
+/// Two parameters that the samples do not distinguish well.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Correlation {
-    /// One of them.
+    /// The first parameter.
     pub first: String,
-    /// The other.
+    /// The second parameter.
     pub second: String,
     /// −1 to 1.
     pub value: f64,
 }
 
-/// Correlations of a cable's parameters of at least 0.5 either way, the strongest first.
+/// Returns the correlations of a cable's parameters with a magnitude of at least 0.5, the strongest first.
 #[must_use]
 pub fn correlations(fit: &CableFit) -> Vec<Correlation> {
     let matrix = fit.correlation();
@@ -39,7 +39,7 @@ pub fn correlations(fit: &CableFit) -> Vec<Correlation> {
     strong
 }
 
-/// The report; `fits` are those of the result.
+/// Returns the report; `fits` belong to the result.
 #[must_use]
 pub fn fit_report(result: &FitResult, fits: &[CableFit]) -> String {
     let mut text = format!("[[Fit of {}]]\n    reference: {}\n", result.robot, result.reference);
@@ -68,7 +68,7 @@ pub fn fit_report(result: &FitResult, fits: &[CableFit]) -> String {
     text
 }
 
-/// A value to the digits that its error allows.
+/// Formats a value with the digits that its error allows.
 pub(crate) fn value_text(value: f64, error: Option<f64>) -> String {
     match error {
         Some(error) if error.is_finite() && error > 0.0 => number(value, digits_of(error)),

@@ -1,12 +1,11 @@
-//! What a user gets of a result: text for people, JSON for machines, a page in HTML.
+//! Presentation of results: text for people, JSON for machines, a page in HTML.
 //!
-//! The command line and the Python module compute with `fric-lab` on samples that `fric-log` reads, and show what comes out by
-//! what is here, so that both show the same: [`json`] is the text of a result for machines, [`provenance`] says what it was made of, [`report`] are the pages, each one
-//! file without network access, [`fit_report`] is a fit as
-//! users of lmfit read it, [`replay`] the result of a replay, [`set_points`] the file of a run and [`questions`] what a designed run is to tell. The texts of
-//! the other results stand beside them in `fric-lab`.
+//! The command line and the Python module compute with `fric-lab` on samples that `fric-log` reads, and present the results through this crate, so
+//! that both show the same. [`json`] is the text of a result for machines, [`provenance`] records its origin, [`report`] contains the pages, each one
+//! file without network access, [`fit_report`] is a fit in the style of lmfit, [`replay`] is the result of a replay, [`set_points`] is the file of a
+//! run, and [`questions`] are those that a designed run is to answer. The texts of the other results are with them in `fric-lab`.
 //!
-//! Nothing here reads a log or computes friction, and nothing knows a terminal or Python.
+//! This crate neither reads logs nor computes friction, and it depends on neither a terminal nor Python.
 
 #![allow(clippy::doc_markdown, reason = "symbols of equations are no code items")]
 
@@ -23,10 +22,10 @@ use serde::Serialize;
 
 use provenance::Provenance;
 
-/// A result for machines, as text with an end of line; `provenance` stands behind its own fields.
+/// Returns a result for machines as text with a final newline; `provenance` follows the result's own fields.
 ///
 /// # Errors
-/// What serde_json refuses, such as a map whose keys are no text; no result of this workspace is such.
+/// Returns the error of serde_json, for instance for a map whose keys are not text; no result of this workspace causes one.
 pub fn json(result: &impl Serialize, provenance: &Provenance) -> Result<String, serde_json::Error> {
     #[derive(Serialize)]
     struct WithProvenance<'a, T> {

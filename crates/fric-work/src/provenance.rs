@@ -1,7 +1,7 @@
-//! Where a result comes from: program, version, date, command, and the files it was made of, by name and hash.
+//! The origin of a result: program, version, date, command, and the input files by name and hash.
 //!
-//! Every JSON result and every page carries it, from one [`Provenance`]. It names no user and no machine: a path that is absolute, or
-//! leads out of the working directory, is reduced to the name of its file.
+//! Every JSON result and every page contains it, from one [`Provenance`]. It names no user and no machine: a path that is absolute, or leads out of
+//! the working directory, is reduced to the file name.
 
 use std::collections::HashMap;
 use std::ffi::OsStr;
@@ -15,38 +15,38 @@ use std::time::SystemTime;
 use serde::Serialize;
 use sha2::{Digest as _, Sha256};
 
-/// Bytes that are read at once to be hashed.
+/// Number of bytes read at once for hashing.
 const BLOCK: usize = 1 << 20;
 
-/// Where a result comes from.
+/// The origin of a result.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Provenance {
     /// `fric`.
     pub program: &'static str,
-    /// Its version.
+    /// Version of the program.
     pub version: &'static str,
-    /// When the result was made, UTC, as RFC 3339 to the second.
+    /// Date of the result, UTC, as RFC 3339 to the second.
     pub made: String,
     /// The command line, or the name of the function in Python.
     pub command: String,
-    /// The files that were read.
+    /// The input files.
     pub inputs: Vec<Input>,
 }
 
-/// A file that was read.
+/// An input file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Input {
     /// `log` or `model`.
     pub role: &'static str,
-    /// Its name, without the way to it.
+    /// Its name, without the path.
     pub name: String,
-    /// SHA-256 of its contents in hexadecimal; `None` where it cannot be read again, as a pipe cannot.
+    /// SHA-256 of its contents in hexadecimal; `None` if it cannot be read again, such as a pipe.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sha256: Option<String>,
 }
 
 impl Provenance {
-    /// Of a command line, from the name of the program on, and the files that it read.
+    /// Creates the provenance of a command line, starting with the program's name, and its input files.
     #[must_use]
     pub fn of_command(words: &[impl AsRef<OsStr>], files: &[PathBuf]) -> Self {
         let mut words = words.iter().map(AsRef::as_ref);
@@ -55,7 +55,7 @@ impl Provenance {
         Self::new(command, files.iter().flat_map(|path| inputs(path)).collect())
     }
 
-    /// Of a function in Python: the files of its log, and the text of its model under the model's name.
+    /// Creates the provenance of a Python function: the files of its log, and the text of its model under the model's name.
     #[must_use]
     pub fn of_call(function: &str, logs: &[PathBuf], model: Option<(&str, &str)>) -> Self {
         let model = model.map(|(name, text)| Input {
@@ -73,7 +73,7 @@ impl Provenance {
         Self { program: "fric", version: env!("CARGO_PKG_VERSION"), made, command, inputs }
     }
 
-    /// Names of the logs as a phrase; `arrays` where there is no file.
+    /// Returns the names of the logs as a phrase; `arrays` if there is no file.
     #[must_use]
     pub fn logs(&self) -> String {
         let names: Vec<&str> =
@@ -82,7 +82,7 @@ impl Provenance {
     }
 }
 
-/// A path as it may be shown: as it was given where it stays below the working directory, else the name of the file alone.
+/// Returns a path for display: unchanged if it stays below the working directory, else only the file name.
 #[must_use]
 pub fn shown_path(path: &Path) -> String {
     let leaves = path.is_absolute() || path.components().any(|part| matches!(part, Component::ParentDir));
@@ -93,7 +93,7 @@ fn file_name(path: &Path) -> String {
     path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned())
 }
 
-/// A word of a command line whose path, also behind `--option=`, is shown as [`shown_path`] has it.
+/// Returns a word of a command line with its path, also after `--option=`, replaced as in [`shown_path`].
 fn host_free(word: &OsStr) -> String {
     let text = word.to_string_lossy();
     match text.split_once('=') {
@@ -102,7 +102,7 @@ fn host_free(word: &OsStr) -> String {
     }
 }
 
-/// A word as a shell takes it.
+/// Quotes a word for a shell.
 fn quoted(word: &str) -> String {
     let is_plain = |letter: char| letter.is_alphanumeric() || "-_./=:,+@%".contains(letter);
     if !word.is_empty() && word.chars().all(is_plain) {
@@ -112,7 +112,7 @@ fn quoted(word: &str) -> String {
     }
 }
 
-/// A file, or every file of a folder, which a recording of rosbag2 is.
+/// Returns a file, or every file of a folder such as a rosbag2 recording.
 fn inputs(path: &Path) -> Vec<Input> {
     let Ok(entries) = fs::read_dir(path) else { return vec![input(path, file_name(path))] };
     let mut files: Vec<PathBuf> =
@@ -127,10 +127,10 @@ fn input(path: &Path, name: String) -> Input {
     Input { role: if is_model { "model" } else { "log" }, name, sha256: hash(path) }
 }
 
-/// A file as it was: its place, its size and when it was written.
+/// The state of a file: path, size and modification time.
 type FileState = (PathBuf, u64, SystemTime);
 
-/// Files that were hashed: a log that is worked on again and again is read for its hash once.
+/// Cache of hashes, so that a log that is used repeatedly is read for its hash only once.
 static HASHES: LazyLock<Mutex<HashMap<FileState, String>>> = LazyLock::new(Mutex::default);
 
 fn hash(path: &Path) -> Option<String> {

@@ -1,4 +1,4 @@
-//! What a designed run is to tell: from names, or from what a discovery left open.
+//! The questions of a designed run: from names, or from the open questions of a discovery.
 
 use std::collections::BTreeMap;
 
@@ -11,35 +11,35 @@ use fric_lab::fit::{HALF_INTERVAL, Parameter};
 use serde::Deserialize;
 use thiserror::Error;
 
-/// Format of what a discovery writes.
+/// Format of a discovery result.
 const FORMAT: &str = "fric-discover/1";
-/// Noise of a sensor and of a reference where nothing is known of it, N: as `simulate` has it.
+/// Default noise of a sensor and of a reference, N, as in `simulate`.
 const SENSOR_NOISE_N: f64 = 0.02;
 const REFERENCE_NOISE_N: f64 = 0.01;
-/// Candidates of a cable that helped and did not suffice: so many are asked for, the best first.
+/// Maximum number of insufficient candidates per cable to ask about, the best first.
 const MOST_TRIED: usize = 3;
-/// A parameter whose 95 % interval is wider than this share of its value to either side is left open.
+/// A parameter is undecided if its 95 % interval exceeds this fraction of its value to either side.
 const OPEN_RATIO: f64 = 0.5;
 
-/// What is asked, in the words of the user.
+/// A request in the terms of the user.
 #[derive(Clone, Copy, Debug)]
 pub enum Request<'a> {
-    /// Two effects to tell apart, by their names in the catalogue.
+    /// Two effects to distinguish, by their names in the catalogue.
     Separate(&'a [String]),
     /// Parameters to determine, as `fit --parameters` names them.
     Determine(&'a [String]),
-    /// What `discover --json` wrote: its text.
+    /// The text written by `discover --json`.
     Found(&'a str),
 }
 
-/// Why there are no questions.
+/// The reason why there are no questions.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum QuestionError {
-    /// Names that mean nothing: a mistake of the caller.
+    /// Unknown names: a mistake of the caller.
     #[error("{0}")]
     Names(String),
-    /// A result that no run can be designed for.
+    /// A discovery result for which no run can be designed.
     #[error("{0}")]
     Found(String),
 }
@@ -86,12 +86,12 @@ struct FoundEvidence {
     delta_bic: Option<f64>,
 }
 
-/// The questions of a request about the cables named, or about all; `noise_n` is the noise of the force at the platform where it is
-/// known better than from the request.
+/// Returns the questions of a request about the named cables, or about all. `noise_n` is the noise of the force at the platform, if it is known
+/// better than from the request.
 ///
 /// # Errors
-/// [`QuestionError::Names`] for unknown effects, parameters and cables; [`QuestionError::Found`] for a result of another form, of another robot,
-/// found by the wrench, or with nothing left open.
+/// Returns [`QuestionError::Names`] for unknown effects, parameters and cables, and [`QuestionError::Found`] for a result of another format or robot,
+/// found by the wrench, or without open questions.
 pub fn questions(
     robot: &RobotFile,
     request: Request<'_>,
@@ -151,7 +151,7 @@ fn effect(kind: &str) -> Result<Effect, QuestionError> {
     })
 }
 
-/// By its name, or by its name without the unit where that can only mean one.
+/// Returns a parameter by its name, or by its name without the unit if that is unique.
 fn parameter(name: &str) -> Result<Parameter, QuestionError> {
     let name = name.trim();
     let start = format!("{name}_");
@@ -232,7 +232,7 @@ fn of_found(
     Ok(questions)
 }
 
-/// What is left open on a cable.
+/// Returns the open questions of a cable.
 fn aims(found: &FoundCable) -> Vec<Aim> {
     let of_kind = |kind: &str| Effect::of_kind(kind).filter(|effect| *effect != Effect::Empirical);
     let apart = found.effects.iter().filter_map(|effect| {

@@ -13,60 +13,60 @@ use serde::Serialize;
 
 use crate::verdict::left_in_words;
 
-/// How long cycles take, in bounded memory.
+/// Cycle times in bounded memory.
 #[derive(Clone, Debug)]
 pub struct CycleTimes(Histogram<u64>);
 
 impl CycleTimes {
-    /// Before the first cycle. Three digits are kept; durations beyond 2^40 ns (18 minutes) count as that.
+    /// Creates an empty histogram. Three digits are kept; durations beyond 2^40 ns (18 minutes) count as that.
     ///
     /// # Errors
-    /// As [`Histogram::new_with_max`], which takes these bounds.
+    /// Returns the errors of [`Histogram::new_with_max`], which accepts these bounds.
     pub fn new() -> Result<Self, CreationError> {
         Histogram::new_with_max(1 << 40, 3).map(Self)
     }
 
-    /// Takes in a cycle.
+    /// Adds a cycle.
     pub fn add(&mut self, cycle_ns: u64) {
         self.0.saturating_record(cycle_ns);
     }
 }
 
-/// All of it.
+/// The result of a replay.
 #[derive(Clone, Debug, Serialize)]
 pub struct ReplayResult {
-    /// Name and version of the form.
+    /// Name and version of the format.
     pub format: &'static str,
     /// Name of the robot.
     pub robot: String,
     /// The cables in the robot's order.
     pub cables: Vec<CableResult>,
-    /// Errors of the wrench, where there is one to compare with.
+    /// Errors of the wrench, if there is a reference.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub wrench: Option<WrenchResult>,
-    /// Where the poses come from, if not from the log.
+    /// Source of the poses, if not the log.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pose: Option<PoseResult>,
-    /// How long cycles took.
+    /// Cycle times.
     pub cycle: CycleResult,
 }
 
-/// Poses that were computed.
+/// Computed poses.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PoseResult {
-    /// What from: `lengths`.
+    /// Their source: `lengths`.
     pub source: &'static str,
-    /// Samples with a pose.
+    /// Number of samples with a pose.
     pub samples: u64,
-    /// Samples without one.
+    /// Number of samples without a pose.
     pub missing: u64,
-    /// What the lengths are off at the poses, rms over cables and samples, m.
+    /// Error of the lengths at the poses, rms over cables and samples, m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub residual_rms_m: Option<f64>,
 }
 
 impl PoseResult {
-    /// Of poses from the cable lengths.
+    /// Creates the result of poses from the cable lengths.
     #[must_use]
     pub fn of(poses: &LengthPoses) -> Self {
         Self {
@@ -77,7 +77,7 @@ impl PoseResult {
         }
     }
 
-    /// For people: a line.
+    /// Returns a line for people.
     fn line(&self) -> String {
         let residual =
             self.residual_rms_m.map_or_else(String::new, |rms_m| format!(", residual {:.3} mm rms", rms_m * 1e3));
@@ -91,39 +91,39 @@ impl PoseResult {
 pub struct CableResult {
     /// Its name.
     pub name: String,
-    /// Cycles run.
+    /// Number of cycles.
     pub samples: u64,
-    /// Cycles with any flag.
+    /// Number of cycles with any flag.
     pub flagged: u64,
-    /// Error as if nothing rubbed; `None` without a reference.
+    /// Error without friction compensation; `None` without a reference.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub before: Option<ForceError>,
     /// Error of the compensated force.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub after: Option<ForceError>,
-    /// Faults of the recording that were corrected before.
+    /// Faults of the recording that were corrected before the replay.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<FaultResult>,
 }
 
-/// How long cycles took.
+/// Cycle times.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct CycleResult {
-    /// How many there were.
+    /// Number of cycles.
     pub count: u64,
-    /// Half of them took at most so long, ns.
+    /// Median, ns.
     pub median_ns: u64,
-    /// 99.9 % of them did, ns.
+    /// 99.9 % quantile, ns.
     pub p999_ns: u64,
-    /// The longest, ns.
+    /// Maximum, ns.
     pub max_ns: u64,
 }
 
 impl ReplayResult {
-    /// Name and version of the form.
+    /// Name and version of the format.
     pub const FORMAT: &str = "fric-replay/1";
 
-    /// Of a replay that has come to its end.
+    /// Creates the result of a finished replay.
     #[must_use]
     pub fn new(robot: &RobotFile, replay: &Replay, times: &CycleTimes) -> Self {
         let cable = |(name, errors): (&str, &CableErrors)| CableResult {
@@ -150,13 +150,13 @@ impl ReplayResult {
         }
     }
 
-    /// The same with poses that were computed from the cable lengths.
+    /// Adds the poses that were computed from the cable lengths.
     #[must_use]
     pub fn with_poses(self, poses: Option<&LengthPoses>) -> Self {
         Self { pose: poses.map(PoseResult::of), ..self }
     }
 
-    /// The same with what was corrected in the log.
+    /// Adds the corrections of the log.
     #[must_use]
     pub fn with_corrections(mut self, corrections: Option<&Corrections>) -> Self {
         for (place, cable) in self.cables.iter_mut().enumerate() {
@@ -166,13 +166,13 @@ impl ReplayResult {
         self
     }
 
-    /// For people: a table of at most 80 columns.
+    /// Returns a table for people, at most 80 columns wide.
     #[must_use]
     pub fn summary(&self) -> String {
         self.table(false)
     }
 
-    /// For people: the same table; `wide` with the mean of the error's magnitude and the number of samples.
+    /// Returns the same table; `wide` adds the mean magnitude of the error and the number of samples.
     #[must_use]
     pub fn table(&self, wide: bool) -> String {
         let mut columns = vec![("rms error\nbefore [N]", 1), ("rms error\nafter [N]", 2), ("error\nleft", 3)];
@@ -208,7 +208,7 @@ impl ReplayResult {
 }
 
 impl CableResult {
-    /// All cells of the table: name, rms before and after, share left, mean before and after, samples, flagged.
+    /// Returns all cells of the table: name, rms before and after, remaining fraction, mean before and after, samples, flagged.
     fn cells(&self) -> [String; 8] {
         let number = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.4}"));
         let (before, after) = (self.before.as_ref(), self.after.as_ref());

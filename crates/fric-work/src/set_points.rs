@@ -1,18 +1,18 @@
-//! Set points as CSV: one row a cycle, units in the header.
+//! Set points as CSV: one row per cycle, units in the header.
 
 use std::io;
 
 use fric_lab::excite::{Excitation, ExcitedCycle};
 use fric_log::output::{CompleteFile, OutputError, OutputFile};
 
-/// The file in the making.
+/// A file under construction.
 ///
-/// Whatever is written to it fails as the file does, with its path and what the operating system says.
+/// A write error contains the file's path and the message of the operating system.
 pub struct SetPointTable {
     writer: csv::Writer<OutputFile>,
 }
 
-/// Columns of a platform behind time and phase.
+/// Columns of a platform after time and phase.
 const PLATFORM_COLUMNS: [&str; 13] = [
     "x_m",
     "y_m",
@@ -29,22 +29,22 @@ const PLATFORM_COLUMNS: [&str; 13] = [
     "az_m_per_s2",
 ];
 
-/// A cell that a spreadsheet does not take for a formula, which may do anything.
+/// Returns a cell that a spreadsheet does not interpret as a formula, which might execute anything.
 fn no_formula(cell: String) -> String {
     if cell.starts_with(['=', '+', '-', '@']) { format!("'{cell}") } else { cell }
 }
 
 impl SetPointTable {
-    /// At the start of a file.
+    /// Starts at the beginning of a file.
     #[must_use]
     pub fn new(file: OutputFile) -> Self {
         Self { writer: csv::Writer::from_writer(file) }
     }
 
-    /// The names of the columns, with units.
+    /// Writes the names of the columns, with units.
     ///
     /// # Errors
-    /// [`OutputError::File`] where the file cannot be written.
+    /// Returns [`OutputError::File`] if the file cannot be written.
     pub fn write_header(&mut self, names: &[&str], excitation: &Excitation) -> Result<(), OutputError> {
         let mut header: Vec<String> = vec!["time_s".to_owned(), "phase".to_owned()];
         if excitation.work_box().is_some() {
@@ -58,12 +58,12 @@ impl SetPointTable {
         self.writer.write_record(header.into_iter().map(no_formula)).map_err(|error| self.failure(error))
     }
 
-    /// One row.
+    /// Writes one row.
     ///
     /// # Errors
-    /// [`OutputError::File`] where the file cannot be written.
+    /// Returns [`OutputError::File`] if the file cannot be written.
     pub fn write(&mut self, cycle: &ExcitedCycle<'_>) -> Result<(), OutputError> {
-        // Cycle times are whole nanoseconds; the product has the noise of binary fractions.
+        // Cycle times are whole nanoseconds, but the product has the rounding noise of binary fractions.
         let time_s = (cycle.time_s * 1e9).round() / 1e9;
         self.field(&time_s.to_string())?;
         self.field(cycle.phase.name())?;
@@ -86,17 +86,17 @@ impl SetPointTable {
         self.writer.write_record(None::<&[u8]>).map_err(|error| self.failure(error))
     }
 
-    /// The file with all its rows, to be put in its place.
+    /// Returns the file with all its rows, ready to be put in its place.
     ///
     /// # Errors
-    /// [`OutputError::File`] where the file cannot be written.
+    /// Returns [`OutputError::File`] if the file cannot be written.
     pub fn complete(self) -> Result<CompleteFile, OutputError> {
         let path = self.writer.get_ref().path().to_owned();
         let file = self.writer.into_inner().map_err(|error| OutputError::File { path, source: error.into_error() })?;
         file.complete()
     }
 
-    /// All digits, so that the reader has the very number; no minus before a zero.
+    /// Writes all digits, so that the reader gets the exact number; no negative zero.
     fn number(&mut self, number: f64) -> Result<(), OutputError> {
         self.field(&(number + 0.0).to_string())
     }
@@ -108,7 +108,7 @@ impl SetPointTable {
     fn failure(&self, error: csv::Error) -> OutputError {
         let source = match error.into_kind() {
             csv::ErrorKind::Io(error) => error,
-            // Rows are as long as the header, and text is all there is to write.
+            // Rows have the length of the header, and all cells are text.
             kind => io::Error::other(format!("{kind:?}")),
         };
         OutputError::File { path: self.writer.get_ref().path().to_owned(), source }

@@ -1,6 +1,6 @@
-//! Results in a sentence, with what to do: the beginning of every page.
+//! Verdicts: a result in a sentence, with what to do, at the beginning of every page.
 //!
-//! Numbers in the sentences are those of the tables, in the same rounding.
+//! Numbers in the sentences equal those of the tables, including the rounding.
 
 use fric_lab::continuum::discover::TendonDiscoverResult;
 use fric_lab::continuum::identify::TendonFitResult;
@@ -13,27 +13,27 @@ use fric_lab::text::listed;
 
 use crate::replay::{CableResult, ReplayResult};
 
-/// A model that leaves no more than this of the error works; twice and half of it move the word, no number. The measured robots of \[P\]
-/// leave 5 to 20 %.
+/// Maximum remaining fraction of the error for a model that works. Twice and half this value change only the wording, no number. The measured robots
+/// of \[P\] leave 5 to 20 %.
 const WORKS: f64 = 0.3;
-/// Samples flagged above this share are worth a sentence.
+/// Fraction of flagged samples above which they are mentioned.
 const MANY_FLAGGED: f64 = 0.01;
 
-/// How a verdict is meant.
+/// The tone of a verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tone {
     /// Nothing to do.
     Well,
     /// Something to look at.
     Mixed,
-    /// Something got worse, or nothing can be said.
+    /// Something became worse, or no verdict is possible.
     Bad,
 }
 
 /// A result in a sentence.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Verdict {
-    /// How it is meant.
+    /// Its tone.
     pub tone: Tone,
     /// The sentence.
     pub sentence: String,
@@ -41,13 +41,13 @@ pub struct Verdict {
     pub todo: Vec<String>,
 }
 
-/// A share of an error that is left, in per cent with one digit behind the point.
+/// Formats a remaining fraction of an error, in per cent with one decimal.
 #[must_use]
 pub fn left_in_words(left: f64) -> String {
     if left.is_finite() { format!("{:.1} %", 100.0 * left) } else { "–".to_owned() }
 }
 
-/// From the least to the greatest of shares that are left.
+/// Formats the range of remaining fractions.
 pub(crate) fn range_in_words(shares: impl Iterator<Item = f64>) -> String {
     let (least, greatest) = shares
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, greatest), share| (least.min(share), greatest.max(share)));
@@ -55,7 +55,7 @@ pub(crate) fn range_in_words(shares: impl Iterator<Item = f64>) -> String {
     if least == greatest { least } else { format!("{least} to {greatest}") }
 }
 
-/// Errors before and after, and which got worse.
+/// Errors before and after, and their name.
 struct Compared {
     name: String,
     before: f64,
@@ -90,7 +90,7 @@ impl Compared {
         self.after / self.before
     }
 
-    /// Worse by what the tables show, not by what they round away.
+    /// Whether the error became worse by an amount that the tables show.
     fn is_worse(&self) -> bool {
         self.after > self.before && format!("{:.4}", self.after) != format!("{:.4}", self.before)
     }
@@ -100,14 +100,14 @@ impl Compared {
     }
 }
 
-/// Of errors that got worse, what is said first; `None` where none did.
+/// Returns a sentence about errors that became worse; `None` if none did.
 fn worse(all: &[Compared]) -> Option<String> {
     let worse: Vec<String> = all.iter().filter(|one| one.is_worse()).map(Compared::in_words).collect();
     (!worse.is_empty()).then(|| format!("Compensation makes {} worse.", listed(&worse)))
 }
 
 impl CableResult {
-    /// What compensation leaves of the error, a share; `None` where there is nothing to compare with.
+    /// Returns the remaining fraction of the error with compensation; `None` without a reference.
     #[must_use]
     pub fn left(&self) -> Option<f64> {
         let (before, after): (&ForceError, &ForceError) = self.before.as_ref().zip(self.after.as_ref())?;
@@ -116,7 +116,7 @@ impl CableResult {
 }
 
 impl ReplayResult {
-    /// In a sentence: what compensation does to the error of the forces; what it makes worse first.
+    /// Returns the effect of compensation on the error of the forces, in a sentence; errors that become worse come first.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
         let cables: Vec<Compared> = self.cables.iter().filter_map(Compared::of_cable).collect();
@@ -180,7 +180,7 @@ impl ReplayResult {
     }
 }
 
-/// What is left of errors that got no worse; `None` without any.
+/// Returns the remaining fraction of errors that did not become worse; `None` if there are none.
 fn share_left(of: &str, all: &[Compared]) -> Option<String> {
     let better = all.iter().filter(|one| !one.is_worse());
     let shares: Vec<f64> = better.map(Compared::left).filter(|left| left.is_finite()).collect();
@@ -196,12 +196,12 @@ fn is_many(flagged: u64, samples: u64) -> bool {
     flagged as f64 > MANY_FLAGGED * samples as f64
 }
 
-/// A number of things.
+/// Formats a number of things.
 pub(crate) fn counted(count: usize, thing: &str) -> String {
     if count == 1 { format!("{count} {thing}") } else { format!("{count} {thing}s") }
 }
 
-/// Of a fit: what the fitted model leaves of the error.
+/// Returns the verdict on a fit: the remaining fraction of the error.
 #[must_use]
 pub fn of_fit(result: &FitResult) -> Verdict {
     let of_cable = |cable: &fric_lab::fit::result::FitCableResult| {
@@ -250,7 +250,7 @@ pub fn of_fit(result: &FitResult) -> Verdict {
     Verdict { tone, sentence, todo }
 }
 
-/// Of a discovery: what is missing, on which cables, with remedies.
+/// Returns the verdict on a discovery: the missing effects, the cables, and the remedies.
 #[must_use]
 pub fn of_discovery(result: &DiscoverResult) -> Verdict {
     let count = result.cables.len();
@@ -342,11 +342,11 @@ pub fn of_discovery(result: &DiscoverResult) -> Verdict {
 }
 
 fn capitalised(text: &str) -> String {
-    // Names of cables stay as they are.
+    // Names of cables keep their case.
     if text.starts_with("all ") { format!("A{}", text.get(1..).unwrap_or_default()) } else { text.to_owned() }
 }
 
-/// Of a hysteresis: what lasts of its width.
+/// Returns the verdict on a hysteresis: the remaining fraction of its width.
 #[must_use]
 pub fn of_hysteresis(result: &HysteresisResult) -> Verdict {
     let of_axis = |axis: &fric_lab::hysteresis::AxisResult| {
@@ -394,7 +394,7 @@ pub fn of_hysteresis(result: &HysteresisResult) -> Verdict {
     Verdict { tone, sentence, todo }
 }
 
-/// Of a calibration: how well lines describe the gratings.
+/// Returns the verdict on a calibration: how well lines describe the gratings.
 #[must_use]
 pub fn of_calibration(result: &CalibrationResult) -> Verdict {
     let worst =
@@ -416,7 +416,7 @@ pub fn of_calibration(result: &CalibrationResult) -> Verdict {
     Verdict { tone: Tone::Well, sentence, todo }
 }
 
-/// Of the identification of a manipulator: what is left between model and markers, or between model and gratings.
+/// Returns the verdict on the identification of a manipulator: the remaining error between model and markers, or between model and gratings.
 #[must_use]
 pub fn of_tendon_fit(result: &TendonFitResult) -> Verdict {
     let (before, after) = (result.before, result.after);
@@ -446,7 +446,7 @@ pub fn of_tendon_fit(result: &TendonFitResult) -> Verdict {
     Verdict { tone, sentence, todo }
 }
 
-/// Of friction at the holes: the hole with the most.
+/// Returns the verdict on the friction at the holes: the hole with the most.
 #[must_use]
 pub fn of_hole_frictions(result: &FrictionResult) -> Verdict {
     let largest = |hole: &fric_lab::continuum::result::HoleSummary| hole.least_n.abs().max(hole.greatest_n.abs());
@@ -466,7 +466,7 @@ pub fn of_hole_frictions(result: &FrictionResult) -> Verdict {
     Verdict { tone: Tone::Mixed, sentence, todo }
 }
 
-/// Of shapes: the way that comes nearest to the markers.
+/// Returns the verdict on shapes: the friction model nearest to the markers.
 #[must_use]
 pub fn of_shapes(result: &ShapeResult) -> Verdict {
     let mean_mm = |way: &fric_lab::continuum::result::WayErrors| way.all.mean_mm;
@@ -496,7 +496,7 @@ pub fn of_shapes(result: &ShapeResult) -> Verdict {
     Verdict { tone, sentence, todo }
 }
 
-/// Of a discovery on a manipulator.
+/// Returns the verdict on a manipulator's discovery.
 #[must_use]
 pub fn of_tendon(result: &TendonDiscoverResult) -> Verdict {
     let (mut parts, mut todo, mut is_well) = (Vec::new(), Vec::new(), true);
@@ -521,7 +521,7 @@ pub fn of_tendon(result: &TendonDiscoverResult) -> Verdict {
     Verdict { tone: if is_well { Tone::Well } else { Tone::Mixed }, sentence: parts.join(" "), todo }
 }
 
-/// Of a single hole.
+/// Returns the verdict on a single hole.
 #[must_use]
 pub fn of_hole(result: &HoleResult) -> Verdict {
     let [from, to] = result.interval;

@@ -1,4 +1,4 @@
-"""Results: what the compiled part computes, as values that are compared, copied, pickled and shown."""
+"""Results: values computed by the compiled part, which can be compared, copied, pickled, and shown."""
 
 from .continuum import (
     CalibrationResult,

@@ -1,4 +1,4 @@
-"""What all results have in common."""
+"""Base classes of all results."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ import numpy as np
 from .._errors import ConfigError
 from .._fric import _unknown_name
 
-# A list or dict whose text is longer is counted in `repr`.
+# If the text of a list or dict is longer, `repr` shows only the number of its entries.
 _LONGEST_TEXT = 200
 
 
 class Shown(NamedTuple):
-    """What people and machines see of a result."""
+    """Texts of a result for people and for machines."""
 
     summary: str
     json: str
@@ -26,13 +26,13 @@ class Shown(NamedTuple):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Value:
-    """Fields that stay as they are; two are equal where all fields are, NaN with NaN. Arrays cannot be written to."""
+    """Immutable record. Two are equal if all fields are equal, where NaN equals NaN. Its arrays are read-only."""
 
     def __post_init__(self) -> None:
         _fix(vars(self))
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        # Arrays forget in a pickle that they are not to be written to.
+        # Pickling loses the read-only flag of arrays.
         vars(self).update(state)
         _fix(state)
 
@@ -52,25 +52,25 @@ class Value:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Result(Value):
-    """A result with the texts that the command line prints and writes of it."""
+    """Result with the texts that the command line prints and writes for it."""
 
     _shown: Shown = field(repr=False, compare=False)
 
     def summary(self) -> str:
-        """What the command line prints."""
+        """Returns the text that the command line prints."""
         return self._shown.summary
 
     def to_json(self) -> str:
-        """The text that the command line writes with `--json`."""
+        """Returns the text that the command line writes with `--json`."""
         return self._shown.json
 
     def to_dict(self) -> dict[str, Any]:
-        """The same as a dict."""
+        """Returns the content of `to_json` as a dict."""
         table: dict[str, Any] = json.loads(self._shown.json)
         return table
 
     def to_html(self) -> str:
-        """A page, one file without network access: the report of the command line, where it has one."""
+        """Returns a self-contained HTML page that needs no network: the report of the command line, if it has one."""
         return self._shown.html
 
     def _repr_html_(self) -> str:
@@ -89,7 +89,7 @@ _Cable = TypeVar("_Cable", bound=_Named)
 
 
 def of_cable(cables: tuple[_Cable, ...], name: str) -> _Cable:
-    """The one of the cable of a name."""
+    """Returns the cable with the given name."""
     for cable in cables:
         if cable.name == name:
             return cable
@@ -97,7 +97,7 @@ def of_cable(cables: tuple[_Cable, ...], name: str) -> _Cable:
 
 
 def _fix(values: dict[Any, Any]) -> None:
-    """Makes arrays such that nobody can write to them."""
+    """Makes arrays read-only."""
     for value in values.values():
         if isinstance(value, np.ndarray):
             value.flags.writeable = False
@@ -106,9 +106,9 @@ def _fix(values: dict[Any, Any]) -> None:
 
 
 def _same(one: Any, other: Any) -> bool:
-    """Whether two values are equal, NaN with NaN."""
+    """Returns whether two values are equal, where NaN equals NaN."""
     if isinstance(one, np.ndarray) and isinstance(other, np.ndarray):
-        # NaN differs from itself, and only NaN does.
+        # Only NaN differs from itself.
         equal = one.shape == other.shape and one.dtype == other.dtype
         return equal and bool(((one == other) | ((one != one) & (other != other))).all())
     if isinstance(one, dict) and isinstance(other, dict):
@@ -119,7 +119,7 @@ def _same(one: Any, other: Any) -> bool:
 
 
 def _text(value: Any) -> str:
-    """A value in `repr`; what would fill the screen is counted."""
+    """Returns the text of a value for `repr`. Of values too long for the screen, it states the number of entries."""
     if isinstance(value, np.ndarray):
         return f"<{value.dtype} array of shape {value.shape}>"
     text = repr(value)

@@ -1,4 +1,4 @@
-"""What the work on a manipulator finds."""
+"""Results of the analyses of manipulators."""
 
 from __future__ import annotations
 
@@ -16,21 +16,20 @@ from .base import Result, Shown, Value
 
 @dataclass(frozen=True, eq=False, repr=False)
 class CalibrationResult(Result):
-    """Outcome of `calibrate`: `T = a·Δλ + b` for each grating. Arrays have one entry for each grating; ratios are shares of the greatest
-    load."""
+    """Result of `calibrate`: `T = a·Δλ + b` for each grating. Arrays have one entry for each grating. Ratios are relative to the greatest load."""
 
     manipulator: Manipulator
-    """The manipulator with these coefficients; all else, comments included, is as in the one given."""
+    """Manipulator with these coefficients. All else, including comments, is as in the given one."""
     newton_per_nm: NDArray[np.float64]
     """Slope a, N/nm."""
     offset_n: NDArray[np.float64]
     """Offset b, N."""
     standard_error_n: NDArray[np.float64]
-    """Greatest standard error of a tension from one shift within the loads, N."""
+    """Greatest standard error of a tension from one shift within the range of the loads, N."""
     largest_residual_ratio: NDArray[np.float64]
-    """Largest residual."""
+    """Largest residual, relative to the greatest load."""
     largest_left_out_ratio: NDArray[np.float64]
-    """Largest error at a load of the line through all others."""
+    """Largest error at a load that was left out of the fit of the line."""
 
     @classmethod
     def _of(cls, shown: Shown, manipulator: Manipulator) -> CalibrationResult:
@@ -52,35 +51,35 @@ class CalibrationResult(Result):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class FrictionResult(Result):
-    """Outcome of `friction`: arrays with a row a sample and a column a hole, from the base plate. Friction is positive where the base side
-    is tighter, NaN where it is not known."""
+    """Result of `friction`. Arrays have one row per sample and one column per hole, from the base plate. Friction is positive if the tension on the
+    base side is greater, and NaN if it is not known."""
 
     time_s: NDArray[np.float64]
     """Time, s, (N,)."""
     friction_n: NDArray[np.float64]
     """Friction, N, (N, holes)."""
     standard_error_n: NDArray[np.float64]
-    """Its standard error, N, (N, holes)."""
+    """Standard error of the friction, N, (N, holes)."""
     directions_differ: NDArray[np.bool_]
-    """Whether friction has both directions beyond doubt, (N,)."""
+    """Whether friction acts in both directions with statistical significance, (N,)."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class HoleResult(Result):
-    """Outcome of `hole`."""
+    """Result of `hole`."""
 
     mu: float
     """Friction coefficient."""
     standard_error: float
-    """Its standard error."""
+    """Standard error of the coefficient."""
     interval: tuple[float, float]
-    """The interval that holds it in 95 of 100 cases."""
+    """95 % confidence interval of the coefficient."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Shape(Value):
-    """Outcome of `StaticModel.solve`; of `run` with one more axis in front, a row a step. Index 0 of (2, disks) is the first tendon. All numbers
-    are finite, whatever went in."""
+    """Result of `StaticModel.solve`. That of `run` has one more leading axis, with one row per step. Index 0 of (2, disks) is the first tendon. All
+    numbers are finite for any input."""
 
     disk_position_m: NDArray[np.float64]
     """Centres of the disks, base frame, m, (disks, 2)."""
@@ -91,26 +90,26 @@ class Shape(Value):
     tension_n: NDArray[np.float64]
     """Tension in each segment, N, (2, disks)."""
     friction_n: NDArray[np.float64]
-    """Friction at each hole, N, (2, disks); positive where the base side is tighter."""
+    """Friction at each hole, N, (2, disks); positive if the tension on the base side is greater."""
     bound_n: NDArray[np.float64]
     """Greatest friction at each hole, N, (2, disks)."""
     status: NDArray[np.uint32]
     """Bits of `ShapeStatus`, ()."""
     is_new: NDArray[np.bool_]
-    """Whether this is the shape for the tensions given, (); otherwise it is the last one that was right."""
+    """Whether this is the shape for the given tensions, (). Otherwise it is the last valid shape."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Command(Value):
-    """Outcome of `StaticModel.tension_for`; of `follow` with one more axis in front, a row a goal. It holds what to set at the base, and what the
-    model expects of it."""
+    """Result of `StaticModel.tension_for`. That of `follow` has one more leading axis, with one row per goal. It holds the tensions to set at the
+    base and the prediction of the model for them."""
 
     base_tension_n: NDArray[np.float64]
     """Tensions at the base of the first and the second tendon, N, (2,)."""
     bend_rad: NDArray[np.float64]
-    """Bend of the whole manipulator then, rad, ()."""
+    """Predicted bend of the whole manipulator, rad, ()."""
     tip_m: NDArray[np.float64]
-    """Centre of the last disk then, base frame, m, (2,)."""
+    """Predicted centre of the last disk, base frame, m, (2,)."""
     status: NDArray[np.uint32]
     """Bits of `GoalStatus`, ()."""
     is_reached: NDArray[np.bool_]
@@ -119,32 +118,32 @@ class Command(Value):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ShapeResult(Result):
-    """Outcome of `shape`. `ways` names the ways of friction that the run allows; arrays of a way have a row a sample."""
+    """Result of `shape`. `ways` names the sources of friction that the run allows. The arrays of each source have one row per sample."""
 
     ways: tuple[str, ...]
-    """Names of the ways: "none", "coulomb", "measured", "history"."""
+    """Names of the sources of friction: "none", "coulomb", "measured", "history"."""
     time_s: NDArray[np.float64]
     """Time, s, (N,)."""
     shapes: list[dict[str, Any]]
-    """The shapes that were picked, as dicts: time_s, tension_base_n, marker_m, and by each way errors, disk_position_m, friction_n …"""
+    """Selected shapes, as dicts: time_s, tension_base_n, marker_m, and for each source of friction errors, disk_position_m, friction_n …"""
     errors: list[dict[str, Any]]
-    """Errors of each way, as dicts: way, picked and all with max_mm and mean_mm, missing."""
+    """Errors for each source of friction, as dicts: way, picked and all with max_mm and mean_mm, missing."""
     _series: dict[str, dict[str, Any]]
 
     def disk_position_m(self, way: str) -> NDArray[np.float64]:
-        """Centres of the disks by a way, base frame, m, (N, disks, 2)."""
+        """Returns the centres of the disks for a source of friction, base frame, m, (N, disks, 2)."""
         return self._of_way(way, "disk_position_m")
 
     def friction_n(self, way: str) -> NDArray[np.float64]:
-        """Friction at each hole by a way, N, (N, holes)."""
+        """Returns the friction at each hole for a source of friction, N, (N, holes)."""
         return self._of_way(way, "friction_n")
 
     def tension_n(self, way: str) -> NDArray[np.float64]:
-        """Tension in each segment by a way, N, (N, disks)."""
+        """Returns the tension in each segment for a source of friction, N, (N, disks)."""
         return self._of_way(way, "tension_n")
 
     def bend_rad(self, way: str) -> NDArray[np.float64]:
-        """Bend of the manipulator by a way, rad, (N,)."""
+        """Returns the bend of the manipulator for a source of friction, rad, (N,)."""
         return self._of_way(way, "bend_rad")
 
     def _of_way(self, way: str, key: str) -> NDArray[np.float64]:
@@ -166,50 +165,50 @@ class ShapeResult(Result):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SimulatedTendon(Value):
-    """Outcome of `simulate`: what was measured, and what was really there."""
+    """Result of `simulate`: the measured run and the true values."""
 
     run: TendonRun
-    """What was measured."""
+    """Measured run."""
     load_n: NDArray[np.float64]
     """Loads of a calibration of the same gratings, N, (10,)."""
     load_shift_nm: NDArray[np.float64]
-    """Their shifts, nm, (10, disks)."""
+    """Wavelength shifts at these loads, nm, (10, disks)."""
     mu: NDArray[np.float64]
     """True friction coefficient of each hole."""
     friction_n: NDArray[np.float64]
     """True friction at each hole, N, (N, holes)."""
     bound_n: NDArray[np.float64]
-    """What each hole could truly hold, N, (N, holes)."""
+    """True greatest friction of each hole, N, (N, holes)."""
     tension_n: NDArray[np.float64]
     """True tension in each segment, N, (N, disks)."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class TendonDiscovery(Result):
-    """Outcome of `discover`. Arrays have a row for each sample that was compared: the run thinned, with every turn of the tension."""
+    """Result of `discover`. Arrays have one row for each sample that was compared: the run thinned out, with every reversal of the tension."""
 
     manipulator: Manipulator
-    """The manipulator with what was found; all else, comments included, is as in the one given."""
+    """Manipulator with the findings. All else, including comments, is as in the given one."""
     time_s: NDArray[np.float64]
     """Time, s, (N,)."""
     residual_before_n: NDArray[np.float64]
-    """Tension by the gratings less that of the given model, fitted, N, (N, disks); NaN where nothing was measured."""
+    """Tension from the gratings minus that of the given model after a fit, N, (N, disks); NaN where nothing was measured."""
     residual_after_n: NDArray[np.float64]
-    """The same with the extended model, N, (N, disks)."""
+    """Tension from the gratings minus that of the extended model, N, (N, disks)."""
     verdict: Literal["complete", "extended", "unexplained"]
-    """"complete", "extended" by what was found, with which what is left is noise, or "unexplained"."""
+    """ "complete"; "extended" by the effects found, so that the residual is noise; or "unexplained"."""
     effects: list[dict[str, Any]]
-    """What was found, as dicts: kind, parameters, standard_errors, gap_closed, evidence, runner_up, and alike, the names of effects
-    that the run does not tell from it, where there are any."""
+    """Effects found, as dicts: kind, parameters, standard_errors, gap_closed, evidence, runner_up, and, if there are any, alike: names of the effects
+    that the run cannot distinguish from it."""
     markers: dict[str, Any] | None
-    """Distances between disks and markers under the tensions that the gratings show, as a dict: noise_mm, calibration_error_mm, before,
-    after; None where too few markers tell their noise."""
+    """Distances between disks and markers under the tensions that the gratings show, as a dict: noise_mm, calibration_error_mm, before, after. None
+    if there are too few markers to estimate their noise."""
     tried: list[dict[str, Any]]
-    """Candidates that helped and did not suffice, best first, as dicts: kind, parameters, evidence, reason."""
+    """Candidates that improve the model but are not sufficient, best first, as dicts: kind, parameters, evidence, reason."""
     kept: str | None
-    """Why the file keeps a μ that the run contradicts: shapes would be worse; None where it keeps none."""
+    """Reason for which the file keeps a μ that contradicts the run: the shapes would be worse otherwise. None if it keeps none."""
     unexplained: dict[str, Any] | None
-    """What no effect accounts for, as a dict: rms_n, rms_mm, where, goes_with; None where nothing is left."""
+    """Residual that no effect explains, as a dict: rms_n, rms_mm, where, goes_with. None if there is none."""
 
     @classmethod
     def _of(
@@ -228,23 +227,22 @@ class TendonDiscovery(Result):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class TendonFit(Result):
-    """Outcome of `fit`. Dicts go by keys such as "bending_stiffness_n_m2", which carry their unit."""
+    """Result of `fit`. The keys of the dicts, such as "bending_stiffness_n_m2", state the unit."""
 
     manipulator: Manipulator
-    """The manipulator with the values found; all else, comments included, is as in the one given."""
+    """Manipulator with the fitted values. All else, including comments, is as in the given one."""
     parameters: dict[str, float]
-    """Values found."""
+    """Fitted values."""
     standard_errors: dict[str, float]
-    """Their standard errors."""
+    """Standard errors of the fitted values."""
     given: dict[str, float]
-    """Values of the manipulator given."""
+    """Values of the given manipulator."""
     undetermined: list[dict[str, Any]]
-    """What the runs cannot tell, as dicts: parameters (the first stays as given), sentence."""
+    """Parameters that the runs cannot determine, as dicts: parameters (the first keeps its given value), sentence."""
     before: dict[str, float]
-    """How far the manipulator given is off, as a dict: tension_rms_n, marker_mean_mm, marker_max_mm; a key is absent where there is nothing to
-    compare."""
+    """Errors of the given manipulator, as a dict: tension_rms_n, marker_mean_mm, marker_max_mm. A key is absent if there is nothing to compare."""
     after: dict[str, float]
-    """The same of the fitted one."""
+    """Errors of the fitted manipulator, with the same keys."""
 
     @classmethod
     def _of(cls, shown: Shown, manipulator: Manipulator) -> TendonFit:

@@ -1,4 +1,4 @@
-"""What a discovery finds."""
+"""Results of a discovery."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from .replay import Fault, ForceError
 
 
 class Missing(TypedDict):
-    """What a log lacks for a verdict."""
+    """Data that a log lacks for a verdict."""
 
     cause: str
     advice: str
 
 
-# `from` is a keyword, so that its declaration is no class.
+# `from` is a keyword, which the class syntax does not allow as a key.
 Where = TypedDict(
     "Where",
     {
@@ -40,20 +40,20 @@ Where = TypedDict(
 
 
 class Evidence(TypedDict):
-    """How sure an effect is."""
+    """Evidence for an effect."""
 
     delta_bic: float | None
     held_out_rms_n: float | None
 
 
 class Candidate(Evidence):
-    """An effect beside the given model."""
+    """Effect added alone to the given model."""
 
     kind: str
 
 
 class Tried(TypedDict):
-    """An effect that helps and does not suffice."""
+    """Effect that improves the model but is not sufficient."""
 
     kind: str
     evidence: Evidence
@@ -61,13 +61,13 @@ class Tried(TypedDict):
 
 
 class RunnerUp(Candidate):
-    """The next best name."""
+    """Second-best candidate."""
 
     as_good: bool
 
 
 class TablePoint(TypedDict):
-    """One place of a table: the condition, what the table changes there, and its standard error."""
+    """One point of a table: the condition, the change of the table there, and its standard error."""
 
     at: float
     value: float
@@ -75,7 +75,7 @@ class TablePoint(TypedDict):
 
 
 class Table(TypedDict):
-    """What an `empirical` table says, which is no name: how large something is and where."""
+    """Content of an `empirical` table: an effect without a name, described by its size and where it occurs."""
 
     status: Literal["unnamed"]
     changes: Literal["force", "friction"]
@@ -87,7 +87,7 @@ class Table(TypedDict):
 
 
 class Effect(TypedDict):
-    """An effect that was found."""
+    """Effect that was found."""
 
     kind: str
     parameters: dict[str, float]
@@ -110,7 +110,7 @@ Unexplained = TypedDict(
 
 
 class CommonParameter(TypedDict):
-    """A parameter over several cables."""
+    """Parameter over several cables."""
 
     key: str
     unit: str
@@ -122,7 +122,7 @@ class CommonParameter(TypedDict):
 
 
 class CommonEffect(TypedDict):
-    """An effect that several cables have."""
+    """Effect that several cables have."""
 
     kind: str
     cables: list[str]
@@ -137,7 +137,7 @@ class WrenchSizes(TypedDict):
 
 
 class WrenchComponent(TypedDict):
-    """One component, "fx_n" to "tz_nm": its white noise and the deviation before and after."""
+    """One component, "fx_n" to "tz_nm": its white noise, and its deviation before and after."""
 
     name: str
     noise: float
@@ -146,7 +146,7 @@ class WrenchComponent(TypedDict):
 
 
 class WrongNumber(TypedDict):
-    """A key of the robot file with the numbers that it should have."""
+    """Key of the robot file whose numbers are wrong, with the numbers that it should have."""
 
     kind: str
     cable: str | None
@@ -155,14 +155,14 @@ class WrongNumber(TypedDict):
 
 
 class TriedTogether(TypedDict):
-    """What helps all cables together and does not suffice."""
+    """Effect that improves all cables together but is not sufficient."""
 
     kind: str
     reason: str
 
 
 class WrenchGap(TypedDict):
-    """What concerns all cables together, where they were compared with the wrench."""
+    """Findings on all cables together, if they were compared with the wrench."""
 
     reference: Literal["wrench", "mass"]
     verdict: Literal["complete", "extended", "unexplained"]
@@ -177,61 +177,60 @@ class WrenchGap(TypedDict):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class CableDiscovery(Value):
-    """What a discovery found for a cable. Dicts and lists are as in the result of `fric-cli discover --json`.
+    """Result of a discovery for one cable. Dicts and lists are as in the result of `fric-cli discover --json`.
 
-    Arrays have an entry for every row of the logs one after the other; they are empty where nothing can be told.
+    Arrays have one entry for every row of the logs, concatenated. They are empty if no verdict is possible.
     """
 
     name: str
     """Name of the cable."""
     samples: int
-    """Samples that count."""
+    """Number of samples used."""
     left_out: LeftOut
-    """Samples that do not count, by the reason."""
+    """Number of samples not used, by reason."""
     held_out_samples: list[list[int]]
-    """Rows that judge and were not learned from, `[from, to]` without the last."""
+    """Rows of the held-out samples, `[from, to]` with `to` excluded. They were not used for training."""
     held_out_s: list[list[float]]
-    """When they are, s since the first row."""
+    """Times of the held-out samples, s since the first row."""
     noise_floor_n: float | None
     """Standard deviation of the white noise, N."""
     wander_n: float | None
-    """Standard deviation of slow noise that has nothing to do with the motion, N."""
+    """Standard deviation of slow noise that is unrelated to the motion, N."""
     reference_variation_n: float | None
-    """Standard deviation of the reference over the samples that judge, N: the error of a model that predicts a constant."""
+    """Standard deviation of the reference over the held-out samples, N: the error of a model that predicts a constant."""
     before: ForceError | None
-    """Error of the given model, fitted, on the samples held out."""
+    """Error of the given model after a fit, on the held-out samples."""
     after: ForceError | None
-    """Error of the extended model on the same samples."""
+    """Error of the extended model on the held-out samples."""
     gap_closed: float | None
-    """Share of the gap, what is above the noise, that the extended model has closed; None where there is no gap."""
+    """Fraction of the gap (the error above the noise) that the extended model closes; None if there is no gap."""
     verdict: Literal["complete", "extended", "unexplained"] | None
-    """"complete", "extended" by an effect with which what is left is noise, "unexplained", or None where the log does not allow to
-    tell."""
+    """ "complete"; "extended" by an effect, so that the residual is noise; "unexplained"; or None if the log does not allow a verdict."""
     missing: Missing | None
-    """What the log lacks for a verdict, cause and advice; None if nothing."""
+    """Data that the log lacks for a verdict, with cause and advice; None if it lacks none."""
     where: list[Where]
-    """Ranges of the conditions in which the given model disagrees, what tells most first."""
+    """Ranges of the conditions in which the given model disagrees, most significant first."""
     effects: list[Effect]
-    """Effects that were found, in the order in which they entered: kind, parameters, standard_errors, gap_closed, evidence,
-    runner_up, and table, which only `empirical` has: what is left and has no name."""
+    """Effects found, in the order in which they were added: kind, parameters, standard_errors, gap_closed, evidence, runner_up, and, only for
+    `empirical` (the residual that has no name), table."""
     candidates: list[Candidate]
-    """Every effect by itself beside the given model, the best first."""
+    """Every effect added alone to the given model, best first."""
     tried: list[Tried]
-    """Candidates that help the extended model and do not suffice, the best first: kind, evidence and reason."""
+    """Candidates that improve the extended model but are not sufficient, best first: kind, evidence, and reason."""
     parameters: dict[str, float]
-    """Values of the extended model by the robot file's keys, those of an effect as "stribeck.ratio"."""
+    """Values of the extended model by the keys of the robot file. Those of an effect are named like "stribeck.ratio"."""
     standard_errors: dict[str, float]
-    """Standard errors of those fitted."""
+    """Standard errors of the fitted values."""
     faults: list[Fault]
-    """Faults of the recording, corrected before model and log were compared."""
+    """Faults of the recording, which were corrected before the model was compared with the log."""
     unexplained: Unexplained | None
-    """What no effect accounts for; None if nothing."""
+    """Residual that no effect explains; None if there is none."""
     where_in_words: list[str]
-    """The ranges of `where` in words, such as "at speeds below 20 mm/s"."""
+    """Ranges of `where` in words, such as "at speeds below 20 mm/s"."""
     time_s: NDArray[np.float64]
-    """Time since the first row, s; several logs one after the other."""
+    """Time since the first row, s; several logs are concatenated."""
     residual_before_n: NDArray[np.float64]
-    """Residual of the given model, fitted, N; NaN where a row does not count."""
+    """Residual of the given model after a fit, N; NaN where a row is not used."""
     residual_after_n: NDArray[np.float64]
     """Residual of the extended model, N."""
 
@@ -242,24 +241,24 @@ class CableDiscovery(Value):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class DiscoverResult(Result):
-    """Outcome of a discovery. `print(result)` shows all of it, `result.plot("cable1")` a cable."""
+    """Result of a discovery. `print(result)` shows all of it, `result.plot("cable1")` one cable."""
 
     robot: Robot
-    """The robot with what was found; all else, comments included, is as in the robot given."""
+    """Robot with the findings. All else, including comments, is as in the given robot."""
     cables: tuple[CableDiscovery, ...]
-    """What was found for each cable, in the robot's order."""
+    """Findings for each cable, in the order of the robot."""
     common_effects: list[CommonEffect]
-    """Effects that several cables have, with the mean of their parameters over these."""
+    """Effects that several cables have, with the mean of their parameters over these cables."""
     wrench: WrenchGap | None
-    """The wrench before and after, effects that all cables have alike and wrong numbers of the robot file, as in the result of
-    `fric-cli discover --reference wrench --json`; None where the reference are forces."""
+    """Wrench before and after, effects that all cables have alike, and wrong numbers of the robot file, as in the result of `fric-cli discover
+    --reference wrench --json`. None if the reference is forces."""
 
     def cable(self, name: str) -> CableDiscovery:
-        """What was found for the cable of a name."""
+        """Returns the findings for the cable with the given name."""
         return of_cable(self.cables, name)
 
     def plot(self, cable: str) -> Any:
-        """Draws a cable: `fric.plot.gap_ladder`, `where` and `candidates` in one figure, which it returns; needs matplotlib."""
+        """Draws `fric.plot.gap_ladder`, `where`, and `candidates` of a cable into one figure and returns it. Needs matplotlib."""
         from ..plot import _discovery
 
         return _discovery(self, cable)

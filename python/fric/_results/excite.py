@@ -1,4 +1,4 @@
-"""The run that identifies a robot."""
+"""Runs for the identification of a robot."""
 
 from __future__ import annotations
 
@@ -14,43 +14,44 @@ from .base import Value
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ExciteResult(Value):
-    """Set points of an identification run, or of one designed for a question, a row a cycle; columns of cables are the robot's in order. `print(result)` says how hard it is."""
+    """Set points of an identification run or of a run designed for a question, one row per cycle. The columns are the cables in the order of the
+    robot. `print(result)` shows the demands on the robot."""
 
     robot: str
     """Name of the robot."""
     cable_names: tuple[str, ...]
     """Names of the cables in the order of the columns."""
     phases: tuple[str, ...]
-    """What the movement is for: the names that `phase` counts."""
+    """Names of the phases of the movement, which `phase` indexes."""
     phase: NDArray[np.uint8]
-    """Place in `phases`, (N,)."""
+    """Index into `phases`, (N,)."""
     time_s: NDArray[np.float64]
     """Time since the start, s, (N,)."""
     position_m: NDArray[np.float64] | None
-    """Position of the platform, base frame, m, (N, 3); None for a robot without."""
+    """Position of the platform, base frame, m, (N, 3); None for a robot without a platform."""
     orientation_xyzw: NDArray[np.float64] | None
-    """Its orientation as a unit quaternion, (N, 4)."""
+    """Orientation of the platform as a unit quaternion, (N, 4)."""
     velocity_m_per_s: NDArray[np.float64] | None
-    """Its velocity, m/s, (N, 3)."""
+    """Velocity of the platform, m/s, (N, 3)."""
     acceleration_m_per_s2: NDArray[np.float64] | None
-    """Its acceleration, m/s², (N, 3)."""
+    """Acceleration of the platform, m/s², (N, 3)."""
     length_m: NDArray[np.float64]
     """Length of the cables, m, (N, cables)."""
     speed_m_per_s: NDArray[np.float64]
-    """Its rate, m/s, (N, cables)."""
+    """Rate of change of the lengths, m/s, (N, cables)."""
     tension_n: NDArray[np.float64] | None
-    """Cable forces at the platform, N, (N, cables); None where not all cables are attached to it, and the run states no load of a test bench."""
+    """Cable forces at the platform, N, (N, cables). None if not all cables are attached to it and the run states no load of a test bench."""
     expectations: tuple[str, ...]
-    """What a designed run is expected to tell, a line for each question; empty for the identification run."""
+    """Expected findings of a designed run, one line for each question; empty for the identification run."""
     _summary: str = field(repr=False, compare=False)
     _html: str = field(repr=False, compare=False)
 
     def summary(self) -> str:
-        """What `fric-cli excite` prints of the run."""
+        """Returns the text that `fric-cli excite` prints for the run."""
         return self._summary
 
     def to_html(self) -> str:
-        """The page of `fric-cli excite --preview`, one file without network access."""
+        """Returns the page of `fric-cli excite --preview`: a self-contained HTML file that needs no network."""
         return self._html
 
     def __len__(self) -> int:

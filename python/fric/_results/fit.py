@@ -1,4 +1,4 @@
-"""What a fit finds."""
+"""Results of a fit."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .replay import Fault, ForceError, WrenchError
 
 
 class LeftOut(TypedDict):
-    """Samples that were not learned from, by the reason."""
+    """Samples not used for the fit, by reason."""
 
     flagged: int
     without_reference: int
@@ -24,7 +24,7 @@ class LeftOut(TypedDict):
 
 
 class OpenPart(TypedDict):
-    """A parameter of a combination that the samples leave open."""
+    """Parameter of a combination that the samples do not determine."""
 
     cable: str
     parameter: str
@@ -33,64 +33,64 @@ class OpenPart(TypedDict):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class CableFit(Value):
-    """What a fit found for a cable."""
+    """Result of a fit for one cable."""
 
     name: str
     """Name of the cable."""
     samples: int
-    """Samples that were learned from."""
+    """Number of samples used for the fit."""
     left_out: LeftOut
-    """Samples that were not learned from, by the reason."""
+    """Number of samples not used for the fit, by reason."""
     termination: str
-    """Why the search has ended: "converged", or why not."""
+    """Reason for which the search ended: "converged", or why it did not converge."""
     evaluations: int
-    """How often the model was evaluated with its derivatives."""
+    """Number of evaluations of the model with its derivatives."""
     values: dict[str, float]
-    """Values by the robot file's keys, fitted or kept."""
+    """Values by the keys of the robot file, fitted or kept."""
     standard_errors: dict[str, float]
     """Standard errors of the fitted values."""
     undetermined: list[str]
-    """What the samples do not determine: these values are kept as they were."""
+    """Parameters that the samples do not determine. They keep their given values."""
     open: list[list[OpenPart]]
-    """Combinations that the samples leave open, a list of parts each: `cable`, `parameter` and the `step` by which it changes with the
-    others; the first part is what is kept of this cable."""
+    """Combinations that the samples do not determine, each a list of parts: `cable`, `parameter`, and the `step` by which the parameter changes with
+    the others. The first part is the parameter of this cable that is kept."""
     at_bound: list[str]
-    """What is at an end of its range, where the samples would have it beyond."""
+    """Parameters at a limit of their range that the samples would exceed."""
     parameters: tuple[str, ...]
-    """What was fitted, in the order of `covariance` and `correlation`."""
+    """Fitted parameters, in the order of `covariance` and `correlation`."""
     covariance: NDArray[np.float64]
     """Covariance of the fitted parameters in their units, in the order of `parameters`."""
     correlation: NDArray[np.float64]
-    """Their correlations, -1 to 1, in the same order."""
+    """Correlations of the fitted parameters, -1 to 1, in the same order."""
     residuals_n: NDArray[np.float64]
-    """Compensated force less reference with these values, N, for every row of the logs one after the other; NaN where there is no
-    reference, as everywhere in a fit to the wrench."""
+    """Compensated force minus the reference with these values, N, for every row of the logs, concatenated. NaN where there is no reference, and
+    everywhere in a fit to the wrench."""
     before: ForceError | None
-    """Error of the sensor force turned into tension as if nothing rubbed; None without a reference."""
+    """Error of the tension computed from the sensor force without friction; None without a reference."""
     after: ForceError | None
     """Error of the force compensated with these values; None without a reference."""
     faults: list[Fault]
-    """Faults of the recording that were corrected before: a reference that comes late, or runs by another clock."""
+    """Faults of the recording that were corrected before the fit: a delayed reference, or a reference on a different clock."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class FitResult(Result):
-    """Outcome of a fit. `print(result)` shows values, errors, correlations and what is not determined; `summary()` is a table."""
+    """Result of a fit. `print(result)` shows values, errors, correlations, and undetermined parameters; `summary()` is a table."""
 
     robot: Robot
-    """The robot with the fitted values; all else, comments included, is as in the robot given."""
+    """Robot with the fitted values. All else, including comments, is as in the given robot."""
     reference: Literal["forces", "wrench", "mass"]
-    """What was compared with: "forces", "wrench", or "mass" where the wrench is that of the platform's mass."""
+    """Reference of the fit: "forces", "wrench", or "mass" if the wrench is computed from the mass of the platform."""
     cables: tuple[CableFit, ...]
-    """What was found for each cable, in the robot's order."""
+    """Results for each cable, in the order of the robot."""
     wrench: tuple[WrenchError, WrenchError] | None
     """Error of the wrench before and after; None in a fit to forces."""
     held_out: WrenchError | None
-    """Error of the wrench on blocks of the log held out, with parameters from the other blocks; None in a fit to forces."""
+    """Error of the wrench on held-out blocks of the log, with parameters from the other blocks; None in a fit to forces."""
     _report: str = field(repr=False, compare=False)
 
     def cable(self, name: str) -> CableFit:
-        """What was found for the cable of a name."""
+        """Returns the result for the cable with the given name."""
         return of_cable(self.cables, name)
 
     def __str__(self) -> str:

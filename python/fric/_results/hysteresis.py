@@ -1,4 +1,4 @@
-"""What is left of the wrench's hysteresis."""
+"""Remaining hysteresis of the wrench."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ class Width(Value):
     """Width of a hysteresis."""
 
     width: float
-    """Difference of the means in either direction."""
+    """Difference between the means of the two directions."""
     standard_error: float | None
-    """Its standard error; None with a single pass in a direction."""
+    """Standard error of the width; None with a single pass in a direction."""
 
     @staticmethod
     def _of(entry: dict[str, float] | None) -> Width | None:
@@ -24,34 +24,34 @@ class Width(Value):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class AxisHysteresis(Value):
-    """The hysteresis along, or about, one axis."""
+    """Hysteresis along or about one axis."""
 
     axis: str
     """ "x", "y", "z" along the axes of the base, "a", "b", "c" about them."""
     unit: str
     """Unit of the widths."""
     passes: int
-    """Passes in both directions together; 0 for an axis that is not crossed."""
+    """Number of passes in both directions together; 0 for an axis that is not crossed."""
     without: Width | None
-    """From forces without compensation; None for an axis that is not crossed."""
+    """Width from forces without compensation; None for an axis that is not crossed."""
     compensated: Width | None
-    """From compensated forces; None for an axis that is not crossed."""
+    """Width from compensated forces; None for an axis that is not crossed."""
     lasting_ratio: float | None
-    """Width with compensation per width without; None where the latter is none but scatter."""
+    """Width with compensation divided by the width without; None if the latter is only scatter."""
     applied_subtracted: bool | None
-    """Whether the log's own outside wrench was taken off."""
+    """Whether the external wrench of the log was subtracted."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class HysteresisResult(Result):
-    """Outcome of `hysteresis`. `print(result)` shows all of it."""
+    """Result of `hysteresis`. `print(result)` shows all of it."""
 
     robot: str
     """Name of the robot."""
     axes: tuple[AxisHysteresis, ...]
-    """The axes x, y, z, a, b, c."""
+    """Axes x, y, z, a, b, c."""
     position_m: tuple[float, float, float]
-    """The position that is crossed, base frame, m."""
+    """Position that is crossed, base frame, m."""
 
     @classmethod
     def _of(cls, shown: Shown, position_m: tuple[float, float, float]) -> HysteresisResult:

@@ -1,4 +1,4 @@
-"""Errors of forces and wrenches, cycles of a compensator, and what a replay finds."""
+"""Errors of forces and wrenches, cycles of a compensator, and results of a replay."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ class ForceError(Value):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class WrenchError(Value):
-    """Deviation of the wrench from the one in the log."""
+    """Deviation of the wrench from that in the log."""
 
     force_rms_n: float
-    """Root mean square of the force deviation's length, N."""
+    """Root mean square of the magnitude of the force deviation, N."""
     torque_rms_nm: float
-    """The same of the torque, N m."""
+    """Root mean square of the magnitude of the torque deviation, N m."""
 
     @staticmethod
     def _pair(entry: dict[str, Any] | None) -> tuple[WrenchError, WrenchError] | None:
@@ -41,7 +41,7 @@ class WrenchError(Value):
 
 
 class Fault(TypedDict):
-    """A fault of the recording: it says something about the log, not about the machine."""
+    """Fault of the recording: a property of the log, not of the machine."""
 
     kind: Literal[
         "hum",
@@ -59,66 +59,66 @@ class Fault(TypedDict):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class CableErrors(Value):
-    """What a replay found for a cable."""
+    """Result of a replay for one cable."""
 
     name: str
     """Name of the cable."""
     samples: int
-    """Cycles run."""
+    """Number of cycles run."""
     flagged: int
-    """Cycles with any flag."""
+    """Number of cycles with any flag."""
     flags: int
-    """Each flag of `Status` that was raised, as bits."""
+    """All flags of `Status` that were raised, as bits."""
     before: ForceError | None
-    """Error of the sensor force turned into tension as if nothing rubbed; None without a reference."""
+    """Error of the tension computed from the sensor force without friction; None without a reference."""
     after: ForceError | None
     """Error of the compensated force; None without a reference."""
     faults: list[Fault]
-    """Faults of the recording that were corrected before, with `correct`."""
+    """Faults of the recording that were corrected before the replay, with `correct`."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Compensation(Value):
-    """Outcome of a cycle (a number per cable), or of as many cycles as there are rows. The arrays cannot be written to."""
+    """Output of one cycle (one number per cable), or of several (one row per cycle). The arrays are read-only."""
 
     force_at_platform_n: NDArray[np.float64]
-    """Cable force at the platform, N, the offset included."""
+    """Cable force at the platform, N, including the offset."""
     friction_n: NDArray[np.float64]
-    """Estimated friction, N: positive where it makes the platform side tighter."""
+    """Estimated friction, N: positive if it increases the tension on the platform side."""
     frictionless_n: NDArray[np.float64]
-    """The sensor force turned into cable tension as if nothing rubbed, N."""
+    """Cable tension computed from the sensor force without friction, N."""
     status: NDArray[np.uint32]
     """Bits of `Status`."""
     outside_wrench: NDArray[np.float64] | None
-    """Force (N) and torque (N m) on the platform from outside, gravity included; NaN in cycles without, None without any."""
+    """External force (N) and torque (N m) on the platform, including gravity. NaN in cycles without it, None if no cycle has it."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ReplayResult(Result):
-    """Outcome of a replay; the arrays have a row per row of the log. `print(result)` shows the errors."""
+    """Result of a replay. The arrays have one row per row of the log. `print(result)` shows the errors."""
 
     robot: str
     """Name of the robot."""
     cables: tuple[CableErrors, ...]
-    """What was found for each cable, in the robot's order."""
+    """Results for each cable, in the order of the robot."""
     wrench: tuple[WrenchError, WrenchError] | None
     """Error of the wrench before and after; None without a wrench in the log."""
     wrench_reference: Literal["wrench", "mass"] | None
-    """What the wrench is compared with: "wrench" in the log, or "mass" of the platform."""
+    """Reference of the wrench: "wrench" in the log, or the one computed from the "mass" of the platform."""
     force_at_platform_n: NDArray[np.float64]
     """Cable forces at the platform, N."""
     friction_n: NDArray[np.float64]
     """Estimated friction, N."""
     frictionless_n: NDArray[np.float64]
-    """Sensor forces turned into tension as if nothing rubbed, N."""
+    """Cable tensions computed from the sensor forces without friction, N."""
     status: NDArray[np.uint32]
     """Bits of `Status`."""
     outside_wrench: NDArray[np.float64] | None
-    """Force and torque on the platform from outside, gravity included; NaN while the pose or a cable's force is not known, None if it
-    never is."""
+    """External force and torque on the platform, including gravity. NaN while the pose or the force of a cable is not known, None if they never
+    are."""
 
     def cable(self, name: str) -> CableErrors:
-        """What was found for the cable of a name."""
+        """Returns the result for the cable with the given name."""
         return of_cable(self.cables, name)
 
     @classmethod

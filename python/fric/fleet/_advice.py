@@ -1,4 +1,4 @@
-"""What a change of a parameter may come from, and what to do about it on the machine."""
+"""Likely causes of a change of a parameter, and what to do about it on the machine."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ class Advice(NamedTuple):
 
 
 def advice(parameter: str, shape: Literal["step", "slope"], *, rises: bool) -> Advice:
-    """What is likely behind a parameter that has stepped, or goes up or down; what the parameter is, where nothing more is known."""
+    """Returns the likely cause of a step, a rise, or a fall of a parameter, or the meaning of the parameter if no cause is known."""
     name = parameter.rpartition(".")[2]
     for key in (parameter, name):
         known = _KNOWN.get((key, shape, rises)) or _KNOWN.get((key, shape, None))

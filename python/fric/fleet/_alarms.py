@@ -1,4 +1,4 @@
-"""Alarms: changes that belong together, limits that are passed, and a last log that is out of line."""
+"""Alarms: changes that belong together, exceeded limits, and a last log that is an outlier."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ._trend import YEAR_NANOS, Alarm, Change, Series
 
 
 def alarms_of(series: tuple[Series, ...], out_of_line: list[bool]) -> tuple[Alarm, ...]:
-    """All alarms, the latest first."""
+    """Returns all alarms, latest first."""
     alarms = []
     for (robot, cable), group in groupby(series, key=lambda one: (one.robot, one.cable)):
         alarms += [_of_history(robot, cable, changes) for changes in _together(tuple(group))]
@@ -26,14 +26,16 @@ def alarms_of(series: tuple[Series, ...], out_of_line: list[bool]) -> tuple[Alar
 
 
 def day(date: datetime) -> str:
-    """A date for people."""
+    """Returns a date as text for people."""
     return date.strftime("%Y-%m-%d")
 
 
 def _together(series: tuple[Series, ...]) -> list[list[tuple[Series, Change]]]:
-    """Changes of a cable that have one cause, the strongest first: those that may be of one date; slopes of which one begins while the
-    other goes on, for a parameter that the model lacks bends the others; and what the model leaves, which follows from a parameter that
-    has changed before."""
+    """Groups the changes of a cable that have one cause, strongest first.
+
+    Changes belong together if they may have the same date. Slopes also do if one begins while the other continues, because a parameter that the model
+    lacks bends the other parameters. A change of the residual error follows from a parameter that has changed before.
+    """
     changes = [(one, change) for one in series for change in one.changes]
     parameters = [pair for pair in changes if not _follows(pair[1])]
     groups: list[list[tuple[Series, Change]]] = []
@@ -58,14 +60,14 @@ def _of_one_date(one: Change, other: Change) -> bool:
 
 
 def _go_on_together(one: tuple[Series, Change], other: tuple[Series, Change]) -> bool:
-    """Whether two slopes have a time in common."""
+    """Returns whether two slopes overlap in time."""
     if one[1].kind != "slope" or other[1].kind != "slope":
         return False
     return one[1].date < _end(other) and other[1].date < _end(one)
 
 
 def _end(pair: tuple[Series, Change]) -> datetime:
-    """When a slope becomes another, or the last log."""
+    """Returns the date at which a slope ends: that of the next slope, or of the last log."""
     series, change = pair
     later = [one.date for one in series.changes if one.date > change.date]
     return min(later, default=_date_of(series, -1))
@@ -103,7 +105,7 @@ def _first(series: Series) -> datetime:
 
 
 def _reaches(series: Series) -> str:
-    """When a line that goes on reaches a limit."""
+    """Returns when the line, if it continues, reaches a limit."""
     if len(series.fitted) < 2 or series.date[-1] == series.date[-2]:
         return ""
     pace = (series.fitted[-1] - series.fitted[-2]) / float((series.date[-1] - series.date[-2]).astype(np.int64))
@@ -111,7 +113,7 @@ def _reaches(series: Series) -> str:
     if pace == 0 or bound is None or (bound - series.fitted[-1]) / pace <= 0:
         return ""
     years = (bound - series.fitted[-1]) / pace / YEAR_NANOS
-    # Further ahead than the log reaches back, a line says nothing.
+    # An extrapolation further ahead than the logs reach back is meaningless.
     if years > float((series.date[-1] - series.date[0]).astype(np.int64)) / YEAR_NANOS:
         return ""
     return f"; at this pace it reaches {bound:.4g} about {day(_date_of(series, -1) + timedelta(days=365.25 * years))}"

@@ -1,4 +1,4 @@
-"""Whether a series has changed, when and how: a step, or a slope that begins; or neither, where it only scatters or wanders."""
+"""Detection of changes in a series: a step, or the start of a slope. There is none if the series only scatters or wanders."""
 
 from __future__ import annotations
 
@@ -10,50 +10,50 @@ from ._joints import LEAST_LOGS, SINGLE, Joint, Line, Whiten, by_deviation, cand
 from ._noise import FREEDOM, Array, Scatter, Wander, fit_line, rough_scatter, size_of, wander, weighted, white
 
 _ROUNDS = 3
-# Evidence that is called very strong, in units of -2 log likelihood (Kass and Raftery 1995): a line has many places to follow a wander.
+# Evidence that is called very strong, in units of -2 log likelihood (Kass and Raftery 1995). A line has many joints with which to follow a wander.
 _VERY_STRONG = 10.0
-# Logs on each side that a value is compared with to see whether it is an outlier.
+# Number of logs on each side with which a value is compared to detect an outlier.
 _NEIGHBOURS = 3
-# -2 log likelihood within which date and size lie together with 95 %: the quantile of χ² with two degrees of freedom.
+# Range of -2 log likelihood that contains date and size together with 95 %: the quantile of χ² with two degrees of freedom.
 _INTERVAL = 5.99
 
 
 class Change(NamedTuple):
-    """A joint that the evidence speaks for."""
+    """Joint that the evidence supports."""
 
     log_index: int
-    """The first log after a step; the log from which a slope begins."""
+    """First log after a step, or the log from which a slope begins."""
     earliest: int
     latest: int
-    """The logs between which it lies with 95 %."""
+    """Last log of the 95 % interval of the joint, whose first one is `earliest`."""
     kind: Literal["step", "slope", "step_and_slope"]
     delta_bic: float
-    """Criterion with it less that without it: below zero speaks for it, and each 2 are a factor of e."""
+    """Criterion with the joint minus that without it: negative values favour the joint, and each 2 is a factor of e."""
 
 
 class Course(NamedTuple):
-    """A series as a line with joints and noise."""
+    """Series described by a line with joints, and noise."""
 
     line: Line
     changes: tuple[Change, ...]
     scatter: float
-    """Standard deviation from log to log beyond the standard errors."""
+    """Standard deviation from log to log in addition to the standard errors."""
     wanders: bool
-    """Whether a wander with a memory says more than any joint does."""
+    """Whether a wander with a memory explains the series better than any joint."""
     fitted: Array
-    """The line at each log."""
+    """Values of the line at each log."""
     coefficients: Array
     covariance: Array
     last_t: float
-    """How far the last value is off the line of all others, in standard deviations of a prediction; 0 of fewer than 6."""
+    """Deviation of the last value from the line through all others, in standard deviations of the prediction; 0 for fewer than 6 values."""
 
 
 def course(time: Array, values: Array, errors: Array, series_count: int) -> Course:
-    """Describes a series, times ascending, as one of so many that are looked at together.
+    """Describes a series, in ascending order of time, which is one of `series_count` series that are examined together.
 
-    The noise of a value is Student's t with its standard error and a scatter from log to log, which is found with each line that is
-    compared, so that a log now and then that went wrong is no change, and neither is what is within the scatter. A joint is kept where
-    criterion and prior odds speak for it (`Line.cost`), and where the evidence against a wander with a memory is very strong.
+    The noise of a value follows Student's t with its standard error and a scatter from log to log. The scatter is estimated together with each line
+    that is compared. Hence neither an occasional faulty log nor a deviation within the scatter counts as a change. A joint is kept if the criterion
+    with the prior odds supports it (`Line.cost`), and if the evidence against a wander with a memory is very strong.
     """
     errors = np.where(np.isfinite(errors), errors, 0.0)
     middle = float(np.median(values))
@@ -103,7 +103,7 @@ def _best(time: Array, y: Array, s: Array, series_count: int) -> tuple[Line, Sca
 
 
 def _local_variance(y: Array, s: Array) -> Array:
-    """The variance of each value by its neighbours alone, that of outliers grown until they fit: it favours neither joints nor a
+    """Estimates the variance of each value from its neighbours only; that of outliers is increased until they fit. It favours neither joints nor a
     wander."""
     smooth = np.array([np.median(y[max(0, place - _NEIGHBOURS) : place + _NEIGHBOURS + 1]) for place in range(len(y))])
     noise2 = np.maximum(s**2 + rough_scatter(y, s) ** 2, 1e-12)
@@ -112,7 +112,7 @@ def _local_variance(y: Array, s: Array) -> Array:
 
 
 def _compared(line: Line, known: dict[Line, Scatter], count: int, series_count: int) -> float:
-    """The criterion, with one factor of Bartlett for all that are compared in a pair: that of the line against none."""
+    """Returns the criterion of a line relative to the line without joints, with the Bartlett factor of that comparison."""
     none = known[Line()]
     free = known[line].coefficients.size + 1
     gain = (none.deviance - known[line].deviance) * max(count - free - 1, 0) / count
@@ -120,7 +120,7 @@ def _compared(line: Line, known: dict[Line, Scatter], count: int, series_count: 
 
 
 def _simpler(line: Line) -> list[Line]:
-    """The line without one of its joints, or with a simpler one."""
+    """Returns the line without one of its joints, or with a simpler one."""
     rivals = [Line(line.joints, False)] if line.sloped else []
     for joint in line.joints:
         rest = line.without(joint)
@@ -131,13 +131,13 @@ def _simpler(line: Line) -> list[Line]:
 
 
 def _beside_wander(time: Array, y: Array, line: Line, variance: Array, series_count: int) -> tuple[Line, Wander | None]:
-    """The line that stays where the series may wander, and the wander, if that says more than the line."""
+    """Returns the line that remains if the series may wander. Also returns the wander, if it explains more than the line."""
     count = len(time)
     schwarz = np.log(count)
-    # The odds against a joint hold beside a wander as beside a level.
+    # The prior odds against a joint are the same with a wander as with a level.
     as_line = white(line.design(time), y, variance) + schwarz + line.cost(count, series_count)
     alone = wander(time, Line().design(time), y, variance)
-    # A level, the size and the memory of the wander, and what noise is beside it.
+    # Four parameters: a level, the size and the memory of the wander, and the remaining noise.
     if as_line + _VERY_STRONG <= alone.deviance + schwarz * (1 + 3):
         return line, None
     best, beside, best_gain = Line(), alone, 0.0
@@ -177,7 +177,7 @@ def _changes(
 
 
 def _last(line: Line, time: Array, y: Array, s: Array) -> float:
-    """The last value beside the prediction by all others."""
+    """Compares the last value with the prediction from all others."""
     if len(time) < 2 * LEAST_LOGS:
         return 0.0
     last = len(time) - 1

@@ -1,4 +1,4 @@
-"""A series as a drawing in a page."""
+"""Drawing of a series in a page."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ import numpy as np
 from ._noise import Array
 from ._trend import Series
 
-# Letters stay readable where the drawing is as wide as a telephone.
+# Letters stay readable if the drawing is as wide as the screen of a telephone.
 _WIDTH, _HEIGHT = 460.0, 210.0
 _LEFT, _RIGHT, _TOP, _BOTTOM = 62.0, 10.0, 14.0, 26.0
-# Two-sided 95 % of a normal distribution.
+# Two-sided 95 % quantile of the normal distribution.
 _SIGMAS = 1.96
 
 
 def chart(series: Series) -> str:
-    """An SVG of values with intervals, the line that describes them, dates of changes and limits."""
+    """Returns an SVG of values with intervals, the line that describes them, dates of changes, and limits."""
     stamp = series.date.astype(np.int64).astype(float)
     span = max(stamp[-1] - stamp[0], 1.0)
     errors = _SIGMAS * np.where(np.isfinite(series.standard_errors), series.standard_errors, 0.0)
@@ -75,7 +75,7 @@ def _labels(series: Series, least: float, greatest: float) -> list[str]:
 
 
 def _short(value: float, span: float) -> str:
-    """As many digits as tell values of a span apart."""
+    """Formats a value with as many digits as are needed to distinguish values within a span."""
     digits = max(0, 2 - int(np.floor(np.log10(span))))
     return (f"{value:.{digits}f}" if digits < 6 else f"{value:.3g}").replace("-", "−")
 

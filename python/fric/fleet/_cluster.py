@@ -1,4 +1,4 @@
-"""The workers: those of a scheduler, or some of this machine's own."""
+"""Workers: those of a scheduler, or processes of this machine."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _CONNECT_WAIT_S = 10.0
 
 @contextmanager
 def connected(client: Any, workers: int | None) -> Iterator[Any]:
-    """A `distributed.Client` with at least one worker; what was started or opened here ends with it."""
+    """Provides a `distributed.Client` with at least one worker. All that is started or opened here ends with the context."""
     distributed = need("distributed")
     if client is None:
         with _own(distributed, workers) as own:
@@ -39,9 +39,9 @@ def connected(client: Any, workers: int | None) -> Iterator[Any]:
 def _own(distributed: Any, workers: int | None) -> Iterator[Any]:
     if workers is not None and workers < 1:
         raise ConfigError(f"`workers` is {workers}; give 1 or more")
-    # Processes of one thread each: with more, the threads of fric and those of the worker would be in each other's way.
+    # Each process has one thread: with more, the threads of fric and those of the worker would compete.
     environment = {"RAYON_NUM_THREADS": "1"}
-    # Any free port, for this machine alone: another cluster may have the usual one.
+    # Any free port, only reachable from this machine: another cluster may use the default port.
     dashboard = "127.0.0.1:0"
     try:
         cluster = distributed.LocalCluster(

@@ -1,7 +1,7 @@
-"""What the cluster can fail with."""
+"""Errors of the cluster."""
 
 from .._errors import FricError
 
 
 class FleetError(FricError):
-    """No cluster can be reached, or it cannot do the work; says which and what to do. Results that were written stay."""
+    """No cluster can be reached, or it cannot do the work. The message states the cause and the remedy. Results that were written are kept."""

@@ -1,4 +1,4 @@
-"""Where a line through a series has joints: steps, and dates from which it has another slope."""
+"""Joints of a line through a series: steps, and dates from which it has another slope."""
 
 from __future__ import annotations
 
@@ -12,43 +12,43 @@ from ._noise import Array
 
 
 LEAST_LOGS = 3
-"""Logs on each side of a joint: of two alone none could be an outlier."""
+"""Least number of logs on each side of a joint: neither of only two logs could be identified as an outlier."""
 SINGLE: tuple[Literal["step", "slope"], ...] = ("step", "slope")
-"""What a joint by itself may be."""
+"""Possible kinds of a single joint."""
 _KINDS: tuple[Literal["step", "slope", "step_and_slope"], ...] = (*SINGLE, "step_and_slope")
 _SWEEPS = 8
-# Columns that are tried at once, so that memory does not grow with the square of the logs.
+# Number of columns that are tried at once, so that memory does not grow with the square of the number of logs.
 _BLOCK = 512
 
 
 Whiten = Callable[[Array], Array]
-"""Columns, (N, C), brought to independent noise of 1 in each row."""
+"""Scales columns, (N, C), such that the noise of each row is independent with variance 1."""
 
 
 class Joint(NamedTuple):
-    """From the log `log_index` on the line is another."""
+    """Joint from which on the line is different: at the log `log_index`."""
 
     log_index: int
     kind: Literal["step", "slope", "step_and_slope"]
 
 
 class Line(NamedTuple):
-    """A line with joints in order."""
+    """Line with joints in ascending order."""
 
     joints: tuple[Joint, ...] = ()
     sloped: bool = False
     """Whether it has a slope from the first log on."""
 
     def without(self, joint: Joint) -> Line:
-        """The same without one of its joints."""
+        """Returns the line without one of its joints."""
         return Line(tuple(one for one in self.joints if one != joint), self.sloped)
 
     def with_joint(self, joint: Joint) -> Line:
-        """The same with one more."""
+        """Returns the line with one more joint."""
         return Line(tuple(sorted((*self.joints, joint))), self.sloped)
 
     def design(self, time: Array) -> Array:
-        """Its columns, (N, P): level, slope from the first log on, then those of each joint."""
+        """Returns its columns, (N, P): level, slope from the first log on, then those of each joint."""
         columns = [np.ones(len(time))]
         if self.sloped:
             columns.append(time - time[0])
@@ -57,16 +57,16 @@ class Line(NamedTuple):
         return np.stack(columns, axis=1)
 
     def column(self, change: int) -> int:
-        """Column of the design that is a change by its place: the slope from the first log on, where there is one, then the joints."""
+        """Returns the column of the design for a change, by its index: first the slope from the first log on, if there is one, then the joints."""
         joints = self.joints[: max(0, change - self.sloped)]
         past = [1 + (joint.kind == "step_and_slope") for joint in joints]
         return 1 if self.sloped and change == 0 else 1 + self.sloped + sum(past)
 
     def cost(self, count: int, series_count: int) -> float:
-        """What the line costs in units of -2 log likelihood, by the prior odds.
+        """Returns the cost of the line in units of -2 log likelihood, from the prior odds.
 
-        A coefficient costs log N (Schwarz 1978). A joint may be at each of N logs, which are equally likely, a slope from the first log on among
-        them: 2 log N, together the penalty of Zhang and Siegmund (2007). A joint is expected in one of all the series: 2 log of their number (Chen
+        A coefficient costs log N (Schwarz 1978). A joint may be at each of N logs with equal probability, including a slope from the first log on: 2
+        log N. Together this is the penalty of Zhang and Siegmund (2007). A joint is expected in one of all the series: 2 log of their number (Chen
         and Chen 2008).
         """
         joints = len(self.joints) + self.sloped
@@ -75,13 +75,13 @@ class Line(NamedTuple):
 
 
 def by_deviation(variance: Array) -> Whiten:
-    """Brings independent noise of a variance at each log to 1."""
+    """Returns the function that scales independent noise of a given variance at each log to variance 1."""
     root = 1 / np.sqrt(variance)
     return lambda columns: columns * root[:, None]
 
 
 def squares(line: Line, time: Array, values: Array, whiten: Whiten) -> float:
-    """Sum of squares of the whitened noise that a line leaves."""
+    """Returns the sum of squares of the whitened residual of a line."""
     whitened = whiten(np.column_stack([line.design(time), values]))
     q, _ = np.linalg.qr(whitened[:, :-1])
     left = whitened[:, -1] - q @ (q.T @ whitened[:, -1])
@@ -89,7 +89,7 @@ def squares(line: Line, time: Array, values: Array, whiten: Whiten) -> float:
 
 
 def candidates(time: Array, values: Array, variance: Array, series_count: int) -> list[Line]:
-    """Lines that may be the best: from a segmentation and from single joints, each improved one joint after the other."""
+    """Returns lines that may be the best: from a segmentation and from single joints, each improved joint by joint."""
     count = len(time)
     if count < 2 * LEAST_LOGS:
         return [Line()]
@@ -100,8 +100,7 @@ def candidates(time: Array, values: Array, variance: Array, series_count: int) -
 
 
 def residual_sums(rest: Line, kind: Literal["step", "slope", "step_and_slope"], time: Array, values: Array, whiten: Whiten) -> Array:
-    """Sum of squares of the whitened noise that is left with one more joint of a kind, at each log; infinite where there is no room for
-    one."""
+    """Returns the sum of squares of the whitened residual with one more joint of a kind, at each log; infinite where there is no room for one."""
     q, _ = np.linalg.qr(whiten(rest.design(time)))
     left = whiten(values[:, None])
     left = left - q @ (q.T @ left)
@@ -117,7 +116,7 @@ def residual_sums(rest: Line, kind: Literal["step", "slope", "step_and_slope"], 
 
 
 def _explained(parts: list[Array], left: Array) -> Array:
-    """How much of the squares of `left` one column, or two together, explain, for each place."""
+    """Returns the part of the sum of squares of `left` that one column, or two together, explain, for each place."""
     first = parts[0]
     size = np.maximum((first**2).sum(axis=0), 1e-300)
     explained: Array = (left @ first) ** 2 / size
@@ -128,7 +127,7 @@ def _explained(parts: list[Array], left: Array) -> Array:
 
 
 def _room(rest: Line, count: int) -> np.ndarray[Any, np.dtype[np.int64]]:
-    """Logs at which another joint has enough logs on each side."""
+    """Returns the logs at which another joint has enough logs on each side."""
     allowed = np.zeros(count, dtype=bool)
     allowed[LEAST_LOGS : count - LEAST_LOGS + 1] = True
     for joint in rest.joints:
@@ -156,7 +155,7 @@ def _best_joint(
 
 
 def _improved(line: Line, time: Array, values: Array, variance: Array, series_count: int) -> Line:
-    """Gives each joint in turn its best place and kind, or leaves it out, and tries one more, until nothing helps."""
+    """Gives each joint in turn its best place and kind, or removes it, and tries one more, until no change improves the line."""
     whiten = by_deviation(variance)
 
     def criterion(one: Line) -> float:
@@ -178,7 +177,7 @@ def _improved(line: Line, time: Array, values: Array, variance: Array, series_co
 
 
 def _segments(time: Array, values: Array, variance: Array) -> Line:
-    """A segmentation into levels and slopes, bottom up (Keogh et al. 2001), a joint with step and slope between any two."""
+    """Returns a bottom-up segmentation into levels and slopes (Keogh et al. 2001), with a joint of step and slope between each two segments."""
     ruptures = need("ruptures")
     weights = 1 / variance
     terms = (np.append(0.0, weights * moment) for moment in _moments(time, values))
@@ -190,18 +189,18 @@ def _segments(time: Array, values: Array, variance: Array) -> Line:
         return cost
 
     def error(_: Any, start: int, end: int) -> float:
-        """Weighted squares about a level, or about a line where that is worth its slope."""
+        """Returns the weighted sum of squares about a level, or about a line if that is worth its slope."""
         w, wt, wtt, wy, wty, wyy = sums[:, end] - sums[:, start]
         level = wyy - wy * wy / w
         spread = wtt - wt * wt / w
         slope = level - (wty - wt * wy / w) ** 2 / spread if spread > 0 else level
         return float(max(min(level, slope + worth), 0.0))
 
-    # The base class is there only with the library.
+    # The base class exists only if the library is installed.
     parts = {"model": "", "min_size": LEAST_LOGS, "fit": fit, "error": error}
     cost = type("Segment", (ruptures.base.BaseCost,), parts)()
     search = ruptures.BottomUp(custom_cost=cost, min_size=LEAST_LOGS, jump=1).fit(values.reshape(-1, 1))
-    # Fewer than the evidence asks for would be lost; too many are left out afterwards.
+    # Joints that the segmentation misses would be lost; surplus ones are removed afterwards.
     ends = search.predict(pen=3 * worth)
     return Line(tuple(Joint(int(end), "step_and_slope") for end in ends[:-1]))
 

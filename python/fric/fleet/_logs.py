@@ -1,4 +1,4 @@
-"""Logs by globs and addresses: which there are, their hash, and a file on this machine for each."""
+"""Logs from globs and addresses: the list of logs, their hashes, and a file on this machine for each."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from typing import Any
 from .._errors import ConfigError, LogFileNotFoundError
 from ._needs import need
 
-# The file that makes a folder a rosbag2 bag.
+# File that marks a folder as a rosbag2 bag.
 _BAG = "metadata.yaml"
 _BLOCK_BYTES = 1 << 20
 _NO_ENTRY = 2
@@ -22,19 +22,19 @@ _NO_ENTRY = 2
 
 @dataclass(frozen=True)
 class LogAddress:
-    """Where a log is, and in what state it was when it was listed."""
+    """Address of a log, and its state when it was listed."""
 
     address: str
     """Path on this machine, or address with its protocol."""
     stamp: str
-    """Hash of address, size and date of change or checksum as the file system lists them; the content is not read for it."""
+    """Hash of the address, the size, and the date of change or checksum, as the file system lists them. The content is not read for it."""
 
 
 def find(paths: str | os.PathLike[str] | Sequence[str | os.PathLike[str]]) -> list[LogAddress]:
-    """All logs that paths, globs and fsspec addresses name, each once, ordered by address.
+    """Returns all logs that paths, globs, and fsspec addresses name, each once, ordered by address.
 
-    A folder named by itself is a log (a bag); of what a glob matches, files are logs and so are folders with a
-    `metadata.yaml`. Raises LogFileNotFoundError for a path that matches nothing.
+    A folder named by itself is a log (a bag). Among the matches of a glob, logs are files and folders with a `metadata.yaml`. Raises
+    LogFileNotFoundError for a path that matches nothing.
     """
     asked = [paths] if isinstance(paths, (str, os.PathLike)) else list(paths)
     if not asked:
@@ -47,7 +47,7 @@ def find(paths: str | os.PathLike[str] | Sequence[str | os.PathLike[str]]) -> li
 
 @contextmanager
 def fetched(address: str) -> Iterator[Path]:
-    """The log as a file or folder on this machine; what comes from elsewhere is removed afterwards."""
+    """Provides the log as a file or folder on this machine. A copy from elsewhere is removed afterwards."""
     fs, path = file_system(address)
     if is_local(fs):
         yield Path(path)
@@ -59,7 +59,7 @@ def fetched(address: str) -> Iterator[Path]:
 
 
 def content_hash(path: Path) -> str:
-    """SHA-256 of a log's bytes; of a folder, of the names and bytes of all its files."""
+    """Returns the SHA-256 of the bytes of a log; for a folder, of the names and bytes of all its files."""
     digest = hashlib.sha256()
     files = sorted(one for one in path.rglob("*") if one.is_file()) if path.is_dir() else [path]
     for file in files:
@@ -72,7 +72,7 @@ def content_hash(path: Path) -> str:
 
 
 def file_system(address: str) -> tuple[Any, str]:
-    """The fsspec file system of an address, and the path in it."""
+    """Returns the fsspec file system of an address, and the path in it."""
     fsspec = need("fsspec")
     try:
         fs, path = fsspec.core.url_to_fs(address)
@@ -84,13 +84,13 @@ def file_system(address: str) -> tuple[Any, str]:
 
 
 def is_local(fs: Any) -> bool:
-    """Whether a file system is that of this machine."""
+    """Returns whether a file system is that of this machine."""
     return isinstance(fs, need("fsspec.implementations.local").LocalFileSystem)
 
 
 def _matches(path: str) -> Iterator[LogAddress]:
     fs, inner = file_system(path)
-    # A name may have brackets or stars of its own.
+    # A file name itself may contain brackets or stars.
     if fs.exists(inner):
         yield _listed(fs, inner, fs.info(inner))
         return

@@ -1,14 +1,14 @@
-"""The libraries of the extra `fleet`, imported where they are used."""
+"""Libraries of the extra `fleet`, imported where they are used."""
 
 from importlib import import_module
 from typing import Any
 
-# What the extra `fleet` of pyproject.toml names. fric is on no index, so that an extra is of use in a clone only.
+# Libraries of the extra `fleet` of pyproject.toml. fric is on no package index, so that the extra is only usable in a clone.
 LIBRARIES = "dask distributed fsspec pyarrow ruptures"
 
 
 def need(module: str) -> Any:
-    """A module of the extra; ImportError with what to install where it is missing."""
+    """Returns a module of the extra. Raises ImportError with what to install if it is missing."""
     try:
         return import_module(module)
     except ImportError as error:

@@ -1,4 +1,4 @@
-"""The scatter of a series about a line: Student's t with the standard errors and a scatter from log to log; or with a wander as well."""
+"""Scatter of a series about a line: Student's t with the standard errors and a scatter from log to log, optionally with a wander."""
 
 from __future__ import annotations
 
@@ -15,31 +15,31 @@ Array = NDArray[np.float64]
 FREEDOM = 4.0
 _ITERATIONS = 60
 _CONVERGED = 1e-8
-# Values that agree in all their digits still have rounding; values are brought to about 1 before.
+# Values that agree in all their digits still have rounding errors. Values are scaled to about 1 before.
 _ROUNDING = 1e-9
 
 
 class Scatter(NamedTuple):
-    """A line through a series with its noise."""
+    """Fit of a line to a series, with its noise."""
 
     coefficients: Array
     covariance: Array
     scatter: float
-    """Standard deviation from log to log, beyond the standard errors."""
+    """Standard deviation from log to log, in addition to the standard errors."""
     variance: Array
-    """Variance of each value, that of outliers grown until they fit."""
+    """Variance of each value; that of outliers is increased until they fit."""
     deviance: float
     """-2 log likelihood."""
 
 
 def size_of(values: Array) -> float:
-    """What values are divided by to be about 1: their deviation, or their size where they do not differ."""
+    """Returns the divisor that scales values to about 1: their standard deviation, or their magnitude if they are all equal."""
     greatest, deviation = float(np.abs(values).max()), float(np.std(values))
     return deviation if deviation > _ROUNDING * greatest else greatest or 1.0
 
 
 def rough_scatter(values: Array, errors: Array) -> float:
-    """The scatter by the differences between neighbours, which steps and slopes hardly touch."""
+    """Estimates the scatter from the differences between neighbours, which steps and slopes hardly affect."""
     if len(values) < 2:
         return 0.0
     deviation = 1.4826 * float(np.median(np.abs(np.diff(values)))) / np.sqrt(2)
@@ -47,8 +47,8 @@ def rough_scatter(values: Array, errors: Array) -> float:
 
 
 def fit_line(design: Array, values: Array, errors: Array, start: float) -> Scatter:
-    """Fits values by a design, (N, P), under Student's t of the variance errors² + scatter², the scatter by maximum likelihood; values
-    are about 1.
+    """Fits values, which are about 1, by a design, (N, P), under Student's t with the variance errors² + scatter², with the scatter by maximum
+    likelihood.
 
     The variance is found by scoring, the weights by expectation-maximisation.
     """
@@ -68,13 +68,13 @@ def fit_line(design: Array, values: Array, errors: Array, start: float) -> Scatt
         scatter2 = following
     variance = fixed + scatter2
     grown = variance / np.minimum(weights, 1.0)
-    # The scale of Student's t is less than the deviation of normal values.
+    # The scale of Student's t is smaller than the standard deviation of normal values.
     normal = max(float(np.sum(left2 / grown)) / max(len(values) - design.shape[1], 1), 1.0)
     return Scatter(coefficients, covariance * normal, scatter2**0.5, grown * normal, _deviance(left2, variance))
 
 
 def weighted(design: Array, values: Array, variance: Array) -> tuple[Array, Array]:
-    """Coefficients by weighted least squares, and their covariance."""
+    """Returns the coefficients by weighted least squares, and their covariance."""
     root = 1 / np.sqrt(variance)
     q, r = np.linalg.qr(design * root[:, None])
     inverse = np.linalg.inv(r)
@@ -88,33 +88,33 @@ def _deviance(left2: Array, variance: Array) -> float:
 
 
 def white(design: Array, values: Array, variance: Array) -> float:
-    """-2 log likelihood of normal noise without a wander, whose variance is the likeliest multiple of the one given."""
+    """Returns -2 log likelihood of normal noise without a wander, whose variance is the most likely multiple of the given one."""
     coefficients, _ = weighted(design, values, variance)
     multiple = max(float(np.mean((values - design @ coefficients) ** 2 / variance)), _ROUNDING**2)
     return float(np.sum(np.log(2 * pi * multiple * variance)) + len(values))
 
 
 class Wander(NamedTuple):
-    """A wander of exponential memory (Ornstein and Uhlenbeck), beside noise of a variance at each value."""
+    """Wander with exponential memory (Ornstein-Uhlenbeck process), in addition to noise of a given variance at each value."""
 
     time: Array
     variance: Array
     size2: float
-    """Its variance."""
+    """Variance of the wander."""
     memory: float
-    """The time in which it forgets all but 1/e."""
+    """Time in which the correlation of the wander falls to 1/e."""
     deviance: float
-    """-2 log likelihood of normal noise, with the design that it was found with."""
+    """-2 log likelihood of normal noise, with the design with which the wander was found."""
 
     def whiten(self, columns: Array) -> Array:
-        """Columns, (N, C), such that the noise of each row is 1 and independent of the others."""
+        """Scales columns, (N, C), such that the noise of each row has variance 1 and is independent of the other rows."""
         whitened, _ = _filtered(self.time, self.variance[:, None], np.array([self.size2]), np.array([self.memory]), columns)
         return whitened[:, 0, :]
 
 
 def wander(time: Array, design: Array, values: Array, variance: Array) -> Wander:
-    """The likeliest wander, on a grid of factors of 2: its memory from the steps of time to the whole, its variance as a share of all,
-    and the variance of the noise as a multiple of the one given."""
+    """Returns the most likely wander on a grid of factors of 2: its memory from the time step to the whole duration, its variance as a fraction of
+    the total, and the variance of the noise as a multiple of the given one."""
     whole = float(time[-1] - time[0])
     shortest = max(float(np.median(np.diff(time))), whole / len(time) / 4)
     memories = shortest * 2.0 ** np.arange(np.ceil(np.log2(whole / shortest)) + 1)
@@ -133,8 +133,8 @@ def wander(time: Array, design: Array, values: Array, variance: Array) -> Wander
 
 
 def _filtered(time: Array, noise: Array, size2: Array, memory: Array, columns: Array) -> tuple[Array, Array]:
-    """The Kalman filter of wanders (G,) beside noise (N, G): innovations of each column in units of their deviation, (N, G, C), and the
-    sum of the logarithms of their variances, (G,)."""
+    """Runs the Kalman filter of wanders (G,) with noise (N, G). Returns the innovations of each column in units of their standard deviation, (N, G,
+    C), and the sum of the logarithms of their variances, (G,)."""
     mean = np.zeros((size2.size, columns.shape[1]))
     variance, log_variance = size2.copy(), np.zeros(size2.size)
     whitened = np.empty((len(time), *mean.shape))

@@ -1,4 +1,4 @@
-"""What can be run over a fleet, and the rows that each operation gives."""
+"""Operations that can be run over a fleet, and the rows that each one gives."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Rows = Iterator[dict[str, Any]]
 
 
 class Operation(NamedTuple):
-    """A function of fric that takes a robot and a log."""
+    """Function of fric that takes a robot and a log."""
 
     call: Callable[..., Any]
     options: tuple[str, ...]
@@ -21,7 +21,7 @@ class Operation(NamedTuple):
 
 
 def checked(operation: str, options: Mapping[str, Any]) -> Operation:
-    """The operation of a name, which has to have all of the options."""
+    """Returns the operation of a name. Raises ConfigError if there is none, or if it lacks one of the options."""
     if operation not in OPERATIONS:
         raise ConfigError(_unknown_name("operation", operation, list(OPERATIONS)))
     found = OPERATIONS[operation]
@@ -32,7 +32,7 @@ def checked(operation: str, options: Mapping[str, Any]) -> Operation:
 
 
 def rows_of(operation: str, robot: Robot, log: Log, options: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """Runs an operation on a log; cable, parameter, value, standard_error, state and verdict of every row."""
+    """Runs an operation on a log and returns cable, parameter, value, standard_error, state, and verdict of every row."""
     found = OPERATIONS[operation]
     return list(found.rows(found.call(robot, log, **options)))
 
@@ -94,4 +94,4 @@ OPERATIONS = {
     "fit": Operation(fit, ("reference", "parameters", "huber"), _of_fit),
     "replay": Operation(replay, ("correct",), _of_replay),
 }
-"""What `run` takes."""
+"""Operations that `run` accepts."""

@@ -1,4 +1,4 @@
-"""The page of a fleet: one file without network access, for light and dark screens, for telephones and for paper."""
+"""Page of a fleet: a self-contained HTML file that needs no network, for light and dark screens, for telephones, and for paper."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ._chart import chart
 from ._trend import Alarm, Series, Trend
 from ._words import between, headline, provenance, remarks, since, verdict
 
-# The look of the other pages of fric.
+# Same style as the other pages of fric.
 _STYLE = """
 :root { color-scheme: light dark; --text: #1b1f24; --soft: #5d6773; --line: #c9d0d8; --page: #ffffff;
   --before: #b4610f; --after: #1664c0; --flag: #c9264a; --good: #1d7d4f; }
@@ -47,7 +47,7 @@ _REASONS = {"history": "changed", "limit": "beyond a limit", "last_log": "last l
 
 
 def page(trend: Trend) -> str:
-    """The whole page."""
+    """Returns the whole page."""
     robots = list(dict.fromkeys(one.robot for one in trend.series))
     title = f"Fleet: {', '.join(robots) if len(robots) <= 3 else f'{len(robots)} robots'}"
     parts = [_to_do(trend), *(f'<p class="soft">{escape(text)}</p>' for text in remarks(trend))]
@@ -114,7 +114,7 @@ def _alarm(trend: Trend, place: int, alarm: Alarm) -> str:
 
 
 def _days(text: str) -> str:
-    """A text in which no date is broken."""
+    """Returns a text in which dates are not broken across lines."""
     return re.sub(r"\d{4}-\d\d-\d\d", r'<span class="day">\g<0></span>', escape(text))
 
 
@@ -163,7 +163,7 @@ def _failures(trend: Trend) -> str:
 
 
 def _table(caption: str, names: list[str], rows: list[list[str]], *, stacked: bool = False) -> str:
-    """A table whose cells are HTML; the first of each row is its head."""
+    """Returns a table whose cells are HTML. The first cell of each row is its header."""
     numbers = {"logs", "at first", "now", "scatter", "before", "after", "size", "ΔBIC"}
     kinds = ["number" if name in numbers else "words" for name in names]
     head = "".join(f'<th scope="col" role="columnheader" class="{kind}">{name}</th>' for name, kind in zip(names, kinds))
@@ -176,7 +176,7 @@ def _table(caption: str, names: list[str], rows: list[list[str]], *, stacked: bo
         for row in rows
     )
     shown = f"<caption>{escape(caption)}</caption>" if caption else ""
-    # The roles hold where the cells are stacked, which takes them from the elements.
+    # The roles are needed where the cells are stacked, because stacking removes them from the elements.
     table = f'<table role="table"{" class=stacked" if stacked else ""}>{shown}<thead role="rowgroup"><tr role="row">{head}</tr></thead>'
     label = escape(caption or " and ".join(names))
     return (

@@ -21,39 +21,39 @@ from ._store import FAILED, Store, key_of
 from ._task import Job, Outcome, model_hash, work
 
 Path = str | os.PathLike[str]
-# Tasks that wait at each thread: the scheduler's memory does not grow with the number of logs, and no thread waits.
+# Number of tasks that wait for each thread. Thus the memory of the scheduler does not grow with the number of logs, and no thread is idle.
 _TASKS_A_THREAD = 4
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class LogFailure(Value):
-    """A log that gave no result."""
+    """Log that gave no result."""
 
     log: str
-    """Its path or address."""
+    """Path or address of the log."""
     error: str
-    """What is wrong, in a sentence."""
+    """Sentence that states the problem."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class FleetRun(Value):
-    """Outcome of `run`. `print(run)` says what was done, with every log that failed."""
+    """Result of `run`. `print(run)` states what was done, with every log that failed."""
 
     operation: str
     """"discover", "fit" or "replay"."""
     results: str
     """Path or address of the data set."""
     logs: int
-    """Logs that the paths name."""
+    """Number of logs that the paths name."""
     computed: int
-    """Logs that were computed."""
+    """Number of logs that were computed."""
     known: int
-    """Logs whose results were there, and not computed again."""
+    """Number of logs whose results existed and were not computed again."""
     failures: tuple[LogFailure, ...]
-    """Logs without a result, by this run or by one before that gave the same error."""
+    """Logs without a result, from this run or from an earlier one that gave the same error."""
 
     def summary(self) -> str:
-        """Counts, and a line for every log that failed."""
+        """Returns the counts, and one line for every log that failed."""
         head = f"{self.operation} of {self.logs} logs into {self.results}: {self.computed} computed, {self.known} there before"
         lines = [f"{head}, {len(self.failures)} failed"] + [f"  {one.log}: {one.error}" for one in self.failures]
         return "\n".join(lines) + "\n"
@@ -73,27 +73,26 @@ def run(
     progress: bool | Callable[[float], object] | None = False,
     **options: Any,
 ) -> FleetRun:
-    """Runs `fric.fit`, `fric.discover` or `fric.replay` over many logs, a task each, and keeps the results.
+    """Runs `fric.fit`, `fric.discover` or `fric.replay` over many logs, one task each, and keeps the results.
 
-    `paths` are paths, globs and fsspec addresses ("s3://bucket/2026/**/*.mcap"); what is not on this machine is fetched by the worker
-    into a temporary file. `results` is a folder or an address that all workers can write to: a Parquet data set with a row a log, cable
-    and parameter. `model` is the robot of all logs, as an object, path or address; without it each log has its own attached. `options`
-    are those of the operation: `reference`, `parameters` and `huber` of a fit, `reference` and `empirical` of a discovery, `correct` of a
-    replay.
+    `paths` are paths, globs, and fsspec addresses ("s3://bucket/2026/**/*.mcap"). A log that is not on this machine is fetched by the worker into a
+    temporary file. `results` is a folder or an address that all workers can write to: a Parquet data set with one row per log, cable, and parameter.
+    `model` is the robot of all logs, as an object, path, or address; without it, each log must have its own attached. `options` are those of the
+    operation: `reference`, `parameters`, and `huber` of a fit, `reference` and `empirical` of a discovery, `correct` of a replay.
 
-    `client` is a `distributed.Client` or a scheduler's address. Without it, `workers` processes of this machine are started (as many as
-    it has cores) and ended; a script then needs `if __name__ == "__main__":`, as with every process pool. Workers of a scheduler have
-    fric and what fleets need installed, and best one thread each (`dask worker --nthreads 1`).
+    `client` is a `distributed.Client` or a scheduler's address. Without it, `workers` processes of this machine are started (by default as many as it
+    has cores) and ended. A script then needs `if __name__ == "__main__":`, as with every process pool. Workers of a scheduler need fric and the
+    libraries of fleets installed, and preferably one thread each (`dask worker --nthreads 1`).
 
-    What a log's result depends on are its bytes, the model, the options and the version of fric. A log for which such a result is there
-    is not computed again, so that a run that was cut off goes on, and new logs are added, by the same call. A worker that dies is
-    replaced, and its log is done by another. An error stays with its log: it is in `failures`, and, if it lies in the log's own bytes,
-    kept as its result; all others are tried again by the next run.
+    The result of a log depends on its bytes, the model, the options, and the version of fric. A log for which such a result exists is not computed
+    again. Hence the same call continues a run that was interrupted, and adds new logs. A worker that dies is replaced, and its log is processed by
+    another. An error stays with its log and is listed in `failures`. If its cause lies in the bytes of the log, it is kept as the result of the log;
+    the logs of all other errors are tried again by the next run.
 
     `progress` is True for a bar, or a function that is called with 0 … 1.
 
-    Raises ConfigError for an operation, option or model that is not right, LogFileNotFoundError where a path matches nothing, FleetError
-    where no scheduler or worker answers, ImportError where a library of the extra `fleet` is missing.
+    Raises ConfigError if the operation, an option, or the model is invalid, LogFileNotFoundError if a path matches nothing, FleetError if no
+    scheduler or worker answers, and ImportError if a library of the extra `fleet` is missing.
     """
     checked(operation, options)
     text = _text_of(model)
@@ -131,7 +130,7 @@ def _note(outcome: Outcome, store: Store, states: dict[str, int], failures: list
 
 
 def _missing(logs: list[LogAddress], seen: dict[str, str], there: dict[str, str], key: str) -> tuple[list[LogAddress], list[str]]:
-    """Logs without a result, and the paths of the errors of those that failed before."""
+    """Returns the logs without a result, and the paths of the errors of those that failed before."""
     missing, failed = [], []
     for log in logs:
         name = f"{seen.get(log.stamp)}-{key}"
@@ -143,7 +142,7 @@ def _missing(logs: list[LogAddress], seen: dict[str, str], there: dict[str, str]
 
 
 def _outcomes(client: Any, jobs: Iterator[Job]) -> Iterator[Outcome]:
-    """The outcomes of all jobs as they come, with a bounded number of them at the scheduler."""
+    """Yields the outcomes of all jobs as they arrive, with a bounded number of jobs at the scheduler."""
     distributed = need("distributed")
     waiting: dict[Any, Job] = {}
 
@@ -160,7 +159,7 @@ def _outcomes(client: Any, jobs: Iterator[Job]) -> Iterator[Outcome]:
         for future in pool:
             job = waiting.pop(future)
             yield _outcome(distributed, future, job)
-            # Workers come and go.
+            # The number of workers may change during the run.
             for new in next_ones(max(0, _TASKS_A_THREAD * _threads(client) - len(waiting))):
                 pool.add(new)
     finally:
@@ -186,7 +185,7 @@ def _threads(client: Any) -> int:
 
 
 def _text_of(model: Robot | Path | None) -> str | None:
-    """The robot file, checked; None where each log brings its own."""
+    """Returns the text of the robot file, validated; None if each log has its own."""
     if model is None or isinstance(model, Robot):
         return model and model.to_toml()
     fs, path = file_system(os.fspath(model))
@@ -199,7 +198,7 @@ def _text_of(model: Robot | Path | None) -> str | None:
 
 
 def _absolute(results: Path) -> str:
-    """A path that means the same to workers in other folders."""
+    """Returns a path that is also valid for workers in other folders."""
     address = os.fspath(results)
     return address if "://" in address or "::" in address else os.path.abspath(os.path.expanduser(address))
 

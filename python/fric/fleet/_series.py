@@ -15,7 +15,7 @@ from ._needs import need
 from ._run import FleetRun, LogFailure
 from ._store import Store
 
-# What a log has not measured, but the model given has it.
+# States of values that come from the given model and were not measured from the log.
 _NOT_MEASURED = ["kept", "missing", "found"]
 _NEEDED = ("robot", "cable", "parameter", "start", "value")
 _COLUMNS = {
@@ -36,7 +36,7 @@ _COLUMNS = {
 
 @dataclass(frozen=True)
 class Values:
-    """The values of one parameter, dates ascending."""
+    """Values of one parameter, in ascending order of dates."""
 
     robot: str
     cable: str
@@ -49,7 +49,7 @@ class Values:
 
 @dataclass(frozen=True)
 class Gathered:
-    """All series of a fleet, and what is in none."""
+    """All series of a fleet, and the logs that belong to none."""
 
     operation: str
     series: tuple[Values, ...]
@@ -57,11 +57,11 @@ class Gathered:
     undated: tuple[str, ...]
     """Logs whose clock has no date."""
     logs: int
-    """Logs with results and a date."""
+    """Number of logs with results and a date."""
 
 
 def gather(results: Any, operation: str | None) -> Gathered:
-    """The series of results: a `FleetRun`, the address of a data set, or a table with the same columns."""
+    """Returns the series of results, which are a `FleetRun`, the address of a data set, or a table with the same columns."""
     table = _table(results)
     if operation is None and isinstance(results, FleetRun):
         operation = results.operation
@@ -81,10 +81,10 @@ def gather(results: Any, operation: str | None) -> Gathered:
 
 
 def _split(table: Any, operation: str) -> tuple[Values, ...]:
-    """The series of a table, by robot, cable and parameter."""
+    """Returns the series of a table, by robot, cable, and parameter."""
     pa, compute = need("pyarrow"), need("pyarrow.compute")
     measured = compute.invert(compute.is_in(table.column("state"), value_set=pa.array(_NOT_MEASURED)))
-    # The mean error goes with its rms, and the friction before compensation with its parameters, where there are any.
+    # The mean error is redundant beside its rms, and the error before compensation beside the fitted parameters, if there are any.
     parameter = table.column("parameter")
     doubled = compute.ends_with(parameter, ".mae_n")
     if operation != "replay":
@@ -136,7 +136,7 @@ def _table(results: Any) -> Any:
 
 
 def _typed(table: Any) -> Any:
-    """The columns that are needed, in the types of the data set, nulls for those that are not there; the start in ns since 1970."""
+    """Returns the required columns in the types of the data set, with nulls for missing ones and the start in ns since 1970."""
     pa, compute = need("pyarrow"), need("pyarrow.compute")
     columns = {}
     for name, kind in _COLUMNS.items():
@@ -163,7 +163,7 @@ def _of_operation(table: Any, operation: str | None) -> tuple[Any, str | None]:
 
 
 def _latest(table: Any) -> Any:
-    """Of a log that was computed with several models, options or versions, what was computed last."""
+    """Keeps only the newest result of a log that was computed with several models, options, or versions."""
     compute = need("pyarrow.compute")
     if table.column("computed").null_count or table.column("log_hash").null_count:
         return table

@@ -1,8 +1,8 @@
-"""Results as a Parquet data set: one file a log, which is there whole or not at all.
+"""Results as a Parquet data set with one file per log, which is either complete or absent.
 
-`operation=fit/robot=NAME/month=2026-03/HASH-KEY.parquet`: HASH is of the log's bytes, KEY of whatever else the numbers depend on (version
-of fric, operation, options, model). The same work has the same name, so that doing it again changes nothing. `_seen` remembers which log
-had which bytes when it was listed; without it logs are read once more to see that nothing is missing.
+`operation=fit/robot=NAME/month=2026-03/HASH-KEY.parquet`: HASH is that of the log's bytes, KEY that of everything else on which the numbers depend
+(version of fric, operation, options, model). The same work has the same name, so that repeating it changes nothing. `_seen` records the bytes of each
+log by the state in which it was listed. Without it, logs are read once more to see that nothing is missing.
 """
 
 from __future__ import annotations
@@ -22,23 +22,23 @@ from ._logs import LogAddress, file_system, is_local
 from ._needs import need
 
 FAILED = "-failed"
-"""Ends the name of a file that holds an error."""
-# Stores that show an object whole or not at all; elsewhere a file is written beside its place and renamed.
+"""End of the name of a file that holds an error."""
+# Stores in which an object is either complete or absent. Elsewhere, a file is written beside its place and then renamed.
 _OBJECT_STORES = {"s3", "s3a", "gs", "gcs", "abfs", "az", "memory"}
 _SEEN = "_seen"
-# A run that is cut off reads at most what was finished in this time, or so many logs, once more.
+# After an interruption, a run reads again at most the logs that were finished in this time, or this number of logs.
 _FLUSH_S = 5.0
 _FLUSH_COUNT = 5000
 
 
 def key_of(version: str, operation: str, options: Mapping[str, Any], model_hash: str | None) -> str:
-    """Hash of what results depend on beside the log; `model_hash` is None where each log brings its model."""
+    """Returns the hash of everything on which results depend except the log. `model_hash` is None if each log has its own model."""
     text = json.dumps([version, operation, dict(options), model_hash], sort_keys=True, default=list)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 def schema() -> Any:
-    """Columns of a result: one row a log, cable and parameter."""
+    """Returns the columns of a result, with one row per log, cable, and parameter."""
     pa = need("pyarrow")
     text, number = pa.string(), pa.float64()
     return pa.schema(
@@ -65,7 +65,7 @@ def schema() -> Any:
 
 
 class Store:
-    """A data set of results."""
+    """Data set of results."""
 
     def __init__(self, address: str | os.PathLike[str]) -> None:
         self.address = os.fspath(address)
@@ -75,39 +75,39 @@ class Store:
         self._flushed_s = time.monotonic()
 
     def path(self, operation: str, robot: str | None, month: str | None, log_hash: str, key: str) -> str:
-        """Where the result of a log belongs."""
+        """Returns the path of the result of a log."""
         parts = {"operation": operation, "robot": robot or "unknown", "month": month or "unknown"}
         folders = "/".join(f"{name}={quote(value, safe=' ')}" for name, value in parts.items())
         return f"{self._root}/{folders}/{log_hash}-{key}.parquet"
 
     def written(self, path: str) -> bool:
-        """Whether there is a result at a path."""
+        """Returns whether there is a result at a path."""
         return bool(self._fs.exists(path))
 
     def error_at(self, path: str) -> str | None:
-        """The sentence of the error that stands in the place of a result; None where there is none."""
+        """Returns the sentence of the error that is stored instead of a result; None if there is none."""
         failed = _of_error(path)
         return self.errors([failed])[0][1] if self._fs.exists(failed) else None
 
     def write(self, path: str, rows: list[dict[str, Any]], *, failed: bool = False) -> None:
-        """Writes the rows of a log, whole or not at all."""
+        """Writes the rows of a log, either completely or not at all."""
         columns = schema()
         sheet = io.BytesIO()
         need("pyarrow.parquet").write_table(need("pyarrow").Table.from_pylist(rows, schema=columns), sheet, compression="zstd")
         self._put(_of_error(path) if failed else path, sheet.getvalue())
 
     def names(self) -> dict[str, str]:
-        """Paths of all results by their names without ending; those of errors end in `FAILED`."""
+        """Returns the paths of all results by their names without extension. The names of errors end in `FAILED`."""
         if not self._fs.exists(self._root):
             return {}
-        # A folder may have been listed before, by this process or another.
+        # The folder may be cached from an earlier listing, and this or another process may have changed it since.
         self._fs.invalidate_cache()
         paths = (path for path in self._fs.find(self._root) if path.endswith(".parquet"))
         named = ((path, path.rpartition("/")[2]) for path in paths)
         return {name.removesuffix(".parquet"): path for path, name in named if not name.startswith((".", "_"))}
 
     def seen(self) -> dict[str, str]:
-        """Hashes of logs by the stamps that they were listed with."""
+        """Returns the hashes of logs by the stamps with which they were listed."""
         folder = f"{self._root}/{_SEEN}"
         if not self._fs.exists(folder):
             return {}
@@ -116,25 +116,25 @@ class Store:
         return {pair[0]: pair[1] for pair in pairs if len(pair) == 2}
 
     def remember(self, log: LogAddress, log_hash: str) -> None:
-        """Remembers the bytes of a log; `flush` keeps it."""
+        """Records the bytes of a log; `flush` stores the record."""
         self._pending.append(f"{log.stamp} {log_hash}")
         if len(self._pending) >= _FLUSH_COUNT or time.monotonic() - self._flushed_s > _FLUSH_S:
             self.flush()
 
     def flush(self) -> None:
-        """Writes what is to be remembered."""
+        """Writes what was recorded."""
         if self._pending:
             self._put(f"{self._root}/{_SEEN}/{uuid.uuid4().hex}.txt", "\n".join(self._pending).encode())
         self._pending, self._flushed_s = [], time.monotonic()
 
     def errors(self, paths: list[str]) -> list[tuple[str, str]]:
-        """Log and sentence of errors that were written."""
+        """Returns the log and the sentence of each error that was written."""
         parquet = need("pyarrow.parquet")
         rows = (parquet.read_table(io.BytesIO(self._fs.cat_file(path)), columns=["log", "error"]).to_pylist() for path in paths)
         return [(row["log"], row["error"]) for table in rows for row in table]
 
     def table(self) -> Any:
-        """All rows as a `pyarrow.Table`, with `operation`, `robot` and `month`."""
+        """Returns all rows as a `pyarrow.Table`, with `operation`, `robot`, and `month`."""
         pa, dataset = need("pyarrow"), need("pyarrow.dataset")
         parts = pa.schema([(name, pa.string()) for name in ("operation", "robot", "month")])
         paths = sorted(self.names().values())

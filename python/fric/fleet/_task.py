@@ -1,4 +1,4 @@
-"""What a worker does with one log."""
+"""Work on one log by a worker."""
 
 from __future__ import annotations
 
@@ -23,20 +23,20 @@ from ._needs import need
 from ._operations import rows_of
 from ._store import Store
 
-# Verdicts about a log's own bytes: the same each time. All else, such as a disk that is full, may go better next time.
+# Errors caused by the bytes of the log, which are the same each time. Any other error, such as a full disk, may not recur.
 _OF_THE_LOG = (LogError, FitError, ShapeError, ConfigError)
-# A recorder whose clock begins at 0 when it is switched on gives times within the first year of Unix time: those are no date.
+# A recorder whose clock begins at 0 when it is switched on gives times within the first year of Unix time. These are not dates.
 _FIRST_DATE_NANOS = 365 * 86_400 * 10**9
 
 
 @dataclass(frozen=True)
 class Job:
-    """An operation on one log."""
+    """Operation on one log."""
 
     operation: str
     log: LogAddress
     model: str | None
-    """Text of the robot file; None where the log brings it."""
+    """Text of the robot file; None if the log has its own."""
     options: Mapping[str, Any]
     results: str
     key: str
@@ -45,7 +45,7 @@ class Job:
 
 @dataclass(frozen=True)
 class Outcome:
-    """How a job ended."""
+    """Outcome of a job."""
 
     log: LogAddress
     state: Literal["computed", "known", "failed", "wrong_call"]
@@ -54,7 +54,7 @@ class Outcome:
 
 
 def work(job: Job) -> Outcome:
-    """Reads a log, runs the operation on it and writes the result; whatever is wrong with the log is in what it gives."""
+    """Reads a log, runs the operation on it, and writes the result. An error of the log is reported in the returned outcome."""
     if job.version != __version__:
         text = f"a worker has fric {__version__}, this is {job.version}; install the same version everywhere"
         return Outcome(job.log, "wrong_call", error=text)
@@ -64,7 +64,7 @@ def work(job: Job) -> Outcome:
         with fetched(job.log.address) as path:
             return _of_file(job, path, state)
     except ConfigError as error:
-        # A model that is given is the same for all logs; one that a log brings is that log's own.
+        # A given model is the same for all logs; an attached one belongs to its log.
         if job.model is not None:
             return Outcome(job.log, "wrong_call", state.log_hash, str(error))
         return _failed(job, state, error)
@@ -74,7 +74,7 @@ def work(job: Job) -> Outcome:
 
 @dataclass
 class _State:
-    """How far a job has come."""
+    """Progress of a job."""
 
     log_hash: str | None = None
     robot: Robot | None = None
@@ -107,7 +107,7 @@ def _of_file(job: Job, path: Path, state: _State) -> Outcome:
 
 
 def _known(store: Store, job: Job, state: _State) -> Outcome | None:
-    """The outcome of the same work done before, of a log that has another name or date now."""
+    """Returns the outcome of the same work done before, on a log that now has another name or date; None if there is none."""
     path = state.path or ""
     if store.written(path):
         return Outcome(job.log, "known", state.log_hash)
@@ -116,7 +116,7 @@ def _known(store: Store, job: Job, state: _State) -> Outcome | None:
 
 
 def _failed(job: Job, state: _State, error: Exception) -> Outcome:
-    """Keeps an error that is the log's own beside the results."""
+    """Stores an error that is caused by the log itself beside the results."""
     text = str(error) or type(error).__name__
     # The worker's copy of a log has another name than the log.
     of_the_log = isinstance(error, _OF_THE_LOG) and not isinstance(error, (OSError, FleetError))
@@ -149,22 +149,22 @@ def _common(job: Job, state: _State, seconds: float | None) -> dict[str, Any]:
 
 
 def model_hash(text: str) -> str:
-    """SHA-256 of a robot file."""
+    """Returns the SHA-256 of a robot file."""
     return hashlib.sha256(text.encode()).hexdigest()
 
 
 def _month(log: Log) -> str | None:
-    """Year and month of a log's first sample; None where its clock has no date."""
+    """Returns the year and month of the first sample of a log; None if its clock has no date."""
     if not len(log) or log.stamp_nanos[0] < _FIRST_DATE_NANOS:
         return None
     return str(np.datetime64(int(log.stamp_nanos[0]), "ns").astype("datetime64[M]"))
 
 
 def _one_thread_a_task() -> None:
-    """Lets fric use as many threads as the worker runs tasks, unless its environment says otherwise."""
+    """Lets fric use only as many threads as the worker runs tasks, unless its environment states otherwise."""
     try:
         thread_count = need("distributed").get_worker().state.nthreads
     except ValueError:
-        # Not in a worker.
+        # This process is not a worker.
         return
     os.environ.setdefault("RAYON_NUM_THREADS", str(thread_count))

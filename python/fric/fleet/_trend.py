@@ -22,110 +22,110 @@ from ._series import Gathered, Values, gather
 Limits = Mapping[str, tuple[float | None, float | None]]
 
 YEAR_NANOS = 365.25 * 86_400e9
-# Last values that are called out of line by chance: one in a hundred evaluations of a whole fleet.
+# Rate of false alarms for last values: one in a hundred evaluations of a whole fleet.
 _FALSE_ALARMS = 0.01
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Change(Value):
-    """A date from which a parameter is another, or goes another way."""
+    """Date from which a parameter has another value or another slope."""
 
     parameter: str
     """Name of the parameter."""
     kind: Literal["step", "slope"]
-    """"step": something was replaced, set otherwise or has broken; "slope": something begins to dry, wear or drift."""
+    """ "step": something was replaced, adjusted, or has broken; "slope": something begins to dry, wear, or drift."""
     date: datetime
     """Start of the first log after the step, or of the log from which the slope begins, UTC."""
     earliest: datetime
-    """Start of the first log that may be that one, with 95 %."""
+    """Start of the first log of the 95 % interval."""
     latest: datetime
-    """Start of the last log that may be that one."""
+    """Start of the last log of the 95 % interval."""
     log: str
-    """The log of `date`."""
+    """Log of `date`."""
     before: float
-    """Value before; of a slope, where it begins."""
+    """Value before the step, or at the start of the slope."""
     after: float
-    """Value after the step; of a slope, where it is at its end."""
+    """Value after the step, or at the end of the slope."""
     size: float
-    """Size of the step, or change of the slope a year."""
+    """Size of the step, or change of the slope per year."""
     size_standard_error: float
-    """Its standard error."""
+    """Standard error of the size."""
     delta_bic: float
-    """Evidence: below zero speaks for the change, -10 very strongly. The odds of finding one by chance among all logs and series are in
-    it."""
+    """Evidence: negative values favour the change, and -10 does very strongly. It accounts for the odds of finding a change by chance among all logs
+    and series."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Series(Value):
-    """A parameter of a cable over the dates of the logs, (N,)."""
+    """Parameter of a cable over the dates of the logs, (N,)."""
 
     robot: str
     """Name of the robot, from its model."""
     cable: str
-    """Name of the cable; "platform" for what concerns all of them."""
+    """Name of the cable, or "platform" for parameters of all cables."""
     parameter: str
-    """Name of the parameter, by the robot file's keys, or of an error such as "after.rms_n"."""
+    """Name of the parameter, by the keys of the robot file, or of an error such as "after.rms_n"."""
     date: NDArray[np.datetime64]
     """Start of each log, UTC."""
     values: NDArray[np.float64]
-    """Its values."""
+    """Values of the parameter."""
     standard_errors: NDArray[np.float64]
-    """Their standard errors; NaN where the operation gives none."""
+    """Standard errors of the values; NaN if the operation gives none."""
     fitted: NDArray[np.float64]
-    """The line that describes them: levels, steps and slopes."""
+    """Line that describes the values: levels, steps, and slopes."""
     scatter: float
-    """Standard deviation from log to log beyond the standard errors."""
+    """Standard deviation from log to log in addition to the standard errors."""
     wanders: bool
-    """Whether it wanders, which no date explains."""
+    """Whether the values wander, which no date of a change explains."""
     changes: tuple[Change, ...]
-    """Its changes in order of date."""
+    """Changes in order of date."""
     limits: tuple[float | None, float | None]
-    """Least and greatest value that are allowed; None where there is no limit."""
+    """Least and greatest allowed value; None where there is no limit."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Alarm(Value):
-    """Something to be done on a machine."""
+    """Condition of a machine that requires action."""
 
     robot: str
     """Name of the robot."""
     cable: str
     """Name of the cable."""
     reason: Literal["history", "limit", "last_log"]
-    """"history": changed beyond what it was; "limit": beyond a limit given; "last_log": the last log alone is out of line."""
+    """ "history": changed relative to the past; "limit": beyond a given limit; "last_log": only the last log is an outlier."""
     date: datetime
-    """Since when, UTC."""
+    """Date from which the alarm holds, UTC."""
     parameters: tuple[str, ...]
-    """Parameters that show it, the strongest evidence first."""
+    """Parameters that show it, strongest evidence first."""
     changes: tuple[Change, ...]
-    """Their changes; empty for the other reasons."""
+    """Changes of these parameters; empty for the other reasons."""
     text: str
-    """What happened, in a sentence."""
+    """Sentence that states what happened."""
     cause: str
-    """What is likely behind it."""
+    """Likely cause."""
     remedy: str
-    """What to do about it on the machine."""
+    """Action on the machine."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Trend(Result):
-    """Outcome of `trend`. `print(trend)` shows the alarms; `to_html()` is a page for people."""
+    """Result of `trend`. `print(trend)` shows the alarms; `to_html()` is a page for people."""
 
     operation: str
-    """The operation whose results these are."""
+    """Operation that gave the results."""
     logs: int
-    """Logs with a result and a date."""
+    """Number of logs with a result and a date."""
     series: tuple[Series, ...]
-    """All series, by robot, cable and parameter."""
+    """All series, by robot, cable, and parameter."""
     alarms: tuple[Alarm, ...]
-    """What is to be done, the latest first."""
+    """Required actions, latest first."""
     failures: tuple[LogFailure, ...]
     """Logs without a result, with the reason."""
     undated: tuple[str, ...]
-    """Logs that are left out because their clock has no date."""
+    """Logs that are excluded because their clock has no date."""
 
     def of(self, robot: str, cable: str, parameter: str) -> Series:
-        """The series of a robot, cable and parameter."""
+        """Returns the series of a robot, cable, and parameter."""
         chosen = self.series
         for what, name in (("robot", robot), ("cable", cable), ("parameter", parameter)):
             known = list(dict.fromkeys(getattr(one, what) for one in chosen))
@@ -136,18 +136,18 @@ class Trend(Result):
 
 
 def trend(results: Any, *, operation: Literal["discover", "fit", "replay"] | None = None, limits: Limits | None = None) -> Trend:
-    """Tells what has changed on each robot and cable, in which parameter, and since when.
+    """Determines what has changed on each robot and cable, in which parameter, and since when.
 
-    `results` is what `run` returned, the address of its data set, or a table with the columns robot, cable, parameter, start and value,
-    and standard_error where there is one (a `pyarrow.Table`, or a data frame of pandas or polars). `operation` says which results are
-    meant where the data set has several. `limits` are least and greatest allowed values, None for none, by parameter (`{"mu": (None,
-    0.05)}`) or by robot, cable and parameter (`{"rig/cable1/mu": (None, 0.04)}`).
+    `results` is what `run` returned, the address of its data set, or a table with the columns robot, cable, parameter, start, and value, and
+    optionally standard_error (a `pyarrow.Table`, or a data frame of pandas or polars). `operation` selects the results if the data set has those of
+    several operations. `limits` are least and greatest allowed values, None for none, by parameter (`{"mu": (None, 0.05)}`) or by robot, cable, and
+    parameter (`{"rig/cable1/mu": (None, 0.04)}`).
 
-    A change is a step or a slope that begins; it is told where the evidence is for it after the standard errors, the scatter from log to
-    log, outliers, a slow wander and the number of dates and series among which it was found. At least three logs have to lie on each side
-    of it. Of a log that was computed more than once, the last result counts.
+    A change is a step or the start of a slope. It is reported if there is evidence for it after accounting for the standard errors, the scatter from
+    log to log, outliers, a slow wander, and the number of dates and series among which it was found. At least three logs must lie on each side of it.
+    If a log was computed more than once, the last result counts.
 
-    Raises ConfigError where there are no results or a name is not right, ShapeError for a table without these columns.
+    Raises ConfigError if there are no results or a name is invalid, and ShapeError for a table without these columns.
     """
     gathered = gather(results, operation)
     bounds = _checked(limits or {}, gathered.series)
@@ -231,7 +231,8 @@ def _date(stamp_nanos: Any) -> datetime:
 
 
 def _beyond_by_chance(probability: float) -> float:
-    """The quantile of Student's t with 4 degrees of freedom that is exceeded, on both sides together, with a probability (Shaw 2006)."""
+    """Returns the quantile of Student's t with 4 degrees of freedom that is exceeded, on both sides together, with a given probability (Shaw
+    2006)."""
     upper = 1 - probability / 2
     product = math.sqrt(4 * upper * (1 - upper))
     return 2 * math.sqrt(math.cos(math.acos(product) / 3) / product - 1)

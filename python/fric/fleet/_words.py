@@ -1,4 +1,4 @@
-"""A trend as text, JSON and table."""
+"""Trend as text, JSON, and table."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ FORMAT = "fric-trend/1"
 
 
 def between(change: Change) -> str:
-    """When a change was, as far as the logs tell."""
+    """Returns the date of a change with the precision that the logs allow."""
     if change.earliest == change.latest:
         return day(change.date)
     return f"{day(change.date)} ({day(change.earliest)} to {day(change.latest)})"
 
 
 def since(alarm: Alarm) -> str:
-    """Since when an alarm holds."""
+    """Returns the date from which an alarm holds."""
     return between(alarm.changes[0]) if alarm.changes else day(alarm.date)
 
 
 def headline(trend: Trend) -> str:
-    """What was looked at, in a sentence."""
+    """Returns a sentence that states what was examined."""
     robots = len({one.robot for one in trend.series})
     counted = f"{trend.logs} logs of {robots} robots, {len(trend.series)} series by fric {trend.operation}"
     alarms = "nothing has changed" if not trend.alarms else f"{len(trend.alarms)} {'alarm' if len(trend.alarms) == 1 else 'alarms'}"
@@ -36,7 +36,7 @@ def headline(trend: Trend) -> str:
 
 
 def verdict(trend: Trend) -> str:
-    """The outcome in a sentence for people who do not run the robots."""
+    """Returns the result in a sentence for people who do not run the robots."""
     robots = list(dict.fromkeys(one.robot for one in trend.series))
     fleet = f"{len(robots)} robots" if len(robots) != 1 else "the robot"
     if not trend.alarms:
@@ -47,13 +47,13 @@ def verdict(trend: Trend) -> str:
 
 
 def provenance() -> dict[str, Any]:
-    """Program, version, date and command, as in the other results."""
+    """Returns program, version, date, and command, as in the other results."""
     made = datetime.now(timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ")
     return {"program": "fric", "version": __version__, "made": made, "command": "fric.fleet.trend", "inputs": []}
 
 
 def remarks(trend: Trend) -> list[str]:
-    """What is left out of the series."""
+    """Returns remarks on logs that are excluded and on series that wander."""
     texts = []
     if trend.undated:
         texts.append(f"{len(trend.undated)} logs have no date and are left out: their clock begins at 0 (such as {trend.undated[0]})")
@@ -66,7 +66,7 @@ def remarks(trend: Trend) -> list[str]:
 
 
 def summary_of(trend: Trend) -> str:
-    """The text of `print(trend)`."""
+    """Returns the text of `print(trend)`."""
     lines = [headline(trend)]
     for alarm in trend.alarms:
         lines += ["", f"{alarm.robot}, {alarm.cable}, since {since(alarm)}: {alarm.text}"]
@@ -77,7 +77,7 @@ def summary_of(trend: Trend) -> str:
 
 
 def json_of(trend: Trend) -> str:
-    """The trend for machines."""
+    """Returns the trend as JSON."""
     found = {
         "format": FORMAT,
         "operation": trend.operation,
@@ -92,7 +92,7 @@ def json_of(trend: Trend) -> str:
 
 
 def table_of(trend: Trend) -> str:
-    """The table of a notebook."""
+    """Returns the table for a notebook."""
     head = "".join(f"<th>{name}</th>" for name in ("robot", "cable", "since", "what", "to do"))
     rows = "".join(
         "<tr>" + "".join(f"<td>{escape(text)}</td>" for text in (one.robot, one.cable, since(one), one.text, one.remedy)) + "</tr>"

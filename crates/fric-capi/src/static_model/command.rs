@@ -1,4 +1,4 @@
-//! Inverse: the tensions at the base for a goal.
+//! The inverse model: the tensions at the base for a goal.
 
 use std::ffi::c_char;
 
@@ -16,7 +16,7 @@ pub const FRIC_GOAL_BEND: u32 = 0;
 /// The goal is a position of the tip, the centre of the last disk.
 pub const FRIC_GOAL_TIP: u32 = 1;
 
-/// What the drives at the base can do.
+/// The limits of the drives at the base.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct DriveLimits {
@@ -24,32 +24,33 @@ pub struct DriveLimits {
     pub struct_size: usize,
     /// Tension that each tendon keeps while the other one is pulled, N, at least 0.
     pub least_tension_n: [f64; 2],
-    /// Greatest tension of each tendon, N, from the least up to the tendon's capacity. A tendon for which it is the least is not pulled.
+    /// Greatest tension of each tendon, N, from the least tension up to the tendon's capacity. If it equals the least tension, that tendon is not
+    /// pulled.
     pub greatest_tension_n: [f64; 2],
-    /// A goal nearer than this, rad (for the tip: this share of the arm's length), leaves the tensions as they are, so that noise on the goal does not
-    /// send them to and fro across the friction of all holes. 0…1.
+    /// A goal nearer than this, rad (for the tip: relative to the manipulator's length), keeps the tensions, so that noise on the goal does not move
+    /// them back and forth across the friction of all holes. 0…1.
     pub hold_rad: f64,
 }
 
-/// What is wanted of the manipulator.
+/// The goal of the manipulator.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct ModelGoal {
     /// sizeof(fric_goal).
     pub struct_size: usize,
-    /// With FRIC_GOAL_BEND the bend of the whole manipulator, rad, positive towards the first tendon.
+    /// With FRIC_GOAL_BEND: the bend of the whole manipulator, rad, positive towards the first tendon.
     pub bend_rad: f64,
-    /// With FRIC_GOAL_TIP the centre of the last disk, base frame, m. One tension moves the tip on a curve; the command brings it as near as that curve
-    /// comes.
+    /// With FRIC_GOAL_TIP: the centre of the last disk, base frame, m. One tension moves the tip along a curve; the command brings it to the nearest
+    /// point of that curve.
     pub tip_m: [f64; 2],
     /// FRIC_GOAL_BEND or FRIC_GOAL_TIP.
     pub kind: u32,
-    /// FRIC_FRICTION_…, but not FRIC_FRICTION_MEASURED, which knows nothing of other tensions. That of a zeroed structure is FRIC_FRICTION_HISTORY.
+    /// FRIC_FRICTION_…, except FRIC_FRICTION_MEASURED, which cannot predict other tensions. That of a zeroed structure is FRIC_FRICTION_HISTORY.
     pub friction: u32,
 }
 
-/// The tensions to set at the base, and what the model expects of them. Set `struct_size`; the call sets the rest. All numbers are
-/// finite, whatever went in.
+/// The tensions to set at the base, and the model's prediction. Set `struct_size`; the call sets the rest. All numbers are finite, whatever the
+/// input.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct ModelCommand {
@@ -57,22 +58,22 @@ pub struct ModelCommand {
     pub struct_size: usize,
     /// Tension at the base of the first and the second tendon, N.
     pub base_tension_n: [f64; 2],
-    /// Bend of the whole manipulator then, rad.
+    /// Predicted bend of the whole manipulator, rad.
     pub bend_rad: f64,
-    /// Centre of the last disk then, base frame, m.
+    /// Predicted centre of the last disk, base frame, m.
     pub tip_m: [f64; 2],
-    /// FRIC_COMMAND_… flags, FRIC_COMMAND_OK if there is nothing to say.
+    /// FRIC_COMMAND_… flags, FRIC_COMMAND_OK if there is none.
     pub status: u32,
 }
 
-/// States what the drives at the base can do; after set-up the first tendon is pulled from 0 N up to its capacity, and every goal is followed.
+/// Sets the limits of the drives at the base. After set-up the first tendon is pulled from 0 N up to its capacity, and every goal is followed.
 ///
-/// FRIC_RESULT_BAD_VALUE, and the drive stays as it was, where a number is NaN or out of its range; `error` then names the number, its value and what
-/// is allowed, and is otherwise as in fric_load_file. Only that text allocates.
+/// FRIC_RESULT_BAD_VALUE, with the drive unchanged, if a number is NaN or out of its range; `error` then names the number, its value and what is
+/// allowed, and is otherwise as in fric_load_file. Only that text allocates.
 ///
 /// # Safety
-/// `model` is null or a model that has not been given back and that nobody else uses now. `drive` is null or a structure whose
-/// `struct_size` can be read; if that is right, the rest can be too. `error` is null or `error_size` bytes may be written to there.
+/// `model` is null or a model that has not been freed and that nobody else uses now. `drive` is null or a structure whose `struct_size` is readable;
+/// if that is right, the rest is readable too. `error` is null or points to `error_size` writable bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fric_static_model_set_drive(
     model: *mut ModelHandle,
@@ -80,7 +81,7 @@ pub unsafe extern "C" fn fric_static_model_set_drive(
     error: *mut c_char,
     error_size: usize,
 ) -> Outcome {
-    // SAFETY: the same is promised here.
+    // SAFETY: the caller of this function promises the same.
     let error = unsafe { ErrorText::new(error, error_size) };
     error.write("");
     if !(usable(model) && usable(drive)) {
@@ -93,9 +94,9 @@ pub unsafe extern "C" fn fric_static_model_set_drive(
         error.write("`struct_size` of the drive is not sizeof(fric_drive)");
         return Outcome::WrongSize;
     }
-    // SAFETY: of the right size, so all of it can be read.
+    // SAFETY: of the right size, so all of it is readable.
     let DriveLimits { least_tension_n, greatest_tension_n, hold_rad, .. } = unsafe { drive.read() };
-    // SAFETY: a live handle that nobody else uses; no other reference to what it works on exists.
+    // SAFETY: a live handle that nobody else uses; no other reference to its data exists.
     let Work { model, drive } = unsafe { &mut (*model).work };
     let options = DriveOptions { least_tension_n, greatest_tension_n, hold_rad };
     let checked =
@@ -112,16 +113,16 @@ pub unsafe extern "C" fn fric_static_model_set_drive(
     }
 }
 
-/// The tensions at the base that bring the manipulator to a goal, from where the last step of the history left it: for the inside of the control
-/// loop. It does not allocate, lock or wait, takes any numbers, NaN included, and its iterations are bounded.
+/// Computes the tensions at the base that bring the manipulator to a goal, from the end of the last step of the history. It may run inside the
+/// control loop: it does not allocate, lock or wait, accepts any numbers, including NaN, and its iterations are bounded.
 ///
-/// The shape and what the holes remember stay as they are: fric_static_model_solve, with the tensions that were set or measured then, moves them
-/// on. FRIC_RESULT_BAD_VALUE for a `kind` or `friction` that is none of the header's. On anything but FRIC_RESULT_OK nothing has
-/// happened and the command is as it was. Goal and command may share no memory.
+/// The shape and the memory of the holes are unchanged: fric_static_model_solve, with the tensions that were then set or measured, advances them.
+/// FRIC_RESULT_BAD_VALUE for a `kind` or `friction` that is none of the header's. On anything but FRIC_RESULT_OK nothing has happened and the command
+/// is unchanged. Goal and command must not share memory.
 ///
 /// # Safety
-/// `model` is null or a model that has not been given back and that nobody else uses now. `goal` and `command` are null or structures whose
-/// `struct_size` can be read; if that is right, the rest of the goal can be too, and the rest of the command can be written to.
+/// `model` is null or a model that has not been freed and that nobody else uses now. `goal` and `command` are null or structures whose `struct_size`
+/// is readable; if that is right, the rest of the goal is readable too, and the rest of the command is writable.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fric_static_model_tension_for(
     model: *mut ModelHandle,
@@ -138,7 +139,7 @@ pub unsafe extern "C" fn fric_static_model_tension_for(
     if goal_size != size_of::<ModelGoal>() || command_size != size_of::<ModelCommand>() {
         return Outcome::WrongSize;
     }
-    // SAFETY: of the right size, so all of it can be read.
+    // SAFETY: of the right size, so all of it is readable.
     let ModelGoal { bend_rad, tip_m, kind, friction, .. } = unsafe { goal.read() };
     let goal = match kind {
         FRIC_GOAL_BEND => Goal::BendRad(bend_rad),
@@ -152,7 +153,7 @@ pub unsafe extern "C" fn fric_static_model_tension_for(
             None => return Outcome::BadValue,
         },
     };
-    // SAFETY: a live handle that nobody else uses; no other reference to what it works on exists.
+    // SAFETY: a live handle that nobody else uses; no other reference to its data exists.
     let Work { model, drive } = unsafe { &mut (*model).work };
     let found = model.tension_for(goal, friction, drive);
     let result = ModelCommand {
@@ -162,7 +163,7 @@ pub unsafe extern "C" fn fric_static_model_tension_for(
         tip_m: found.tip_m,
         status: found.status.bits(),
     };
-    // SAFETY: of the right size, so all of it can be written to.
+    // SAFETY: of the right size, so all of it is writable.
     unsafe { command.write(result) };
     Outcome::Ok
 }

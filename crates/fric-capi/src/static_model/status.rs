@@ -1,41 +1,41 @@
-//! The flags of a shape and of a command, those of [`ShapeStatus`] and [`GoalStatus`].
+//! The flags of a shape and of a command, equal to those of [`ShapeStatus`] and [`GoalStatus`].
 
 use fric_core::continuum::{GoalStatus, ShapeStatus};
 
-/// Nothing is the matter with the shape.
+/// The shape has no fault.
 pub const FRIC_SHAPE_OK: u32 = 0;
-/// A tension is negative, NaN, infinite or beyond 1e9 N: the shape and what the holes remember stay as they were.
+/// A tension is negative, NaN, infinite or beyond 1e9 N: the shape and the memory of the holes are unchanged.
 pub const FRIC_SHAPE_NOT_FINITE: u32 = 1;
-/// No equilibrium was found: the shape and what the holes remember stay as they were.
+/// No equilibrium was found: the shape and the memory of the holes are unchanged.
 pub const FRIC_SHAPE_NOT_CONVERGED: u32 = 2;
-/// The equilibrium is not stable, the arm would leave it: the shape and what the holes remember stay as they were.
+/// The equilibrium is unstable, and the manipulator would leave it: the shape and the memory of the holes are unchanged.
 pub const FRIC_SHAPE_UNSTABLE: u32 = 4;
-/// A tension is above what the tendon can bear; computed as usual.
+/// A tension exceeds the tendon's capacity; computed as usual.
 pub const FRIC_SHAPE_OVER_CAPACITY: u32 = 8;
-/// Disks would touch, the bend is beyond the model; computed as usual.
+/// Disks would touch, and the bend is beyond the model; computed as usual.
 pub const FRIC_SHAPE_DISKS_TOUCH: u32 = 16;
-/// The flags with which there is no new shape.
+/// The flags without a new shape.
 pub const FRIC_SHAPE_FAILED: u32 = 7;
 
-/// The command reaches the goal, and the arm moves on in the direction in which it moved before.
+/// The command reaches the goal, and the manipulator continues in its previous direction.
 pub const FRIC_COMMAND_OK: u32 = 0;
-/// The goal is not finite, or the friction is FRIC_FRICTION_MEASURED: the tensions as they were.
+/// The goal is not finite, or the friction is FRIC_FRICTION_MEASURED: the tensions are unchanged.
 pub const FRIC_COMMAND_NOT_USABLE: u32 = 1;
-/// No tension was found: the tensions as they were.
+/// No tension was found: the tensions are unchanged.
 pub const FRIC_COMMAND_NOT_CONVERGED: u32 = 2;
-/// The tensions of the drive end before the goal, disks would touch, there is no stable shape, or the tip passes the goal by more than 1 %
-/// of the arm's length: the tensions that come nearest.
+/// The tensions of the drive end before the goal, disks would touch, there is no stable shape, or the tip passes the goal by more than 1 % of the
+/// manipulator's length: the command is the nearest possible one.
 pub const FRIC_COMMAND_OUT_OF_REACH: u32 = 4;
-/// The goal is nearer than `hold_rad` of the drive: the tensions as they were.
+/// The goal is nearer than `hold_rad` of the drive: the tensions are unchanged.
 pub const FRIC_COMMAND_HELD: u32 = 8;
-/// The tendon turns round: friction at the base plate was against this motion before. The goal is reached.
+/// The tendon reverses: friction at the base plate was against this motion before. The goal is reached.
 pub const FRIC_COMMAND_REVERSAL: u32 = 16;
-/// Some hole still has the friction of the motion before, so that much tension moves little. The goal is reached.
+/// Some hole still has the friction of the previous motion, so that much tension moves little. The goal is reached.
 pub const FRIC_COMMAND_DEAD_BAND: u32 = 32;
 /// The flags with which the command does not reach the goal.
 pub const FRIC_COMMAND_MISSED: u32 = 7;
 
-// cbindgen takes numbers only; that they are the core's is checked here.
+// cbindgen accepts numbers only, so their equality with the core's is checked here.
 const _: () = {
     let shape = [
         FRIC_SHAPE_NOT_FINITE,

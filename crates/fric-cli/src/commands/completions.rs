@@ -1,4 +1,4 @@
-//! `completions`: what a shell needs to complete commands, options and their values.
+//! `completions`: a shell's completion script for commands, options and their values.
 
 use clap::CommandFactory as _;
 

@@ -1,4 +1,4 @@
-//! `convert`: any log that can be read, as MCAP with the signals on the topics that are looked for by default.
+//! `convert`: any readable log as MCAP with the signals on the default topics.
 
 use fric_core::robot::file::{LogTable, ReferenceTable, RobotFile};
 use fric_log::log::Log;
@@ -26,7 +26,7 @@ pub fn run(arguments: &ConvertArguments) -> Outcome {
     let LogTable { cable, reference, pose, wrench, .. } = LogTable::default();
     let reference = match (reference, model.robot.params().known_reference()) {
         (ReferenceTable::Signal(topic), None) => Some(topic),
-        // What is known stays in the robot file.
+        // A known reference stays in the robot file.
         _ => None,
     };
 
@@ -66,7 +66,7 @@ pub fn run(arguments: &ConvertArguments) -> Outcome {
     output::show_with("", vec![Written::new(converted.complete()?, told)], "")
 }
 
-/// The robot file for a log with the default topics: as it is where it names no others, else without its `[log]`.
+/// Returns the robot file for a log with the default topics: unchanged if it names no others, else without its `[log]`.
 fn with_default_topics(model: &Model) -> Outcome<String> {
     let mut options = model.robot.options().clone();
     let standard = LogTable::default();

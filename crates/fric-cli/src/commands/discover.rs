@@ -1,4 +1,4 @@
-//! `discover`: where the model and a log disagree, which effect is missing, and the robot file with it.
+//! `discover`: where the model and a log disagree, which effect is missing, and the robot file with that effect.
 
 use std::path::{Path, PathBuf};
 
@@ -40,7 +40,7 @@ pub fn run(arguments: &DiscoverArguments) -> Outcome {
     let reference = match reference {
         ReferenceName::Forces => Reference::Forces,
         ReferenceName::Wrench => {
-            // The robot file alone can rule it out.
+            // The robot file alone can make it impossible.
             readiness::geometry(&model.robot, &model.origin).map_or(Ok(()), |lack| Err(lack.error()))?;
             Reference::Wrench
         }
@@ -50,7 +50,7 @@ pub fn run(arguments: &DiscoverArguments) -> Outcome {
         Reference::Forces => readiness::to_discover(&model.robot, &read.holdings),
         Reference::Wrench => readiness::by_wrench(&model.robot, &model.origin, &read.holdings),
     };
-    // What is missing for some cables only stands beside their verdicts.
+    // Missing data of some cables are reported only beside their verdicts.
     read.check(&readiness)?;
     let options = DiscoverOptions { empirical: !no_empirical };
     let what = if reference == Reference::Forces { "stages" } else { "searches" };
@@ -75,7 +75,7 @@ pub fn run(arguments: &DiscoverArguments) -> Outcome {
     json.finish_then(&outcome, &outcome.summary(), files, &next)
 }
 
-/// What a user would do with the result.
+/// Returns the usual next step of a user.
 fn next_step(logs: &[PathBuf], output: Option<&Path>) -> String {
     let log = logs.first().map_or_else(|| "LOG".to_owned(), |log| log.display().to_string());
     output.map_or_else(

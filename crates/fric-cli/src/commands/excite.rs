@@ -69,7 +69,7 @@ pub fn run(arguments: &ExciteArguments) -> Outcome {
     output::show_with("", files, &told)
 }
 
-/// What the run is to tell, if it is to be designed.
+/// Returns the questions of the run, if it is to be designed.
 fn asked(model: &Model, arguments: &DesignArguments) -> Outcome<Option<Vec<Question>>> {
     let DesignArguments { found, separate, determine, cables, noise_n, .. } = arguments;
     let text = found.as_deref().map(read_text).transpose()?;
@@ -90,7 +90,7 @@ fn read_text(path: &Path) -> Outcome<String> {
     std::fs::read_to_string(path).map_err(|error| Failure::new(fric_log::reason(&error)).in_file(path))
 }
 
-/// A number on the command line is the command line's fault, the rest the robot's or the run's.
+/// Converts an error to a failure; a wrong number is a mistake on the command line, the rest concerns the robot or the run.
 fn refused(error: ExcitationError) -> Failure {
     let flag = |key: &str| match key {
         "box_m" => "--box".to_owned(),

@@ -49,7 +49,7 @@ pub fn run(arguments: &FitArguments) -> Outcome {
             (Fits::Forces(fit.cables), fit.faults, readiness)
         }
         ReferenceName::Wrench => {
-            // The robot file alone can rule it out.
+            // The robot file alone can make it impossible.
             readiness::geometry(&model.robot, &model.origin).map_or(Ok(()), |lack| Err(lack.error()))?;
             let read = read(logs, part, &model, Reference::Wrench)?;
             let readiness = readiness::by_wrench(&model.robot, &model.origin, &read.holdings);
@@ -70,7 +70,7 @@ pub fn run(arguments: &FitArguments) -> Outcome {
     json.finish(&outcome, &outcome.summary(), files)
 }
 
-/// The parameters that the command line names.
+/// Returns the parameters named on the command line.
 fn named(names: &[String]) -> Outcome<Vec<Parameter>> {
     Parameter::all_named(names.iter().map(|name| name.trim()))
         .map_err(|problem| Failure::usage(format!("--parameters: {problem}")))

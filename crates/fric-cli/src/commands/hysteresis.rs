@@ -28,7 +28,7 @@ pub fn run(arguments: &HysteresisArguments) -> Outcome {
     let json = JsonTarget::prepare(result.json.as_deref(), &inputs, result.force)?;
     let report = report.as_ref().map(|path| OutputFile::create(path, &inputs, result.force)).transpose()?;
 
-    // The first reading finds the position, the second runs the compensator; what the log is like is told once.
+    // The first reading finds the position, the second runs the compensator; warnings about the log are printed once.
     let mut survey = Survey::new(&model.robot)?;
     let warn_about_log = |reader: &SignalReader| {
         warn_all(&reader.log().warnings());
@@ -50,7 +50,7 @@ pub fn run(arguments: &HysteresisArguments) -> Outcome {
     json.finish(&outcome, &outcome.summary(), page.into_iter().collect())
 }
 
-/// All samples of the log one after the other.
+/// Reads all samples of the log in order.
 fn read(
     log: Log,
     part: Part,
@@ -75,7 +75,7 @@ fn read(
         }
     };
     progress::finish(&bar);
-    // Damage may be why there is nothing to go on with.
+    // Damage may be the reason why the log cannot be used.
     warn(&reader);
     Ok(end?)
 }

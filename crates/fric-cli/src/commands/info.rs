@@ -1,4 +1,4 @@
-//! `info`: what is in a log, what maps to what, and which step is impossible and why.
+//! `info`: the content of a log, its signals, and which steps are impossible and why.
 
 mod columns;
 mod overview;
@@ -37,7 +37,7 @@ struct InfoResult {
     robot: Option<String>,
     storage: StorageResult,
     topics: Vec<TopicResult>,
-    /// Of a log of rows.
+    /// Columns of a log of rows.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     columns: Vec<ColumnResult>,
     signals: Vec<SignalResult>,
@@ -58,7 +58,7 @@ struct TopicResult {
     /// Longest interval between messages.
     #[serde(skip_serializing_if = "Option::is_none")]
     longest_interval_s: Option<f64>,
-    /// First and last log time, relative to the first message of the log.
+    /// First log time, relative to the first message of the log.
     from_s: f64,
     to_s: f64,
 }
@@ -69,13 +69,13 @@ struct SignalResult {
     path: String,
     messages: u64,
     gaps: u64,
-    /// Of a pose from the cable lengths: what they are off at it, rms over cables and samples.
+    /// For a pose from the cable lengths: the error of the lengths, rms over cables and samples.
     #[serde(skip_serializing_if = "Option::is_none")]
     residual_rms_m: Option<f64>,
     remarks: Vec<String>,
 }
 
-/// Log times of a topic, accumulated.
+/// Accumulated log times of a topic.
 #[derive(Debug, Default)]
 struct Times {
     schema: String,
@@ -166,7 +166,7 @@ pub fn run(arguments: &InfoArguments) -> Outcome {
     json.finish(&outcome, &text, page.into_iter().collect())
 }
 
-/// The topics, and when the first message was recorded.
+/// Returns the topics, and the time of the first message.
 fn read_topics(log: &mut Log, part: Part) -> Outcome<(Vec<TopicResult>, Option<u64>)> {
     let bar = progress::bytes(log.total_bytes());
     let mut topics: BTreeMap<String, Times> = BTreeMap::new();
@@ -221,15 +221,15 @@ fn read_topics(log: &mut Log, part: Part) -> Outcome<(Vec<TopicResult>, Option<u
     Ok((topics.into_iter().map(topic).collect(), first_nanos))
 }
 
-/// What the signals map to.
+/// The signals that were read.
 struct SignalsRead {
     signals: Vec<SignalResult>,
     steps: Vec<StepResult>,
-    /// Of the first and the last sample.
+    /// Stamps of the first and the last sample.
     stamp_nanos: Option<[i64; 2]>,
 }
 
-/// What the signals map to, found by joining them as the other commands do.
+/// Reads the signals and joins them as the other commands do.
 fn read_signals(model: &Model, log: Log, part: Part, mut series: Option<&mut SignalSeries>) -> Outcome<SignalsRead> {
     let paths = model.signal_paths()?;
     let bar = progress::bytes(log.total_bytes());
@@ -250,7 +250,7 @@ fn read_signals(model: &Model, log: Log, part: Part, mut series: Option<&mut Sig
                 }
             }
             Ok(None) => break None,
-            // That the disk refuses says nothing of the log.
+            // A read error of the disk says nothing about the log.
             Err(SignalError::Recording(error)) => return Err(error.into()),
             Err(error) => break Some(error.to_string()),
         }
@@ -303,7 +303,7 @@ fn signal_results(reader: &SignalReader) -> Vec<SignalResult> {
     Role::ALL.into_iter().filter_map(signal).collect()
 }
 
-/// Which steps the log allows.
+/// Returns which steps the log allows.
 fn steps(model: &Model, holdings: &Holdings, problem: Option<&str>) -> Vec<StepResult> {
     let params = model.robot.params();
     let cables = params.cables();
@@ -311,7 +311,7 @@ fn steps(model: &Model, holdings: &Holdings, problem: Option<&str>) -> Vec<StepR
     let all_geometry = cables.iter().all(fric_core::CableParams::has_geometry);
     let has_rows = holdings.rows > 0;
     let no_pose = || "no pose: the wrap of the last pulleys would be taken as 90°".to_owned();
-    // Without a row there is nothing else to say.
+    // Without a row there is nothing else to report.
     let nothing = || problem.unwrap_or("no samples").to_owned();
     let mut forces = Vec::new();
     forces.extend(problem.map(ToOwned::to_owned));
@@ -357,7 +357,7 @@ fn steps(model: &Model, holdings: &Holdings, problem: Option<&str>) -> Vec<StepR
     ]
 }
 
-/// The result as tables.
+/// Formats the result as tables.
 fn describe(result: &InfoResult, model: Option<&Model>, attachments: &[String], wide: bool) -> String {
     let mut text = result.storage.lines(attachments);
     text.push('\n');
@@ -388,7 +388,7 @@ fn topic_table(topics: &[TopicResult], wide: bool) -> String {
         |value: Option<f64>, digits: usize| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.digits$}"));
     let milliseconds = |value: Option<f64>| number(value.map(|seconds| seconds * 1e3), 3);
     let row = |topic: &TopicResult| {
-        // Of `sensor_msgs/msg/JointState` the last word says enough.
+        // The last word of `sensor_msgs/msg/JointState` suffices.
         let schema = if wide { &topic.schema } else { topic.schema.rsplit(['/', '.']).next().unwrap_or_default() };
         let mut row = vec![printable(&topic.topic), printable(schema)];
         if wide {

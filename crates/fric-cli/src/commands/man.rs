@@ -1,4 +1,4 @@
-//! `man`: the manual pages, made of the texts of `--help`.
+//! `man`: the manual pages, generated from the texts of `--help`.
 
 use std::fs;
 use std::path::Path;
@@ -27,7 +27,7 @@ pub fn run(arguments: &ManArguments) -> Outcome {
     output::show_with("", pages, "")
 }
 
-/// The page of a command and those of the commands below it.
+/// Writes the page of a command and those of its subcommands.
 fn write_pages(command: &Command, directory: &Path, force: bool, pages: &mut Vec<Written>) -> Outcome {
     let man = Man::new(command.clone());
     let mut text = Vec::new();

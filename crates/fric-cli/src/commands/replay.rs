@@ -1,4 +1,4 @@
-//! `replay`: the compensator over a log, as the control loop would run it.
+//! `replay`: runs the compensator over a log, as the control loop would.
 
 use std::path::PathBuf;
 
@@ -75,13 +75,13 @@ pub fn run(arguments: &ReplayArguments) -> Outcome {
         }
     };
     progress::finish(&bar);
-    // Damage may be why there is nothing to go on with.
+    // Damage may be the reason why the log cannot be used.
     warn_all(&reader.log().warnings());
     end?;
     warn_all(&reader.warnings());
     warn_all(&reader.robot_warnings(&model.robot));
     if reader.times_apart(Role::Reference).is_some() {
-        // That there are no reference forces has been told, and why.
+        // Missing reference forces have already been reported.
         warn_all(&model.robot.warnings());
         warn_all(&replay.cable_warnings(&model.robot));
     } else {

@@ -16,7 +16,7 @@ use crate::output::{self, Written};
 use crate::progress::{self, STRIDE};
 use crate::warnings::warn_all;
 
-/// Pose and wrench come at 250 Hz, as a slower controller would publish them.
+/// Pose and wrench come at 250 Hz, as from a slower controller.
 const PLATFORM_INTERVAL_S: f64 = 0.004;
 
 /// Runs the command.
@@ -64,7 +64,7 @@ pub fn run(arguments: &SimulateArguments) -> Outcome {
             bar.set_position(done_cycles);
         }
         done_cycles += 1;
-        // The last cycle has a pose too: nothing is extrapolated past it.
+        // The last cycle has a pose too, because poses are not extrapolated.
         let with_platform = (done_cycles - 1).is_multiple_of(simulated.platform_stride) || done_cycles == total_cycles;
         simulated.log.write(&sample, with_platform)?;
     }
@@ -78,7 +78,7 @@ pub fn run(arguments: &SimulateArguments) -> Outcome {
     output::show_with("", vec![Written::new(simulated.log.complete()?, told)], "")
 }
 
-/// What is hidden, with the values that were taken because none were given.
+/// Returns the hidden effect or disturbance, with the default values that were used.
 fn hidden(given: &impl Display, defaults: &[(&'static str, f64)]) -> String {
     if defaults.is_empty() {
         return given.to_string();
@@ -87,7 +87,7 @@ fn hidden(given: &impl Display, defaults: &[(&'static str, f64)]) -> String {
     format!("{given} (by default {})", defaults.join(", "))
 }
 
-/// A number or an effect on the command line is the command line's fault, the rest the robot file's.
+/// Converts an error to a failure; a wrong number or effect is a mistake on the command line, the rest concerns the robot file.
 fn refused(error: SimulationError) -> Failure {
     match error {
         SimulationError::OptionOutOfRange { key, value, min, max } => {
@@ -102,7 +102,7 @@ fn refused(error: SimulationError) -> Failure {
 
 struct SimulatedLog {
     log: SampledLog,
-    /// Cycles from one pose to the next.
+    /// Number of cycles from one pose to the next.
     platform_stride: u64,
 }
 
@@ -115,12 +115,12 @@ impl SimulatedLog {
         writer.attach_robot_file(&model.text)?;
         let names = model.robot.cable_names();
         let mut log = SampledLog::new(writer, &topic(Role::Cable)?, &names)?;
-        // Where the reference is known it is not measured.
+        // A known reference is not measured.
         if paths.known_reference().is_none() {
             log.add_reference(&topic(Role::Reference)?, &names)?;
         }
         let params = model.robot.params();
-        // Nor is a pose where it comes from the lengths.
+        // A pose from the lengths is not measured either.
         if paths.pose_robot().is_none() && params.cables().iter().any(fric_core::CableParams::has_geometry) {
             log.add_pose(&topic(Role::Pose)?)?;
         }
@@ -133,7 +133,7 @@ impl SimulatedLog {
     }
 }
 
-/// The topic of a signal that is to be written, which has to be a topic alone.
+/// Returns the topic of a signal to write, which must be a bare topic.
 fn bare_topic(paths: &SignalPaths, role: Role, origin: &str) -> Outcome<String> {
     match paths.get(role) {
         Some(MessagePath { topic, field }) if field.is_empty() => Ok(topic.clone()),

@@ -1,4 +1,4 @@
-//! A model for an arm whose number of disks is known only at run time.
+//! A model for a manipulator whose number of disks is known only at run time.
 
 use alloc::boxed::Box;
 use alloc::vec::Vec;
@@ -10,8 +10,8 @@ use super::params::{MAX_DISKS, ManipulatorError, ManipulatorParams, Tendon};
 use super::shape::ShapeStatus;
 use crate::words::Words as _;
 
-/// [`StaticModel`] for any number of disks up to [`MAX_DISKS`]: the smallest of a few sizes that holds the arm. The size does not change a
-/// bit of the result. Set-up allocates once, nothing else does. Needs the feature `alloc`.
+/// A [`StaticModel`] for any number of disks up to [`MAX_DISKS`]: it uses the smallest of a few sizes that holds the manipulator. The size does not
+/// change a bit of the result. Only set-up allocates, once. Needs the feature `alloc`.
 #[derive(Clone, Debug)]
 pub struct AnyStaticModel(OfSize);
 
@@ -22,7 +22,7 @@ enum OfSize {
     Most(Box<StaticModel<MAX_DISKS>>),
 }
 
-/// The same work on the model of any size.
+/// Runs the same code on the model of any size.
 macro_rules! each {
     ($any:expr, $model:ident => $work:expr) => {
         match $any {
@@ -34,10 +34,10 @@ macro_rules! each {
 }
 
 impl AnyStaticModel {
-    /// Straight, without tension, with relaxed holes.
+    /// Creates a straight model without tension and with relaxed holes.
     ///
     /// # Errors
-    /// As [`StaticModel::new`]; none for parameters that have been checked.
+    /// Returns the errors of [`StaticModel::new`]; none for checked parameters.
     pub fn new(params: &ManipulatorParams) -> Result<Self, ManipulatorError> {
         Ok(Self(match params.disk_count() {
             0..=8 => OfSize::Eight(Box::new(StaticModel::new(params)?)),
@@ -46,21 +46,21 @@ impl AnyStaticModel {
         }))
     }
 
-    /// The parameters.
+    /// Returns the parameters.
     #[must_use]
     pub fn params(&self) -> &ManipulatorParams {
         each!(&self.0, model => model.params())
     }
 
-    /// See [`StaticModel::reset`].
+    /// Resets the model; see [`StaticModel::reset`].
     pub fn reset(&mut self) {
         each!(&mut self.0, model => model.reset());
     }
 
-    /// Goes on from where another model of the same manipulator is. Does not allocate.
+    /// Copies the state of another model of the same manipulator. Does not allocate.
     ///
     /// # Errors
-    /// [`StateMismatch`] if the other manipulator has another number of disks; nothing is changed then.
+    /// Returns a [`StateMismatch`] if the other manipulator has another number of disks; nothing is changed then.
     pub fn copy_state(&mut self, from: &Self) -> Result<(), StateMismatch> {
         match (&mut self.0, &from.0) {
             (OfSize::Eight(model), OfSize::Eight(from)) => model.restore(&from.snapshot()),
@@ -70,7 +70,7 @@ impl AnyStaticModel {
         }
     }
 
-    /// The state as words, bit for bit, for another process. They are of use to this version of the crate.
+    /// Returns the state as words, bit for bit, for another process. The words are valid only for this version of the crate.
     #[must_use]
     pub fn state_words(&self) -> Vec<u64> {
         let mut words = Vec::new();
@@ -78,10 +78,10 @@ impl AnyStaticModel {
         words
     }
 
-    /// Goes on from the words that [`state_words`](Self::state_words) gave for the same manipulator.
+    /// Restores the state from the words of [`state_words`](Self::state_words) of the same manipulator.
     ///
     /// # Errors
-    /// [`StateMismatch`] if they are of a manipulator with another number of disks, or of another version; nothing is changed then.
+    /// Returns a [`StateMismatch`] if the words belong to a manipulator with another number of disks, or to another version; nothing is changed then.
     pub fn restore_words(&mut self, words: &[u64]) -> Result<(), StateMismatch> {
         let expected = self.params().disk_count();
         let found = words.first().and_then(|count| usize::try_from(*count).ok()).unwrap_or(0);
@@ -99,47 +99,47 @@ impl AnyStaticModel {
         })
     }
 
-    /// See [`StaticModel::solve`].
+    /// Computes the shape; see [`StaticModel::solve`].
     pub fn solve(&mut self, base_tension_n: [f64; 2], friction: Friction<'_>) -> ShapeStatus {
         each!(&mut self.0, model => model.solve(base_tension_n, friction))
     }
 
-    /// See [`StaticModel::tension_for`].
+    /// Computes the base tensions for a goal; see [`StaticModel::tension_for`].
     pub fn tension_for(&mut self, goal: Goal, friction: Friction<'_>, drive: &Drive) -> Command {
         each!(&mut self.0, model => model.tension_for(goal, friction, drive))
     }
 
-    /// See [`Shape::disk_position_m`](super::Shape::disk_position_m).
+    /// Returns the centres of the disks, m; see [`Shape::disk_position_m`](super::Shape::disk_position_m).
     #[must_use]
     pub fn disk_position_m(&self) -> &[[f64; 2]] {
         each!(&self.0, model => model.shape().disk_position_m())
     }
 
-    /// See [`Shape::segment_bend_rad`](super::Shape::segment_bend_rad).
+    /// Returns the bend of each segment, rad; see [`Shape::segment_bend_rad`](super::Shape::segment_bend_rad).
     #[must_use]
     pub fn segment_bend_rad(&self) -> &[f64] {
         each!(&self.0, model => model.shape().segment_bend_rad())
     }
 
-    /// See [`Shape::bend_rad`](super::Shape::bend_rad).
+    /// Returns the bend of the whole manipulator, rad; see [`Shape::bend_rad`](super::Shape::bend_rad).
     #[must_use]
     pub fn bend_rad(&self) -> f64 {
         each!(&self.0, model => model.shape().bend_rad())
     }
 
-    /// See [`Shape::tension_n`](super::Shape::tension_n).
+    /// Returns the tension in each segment, N; see [`Shape::tension_n`](super::Shape::tension_n).
     #[must_use]
     pub fn tension_n(&self, tendon: Tendon) -> &[f64] {
         each!(&self.0, model => model.shape().tension_n(tendon))
     }
 
-    /// See [`Shape::friction_n`](super::Shape::friction_n).
+    /// Returns the friction at each hole, N; see [`Shape::friction_n`](super::Shape::friction_n).
     #[must_use]
     pub fn friction_n(&self, tendon: Tendon) -> &[f64] {
         each!(&self.0, model => model.shape().friction_n(tendon))
     }
 
-    /// See [`Shape::bound_n`](super::Shape::bound_n).
+    /// Returns the greatest friction at each hole, N; see [`Shape::bound_n`](super::Shape::bound_n).
     #[must_use]
     pub fn bound_n(&self, tendon: Tendon) -> &[f64] {
         each!(&self.0, model => model.shape().bound_n(tendon))

@@ -1,15 +1,15 @@
 //! One segment: a backbone of constant curvature between two disks, a straight tendon between their holes.
 //!
-//! Everything is a function of the bend θ of the segment, through the Stumpff functions
-//! `c_k = Σ_m (−θ²)^m/(2m + k)!`: `c_0 = cos θ`, `c_1 = sin θ/θ`, `c_2 = (1 − cos θ)/θ²`, … They have no 0/0 in the straight
-//! segment, and `dc_k/dθ = θ(k·c_{k+2} − c_{k+1})`. Up to [`GREATEST_BEND_RAD`] the series below are exact to rounding.
+//! All quantities are functions of the segment's bend θ, through the Stumpff functions `c_k = Σ_m (−θ²)^m/(2m + k)!`: `c_0 = cos θ`, `c_1 = sin θ/θ`,
+//! `c_2 = (1 − cos θ)/θ²`, … They have no 0/0 in the straight segment, and `dc_k/dθ = θ(k·c_{k+2} − c_{k+1})`. Up to [`GREATEST_BEND_RAD`] the series
+//! below are exact to rounding.
 
 use nalgebra::Vector2;
 
-/// Greatest bend of one segment either way, rad.
+/// Greatest bend of one segment in either direction, rad.
 pub const GREATEST_BEND_RAD: f64 = 3.0;
 
-/// `c_0 … c_7` of an angle.
+/// Returns `c_0 … c_7` of an angle.
 fn stumpff(angle_rad: f64) -> [f64; 8] {
     const TERMS: u32 = 12;
     let square = angle_rad * angle_rad;
@@ -31,8 +31,8 @@ fn stumpff(angle_rad: f64) -> [f64; 8] {
 
 /// The straight tendon between the holes of two neighbouring disks.
 ///
-/// `ℓ = (L − rθ)·sin(θ/2)/(θ/2)`: the chord of the arc of radius `L/θ − r`. Its arm `m = −dℓ/dθ` is how much the tendon shortens with
-/// the bend, and so, by virtual work, the moment of a unit tension, averaged over the segment.
+/// `ℓ = (L − rθ)·sin(θ/2)/(θ/2)` is the chord of the arc of radius `L/θ − r`. Its moment arm `m = −dℓ/dθ` is the shortening of the tendon per bend
+/// and therefore, by virtual work, the moment of a unit tension, averaged over the segment.
 #[derive(Clone, Copy, Debug)]
 #[expect(clippy::struct_field_names, reason = "the unit")]
 pub struct Chord {
@@ -45,10 +45,10 @@ pub struct Chord {
 }
 
 impl Chord {
-    /// Of no segment.
+    /// The chord of a segment that does not exist.
     pub const NONE: Self = Self { length_m: 0.0, arm_m: 0.0, arm_slope_m: 0.0 };
 
-    /// Of the tendons on both sides of a backbone of length L, with holes at the distance r (to +y, then to −y), for the bend θ.
+    /// Returns the chords of the tendons on both sides of a backbone of length L, with holes at the distance r (towards +y, then −y), for the bend θ.
     pub fn both(length_m: f64, hole_m: f64, bend_rad: f64) -> [Self; 2] {
         let half_rad = 0.5 * bend_rad;
         let [_, c1, c2, c3, c4, c5, ..] = stumpff(half_rad);
@@ -65,14 +65,14 @@ impl Chord {
     }
 }
 
-/// The backbone of a segment, seen from the disk it begins with.
+/// The backbone of a segment, relative to the disk at its beginning.
 #[derive(Clone, Copy, Debug)]
 pub struct Arc {
     /// sin θ, cos θ.
     pub turn: (f64, f64),
     /// Its end, m.
     pub end_m: Vector2<f64>,
-    /// Its centroid, m. Bending the segment turns all that is beyond it about this point.
+    /// Its centroid, m. Bending the segment rotates everything beyond it about this point.
     pub centroid_m: Vector2<f64>,
     /// Derivative of the centroid with respect to θ, m.
     pub centroid_slope_m: Vector2<f64>,
@@ -81,7 +81,7 @@ pub struct Arc {
 }
 
 impl Arc {
-    /// For a backbone of length L with the bend θ.
+    /// Computes the arc of a backbone of length L with the bend θ.
     pub fn new(length_m: f64, bend_rad: f64) -> Self {
         let t = bend_rad;
         let [c0, c1, c2, c3, c4, c5, c6, c7] = stumpff(t);
@@ -121,7 +121,7 @@ mod tests {
             assert!((chord(bend).arm_m + slope).abs() < 1e-11);
             let slope = (chord(bend + h).arm_m - chord(bend - h).arm_m) / (2.0 * h);
             assert!((chord(bend).arm_slope_m - slope).abs() < 1e-11);
-            // The centroid by summation along the arc, its derivatives by differences.
+            // The centroid comes from a summation along the arc, its derivatives from differences.
             let arc = |at: f64| Arc::new(0.04, at);
             let count = 2000;
             let mut sum = Vector2::zeros();

@@ -1,24 +1,24 @@
-//! The linearised equations along the arm, solved from the tip to the base in time that grows with the number of segments.
+//! The linearised equations along the manipulator, solved from the tip to the base in a time proportional to the number of segments.
 //!
-//! What is beyond a hole acts on what is before it through three numbers only: the way of each tendon through the hole, and
-//! how the moment of the weight beyond changes. It depends, in turn, on four numbers only: the tension of each tendon before the
-//! hole, the bend of the segment before it, and the sum of the bends before it. So each segment is eliminated by a system
-//! of three equations, once from the tip to the base; the way back to the tip gives the solution.
+//! The part beyond a hole acts on the part before it through three numbers only: the displacement of each tendon through the hole, and the change of
+//! the moment of the weight beyond. These depend on four numbers only: the tension of each tendon before the hole, the bend of the segment before it,
+//! and the sum of the bends before it. So each segment is eliminated by a system of three equations, once from the tip to the base; the way back to
+//! the tip gives the solution.
 //!
-//! The part of an arm beyond a hole is an arm in equilibrium of its own, so that its equations have a solution wherever those
-//! of a stable arm have one. Where they have none, or a number is not finite, [`Chain::eliminate`] says so.
+//! The part of a manipulator beyond a hole is in equilibrium itself, so its equations have a solution wherever those of a stable manipulator have
+//! one. If there is none, or a number is not finite, [`Chain::eliminate`] reports it.
 
 use super::newton::Point;
 
-/// Unknowns of a segment: its bend, and the tension of each tendon.
+/// Number of unknowns of a segment: its bend, and the tension of each tendon.
 const UNKNOWNS: usize = 3;
-/// A number as a function of what is before a segment: a constant, then the slopes with respect to the tensions of both tendons
-/// in the segment before, the bend of that segment, and the sum of all bends before.
+/// A number as a linear function of the quantities before a segment: a constant, then the slopes with respect to the tensions of both tendons in the
+/// segment before, the bend of that segment, and the sum of all bends before.
 type Affine = [f64; 5];
-/// The same with `UNKNOWNS` slopes before the constant.
+/// The same, preceded by `UNKNOWNS` slopes.
 type Row = [f64; 8];
 
-/// Equation of the bend θ_i of a segment:
+/// The equation of a segment's bend θ_i:
 ///
 /// `own·θ_i − Σ_t by_tension_t·T_{t,i} − compliance·(load_slope·Σ_{j<i} θ_j + Σ_{j>i} load_slope_j·θ_j) = right`.
 #[derive(Clone, Copy, Debug, Default)]
@@ -26,15 +26,15 @@ pub struct BendRow {
     pub own: f64,
     pub by_tension: [f64; 2],
     pub compliance: f64,
-    /// How the moment of weight and tip load on a segment changes with a bend nearer to the base, and the other way round.
+    /// Change of the moment of weight and tip load on a segment with a bend nearer to the base, and vice versa.
     pub load_slope: f64,
     pub right: f64,
 }
 
-/// Equation of the tension T_i behind a hole:
+/// The equation of the tension T_i behind a hole:
 ///
-/// `base_side·T_{i−1} + tip_side·T_i + wrap·(θ_{i−1} + θ_i) + motion·s_i = right` with the way of the tendon through the hole,
-/// `s_i = Σ_{j≥i} (way_by_bend_j·θ_j + way_by_tension_j·T_j)`.
+/// `base_side·T_{i−1} + tip_side·T_i + wrap·(θ_{i−1} + θ_i) + motion·s_i = right` with the displacement of the tendon through the hole, `s_i =
+/// Σ_{j≥i} (way_by_bend_j·θ_j + way_by_tension_j·T_j)`.
 #[derive(Clone, Copy, Debug)]
 pub struct HoleRow {
     pub base_side: f64,
@@ -47,7 +47,7 @@ pub struct HoleRow {
 }
 
 impl HoleRow {
-    /// The tension stays as it is.
+    /// The equation of a constant tension.
     pub const KNOWN: Self = Self {
         base_side: 0.0,
         tip_side: 1.0,
@@ -59,7 +59,7 @@ impl HoleRow {
     };
 }
 
-/// The equations of a segment and of the holes that it begins with.
+/// The equations of a segment and of the holes at its beginning.
 #[derive(Clone, Copy, Debug)]
 pub struct Link {
     pub bend: BendRow,
@@ -73,11 +73,11 @@ impl Link {
     };
 }
 
-/// The equations of a whole arm, and room for their solution.
+/// The equations of a whole manipulator, with space for their solution.
 #[derive(Clone, Debug)]
 pub struct Chain<const DISKS: usize> {
     pub links: [Link; DISKS],
-    /// The unknowns of each segment as functions of what is before it.
+    /// The unknowns of each segment as functions of the quantities before it.
     unknowns: [[Affine; UNKNOWNS]; DISKS],
 }
 
@@ -86,8 +86,7 @@ impl<const DISKS: usize> Chain<DISKS> {
         Self { links: [Link::EMPTY; DISKS], unknowns: [[[0.0; 5]; UNKNOWNS]; DISKS] }
     }
 
-    /// Eliminates the first `count` segments from the tip to the base. `false` where an equation has no solution or a number is
-    /// not finite.
+    /// Eliminates the first `count` segments from the tip to the base. Returns `false` if an equation has no solution or a number is not finite.
     #[must_use]
     pub fn eliminate(&mut self, count: usize) -> bool {
         let mut beyond = Beyond::NOTHING;
@@ -101,12 +100,12 @@ impl<const DISKS: usize> Chain<DISKS> {
         true
     }
 
-    /// The solution as a step, after [`eliminate`](Self::eliminate).
+    /// Returns the solution as a step, after [`eliminate`](Self::eliminate).
     pub fn solution(&self, count: usize) -> Point<DISKS> {
         self.along(count, 1.0, [0.0; 2])
     }
 
-    /// What a change of the tensions at the base by so much does, N, after [`eliminate`](Self::eliminate).
+    /// Returns the effect of a change of the base tensions, N, after [`eliminate`](Self::eliminate).
     pub fn by_base_tension(&self, count: usize, change_n: [f64; 2]) -> Point<DISKS> {
         self.along(count, 0.0, change_n)
     }
@@ -133,8 +132,8 @@ impl<const DISKS: usize> Chain<DISKS> {
         step
     }
 
-    /// Whether the stiffness of the bends is positive definite while tensions stay as they are: the second derivative of the energy,
-    /// `own/compliance` on the diagonal and `−load_slope` of the segment nearer to the tip beside it.
+    /// Whether the stiffness of the bends at constant tensions is positive definite: the second derivative of the energy, with `own/compliance` on
+    /// the diagonal and, beside it, `−load_slope` of the segment nearer to the tip.
     pub fn is_stiff(&self, count: usize) -> bool {
         let mut taken = 0.0;
         for link in self.links.iter().take(count).rev() {
@@ -143,7 +142,7 @@ impl<const DISKS: usize> Chain<DISKS> {
             if !(pivot > 0.0 && pivot < f64::INFINITY) {
                 return false;
             }
-            // What is left beside the diagonal is the same for all segments nearer to the base.
+            // The remaining off-diagonal entry is the same for all segments nearer to the base.
             let beside = load_slope + taken;
             taken += beside * beside / pivot;
         }
@@ -151,10 +150,10 @@ impl<const DISKS: usize> Chain<DISKS> {
     }
 }
 
-/// What is beyond a segment, as functions of the tensions in it, its bend, and the sum of the bends up to it.
+/// The part beyond a segment, as functions of the tensions in the segment, its bend, and the sum of the bends up to it.
 #[derive(Clone, Copy, Debug)]
 struct Beyond {
-    /// Way of each tendon through the next hole.
+    /// Displacement of each tendon through the next hole.
     ways: [Affine; 2],
     /// `Σ load_slope_j·θ_j` over the segments beyond.
     load: Affine,
@@ -163,7 +162,7 @@ struct Beyond {
 impl Beyond {
     const NOTHING: Self = Self { ways: [[0.0; 5]; 2], load: [0.0; 5] };
 
-    /// The unknowns of a segment as functions of what is before it.
+    /// Returns the unknowns of a segment as functions of the quantities before it.
     fn segment(&self, link: &Link) -> Option<[Affine; UNKNOWNS]> {
         let BendRow { own, by_tension: [by_first, by_second], compliance, load_slope, right } = link.bend;
         let [constant, first, second, bend, sum] = self.load.map(|value| compliance * value);
@@ -204,7 +203,7 @@ impl Beyond {
         solve(bend_row, first_row, second_row)
     }
 
-    /// The same with a segment whose unknowns are known functions of what is before it.
+    /// Returns the part including a segment whose unknowns are known functions of the quantities before it.
     fn with(&self, link: &Link, [bend, first, second]: &[Affine; UNKNOWNS]) -> Self {
         let [first_hole, second_hole] = link.holes;
         let through = |affine: &Affine, [own_bend, own_first, own_second]: [f64; 3]| {
@@ -228,8 +227,7 @@ impl Beyond {
     }
 }
 
-/// Solves three equations for their first three numbers, by elimination with row pivoting; `None` where the matrix is singular or
-/// not finite.
+/// Solves three equations for their first three numbers, by elimination with row pivoting; `None` if the matrix is singular or not finite.
 fn solve(mut one: Row, mut two: Row, mut three: Row) -> Option<[Affine; UNKNOWNS]> {
     let is_pivot = |value: f64| value.abs() > 1e-280 && value.abs() < f64::INFINITY;
     let reduce = |row: &mut Row, factor: f64, by: &Row| {
@@ -283,7 +281,7 @@ mod tests {
 
     const COUNT: usize = 4;
 
-    /// Numbers without a pattern, of the order of one.
+    /// Returns pseudo-random numbers of the order of one.
     fn number(place: usize) -> f64 {
         let place = u32::try_from(place).unwrap();
         libm::sin(f64::from(place * place) + 0.3)
@@ -313,7 +311,7 @@ mod tests {
         chain
     }
 
-    /// The same equations as one matrix: bends, tensions of the first, of the second tendon.
+    /// Returns the same equations as one matrix: bends, tensions of the first and of the second tendon.
     fn dense(chain: &Chain<6>) -> (SMatrix<f64, 12, 12>, SVector<f64, 12>) {
         let (mut matrix, mut right) = (SMatrix::zeros(), SVector::zeros());
         for (row, Link { bend, holes }) in chain.links.iter().enumerate().take(COUNT) {
@@ -356,7 +354,7 @@ mod tests {
         assert!(chain.eliminate(COUNT));
         let expected = matrix.lu().solve(&right).unwrap();
         assert!((as_vector(&chain.solution(COUNT)) - expected).norm() < 1e-12);
-        // A change at the base stands on the right side of the first holes.
+        // A change at the base enters the right-hand side of the first holes.
         right.fill(0.0);
         let change_n = [0.7, -0.4];
         for (tendon, change_n) in change_n.into_iter().enumerate() {

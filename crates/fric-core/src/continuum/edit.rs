@@ -1,4 +1,4 @@
-//! New values in a manipulator file that somebody wrote: comments, order and layout stay.
+//! Writes new values into a manipulator file without changing comments, order and layout.
 
 use std::borrow::ToOwned;
 use std::format;
@@ -10,24 +10,24 @@ use toml_edit::{Array, DocumentMut, Item, Table, Value};
 use super::file::{FORMAT, ManipulatorFile, ManipulatorFileError, ManipulatorTables, OneOrEach};
 use super::measuring::{BaseSensorTable, MarkersTable};
 
-/// What to change; what is `None` or empty stays as it is.
+/// The changes; `None` or an empty list keeps a value.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ManipulatorEdit {
-    /// Friction coefficient of the first tendon: one for all holes, or one for each.
+    /// Friction coefficient of the first tendon: one for all holes, or one per hole.
     pub mu: Vec<f64>,
-    /// Presliding stiffness of its holes, N/m.
+    /// Presliding stiffness of the first tendon's holes, N/m.
     pub sigma_n_per_m: Option<f64>,
-    /// The line of each grating.
+    /// The calibration line of each grating.
     pub lines: Vec<GratingLine>,
     /// Drift of each grating, nm/s.
     pub drift_nm_per_s: Vec<f64>,
-    /// Shift that all gratings have alike from a time on, nm, and that time, s.
+    /// Common shift of all gratings from a time on, nm, and that time, s.
     pub common_step: Option<[f64; 2]>,
-    /// Young's modulus of the backbone, Pa: its bending stiffness.
+    /// Young's modulus of the backbone, Pa, which determines its bending stiffness.
     pub youngs_modulus_pa: Option<f64>,
-    /// Bending stiffness of each segment as a ratio of the backbone's.
+    /// Bending stiffness of each segment relative to the backbone's.
     pub segment_stiffness_ratio: Vec<f64>,
-    /// Curvature without load, 1/m: one for all segments, or one for each.
+    /// Unloaded curvature, 1/m: one for all segments, or one per segment.
     pub precurvature_per_m: Vec<f64>,
     /// Radius of the circle of holes, m.
     pub hole_radius_m: Option<f64>,
@@ -44,8 +44,8 @@ pub struct ManipulatorEdit {
 }
 
 impl ManipulatorEdit {
-    /// What of friction, bending, loads and measurement some tables have other than others: the edit that makes the first ones the second. The
-    /// lines of the gratings and their drift are not compared.
+    /// Returns the changes of friction, bending, loads and measurement that convert the given tables to the wanted ones. The lines of the gratings
+    /// and their drift are not compared.
     #[must_use]
     pub fn between(given: &ManipulatorTables, wanted: &ManipulatorTables) -> Self {
         fn changed<T: PartialEq + Clone>(given: &T, wanted: &T) -> Option<T> {
@@ -79,24 +79,24 @@ impl ManipulatorEdit {
     }
 }
 
-/// The line of a grating, `T = a·Δλ + b`, with its standard errors.
+/// The calibration line of a grating, `T = a·Δλ + b`, with its standard errors.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct GratingLine {
     /// a, N/nm.
     pub newton_per_nm: f64,
     /// b, N.
     pub offset_n: f64,
-    /// Of a tension from one shift, N.
+    /// Standard error of a tension from one shift, N.
     pub standard_error_n: f64,
-    /// Of the line at the mean shift of its load steps, N.
+    /// Standard error of the line at the mean shift of its load steps, N.
     pub line_error_n: f64,
-    /// Of the slope, N/nm.
+    /// Standard error of the slope, N/nm.
     pub slope_error_n_per_nm: f64,
-    /// That mean shift, nm.
+    /// Mean shift of the load steps, nm.
     pub mean_shift_nm: f64,
 }
 
-/// The text of a manipulator file with new values; `origin` says where it is from, for errors.
+/// Returns the text of a manipulator file with new values; `origin` names its source in error messages.
 ///
 /// ```
 /// use fric_core::continuum::edit::{ManipulatorEdit, rewrite};
@@ -108,12 +108,12 @@ pub struct GratingLine {
 /// ```
 ///
 /// # Errors
-/// [`ManipulatorFileError::Invalid`] if the text is not right, before or with the new values.
+/// Returns [`ManipulatorFileError::Invalid`] if the text is invalid before or with the new values.
 pub fn rewrite(text: &str, origin: &str, edit: &ManipulatorEdit) -> Result<String, ManipulatorFileError> {
     ManipulatorFile::parse(text, origin)?;
     let invalid = |problem: String| ManipulatorFileError::Invalid { origin: origin.to_owned(), line: None, problem };
     let mut document: DocumentMut = text.parse().map_err(|error: toml_edit::TomlError| invalid(error.to_string()))?;
-    // An empty name is the document itself.
+    // An empty name denotes the document itself.
     let mut set = |table: &str, key: &str, value: Value| {
         let place = if table.is_empty() {
             document.as_item_mut()

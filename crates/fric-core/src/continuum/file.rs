@@ -1,8 +1,8 @@
-//! The manipulator file, `format = "fric-continuum/1"`: TOML text to checked parameters.
+//! The manipulator file, `format = "fric-continuum/1"`: converts TOML text to checked parameters.
 //!
-//! Two steps, as with the robot file ([`crate::robot::file`]): `serde` gives [`ManipulatorTables`], exactly what is written;
-//! [`ManipulatorFile::parse`] checks them into [`ManipulatorParams`]. Every error names file, line and key, the value and
-//! what is allowed, and for a misspelt key the nearest one there is. Needs the feature `robot-file`; not for the cycle.
+//! There are two steps, as with the robot file ([`crate::robot::file`]): `serde` gives [`ManipulatorTables`], exactly as written;
+//! [`ManipulatorFile::parse`] checks them into [`ManipulatorParams`]. Every error names file, line and key, the value and what is allowed, and for a
+//! misspelt key the nearest valid one. Needs the feature `robot-file`; not for the cycle.
 
 use core::fmt;
 use std::borrow::ToOwned;
@@ -28,7 +28,7 @@ use crate::text_file;
 /// The only value of `format` that this version reads.
 pub const FORMAT: &str = "fric-continuum/1";
 
-/// Presliding stiffness of a hole where none is stated, N/m: friction of 0.05 N builds up within 2.5 μm.
+/// Default presliding stiffness of a hole, N/m: friction of 0.05 N builds up within 2.5 μm.
 pub const USUAL_SIGMA_N_PER_M: f64 = 20_000.0;
 
 /// A manipulator file as written.
@@ -39,37 +39,37 @@ pub struct ManipulatorTables {
     pub format: String,
     /// Name of the manipulator.
     pub name: String,
-    /// Disks beyond the base plate.
+    /// Number of disks without the base plate.
     pub disk_count: usize,
-    /// From the centre of one disk to the next, m.
+    /// Distance between the centres of neighbouring disks, m.
     pub pitch_m: f64,
     /// Thickness of a disk, m.
     pub disk_thickness_m: f64,
     /// Radius of the circle of holes, m.
     pub hole_radius_m: f64,
-    /// Mass of a disk, kg; 0 if left out.
+    /// Mass of a disk, kg; default 0.
     #[serde(default)]
     pub disk_mass_kg: f64,
-    /// Gravity in the plane of bending, base frame, m/s²; none if left out.
+    /// Gravity in the plane of bending, base frame, m/s²; default none.
     #[serde(default, deserialize_with = "exactly")]
     pub gravity_m_per_s2: [f64; 2],
     /// The backbone.
     pub backbone: BackboneTable,
-    /// What hangs on the last disk.
+    /// The load on the last disk.
     #[serde(default)]
     pub tip: TipTable,
     /// The tendon on the side of +y and its holes.
     pub tendon: TendonTable,
-    /// The one on the side of −y; like the first if left out.
+    /// The tendon on the side of −y; like the first by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub antagonist: Option<TendonTable>,
     /// The gratings of the first tendon.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gratings: Option<GratingsTable>,
-    /// The frame in which the markers are measured; the base frame if left out.
+    /// The frame in which the markers are measured; the base frame by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub markers: Option<MarkersTable>,
-    /// The sensor of the tension at the base; a right one if left out.
+    /// The tension sensor at the base; an ideal one by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub base_sensor: Option<BaseSensorTable>,
 }
@@ -84,13 +84,13 @@ pub struct BackboneTable {
     pub thickness_m: f64,
     /// Young's modulus, Pa.
     pub youngs_modulus_pa: f64,
-    /// Mass per length, kg/m; 0 if left out.
+    /// Mass per length, kg/m; default 0.
     #[serde(default)]
     pub mass_kg_per_m: f64,
-    /// Bending stiffness of a segment as a ratio of what the numbers above give, 0.01…100: one for all, or a list; 1 if left out.
+    /// Bending stiffness of a segment relative to that of the above numbers, 0.01…100: one for all, or a list; default 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub segment_stiffness_ratio: Option<OneOrEach>,
-    /// Curvature without load, 1/m, towards the first tendon, at most 1 rad in a segment: one for all, or a list; 0 if left out.
+    /// Unloaded curvature, 1/m, towards the first tendon, at most 1 rad in a segment: one for all, or a list; default 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub precurvature_per_m: Option<OneOrEach>,
 }
@@ -101,7 +101,7 @@ pub struct BackboneTable {
 pub struct TipTable {
     /// Mass, kg.
     pub mass_kg: f64,
-    /// Force that keeps its direction, base frame, N.
+    /// Force of constant direction, base frame, N.
     #[serde(deserialize_with = "exactly")]
     pub force_n: [f64; 2],
 }
@@ -110,30 +110,30 @@ pub struct TipTable {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TendonTable {
-    /// Friction coefficient: one for all holes, or a list with one for each from the base plate.
+    /// Friction coefficient: one for all holes, or a list with one per hole, starting at the base plate.
     pub mu: OneOrEach,
-    /// Presliding stiffness of a hole, N/m: one for all, or a list. Left out, the tendon is stated to slide one way, as Coulomb's
-    /// friction has it; [`Friction::History`](super::Friction::History) then takes [`USUAL_SIGMA_N_PER_M`].
+    /// Presliding stiffness of a hole, N/m: one for all, or a list. By default the tendon slides in one direction with Coulomb friction;
+    /// [`Friction::History`](super::Friction::History) then uses [`USUAL_SIGMA_N_PER_M`].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sigma_n_per_m: Option<OneOrEach>,
     /// Axial stiffness E·A, N.
     pub axial_stiffness_n: f64,
-    /// Tension that the tendon can bear, N.
+    /// Tension capacity of the tendon, N.
     pub capacity_n: f64,
 }
 
-/// A number for all holes, or a list with one for each.
+/// A number for all holes, or a list with one per hole.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum OneOrEach {
-    /// For all.
+    /// One number for all.
     One(f64),
-    /// For each from the base plate.
+    /// One number per hole, starting at the base plate.
     Each(Vec<f64>),
 }
 
 impl OneOrEach {
-    /// The number or numbers.
+    /// Returns the number or numbers.
     #[must_use]
     pub fn as_slice(&self) -> &[f64] {
         match self {
@@ -143,7 +143,7 @@ impl OneOrEach {
     }
 }
 
-/// By hand, for what `serde` derives names no place within the list.
+/// Implemented by hand, because the error of the derived code names no position within the list.
 impl<'de> Deserialize<'de> for OneOrEach {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct Numbers;
@@ -177,14 +177,14 @@ impl<'de> Deserialize<'de> for OneOrEach {
     }
 }
 
-/// A manipulator file that is right.
+/// A valid manipulator file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ManipulatorFile {
     tables: ManipulatorTables,
     params: ManipulatorParams,
 }
 
-/// What is wrong with a manipulator file.
+/// Errors of a manipulator file.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ManipulatorFileError {
@@ -193,22 +193,22 @@ pub enum ManipulatorFileError {
     Read {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         source: std::io::Error,
     },
-    /// The text is no manipulator file.
+    /// The text is not a valid manipulator file.
     #[error("{origin}{}: {problem}", Line(*line))]
     Invalid {
-        /// Where the text is from.
+        /// Source of the text.
         origin: String,
-        /// Line, from 1, where it is known.
+        /// Line, from 1, if it is known.
         line: Option<usize>,
-        /// What is wrong, and what to do.
+        /// The problem, and what to do.
         problem: String,
     },
 }
 
-/// What is wrong with [`ManipulatorTables`]: which key, and why.
+/// Errors of [`ManipulatorTables`]: the key and the problem.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("{problem}")]
 pub struct TablesError {
@@ -226,17 +226,17 @@ impl ManipulatorFile {
     /// Reads and checks a file.
     ///
     /// # Errors
-    /// [`ManipulatorFileError`] if it cannot be read or is not right.
+    /// Returns a [`ManipulatorFileError`] if the file cannot be read or is invalid.
     pub fn read(path: &Path) -> Result<Self, ManipulatorFileError> {
         let text =
             text_file::read(path).map_err(|source| ManipulatorFileError::Read { path: path.to_owned(), source })?;
         Self::parse(&text, &path.display().to_string())
     }
 
-    /// Checks a text; `origin` says where it is from, for errors.
+    /// Checks a text; `origin` names its source in error messages.
     ///
     /// # Errors
-    /// [`ManipulatorFileError::Invalid`] for the first thing that is not right.
+    /// Returns [`ManipulatorFileError::Invalid`] for the first problem.
     pub fn parse(text: &str, origin: &str) -> Result<Self, ManipulatorFileError> {
         let invalid = |line, problem: String| ManipulatorFileError::Invalid {
             origin: text_file::printable(origin),
@@ -254,7 +254,7 @@ impl ManipulatorFile {
     /// Checks tables that come from elsewhere than a text.
     ///
     /// # Errors
-    /// [`TablesError`] names the first thing that is not right.
+    /// Returns a [`TablesError`] for the first problem.
     pub fn check(tables: ManipulatorTables) -> Result<Self, TablesError> {
         if tables.format != FORMAT {
             let problem = format!("`format` is \"{}\"; this version reads \"{FORMAT}\"", tables.format);
@@ -299,22 +299,22 @@ impl ManipulatorFile {
         Ok(Self { tables, params })
     }
 
-    /// The checked parameters.
+    /// Returns the checked parameters.
     #[must_use]
     pub fn params(&self) -> &ManipulatorParams {
         &self.params
     }
 
-    /// What is written in the file.
+    /// Returns the content of the file as written.
     #[must_use]
     pub fn tables(&self) -> &ManipulatorTables {
         &self.tables
     }
 
-    /// The file as TOML text, without comments.
+    /// Returns the file as TOML text, without comments.
     ///
     /// # Errors
-    /// None for a file that has been checked; the serialiser's signature has one.
+    /// A checked file causes no error; the signature is that of the serialiser.
     pub fn to_toml(&self) -> Result<String, toml::ser::Error> {
         toml::to_string(&self.tables)
     }
@@ -331,7 +331,7 @@ impl TendonTable {
     }
 }
 
-/// Where a refused parameter stands in the file, and what the file calls it.
+/// Returns the position of a refused parameter in the file, with the file's name for it.
 fn locate(error: &ManipulatorError) -> TablesError {
     let mut path = Vec::new();
     let key = match (error.tendon, error.key) {

@@ -11,52 +11,51 @@ use super::file::{OneOrEach, TablesError};
 use crate::robot::check;
 use crate::robot::locate::Step;
 
-/// What is known of the gratings. A list has one entry for each segment from the base.
+/// The properties of the gratings. A list has one entry per segment, starting at the base.
 ///
-/// Needed is a calibration (`newton_per_nm`), or for the strain form (\[C\] 4) `wavelength_nm` and `photoelastic_ratio`; E·A is
-/// the tendon's `axial_stiffness_n`. A calibration goes before the strain form.
+/// Required is a calibration (`newton_per_nm`) or, for the strain form (\[C\] 4), `wavelength_nm` and `photoelastic_ratio`; E·A is the tendon's
+/// `axial_stiffness_n`. A calibration takes precedence over the strain form.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct GratingsTable {
     /// Slope a of `T = a·Δλ + b` (\[C\] 7), N/nm.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub newton_per_nm: Vec<f64>,
-    /// Offset b, N; 0 if left out.
+    /// Offset b, N; default 0.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub offset_n: Vec<f64>,
-    /// Standard error of a tension from one shift, N; 0 if left out.
+    /// Standard error of a tension from one shift, N; default 0.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub standard_error_n: Vec<f64>,
-    /// Standard error of the line itself, N, at the mean shift of its load steps; half of `standard_error_n` if left out, as after ten
-    /// loads evenly spread.
+    /// Standard error of the line itself, N, at the mean shift of its load steps; by default half of `standard_error_n`, as after ten evenly spaced
+    /// loads.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub line_error_n: Vec<f64>,
-    /// Standard error of the slope, N/nm; 0 if left out.
+    /// Standard error of the slope, N/nm; default 0.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub slope_error_n_per_nm: Vec<f64>,
-    /// Mean shift of the load steps, nm, where the errors of line and slope are independent; 0 if left out.
+    /// Mean shift of the load steps, nm, where the errors of line and slope are independent; default 0.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub mean_shift_nm: Vec<f64>,
-    /// Drift of the shift with the time of a run, nm/s, such as that of a fibre that warms up; 0 if left out.
+    /// Drift of the shift over the time of a run, nm/s, for instance of a fibre that warms up; default 0.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub drift_nm_per_s: Vec<f64>,
-    /// A shift that all gratings have alike from a time of the run on, nm, such as that of a fibre that is touched by warm air; 0 if left
-    /// out.
+    /// Common shift of all gratings from a time of the run on, nm, for instance when warm air reaches the fibre; default 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub common_step_nm: Option<f64>,
-    /// When that is, s in the run's time; from the beginning if left out.
+    /// That time, s in the run's time; by default the beginning.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub common_step_s: Option<f64>,
-    /// Bragg wavelength λ_B, nm: for the strain form, and to take the temperature off.
+    /// Bragg wavelength λ_B, nm, for the strain form and to remove the temperature effect.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub wavelength_nm: Option<OneOrEach>,
-    /// Bragg wavelength of the grating without load whose shift is `shift_reference_nm`, nm; the mean of the others if left out.
+    /// Bragg wavelength of the unloaded grating with the shift `shift_reference_nm`, nm; by default the mean of the others.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reference_wavelength_nm: Option<f64>,
     /// Effective photoelastic coefficient P_e; 0.22 for silica.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub photoelastic_ratio: Option<f64>,
-    /// From the face of the disk on the base side to the near end of a grating in the straight manipulator, m.
+    /// Distance from the face of the disk on the base side to the near end of a grating in the straight manipulator, m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub from_base_side_m: Option<OneOrEach>,
     /// Length of a grating, m.
@@ -65,7 +64,7 @@ pub struct GratingsTable {
 }
 
 impl GratingsTable {
-    /// Whether everything is finite, in its range and as long as there are segments.
+    /// Checks whether all values are finite and in range, and all lists have one entry per segment.
     pub(super) fn check(&self, disk_count: usize) -> Result<(), TablesError> {
         let problem = |path: &[Step], problem: String| {
             let path = [Step::Key("gratings")].into_iter().chain(path.iter().copied()).collect();

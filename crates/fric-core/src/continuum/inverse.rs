@@ -1,10 +1,9 @@
-//! The inverse: the tensions at the base that bring the arm to a wanted bend, or its tip to a wanted place.
+//! The inverse model: the base tensions that bring the manipulator to a wanted bend, or its tip to a wanted position.
 //!
-//! One number drives the arm: what the first tendon is pulled beyond its least tension, or, negative, the second beyond its own
-//! ([`Drive`]). The bend grows with it, so that the goal is found by Newton's method within a bracket; each trial is a solution of
-//! the model from what the holes remember, with the slope that the trial's own equations have. After a reversal the slope is small until the holes have
-//! turned round one by one from the base: there Newton's method steps too far at first and comes back from the other side, and a
-//! step out of the bracket is replaced by its middle.
+//! One number drives the manipulator: the tension of the first tendon above its least tension or, if negative, of the second above its own
+//! ([`Drive`]). The bend grows with it, so Newton's method within a bracket finds the goal. Each trial is a solution of the model from the holes'
+//! memory, with the slope from the trial's own equations. After a reversal the slope is small until the holes have reversed one by one from the base.
+//! There Newton's method first steps too far and returns from the other side; a step out of the bracket is replaced by its middle.
 
 use core::fmt;
 use core::ops::BitOr;
@@ -20,59 +19,60 @@ use super::params::{ManipulatorError, ManipulatorParams, Tendon};
 use super::shape::{turned, write_flags};
 use crate::robot::check;
 
-/// Trials of one goal.
+/// Maximum number of trials for one goal.
 const MOST_TRIALS: u32 = 32;
-/// A goal is reached to this: rad, or a share of the length for the tip. A millionth of what a camera sees.
+/// Tolerance of a goal: rad, or relative to the length for the tip. It is a millionth of the resolution of a camera.
 const REACHED: f64 = 1e-9;
-/// Share of the length by which the tip may pass its goal and still have reached it.
+/// Distance by which the tip may pass its goal and still have reached it, relative to the length.
 const TIP_REACH_RATIO: f64 = 0.01;
-/// Friction below this share of the tension at the base has no direction.
+/// Friction below this fraction of the base tension has no direction.
 const FELT_RATIO: f64 = 1e-6;
 
-/// What is wanted of the arm.
+/// The goal of the manipulator.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
-    /// Bend of the whole arm, rad, positive towards the first tendon: the direction of its last disk.
+    /// Bend of the whole manipulator, rad, positive towards the first tendon: the direction of its last disk.
     BendRad(f64),
-    /// Centre of the last disk, base frame, m. Pulling one tendon moves it on a curve; where the goal lies square to the direction in
-    /// which the tip slides on, it is nearest. The search begins where the arm is.
+    /// Centre of the last disk, base frame, m. Pulling one tendon moves it along a curve; the nearest point is where the goal lies perpendicular to
+    /// the direction in which the tip continues to slide. The search starts at the present position.
     TipM([f64; 2]),
 }
 
-/// What the drives at the base can do, as stated.
+/// Options of the drives at the base.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DriveOptions {
     /// Tension that each tendon keeps while the other is pulled, N, ≥ 0.
     pub least_tension_n: [f64; 2],
-    /// Greatest tension of each tendon, N, from the least up to the tendon's capacity. Where it is the least, that tendon is not pulled.
+    /// Greatest tension of each tendon, N, from the least tension up to the tendon's capacity. If it equals the least tension, that tendon is not
+    /// pulled.
     pub greatest_tension_n: [f64; 2],
-    /// A goal nearer than this, rad (for the tip: this share of the length), leaves the tensions as they are. Without it, noise on the goal
-    /// sends the tensions to and fro across the friction of all holes. 0…1.
+    /// A goal nearer than this, rad (for the tip: relative to the length), keeps the tensions. Without it, noise on the goal would move the tensions
+    /// back and forth across the friction of all holes. 0…1.
     pub hold_rad: f64,
 }
 
 impl DriveOptions {
-    /// The first tendon alone, from slack to its capacity; every goal is followed.
+    /// Returns a drive with the first tendon alone, from slack to its capacity; every goal is followed.
     #[must_use]
     pub fn first_tendon(params: &ManipulatorParams) -> Self {
         Self { least_tension_n: [0.0; 2], greatest_tension_n: [params.capacity_n(Tendon::Agonist), 0.0], hold_rad: 0.0 }
     }
 }
 
-/// Checked [`DriveOptions`].
+/// The checked [`DriveOptions`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drive {
     least_n: [f64; 2],
-    /// How far each tendon can be pulled beyond its least tension, N.
+    /// Range of each tendon above its least tension, N.
     span_n: [f64; 2],
     hold_rad: f64,
 }
 
 impl Drive {
-    /// Checks what the drives of an arm can do.
+    /// Checks the options of the drives.
     ///
     /// # Errors
-    /// [`ManipulatorError`] names the first number that is not finite or out of its range.
+    /// Returns a [`ManipulatorError`] with the first number that is not finite or out of range.
     pub fn new(params: &ManipulatorParams, options: &DriveOptions) -> Result<Self, ManipulatorError> {
         let checked = |tendon: Option<Tendon>, key: &'static str, value: f64, min: f64, max: f64| {
             check(key, value, min, max).map_err(|error| ManipulatorError {
@@ -91,13 +91,13 @@ impl Drive {
         Ok(Self { least_n, span_n, hold_rad: checked(None, "hold_rad", options.hold_rad, 0.0, 1.0)? })
     }
 
-    /// Tensions at the base for the number that drives the arm, N.
+    /// Returns the base tensions for the drive number, N.
     fn base_tension_n(&self, drive_n: f64) -> [f64; 2] {
         let [first_n, second_n] = self.least_n;
         [first_n + drive_n.max(0.0), second_n + (-drive_n).max(0.0)]
     }
 
-    /// The number that comes nearest to these tensions.
+    /// Returns the drive number nearest to these tensions.
     fn nearest(&self, [first_n, second_n]: [f64; 2]) -> f64 {
         let [first_least_n, second_least_n] = self.least_n;
         let (least_n, greatest_n) = self.ends();
@@ -110,7 +110,7 @@ impl Drive {
     }
 }
 
-/// Flags of one command; [`GoalStatus::OK`] where the goal is reached in the way in which the arm moved before.
+/// Flags of one command; [`GoalStatus::OK`] if the goal is reached in the previous direction of motion.
 ///
 /// | flag | cause | what the command is |
 /// |---|---|---|
@@ -125,19 +125,19 @@ impl Drive {
 pub struct GoalStatus(u32);
 
 impl GoalStatus {
-    /// Nothing to say.
+    /// No flag.
     pub const OK: Self = Self(0);
-    /// Input is no usable number.
+    /// The input is not usable.
     pub const NOT_USABLE: Self = Self(1);
     /// No tension was found.
     pub const NOT_CONVERGED: Self = Self(1 << 1);
     /// The goal cannot be reached.
     pub const OUT_OF_REACH: Self = Self(1 << 2);
-    /// The goal is where the arm is.
+    /// The manipulator is already at the goal.
     pub const HELD: Self = Self(1 << 3);
-    /// The tendon turns round.
+    /// The tendon reverses.
     pub const REVERSAL: Self = Self(1 << 4);
-    /// Not all holes have turned round.
+    /// Some holes have not reversed yet.
     pub const DEAD_BAND: Self = Self(1 << 5);
 
     /// Every flag with its name, lowest bit first.
@@ -152,7 +152,7 @@ impl GoalStatus {
 
     const MISSED: Self = Self(Self::NOT_USABLE.0 | Self::NOT_CONVERGED.0 | Self::OUT_OF_REACH.0);
 
-    /// The flags as a number.
+    /// Returns the flags as a number.
     #[must_use]
     pub const fn bits(self) -> u32 {
         self.0
@@ -164,7 +164,7 @@ impl GoalStatus {
         self.0 == 0
     }
 
-    /// Whether the command reaches the goal, whatever else there is to say.
+    /// Whether the command reaches the goal, whatever other flags are set.
     #[must_use]
     pub const fn is_reached(self) -> bool {
         self.0 & Self::MISSED.0 == 0
@@ -176,7 +176,7 @@ impl GoalStatus {
         self.0 & other.0 == other.0
     }
 
-    /// This flag if a condition holds.
+    /// Returns this flag if a condition holds.
     const fn when(self, is_so: bool) -> Self {
         if is_so { self } else { Self::OK }
     }
@@ -189,27 +189,27 @@ impl BitOr for GoalStatus {
     }
 }
 
-/// `ok`, or the names of the flags with `|` between them.
+/// Writes `ok`, or the names of the flags separated by `|`.
 impl fmt::Display for GoalStatus {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write_flags(formatter, Self::NAMES.iter().filter(|(_, flag)| self.contains(*flag)).map(|(name, _)| *name))
     }
 }
 
-/// The tensions to set at the base, and what the model expects of them.
+/// The tensions to set at the base, and the model's prediction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Command {
-    /// Of the first and the second tendon, N.
+    /// Tensions of the first and the second tendon, N.
     pub base_tension_n: [f64; 2],
-    /// Bend of the whole arm then, rad.
+    /// Predicted bend of the whole manipulator, rad.
     pub bend_rad: f64,
-    /// Centre of the last disk then, base frame, m.
+    /// Predicted centre of the last disk, base frame, m.
     pub tip_m: [f64; 2],
-    /// What there is to say.
+    /// Status flags.
     pub status: GoalStatus,
 }
 
-/// What holes do during the trials.
+/// The behaviour of the holes during the trials.
 enum Holes<const DISKS: usize> {
     None,
     Sliding(Direction),
@@ -221,16 +221,16 @@ enum Holes<const DISKS: usize> {
 struct Trial<const DISKS: usize> {
     drive_n: f64,
     point: Point<DISKS>,
-    /// How far it is beyond the goal, rad, or share of the length.
+    /// Distance beyond the goal, rad, or relative to the length.
     beyond: f64,
 }
 
 impl<const DISKS: usize> StaticModel<DISKS> {
-    /// The tensions at the base that bring the arm to a goal, from where the last step of the history left it.
+    /// Returns the base tensions that bring the manipulator to a goal, from the end of the last step of the history.
     ///
-    /// With [`Friction::History`] the holes' memory counts, and stays as it is: the next [`solve`](Self::solve), with the tensions that
-    /// were set or measured then, moves it on. With [`Friction::None`] and [`Friction::Coulomb`] there is no memory; that the arm comes from the last shape only
-    /// makes the search short. The shape stays the last one solved.
+    /// With [`Friction::History`] the holes' memory is used but not changed: the next [`solve`](Self::solve), with the tensions that were then set or
+    /// measured, advances it. [`Friction::None`] and [`Friction::Coulomb`] have no memory; starting from the last shape only shortens the search. The
+    /// stored shape stays the last one solved.
     ///
     /// ```
     /// use fric_core::continuum::{Drive, DriveOptions, Friction, Goal, ManipulatorOptions, ManipulatorParams, StaticModel};
@@ -285,7 +285,7 @@ impl<const DISKS: usize> StaticModel<DISKS> {
         self.command(goal, &holes, drive, &found, status)
     }
 
-    /// Newton's method on the drive, within a bracket.
+    /// Runs Newton's method on the drive, within a bracket.
     fn search(
         &mut self,
         goal: Goal,
@@ -295,7 +295,7 @@ impl<const DISKS: usize> StaticModel<DISKS> {
     ) -> (Trial<DISKS>, GoalStatus) {
         let is_up = begin.beyond < 0.0;
         let (least_n, greatest_n) = drive.ends();
-        // The last trial before the goal, and the first drive known to be beyond it, or beyond which there is no shape.
+        // The last trial before the goal, and the first drive that is known to be beyond it, or beyond which there is no shape.
         let (mut before, mut far_n) = (begin, if is_up { greatest_n } else { least_n });
         let (mut latest, mut has_end) = (begin, true);
         for trials in 0..MOST_TRIALS {
@@ -306,7 +306,7 @@ impl<const DISKS: usize> StaticModel<DISKS> {
                 let status = GoalStatus::OUT_OF_REACH.when(has_end);
                 return (before, status);
             }
-            // At the beginning the tendon is taken to slide on: at rest its equations take it for stuck.
+            // At the beginning the tendon is assumed to continue sliding, because at rest its equations treat it as stuck.
             let law = if trials == 0 { Some(Law::Sliding(Direction::of_change(-begin.beyond))) } else { None };
             let (slope, ahead) = self.slope(goal, holes, drive, &latest, law);
             let newton_n = latest.drive_n - latest.beyond / slope;
@@ -315,7 +315,7 @@ impl<const DISKS: usize> StaticModel<DISKS> {
                 (newton_n > before.drive_n && newton_n < far_n) || (newton_n < before.drive_n && newton_n > far_n);
             let next_n = match (slope > 0.0 && is_within, has_end) {
                 (true, _) => newton_n,
-                // Beyond the end of the tensions: the end itself tells whether the goal is in reach.
+                // Beyond the range of the tensions, its end decides whether the goal is in reach.
                 (false, true) if slope > 0.0 && trials > 0 => far_n,
                 _ => middle_n,
             };
@@ -337,7 +337,7 @@ impl<const DISKS: usize> StaticModel<DISKS> {
         (before, GoalStatus::NOT_CONVERGED)
     }
 
-    /// The shape under a drive; `None` where there is none, or disks touch.
+    /// Returns the shape under a drive; `None` if there is none, or disks touch.
     fn trial(
         &mut self,
         goal: Goal,
@@ -359,7 +359,7 @@ impl<const DISKS: usize> StaticModel<DISKS> {
         is_right.then(|| self.measured(goal, holes, drive, drive_n, point))
     }
 
-    /// How far a shape is beyond the goal.
+    /// Returns how far a shape is beyond the goal.
     fn measured(
         &mut self,
         goal: Goal,
@@ -372,7 +372,7 @@ impl<const DISKS: usize> StaticModel<DISKS> {
         trial.beyond = match goal {
             Goal::BendRad(bend_rad) => point.bend_rad.iter().sum::<f64>() - bend_rad,
             Goal::TipM(tip_m) => {
-                // The direction in which it slides on, which is smooth where the tendon turns round.
+                // The direction in which it continues to slide, which is smooth where the tendon reverses.
                 let (_, ahead) = self.slope(goal, holes, drive, &trial, Some(Law::Sliding(Direction::Pulling)));
                 let tip = Tip::new(self.params(), &point, &ahead);
                 tip.direction().dot(&(tip.place_m - Vector2::from(tip_m))) / self.params().length_m()
@@ -381,7 +381,7 @@ impl<const DISKS: usize> StaticModel<DISKS> {
         trial
     }
 
-    /// How fast a shape goes beyond the goal with the drive, 1/N, and how it changes.
+    /// Returns the rate at which a shape passes the goal with the drive, 1/N, and its change.
     fn slope(
         &mut self,
         goal: Goal,
@@ -391,7 +391,7 @@ impl<const DISKS: usize> StaticModel<DISKS> {
         law: Option<Law<'_, DISKS>>,
     ) -> (f64, Point<DISKS>) {
         let law = match (law, holes) {
-            // Near enough for the slope of a search.
+            // Accurate enough for the slope of a search.
             (_, Holes::None) => Law::Sliding(Direction::Pulling),
             (_, Holes::Sliding(direction)) => Law::Sliding(*direction),
             (Some(law), Holes::Remembering(_)) => law,
@@ -440,7 +440,7 @@ impl<const DISKS: usize> StaticModel<DISKS> {
         Command { base_tension_n, bend_rad: found.point.bend_rad.iter().sum(), tip_m: tip.place_m.into(), status }
     }
 
-    /// The tensions as they were.
+    /// Returns the present tensions.
     fn unchanged(&self, status: GoalStatus) -> Command {
         let shape = self.shape();
         let tip_m = shape.disk_position_m().last().copied().unwrap_or([0.0; 2]);
@@ -451,17 +451,17 @@ impl<const DISKS: usize> StaticModel<DISKS> {
 /// The tip and its motion.
 struct Tip {
     place_m: Vector2<f64>,
-    /// With the change of the bends.
+    /// Velocity with the change of the bends.
     speed_m: Vector2<f64>,
-    /// Of the last disk, without a change.
+    /// Lateral direction of the last disk, used if nothing changes.
     across: Vector2<f64>,
 }
 
 impl Tip {
-    /// Bending a segment turns all that is beyond it about the centroid of its arc.
+    /// Computes the tip. Bending a segment rotates everything beyond it about the centroid of its arc.
     fn new<const DISKS: usize>(params: &ManipulatorParams, point: &Point<DISKS>, change: &Point<DISKS>) -> Self {
         let (mut place_m, mut turn) = (Vector2::zeros(), (0.0, 1.0));
-        // Σ change and Σ change·centroid: the tip moves by a quarter turn of Σ change·(tip − centroid).
+        // Σ change and Σ change·centroid: the tip moves by Σ change·(tip − centroid), rotated by a quarter turn.
         let (mut turning_rad, mut moment) = (0.0, Vector2::zeros());
         let bends = point.bend_rad.iter().zip(&change.bend_rad).take(params.disk_count());
         for (bend_rad, change_rad) in bends {
@@ -477,7 +477,7 @@ impl Tip {
         Self { place_m, speed_m: Vector2::new(-lever.y, lever.x), across: Vector2::new(-sin, cos) }
     }
 
-    /// Direction in which the tip moves while the bend grows.
+    /// Returns the direction in which the tip moves while the bend grows.
     fn direction(&self) -> Vector2<f64> {
         let speed_m = self.speed_m.norm();
         if speed_m > 0.0 { self.speed_m / speed_m } else { self.across }

@@ -6,24 +6,23 @@ use super::arc::Arc;
 use super::params::ManipulatorParams;
 use super::shape::turned;
 
-/// What the outside does to each segment.
+/// The effect of the external loads on each segment.
 ///
-/// `Q_i`, the moment of everything beyond a cross-section of segment i, averaged over the segment: for dead loads W at points p it
-/// is `Q_i = Σ (p − c_i) × W` with the centroid `c_i` of the segment's arc, beside the share of the segment's own weight. It is the
-/// derivative of the work with respect to the bend, so its own derivative is symmetric: `∂Q_i/∂θ_j` depends on the one nearer
-/// to the tip alone.
+/// `Q_i` is the moment of everything beyond a cross-section of segment i, averaged over the segment: for dead loads W at points p it is `Q_i = Σ (p −
+/// c_i) × W` with the centroid `c_i` of the segment's arc, plus the contribution of the segment's own weight. It is the derivative of the work with
+/// respect to the bend, so its own derivative is symmetric: `∂Q_i/∂θ_j` depends only on the segment nearer to the tip.
 #[derive(Clone, Copy, Debug)]
 #[expect(clippy::struct_field_names, reason = "the unit")]
 pub struct Moments<const DISKS: usize> {
     /// `Q_i`, N m.
     pub moment_nm: [f64; DISKS],
-    /// `∂Q_i/∂θ_j` for `j < i`, and with i and j exchanged, N m.
+    /// `∂Q_i/∂θ_j` for `j < i`, also with i and j exchanged, N m.
     pub slope_nm: [f64; DISKS],
     /// `∂Q_i/∂θ_i`, N m.
     pub own_slope_nm: [f64; DISKS],
 }
 
-/// Centres of the disks, base frame.
+/// Returns the centres of the disks, base frame.
 pub fn positions<const DISKS: usize>(pitch_m: f64, bend_rad: &[f64; DISKS]) -> [[f64; 2]; DISKS] {
     let mut place_m = Vector2::zeros();
     let mut turn = (0.0, 1.0);
@@ -35,12 +34,12 @@ pub fn positions<const DISKS: usize>(pitch_m: f64, bend_rad: &[f64; DISKS]) -> [
     })
 }
 
-/// One turn after another, as sine and cosine.
+/// Combines two rotations, given as sine and cosine.
 pub fn turned_further((sin, cos): (f64, f64), (other_sin, other_cos): (f64, f64)) -> (f64, f64) {
     (sin * other_cos + cos * other_sin, cos * other_cos - sin * other_sin)
 }
 
-/// The moments of weight and tip load, multiplied by `share`.
+/// Returns the moments of weight and tip load, multiplied by `share`.
 pub fn moments<const DISKS: usize>(params: &ManipulatorParams, bend_rad: &[f64; DISKS], share: f64) -> Moments<DISKS> {
     #[derive(Clone, Copy)]
     #[expect(clippy::struct_field_names, reason = "the unit")]

@@ -1,4 +1,4 @@
-//! `[markers]` and `[base_sensor]` of the manipulator file: what stands between the manipulator and what is measured of it.
+//! `[markers]` and `[base_sensor]` of the manipulator file: the relation between the manipulator and its measurements.
 
 use std::string::ToString;
 use std::vec::Vec;
@@ -10,19 +10,19 @@ use crate::robot::check as in_range;
 use crate::robot::locate::Step;
 use crate::robot::read::exactly;
 
-/// `[markers]`: where the frame of the markers stands. A disk at p in the base frame has its marker at `offset + R(angle)·p`.
+/// `[markers]`: the pose of the markers' frame. A disk at p in the base frame has its marker at `offset + R(angle)·p`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct MarkersTable {
-    /// Where the origin of the base frame is measured, m, within ±10 m.
+    /// Measured position of the base frame's origin, m, within ±10 m.
     #[serde(deserialize_with = "exactly")]
     pub offset_m: [f64; 2],
-    /// By how much the base frame is measured turned, rad, from x to y, within ±π.
+    /// Measured rotation of the base frame, rad, from x to y, within ±π.
     pub angle_rad: f64,
 }
 
 impl MarkersTable {
-    /// Where a point of the base frame is measured, m.
+    /// Returns the measured position of a point of the base frame, m.
     #[must_use]
     pub fn measured(&self, [x_m, y_m]: [f64; 2]) -> [f64; 2] {
         let (sin, cos) = (libm::sin(self.angle_rad), libm::cos(self.angle_rad));
@@ -30,7 +30,7 @@ impl MarkersTable {
         [right_m + cos * x_m - sin * y_m, up_m + sin * x_m + cos * y_m]
     }
 
-    /// The point of the base frame that is measured here, m. NaN stays NaN.
+    /// Returns the point of the base frame for a measured position, m. NaN stays NaN.
     #[must_use]
     pub fn in_base_frame(&self, [x_m, y_m]: [f64; 2]) -> [f64; 2] {
         let (sin, cos) = (libm::sin(self.angle_rad), libm::cos(self.angle_rad));
@@ -40,26 +40,26 @@ impl MarkersTable {
     }
 }
 
-/// `[base_sensor]`: the sensor of the tension at the base shows `gain·T(t − lag) + offset`.
+/// `[base_sensor]`: the tension sensor at the base shows `gain·T(t − lag) + offset`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct BaseSensorTable {
-    /// What it shows for a newton, 0.1…10.
+    /// Gain, 0.1…10.
     pub gain: f64,
-    /// What it shows without tension, N.
+    /// Signal without tension, N.
     pub offset_n: f64,
-    /// By how much it is late, s, −10…10.
+    /// Delay, s, −10…10.
     pub lag_s: f64,
 }
 
-/// A right sensor.
+/// An ideal sensor.
 impl Default for BaseSensorTable {
     fn default() -> Self {
         Self { gain: 1.0, offset_n: 0.0, lag_s: 0.0 }
     }
 }
 
-/// Whether all numbers are finite and in their ranges.
+/// Checks whether all numbers are finite and in range.
 pub(super) fn check(markers: Option<&MarkersTable>, sensor: Option<&BaseSensorTable>) -> Result<(), TablesError> {
     let (markers, sensor) = (markers.copied().unwrap_or_default(), sensor.copied().unwrap_or_default());
     let [x_m, y_m] = markers.offset_m;

@@ -1,24 +1,22 @@
 //! Tendons through the disks of a planar continuum manipulator: friction along the tendon, and the shape.
 //!
-//! A tendon that runs through holes is the same chain of frictional contacts as a cable over pulleys. At every hole the
-//! tension drops or rises by the friction; the tension that arrives in a segment bends the backbone there. [`StaticModel`]
-//! turns the tensions at the base into the shape, with friction in one of four ways ([`Friction`]).
+//! A tendon that runs through holes is the same chain of frictional contacts as a cable over pulleys. At every hole the tension drops or rises by the
+//! friction; the tension in a segment bends the backbone there. [`StaticModel`] computes the shape from the base tensions, with friction in one of
+//! four ways ([`Friction`]).
 //!
-//! For: the inside of a control cycle. No allocation, no panic, a bounded number of iterations. Not for: bending out of the plane,
-//! dynamics, contact between disks. State of a model: the last shape and two numbers for each hole.
-//! Input that is not finite gives a [`ShapeStatus`] and changes nothing.
+//! The model can run inside a control cycle: no allocation, no panic, a bounded number of iterations. It does not cover bending out of the plane,
+//! dynamics, and contact between disks. State: the last shape and two numbers per hole. Non-finite input gives a [`ShapeStatus`] and changes nothing.
 //!
 //! \[C\] stands for *A Novel Friction Measuring Method and Its Application to Improve the Static Modeling Accuracy of
 //! Cable-Driven Continuum Manipulators*; numbers are its equations.
 //!
 //! # Convention
 //!
-//! The base frame has x along the straight manipulator and y to the side of the first tendon ([`Tendon::Agonist`]); its
-//! origin is the centre of the base plate, in which the backbone is clamped. Bends are positive towards +y. Segment i (from 1
-//! at the base) ends in disk i; hole i is the one it begins with, so hole 1 is in the base plate. The tendons end at the
-//! last disk and arrive at the base plate along x. `T_0` is the tension at the base, `T_i` that in segment i.
-//! **Friction at a hole is `f_i = T_{i−1} − T_i`: positive where the base side is tighter**, which is so where the
-//! tendon slides towards the base (pulling).
+//! The base frame has x along the straight manipulator and y towards the first tendon ([`Tendon::Agonist`]); its origin is the centre of the base
+//! plate, in which the backbone is clamped. Bends are positive towards +y. Segment i (from 1 at the base) ends in disk i; hole i is at its beginning,
+//! so hole 1 is in the base plate. The tendons end at the last disk and arrive at the base plate along x. `T_0` is the tension at the base, `T_i`
+//! that in segment i. **Friction at a hole is `f_i = T_{i−1} − T_i`: positive if the base side is tighter**, as when the tendon slides towards the
+//! base (pulling).
 //!
 //! ```
 //! use fric_core::continuum::{Direction, Friction, ManipulatorOptions, ManipulatorParams, StaticModel, Tendon};

@@ -1,4 +1,4 @@
-//! The manipulator: base tensions in, shape out.
+//! The static model of the manipulator: base tensions in, shape out.
 
 use core::fmt;
 
@@ -9,21 +9,20 @@ use super::params::{ManipulatorError, ManipulatorParams, Tendon, count_error};
 use super::shape::{Shape, ShapeStatus};
 use crate::words::{Words, words_of};
 
-/// Load steps from the straight, unloaded manipulator, where the last shape is no good start.
+/// Number of load steps from the straight, unloaded manipulator, if the last shape is no good start.
 const LOAD_STEPS: u32 = 32;
-/// Halvings of a step of the base tensions, where the holes' equations find no solution at once.
+/// Maximum number of halvings of a step of the base tensions, if the holes' equations have no solution at once.
 const MOST_PARTS: u32 = 48;
 
 /// Static model of a manipulator of up to `DISKS` disks, [`MAX_DISKS`](super::MAX_DISKS) at most.
 ///
-/// [`solve`](Self::solve) is total and bounded. One solution takes the last shape for its start, and goes up from the unloaded
-/// manipulator in load steps where that fails.
+/// [`solve`](Self::solve) is total and bounded. A solution starts from the last shape; if that fails, it increases the load in steps from the
+/// unloaded manipulator.
 ///
-/// **[`Friction::History`].** Each hole has a Dahl state ([`crate::dahl`]), driven by the way of the tendon through that hole:
-/// what the chords beyond it shorten and the tendon beyond it stretches. All holes and the shape are solved together at
-/// the end of the step, so that a step may be as long as the tension moves one way; a reversal belongs to the end of a step.
-/// The first step is taken as pulled from the unloaded tendon. Holes are as many states as there are, and nothing else is
-/// remembered: the other ways may be solved in between and leave the holes as they are.
+/// **[`Friction::History`].** Each hole has a Dahl state ([`crate::dahl`]), driven by the displacement of the tendon through that hole: the
+/// shortening of the chords beyond it plus the stretch of the tendon beyond it. All holes and the shape are solved together at the end of the step,
+/// so a step may be as long as the tension changes in one direction; a reversal must be at the end of a step. The first step is a pull from the
+/// unloaded tendon. The holes are the only memory: the other ways of friction may be solved in between and leave the holes unchanged.
 #[derive(Clone, Debug)]
 pub struct StaticModel<const DISKS: usize> {
     params: ManipulatorParams,
@@ -31,26 +30,26 @@ pub struct StaticModel<const DISKS: usize> {
     state: State<DISKS>,
 }
 
-/// What one solution leaves for the next.
+/// The state that one solution leaves for the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct State<const DISKS: usize> {
     shape: Shape<DISKS>,
-    /// Where the last history step ended; `None` before the first.
+    /// The end of the last history step; `None` before the first.
     history: Option<Past<DISKS>>,
 }
 
 words_of!(State<const DISKS> { shape, history });
 
-/// The state of a [`StaticModel`] at one moment, for [`StaticModel::restore`].
+/// The state of a [`StaticModel`] at one time, for [`StaticModel::restore`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StaticSnapshot<const DISKS: usize>(State<DISKS>);
 
-/// A state that was taken of a manipulator with another number of disks.
+/// The error for a state of a manipulator with another number of disks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StateMismatch {
-    /// How many disks the manipulator has.
+    /// Number of disks of the manipulator.
     pub expected: usize,
-    /// How many that of the state had.
+    /// Number of disks in the state.
     pub found: usize,
 }
 
@@ -75,7 +74,7 @@ pub(super) struct Past<const DISKS: usize> {
     pub point: Point<DISKS>,
     pub base_tension_n: [f64; 2],
     pub contacts: Contacts<DISKS>,
-    /// How the step changed the point and the tensions at the base: where the search of the next step starts, no memory.
+    /// Change of the point and of the base tensions during the step: the start of the next step's search, not memory.
     change: Point<DISKS>,
     change_n: [f64; 2],
 }
@@ -99,12 +98,12 @@ impl<const DISKS: usize> Past<DISKS> {
         change: Point::ZERO,
         change_n: [0.0; 2],
     };
-    /// Most of the last change that the next one is taken to repeat, and least change of a tension that tells a direction, N.
+    /// Maximum ratio of an extrapolated change to the last one, and the least change of a tension that has a direction, N.
     const FARTHEST: f64 = 2.0;
     const LEAST_SQUARE_N2: f64 = 1e-18;
 
-    /// Where the next step ends if it goes on as the last one did: the search starts there. Where the tensions turn round it is
-    /// the point itself.
+    /// Returns the predicted end of the next step if it continues like the last one, as a start of the search. If the tensions reverse, it is the
+    /// point itself.
     fn ahead(&self, base_tension_n: [f64; 2]) -> Point<DISKS> {
         let ([first_n, second_n], [from_first_n, from_second_n]) = (base_tension_n, self.base_tension_n);
         let [first_change_n, second_change_n] = self.change_n;
@@ -118,17 +117,17 @@ impl<const DISKS: usize> Past<DISKS> {
 }
 
 impl<const DISKS: usize> State<DISKS> {
-    /// Straight, without tension, with relaxed holes.
+    /// Returns the straight state without tension and with relaxed holes.
     fn relaxed(disk_count: usize, pitch_m: f64) -> Self {
         Self { shape: Shape::straight(disk_count, pitch_m), history: None }
     }
 }
 
 impl<const DISKS: usize> StaticModel<DISKS> {
-    /// Straight, without tension, with relaxed holes.
+    /// Creates a straight model without tension and with relaxed holes.
     ///
     /// # Errors
-    /// [`ManipulatorError`] if there are more than `DISKS` disks.
+    /// Returns a [`ManipulatorError`] if there are more than `DISKS` disks.
     pub fn new(params: &ManipulatorParams) -> Result<Self, ManipulatorError> {
         let count = params.disk_count;
         if count > DISKS {
@@ -137,33 +136,33 @@ impl<const DISKS: usize> StaticModel<DISKS> {
         Ok(Self { params: *params, newton: Newton::new(), state: State::relaxed(count, params.pitch_m) })
     }
 
-    /// The parameters.
+    /// Returns the parameters.
     #[must_use]
     pub fn params(&self) -> &ManipulatorParams {
         &self.params
     }
 
-    /// The last shape that was right; straight before the first.
+    /// Returns the last valid shape; straight before the first.
     #[must_use]
     pub fn shape(&self) -> &Shape<DISKS> {
         &self.state.shape
     }
 
-    /// Forgets the holes' history and the last shape.
+    /// Resets the holes' history and the last shape.
     pub fn reset(&mut self) {
         self.state = State::relaxed(self.params.disk_count, self.params.pitch_m);
     }
 
-    /// A copy of everything that one solution leaves for the next: the shape and what the holes remember.
+    /// Returns a copy of the full state: the shape and the memory of the holes.
     #[must_use]
     pub fn snapshot(&self) -> StaticSnapshot<DISKS> {
         StaticSnapshot(self.state)
     }
 
-    /// Goes on from a snapshot of the same manipulator as if nothing had happened since.
+    /// Restores the state of a snapshot of the same manipulator; the following solutions have the same bits as after the snapshot.
     ///
     /// # Errors
-    /// [`StateMismatch`] if the manipulator of the snapshot has another number of disks; nothing is changed then.
+    /// Returns a [`StateMismatch`] if the manipulator of the snapshot has another number of disks; nothing is changed then.
     pub fn restore(&mut self, snapshot: &StaticSnapshot<DISKS>) -> Result<(), StateMismatch> {
         let (expected, found) = (self.params.disk_count, snapshot.0.shape.count);
         if expected != found {
@@ -173,10 +172,10 @@ impl<const DISKS: usize> StaticModel<DISKS> {
         Ok(())
     }
 
-    /// Finds the shape for the tensions at the base, N, of the first and the second tendon.
+    /// Computes the shape for the base tensions, N, of the first and the second tendon.
     ///
-    /// Tension 0 is a slack tendon. With [`Friction::Measured`] the tensions at the base count for the friction at hole 1 alone.
-    /// With [`Friction::History`] this is one step of the run.
+    /// Tension 0 is a slack tendon. With [`Friction::Measured`] the base tensions only determine the friction at hole 1. With [`Friction::History`]
+    /// this is one step of the run.
     pub fn solve(&mut self, base_tension_n: [f64; 2], friction: Friction<'_>) -> ShapeStatus {
         let is_tension = |tension_n: &f64| (0.0..1e9).contains(tension_n);
         if !base_tension_n.iter().all(is_tension) {
@@ -238,7 +237,7 @@ impl<const DISKS: usize> StaticModel<DISKS> {
         })
     }
 
-    /// How a point in equilibrium changes with the tensions at the base, by so much N.
+    /// Returns the change of a point in equilibrium with a change of the base tensions, N.
     pub(super) fn change_with(
         &mut self,
         point: &Point<DISKS>,
@@ -249,7 +248,7 @@ impl<const DISKS: usize> StaticModel<DISKS> {
         self.newton.change_with(&self.params, point, target, law, change_n)
     }
 
-    /// Where the last history step ended, or the relaxed tendon before the first.
+    /// Returns the end of the last history step, or the relaxed tendon before the first.
     pub(super) fn past_or_relaxed(&mut self) -> Option<Past<DISKS>> {
         match self.state.history {
             Some(past) => Some(past),
@@ -257,12 +256,12 @@ impl<const DISKS: usize> StaticModel<DISKS> {
         }
     }
 
-    /// Tensions at the base of the last history step, else of the last shape, N.
+    /// Returns the base tensions of the last history step, or of the last shape if there is none, N.
     pub(super) fn last_base_tension_n(&self) -> [f64; 2] {
         self.state.history.as_ref().map_or(self.state.shape.base_tension_n, |past| past.base_tension_n)
     }
 
-    /// An equilibrium without memory: from these bends, else in load steps from none.
+    /// Returns an equilibrium without memory: from these bends or, if that fails, in load steps from zero.
     pub(super) fn statics(
         &mut self,
         bend_rad: &[f64; DISKS],
@@ -286,8 +285,8 @@ impl<const DISKS: usize> StaticModel<DISKS> {
         Some(point)
     }
 
-    /// One step of the history from where it ended: whole, searched from `start`, or in parts where it finds no solution. The
-    /// memory is the caller's to move on.
+    /// Computes one step of the history from its last end: as a whole, searched from `start`, or in parts if there is no solution. The caller
+    /// advances the memory.
     pub(super) fn advance(
         &mut self,
         past: &Past<DISKS>,
@@ -324,13 +323,13 @@ impl<const DISKS: usize> StaticModel<DISKS> {
         None
     }
 
-    /// Before the first step: the tendons lie in their holes without tension.
+    /// Returns the state before the first step: the tendons lie in their holes without tension.
     fn relaxed(&mut self) -> Option<Past<DISKS>> {
         let point = self.statics(&self.state.shape.bend_rad.clone(), [0.0; 2], [[0.0; DISKS]; 2], &Law::Given)?;
         Some(self.past(&point, [0.0; 2]))
     }
 
-    /// A manipulator whose holes have come to an equilibrium: their friction is the difference of the tensions.
+    /// Returns the history state of a manipulator whose holes are in equilibrium: their friction is the difference of the tensions.
     fn past(&self, point: &Point<DISKS>, base_tension_n: [f64; 2]) -> Past<DISKS> {
         let contacts =
             Contacts { friction_n: frictions(point, base_tension_n), travel_m: travels_m(&self.params, point) };
@@ -349,7 +348,7 @@ impl<const DISKS: usize> StaticModel<DISKS> {
         self.state.history = Some(past);
     }
 
-    /// Keeps a point as the shape, and says what is out of the ordinary about it.
+    /// Stores a point as the shape and returns its flags.
     fn show(&mut self, point: &Point<DISKS>, base_tension_n: [f64; 2]) -> ShapeStatus {
         let count = self.params.disk_count;
         let mut bound_n = [[0.0; DISKS]; 2];
@@ -381,7 +380,7 @@ impl<const DISKS: usize> StaticModel<DISKS> {
     }
 }
 
-/// `T_{i−1} − T_i`.
+/// Returns `T_{i−1} − T_i`.
 pub(super) fn frictions<const DISKS: usize>(point: &Point<DISKS>, base_tension_n: [f64; 2]) -> [[f64; DISKS]; 2] {
     let mut friction_n = point.tension_n;
     for (friction_n, mut base_side_n) in friction_n.iter_mut().zip(base_tension_n) {

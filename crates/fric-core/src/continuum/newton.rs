@@ -1,16 +1,15 @@
 //! The equations of equilibrium and their solution by a damped Newton method.
 //!
-//! Unknown are the bend of every segment and, where friction depends on the shape, the tension in every segment. The equations:
+//! The unknowns are the bend of every segment and, if friction depends on the shape, the tension in every segment. The equations are:
 //!
-//! - `θ_i = θ_i,0 + L/(E·I)_i·(Σ_tendons T_i·m(θ_i) + Q_i)` (\[C\] 9, 10, 15), with the moment averaged over the segment: the arm m of
-//!   the straight tendon ([`Chord`]) and the moment Q of weight and tip load ([`super::load`]); beyond \[C\] a segment may have a
-//!   stiffness of its own and a bend θ_i,0 without load;
+//! - `θ_i = θ_i,0 + L/(E·I)_i·(Σ_tendons T_i·m(θ_i) + Q_i)` (\[C\] 9, 10, 15), with the moment averaged over the segment: the arm m of the straight
+//!   tendon ([`Chord`]) and the moment Q of weight and tip load ([`super::load`]). Beyond \[C\], a segment may have its own stiffness and an unloaded
+//!   bend θ_i,0.
 //! - `T_{i−1} − T_i = f_i` (\[C\] 11, 14) with the friction of hole i.
 //!
-//! Slopes are exact, those of a contact by numbers that carry them along. A contact has a kink where its motion reverses, over which
-//! Newton's method may go back and forth. But while the bounds of the friction are held, a step of the contacts is the minimum of a
-//! convex energy with continuous slope: a Newton step that does not halve the residual is replaced by the one with
-//! held bounds, and taken as far as the residual forces do work along it.
+//! Slopes are exact; those of a contact come from numbers that carry derivatives. A contact has a kink where its motion reverses, at which Newton's
+//! method may alternate. If the bounds of the friction are held, however, a step of the contacts minimises a convex energy with continuous slope. So
+//! a Newton step that does not halve the residual is replaced by the step with held bounds, as far as the residual forces do work along it.
 
 use super::arc::{Chord, GREATEST_BEND_RAD};
 use super::chain::{BendRow, Chain, HoleRow, Link};
@@ -20,15 +19,15 @@ use super::params::{ManipulatorParams, Tendon};
 use crate::scalar::Scalar;
 use crate::words::words_of;
 
-/// Newton steps of one solution.
+/// Maximum number of Newton steps of one solution.
 const MOST_STEPS: u32 = 60;
-/// Shortenings of one step.
+/// Maximum number of reductions of one step.
 const MOST_TRIALS: u32 = 12;
 /// Largest change of a bend in one step, rad.
 const LONGEST_STEP_RAD: f64 = 0.5;
-/// Solved to this, relative to 1 rad and the tension at the base.
+/// Tolerance, relative to 1 rad and the tension at the base.
 const SOLVED: f64 = 1e-12;
-/// What is still right where rounding keeps the residual from falling further.
+/// Error that is still accepted if rounding keeps the residual from falling further.
 const STALLED: f64 = 1e-9;
 
 /// A state of the manipulator, in equilibrium or on the way to it.
@@ -39,20 +38,20 @@ pub struct Point<const DISKS: usize> {
 }
 
 impl<const DISKS: usize> Point<DISKS> {
-    /// Straight and without tension; as a step, none.
+    /// Straight and without tension; as a step, no change.
     pub const ZERO: Self = Self { bend_rad: [0.0; DISKS], tension_n: [[0.0; DISKS]; 2] };
 }
 
 words_of!(Point<const DISKS> { bend_rad, tension_n });
 
-/// What holes do.
+/// The law of the holes.
 #[derive(Clone, Copy, Debug)]
 pub enum Law<'a, const DISKS: usize> {
-    /// Tensions are given.
+    /// The tensions are given.
     Given,
-    /// They slide.
+    /// All holes slide.
     Sliding(Direction),
-    /// They remember.
+    /// The holes have memory.
     Presliding(&'a Contacts<DISKS>),
 }
 
@@ -61,21 +60,21 @@ pub enum Law<'a, const DISKS: usize> {
 pub struct Contacts<const DISKS: usize> {
     /// Friction of each hole, N.
     pub friction_n: [[f64; DISKS]; 2],
-    /// How far each tendon has come through each hole towards the base, m, from any origin.
+    /// Displacement of each tendon through each hole towards the base, m, from any origin.
     pub travel_m: [[f64; DISKS]; 2],
 }
 
 words_of!(Contacts<const DISKS> { friction_n, travel_m });
 
-/// What is asked for.
+/// The target of a solution.
 #[derive(Clone, Copy, Debug)]
 pub struct Target {
     pub base_tension_n: [f64; 2],
-    /// Share of weight and tip load that acts.
+    /// Fraction of weight and tip load that acts.
     pub load_share: f64,
 }
 
-/// Both tendons' chords.
+/// Returns the chords of both tendons.
 pub fn chords<const DISKS: usize>(params: &ManipulatorParams, bend_rad: &[f64; DISKS]) -> [[Chord; DISKS]; 2] {
     let mut both = [[Chord::NONE; DISKS]; 2];
     let [first, second] = &mut both;
@@ -86,8 +85,7 @@ pub fn chords<const DISKS: usize>(params: &ManipulatorParams, bend_rad: &[f64; D
     both
 }
 
-/// How far a tendon has come through each hole towards the base: what the chords beyond have lost in length and the tendon
-/// there has gained by its stretch.
+/// Returns the displacement of a tendon through each hole towards the base: the shortening of the chords beyond plus the stretch of the tendon there.
 fn travel_m<const DISKS: usize>(
     chords: &[Chord; DISKS],
     tension_n: &[f64; DISKS],
@@ -104,7 +102,7 @@ fn travel_m<const DISKS: usize>(
     travel_m
 }
 
-/// The same of both tendons at a point.
+/// Returns the same for both tendons at a point.
 pub fn travels_m<const DISKS: usize>(params: &ManipulatorParams, point: &Point<DISKS>) -> [[f64; DISKS]; 2] {
     let [first_chords, second_chords] = chords(params, &point.bend_rad);
     let ([first_n, second_n], [first, second]) = (&point.tension_n, &params.tendons);
@@ -114,7 +112,7 @@ pub fn travels_m<const DISKS: usize>(params: &ManipulatorParams, point: &Point<D
     ]
 }
 
-/// What each hole of a tendon sees; motion is left at 0.
+/// Returns the tendon's state at each hole; the motion is left at 0.
 pub fn passages<const DISKS: usize>(
     point: &Point<DISKS>,
     tendon: Tendon,
@@ -130,16 +128,16 @@ pub fn passages<const DISKS: usize>(
     })
 }
 
-/// The equations and room for their solution.
+/// The equations and the buffers for their solution.
 #[derive(Clone, Debug)]
 pub struct Newton<const DISKS: usize> {
     chain: Chain<DISKS>,
 }
 
-/// Which of the tendons have unknown tensions.
+/// The tendons with unknown tensions.
 #[derive(Clone, Copy, Debug)]
 struct Unknowns {
-    /// Segments.
+    /// Number of segments.
     count: usize,
     tendons: [bool; 2],
 }
@@ -169,25 +167,25 @@ struct Problem<'a, const DISKS: usize> {
     target: &'a Target,
     law: &'a Law<'a, DISKS>,
     unknowns: Unknowns,
-    /// What tensions are measured in, N.
+    /// Unit of the tensions, N.
     unit_n: f64,
-    /// Whether the slopes leave out that friction bounds change.
+    /// Whether the slopes neglect the change of the friction bounds.
     holds_bounds: bool,
 }
 
-/// How far a point is from the solution.
+/// The distance of a point from the solution.
 #[derive(Clone, Copy, Debug)]
 struct Distance {
     /// Norm of the residuals, in rad and units of tension.
     error: f64,
-    /// Work of the residual forces along a step, N m; negative where they drive it on.
+    /// Work of the residual forces along a step, N m; negative if they drive the step on.
     work_nm: f64,
 }
 
 impl<'a, const DISKS: usize> Problem<'a, DISKS> {
     fn new(params: &'a ManipulatorParams, start: &Point<DISKS>, target: &'a Target, law: &'a Law<'a, DISKS>) -> Self {
         let largest_n = target.base_tension_n.into_iter().fold(0.0, f64::max);
-        // Of a tendon that is let go, what is left matters beside what bends the manipulator visibly.
+        // When a tendon is released, a residual matters only if it bends the manipulator visibly.
         let least_n = 1e-6 * params.bending_stiffness_n_m2 / (params.pitch_m * params.hole_radius_m);
         Self {
             params,
@@ -213,7 +211,7 @@ impl<'a, const DISKS: usize> Problem<'a, DISKS> {
         Distance { error: Scalar::sqrt(squares), work_nm }
     }
 
-    /// The equations of the bends; the sum of their squared residuals, and the work of the moments that are left.
+    /// Writes the equations of the bends. Returns the sum of their squared residuals, and the work of the residual moments.
     fn bending(
         &self,
         point: &Point<DISKS>,
@@ -258,7 +256,7 @@ impl<'a, const DISKS: usize> Problem<'a, DISKS> {
         (squares, work_nm)
     }
 
-    /// The equations of one tendon's tensions; the sum of their squared residuals, and the work of the forces that are left.
+    /// Writes the equations of one tendon's tensions. Returns the sum of their squared residuals, and the work of the residual forces.
     fn passing(
         &self,
         point: &Point<DISKS>,
@@ -273,7 +271,7 @@ impl<'a, const DISKS: usize> Problem<'a, DISKS> {
         let params = tendon.of(&self.params.tendons);
         let flexibility = 1.0 / params.axial_stiffness_n;
         let is_presliding = matches!(self.law, Law::Presliding(_));
-        // How far the tendon is through each hole, and how much further the step takes it.
+        // The displacement of the tendon through each hole, and its change by the step.
         let (mut travels_m, mut changes_m) = ([0.0; DISKS], [0.0; DISKS]);
         if is_presliding {
             travels_m = travel_m(chords, tension_n, params.axial_stiffness_n, count);
@@ -332,7 +330,7 @@ impl<const DISKS: usize> Newton<DISKS> {
         Self { chain: Chain::new() }
     }
 
-    /// An equilibrium near `start`; `None` where none is found.
+    /// Returns an equilibrium near `start`; `None` if none is found.
     pub fn solve(
         &mut self,
         params: &ManipulatorParams,
@@ -357,7 +355,7 @@ impl<const DISKS: usize> Newton<DISKS> {
             let next = if trial_error <= 0.5 * error {
                 Some((trial, trial_error))
             } else if error <= STALLED {
-                // Rounding, which stiff contacts enlarge.
+                // Rounding, amplified by stiff contacts.
                 break;
             } else if let Law::Presliding(_) = law {
                 self.least_energy(&mut problem, &point)
@@ -370,7 +368,7 @@ impl<const DISKS: usize> Newton<DISKS> {
         (error <= STALLED).then_some(point)
     }
 
-    /// How a point in equilibrium changes with the tensions at the base, by so much N.
+    /// Returns the change of a point in equilibrium with a change of the base tensions, N.
     pub fn change_with(
         &mut self,
         params: &ManipulatorParams,
@@ -391,7 +389,7 @@ impl<const DISKS: usize> Newton<DISKS> {
         }
     }
 
-    /// The first point along a step, halved again and again, at which the residual is smaller.
+    /// Returns the first point along a step, halved repeatedly, at which the residual is smaller.
     fn smaller_error(
         &mut self,
         problem: &Problem<'_, DISKS>,
@@ -411,8 +409,8 @@ impl<const DISKS: usize> Newton<DISKS> {
         None
     }
 
-    /// The point of least energy along the Newton step with held bounds, roughly: where the work changes its sign, by false
-    /// position with halved ends (Illinois).
+    /// Returns the approximate point of least energy along the Newton step with held bounds: where the work changes its sign, by false position with
+    /// halved ends (Illinois).
     fn least_energy(&mut self, problem: &mut Problem<'_, DISKS>, point: &Point<DISKS>) -> Option<(Point<DISKS>, f64)> {
         problem.holds_bounds = true;
         problem.write(point, &Point::ZERO, &mut self.chain);
@@ -450,7 +448,7 @@ impl<const DISKS: usize> Newton<DISKS> {
         Some((trial, distance.error))
     }
 
-    /// Whether the manipulator comes back to this equilibrium while the tensions stay.
+    /// Whether the equilibrium is stable at constant tensions.
     pub fn is_stable(&mut self, params: &ManipulatorParams, point: &Point<DISKS>, target: &Target) -> bool {
         let problem = Problem::new(params, point, target, &Law::Given);
         problem.write(point, &Point::ZERO, &mut self.chain).error.is_finite()
@@ -458,18 +456,18 @@ impl<const DISKS: usize> Newton<DISKS> {
     }
 }
 
-/// How much of a step may be taken at once.
+/// Returns the fraction of a step that may be taken at once.
 fn whole_share<const DISKS: usize>(step: &Point<DISKS>) -> f64 {
     let longest_rad = step.bend_rad.iter().fold(0.0_f64, |most, change| most.max(change.abs()));
     if longest_rad > LONGEST_STEP_RAD { LONGEST_STEP_RAD / longest_rad } else { 1.0 }
 }
 
-/// A point after a share of a step; bends stay within what a segment can have.
+/// Returns a point after a fraction of a step; bends stay within the limits of a segment.
 pub fn moved<const DISKS: usize>(point: &Point<DISKS>, step: &Point<DISKS>, share: f64) -> Point<DISKS> {
     let add = |from: &[f64; DISKS], change: &[f64; DISKS], most: f64| {
         let mut sum = *from;
         for (sum, change) in sum.iter_mut().zip(change) {
-            // Not `clamp`, which has a panic for bounds in the wrong order.
+            // `clamp` is avoided because it panics for bounds in the wrong order.
             *sum = (*sum + share * change).min(most).max(-most);
         }
         sum

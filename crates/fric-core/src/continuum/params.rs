@@ -8,26 +8,26 @@ use super::friction::Hole;
 use crate::parameters::GREATEST_MU;
 use crate::robot::{ParamProblem, check};
 
-/// Most disks of a manipulator.
+/// Maximum number of disks of a manipulator.
 pub const MAX_DISKS: usize = 32;
 
-/// Most bend of a segment without load, rad.
+/// Greatest unloaded bend of a segment, rad.
 const GREATEST_REST_BEND_RAD: f64 = 1.0;
 
-/// One of the two tendons of a plane.
+/// One of the two tendons in the plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tendon {
-    /// In the holes on the side of +y: pulled, it bends the manipulator towards +y.
+    /// The tendon in the holes on the side of +y; pulling it bends the manipulator towards +y.
     Agonist,
-    /// In the holes on the side of −y.
+    /// The tendon in the holes on the side of −y.
     Antagonist,
 }
 
 impl Tendon {
-    /// Both, in the order of every pair.
+    /// Both tendons, in the order of every pair.
     pub const BOTH: [Self; 2] = [Self::Agonist, Self::Antagonist];
 
-    /// This one's of a pair.
+    /// Returns this tendon's element of a pair.
     #[must_use]
     pub fn of<T>(self, pair: &[T; 2]) -> &T {
         let [agonist, antagonist] = pair;
@@ -38,37 +38,37 @@ impl Tendon {
     }
 }
 
-/// A tendon and its holes, as stated.
+/// Options of a tendon and its holes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TendonOptions<'a> {
-    /// Friction coefficient μ between tendon and hole, 0…0.9: one for all holes, or one for each from the base plate.
+    /// Friction coefficient μ between tendon and hole, 0…0.9: one for all holes, or one per hole, starting at the base plate.
     pub mu: &'a [f64],
-    /// Presliding stiffness σ of a hole, N/m: one for all, or one for each. `f_c/σ` is the way in which friction builds up.
+    /// Presliding stiffness σ of a hole, N/m: one for all, or one per hole. `f_c/σ` is the distance over which friction builds up.
     pub sigma_n_per_m: &'a [f64],
     /// Axial stiffness E·A, N.
     pub axial_stiffness_n: f64,
-    /// Tension that the tendon can bear, N.
+    /// Tension capacity of the tendon, N.
     pub capacity_n: f64,
 }
 
 impl TendonOptions<'static> {
-    /// The optical fibre of \[C\] in its holes.
+    /// Returns the optical fibre of \[C\] in its holes.
     ///
-    /// Published: μ = 0.1753 in a single hole, capacity 4 N, ⌀ 0.5 mm in holes of ⌀ 0.8 mm. Not published, chosen: E·A = 13.7 kN, a
-    /// silica fibre of that diameter at 70 GPa (the strain form \[C\] 4 with 1550 nm and P_e = 0.22 then gives 11.4 N/nm); σ =
-    /// 20 kN/m, with which friction of 0.05 N builds up within 2.5 μm, as is usual for a polymer coating on metal.
+    /// Published: μ = 0.1753 in a single hole, capacity 4 N, ⌀ 0.5 mm in holes of ⌀ 0.8 mm. Chosen here: E·A = 13.7 kN, a silica fibre of that
+    /// diameter at 70 GPa (the strain form \[C\] 4 with 1550 nm and P_e = 0.22 then gives 11.4 N/nm); σ = 20 kN/m, with which friction of 0.05 N
+    /// builds up within 2.5 μm, a typical value for a polymer coating on metal.
     #[must_use]
     pub const fn published() -> Self {
         Self { mu: &[0.1753], sigma_n_per_m: &[20_000.0], axial_stiffness_n: 13_700.0, capacity_n: 4.0 }
     }
 }
 
-/// A manipulator, as stated. Vectors stand in the base frame (x along the straight manipulator, y towards the first tendon).
+/// Options of a manipulator. Vectors are in the base frame (x along the straight manipulator, y towards the first tendon).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ManipulatorOptions<'a> {
-    /// Disks beyond the base plate, 1…[`MAX_DISKS`]; as many segments.
+    /// Number of disks without the base plate, 1…[`MAX_DISKS`]; the number of segments is the same.
     pub disk_count: usize,
-    /// From the centre of one disk to the next, m: the length of backbone in a segment. It bends within the disks too.
+    /// Distance between the centres of neighbouring disks, m: the length of backbone in a segment, which bends within the disks too.
     pub pitch_m: f64,
     /// Thickness of a disk, m.
     pub disk_thickness_m: f64,
@@ -76,9 +76,9 @@ pub struct ManipulatorOptions<'a> {
     pub hole_radius_m: f64,
     /// E·I of the backbone, N m²; see [`rectangle_bending_stiffness_n_m2`].
     pub bending_stiffness_n_m2: f64,
-    /// E·I of a segment as a ratio of that, 0.01…100: one for all segments, or one for each from the base plate.
+    /// E·I of a segment relative to that, 0.01…100: one for all segments, or one per segment, starting at the base plate.
     pub segment_stiffness_ratio: &'a [f64],
-    /// Curvature of the unloaded backbone, 1/m, towards +y, at most 1 rad in a segment: one for all segments, or one for each.
+    /// Curvature of the unloaded backbone, 1/m, towards +y, at most 1 rad in a segment: one for all segments, or one per segment.
     pub precurvature_per_m: &'a [f64],
     /// Mass of a disk, kg.
     pub disk_mass_kg: f64,
@@ -86,19 +86,19 @@ pub struct ManipulatorOptions<'a> {
     pub backbone_mass_kg_per_m: f64,
     /// Gravity, m/s².
     pub gravity_m_per_s2: [f64; 2],
-    /// Mass hung on the centre of the last disk, kg.
+    /// Mass attached to the centre of the last disk, kg.
     pub tip_mass_kg: f64,
-    /// Force on the centre of the last disk, N; keeps its direction.
+    /// Force of constant direction on the centre of the last disk, N.
     pub tip_force_n: [f64; 2],
     /// The tendons.
     pub tendons: [TendonOptions<'a>; 2],
 }
 
 impl ManipulatorOptions<'static> {
-    /// The prototype of \[C\], lying flat: no gravity in the plane of bending, no load.
+    /// Returns the prototype of \[C\], lying flat: no gravity in the plane of bending, no load.
     ///
-    /// Published: 8 disks of 2 mm, 35 mm between them, holes on a circle of ⌀ 30 mm, backbone of steel sheet 0.3 × 6 mm.
-    /// Not published, chosen: steel with E = 200 GPa and 7850 kg/m³; disks of 3 g.
+    /// Published: 8 disks of 2 mm, 35 mm between them, holes on a circle of ⌀ 30 mm, backbone of steel sheet 0.3 × 6 mm. Chosen here: steel with E =
+    /// 200 GPa and 7850 kg/m³; disks of 3 g.
     #[must_use]
     pub const fn published() -> Self {
         Self {
@@ -119,7 +119,7 @@ impl ManipulatorOptions<'static> {
     }
 }
 
-/// E·I of a rectangular strip that bends about its wide side, N m²: `E·b·h³/12`.
+/// Returns E·I of a rectangular strip that bends about its wide side, N m²: `E·b·h³/12`.
 #[must_use]
 pub const fn rectangle_bending_stiffness_n_m2(youngs_modulus_pa: f64, width_m: f64, thickness_m: f64) -> f64 {
     youngs_modulus_pa * width_m * thickness_m * thickness_m * thickness_m / 12.0
@@ -134,7 +134,7 @@ pub(crate) struct TendonParams {
     pub capacity_n: f64,
 }
 
-/// A checked manipulator: what a [`StaticModel`](super::StaticModel) is built from.
+/// A checked manipulator, from which a [`StaticModel`](super::StaticModel) is built.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ManipulatorParams {
     pub(crate) disk_count: usize,
@@ -144,7 +144,7 @@ pub struct ManipulatorParams {
     pub(crate) bending_stiffness_n_m2: f64,
     /// E·I of each segment, N m².
     pub(crate) segment_stiffness_n_m2: [f64; MAX_DISKS],
-    /// Bend of each segment without load, rad.
+    /// Unloaded bend of each segment, rad.
     pub(crate) rest_bend_rad: [f64; MAX_DISKS],
     /// Force on each disk, on the backbone of each segment and on the tip, N.
     pub(crate) disk_weight_n: Vector2<f64>,
@@ -153,17 +153,17 @@ pub struct ManipulatorParams {
     pub(crate) tendons: [TendonParams; 2],
 }
 
-/// Why a manipulator was refused.
+/// The reason why a manipulator was refused.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ManipulatorError {
-    /// Whose parameter it is, where it is a tendon's.
+    /// The tendon, if the parameter belongs to one.
     pub tendon: Option<Tendon>,
-    /// Name of the parameter with its unit.
+    /// Name of the parameter, including its unit.
     pub key: &'static str,
-    /// Place in its list, from 0, where it stands in one.
+    /// Index in its list, from 0, if it is in one.
     pub place: Option<usize>,
-    /// What is wrong with it.
+    /// The problem.
     pub problem: ParamProblem,
 }
 
@@ -184,7 +184,7 @@ impl fmt::Display for ManipulatorError {
 
 impl core::error::Error for ManipulatorError {}
 
-/// `value` if it is finite and in `min…max`.
+/// Returns `value` if it is finite and in `min…max`.
 fn checked(key: &'static str, value: f64, min: f64, max: f64) -> Result<f64, ManipulatorError> {
     check(key, value, min, max).map_err(|error| ManipulatorError {
         tendon: None,
@@ -203,7 +203,7 @@ pub(crate) fn count_error(key: &'static str, count: usize, min: usize, max: usiz
     ManipulatorError { tendon: None, key, place: None, problem: ParamProblem::Count { count, min, max } }
 }
 
-/// One for all, or one for each.
+/// Expands one number for all, or checks one per item.
 fn spread(
     key: &'static str,
     given: &[f64],
@@ -239,7 +239,7 @@ impl ManipulatorParams {
     /// Checks a manipulator.
     ///
     /// # Errors
-    /// [`ManipulatorError`] names the first parameter that is not finite, out of its range or at odds with another.
+    /// Returns a [`ManipulatorError`] with the first parameter that is not finite, out of its range or inconsistent with another.
     pub fn new(options: &ManipulatorOptions<'_>) -> Result<Self, ManipulatorError> {
         let count = options.disk_count;
         if count == 0 || count > MAX_DISKS {
@@ -275,7 +275,7 @@ impl ManipulatorParams {
         })
     }
 
-    /// Disks beyond the base plate; as many segments, and holes of a tendon.
+    /// Returns the number of disks without the base plate, which is also the number of segments and of a tendon's holes.
     #[must_use]
     pub fn disk_count(&self) -> usize {
         self.disk_count
@@ -286,13 +286,13 @@ impl ManipulatorParams {
         [self.disk_weight_n, self.backbone_weight_n, self.tip_force_n].iter().any(|load_n| load_n.norm_squared() > 0.0)
     }
 
-    /// From the centre of one disk to the next, m.
+    /// Returns the distance between the centres of neighbouring disks, m.
     #[must_use]
     pub fn pitch_m(&self) -> f64 {
         self.pitch_m
     }
 
-    /// Length of the backbone, m.
+    /// Returns the length of the backbone, m.
     #[must_use]
     pub fn length_m(&self) -> f64 {
         #[expect(clippy::cast_precision_loss, reason = "at most MAX_DISKS")]
@@ -300,63 +300,63 @@ impl ManipulatorParams {
         self.pitch_m * count
     }
 
-    /// Thickness of a disk, m.
+    /// Returns the thickness of a disk, m.
     #[must_use]
     pub fn disk_thickness_m(&self) -> f64 {
         self.disk_thickness_m
     }
 
-    /// Radius of the circle of holes, m.
+    /// Returns the radius of the circle of holes, m.
     #[must_use]
     pub fn hole_radius_m(&self) -> f64 {
         self.hole_radius_m
     }
 
-    /// E·I of the backbone, N m², to which the ratios of its segments refer.
+    /// Returns E·I of the backbone, N m², to which the ratios of its segments refer.
     #[must_use]
     pub fn bending_stiffness_n_m2(&self) -> f64 {
         self.bending_stiffness_n_m2
     }
 
-    /// E·I of each segment from the base plate, N m².
+    /// Returns E·I of each segment, starting at the base plate, N m².
     #[must_use]
     pub fn segment_stiffness_n_m2(&self) -> &[f64] {
         self.segment_stiffness_n_m2.get(..self.disk_count).unwrap_or(&self.segment_stiffness_n_m2)
     }
 
-    /// Bend of each segment without load, from the base plate, rad.
+    /// Returns the unloaded bend of each segment, starting at the base plate, rad.
     #[must_use]
     pub fn rest_bend_rad(&self) -> &[f64] {
         self.rest_bend_rad.get(..self.disk_count).unwrap_or(&self.rest_bend_rad)
     }
 
-    /// Weight of a disk, of the backbone of a segment, and the force on the tip, base frame, N.
+    /// Returns the weight of a disk, the weight of a segment's backbone, and the force on the tip, base frame, N.
     #[must_use]
     pub fn loads_n(&self) -> [[f64; 2]; 3] {
         [self.disk_weight_n, self.backbone_weight_n, self.tip_force_n].map(Into::into)
     }
 
-    /// Friction coefficients of a tendon's holes from the base plate.
+    /// Returns the friction coefficients of a tendon's holes, starting at the base plate.
     #[must_use]
     pub fn mu(&self, tendon: Tendon) -> &[f64] {
         let all = &tendon.of(&self.tendons).mu;
         all.get(..self.disk_count).unwrap_or(all)
     }
 
-    /// Presliding stiffnesses of a tendon's holes from the base plate, N/m.
+    /// Returns the presliding stiffnesses of a tendon's holes, starting at the base plate, N/m.
     #[must_use]
     pub fn sigma_n_per_m(&self, tendon: Tendon) -> &[f64] {
         let all = &tendon.of(&self.tendons).sigma_n_per_m;
         all.get(..self.disk_count).unwrap_or(all)
     }
 
-    /// Axial stiffness E·A of a tendon, N.
+    /// Returns the axial stiffness E·A of a tendon, N.
     #[must_use]
     pub fn axial_stiffness_n(&self, tendon: Tendon) -> f64 {
         tendon.of(&self.tendons).axial_stiffness_n
     }
 
-    /// Tension that a tendon can bear, N.
+    /// Returns the tension capacity of a tendon, N.
     #[must_use]
     pub fn capacity_n(&self, tendon: Tendon) -> f64 {
         tendon.of(&self.tendons).capacity_n

@@ -1,4 +1,4 @@
-//! What a static solution has to say.
+//! The result of a static solution.
 
 use core::fmt;
 use core::ops::BitOr;
@@ -8,7 +8,7 @@ use nalgebra::Vector2;
 use super::params::Tendon;
 use crate::words::words_of;
 
-/// Flags of one solution; [`ShapeStatus::OK`] where nothing is the matter.
+/// Flags of one solution; [`ShapeStatus::OK`] if there is no fault.
 ///
 /// | flag | cause | what the shape is |
 /// |---|---|---|
@@ -18,15 +18,15 @@ use crate::words::words_of;
 /// | `OVER_CAPACITY` | a tension above the tendon's capacity | computed as usual |
 /// | `DISKS_TOUCH` | two holes are nearer than a disk is thick: bend beyond the model | computed as usual |
 ///
-/// With one of the first three the state of the holes stays as it was, too.
+/// With any of the first three the state of the holes is unchanged, too.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[must_use]
 pub struct ShapeStatus(u32);
 
 impl ShapeStatus {
-    /// Nothing is the matter.
+    /// No fault.
     pub const OK: Self = Self(0);
-    /// Input is no usable number.
+    /// The input is not usable.
     pub const NOT_FINITE: Self = Self(1);
     /// No equilibrium was found.
     pub const NOT_CONVERGED: Self = Self(1 << 1);
@@ -48,19 +48,19 @@ impl ShapeStatus {
 
     const FAILED: Self = Self(Self::NOT_FINITE.0 | Self::NOT_CONVERGED.0 | Self::UNSTABLE.0);
 
-    /// The flags as a number.
+    /// Returns the flags as a number.
     #[must_use]
     pub const fn bits(self) -> u32 {
         self.0
     }
 
-    /// Whether nothing is the matter.
+    /// Whether there is no fault.
     #[must_use]
     pub const fn is_ok(self) -> bool {
         self.0 == 0
     }
 
-    /// Whether there is a new shape; otherwise it is the last one that was right.
+    /// Whether there is a new shape; otherwise the shape is the last valid one.
     #[must_use]
     pub const fn has_shape(self) -> bool {
         self.0 & Self::FAILED.0 == 0
@@ -80,14 +80,14 @@ impl BitOr for ShapeStatus {
     }
 }
 
-/// `ok`, or the names of the flags with `|` between them.
+/// Writes `ok`, or the names of the flags separated by `|`.
 impl fmt::Display for ShapeStatus {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write_flags(formatter, Self::NAMES.iter().filter(|(_, flag)| self.contains(*flag)).map(|(name, _)| *name))
     }
 }
 
-/// `ok`, or the names with `|` between them.
+/// Writes `ok`, or the names separated by `|`.
 pub(super) fn write_flags(
     formatter: &mut fmt::Formatter<'_>,
     names: impl Iterator<Item = &'static str>,
@@ -116,7 +116,7 @@ pub struct Shape<const DISKS: usize> {
 words_of!(Shape<const DISKS> { count, bend_rad, position_m, base_tension_n, tension_n, friction_n, bound_n });
 
 impl<const DISKS: usize> Shape<DISKS> {
-    /// Straight and without tension.
+    /// Returns the straight shape without tension.
     pub(super) fn straight(count: usize, pitch_m: f64) -> Self {
         let mut position_m = [[0.0; 2]; DISKS];
         let mut along_m = 0.0;
@@ -140,50 +140,50 @@ impl<const DISKS: usize> Shape<DISKS> {
         all.get(..self.count).unwrap_or(all)
     }
 
-    /// Centres of the disks from the base, base frame, m. These are the markers of \[C\].
+    /// Returns the centres of the disks, starting at the base, base frame, m. These are the markers of \[C\].
     #[must_use]
     pub fn disk_position_m(&self) -> &[[f64; 2]] {
         self.used(&self.position_m)
     }
 
-    /// Bend of each segment from the base, rad.
+    /// Returns the bend of each segment, starting at the base, rad.
     #[must_use]
     pub fn segment_bend_rad(&self) -> &[f64] {
         self.used(&self.bend_rad)
     }
 
-    /// Bend of the whole manipulator, rad: the direction of the last disk.
+    /// Returns the bend of the whole manipulator, rad: the direction of the last disk.
     #[must_use]
     pub fn bend_rad(&self) -> f64 {
         self.segment_bend_rad().iter().sum()
     }
 
-    /// Tension `T_0` of a tendon at the base, N.
+    /// Returns the tension `T_0` of a tendon at the base, N.
     #[must_use]
     pub fn base_tension_n(&self, tendon: Tendon) -> f64 {
         *tendon.of(&self.base_tension_n)
     }
 
-    /// Tension of a tendon in each segment, N.
+    /// Returns the tension of a tendon in each segment, N.
     #[must_use]
     pub fn tension_n(&self, tendon: Tendon) -> &[f64] {
         self.used(tendon.of(&self.tension_n))
     }
 
-    /// Friction of a tendon at each hole, N: `T_{i−1} − T_i`, positive where the base side is tighter.
+    /// Returns the friction of a tendon at each hole, N: `T_{i−1} − T_i`, positive if the base side is tighter.
     #[must_use]
     pub fn friction_n(&self, tendon: Tendon) -> &[f64] {
         self.used(tendon.of(&self.friction_n))
     }
 
-    /// Greatest friction of a tendon at each hole, `μ·F_N` (\[C\] 13), N.
+    /// Returns the greatest friction of a tendon at each hole, `μ·F_N` (\[C\] 13), N.
     #[must_use]
     pub fn bound_n(&self, tendon: Tendon) -> &[f64] {
         self.used(tendon.of(&self.bound_n))
     }
 }
 
-/// `vector` turned by an angle.
+/// Returns `vector` rotated by an angle.
 pub(super) fn turned((sin, cos): (f64, f64), vector: Vector2<f64>) -> Vector2<f64> {
     Vector2::new(cos * vector.x - sin * vector.y, sin * vector.x + cos * vector.y)
 }

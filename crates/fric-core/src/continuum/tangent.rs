@@ -1,12 +1,12 @@
-//! A number that carries its derivatives with respect to four others along.
+//! A number that carries its derivatives with respect to four others.
 //!
-//! So the slopes of a contact come from the very functions that give its friction.
+//! With it, the functions that compute the friction of a contact also give its slopes.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use crate::scalar::Scalar;
 
-/// How many derivatives.
+/// Number of derivatives.
 const COUNT: usize = 4;
 
 /// A value and its derivatives.
@@ -21,12 +21,12 @@ impl Tangent {
         Self { value, slopes: [0.0; COUNT] }
     }
 
-    /// The `place`-th of the four numbers, or a function of it with this slope.
+    /// Returns the `place`-th of the four numbers, or a function of it with this slope.
     pub fn variable(value: f64, place: usize, slope: f64) -> Self {
         Self { value, slopes: core::array::from_fn(|other| if other == place { slope } else { 0.0 }) }
     }
 
-    /// `value` with the slopes `a·self' + b·other'`.
+    /// Returns `value` with the slopes `a·self' + b·other'`.
     fn chain(self, value: f64, own: f64, other: Self, others: f64) -> Self {
         let mut slopes = self.slopes;
         for (slope, other) in slopes.iter_mut().zip(other.slopes) {

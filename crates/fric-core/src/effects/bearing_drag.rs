@@ -1,9 +1,9 @@
 //! `bearing_drag`: friction of each bearing that does not depend on its load.
 //!
-//! Equation: `f_c = μ·F_N + drag_n` at every pulley. Neutral: `drag_n = 0`; below 0 it would push, so an identification is
-//! kept from there, and a friction that falls off at low load is left to `load_nonlinearity`.
+//! Equation: `f_c = μ·F_N + drag_n` at every pulley. Neutral: `drag_n = 0`. A negative value would push the cable, so an identification excludes it;
+//! a friction that falls at low load is described by `load_nonlinearity`.
 //!
-//! Cause: preload of the bearing, its seals and its grease resist however little the cable pulls.
+//! Cause: preload of the bearing, its seals and its grease resist independently of the cable tension.
 
 use super::{Acting, Effect, EffectRow, Memory, OnMu};
 use crate::parameters::ParameterRow;
@@ -11,7 +11,7 @@ use crate::scalar::Scalar;
 
 const EXCITATION: &str = "long movements in both directions at cable forces that differ by a factor of two and more";
 
-/// What it is.
+/// The catalogue row.
 pub const ROW: EffectRow = EffectRow {
     kind: "bearing_drag",
     cause: "preload, seals or grease of the bearings resist independently of the cable force",
@@ -31,9 +31,9 @@ pub const ROW: EffectRow = EffectRow {
     goes_by_time: false,
 };
 
-/// The effect by itself, to ask whether it acts.
+/// The effect as a set of one, to test whether it acts.
 pub(crate) const ACTS: Acting = Effect::BearingDrag.acts();
-/// Place of `drag_n` in [`Values`](crate::parameters::Values).
+/// Index of `drag_n` in [`Values`](crate::parameters::Values).
 pub const DRAG: usize = Effect::BearingDrag.first_place();
 
 /// The effect's parameters.
@@ -44,7 +44,7 @@ pub struct BearingDrag<T> {
 }
 
 impl<T: Scalar> BearingDrag<T> {
-    /// From a cable's parameter values, by their place.
+    /// Creates the parameters from a cable's values, by index.
     #[inline(always)]
     pub fn of(value: impl Fn(usize) -> T) -> Self {
         Self { drag_n: value(DRAG) }

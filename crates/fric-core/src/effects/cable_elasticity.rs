@@ -1,25 +1,25 @@
 //! `cable_elasticity`: pulleys that move with the stretch of the cable.
 //!
-//! Equation: at pulley j of n, counted from the winch, the cable moves by `Δl + (j/n)·compliance_m_per_n·ΔF`: what lies between
-//! winch and pulley stretches, and a tension that grows (ΔF > 0) moves the cable there towards the platform, as paying out
-//! does (\[P\]'s open question: an outside force reverses the friction at the far pulleys while the winch rests). The one
-//! state of `lumped` presliding moves by the mean of its pulleys, `(n + 1)/(2n)` of the stretch.
+//! Equation: at pulley j of n, counted from the winch, the cable moves by `Δl + (j/n)·compliance_m_per_n·ΔF`. The cable between winch and pulley
+//! stretches, and a growing tension (ΔF > 0) moves the cable there towards the platform, as paying out does. (This answers \[P\]'s open question: an
+//! outside force reverses the friction at the far pulleys while the winch rests.) The single state of `lumped` presliding moves by the mean over its
+//! pulleys, `(n + 1)/(2n)` of the stretch.
 //!
-//! ΔF is how far the tension at the platform, with the friction of the last cycle, pushes the edge of a play of ± `play_n`: noise
-//! within it moves nothing, and a tension that goes on changing is followed. Without it the noise of the sensor would shake the
-//! stored friction loose; with one and a half times the noise of the sensor, as cable tension, next to nothing of it is left.
+//! ΔF is the distance by which the tension at the platform, with the friction of the last cycle, pushes the edge of a play of ± `play_n`: noise
+//! within the play moves nothing, and a tension that keeps changing is followed. Without the play the sensor noise would release the stored friction.
+//! With a play of one and a half times the sensor noise, as cable tension, hardly any of this release remains.
 //!
-//! A slow change comes through a play in bursts, at the peaks of the noise. Between them the small motions of a winch at rest would
-//! turn each pulley back that in truth goes on with the stretch, and friction, which such turns wear away, would be too small.
-//! So a burst waits: of what waits, `Δt/20 ms` moves the cable in a cycle; where the winch moves the other way, as much as keeps
-//! the pulley in the middle from turning; and at once what is more than the stretch by `play_n`. (A low pass on the tension itself
-//! would delay stops and starts too, and leave several times as much.)
+//! A slow change passes through a play in bursts, at the peaks of the noise. Between the bursts, the small motions of a winch at rest would reverse
+//! pulleys that in reality keep moving with the stretch; such reversals wear off the stored friction, which would then be too small. Therefore a
+//! burst is released gradually: per cycle, `Δt/20 ms` of the waiting stretch moves the cable. If the winch moves in the opposite direction, enough is
+//! released to keep the middle pulley from reversing. Anything beyond the stretch by `play_n` is released at once. (A low-pass filter on the tension
+//! would also delay stops and starts, and leave several times the error.)
 //!
-//! Friction that follows a tension it adds to is stable while `compliance·σ·(n + 1)/(2n) < 1`, as it is for a cable far
-//! stiffer than its presliding; beyond, friction jumps to its Coulomb bound and no further. A sensor pulley with less wrap than 60° (or
-//! more than 300°) makes of the friction in it `cos α₁/(1 − cos α₁)` times as much, and the compliance has
-//! to be lower by that factor. Only presliding and its direction follow the stretch; viscous friction and what depends on speed follow the winch, since the rate of a tension is mostly noise.
-//! Neutral: `compliance_m_per_n = 0`.
+//! Friction that follows a tension to which it contributes is stable while `compliance·σ·(n + 1)/(2n) < 1`, as for a cable far stiffer than its
+//! presliding. Beyond that limit friction jumps to its Coulomb bound, but no further. A sensor pulley with a wrap of less than 60° (or more than
+//! 300°) multiplies its friction by `cos α₁/(1 − cos α₁)`, and the compliance must be lower by that factor. Only presliding and its direction follow
+//! the stretch. Viscous friction and everything that depends on speed follow the winch, because the rate of a tension is mostly noise. Neutral:
+//! `compliance_m_per_n = 0`.
 //!
 //! Cause: the cable is an elastic spring between winch and platform.
 
@@ -29,7 +29,7 @@ use crate::scalar::Scalar;
 
 const EXCITATION: &str = "an outside force on the resting platform that rises and falls, beside the usual run";
 
-/// What it is.
+/// The catalogue row.
 pub const ROW: EffectRow = EffectRow {
     kind: "cable_elasticity",
     cause: "the cable stretches, so that a change of force moves the far pulleys while the winch rests",
@@ -60,16 +60,16 @@ pub const ROW: EffectRow = EffectRow {
     goes_by_time: false,
 };
 
-/// The effect by itself, to ask whether it acts.
+/// The effect as a set of one, to test whether it acts.
 pub(crate) const ACTS: Acting = Effect::CableElasticity.acts();
-/// Place of `compliance_m_per_n` in [`Values`](crate::parameters::Values).
+/// Index of `compliance_m_per_n` in [`Values`](crate::parameters::Values).
 pub const COMPLIANCE: usize = Effect::CableElasticity.first_place();
-/// Place of `play_n`.
+/// Index of `play_n`.
 pub const PLAY: usize = COMPLIANCE + 1;
 
-/// Place of what it remembers: the middle of the play of the tension, N.
+/// Index of its state: the middle of the play of the tension, N.
 pub(crate) const TENSION: usize = Effect::CableElasticity.memory_places().start;
-/// And the stretch that waits to move the cable, m.
+/// Index of the stretch that waits to move the cable, m.
 pub(crate) const STRETCH: usize = TENSION + 1;
 
 /// The effect's parameters.
@@ -77,11 +77,11 @@ pub(crate) const STRETCH: usize = TENSION + 1;
 pub struct CableElasticity<T> {
     /// Stretch of the cable from the winch to its last pulley, m/N.
     pub compliance_m_per_n: T,
-    /// Half the change of tension that moves nothing, N.
+    /// Half width of the play, N: tension changes within it move nothing.
     pub play_n: T,
 }
 
-/// What an elastic cable remembers of its tension.
+/// The state of an elastic cable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stretching<T> {
     /// Middle of the play, N; [`UNKNOWN`] before the first cycle.
@@ -90,20 +90,20 @@ pub struct Stretching<T> {
     pub waiting_m: T,
 }
 
-/// How long what waits takes, s.
+/// Time constant with which waiting stretch is released, s.
 const RELEASE_S: f64 = 0.02;
-/// Where the pulley in the middle is, as a share of the stretch.
+/// Position of the middle pulley, as a fraction of the stretch.
 const MIDDLE: f64 = 0.5;
 
 impl<T: Scalar> CableElasticity<T> {
-    /// From a cable's parameter values, by their place.
+    /// Creates the parameters from a cable's values, by index.
     #[inline(always)]
     pub fn of(value: impl Fn(usize) -> T) -> Self {
         Self { compliance_m_per_n: value(COMPLIANCE), play_n: value(PLAY) }
     }
 
-    /// Stretch at the last pulley in this cycle of `step_s`, m, while the winch moves by `displacement_m`; `memory` is the last
-    /// cycle's, on return this one's.
+    /// Returns the stretch at the last pulley in this cycle of `step_s`, m, while the winch moves by `displacement_m`. `memory` holds the last
+    /// cycle's state, on return this one's.
     #[inline(always)]
     pub fn stretch_m(&self, tension_n: T, displacement_m: T, step_s: T, memory: &mut Stretching<T>) -> T {
         let zero = T::splat(0.0);

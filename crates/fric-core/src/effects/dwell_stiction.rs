@@ -6,16 +6,18 @@
 //! dθ/dt = (1 − θ)/time_s − θ·|v|/distance_m
 //! ```
 //!
-//! Over a cycle with the displacement Δl this is solved exactly, speed held: θ goes to `(Δt/time_s)/r` by `e^(−r)`, `r = Δt/time_s +
-//! |Δl|/distance_m`. In steady motion `θ = 1/(1 + |v|·time_s/distance_m)`, next to nothing at any usual speed. A run begins with θ = 0. The
-//! friction of a cycle is that of θ before it. Neutral: `ratio = 0`.
+//! Over a cycle with the displacement Δl at constant speed this is solved exactly: θ approaches `(Δt/time_s)/r` by `e^(−r)`, `r =
+//! Δt/time_s + |Δl|/distance_m`.
 //!
-//! A run whose rests are all of one length, as the usual one with its half seconds, tells `ratio·(1 − e^(−rest/time_s))` and no more. So `time_s` is a
-//! setting: the values found hold for rests like those of the run, and for others as far as `time_s` is right. A run with rests of several lengths identifies it
-//! where it is asked for by name.
+//! In steady motion `θ = 1/(1 + |v|·time_s/distance_m)`, which is nearly zero at any usual speed. A run begins with θ = 0. The friction of a cycle
+//! uses the θ before it. Neutral: `ratio = 0`.
 //!
-//! Cause: asperities in contact creep and grow, grease is squeezed out of the contact. Source: the ageing law of rate-and-state friction (Dieterich
-//! 1979; Ruina 1983), with an age that ends.
+//! A run whose rests all have the same length, as the usual run with its half seconds, determines only `ratio·(1 − e^(−rest/time_s))`. Therefore
+//! `time_s` is a setting: the identified values are valid for rests like those of the run, and for others as far as `time_s` is right. A run with
+//! rests of several lengths identifies it if it is requested by name.
+//!
+//! Cause: asperities in contact creep and grow, and grease is squeezed out of the contact. Source: the ageing law of rate-and-state friction
+//! (Dieterich 1979; Ruina 1983), with a bounded age.
 
 use super::{Acting, Effect, EffectRow, Memory, OnMu, UNKNOWN, first};
 use crate::parameters::ParameterRow;
@@ -24,7 +26,7 @@ use crate::scalar::Scalar;
 const EXCITATION: &str =
     "rests of different length, a tenth of a second to several seconds, each followed by a slow movement";
 
-/// What it is.
+/// The catalogue row.
 pub const ROW: EffectRow = EffectRow {
     kind: "dwell_stiction",
     cause: "the contacts in the bearings grow while they rest, so the cable breaks away later the longer it has stood still",
@@ -68,37 +70,37 @@ pub const ROW: EffectRow = EffectRow {
     goes_by_time: false,
 };
 
-/// The effect by itself, to ask whether it acts.
+/// The effect as a set of one, to test whether it acts.
 pub(crate) const ACTS: Acting = Effect::DwellStiction.acts();
-/// Place of `ratio` in [`Values`](crate::parameters::Values).
+/// Index of `ratio` in [`Values`](crate::parameters::Values).
 pub const RATIO: usize = Effect::DwellStiction.first_place();
-/// Place of `time_s`.
+/// Index of `time_s`.
 pub const TIME: usize = RATIO + 1;
-/// Place of `distance_m`.
+/// Index of `distance_m`.
 pub const DISTANCE: usize = RATIO + 2;
 
-/// Place of what it remembers: the age of the contacts, 1.
+/// Index of its state: the age of the contacts.
 pub(crate) const AGE: usize = Effect::DwellStiction.memory_places().start;
 
 /// The effect's parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DwellStiction<T> {
-    /// Additional friction after a long rest as a share of μ, 1.
+    /// Additional friction after a long rest, as a fraction of μ.
     pub ratio: T,
-    /// Time at rest over which the contacts grow by all but 1/e, s.
+    /// Time constant of the contacts' growth at rest, s.
     pub time_s: T,
     /// Sliding distance over which their growth wears off to 1/e, m.
     pub distance_m: T,
 }
 
 impl<T: Scalar> DwellStiction<T> {
-    /// From a cable's parameter values, by their place.
+    /// Creates the parameters from a cable's values, by index.
     #[inline(always)]
     pub fn of(value: impl Fn(usize) -> T) -> Self {
         Self { ratio: value(RATIO), time_s: value(TIME), distance_m: value(DISTANCE) }
     }
 
-    /// Factor on μ in a cycle, and the age of the contacts after it; `age` is that before, [`UNKNOWN`] at the start of a run.
+    /// Returns the factor on μ in a cycle, and the age of the contacts after it. `age` is the age before, [`UNKNOWN`] at the start of a run.
     #[inline(never)]
     pub fn factor(&self, age: T, displacement_m: T, step_s: T) -> (T, T) {
         let age = age.keep(age.lt(T::splat(UNKNOWN)));
@@ -116,7 +118,7 @@ mod tests {
 
     const LAW: DwellStiction<f64> = DwellStiction { ratio: 0.8, time_s: 0.5, distance_m: 1e-3 };
 
-    /// Age after cycles of 1 ms at a speed.
+    /// Returns the age after cycles of 1 ms at a speed.
     fn age_after(mut age: f64, cycles: u32, speed_m_per_s: f64) -> f64 {
         for _ in 0..cycles {
             age = LAW.factor(age, 1e-3 * speed_m_per_s, 1e-3).1;
@@ -136,7 +138,7 @@ mod tests {
         assert!((LAW.factor(rested, 0.0, 1e-3).0 - (1.0 + 0.8 * rested)).abs() < 1e-15);
     }
 
-    /// The exact step against many small ones of the differential equation.
+    /// Compares the exact step with many small steps of the differential equation.
     #[test]
     fn one_step_is_many_small_ones() {
         let (mut slow, parts) = (0.3_f64, 1_000_000);

@@ -1,8 +1,9 @@
-//! `empirical`: what is left and has no name, as a table over one operating condition.
+//! `empirical`: a rest without a name, as a table over one operating condition.
 //!
-//! Equation: `F_n = … + force_n·s(x)` at the platform and `μ(x) = μ·(1 + friction_ratio·s(x))`, no less than 0, with s the table: the shares
-//! `share_1` … `share_12` stand at twelve places of equal distance from the beginning of a range of the condition x to its end, between them the line from one to the next holds, and beyond the
-//! ends the first and the last. So `|s| ≤ 1`, and the force is bounded by `force_n`, μ by `1 + friction_ratio` times what it is without.
+//! Equation: `F_n = … + force_n·s(x)` at the platform and `μ(x) = μ·(1 + friction_ratio·s(x))`, at least 0, where s is the table. The shares
+//! `share_1` … `share_12` belong to twelve equidistant points from the beginning to the end of a range of the condition x. Between the points s is
+//! linear; beyond the ends it is constant. So `|s| ≤ 1`, the force is bounded by `force_n`, and μ by `1 + friction_ratio` times its value without the
+//! table.
 //!
 //! The condition is the one whose range is stated:
 //!
@@ -12,18 +13,18 @@
 //! | `length_from_m`, `length_to_m` | cable length | behind a play of the gear |
 //! | `load_from_n`, `load_to_n` | tension as if nothing rubbed, `F_s/(1 − cos α₁)` | of the corrected sensor force |
 //!
-//! Of several the first of this list counts (a robot file with several is refused), and without any there is no table. The force acts behind the last
-//! pulley, after `pulley_eccentricity`, and needs no presliding distance; the factor changes the friction of all pulleys, which resists the motion. Before the first length there is
-//! neither over a length. Neutral: `force_n` and `friction_ratio` 0, whatever the shares.
+//! Of several ranges the first of this list counts (a robot file with several is refused); without any there is no table. The force acts behind the
+//! last pulley, after `pulley_eccentricity`, and needs no presliding distance. The factor changes the friction of all pulleys, which resists the
+//! motion. A table over the length does nothing before the first length. Neutral: `force_n` and `friction_ratio` 0, whatever the shares.
 //!
-//! Cause: unknown. A table tells how large something is and where; it is no explanation. It comes from `discover`, where what no effect of the
-//! catalogue accounts for is a function of one condition. An identification varies its size and leaves its shape.
+//! Cause: unknown. A table says how large something is and where, but does not explain it. It comes from `discover`, if a rest that no effect of the
+//! catalogue explains is a function of one condition. An identification varies its size and keeps its shape.
 
 use super::{Acting, Effect, EffectRow, Memory, OnMu, UNKNOWN};
 use crate::parameters::ParameterRow;
 use crate::scalar::{Mask, Scalar};
 
-/// How many shares a table has.
+/// Number of shares of a table.
 pub const SHARES: usize = 12;
 
 const EXCITATION: &str = "movements over all of the range of the table's condition, at several speeds and loads";
@@ -36,7 +37,7 @@ const fn size(key: &'static str, unit: &'static str, most: f64) -> ParameterRow 
     ParameterRow { fitted: true, ..setting(key, unit, most) }
 }
 
-/// What it is.
+/// The catalogue row.
 pub const ROW: EffectRow = EffectRow {
     kind: "empirical",
     cause: "unnamed: this is how large it is and where; no effect of the catalogue accounts for it",
@@ -78,19 +79,19 @@ pub const ROW: EffectRow = EffectRow {
     goes_by_time: false,
 };
 
-/// The effect by itself, to ask whether it acts.
+/// The effect as a set of one, to test whether it acts.
 pub(crate) const ACTS: Acting = Effect::Empirical.acts();
-/// Place of `force_n` in [`Values`](crate::parameters::Values).
+/// Index of `force_n` in [`Values`](crate::parameters::Values).
 pub const SIZE: usize = Effect::Empirical.first_place();
-/// Place of `friction_ratio`.
+/// Index of `friction_ratio`.
 pub const RATIO: usize = SIZE + 1;
-/// Places of the beginnings of the ranges, each before its end, in the order of [`Over::ALL`].
+/// Indices of the beginnings of the ranges, each followed by its end, in the order of [`Over::ALL`].
 pub const RANGES: [usize; 3] = [SIZE + 2, SIZE + 4, SIZE + 6];
-/// Of its parameters the first share.
+/// Position of the first share among the parameters.
 const FIRST_SHARE: usize = 8;
-/// Places of the shares.
+/// Indices of the shares.
 pub const SHARE_PLACES: core::ops::Range<usize> = SIZE + FIRST_SHARE..SIZE + FIRST_SHARE + SHARES;
-/// No range is narrower than this, in the condition's unit: nothing overflows.
+/// Minimum width of a range, in the condition's unit, which prevents overflow.
 const NARROWEST: f64 = 1e-9;
 
 /// A condition that a table can be over.
@@ -100,33 +101,33 @@ pub enum Over {
     Speed,
     /// Cable length.
     Length,
-    /// Tension as if nothing rubbed.
+    /// Cable tension without friction.
     Load,
 }
 
 impl Over {
-    /// Every one, in the order in which ranges count.
+    /// All conditions, in the order in which ranges count.
     pub const ALL: [Self; 3] = [Self::Speed, Self::Length, Self::Load];
 
-    /// The condition of a table with these values by place; `None` without a range.
+    /// Returns the condition of a table with these values by index; `None` without a range.
     #[must_use]
     pub fn of(value: impl Fn(usize) -> f64) -> Option<Self> {
         Self::ALL.into_iter().find(|over| value(over.from()) < value(over.to()))
     }
 
-    /// Place of the beginning of its range in [`Values`](crate::parameters::Values).
+    /// Returns the index of the beginning of its range in [`Values`](crate::parameters::Values).
     #[must_use]
     pub const fn from(self) -> usize {
         RANGES[self as usize]
     }
 
-    /// Place of the end.
+    /// Returns the index of the end of its range.
     #[must_use]
     pub const fn to(self) -> usize {
         self.from() + 1
     }
 
-    /// The condition's unit.
+    /// Returns the condition's unit.
     #[must_use]
     pub const fn unit(self) -> &'static str {
         match self {
@@ -137,27 +138,27 @@ impl Over {
     }
 }
 
-/// What a table is looked up by.
+/// The inputs of a table.
 #[derive(Clone, Copy, Debug)]
 pub struct Conditions<T> {
     /// Speed, positive paying out, m/s.
     pub speed_m_per_s: T,
     /// Cable length, m; [`UNKNOWN`] before the first.
     pub length_m: T,
-    /// Tension as if nothing rubbed, N.
+    /// Cable tension without friction, N.
     pub load_n: T,
 }
 
-/// What a table adds in a cycle.
+/// The contribution of a table in a cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unnamed<T> {
-    /// To the force at the platform, N.
+    /// Contribution to the force at the platform, N.
     pub force_n: T,
     /// Factor on μ, 1.
     pub mu_factor: T,
 }
 
-/// What a cable's table adds, from its parameter values by their place.
+/// Returns the contribution of a cable's table, from its parameter values by index.
 #[inline(never)]
 pub fn unnamed<T: Scalar>(value: impl Fn(usize) -> T, conditions: &Conditions<T>) -> Unnamed<T> {
     let (zero, one) = (T::splat(0.0), T::splat(1.0));
@@ -165,7 +166,7 @@ pub fn unnamed<T: Scalar>(value: impl Fn(usize) -> T, conditions: &Conditions<T>
     Unnamed { force_n: value(SIZE) * share, mu_factor: (one + value(RATIO) * share).max(zero) }
 }
 
-/// The table at some conditions, −1…1.
+/// Returns the table's value at some conditions, −1…1.
 #[inline(always)]
 fn share<T: Scalar>(value: &impl Fn(usize) -> T, conditions: &Conditions<T>) -> T {
     let (zero, one) = (T::splat(0.0), T::splat(1.0));
@@ -240,7 +241,7 @@ mod tests {
                 assert!((mu_factor - (1.0 + 2.0 * share).max(0.0)).abs() < 1e-9, "{over:?} {x}: {mu_factor}");
             }
         }
-        // Neither without a range, nor before the first length.
+        // There is no contribution without a range, nor before the first length.
         let nothing = Unnamed { force_n: 0.0, mu_factor: 1.0 };
         let conditions = Conditions { speed_m_per_s: 0.1, length_m: UNKNOWN, load_n: 5.0 };
         for values in [table(Over::Speed, [0.0, 0.0], shares), table(Over::Length, [0.1, 0.2], [1.0; SHARES])] {

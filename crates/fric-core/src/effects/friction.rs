@@ -1,8 +1,7 @@
 //! `coulomb`, `viscous`, `presliding`: the friction that every model has.
 //!
-//! Their parameters are μ, F_pv and σ of [`parameters`](crate::parameters), the keys of the robot file's `friction`. They have rows
-//! like the effects, so that whoever names causes has one list ([`Effect`](super::Effect)); they are no entries of
-//! `effects` in a robot file.
+//! Their parameters are μ, F_pv and σ of [`parameters`](crate::parameters), the keys of the robot file's `friction`. They have rows like the effects,
+//! so that there is one list of causes ([`Effect`](super::Effect)); they are no entries of `effects` in a robot file.
 
 use super::{EffectRow, Memory, OnMu};
 use crate::parameters::{FRICTION, MU, SIGMA, VISCOUS};

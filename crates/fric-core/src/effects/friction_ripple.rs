@@ -1,10 +1,10 @@
-//! `friction_ripple`: friction that goes up and down with the cable's length.
+//! `friction_ripple`: friction that is periodic in the cable's length.
 //!
-//! Equation: `μ(l) = μ·(1 + sin_ratio·sin(2πl/period_m) + cos_ratio·cos(2πl/period_m))`, l the cable length, behind a play of the gear if there is one. In motion one way
-//! the force ripples as with `pulley_eccentricity`, but it turns round with the motion, which the other does not. The zero of
-//! the length and the period are as they are there. Neutral: both ratios 0.
+//! Equation: `μ(l) = μ·(1 + sin_ratio·sin(2πl/period_m) + cos_ratio·cos(2πl/period_m))`, where l is the cable length, behind a play of the gear if
+//! there is one. During motion in one direction the force ripples as with `pulley_eccentricity`, but unlike there it reverses with the motion. For
+//! the zero of the length and the period, see there. Neutral: both ratios 0.
 //!
-//! Cause: a bearing with a flat place, a groove that is not round, a drum on which the cable lies unevenly.
+//! Cause: a bearing with a flat spot, an out-of-round groove, a drum on which the cable lies unevenly.
 
 use super::ripple::{self, Ripple};
 use super::{Acting, Effect, EffectRow, Memory, OnMu};
@@ -12,7 +12,7 @@ use crate::scalar::Scalar;
 
 const EXCITATION: &str = "slow long movements in both directions over several turns of the pulleys";
 
-/// What it is.
+/// The catalogue row.
 pub const ROW: EffectRow = EffectRow {
     kind: "friction_ripple",
     cause: "a bearing or groove is not the same all around, so friction ripples as the pulley or the drum turns",
@@ -28,12 +28,12 @@ pub const ROW: EffectRow = EffectRow {
     goes_by_time: false,
 };
 
-/// The effect by itself, to ask whether it acts.
+/// The effect as a set of one, to test whether it acts.
 pub(crate) const ACTS: Acting = Effect::FrictionRipple.acts();
-/// Place of `sin_ratio` in [`Values`](crate::parameters::Values).
+/// Index of `sin_ratio` in [`Values`](crate::parameters::Values).
 pub const SIN: usize = Effect::FrictionRipple.first_place();
 
-/// Factor on μ at a cable length (m), from a cable's parameter values, by their place.
+/// Returns the factor on μ at a cable length (m), from a cable's parameter values by index.
 #[inline(always)]
 pub fn factor<T: Scalar>(value: impl Fn(usize) -> T, length_m: T) -> T {
     Ripple::of(SIN, value).added_to(T::splat(1.0), length_m)

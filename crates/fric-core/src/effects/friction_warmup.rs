@@ -1,10 +1,10 @@
-//! `friction_warmup`: friction that goes to another value as the machine warms up.
+//! `friction_warmup`: friction that approaches another value as the machine warms up.
 //!
-//! Equation: `μ(t) = μ·(1 + ratio·(1 − exp(−t/time_constant_s)))`, t from the start of the run. So `μ` is that of the cold machine and
-//! `μ·(1 + ratio)` that of the warm one, at which it stays. What changes evenly over the run is `friction_drift`. A
-//! machine that is warm already does not begin anew: then set `μ` to that of the warm one and leave the effect out. Neutral: `ratio = 0`.
+//! Equation: `μ(t) = μ·(1 + ratio·(1 − exp(−t/time_constant_s)))`, with t from the start of the run. So `μ` is the value of the cold machine and
+//! `μ·(1 + ratio)` the final value of the warm one. A steady change over the run is described by `friction_drift`. For a machine that is already
+//! warm, set `μ` to the value of the warm machine and leave the effect out. Neutral: `ratio = 0`.
 //!
-//! Cause: grease becomes thinner as bearings warm up to the temperature at which they lose what friction heats them with.
+//! Cause: grease becomes thinner as the bearings warm up to their steady temperature, at which heat loss equals frictional heating.
 
 use super::{Acting, Effect, EffectRow, Memory, OnMu, first, warmed};
 use crate::parameters::ParameterRow;
@@ -13,7 +13,7 @@ use crate::scalar::Scalar;
 const EXCITATION: &str =
     "a long run from cold with the same movements throughout, three times as long as it takes to warm up";
 
-/// What it is.
+/// The catalogue row.
 pub const ROW: EffectRow = EffectRow {
     kind: "friction_warmup",
     cause: "bearings and grease warm up towards a final temperature, and friction with them",
@@ -48,30 +48,30 @@ pub const ROW: EffectRow = EffectRow {
     goes_by_time: true,
 };
 
-/// The effect by itself, to ask whether it acts.
+/// The effect as a set of one, to test whether it acts.
 pub(crate) const ACTS: Acting = Effect::FrictionWarmup.acts();
-/// Place of `ratio` in [`Values`](crate::parameters::Values).
+/// Index of `ratio` in [`Values`](crate::parameters::Values).
 pub const RATIO: usize = Effect::FrictionWarmup.first_place();
-/// Place of `time_constant_s`.
+/// Index of `time_constant_s`.
 pub const TIME_CONSTANT: usize = RATIO + 1;
 
 /// The effect's parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrictionWarmup<T> {
-    /// Change of μ from cold to warm as a share of the cold one, 1.
+    /// Change of μ from cold to warm, as a fraction of the cold value.
     pub ratio: T,
-    /// Time in which all but 1/e of it has come, s.
+    /// Time constant of the change, s.
     pub time_constant_s: T,
 }
 
 impl<T: Scalar> FrictionWarmup<T> {
-    /// From a cable's parameter values, by their place.
+    /// Creates the parameters from a cable's values, by index.
     #[inline(always)]
     pub fn of(value: impl Fn(usize) -> T) -> Self {
         Self { ratio: value(RATIO), time_constant_s: value(TIME_CONSTANT) }
     }
 
-    /// Factor on μ at a time (s) since the start.
+    /// Returns the factor on μ at a time (s) since the start.
     #[inline(never)]
     pub fn factor(&self, time_s: T) -> T {
         T::splat(1.0) + self.ratio * warmed(time_s, self.time_constant_s)

@@ -1,9 +1,9 @@
 //! `load_nonlinearity`: friction that does not grow in proportion to the load.
 //!
-//! Equation: `f_c = μ·F_N·(F_N/F_0)^(exponent − 1)`, so that `f_c ∝ F_N^exponent` and `μ` is the coefficient at the normal
-//! force `F_0 = reference_n`, a fixed scale that is not identified: it and μ are one. Neutral: `exponent = 1`, whatever `reference_n`.
+//! Equation: `f_c = μ·F_N·(F_N/F_0)^(exponent − 1)`, so that `f_c ∝ F_N^exponent` and `μ` is the coefficient at the normal force `F_0 = reference_n`.
+//! This fixed scale is not identified, because it is equivalent to μ. Neutral: `exponent = 1`, whatever `reference_n`.
 //!
-//! Cause: the contact of the bearing's rolling elements, or of the groove, grows less or more than the force on it.
+//! Cause: the contact area of the bearing's rolling elements, or of the groove, grows less or more than the force on it.
 
 use super::{Acting, Effect, EffectRow, Memory, OnMu};
 use crate::parameters::ParameterRow;
@@ -11,7 +11,7 @@ use crate::scalar::Scalar;
 
 const EXCITATION: &str = "long movements in both directions at cable forces that differ by a factor of two and more";
 
-/// What it is.
+/// The catalogue row.
 pub const ROW: EffectRow = EffectRow {
     kind: "load_nonlinearity",
     cause: "contact surfaces of the bearings grow with the load, so friction is not proportional to it",
@@ -42,33 +42,33 @@ pub const ROW: EffectRow = EffectRow {
     goes_by_time: false,
 };
 
-/// The effect by itself, to ask whether it acts.
+/// The effect as a set of one, to test whether it acts.
 pub(crate) const ACTS: Acting = Effect::LoadNonlinearity.acts();
-/// Place of `exponent` in [`Values`](crate::parameters::Values).
+/// Index of `exponent` in [`Values`](crate::parameters::Values).
 pub const EXPONENT: usize = Effect::LoadNonlinearity.first_place();
-/// Place of `reference_n`.
+/// Index of `reference_n`.
 pub const REFERENCE: usize = EXPONENT + 1;
 
-/// The normal force beside the reference below which the power law says nothing.
+/// Ratio of normal force to reference below which the power law is not used.
 const LEAST_RELATIVE: f64 = 1e-6;
 
 /// The effect's parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoadNonlinearity<T> {
-    /// Exponent of the normal force, 1.
+    /// Exponent of the normal force, dimensionless.
     pub exponent: T,
     /// Normal force at which μ is the coefficient, N.
     pub reference_n: T,
 }
 
 impl<T: Scalar> LoadNonlinearity<T> {
-    /// From a cable's parameter values, by their place.
+    /// Creates the parameters from a cable's values, by index.
     #[inline(always)]
     pub fn of(value: impl Fn(usize) -> T) -> Self {
         Self { exponent: value(EXPONENT), reference_n: value(REFERENCE) }
     }
 
-    /// Factor on μ at a normal force (N); at a millionth of the reference, and below, that of a millionth.
+    /// Returns the factor on μ at a normal force (N). Below a millionth of the reference, it is that at a millionth.
     #[inline(never)]
     pub fn factor(&self, normal_n: T) -> T {
         let relative = (normal_n / self.reference_n).max(T::splat(LEAST_RELATIVE));

@@ -1,8 +1,9 @@
-//! `load_release`: a bearing that holds no more friction than its present load bears.
+//! `load_release`: a bearing that holds no more friction than its present load allows.
 //!
-//! Equation: before a cycle moves the friction `f` that a contact has stored, it is held within `± f_c/ratio`, `f_c` the sliding friction at the present load. Dahl's law alone (\[P\] 16) stores friction until the cable moves: after a load that falls at rest
-//! it keeps what the higher load had built up. Which of the two a machine does is for its data to say. With `ratio = 1` a contact holds what it
-//! rubs with at the present load, with less it holds more. Neutral: `ratio = 0`.
+//! Equation: before a cycle moves the stored friction `f` of a contact, it is limited to `± f_c/ratio`, where `f_c` is the sliding friction at the
+//! present load. Dahl's law alone (\[P\] 16) stores friction until the cable moves: after a load drop at rest it keeps the friction of the higher
+//! load. The data of a machine show which of the two applies. With `ratio = 1` a contact holds its sliding friction at the present load, with less it
+//! holds more. Neutral: `ratio = 0`.
 //!
 //! Cause: the elastic contact slips back as the normal force falls.
 
@@ -12,7 +13,7 @@ use crate::scalar::Scalar;
 
 const EXCITATION: &str = "a load on the resting platform that rises and falls by a third and more";
 
-/// What it is.
+/// The catalogue row.
 pub const ROW: EffectRow = EffectRow {
     kind: "load_release",
     cause: "as the load on a resting pulley falls, its contact slips back until it holds what the lower load bears",
@@ -32,26 +33,27 @@ pub const ROW: EffectRow = EffectRow {
     goes_by_time: false,
 };
 
-/// The effect by itself, to ask whether it acts.
+/// The effect as a set of one, to test whether it acts.
 pub(crate) const ACTS: Acting = Effect::LoadRelease.acts();
-/// Place of `ratio` in [`Values`](crate::parameters::Values).
+/// Index of `ratio` in [`Values`](crate::parameters::Values).
 pub const RATIO: usize = Effect::LoadRelease.first_place();
 
 /// The effect's parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoadRelease<T> {
-    /// Sliding friction as a share of what a contact holds at most, 1; 0 where it holds whatever it has stored.
+    /// Sliding friction divided by the greatest friction that a contact holds; 0 if it holds everything stored.
     pub ratio: T,
 }
 
 impl<T: Scalar> LoadRelease<T> {
-    /// From a cable's parameter values, by their place.
+    /// Creates the parameters from a cable's values, by index.
     #[inline(always)]
     pub fn of(value: impl Fn(usize) -> T) -> Self {
         Self { ratio: value(RATIO) }
     }
 
-    /// Friction held of what is stored under a load at which `sliding_n` rubs, N. What is within it stays as it is, to the bit.
+    /// Returns the part of the stored friction that is held under a load with the sliding friction `sliding_n`, N. A value within the limit is
+    /// unchanged, to the bit.
     #[inline(always)]
     pub fn held_n(&self, stored_n: T, sliding_n: T) -> T {
         let most_n = sliding_n.max(T::splat(0.0)) / self.ratio.max(T::splat(LEAST_RATIO));
@@ -60,7 +62,7 @@ impl<T: Scalar> LoadRelease<T> {
     }
 }
 
-/// No contact holds so many times its sliding friction.
+/// Least ratio; no contact holds a higher multiple of its sliding friction.
 const LEAST_RATIO: f64 = 1e-6;
 
 #[cfg(test)]

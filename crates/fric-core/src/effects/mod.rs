@@ -1,8 +1,8 @@
-//! The effect catalogue: what can be added to the model, one file and one variant of [`Effect`] each.
+//! The effect catalogue: additions to the model, each with one file and one variant of [`Effect`].
 //!
-//! A [row](EffectRow) states the name of the robot file, the parameters with unit, range and neutral value, the physical cause,
-//! what to do about it on the machine, what it remembers, and what it can do to μ. Everything that deals with effects reads the rows: the
-//! robot file, set-up, the change of parameters, the identification, the simulation, the command line, the documentation.
+//! A [row](EffectRow) states the name in the robot file, the parameters with unit, range and neutral value, the physical cause, the remedy on the
+//! machine, the memory, and the influence on μ. Everything that uses effects reads the rows: the robot file, set-up, parameter changes, the
+//! identification, the simulation, the command line, the documentation.
 
 pub mod friction;
 pub mod ripple;
@@ -13,35 +13,35 @@ use crate::parameters::{self, FRICTION_COUNT, ParameterRow};
 use crate::robot::{ParamError, check};
 use crate::scalar::Scalar;
 
-/// What an effect is: all that the rest of the code derives from it. Each part is stated, so that none is forgotten.
+/// The definition of an effect, from which the rest of the code derives everything else. Every part must be stated, so that none is forgotten.
 #[derive(Clone, Copy, Debug)]
 pub struct EffectRow {
     /// Its name in robot files and reports.
     pub kind: &'static str,
-    /// What happens physically, in one sentence.
+    /// The physical cause, in one sentence.
     pub cause: &'static str,
-    /// What to do about it on the machine.
+    /// The remedy on the machine.
     pub remedy: &'static str,
     /// Its parameters in order.
     pub parameters: &'static [ParameterRow],
-    /// Values of the parameters as a machine of some ten newtons has them, at which it can be told from noise; help and tests show it with these.
+    /// Typical parameter values of a machine with some ten newtons, distinguishable from noise; used by help and tests.
     pub example: &'static [f64],
-    /// What it remembers from cycle to cycle.
+    /// Its memory from cycle to cycle.
     pub memory: Memory,
-    /// What it can do to μ.
+    /// Its influence on μ.
     pub on_mu: OnMu,
-    /// Whether it goes by the time of the run, which then begins where it is switched on.
+    /// Whether it depends on the time of the run, which then starts when the effect is switched on.
     pub goes_by_time: bool,
 }
 
-/// Numbers that an effect remembers from cycle to cycle. While the effect does not act they are [`UNKNOWN`].
+/// State variables that an effect keeps from cycle to cycle. While the effect does not act they are [`UNKNOWN`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Memory {
-    /// None.
+    /// No state.
     Nothing,
-    /// So many that go with the motion: unknown too where the motion jumps, as where a delay changes.
+    /// This many numbers that belong to the motion: they become unknown where the motion jumps, for instance at a change of a delay.
     OfMotion(usize),
-    /// So many that go with the tension.
+    /// This many numbers that belong to the tension.
     OfTension(usize),
 }
 
@@ -54,25 +54,25 @@ impl Memory {
     }
 }
 
-/// What an effect can do to μ, which at set-up has to stay within what the model bears.
+/// The influence of an effect on μ, which set-up keeps within the limits of the model.
 #[derive(Clone, Copy, Debug)]
 pub enum OnMu {
-    /// It stays as it is, or falls.
+    /// μ is unchanged or smaller.
     Unchanged,
-    /// It grows by a factor at most, which follows from the values of the effect's parameters in order.
+    /// μ grows by a bounded factor, which follows from the effect's parameter values in order.
     AtMost {
-        /// The factor, 1 and more.
+        /// The factor, at least 1.
         factor: fn(&[f64]) -> f64,
-        /// The parameter to blame.
+        /// The parameter to name in an error.
         key: &'static str,
-        /// What is the matter where μ is too great, and what to do.
+        /// The problem if μ becomes too great, and what to do.
         problem: &'static str,
     },
-    /// There is no such factor: the cycle holds μ where the cable can bear it.
+    /// There is no bound: the cycle limits μ to what the cable allows.
     Unbounded,
 }
 
-/// The catalogue: each effect and its file, in the order in which their parameters stand. Gives the list to a macro.
+/// The catalogue: each effect and its file, in the order of their parameters. Passes the list to a macro.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! catalogue {
@@ -111,23 +111,23 @@ macro_rules! effects {
     ($($effect:ident $file:ident,)+) => {
         $(pub mod $file;)+
 
-        /// What has a name in the friction of a cable: what every model has, then the catalogue.
+        /// A named cause of friction of a cable: those that every model has, then the catalogue.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Effect {
             /// Friction in proportion to the load.
             Coulomb,
-            /// Friction in proportion to speed.
+            /// Friction in proportion to the speed.
             Viscous,
-            /// Friction that builds up over a way.
+            /// Friction that builds up over a distance.
             Presliding,
             $(#[doc = concat!("[`", stringify!($file), "`](mod@", stringify!($file), ")")] $effect,)+
         }
 
         impl Effect {
-            /// Every one.
+            /// All effects.
             pub const ALL: &[Self] = &[Self::Coulomb, Self::Viscous, Self::Presliding, $(Self::$effect),+];
 
-            /// What it is.
+            /// Returns its row.
             #[must_use]
             pub const fn row(self) -> &'static EffectRow {
                 match self {
@@ -143,20 +143,20 @@ macro_rules! effects {
 
 catalogue!(effects);
 
-/// Places of the parameters of what every model has.
+/// Indices of the parameters that every model has.
 const OF_FRICTION: [usize; 3] = [parameters::MU, parameters::VISCOUS, parameters::SIGMA];
 
 impl Effect {
-    /// Every effect that a cable of a robot file can have.
+    /// The effects that a cable of a robot file can have.
     pub const CATALOGUE: &[Self] = Self::ALL.split_at(OF_FRICTION.len()).1;
 
-    /// The effect of a name in robot files.
+    /// Returns the effect with this name in robot files.
     #[must_use]
     pub fn of_kind(kind: &str) -> Option<Self> {
         Self::CATALOGUE.iter().copied().find(|effect| effect.kind() == kind)
     }
 
-    /// Its name in robot files and reports.
+    /// Returns its name in robot files and reports.
     #[must_use]
     pub const fn kind(self) -> &'static str {
         self.row().kind
@@ -168,32 +168,32 @@ impl Effect {
         (self as usize) < OF_FRICTION.len()
     }
 
-    /// Place of its first parameter in [`Values`](parameters::Values).
+    /// Returns the index of its first parameter in [`Values`](parameters::Values).
     #[must_use]
     pub const fn first_place(self) -> usize {
         if self.is_friction() { OF_FRICTION[self as usize] } else { FRICTION_COUNT + before(self).0 }
     }
 
-    /// Places of its parameters in [`Values`](parameters::Values).
+    /// Returns the indices of its parameters in [`Values`](parameters::Values).
     #[must_use]
     pub const fn places(self) -> Range<usize> {
         let first = self.first_place();
         first..first + self.row().parameters.len()
     }
 
-    /// Places of what it remembers.
+    /// Returns the indices of its state variables.
     pub(crate) const fn memory_places(self) -> Range<usize> {
         let first = before(self).1;
         first..first + self.row().memory.count()
     }
 
-    /// The effect by itself, to ask whether it acts.
+    /// Returns the effect as a set of one, to test whether it acts.
     pub(crate) const fn acts(self) -> Acting {
         Acting(1 << self as u32)
     }
 }
 
-/// How many parameters of effects, and numbers that effects remember, stand before those of an effect.
+/// Returns the numbers of effect parameters and of state variables before those of an effect.
 const fn before(effect: Effect) -> (usize, usize) {
     let (mut parameters, mut memory, mut place) = (0, 0, OF_FRICTION.len());
     while place < effect as usize {
@@ -205,17 +205,17 @@ const fn before(effect: Effect) -> (usize, usize) {
     (parameters, memory)
 }
 
-/// The last of the catalogue.
+/// The last effect of the catalogue.
 const LAST: Effect = Effect::ALL[Effect::ALL.len() - 1];
-/// Parameters of all effects together.
+/// Number of parameters of all effects together.
 pub const EFFECT_PARAMETER_COUNT: usize = before(LAST).0 + LAST.row().parameters.len();
-/// Numbers that effects remember from cycle to cycle.
+/// Number of state variables of all effects together.
 pub const MEMORY: usize = LAST.memory_places().end;
 
-/// Stands for a number that is not known yet: far beyond all that are. Equal to itself, as a snapshot has to be, and finite: what is worked
-/// out from it and then not chosen, which a compiler may do unasked, is no invalid operation.
+/// Represents an unknown number, far beyond all valid ones. It equals itself, as a snapshot requires, and is finite: results computed from it and
+/// then not selected, which a compiler may do unasked, are no invalid operations.
 pub const UNKNOWN: f64 = 1e200;
-/// The row of `until_s` of an effect that goes with time: what drifts in one run does not go on like that for ever.
+/// The row of `until_s` of an effect that depends on time: a drift observed in one run does not continue forever.
 const UNTIL_ROW: ParameterRow = ParameterRow {
     key: "until_s",
     unit: "s",
@@ -226,19 +226,19 @@ const UNTIL_ROW: ParameterRow = ParameterRow {
     excitation: "the run itself: it is as long as this",
 };
 
-/// The time that a drift goes by, s: that of the run, up to `until_s`; without end where that is 0.
+/// Returns the time that a drift depends on, s: that of the run, up to `until_s`; without end if that is 0.
 #[inline(always)]
 fn drifting_s<T: Scalar>(time_s: T, until_s: T) -> T {
     T::select(T::splat(0.0).lt(until_s), time_s.min(until_s), time_s)
 }
 
-/// How much of a change towards a final value has come by a time, 0…1.
+/// Returns the completed fraction of a change towards a final value at a time, 0…1.
 #[inline(always)]
 fn warmed<T: Scalar>(time_s: T, time_constant_s: T) -> T {
     T::splat(1.0) - (-(time_s / time_constant_s)).exp_negative()
 }
 
-/// Each parameter of each effect with its effect, in the order of [`EffectParams::values`].
+/// Returns each parameter of each effect with its effect, in the order of [`EffectParams::values`].
 pub fn parameters() -> impl Iterator<Item = (Effect, &'static ParameterRow)> {
     Effect::CATALOGUE.iter().flat_map(|effect| effect.row().parameters.iter().map(|parameter| (*effect, parameter)))
 }
@@ -248,10 +248,10 @@ pub fn parameters() -> impl Iterator<Item = (Effect, &'static ParameterRow)> {
 pub struct EffectParams([f64; EFFECT_PARAMETER_COUNT]);
 
 impl EffectParams {
-    /// No effect.
+    /// Without any effect.
     pub const NEUTRAL: Self = Self(neutral());
 
-    /// One parameter; `None` for a key that the effect does not have.
+    /// Returns one parameter; `None` for a key that the effect does not have.
     #[must_use]
     pub fn get(&self, effect: Effect, key: &str) -> Option<f64> {
         let mut named = parameters().zip(self.0).filter(|((of, parameter), _)| *of == effect && parameter.key == key);
@@ -261,7 +261,7 @@ impl EffectParams {
     /// Sets one parameter.
     ///
     /// # Errors
-    /// [`ParamError`] for a key that the effect does not have, and for a value out of the row's range.
+    /// Returns a [`ParamError`] for a key that the effect does not have, and for a value out of the row's range.
     pub fn set(&mut self, effect: Effect, key: &str, value: f64) -> Result<(), ParamError> {
         for ((of, parameter), place) in parameters().zip(&mut self.0) {
             if of == effect && parameter.key == key {
@@ -272,16 +272,16 @@ impl EffectParams {
         Err(ParamError::UNKNOWN_EFFECT)
     }
 
-    /// All of them, effect by effect in the order of [`Effect::CATALOGUE`].
+    /// Returns all parameters, effect by effect in the order of [`Effect::CATALOGUE`].
     #[must_use]
     pub const fn values(&self) -> &[f64; EFFECT_PARAMETER_COUNT] {
         &self.0
     }
 
-    /// From values in the order of [`Self::values`].
+    /// Creates the parameters from values in the order of [`Self::values`].
     ///
     /// # Errors
-    /// [`ParamError`] names the first that is out of its row's range.
+    /// Returns a [`ParamError`] with the first one that is out of its row's range.
     pub fn from_values(values: [f64; EFFECT_PARAMETER_COUNT]) -> Result<Self, ParamError> {
         for ((effect, parameter), value) in parameters().zip(values) {
             check_parameter(effect, parameter, value)?;
@@ -321,11 +321,10 @@ const fn neutral() -> [f64; EFFECT_PARAMETER_COUNT] {
 pub(crate) struct Acting(u32);
 
 impl Acting {
-    /// No effect.
+    /// The empty set.
     pub const NONE: Self = Self(0);
 
-    /// The effects of which a parameter is `active`, asked by its row and its place in
-    /// [`Values`](parameters::Values).
+    /// Returns the effects that have an `active` parameter; `active` gets its row and its index in [`Values`](parameters::Values).
     pub fn of(active: impl Fn(&ParameterRow, usize) -> bool) -> Self {
         let acts = |effect: &Effect| {
             effect.row().parameters.iter().zip(effect.places()).any(|(row, place)| active(row, place))
@@ -333,7 +332,7 @@ impl Acting {
         Effect::CATALOGUE.iter().filter(|effect| acts(effect)).fold(Self::NONE, |all, effect| all.and(effect.acts()))
     }
 
-    /// Those of the catalogue of which this holds. For constants: it is asked of rows.
+    /// Returns the effects of the catalogue that depend on time. A `const` function, computed from the rows.
     pub const fn going_by_time() -> Self {
         let (mut all, mut effect) = (Self::NONE, 0);
         while effect < Effect::CATALOGUE.len() {
@@ -345,7 +344,7 @@ impl Acting {
         all
     }
 
-    /// Those that can raise μ.
+    /// Returns the effects that can raise μ.
     pub const fn raising_mu() -> Self {
         let (mut all, mut effect) = (Self::NONE, 0);
         while effect < Effect::CATALOGUE.len() {
@@ -357,26 +356,26 @@ impl Acting {
         all
     }
 
-    /// These and those.
+    /// Returns the union of both sets.
     #[inline(always)]
     pub const fn and(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
-    /// These but for those.
+    /// Returns this set without the other.
     #[inline(always)]
     pub const fn without(self, other: Self) -> Self {
         Self(self.0 & !other.0)
     }
 
-    /// Whether one of those is among these.
+    /// Whether the sets have a common effect.
     #[inline(always)]
     pub const fn has(self, other: Self) -> bool {
         self.0 & other.0 != 0
     }
 }
 
-/// The first of some values.
+/// Returns the first of some values.
 fn first(values: &[f64]) -> f64 {
     values.first().copied().unwrap_or(0.0)
 }

@@ -1,14 +1,14 @@
 //! `presliding_shape`: the exponent of Dahl's law.
 //!
-//! Equation (\[P\] 16): `df/dx = σ·|u|^a·sgn u`, `u = 1 − s·f/f_c`, a the exponent. Exact over one step with `k = σ|Δl|/f_c`:
-//! `|u| ← (|u|^(1−a) + (a−1)·k)^(1/(1−a))`, 0 where the bracket is not positive; the sign of u stays. Neutral: `exponent = 1`, where it
-//! is the exponential of [`dahl`](crate::dahl).
+//! Equation (\[P\] 16): `df/dx = σ·|u|^a·sgn u`, `u = 1 − s·f/f_c`, where a is the exponent. Exact over one step with `k = σ|Δl|/f_c`: `|u| ←
+//! (|u|^(1−a) + (a−1)·k)^(1/(1−a))`, 0 if the bracket is not positive; the sign of u is kept. Neutral: `exponent = 1`, where it is the exponential of
+//! [`dahl`](crate::dahl).
 //!
-//! Computed as `u ← u·exp(−w·g(b·w))` with `b = a − 1`, `w = k·|u|^b` and `g(x) = ln(1 + x)/x`, which is the same and has no
-//! case of its own at `a = 1`: there `w = k`, `g = 1`, value and derivatives are right to rounding, and the value has the bits of
-//! [`dahl_step`](crate::dahl::dahl_step). Below 1, sliding is reached after a finite way, `k = |u|^(1−a)/(1−a)`.
+//! The implementation is `u ← u·exp(−w·g(b·w))` with `b = a − 1`, `w = k·|u|^b` and `g(x) = ln(1 + x)/x`, which is equivalent and needs no special
+//! case at `a = 1`. There `w = k` and `g = 1`, value and derivatives are right to rounding, and the value has the bits of
+//! [`dahl_step`](crate::dahl::dahl_step). Below 1, sliding is reached after a finite distance, `k = |u|^(1−a)/(1−a)`.
 //!
-//! Cause: the asperities of the contact yield more abruptly (below 1) or more gradually (above 1) than Dahl's simplest law has it.
+//! Cause: the asperities of the contact yield more abruptly (below 1) or more gradually (above 1) than in Dahl's simplest law.
 
 use super::{Acting, Effect, EffectRow, Memory, OnMu};
 use crate::dahl::dahl_step_over;
@@ -17,7 +17,7 @@ use crate::scalar::Scalar;
 
 const EXCITATION: &str = "small movements that reverse: steps of 0.25 … 10 mm there and back, with breaks";
 
-/// What it is.
+/// The catalogue row.
 pub const ROW: EffectRow = EffectRow {
     kind: "presliding_shape",
     cause: "the contact gives way more abruptly, or more gradually, than in the simplest presliding law",
@@ -37,26 +37,26 @@ pub const ROW: EffectRow = EffectRow {
     goes_by_time: false,
 };
 
-/// The effect by itself, to ask whether it acts.
+/// The effect as a set of one, to test whether it acts.
 pub(crate) const ACTS: Acting = Effect::PreslidingShape.acts();
-/// Place of `exponent` in [`Values`](crate::parameters::Values).
+/// Index of `exponent` in [`Values`](crate::parameters::Values).
 pub const EXPONENT: usize = Effect::PreslidingShape.first_place();
 
 /// The effect's parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PreslidingShape<T> {
-    /// Exponent of the law, 1.
+    /// Exponent of the law, dimensionless.
     pub exponent: T,
 }
 
 impl<T: Scalar> PreslidingShape<T> {
-    /// From a cable's parameter values, by their place.
+    /// Creates the parameters from a cable's values, by index.
     #[inline(always)]
     pub fn of(value: impl Fn(usize) -> T) -> Self {
         Self { exponent: value(EXPONENT) }
     }
 
-    /// Friction force after a displacement, see [`dahl_step`](crate::dahl::dahl_step) for the arguments.
+    /// Returns the friction force after a displacement; see [`dahl_step`](crate::dahl::dahl_step) for the arguments.
     #[inline(never)]
     pub fn step(&self, friction_n: T, sliding_n: T, sigma_n_per_m: T, displacement_m: T) -> T {
         dahl_step_over(friction_n, sliding_n, sigma_n_per_m, displacement_m, |way, left| {
@@ -64,7 +64,8 @@ impl<T: Scalar> PreslidingShape<T> {
         })
     }
 
-    /// The way, in units of `f_c/σ`, over which the exponential law comes as far as this one over `way`, from `left = |u|`.
+    /// Returns the distance, in units of `f_c/σ`, over which the exponential law has the same effect as this one over `way`, starting from
+    /// `left = |u|`.
     #[inline(never)]
     fn exponential_way(&self, way: T, left: T) -> T {
         let beyond = self.exponent - T::splat(1.0);
@@ -73,5 +74,5 @@ impl<T: Scalar> PreslidingShape<T> {
     }
 }
 
-/// Stands in for `u = 0` in the power: sliding, where any way is as good.
+/// Replaces `u = 0` in the power, which occurs in sliding, where the distance does not matter.
 const LEAST_LEFT: f64 = 1e-300;

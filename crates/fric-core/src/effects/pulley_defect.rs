@@ -1,10 +1,10 @@
-//! `pulley_defect`: one pulley with a friction of its own.
+//! `pulley_defect`: one pulley with its own friction.
 //!
-//! Equation: at the pulley of the number `pulley`, counted from 1 at the sensor, `mu` of this effect stands in the place of the cable's μ; what changes
-//! the friction of all (`stribeck`, `friction_drift`, …) changes it likewise. Where the sensor pulley could not bear it the cycle
-//! holds it, as for every effect that raises μ. Neutral: `pulley = 0`, none.
+//! Equation: at the pulley with the number `pulley`, counted from 1 at the sensor, `mu` of this effect replaces the cable's μ. Effects that change
+//! the friction of all pulleys (`stribeck`, `friction_drift`, …) change it too. If the sensor pulley cannot have this friction, the cycle limits it,
+//! as for every effect that raises μ. Neutral: `pulley = 0`, none.
 //!
-//! Cause: a bearing that has run dry, has seized or was damaged; a cable that rubs on a flange or on the frame.
+//! Cause: a dry, seized or damaged bearing; a cable that rubs on a flange or on the frame.
 
 use super::{Acting, Effect, EffectRow, Memory, OnMu};
 use crate::parameters::{GREATEST_MU, ParameterRow};
@@ -17,7 +17,7 @@ const EXCITATION: &str =
 #[expect(clippy::cast_precision_loss, reason = "a small count")]
 const MOST_PULLEYS: f64 = MAX_PULLEYS as f64;
 
-/// What it is.
+/// The catalogue row.
 pub const ROW: EffectRow = EffectRow {
     kind: "pulley_defect",
     cause: "one pulley rubs otherwise than the rest: its bearing is dry, seized or damaged, or the cable touches a flange there",
@@ -48,11 +48,11 @@ pub const ROW: EffectRow = EffectRow {
     goes_by_time: false,
 };
 
-/// The effect by itself, to ask whether it acts.
+/// The effect as a set of one, to test whether it acts.
 pub(crate) const ACTS: Acting = Effect::PulleyDefect.acts();
-/// Place of `pulley` in [`Values`](crate::parameters::Values).
+/// Index of `pulley` in [`Values`](crate::parameters::Values).
 pub const PULLEY: usize = Effect::PulleyDefect.first_place();
-/// Place of `mu`.
+/// Index of `mu`.
 pub const MU: usize = PULLEY + 1;
 
 /// The effect's parameters.
@@ -60,18 +60,18 @@ pub const MU: usize = PULLEY + 1;
 pub struct PulleyDefect<T> {
     /// Number of the pulley, from 1 at the sensor; 0 for none.
     pub pulley: T,
-    /// Its μ, 1.
+    /// Its μ, dimensionless.
     pub mu: T,
 }
 
 impl<T: Scalar> PulleyDefect<T> {
-    /// From a cable's parameter values, by their place.
+    /// Creates the parameters from a cable's values, by index.
     #[inline(always)]
     pub fn of(value: impl Fn(usize) -> T) -> Self {
         Self { pulley: value(PULLEY), mu: value(MU) }
     }
 
-    /// Where the pulley of a number is the one.
+    /// Returns whether the pulley with this number is the defective one.
     #[inline(always)]
     pub fn is_at(&self, number: T) -> T::Mask {
         number.eq(self.pulley)

@@ -1,11 +1,11 @@
 //! `pulley_eccentricity`: a tension ripple that is periodic in the cable's length.
 //!
-//! Equation: `F ← F·(1 + sin_ratio·sin(2πl/period_m) + cos_ratio·cos(2πl/period_m))` at the platform, l the cable length, the
-//! delayed one with `time_delay`. The zero of the length decides what is sine and what cosine: a length that starts anew
-//! with each run needs its own ratios. An identification finds the ratios; the period only from a start that is right to
-//! a fraction of a turn over the whole way, so it is not varied unless asked for. Neutral: both ratios 0.
+//! Equation: `F ← F·(1 + sin_ratio·sin(2πl/period_m) + cos_ratio·cos(2πl/period_m))` at the platform, where l is the cable length, delayed if there
+//! is a `time_delay`. The zero of the length determines the phase: a length that starts anew with each run needs its own ratios. An identification
+//! finds the ratios. It finds the period only from a start that is right to a fraction of a revolution over the whole range, so the period is not
+//! varied unless requested. Neutral: both ratios 0.
 //!
-//! Cause: a pulley that runs out of true, with its circumference as the period. What does not go with the load is `winch_ripple`.
+//! Cause: an eccentric pulley, with its circumference as the period. A ripple that is independent of the load is `winch_ripple`.
 
 use super::ripple::{self, Ripple};
 use super::{Acting, Effect, EffectRow, Memory, OnMu};
@@ -13,7 +13,7 @@ use crate::scalar::Scalar;
 
 const EXCITATION: &str = "slow long movements over several turns of the pulleys";
 
-/// What it is.
+/// The catalogue row.
 pub const ROW: EffectRow = EffectRow {
     kind: "pulley_eccentricity",
     cause: "a pulley runs out of true: the force ripples with the cable length, in proportion to the load",
@@ -25,12 +25,12 @@ pub const ROW: EffectRow = EffectRow {
     goes_by_time: false,
 };
 
-/// The effect by itself, to ask whether it acts.
+/// The effect as a set of one, to test whether it acts.
 pub(crate) const ACTS: Acting = Effect::PulleyEccentricity.acts();
-/// Place of `sin_ratio` in [`Values`](crate::parameters::Values).
+/// Index of `sin_ratio` in [`Values`](crate::parameters::Values).
 pub const SIN: usize = Effect::PulleyEccentricity.first_place();
 
-/// Factor on the tension at a cable length (m), from a cable's parameter values, by their place.
+/// Returns the factor on the tension at a cable length (m), from a cable's parameter values by index.
 #[inline(always)]
 pub fn factor<T: Scalar>(value: impl Fn(usize) -> T, length_m: T) -> T {
     Ripple::of(SIN, value).added_to(T::splat(1.0), length_m)

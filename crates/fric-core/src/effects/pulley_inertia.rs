@@ -1,8 +1,7 @@
-//! `pulley_inertia`: pulleys that have to be set in motion.
+//! `pulley_inertia`: pulleys that must be accelerated.
 //!
-//! Equation: `F_j = F_{j−1} + … + mass_kg·a` with the acceleration a of the cable, positive paying out, and `mass_kg = J/r²` of each
-//! pulley; it needs no presliding distance and stays outside the Dahl state. Two low passes one behind the other, of
-//! `T = window_s`, give the acceleration:
+//! Equation: `F_j = F_{j−1} + … + mass_kg·a` with the acceleration a of the cable, positive paying out, and `mass_kg = J/r²` of each pulley. The
+//! force needs no presliding distance and stays outside the Dahl state. Two low-pass filters in series, with `T = window_s`, give the acceleration:
 //!
 //! ```text
 //! a₁ = (v   − v_f )/(T + dt)    v_f  ← v_f  + a₁·dt
@@ -10,12 +9,11 @@
 //! a  = a₁ + (a₁ − a₂)·(T + dt/2)/(T + dt)
 //! ```
 //!
-//! a₁ lags behind the cable by `T + dt/2`, of which dt/2 is that of any difference, and a₂ behind a₁ by `T + dt`; so a steady jerk is
-//! followed without a lag. With `T = 0` it is the backward difference of second order, `(3v₀ − 4v₁ + v₂)/2dt`.
+//! a₁ lags behind the cable by `T + dt/2`, of which dt/2 is that of any difference, and a₂ behind a₁ by `T + dt`, so a constant jerk is followed
+//! without lag. With `T = 0` it is the backward difference of second order, `(3v₀ − 4v₁ + v₂)/2dt`.
 //!
-//! Noise δ of the speed makes a noise of at most `2.6·δ/(T + dt)` in it: 1 mm/s, one step of an encoder of 1 µm read every
-//! millisecond, 0.9 m/s² with the 2 ms that stand for a window not given. Set points bear 0; a coarser encoder wants more.
-//! Neutral: `mass_kg = 0`.
+//! Speed noise δ causes acceleration noise of at most `2.6·δ/(T + dt)`. Example: 1 mm/s, one step of an encoder with 1 µm read every millisecond,
+//! gives 0.9 m/s² with the default window of 2 ms. Set points allow a window of 0; a coarser encoder needs a longer one. Neutral: `mass_kg = 0`.
 //!
 //! Cause: heavy pulleys, or pulleys of large radius, at high acceleration.
 
@@ -25,7 +23,7 @@ use crate::scalar::Scalar;
 
 const EXCITATION: &str = "strokes there and back with high acceleration";
 
-/// What it is.
+/// The catalogue row.
 pub const ROW: EffectRow = EffectRow {
     kind: "pulley_inertia",
     cause: "the pulleys take a force to be accelerated",
@@ -56,14 +54,14 @@ pub const ROW: EffectRow = EffectRow {
     goes_by_time: false,
 };
 
-/// The effect by itself, to ask whether it acts.
+/// The effect as a set of one, to test whether it acts.
 pub(crate) const ACTS: Acting = Effect::PulleyInertia.acts();
-/// Place of `mass_kg` in [`Values`](crate::parameters::Values).
+/// Index of `mass_kg` in [`Values`](crate::parameters::Values).
 pub const MASS: usize = Effect::PulleyInertia.first_place();
-/// Place of `window_s`.
+/// Index of `window_s`.
 pub const WINDOW: usize = MASS + 1;
 
-/// Places of what it remembers: both low passes of the speed, m/s.
+/// Indices of its state: both low-pass filters of the speed, m/s.
 pub(crate) const SPEEDS: [usize; 2] = {
     let first = Effect::PulleyInertia.memory_places().start;
     [first, first + 1]
@@ -72,21 +70,21 @@ pub(crate) const SPEEDS: [usize; 2] = {
 /// The effect's parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PulleyInertia<T> {
-    /// Moment of inertia of each pulley by its squared radius, kg.
+    /// Moment of inertia of each pulley divided by its squared radius, kg.
     pub mass_kg: T,
-    /// Time constant of both low passes, s.
+    /// Time constant of both low-pass filters, s.
     pub window_s: T,
 }
 
 impl<T: Scalar> PulleyInertia<T> {
-    /// From a cable's parameter values, by their place.
+    /// Creates the parameters from a cable's values, by index.
     #[inline(always)]
     pub fn of(value: impl Fn(usize) -> T) -> Self {
         Self { mass_kg: value(MASS), window_s: value(WINDOW) }
     }
 
-    /// Force that accelerates one pulley, N, and both low passes of the speed for the next cycle; `filtered_m_per_s` are the
-    /// last cycle's, [`UNKNOWN`] before the first; `step_s` the time since.
+    /// Returns the force that accelerates one pulley, N, and the state of both low-pass filters for the next cycle. `filtered_m_per_s` is the last
+    /// cycle's state, [`UNKNOWN`] before the first; `step_s` is the time since then.
     #[inline(always)]
     pub fn force_n(&self, speed_m_per_s: T, filtered_m_per_s: [T; 2], step_s: T) -> (T, [T; 2]) {
         let [once, twice] = filtered_m_per_s;

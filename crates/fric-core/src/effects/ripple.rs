@@ -1,17 +1,17 @@
-//! What goes up and down with the cable's length: the form that several effects have in common.
+//! Ripples: the common form of several effects that are periodic in the cable's length.
 //!
-//! Two amplitudes, of the sine and of the cosine, and the period. The zero of the length decides what is sine and what cosine: a length that starts anew
-//! with each run needs its own. An identification finds the amplitudes from anywhere; the period only from a start that is right to a fraction of
-//! a turn over the whole way, such as a scan of the residual gives.
+//! A ripple has two amplitudes, of the sine and of the cosine, and a period. The zero of the length determines the phase: a length that starts anew
+//! with each run needs its own amplitudes. An identification finds the amplitudes from any start. It finds the period only from a start that is right
+//! to a fraction of a revolution over the whole range, for instance from a scan of the residual.
 
 use super::UNKNOWN;
 use crate::parameters::ParameterRow;
 use crate::scalar::Scalar;
 
-/// Key of the period, which each of these effects has at its third place.
+/// Key of the period, which is the third parameter of each of these effects.
 pub const PERIOD_KEY: &str = "period_m";
 
-/// The parameters of a ripple whose amplitudes, called so, are at most `most` of a unit.
+/// Returns the parameter rows of a ripple with these names for its amplitudes, which are at most `most`.
 pub(super) const fn rows(
     [sin, cos]: [&'static str; 2],
     unit: &'static str,
@@ -25,13 +25,13 @@ pub(super) const fn rows(
     ]
 }
 
-/// The amplitude of a ripple by the values of its parameters in order.
+/// Returns the amplitude of a ripple from the values of its parameters in order.
 pub(super) fn amplitude(values: &[f64]) -> f64 {
     let [sin, cos, ..] = values else { return 0.0 };
     libm::hypot(*sin, *cos)
 }
 
-/// A ripple; its amplitudes are of any unit.
+/// A ripple, with amplitudes of any unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ripple<T> {
     /// Amplitude of the sine.
@@ -43,13 +43,13 @@ pub struct Ripple<T> {
 }
 
 impl<T: Scalar> Ripple<T> {
-    /// From a cable's parameter values by their place, the first of which is this.
+    /// Creates the ripple from a cable's parameter values by index, starting at `first`.
     #[inline(always)]
     pub fn of(first: usize, value: impl Fn(usize) -> T) -> Self {
         Self { sin: value(first), cos: value(first + 1), period_m: value(first + 2) }
     }
 
-    /// A number and the ripple at a cable length (m); the number alone where that is [`UNKNOWN`], before the first.
+    /// Returns a number plus the ripple at a cable length (m); the number alone if the length is [`UNKNOWN`], before the first.
     #[inline(never)]
     pub fn added_to(&self, number: T, length_m: T) -> T {
         let known = length_m.lt(T::splat(UNKNOWN));

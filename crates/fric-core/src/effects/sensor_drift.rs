@@ -1,7 +1,7 @@
 //! `sensor_drift`: a force sensor whose zero moves with time.
 //!
-//! Equation: `F_shown = F_s + rate_n_per_s·t`, in the newtons that the sensor shows, t from the start of the run to `until_s`, where the
-//! drift ends; without an end (`until_s = 0`) a loop that goes on is led away: the discovery sets it to that of its log. Neutral:
+//! Equation: `F_shown = F_s + rate_n_per_s·t`, in newtons of the sensor signal, with t from the start of the run up to `until_s`, where the drift
+//! ends. Without an end (`until_s = 0`) the correction grows without limit in a running loop; the discovery sets the end to that of its log. Neutral:
 //! `rate_n_per_s = 0`.
 //!
 //! Cause: the load cell or its amplifier warms up.
@@ -12,7 +12,7 @@ use crate::scalar::Scalar;
 
 const EXCITATION: &str = "a long run with the same poses at its beginning and its end";
 
-/// What it is.
+/// The catalogue row.
 pub const ROW: EffectRow = EffectRow {
     kind: "sensor_drift",
     cause: "the zero of the force sensor or its amplifier moves with temperature",
@@ -35,11 +35,11 @@ pub const ROW: EffectRow = EffectRow {
     goes_by_time: true,
 };
 
-/// The effect by itself, to ask whether it acts.
+/// The effect as a set of one, to test whether it acts.
 pub(crate) const ACTS: Acting = Effect::SensorDrift.acts();
-/// Place of `rate_n_per_s` in [`Values`](crate::parameters::Values).
+/// Index of `rate_n_per_s` in [`Values`](crate::parameters::Values).
 pub const RATE: usize = Effect::SensorDrift.first_place();
-/// Place of `until_s`.
+/// Index of `until_s`.
 pub const UNTIL: usize = RATE + 1;
 
 /// The effect's parameters.
@@ -47,18 +47,18 @@ pub const UNTIL: usize = RATE + 1;
 pub struct SensorDrift<T> {
     /// Change of the zero per second, N/s.
     pub rate_n_per_s: T,
-    /// When the drift ends, s; never where it is 0.
+    /// End of the drift, s; 0 for never.
     pub until_s: T,
 }
 
 impl<T: Scalar> SensorDrift<T> {
-    /// From a cable's parameter values, by their place.
+    /// Creates the parameters from a cable's values, by index.
     #[inline(always)]
     pub fn of(value: impl Fn(usize) -> T) -> Self {
         Self { rate_n_per_s: value(RATE), until_s: value(UNTIL) }
     }
 
-    /// The force there is for the one shown (N) at a time (s) since the start.
+    /// Returns the true force for the one shown (N) at a time (s) since the start.
     #[inline(always)]
     pub fn undo(&self, shown_n: T, time_s: T) -> T {
         shown_n - self.rate_n_per_s * drifting_s(time_s, self.until_s)

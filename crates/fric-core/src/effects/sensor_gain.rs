@@ -1,9 +1,9 @@
-//! `sensor_gain`: a force sensor that shows more, or less, than there is, in proportion.
+//! `sensor_gain`: a force sensor whose signal is proportionally too large or too small.
 //!
-//! Equation: `F_shown = gain·F_s`, so that the cycle takes `F_shown/gain`; with all errors of a sensor
-//! `F_shown = gain·F_s + offset_n + rate_n_per_s·t`. Neutral: `gain = 1`.
+//! Equation: `F_shown = gain·F_s`, so that the cycle uses `F_shown/gain`; with all sensor errors `F_shown = gain·F_s + offset_n + rate_n_per_s·t`.
+//! Neutral: `gain = 1`.
 //!
-//! Cause: calibration of the amplifier, or of the load cell's direction in its mount.
+//! Cause: calibration of the amplifier, or orientation of the load cell in its mount.
 
 use super::{Acting, Effect, EffectRow, Memory, OnMu};
 use crate::parameters::ParameterRow;
@@ -11,7 +11,7 @@ use crate::scalar::Scalar;
 
 const EXCITATION: &str = "long movements at cable forces that differ by a factor of two and more";
 
-/// What it is.
+/// The catalogue row.
 pub const ROW: EffectRow = EffectRow {
     kind: "sensor_gain",
     cause: "the force sensor or its amplifier is calibrated with a wrong slope",
@@ -31,26 +31,26 @@ pub const ROW: EffectRow = EffectRow {
     goes_by_time: false,
 };
 
-/// The effect by itself, to ask whether it acts.
+/// The effect as a set of one, to test whether it acts.
 pub(crate) const ACTS: Acting = Effect::SensorGain.acts();
-/// Place of `gain` in [`Values`](crate::parameters::Values).
+/// Index of `gain` in [`Values`](crate::parameters::Values).
 pub const GAIN: usize = Effect::SensorGain.first_place();
 
 /// The effect's parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SensorGain<T> {
-    /// What the sensor shows, as a multiple of what there is, 1.
+    /// Ratio of the force shown to the true force, dimensionless.
     pub gain: T,
 }
 
 impl<T: Scalar> SensorGain<T> {
-    /// From a cable's parameter values, by their place.
+    /// Creates the parameters from a cable's values, by index.
     #[inline(always)]
     pub fn of(value: impl Fn(usize) -> T) -> Self {
         Self { gain: value(GAIN) }
     }
 
-    /// The force there is for the one shown, N.
+    /// Returns the true force for the one shown, N.
     #[inline(always)]
     pub fn undo(&self, shown_n: T) -> T {
         shown_n / self.gain

@@ -1,11 +1,11 @@
-//! `sensor_lag`: a force sensor that follows late.
+//! `sensor_lag`: a force sensor with a lag.
 //!
-//! Equation: `F_shown ← F_shown + (Δt/time_constant)·(F_s − F_shown)` in each cycle, the first-order low pass as amplifiers compute it; undone exactly by
-//! `F_s = F_shown,before + (time_constant/Δt)·(F_shown − F_shown,before)`. That multiplies noise which comes after the low pass by up to twice the time constant in
-//! cycles. So what it gives is smoothed by two low passes of `smoothing_s` one after the other, `F = 2F_1 − F_2` (Brown's double exponential smoothing), which do
-//! not delay it; the gain on noise stays below some `2·time_constant/smoothing`. The discovery takes none: noise that comes before the low
-//! pass, as most does, needs none. A time constant of less than a cycle is
-//! no lag. Neutral: `time_constant_s = 0`, whatever `smoothing_s`.
+//! Equation: `F_shown ← F_shown + (Δt/time_constant)·(F_s − F_shown)` in each cycle, the first-order low-pass filter as amplifiers compute it. It is
+//! undone exactly by `F_s = F_shown,before + (time_constant/Δt)·(F_shown − F_shown,before)`. This multiplies noise that enters after the filter by up
+//! to twice the time constant in cycles. The result is therefore smoothed by two low-pass filters of `smoothing_s` in series, `F = 2F_1 − F_2`
+//! (Brown's double exponential smoothing), which add no delay; the noise gain stays below about `2·time_constant/smoothing`. The discovery uses no
+//! smoothing, because noise that enters before the filter, as most does, needs none. A time constant of less than a cycle is no lag. Neutral:
+//! `time_constant_s = 0`, whatever `smoothing_s`.
 //!
 //! Cause: the filter of the amplifier, or of its converter.
 
@@ -15,7 +15,7 @@ use crate::scalar::Scalar;
 
 const EXCITATION: &str = "forces that change fast: strokes at high acceleration, small movements that reverse";
 
-/// What it is.
+/// The catalogue row.
 pub const ROW: EffectRow = EffectRow {
     kind: "sensor_lag",
     cause: "the filter of the amplifier lets the force follow late",
@@ -46,14 +46,14 @@ pub const ROW: EffectRow = EffectRow {
     goes_by_time: false,
 };
 
-/// The effect by itself, to ask whether it acts.
+/// The effect as a set of one, to test whether it acts.
 pub(crate) const ACTS: Acting = Effect::SensorLag.acts();
-/// Place of `time_constant_s` in [`Values`](crate::parameters::Values).
+/// Index of `time_constant_s` in [`Values`](crate::parameters::Values).
 pub const TIME_CONSTANT: usize = Effect::SensorLag.first_place();
-/// Place of `smoothing_s`.
+/// Index of `smoothing_s`.
 pub const SMOOTHING: usize = TIME_CONSTANT + 1;
 
-/// Places of what it remembers: the force shown in the cycle before, and what two low passes have made of the one undone, N.
+/// Indices of its state: the force shown in the previous cycle, and the outputs of the two low-pass filters of the corrected force, N.
 pub(crate) const FORCES: [usize; 3] = {
     let first = Effect::SensorLag.memory_places().start;
     [first, first + 1, first + 2]
@@ -62,48 +62,49 @@ pub(crate) const FORCES: [usize; 3] = {
 /// The effect's parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SensorLag<T> {
-    /// Time in which all but 1/e of a change is shown, s.
+    /// Time constant of the lag, s.
     pub time_constant_s: T,
-    /// The same of the low pass behind, s.
+    /// Time constant of the smoothing filters, s.
     pub smoothing_s: T,
 }
 
-/// Time constants in which two low passes fall to `10⁻¹²`: `x·e^{−x}`.
+/// Number of time constants after which two low-pass filters in series have decayed to `10⁻¹²`: `x·e^{−x}`.
 const FORGOTTEN: f64 = 31.0;
 
 impl<T: Scalar> SensorLag<T> {
-    /// From a cable's parameter values, by their place.
+    /// Creates the parameters from a cable's values, by index.
     #[inline(always)]
     pub fn of(value: impl Fn(usize) -> T) -> Self {
         Self { time_constant_s: value(TIME_CONSTANT), smoothing_s: value(SMOOTHING) }
     }
 
-    /// What of a change of the force shows in the cycle in which it comes, 1, as far as the smoothing does not take it away again.
+    /// Returns the fraction of a force change that shows in its own cycle, as far as the smoothing does not remove it again.
     pub fn shown_ratio(&self, cycle_s: T) -> T {
         let one = T::splat(1.0);
         let smoothed = one - self.smoothing(cycle_s);
         (one / (self.sharpening(cycle_s) * (one - smoothed * smoothed))).min(one)
     }
 
-    /// In how many cycles what the sensor has shown is forgotten, whatever it was: to less than `10⁻¹²`, two low passes behind each other.
+    /// Returns the number of cycles after which earlier sensor signals are forgotten, whatever they were: to less than `10⁻¹²`, through two low-pass
+    /// filters in series.
     pub fn recovery_cycles(&self, cycle_s: T) -> T {
         let lags = T::splat(0.0).lt(self.time_constant_s);
         (T::splat(FORGOTTEN) * self.smoothing_s / cycle_s + T::splat(1.0)).keep(lags)
     }
 
-    /// The time constant in cycles, at least one.
+    /// Returns the time constant in cycles, at least one.
     #[inline(always)]
     fn sharpening(&self, step_s: T) -> T {
         (self.time_constant_s / step_s).max(T::splat(1.0))
     }
 
-    /// What a low pass takes over in a cycle, 0…1.
+    /// Returns the update fraction of a low-pass filter per cycle, 0…1.
     #[inline(always)]
     fn smoothing(&self, step_s: T) -> T {
         step_s / self.smoothing_s.max(step_s)
     }
 
-    /// The force there is for the one shown, N, and what to remember; `memory` is what was remembered, [`UNKNOWN`] at the start of a run.
+    /// Returns the true force for the one shown, N, and the new state. `memory` is the previous state, [`UNKNOWN`] at the start of a run.
     #[inline(never)]
     pub fn undo(&self, shown_n: T, memory: [T; 3], step_s: T) -> (T, [T; 3]) {
         let known = memory[0].lt(T::splat(UNKNOWN));
@@ -121,7 +122,7 @@ impl<T: Scalar> SensorLag<T> {
 mod tests {
     use super::*;
 
-    /// What the sensor shows, and what is made of it, of a force over cycles of 1 ms; what is worst beside the force after the first.
+    /// Returns the greatest difference between the corrected sensor signal and the force over cycles of 1 ms, after the first.
     fn worst_n(smoothing_s: f64, force_n: impl Fn(f64) -> f64) -> f64 {
         let lag = SensorLag { time_constant_s: 4e-3, smoothing_s };
         let (mut shown_n, mut memory, mut worst_n) = (force_n(0.0), [UNKNOWN; 3], 0.0_f64);
@@ -141,7 +142,7 @@ mod tests {
     fn a_lag_without_noise_is_undone_exactly_and_a_ramp_behind_the_smoothing_too() {
         assert!(worst_n(0.0, |time_s| 20.0 + 5.0 * (20.0 * time_s).sin()) < 1e-9);
         assert!(worst_n(3e-3, |time_s| 20.0 + 50.0 * time_s) < 1e-9);
-        // The error of the smoothing is `T²·F''` but for the cycle: 20 rad/s, 5 N.
+        // The error of the smoothing is `T²·F''` apart from the cycle: 20 rad/s, 5 N.
         let bent_n = worst_n(3e-3, |time_s| 20.0 + 5.0 * (20.0 * time_s).sin());
         assert!(bent_n < 1.2 * 9e-6 * 400.0 * 5.0, "{bent_n}");
     }

@@ -1,11 +1,12 @@
-//! `sensor_nonlinearity`: a force sensor whose curve is bent.
+//! `sensor_nonlinearity`: a force sensor with a nonlinear curve.
 //!
-//! Equation: `T_shown = T + curvature_per_n·(T − reference_n)²`, T the tension as if nothing rubbed, `F_s/(1 − cos α₁)`: what the sensor was calibrated for at
-//! the load `reference_n`, where value and slope of its curve are right. So the cycle takes `T = reference + 2y/(1 + √(1 + 4·curvature·y))`, `y = T_shown − reference`. Where the curve
-//! has lost half its slope the cycle goes on along its tangent: no sensor loses more. With a wrong gain, `F_shown = gain·(the above)`.
-//! Another reference is another gain and offset. Neutral: `curvature_per_n = 0`, whatever `reference_n`.
+//! Equation: `T_shown = T + curvature_per_n·(T − reference_n)²`, where T is the tension without friction, `F_s/(1 − cos α₁)`. At the load
+//! `reference_n`, for which the sensor was calibrated, value and slope of its curve are right. So the cycle uses `T = reference + 2y/(1 + √(1 +
+//! 4·curvature·y))`, `y = T_shown − reference`. Where the curve has lost half its slope, the cycle continues along its tangent, because no sensor
+//! loses more. With a wrong gain, `F_shown` is `gain` times this. Another reference corresponds to another gain and offset. Neutral:
+//! `curvature_per_n = 0`, whatever `reference_n`.
 //!
-//! Cause: a load cell that is mounted askew or overloaded, a bridge of one active gauge, a lever whose angle changes with the load.
+//! Cause: a misaligned or overloaded load cell, a bridge with one active gauge, a lever whose angle changes with the load.
 
 use super::{Acting, Effect, EffectRow, Memory, OnMu};
 use crate::parameters::ParameterRow;
@@ -13,7 +14,7 @@ use crate::scalar::Scalar;
 
 const EXCITATION: &str = "long movements at cable forces that differ by a factor of three and more";
 
-/// What it is.
+/// The catalogue row.
 pub const ROW: EffectRow = EffectRow {
     kind: "sensor_nonlinearity",
     cause: "the curve of the force sensor is bent: it shows more, or less, than in proportion at high forces",
@@ -44,36 +45,36 @@ pub const ROW: EffectRow = EffectRow {
     goes_by_time: false,
 };
 
-/// The effect by itself, to ask whether it acts.
+/// The effect as a set of one, to test whether it acts.
 pub(crate) const ACTS: Acting = Effect::SensorNonlinearity.acts();
-/// Place of `curvature_per_n` in [`Values`](crate::parameters::Values).
+/// Index of `curvature_per_n` in [`Values`](crate::parameters::Values).
 pub const CURVATURE: usize = Effect::SensorNonlinearity.first_place();
 
-/// Place of `reference_n`.
+/// Index of `reference_n`.
 pub const REFERENCE: usize = CURVATURE + 1;
 
 /// The effect's parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SensorNonlinearity<T> {
-    /// What the sensor shows too much for the square of the newtons from the reference, 1/N.
+    /// Excess of the signal per squared newton of distance from the reference, 1/N.
     pub curvature_per_n: T,
-    /// Tension at which value and slope of its curve are right, N.
+    /// Tension at which value and slope of the curve are right, N.
     pub reference_n: T,
 }
 
 impl<T: Scalar> SensorNonlinearity<T> {
-    /// From a cable's parameter values, by their place.
+    /// Creates the parameters from a cable's values, by index.
     #[inline(always)]
     pub fn of(value: impl Fn(usize) -> T) -> Self {
         Self { curvature_per_n: value(CURVATURE), reference_n: value(REFERENCE) }
     }
 
-    /// What of a change of the force shows at least, 1.
+    /// Returns the least fraction of a force change that the sensor shows.
     pub(crate) fn shown_ratio(&self) -> T {
         T::select(self.curvature_per_n.eq(T::splat(0.0)), T::splat(1.0), T::splat(LEAST_SLOPE))
     }
 
-    /// The sensor force there is for the one shown, N, of a sensor that tells `1/frictionless_gain` of the tension.
+    /// Returns the true sensor force for the one shown, N, for a sensor whose signal is `1/frictionless_gain` of the tension.
     #[inline(never)]
     pub fn undo(&self, shown_n: T, frictionless_gain: T) -> T {
         let (one, two) = (T::splat(1.0), T::splat(2.0));
@@ -91,7 +92,7 @@ impl<T: Scalar> SensorNonlinearity<T> {
     }
 }
 
-/// The least slope that the curve of a sensor has, 1; `undo` has the tangent for one half.
+/// Least slope of a sensor's curve; `undo` contains the tangent for one half.
 const LEAST_SLOPE: f64 = 0.5;
 
 #[cfg(test)]
@@ -109,7 +110,8 @@ mod tests {
                 assert!((force_n - 2.0 * tension_n).abs() < 1e-9, "{curvature_per_n} {tension_n}: {force_n}");
             }
         }
-        // −0.01 has half its slope at 25 N above the reference, where it shows 18.75 N more; 1 N more is 2 N there.
+        // The curvature −0.01 has half its slope at 25 N above the reference, where the signal is 18.75 N greater; 1 N more of signal is 2 N of
+        // tension there.
         let sensor = SensorNonlinearity { curvature_per_n: -0.01, reference_n: 8.0 };
         assert!((sensor.undo(26.75_f64, 1.0) - 33.0).abs() < 1e-9);
         assert!((sensor.undo(27.75_f64, 1.0) - 35.0).abs() < 1e-9);

@@ -1,8 +1,8 @@
-//! `sensor_offset`: a force sensor whose zero is not at zero.
+//! `sensor_offset`: a force sensor whose zero is wrong.
 //!
-//! Equation: `F_shown = F_s + offset_n`, so that the cycle takes `F_shown − offset_n`. Unlike `offset_n` of `friction`, which is added at
-//! the platform, it acts before the pulleys: halved by a sensor pulley of 180°, and part of the load on the bearings. In the newtons that
-//! the sensor shows, as `sensor_drift`. Neutral: 0.
+//! Equation: `F_shown = F_s + offset_n`, so that the cycle uses `F_shown − offset_n`. Unlike `offset_n` of `friction`, which is added at the
+//! platform, it acts before the pulleys: a sensor pulley of 180° halves it, and it is part of the load on the bearings. In newtons of the sensor
+//! signal, like `sensor_drift`. Neutral: 0.
 //!
 //! Cause: the sensor was not tared, or its zero has moved since.
 
@@ -12,7 +12,7 @@ use crate::scalar::Scalar;
 
 const EXCITATION: &str = "long movements at cable forces that differ by a factor of two and more";
 
-/// What it is.
+/// The catalogue row.
 pub const ROW: EffectRow = EffectRow {
     kind: "sensor_offset",
     cause: "the force sensor was not tared",
@@ -32,26 +32,26 @@ pub const ROW: EffectRow = EffectRow {
     goes_by_time: false,
 };
 
-/// The effect by itself, to ask whether it acts.
+/// The effect as a set of one, to test whether it acts.
 pub(crate) const ACTS: Acting = Effect::SensorOffset.acts();
-/// Place of `offset_n` in [`Values`](crate::parameters::Values).
+/// Index of `offset_n` in [`Values`](crate::parameters::Values).
 pub const OFFSET: usize = Effect::SensorOffset.first_place();
 
 /// The effect's parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SensorOffset<T> {
-    /// What the sensor shows without load, N.
+    /// Signal of the unloaded sensor, N.
     pub offset_n: T,
 }
 
 impl<T: Scalar> SensorOffset<T> {
-    /// From a cable's parameter values, by their place.
+    /// Creates the parameters from a cable's values, by index.
     #[inline(always)]
     pub fn of(value: impl Fn(usize) -> T) -> Self {
         Self { offset_n: value(OFFSET) }
     }
 
-    /// The force there is for the one shown, N.
+    /// Returns the true force for the one shown, N.
     #[inline(always)]
     pub fn undo(&self, shown_n: T) -> T {
         shown_n - self.offset_n

@@ -1,10 +1,9 @@
-//! `sensor_warmup`: a force sensor whose zero goes to another value as it warms up.
+//! `sensor_warmup`: a force sensor whose zero approaches another value as it warms up.
 //!
-//! Equation: `F_shown = F_s + final_n·(1 − exp(−t/time_constant_s))`, in the newtons that the sensor shows, t from the start of the run. What
-//! moves evenly over the run is `sensor_drift`. A sensor that is warm already does not begin anew: then tare it and leave the
-//! effect out. Neutral: `final_n = 0`.
+//! Equation: `F_shown = F_s + final_n·(1 − exp(−t/time_constant_s))`, in newtons of the sensor signal, with t from the start of the run. A steady
+//! drift over the run is described by `sensor_drift`. For a sensor that is already warm, tare it and leave the effect out. Neutral: `final_n = 0`.
 //!
-//! Cause: the load cell or its amplifier was switched on shortly before and warms up to its temperature.
+//! Cause: the load cell or its amplifier was switched on shortly before and warms up to its steady temperature.
 
 use super::{Acting, Effect, EffectRow, Memory, OnMu, warmed};
 use crate::parameters::ParameterRow;
@@ -13,7 +12,7 @@ use crate::scalar::Scalar;
 const EXCITATION: &str =
     "a long run from cold with the same poses throughout, three times as long as it takes to warm up";
 
-/// What it is.
+/// The catalogue row.
 pub const ROW: EffectRow = EffectRow {
     kind: "sensor_warmup",
     cause: "the load cell or its amplifier warms up after it was switched on, and its zero moves towards a final value",
@@ -44,30 +43,30 @@ pub const ROW: EffectRow = EffectRow {
     goes_by_time: true,
 };
 
-/// The effect by itself, to ask whether it acts.
+/// The effect as a set of one, to test whether it acts.
 pub(crate) const ACTS: Acting = Effect::SensorWarmup.acts();
-/// Place of `final_n` in [`Values`](crate::parameters::Values).
+/// Index of `final_n` in [`Values`](crate::parameters::Values).
 pub const FINAL: usize = Effect::SensorWarmup.first_place();
-/// Place of `time_constant_s`.
+/// Index of `time_constant_s`.
 pub const TIME_CONSTANT: usize = FINAL + 1;
 
 /// The effect's parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SensorWarmup<T> {
-    /// What the warm sensor shows too much, N.
+    /// Excess of the warm sensor's signal, N.
     pub final_n: T,
-    /// Time in which all but 1/e of it has come, s.
+    /// Time constant of the change, s.
     pub time_constant_s: T,
 }
 
 impl<T: Scalar> SensorWarmup<T> {
-    /// From a cable's parameter values, by their place.
+    /// Creates the parameters from a cable's values, by index.
     #[inline(always)]
     pub fn of(value: impl Fn(usize) -> T) -> Self {
         Self { final_n: value(FINAL), time_constant_s: value(TIME_CONSTANT) }
     }
 
-    /// The force there is for the one shown (N) at a time (s) since the start.
+    /// Returns the true force for the one shown (N) at a time (s) since the start.
     #[inline(never)]
     pub fn undo(&self, shown_n: T, time_s: T) -> T {
         shown_n - self.final_n * warmed(time_s, self.time_constant_s)

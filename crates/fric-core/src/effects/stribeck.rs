@@ -1,7 +1,7 @@
-//! `stribeck`: friction that falls with speed.
+//! `stribeck`: friction that falls with the speed.
 //!
-//! Equation: `μ(v) = μ·(1 + ratio·exp(−(v/velocity)²))`. At rest friction is higher by the share `ratio`; at twice
-//! `velocity` all but 2 % of it is gone. Neutral: `ratio = 0`.
+//! Equation: `μ(v) = μ·(1 + ratio·exp(−(v/velocity)²))`. At rest friction is greater by the fraction `ratio`; at twice `velocity` only 2 % of this
+//! remains. Neutral: `ratio = 0`.
 //!
 //! Cause: at low speed the lubricant film in the bearing has not formed and the surfaces touch.
 
@@ -11,7 +11,7 @@ use crate::scalar::Scalar;
 
 const EXCITATION: &str = "long movements at several speeds, creeping ones too, in both directions";
 
-/// What it is.
+/// The catalogue row.
 pub const ROW: EffectRow = EffectRow {
     kind: "stribeck",
     cause: "at low speed the lubricant film of a bearing has not formed yet, so friction is higher near standstill",
@@ -46,30 +46,30 @@ pub const ROW: EffectRow = EffectRow {
     goes_by_time: false,
 };
 
-/// The effect by itself, to ask whether it acts.
+/// The effect as a set of one, to test whether it acts.
 pub(crate) const ACTS: Acting = Effect::Stribeck.acts();
-/// Place of `ratio` in [`Values`](crate::parameters::Values).
+/// Index of `ratio` in [`Values`](crate::parameters::Values).
 pub const RATIO: usize = Effect::Stribeck.first_place();
-/// Place of `velocity_m_per_s`.
+/// Index of `velocity_m_per_s`.
 pub const VELOCITY: usize = RATIO + 1;
 
 /// The effect's parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stribeck<T> {
-    /// Additional friction at rest as a share of μ, 1.
+    /// Additional friction at rest, as a fraction of μ.
     pub ratio: T,
-    /// Speed at which the additional share has fallen by the factor e, m/s.
+    /// Speed at which the additional fraction has fallen by the factor e, m/s.
     pub velocity_m_per_s: T,
 }
 
 impl<T: Scalar> Stribeck<T> {
-    /// From a cable's parameter values, by their place.
+    /// Creates the parameters from a cable's values, by index.
     #[inline(always)]
     pub fn of(value: impl Fn(usize) -> T) -> Self {
         Self { ratio: value(RATIO), velocity_m_per_s: value(VELOCITY) }
     }
 
-    /// Factor on μ at a speed.
+    /// Returns the factor on μ at a speed.
     #[inline(never)]
     pub fn factor(&self, speed_m_per_s: T) -> T {
         let relative = speed_m_per_s / self.velocity_m_per_s;

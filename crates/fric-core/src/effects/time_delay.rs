@@ -1,27 +1,25 @@
-//! `time_delay`: the motion that the control knows runs ahead of the cable's.
+//! `time_delay`: the motion known to the control is ahead of the cable's.
 //!
-//! Equation: displacement and speed at `t` are those of `t − delay_s`; between cycles they are interpolated linearly. A
-//! negative delay is motion that is known too late, by `τ = −delay_s`: it is extrapolated by the parabola through what it is now,
-//! was τ ago, and 2τ ago,
+//! Equation: displacement and speed at `t` are those of `t − delay_s`, interpolated linearly between cycles. A negative delay means that the motion
+//! is known too late, by `τ = −delay_s`: it is extrapolated by the parabola through its values now, τ ago, and 2τ ago,
 //!
 //! ```text
 //! x(t + τ) ≈ 3·x(t) − 3·x(t − τ) + x(t − 2τ)
 //! ```
 //!
-//! for the position and for the speed. A steady acceleration is followed exactly;
-//! what remains of a position is its third derivative times τ³, and noise is multiplied by no more than √19, however far it is
-//! led (by the last cycles alone it would be by `1 + 2τ/dt` and more). Neutral: `delay_s = 0`.
+//! for the position and for the speed. A constant acceleration is followed exactly. The remaining error of a position is its third derivative times
+//! τ³, and noise is multiplied by at most √19, whatever the lead (an extrapolation from the last cycles alone would multiply it by `1 + 2τ/dt` and
+//! more). Neutral: `delay_s = 0`.
 //!
-//! Friction stores the motion that is known. The force shown is that of a step ahead from there, to where the parabola leads; what is
-//! stored does not take that step. So a parabola that goes on where a motion ends undoes no friction, and nothing of it is
-//! left as soon as the end is known. Nor does it lead against the motion that is known, or where that rests: there it is about to be wrong.
+//! The friction state follows the motion that is known. The output force is that of a step ahead from this state, to the end of the parabola; the
+//! stored state does not take this step. So a parabola that continues after the end of a motion releases no friction, and its effect vanishes as soon
+//! as the end is known. The extrapolation never runs against the known motion, or while that rests, because it is about to be wrong there.
 //!
-//! After a cycle without motion to be believed, or a pause, the change from one cycle to the next is not the motion's:
-//! nothing is extrapolated until all that the parabola goes through has been in order.
+//! After a cycle with invalid motion, or a pause, the change from one cycle to the next is not a measured motion. The extrapolation pauses until all
+//! points of the parabola are valid.
 //!
-//! Cause: set points are used where the drive still follows (\[P\], section IV A), or the two signals take different ways
-//! through the bus. Deviation from the paper: the set points are shifted, not the friction computed from them, so that
-//! the friction is that of the present force.
+//! Cause: set points are used while the drive still follows (\[P\], section IV A), or the two signals take different paths through the bus. Deviation
+//! from the paper: the set points are shifted, not the friction computed from them, so that the friction belongs to the present force.
 
 use super::{Acting, Effect, EffectRow, Memory, OnMu, UNKNOWN};
 use crate::lanes::LANES;
@@ -29,7 +27,7 @@ use crate::parameters::ParameterRow;
 use crate::scalar::Scalar;
 use crate::signals::CableSignals;
 
-/// What it is.
+/// The catalogue row.
 pub const ROW: EffectRow = EffectRow {
     kind: "time_delay",
     cause: "motion and force signal are not of the same time: the motion is known too early (set points), or too late where the delay is negative",
@@ -49,25 +47,25 @@ pub const ROW: EffectRow = EffectRow {
     goes_by_time: false,
 };
 
-/// The effect by itself, to ask whether it acts.
+/// The effect as a set of one, to test whether it acts.
 pub(crate) const ACTS: Acting = Effect::TimeDelay.acts();
-/// Place of `delay_s` in [`Values`](crate::parameters::Values).
+/// Index of `delay_s` in [`Values`](crate::parameters::Values).
 pub const DELAY: usize = Effect::TimeDelay.first_place();
 
-/// The longest delay, in cycles; part of the size of a [`Compensator`](crate::Compensator).
+/// Maximum delay, in cycles; it determines the size of a [`Compensator`](crate::Compensator).
 pub const MAX_DELAY_CYCLES: usize = 64;
 
-/// The longest lead, in cycles.
+/// Maximum lead, in cycles.
 pub const MAX_LEAD_CYCLES: usize = 20;
 
-/// Least and greatest delay at a cycle time, s.
+/// Returns the least and the greatest delay at a cycle time, s.
 #[must_use]
 #[expect(clippy::cast_precision_loss, reason = "small constants")]
 pub fn delay_range_s(cycle_s: f64) -> (f64, f64) {
     (-(MAX_LEAD_CYCLES as f64) * cycle_s, (MAX_DELAY_CYCLES - 1) as f64 * cycle_s)
 }
 
-/// A delay as whole cycles and the rest.
+/// A delay, divided into whole cycles and fractions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Delay {
     taps: Taps,
@@ -75,7 +73,7 @@ pub struct Delay {
 }
 
 impl Delay {
-    /// None.
+    /// No delay.
     pub const NONE: Self = Self { taps: Taps::NONE, fractions: [0.0; 2] };
 
     /// Whether it is a lead.
@@ -83,7 +81,7 @@ impl Delay {
         self.taps.leads
     }
 
-    /// From cycles; held within `−MAX_LEAD_CYCLES…MAX_DELAY_CYCLES − 1`.
+    /// Creates a delay from cycles, limited to `−MAX_LEAD_CYCLES…MAX_DELAY_CYCLES − 1`.
     #[must_use]
     pub fn from_cycles(cycles: f64) -> Self {
         let taps = Taps::of_cycles(cycles);
@@ -91,23 +89,23 @@ impl Delay {
     }
 }
 
-/// Which values of a [`DelayLine`] a delay needs, by their age: those about `t − delay_s`; of a lead those about `t − τ` and `t − 2τ`.
+/// The values of a [`DelayLine`] that a delay needs, by age: those around `t − delay_s`; for a lead those around `t − τ` and `t − 2τ`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Taps {
-    /// Whole cycles; only a lead has a use for the second.
+    /// Whole cycles; the second entry is used only by a lead.
     ages: [usize; 2],
     leads: bool,
 }
 
 impl Taps {
-    /// Whether it is of a lead.
+    /// Whether they belong to a lead.
     pub(crate) const fn leads(self) -> bool {
         self.leads
     }
 
     const NONE: Self = Self { ages: [0; 2], leads: false };
 
-    /// Of a delay in cycles.
+    /// Returns the taps of a delay in cycles.
     pub(crate) fn of_cycles(cycles: f64) -> Self {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "bounded by `ages`")]
         let ages = ages(cycles).map(|age| libm::floor(age) as usize);
@@ -115,14 +113,14 @@ impl Taps {
     }
 }
 
-/// How old the values are that a delay needs, in cycles; a delay, unlike a lead, has no use for the second.
+/// Returns the ages of the values that a delay needs, in cycles; the second is used only by a lead.
 fn ages<T: Scalar>(cycles: T) -> [T; 2] {
     let (earliest, longest) = delay_range_s(1.0);
     let age = cycles.max(T::splat(earliest)).min(T::splat(longest)).abs();
     [age, age + age]
 }
 
-/// What is left of the ages beyond the whole cycles of each lane's taps.
+/// Returns the fractions of the ages beyond the whole cycles of each lane's taps.
 pub(crate) fn fractions<T: Scalar>(cycles: T, taps: impl Fn(usize) -> Taps) -> [T; 2] {
     let [once, twice] = ages(cycles);
     #[expect(clippy::cast_precision_loss, reason = "at most twice MAX_DELAY_CYCLES")]
@@ -130,12 +128,12 @@ pub(crate) fn fractions<T: Scalar>(cycles: T, taps: impl Fn(usize) -> Taps) -> [
     [once - whole(0), twice - whole(1)]
 }
 
-/// The last [`MAX_DELAY_CYCLES`] values of one signal, newest at `newest`.
+/// The last [`MAX_DELAY_CYCLES`] values of one signal, the newest at index `newest`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DelayLine {
     values: [f64; MAX_DELAY_CYCLES],
     newest: usize,
-    /// Cycles in order up to now, as far as there are values.
+    /// Number of consecutive valid cycles up to now, as far as there are values.
     in_order: usize,
 }
 
@@ -146,7 +144,7 @@ impl crate::words::Words for DelayLine {
         for count in [&mut *newest, in_order] {
             let mut word = *count as u64;
             show(&mut word);
-            // No more than there are values, whatever the word is.
+            // Limited to the number of values, whatever the word is.
             *count = usize::try_from(word).unwrap_or(0).min(MAX_DELAY_CYCLES);
         }
         *newest %= MAX_DELAY_CYCLES;
@@ -154,14 +152,13 @@ impl crate::words::Words for DelayLine {
 }
 
 impl DelayLine {
-    /// A line filled with zeros: before the start nothing moved.
+    /// A line filled with zeros: nothing moved before the start.
     pub const EMPTY: Self = Self { values: [0.0; MAX_DELAY_CYCLES], newest: 0, in_order: 0 };
 
-    /// A line that the first value fills: before it was known, it was as it is.
+    /// A line that the first value fills: the value was the same before it was known.
     pub(crate) const UNFILLED: Self = Self { values: [UNKNOWN; MAX_DELAY_CYCLES], newest: 0, in_order: 0 };
 
-    /// Takes in this cycle's value and gives the delayed one. `in_order` says that the value is believed, and one cycle
-    /// younger than the one before it.
+    /// Stores this cycle's value and returns the delayed one. `in_order` says that the value is valid and one cycle younger than the one before it.
     ///
     /// ```
     /// use fric_core::effects::time_delay::{Delay, DelayLine};
@@ -179,7 +176,7 @@ impl DelayLine {
         self.about(delay.taps).at(delay.fractions)
     }
 
-    /// Takes in this cycle's value.
+    /// Stores this cycle's value.
     #[inline]
     pub(crate) fn push(&mut self, value: f64, in_order: bool) {
         self.in_order = if in_order { (self.in_order + 1).min(MAX_DELAY_CYCLES) } else { 0 };
@@ -192,7 +189,7 @@ impl DelayLine {
         }
     }
 
-    /// How far the sum of all delayed values lags behind that of all values; 0 for a lead, which delays none.
+    /// Returns how far the sum of all delayed values lags behind that of all values; 0 for a lead, which delays none.
     pub(crate) fn lag(&self, delay: Delay) -> f64 {
         if delay.leads() {
             0.0
@@ -202,12 +199,12 @@ impl DelayLine {
         }
     }
 
-    /// By how far a lead is ahead of the sum of all values.
+    /// Returns how far a lead is ahead of the sum of all values.
     pub(crate) fn lead(&self, delay: Delay) -> f64 {
         self.about_lead(delay.taps).at(delay.fractions)
     }
 
-    /// The same by whole cycles, and how it changes with the fractions; nothing for a delay.
+    /// Returns the same for whole cycles, and its derivatives with respect to the fractions; zero for a delay.
     pub(crate) fn about_lead(&self, taps: Taps) -> About {
         if !taps.leads || self.stands(taps) {
             return About::default();
@@ -216,12 +213,12 @@ impl DelayLine {
         About { value: 3.0 * self.since(once) - self.since(twice), slopes: [3.0 * self.at(once), -self.at(twice)] }
     }
 
-    /// Sum of the last values, as many as an age.
+    /// Returns the sum of the last `age` values.
     fn since(&self, age: usize) -> f64 {
         (0..age.min(MAX_DELAY_CYCLES - 1)).map(|age| self.at(age)).sum()
     }
 
-    /// The delayed value by whole cycles, and how it changes with the fractions.
+    /// Returns the delayed value for whole cycles, and its derivatives with respect to the fractions.
     #[inline]
     pub(crate) fn about(&self, taps: Taps) -> About {
         let newest = self.at(0);
@@ -237,14 +234,14 @@ impl DelayLine {
         }
     }
 
-    /// Whether a lead would rest on values that are not in order: on the oldest, the one before, which it is the change from, and
-    /// the first in order, which may have made up for others.
+    /// Whether a lead would use invalid values: the oldest one, the one before it (which it is the difference to), or the first valid one, which may
+    /// contain the change of several cycles.
     #[inline]
     fn stands(&self, taps: Taps) -> bool {
         taps.leads && self.in_order < taps.ages[1] + 3
     }
 
-    /// The value so many cycles ago, the oldest beyond that.
+    /// Returns the value `age` cycles ago; the oldest one beyond that.
     #[inline]
     fn at(&self, age: usize) -> f64 {
         let place = (self.newest + MAX_DELAY_CYCLES - age.min(MAX_DELAY_CYCLES - 1)) % MAX_DELAY_CYCLES;
@@ -252,21 +249,21 @@ impl DelayLine {
     }
 }
 
-/// Motion of a cycle as friction is to know it.
+/// The motion of a cycle as used by the friction.
 pub(crate) struct Shifted<T> {
-    /// What it is stored over, m.
+    /// Displacement of the stored friction, m.
     pub displacement_m: T,
-    /// m/s.
+    /// Speed, m/s.
     pub speed_m_per_s: T,
-    /// How far that lags behind the motion that is known, m.
+    /// Lag of the displacement behind the known motion, m.
     pub lag_m: T,
-    /// How far the cable is ahead of it, m.
+    /// Lead of the cable ahead of it, m.
     pub lead_m: T,
 }
 
 impl<T: Scalar> Shifted<T> {
-    /// Of displacement and speed that are `known` and what the lines give for them, `lag_m` behind the cycle before; then which
-    /// lanes lead, and by how far the parabola does.
+    /// Creates the motion from the `known` displacement and speed and the values from the delay lines, `lag_m` behind in the previous cycle; then
+    /// which lanes lead, and the displacement of the parabola.
     #[inline]
     pub fn new(known: [T; 2], by_lines: [T; 2], lag_m: T, (leads, parabola_m): (T::Mask, T)) -> Self {
         let ([known_m, known_m_per_s], [displacement_m, speed_m_per_s]) = (known, by_lines);
@@ -276,7 +273,7 @@ impl<T: Scalar> Shifted<T> {
         Self { displacement_m, speed_m_per_s, lag_m: lag_m + (known_m - displacement_m), lead_m }
     }
 
-    /// Puts it in the place of the motion that is known.
+    /// Replaces the known motion in the signals.
     #[inline]
     pub fn enter(self, signals: &mut CableSignals<T>) {
         signals.displacement_m = self.displacement_m;
@@ -286,14 +283,14 @@ impl<T: Scalar> Shifted<T> {
     }
 }
 
-/// The motion `led`, as far as it goes the way that the `known` one goes.
+/// Returns the extrapolated motion `led`, limited to the direction of the `known` one.
 #[inline]
 fn never_against<T: Scalar>(known: T, led: T) -> T {
     let direction = known.sign();
     led.scale(direction).max(T::splat(0.0)).scale(direction)
 }
 
-/// A delayed value as far as whole cycles tell, and what it changes by for each of [`fractions`].
+/// A delayed value for whole cycles, and its derivatives with respect to the [`fractions`].
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct About {
     value: f64,
@@ -306,7 +303,7 @@ impl About {
         self.value + of_once * once + of_twice * twice
     }
 
-    /// The values of all lanes.
+    /// Returns the values of all lanes.
     pub(crate) fn of_lanes<T: Scalar>(lanes: &[Self; LANES], [once, twice]: [T; 2]) -> T {
         let number = |of: fn(&Self) -> f64| T::from_lanes(|lane| of(&lanes[lane % LANES]));
         number(|about| about.value) + number(|about| about.slopes[0]) * once + number(|about| about.slopes[1]) * twice

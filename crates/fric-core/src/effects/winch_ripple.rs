@@ -1,11 +1,10 @@
-//! `winch_ripple`: a force that is periodic in the cable's length and does not go with the load.
+//! `winch_ripple`: a force that is periodic in the cable's length and independent of the load.
 //!
-//! Equation: `F_shown = F_s + sin_n·sin(2πl/period_m) + cos_n·cos(2πl/period_m)` in the newtons that the sensor shows, l the cable length. What goes in proportion to
-//! the load is `pulley_eccentricity`, what turns round with the motion `friction_ripple`. The zero of the length and
-//! the period are as they are there. Neutral: `sin_n` and `cos_n` 0.
+//! Equation: `F_shown = F_s + sin_n·sin(2πl/period_m) + cos_n·cos(2πl/period_m)` in newtons of the sensor signal, where l is the cable length. A
+//! ripple in proportion to the load is `pulley_eccentricity`; a ripple that reverses with the motion is `friction_ripple`. For the zero of the length
+//! and the period, see there. Neutral: `sin_n` and `cos_n` 0.
 //!
-//! Cause: the cogging of a motor whose current stands for the force, at its slots a turn; a drum whose cable pushes on a
-//! sensor in its mount.
+//! Cause: the cogging of a motor whose current measures the force, at its slot frequency; a drum whose cable pushes on a sensor in its mount.
 
 use super::ripple::{self, Ripple};
 use super::{Acting, Effect, EffectRow, Memory, OnMu};
@@ -14,7 +13,7 @@ use crate::scalar::Scalar;
 const EXCITATION: &str =
     "slow long movements over several turns of the winch, at cable forces that differ by a factor of two and more";
 
-/// What it is.
+/// The catalogue row.
 pub const ROW: EffectRow = EffectRow {
     kind: "winch_ripple",
     cause: "the motor cogs, or the drum pushes on the sensor once a turn: the force shown ripples with the cable length whatever the load",
@@ -26,12 +25,12 @@ pub const ROW: EffectRow = EffectRow {
     goes_by_time: false,
 };
 
-/// The effect by itself, to ask whether it acts.
+/// The effect as a set of one, to test whether it acts.
 pub(crate) const ACTS: Acting = Effect::WinchRipple.acts();
-/// Place of `sin_n` in [`Values`](crate::parameters::Values).
+/// Index of `sin_n` in [`Values`](crate::parameters::Values).
 pub const SIN: usize = Effect::WinchRipple.first_place();
 
-/// What the sensor shows without the ripple for a force shown (N) at a cable length (m), from a cable's parameter values, by their place.
+/// Returns the sensor force without the ripple for a force shown (N) at a cable length (m), from a cable's parameter values by index.
 #[inline(always)]
 pub fn undo<T: Scalar>(value: impl Fn(usize) -> T, shown_n: T, length_m: T) -> T {
     let Ripple { sin, cos, period_m } = Ripple::of(SIN, value);

@@ -1,8 +1,8 @@
-//! New parameters in a robot file that somebody wrote: comments, order and layout stay.
+//! Writes new parameters into a robot file without changing comments, order and layout.
 //!
-//! [`rewrite`] takes the text and, per cable, friction values and effects, and gives the text in which exactly these
-//! have changed. Values are replaced where they stand. What is new goes beside its like: in braces, on a line of its own,
-//! or under a header of its own, as the file does it. Needs the feature `robot-file`; not for the cycle.
+//! [`rewrite`] takes the text and, per cable, friction values and effects, and returns the text in which exactly these have changed. Values are
+//! replaced in place. New entries are added beside similar ones: in braces, on a line of their own, or under a header of their own, as the file does
+//! it. Needs the feature `robot-file`; not for the cycle.
 
 use std::borrow::ToOwned;
 use std::format;
@@ -15,22 +15,22 @@ use super::file::{RobotFile, RobotFileError};
 use super::locate::unknown_name;
 use super::splice::{self, Entry, Splice};
 
-/// What to change of one cable.
+/// Changes of one cable.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CableEdit<'a> {
     /// Name of the cable in the file.
     pub name: &'a str,
     /// Friction values.
     pub friction: FrictionEdit,
-    /// Where the cable enters its last pulley, m; `None` stays as it is.
+    /// Entry point into the last pulley, m; `None` keeps it.
     pub base_m: Option<[f64; 3]>,
-    /// Where it is attached to the platform, m; `None` stays as it is.
+    /// Attachment to the platform, m; `None` keeps it.
     pub platform_m: Option<[f64; 3]>,
-    /// Effects, one after the other.
+    /// Effects in sequence.
     pub effects: &'a [EffectEdit<'a>],
 }
 
-/// New friction values; those that are `None` stay as they are.
+/// New friction values; `None` keeps a value.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FrictionEdit {
     /// Bearing friction μ, 1.
@@ -43,18 +43,17 @@ pub struct FrictionEdit {
     pub offset_n: Option<f64>,
 }
 
-/// What to do about one effect of a cable.
+/// A change of one effect of a cable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum EffectEdit<'a> {
-    /// Sets parameters by key, in the units of the effect's catalogue row; the effect is appended if the cable has not
-    /// got it.
+    /// Sets parameters by key, in the units of the effect's catalogue row; the effect is appended if the cable does not have it.
     Set {
         /// Name in the catalogue.
         kind: &'a str,
-        /// Parameters; those that an effect already there has beside them stay.
+        /// Parameters; other parameters of an existing effect are kept.
         parameters: &'a [(&'a str, f64)],
     },
-    /// Takes the effect away, with a comment on its line; it has to be there.
+    /// Removes the effect, including a comment on its line; the effect must exist.
     Remove {
         /// Name in the catalogue.
         kind: &'a str,
@@ -62,7 +61,7 @@ pub enum EffectEdit<'a> {
 }
 
 impl FrictionEdit {
-    /// The values given, by key, in the order of the file format.
+    /// Returns the given values by key, in the order of the file format.
     fn values(&self) -> impl Iterator<Item = (&'static str, f64)> {
         let Self { mu, sigma_n_per_m, viscous_n_s_per_m, offset_n } = *self;
         let all = [
@@ -75,9 +74,9 @@ impl FrictionEdit {
     }
 }
 
-/// The text of a robot file with new parameters; `origin` says where it is from, for errors.
+/// Returns the text of a robot file with new parameters; `origin` names its source in error messages.
 ///
-/// Numbers read back to the same bits. What is not changed stays to the byte, a value that is given as it is included.
+/// Numbers read back to the same bits. Everything else stays unchanged to the byte, including a value that is set to itself.
 ///
 /// ```
 /// use fric_core::robot::edit::{CableEdit, EffectEdit, FrictionEdit, rewrite};
@@ -103,7 +102,7 @@ impl FrictionEdit {
 /// ```
 ///
 /// # Errors
-/// [`RobotFileError::Invalid`] if the text is not right, before or with the new values, or has no such cable or effect.
+/// Returns [`RobotFileError::Invalid`] if the text is invalid before or with the new values, or has no such cable or effect.
 pub fn rewrite(text: &str, origin: &str, edits: &[CableEdit<'_>]) -> Result<String, RobotFileError> {
     RobotFile::parse(text, origin)?;
     let mut draft = Draft { text: text.to_owned(), origin };
@@ -114,7 +113,7 @@ pub fn rewrite(text: &str, origin: &str, edits: &[CableEdit<'_>]) -> Result<Stri
     Ok(draft.text)
 }
 
-/// What to change of the platform; what is `None` stays as it is.
+/// Changes of the platform; `None` keeps a value.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PlatformEdit {
     /// Mass, kg.
@@ -125,10 +124,11 @@ pub struct PlatformEdit {
     pub gravity_m_per_s2: Option<[f64; 3]>,
 }
 
-/// The text of a robot file with other numbers of its platform, which it has to have. `origin` says where the text is from, for errors.
+/// Returns the text of a robot file with other values of its platform table, which must exist. `origin` names the source of the text in error
+/// messages.
 ///
 /// # Errors
-/// [`RobotFileError::Invalid`] if the text is not right, before or with the new numbers, or has no table `platform`.
+/// Returns [`RobotFileError::Invalid`] if the text is invalid before or with the new numbers, or has no table `platform`.
 pub fn set_platform(text: &str, origin: &str, edit: &PlatformEdit) -> Result<String, RobotFileError> {
     RobotFile::parse(text, origin)?;
     let numbers = [
@@ -158,10 +158,11 @@ pub fn set_platform(text: &str, origin: &str, edit: &PlatformEdit) -> Result<Str
     Ok(text)
 }
 
-/// The text of a robot file with a number of its monitor, by key: in its table, or under `cycle_s` where there is none. `origin` says where the text is from, for errors.
+/// Returns the text of a robot file with a value of its monitor, by key: in its table, or under `cycle_s` if there is none. `origin` names the source
+/// of the text in error messages.
 ///
 /// # Errors
-/// [`RobotFileError::Invalid`] if the text is not right, before or with the new number.
+/// Returns [`RobotFileError::Invalid`] if the text is invalid before or with the new number.
 pub fn set_monitor(text: &str, origin: &str, key: &str, value: f64) -> Result<String, RobotFileError> {
     RobotFile::parse(text, origin)?;
     let splices = Document::parse(text).ok().and_then(|document| {
@@ -181,7 +182,7 @@ pub fn set_monitor(text: &str, origin: &str, key: &str, value: f64) -> Result<St
     Ok(text)
 }
 
-/// A text in the making. It is read again after each change, so that each sees the places as they are.
+/// A text under construction. It is parsed again after each change, so that each change sees the current positions.
 struct Draft<'a> {
     text: String,
     origin: &'a str,
@@ -212,7 +213,7 @@ impl Draft<'_> {
         Ok(())
     }
 
-    /// Makes one change of a cable; the `Err` of what makes it is the problem in words.
+    /// Applies one change to a cable. The `Err` of the change function is the problem in words.
     fn change(
         &mut self,
         name: &str,
@@ -231,13 +232,13 @@ impl Draft<'_> {
     }
 }
 
-/// A cable's table where it stands.
+/// A cable's table and its position.
 struct Cable<'a> {
     name: &'a str,
     body: Body<'a>,
 }
 
-/// A table under a header or with dotted keys, or one in braces.
+/// A table under a header or with dotted keys, or an inline table.
 #[derive(Clone, Copy)]
 enum Body<'a> {
     Lines(&'a Table),
@@ -267,7 +268,7 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// Puts an entry behind the last one; `dotted` is the key to write before its own where the keys are dotted.
+    /// Appends an entry after the last one; `dotted` is the prefix of its key if the keys are dotted.
     fn append(self, text: &str, dotted: &str, entry: &str) -> Option<Vec<Splice>> {
         let last = splice::last_entry(self.table());
         let entry = if self.table().is_dotted() { format!("{dotted}.{entry}") } else { entry.to_owned() };
@@ -298,12 +299,12 @@ impl<'a> Cable<'a> {
         Ok(Self { name, body })
     }
 
-    /// What stands at a key cannot be added to.
+    /// Returns the message for a value that cannot be extended.
     fn refuse(&self, key: &str) -> String {
         format!("`{key}` of cable \"{}\" is written in a way that cannot be added to; write it in one table", self.name)
     }
 
-    /// Puts an entry behind the first of these keys that is one line or list of the cable.
+    /// Inserts an entry after the first of these keys that is a line or list of the cable.
     fn append(&self, text: &str, behind: &[&str], entry: &str) -> Option<Vec<Splice>> {
         match self.body {
             Body::Braces(_) => self.body.append(text, "", entry),
@@ -325,7 +326,7 @@ impl<'a> Cable<'a> {
         splices.ok_or_else(|| self.refuse("friction"))
     }
 
-    /// Replaces a point of the geometry, which has to be there.
+    /// Replaces a point of the geometry, which must exist.
     fn set_point(&self, text: &str, key: &str, point_m: [f64; 3]) -> Result<Vec<Splice>, String> {
         let item = self.body.table().get(key);
         item.and_then(|item| replaced(item, text, list(point_m)))
@@ -341,7 +342,7 @@ impl<'a> Cable<'a> {
         }
     }
 
-    /// Appends an effect that is not there, with its parameters.
+    /// Appends a new effect with its parameters.
     fn add_effect(&self, text: &str, kind: &str, parameters: &[(&str, f64)]) -> Result<Vec<Splice>, String> {
         let effects = self.effects()?;
         if effects.find(kind).is_some() {
@@ -392,7 +393,7 @@ impl<'a> Cable<'a> {
 }
 
 impl<'a> Effects<'a> {
-    /// Place and table of the effect of a kind.
+    /// Returns index and table of the effect of a kind.
     fn find(&self, kind: &str) -> Option<(usize, Body<'a>)> {
         let bodies: Vec<Body<'a>> = match *self {
             Self::Missing => Vec::new(),
@@ -404,7 +405,7 @@ impl<'a> Effects<'a> {
     }
 }
 
-/// Sets one number of a table: in its place, or behind the last entry.
+/// Sets one number of a table: in place, or after the last entry.
 fn set(body: Body<'_>, text: &str, dotted: &str, key: &str, value: f64) -> Option<Vec<Splice>> {
     let Some(item) = body.table().get(key) else { return body.append(text, dotted, &entry(key, value)) };
     #[expect(clippy::cast_precision_loss, reason = "as the file is read")]
@@ -415,14 +416,14 @@ fn set(body: Body<'_>, text: &str, dotted: &str, key: &str, value: f64) -> Optio
     Some(Vec::from([Splice { range: item.span()?, with: number(value) }]))
 }
 
-/// The splice that puts another value in the place of one.
+/// Returns the splice that replaces a value.
 fn replaced(item: &Item, text: &str, with: String) -> Option<Vec<Splice>> {
     let range = item.span()?;
     let is_same = text.get(range.clone()) == Some(with.as_str());
     Some(if is_same { Vec::new() } else { Vec::from([Splice { range, with }]) })
 }
 
-/// Three numbers as TOML writes them.
+/// Formats three numbers as TOML.
 fn list(numbers: [f64; 3]) -> String {
     format!("[{}]", numbers.map(number).join(", "))
 }
@@ -431,12 +432,12 @@ fn entry(key: &str, value: f64) -> String {
     format!("{key} = {}", number(value))
 }
 
-/// The shortest text that reads back to the same bits, with a point or an exponent, as TOML writes it.
+/// Returns the shortest text that reads back to the same bits, with a point or an exponent, as in TOML.
 fn number(value: f64) -> String {
     if value.is_nan() { "nan".to_owned() } else { format!("{value:?}") }
 }
 
-/// A name that the catalogue has needs no escapes; another one is refused when the text is read again.
+/// Names of the catalogue need no escapes; any other name is refused when the text is parsed again.
 fn quoted(kind: &str) -> String {
     toml::Value::from(kind).to_string()
 }

@@ -1,58 +1,58 @@
-//! What can be wrong with a parameter.
+//! Errors in parameters.
 
 use core::fmt;
 
 use crate::effects::Effect;
 
-/// Why a parameter was refused: which one, its value, what is allowed.
+/// The reason why a parameter was refused: its name, its value, and what is allowed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ParamError {
-    /// Name of the parameter, with its unit, as in the robot file.
+    /// Name of the parameter, including its unit, as in the robot file.
     pub key: &'static str,
-    /// Which pulley, from the winch, where it is one's.
+    /// Index of the pulley from the winch, if it belongs to one.
     pub pulley: Option<usize>,
-    /// Which effect, where it is one's.
+    /// The effect, if it belongs to one.
     pub effect: Option<Effect>,
-    /// What is wrong with it.
+    /// The problem.
     pub problem: ParamProblem,
 }
 
-/// What is wrong with a parameter.
+/// The problem of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ParamProblem {
-    /// Not finite or out of range.
+    /// The value is not finite or out of range.
     OutOfRange {
-        /// The value given.
+        /// The given value.
         value: f64,
-        /// Least allowed.
+        /// Least allowed value.
         min: f64,
-        /// Greatest allowed.
+        /// Greatest allowed value.
         max: f64,
     },
-    /// A list of the wrong length.
+    /// A list has the wrong length.
     Count {
-        /// How many were given.
+        /// Given length.
         count: usize,
-        /// Fewest allowed.
+        /// Least allowed length.
         min: usize,
-        /// Most allowed.
+        /// Greatest allowed length.
         max: usize,
     },
-    /// Not what the robot that runs has, and not to be changed while it does.
+    /// The value differs from that of the running robot and cannot be changed while it runs.
     Fixed {
-        /// The value given.
+        /// The given value.
         value: f64,
-        /// That of the robot that runs.
+        /// The value of the running robot.
         running: f64,
     },
-    /// Something that does not go together, in words.
+    /// Values are inconsistent, in words.
     Conflict(&'static str),
 }
 
 impl ParamError {
-    /// An effect or effect parameter that the catalogue does not have.
+    /// An effect or effect parameter is not in the catalogue.
     pub(crate) const UNKNOWN_EFFECT: Self =
         Self::conflict("effects", "names an effect or a parameter that the catalogue does not have");
 
@@ -69,10 +69,10 @@ impl ParamError {
     }
 }
 
-/// `value` if it is finite and in `min…max`.
+/// Returns `value` if it is finite and in `min…max`.
 ///
 /// # Errors
-/// [`ParamProblem::OutOfRange`] otherwise.
+/// Returns [`ParamProblem::OutOfRange`] otherwise.
 pub(crate) fn check(key: &'static str, value: f64, min: f64, max: f64) -> Result<f64, ParamError> {
     if (min..=max).contains(&value) && value.is_finite() {
         Ok(value)
@@ -129,7 +129,7 @@ impl fmt::Display for Plain {
     }
 }
 
-/// A range, where the greatest number there is stands for no bound.
+/// A range, in which the greatest possible number means no bound.
 struct Range(f64, f64);
 
 impl fmt::Display for Range {

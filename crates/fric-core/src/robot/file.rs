@@ -1,8 +1,8 @@
-//! The robot file, `format = "fric-robot/1"`: TOML text to checked parameters.
+//! The robot file, `format = "fric-robot/1"`: converts TOML text to checked parameters.
 //!
-//! Two steps: `serde` gives [`RobotOptions`], exactly what is written; [`RobotFile::parse`] checks it into
-//! [`CableParams`] and the rest. Every error names file, line and key, the value and what is allowed, and for a misspelt
-//! key the nearest one there is. Needs the feature `robot-file`, an allocator and `std`; not for the cycle.
+//! There are two steps: `serde` gives [`RobotOptions`], exactly as written; [`RobotFile::parse`] checks it into [`CableParams`] and the rest. Every
+//! error names file, line and key, the value and what is allowed, and for a misspelt key the nearest valid one. Needs the feature `robot-file`, an
+//! allocator and `std`; not for the cycle.
 
 use std::borrow::ToOwned;
 use std::collections::BTreeMap;
@@ -28,7 +28,7 @@ use crate::text_file;
 /// The only value of `format` that this version reads.
 pub const FORMAT: &str = "fric-robot/1";
 
-/// `pose` under `[log]` where no pose was measured: it is computed from the cable lengths ([`forward`](crate::forward)).
+/// Value of `pose` under `[log]` if no pose was measured: it is computed from the cable lengths ([`forward`](crate::forward)).
 pub const POSE_FROM_LENGTHS: &str = "lengths";
 
 /// A robot file as written.
@@ -44,10 +44,10 @@ pub struct RobotOptions {
     /// Mass and gravity.
     #[serde(default)]
     pub platform: PlatformTable,
-    /// Where the signals are in a log.
+    /// Location of the signals in a log.
     #[serde(default)]
     pub log: LogTable,
-    /// When a signal counts as faulty.
+    /// Limits beyond which a signal counts as faulty.
     #[serde(default)]
     pub monitor: MonitorTable,
     /// The cables.
@@ -81,17 +81,17 @@ impl Default for PlatformTable {
 pub struct LogTable {
     /// Cable signals.
     pub cable: String,
-    /// Cable lengths, where they have a topic or field of their own.
+    /// Cable lengths, if they have a topic or field of their own.
     pub length: Option<String>,
-    /// Cable speeds, likewise.
+    /// Cable speeds, if they have a topic or field of their own.
     pub speed: Option<String>,
-    /// Cable forces at the platform: where they are measured, or what is known of them.
+    /// Cable forces at the platform: where they are measured, or their known value.
     pub reference: ReferenceTable,
     /// Pose of the platform, or [`POSE_FROM_LENGTHS`].
     pub pose: String,
-    /// Outside wrench on the platform.
+    /// External wrench on the platform.
     pub wrench: String,
-    /// `[log.columns]`: for CSV, the columns that are called otherwise than by default, or are in other units.
+    /// `[log.columns]`: for CSV, the columns whose names or units differ from the defaults.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub columns: BTreeMap<String, ColumnTable>,
 }
@@ -117,7 +117,7 @@ impl LogTable {
         self.pose == POSE_FROM_LENGTHS
     }
 
-    /// Six numbers take six cables.
+    /// Checks that there are six cables for the six unknowns of a pose.
     fn check_pose(&self, cables: &[CableParams]) -> Result<(), OptionsError> {
         let complete = cables.iter().filter(|cable| cable.has_geometry()).count();
         if !self.pose_is_from_lengths() || complete >= FEWEST_CABLES {
@@ -136,7 +136,7 @@ impl LogTable {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MonitorTable {
-    /// Cycles with an unchanged sensor; 0: never.
+    /// Number of cycles with an unchanged sensor; 0 for never.
     pub frozen_cycles: Option<u32>,
     /// Greatest change of length in a cycle, m.
     pub length_jump_m: Option<f64>,
@@ -152,7 +152,7 @@ pub struct MonitorTable {
 pub struct CableTable {
     /// Name, as in the log's `JointState.name`.
     pub name: String,
-    /// Where the cable enters the last pulley, base frame, m.
+    /// Entry point of the cable into the last pulley, base frame, m.
     #[serde(default, deserialize_with = "exactly_if_given")]
     pub base_m: Option<[f64; 3]>,
     /// Attachment, platform frame, m.
@@ -161,7 +161,7 @@ pub struct CableTable {
     /// `"per_pulley"` or `"lumped"`.
     #[serde(default)]
     pub presliding: PreslidingName,
-    /// From the winch to the platform.
+    /// Pulleys from the winch to the platform.
     pub pulleys: Vec<PulleyTable>,
     /// Friction.
     #[serde(default)]
@@ -203,7 +203,7 @@ pub struct PulleyTable {
     pub sensor: Option<bool>,
 }
 
-/// What a wrap can follow.
+/// The quantity that a wrap follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum WrapName {
@@ -246,16 +246,16 @@ pub struct EffectTable {
     pub parameters: BTreeMap<String, f64>,
 }
 
-/// A robot file that is right.
+/// A valid robot file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RobotFile {
     options: RobotOptions,
-    /// All but the cables, which stand beside it.
+    /// All parameters except the cables, which are stored beside it.
     robot: RobotParams<'static>,
     cables: Vec<CableParams>,
 }
 
-/// What is wrong with a robot file.
+/// Errors of a robot file.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum RobotFileError {
@@ -264,17 +264,17 @@ pub enum RobotFileError {
     Read {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         source: std::io::Error,
     },
-    /// The text is no robot file.
+    /// The text is not a valid robot file.
     #[error("{origin}{}: {problem}", Line(*line))]
     Invalid {
-        /// Where the text is from.
+        /// Source of the text.
         origin: String,
-        /// Line, from 1, where it is known.
+        /// Line, from 1, if it is known.
         line: Option<usize>,
-        /// What is wrong, and what to do.
+        /// The problem, and what to do.
         problem: String,
     },
 }
@@ -283,16 +283,16 @@ impl RobotFile {
     /// Reads and checks a file.
     ///
     /// # Errors
-    /// [`RobotFileError`] if it cannot be read or is not right.
+    /// Returns a [`RobotFileError`] if the file cannot be read or is invalid.
     pub fn read(path: &Path) -> Result<Self, RobotFileError> {
         let text = text_file::read(path).map_err(|source| RobotFileError::Read { path: path.to_owned(), source })?;
         Self::parse(&text, &path.display().to_string())
     }
 
-    /// Checks a text; `origin` says where it is from, for errors.
+    /// Checks a text; `origin` names its source in error messages.
     ///
     /// # Errors
-    /// [`RobotFileError::Invalid`] for the first thing that is not right.
+    /// Returns [`RobotFileError::Invalid`] for the first problem.
     pub fn parse(text: &str, origin: &str) -> Result<Self, RobotFileError> {
         let invalid = |line, problem: String| RobotFileError::Invalid {
             origin: text_file::printable(origin),
@@ -307,10 +307,10 @@ impl RobotFile {
         Self::check(options).map_err(|fault| invalid(line_of(text, &fault.path), fault.to_string()))
     }
 
-    /// Checks options that come from elsewhere than a text; `Err` names key and problem.
+    /// Checks options that come from elsewhere than a text; the error names key and problem.
     ///
     /// # Errors
-    /// [`OptionsError`] for the first thing that is not right.
+    /// Returns an [`OptionsError`] for the first problem.
     pub fn check(options: RobotOptions) -> Result<Self, OptionsError> {
         if options.format != FORMAT {
             let problem = format!("is \"{}\"; this version reads \"{FORMAT}\"", options.format);
@@ -347,41 +347,41 @@ impl RobotFile {
         Ok(Self { options, robot, cables })
     }
 
-    /// The parameters that a [`Compensator`](crate::Compensator) is built from.
+    /// Returns the parameters for a [`Compensator`](crate::Compensator).
     #[must_use]
     pub fn params(&self) -> RobotParams<'_> {
         RobotParams { cables: &self.cables, ..self.robot }
     }
 
-    /// What is written in the file.
+    /// Returns the content of the file as written.
     #[must_use]
     pub fn options(&self) -> &RobotOptions {
         &self.options
     }
 
-    /// Names of the cables in order.
+    /// Returns the names of the cables in order.
     #[must_use]
     pub fn cable_names(&self) -> Vec<&str> {
         self.options.cable.iter().map(|cable| cable.name.as_str()).collect()
     }
 
-    /// Whether a column of a CSV log is called as one of this robot's signals.
+    /// Whether a column of a CSV log has the name of one of this robot's signals.
     #[must_use]
     pub fn is_log_column(&self, name: &str) -> bool {
         log_columns::known(&self.cable_names()).iter().any(|known| known == name)
     }
 
-    /// The file as TOML text, without comments.
+    /// Returns the file as TOML text, without comments.
     ///
     /// # Errors
-    /// None for a file that has been checked; the serialiser's signature has one.
+    /// A checked file causes no error; the signature is that of the serialiser.
     pub fn to_toml(&self) -> Result<String, toml::ser::Error> {
         toml::to_string(&self.options)
     }
 }
 
 impl RobotOptions {
-    /// The checked parameters of a robot with these cables, without them.
+    /// Returns the checked parameters of a robot with these cables, without the cables themselves.
     fn robot_params(&self, cables: &[CableParams]) -> Result<RobotParams<'static>, OptionsError> {
         let PlatformTable { mass_kg, center_of_mass_m, gravity_m_per_s2 } = self.platform;
         let standard = MonitorOptions::for_cycle(self.cycle_s);
@@ -398,7 +398,7 @@ impl RobotOptions {
         Ok(RobotParams { cables: &[], ..robot.with_known_reference(known_reference) })
     }
 
-    /// Where a refused parameter of the whole robot stands.
+    /// Returns the error with the position of a refused parameter of the whole robot.
     fn name_parameter(&self, cables: &[CableParams], error: ParamError) -> OptionsError {
         let table = match error.key {
             "mass_kg" | "center_of_mass_m" | "gravity_m_per_s2" => Some(Step::Key("platform")),
@@ -411,7 +411,7 @@ impl RobotOptions {
         OptionsError::new(&path, error.key, error.problem.to_string())
     }
 
-    /// The longest delay depends on the cycle time, so it is known only with the whole robot.
+    /// Returns the error of a delay that is too long. The longest delay depends on the cycle time, so it is known only with the whole robot.
     fn delay_error(&self, cables: &[CableParams], error: ParamError) -> OptionsError {
         let of_value = |cable: &CableParams| match error.problem {
             ParamProblem::OutOfRange { value, .. } => cable
@@ -429,7 +429,7 @@ impl RobotOptions {
     }
 }
 
-/// What is wrong with [`RobotOptions`]: which key, and why.
+/// Errors of [`RobotOptions`]: the key and the problem.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub struct OptionsError {
     pub(super) path: Vec<Step>,

@@ -1,9 +1,9 @@
 //! Cable forces at the platform that are known without a sensor there: the load of a test bench.
 
-/// What the cables of a robot pull at their platform ends.
+/// The known force of a robot's cables at their platform ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum KnownReference {
-    /// The same force all the time, whatever the cable does: a pretension, a constant-force spring.
+    /// A constant force, whatever the cable does: a pretension, a constant-force spring.
     Constant {
         /// Cable force at the platform, N.
         force_n: f64,
@@ -18,11 +18,11 @@ pub enum KnownReference {
 }
 
 impl KnownReference {
-    /// The cable force at the platform, N.
+    /// Returns the cable force at the platform, N.
     ///
-    /// `F = m·(g − a)` for a hanging mass by Newton's second law along the vertical, with the acceleration `a = d²l/dt²` of
-    /// the paid-out length in m/s²: a cable that pays out faster and faster lets the mass fall, and pulls less. In free fall
-    /// and beyond (`a ≥ g`) the cable is slack, and the force is 0. A constant force does not depend on `a`; NaN stays NaN.
+    /// For a hanging mass `F = m·(g − a)` by Newton's second law along the vertical, with the acceleration `a = d²l/dt²` of the paid-out length in
+    /// m/s²: a cable that pays out with increasing speed lets the mass fall, and its force decreases. In free fall and beyond (`a ≥ g`) the cable is
+    /// slack, and the force is 0. A constant force does not depend on `a`; NaN stays NaN.
     ///
     /// ```
     /// use fric_core::KnownReference;

@@ -1,4 +1,4 @@
-//! Where in a TOML text something stands, and what a misspelt key may have meant.
+//! Finds positions in a TOML text, and the intended name of a misspelt key.
 
 use core::fmt;
 use std::borrow::ToOwned;
@@ -13,11 +13,11 @@ use toml::de::{DeTable, DeValue};
 pub enum Step {
     /// Into a table.
     Key(&'static str),
-    /// Into an array, or by its place in the alphabet to an entry of a table whose keys people choose.
+    /// Into an array by index, or into a table with user-defined keys by alphabetical index.
     Index(usize),
 }
 
-/// A line in a sentence, where it is known.
+/// A line number for a sentence, if it is known.
 pub struct Line(pub Option<usize>);
 
 impl fmt::Display for Line {
@@ -26,7 +26,7 @@ impl fmt::Display for Line {
     }
 }
 
-/// The line (from 1) of the innermost thing on a path that the text has.
+/// Returns the line (from 1) of the innermost item of a path that the text contains.
 pub fn line_of(text: &str, path: &[Step]) -> Option<usize> {
     let root = DeTable::parse(text).ok()?;
     let mut offset = None;
@@ -34,7 +34,7 @@ pub fn line_of(text: &str, path: &[Step]) -> Option<usize> {
     for step in path {
         let next = match (step, value) {
             (Step::Key(key), DeValue::Table(table)) => table.get_key_value(*key).map(|(key, value)| {
-                // A table header has no span of its own value; its key has.
+                // A table header has no span of its own value, but its key has one.
                 (key.span().start.max(value.span().start), value.get_ref())
             }),
             (Step::Index(index), DeValue::Table(table)) => {
@@ -53,21 +53,20 @@ pub fn line_of(text: &str, path: &[Step]) -> Option<usize> {
     Some(before.matches('\n').count() + 1)
 }
 
-/// The line (from 1) in which an error of the parser stands; one at the end of the text is in the last line with anything in it.
+/// Returns the line (from 1) of a parser error; an error at the end of the text is in the last non-empty line.
 pub fn error_line(text: &str, error: &toml::de::Error) -> Option<usize> {
     let end = text.trim_end().len();
     error.span().map(|span| text.get(..span.start.min(end)).unwrap_or(text).matches('\n').count() + 1)
 }
 
-/// What is wrong with a text that did not become options, in one line and in the words of the file; `format` is what the file's
-/// `format` should be.
+/// Describes why a text did not become options, in one line and in the words of the file. `format` is the required value of the file's `format`.
 pub fn describe(text: &str, error: &toml::de::Error, format: &str) -> String {
     let message = error.message().trim().replace('\n', "; ");
     let Ok(root) = DeTable::parse(text) else { return format!("is not valid TOML: {message}") };
     let start = error.span().map_or(0, |span| span.start);
     let keys = keys_around(root.into_inner(), start);
     let key = keys.last().map_or("the file", String::as_str);
-    // serde words it "unknown field `x`, expected one of `a`, `b`" (or "variant"): the names stand in backticks.
+    // serde writes "unknown field `x`, expected one of `a`, `b`" (or "variant"): the names are in backticks.
     let names: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
     if let ("unknown field", Some((unknown, known))) = (first_words(&message), names.split_first()) {
         return unknown_name("key", unknown, known.iter().copied());
@@ -79,7 +78,7 @@ pub fn describe(text: &str, error: &toml::de::Error, format: &str) -> String {
         return match (*missing, keys.last()) {
             ("format", _) => format!("`format` is missing; write format = \"{format}\""),
             ("cable", _) => "`cable` is missing; give each cable a table [[cable]]".to_owned(),
-            // What the root lacks is reported at the start of the text.
+            // A missing key of the root is reported at the start of the text.
             _ if start == 0 => format!("`{missing}` is missing"),
             (_, None) => format!("`{missing}` is missing"),
             (_, Some(table)) if table == "cable" => format!("`{missing}` is missing in this [[cable]]"),
@@ -99,13 +98,13 @@ pub fn describe(text: &str, error: &toml::de::Error, format: &str) -> String {
     }
 }
 
-/// The first two words.
+/// Returns the first two words.
 fn first_words(message: &str) -> &str {
     let end = message.match_indices(' ').nth(1).map_or(message.len(), |(place, _)| place);
     message.get(..end).unwrap_or(message)
 }
 
-/// A value as somebody who writes a file sees it: serde says "string "fast"", "floating point `0.55`", "map".
+/// Returns a value in the terms of the file's author: serde writes "string "fast"", "floating point `0.55`", "map".
 fn plain_value(found: &str) -> String {
     match found.split_once(['"', '`']) {
         Some(("string ", text)) => format!("the text \"{text}"),
@@ -116,7 +115,7 @@ fn plain_value(found: &str) -> String {
     }
 }
 
-/// serde's names of types as somebody who writes a file knows them.
+/// Returns serde's type names in the terms of the file's author.
 fn plain_words(expected: &str) -> &str {
     match expected {
         "f64" => "a number",
@@ -131,9 +130,9 @@ fn plain_words(expected: &str) -> &str {
     }
 }
 
-/// The keys from the root to the innermost value that stands at an offset.
+/// Returns the keys from the root to the innermost value at an offset.
 ///
-/// Looks into every table, for the span of one under a header is the header's alone.
+/// Every table is searched, because the span of a table under a header covers only the header.
 fn keys_around(table: DeTable<'_>, offset: usize) -> Vec<String> {
     let mut keys = Vec::new();
     for (key, value) in table {
@@ -159,7 +158,7 @@ fn keys_within(value: DeValue<'_>, offset: usize) -> Vec<String> {
     }
 }
 
-/// "unknown key `x`; did you mean `y`?" with all names there are; `what` is what they are names of.
+/// Returns "unknown key `x`; did you mean `y`?" with all known names; `what` says what the names denote.
 #[must_use]
 pub fn unknown_name<'a>(what: &str, unknown: &str, known: impl Iterator<Item = &'a str>) -> String {
     let known: Vec<&str> = known.collect();
@@ -173,7 +172,7 @@ pub fn unknown_name<'a>(what: &str, unknown: &str, known: impl Iterator<Item = &
     }
 }
 
-/// The name that was probably meant; `None` where none of them is like it.
+/// Returns the name that was probably meant; `None` if none is similar.
 #[must_use]
 pub fn nearest_name<'a>(unknown: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     known

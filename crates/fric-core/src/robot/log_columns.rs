@@ -1,4 +1,4 @@
-//! `[log.columns]`: which column of a CSV log is which signal, and in which unit.
+//! `[log.columns]`: assigns columns of a CSV log to signals and units.
 
 use std::borrow::ToOwned;
 use std::collections::BTreeMap;
@@ -11,32 +11,32 @@ use serde::{Deserialize, Serialize};
 use super::file::OptionsError;
 use super::locate::{Step, unknown_name};
 
-/// The column of times, s.
+/// The time column, s.
 pub const TIME_COLUMN: &str = "time_s";
-/// What stands behind the cable's name and a point in the names of its columns: sensor force, length, speed, reference.
+/// Suffixes of a cable's columns after its name and a point: sensor force, length, speed, reference.
 const CABLE_COLUMNS: [&str; 4] = ["force_n", "length_m", "speed_m_per_s", "reference_n"];
 /// The columns of the platform's pose in the base frame.
 pub const POSE_COLUMNS: [&str; 7] = ["pose.x_m", "pose.y_m", "pose.z_m", "pose.qx", "pose.qy", "pose.qz", "pose.qw"];
-/// The columns of the outside wrench on the platform.
+/// The columns of the external wrench on the platform.
 pub const WRENCH_COLUMNS: [&str; 6] =
     ["wrench.fx_n", "wrench.fy_n", "wrench.fz_n", "wrench.tx_nm", "wrench.ty_nm", "wrench.tz_nm"];
 
-/// An entry of `[log.columns]`: the value is `factor` times what stands in the column, plus `offset`.
+/// An entry of `[log.columns]`: the value is `factor` times the column's content, plus `offset`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ColumnTable {
     /// Name of the column in the header of the CSV file.
     pub column: String,
-    /// Turns its unit into that of the key: 0.001 from millimetres, -1 for the other sign.
+    /// Converts its unit to that of the key: 0.001 from millimetres, -1 for the opposite sign.
     #[serde(default = "one", skip_serializing_if = "is_one")]
     pub factor: f64,
-    /// Added after that, in the unit of the key.
+    /// Added after the factor, in the unit of the key.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub offset: f64,
 }
 
 impl ColumnTable {
-    /// A column as it stands, in the unit of its key.
+    /// Creates an entry for a column in the unit of its key.
     #[must_use]
     pub fn plain(column: &str) -> Self {
         Self { column: column.to_owned(), factor: 1.0, offset: 0.0 }
@@ -57,7 +57,7 @@ fn is_zero(offset: &f64) -> bool {
     offset.to_bits() == 0.0_f64.to_bits()
 }
 
-/// The columns that the log of a robot with cables of these names can have.
+/// Returns the possible columns of a log for cables with these names.
 pub(super) fn known(cable_names: &[&str]) -> Vec<String> {
     let of_cables = cable_names.iter().flat_map(|name| CABLE_COLUMNS.map(|column| format!("{name}.{column}")));
     let of_platform = [TIME_COLUMN].into_iter().chain(POSE_COLUMNS).chain(WRENCH_COLUMNS).map(ToOwned::to_owned);
@@ -67,7 +67,7 @@ pub(super) fn known(cable_names: &[&str]) -> Vec<String> {
 /// Checks the entries of a robot with cables of these names.
 ///
 /// # Errors
-/// [`OptionsError`] for a key that names no signal, or a factor or offset that makes no number.
+/// Returns an [`OptionsError`] for a key that names no signal, or a factor or offset that is not a valid number.
 pub(super) fn check(columns: &BTreeMap<String, ColumnTable>, cable_names: &[&str]) -> Result<(), OptionsError> {
     let known = known(cable_names);
     for (place, (key, table)) in columns.iter().enumerate() {

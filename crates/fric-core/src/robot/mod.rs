@@ -1,5 +1,4 @@
-//! Robot parameters: options as stated, checked into parameters that are right by construction; and, with the feature
-//! `robot-file`, the TOML file that people write.
+//! Robot parameters: options as stated are checked into parameters that are valid by construction. With the feature `robot-file`, also the TOML file.
 
 mod error;
 mod known_reference;

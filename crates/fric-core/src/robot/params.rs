@@ -1,7 +1,7 @@
-//! Parameters of a robot, right by construction.
+//! Parameters of a robot, valid by construction.
 //!
-//! Options are plain data with defaults, as a program or a robot file states them; [`CableParams::new`] and
-//! [`RobotParams::new`] check them once. Nothing behind that check can fail. All of it is `Copy` and without allocation.
+//! Options are plain data with defaults, as a program or a robot file states them; [`CableParams::new`] and [`RobotParams::new`] check them once.
+//! Nothing after that check can fail. All types are `Copy` and free of allocation.
 
 use nalgebra::Vector3;
 
@@ -14,29 +14,29 @@ use crate::parameters::{FRICTION, GREATEST_MU};
 use crate::pulley::wrap_factor;
 use crate::signals::SignalLimits;
 
-/// Most pulleys of one cable, the sensor pulley included.
+/// Maximum number of pulleys of one cable, including the sensor pulley.
 pub const MAX_PULLEYS: usize = 8;
 
-/// One pulley, as stated.
+/// Options of one pulley.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PulleyOptions {
-    /// Its wrap does not change.
+    /// A pulley with a constant wrap.
     Fixed {
         /// Wrap angle in rad, 0…2π.
         wrap_rad: f64,
-        /// Whether it carries the force sensor; only the first can.
+        /// Whether it carries the force sensor; only the first pulley can.
         sensor: bool,
     },
     /// The last pulley, swivelling about the incoming cable; its wrap follows the pose.
     Swivel {
         /// Radius of the cable's centre line, m.
         radius_m: f64,
-        /// Direction in which the cable enters, in the base frame; its length does not matter.
+        /// Direction in which the cable enters, in the base frame, of any length.
         axis: [f64; 3],
     },
 }
 
-/// Presliding form.
+/// Form of presliding.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Presliding {
     /// One Dahl state on each pulley.
@@ -46,7 +46,7 @@ pub enum Presliding {
     Lumped,
 }
 
-/// Friction of a cable, as stated. The default rubs nowhere.
+/// Friction options of a cable. The default is without friction.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FrictionOptions {
     /// Bearing friction μ on the normal force, 0…0.9.
@@ -55,26 +55,26 @@ pub struct FrictionOptions {
     pub sigma_n_per_m: Option<f64>,
     /// Viscous friction F_pv of each pulley, N s/m.
     pub viscous_n_s_per_m: f64,
-    /// Offset ε added to the force at the platform after friction, N (\[P\] 18): what the two force sensors of an
-    /// identification differ by. It counts in the wrench too; the paper neglects it in operation, for which 0 stands.
+    /// Offset ε added to the force at the platform after friction, N (\[P\] 18): the difference between the two force sensors of an identification.
+    /// It enters the wrench too; the paper neglects it in operation, which corresponds to 0.
     pub offset_n: f64,
 }
 
-/// Where a cable is attached, as stated.
+/// Attachment options of a cable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GeometryOptions {
-    /// Where the cable enters the last pulley, base frame, m.
+    /// Entry point of the cable into the last pulley, base frame, m.
     pub base_m: [f64; 3],
     /// Attachment point, platform frame, m.
     pub platform_m: [f64; 3],
 }
 
-/// Range in which the parameters have been identified; outside it a cycle is flagged.
+/// Range in which the parameters were identified; outside it a cycle is flagged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ValidatedRange {
     /// Least and greatest sensor force, N.
     pub force_n: [f64; 2],
-    /// Greatest speed either way, m/s.
+    /// Greatest speed in either direction, m/s.
     pub speed_m_per_s: f64,
 }
 
@@ -83,17 +83,17 @@ impl ValidatedRange {
     pub const ANY: Self = Self { force_n: [-f64::MAX, f64::MAX], speed_m_per_s: f64::MAX };
 }
 
-/// One cable, as stated.
+/// Options of one cable.
 #[derive(Clone, Copy, Debug)]
 pub struct CableOptions<'a> {
-    /// Pulleys from the winch to the platform, 1…[`MAX_PULLEYS`]. Without a sensor pulley the sensor is in line with
-    /// the cable on the winch side of the first.
+    /// Pulleys from the winch to the platform, 1…[`MAX_PULLEYS`]. Without a sensor pulley, the sensor is in line with the cable on the winch side of
+    /// the first pulley.
     pub pulleys: &'a [PulleyOptions],
     /// Presliding form.
     pub presliding: Presliding,
     /// Friction.
     pub friction: FrictionOptions,
-    /// Attachment; needed for a swivelling pulley and for the wrench.
+    /// Attachment; required for a swivelling pulley and for the wrench.
     pub geometry: Option<GeometryOptions>,
     /// Friction coefficient μ_p between cable and pulley, 0.01…2; without it the cable never slips.
     pub traction_mu: Option<f64>,
@@ -104,7 +104,7 @@ pub struct CableOptions<'a> {
 }
 
 impl CableOptions<'_> {
-    /// A cable over the given pulleys, without friction, geometry, slip limit, range or effects.
+    /// Creates a cable over the given pulleys, without friction, geometry, slip limit, range or effects.
     #[must_use]
     pub const fn new(pulleys: &[PulleyOptions]) -> CableOptions<'_> {
         CableOptions {
@@ -129,7 +129,7 @@ pub(crate) enum Wrap {
 /// A checked cable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CableParams {
-    /// Wrap of the sensor pulley, where there is one.
+    /// Wrap of the sensor pulley, if there is one.
     pub(crate) sensor_wrap_rad: Option<f64>,
     pub(crate) wraps: [Wrap; MAX_PULLEYS],
     pub(crate) pulley_count: usize,
@@ -141,7 +141,7 @@ pub struct CableParams {
     pub(crate) effects: EffectParams,
 }
 
-/// Checked attachment and last pulley; an eyelet (radius 0) where the last pulley does not swivel.
+/// Checked attachment and last pulley; an eyelet (radius 0) if the last pulley does not swivel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Geometry {
     pub base_m: Vector3<f64>,
@@ -162,14 +162,14 @@ fn check_point(key: &'static str, point: [f64; 3]) -> Result<Vector3<f64>, Param
 }
 
 impl CableParams {
-    /// Radius of the pulley that follows the pose, m; `None` without one.
+    /// Returns the radius of the pulley that follows the pose, m; `None` without one.
     #[must_use]
     pub fn pose_pulley_radius_m(&self) -> Option<f64> {
         self.geometry.map(|geometry| geometry.radius_m).filter(|radius_m| *radius_m > 0.0 && self.needs_pose())
     }
 
-    /// The same cable with another entry into its last pulley and another attachment, m; `None` where it has no geometry, or a
-    /// number is not finite or out of range.
+    /// Returns the same cable with another entry point into its last pulley and another attachment, m; `None` if it has no geometry, or a number is
+    /// not finite or out of range.
     #[must_use]
     pub fn with_geometry(&self, base_m: [f64; 3], platform_m: [f64; 3]) -> Option<Self> {
         let base_m = check_point("base_m", base_m).ok()?;
@@ -181,7 +181,7 @@ impl CableParams {
     /// Checks a cable.
     ///
     /// # Errors
-    /// [`ParamError`] names the first parameter that is not finite, out of its range or at odds with another.
+    /// Returns a [`ParamError`] with the first parameter that is not finite, out of its range or inconsistent with another.
     pub fn new(options: &CableOptions<'_>) -> Result<Self, ParamError> {
         let count = options.pulleys.len();
         if count == 0 || count > MAX_PULLEYS {
@@ -257,7 +257,7 @@ impl CableParams {
         Ok(params)
     }
 
-    /// Whether the friction's numbers are in range, each and together.
+    /// Checks whether the friction's numbers are in range, individually and together.
     pub(crate) fn check_friction(&self) -> Result<(), ParamError> {
         let FrictionOptions { mu, sigma_n_per_m, viscous_n_s_per_m, offset_n } = self.friction;
         let stated = [Some(mu), sigma_n_per_m, Some(viscous_n_s_per_m), Some(offset_n)];
@@ -270,7 +270,7 @@ impl CableParams {
             .map_or(Ok(()), |wrap_rad| check_sensor_wrap(wrap_rad, raised_mu).map_err(|error| error.at_pulley(0)))
     }
 
-    /// Whether the pulley with a friction of its own, if any, is one of the cable's.
+    /// Checks whether the pulley with its own friction, if any, is one of the cable's.
     fn check_defect(&self) -> Result<(), ParamError> {
         let values = self.values();
         let defect = PulleyDefect::of(|place| values[place]);
@@ -281,17 +281,17 @@ impl CableParams {
         Err(ParamError::conflict("pulley", problem).of_effect(Effect::PulleyDefect))
     }
 
-    /// The pulley with a friction of its own, counted from 0.
+    /// Returns the pulley with its own friction, counted from 0.
     pub(crate) fn defect_pulley(&self) -> Option<usize> {
         let number = self.values()[pulley_defect::PULLEY];
         #[expect(clippy::cast_precision_loss, reason = "at most MAX_PULLEYS")]
         (0..self.pulley_count).find(|pulley| ((pulley + 1) as f64 - number).abs() <= 0.0)
     }
 
-    /// μ with all that effects can raise it by.
+    /// Returns the greatest μ that effects can raise it to.
     ///
     /// # Errors
-    /// [`ParamError`] names the effect that takes it beyond [`GREATEST_MU`].
+    /// Returns a [`ParamError`] with the effect that raises it beyond [`GREATEST_MU`].
     pub(crate) fn raised_mu(&self) -> Result<f64, ParamError> {
         let values = self.values();
         let mut mu = self.friction.mu;
@@ -305,23 +305,23 @@ impl CableParams {
         Ok(mu)
     }
 
-    /// The greatest μ that leaves the sensor pulley a third of the tension that it would feel without friction.
+    /// Returns the greatest μ that leaves the sensor pulley a third of its frictionless signal.
     pub(crate) fn greatest_mu(&self) -> f64 {
         self.sensor_wrap_rad.map_or(GREATEST_MU, |wrap_rad| {
             let (factor, cos) = (wrap_factor(wrap_rad), libm::cos(wrap_rad));
             let taken = factor * (1.0 + cos);
-            // At 180° (cos = −1) friction takes nothing from the sensor: no bound.
+            // At 180° (cos = −1) friction does not reduce the sensor signal, so there is no bound.
             if taken > 0.0 { GREATEST_MU.min(4.0 / 3.0 * (1.0 - cos) / taken) } else { GREATEST_MU }
         })
     }
 
-    /// Pulleys, the sensor pulley included.
+    /// Returns the number of pulleys, including the sensor pulley.
     #[must_use]
     pub fn pulley_count(&self) -> usize {
         self.pulley_count
     }
 
-    /// Wrap angle of each pulley from the winch to the platform, rad, 0…2π; `None` where it follows the pose
+    /// Returns the wrap angle of each pulley from the winch to the platform, rad, 0…2π; `None` if it follows the pose
     /// ([`pose_wrap_rad`](Self::pose_wrap_rad)).
     pub fn fixed_wraps_rad(&self) -> impl Iterator<Item = Option<f64>> + '_ {
         self.wraps.iter().take(self.pulley_count).map(|wrap| match *wrap {
@@ -330,63 +330,63 @@ impl CableParams {
         })
     }
 
-    /// Wrap angle of the first pulley if it carries the force sensor, rad.
+    /// Returns the wrap angle of the first pulley if it carries the force sensor, rad.
     #[must_use]
     pub fn sensor_wrap_rad(&self) -> Option<f64> {
         self.sensor_wrap_rad
     }
 
-    /// Presliding form.
+    /// Returns the form of presliding.
     #[must_use]
     pub fn presliding(&self) -> Presliding {
         self.presliding
     }
 
-    /// Friction: μ (1, 0…0.9), σ (N/m, 10⁻³…10¹² if given), F_pv (N s/m, 0…10⁶), ε (N, ±10⁶).
+    /// Returns the friction: μ (1, 0…0.9), σ (N/m, 10⁻³…10¹² if given), F_pv (N s/m, 0…10⁶), ε (N, ±10⁶).
     #[must_use]
     pub fn friction(&self) -> FrictionOptions {
         self.friction
     }
 
-    /// Effects, each parameter in the unit and range of its row in the catalogue.
+    /// Returns the effects, each parameter in the unit and range of its row in the catalogue.
     #[must_use]
     pub fn effects(&self) -> &EffectParams {
         &self.effects
     }
 
-    /// Friction coefficient μ_p between cable and pulley, 1, 0.01…2; `None` if the cable never slips.
+    /// Returns the friction coefficient μ_p between cable and pulley, 0.01…2; `None` if the cable never slips.
     #[must_use]
     pub fn traction_mu(&self) -> Option<f64> {
         self.traction_mu
     }
 
-    /// Where the cable enters the last pulley, base frame, m; `None` without geometry.
+    /// Returns the entry point of the cable into the last pulley, base frame, m; `None` without geometry.
     #[must_use]
     pub fn base_m(&self) -> Option<Vector3<f64>> {
         self.geometry.map(|geometry| geometry.base_m)
     }
 
-    /// Attachment, platform frame, m; `None` without geometry.
+    /// Returns the attachment, platform frame, m; `None` without geometry.
     #[must_use]
     pub fn platform_m(&self) -> Option<Vector3<f64>> {
         self.geometry.map(|geometry| geometry.platform_m)
     }
 
-    /// Whether a pulley's wrap follows the pose.
+    /// Whether the wrap of a pulley follows the pose.
     #[must_use]
     pub fn needs_pose(&self) -> bool {
         self.wraps.contains(&Wrap::Pose)
     }
 
-    /// Whether the attachment is known, so that the cable takes part in the wrench.
+    /// Whether the attachment is known, so that the cable contributes to the wrench.
     #[must_use]
     pub fn has_geometry(&self) -> bool {
         self.geometry.is_some()
     }
 }
 
-/// The sensor pulley's closed form is singular where `2(1 − c) + sμk(1 + c)` vanishes (\[P\] 10, 11): it must keep a
-/// third of its frictionless value.
+/// Checks the wrap of the sensor pulley. Its closed form is singular where `2(1 − c) + sμk(1 + c)` vanishes (\[P\] 10, 11), so this must keep a third
+/// of its frictionless value.
 fn check_sensor_wrap(wrap_rad: f64, greatest_mu: f64) -> Result<(), ParamError> {
     let (factor, cos) = (wrap_factor(wrap_rad), libm::cos(wrap_rad));
     let frictionless = 2.0 * (1.0 - cos);
@@ -400,7 +400,7 @@ fn check_sensor_wrap(wrap_rad: f64, greatest_mu: f64) -> Result<(), ParamError> 
     }
 }
 
-/// The platform, as stated.
+/// Options of the platform.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlatformOptions {
     /// Mass, kg.
@@ -412,36 +412,36 @@ pub struct PlatformOptions {
 }
 
 impl Default for PlatformOptions {
-    /// No mass; standard gravity downwards.
+    /// Returns a platform without mass, with standard gravity downwards.
     fn default() -> Self {
         Self { mass_kg: 0.0, center_of_mass_m: [0.0; 3], gravity_m_per_s2: [0.0, 0.0, -9.80665] }
     }
 }
 
-/// When a signal counts as faulty, as stated.
+/// Limits beyond which a signal counts as faulty.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MonitorOptions {
-    /// After so many cycles with the same sensor value to the last bit, in which the cable has got 1 mm away, the sensor counts
-    /// as frozen; 0: never.
+    /// Number of cycles with a bit-identical sensor value, during which the cable has moved 1 mm away, after which the sensor counts as frozen; 0 for
+    /// never.
     pub frozen_cycles: u32,
     /// Greatest change of length in one cycle, m.
     pub length_jump_m: f64,
-    /// Amplitude of the noise of measured lengths, m: changes within it are no motion. 0 for set points.
+    /// Amplitude of the noise of measured lengths, m: changes within it do not count as motion. 0 for set points.
     pub length_noise_m: f64,
-    /// Greatest change of a sensor force in one cycle, N: beyond it the sensor has jumped. `None`: what the cable's own presliding
-    /// stiffness σ makes of a twentieth of `length_jump_m`. A change within 5 % of the force + 0.1 N at the platform is no jump
-    /// either way, and without σ none is.
+    /// Greatest change of a sensor force in one cycle, N; beyond it the sensor has jumped. `None` derives it from the cable's presliding stiffness σ
+    /// and a twentieth of `length_jump_m`. A change within 5 % of the force + 0.1 N at the platform is no jump in either case, and without σ there
+    /// are none.
     pub sensor_jump_n: Option<f64>,
 }
 
 impl MonitorOptions {
-    /// 100 cycles; what 10 m/s cover in a cycle; no noise; jumps by each cable's own stiffness.
+    /// Returns the defaults: 100 cycles; the distance that 10 m/s cover in a cycle; no noise; jumps from each cable's own stiffness.
     #[must_use]
     pub fn for_cycle(cycle_s: f64) -> Self {
         Self { frozen_cycles: 100, length_jump_m: 10.0 * cycle_s, length_noise_m: 0.0, sensor_jump_n: None }
     }
 
-    /// As the signal checks take them.
+    /// Returns the limits for the signal checks.
     #[must_use]
     pub fn limits(&self) -> SignalLimits {
         let Self { frozen_cycles, length_jump_m, length_noise_m, sensor_jump_n: _ } = *self;
@@ -450,10 +450,10 @@ impl MonitorOptions {
     }
 }
 
-/// Cables that a robot file may have.
+/// Maximum number of cables in a robot file.
 pub const MOST_CABLES: usize = 64;
 
-/// Noise of the lengths that leaves some motion.
+/// Checks that the noise of the lengths leaves some motion.
 fn check_length_noise(monitor: &MonitorOptions) -> Result<f64, ParamError> {
     let length_noise_m = check("length_noise_m", monitor.length_noise_m, 0.0, 0.1)?;
     if length_noise_m >= monitor.length_jump_m {
@@ -463,7 +463,7 @@ fn check_length_noise(monitor: &MonitorOptions) -> Result<f64, ParamError> {
     Ok(length_noise_m)
 }
 
-/// A checked robot: what a [`Compensator`](crate::Compensator) is built from.
+/// A checked robot, from which a [`Compensator`](crate::Compensator) is built.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RobotParams<'a> {
     pub(crate) cycle_s: f64,
@@ -479,7 +479,7 @@ impl<'a> RobotParams<'a> {
     /// Checks a robot; `cycle_s` is the cycle time.
     ///
     /// # Errors
-    /// [`ParamError`] names the first parameter that is not finite or out of range.
+    /// Returns a [`ParamError`] with the first parameter that is not finite or out of range.
     pub fn new(
         cycle_s: f64,
         platform: &PlatformOptions,
@@ -512,59 +512,59 @@ impl<'a> RobotParams<'a> {
         })
     }
 
-    /// The same robot with cable forces at the platform that are known; the cycle does not use them.
+    /// Returns the same robot with known cable forces at the platform, which the cycle does not use.
     #[must_use]
     pub fn with_known_reference(self, known_reference: Option<KnownReference>) -> Self {
         Self { known_reference, ..self }
     }
 
-    /// The same robot with so much noise on its lengths, m ([`MonitorOptions::length_noise_m`]).
+    /// Returns the same robot with this noise on its lengths, m ([`MonitorOptions::length_noise_m`]).
     ///
     /// # Errors
-    /// [`ParamError`] where that is out of range, or no less than the greatest change of length.
+    /// Returns a [`ParamError`] if that is out of range, or not below the greatest change of length.
     pub fn with_length_noise_m(self, length_noise_m: f64) -> Result<Self, ParamError> {
         let monitor = MonitorOptions { length_noise_m, ..self.monitor };
         check_length_noise(&monitor)?;
         Ok(Self { monitor, ..self })
     }
 
-    /// Cable forces at the platform that are known and not measured.
+    /// Returns the cable forces at the platform that are known rather than measured.
     #[must_use]
     pub fn known_reference(&self) -> Option<KnownReference> {
         self.known_reference
     }
 
-    /// The cycle time in s.
+    /// Returns the cycle time, s.
     #[must_use]
     pub fn cycle_s(&self) -> f64 {
         self.cycle_s
     }
 
-    /// Mass of the platform in kg.
+    /// Returns the mass of the platform, kg.
     #[must_use]
     pub fn mass_kg(&self) -> f64 {
         self.mass_kg
     }
 
-    /// Centre of mass of the platform, platform frame, m.
+    /// Returns the centre of mass of the platform, platform frame, m.
     #[must_use]
     pub fn center_of_mass_m(&self) -> Vector3<f64> {
         self.center_of_mass_m
     }
 
-    /// Gravity, base frame, m/s².
+    /// Returns gravity, base frame, m/s².
     #[must_use]
     pub fn gravity_m_per_s2(&self) -> Vector3<f64> {
         self.gravity_m_per_s2
     }
 
-    /// When a signal counts as faulty.
+    /// Returns the limits beyond which a signal counts as faulty.
     #[must_use]
     pub fn monitor(&self) -> &MonitorOptions {
         &self.monitor
     }
 
-    /// The cables in order.
+    /// Returns the cables in order.
     #[must_use]
     pub fn cables(&self) -> &'a [CableParams] {
         self.cables

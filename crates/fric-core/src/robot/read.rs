@@ -1,4 +1,4 @@
-//! What `serde` derives too loosely or with errors that name no place: lists of so many numbers, effects.
+//! Deserialisers where `serde`'s own are too lenient or report no position: number lists of fixed length, effects.
 
 use core::fmt;
 use std::collections::BTreeMap;
@@ -8,12 +8,12 @@ use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor}
 
 use super::file::EffectTable;
 
-/// So many numbers and no more: `serde`'s own arrays pass over what is too much.
+/// Reads exactly `COUNT` numbers, because `serde`'s own arrays ignore surplus ones.
 pub fn exactly<'de, const COUNT: usize, D: Deserializer<'de>>(deserializer: D) -> Result<[f64; COUNT], D::Error> {
     deserializer.deserialize_seq(Numbers)
 }
 
-/// The same for a key that may be left out.
+/// Reads the same for an optional key.
 pub fn exactly_if_given<'de, const COUNT: usize, D: Deserializer<'de>>(
     deserializer: D,
 ) -> Result<Option<[f64; COUNT]>, D::Error> {
@@ -42,7 +42,7 @@ impl<'de, const COUNT: usize> Visitor<'de> for Numbers<COUNT> {
     }
 }
 
-/// By hand, for a flattened map loses where its keys stand.
+/// Implemented by hand, because a flattened map loses the positions of its keys.
 impl<'de> Deserialize<'de> for EffectTable {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct Effect;

@@ -1,4 +1,4 @@
-//! `reference` under `[log]`: where the cable forces at the platform are measured, or what is known of them.
+//! `reference` under `[log]`: where the cable forces at the platform are measured, or their known value.
 
 use core::fmt;
 use std::borrow::ToOwned;
@@ -19,7 +19,7 @@ use super::{KnownReference, ParamProblem};
 pub enum ReferenceTable {
     /// The topic or field that has the forces.
     Signal(String),
-    /// Known without a sensor, the same for every cable.
+    /// A value known without a sensor, the same for every cable.
     Known(KnownReferenceTable),
 }
 
@@ -36,7 +36,7 @@ pub struct KnownReferenceTable {
 }
 
 impl ReferenceTable {
-    /// The checked reference; `None` where it is measured. `gravity_m_per_s2` is the magnitude of the robot's gravity.
+    /// Returns the checked reference; `None` if it is measured. `gravity_m_per_s2` is the magnitude of the robot's gravity.
     pub(super) fn check(&self, gravity_m_per_s2: f64) -> Result<Option<KnownReference>, OptionsError> {
         let Self::Known(table) = self else { return Ok(None) };
         let error = |key: Option<&'static str>, problem: String| {
@@ -70,7 +70,7 @@ impl ReferenceTable {
     }
 }
 
-/// The topic or field, or what is known, as in the file.
+/// Writes the topic or field, or the known value, as in the file.
 impl fmt::Display for ReferenceTable {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -85,7 +85,7 @@ impl fmt::Display for ReferenceTable {
     }
 }
 
-/// By hand, for an untagged value that fits neither form is refused without a word about either.
+/// Implemented by hand, because the error for an untagged value that fits neither form says nothing about either.
 impl<'de> Deserialize<'de> for ReferenceTable {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct Reference;

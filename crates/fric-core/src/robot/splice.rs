@@ -1,6 +1,6 @@
-//! Changes of a TOML text by place: what is not named stays to the byte.
+//! Changes of a TOML text by position; all other bytes stay unchanged.
 //!
-//! Places are spans of a parser, so every offset lies between two characters. A place that is none changes nothing.
+//! Positions are spans of a parser, so every offset lies between two characters. An invalid position changes nothing.
 
 use core::ops::Range;
 use std::borrow::ToOwned;
@@ -10,16 +10,16 @@ use std::vec::Vec;
 
 use toml_edit::TableLike;
 
-/// One range of a text and what is to stand there.
+/// One range of a text and its replacement.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Splice {
-    /// In bytes.
+    /// The range in bytes.
     pub range: Range<usize>,
     /// The new text.
     pub with: String,
 }
 
-/// Where an entry of a table or a list stands, key included, in bytes.
+/// The span of an entry of a table or a list, including its key, in bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Entry {
     pub start: usize,
@@ -32,7 +32,7 @@ impl From<Range<usize>> for Entry {
     }
 }
 
-/// Makes the changes, which must not overlap; insertions at one place stand in the order in which they are given.
+/// Applies the changes, which must not overlap; insertions at one position keep their given order.
 pub fn apply(text: &mut String, mut splices: Vec<Splice>) {
     splices.sort_by_key(|splice| splice.range.start);
     for Splice { range, with } in splices.into_iter().rev() {
@@ -42,7 +42,7 @@ pub fn apply(text: &mut String, mut splices: Vec<Splice>) {
     }
 }
 
-/// The entry of a table that ends last, those under dotted keys included.
+/// Returns the entry of a table that ends last, including those under dotted keys.
 pub fn last_entry(table: &dyn TableLike) -> Option<Entry> {
     let entries = table.get_values().into_iter().filter_map(|(keys, value)| {
         let end = value.span()?.end;
@@ -51,18 +51,18 @@ pub fn last_entry(table: &dyn TableLike) -> Option<Entry> {
     entries.max_by_key(|entry| entry.end)
 }
 
-/// A new entry right behind another one in the same braces or brackets.
+/// Returns a new entry directly after another one in the same braces or brackets.
 pub fn beside(last: &Entry, entry: &str) -> Vec<Splice> {
     Vec::from([insert(last.end, format!(", {entry}"))])
 }
 
-/// A new line under an entry, indented like it.
+/// Returns a new line under an entry, with the same indentation.
 pub fn below(text: &str, place: &Entry, entry: &str) -> Vec<Splice> {
     let line = format!("{}{}{entry}", newline(text), indentation(text, place.start));
     Vec::from([insert(line_end(text, place.end), line)])
 }
 
-/// A new last entry of a list in brackets or of a table in braces: on a line of its own if the last one is.
+/// Returns a new last entry of a list in brackets or of an inline table; on its own line if the last one is.
 pub fn in_list(text: &str, array: &Range<usize>, last: Option<&Entry>, entry: &str) -> Vec<Splice> {
     let inside = array.start + 1..array.end.saturating_sub(1);
     let Some(last) = last else {
@@ -84,7 +84,7 @@ pub fn in_list(text: &str, array: &Range<usize>, last: Option<&Entry>, entry: &s
     Vec::from([insert(last.end, own_comma.to_owned()), insert(line_end, line)])
 }
 
-/// A list without one of its entries, a comma, and a line that would be left blank or with a comment only.
+/// Removes one entry of a list, a comma, and a line that would be left blank or with only a comment.
 pub fn out_of_list(text: &str, array: &Range<usize>, entries: &[Entry], index: usize) -> Option<Vec<Splice>> {
     let entry = *entries.get(index)?;
     let own_comma = comma_behind(text, entry.end);
@@ -106,12 +106,12 @@ pub fn out_of_list(text: &str, array: &Range<usize>, entries: &[Entry], index: u
     Some(splices)
 }
 
-/// A new table under the last of its like: the same header, the entries on lines of their own.
+/// Returns a new table under the last similar one: the same header, with each entry on its own line.
 pub fn table_below(text: &str, header: &Range<usize>, last: &Entry, entries: &[String]) -> Vec<Splice> {
     let newline = newline(text);
     let header_line = line_start(text, header.start)..line_end(text, header.start);
     let header_text = text.get(header_line.clone()).unwrap_or_default();
-    // Without the comment behind it, which is about the table that is there.
+    // The comment after the header is left out, because it refers to the existing table.
     let closed = header_text.find("]]").and_then(|place| header_text.get(..place + 2)).unwrap_or(header_text);
     let is_apart = blank_line_above(text, header_line.start).is_some();
     let mut added = if is_apart { newline.to_owned() } else { String::new() };
@@ -125,8 +125,7 @@ pub fn table_below(text: &str, header: &Range<usize>, last: &Entry, entries: &[S
     Vec::from([insert(line_end(text, last.end), added)])
 }
 
-/// The text without a table under a header, from the header's line to that of its last entry, and without the blank
-/// line before.
+/// Removes a table under a header, from the header's line to that of its last entry, and the blank line before it.
 pub fn without_lines(text: &str, header: &Range<usize>, last: Option<Entry>) -> Vec<Splice> {
     let start = line_start(text, header.start);
     let start = blank_line_above(text, start).unwrap_or(start);
@@ -138,7 +137,7 @@ fn insert(place: usize, with: String) -> Splice {
     Splice { range: place..place, with }
 }
 
-/// As the text ends its lines.
+/// Returns the line ending of the text.
 fn newline(text: &str) -> &'static str {
     if text.contains("\r\n") { "\r\n" } else { "\n" }
 }
@@ -147,25 +146,25 @@ fn line_start(text: &str, place: usize) -> usize {
     text.get(..place).and_then(|before| before.rfind('\n')).map_or(0, |newline| newline + 1)
 }
 
-/// Where the line above the one that starts here starts, if it is blank.
+/// Returns the start of the previous line, if that is blank.
 fn blank_line_above(text: &str, line: usize) -> Option<usize> {
     let above = line_start(text, line.checked_sub(1)?);
     text.get(above..line)?.trim().is_empty().then_some(above)
 }
 
-/// Where the line of a place ends, before the newline.
+/// Returns the end of the line at a position, before the newline.
 fn line_end(text: &str, place: usize) -> usize {
     let line = text.get(place..).and_then(|rest| rest.split('\n').next()).unwrap_or_default();
     place + line.strip_suffix('\r').unwrap_or(line).len()
 }
 
-/// Behind the newline that follows a line's end.
+/// Returns the position after the newline at a line's end.
 fn next_line(text: &str, line_end: usize) -> usize {
     let newline = text.get(line_end..).and_then(|rest| rest.find('\n'));
     newline.map_or(text.len(), |newline| line_end + newline + 1)
 }
 
-/// The blanks that the line of a place starts with.
+/// Returns the leading blanks of the line at a position.
 fn indentation(text: &str, place: usize) -> &str {
     let line = text.get(line_start(text, place)..).unwrap_or_default();
     let blanks = line.find(|character| character != ' ' && character != '\t').unwrap_or(line.len());
@@ -176,7 +175,7 @@ fn is_first_on_line(text: &str, place: usize) -> bool {
     text.get(line_start(text, place)..place).is_some_and(|before| before.trim().is_empty())
 }
 
-/// The comma behind an entry, which blanks, newlines and comments may precede.
+/// Returns the comma after an entry; blanks, newlines and comments may precede it.
 fn comma_behind(text: &str, mut place: usize) -> Option<usize> {
     loop {
         let rest = text.get(place..)?;

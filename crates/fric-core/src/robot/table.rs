@@ -1,4 +1,4 @@
-//! One `[[cable]]` of a robot file, checked.
+//! Checks one `[[cable]]` of a robot file.
 
 use std::borrow::ToOwned;
 use std::format;
@@ -15,7 +15,7 @@ use crate::effects::empirical::Over;
 use crate::effects::{Effect, EffectParams};
 
 impl CableTable {
-    /// The checked cable.
+    /// Returns the checked cable.
     pub(super) fn check(&self) -> Result<CableParams, OptionsError> {
         if self.name.trim().is_empty() {
             let problem = "is empty; give the name that the log has for the cable".to_owned();
@@ -61,7 +61,7 @@ impl CableTable {
         .map_err(|error| self.name_parameter(error))
     }
 
-    /// Where a refused parameter stands in this cable's table: in one of its effects, or in the table itself.
+    /// Returns the error with the position of a refused parameter in this cable's table: in one of its effects, or in the table itself.
     pub(super) fn name_parameter(&self, error: ParamError) -> OptionsError {
         let Some(kind) = error.effect.map(Effect::kind) else { return OptionsError::from(error) };
         if let Some(index) = self.effects.iter().position(|effect| effect.kind == kind) {
@@ -100,7 +100,7 @@ impl CableTable {
     }
 }
 
-/// Whether a table without a name is over one condition.
+/// Checks whether an `empirical` table is over one condition.
 fn check_ranges(params: &EffectParams, path: &[Step]) -> Result<(), OptionsError> {
     let row = Effect::Empirical.row();
     let value = |place: usize| {
@@ -146,7 +146,7 @@ impl PulleyTable {
     }
 }
 
-/// Back from checked names and radians to the keys and degrees of the file.
+/// Converts checked names and radians back to the keys and degrees of the file.
 impl From<ParamError> for OptionsError {
     fn from(error: ParamError) -> Self {
         let (key, problem) = match (error.key, error.problem) {

@@ -1,4 +1,4 @@
-//! What is allowed in a robot file but hardly meant, a sentence each.
+//! Warnings about allowed but probably unintended content of a robot file, one sentence each.
 
 use std::format;
 use std::string::String;
@@ -8,7 +8,7 @@ use super::file::{EffectTable, RobotFile};
 use crate::effects::Effect;
 
 impl RobotFile {
-    /// Effects that change nothing.
+    /// Returns warnings about effects that change nothing.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let is_idle = |effect: &EffectTable| {

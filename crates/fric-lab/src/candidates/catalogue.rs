@@ -1,7 +1,7 @@
-//! What may be missing: the rows of the catalogue, each with where its search starts.
+//! The effects that may be missing: the rows of the catalogue with the start values of their searches.
 //!
-//! An effect whose parameters say nothing at their neutral values, or whose sum of squares has several valleys, is started
-//! from several places; the data tell which.
+//! A search starts from several points if an effect's parameters have no influence at their neutral values, or if its sum of squares has several
+//! minima. The data decide between them.
 
 use fric_core::effects::Effect;
 use fric_core::parameters::{MU, NO_PRESLIDING_N_PER_M, SIGMA, VISCOUS, Values};
@@ -12,12 +12,12 @@ use crate::replay::Deviation;
 use crate::samples::record::{CableRecord, PLAY_OF_NOISE};
 use crate::search::vector::Parameter;
 
-/// μ that a frictionless model starts from.
+/// Start value of μ for a frictionless model.
 const TYPICAL_MU: f64 = 0.02;
-/// Presliding distances that a model without presliding starts from, m.
+/// Start values of the presliding distance for a model without presliding, m.
 const PRESLIDING_M: [f64; 4] = [3e-5, 2e-4, 1e-3, 6e-3];
 
-/// Of a cable whose friction has come to a coefficient of `mu`, with this much noise; no ripple.
+/// Returns the surroundings of a cable whose friction coefficient is `mu`, with this noise and without ripple.
 pub fn around(record: &CableRecord<'_>, mu: f64, noise_n: f64) -> Around {
     let gain = record.params.frictionless_gain();
     let (mut tension, mut speed) = (Deviation::default(), Deviation::default());
@@ -49,7 +49,7 @@ pub fn around(record: &CableRecord<'_>, mu: f64, noise_n: f64) -> Around {
     }
 }
 
-/// Whether a model has what an effect adds.
+/// Whether a model already has the effect.
 pub fn has(effect: Effect, values: &Values) -> bool {
     match effect {
         Effect::Coulomb => values[MU] > 0.0,
@@ -61,12 +61,12 @@ pub fn has(effect: Effect, values: &Values) -> bool {
     }
 }
 
-/// Parameters that a fit varies for an effect.
+/// Returns the parameters that a fit varies for an effect.
 pub fn fitted(effect: Effect) -> Vec<Parameter> {
     Parameter::of(effect).filter(|parameter| parameter.row().fitted).collect()
 }
 
-/// Values to start from when an effect joins a model that has come to `current`.
+/// Returns the start values for an effect that is added to a model at `current`.
 pub fn starts(effect: Effect, current: &Values, around: &Around, record: &CableRecord<'_>) -> Vec<Values> {
     let set = |changes: &[(&str, f64)]| {
         let mut values = *current;

@@ -1,9 +1,9 @@
-//! Effects that a fit is asked for and the robot file has not got: where their search starts.
+//! Start values for effects that a fit is asked for but the robot file lacks.
 //!
-//! At its neutral values an effect does nothing, and most of its parameters with it, so that no search leads away from there.
-//! The rest of the model is fitted first; then each such effect joins it from the starts that the discovery uses, and goes on
-//! from the best. In a fit to the wrench all cables take the same of these starts at once, and a ripple has none: its period
-//! shows in the force of a cable, which is not measured.
+//! At its neutral values an effect does nothing, and neither do most of its parameters, so no search leaves that point. The rest of the model is
+//! therefore fitted first. Each such effect is then added from the starts that the discovery uses, and the search continues from the best. In a fit
+//! to the wrench all cables use the same start at once. A ripple has no start there, because its period shows only in the force of a cable, which is
+//! not measured.
 
 use std::sync::Arc;
 
@@ -18,7 +18,7 @@ use crate::search::problem::{Comparison, Member, Problem};
 use crate::search::solve::search;
 use crate::search::vector::Parameter;
 
-/// Starts with all effects that are asked for: those given, where the cables have all of them.
+/// Returns start values with all requested effects: the given ones if the cables have all of them.
 pub fn with_newcomers(
     problem: &Problem<'_>,
     starts: Vec<Vec<Values>>,
@@ -50,18 +50,18 @@ pub fn with_newcomers(
     vec![current]
 }
 
-/// What is to be varied of an effect.
+/// Returns the parameters of an effect to vary.
 fn wanted<'a>(effect: Effect, member: &'a Member<'_>) -> impl Iterator<Item = Parameter> + 'a {
     member.free.iter().copied().filter(move |parameter| parameter.effect() == Some(effect))
 }
 
-/// The best of several minima.
+/// Returns the best of several minima.
 fn best(problem: &Problem<'_>, starts: Vec<Vec<Values>>, cycle_s: f64) -> Option<Vec<Values>> {
     let minima = starts.into_iter().map(|start| search(problem, &start, cycle_s));
     minima.min_by(|(_, one), (_, other)| one.squares.total_cmp(&other.squares)).map(|(values, _)| values)
 }
 
-/// Values of all cables to start from with an effect.
+/// Returns start values of all cables with an effect.
 fn entrants(
     effect: Effect,
     growing: &Problem<'_>,
@@ -80,7 +80,7 @@ fn entrants(
         let free: Vec<Parameter> = wanted(effect, member).collect();
         let mut starts = catalogue::starts(effect, values, &around, &member.record);
         for start in &mut starts {
-            // What is not asked for stays as given; settings have no given value that means anything.
+            // Parameters that are not requested stay as given. Settings have no meaningful given value.
             let stays = |parameter: &Parameter| parameter.row().fitted && !free.contains(parameter);
             for parameter in Parameter::of(effect).filter(stays) {
                 start[parameter.place()] = given[parameter.place()];
@@ -100,7 +100,7 @@ fn entrants(
     (0..count).map(of_start).collect()
 }
 
-/// What the model leaves of a cable's reference; in a fit to the wrench the white noise of its own force, and no reference.
+/// Returns the model's residual for a cable's reference. In a fit to the wrench it is the white noise of the cable's own force, without a reference.
 fn residual_n(problem: &Problem<'_>, member: &Member<'_>, forces: &Forces) -> Vec<f64> {
     let rows = member.record.rows.iter().enumerate();
     match problem.comparison {

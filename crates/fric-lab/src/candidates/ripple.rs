@@ -1,4 +1,4 @@
-//! Ripples: how much of a residual goes up and down with something, and at which period.
+//! Ripples: periodic components of a residual, and their periods.
 
 use std::f64::consts::TAU;
 
@@ -9,13 +9,14 @@ use crate::effects::Periods;
 use crate::samples::record::{CableRecord, Row};
 use crate::search::vector::Parameter;
 
-/// Periods of a ripple that are looked for, and the strongest of them that are tried.
+/// Number of trial periods, and the number of the strongest that are used.
 const PERIODS: usize = 512;
 const MOST_PERIODS: usize = 2;
-/// Golden sections of half a turn, down to a thousandth.
+/// Number of golden-section steps over half a period, down to a thousandth.
 const SECTIONS: usize = 14;
 
-/// The period of an effect that is periodic in the cable's length. It has no neutral value to start from: a scan of the residual finds it.
+/// Returns the period parameter of an effect that is periodic in the cable's length. It has no neutral value to start from; a scan of the residual
+/// finds it.
 pub fn period_of(effect: Effect) -> Option<Parameter> {
     Parameter::of(effect).find(is_period)
 }
@@ -25,7 +26,7 @@ pub fn is_period(parameter: &Parameter) -> bool {
     parameter.row().key == PERIOD_KEY
 }
 
-/// The periods in the cable's length at which a residual ripples.
+/// Returns the periods in the cable's length at which a residual ripples.
 pub fn periods(record: &CableRecord<'_>, residual_n: &[f64]) -> Periods {
     Periods {
         with_load: periods_m(record, residual_n, |row| row.signals.sensor_force_n),
@@ -36,9 +37,9 @@ pub fn periods(record: &CableRecord<'_>, residual_n: &[f64]) -> Periods {
     }
 }
 
-/// The periods at which a residual ripples in proportion to something, the strongest first.
+/// Returns the periods at which a residual ripples in proportion to `carrier`, the strongest first.
 fn periods_m(record: &CableRecord<'_>, residual_n: &[f64], carrier: impl Fn(&Row) -> f64) -> Vec<f64> {
-    /// Samples that are enough.
+    /// Number of samples that suffices.
     const ENOUGH: usize = 6000;
     let moving = record.rows.iter().zip(residual_n).filter(|(row, residual_n)| {
         residual_n.is_finite() && row.signals.displacement_m.abs() > 0.0 && row.signals.sensor_force_n > 0.0
@@ -70,7 +71,7 @@ fn periods_m(record: &CableRecord<'_>, residual_n: &[f64], carrier: impl Fn(&Row
     peaks.into_iter().take(MOST_PERIODS).map(|(period_m, _)| sharpened(&few, period_m, range_m)).collect()
 }
 
-/// The period at which the ripple about one of the grid is strongest, by golden sections of the turns over the whole range.
+/// Refines a period of the grid to the strongest ripple, by golden sections of the number of periods over the whole range.
 fn sharpened(samples: &[(f64, f64)], period_m: f64, range_m: f64) -> f64 {
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
     let (mut low, mut high) = (range_m / period_m - 0.5, range_m / period_m + 0.5);
@@ -82,7 +83,7 @@ fn sharpened(samples: &[(f64, f64)], period_m: f64, range_m: f64) -> f64 {
     range_m / f64::midpoint(low, high)
 }
 
-/// How much of the squares a sine of a period takes away, beside a constant.
+/// Returns the decrease of the squares by a sine of this period beside a constant.
 pub fn ripple_power(samples: &[(f64, f64)], period_m: f64) -> f64 {
     let (mut matrix, mut right) = (nalgebra::Matrix3::<f64>::zeros(), nalgebra::Vector3::<f64>::zeros());
     for (length_m, ratio) in samples {

@@ -1,35 +1,34 @@
-//! What the samples determine, and what not.
+//! Which parameters the samples determine.
 //!
-//! A parameter is determined if its 95 % interval is narrower than itself, or narrow enough not to matter. The one that is
-//! furthest from it is held at its given value, the rest fitted again, and so on: two parameters that only together have
-//! an effect leave the one that is known better, or the offset, which does no harm elsewhere. The rest then makes up for
-//! what the held value is wrong by, and its errors hold under the condition that it is right.
+//! A parameter is determined if its 95 % interval is narrower than the parameter itself, or too narrow to matter. The parameter that is furthest from
+//! that is held at its given value, the rest is fitted again, and so on. Of two parameters that only have an effect together, the one that is known
+//! better stays, or the offset is held, which does no harm elsewhere. The others then compensate for the error of the held value, and their errors
+//! are valid under the condition that it is right.
 //!
-//! No model is perfect: a parameter that changes the force by a thousandth of the friction is not determined, however long
-//! the log.
+//! No model is perfect: a parameter that changes the force by a thousandth of the friction is not determined, however long the log.
 
 use fric_core::effects::time_delay::DELAY;
 use fric_core::parameters::{MU, OFFSET, VISCOUS};
 
 use crate::search::vector::Parameter;
 
-/// Half the width of a 95 % interval in standard errors.
+/// Half the width of a 95 % interval, in standard errors.
 pub const HALF_INTERVAL: f64 = 1.96;
-/// An interval of ± this matters to no one: μ, 1.
+/// Half width of an interval that does not matter: μ, dimensionless.
 const NEGLIGIBLE_MU: f64 = 0.0025;
-/// ε, as a share of the cable's friction.
+/// Half width for ε, as a fraction of the cable's friction.
 const NEGLIGIBLE_OFFSET_RATIO: f64 = 0.01;
-/// F_pv of all pulleys at 1 m/s, likewise.
+/// Half width for F_pv of all pulleys at 1 m/s, as a fraction of the cable's friction.
 const NEGLIGIBLE_VISCOUS_RATIO: f64 = 0.125;
-/// Effects: a share of the friction, and the delay, s.
+/// Half width for effects, as a fraction of the friction, and for the delay, s.
 const NEGLIGIBLE_RATIO: f64 = 0.05;
 const NEGLIGIBLE_DELAY_S: f64 = 5e-4;
-/// The model is believed to this share of the friction.
+/// The model is trusted to this fraction of the friction.
 const BELIEVED_RATIO: f64 = 1e-3;
-/// Friction below this share of the tension is little: what is small beside it need not be known better.
+/// Friction below this fraction of the tension is small, and parameters that are small beside it need not be known better.
 const LITTLE_FRICTION_RATIO: f64 = 0.01;
 
-/// What matters for a cable.
+/// The scale on which uncertainties matter for a cable.
 #[derive(Clone, Copy, Debug)]
 pub struct Yardstick {
     friction_n: f64,
@@ -37,13 +36,13 @@ pub struct Yardstick {
 }
 
 impl Yardstick {
-    /// By the root mean squares of its friction and of its tension, and its pulleys.
+    /// Creates the scale from the root mean squares of the cable's friction and tension, and its number of pulleys.
     pub fn new(friction_n: f64, tension_n: f64, pulley_count: usize) -> Self {
         Self { friction_n: friction_n.max(LITTLE_FRICTION_RATIO * tension_n), pulley_count }
     }
 
-    /// How wide an interval is, as a multiple of the widest that still determines the parameter; above 1 it does not.
-    /// `leverage` is how far the parameter moves for 1 N by which the model is wrong all along, at worst.
+    /// Returns the width of an interval as a multiple of the widest one that still determines the parameter; above 1 it is undetermined. `leverage`
+    /// is the greatest shift of the parameter per 1 N of model error.
     pub fn vagueness(&self, parameter: &Parameter, value: f64, standard_error: f64, leverage: f64) -> f64 {
         #[expect(clippy::cast_precision_loss, reason = "at most MAX_PULLEYS")]
         let pulleys = self.pulley_count as f64;

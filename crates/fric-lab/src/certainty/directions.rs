@@ -1,37 +1,35 @@
-//! Combinations of parameters that the samples leave open.
+//! Combinations of parameters that the samples do not determine.
 //!
-//! One parameter may be known badly because the samples hardly depend on it, or because another one does nearly the same:
-//! where the load hardly varies, a gain and an offset of the sensor. Standard errors tell that something is not known, and
-//! the eigenvectors of the information matrix with small eigenvalues tell what.
+//! A parameter may be uncertain because the samples hardly depend on it, or because another one has nearly the same effect: with a nearly constant
+//! load, for example, a gain and an offset of the sensor. Standard errors show that something is uncertain; the eigenvectors of the information
+//! matrix with small eigenvalues show which combination.
 //!
-//! The eigenvectors of one eigenvalue are any basis of their space. [`open_directions`] brings the space of all small ones
-//! to the basis of its reduced row echelon form, by complete pivoting: each direction has one *leading* parameter, which
-//! occurs in no other direction. With the leading parameters held, no direction within the space is left, so that they are
-//! the ones to hold, and each direction says what its leading parameter is confused with.
+//! The eigenvectors of one eigenvalue are an arbitrary basis of their space. [`open_directions`] brings the space of all small eigenvalues to reduced
+//! row echelon form by complete pivoting: each direction has one *leading* parameter, which occurs in no other direction. Holding the leading
+//! parameters leaves no open direction in the space, so they are the ones to hold, and each direction shows what its leading parameter is confused
+//! with.
 
 use nalgebra::DMatrix;
 
 use super::determined::HALF_INTERVAL;
 
-/// A parameter takes part in a direction with at least this share of the leading parameter's weight. At 0.1, half a per cent
-/// of the direction's square counts as a part of it; at 0.5, a parameter that makes up for half of the leading one is not
-/// reported.
+/// Minimum weight of a parameter in a direction, relative to the leading parameter, to take part in it. At 0.1, half a per cent of the direction's
+/// square counts as a part; at 0.5, a parameter that compensates for half of the leading one is not reported.
 pub(crate) const LEAST_WEIGHT: f64 = 0.25;
 
-/// A direction in the space of the parameters along which the samples say too little.
+/// A direction in parameter space about which the samples say too little.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OpenDirection {
     /// Index of the leading parameter.
     pub leading: usize,
-    /// Weight of every parameter, in the order and the scale of the information matrix; 1 for the leading one.
+    /// Weight of every parameter, in the order and scale of the information matrix; 1 for the leading one.
     pub weights: Vec<f64>,
-    /// Half the width of the 95 % interval along the direction, in steps of the weights; infinite where the samples say
-    /// nothing at all.
+    /// Half the width of the 95 % interval along the direction, in steps of the weights; infinite if the samples say nothing.
     pub half_width: f64,
 }
 
 impl OpenDirection {
-    /// Indices of the parameters that take part, the leading one first.
+    /// Returns the indices of the parameters that take part, the leading one first.
     #[must_use]
     pub fn parts(&self) -> Vec<usize> {
         let takes_part = |(index, weight): (usize, &f64)| {
@@ -43,12 +41,11 @@ impl OpenDirection {
     }
 }
 
-/// The directions along which the 95 % interval is wider than ±1, the least known first.
+/// Returns the directions along which the 95 % interval is wider than ±1, the least known first.
 ///
-/// `information` is the inverse of the covariance (`JᵀJ/s²` for residuals of standard deviation `s` that do not remember),
-/// each parameter in units of the widest half interval that still determines it. A direction is open where
-/// `1.96/√(uᵀ I u) > 1` for the unit vector `u` along it. Eigenvalues within rounding of the largest one count as zero.
-/// Where the matrix is not of finite numbers nothing is known of any parameter.
+/// `information` is the inverse of the covariance (`JᵀJ/s²` for uncorrelated residuals of standard deviation `s`), with each parameter in units of
+/// the widest half interval that still determines it. A direction is open if `1.96/√(uᵀ I u) > 1` for the unit vector `u` along it. Eigenvalues
+/// within rounding of the largest one count as zero. If the matrix is not finite, no parameter is known.
 #[must_use]
 pub fn open_directions(information: &DMatrix<f64>) -> Vec<OpenDirection> {
     let count = information.nrows();
@@ -66,7 +63,7 @@ pub fn open_directions(information: &DMatrix<f64>) -> Vec<OpenDirection> {
         let weights: Vec<f64> = rows.row(row).iter().copied().collect();
         let along = rows.row(row).transpose();
         let (curvature, norm) = (along.dot(&(information * &along)), along.norm());
-        // Along the unit vector, in steps of the weights.
+        // Converts from the unit vector to steps of the weights.
         let half_width =
             if curvature <= rounding * norm * norm { f64::INFINITY } else { HALF_INTERVAL / curvature.sqrt() };
         OpenDirection { leading, weights, half_width }
@@ -76,15 +73,15 @@ pub fn open_directions(information: &DMatrix<f64>) -> Vec<OpenDirection> {
     directions
 }
 
-/// Of a parameter that the samples say nothing of.
+/// Returns the direction of a parameter about which the samples say nothing.
 fn silent(leading: usize, count: usize) -> OpenDirection {
     let weights = (0..count).map(|place| if place == leading { 1.0 } else { 0.0 }).collect();
     OpenDirection { leading, weights, half_width: f64::INFINITY }
 }
 
-/// Brings independent rows to reduced row echelon form up to the order of the columns; the leading column of each row.
+/// Brings independent rows to reduced row echelon form up to the order of the columns. Returns the leading column of each row.
 fn reduce(rows: &mut DMatrix<f64>) -> Vec<usize> {
-    // Of weights that differ by rounding only the first leads.
+    // Of weights that differ only by rounding, the first one leads.
     const TIE: f64 = 1.0 + 1e-9;
     let (row_count, column_count) = rows.shape();
     let mut leading: Vec<Option<usize>> = vec![None; row_count];
@@ -113,7 +110,7 @@ fn reduce(rows: &mut DMatrix<f64>) -> Vec<usize> {
 mod tests {
     use super::*;
 
-    /// `JᵀJ/s²` of a straight line `gain·x + offset` through samples at `x`.
+    /// Returns `JᵀJ/s²` of a straight line `gain·x + offset` through samples at `x`.
     fn line(x: &[f64], deviation: f64) -> DMatrix<f64> {
         let mut information = DMatrix::zeros(2, 2);
         for x in x {
@@ -129,7 +126,7 @@ mod tests {
 
     #[test]
     fn gain_and_offset_of_a_load_that_does_not_vary_are_one() {
-        // x = 3 throughout: `gain·3 + offset` is known, and `offset = −3·gain` changes nothing.
+        // x = 3 throughout: `gain·3 + offset` is known, and changes with `offset = −3·gain` have no effect.
         let [direction] = &open_directions(&line(&[3.0; 50], 0.1))[..] else { panic!("one direction") };
         assert_eq!((direction.leading, direction.parts()), (1, vec![1, 0]));
         near(direction.weights[0], -1.0 / 3.0);
@@ -139,19 +136,19 @@ mod tests {
 
     #[test]
     fn the_width_is_that_of_the_line_through_the_samples() {
-        // x = ±a about 0: gain and offset do not depend on each other, with the textbook's errors s/(a√n) and s/√n.
+        // x = ±a around 0: gain and offset are independent, with the textbook errors s/(a√n) and s/√n.
         let x: Vec<f64> = (0..64).map(|place| if place % 2 == 0 { 0.01 } else { -0.01 }).collect();
         let [direction] = &open_directions(&line(&x, 0.4))[..] else { panic!("one direction") };
         assert_eq!(direction.parts(), [0]);
         near(direction.half_width, 1.96 * 0.4 / (0.01 * 8.0));
-        // The offset is known to 1.96·0.4/8 = 0.098 < 1; and with 200 times the range so is the gain.
+        // The offset is known to 1.96·0.4/8 = 0.098 < 1. With 200 times the range, the gain is known too.
         let wide: Vec<f64> = x.iter().map(|x| 200.0 * x).collect();
         assert!(open_directions(&line(&wide, 0.4)).is_empty());
     }
 
     #[test]
     fn several_directions_of_one_eigenvalue_come_apart() {
-        // Two sensors, each with a load that does not vary, and a parameter in the middle that is known.
+        // Two sensors, each with a constant load, and a known parameter between them.
         let mut information = DMatrix::zeros(5, 5);
         for (gain, offset, load) in [(0, 1, 0.5), (3, 4, 4.0)] {
             let row = nalgebra::DVector::from_fn(5, |place, _| match place {
@@ -170,7 +167,7 @@ mod tests {
         near(of(0).weights[1], -0.5);
         near(of(4).weights[3], -0.25);
         near(of(0).weights[3], 0.0);
-        // Held, the leading ones leave nothing open.
+        // With the leading parameters held, nothing is open.
         let kept = information.select_rows(&[1, 2, 3]).select_columns(&[1, 2, 3]);
         assert!(open_directions(&kept).is_empty());
     }

@@ -1,17 +1,17 @@
-//! Samples grouped by operating conditions, to see how an estimate depends on which of them a log happens to have.
+//! Groups samples by operating conditions, to show how an estimate depends on the conditions that a log contains.
 
 use crate::samples::conditions::{Spacing, conditions, sign, time};
 use crate::samples::record::CableRecord;
 
-/// Samples that tell where the bins of a condition end.
+/// Number of samples that suffices to place the bin edges of a condition.
 const ENOUGH: usize = 4096;
-/// No group: a sample that has no value of the condition.
+/// The group of a sample that has no value of the condition.
 const NONE: u16 = u16::MAX;
 
-/// One grouping for each operating condition, by its bins and the direction of motion.
+/// One grouping per operating condition, by its bins and the direction of motion.
 #[derive(Clone, Debug)]
 pub struct Groups {
-    /// Of each condition, the group of every sample.
+    /// For each condition, the group of every sample.
     pub groupings: Vec<Grouping>,
 }
 
@@ -19,14 +19,14 @@ pub struct Groups {
 #[derive(Clone, Debug)]
 pub struct Grouping {
     groups: Vec<u16>,
-    /// How many groups there are.
+    /// Number of groups.
     pub count: usize,
 }
 
 impl Groups {
-    /// Of a cable's samples.
+    /// Returns the groups of a cable's samples.
     pub fn of(record: &CableRecord<'_>) -> Self {
-        // What has the sensor's noise in it is grouped by what the residual has in it too.
+        // Conditions that contain the sensor's noise would group the samples by their own residual.
         let has_noise = |condition: &crate::samples::conditions::Condition| {
             ["sensor_force", "force_rate"].contains(&condition.signal)
         };
@@ -57,7 +57,7 @@ impl Groups {
 
 #[cfg(test)]
 impl Groups {
-    /// So many groups that the samples belong to in turn.
+    /// Assigns the samples to `count` groups in turn.
     pub fn every(count: usize, samples: usize) -> Self {
         let groups = (0..samples).map(|place| u16::try_from(place % count).unwrap_or(NONE)).collect();
         Self { groupings: vec![Grouping { groups, count }] }
@@ -65,7 +65,7 @@ impl Groups {
 }
 
 impl Grouping {
-    /// The group of a sample.
+    /// Returns the group of a sample.
     pub fn of_sample(&self, place: usize) -> Option<usize> {
         self.groups.get(place).filter(|group| **group != NONE).map(|group| usize::from(*group))
     }

@@ -1,28 +1,27 @@
-//! How sure an estimate is when its residuals are correlated in time.
+//! Uncertainty of an estimate if its residuals are correlated in time.
 //!
-//! The covariance of a least-squares estimate is `H⁻¹ S H⁻¹` with `H = JᵀJ` and `S` the covariance of `Σ g_t`, where
-//! `g_t = J_tᵀ r_t` is a sample's score. With independent residuals `S = Σ g_t g_tᵀ`; with residuals that remember, sums over
-//! blocks longer than their memory take the place of `g_t` (method of block means; the search for the block length after
-//! H. Flyvbjerg, H. G. Petersen, *Error estimates on averages of correlated data*, J. Chem. Phys. 91, 1989). Blocks are
-//! tried in lengths of 1, 2, 4 … samples as long as there are [`FEWEST_BLOCKS`] of them, and beyond them what the two
-//! longest lead to; for each parameter the length with the greatest variance counts. 95 % intervals cover 95 of 100 with
-//! white noise, and 90 with a wander that is forgotten within a hundredth of the log; for a slower one the log is too short.
+//! The covariance of a least-squares estimate is `H⁻¹ S H⁻¹` with `H = JᵀJ` and `S` the covariance of `Σ g_t`, where `g_t = J_tᵀ r_t` is the score of
+//! a sample. With independent residuals `S = Σ g_t g_tᵀ`. With correlated residuals, sums over blocks longer than the correlation replace `g_t`
+//! (method of block means; the search for the block length after H. Flyvbjerg, H. G. Petersen, *Error estimates on averages of correlated data*, J.
+//! Chem. Phys. 91, 1989). Block lengths of 1, 2, 4 … samples are tried while there are [`FEWEST_BLOCKS`] blocks, and the two longest are
+//! extrapolated. For each parameter the length with the greatest variance counts. 95 % intervals cover 95 of 100 cases under white noise, and 90
+//! under a drift with a correlation time of a hundredth of the log. For slower drift the log is too short.
 //!
-//! No model is the truth. What it misses does not scatter from one block to the next, it repeats itself in the same operating condition: each speed,
-//! load or way since the reversal asks for values of its own, and the estimate is a mean over those that the log happens to
-//! have. So the same sums are taken over groups of samples in the same condition, as if the conditions of the log were drawn from all there
-//! are (a sandwich with clusters: K.-Y. Liang, S. L. Zeger, *Longitudinal data analysis using generalized linear models*,
-//! Biometrika 73, 1986), and count where they are greater. Without a model error they give what the white noise does.
+//! No model is exact. Its error does not scatter from one block to the next but repeats in the same operating condition: each speed, load or distance
+//! since the reversal prefers its own values, and the estimate is a mean over the conditions of the log. So the same sums are also computed over
+//! groups of samples in the same condition, as if the conditions of the log were drawn from all possible ones (a sandwich with clusters: K.-Y. Liang,
+//! S. L. Zeger, *Longitudinal data analysis using generalized linear models*, Biometrika 73, 1986). They count if they are greater. Without a model
+//! error they agree with the white noise.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::groups::Groups;
 use crate::search::gram::add_products;
 
-/// Groups of a condition scatter by more than white noise makes of them beyond so many standard deviations: of a dozen conditions, and as many
-/// parameters, few do so by chance.
+/// The variance over the groups of a condition counts if it exceeds that of white noise by more than this many standard deviations. With a dozen
+/// conditions and as many parameters, few exceed it by chance.
 const CHANCE: f64 = 3.0;
-/// Fewer blocks or groups say too little about their scatter.
+/// Minimum number of blocks or groups for an estimate of their scatter.
 const FEWEST_BLOCKS: usize = 16;
 
 /// Sums of scores over blocks of 1, 2, 4 … samples.
@@ -30,35 +29,35 @@ const FEWEST_BLOCKS: usize = 16;
 pub struct Scores {
     levels: Vec<Level>,
     parameters: usize,
-    /// The block that is on its way through the levels.
+    /// The block that is passed through the levels.
     block: Vec<f64>,
-    /// Operating conditions, with the sums over each group of each of them.
+    /// Groups by operating condition, with the sums over each group of each condition.
     groups: Option<(Groups, Vec<Vec<f64>>)>,
 }
 
 #[derive(Clone, Debug)]
 struct Level {
-    /// First half of a block of the next length, should one be waiting.
+    /// First half of a block of the next length, if one is pending.
     half: Vec<f64>,
     is_waiting: bool,
-    /// `Σ g gᵀ` of the blocks, upper triangle column by column.
+    /// `Σ g gᵀ` of the blocks, upper triangle stored column by column.
     squares: Vec<f64>,
     count: usize,
 }
 
 impl Scores {
-    /// None yet.
+    /// Creates an empty sum.
     pub fn new(parameters: usize) -> Self {
         Self { levels: Vec::new(), parameters, block: vec![0.0; parameters], groups: None }
     }
 
-    /// None yet, to be summed up in groups too.
+    /// Creates an empty sum that also collects sums per group.
     pub fn grouped(parameters: usize, groups: Groups) -> Self {
         let sums = groups.groupings.iter().map(|of| vec![0.0; of.count * parameters]).collect();
         Self { groups: Some((groups, sums)), ..Self::new(parameters) }
     }
 
-    /// Takes in the score of the next sample, which has this place in the record of the groups.
+    /// Adds the score of the next sample. `place` is the sample's index in the record of the groups.
     pub fn add_of(&mut self, place: usize, score: &[f64]) {
         if let Some((groups, sums)) = &mut self.groups {
             for (grouping, sums) in groups.groupings.iter().zip(sums) {
@@ -70,7 +69,7 @@ impl Scores {
         self.add(score);
     }
 
-    /// Takes in the score of the next sample.
+    /// Adds the score of the next sample.
     pub fn add(&mut self, score: &[f64]) {
         self.block.copy_from_slice(score);
         for level in &mut self.levels {
@@ -88,7 +87,7 @@ impl Scores {
         self.levels.push(level);
     }
 
-    /// Covariance of the estimate, from the inverse of `JᵀJ`.
+    /// Returns the covariance of the estimate from the inverse of `JᵀJ`.
     pub fn covariance(&self, inverse: &DMatrix<f64>) -> DMatrix<f64> {
         let of_level = |level: &Level| {
             let scatter = DMatrix::from_fn(self.parameters, self.parameters, |row, column| {
@@ -104,7 +103,7 @@ impl Scores {
         };
         let variances: DVector<f64> = single.diagonal();
         let inflation = |covariance: &DMatrix<f64>| -> f64 { covariance.diagonal().component_div(&variances).sum() };
-        // What blocks of length L miss of a memory falls as 1/L, so that the two longest tell what none would miss.
+        // The correlation that blocks of length L miss falls as 1/L, so the two longest lengths extrapolate to infinite blocks.
         let endless = match of_levels.as_slice() {
             [.., shorter, longer] => Some(longer * 2.0 - shorter),
             _ => None,
@@ -114,7 +113,7 @@ impl Scores {
         let all = || of_levels.iter().chain(&endless).chain(&of_groups);
         let in_time = of_levels.iter().chain(&endless);
         let most = in_time.fold(single, |most, other| if inflation(other) > inflation(most) { other } else { most });
-        // Each parameter by the length that is greatest for it; how they go together by the one that is greatest in sum.
+        // Each variance comes from the length at which it is greatest; the correlations come from the length with the greatest total.
         let factors = DVector::from_fn(self.parameters, |place, _| {
             let greatest = all().fold(0.0, |greatest: f64, covariance| greatest.max(covariance[(place, place)]));
             let ratio = greatest / most[(place, place)];
@@ -127,8 +126,8 @@ impl Scores {
 }
 
 impl Scores {
-    /// The covariances by groups of each condition, of the parameters for which they are greater than the variances by more than chance; no
-    /// variance of the others.
+    /// Returns the covariances by groups of each condition, for those parameters whose value exceeds `variances` by more than chance; the variances
+    /// of the others are zero.
     fn of_groups(&self, inverse: &DMatrix<f64>, variances: &DVector<f64>) -> Vec<DMatrix<f64>> {
         let of_condition = |sums: &Vec<f64>| {
             let mut scatter = DMatrix::zeros(self.parameters, self.parameters);
@@ -140,9 +139,9 @@ impl Scores {
             }
             #[expect(clippy::cast_precision_loss, reason = "a small count")]
             let (groups, free) = (count as f64, count.saturating_sub(self.parameters) as f64);
-            // The scores of all groups sum up to none, of every parameter.
+            // The scores of all groups sum to zero for every parameter.
             let covariance = inverse * scatter * inverse * (groups / free);
-            // A variance of so many squares scatters by √(2/count) of itself.
+            // A variance computed from `count` squares has a relative standard deviation of √(2/count).
             let bound = 1.0 + CHANCE * (2.0 / groups).sqrt();
             let counts = |place: usize| covariance[(place, place)] > bound * variances[place];
             let kept = DMatrix::from_fn(self.parameters, self.parameters, |row, column| {
@@ -156,7 +155,7 @@ impl Scores {
 }
 
 impl Level {
-    /// Takes in a block; with every second one it becomes one of the next length, else false.
+    /// Adds a block. Returns true if it completes a block of the next length, which then replaces it.
     fn add(&mut self, block: &mut [f64]) -> bool {
         self.count += 1;
         add_products(&mut self.squares, block);
@@ -178,7 +177,7 @@ mod tests {
 
     use super::*;
 
-    /// Standard error of the mean of `count` numbers with memory `memory` from one sample to the next.
+    /// Returns the standard error of the mean of `count` numbers with correlation `memory` from one sample to the next.
     fn error_of_mean(seed: u64, count: u32, memory: f64) -> f64 {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let mut scores = Scores::new(1);
@@ -192,7 +191,7 @@ mod tests {
     }
 
     /// A mean over twenty operating conditions, each with a level of its own: its error is that of a mean of twenty numbers, however many samples
-    /// each condition has. Without levels it is the white noise's.
+    /// each condition has. Without levels it is that of the white noise.
     #[test]
     fn a_model_error_that_goes_with_a_condition_counts_once_for_each() {
         const CONDITIONS: usize = 20;

@@ -1,11 +1,10 @@
-//! What the samples leave open: how sure each parameter is, which are held at their given values, and what each of those is
-//! confused with.
+//! Finds undetermined parameters: the uncertainty of each parameter, which ones are held at their given values, and what each of those is confused
+//! with.
 //!
-//! As long as a parameter is undetermined (see [`Yardstick`]) one is held, and the rest fitted again. Which one, the open
-//! directions of the information matrix say ([`open_directions`]): of the least known direction the parameter with the most
-//! weight. Of the parameters of one cable an offset comes last, for it does no harm elsewhere; of the offsets of several cables
-//! that only together have an effect (an inner tension of the platform) the one with the most weight is held, for the others
-//! make up for what it is wrong by.
+//! While a parameter is undetermined (see [`Yardstick`]), one parameter is held and the rest is fitted again. The open directions of the information
+//! matrix ([`open_directions`]) select it: the parameter with the most weight in the least known direction. Among the parameters of one cable an
+//! offset comes last, because it does no harm elsewhere. Among the offsets of several cables that only have an effect together (an inner tension of
+//! the platform), the one with the most weight is held, because the others compensate for its error.
 
 use std::sync::Arc;
 
@@ -24,13 +23,13 @@ use crate::search::problem::{Comparison, Member, Problem};
 use crate::search::solve::{CONTRADICTION_RATIO, NEAR_ERRORS, Solution, Unknown, hold, squares, unknowns};
 use crate::search::vector::Coordinate;
 
-/// What is known of the parameters at some values.
+/// The uncertainty of the parameters at some values.
 struct Knowledge {
     unknowns: Vec<Unknown>,
-    /// `JᵀJ`; `None` where it is not of numbers.
+    /// `JᵀJ`; `None` if it is not finite.
     normal: Option<DMatrix<f64>>,
     covariance: DMatrix<f64>,
-    /// Of each parameter; above 1 it is undetermined.
+    /// Vagueness of each parameter; above 1 it is undetermined.
     vagueness: Vec<f64>,
 }
 
@@ -51,7 +50,7 @@ impl Knowledge {
         Self { unknowns, normal, covariance, vagueness }
     }
 
-    /// The open directions; the scale of each parameter is what makes its own interval as wide as it is vague.
+    /// Returns the open directions. Each parameter is scaled so that its own interval is as wide as its vagueness.
     fn directions(&self) -> Vec<OpenDirection> {
         let count = self.unknowns.len();
         let Some((normal, inverse)) =
@@ -69,8 +68,7 @@ impl Knowledge {
         }))
     }
 
-    /// Which parameter to hold, and the combination that it stands for; `None` where all are determined, or to be varied in any
-    /// case.
+    /// Returns the parameter to hold and its combination; `None` if all are determined or must be varied.
     fn to_hold(&self, kept: &[Unknown]) -> Option<(Unknown, OpenCombination)> {
         let is_kept = |place: usize| self.unknowns.get(place).is_none_or(|unknown| kept.contains(unknown));
         let vagueness = |place: usize| self.vagueness.get(place).copied().unwrap_or(f64::INFINITY);
@@ -91,14 +89,14 @@ impl Knowledge {
             Some((held?, parts, direction.clone()))
         };
         let (held, mut parts, direction) = self.directions().iter().find_map(of_direction)?;
-        // Along the direction each parameter moves in proportion to its weight and its own standard error.
+        // Along the direction, each parameter moves in proportion to its weight and its own standard error.
         let step = |place: usize| {
             let weight = direction.weights.get(place).copied().unwrap_or(0.0);
             weight * self.covariance[(place, place)].sqrt() / vagueness(place)
         };
-        // Of what is held the step is 1.96 standard errors.
+        // The step of the held parameter is 1.96 standard errors.
         let factor = HALF_INTERVAL * self.covariance[(held, held)].sqrt() / step(held);
-        // Parameters of one kind count by their own unit.
+        // Parameters of one kind are compared in their own unit.
         let is_alike = |place: usize| {
             self.unknowns.get(place).map(|unknown| unknown.parameter)
                 == self.unknowns.get(held).map(|held| held.parameter)
@@ -119,17 +117,17 @@ impl Knowledge {
 }
 
 impl Solution {
-    /// Puts what the search was driven to an end of its range for at that end.
+    /// Sets parameters that the search drove to a bound to that bound.
     fn settle_at_bounds(&mut self, knowledge: &Knowledge, cycle_s: f64) {
         self.at_bound.clear();
         for (place, unknown) in knowledge.unknowns.iter().enumerate() {
             let Some(values) = self.values.get_mut(unknown.member) else { continue };
             let value = &mut values[unknown.parameter.place()];
-            // Of what is determined a hundredth of a standard error is nothing.
+            // For a determined parameter a hundredth of a standard error is negligible.
             let is_determined = knowledge.vagueness.get(place).is_some_and(|vagueness| *vagueness <= 1.0);
             let near = if is_determined { NEAR_ERRORS * knowledge.covariance[(place, place)].sqrt() } else { 0.0 };
             let bound = Coordinate::of(&unknown.parameter, cycle_s).bound_at(*value, near);
-            // Beyond all stiffness there is none, which a file says by leaving it out.
+            // Beyond the greatest stiffness there is no presliding, which a file expresses by omitting σ.
             if let Some(bound) = bound.filter(|bound| unknown.parameter.place() != SIGMA || *bound < *value) {
                 *value = bound;
                 self.at_bound.push(*unknown);
@@ -137,8 +135,8 @@ impl Solution {
         }
     }
 
-    /// Holds one parameter after the other that the samples do not determine. One whose given value the samples contradict
-    /// stays as found: they know that much.
+    /// Holds the undetermined parameters one after the other. A parameter whose given value contradicts the samples keeps its estimate, because the
+    /// samples know that much.
     pub(crate) fn hold_undetermined(&mut self, problem: &mut Problem<'_>, given: &[Values], cycle_s: f64) {
         let mut kept = Vec::new();
         let mut least = None;
@@ -150,7 +148,7 @@ impl Solution {
             (self.covariance, self.unknowns) = (knowledge.covariance, knowledge.unknowns);
             let Some((held, combination)) = next else { return };
             let (members, found, termination) = (problem.members.clone(), self.values.clone(), self.termination);
-            // By what all were before the first was held: many small steps are one big one.
+            // The bound refers to the values before the first parameter was held, because many small steps add up.
             let bound = *least.get_or_insert_with(|| squares(problem, &self.values)) * (1.0 + CONTRADICTION_RATIO);
             hold(problem, held, &mut self.values, given);
             self.search_on(problem, cycle_s);
@@ -165,14 +163,14 @@ impl Solution {
     }
 }
 
-/// Covariance of what a problem varies at some values, and in its order how vague each parameter is: above 1 where the samples do
+/// Returns the covariance of a problem's free parameters at some values and, in its order, the vagueness of each parameter: above 1 the samples do
 /// not determine it, see [`Yardstick`].
 pub fn vagueness(problem: &Problem<'_>, values: &[Values]) -> (DMatrix<f64>, Vec<(f64, Unknown)>) {
     let Knowledge { unknowns, covariance, vagueness, .. } = Knowledge::of(problem, values);
     (covariance, vagueness.into_iter().zip(unknowns).collect())
 }
 
-/// What matters for each cable of a problem.
+/// Returns the scale of each cable of a problem.
 pub fn yardsticks(problem: &Problem<'_>, values: &[Values]) -> Vec<Yardstick> {
     let forces = problem.forces(values).unwrap_or_default();
     let of = |((member, values), forces): ((&Member<'_>, &Values), &Arc<Forces>)| {
@@ -189,13 +187,13 @@ pub fn yardsticks(problem: &Problem<'_>, values: &[Values]) -> Vec<Yardstick> {
     problem.members.iter().zip(values).zip(&forces).map(of).collect()
 }
 
-/// Covariance of what a problem varies, infinite where the samples say nothing.
+/// Returns the covariance of a problem's free parameters, infinite if the samples say nothing.
 pub fn covariance(problem: &Problem<'_>, values: &[Values]) -> DMatrix<f64> {
     uncertainty(problem, values, None).1
 }
 
-/// The same as it is reported: a single cable's is also taken over groups of samples in the same condition, and what unlike pulleys do
-/// comes on top.
+/// Returns the covariance to report: for a single cable it also covers groups of samples in the same condition, and it includes the effect of unlike
+/// pulleys.
 pub fn reported_covariance(problem: &Problem<'_>, values: &[Values]) -> DMatrix<f64> {
     let groups = match (&problem.comparison, problem.members.as_slice()) {
         (Comparison::Forces, [member]) => Some(Groups::of(&member.record)),
@@ -208,8 +206,8 @@ pub fn reported_covariance(problem: &Problem<'_>, values: &[Values]) -> DMatrix<
     }
 }
 
-/// Matrix `JᵀJ`, `None` where it is not of numbers; covariance; and by how much each parameter moves for residuals of 1 N in every
-/// sample, at worst.
+/// Returns the matrix `JᵀJ` (`None` if it is not finite), the covariance, and the greatest shift of each parameter for residuals of 1 N in every
+/// sample.
 fn uncertainty(
     problem: &Problem<'_>,
     values: &[Values],
@@ -223,7 +221,7 @@ fn uncertainty(
     let covariance = scores.covariance(&inverse);
     let silent = |place: usize| matrix[(place, place)] <= 0.0;
     let finite = |row, column| if row == column && silent(row) { f64::INFINITY } else { covariance[(row, column)] };
-    // Residuals of a wrench are no forces of a cable.
+    // Residuals of a wrench are not forces of a cable.
     #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
     let samples = match problem.comparison {
         Comparison::Forces => problem.used.iter().filter(|used| **used).count() as f64,
@@ -234,8 +232,8 @@ fn uncertainty(
     (Some(matrix), covariance, leverages)
 }
 
-/// Inverse of a matrix `JᵀJ`, scaled meanwhile; what has no effect at all gets an all but infinite variance of its own. `None` where
-/// the matrix is not of numbers.
+/// Returns the inverse of `JᵀJ`, computed in scaled form. A parameter without any effect gets a nearly infinite variance of its own. Returns `None`
+/// if the matrix is not finite.
 pub fn inverse_of_normal(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let count = matrix.nrows();
     let scale: Vec<f64> =

@@ -1,10 +1,9 @@
-//! How far estimates may be off because a cable's pulleys are not alike.
+//! The error of estimates because a cable's pulleys differ.
 //!
-//! The model has one μ for all pulleys of a cable, and no two bearings have the same. What that does to an estimate repeats itself in every stroke,
-//! so no scatter of the residuals tells of it; the model does. With `d_k` the change of the forces where the μ of pulley `k` is greater
-//! by a standard deviation, the estimate moves by `b_k = H⁻¹Jᵀd_k`, `H = JᵀJ`. μ itself stands for the mean of the pulleys, each with
-//! a weight `w_k` by how much force it changes, `Σ w_k = 1`: what all move together is no error. So the covariance grows by
-//! `Σ c_k c_kᵀ`, `c_k = b_k − w_k Σ_j b_j`.
+//! The model has one μ for all pulleys of a cable, but no two bearings are equal. The resulting error repeats in every stroke, so the scatter of the
+//! residuals does not show it, but the model can predict it. Let `d_k` be the change of the forces if the μ of pulley `k` is greater by a standard
+//! deviation. The estimate then moves by `b_k = H⁻¹Jᵀd_k`, `H = JᵀJ`. μ represents the mean of the pulleys, each with a weight `w_k` by how much it
+//! changes the force, `Σ w_k = 1`; a common change is no error. So the covariance grows by `Σ c_k c_kᵀ`, `c_k = b_k − w_k Σ_j b_j`.
 
 use fric_core::LANES;
 use fric_core::parameters::Values;
@@ -13,13 +12,13 @@ use nalgebra::{DMatrix, DVector};
 use crate::search::pass::CandidatePass;
 use crate::search::problem::{Member, Problem};
 
-/// Standard deviation of a pulley's μ as a share of the cable's: anything within ±10 % is as likely, the spread of bearings of one kind.
-/// Of 200 logs with such pulleys the interval of σ holds the truth in 192; with half of this in 161, with double in 200.
+/// Standard deviation of a pulley's μ as a fraction of the cable's: uniform within ±10 %, the spread of bearings of one type. Of 200 logs with such
+/// pulleys the interval of σ contains the truth in 192; with half of this value in 161, with double in 200.
 const SPREAD_RATIO: f64 = 0.057_735;
-/// Cycles that are evaluated at once.
+/// Number of cycles that are evaluated at once.
 const CHUNK: usize = 2048;
 
-/// What they add to the covariance of an estimate, from the inverse of `JᵀJ`.
+/// Returns the contribution of unlike pulleys to the covariance of an estimate, from the inverse of `JᵀJ`.
 pub fn covariance(problem: &Problem<'_>, values: &[Values], inverse: &DMatrix<f64>) -> DMatrix<f64> {
     let none = DMatrix::zeros(inverse.nrows(), inverse.ncols());
     let Some(forces) = problem.forces(values) else { return none };
@@ -50,7 +49,7 @@ pub fn covariance(problem: &Problem<'_>, values: &[Values], inverse: &DMatrix<f6
     })
 }
 
-/// Forces in every cycle where the μ of one pulley after the other is greater, N.
+/// Returns the change of the forces in every cycle if the μ of one pulley after the other is greater, N.
 fn by_each_pulley(member: &Member<'_>, values: &Values, count: usize) -> Vec<f64> {
     let ratio = |candidate: usize, pulley: usize| if candidate == pulley { 1.0 + SPREAD_RATIO } else { 1.0 };
     let mut forces_n = Vec::with_capacity(member.record.rows.len() * count);

@@ -1,4 +1,4 @@
-//! Named columns of numbers, as they stand in runs and on load benches.
+//! Named columns of numbers, as in runs and on load benches.
 
 use fric_core::robot::unknown_name;
 
@@ -8,42 +8,42 @@ use super::error::ContinuumError;
 pub const TIME: &str = "time_s";
 /// Tension of the tendon at the base, N.
 pub const TENSION_BASE: &str = "tension_base_n";
-/// Shift of the grating without load, nm.
+/// Shift of the unloaded reference grating, nm.
 pub const SHIFT_REFERENCE: &str = "shift_reference_nm";
-/// Load of a calibration, g on a hook, and N.
+/// Load of a calibration: mass on a hook, g, or force, N.
 pub const LOADS: [&str; 2] = ["load_g", "load_n"];
 /// A load on a single hole: tensions on both sides, and the angles between them and the normal force (\[C\] 16).
 pub const HOLE: [&str; 4] = ["tension_1_n", "tension_2_n", "angle_1_rad", "angle_2_rad"];
 
-/// What the names of columns hold that only a manipulator's run or bench has.
+/// Parts of column names that occur only in a manipulator's run or bench.
 pub const MARKS: [&str; 6] = [TENSION_BASE, "shift_", "marker_", "load_", "tension_1_n", "angle_1_rad"];
 
-/// `shift_1_nm` …
+/// Returns `shift_1_nm` …
 #[must_use]
 pub fn shifts(disk_count: usize) -> Vec<String> {
     (1..=disk_count).map(|place| format!("shift_{place}_nm")).collect()
 }
 
-/// `marker_1_x_m`, `marker_1_y_m` …
+/// Returns `marker_1_x_m`, `marker_1_y_m` …
 #[must_use]
 pub fn markers(disk_count: usize) -> Vec<String> {
     (1..=disk_count).flat_map(|place| [format!("marker_{place}_x_m"), format!("marker_{place}_y_m")]).collect()
 }
 
-/// All columns that a run may have.
+/// Returns all columns that a run may have.
 #[must_use]
 pub fn of_run(disk_count: usize) -> Vec<String> {
     let first = [TENSION_BASE, TIME, SHIFT_REFERENCE].map(ToOwned::to_owned);
     first.into_iter().chain(shifts(disk_count)).chain(markers(disk_count)).collect()
 }
 
-/// All columns that a calibration may have.
+/// Returns all columns that a calibration may have.
 #[must_use]
 pub fn of_calibration(disk_count: usize) -> Vec<String> {
     LOADS.into_iter().chain([SHIFT_REFERENCE]).map(ToOwned::to_owned).chain(shifts(disk_count)).collect()
 }
 
-/// All columns of loads on a single hole.
+/// Returns all columns of loads on a single hole.
 #[must_use]
 pub fn of_hole() -> Vec<String> {
     HOLE.map(ToOwned::to_owned).to_vec()
@@ -51,12 +51,12 @@ pub fn of_hole() -> Vec<String> {
 
 /// Shift per strain of a silica grating at 1550 nm, `λ_B(1 − P_e)` (\[C\] 3), nm.
 const SHIFT_NM_PER_STRAIN: f64 = 1550.0 * (1.0 - 0.22);
-/// No fibre bears the strain of 4 % that this shift stands for, nm.
+/// Shift that corresponds to a strain of 4 %, which no fibre survives, nm.
 const MOST_SHIFT_NM: f64 = 50.0;
-/// Share of the values beyond which some may be spikes of the demodulator.
+/// Fraction of the values to check; the greatest values beyond it may be spikes of the demodulator.
 const MOST_RATIO: f64 = 0.75;
 
-/// The greatest size of a column's values, the largest quarter of them left out.
+/// Returns the greatest magnitude among a column's values, with the largest quarter left out.
 fn greatest_of_most(column: &[f64]) -> f64 {
     let mut sizes: Vec<f64> = column.iter().map(|value| value.abs()).filter(|size| size.is_finite()).collect();
     sizes.sort_by(f64::total_cmp);
@@ -94,7 +94,7 @@ impl<'a> Columns<'a> {
         }
     }
 
-    /// All columns of shifts; `None` where there is none of them.
+    /// Returns all columns of shifts; `None` if there are none.
     pub fn shifts(&self, disk_count: usize) -> Result<Option<Vec<&'a [f64]>>, ContinuumError> {
         let names = shifts(disk_count);
         let columns = self.group(&names)?;
@@ -120,7 +120,7 @@ impl<'a> Columns<'a> {
         self.get(name).ok_or_else(|| ContinuumError::MissingColumn { column: name.to_owned(), beside: None })
     }
 
-    /// All columns of a group; `None` where there is none of them.
+    /// Returns all columns of a group; `None` if there are none.
     pub fn group(&self, names: &[String]) -> Result<Option<Vec<&'a [f64]>>, ContinuumError> {
         let Some(beside) = names.iter().find(|name| self.get(name).is_some()) else { return Ok(None) };
         let column = |name: &String| {

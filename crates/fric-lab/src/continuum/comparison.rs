@@ -1,4 +1,4 @@
-//! A run by all ways of friction for which it has what they need.
+//! Computes a run by all friction models whose inputs it contains.
 
 use fric_core::continuum::{ManipulatorParams, ShapeStatus, Tendon};
 
@@ -8,23 +8,23 @@ use super::gratings::GratingSample;
 use super::run::Run;
 use super::shape_errors::{ComputedShape, ShapeErrors, Way, shapes};
 
-/// A run by one way.
+/// A run computed by one friction model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WayShapes {
-    /// Which.
+    /// The friction model.
     pub way: Way,
-    /// Sample by sample.
+    /// The shapes, sample by sample.
     pub shapes: Vec<ComputedShape>,
-    /// Over all samples.
+    /// The errors over all samples.
     pub errors: ShapeErrors,
 }
 
-/// Computes a run by those of the ways for which it has what they need: `none`, `coulomb` and `history` the tension at the base, `measured` the
-/// gratings, in the order of [`Way::ALL`].
+/// Computes a run by those friction models whose inputs it contains, in the order of [`Way::ALL`]: `none`, `coulomb` and `history` need the tension
+/// at the base, `measured` needs the gratings.
 ///
 /// # Errors
-/// [`ContinuumError::MissingGroup`] if it has what none of them needs, [`ContinuumError::OverCapacity`] for a tension at which the tendon may break, and
-/// [`ContinuumError::BeyondModel`] for a sample for which no way has a shape within the model.
+/// Returns [`ContinuumError::MissingGroup`] if it contains the inputs of none, [`ContinuumError::OverCapacity`] for a tension at which the tendon may
+/// break, and [`ContinuumError::BeyondModel`] for a sample for which no friction model has a shape.
 pub fn compare(
     params: &ManipulatorParams,
     run: &Run,
@@ -73,7 +73,7 @@ pub(super) fn is_beyond(status: ShapeStatus) -> bool {
     !status.has_shape() || status.contains(ShapeStatus::DISKS_TOUCH)
 }
 
-/// So many of the samples for which `is_right` holds, spread evenly from the first to the last: the shapes of a figure.
+/// Returns `count` of the samples for which `is_right` holds, spread evenly from the first to the last: the shapes of a figure.
 #[must_use]
 pub fn spread(sample_count: usize, count: usize, is_right: impl Fn(usize) -> bool) -> Vec<usize> {
     let right: Vec<usize> = (0..sample_count).filter(|&place| is_right(place)).collect();
@@ -84,22 +84,23 @@ pub fn spread(sample_count: usize, count: usize, is_right: impl Fn(usize) -> boo
     places
 }
 
-/// Which shapes of a run to show.
+/// A selection of a run's shapes to show.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Selection {
-    /// So many, spread over the run.
+    /// This many, spread over the run.
     Spread(usize),
-    /// So many of those in which the gratings show friction of both directions beyond doubt.
+    /// This many of those in which the gratings show friction in both directions with certainty.
     Mixed(usize),
     /// Those nearest to these times, s.
     At(Vec<f64>),
 }
 
 impl Selection {
-    /// Places of the samples.
+    /// Returns the indices of the samples.
     ///
     /// # Errors
-    /// [`ContinuumError::NotWithinRun`] for a time before or behind the run; [`ContinuumError::MissingGroup`] where the gratings would be needed.
+    /// Returns [`ContinuumError::NotWithinRun`] for a time before or after the run, and [`ContinuumError::MissingGroup`] if the gratings are needed
+    /// but missing.
     pub fn places(&self, run: &Run, measured: Option<&[GratingSample]>) -> Result<Vec<usize>, ContinuumError> {
         let samples = run.samples();
         match self {
@@ -118,7 +119,7 @@ impl Selection {
     }
 }
 
-/// The sample nearest to a time within the run.
+/// Returns the sample nearest to a time within the run.
 fn nearest(run: &Run, time_s: f64) -> Result<usize, ContinuumError> {
     let samples = run.samples();
     let ends = samples.first().zip(samples.last());

@@ -1,9 +1,9 @@
-//! What can be wrong with the data of a manipulator.
+//! Errors in the data of a manipulator.
 
 use fric_core::continuum::{ManipulatorError, ShapeStatus};
 use thiserror::Error;
 
-/// Why work on a manipulator's data was refused.
+/// The reason why work on a manipulator's data was refused.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ContinuumError {
@@ -14,12 +14,12 @@ pub enum ContinuumError {
         key: &'static str,
         /// Its value.
         value: f64,
-        /// Least allowed.
+        /// Least allowed value.
         min: f64,
-        /// Greatest allowed.
+        /// Greatest allowed value.
         max: f64,
     },
-    /// A tension to simulate at which the tendon may break.
+    /// The tension to simulate may break the tendon.
     #[error(
         "`greatest_tension_n` is {greatest_tension_n} N, above the tendon's capacity of {capacity_n} N; pull less, or state \
          another `capacity_n` in the manipulator file"
@@ -27,7 +27,7 @@ pub enum ContinuumError {
     TooGreatTension {
         /// The tension, N.
         greatest_tension_n: f64,
-        /// What the tendon can bear, N.
+        /// Capacity of the tendon, N.
         capacity_n: f64,
     },
     /// The simulated manipulator has no equilibrium.
@@ -36,15 +36,15 @@ pub enum ContinuumError {
          load"
     )]
     NoShape {
-        /// When.
+        /// Time, s.
         time_s: f64,
         /// Tension at the base, N.
         tension_base_n: f64,
     },
-    /// A column that means nothing here; with the nearest that does.
+    /// The column is unknown here; the message names the nearest known one.
     #[error("{0}")]
     UnknownColumn(String),
-    /// A column that is needed, by itself or beside others of its group.
+    /// A required column is missing, by itself or from its group.
     #[error(
         "column `{column}` is missing{}; add it, with empty cells where there is no value",
         beside.as_ref().map_or_else(String::new, |beside| format!(" beside `{beside}`"))
@@ -52,69 +52,69 @@ pub enum ContinuumError {
     MissingColumn {
         /// Its name.
         column: String,
-        /// One of its group that is there.
+        /// A column of its group that is present.
         beside: Option<String>,
     },
-    /// Columns of different length.
+    /// Columns have different lengths.
     #[error("column `{column}` has {count} values, the first column {needed}; make them equally long")]
     UnequalColumns {
         /// Its name.
         column: String,
-        /// How many it has.
+        /// Its length.
         count: usize,
-        /// How many the first has.
+        /// Length of the first column.
         needed: usize,
     },
-    /// A cell that is no number where one is needed.
+    /// A cell is not a number where one is required.
     #[error("`{column}` is {value} in row {row}; it must be a finite number, mend the row or take it out")]
     NotFinite {
         /// Its column.
         column: String,
         /// The row below the header, from 1.
         row: usize,
-        /// What stands there.
+        /// Its content.
         value: f64,
     },
-    /// An angle beyond half a turn.
+    /// An angle exceeds half a turn.
     #[error("`{column}` is {value} in row {row}; angles to the normal force are in rad, within ±π")]
     NoAngle {
         /// Its column.
         column: String,
         /// The row below the header, from 1.
         row: usize,
-        /// What stands there.
+        /// Its content.
         value: f64,
     },
-    /// A time that is none.
+    /// A time is not valid.
     #[error("`time_s` of sample {row} is {time_s}; give every sample its time in seconds, or take it out")]
     NoTime {
         /// The sample, from 1.
         row: usize,
-        /// What stands there, s.
+        /// Its content, s.
         time_s: f64,
     },
-    /// Time stands still or goes back.
+    /// The time does not increase.
     #[error(
         "time goes from {before_s} s to {time_s} s at sample {row}; sort the run by `time_s` and take out repeated samples"
     )]
     TimeNotRising {
-        /// The sample in question, from 1.
+        /// The sample, from 1.
         row: usize,
         /// Its time, s.
         time_s: f64,
-        /// The one before, s.
+        /// Time of the sample before, s.
         before_s: f64,
     },
-    /// A tension that cannot be.
+    /// A tension is not valid.
     #[error(
         "`tension_base_n` is {tension_n} at {time_s} s (sample {row}); it must be finite and not negative, take the sample out or mend it"
     )]
     NoTension {
         /// The sample, from 1.
         row: usize,
-        /// What stands there, N.
+        /// Its content, N.
         tension_n: f64,
-        /// When, s.
+        /// Time, s.
         time_s: f64,
     },
     /// The model has no shapes for the runs.
@@ -130,14 +130,14 @@ pub enum ContinuumError {
     OverCapacity {
         /// The sample, from 1.
         row: usize,
-        /// When, s.
+        /// Time, s.
         time_s: f64,
         /// The tension, N.
         tension_n: f64,
-        /// What the tendon bears, N.
+        /// Capacity of the tendon, N.
         capacity_n: f64,
     },
-    /// A bend for which no way of friction has a shape.
+    /// A bend for which no friction model has a shape.
     #[error(
         "the bend at {time_s} s (sample {row}, {tension_n} N) is beyond the model by every way of friction ({status}); check \
          the tension, and stiffness and weight in the manipulator file"
@@ -145,50 +145,50 @@ pub enum ContinuumError {
     BeyondModel {
         /// The sample, from 1.
         row: usize,
-        /// When, s.
+        /// Time, s.
         time_s: f64,
         /// Tension at the base, N.
         tension_n: f64,
-        /// What the model says.
+        /// The status of the model.
         status: ShapeStatus,
     },
-    /// A group of columns that the work needs.
+    /// A required group of columns is missing.
     #[error("the run has no {what}: {consequence}; record {remedy}")]
     MissingGroup {
-        /// Which.
+        /// The group.
         what: &'static str,
-        /// What is impossible.
+        /// What is impossible without it.
         consequence: &'static str,
         /// What to record.
         remedy: &'static str,
     },
-    /// A time that the run does not have.
+    /// A time is outside the run.
     #[error("{time_s} s is not within the run, {from_s} … {to_s} s; name another time")]
     NotWithinRun {
         /// The time, s.
         time_s: f64,
-        /// Where the run begins, s.
+        /// Start of the run, s.
         from_s: f64,
-        /// Where it ends, s.
+        /// End of the run, s.
         to_s: f64,
     },
-    /// A run with too little in it.
+    /// The run has too few samples.
     #[error("the run has {count} samples, {needed} are needed to hold some out; record a longer one")]
     TooShort {
-        /// How many there are.
+        /// Number of samples.
         count: usize,
-        /// How many are needed.
+        /// Required number.
         needed: usize,
     },
-    /// Gratings of which hardly any samples follow one another.
+    /// The gratings have hardly any consecutive samples.
     #[error("so many samples of the gratings are missing that nothing tells their noise; record a run with fewer gaps")]
     UntoldNoise,
-    /// Shifts that nothing turns into tensions.
+    /// The file has no gratings that convert shifts to tensions.
     #[error(
         "the manipulator file has no `[gratings]`, without which shifts are no tensions; write them with a calibration"
     )]
     NoGratings,
-    /// The manipulator is refused.
+    /// The manipulator's parameters are invalid.
     #[error("{0}; correct the manipulator file")]
     Params(#[from] ManipulatorError),
     /// Shifts that no fibre survives.
@@ -199,12 +199,12 @@ pub enum ContinuumError {
     ShiftUnit {
         /// The column.
         column: String,
-        /// The greatest of most of its values, nm.
+        /// Greatest magnitude of most of its values, nm.
         greatest_nm: f64,
-        /// Strain of a silica fibre at usual wavelengths, %.
+        /// Corresponding strain of a silica fibre at common wavelengths, %.
         strain_percent: f64,
     },
-    /// A calibration load that the tendon cannot bear.
+    /// A calibration load exceeds the tendon's capacity.
     #[error(
         "`load_n` goes up to {greatest_n} N, above the tendon's capacity of {capacity_n} N: it is likely in g; name the column \
          `load_g`, or state another `capacity_n` in the manipulator file"
@@ -212,49 +212,49 @@ pub enum ContinuumError {
     LoadUnit {
         /// The greatest load, N.
         greatest_n: f64,
-        /// What the tendon can bear, N.
+        /// Capacity of the tendon, N.
         capacity_n: f64,
     },
-    /// Gratings that show another order of magnitude than the tension at the base.
+    /// The tensions of the gratings differ from the tension at the base by orders of magnitude.
     #[error(
         "by `shift_1_nm` and so on the tension is {ratio:.2e} times `tension_base_n`: {}; state shifts in nm and forces in N, and \
          calibrate again",
         unit_by(*ratio)
     )]
     GratingUnit {
-        /// Tension by the gratings per tension at the base.
+        /// Ratio of the gratings' tension to the tension at the base.
         ratio: f64,
     },
     /// Every grating is dead.
     #[error("no grating follows the tension in any sample; check the demodulator and the columns")]
     AllDead,
-    /// A list of the wrong length.
+    /// A list has the wrong length.
     #[error("there are {count} {what}; {needed} are needed")]
     WrongCount {
-        /// Of what.
+        /// The content of the list.
         what: &'static str,
-        /// How many there are.
+        /// Its length.
         count: usize,
-        /// How many are needed.
+        /// Required length.
         needed: usize,
     },
-    /// Too few load steps for a line, or all the same.
+    /// Too few load steps for a line, or all equal.
     #[error("{count} load steps with different shifts are too few for grating {grating}; {needed} are needed")]
     TooFewLoads {
         /// The grating, from 1.
         grating: usize,
-        /// How many there are.
+        /// Number of load steps.
         count: usize,
-        /// How many are needed.
+        /// Required number.
         needed: usize,
     },
-    /// A grating that shows no more shift under more load.
+    /// The shift of a grating does not grow with the load.
     #[error("grating {grating} does not answer to the load; it may be broken, or the columns exchanged")]
     DeadGrating {
         /// The grating, from 1.
         grating: usize,
     },
-    /// A grating would run into a disk, \[C\] 6.
+    /// A grating would move into a disk, \[C\] 6.
     #[error(
         "grating {grating} leaves its segment: it moves {travel_mm:.1} mm towards the base and has {room_mm:.1} mm; put it \
          nearer to the tip side of the segment, or bend less"
@@ -262,17 +262,17 @@ pub enum ContinuumError {
     TravelTooLong {
         /// The grating, from 1.
         grating: usize,
-        /// How far it moves, mm.
+        /// Its travel, mm.
         travel_mm: f64,
-        /// How far it can, mm.
+        /// Available travel, mm.
         room_mm: f64,
     },
-    /// Nothing to fit a coefficient to.
+    /// The loads do not determine a coefficient.
     #[error("the friction coefficient cannot be fitted: {0}")]
     NoCoefficient(&'static str),
 }
 
-/// Which unit is likely wrong where the gratings show so many times the tension at the base.
+/// Returns which unit is likely wrong if the gratings show this multiple of the tension at the base.
 fn unit_by(ratio: f64) -> &'static str {
     match ratio {
         300.0..3000.0 => "they are likely in pm",

@@ -1,8 +1,8 @@
-//! Fibre Bragg gratings: from the shift of the wavelength to the tension, \[C\] 2–7.
+//! Fibre Bragg gratings: converts wavelength shifts to tensions, \[C\] 2–7.
 //!
-//! Calibration is a line `T = a·Δλ + b` for each grating, by least squares over load steps; without one, [`StrainForm`] computes it
-//! from the fibre. A grating without load shows the temperature alone ([`without_temperature`]). Shifts that are not
-//! finite give tensions that are not finite; [`bridged`] puts something in their place and says so.
+//! The calibration of each grating is a line `T = a·Δλ + b`, fitted by least squares over load steps; without load steps [`StrainForm`] computes it
+//! from the fibre's properties. An unloaded grating measures the temperature alone ([`without_temperature`]). Non-finite shifts give non-finite
+//! tensions; [`bridged`] interpolates them and marks them.
 
 use fric_core::continuum::ManipulatorParams;
 use serde::Serialize;
@@ -18,20 +18,20 @@ pub struct LoadStep {
     pub shift_nm: Vec<f64>,
 }
 
-/// The line of one grating, \[C\] 7, with what is known of its quality.
+/// The calibration line of one grating, \[C\] 7, with its uncertainty.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Calibration {
     /// a, N/nm.
     pub newton_per_nm: f64,
     /// b, N.
     pub offset_n: f64,
-    /// Residuals of the load steps as shares of the greatest load; empty without load steps.
+    /// Residuals of the load steps relative to the greatest load; empty without load steps.
     pub residual_ratio: Vec<f64>,
-    /// Error at each load step of the line through all others, as a share of the greatest load.
+    /// Error at each load step of the line through all others, relative to the greatest load.
     pub left_out_ratio: Vec<f64>,
-    /// Standard deviation of a tension from one shift, N, the noise of the shift included.
+    /// Standard deviation of a tension from one shift, N, including the noise of the shift.
     pub noise_n: f64,
-    /// Middle of the shifts, nm, and what the uncertainty of the line grows by per distance from it: `var = noise²(1/n + (Δλ − mean)²/spread)`.
+    /// Mean shift, nm. The variance of the line grows with the distance from it: `var = noise²(1/n + (Δλ − mean)²/spread)`.
     mean_nm: f64,
     spread_nm2: f64,
     /// Least and greatest shift of the load steps, nm.
@@ -39,19 +39,19 @@ pub struct Calibration {
     count: usize,
 }
 
-/// What is not known of a line: it is off by a constant, and by its slope around the mean shift of its load steps, independently.
+/// The uncertainty of a line: an error of its constant and an independent error of its slope, around the mean shift of its load steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct LineError {
-    /// Standard error at that mean shift, N.
+    /// Standard error at the mean shift, N.
     pub line_error_n: f64,
     /// Standard error of the slope, N/nm.
     pub slope_error_n_per_nm: f64,
-    /// That mean shift, nm.
+    /// Mean shift, nm.
     pub mean_shift_nm: f64,
 }
 
 impl LineError {
-    /// How far the tension for a shift is off by one standard error of the constant, and by one of the slope, N.
+    /// Returns the error of the tension at a shift for one standard error of the constant and for one of the slope, N.
     #[must_use]
     pub fn parts_n(&self, shift_nm: f64) -> [f64; 2] {
         [self.line_error_n, self.slope_error_n_per_nm * (shift_nm - self.mean_shift_nm)]
@@ -63,12 +63,12 @@ impl LineError {
 pub struct Tension {
     /// The tension, N.
     pub value_n: f64,
-    /// Its standard error, N: of the line and of the shift.
+    /// Its standard error, N, due to line and shift.
     pub standard_error_n: f64,
 }
 
 impl Calibration {
-    /// A line that is known, with the standard error of a tension from one shift.
+    /// Creates a known line, with the standard error of a tension from one shift.
     #[must_use]
     pub fn known(newton_per_nm: f64, offset_n: f64, standard_error_n: f64) -> Self {
         Self {
@@ -84,14 +84,14 @@ impl Calibration {
         }
     }
 
-    /// Greatest standard error of a tension over the shifts of the load steps, N.
+    /// Returns the greatest standard error of a tension over the shifts of the load steps, N.
     #[must_use]
     pub fn largest_standard_error_n(&self) -> f64 {
         let far_nm = self.range_nm.iter().map(|shift_nm| self.tension(*shift_nm).standard_error_n);
         far_nm.fold(self.noise_n, f64::max)
     }
 
-    /// What the load steps leave open of the line; nothing for one that is known.
+    /// Returns the uncertainty of the line from its load steps; zero for a known line.
     #[must_use]
     pub fn line_error(&self) -> LineError {
         if self.count == 0 {
@@ -109,8 +109,8 @@ impl Calibration {
     /// Fits the lines of all gratings.
     ///
     /// # Errors
-    /// [`ContinuumError::TooFewLoads`] for fewer than three load steps, [`ContinuumError::WrongCount`] for steps with different numbers of
-    /// gratings, [`ContinuumError::DeadGrating`] for one whose shift does not follow the load.
+    /// Returns [`ContinuumError::TooFewLoads`] for fewer than three load steps, [`ContinuumError::WrongCount`] for steps with different numbers of
+    /// gratings, and [`ContinuumError::DeadGrating`] for a grating whose shift does not follow the load.
     pub fn fit_all(steps: &[LoadStep]) -> Result<Vec<Self>, ContinuumError> {
         let count = steps.first().map_or(0, |step| step.shift_nm.len());
         if let Some(step) = steps.iter().find(|step| step.shift_nm.len() != count) {
@@ -155,7 +155,7 @@ impl Calibration {
         let residuals: Vec<f64> = points.iter().map(|(shift, load)| load - newton_per_nm * shift - offset_n).collect();
         let full_n = points.iter().map(|point| point.1.abs()).fold(0.0, f64::max);
         let squares: f64 = residuals.iter().map(|residual| residual * residual).sum();
-        // The residual of the line through all others: r/(1 − h) with the leverage h of the point.
+        // The residual of the line through all other points: r/(1 − h) with the leverage h of the point.
         let left_out = points.iter().zip(&residuals).map(|((shift, _), residual)| {
             residual / (1.0 - 1.0 / count - (shift - mean_nm).powi(2) / spread_nm2) / full_n
         });
@@ -174,7 +174,7 @@ impl Calibration {
         })
     }
 
-    /// Tension for a shift, \[C\] 7.
+    /// Returns the tension for a shift, \[C\] 7.
     #[must_use]
     pub fn tension(&self, shift_nm: f64) -> Tension {
         #[expect(clippy::cast_precision_loss, reason = "a number of load steps")]
@@ -186,19 +186,19 @@ impl Calibration {
         }
     }
 
-    /// Shift for a tension, nm.
+    /// Returns the shift for a tension, nm.
     #[must_use]
     pub fn shift_nm(&self, tension_n: f64) -> f64 {
         (tension_n - self.offset_n) / self.newton_per_nm
     }
 
-    /// Greatest residual, as a share of the greatest load.
+    /// Returns the greatest residual, relative to the greatest load.
     #[must_use]
     pub fn largest_residual_ratio(&self) -> f64 {
         self.residual_ratio.iter().fold(0.0, |most, residual| most.max(residual.abs()))
     }
 
-    /// Greatest error at a load step of the line through all others, as a share of the greatest load.
+    /// Returns the greatest error at a load step of the line through all others, relative to the greatest load.
     #[must_use]
     pub fn largest_left_out_ratio(&self) -> f64 {
         self.left_out_ratio.iter().fold(0.0, |most, error| most.max(error.abs()))
@@ -217,10 +217,10 @@ pub struct StrainForm {
 }
 
 impl StrainForm {
-    /// `T = Δλ·E_f·A_f/(λ_B(1 − P_e))`, \[C\] 4, as a line without offset or uncertainty.
+    /// Returns `T = Δλ·E_f·A_f/(λ_B(1 − P_e))`, \[C\] 4, as a line without offset or uncertainty.
     ///
     /// # Errors
-    /// [`ContinuumError::OptionOutOfRange`] for a number that no fibre has.
+    /// Returns [`ContinuumError::OptionOutOfRange`] for a number that no fibre has.
     pub fn calibration(&self) -> Result<Calibration, ContinuumError> {
         let ranges = [
             ("wavelength_nm", self.wavelength_nm, 100.0, 1e4),
@@ -237,11 +237,11 @@ impl StrainForm {
     }
 }
 
-/// Shifts without what the temperature does to them, \[C\] 2.
+/// Returns the shifts without the effect of temperature, \[C\] 2.
 ///
-/// A grating of the same fibre at the same temperature without load shows `Δλ_ref = λ_ref(α_Λ + α_n)ΔT`; of each other
-/// `λ_i/λ_ref` times as much is taken off. `wavelength_nm` are the Bragg wavelengths of the loaded gratings and, last, of the
-/// reference. Lists of different length end with the shortest.
+/// An unloaded grating of the same fibre at the same temperature shows `Δλ_ref = λ_ref(α_Λ + α_n)ΔT`; `λ_i/λ_ref` times this shift is subtracted from
+/// each other grating. `wavelength_nm` holds the Bragg wavelengths of the loaded gratings and, last, of the reference. Lists of different lengths are
+/// cut to the shortest.
 #[must_use]
 pub fn without_temperature(
     shift_nm: &[f64],
@@ -253,9 +253,9 @@ pub fn without_temperature(
     shift_nm.iter().zip(wavelength_nm).map(|(shift, wavelength)| shift - wavelength * thermal_ratio).collect()
 }
 
-/// Tensions with dead gratings bridged: what is not finite is put on the line between its neighbours (at the tip, the last one;
-/// before the first, the tension at the base, if that is known). Which ones were, stands beside. Without any live grating all are the
-/// tension at the base.
+/// Returns the tensions with dead gratings interpolated linearly between their neighbours (at the tip, equal to the last live one; before the first
+/// live one, from the tension at the base, if that is known), and a flag for each interpolated one. Without any live grating, all equal the tension
+/// at the base.
 #[must_use]
 pub fn bridged(tension_base_n: f64, tension_n: &[f64]) -> (Vec<f64>, Vec<bool>) {
     let is_dead: Vec<bool> = tension_n.iter().map(|tension_n| !tension_n.is_finite()).collect();
@@ -283,22 +283,23 @@ pub fn bridged(tension_base_n: f64, tension_n: &[f64]) -> (Vec<f64>, Vec<bool>) 
     (whole, is_dead)
 }
 
-/// Where a grating lies on the straight manipulator.
+/// The position of a grating on the straight manipulator.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GratingPlace {
-    /// From the disk on its base side (its face) to the near end of the grating, m.
+    /// Distance from the face of the disk on its base side to the near end of the grating, m.
     pub from_base_side_m: f64,
     /// Length of the grating, m.
     pub length_m: f64,
 }
 
-/// Whether every grating stays between its disks up to a bend of the whole manipulator, \[C\] 6.
+/// Checks that every grating stays between its disks up to a bend of the whole manipulator, \[C\] 6.
 ///
-/// The grating in segment i moves towards the base by `θ·r` for the bend θ of its own segment and those beyond, here spread
-/// evenly; \[C\] 6 is that of the first. The segment is free between the faces of two disks.
+/// The grating in segment i moves towards the base by `θ·r` for the bend θ of its own segment and those beyond, here spread evenly; \[C\] 6 is the
+/// case of the first grating. The free space of a segment is between the faces of two disks.
 ///
 /// # Errors
-/// [`ContinuumError::TravelTooLong`] names the first grating that would meet a disk, [`ContinuumError::WrongCount`] a list of the wrong length.
+/// Returns [`ContinuumError::TravelTooLong`] with the first grating that would meet a disk, or [`ContinuumError::WrongCount`] for a list of the wrong
+/// length.
 pub fn check_travel(
     params: &ManipulatorParams,
     gratings: &[GratingPlace],

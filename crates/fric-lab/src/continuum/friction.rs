@@ -8,14 +8,14 @@ use super::run::Run;
 /// Friction at one hole with its standard error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeasuredFriction {
-    /// `T_{i−1} − T_i`, N, positive where the base side is tighter.
+    /// `T_{i−1} − T_i`, N, positive if the base side is tighter.
     pub friction_n: f64,
     /// Its standard error, N.
     pub standard_error_n: f64,
 }
 
 impl MeasuredFriction {
-    /// −1, +1, or 0 where it is not beyond two standard errors.
+    /// Returns −1, +1, or 0 if the friction is within two standard errors.
     #[must_use]
     pub fn direction(&self) -> i8 {
         let bound_n = 2.0 * self.standard_error_n;
@@ -26,14 +26,14 @@ impl MeasuredFriction {
 /// Friction at every hole at one time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrictionDistribution {
-    /// From the base plate.
+    /// Friction at the holes, starting at the base plate.
     pub holes: Vec<MeasuredFriction>,
-    /// Whether both directions are there beyond doubt: no model with one direction can be right.
+    /// Whether both directions occur with certainty, so that no model with one direction can be right.
     pub directions_differ: bool,
 }
 
 impl FrictionDistribution {
-    /// From the tension at the base and in the segments: differences of neighbours (\[C\] 11), errors taken as independent.
+    /// Computes the friction from the tension at the base and in the segments: differences of neighbours (\[C\] 11), with errors assumed independent.
     #[must_use]
     pub fn new(base: Tension, segments: &[Tension]) -> Self {
         let before = std::iter::once(&base).chain(segments);
@@ -50,7 +50,7 @@ impl FrictionDistribution {
     }
 }
 
-/// Friction at every hole over a run, from what the gratings say; the tension at the base is taken as exact.
+/// Returns the friction at every hole over a run, from the gratings. The tension at the base counts as exact.
 pub fn distributions<'a>(
     run: &'a Run,
     measured: &'a [GratingSample],
@@ -64,9 +64,9 @@ pub fn distributions<'a>(
 /// One load on a single hole: the tensions on both sides and the angles between them and the normal force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HoleLoad {
-    /// F_1 on the side of the load, N.
+    /// F_1, on the side of the load, N.
     pub first_n: f64,
-    /// F_2 on the other side, N.
+    /// F_2, on the other side, N.
     pub second_n: f64,
     /// θ_1, rad.
     pub first_rad: f64,
@@ -81,18 +81,18 @@ pub struct HoleCoefficient {
     pub mu: f64,
     /// Its standard error.
     pub standard_error: f64,
-    /// The interval that holds it in 95 of 100 cases.
+    /// The 95 % confidence interval.
     pub interval: [f64; 2],
-    /// How many loads it is from.
+    /// Number of loads.
     pub count: usize,
 }
 
-/// μ of a single hole from a load run: `f = F_1 − F_2` against `F_N = F_1 cos θ_1 + F_2 cos θ_2` (\[C\] 16, 17).
+/// Fits μ of a single hole to a load run: `f = F_1 − F_2` against `F_N = F_1 cos θ_1 + F_2 cos θ_2` (\[C\] 16, 17).
 ///
-/// A line through the origin by least squares; the interval is Student's.
+/// The fit is a line through the origin by least squares; the interval is Student's.
 ///
 /// # Errors
-/// [`ContinuumError::NoCoefficient`] with fewer than three loads, numbers that are not finite, or no normal force.
+/// Returns [`ContinuumError::NoCoefficient`] for fewer than three loads, non-finite numbers, or no normal force.
 pub fn hole_coefficient(loads: &[HoleLoad]) -> Result<HoleCoefficient, ContinuumError> {
     let points: Vec<(f64, f64)> = loads
         .iter()
@@ -121,8 +121,8 @@ pub fn hole_coefficient(loads: &[HoleLoad]) -> Result<HoleCoefficient, Continuum
     Ok(HoleCoefficient { mu, standard_error, interval: [mu - half, mu + half], count: points.len() })
 }
 
-/// The 0.975 quantile of Student's t: exact for 2 degrees of freedom, beyond by the expansion in their inverse (Abramowitz and
-/// Stegun 26.7.5), good to 0.2 %.
+/// Returns the 0.975 quantile of Student's t: exact for 2 degrees of freedom, beyond that by the expansion in their inverse (Abramowitz and Stegun
+/// 26.7.5), accurate to 0.2 %.
 fn student_975(freedom: f64) -> f64 {
     const Z: f64 = 1.959_963_984_540_054;
     if freedom <= 2.0 {

@@ -1,8 +1,7 @@
-//! The gratings of a manipulator over a run: shifts to tensions, temperature off, dead gratings found and bridged.
+//! The gratings of a manipulator over a run: converts shifts to tensions, removes the temperature effect, and finds and interpolates dead gratings.
 //!
-//! A grating is taken for dead in a sample where its shift is not finite; where the shift stands still to the last bit while the
-//! tension changes; and where its tension is out of all proportion to that of its neighbours, which friction in a hole cannot
-//! explain.
+//! A grating counts as dead in a sample if its shift is not finite, if the shift stays bit-identical while the tension changes, or if its tension is
+//! so disproportionate to that of its neighbours that friction in a hole cannot explain it.
 
 use std::ops::Range;
 
@@ -15,49 +14,49 @@ use super::fbg::{
 };
 use super::run::{Run, RunSample};
 
-/// So many equal shifts one after the other are no measurement.
+/// This many equal consecutive shifts are no measurement.
 const FROZEN_SAMPLES: usize = 10;
-/// Distance from the neighbours beyond which a grating is dead: share of the tension there, share of the greatest of the run,
-/// and standard errors.
+/// Distance from the neighbours beyond which a grating is dead: a fraction of the local tension, plus a fraction of the run's greatest tension, plus
+/// a number of standard errors.
 const FAR_RATIO: f64 = 0.3;
 const FAR_OF_GREATEST_RATIO: f64 = 0.1;
 const FAR_ERRORS: f64 = 8.0;
 
-/// Error of a line as a share of the standard error of a tension from one shift, where only the latter is stated: that at the ends of ten
-/// loads evenly spread, `√(h/(1 + h))` with the leverage `h = 1/10 + 4.5²/82.5`.
+/// Error of a line relative to the standard error of a tension from one shift, used if only the latter is stated: that at the ends of ten evenly
+/// spaced loads, `√(h/(1 + h))` with the leverage `h = 1/10 + 4.5²/82.5`.
 const USUAL_LINE_RATIO: f64 = 0.5;
 
-/// Tension by the gratings per tension at the base that friction, a load and a rough calibration can explain.
+/// Range of the ratio of the gratings' tension to the tension at the base that friction, a load and a rough calibration can explain.
 const PLAUSIBLE_SCALE: Range<f64> = 1.0 / 30.0..30.0;
-/// Share of the greatest tension above which the proportion of two tensions tells something.
+/// Fraction of the greatest tension above which the ratio of two tensions is meaningful.
 const LOADED_RATIO: f64 = 0.2;
 
 /// The gratings of the first tendon.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gratings {
     lines: Vec<Calibration>,
-    /// What is not known of them.
+    /// The uncertainties of the lines.
     line_errors: Vec<LineError>,
-    /// Drift of each shift with the time of the run, nm/s.
+    /// Drift of each shift over the time of the run, nm/s.
     drift_nm_per_s: Vec<f64>,
-    /// Shift that all have alike from a time on, nm, and that time, s.
+    /// Common shift of all gratings from a time on, nm, and that time, s.
     common_step: (f64, f64),
-    /// Bragg wavelengths and that of the reference, nm.
+    /// Bragg wavelengths of the gratings and of the reference, nm.
     wavelength_nm: Option<(Vec<f64>, f64)>,
     places: Option<Vec<GratingPlace>>,
 }
 
-/// What the gratings say at one time.
+/// The tensions of the gratings at one time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GratingSample {
     /// Tension in each segment, N.
     pub tension: Vec<Tension>,
-    /// Whether the grating of a segment is dead and its tension put on the line between its neighbours.
+    /// Whether the grating of a segment is dead and its tension interpolated.
     pub is_bridged: Vec<bool>,
 }
 
 impl Gratings {
-    /// From calibrations alone.
+    /// Creates gratings from calibrations alone.
     #[must_use]
     pub fn new(lines: Vec<Calibration>) -> Self {
         let line_errors = lines.iter().map(Calibration::line_error).collect();
@@ -71,10 +70,10 @@ impl Gratings {
         }
     }
 
-    /// Those of a manipulator file; `None` where it has none.
+    /// Returns the gratings of a manipulator file; `None` if it has none.
     ///
     /// # Errors
-    /// [`ContinuumError::OptionOutOfRange`] for numbers that no fibre has.
+    /// Returns [`ContinuumError::OptionOutOfRange`] for numbers that no fibre has.
     pub fn from_file(file: &ManipulatorFile) -> Result<Option<Self>, ContinuumError> {
         let Some(table) = &file.tables().gratings else { return Ok(None) };
         let count = file.params().disk_count();
@@ -130,34 +129,34 @@ impl Gratings {
         }))
     }
 
-    /// The line of each grating from the base.
+    /// Returns the line of each grating, starting at the base.
     #[must_use]
     pub fn lines(&self) -> &[Calibration] {
         &self.lines
     }
 
-    /// What is not known of each line.
+    /// Returns the uncertainty of each line.
     #[must_use]
     pub fn line_errors(&self) -> &[LineError] {
         &self.line_errors
     }
 
-    /// Bragg wavelengths and that of the reference, nm: with them the temperature can be taken off.
+    /// Returns the Bragg wavelengths of the gratings and of the reference, nm, which allow to remove the temperature effect.
     #[must_use]
     pub fn wavelengths_nm(&self) -> Option<(&[f64], f64)> {
         self.wavelength_nm.as_ref().map(|(all, reference)| (all.as_slice(), *reference))
     }
 
-    /// Whether every grating stays within its segment up to a bend, \[C\] 6; yes where their places are not stated.
+    /// Checks that every grating stays within its segment up to a bend, \[C\] 6; passes if the positions are not stated.
     ///
     /// # Errors
-    /// As [`check_travel`].
+    /// Returns the errors of [`check_travel`].
     pub fn check_travel(&self, params: &ManipulatorParams, greatest_bend_rad: f64) -> Result<(), ContinuumError> {
         self.places.as_ref().map_or(Ok(()), |places| check_travel(params, places, greatest_bend_rad))
     }
 
-    /// Tensions of one sample as the lines give them, the step that all have alike, drift since the run's first sample and, where a reference and wavelengths
-    /// are there, temperature taken off.
+    /// Returns the tensions of one sample from the lines, with the common step, the drift since the run's first sample and, if a reference and
+    /// wavelengths are available, the temperature effect removed.
     #[must_use]
     pub fn tensions(&self, sample: &RunSample, elapsed_s: f64) -> Vec<Tension> {
         let reference_nm = sample.shift_reference_nm;
@@ -174,10 +173,11 @@ impl Gratings {
         lines.map(|((line, shift_nm), drift_nm)| line.tension(shift_nm - drift_nm - step_nm)).collect()
     }
 
-    /// Tensions of a whole run with dead gratings bridged.
+    /// Returns the tensions of a whole run with dead gratings interpolated.
     ///
     /// # Errors
-    /// [`ContinuumError::WrongCount`] for a run with another number of gratings, [`ContinuumError::AllDead`] if none is alive in any sample.
+    /// Returns [`ContinuumError::WrongCount`] for a run with another number of gratings, or [`ContinuumError::AllDead`] if none is alive in any
+    /// sample.
     pub fn read(&self, run: &Run) -> Result<Vec<GratingSample>, ContinuumError> {
         let tensions = self.unbridged(run)?;
         let base_n = run.samples().iter().map(|sample| sample.tension_base_n);
@@ -188,11 +188,11 @@ impl Gratings {
         if whole.iter().any(is_alive) { Ok(whole) } else { Err(ContinuumError::AllDead) }
     }
 
-    /// Tensions of a whole run as they are; NaN where a grating is silent or stands still.
+    /// Returns the tensions of a whole run without interpolation; NaN if a grating is silent or frozen.
     ///
     /// # Errors
-    /// [`ContinuumError::WrongCount`] for a run with another number of gratings, [`ContinuumError::GratingUnit`] if all of them are out of
-    /// proportion to the tension at the base by a factor that no friction is.
+    /// Returns [`ContinuumError::WrongCount`] for a run with another number of gratings, or [`ContinuumError::GratingUnit`] if all of them differ
+    /// from the tension at the base by a factor that friction cannot explain.
     pub fn unbridged(&self, run: &Run) -> Result<Vec<Vec<Tension>>, ContinuumError> {
         let count = self.lines.len();
         if count != run.disk_count() {
@@ -216,14 +216,14 @@ impl Gratings {
     }
 }
 
-/// The middle one of the finite tensions; NaN without any.
+/// Returns the median of the finite tensions; NaN if there are none.
 fn middle(tensions: &[Tension]) -> f64 {
     let mut all: Vec<f64> = tensions.iter().map(|tension| tension.value_n).filter(|value| value.is_finite()).collect();
     all.sort_by(f64::total_cmp);
     all.get(all.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
-/// Tension by the gratings per tension at the base; `None` unless it is much the same in most samples under load.
+/// Returns the ratio of the gratings' tension to the tension at the base; `None` unless it is similar in most samples under load.
 fn scale(samples: &[RunSample], tensions: &[Vec<Tension>]) -> Option<f64> {
     let greatest_n = samples.iter().map(|sample| sample.tension_base_n).fold(0.0, f64::max);
     let loaded = samples.iter().zip(tensions).filter(|(sample, _)| sample.tension_base_n > LOADED_RATIO * greatest_n);
@@ -235,7 +235,7 @@ fn scale(samples: &[RunSample], tensions: &[Vec<Tension>]) -> Option<f64> {
     (least > ratio / 3.0 && most < ratio * 3.0).then_some(ratio)
 }
 
-/// Samples in which the shift of a grating stands still while the tension changes.
+/// Returns the samples in which the shift of a grating is frozen while the tension changes.
 fn frozen(samples: &[RunSample], tensions: &[Vec<Tension>], grating: usize) -> Vec<usize> {
     let shift = |place: usize| samples.get(place).and_then(|sample| sample.shift_nm.get(grating)).copied();
     let load_n = |place: usize| match (samples.get(place), tensions.get(place)) {
@@ -261,7 +261,7 @@ fn frozen(samples: &[RunSample], tensions: &[Vec<Tension>], grating: usize) -> V
     found
 }
 
-/// One sample with what is out of proportion taken out, the worst first, and bridged.
+/// Removes disproportionate tensions from one sample, the worst first, and interpolates them.
 fn judged(mut tension: Vec<Tension>, base_n: f64, greatest_n: f64) -> GratingSample {
     loop {
         let far = (0..tension.len()).filter_map(|place| Some((place, excess_n(&tension, base_n, greatest_n, place)?)));
@@ -273,12 +273,12 @@ fn judged(mut tension: Vec<Tension>, base_n: f64, greatest_n: f64) -> GratingSam
     }
     let values: Vec<f64> = tension.iter().map(|tension| tension.value_n).collect();
     if !values.iter().any(|value| value.is_finite()) {
-        // Between nothing and nothing there is no line.
+        // Without any tension there is nothing to interpolate.
         return GratingSample { is_bridged: vec![true; values.len()], tension };
     }
     let (whole, is_bridged) = bridged(base_n, &values);
     for ((tension, value_n), is_bridged) in tension.iter_mut().zip(whole).zip(&is_bridged) {
-        // Nothing was measured there: a tenth of the tension is more than a hole takes away at usual bends.
+        // Nothing was measured there. A tenth of the tension is more than a hole removes at usual bends.
         if *is_bridged {
             *tension = Tension { value_n, standard_error_n: tension.standard_error_n.max(0.1 * value_n.abs()) };
         }
@@ -286,7 +286,7 @@ fn judged(mut tension: Vec<Tension>, base_n: f64, greatest_n: f64) -> GratingSam
     GratingSample { tension, is_bridged }
 }
 
-/// By how much a live grating is further from its neighbours than friction could make it; `None` where it is not.
+/// Returns how much further a live grating is from its neighbours than friction allows; `None` if it is not.
 fn excess_n(tension: &[Tension], base_n: f64, greatest_n: f64, place: usize) -> Option<f64> {
     let own = tension.get(place).filter(|own| own.value_n.is_finite())?;
     let live = |tension: &&Tension| tension.value_n.is_finite();

@@ -1,4 +1,4 @@
-//! Load benches: columns to the steps of a calibration, and to the loads on a single hole.
+//! Load benches: converts columns to the steps of a calibration, and to the loads on a single hole.
 
 use std::f64::consts::PI;
 
@@ -10,11 +10,11 @@ use super::fbg::{LoadStep, without_temperature};
 use super::friction::HoleLoad;
 use super::simulate::STANDARD_GRAVITY_M_PER_S2;
 
-/// Steps of a calibration of a manipulator from `load_g` (mass on a hook, g) or `load_n`, and `shift_1_nm …`. Where `wavelengths_nm` holds the Bragg
-/// wavelengths of the gratings and of the reference, and `shift_reference_nm` is there, the temperature is taken off (\[C\] 2).
+/// Returns the calibration steps of a manipulator from `load_g` (mass on a hook, g) or `load_n`, and `shift_1_nm …`. If `wavelengths_nm` holds the
+/// Bragg wavelengths of the gratings and of the reference, and `shift_reference_nm` is present, the temperature effect is removed (\[C\] 2).
 ///
 /// # Errors
-/// [`ContinuumError`] names a column that is unknown, missing, of another length or likely in another unit, and a load that is no
+/// Returns a [`ContinuumError`] for a column that is unknown, missing, of another length or likely in another unit, and for a load that is not a
 /// number.
 pub fn load_steps(
     given: &[(String, Vec<f64>)],
@@ -57,10 +57,11 @@ pub fn load_steps(
         .collect()
 }
 
-/// Loads on a single hole from `tension_1_n`, `tension_2_n`, `angle_1_rad` and `angle_2_rad`: F_1, F_2, θ_1 and θ_2 of \[C\] 16.
+/// Returns the loads on a single hole from `tension_1_n`, `tension_2_n`, `angle_1_rad` and `angle_2_rad`: F_1, F_2, θ_1 and θ_2 of \[C\] 16.
 ///
 /// # Errors
-/// [`ContinuumError`] names a column that is unknown, missing or of another length, and a cell that is no number, or no angle in rad.
+/// Returns a [`ContinuumError`] for a column that is unknown, missing or of another length, and for a cell that is not a number, or not an angle in
+/// rad.
 pub fn hole_loads(given: &[(String, Vec<f64>)]) -> Result<Vec<HoleLoad>, ContinuumError> {
     let all = Columns::new(given, &columns::of_hole())?;
     let [first_n, second_n, first_rad, second_rad] = columns::HOLE;

@@ -1,19 +1,19 @@
-//! What a manipulator file says of the measurement: the frame of the markers, the sensor of the tension at the base, a step of all gratings.
+//! The measurement corrections of a manipulator file: frame of the markers, tension sensor at the base, common step of all gratings.
 //!
-//! [`corrected`] takes them off a run, [`as_measured`] puts them on a simulated one.
+//! [`corrected`] removes them from a run, [`as_measured`] applies them to a simulated one.
 
 use fric_core::continuum::file::ManipulatorFile;
 
 use super::error::ContinuumError;
 use super::run::{Run, RunSample};
 
-/// The run as it would have been measured in the base frame, with a right sensor at the base. Shifts stay as they are: [`Gratings`](super::gratings::Gratings)
-/// takes their step and drift off.
+/// Returns the run in the base frame, with a corrected sensor at the base. Shifts stay unchanged: [`Gratings`](super::gratings::Gratings) removes
+/// their step and drift.
 ///
-/// The tension at the base is `(shown(t + lag) − offset)/gain`, between samples on the line, beyond the ends as there, and never negative.
+/// The tension at the base is `(shown(t + lag) − offset)/gain`, interpolated linearly between samples, constant beyond the ends, and never negative.
 ///
 /// # Errors
-/// None for a checked run; [`Run`]'s check has some.
+/// A checked run causes no error; the signature is that of [`Run`]'s check.
 pub fn corrected(run: &Run, file: &ManipulatorFile) -> Result<Run, ContinuumError> {
     let tables = file.tables();
     if tables.markers.is_none() && tables.base_sensor.is_none() {
@@ -31,7 +31,7 @@ pub fn corrected(run: &Run, file: &ManipulatorFile) -> Result<Run, ContinuumErro
     Run::new(samples.iter().map(correct).collect(), run.disk_count())
 }
 
-/// Samples of a simulated manipulator as they are measured with what the file says of frame, sensor and gratings.
+/// Returns samples of a simulated manipulator as they would be measured with the file's frame, sensor and gratings.
 #[must_use]
 pub fn as_measured(samples: &[RunSample], file: &ManipulatorFile) -> Vec<RunSample> {
     let tables = file.tables();
@@ -52,7 +52,7 @@ pub fn as_measured(samples: &[RunSample], file: &ManipulatorFile) -> Vec<RunSamp
     samples.iter().map(measure).collect()
 }
 
-/// The tension at the base at any time, N; `own_n` at the time of the sample itself.
+/// Returns the tension at the base at any time, N; `own_n` if there are no samples.
 fn tension_n(samples: &[RunSample], time_s: f64, own_n: f64) -> f64 {
     let behind = samples.partition_point(|sample| sample.time_s < time_s);
     let (before, after) = (behind.checked_sub(1).and_then(|before| samples.get(before)), samples.get(behind));
@@ -86,7 +86,7 @@ mod tests {
         };
         let samples: Vec<RunSample> = (0..30).map(sample).collect();
         let shown = as_measured(&samples, &file);
-        // By the definition: two samples later, 10 % more and 0.02 N; a quarter turn of a small angle moves along y.
+        // By definition: two samples later, 10 % more and 0.02 N; a rotation by a small angle moves along y.
         assert!((shown[10].tension_base_n - (1.1 * samples[8].tension_base_n + 0.02)).abs() < 1e-12);
         let expected_m = [0.005 + 0.037 * 0.05_f64.cos(), -0.003 + 0.037 * 0.05_f64.sin()];
         assert!((shown[0].marker_m[0][0] - expected_m[0]).abs() < 1e-15);

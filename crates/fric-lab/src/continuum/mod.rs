@@ -1,10 +1,9 @@
-//! Offline work on the runs of a continuum manipulator ([`fric_core::continuum`]).
+//! Offline analysis of the runs of a continuum manipulator ([`fric_core::continuum`]).
 //!
-//! A run comes as named [`columns`] and becomes a checked [`Run`]. [`fbg`] turns the shifts of gratings into tensions,
-//! [`gratings`] does so for a whole run and finds those that are dead; [`friction`] turns tensions into the friction at every hole
-//! and into the μ of a single one. [`comparison`] computes shapes by the four ways of friction, [`shape_errors`] says how far
-//! they are from markers. [`result`] is all that for machines and people. [`simulate`] is a manipulator whose truth is another
-//! one than the model's.
+//! A run comes as named [`columns`] and becomes a checked [`Run`]. [`fbg`] converts the shifts of gratings to tensions; [`gratings`] does so for a
+//! whole run and finds dead ones. [`friction`] computes the friction at every hole from tensions, and the μ of a single hole. [`comparison`] computes
+//! shapes by the four friction models, and [`shape_errors`] compares them with markers. [`result`] holds the results for machines and people.
+//! [`simulate`] is a manipulator whose true physics differ from the model.
 //!
 //! \[C\] is the paper that [`fric_core::continuum`] names.
 

@@ -1,20 +1,20 @@
-//! A run of a manipulator: what was measured, sample by sample.
+//! A run of a manipulator: the measurements, sample by sample.
 
 use super::columns::{self, Columns};
 use super::error::ContinuumError;
 
-/// What was measured at one time. A list that was not measured is empty.
+/// The measurements at one time. A list that was not measured is empty.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RunSample {
     /// Time, s.
     pub time_s: f64,
-    /// Tension of the tendon at the base, N; NaN where it was not measured.
+    /// Tension of the tendon at the base, N; NaN if it was not measured.
     pub tension_base_n: f64,
-    /// Wavelength shift of the grating in each segment, nm; NaN where a grating is dead.
+    /// Wavelength shift of the grating in each segment, nm; NaN if a grating is dead.
     pub shift_nm: Vec<f64>,
-    /// Shift of a grating without load, nm; NaN without one.
+    /// Shift of the unloaded reference grating, nm; NaN without one.
     pub shift_reference_nm: f64,
-    /// Centre of each disk, base frame, m; NaN where a marker is hidden.
+    /// Centre of each disk, base frame, m; NaN if a marker is hidden.
     pub marker_m: Vec<[f64; 2]>,
 }
 
@@ -25,7 +25,7 @@ impl Default for RunSample {
     }
 }
 
-/// A run that has been checked: time rises, tensions are finite and not negative, and every group of columns is whole or not there.
+/// A checked run: time increases, tensions are finite and not negative, and every group of columns is complete or absent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run {
     samples: Vec<RunSample>,
@@ -34,12 +34,11 @@ pub struct Run {
 }
 
 impl Run {
-    /// From named columns, of which any group but the time may be missing: `time_s`, `tension_base_n`, `shift_1_nm …`,
-    /// `shift_reference_nm`, `marker_1_x_m, marker_1_y_m …`.
+    /// Creates a run from named columns; any group except the time may be missing: `time_s`, `tension_base_n`, `shift_1_nm …`, `shift_reference_nm`,
+    /// `marker_1_x_m, marker_1_y_m …`.
     ///
     /// # Errors
-    /// [`ContinuumError`] names the first column that is unknown, missing in its group or of another length, and the first sample
-    /// that is not right.
+    /// Returns a [`ContinuumError`] with the first column that is unknown, missing in its group or of another length, or the first invalid sample.
     pub fn from_columns(columns: &[(String, Vec<f64>)], disk_count: usize) -> Result<Self, ContinuumError> {
         let all = Columns::new(columns, &columns::of_run(disk_count))?;
         let time_s = all.required(columns::TIME)?;
@@ -67,10 +66,10 @@ impl Run {
         Self::checked(samples, disk_count, tension_n.is_some())
     }
 
-    /// From samples; the base tension counts as measured where any of them has one.
+    /// Creates a run from samples. The base tension counts as measured if any sample has one.
     ///
     /// # Errors
-    /// [`ContinuumError`] names the first sample that is not right.
+    /// Returns a [`ContinuumError`] with the first invalid sample.
     pub fn new(samples: Vec<RunSample>, disk_count: usize) -> Result<Self, ContinuumError> {
         let has_tension = samples.iter().any(|sample| !sample.tension_base_n.is_nan());
         Self::checked(samples, disk_count, has_tension)
@@ -100,13 +99,13 @@ impl Run {
         Ok(Self { samples, disk_count, has_tension })
     }
 
-    /// The samples in the order of time.
+    /// Returns the samples in the order of time.
     #[must_use]
     pub fn samples(&self) -> &[RunSample] {
         &self.samples
     }
 
-    /// Disks of the manipulator.
+    /// Returns the number of disks of the manipulator.
     #[must_use]
     pub fn disk_count(&self) -> usize {
         self.disk_count
@@ -124,7 +123,7 @@ impl Run {
         self.samples.iter().any(|sample| !sample.shift_nm.is_empty())
     }
 
-    /// Whether there is a grating without load, in every sample.
+    /// Whether there is an unloaded reference grating in every sample.
     #[must_use]
     pub fn has_reference(&self) -> bool {
         !self.samples.is_empty() && self.samples.iter().all(|sample| sample.shift_reference_nm.is_finite())
@@ -136,10 +135,10 @@ impl Run {
         self.samples.iter().any(|sample| !sample.marker_m.is_empty())
     }
 
-    /// The first tension at the base above a capacity.
+    /// Checks that no tension at the base exceeds a capacity.
     ///
     /// # Errors
-    /// [`ContinuumError::OverCapacity`] names it.
+    /// Returns [`ContinuumError::OverCapacity`] with the first one that does.
     pub fn check_capacity(&self, capacity_n: f64) -> Result<(), ContinuumError> {
         let over = self.samples.iter().position(|sample| sample.tension_base_n > capacity_n);
         match over.and_then(|place| Some((place, self.samples.get(place)?))) {

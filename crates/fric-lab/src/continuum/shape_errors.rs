@@ -1,4 +1,4 @@
-//! How far the model's disks are from the markers, by the four ways of friction: the form of \[C\], figures 12 and 15.
+//! Distances between the model's disks and the markers, by the four friction models: the form of \[C\], figures 12 and 15.
 
 use fric_core::continuum::{
     AnyStaticModel, Direction, Friction, MAX_DISKS, ManipulatorError, ManipulatorParams, ShapeStatus, Tendon,
@@ -7,30 +7,30 @@ use fric_core::continuum::{
 use super::gratings::GratingSample;
 use super::run::RunSample;
 
-/// A way to find the friction, by name.
+/// A friction model, by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Way {
     /// Without friction.
     None,
-    /// Coulomb's, always as pulled: the published friction model (\[C\] 11–13).
+    /// Coulomb friction with the direction of pulling: the published friction model (\[C\] 11–13).
     Coulomb,
-    /// From the gratings (\[C\] 14).
+    /// Friction measured by the gratings (\[C\] 14).
     Measured,
-    /// From the history of the base tension, without gratings.
+    /// Friction from the history of the base tension, without gratings.
     History,
 }
 
 impl Way {
-    /// All there are.
+    /// All friction models.
     pub const ALL: [Self; 4] = [Self::None, Self::Coulomb, Self::Measured, Self::History];
 
-    /// The one of a name.
+    /// Returns the friction model of a name.
     #[must_use]
     pub fn of_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|way| way.name() == name)
     }
 
-    /// In one word.
+    /// Returns the name in one word.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -45,7 +45,7 @@ impl Way {
 /// A shape computed for one sample of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ComputedShape {
-    /// What the model had to say; without a shape the lists are those of the last one.
+    /// Status of the model; without a shape, the lists are those of the last one.
     pub status: ShapeStatus,
     /// Centres of the disks, m.
     pub disk_position_m: Vec<[f64; 2]>,
@@ -53,17 +53,17 @@ pub struct ComputedShape {
     pub tension_n: Vec<f64>,
     /// Friction at each hole, N.
     pub friction_n: Vec<f64>,
-    /// What each hole can hold, N.
+    /// Greatest friction that each hole can hold, N.
     pub bound_n: Vec<f64>,
     /// Bend of the whole manipulator, rad.
     pub bend_rad: f64,
 }
 
-/// Shapes of a whole run by one way. `measured` holds what the gratings say, sample by sample; [`Way::Measured`] alone looks at it,
-/// and takes it for the tensions at the base where these were not measured.
+/// Computes the shapes of a whole run by one friction model. `measured` holds the tensions of the gratings, sample by sample. Only [`Way::Measured`]
+/// uses it, also for the tensions at the base if these were not measured.
 ///
 /// # Errors
-/// None for parameters that have been checked; the model's constructor has one.
+/// Checked parameters cause no error; the signature is that of the model's constructor.
 pub fn shapes(
     params: &ManipulatorParams,
     samples: &[RunSample],
@@ -85,7 +85,7 @@ pub fn shapes(
                 tension_n.extend(gratings.iter().flat_map(|gratings| &gratings.tension).map(|tension| tension.value_n));
                 let first_n = tension_n.first().copied().unwrap_or(f64::NAN).max(0.0);
                 let base_n = if base_n[0].is_nan() { [first_n, 0.0] } else { base_n };
-                // Without a grating there is nothing measured; an empty list would be a slack tendon.
+                // Without a grating nothing was measured, but an empty list would mean a slack tendon.
                 let no_tension = [f64::NAN; MAX_DISKS];
                 let given_n = if tension_n.is_empty() { &no_tension[..params.disk_count()] } else { &tension_n[..] };
                 model.solve(base_n, Friction::Measured([given_n, &[]]))
@@ -106,20 +106,20 @@ pub fn shapes(
 /// Distances between disks and their markers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ShapeErrors {
-    /// Greatest over all disks and shapes, mm.
+    /// Greatest distance over all disks and shapes, mm.
     pub max_mm: f64,
-    /// Sum over all disks and shapes, mm.
+    /// Sum of the distances over all disks and shapes, mm.
     sum_mm: f64,
-    /// Disks compared.
+    /// Number of compared disks.
     pub disk_count: usize,
-    /// Shapes compared.
+    /// Number of compared shapes.
     pub shape_count: usize,
-    /// Shapes that the model did not find, left out of the rest.
+    /// Number of shapes that the model did not find; they are left out of the rest.
     pub missing_count: usize,
 }
 
 impl ShapeErrors {
-    /// Of one shape.
+    /// Computes the errors of one shape.
     #[must_use]
     pub fn of(shape: &ComputedShape, marker_m: &[[f64; 2]]) -> Self {
         let mut errors = Self::default();
@@ -127,14 +127,14 @@ impl ShapeErrors {
         errors
     }
 
-    /// Mean over all disks and shapes, mm; `None` without any.
+    /// Returns the mean distance over all disks and shapes, mm; `None` if there are none.
     #[must_use]
     pub fn mean_mm(&self) -> Option<f64> {
         #[expect(clippy::cast_precision_loss, reason = "a number of disks")]
         (self.disk_count > 0).then(|| self.sum_mm / self.disk_count as f64)
     }
 
-    /// Adds a shape. Markers that are not finite are left out, and so is a shape that was not found, or has no marker.
+    /// Adds a shape. Markers that are not finite are left out, and so is a shape that was not found or has no marker.
     pub fn add(&mut self, shape: &ComputedShape, marker_m: &[[f64; 2]]) {
         if !shape.status.has_shape() {
             self.missing_count += 1;

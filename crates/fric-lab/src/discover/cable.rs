@@ -1,4 +1,4 @@
-//! The discovery on one cable, from its record to what was found.
+//! Discovery on one cable: takes its record and returns everything that was found.
 
 use std::sync::atomic::AtomicBool;
 
@@ -32,16 +32,16 @@ use crate::samples::split::{Block, split};
 
 /// The steps of a converter are told of where they make this part of the noise, as squares: a twentieth of its size.
 const LEAST_ROUNDING: f64 = 0.1;
-/// Looks at a cable with what was found taken for given, until nothing more is found.
+/// Maximum number of passes over a cable. Each pass starts from what the previous one found.
 const LOOKS: usize = 3;
 
-/// No model is believed to less than this share of the tension, however little noise there is.
+/// No model is trusted to better than this fraction of the tension, however low the noise is.
 pub const BELIEVED_RATIO: f64 = 1e-4;
 
-/// What is counted of the work on a cable: the given model fitted, the first search, the second one, the table for the rest.
+/// Number of progress steps per cable: fit of the given model, first search, second search, table for the rest.
 pub const STAGES: usize = 4;
 
-/// Looks at one cable.
+/// Runs the discovery on one cable.
 pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> CableDiscovery {
     let stop = task.progress.stop_flag();
     if let Some(lack) = lack_of(record) {
@@ -64,7 +64,7 @@ pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> CableDiscove
     let counts = crate::fit::cables::used(&paper.standings);
     let blocks = split(record);
     let conditions = conditions(record);
-    // A rate has the sensor's noise in it, which the residual has too: no effect is steady over it.
+    // The force rate contains the sensor's noise, and so does the residual. No effect would appear steady over it.
     let steady = conditions.iter().filter(|condition| condition.signal != "force_rate");
     let with_time: Vec<Condition> = steady.cloned().chain([time(record)]).collect();
     let (mut start, held) = given_model(record, &paper.solution);
@@ -72,7 +72,7 @@ pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> CableDiscove
     let measured = crate::samples::interpolated::measured(record);
     let times = Times::of(record);
     let bench = Workbench { record: *record, blocks: &blocks, counts: &counts, measured: &measured, stop };
-    // Between two measurements too: a line may be faster than they are.
+    // Samples between two measurements count too, because a line may be faster than the measurements.
     let throughout = rest::with_interpolated(&counts, &measured, |place| has_reference(record, place));
     let left_by = |values: &Values| Workbench { counts: &throughout, ..bench.clone() }.residuals_n(values);
     let raw = Case {
@@ -115,7 +115,7 @@ pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> CableDiscove
     let rows = heard.taken_off(record, &times);
     faults.extend(of_stretches(&stretches, |cycle| record.time_s(cycle)));
     let step_n = coarse_step_n(record).filter(|step_n| {
-        // Rounding is noise, evenly within ± half a step.
+        // Rounding noise is uniform within ± half a step.
         let rounding_n = record.params.frictionless_gain() * step_n / 12.0_f64.sqrt();
         rounding_n * rounding_n > LEAST_ROUNDING * outcome.rest.noise_n * outcome.rest.noise_n
     });
@@ -130,7 +130,8 @@ pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> CableDiscove
     case.report(&outcome, table.as_ref(), samples, faults)
 }
 
-/// Sum of squares of the given model, fitted to the samples learned from, over those held out, N²; `None` where the log tells nothing.
+/// Returns the sum of squares, N², of the given model over the held-out samples after fitting it to the training samples. Returns `None` where the
+/// log cannot tell.
 pub fn held_out_squares(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<f64> {
     let (counts, start) = given_to(record, stop)?;
     let (blocks, measured) = (split(record), crate::samples::interpolated::measured(record));
@@ -138,7 +139,7 @@ pub fn held_out_squares(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<f
     Some(bench.try_one(&start).held_out)
 }
 
-/// Which samples count, and the given model with start values from the data.
+/// Returns which samples count, and the given model with start values from the data.
 pub fn given_to(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<(Vec<bool>, workbench::Model)> {
     if lack_of(record).is_some() {
         return None;
@@ -151,7 +152,7 @@ pub fn given_to(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<(Vec<bool
     Some((crate::fit::cables::used(&paper.standings), start))
 }
 
-/// Adds a fault that was corrected for the whole log: the given model is the one that does not know of it.
+/// Adds a fault that was corrected for the whole log. The given model is the one without the correction.
 pub fn tell_of(found: &mut CableDiscovery, given: &CableRecord<'_>, fault: RecordingFault, stop: &AtomicBool) {
     found.faults.insert(0, fault);
     let Some((counts, start)) = given_to(given, stop) else { return };
@@ -167,7 +168,7 @@ pub fn tell_of(found: &mut CableDiscovery, given: &CableRecord<'_>, fault: Recor
     };
 }
 
-/// Error over the samples that judge.
+/// Returns the error over the held-out samples.
 fn judged(residual_n: &[f64], held_out: &[bool]) -> Deviation {
     let judged = residual_n.iter().zip(held_out).filter(|(_, held_out)| **held_out);
     judged.fold(Deviation::default(), |mut sum, (number, _)| {
@@ -193,7 +194,7 @@ fn given_model(record: &CableRecord<'_>, paper: &crate::search::solve::Solution)
     (workbench::Model { values, free }, held)
 }
 
-/// Whether a parameter of the friction acts in a model.
+/// Whether a friction parameter acts in a model.
 pub fn acts(parameter: &Parameter, values: &Values) -> bool {
     match parameter.place() {
         MU | VISCOUS => values[parameter.place()] > 0.0,
@@ -210,32 +211,32 @@ fn has_reference(record: &CableRecord<'_>, place: usize) -> bool {
 /// A cable with its log.
 #[derive(Clone, Copy)]
 struct Case<'a> {
-    /// Without hum.
+    /// The record without hum.
     record: CableRecord<'a>,
-    /// As it is.
+    /// The record as given.
     raw: CableRecord<'a>,
     blocks: &'a [Block],
     /// Which samples count.
     counts: &'a [bool],
-    /// Standing of each before anything was known about the friction.
+    /// The status of each sample before anything was known about the friction.
     standings: &'a [Standing],
     measured: &'a [bool],
     conditions: &'a [Condition],
-    /// The same and the time.
+    /// The conditions and the time.
     with_time: &'a [Condition],
     stop: &'a AtomicBool,
 }
 
-/// One look at it.
+/// The outcome of one pass.
 struct Outcome {
-    /// The samples that it was of.
+    /// The samples that the pass used.
     counts: Vec<bool>,
     base: Trial,
     naming: Naming,
-    /// The model with all that was found, fitted to all samples as an identification does.
+    /// The model with everything that was found, fitted to all samples as an identification does.
     fitted: Fitted,
     rest: Rest,
-    /// A stretch of cable with trouble of its own, left out of the rest.
+    /// A stretch of cable with a local defect, left out of the assessment of the rest.
     stretch: Option<Place>,
 }
 
@@ -247,7 +248,7 @@ struct Fitted {
     covariance: DMatrix<f64>,
 }
 
-/// What a model leaves.
+/// What a model leaves unexplained.
 struct Rest {
     noise_n: f64,
     wander_n: f64,
@@ -258,7 +259,7 @@ struct Rest {
 }
 
 impl<'a> Case<'a> {
-    /// The same with other signals.
+    /// Returns the same case with other signals.
     fn with_rows<'b>(&self, rows: &'b [Row]) -> Case<'b>
     where
         'a: 'b,
@@ -277,8 +278,8 @@ impl<'a> Case<'a> {
         Excess { record: &self.record, blocks: self.blocks, residual_n, noise_n }
     }
 
-    /// Looks, and looks again with what the log determines with all that was found, and outside of a narrow stretch of cable with trouble of its
-    /// own, which may hide what else there is, or be taken for it; `None` where nothing tells the noise.
+    /// Runs a pass, then runs further passes if the findings make more parameters observable or show a narrow stretch of cable with a local defect.
+    /// Such a stretch may hide other effects or be mistaken for them, so it is left out. Returns `None` where the noise cannot be estimated.
     fn look_closely(&self, start: &mut workbench::Model, held: &[Parameter]) -> Option<Outcome> {
         let mut outcome = self.look(self.counts, start)?;
         let told = self.told(self.counts, &outcome.naming, held);
@@ -299,7 +300,7 @@ impl<'a> Case<'a> {
         Some(outcome)
     }
 
-    /// Fits, names, and judges the rest, until the model with all that was found lacks nothing that could be named.
+    /// Fits, names effects and assesses the rest, until no further effect can be named.
     fn look(&self, counts: &[bool], start: &workbench::Model) -> Option<Outcome> {
         let bench = self.bench(counts);
         let base = bench.try_one(start);
@@ -312,7 +313,7 @@ impl<'a> Case<'a> {
             let naming = search.run(&before);
             let fitted = self.fitted(counts, &naming.model, noise_n);
             let found: Vec<Effect> = naming.named.iter().map(|named| named.effect).collect();
-            // What was offered and has not stayed would be offered again.
+            // Effects that were offered and did not stay would be offered again.
             let more = if found == rows || looks == LOOKS {
                 Vec::new()
             } else {
@@ -328,7 +329,7 @@ impl<'a> Case<'a> {
         }
     }
 
-    /// What a model lacks, were it given.
+    /// Returns the effects that would be missing if `model` were the given model.
     fn missing(&self, bench: &Workbench<'_>, model: &workbench::Model) -> Option<Vec<Effect>> {
         let base = bench.try_one(model);
         let noise_n = self.noise_n(bench, &base)?;
@@ -336,18 +337,18 @@ impl<'a> Case<'a> {
         Some(naming.named.iter().map(|named| named.effect).collect())
     }
 
-    /// Standard deviation of the white noise in what a model leaves, N.
+    /// Returns the standard deviation of the white noise in the model's residual, N.
     fn noise_n(&self, bench: &Workbench<'_>, model: &Trial) -> Option<f64> {
         let residual_n = bench.residuals_n(&model.values);
         Some(white_noise(&bench.measured_of(&residual_n))?.max(self.least_n(model)))
     }
 
-    /// What the model is not believed to, N.
+    /// Returns the force below which the model is not trusted, N.
     fn least_n(&self, model: &Trial) -> f64 {
         BELIEVED_RATIO * self.around(model, 0.0).tension_n
     }
 
-    /// What a model leaves, N, judged.
+    /// Assesses the residual of a model, N.
     fn rest(&self, bench: &Workbench<'_>, residual_n: Vec<f64>, least_n: f64) -> Option<Rest> {
         let noise_n = white_noise(&bench.measured_of(&residual_n))?.max(least_n);
         let excess = self.excess(&residual_n, noise_n);
@@ -360,8 +361,8 @@ impl<'a> Case<'a> {
         Some(Rest { noise_n, wander_n: noise_n * wander.sqrt(), is_noise, places, stretch, residual_n })
     }
 
-    /// The model with all that was found as an identification of the robot file with it gives it: fitted to all samples that count. Friction that
-    /// neither the file has nor was found stays out, and so does an offset that is more than chance: naming has refused it.
+    /// Fits the model with everything found to all samples that count, as an identification of the extended robot file does. Friction that is neither
+    /// in the file nor found stays out. An offset that is larger than chance stays out too, because naming has refused it.
     fn fitted(&self, counts: &[bool], model: &Trial, noise_n: f64) -> Fitted {
         let given = self.record.params.values();
         let is_known = |parameter: &Parameter| {
@@ -385,7 +386,7 @@ impl<'a> Case<'a> {
         let has_chance_offset = |fitted: &Fitted| {
             let place = fitted.parameters.iter().position(|parameter| parameter.place() == OFFSET);
             let error_n = place.map_or(0.0, |place| fitted.covariance[(place, place)].sqrt());
-            // One that is known less well than a single sample is another word for something else.
+            // An offset that is known less well than a single sample stands in for something else.
             let is_chance =
                 fitted.values[OFFSET].abs() <= HALF_INTERVAL * error_n && HALF_INTERVAL * error_n <= noise_n;
             model.values[OFFSET].abs() > 0.0 || is_chance
@@ -399,7 +400,7 @@ impl<'a> Case<'a> {
         )
     }
 
-    /// Which of the held parameters the log determines when the model has what it lacked.
+    /// Returns which of the held parameters the log determines once the model has the effects that were missing.
     fn told(&self, counts: &[bool], naming: &Naming, held: &[Parameter]) -> Vec<Parameter> {
         if held.is_empty() || naming.named.is_empty() {
             return Vec::new();
@@ -418,7 +419,7 @@ impl<'a> Case<'a> {
         around(&self.record, base.values[MU], noise_n)
     }
 
-    /// A table for what is left and has no name.
+    /// Returns a table for a rest that has no name.
     fn table(&self, outcome: &Outcome, task: &Task<'_>) -> Option<Table> {
         let Outcome { fitted, rest, stretch, .. } = outcome;
         if rest.is_noise && stretch.is_none() || has_table(&fitted.values) {
@@ -428,7 +429,7 @@ impl<'a> Case<'a> {
         let places: Vec<Place> = stretch.iter().chain(&rest.places).cloned().collect();
         let model = workbench::Model { values: fitted.values, free: fitted.parameters.clone() };
         let table = table(&bench, &model, rest.noise_n, &places)?;
-        // What comes from next door is no matter of this cable, however well a table of its own conditions goes with it.
+        // Coupling from a neighbouring cable is not this cable's effect, however well a table over this cable's conditions fits it.
         let neighbours = neighbours_of(&bench.residuals_n(&fitted.values), task.own, task.records);
         let of_neighbour = neighbours.first().map_or(0.0, |neighbour| neighbour.correlation * neighbour.correlation);
         (table.gain_ratio > of_neighbour).then_some(table)
@@ -470,7 +471,7 @@ impl<'a> Case<'a> {
         };
         let bench = self.bench(&outcome.counts);
         let search = Search::new(&bench, noise_n, self.around(base, noise_n), base, self.with_time);
-        // The last of the ladder is the extended model, as it is written.
+        // The last step of the ladder is the extended model as it is written.
         let last = naming.named.len().saturating_sub(1);
         let steps = naming.ladder.iter().skip(1).enumerate();
         let steps = steps.map(|(place, step)| if place == last { &fitted.values } else { &step.values });
@@ -507,7 +508,7 @@ impl<'a> Case<'a> {
             (None, true) => Verdict::Complete,
             (None, false) => Verdict::Extended,
         };
-        // What tells most of the given model, and of what is left.
+        // The signals that explain most of the given model's residual and of the rest.
         let told = [places.first(), unexplained.as_ref().and_then(|rest: &Unexplained| rest.places.first())];
         let mut signals: Vec<&str> = told.into_iter().flatten().map(|place| place.signal).collect();
         signals.dedup();
@@ -544,7 +545,7 @@ impl<'a> Case<'a> {
         }
     }
 
-    /// What has no name, of the outcome with its last model; what only a table accounts for has none.
+    /// Returns what has no name, from the outcome with its final model. Anything that only a table accounts for has no name.
     fn unexplained(
         &self,
         outcome: &Outcome,

@@ -1,4 +1,4 @@
-//! The robot file with what a discovery found.
+//! Writes the findings of a discovery into a robot file.
 
 use fric_core::robot::edit::set_monitor;
 use fric_core::robot::file::RobotFileError;
@@ -9,14 +9,14 @@ use super::rest::empirical::is_idle;
 use crate::fit::Parameter;
 use crate::fit::rewritten::{NewValues, with_values};
 
-/// The text of a robot file with the extended models of its cables, in order: fitted values, and every parameter of each
-/// effect that was found; the monitor's `length_noise_m` where the lengths bear noise. A cable without a verdict keeps its values; everything else stays as it is written. `origin`
-/// says where the file is from, for errors.
+/// Returns the text of a robot file with the extended models of its cables, in the robot's order. It contains the fitted values, every parameter of
+/// each effect that was found, and the monitor's `length_noise_m` where the lengths are noisy. A cable without a verdict keeps its values, and
+/// everything else stays as written. `origin` names the source of the file in error messages.
 ///
-/// A replay with it gives the `after` of the discovery on the same samples, to the last bit.
+/// A replay with the new file gives the discovery's `after` errors on the same samples, to the last bit.
 ///
 /// # Errors
-/// [`RobotFileError`] as [`rewrite`](fric_core::robot::edit::rewrite).
+/// Returns the [`RobotFileError`] of [`rewrite`](fric_core::robot::edit::rewrite).
 pub fn extended(text: &str, origin: &str, discoveries: &[CableDiscovery]) -> Result<String, RobotFileError> {
     let new: Vec<NewValues<'_>> = discoveries
         .iter()
@@ -24,7 +24,7 @@ pub fn extended(text: &str, origin: &str, discoveries: &[CableDiscovery]) -> Res
             let found = |parameter: &Parameter| {
                 cable.findings.iter().any(|finding| finding.effect.places().contains(&parameter.place()))
             };
-            // Of a table the range of one condition.
+            // For a table, only the range of its own condition is written.
             let written = |parameter: &Parameter| {
                 cable.after.fitted.contains(parameter) || found(parameter) && !is_idle(parameter, &cable.after.values)
             };

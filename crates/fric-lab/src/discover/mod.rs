@@ -1,20 +1,22 @@
-//! Discovery: where a model and a log disagree, which physical effect is missing, and how much smaller the gap is with it.
+//! Discovery: where a model and a log disagree, which physical effect is missing, and how much the effect reduces the gap.
 //!
-//! For one cable at a time, from [`Measurements`] with reference forces:
+//! The discovery works on one cable at a time, from [`Measurements`] with reference forces:
 //!
-//! 1. *Gap.* The given model is fitted to half of the log, in blocks; the other half judges (`split`). The noise is
-//!    estimated from the residual alone (`noise`).
-//! 2. *Where.* Which operating conditions carry what is above the noise (`places`).
-//! 3. *Name.* Candidates of the catalogue enter, justify themselves and are exchanged (`naming`): the evidence for each (`evidence`), whether it has one size in every
-//!    condition (`steadiness`), and whether a law without a name makes it superfluous (`rivals`). The model with all names is taken for the given one until nothing more
-//!    is found, and fitted to all samples as an identification does.
-//! 4. *Rest.* What is wrong with the log itself has its own names (`foreign`) and is corrected before: lines in the spectrum (`lines`), a length that trembles
-//!    (`length_noise`), a reference that comes late (`timing`), a sensor that stands still, spikes or is at the end of its range. A stretch of cable (`stretch`) or of time (`rest`) is left out, and the rest
-//!    judged once more; signals of other cables that it goes with are told (`neighbours`). A wander of the sensors that has nothing to do with the motion is noise.
+//! 1. *Gap.* The given model is fitted to half of the log, in blocks; the other half is held out to judge (`split`). The noise is estimated from the
+//!    residual alone (`noise`).
+//! 2. *Where.* The operating conditions that carry the excess above the noise are located (`places`).
+//! 3. *Name.* Candidates of the catalogue enter, justify themselves and are exchanged (`naming`). The criteria are the evidence for each
+//!    (`evidence`), a constant size in every condition (`steadiness`), and no unnamed law that makes the effect superfluous (`rivals`). The model
+//!    with all names becomes the given one until nothing more is found, and is then fitted to all samples as in an identification.
+//! 4. *Rest.* Faults of the log have names of their own (`faults`) and are corrected first: spectral lines (`lines`), a noisy length
+//!    (`length_noise`), a late reference (`timing`), and a sensor that is frozen, spikes or saturates. A stretch of cable (`stretch`) or of time
+//!    (`rest`) is left out, and the rest is judged again. Signals of other cables that correlate with the rest are reported (`neighbours`). Sensor
+//!    drift that is unrelated to the motion is noise.
 //!
-//! 5. *Table.* A rest that is more than noise and has no name may be a function of a condition all the same: then a table tells how large it is and where (`empirical`). The verdict stays *unexplained*.
+//! 5. *Table.* A rest that exceeds the noise and has no name may still be a function of a condition. A table then says how large it is and where
+//!    (`empirical`). The verdict stays *unexplained*.
 //!
-//! The model is the control cycle's own; what is found runs in it as it is.
+//! The model is the control cycle itself, so the findings run in the cycle unchanged.
 
 mod cable;
 mod extended;
@@ -48,10 +50,10 @@ pub use rest::neighbours::Neighbour;
 pub use rest::places::Place;
 pub use wrench::{Geometry, GeometryFinding, WrenchDeviation, WrenchDiscovery, discover_wrench};
 
-/// What a discovery can be told.
+/// Options of a discovery.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DiscoverOptions {
-    /// Whether what is left and has no name may become a table.
+    /// Whether a rest without a name may become a table.
     pub empirical: bool,
 }
 
@@ -61,7 +63,7 @@ impl Default for DiscoverOptions {
     }
 }
 
-/// One cable among all of a robot.
+/// One cable among all cables of a robot.
 struct Task<'a> {
     options: DiscoverOptions,
     own: usize,
@@ -70,7 +72,8 @@ struct Task<'a> {
     stages: Stages<'a>,
 }
 
-/// Looks at a cable with its reference where it belongs: as far as the given model tells, and then as far as the one that has what it lacked.
+/// Runs the discovery on a cable with its reference at its correct time: first as determined by the given model, then by the model with the effects
+/// that were missing.
 fn discover_retimed(record: &CableRecord<'_>, task: &Task<'_>) -> (CableDiscovery, Option<RecordingFault>) {
     let stop = task.progress.stop_flag();
     let Some((rows, fault)) = faults::timing::retimed(record, stop) else {
@@ -78,31 +81,32 @@ fn discover_retimed(record: &CableRecord<'_>, task: &Task<'_>) -> (CableDiscover
     };
     let found = cable::discover_cable(&record.with_signals(&rows), task);
     let named = found.findings.iter().any(|finding| finding.effect != Effect::Empirical);
-    // What a table stands for may be the late reference itself.
+    // A table may represent the late reference itself.
     let values = rest::empirical::without_table(&found.after.values);
     let extended = record.params.with_values(&values).ok().filter(|_| named);
     let Some(params) = extended else { return (found, Some(fault)) };
-    // What the given model lacks may have looked like it.
+    // A missing effect in the given model may have looked like a late reference.
     match faults::timing::retimed(&record.with_params(&params), stop) {
         Some((rows, fault)) => (cable::discover_cable(&record.with_signals(&rows), task), Some(fault)),
         None => (cable::discover_cable(record, task), None),
     }
 }
 
-/// What was found, by what the model was compared with.
+/// The findings, by the kind of reference.
 #[derive(Clone, Debug)]
 pub enum Discoveries {
-    /// By cable forces, each cable by itself.
+    /// Compared with cable forces, each cable by itself.
     Forces(Vec<CableDiscovery>),
-    /// By the wrench, all cables together.
+    /// Compared with the wrench, all cables together.
     Wrench(Box<WrenchDiscovery>),
 }
 
 impl Discoveries {
-    /// Looks at all cables with the reference of the measurements; `options` are for forces: by the wrench nothing becomes a table.
+    /// Runs the discovery on all cables with the reference of the measurements. `options` apply to forces only: with the wrench nothing becomes a
+    /// table.
     ///
     /// # Errors
-    /// [`FitError`] as [`discover_wrench`].
+    /// Returns the [`FitError`] of [`discover_wrench`].
     pub fn of(
         measurements: &Measurements<'_>,
         options: &DiscoverOptions,
@@ -114,7 +118,7 @@ impl Discoveries {
         })
     }
 
-    /// What was found on each cable.
+    /// Returns the findings of each cable.
     #[must_use]
     pub fn cables(&self) -> &[CableDiscovery] {
         match self {
@@ -123,7 +127,7 @@ impl Discoveries {
         }
     }
 
-    /// What concerns all cables together.
+    /// Returns the findings that concern all cables together.
     #[must_use]
     pub fn wrench(&self) -> Option<&WrenchDiscovery> {
         match self {
@@ -132,10 +136,10 @@ impl Discoveries {
         }
     }
 
-    /// The text of a robot file with what was found, see [`extended`].
+    /// Returns the text of a robot file with the findings; see [`extended`].
     ///
     /// # Errors
-    /// [`RobotFileError`](fric_core::robot::file::RobotFileError) as [`extended`].
+    /// Returns the [`RobotFileError`](fric_core::robot::file::RobotFileError) of [`extended`].
     pub fn extended(&self, text: &str, origin: &str) -> Result<String, fric_core::robot::file::RobotFileError> {
         match self {
             Self::Forces(cables) => extended(text, origin, cables),
@@ -144,7 +148,7 @@ impl Discoveries {
     }
 }
 
-/// Looks at every cable that has a reference.
+/// Runs the discovery on every cable that has a reference.
 #[must_use]
 pub fn discover(
     measurements: &Measurements<'_>,

@@ -1,30 +1,31 @@
-//! What a log lacks for a discovery: a cable of which it tells too little gets a reason instead of a verdict.
+//! Checks whether a log holds enough for a discovery. A cable with too little information gets a reason instead of a verdict.
 //!
-//! All that decides is asked of the record before anything is fitted, but for the warm-up, which depends on the friction.
+//! The checks read the record before anything is fitted, except for the warm-up, which depends on the friction.
 
 use crate::fit::{CableRecord, Row, SampleCounts};
 
-/// Least time with samples that count, s: half of it judges, and has to hold some reversals.
+/// Minimum duration of samples that count, s. Half of it is held out and must contain some reversals.
 const LEAST_S: f64 = 8.0;
-/// A cable whose length changes by less in all does not move: as much as a winch needs to hold a force, m.
+/// Minimum range of the cable length, m. A cable with a smaller range does not move: it is as much as a winch needs to hold a force.
 const LEAST_RANGE_M: f64 = 1e-4;
-/// A way back shorter than this is no reversal, for friction would hardly turn round, m.
+/// Minimum stroke that counts as a reversal, m. Over a shorter one the friction hardly reverses.
 const STROKE_M: f64 = 1e-4;
-/// Strokes, not all in one direction, without which friction cannot be told from an offset, neither in what is learned from nor in what judges.
+/// Minimum number of strokes, not all in one direction, in the training samples and in the held-out samples. With fewer, friction cannot be
+/// distinguished from an offset.
 const FEWEST_STROKES: usize = 3;
-/// Speeds are looked at over this time, s: shorter than any stroke, long enough for the steps of an encoder.
+/// Time over which speeds are computed, s. It is shorter than any stroke and long enough for the steps of an encoder.
 const SPEED_OVER_S: f64 = 0.1;
-/// The cable moves where it does so at more than this share of its high speed.
+/// The cable counts as moving above this fraction of its high speed.
 const MOVES_RATIO: f64 = 0.05;
-/// High and low speed, as the quantiles of 90 % and 10 %, are the same below this ratio: no effect of speed can show.
+/// Below this ratio, high and low speed (90 % and 10 % quantiles) count as the same, and no effect of speed can show.
 const ONE_SPEED_RATIO: f64 = 1.25;
 
-/// Why nothing can be told of a cable, and what to do.
+/// The reason why a cable gets no verdict, and what to do.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Lack {
-    /// In one sentence, without its full stop.
+    /// One sentence without its full stop.
     pub cause: String,
-    /// What to do, a sentence.
+    /// What to do, one sentence.
     pub advice: &'static str,
 }
 
@@ -37,7 +38,7 @@ impl Lack {
 const RUN: &str = "Record longer strokes at several speeds in both directions, best the run of `fric-cli excite`.";
 const LONGER: &str = "Record a longer run, best that of `fric-cli excite`.";
 
-/// What a cable's record lacks.
+/// Returns what a cable's record lacks.
 pub fn lack_of(record: &CableRecord<'_>) -> Option<Lack> {
     let with_reference = record.rows.iter().filter(|row| row.reference_n.is_finite()).count();
     if with_reference == 0 {
@@ -77,16 +78,16 @@ pub fn lack_of(record: &CableRecord<'_>) -> Option<Lack> {
     None
 }
 
-/// What so many seconds of samples with a reference lack.
+/// Returns what is missing if this is the duration of the samples with a reference, s.
 pub fn too_short(samples_s: f64) -> Option<Lack> {
     let cause = || format!("{samples_s:.1} s of samples with a reference are too few, {LEAST_S} s are needed");
     (samples_s < LEAST_S).then(|| Lack::new(cause(), LONGER))
 }
 
-/// What is lacking once it is known which samples count.
+/// Returns what is missing once it is known which samples count.
 pub fn lack_of_samples(counts: &SampleCounts, interval_s: f64) -> Option<Lack> {
     let SampleCounts { used, flagged, without_reference, interpolated, warm_up, outliers } = *counts;
-    // A measurement of a reference with less than the rate of the cycle stands for the cycles around it.
+    // A measurement of a reference that is slower than the cycle stands for the cycles around it.
     let used_s = seconds(used + interpolated, interval_s);
     if used_s >= LEAST_S {
         return None;
@@ -111,7 +112,7 @@ pub fn lack_of_samples(counts: &SampleCounts, interval_s: f64) -> Option<Lack> {
     Some(Lack::new(format!("only {used_s:.1} s of its samples can be used: {LEAST_S} s are needed"), advice))
 }
 
-/// What is lacking where nothing tells how much noise there is.
+/// Returns the reason if the noise cannot be estimated.
 pub fn lack_of_noise() -> Lack {
     Lack::new(
         "so many of its samples are missing or flagged that hardly five in a row can be used, which it takes to tell the noise",
@@ -125,16 +126,16 @@ fn seconds(samples: usize, interval_s: f64) -> f64 {
     seconds
 }
 
-/// How a cable moves.
+/// The motion of a cable.
 #[derive(Clone, Copy, Debug)]
 struct Motion {
-    /// Greatest length less the least, m.
+    /// Greatest length minus least length, m.
     range_m: f64,
-    /// How often it pays out, and reels in, in all logs.
+    /// Number of strokes in all logs: paying out, and reeling in.
     strokes: [usize; 2],
-    /// High speed by low speed; 1 where there is one speed.
+    /// High speed divided by low speed; 1 at a constant speed.
     speed_ratio: f64,
-    /// The high one, m/s.
+    /// High speed, m/s.
     speed_m_per_s: f64,
 }
 
@@ -172,7 +173,7 @@ impl Motion {
     }
 }
 
-/// The number below which a share of sorted ones lies; 0 of none.
+/// Returns the quantile of sorted numbers; 0 if there are none.
 fn quantile(sorted: &[f64], share: f64) -> f64 {
     #[expect(clippy::cast_precision_loss, reason = "a count")]
     let place = share * sorted.len().saturating_sub(1) as f64;
@@ -180,11 +181,11 @@ fn quantile(sorted: &[f64], share: f64) -> f64 {
     sorted.get(place as usize).copied().unwrap_or(0.0)
 }
 
-/// Follows a length and tells where it sets out, or turns round for good.
+/// Follows a length and reports where it starts to move or reverses.
 #[derive(Clone, Copy, Debug, Default)]
 struct Turns {
     extreme_m: f64,
-    /// 0 until it is known.
+    /// Direction of motion; 0 until it is known.
     direction: f64,
 }
 

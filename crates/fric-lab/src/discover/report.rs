@@ -1,4 +1,4 @@
-//! What a discovery gives for one cable.
+//! Types that hold the result of a discovery for one cable.
 
 use fric_core::effects::Effect;
 use fric_core::parameters::Values;
@@ -14,142 +14,142 @@ use super::rest::places::Place;
 use crate::fit::{CableRecord, Parameter, SampleCounts};
 use crate::replay::Deviation;
 
-/// Whether something is missing.
+/// The verdict on a cable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// Nothing: what is left is noise.
+    /// Nothing is missing: the rest is noise.
     Complete,
-    /// Something with a name; what is left with it is noise.
+    /// Named effects are missing: the rest with them is noise.
     Extended,
-    /// Something that no effect of the catalogue accounts for.
+    /// Something is missing that no effect of the catalogue explains.
     Unexplained,
-    /// The log does not allow to tell.
+    /// The log does not allow a verdict.
     Untold,
 }
 
-/// A model with its errors on the samples held out.
+/// A model with its errors on the held-out samples.
 #[derive(Clone, Debug)]
 pub struct Model {
     /// All its parameters.
     pub values: Values,
-    /// Those that were fitted, in the order of the covariance.
+    /// The fitted parameters, in the order of the covariance.
     pub fitted: Vec<Parameter>,
     /// Covariance of the fitted parameters.
     pub covariance: DMatrix<f64>,
-    /// Force at the platform less the reference on the samples held out.
+    /// Force at the platform minus the reference on the held-out samples.
     pub held_out_n: Deviation,
 }
 
 /// An effect that was found.
 #[derive(Clone, Debug)]
 pub struct Finding {
-    /// Its effect in the catalogue.
+    /// The effect in the catalogue.
     pub effect: Effect,
-    /// Error with it and all found before it, on the samples held out.
+    /// Error with this effect and all found before it, on the held-out samples.
     pub held_out_n: Deviation,
-    /// Schwarz's criterion with it less without it; negative speaks for it.
+    /// BIC with the effect minus BIC without it; negative favours the effect.
     pub delta_bic: f64,
-    /// The best other effect in its place, by the same criterion against no effect there.
+    /// The best other effect in its place, by BIC against no effect there.
     pub runner_up: Option<RunnerUp>,
 }
 
-/// Another effect that might have been it.
+/// Another effect that may be present instead.
 #[derive(Clone, Debug)]
 pub struct RunnerUp {
-    /// Its effect in the catalogue.
+    /// The effect in the catalogue.
     pub effect: Effect,
-    /// Schwarz's criterion with it less without it.
+    /// BIC with the effect minus BIC without it.
     pub delta_bic: f64,
-    /// Sum of squares with it over the samples held out, N².
+    /// Held-out sum of squares with the effect, N².
     pub held_out_squares: f64,
-    /// The log cannot tell it from the one that was found.
+    /// Whether the log cannot distinguish it from the effect that was found.
     pub is_as_good: bool,
 }
 
-/// An effect by itself beside the given model.
+/// A single effect beside the given model.
 #[derive(Clone, Debug)]
 pub struct Candidate {
-    /// Its effect in the catalogue.
+    /// The effect in the catalogue.
     pub effect: Effect,
-    /// Schwarz's criterion with it less without it; of one that cannot enter an upper bound, for its search ended early.
+    /// BIC with the effect minus BIC without it. For an effect that cannot enter it is an upper bound, because its search ended early.
     pub delta_bic: f64,
-    /// Root mean square of the error with it on the samples held out, N.
+    /// Root mean square error with the effect on the held-out samples, N.
     pub held_out_rms_n: f64,
 }
 
-/// An effect that helps the extended model and does not suffice.
+/// An effect that helps the extended model but does not suffice.
 #[derive(Clone, Debug)]
 pub struct Tried {
-    /// Its effect in the catalogue.
+    /// The effect in the catalogue.
     pub effect: Effect,
-    /// Schwarz's criterion with it less without it, the memory of the residual taken into account.
+    /// BIC with the effect minus BIC without it, corrected for the memory of the residual.
     pub delta_bic: f64,
-    /// Root mean square of the error with it on the samples held out, N.
+    /// Root mean square error with the effect on the held-out samples, N.
     pub held_out_rms_n: f64,
-    /// Why it is not named.
+    /// The reason why it is not named.
     pub refusal: Refusal,
 }
 
-/// What no effect accounts for.
+/// A rest that no effect explains.
 #[derive(Clone, Debug, Default)]
 pub struct Unexplained {
-    /// Root mean square of what is left above the noise on the samples held out, N.
+    /// Root mean square of the rest above the noise on the held-out samples, N.
     pub rms_n: f64,
-    /// Where the rest sits.
+    /// Conditions in which the rest is concentrated.
     pub places: Vec<Place>,
-    /// When, s since the first sample.
+    /// Time intervals of the rest, s since the first sample.
     pub intervals_s: Vec<[f64; 2]>,
-    /// Signals of other cables that it goes with, the closest first.
+    /// Signals of other cables that correlate with the rest, the closest first.
     pub neighbours: Vec<Neighbour>,
 }
 
-/// One cable.
+/// The result for one cable.
 #[derive(Clone, Debug)]
 pub struct CableDiscovery {
-    /// Samples by what was done with them.
+    /// Sample counts by use.
     pub samples: SampleCounts,
-    /// Standard deviation of the reference over the samples held out, N.
+    /// Standard deviation of the reference over the held-out samples, N.
     pub reference_variation_n: f64,
-    /// Those held out, in the order of time: cycles `from..to`.
+    /// The held-out samples, in the order of time: cycles `from..to`.
     pub held_out: Vec<[usize; 2]>,
     /// Standard deviation of the white noise of sensor and reference together, N.
     pub noise_floor_n: f64,
-    /// Standard deviation of noise that wanders slowly and has nothing to do with the motion, N.
+    /// Standard deviation of slow noise that is unrelated to the motion, N.
     pub wander_n: f64,
-    /// Whether something is missing.
+    /// The verdict.
     pub verdict: Verdict,
     /// The given model, fitted.
     pub before: Model,
-    /// The extended model; the given one where nothing was found.
+    /// The extended model; equal to the given one if nothing was found.
     pub after: Model,
-    /// What was found, in the order in which it entered.
+    /// The effects found, in the order in which they entered.
     pub findings: Vec<Finding>,
-    /// Every candidate by itself beside the given model, the best first.
+    /// Every candidate alone beside the given model, the best first.
     pub candidates: Vec<Candidate>,
-    /// Candidates that help the extended model and do not suffice, the best first.
+    /// Candidates that help the extended model but do not suffice, the best first.
     pub tried: Vec<Tried>,
-    /// Where the given model disagrees.
+    /// Conditions in which the given model disagrees with the log.
     pub places: Vec<Place>,
-    /// What is wrong with the log itself, corrected before model and log were compared.
+    /// Faults of the log itself, corrected before model and log were compared.
     pub faults: Vec<RecordingFault>,
-    /// What no effect accounts for.
+    /// The rest that no effect explains.
     pub unexplained: Option<Unexplained>,
-    /// Why nothing can be told.
+    /// The reason if there is no verdict.
     pub lack: Option<Lack>,
-    /// The residuals over the condition that tells most, of the given model and of what is left.
+    /// The residuals of the given model and of the extended one over the most informative condition.
     pub profiles: Vec<Profile>,
     /// Friction over speed and length, measured and by both models.
     pub curves: FrictionCurves,
-    /// When each cycle is, s since the first sample; several logs one after the other.
+    /// Time of each cycle, s since the first sample; several logs follow one another.
     pub times_s: Vec<f64>,
     /// Residual of the given model in each cycle, N; NaN where a sample does not count.
     pub residual_before_n: Vec<f64>,
-    /// And of the extended one.
+    /// Residual of the extended model in each cycle, N; NaN where a sample does not count.
     pub residual_after_n: Vec<f64>,
 }
 
 impl Model {
-    /// Standard error of a parameter, in its unit; `None` where it was not fitted.
+    /// Returns the standard error of a parameter, in its unit; `None` if it was not fitted.
     #[must_use]
     pub fn standard_error(&self, parameter: &Parameter) -> Option<f64> {
         let place = self.fitted.iter().position(|fitted| fitted == parameter)?;
@@ -158,7 +158,7 @@ impl Model {
 }
 
 impl CableDiscovery {
-    /// A cable of which nothing can be told.
+    /// Returns the result of a cable without a verdict.
     pub(crate) fn untold(record: &CableRecord<'_>, samples: SampleCounts, lack: Lack) -> Self {
         let model = Model {
             values: record.params.values(),

@@ -1,8 +1,8 @@
-//! The result of a discovery for machines, `format = "fric-discover/1"`, with what is to be told beside it.
+//! The machine-readable result of a discovery, `format = "fric-discover/1"`, with additional data for reports.
 //!
-//! `before`, `after` and everything `held_out` are over the same samples: those of `held_out_samples`. A share of the gap
-//! closed is `1 − (error − floor)/(before − floor)` with root mean squares; that of an effect counts it and all above it
-//! in the list. Where nothing is missing there is no gap to close, and the share is null.
+//! `before`, `after` and all `held_out` figures refer to the same samples: those of `held_out_samples`. The closed fraction of the gap is `1 − (error
+//! − floor)/(before − floor)` in root mean squares; the fraction of an effect includes the effect and all above it in the list. If nothing is missing
+//! there is no gap, and the fraction is null.
 
 use fric_core::effects::Effect;
 use fric_core::effects::empirical::{Over, RATIO, SHARE_PLACES, SHARES, SIZE};
@@ -22,46 +22,46 @@ use crate::fit::readiness::Readiness;
 use crate::fit::result::{LeftOut, Numbers};
 use crate::fit::{FitError, Parameter};
 
-/// All of a discovery.
+/// The result of a discovery.
 #[derive(Clone, Debug, Serialize)]
 pub struct DiscoverResult {
-    /// Name and version of the form.
+    /// Name and version of the format.
     pub format: &'static str,
     /// The logs, in order.
     pub log: Vec<String>,
-    /// When each begins, s: several logs are one after the other.
+    /// Start of each log, s. Several logs follow one another.
     pub log_start_s: Vec<f64>,
     /// Name of the robot.
     pub robot: String,
     /// The cables in the robot's order.
     pub cables: Vec<DiscoverCableResult>,
-    /// Effects that several cables have.
+    /// Effects that several cables share.
     pub common_effects: Vec<CommonEffect>,
-    /// What concerns all cables together, where they were compared with the wrench.
+    /// Results for all cables together, if they were compared with the wrench.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub wrench: Option<WrenchGap>,
 }
 
-/// The wrench before and after, and what was found about the robot as a whole.
+/// The wrench error before and after, and the findings about the whole robot.
 #[derive(Clone, Debug, Serialize)]
 pub struct WrenchGap {
-    /// `wrench`, or `mass` where it is compared with the wrench of the platform's mass and pose.
+    /// `wrench`, or `mass` if the reference is the wrench computed from the platform's mass and pose.
     pub reference: &'static str,
-    /// Of all cables together: `complete`, `extended` or `unexplained`.
+    /// Verdict for all cables together: `complete`, `extended` or `unexplained`.
     pub verdict: &'static str,
-    /// Deviation of the given model, fitted, on samples held out.
+    /// Error of the given model, fitted, on held-out samples.
     pub before: Option<WrenchError>,
-    /// And of the extended one.
+    /// Error of the extended model on held-out samples.
     pub after: Option<WrenchError>,
     /// White noise.
     pub noise_floor: WrenchError,
     /// The six components.
     pub components: Vec<WrenchComponent>,
-    /// Effects that all cables have alike, with one value.
+    /// Effects that all cables share, with one value.
     pub alike: Vec<&'static str>,
-    /// Numbers of the robot file that are wrong.
+    /// Entries of the robot file that are wrong.
     pub geometry: Vec<GeometryResult>,
-    /// What helps and does not suffice, and is of no cable alone.
+    /// Findings for all cables together that help but do not suffice.
     pub tried: Vec<TriedTogether>,
 }
 
@@ -70,33 +70,33 @@ pub struct WrenchGap {
 pub struct WrenchComponent {
     /// `fx_n` … `tz_nm`, the unit with it.
     pub name: &'static str,
-    /// Standard deviation of its white noise.
+    /// Standard deviation of the component's white noise.
     pub noise: f64,
-    /// Root mean square of its deviation, of the given model.
+    /// Root mean square error of the given model.
     pub before: f64,
-    /// And of the extended one.
+    /// Root mean square error of the extended model.
     pub after: f64,
 }
 
-/// Numbers of the robot file that are wrong.
+/// Entries of the robot file that are wrong.
 #[derive(Clone, Debug, Serialize)]
 pub struct GeometryResult {
-    /// The key of the robot file.
+    /// Key in the robot file.
     pub kind: &'static str,
-    /// The cable that it is of.
+    /// The cable, if the entry belongs to one.
     pub cable: Option<String>,
-    /// What the numbers should be.
+    /// The correct values.
     pub parameters: Numbers,
-    /// What speaks for it.
+    /// Evidence for the correction.
     pub evidence: Evidence,
 }
 
-/// What helps all cables together and does not suffice.
+/// A finding for all cables together that helps but does not suffice.
 #[derive(Clone, Debug, Serialize)]
 pub struct TriedTogether {
     /// Name of the effect, or key of the robot file.
     pub kind: String,
-    /// Why it is not named, a clause.
+    /// The reason why it is not named, as a clause.
     pub reason: String,
 }
 
@@ -105,81 +105,81 @@ pub struct TriedTogether {
 pub struct DiscoverCableResult {
     /// Its name.
     pub name: String,
-    /// Samples that count.
+    /// Number of samples that count.
     pub samples: usize,
-    /// Those that do not.
+    /// Samples that do not count.
     pub left_out: LeftOut,
-    /// Those that judge, `from..to`, counted over all rows of all logs.
+    /// The held-out samples, `from..to`, counted over all rows of all logs.
     pub held_out_samples: Vec<[usize; 2]>,
-    /// When they are, s since the first sample.
+    /// Time intervals of the held-out samples, s since the first sample.
     pub held_out_s: Vec<[f64; 2]>,
     /// Standard deviation of the white noise, N.
     pub noise_floor_n: Option<f64>,
-    /// Standard deviation of slow noise of the sensors, N.
+    /// Standard deviation of slow sensor noise, N.
     pub wander_n: Option<f64>,
-    /// Standard deviation of the reference over the samples that judge, N: the error of a model that predicts a constant.
+    /// Standard deviation of the reference over the held-out samples, N: the error of a model that predicts a constant.
     pub reference_variation_n: Option<f64>,
     /// Error of the given model, fitted; absent without a reference force.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub before: Option<ForceError>,
-    /// Error of the extended one; likewise.
+    /// Error of the extended model; absent without a reference force.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub after: Option<ForceError>,
-    /// Share of the gap that the extended model has closed.
+    /// Fraction of the gap that the extended model closes.
     pub gap_closed: Option<f64>,
-    /// `complete`, `extended`, `unexplained`; `untold` where the log does not allow to tell, `null` in JSON.
+    /// `complete`, `extended` or `unexplained`; `untold` if the log does not allow a verdict, which is `null` in JSON.
     #[serde(serialize_with = "verdict_or_null")]
     pub verdict: &'static str,
     /// What the log lacks for a verdict.
     pub missing: Option<Missing>,
-    /// Where the given model disagrees, what tells most first.
+    /// Conditions in which the given model disagrees with the log, the most informative first.
     #[serde(rename = "where")]
     pub places: Vec<WhereResult>,
-    /// What was found, in the order in which it entered.
+    /// The effects found, in the order in which they entered.
     pub effects: Vec<EffectResult>,
-    /// Every candidate by itself beside the given model, the best first.
+    /// Every candidate alone beside the given model, the best first.
     pub candidates: Vec<Candidate>,
-    /// Candidates that help the extended model and do not suffice, the best first.
+    /// Candidates that help the extended model but do not suffice, the best first.
     pub tried: Vec<TriedResult>,
-    /// Values of the extended model, as the robot file's `friction`, and `effect.key`.
+    /// Values of the extended model, keyed as in the robot file's `friction` and as `effect.key`.
     pub parameters: Numbers,
-    /// Standard errors of those fitted.
+    /// Standard errors of the fitted values.
     pub standard_errors: Numbers,
-    /// Faults of the recording, which say something about the log and not about the machine.
+    /// Recording faults, which concern the log and not the machine.
     pub faults: Vec<FaultResult>,
-    /// What no effect accounts for.
+    /// The rest that no effect explains.
     pub unexplained: Option<UnexplainedResult>,
 }
 
-/// Why there is no verdict.
+/// The reason why there is no verdict.
 #[derive(Clone, Debug, Serialize)]
 pub struct Missing {
-    /// In one sentence, without its full stop.
+    /// One sentence without its full stop.
     pub cause: String,
-    /// What to do, a sentence.
+    /// What to do, one sentence.
     pub advice: &'static str,
 }
 
-/// A range of a condition in which the disagreement sits.
+/// A range of a condition in which the disagreement is concentrated.
 #[derive(Clone, Debug, Serialize)]
 pub struct WhereResult {
     /// The condition.
     pub signal: &'static str,
-    /// Where the range begins, in `unit`.
+    /// Lower end of the range, in `unit`.
     pub from: f64,
-    /// Where it ends.
+    /// Upper end of the range, in `unit`.
     pub to: f64,
     /// Its unit.
     pub unit: &'static str,
-    /// Share of what is above the noise in this range.
+    /// Fraction of the excess above the noise in this range.
     pub share_of_excess: Option<f64>,
-    /// Share of the samples in this range.
+    /// Fraction of the samples in this range.
     pub share_of_samples: Option<f64>,
-    /// Share of what is above the noise that is a function of this condition and of the direction of motion.
+    /// Fraction of the excess above the noise that is a function of this condition and of the direction of motion.
     pub explains: Option<f64>,
-    /// How many standard errors that is above chance.
+    /// Number of standard errors above chance.
     pub significance: Option<f64>,
-    /// When to look, s since the first sample.
+    /// Time intervals to look at, s since the first sample.
     pub intervals_s: Vec<[f64; 2]>,
     /// Least and greatest value of the condition.
     #[serde(skip)]
@@ -191,112 +191,112 @@ pub struct WhereResult {
 pub struct EffectResult {
     /// Its name in the catalogue.
     pub kind: &'static str,
-    /// Its parameters by key, settings too.
+    /// Its parameters by key, including settings.
     pub parameters: Numbers,
-    /// Standard errors of those fitted.
+    /// Standard errors of the fitted parameters.
     pub standard_errors: Numbers,
-    /// Share of the gap closed with it and all before it.
+    /// Fraction of the gap closed by this effect and all before it.
     pub gap_closed: Option<f64>,
-    /// What speaks for it.
+    /// Evidence for the effect.
     pub evidence: Evidence,
     /// The best other effect in its place.
     pub runner_up: Option<RunnerUpResult>,
-    /// What an `empirical` table says, which is no name.
+    /// Content of an `empirical` table, which is no name.
     pub table: Option<TableResult>,
-    /// Its row of the catalogue.
+    /// The catalogue entry.
     #[serde(skip)]
     pub effect: Effect,
 }
 
-/// A table for what has no name: how large it is and where.
+/// A table for a rest without a name: its size and position.
 #[derive(Clone, Debug, Serialize)]
 pub struct TableResult {
     /// `unnamed`: a table is no explanation.
     pub status: &'static str,
     /// `force` at the platform, N, or `friction`, a change of μ as a share of it.
     pub changes: &'static str,
-    /// Unit of the values.
+    /// Unit of the tabulated values.
     pub value_unit: &'static str,
-    /// The condition.
+    /// The condition that the table is over.
     pub over: &'static str,
     /// Its unit.
     pub unit: &'static str,
-    /// Places of the condition, between which straight lines hold; beyond the ends the first and the last.
+    /// Points of the table. Values are interpolated linearly between them and constant beyond the first and the last.
     pub points: Vec<TablePoint>,
-    /// Physics that look like it.
+    /// Physical causes that look like the table.
     pub looks_like: Vec<&'static str>,
 }
 
-/// One place of a table.
+/// One point of a table.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct TablePoint {
-    /// The condition.
+    /// Value of the condition.
     pub at: f64,
-    /// What the table changes there.
+    /// Value of the table there.
     pub value: f64,
-    /// Its standard error, by the scatter of the log's blocks.
+    /// Standard error of the value, by the scatter of the log's blocks.
     pub standard_error: Option<f64>,
 }
 
-/// What speaks for an effect.
+/// Evidence for an effect.
 #[derive(Clone, Debug, Serialize)]
 pub struct Evidence {
-    /// Schwarz's criterion with it less without it.
+    /// BIC with the effect minus BIC without it.
     pub delta_bic: Option<f64>,
-    /// Error with it and all before it, N.
+    /// Error with this effect and all before it, N.
     pub held_out_rms_n: Option<f64>,
 }
 
-/// Another effect that might have been it.
+/// Another effect that may be present instead.
 #[derive(Clone, Debug, Serialize)]
 pub struct RunnerUpResult {
     /// Its name in the catalogue.
     pub kind: &'static str,
-    /// Schwarz's criterion with it less without it.
+    /// BIC with the effect minus BIC without it.
     pub delta_bic: Option<f64>,
-    /// Error with it in the other's place, N.
+    /// Error with this effect in the other's place, N.
     pub held_out_rms_n: Option<f64>,
-    /// The log cannot tell the two apart.
+    /// Whether the log cannot distinguish the two.
     pub as_good: bool,
-    /// Its row of the catalogue.
+    /// The catalogue entry.
     #[serde(skip)]
     pub effect: Effect,
 }
 
-/// An effect that helps the extended model and does not suffice.
+/// An effect that helps the extended model but does not suffice.
 #[derive(Clone, Debug, Serialize)]
 pub struct TriedResult {
     /// Its name in the catalogue.
     pub kind: &'static str,
-    /// What speaks for it, beside the extended model.
+    /// Evidence for the effect beside the extended model.
     pub evidence: Evidence,
-    /// Why it is not named, a clause.
+    /// The reason why it is not named, as a clause.
     pub reason: String,
 }
 
-/// An effect by itself beside the given model.
+/// A single effect beside the given model.
 #[derive(Clone, Debug, Serialize)]
 pub struct Candidate {
     /// Its name in the catalogue.
     pub kind: &'static str,
-    /// Schwarz's criterion with it less without it.
+    /// BIC with the effect minus BIC without it.
     pub delta_bic: Option<f64>,
-    /// Error with it, N.
+    /// Error with the effect, N.
     pub held_out_rms_n: Option<f64>,
 }
 
-/// What no effect accounts for.
+/// A rest that no effect explains.
 #[derive(Clone, Debug, Serialize)]
 pub struct UnexplainedResult {
     /// Error above the noise, N.
     pub rms_n: Option<f64>,
-    /// Where it lies.
+    /// Conditions in which it is concentrated.
     #[serde(rename = "where")]
     pub places: Vec<WhereResult>,
-    /// When it is loud, s since the first sample.
+    /// Time intervals in which it is large, s since the first sample.
     pub intervals_s: Vec<[f64; 2]>,
-    /// What it goes with: conditions that it is a function of, what tells most first; then signals of other cables, as
-    /// `cable2 sensor_force`.
+    /// Signals that correlate with it: conditions that it is a function of, the most informative first, then signals of other cables, such as `cable2
+    /// sensor_force`.
     pub goes_with: Vec<String>,
 }
 
@@ -305,16 +305,16 @@ pub struct UnexplainedResult {
 pub struct FaultResult {
     /// Its name.
     pub kind: &'static str,
-    /// What is known of it, by key with its unit.
+    /// Its values, by key with the unit.
     pub parameters: Numbers,
-    /// When, s since the first sample; empty where it is there all the time.
+    /// Time intervals of the fault, s since the first sample; empty if it lasts throughout the log.
     pub intervals_s: Vec<[f64; 2]>,
-    /// Which.
+    /// The kind of the fault.
     #[serde(skip)]
     pub fault: Fault,
 }
 
-/// An effect that several cables have.
+/// An effect that several cables share.
 #[derive(Clone, Debug, Serialize)]
 pub struct CommonEffect {
     /// Its name in the catalogue.
@@ -332,24 +332,24 @@ pub struct CommonParameter {
     pub key: &'static str,
     /// Its unit.
     pub unit: &'static str,
-    /// Mean over the cables, by how sure each is; the plain mean where they differ.
+    /// Weighted mean over the cables; the plain mean if they differ.
     pub mean: f64,
-    /// Standard error of the mean; where the cables differ, by their scatter.
+    /// Standard error of the mean; from the scatter of the cables if they differ.
     pub standard_error: f64,
-    /// The cables differ by more than their errors.
+    /// Whether the cables differ by more than their errors.
     pub differs: bool,
-    /// Least of the cables.
+    /// Least value over the cables.
     pub least: f64,
-    /// Greatest of them.
+    /// Greatest value over the cables.
     pub greatest: f64,
 }
 
-/// The cables differ where the sum of squares, in standard errors, is beyond what chance gives by so many of its own
-/// standard deviations; what a fit takes for errors is not that sure.
+/// The cables differ if the normalised sum of squares exceeds its expectation by this many of its own standard deviations. The limit is high because
+/// the errors that a fit reports are uncertain themselves.
 const DIFFERS: f64 = 5.0;
 
 impl Verdict {
-    /// Its name in results.
+    /// Returns the name used in results.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -362,7 +362,7 @@ impl Verdict {
 }
 
 impl Fault {
-    /// Its name in results.
+    /// Returns the name used in results.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -384,10 +384,10 @@ fn verdict_or_null<S: serde::Serializer>(verdict: &&'static str, serializer: S) 
 }
 
 impl DiscoverResult {
-    /// Name and version of the form.
+    /// Name and version of the format.
     pub const FORMAT: &str = "fric-discover/1";
 
-    /// Of a robot's cables; `logs` are names with the beginning of each, s.
+    /// Creates the result for a robot's cables. `logs` holds the name and the start of each log, s.
     #[must_use]
     pub fn new(
         robot: &RobotFile,
@@ -414,12 +414,12 @@ impl DiscoverResult {
         }
     }
 
-    /// The same with what concerns all cables together.
+    /// Adds the findings for all cables together.
     #[must_use]
     pub fn with_wrench(mut self, found: Option<&WrenchDiscovery>) -> Self {
         let names: Vec<String> = self.cables.iter().map(|cable| cable.name.clone()).collect();
         self.wrench = found.map(|found| WrenchGap::of(found, &names));
-        // One value of all cables is as sure as it is on each.
+        // A value that all cables share is as certain as on each cable.
         for effect in &mut self.common_effects {
             let first = self.cables.iter().flat_map(|cable| &cable.effects).find(|of| of.kind == effect.kind);
             let is_alike = found.is_some_and(|found| found.alike.iter().any(|alike| alike.kind() == effect.kind));
@@ -431,16 +431,16 @@ impl DiscoverResult {
         self
     }
 
-    /// For people: the verdicts, then what was found.
+    /// Returns a summary for people: the verdicts, then the findings.
     #[must_use]
     pub fn summary(&self) -> String {
         summary::describe(self)
     }
 
-    /// Makes sure that there is a verdict of at least one cable.
+    /// Checks that at least one cable has a verdict.
     ///
     /// # Errors
-    /// [`FitError`] with what is missing.
+    /// Returns a [`FitError`] with the reason if none has.
     pub fn check_told(&self) -> Result<(), FitError> {
         let missing: Vec<&Missing> = self.cables.iter().filter_map(|cable| cable.missing.as_ref()).collect();
         let (Some(first), true) = (missing.first(), missing.len() == self.cables.len()) else { return Ok(()) };
@@ -495,7 +495,7 @@ impl WrenchGap {
     }
 }
 
-/// A number, if it is one.
+/// Returns the number if it is finite.
 fn finite(number: f64) -> Option<f64> {
     number.is_finite().then_some(number)
 }
@@ -545,7 +545,7 @@ fn cable_result(
     }
 }
 
-/// Share of the gap closed where this error is left; `None` where there is no gap.
+/// Returns the fraction of the gap closed if this error is left; `None` if there is no gap.
 fn gap_closed(found: &CableDiscovery, rms_n: f64) -> Option<f64> {
     let gap_n = found.before.held_out_n.rms()? - found.noise_floor_n;
     (found.verdict != Verdict::Complete && gap_n > 0.0)
@@ -553,12 +553,12 @@ fn gap_closed(found: &CableDiscovery, rms_n: f64) -> Option<f64> {
         .and_then(finite)
 }
 
-/// Mean square above the noise, N².
+/// Returns the mean square above the noise, N².
 fn excess(model: &Model, noise_n: f64) -> f64 {
     model.held_out_n.rms().map_or(f64::NAN, |rms_n| rms_n * rms_n - noise_n * noise_n)
 }
 
-/// Values of the extended model: friction, what was fitted, and all of each effect that was found.
+/// Returns the values of the extended model: friction, fitted parameters, and all parameters of each effect found.
 fn parameters(found: &CableDiscovery) -> Numbers {
     let model = &found.after;
     let of_finding = |parameter: &Parameter| {
@@ -573,7 +573,7 @@ fn parameters(found: &CableDiscovery) -> Numbers {
     Numbers(Parameter::all().filter_map(shown).collect())
 }
 
-/// Standard errors of those fitted among some parameters, by name.
+/// Returns the standard errors of the fitted ones among some parameters, by name.
 fn errors(model: &Model, of: impl Iterator<Item = Parameter>, name: impl Fn(&Parameter) -> String) -> Numbers {
     Numbers(of.filter_map(|parameter| Some((name(&parameter), finite(model.standard_error(&parameter)?)?))).collect())
 }
@@ -608,7 +608,7 @@ fn effect_result(found: &CableDiscovery, finding: &Finding) -> EffectResult {
 }
 
 impl TableResult {
-    /// Of a model with a table.
+    /// Creates the table of a model, if it has one.
     fn of(model: &Model) -> Option<Self> {
         let value = |place: usize| model.values[place];
         let over = Over::of(value)?;
@@ -665,7 +665,7 @@ impl WhereResult {
         }
     }
 
-    /// A line in the spectrum, of a mean square above the noise.
+    /// Creates the entry of a spectral line from its mean square above the noise.
     fn of_hum(fault: &RecordingFault, excess: f64) -> Option<Self> {
         let value = |key: &str| fault.parameters.iter().find(|(of, _)| *of == key).map(|(_, value)| *value);
         let (frequency_hz, amplitude_n) = (value("frequency_hz")?, value("amplitude_n")?);
@@ -686,7 +686,7 @@ impl WhereResult {
 }
 
 impl FaultResult {
-    /// Of a fault that was found.
+    /// Creates the entry of a fault.
     #[must_use]
     pub fn of(found: &RecordingFault) -> Self {
         Self {
@@ -722,13 +722,13 @@ fn common_effects(cables: &[DiscoverCableResult]) -> Vec<CommonEffect> {
     kinds.into_iter().filter_map(|kind| common_effect(kind, cables)).collect()
 }
 
-/// An effect over the cables that have it, if they are several.
+/// Returns an effect over the cables that have it, if there are several.
 fn common_effect(kind: &'static str, cables: &[DiscoverCableResult]) -> Option<CommonEffect> {
     let with: Vec<(&str, &EffectResult)> = cables
         .iter()
         .filter_map(|cable| Some((cable.name.as_str(), cable.effects.iter().find(|effect| effect.kind == kind)?)))
         .collect();
-    // What tables have in common is no number.
+    // Tables have no common value.
     if with.first()?.1.effect == Effect::Empirical {
         return None;
     }
@@ -747,7 +747,7 @@ fn common_effect(kind: &'static str, cables: &[DiscoverCableResult]) -> Option<C
 }
 
 impl CommonParameter {
-    /// Of values with their standard errors.
+    /// Creates the parameter from values with their standard errors.
     fn of(key: &'static str, unit: &'static str, numbers: &[(f64, f64)]) -> Option<Self> {
         let numbers: Vec<(f64, f64)> = numbers.iter().copied().filter(|(_, error)| *error > 0.0).collect();
         #[expect(clippy::cast_precision_loss, reason = "a count of cables")]

@@ -1,20 +1,20 @@
-//! The result of a discovery for people: the verdicts of all cables, then what was found on each.
+//! The result of a discovery for people: the verdicts of all cables, then the findings on each.
 
 use super::result::{DiscoverCableResult, DiscoverResult, EffectResult, WrenchComponent, WrenchGap};
 use crate::text::{listed, table, wrapped};
 
-/// Columns of the words before a text.
+/// Width of the label column, in characters.
 const LABEL: usize = 11;
-/// Places that are told.
+/// Maximum number of places to report.
 const MOST_PLACES: usize = 2;
-/// Candidates that did not suffice that are told.
+/// Maximum number of insufficient candidates to report.
 const MOST_TRIED: usize = 3;
 
-/// The columns in words.
+/// Explanation of the columns.
 const LEGEND: &str = "Before and after are the rms error on samples that no fit has seen: before, of the given model fitted to the other \
                       samples; after, of the extended one.";
 
-/// All of it.
+/// Returns the full summary.
 pub(crate) fn describe(result: &DiscoverResult) -> String {
     let mut text = format!("{}: what the model lacks\n\n", result.robot);
     text += &overview(result);
@@ -50,7 +50,7 @@ pub(crate) fn describe(result: &DiscoverResult) -> String {
     text
 }
 
-/// What concerns all cables together.
+/// Describes the findings for all cables together.
 fn of_wrench(gap: &WrenchGap) -> String {
     let rows: Vec<_> = gap.components.iter().map(WrenchComponent::cells).collect();
     let mut text = format!("\n{}", table(&[gap.title(), "noise\nrms", "before\nrms", "after\nrms"], 1, &rows));
@@ -61,7 +61,7 @@ fn of_wrench(gap: &WrenchGap) -> String {
     text
 }
 
-/// One line a cable.
+/// Returns a table with one line per cable.
 fn overview(result: &DiscoverResult) -> String {
     let number = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.4}"));
     let row = |cable: &DiscoverCableResult| {
@@ -85,7 +85,7 @@ fn line(label: &str, text: &str) -> String {
     wrapped(&format!("  {label:<LABEL$} "), text)
 }
 
-/// What was found on a cable; cause and remedy of an effect are told once.
+/// Describes the findings on a cable. Cause and remedy of an effect are given once.
 fn details(cable: &DiscoverCableResult, told: &mut Vec<&'static str>) -> String {
     let mut text = String::new();
     if let Some(gap) = cable.gap_in_words().filter(|_| cable.verdict != "complete") {

@@ -1,4 +1,4 @@
-//! The parts of a result in words, for the terminal and for pages.
+//! Parts of a result in words, for the terminal and for pages.
 
 use std::fmt::Write as _;
 
@@ -15,7 +15,7 @@ use crate::fit::HALF_INTERVAL;
 use crate::replay::WrenchReference;
 use crate::text::{listed, number, quantity, significant, wrapped};
 
-/// Units at the end of keys; the longer ones first.
+/// Unit suffixes of keys, the longer ones first.
 const UNITS: [&str; 13] = [
     "_n_s2_per_m2",
     "_n_s_per_m",
@@ -32,37 +32,37 @@ const UNITS: [&str; 13] = [
     "_m",
 ];
 
-/// As a share of the other end of a range, the beginning is zero below this.
+/// The lower end of a range counts as zero below this fraction of the upper end.
 const NO_MORE_THAN_ZERO: f64 = 0.01;
 
-/// A parameter's key without its unit.
+/// Returns a parameter's key without its unit.
 #[must_use]
 pub fn name_of(key: &str) -> String {
     let name = UNITS.iter().find_map(|unit| key.strip_suffix(unit)).unwrap_or(key);
     name.replace('_', " ")
 }
 
-/// A share in per cent, within what one can be.
+/// Formats a fraction in per cent, clamped to 0…100 %.
 #[must_use]
 pub fn percent(share: f64) -> String {
     let percent = 100.0 * share.clamp(0.0, 1.0);
-    // All but a rest that shows is not all: what would be rounded to 99 or 100 has a digit more.
+    // A fraction just below 100 % must not be rounded to 100 %, so values that would round to 99 or 100 get one more digit.
     if (98.5..99.95).contains(&percent) { format!("{percent:.1} %") } else { format!("{percent:.0} %") }
 }
 
-/// A force.
+/// Formats a force.
 #[must_use]
 pub fn newtons(force_n: f64) -> String {
     format!("{force_n:.4} N")
 }
 
-/// A difference of Schwarz's criterion.
+/// Formats a BIC difference.
 #[must_use]
 pub fn evidence(delta_bic: Option<f64>) -> String {
     delta_bic.map_or_else(|| "–".to_owned(), |of| number(of, 0).replace('-', "−"))
 }
 
-/// How far above chance something is, in standard errors; cut and not rounded, so that it stays on its side of a limit.
+/// Formats a significance in standard errors. The number is truncated, not rounded, so that it stays on its side of a limit.
 #[must_use]
 pub fn significance(errors: f64) -> String {
     if errors < 10.0 {
@@ -72,7 +72,7 @@ pub fn significance(errors: f64) -> String {
     }
 }
 
-/// A stretch of time, without its unit.
+/// Formats a time interval without its unit.
 #[must_use]
 pub fn interval([from_s, to_s]: &[f64; 2]) -> String {
     let digits = if to_s - from_s < 0.2 { 2 } else { 1 };
@@ -80,7 +80,7 @@ pub fn interval([from_s, to_s]: &[f64; 2]) -> String {
     if from == to { from } else { format!("{from}…{to}") }
 }
 
-/// Stretches of time.
+/// Formats time intervals.
 #[must_use]
 pub fn intervals(intervals_s: &[[f64; 2]]) -> String {
     let all: Vec<String> = intervals_s.iter().map(interval).collect();
@@ -88,12 +88,12 @@ pub fn intervals(intervals_s: &[[f64; 2]]) -> String {
 }
 
 impl WhereResult {
-    /// The range, as what follows "it sits".
+    /// Returns the range as the words that follow "it sits".
     #[must_use]
     pub fn range_in_words(&self) -> String {
         let [least, greatest] = self.range;
         let is_last = self.to >= greatest;
-        // A magnitude begins at 0, whatever noise makes of it.
+        // A magnitude starts at 0, even if noise keeps it from reaching 0.
         let from_zero = least >= 0.0 && self.from < NO_MORE_THAN_ZERO * self.to && !is_last;
         let is_first = self.from <= least || from_zero;
         let value = |number: f64| {
@@ -129,7 +129,7 @@ impl WhereResult {
         }
     }
 
-    /// How much sits there, as a sentence without its full stop; `of` names what is shared out.
+    /// Returns the fraction of the excess in the range, as a sentence without its full stop. `of` names the quantity.
     #[must_use]
     pub fn in_words(&self, of: &str) -> String {
         // Writing to a String cannot fail.
@@ -150,7 +150,7 @@ impl WhereResult {
     }
 }
 
-/// A condition's name in words.
+/// Returns a condition's name in words.
 #[must_use]
 pub fn condition(signal: &str) -> String {
     match signal {
@@ -177,7 +177,7 @@ fn with_unit(number: f64, unit: &str) -> String {
 }
 
 impl DiscoverCableResult {
-    /// What is to be said of the cable before everything else, in sentences.
+    /// Returns the verdict on the cable in sentences.
     #[must_use]
     pub fn verdict_in_words(&self) -> String {
         if let Some(missing) = &self.missing {
@@ -217,7 +217,7 @@ impl DiscoverCableResult {
         text
     }
 
-    /// The gap before and after, as a sentence without its full stop.
+    /// Returns the gap before and after, as a sentence without its full stop.
     #[must_use]
     pub fn gap_in_words(&self) -> Option<String> {
         let (before, after, floor_n) = (self.before?, self.after?, self.noise_floor_n?);
@@ -236,7 +236,7 @@ impl DiscoverCableResult {
         })
     }
 
-    /// What is left beside the reference's own variation, as a sentence without its full stop; `None` where nothing was measured.
+    /// Returns the remaining error relative to the reference's own variation, as a sentence without its full stop; `None` if nothing was measured.
     #[must_use]
     pub fn variation_in_words(&self) -> Option<String> {
         let (after, variation_n) = (self.after?, self.reference_variation_n?);
@@ -250,7 +250,7 @@ impl DiscoverCableResult {
         Some(format!("rms after is {} of what the reference varies by", percent(after.rms_n / variation_n)))
     }
 
-    /// Whether the reference varies by no more than the model leaves.
+    /// Whether the reference varies by no more than the model's error.
     #[must_use]
     pub fn is_constant(&self) -> bool {
         let left_n = self.after.map_or(f64::INFINITY, |after| after.rms_n);
@@ -259,7 +259,7 @@ impl DiscoverCableResult {
 }
 
 impl TriedResult {
-    /// Its evidence and why it is not named, as a sentence without its full stop.
+    /// Returns the evidence and the reason for the refusal, as a sentence without its full stop.
     #[must_use]
     pub fn in_words(&self) -> String {
         let Evidence { delta_bic, held_out_rms_n } = &self.evidence;
@@ -269,13 +269,13 @@ impl TriedResult {
 }
 
 impl WrenchGap {
-    /// What the forces were compared with.
+    /// Returns what the forces were compared with.
     #[must_use]
     pub fn title(&self) -> &'static str {
         if self.reference == WrenchReference::Mass.name() { "wrench, by mass" } else { "wrench" }
     }
 
-    /// What concerns all cables together, as sentences.
+    /// Returns the findings for all cables together, as sentences.
     #[must_use]
     pub fn in_words(&self) -> Vec<String> {
         let alike = self.alike.iter().map(|kind| format!("All cables have {kind} alike, with one value."));
@@ -292,7 +292,7 @@ impl WrenchGap {
 }
 
 impl WrenchComponent {
-    /// Name, noise, root mean square before and after.
+    /// Returns name, noise, and root mean square before and after.
     #[must_use]
     pub fn cells(&self) -> [String; 4] {
         let unit = if self.name.ends_with("_nm") { "Nm" } else { "N" };
@@ -303,7 +303,7 @@ impl WrenchComponent {
 }
 
 impl EffectResult {
-    /// Its parameters with their 95 % intervals.
+    /// Returns the parameters with their 95 % intervals.
     #[must_use]
     pub fn values_in_words(&self) -> String {
         if let Some(table) = &self.table {
@@ -318,7 +318,7 @@ impl EffectResult {
         all.join(", ")
     }
 
-    /// What else it could have been, as a sentence without its full stop.
+    /// Returns the alternative explanation, as a sentence without its full stop.
     #[must_use]
     pub fn alternative_in_words(&self) -> Option<String> {
         let RunnerUpResult { kind, delta_bic, held_out_rms_n, as_good, effect } = self.runner_up.as_ref()?;
@@ -343,7 +343,7 @@ impl EffectResult {
 }
 
 impl TableResult {
-    /// What it changes, by how much and where, and what it looks like, a sentence without its full stop.
+    /// Returns what the table changes, by how much and where, and what it looks like, as a sentence without its full stop.
     #[must_use]
     pub fn in_words(&self) -> String {
         let largest = self.points.iter().max_by(|one, other| one.value.abs().total_cmp(&other.value.abs()));
@@ -372,7 +372,7 @@ impl TableResult {
     }
 }
 
-/// What to record to tell effects apart.
+/// Returns what to record to distinguish the effects.
 fn excitation(effects: [Effect; 2]) -> String {
     let mut all: Vec<&str> =
         effects.into_iter().filter_map(|effect| Some(effect.row().parameters.first()?.excitation)).collect();
@@ -381,7 +381,7 @@ fn excitation(effects: [Effect; 2]) -> String {
 }
 
 impl Refusal {
-    /// Why a candidate that helps is not named, a clause.
+    /// Returns the reason why a candidate that helps is not named, as a clause.
     #[must_use]
     pub fn in_words(self) -> String {
         match self {
@@ -412,7 +412,7 @@ impl Refusal {
     }
 }
 
-/// What was wrong with the recording of each cable, a paragraph for each fault; nothing where nothing was.
+/// Describes the recording faults of each cable, one paragraph per fault; empty if there are none.
 pub fn recording_lines<'a>(cables: impl Iterator<Item = (&'a str, &'a [FaultResult])>) -> String {
     let told = cables.flat_map(|(name, faults)| {
         faults.iter().map(move |fault| wrapped(&format!("{name}, recording: "), &fault.in_words()))
@@ -422,7 +422,7 @@ pub fn recording_lines<'a>(cables: impl Iterator<Item = (&'a str, &'a [FaultResu
 }
 
 impl FaultResult {
-    /// What is the matter and what to do, a sentence without its full stop.
+    /// Returns the fault and what to do, as a sentence without its full stop.
     #[must_use]
     pub fn in_words(&self) -> String {
         let value = |key: &str| self.parameters.get(key).unwrap_or(f64::NAN);
@@ -474,7 +474,7 @@ impl FaultResult {
 }
 
 impl UnexplainedResult {
-    /// Where the rest lies, sentences without their full stops.
+    /// Returns where the rest is concentrated, as sentences without their full stops.
     #[must_use]
     pub fn in_words(&self) -> Vec<String> {
         let mut sentences = Vec::new();
@@ -494,7 +494,7 @@ impl UnexplainedResult {
 }
 
 impl CommonEffect {
-    /// On how many of all cables, and its parameters over them.
+    /// Returns on how many of all cables the effect occurs, with its parameters over them.
     #[must_use]
     pub fn in_words(&self, cable_count: usize) -> String {
         let on = if self.cables.len() == cable_count {
@@ -511,7 +511,7 @@ impl CommonEffect {
 }
 
 impl CommonParameter {
-    /// Its mean with the 95 % interval, or that the cables differ.
+    /// Returns the mean with its 95 % interval, or says that the cables differ.
     #[must_use]
     pub fn in_words(&self) -> String {
         let name = name_of(self.key);

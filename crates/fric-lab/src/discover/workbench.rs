@@ -1,4 +1,4 @@
-//! Models tried on one cable: fitted to the samples learned from, judged on those held out.
+//! Fits trial models of one cable to the training samples and judges them on the held-out samples.
 
 use std::panic::resume_unwind;
 use std::rc::Rc;
@@ -17,15 +17,15 @@ use crate::search::gang::{Gang, Seat};
 use crate::search::problem::{Comparison, Loss, Member, Problem};
 use crate::search::solve::search_near;
 
-/// A model is judged this near to its minimum, in standard errors: the sum of squares changes by less than noise does.
+/// Distance from its minimum at which a model is judged, in standard errors: the sum of squares then changes by less than noise does.
 pub const NEAR_ERRORS: f64 = 0.5;
 
-/// A model to try: where its search starts, and what it varies.
+/// A model to try: start values and free parameters.
 #[derive(Clone, Debug)]
 pub struct Model {
     /// Start values.
     pub values: Values,
-    /// What is varied.
+    /// The free parameters.
     pub free: Vec<Parameter>,
 }
 
@@ -34,18 +34,18 @@ pub struct Model {
 pub struct Trial {
     /// Fitted values.
     pub values: Values,
-    /// What was varied.
+    /// The free parameters.
     pub free: Vec<Parameter>,
-    /// Sum of squares of the residuals over the samples learned from, N².
+    /// Training sum of squares of the residuals, N².
     pub training: f64,
-    /// And over those held out.
+    /// Held-out sum of squares of the residuals, N².
     pub held_out: f64,
-    /// How near to its minimum the search came, in standard errors.
+    /// Distance from its minimum at the end of the search, in standard errors.
     pub near_errors: f64,
 }
 
 impl Trial {
-    /// The model, to be searched on from here.
+    /// Returns the model, for a search that continues from here.
     pub fn model(&self) -> Model {
         Model { values: self.values, free: self.free.clone() }
     }
@@ -54,20 +54,20 @@ impl Trial {
 /// One cable with its samples.
 #[derive(Clone, Debug)]
 pub struct Workbench<'a> {
-    /// Its cycles; the reference is cleaned of what is no matter of friction.
+    /// The cable's cycles, with a reference from which hum and faults were removed.
     pub record: CableRecord<'a>,
-    /// Blocks of the log.
+    /// The blocks of the log.
     pub blocks: &'a [Block],
     /// Which samples count.
     pub counts: &'a [bool],
-    /// Which have a reference of their own, rather than one between two measurements.
+    /// Which samples have a measured reference instead of one interpolated between two measurements.
     pub measured: &'a [bool],
-    /// Set to end every search.
+    /// Flag that ends every search when set.
     pub stop: &'a AtomicBool,
 }
 
 impl<'a> Workbench<'a> {
-    /// Samples that count and are learned from, or held out.
+    /// Returns the samples that count and are held out, or are used for training.
     pub fn used(&self, held_out: bool) -> Vec<bool> {
         let mut used = vec![false; self.counts.len()];
         for block in self.blocks.iter().filter(|block| block.held_out == held_out) {
@@ -81,12 +81,12 @@ impl<'a> Workbench<'a> {
         used
     }
 
-    /// How many samples are held out, or learned from.
+    /// Returns the number of held-out samples, or of training samples.
     pub fn count(&self, held_out: bool) -> usize {
         self.used(held_out).into_iter().filter(|used| *used).count()
     }
 
-    /// Standard deviation of the reference over the samples held out, N; NaN without any.
+    /// Returns the standard deviation of the reference over the held-out samples, N; NaN if there are none.
     pub fn reference_variation_n(&self) -> f64 {
         let used = self.used(true);
         let rows = self.record.rows.iter().zip(&used).filter(|(_, used)| **used);
@@ -99,13 +99,13 @@ impl<'a> Workbench<'a> {
         mean(&mut known_n.map(|force_n| (force_n - middle_n).powi(2))).sqrt()
     }
 
-    /// Whether the reference tells more loads than one, with noise of this standard deviation. If not, a sensor agrees with it best that shows this load
-    /// whatever the force is: nothing is known of the sensor's curve, and a gain is another word for an offset.
+    /// Whether the reference contains more than one load, given the standard deviation of the noise. With one load only, a sensor that shows this
+    /// load whatever the force agrees best. The sensor's curve is then unknown, and a gain is equivalent to an offset.
     pub fn knows_load(&self, noise_n: f64) -> bool {
         self.reference_variation_n() > noise_n
     }
 
-    /// The least-squares problem over the samples learned from.
+    /// Returns the least-squares problem over the training samples.
     pub fn problem(&self, free: &[Parameter], seat: Option<Rc<Seat<'a>>>) -> Problem<'a> {
         Problem {
             members: vec![Member { record: self.record, free: free.to_vec() }],
@@ -117,8 +117,8 @@ impl<'a> Workbench<'a> {
         }
     }
 
-    /// Fits several models, as many side by side as there are lanes, each as near to its minimum as asked for, in standard errors; in
-    /// the order given.
+    /// Fits several models, as many in parallel as there are lanes, each to the given distance from its minimum in standard errors. Returns the
+    /// trials in the given order.
     pub fn try_all(&self, models: &[Model], near_errors: f64) -> Vec<Trial> {
         let together = |models: &[Model]| self.try_together(models, near_errors);
         let groups: Vec<Vec<Trial>> = models.par_chunks(LANES).map(together).collect();
@@ -130,7 +130,7 @@ impl<'a> Workbench<'a> {
         self.fit(model, NEAR_ERRORS)
     }
 
-    /// Fits one model as near to its minimum as asked for, in standard errors.
+    /// Fits one model to the given distance from its minimum, in standard errors.
     pub fn fit(&self, model: &Model, near_errors: f64) -> Trial {
         let gang = Gang::new(1, self.stop);
         self.try_on(model, gang.seat(0), near_errors)
@@ -173,12 +173,12 @@ impl<'a> Workbench<'a> {
         Trial { values, free: model.free.clone(), training, held_out, near_errors }
     }
 
-    /// Force of the model less the reference in each cycle, N; NaN where a sample does not count.
+    /// Returns the force of the model minus the reference in each cycle, N; NaN where a sample does not count.
     pub fn residuals_n(&self, values: &Values) -> Vec<f64> {
         self.residuals_with(&self.problem(&[], None), values)
     }
 
-    /// What the model adds to the force that the sensor shows, as if nothing rubbed, in each cycle, N.
+    /// Returns what the model adds in each cycle to the force that the sensor implies without friction, N.
     pub fn added_n(&self, values: &Values) -> Vec<f64> {
         let forces = self.problem(&[], None).forces(&[*values]).unwrap_or_default();
         let gain = self.record.params.frictionless_gain();
@@ -189,7 +189,7 @@ impl<'a> Workbench<'a> {
         self.record.rows.iter().enumerate().map(added_n).collect()
     }
 
-    /// Those of them with a reference of their own: of a series of measurements, with its gaps.
+    /// Returns the residuals with a measured reference, as a series with its gaps.
     pub fn measured_of(&self, residual_n: &[f64]) -> Vec<f64> {
         residual_n.iter().zip(self.measured).filter(|(_, measured)| **measured).map(|(number, _)| *number).collect()
     }
@@ -202,8 +202,8 @@ impl<'a> Workbench<'a> {
     }
 }
 
-/// Takes parameters away from the least values they can have, where the coordinates of a search have no slope: to the minimum, were the
-/// forces linear in all that varies. Those for which that is out of range stay where they are.
+/// Moves parameters away from lower bounds at which the search coordinates have zero slope: to the minimum of the problem linearised in all free
+/// parameters. Parameters whose minimum is out of range stay where they are.
 fn within_bounds(problem: &mut Problem<'_>, values: &Values) -> Values {
     let Some(free) = problem.members.first().map(|member| member.free.clone()) else { return *values };
     let is_least = |parameter: &Parameter| values[parameter.place()] <= parameter.row().min;

@@ -1,11 +1,11 @@
-//! `bearing_drag` in the simulated robot: a seal that rubs on every pulley's shaft whatever the load.
+//! `bearing_drag` in the simulated robot: the seal of every pulley's shaft has friction independent of the load.
 //!
 //! The seal sticks as the bearing does: its force is part of what the bristle can hold before it slides.
 
 use super::truth::{Cause, Contact, TruthEffect};
 use super::{LabEffect, Sizing, Start, always, as_it_is};
 
-/// What the lab knows of it.
+/// The effect's entry in the lab.
 pub const LAB: LabEffect = LabEffect { truth, starts: as_it_is, typical, is_more_than_usual: always };
 
 #[derive(Debug)]
@@ -24,7 +24,7 @@ impl TruthEffect for Seal {
 }
 
 fn typical(scale: &mut Sizing<'_>) -> Start {
-    // A fifth of the whole.
+    // A fifth of the total friction.
     let load_n = scale.mu * scale.normal_n;
     vec![("drag_n", scale.about(0.25 * load_n))]
 }

@@ -1,12 +1,12 @@
 //! `cable_elasticity` in the simulated robot: a cable that is a spring.
 //!
-//! Its material lies `(j/n)·c·F` further out at pulley j of n under the tension F at the platform; as F changes, it runs
-//! over the pulleys, the far ones most, whether the winch turns or not. Within a cycle F changes evenly.
+//! Under the tension F at the platform, its material is displaced by `(j/n)·c·F` at pulley j of n. As F changes, the cable moves over the pulleys,
+//! most over the far ones, whether the winch turns or not. Within a cycle F changes linearly.
 
 use super::truth::{Cause, TruthEffect};
 use super::{Around, LabEffect, Sizing, Start, always};
 
-/// What the lab knows of it.
+/// The effect's entry in the lab.
 pub const LAB: LabEffect = LabEffect { truth, starts, typical, is_more_than_usual: always };
 
 #[derive(Debug)]

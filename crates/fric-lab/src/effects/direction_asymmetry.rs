@@ -1,12 +1,12 @@
-//! `direction_asymmetry` in the simulated robot: bearings that run harder one way round, tilted rollers for one.
+//! `direction_asymmetry` in the simulated robot: bearings with more friction in one direction of rotation, for instance due to tilted rollers.
 //!
-//! Paying out, both kinds of friction are larger by their shares; reeling in, smaller by the same. The direction is that
-//! of the cable over the pulley at the instant.
+//! When the cable pays out, both kinds of friction are greater by their ratios; when it reels in, they are smaller by the same. The direction is the
+//! momentary one of the cable over the pulley.
 
 use super::truth::{Cause, Contact, TruthEffect};
 use super::{LabEffect, Sizing, Start, always, as_it_is};
 
-/// What the lab knows of it.
+/// The effect's entry in the lab.
 pub const LAB: LabEffect = LabEffect { truth, starts: as_it_is, typical, is_more_than_usual: always };
 
 #[derive(Debug)]

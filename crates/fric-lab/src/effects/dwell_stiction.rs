@@ -1,4 +1,4 @@
-//! `dwell_stiction` in the simulated robot: contacts that creep together while they rest, and are torn apart while they slide.
+//! `dwell_stiction` in the simulated robot: contacts that strengthen by creep at rest and are renewed by sliding.
 //!
 //! The age of the contacts follows `dθ/dt = (1 − θ)/time − θ·|v|/distance`, integrated in the substeps of the bristles by the implicit Euler method.
 
@@ -6,7 +6,7 @@ use super::truth::{Cause, Contact, TruthEffect};
 use super::{Around, LabEffect, Sizing, Start, always};
 use crate::random::uniform;
 
-/// What the lab knows of it.
+/// The effect's entry in the lab.
 pub const LAB: LabEffect = LabEffect { truth, starts, typical, is_more_than_usual: always };
 
 #[derive(Debug)]
@@ -33,7 +33,7 @@ impl TruthEffect for AgeingContacts {
     }
 }
 
-/// The search begins from a distance over which presliding builds up.
+/// Starts from a distance over which presliding builds up.
 fn starts(_: &Around) -> Vec<Start> {
     vec![vec![("ratio", 0.3), ("distance_m", 1e-3)]]
 }

@@ -1,6 +1,6 @@
-//! `empirical` in the simulated robot: a force, or a change of the friction, that is read off a table.
+//! `empirical` in the simulated robot: a force, or a change of the friction, from a table.
 //!
-//! The load is the tension at the platform: where the cycle has it without friction, this has it with.
+//! The load is the tension at the platform including friction, whereas the cycle uses it without friction.
 
 use fric_core::effects::Effect;
 use fric_core::effects::empirical::{Over, SHARE_PLACES, SIZE};
@@ -9,7 +9,7 @@ use super::truth::{Cause, Contact, TruthEffect};
 use super::{Around, LabEffect, Sizing, Start, always};
 use crate::random::uniform;
 
-/// What the lab knows of it. No search begins with it: what has no name stands in no search for names.
+/// The effect's entry in the lab. No search starts with it, because a table has no name to be found.
 pub const LAB: LabEffect = LabEffect { truth, starts: |_: &Around| Vec::new(), typical, is_more_than_usual: always };
 
 #[derive(Debug)]
@@ -17,7 +17,7 @@ struct Table {
     force_n: f64,
     friction_ratio: f64,
     over: Option<Over>,
-    /// Places of the condition and the share at each.
+    /// Points of the condition and the share at each.
     points: Vec<(f64, f64)>,
 }
 
@@ -36,7 +36,7 @@ fn truth(cause: &mut Cause<'_>) -> Box<dyn TruthEffect> {
 }
 
 impl Table {
-    /// By a search for the two neighbours.
+    /// Interpolates between the two neighbouring points.
     fn share(&self, speed_m_per_s: f64, length_m: f64, tension_n: f64) -> f64 {
         let Some(over) = self.over else { return 0.0 };
         let at = match over {

@@ -1,11 +1,11 @@
-//! `friction_drift` in the simulated robot: bearings that warm up, run in or lose grease while the run lasts.
+//! `friction_drift` in the simulated robot: bearings that warm up, run in or lose grease during the run.
 //!
-//! μ changes by the same amount every second from the start of the log to where the drift ends; it does not fall below zero.
+//! μ changes at a constant rate from the start of the log to the end of the drift, and does not fall below zero.
 
 use super::truth::{Cause, Contact, TruthEffect, drifted_s};
 use super::{Around, LabEffect, Sizing, Start, always};
 
-/// What the lab knows of it.
+/// The effect's entry in the lab.
 pub const LAB: LabEffect = LabEffect { truth, starts, typical, is_more_than_usual: always };
 
 #[derive(Debug)]

@@ -1,6 +1,6 @@
-//! `friction_ripple` in the simulated robot: bearings that rub more on one side of a turn than on the other.
+//! `friction_ripple` in the simulated robot: bearings whose friction varies over a revolution.
 //!
-//! μ of all pulleys goes with `1 + a·sin φ`, `φ = 2π·l/period` and a phase, l the length of the cable.
+//! μ of all pulleys is multiplied by `1 + a·sin φ`, where `φ` is `2π·l/period` plus a phase and l the length of the cable.
 
 use core::f64::consts::TAU;
 
@@ -8,7 +8,7 @@ use super::truth::{Cause, Contact, Oscillation, TruthEffect};
 use super::{Around, LabEffect, Sizing, Start, always};
 use crate::random::uniform;
 
-/// What the lab knows of it.
+/// The effect's entry in the lab.
 pub const LAB: LabEffect = LabEffect { truth, starts, typical, is_more_than_usual: always };
 
 #[derive(Debug)]
@@ -25,7 +25,7 @@ impl TruthEffect for Uneven {
     }
 }
 
-/// The search begins from every period at which the residual ripples and turns round with the motion.
+/// Starts from every period at which the residual ripples and reverses with the motion.
 fn starts(around: &Around) -> Vec<Start> {
     let of_period = |period_m: &f64| vec![("sin_ratio", 0.01), ("cos_ratio", 0.01), ("period_m", *period_m)];
     around.periods.with_friction.iter().map(of_period).collect()

@@ -1,6 +1,6 @@
-//! `friction_warmup` in the simulated robot: bearings that warm up, and grease that becomes thinner with them.
+//! `friction_warmup` in the simulated robot: bearings that warm up, so that their grease becomes thinner.
 //!
-//! The temperature goes towards its final one as a body does that is heated evenly and cools in proportion; μ follows it.
+//! The temperature approaches its final value exponentially, as in a body with constant heating and proportional cooling; μ follows it.
 
 use fric_core::effects::friction_warmup::TIME_CONSTANT;
 use fric_core::parameters::Values;
@@ -9,7 +9,7 @@ use super::truth::{Cause, Contact, TruthEffect, warmed};
 use super::{Around, LabEffect, Sizing, Start};
 use crate::random::uniform;
 
-/// What the lab knows of it.
+/// The effect's entry in the lab.
 pub const LAB: LabEffect = LabEffect { truth, starts, typical, is_more_than_usual: lasts };
 
 #[derive(Debug)]

@@ -1,4 +1,4 @@
-//! `gear_backlash` in the simulated robot: on a reversal the winch turns before the cable follows.
+//! `gear_backlash` in the simulated robot: after a reversal the winch turns before the cable follows.
 
 use fric_core::effects::gear_backlash::PLAY;
 use fric_core::parameters::Values;
@@ -6,13 +6,13 @@ use fric_core::parameters::Values;
 use super::truth::{Cause, TruthEffect};
 use super::{Around, LabEffect, Sizing, Start};
 
-/// What the lab knows of it.
+/// The effect's entry in the lab.
 pub const LAB: LabEffect = LabEffect { truth, starts, typical, is_more_than_usual };
 
-/// Plays that the search begins from, m: the squares have a valley at each small movement that a play swallows.
+/// Start values of the play, m: the sum of squares has a minimum at each small movement that a play absorbs.
 const PLAYS_M: [f64; 3] = [5e-5, 3e-4, 1.5e-3];
 
-/// A play within so many standard deviations of the length's noise to either side is that noise.
+/// A play to either side of up to this many standard deviations of the length's noise counts as that noise.
 const LEAST_DEVIATIONS: f64 = 4.0;
 
 #[derive(Debug)]

@@ -1,11 +1,11 @@
-//! `load_nonlinearity` in the simulated robot: contacts that flatten under load, so that friction is no straight line.
+//! `load_nonlinearity` in the simulated robot: contacts that flatten under load, so that friction is not proportional to it.
 //!
-//! Sliding friction is `μ·F_ref·(F_N/F_ref)^p`, with the exact normal force of the instant.
+//! Sliding friction is `μ·F_ref·(F_N/F_ref)^p`, with the exact momentary normal force.
 
 use super::truth::{Cause, TruthEffect};
 use super::{Around, LabEffect, Sizing, Start, always};
 
-/// What the lab knows of it.
+/// The effect's entry in the lab.
 pub const LAB: LabEffect = LabEffect { truth, starts, typical, is_more_than_usual: always };
 
 #[derive(Debug)]
@@ -21,7 +21,7 @@ fn truth(cause: &mut Cause<'_>) -> Box<dyn TruthEffect> {
 
 impl TruthEffect for Flattening {
     fn load_factor(&self, normal_force_n: f64) -> f64 {
-        // A bearing without load holds nothing; the power alone would be infinite there for an exponent below 1.
+        // A bearing without load has no friction. For an exponent below 1 the power alone would be infinite there.
         if normal_force_n > 0.0 { libm::pow(normal_force_n / self.reference_n, self.exponent - 1.0) } else { 0.0 }
     }
 }

@@ -1,11 +1,11 @@
 //! `load_release` in the simulated robot: a contact that slips back as its load falls.
 //!
-//! After each step of the integration a bristle that is bent further than its load bears has slipped back to what it bears.
+//! After each integration step, a bristle whose deflection exceeds what its load holds slips back to that deflection.
 
 use super::truth::{Cause, TruthEffect};
 use super::{Around, LabEffect, Sizing, Start, always};
 
-/// What the lab knows of it.
+/// The effect's entry in the lab.
 pub const LAB: LabEffect = LabEffect { truth, starts, typical, is_more_than_usual: always };
 
 #[derive(Debug)]
@@ -28,6 +28,6 @@ fn starts(_: &Around) -> Vec<Start> {
 }
 
 fn typical(_: &mut Sizing<'_>) -> Start {
-    // It is so or not.
+    // The effect is either present or absent.
     vec![("ratio", 1.0)]
 }

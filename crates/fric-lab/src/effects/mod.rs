@@ -1,9 +1,9 @@
-//! What the lab knows of each effect of the catalogue, a file each: the same physics in the simulated robot, in its own way; where the search for
-//! it begins; how strong it usually is in the sweep.
+//! The lab's entry for each effect of the catalogue, one file per effect: the same physics in the simulated robot, implemented independently; the
+//! start values of its search; its typical strength in the sweep.
 //!
-//! The list is that of [`Effect`]: a variant without its file does not compile. An effect that acts on the simulated robot at a place where
-//! none has acted so far gets a new method of [`TruthEffect`](truth::TruthEffect) with a default that does nothing, and one call where that place is
-//! (`bristle`, `motion`, `stream` in [`simulate`](crate::simulate)).
+//! The list is that of [`Effect`]: a variant without its file does not compile. An effect that acts at a new place of the simulated robot gets a new
+//! method of [`TruthEffect`](truth::TruthEffect) with a default that does nothing, and one call at that place (`bristle`, `motion`, `stream` in
+//! [`simulate`](crate::simulate)).
 
 pub mod truth;
 
@@ -17,68 +17,68 @@ use crate::random::uniform;
 /// Values of some parameters, by key.
 pub type Start = Vec<(&'static str, f64)>;
 
-/// What the lab knows of an effect.
+/// The entry of an effect in the lab.
 #[derive(Clone, Copy, Debug)]
 pub struct LabEffect {
     /// The effect on the simulated robot.
     pub truth: Build,
-    /// Where the search for it begins, one or several places: the parameters that do not begin at their neutral values.
+    /// One or several starts of its search: the parameters that do not start at their neutral values.
     pub starts: fn(&Around) -> Vec<Start>,
-    /// Values as machines have them.
+    /// Typical values in machines.
     pub typical: fn(&mut Sizing<'_>) -> Start,
-    /// Whether values that were found are more than what robots without the effect have.
+    /// Whether fitted values exceed what robots without the effect show.
     pub is_more_than_usual: fn(&Values, &Around) -> bool,
 }
 
-/// What a search on a cable begins from.
+/// The surroundings that a search on a cable starts from.
 #[derive(Clone, Debug)]
 pub struct Around {
     /// Cycle time, s.
     pub cycle_s: f64,
     /// Root mean square of the cable tension, N.
     pub tension_n: f64,
-    /// Its mean, N.
+    /// Mean of the cable tension, N.
     pub mean_tension_n: f64,
     /// Standard deviation of the noise, N.
     pub noise_n: f64,
     /// Root mean square of the friction found so far, N.
     pub friction_n: f64,
-    /// The same of the speed while it moves, m/s.
+    /// Root mean square of the speed while the cable moves, m/s.
     pub speed_m_per_s: f64,
-    /// Time from the first sample to the last, of the longest log, s.
+    /// Duration of the longest log, s.
     pub end_s: f64,
-    /// μ found so far, 1.
+    /// μ found so far, dimensionless.
     pub mu: f64,
     /// Compliance at which the cable stretches by as much as the friction takes to build up, while its tension changes by its standard deviation, m/N.
     pub compliance_m_per_n: f64,
     /// Standard deviation of the noise of the length, m.
     pub length_noise_m: f64,
-    /// How many pulleys the cable has.
+    /// Number of pulleys of the cable.
     pub pulley_count: u32,
-    /// Periods at which the residual ripples with the cable's length.
+    /// Periods in the cable's length at which the residual ripples.
     pub periods: Periods,
 }
 
 /// Periods of a ripple, m, the strongest first.
 #[derive(Clone, Debug, Default)]
 pub struct Periods {
-    /// Of one in proportion to the tension.
+    /// Periods of a ripple in proportion to the tension.
     pub with_load: Vec<f64>,
-    /// Of one that also turns round with the motion.
+    /// Periods of a ripple that also reverses with the motion.
     pub with_friction: Vec<f64>,
-    /// Of one that goes with neither.
+    /// Periods of a ripple that depends on neither.
     pub alone: Vec<f64>,
 }
 
-/// Time constants of what warms up that a search begins from, as shares of the log.
+/// Start values of warm-up time constants, as fractions of the log's duration.
 const WARM_UP_RATIOS: [f64; 2] = [0.08, 0.3];
 
-/// What warms up does so for more than this share of the log: two of the blocks that it is cut into, one of which is held out. What is over
-/// sooner is the beginning of the run, in which friction from before is still stored.
+/// Minimum duration of a warm-up, as a fraction of the log: two of the blocks into which the log is cut, one of which is held out. A shorter
+/// transient is the start of the run, in which friction from before is still stored.
 const LEAST_WARM_UP_RATIO: f64 = 0.05;
 
 impl Around {
-    /// Whether what warms up with a time constant does so for long enough to be told from the beginning of the run.
+    /// Whether a warm-up with this time constant lasts long enough to be distinguished from the start of the run.
     fn lasts_s(&self, time_constant_s: f64) -> bool {
         time_constant_s > LEAST_WARM_UP_RATIO * self.end_s
     }
@@ -88,9 +88,9 @@ impl Around {
     }
 }
 
-/// What the size of an effect in the sweep goes by.
+/// The quantities that determine the size of an effect in the sweep.
 pub struct Sizing<'a> {
-    /// Share of the full strength.
+    /// Fraction of the full strength.
     pub strength_ratio: f64,
     pub mu: f64,
     /// Mean tension, N.
@@ -102,24 +102,24 @@ pub struct Sizing<'a> {
 }
 
 impl Sizing<'_> {
-    /// About a value at full strength, the share of it at others.
+    /// Returns a value near `full` at full strength, and its fraction at others.
     pub fn about(&mut self, full: f64) -> f64 {
         full * self.strength_ratio * uniform(self.random, 0.85, 1.15)
     }
 
-    /// Either sign.
+    /// Returns such a value with either sign.
     pub fn either(&mut self, full: f64) -> f64 {
         let value = self.about(full);
         if uniform(self.random, -1.0, 1.0) < 0.0 { -value } else { value }
     }
 }
 
-/// For an effect of which every robot without has none at all.
+/// For an effect that is completely absent in robots without it.
 fn always(_: &Values, _: &Around) -> bool {
     true
 }
 
-/// For an effect whose search leads away from its neutral values.
+/// For an effect whose search can start at its neutral values.
 fn as_it_is(_: &Around) -> Vec<Start> {
     vec![Vec::new()]
 }
@@ -128,7 +128,7 @@ macro_rules! lab {
     ($($effect:ident $file:ident,)+) => {
         $(mod $file;)+
 
-        /// What the lab knows of an effect of the catalogue; `None` for the friction that every model has.
+        /// Returns the lab's entry of an effect; `None` for the friction that every model has.
         pub const fn of(effect: Effect) -> Option<LabEffect> {
             match effect {
                 $(Effect::$effect => Some($file::LAB),)+

@@ -1,11 +1,11 @@
-//! `presliding_shape` in the simulated robot: bristles that give way earlier or later than the exponential.
+//! `presliding_shape` in the simulated robot: bristles that saturate earlier or later than the exponential.
 //!
-//! The exponent of [`presliding`](crate::simulate::presliding), solved stage by stage of the integration.
+//! The exponent is that of [`presliding`](crate::simulate::presliding), solved at each stage of the integration.
 
 use super::truth::{Cause, TruthEffect};
 use super::{LabEffect, Sizing, Start, always, as_it_is};
 
-/// What the lab knows of it.
+/// The effect's entry in the lab.
 pub const LAB: LabEffect = LabEffect { truth, starts: as_it_is, typical, is_more_than_usual: always };
 
 #[derive(Debug)]

@@ -7,12 +7,13 @@ use super::truth::{Cause, TruthEffect};
 use super::{Around, LabEffect, Sizing, Start};
 use crate::random::uniform;
 
-/// What the lab knows of it.
+/// The effect's entry in the lab.
 pub const LAB: LabEffect = LabEffect { truth, starts, typical, is_more_than_usual };
 
-/// The search begins from so many times the friction of the others.
+/// Start value of the defective pulley's friction, as a multiple of the others'.
 const TIMES: f64 = 2.0;
-/// Pulleys differ by a tenth and more, and one of three that has 1.3 times the friction of the others is no defect.
+/// Minimum friction of a defective pulley, as a multiple of the others'. Healthy pulleys differ by a tenth and more; one of three with 1.3 times the
+/// friction of the others is no defect.
 const LEAST_TIMES: f64 = 1.5;
 
 #[derive(Debug)]
@@ -32,14 +33,14 @@ impl TruthEffect for Dry {
     }
 }
 
-/// Each pulley in turn.
+/// Starts with each pulley in turn.
 fn starts(around: &Around) -> Vec<Start> {
     let of_pulley = |pulley| vec![("pulley", f64::from(pulley)), ("mu", TIMES * around.mu)];
     (1..=around.pulley_count).map(of_pulley).collect()
 }
 
 fn typical(scale: &mut Sizing<'_>) -> Start {
-    // Of the three that a cable has.
+    // One of the three pulleys of a cable.
     let pulley = 1.0 + libm::floor(uniform(scale.random, 0.0, 3.0)).min(2.0);
     let mu = scale.mu * (1.0 + scale.about(4.0));
     vec![("pulley", pulley), ("mu", mu)]

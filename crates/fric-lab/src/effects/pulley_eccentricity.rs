@@ -1,7 +1,6 @@
-//! `pulley_eccentricity` in the simulated robot: a pulley out of true, whose lever arm goes up and down as it turns.
+//! `pulley_eccentricity` in the simulated robot: an eccentric pulley, whose lever arm varies as it turns.
 //!
-//! The tension at the platform is that behind the last pulley times `1 + a·sin φ + b·cos φ`, `φ = 2π·l/period`, l the
-//! cable's length.
+//! The tension at the platform is the tension behind the last pulley times `1 + a·sin φ + b·cos φ`, with `φ = 2π·l/period` and l the cable's length.
 
 use core::f64::consts::TAU;
 
@@ -9,7 +8,7 @@ use super::truth::{Cause, Oscillation, TruthEffect};
 use super::{Around, LabEffect, Sizing, Start, always};
 use crate::random::uniform;
 
-/// What the lab knows of it.
+/// The effect's entry in the lab.
 pub const LAB: LabEffect = LabEffect { truth, starts, typical, is_more_than_usual: always };
 
 #[derive(Debug)]
@@ -26,7 +25,7 @@ impl TruthEffect for OutOfTrue {
     }
 }
 
-/// The search begins from every period at which the residual ripples.
+/// Starts from every period at which the residual ripples.
 fn starts(around: &Around) -> Vec<Start> {
     let of_period = |period_m: &f64| vec![("sin_ratio", 1e-3), ("cos_ratio", 1e-3), ("period_m", *period_m)];
     around.periods.with_load.iter().map(of_period).collect()

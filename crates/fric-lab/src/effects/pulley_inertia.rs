@@ -1,15 +1,15 @@
-//! `pulley_inertia` in the simulated robot: pulleys that have to be sped up.
+//! `pulley_inertia` in the simulated robot: pulleys that must be accelerated.
 //!
-//! Each takes `m·dv/dt` from the tension, m = J/r² and dv/dt the acceleration of the motion itself, not a difference of
-//! samples. What a stretching cable adds to the acceleration is left out.
+//! Each takes `m·dv/dt` from the tension, where m = J/r² and dv/dt is the acceleration of the motion itself, not a difference of samples. The
+//! additional acceleration of a stretching cable is neglected.
 
 use super::truth::{Cause, TruthEffect};
 use super::{Around, LabEffect, Sizing, Start, always};
 
-/// What the lab knows of it.
+/// The effect's entry in the lab.
 pub const LAB: LabEffect = LabEffect { truth, starts, typical, is_more_than_usual: always };
 
-/// Time constants with which the acceleration is taken, in cycles: the noisier the speed, the longer.
+/// Start values of the filter time constant for the acceleration, in cycles: the noisier the speed, the longer.
 const WINDOWS: [f64; 4] = [0.0, 1.0, 4.0, 16.0];
 
 #[derive(Debug)]

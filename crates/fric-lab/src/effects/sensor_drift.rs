@@ -1,9 +1,9 @@
-//! `sensor_drift` in the simulated robot: a sensor whose zero creeps away, evenly from the start of the log until it ends.
+//! `sensor_drift` in the simulated robot: a sensor whose zero drifts at a constant rate from the start of the log until the drift ends.
 
 use super::truth::{Cause, TruthEffect, drifted_s};
 use super::{Around, LabEffect, Sizing, Start, always};
 
-/// What the lab knows of it.
+/// The effect's entry in the lab.
 pub const LAB: LabEffect = LabEffect { truth, starts, typical, is_more_than_usual: always };
 
 #[derive(Debug)]

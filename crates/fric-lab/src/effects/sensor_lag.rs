@@ -1,14 +1,14 @@
-//! `sensor_lag` in the simulated robot: an amplifier with a low pass, behind all the noise of its sensor.
+//! `sensor_lag` in the simulated robot: an amplifier with a low-pass filter, which also filters the sensor's noise.
 //!
-//! In each cycle the force shown goes towards the one there is by a share: the cycle over the time constant.
+//! In each cycle the output approaches the input by a fraction: the cycle time divided by the time constant.
 
 use super::truth::{Cause, TruthEffect};
 use super::{Around, LabEffect, Sizing, Start, always};
 
-/// What the lab knows of it.
+/// The effect's entry in the lab.
 pub const LAB: LabEffect = LabEffect { truth, starts, typical, is_more_than_usual: always };
 
-/// The lag that the search begins from, in cycles. Without smoothing: a low pass takes noise away whether there is a lag or not.
+/// Start value of the lag, in cycles. There is no smoothing at the start, because a low-pass filter removes noise whether there is a lag or not.
 const LAG: f64 = 4.0;
 
 #[derive(Debug)]

@@ -1,4 +1,4 @@
-//! `sensor_nonlinearity` in the simulated robot: a load cell that is mounted askew, whose lever changes with the load.
+//! `sensor_nonlinearity` in the simulated robot: a misaligned load cell, whose lever arm changes with the load.
 
 use super::truth::{Cause, TruthEffect};
 use fric_core::effects::sensor_nonlinearity::REFERENCE;
@@ -6,14 +6,14 @@ use fric_core::parameters::Values;
 
 use super::{Around, LabEffect, Sizing, Start};
 
-/// What the lab knows of it.
+/// The effect's entry in the lab.
 pub const LAB: LabEffect = LabEffect { truth, starts, typical, is_more_than_usual };
 
 #[derive(Debug)]
 struct Askew {
     curvature_per_n: f64,
     reference_n: f64,
-    /// What the sensor shows of the tension, 1.
+    /// Ratio of the sensor signal to the tension, dimensionless.
     tension_ratio: f64,
 }
 
@@ -29,20 +29,20 @@ impl TruthEffect for Askew {
     }
 }
 
-/// Whether the slope of the curve changes over the tensions, taken as four standard deviations of them, by more than it is off in their middle: where it
-/// does not, the curve is a gain and an offset by another name.
+/// Whether the slope of the curve changes over the range of tensions, taken as four standard deviations, by more than its error at their mean. If
+/// not, the curve is equivalent to a gain and an offset.
 fn is_more_than_usual(values: &Values, around: &Around) -> bool {
     let variance = around.tension_n * around.tension_n - around.mean_tension_n * around.mean_tension_n;
     (around.mean_tension_n - values[REFERENCE]).abs() < 4.0 * variance.max(0.0).sqrt()
 }
 
 fn starts(around: &Around) -> Vec<Start> {
-    // 1 % of the mean tension at twice of it; at 0 no reference shows.
+    // 1 % of the mean tension at twice the mean tension. At a curvature of 0 the reference has no influence.
     vec![vec![("curvature_per_n", 0.01 / around.mean_tension_n), ("reference_n", around.mean_tension_n)]]
 }
 
 fn typical(scale: &mut Sizing<'_>) -> Start {
-    // 5 % of the mean tension at half and at one and a half of it.
+    // 5 % of the mean tension at 0.5 and at 1.5 times the mean tension.
     let curvature_per_n = scale.either(0.2) / scale.tension_n;
     vec![("curvature_per_n", curvature_per_n), ("reference_n", scale.tension_n)]
 }

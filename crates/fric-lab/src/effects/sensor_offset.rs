@@ -3,7 +3,7 @@
 use super::truth::{Cause, TruthEffect};
 use super::{LabEffect, Sizing, Start, always, as_it_is};
 
-/// What the lab knows of it.
+/// The effect's entry in the lab.
 pub const LAB: LabEffect = LabEffect { truth, starts: as_it_is, typical, is_more_than_usual: always };
 
 #[derive(Debug)]

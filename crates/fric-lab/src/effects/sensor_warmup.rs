@@ -1,6 +1,7 @@
 //! `sensor_warmup` in the simulated robot: an amplifier that was switched on shortly before.
 //!
-//! Its temperature goes towards the final one as a body does that is heated evenly and cools in proportion; its zero follows it.
+//! The temperature approaches its final value exponentially, as in a body with constant heating and proportional cooling; the sensor's zero follows
+//! it.
 
 use fric_core::effects::sensor_warmup::TIME_CONSTANT;
 use fric_core::parameters::Values;
@@ -9,7 +10,7 @@ use super::truth::{Cause, TruthEffect, warmed};
 use super::{Around, LabEffect, Sizing, Start};
 use crate::random::uniform;
 
-/// What the lab knows of it.
+/// The effect's entry in the lab.
 pub const LAB: LabEffect = LabEffect { truth, starts, typical, is_more_than_usual: lasts };
 
 #[derive(Debug)]

@@ -1,16 +1,16 @@
-//! `stribeck` in the simulated robot: the boundary layer of a bearing that has not yet built up its film.
+//! `stribeck` in the simulated robot: boundary lubrication of a bearing before its film has built up.
 //!
-//! The additional share of μ falls with speed as `exp(−(v/velocity)²)`, the law that the catalogue states; speed is the
-//! cable's at the instant, within the cycle too.
+//! The additional fraction of μ falls with the speed as `exp(−(v/velocity)²)`, the law of the catalogue. The speed is the cable's momentary speed,
+//! also within the cycle.
 
 use super::truth::{Cause, Contact, TruthEffect};
 use super::{Around, LabEffect, Sizing, Start, always};
 use crate::random::uniform;
 
-/// What the lab knows of it.
+/// The effect's entry in the lab.
 pub const LAB: LabEffect = LabEffect { truth, starts, typical, is_more_than_usual: always };
 
-/// Speeds at which friction may change, as shares of the speed at which the cable moves for the most part.
+/// Start values of the speed at which friction changes, as fractions of the usual speed of the moving cable.
 const SPEED_SHARES: [f64; 2] = [0.04, 0.25];
 
 #[derive(Debug)]
@@ -30,7 +30,7 @@ impl TruthEffect for BoundaryLayer {
     }
 }
 
-/// The search begins from two of the speeds at which friction may change.
+/// Starts from two speeds at which friction may change.
 fn starts(around: &Around) -> Vec<Start> {
     let of_share = |share| vec![("ratio", 0.3), ("velocity_m_per_s", share * around.speed_m_per_s)];
     SPEED_SHARES.map(of_share).to_vec()

@@ -1,12 +1,12 @@
-//! `time_delay` in the simulated robot: the log's length and speed are those that the cable will have `delay_s` later,
-//! or for a negative one had before.
+//! `time_delay` in the simulated robot: the logged length and speed are those that the cable will have `delay_s` later or, for a negative value, had
+//! before.
 //!
-//! Forces and pose are of the present; the motion is computed for the other instant, not shifted by whole samples.
+//! Forces and pose belong to the present. The motion is computed for the other time, not shifted by whole samples.
 
 use super::truth::{Cause, TruthEffect};
 use super::{Around, LabEffect, Sizing, Start, always};
 
-/// What the lab knows of it.
+/// The effect's entry in the lab.
 pub const LAB: LabEffect = LabEffect { truth, starts, typical, is_more_than_usual: always };
 
 #[derive(Debug)]
@@ -29,7 +29,7 @@ fn starts(around: &Around) -> Vec<Start> {
 }
 
 fn typical(scale: &mut Sizing<'_>) -> Start {
-    // A loop cannot know much of the motion to come.
+    // A control loop cannot know much of the future motion.
     let delay_s = scale.either(0.008);
     vec![("delay_s", if delay_s < 0.0 { 0.375 * delay_s } else { delay_s })]
 }

@@ -1,11 +1,11 @@
-//! `viscous_nonlinearity` in the simulated robot: grease that is churned, air that is driven.
+//! `viscous_nonlinearity` in the simulated robot: churned grease, turbulent air drag.
 //!
-//! The n pulleys of a cable each take `c/n·v·|v|` from the tension, v the speed of the cable over it.
+//! The n pulleys of a cable each take `c/n·v·|v|` from the tension, where v is the speed of the cable over the pulley.
 
 use super::truth::{Cause, TruthEffect};
 use super::{LabEffect, Sizing, Start, always, as_it_is};
 
-/// What the lab knows of it.
+/// The effect's entry in the lab.
 pub const LAB: LabEffect = LabEffect { truth, starts: as_it_is, typical, is_more_than_usual: always };
 
 #[derive(Debug)]

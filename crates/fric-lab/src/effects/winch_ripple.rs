@@ -1,6 +1,6 @@
-//! `winch_ripple` in the simulated robot: a motor that cogs, by whose current the force is measured.
+//! `winch_ripple` in the simulated robot: a cogging motor, whose current measures the force.
 //!
-//! What is shown goes up and down by the same force whatever the load, as the motor turns.
+//! The sensor signal ripples as the motor turns, by a force that is independent of the load.
 
 use core::f64::consts::TAU;
 
@@ -8,7 +8,7 @@ use super::truth::{Cause, Oscillation, TruthEffect};
 use super::{Around, LabEffect, Sizing, Start, always};
 use crate::random::uniform;
 
-/// What the lab knows of it.
+/// The effect's entry in the lab.
 pub const LAB: LabEffect = LabEffect { truth, starts, typical, is_more_than_usual: always };
 
 #[derive(Debug)]
@@ -25,7 +25,7 @@ impl TruthEffect for Cogging {
     }
 }
 
-/// The search begins from every period at which the residual ripples whatever the load.
+/// Starts from every period at which the residual ripples independently of the load.
 fn starts(around: &Around) -> Vec<Start> {
     let least_n = 1e-3 * around.tension_n;
     let of_period = |period_m: &f64| vec![("sin_n", least_n), ("cos_n", least_n), ("period_m", *period_m)];
@@ -33,7 +33,7 @@ fn starts(around: &Around) -> Vec<Start> {
 }
 
 fn typical(scale: &mut Sizing<'_>) -> Start {
-    // As the sensor at 180° shows it, which feels the cable twice.
+    // As shown by a sensor at 180°, which measures the cable force twice.
     let (force_n, phase_rad) = (scale.about(0.04 * scale.tension_n), uniform(scale.random, 0.0, TAU));
     let period_m = uniform(scale.random, 0.02, 0.06);
     let (sin, cos) = libm::sincos(phase_rad);

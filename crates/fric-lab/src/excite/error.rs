@@ -1,11 +1,11 @@
-//! What can be wrong with an identification run for a real robot.
+//! Errors of an identification run for a real robot.
 
 use thiserror::Error;
 
 use crate::simulate::SimulationError;
 use crate::trajectory::Phase;
 
-/// What to do, each the end of a sentence.
+/// Advice, each the end of a sentence.
 mod advice {
     pub const BOX: &str = "give the lesser corner first, and at least one edge of 1 mm";
     pub const OPTION: &str = "leave it out, or give every cable both";
@@ -20,7 +20,7 @@ mod advice {
     pub const ELSEWHERE: &str = "it cannot even rest there, so choose a smaller or another box, or other bounds";
 }
 
-/// Why there are no set points.
+/// The reason why there are no set points.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ExcitationError {
@@ -31,12 +31,12 @@ pub enum ExcitationError {
         key: &'static str,
         /// Its value.
         value: f64,
-        /// Least allowed.
+        /// Least allowed value.
         min: f64,
-        /// Greatest allowed.
+        /// Greatest allowed value.
         max: f64,
     },
-    /// A box whose corners are not in order, or without extent.
+    /// The corners of a box are not in order, or the box has no extent.
     #[error("the box goes from {from} to {to} m along {axis}; {}", advice::BOX)]
     BadBox {
         /// `x`, `y` or `z`.
@@ -46,7 +46,7 @@ pub enum ExcitationError {
         /// Coordinate of the second corner, m.
         to: f64,
     },
-    /// An option that is about a platform, for cables that have none.
+    /// An option concerns a platform, but the cables have none.
     #[error(
         "`{key}` needs a platform, and {cable} has no `base_m` and `platform_m` in the robot file; {}",
         advice::OPTION
@@ -54,10 +54,10 @@ pub enum ExcitationError {
     NeedsPlatform {
         /// The field.
         key: &'static str,
-        /// The first cable without.
+        /// The first cable without attachment.
         cable: String,
     },
-    /// The load of a test bench that the robot file knows, and is told to change.
+    /// The load of a test bench is known in the robot file, but an option asks to change it.
     #[error(
         "`max_tension_n` is {greatest_n}, but the robot file knows the load of the cables and the run cannot change it; {}",
         advice::KNOWN
@@ -66,35 +66,35 @@ pub enum ExcitationError {
         /// The greatest load, N.
         greatest_n: f64,
     },
-    /// A least load of a test bench without a greatest.
+    /// The least load of a test bench is given without the greatest.
     #[error("`min_tension_n` is {least_n} without `max_tension_n`; {}", advice::BOTH_BOUNDS)]
     NoGreatestLoad {
         /// The least load, N.
         least_n: f64,
     },
-    /// A question that cannot be asked of this robot.
+    /// The question does not apply to this robot.
     #[error("{problem}")]
     BadQuestion {
-        /// What is wrong and what to do, without its full stop.
+        /// The mistake and what to do, without the full stop.
         problem: String,
     },
-    /// No run within the limits tells anything of what is asked.
+    /// No run within the limits answers the question.
     #[error("no run of {duration_s} s within these limits tells {what}; {}", advice::MORE)]
     CannotTell {
-        /// What is asked, with what the best run would give.
+        /// The question, with the result of the best run.
         what: String,
-        /// How long a run may be, s.
+        /// Duration of the run, s.
         duration_s: f64,
     },
     /// The design was stopped from outside.
     #[error("the design of the run was stopped")]
     Stopped,
-    /// A run of more than an hour.
+    /// The run takes more than an hour.
     #[error("the run would take {duration_s:.0} s, and more than {longest_s} s is not allowed; {}", advice::SHORTER)]
     TooLong {
-        /// How long, s.
+        /// Duration, s.
         duration_s: f64,
-        /// Longest allowed, s.
+        /// Greatest allowed duration, s.
         longest_s: f64,
     },
     /// No workspace was found.
@@ -105,7 +105,7 @@ pub enum ExcitationError {
     Unreachable {
         /// The cable.
         cable: String,
-        /// Where the platform is, m.
+        /// Position of the platform, m.
         position_m: [f64; 3],
     },
     /// No forces within the bounds hold the platform.
@@ -122,14 +122,13 @@ pub enum ExcitationError {
         least_n: f64,
         /// Greatest force, N.
         greatest_n: Option<f64>,
-        /// Where the platform is, m.
+        /// Position of the platform, m.
         position_m: [f64; 3],
-        /// When, s.
+        /// Time, s.
         time_s: f64,
-        /// In which part of the run.
+        /// Part of the run.
         phase: Phase,
-        /// The cable that would be furthest out of bounds, and its force, N; `None` where not even pushing cables could
-        /// hold the platform.
+        /// The cable that would be furthest out of bounds, and its force, N; `None` if not even pushing cables could hold the platform.
         worst: Option<(String, f64)>,
         /// Whether the cables hold the platform there at rest.
         holds_at_rest: bool,
@@ -137,7 +136,7 @@ pub enum ExcitationError {
 }
 
 impl ExcitationError {
-    /// What to do: the words that end the error's sentence, where it has any.
+    /// Returns the advice that ends the error's sentence, if there is any.
     #[must_use]
     pub fn advice(&self) -> Option<&'static str> {
         match self {

@@ -1,4 +1,4 @@
-//! Whether the cables hold the platform within bounds, and with which forces.
+//! Checks whether the cables hold the platform within force bounds, and computes the forces.
 
 use nalgebra::{Vector3, Vector6};
 
@@ -19,7 +19,7 @@ pub struct Hold {
 }
 
 impl Hold {
-    /// Without an upper bound where there is no `greatest_n`.
+    /// Creates the check. Without `greatest_n` there is no upper bound.
     pub fn new(platform: Platform, least_n: f64, greatest_n: Option<f64>) -> Self {
         Self {
             distribution: Distribution::new(platform.arm_m(), least_n),
@@ -31,12 +31,12 @@ impl Hold {
         }
     }
 
-    /// Least and greatest force allowed, N.
+    /// Returns the least and the greatest allowed force, N.
     pub fn bounds_n(&self) -> (f64, Option<f64>) {
         (self.least_n, self.greatest_n)
     }
 
-    /// The forces of the cables at a set point, N, as near to `wanted_n` as they can be.
+    /// Returns the cable forces at a set point, N, as near to `wanted_n` as possible.
     pub fn forces_n(
         &mut self,
         set_point: &SetPoint,
@@ -46,7 +46,7 @@ impl Hold {
         names: &[String],
     ) -> Result<&[f64], ExcitationError> {
         let pose = set_point.pose();
-        // Whoever asks has been through the kinematics: every cable leaves its pulley.
+        // The caller has checked the kinematics, so every cable leaves its pulley.
         self.platform.structure(&pose, &mut self.columns);
         if self.holds(set_point, &set_point.acceleration_m_per_s2, wanted_n) {
             return Ok(&self.forces_n);
@@ -64,7 +64,7 @@ impl Hold {
         })
     }
 
-    /// Whether there are forces within the bounds at an acceleration; they are in `forces_n` then.
+    /// Whether forces within the bounds exist at an acceleration; if so, `forces_n` holds them.
     fn holds(&mut self, set_point: &SetPoint, acceleration_m_per_s2: &Vector3<f64>, wanted_n: f64) -> bool {
         let wrench = self.platform.outside_wrench(&set_point.orientation, acceleration_m_per_s2);
         let bounds_n = [self.least_n, self.greatest_n.unwrap_or(f64::INFINITY)];
@@ -72,8 +72,8 @@ impl Hold {
         self.distribution.solve_within(&self.columns, &wrench, bounds_n, &mut self.forces_n)
     }
 
-    /// The cable furthest out of bounds by the forces nearest to those wanted, and its force, N; `None` where no forces
-    /// of whatever sign hold the platform.
+    /// Returns the cable that is furthest out of bounds with the forces nearest to the wanted ones, and its force, N; `None` if no forces of either
+    /// sign hold the platform.
     fn worst(&mut self, set_point: &SetPoint, wanted_n: f64) -> Option<(usize, f64)> {
         let wrench = self.platform.outside_wrench(&set_point.orientation, &set_point.acceleration_m_per_s2);
         self.forces_n.fill(wanted_n);

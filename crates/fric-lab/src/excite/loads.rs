@@ -1,4 +1,4 @@
-//! How tight the cables are to be, and are to be expected, over a run.
+//! The stated and expected cable tensions over a run.
 
 use fric_core::KnownReference;
 
@@ -6,7 +6,7 @@ use super::error::ExcitationError;
 use super::options::ExcitationOptions;
 use crate::simulate::tension::TensionLevel;
 
-/// Where the load comes from.
+/// The source of the load.
 #[derive(Clone, Copy, Debug)]
 pub struct Loads {
     least_n: f64,
@@ -16,17 +16,17 @@ pub struct Loads {
 
 #[derive(Clone, Copy, Debug)]
 enum Source {
-    /// Cables that hold a platform, up to this force.
+    /// The cables hold a platform, with forces up to this one.
     Platform { greatest_n: f64 },
-    /// A test bench whose load goes up to this force.
+    /// A test bench whose load the run sets, up to this force.
     StatedBench { greatest_n: f64 },
-    /// A test bench with a load that the run has no say in, known or not.
+    /// A test bench whose load the run cannot set, known or not.
     Bench { load: Option<KnownReference> },
 }
 
 impl Loads {
-    /// Between the bounds of the options; `is_held` where the cables hold a platform. Without them the least force of a platform's cables is a tenth of their mean with the viscous
-    /// friction, and the greatest as far above the mean as the least is below.
+    /// Creates the loads between the bounds of the options; `is_held` says whether the cables hold a platform. By default, the least force of a
+    /// platform's cables is a tenth of their mean plus the viscous friction, and the greatest is as far above the mean as the least is below.
     pub fn new(
         level: &TensionLevel,
         options: &ExcitationOptions,
@@ -52,17 +52,17 @@ impl Loads {
         Ok(Self { least_n, usual_n, source })
     }
 
-    /// Least force of a cable, N.
+    /// Returns the least force of a cable, N.
     pub fn least_n(&self) -> f64 {
         self.least_n
     }
 
-    /// Force of a cable where the run states none, N.
+    /// Returns the force of a cable if the run states none, N.
     pub fn usual_n(&self) -> f64 {
         self.usual_n
     }
 
-    /// The force of a share, N; `None` where the run has no say in it.
+    /// Returns the force at a fraction of the range, N; `None` if the run cannot set it.
     pub fn stated_n(&self, share: f64) -> Option<f64> {
         match self.source {
             Source::Platform { greatest_n } | Source::StatedBench { greatest_n } => {
@@ -72,7 +72,7 @@ impl Loads {
         }
     }
 
-    /// The load of a test bench that the run has no say in, N, while its cable is accelerated.
+    /// Returns the load of a test bench that the run cannot set, N, while its cable is accelerated.
     pub fn expected_n(&self, acceleration_m_per_s2: f64) -> f64 {
         match self.source {
             Source::Bench { load: Some(load) } => load.force_n(acceleration_m_per_s2),
@@ -80,7 +80,7 @@ impl Loads {
         }
     }
 
-    /// Bounds of the load of a test bench that the run states, N.
+    /// Returns the bounds of the load of a test bench that the run sets, N.
     pub fn of_bench_n(&self) -> Option<(f64, Option<f64>)> {
         match self.source {
             Source::StatedBench { greatest_n } => Some((self.least_n, Some(greatest_n))),

@@ -1,16 +1,15 @@
-//! The identification run of \[P\], section III C, as set points for a real robot, as a stream.
+//! The identification run of \[P\], section III C, as a stream of set points for a real robot.
 //!
-//! For: a controller that follows it while the log is recorded which identification needs. The run is the one that the
-//! simulation runs ([`Trajectory::identification`]), in a box and within limits as wanted. For each cycle there are pose, velocity
-//! and acceleration of the platform, length and speed of each cable by the inverse kinematics (\[P\] 1), and forces within
-//! bounds that hold the platform against gravity and inertia (`A^T f + w = 0`, \[P\] 2). Lengths are those from the entry into
-//! the last pulley; elastic or sagging cables are not accounted for.
+//! A controller follows it while the log for the identification is recorded. The run equals the simulated one ([`Trajectory::identification`]), in a
+//! chosen box and within chosen limits. Each cycle contains pose, velocity and acceleration of the platform, length and speed of each cable by
+//! inverse kinematics (\[P\] 1), and forces within bounds that hold the platform against gravity and inertia (`A^T f + w = 0`, \[P\] 2). Lengths are
+//! measured from the entry into the last pulley; elasticity and sag of the cables are neglected.
 //!
-//! Cables without geometry, on a test bench, get the same movements as a change of their length about 1 m, without
-//! forces. Where only some cables have geometry there is a platform, but no forces: what the others pull is not known.
+//! Cables without geometry, on a test bench, get the same movements as changes of their length around 1 m, without forces. If only some cables have
+//! geometry there is a platform, but no forces, because the pull of the others is unknown.
 //!
-//! Input is checked at set-up; a place that cannot be reached or held shows when its turn comes. Memory does not depend
-//! on the length of the run.
+//! The input is checked at set-up. A position that cannot be reached or held is reported when its cycle comes. Memory does not depend on the length
+//! of the run.
 
 mod design;
 mod error;
@@ -35,10 +34,10 @@ pub use design::{Aim, Experiment, Forecast, Goal, KnownParameter, LEAST_SCORE, Q
 pub use error::ExcitationError;
 pub use options::ExcitationOptions;
 
-/// The longest run, s.
+/// Maximum duration of a run, s.
 pub const LONGEST_S: f64 = 3600.0;
 
-/// A run in progress: the identification run, or one that was designed.
+/// A run in progress: the identification run, or a designed one.
 #[derive(Clone, Debug)]
 pub struct Excitation {
     cycle_s: f64,
@@ -51,39 +50,39 @@ pub struct Excitation {
     hold: Option<Hold>,
     loads: Loads,
     motions: Vec<CableMotion>,
-    /// Force of each cable at the platform, N, as far as it is known.
+    /// Expected force of each cable at the platform, N, as far as it is known.
     expected_n: Vec<f64>,
 }
 
-/// What is to be done in one cycle.
+/// The set points of one cycle.
 #[derive(Clone, Copy, Debug)]
 pub struct ExcitedCycle<'a> {
     /// Time since the start, s.
     pub time_s: f64,
-    /// What the movement is for.
+    /// The purpose of the movement.
     pub phase: Phase,
-    /// Set point of the platform, where there is one.
+    /// Set point of the platform, if there is one.
     pub platform: Option<SetPoint>,
-    /// Length and speed of the cables in the robot's order.
+    /// Length and speed of the cables, in the robot's order.
     pub cables: &'a [CableMotion],
-    /// Forces of the cables at the platform, N, where all are attached to it, or where the run states the load of a test bench.
+    /// Cable forces at the platform, N; present if all cables are attached to it, or if the run sets the load of a test bench.
     pub tensions_n: Option<&'a [f64]>,
-    /// The same, and where the run does not state them those to be expected.
+    /// The same; if the run does not set them, the expected forces.
     pub(crate) expected_n: &'a [f64],
 }
 
 impl Excitation {
-    /// Sets the identification run up.
+    /// Sets up the identification run.
     ///
     /// # Errors
-    /// [`ExcitationError`] for an option out of range or without meaning for this robot, a run that takes too long, and a
-    /// robot without a place where all its cables can run.
+    /// Returns an [`ExcitationError`] for an option that is out of range or meaningless for this robot, a run that takes too long, and a robot
+    /// without a position where all its cables can run.
     pub fn new(robot: &RobotFile, options: &ExcitationOptions) -> Result<Self, ExcitationError> {
         Self::of(robot, options, None)
     }
 
-    /// A run of pieces that lasts `duration_s`, or longer where the pieces take longer; with `max_tension_n` it states the load of a
-    /// test bench too.
+    /// Sets up a run of pieces that lasts `duration_s`, or longer if the pieces take longer. With `max_tension_n` it also sets the load of a test
+    /// bench.
     pub(crate) fn of_pieces(
         robot: &RobotFile,
         options: &ExcitationOptions,
@@ -105,7 +104,7 @@ impl Excitation {
         let is_bench = platform.cable_count() == 0;
         let loose = tables.iter().zip(params.cables()).find(|(_, params)| !params.has_geometry());
         if let Some(((table, _), key)) = loose.zip(options.about_platform()) {
-            // A box is of use as soon as one cable is attached; bounds if all are, or if the run states the load of a bench.
+            // A box is meaningful if at least one cable is attached; bounds are meaningful if all are, or if the run sets the load of a bench.
             let states_load = is_bench && pieces.is_some() && key != "box_m";
             if !states_load && (key != "box_m" || is_bench) {
                 return Err(ExcitationError::NeedsPlatform { key, cable: table.name.clone() });
@@ -149,49 +148,49 @@ impl Excitation {
         })
     }
 
-    /// How many cycles there are.
+    /// Returns the number of cycles.
     #[must_use]
     pub fn total_cycles(&self) -> u64 {
         self.total_cycles
     }
 
-    /// The run; for cables without a platform with the length as x.
+    /// Returns the run; for cables without a platform, with the length as x.
     #[must_use]
     pub fn trajectory(&self) -> &Trajectory {
         self.motion.trajectory()
     }
 
-    /// Where the platform runs, where there is one.
+    /// Returns the box of the platform, if there is one.
     #[must_use]
     pub fn work_box(&self) -> Option<&WorkBox> {
         self.work_box.as_ref()
     }
 
-    /// Least and greatest force allowed, N, where all cables hold a platform, or the run states the load of a test bench.
+    /// Returns the least and the greatest allowed force, N, if all cables hold a platform or the run sets the load of a test bench.
     #[must_use]
     pub fn tension_bounds_n(&self) -> Option<(f64, Option<f64>)> {
         self.hold.as_ref().map(Hold::bounds_n).or(self.loads.of_bench_n())
     }
 
-    /// Force that each cable is to have where there is a choice, N, in a run that states it.
+    /// Returns the wanted force of each cable, N, in a run that states it.
     pub(crate) fn stated_load_n(&self, time_s: f64) -> Option<f64> {
         self.motion.trajectory().load_share_at(time_s).and_then(|share| self.loads.stated_n(share))
     }
 
-    /// The movements of the run.
+    /// Returns the movements of the run.
     pub(crate) fn motion(&self) -> &Motion {
         &self.motion
     }
 
-    /// Whether the run can change how tight the cables are.
+    /// Whether the run can change the cable tensions.
     pub(crate) fn states_loads(&self) -> bool {
         self.loads.stated_n(0.5).is_some()
     }
 
-    /// The next cycle; `None` after the last. What it lends is overwritten by the following one.
+    /// Returns the next cycle; `None` after the last. The following call overwrites the borrowed data.
     ///
     /// # Errors
-    /// [`ExcitationError::Unreachable`] and [`ExcitationError::NotHeld`] say where, when and which cable.
+    /// Returns [`ExcitationError::Unreachable`] or [`ExcitationError::NotHeld`] with position, time and cable.
     ///
     /// ```
     /// use fric_core::robot::file::RobotFile;
@@ -245,7 +244,7 @@ impl Excitation {
     }
 }
 
-/// A box given by its corners, with the direction of the small movements.
+/// Returns a box given by its corners, with the direction of the small movements.
 fn stated_box(
     platform: &Platform,
     corners_m: [[f64; 3]; 2],

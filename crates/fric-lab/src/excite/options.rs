@@ -1,14 +1,14 @@
-//! What an identification run can be told.
+//! Options of an identification run.
 
 use super::error::ExcitationError;
 use crate::trajectory::Limits;
 
-/// Furthest corner of a box, m.
+/// Maximum coordinate of a box, m.
 const FURTHEST_M: f64 = 1e4;
-/// Shortest of the longest edge of a box, m.
+/// Minimum length of a box's longest edge, m.
 const SHORTEST_EDGE_M: f64 = 1e-3;
 
-/// Where and how hard to run.
+/// Region and limits of the run.
 ///
 /// ```
 /// use fric_lab::excite::ExcitationOptions;
@@ -17,20 +17,20 @@ const SHORTEST_EDGE_M: f64 = 1e-3;
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ExcitationOptions {
-    /// Lesser and greater corner of the box in which the platform runs, base frame, m; the simulation's if not given.
+    /// Least and greatest corner of the platform's box, base frame, m; that of the simulation by default.
     pub box_m: Option<[[f64; 3]; 2]>,
-    /// Cap on the speed of the platform, m/s; the run's own if not given.
+    /// Maximum speed of the platform, m/s; that of the run by default.
     pub max_speed_m_per_s: Option<f64>,
-    /// Cap on the acceleration of the platform, m/s²; the run's own if not given.
+    /// Maximum acceleration of the platform, m/s²; that of the run by default.
     pub max_acceleration_m_per_s2: Option<f64>,
-    /// Least cable force at the platform, N; the simulation's if not given.
+    /// Minimum cable force at the platform, N; that of the simulation by default.
     pub min_tension_n: Option<f64>,
-    /// Greatest cable force at the platform, N; any if not given.
+    /// Maximum cable force at the platform, N; unlimited by default.
     pub max_tension_n: Option<f64>,
 }
 
 impl ExcitationOptions {
-    /// Whether all numbers are in range.
+    /// Checks whether all numbers are in range.
     pub(super) fn check(&self) -> Result<(), ExcitationError> {
         let ranges = [
             ("max_speed_m_per_s", self.max_speed_m_per_s, 1e-3, 100.0),
@@ -65,7 +65,7 @@ impl ExcitationOptions {
         }
     }
 
-    /// The first option given that is about the platform.
+    /// Returns the first given option that concerns the platform.
     pub(super) fn about_platform(&self) -> Option<&'static str> {
         [
             ("box_m", self.box_m.is_some()),

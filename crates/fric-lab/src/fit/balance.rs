@@ -1,27 +1,27 @@
-//! Whether the wrench on the platform can tell the forces of the cables.
+//! Checks whether the wrench on the platform determines the forces of the cables.
 //!
-//! `A^T f + w = 0` (\[P\] 3) is learned from in the directions in which cables pull. Two things rule it out:
+//! A fit to `A^T f + w = 0` (\[P\] 3) uses the directions in which cables pull. Two cases make it impossible:
 //!
-//! - **One line.** Where all cables pull along one line in every pose, the six equations are one: a reference force does as well,
-//!   and five components of the wrench are borne by something that is not in the model.
-//! - **Out of balance.** Where most of the wrench is in directions in which no cable pulls, no forces balance it: something else
-//!   holds the platform (a guide), or geometry, pose and wrench do not go together.
+//! - **One line.** If all cables pull along one line in every pose, the six equations reduce to one. A reference force serves as well, and something
+//!   outside the model bears five components of the wrench.
+//! - **Out of balance.** If most of the wrench acts in directions in which no cable pulls, no cable forces balance it. Something else holds the
+//!   platform (a guide), or geometry, pose and wrench are inconsistent.
 //!
-//! A robot of fewer than six cables that hangs in balance is neither, whatever their number.
+//! A suspended robot with fewer than six cables that hangs in balance is neither of these.
 
 use nalgebra::{DMatrix, Matrix6, Vector6};
 
 use super::error::FitError;
 
-/// Samples looked at, evenly spread over the log.
+/// Number of samples to examine, evenly spread over the log.
 const LOOKED_AT: usize = 2000;
-/// Singular values below this share of the largest are zero: geometry is known to 1 mm in 1 m at best.
+/// Singular values below this fraction of the largest count as zero: geometry is known to 1 mm in 1 m at best.
 const RANK_RATIO: f64 = 1e-3;
-/// Greatest share of the wrench, by root mean square, that no cable bears. A robot that hangs in its cables has some per cent, from
-/// errors of the geometry and the pose; one that something else holds has nearly all. At half or double neither changes sides.
+/// Maximum fraction of the wrench, by root mean square, that no cable bears. A suspended robot has a few per cent, from errors of geometry and pose;
+/// a robot that something else holds has nearly all. At half or double this value neither changes sides.
 const MOST_UNBORNE_RATIO: f64 = 0.5;
 
-/// Makes sure of it; the columns of the structure matrix are those of `cable_count` cables for each wrench.
+/// Checks the balance. `structure` holds the columns of the structure matrix, `cable_count` for each wrench.
 pub fn check(structure: &[Vector6<f64>], outside: &[Vector6<f64>], cable_count: usize) -> Result<(), FitError> {
     let turn = by_moment_arm(structure);
     let stride = outside.len().div_ceil(LOOKED_AT).max(1);
@@ -52,10 +52,10 @@ pub fn check(structure: &[Vector6<f64>], outside: &[Vector6<f64>], cable_count: 
     Ok(())
 }
 
-/// Why a robot of one cable cannot be fitted to the wrench.
+/// The reason why a robot of one cable cannot be fitted to the wrench.
 pub const ONE_LINE: &str = "the wrench cannot identify the cables: all pull along one line in every pose, and bear one of its six \
                             components";
-/// What to do about it.
+/// The advice for a robot of one cable.
 pub const ONE_LINE_ADVICE: &str = "Fit to the force at the platform: name its topic as `reference` under `[log]` in the robot file, or \
                                    give the load there, `reference = { hanging_mass_kg = … }`.";
 const UNBORNE_ADVICE: &str = "Compare `base_m`, `platform_m`, the mass and the poses with the robot; a platform that something else \
@@ -65,11 +65,11 @@ fn is_finite(columns: &[Vector6<f64>]) -> bool {
     columns.iter().flat_map(|column| column.iter()).all(|number| number.is_finite())
 }
 
-/// Brings torques to the scale of forces, by the mean moment arm.
+/// Returns the matrix that scales torques to forces by the mean moment arm.
 pub fn by_moment_arm(structure: &[Vector6<f64>]) -> Matrix6<f64> {
     let all_m = structure.iter().map(|column| column.fixed_rows::<3>(3).norm()).filter(|arm_m| arm_m.is_finite());
     let (sum_m, count) = all_m.fold((0.0, 0.0), |(sum, count), arm_m| (sum + arm_m, count + 1.0));
-    // Cables that all meet in the platform's origin exert no torque: there is nothing to scale.
+    // Cables that all meet in the platform's origin exert no torque, so there is nothing to scale.
     let arm_m = if sum_m > 0.0 { sum_m / count } else { 1.0 };
     Matrix6::from_diagonal(&Vector6::new(1.0, 1.0, 1.0, 1.0 / arm_m, 1.0 / arm_m, 1.0 / arm_m))
 }
@@ -78,7 +78,7 @@ pub fn by_moment_arm(structure: &[Vector6<f64>]) -> Matrix6<f64> {
 mod tests {
     use super::*;
 
-    /// A sample of cables that pull along directions at arms from the origin.
+    /// Returns a sample of cables with directions and moment arms.
     fn columns(cables: &[([f64; 3], [f64; 3])]) -> Vec<Vector6<f64>> {
         let column = |(direction, arm): &([f64; 3], [f64; 3])| {
             let (u, b) = (nalgebra::Vector3::from(*direction).normalize(), nalgebra::Vector3::from(*arm));
@@ -106,10 +106,10 @@ mod tests {
             ([-0.25, -0.433_012_7, 1.0], [-0.15, -0.259_807_6, 0.0]),
         ]);
         assert_eq!(check(&ring, &[WEIGHT], 3), Ok(()));
-        // A slope of 45° between two cables of a plane: half of the weight's square is for a guide.
+        // A slope of 45° between two cables in a plane: a guide bears half of the weight's square.
         let level = columns(&[([1.0, 0.0, 0.2], [0.0, 0.0, 0.0]), ([0.0, 1.0, 0.0], [0.0, 0.0, 0.0])]);
         assert!(check(&level, &[WEIGHT], 2).is_err_and(|error| error.cause.contains("98 %")));
-        // Of no sample nothing can be said here.
+        // Without samples there is no verdict.
         assert_eq!(check(&one, &[Vector6::repeat(f64::NAN)], 1), Ok(()));
     }
 }

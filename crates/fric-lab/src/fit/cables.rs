@@ -1,4 +1,4 @@
-//! Identification of each cable by itself, from the force measured at its platform end (\[P\] 18).
+//! Identification of each cable separately, from the force measured at its platform end (\[P\] 18).
 
 use fric_core::LANES;
 use fric_core::parameters::{MU, SIGMA, Values};
@@ -21,7 +21,7 @@ use crate::search::problem::{Comparison, Loss, Member, Problem};
 use crate::search::solve::{Solution, solve};
 use crate::search::vector::Parameter;
 
-/// A warm-up that is wrong by more than this share of the samples, in per cent, is worth another fit.
+/// Another fit is run if the warm-up estimate was wrong by more than this percentage of the samples.
 const MISJUDGED_PERCENT: usize = 1;
 
 /// Fits every cable that has a reference.
@@ -48,7 +48,7 @@ pub fn fit_cables(measurements: &Measurements<'_>, options: &FitOptions, progres
     })
 }
 
-/// The fit of a cable by itself, as that of a cable of the robot.
+/// Converts the fit of a single cable into that of a cable of the robot.
 fn of_cable(mut fit: CableFit, cable: usize) -> CableFit {
     fit.open.iter_mut().flat_map(|open| &mut open.parts).for_each(|part| part.cable = cable);
     fit
@@ -61,7 +61,7 @@ fn fit_cable<'a>(
     seat: Seat<'a>,
 ) -> Vec<CableFit> {
     let search = Search::run(record, &prepared(record), options, progress.stop_flag(), seat);
-    // Errors are those that a replay finds.
+    // The errors must be those that a replay finds.
     search.problem.forget_step();
     cable_fits(&search.problem, &[record.params.values()], &search.solution, &search.standings)
 }
@@ -71,16 +71,16 @@ fn fit_cable<'a>(
 pub struct Search<'a> {
     /// The problem with all samples that have something to compare with.
     problem: Problem<'a>,
-    /// Where it began.
+    /// The start values.
     pub start: Values,
-    /// What it found.
+    /// The solution found.
     pub solution: Solution,
-    /// And what it made of each sample.
+    /// The standing of each sample after the search.
     pub standings: Vec<Standing>,
 }
 
 impl<'a> Search<'a> {
-    /// `all` are the standings before anything is known about the friction, see [`prepared`].
+    /// Runs the search. `all` are the standings before anything is known about the friction; see [`prepared`].
     pub fn run(
         record: &CableRecord<'a>,
         all: &[Standing],
@@ -117,7 +117,7 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Whether the fitted values, as far as they can be trusted, give another warm-up than the start did.
+/// Whether the fitted values, as far as they can be trusted, imply another warm-up than the start values did.
 fn warm_up_was_misjudged(
     record: &CableRecord<'_>,
     solution: &Solution,
@@ -136,7 +136,7 @@ fn warm_up_was_misjudged(
     before.abs_diff(after) * 100 > MISJUDGED_PERCENT * all.len()
 }
 
-/// Standing of each sample before anything is known about the friction.
+/// Returns the standing of each sample before anything is known about the friction.
 pub fn prepared(record: &CableRecord<'_>) -> Vec<Standing> {
     let mut standings = selection::first_look(record, |_, row| row.reference_n.is_finite());
     if !record.reference_is_known {
@@ -151,8 +151,8 @@ pub fn used(standings: &[Standing]) -> Vec<bool> {
     standings.iter().map(|standing| *standing == Standing::Used).collect()
 }
 
-/// Takes out what the cables still remember of the time before each log, by what they would at the best start. One cable
-/// of several that never forgets it keeps it all along, and it adds up with its offset: the others can be told.
+/// Leaves out the start of each log, where the presliding still depends on the time before, estimated from the best start values. If one cable of
+/// several never settles, its stored force stays constant and adds to its offset; the other cables can still be identified.
 pub(crate) fn leave_out_warm_up(problem: &Problem<'_>, starts: &[Vec<Values>], standings: &mut [Standing]) {
     let best = starts.first().into_iter().flatten();
     for (member, values) in problem.members.iter().zip(best) {
@@ -164,7 +164,7 @@ pub(crate) fn leave_out_warm_up(problem: &Problem<'_>, starts: &[Vec<Values>], s
     }
 }
 
-/// The results of the cables of a solved problem.
+/// Returns the results of the cables of a solved problem.
 pub(crate) fn cable_fits(
     problem: &Problem<'_>,
     given: &[Values],
@@ -206,7 +206,7 @@ pub(crate) fn cable_fits(
         .collect()
 }
 
-/// Compensated force less reference with the fitted values, N: of every cable, for every sample; NaN without a reference.
+/// Returns the compensated force minus the reference with the fitted values, N, for every cable and sample; NaN without a reference.
 #[must_use]
 pub fn residuals_n(measurements: &Measurements<'_>, fits: &[CableFit]) -> Vec<Vec<f64>> {
     let stop = AtomicBool::new(false);
@@ -226,8 +226,8 @@ pub fn residuals_n(measurements: &Measurements<'_>, fits: &[CableFit]) -> Vec<Ve
     problem.members.iter().zip(&problem.forces(&values).unwrap_or_default()).map(of_cable).collect()
 }
 
-/// Errors of the force at the platform without and with compensation, over every sample that has a reference, flagged ones
-/// too: the figures of a replay.
+/// Returns the errors of the force at the platform without and with compensation, over every sample that has a reference, including flagged ones, as
+/// in a replay.
 fn force_errors(record: &CableRecord<'_>, forces: &Forces) -> ForceErrors {
     let gain = record.params.frictionless_gain();
     let mut errors = ForceErrors::default();

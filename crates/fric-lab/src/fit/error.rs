@@ -1,16 +1,16 @@
-//! Why data allow no fit.
+//! Errors for data that allow no fit.
 
 use thiserror::Error;
 
 use crate::samples::record::Reference;
 
-/// Data that no cable can be identified from.
+/// The reason why no cable can be identified from the data.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{cause}")]
 pub struct FitError {
-    /// In one sentence, without its full stop.
+    /// One sentence without its full stop.
     pub cause: String,
-    /// What to do, a sentence; it ends without a full stop where `instead` says more.
+    /// What to do, one sentence; without a full stop if `instead` continues it.
     pub advice: &'static str,
     /// The reference to fit to instead.
     pub instead: Option<Reference>,
@@ -21,7 +21,7 @@ impl FitError {
         Self { cause: cause.into(), advice, instead: None }
     }
 
-    /// What to do, if anything; `option` writes the choice of a reference as the caller has to.
+    /// Returns what to do, if anything. `option` formats the choice of a reference in the caller's syntax.
     #[must_use]
     pub fn advice(&self, option: impl Fn(Reference) -> String) -> Option<String> {
         let advice = (!self.advice.is_empty()).then(|| self.advice.to_owned())?;

@@ -1,15 +1,14 @@
 //! Identification: the parameters of the friction model from the log of a run.
 //!
-//! For: μ, σ, F_pv and ε of \[P\] 18, and the parameters of every effect a cable has, with standard errors and what the log
-//! cannot determine. Samples go into [`Measurements`]; [`fit_cables`] compares with cable forces measured at the platform,
-//! [`fit_wrench`] with the outside wrench, for all cables at once.
+//! A fit determines μ, σ, F_pv and ε of \[P\] 18, and the parameters of every effect of a cable, with standard errors and a list of what the log
+//! cannot determine. [`Measurements`] collects the samples; [`fit_cables`] compares with cable forces measured at the platform, and [`fit_wrench`]
+//! compares with the external wrench, for all cables at once.
 //!
-//! [`readiness`] tells beforehand what a log lacks, [`result`] is what a fit gives to machines and people, [`rewritten`] puts
-//! the values into a robot file.
+//! [`readiness`] checks beforehand what a log lacks, [`result`] holds the fit for machines and people, and [`rewritten`] writes the values into a
+//! robot file.
 //!
-//! The model is the cycle's own ([`fric_core::CableGroup`]) run with numbers that carry derivatives along; there is no second one.
-//! Nothing here fails: a search that does not converge says so in its [`Termination`]. Results do not depend on the
-//! number of threads.
+//! The model is the cycle itself ([`fric_core::CableGroup`]), run with numbers that carry derivatives. Searches do not fail: one that does not
+//! converge reports so in its [`Termination`]. Results do not depend on the number of threads.
 
 mod balance;
 pub(crate) mod cables;

@@ -1,4 +1,4 @@
-//! What a fit can be told.
+//! Options of a fit.
 
 use fric_core::CableParams;
 use fric_core::effects::Effect;
@@ -11,15 +11,14 @@ use crate::search::vector::Parameter;
 /// How to fit.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FitOptions {
-    /// What to vary, of every cable; if not given, μ, σ, F_pv, ε and the parameters of each effect that the cable has, but for
-    /// those that are settings.
+    /// The parameters to vary, for every cable. By default: μ, σ, F_pv, ε and the parameters of each effect that the cable has, except settings.
     pub parameters: Option<Vec<Parameter>>,
-    /// How to weigh deviations that are far out.
+    /// The treatment of large deviations.
     pub weighing: Weighing,
 }
 
 impl FitOptions {
-    /// What to vary of a cable.
+    /// Returns the free parameters of a cable.
     pub(crate) fn free(&self, params: &CableParams) -> Vec<Parameter> {
         self.parameters.clone().unwrap_or_else(|| {
             let values = params.values();
@@ -28,11 +27,11 @@ impl FitOptions {
                 Parameter::of(effect).any(|parameter| differs(&parameter))
             };
             let free = |parameter: &Parameter| parameter.effect().is_none_or(acts);
-            // An offset of the sensor and one at the platform are the same to the force: never both.
+            // A sensor offset and an offset at the platform have the same effect on the force, so only one of them is varied.
             let twice = |parameter: &Parameter| parameter.place() == OFFSET && acts(Effect::SensorOffset);
-            // A ripple's period has no neutral value to start from: an effect that acts has one.
+            // A ripple's period has no neutral value to start from, but an effect that acts has a period.
             let varies = |parameter: &Parameter| parameter.row().fitted || is_period(parameter);
-            // A table changes the force or the friction: which, it says itself.
+            // A table states itself whether it changes the force or the friction.
             let is_idle = |parameter: &Parameter| {
                 parameter.effect() == Some(Effect::Empirical)
                     && values[parameter.place()].to_bits() == parameter.row().neutral.to_bits()

@@ -1,8 +1,8 @@
-//! How far a fit is, and how to stop it, from another thread.
+//! Progress of a fit, and a way to stop it from another thread.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-/// Shared between a running fit and whoever watches it.
+/// State shared between a running fit and its observer.
 #[derive(Debug, Default)]
 pub struct Progress {
     stop: AtomicBool,
@@ -11,18 +11,18 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// Nothing done yet.
+    /// Creates a progress of zero steps.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Ends the fit soon; its result is marked [`Termination::Stopped`](super::Termination::Stopped).
+    /// Ends the fit soon. Its result is marked [`Termination::Stopped`](super::Termination::Stopped).
     pub fn stop(&self) {
         self.stop.store(true, Ordering::Relaxed);
     }
 
-    /// Steps done, and steps in all as far as they are known.
+    /// Returns the steps done and the total as far as it is known.
     #[must_use]
     pub fn steps(&self) -> (usize, usize) {
         (self.done.load(Ordering::Relaxed), self.total.load(Ordering::Relaxed))
@@ -32,7 +32,7 @@ impl Progress {
         &self.stop
     }
 
-    /// So many steps more are to do.
+    /// Adds steps to the total.
     pub(crate) fn begin(&self, total: usize) {
         self.total.fetch_add(total, Ordering::Relaxed);
     }
@@ -46,7 +46,7 @@ impl Progress {
     }
 }
 
-/// The steps of one part of the work, of which fewer may be needed than were announced: all count as done when it is dropped.
+/// The steps of one part of the work. Fewer may be needed than announced: all count as done on drop.
 #[derive(Debug)]
 pub(crate) struct Stages<'a> {
     progress: &'a Progress,
@@ -54,12 +54,12 @@ pub(crate) struct Stages<'a> {
 }
 
 impl<'a> Stages<'a> {
-    /// So many of the steps announced with [`Progress::begin`].
+    /// Takes `count` of the steps announced with [`Progress::begin`].
     pub(crate) fn new(progress: &'a Progress, count: usize) -> Self {
         Self { progress, left: AtomicUsize::new(count) }
     }
 
-    /// One is done. Work that is done again is not counted twice.
+    /// Counts one step as done. Repeated work is not counted twice.
     pub(crate) fn finish_one(&self) {
         let one_less = |left: usize| left.checked_sub(1);
         if self.left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, one_less).is_ok() {

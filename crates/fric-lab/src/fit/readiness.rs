@@ -1,4 +1,4 @@
-//! What a log holds for an identification, and what it lacks.
+//! Checks what a log holds for an identification, and what it lacks.
 
 use fric_core::Sample;
 use fric_core::robot::file::{LogTable, ReferenceTable, RobotFile};
@@ -8,23 +8,23 @@ use super::error::FitError;
 use crate::discover::readiness::too_short;
 use crate::samples::record::Reference;
 
-/// How many rows of one or several logs have which signal.
+/// Counts of the rows of one or several logs that have each signal.
 #[derive(Clone, Debug)]
 pub struct Holdings {
-    /// Rows.
+    /// Number of rows.
     pub rows: u64,
-    /// Those with a pose.
+    /// Number of rows with a pose.
     pub posed: u64,
-    /// Those with the outside wrench.
+    /// Number of rows with the external wrench.
     pub wrenched: u64,
     cables: Vec<CableHoldings>,
     last_stamp_nanos: Option<i64>,
-    /// Times from one row to the next: how many, and their sum, s.
+    /// Number of intervals between consecutive rows.
     intervals: u64,
     intervals_s: f64,
 }
 
-/// The same for one cable.
+/// The same counts for one cable.
 #[derive(Clone, Copy, Debug, Default)]
 struct CableHoldings {
     signalled: u64,
@@ -32,7 +32,7 @@ struct CableHoldings {
 }
 
 impl Holdings {
-    /// Nothing yet, of so many cables.
+    /// Creates empty counts for `cable_count` cables.
     #[must_use]
     pub fn new(cable_count: usize) -> Self {
         Self {
@@ -46,7 +46,7 @@ impl Holdings {
         }
     }
 
-    /// Takes in a row.
+    /// Counts a row.
     pub fn add(&mut self, row: &Sample<'_>) {
         self.rows += 1;
         self.posed += u64::from(row.pose.is_some());
@@ -64,7 +64,7 @@ impl Holdings {
         }
     }
 
-    /// Takes in those of another log.
+    /// Adds the counts of another log.
     pub fn join(&mut self, other: &Self) {
         self.rows += other.rows;
         self.posed += other.posed;
@@ -77,7 +77,7 @@ impl Holdings {
         }
     }
 
-    /// How long a cable has a reference, by the mean time from one row to the next, s.
+    /// Returns how long a cable has a reference, estimated from the mean row interval, s.
     #[expect(clippy::cast_precision_loss, reason = "counts of rows")]
     fn referenced_s(&self, cable: usize) -> f64 {
         let referenced = self.cables.get(cable).map_or(0, |of| of.referenced);
@@ -94,20 +94,20 @@ impl Holdings {
 /// Something that is missing.
 #[derive(Debug)]
 pub struct Lack {
-    /// In one sentence, without its full stop.
+    /// One sentence without its full stop.
     pub cause: String,
-    /// What to do, a sentence; it ends without a full stop where there is another reference to fit to.
+    /// What to do, one sentence; without a full stop if another reference can be used.
     pub advice: &'static str,
-    /// The other reference, with which it would not be missing.
+    /// Another reference that does not need what is missing.
     instead: Option<Reference>,
-    /// The cables that cannot be identified without it, by place.
+    /// Indices of the cables that cannot be identified without it.
     cables: Vec<usize>,
 }
 
-/// All that is missing for an identification.
+/// Everything that is missing for an identification.
 #[derive(Debug)]
 pub struct Readiness {
-    /// Each of it.
+    /// The missing items.
     pub lacks: Vec<Lack>,
     cable_count: usize,
 }
@@ -125,16 +125,16 @@ impl Readiness {
         self.lacks.iter().any(|lack| lack.cables.contains(&cable))
     }
 
-    /// What is missing for a cable first of all.
+    /// Returns the first missing item of a cable.
     #[must_use]
     pub fn lack_of(&self, cable: usize) -> Option<&Lack> {
         self.lacks.iter().find(|lack| lack.cables.contains(&cable))
     }
 
-    /// What to warn of: what is missing for some cables.
+    /// Returns warnings about what is missing for some cables.
     ///
     /// # Errors
-    /// [`FitError`] where no cable can be identified.
+    /// Returns a [`FitError`] if no cable can be identified.
     pub fn check(&self) -> Result<Vec<String>, FitError> {
         if !self.is_possible() {
             let worst = self.lacks.iter().rev().max_by_key(|lack| lack.cables.len());
@@ -153,7 +153,7 @@ impl Readiness {
 }
 
 impl Lack {
-    /// As what ends the work.
+    /// Returns the missing items as an error.
     #[must_use]
     pub fn error(&self) -> FitError {
         FitError { instead: self.instead, ..FitError::new(&self.cause, self.advice) }
@@ -164,7 +164,7 @@ const SILENT_ADVICE: &str = "Compare the names of the cables in the log with tho
 const POSE_ADVICE: &str = "Name the topic of the poses as `pose` under `[log]` in the robot file.";
 const LENGTHS_ADVICE: &str = "Make sure that lengths count from `base_m` to `platform_m`, or name the topic of a measured pose as `pose` under `[log]` in the robot file.";
 
-/// That there is no pose, and what to do.
+/// Returns the cause and the advice if there is no pose.
 fn without_pose(log: &LogTable) -> (String, &'static str) {
     if log.pose_is_from_lengths() {
         ("no sample has a pose from its cable lengths".to_owned(), LENGTHS_ADVICE)
@@ -173,14 +173,14 @@ fn without_pose(log: &LogTable) -> (String, &'static str) {
     }
 }
 
-/// What is missing to identify each cable from its force at the platform.
+/// Returns what is missing to identify each cable from its force at the platform.
 #[must_use]
 pub fn by_forces(robot: &RobotFile, holdings: &Holdings) -> Readiness {
     let advice = "Name their topic as `reference` under `[log]` in the robot file, or fit without them";
     of_forces(robot, holdings, advice, Some(Reference::Wrench))
 }
 
-/// What is missing to look for what a model lacks.
+/// Returns what is missing for a discovery.
 #[must_use]
 pub fn to_discover(robot: &RobotFile, holdings: &Holdings) -> Readiness {
     let advice = "Name their topic as `reference` under `[log]` in the robot file, or record with force sensors at the \
@@ -189,7 +189,7 @@ pub fn to_discover(robot: &RobotFile, holdings: &Holdings) -> Readiness {
     let is_short = |cable: &usize| too_short(holdings.referenced_s(*cable)).is_some();
     let cables: Vec<usize> =
         (0..readiness.cable_count).filter(|cable| !readiness.is_lacking(*cable)).filter(is_short).collect();
-    // Of several, what the longest lacks.
+    // Of several cables, the one with the longest record is reported.
     let most_s = cables.iter().map(|cable| holdings.referenced_s(*cable)).fold(0.0, f64::max);
     if let Some(lack) = too_short(most_s).filter(|_| !cables.is_empty()) {
         let cause = lack.cause + &of(&robot.cable_names(), &cables);
@@ -229,7 +229,7 @@ fn of_forces(robot: &RobotFile, holdings: &Holdings, advice: &'static str, inste
     readiness
 }
 
-/// That no sample has a reference force, and what to do where the reference is known and not measured.
+/// Returns the cause if no sample has a reference force, and the advice if the reference is known rather than measured.
 #[must_use]
 pub fn without_reference(reference: &ReferenceTable) -> (String, Option<&'static str>) {
     match reference {
@@ -247,7 +247,7 @@ pub fn without_reference(reference: &ReferenceTable) -> (String, Option<&'static
     }
 }
 
-/// What is missing to identify all cables from the wrench on the platform; `origin` says where the robot file is from.
+/// Returns what is missing to identify all cables from the wrench on the platform. `origin` names the source of the robot file.
 #[must_use]
 pub fn by_wrench(robot: &RobotFile, origin: &str, holdings: &Holdings) -> Readiness {
     let log = &robot.options().log;
@@ -255,7 +255,7 @@ pub fn by_wrench(robot: &RobotFile, origin: &str, holdings: &Holdings) -> Readin
     let all: Vec<usize> = (0..names.len()).collect();
     let mut lacks: Vec<Lack> = geometry(robot, origin).into_iter().collect();
     if names.len() == 1 {
-        // What more cables do shows in the log.
+        // Robots with more cables are checked with the log.
         lacks.push(Lack { cause: ONE_LINE.to_owned(), advice: ONE_LINE_ADVICE, instead: None, cables: all.clone() });
     }
     for lack in silent(&names, holdings) {
@@ -297,7 +297,7 @@ pub fn by_wrench(robot: &RobotFile, origin: &str, holdings: &Holdings) -> Readin
     Readiness { lacks, cable_count: names.len() }
 }
 
-/// What the robot file lacks for the wrench; `origin` says where it is from.
+/// Returns what the robot file lacks for the wrench. `origin` names its source.
 #[must_use]
 pub fn geometry(robot: &RobotFile, origin: &str) -> Option<Lack> {
     let (names, params) = (robot.cable_names(), robot.params());
@@ -314,7 +314,7 @@ pub fn geometry(robot: &RobotFile, origin: &str) -> Option<Lack> {
     })
 }
 
-/// Cables that the log says nothing of.
+/// Returns the cables that the log has no data of.
 fn silent(names: &[&str], holdings: &Holdings) -> Vec<Lack> {
     let all = 0..names.len();
     let cables: Vec<usize> =
@@ -329,7 +329,7 @@ fn silent(names: &[&str], holdings: &Holdings) -> Vec<Lack> {
     lack.into_iter().collect()
 }
 
-/// Which cables, unless it is all.
+/// Returns the names of the cables, unless it is all of them.
 fn of(names: &[&str], cables: &[usize]) -> String {
     if cables.len() == names.len() {
         return String::new();

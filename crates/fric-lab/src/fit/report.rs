@@ -1,4 +1,4 @@
-//! What a fit gives.
+//! Types that hold the result of a fit.
 
 use fric_core::parameters::Values;
 use nalgebra::DMatrix;
@@ -13,79 +13,79 @@ use crate::search::vector::Parameter;
 pub struct ForceErrors {
     /// The reference itself, N.
     pub reference_n: Deviation,
-    /// Frictionless force less reference, N.
+    /// Frictionless force minus reference, N.
     pub before_n: Deviation,
-    /// Compensated force less reference, N.
+    /// Compensated force minus reference, N.
     pub after_n: Deviation,
 }
 
-/// A combination of parameters that the samples leave open: changed together, by these steps, they do the same.
+/// A combination of parameters that the samples leave open: changing them together by these steps has no effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OpenCombination {
-    /// What changes.
+    /// The parameters that change.
     pub parts: Vec<OpenPart>,
 }
 
 /// A parameter in a combination.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OpenPart {
-    /// Which cable of the robot.
+    /// Index of the cable in the robot.
     pub cable: usize,
-    /// Which parameter.
+    /// The parameter.
     pub parameter: Parameter,
-    /// Its part of a step of 1.96 standard errors, in its unit; not finite for one that has no effect at all.
+    /// Its part of a step of 1.96 standard errors, in its unit; not finite for a parameter that has no effect at all.
     pub step: f64,
 }
 
-/// One cable's parameters, and how sure they are.
+/// One cable's parameters and their uncertainty.
 #[derive(Clone, Debug)]
 pub struct CableFit {
-    /// Samples by what was done with them.
+    /// Sample counts by use.
     pub samples: SampleCounts,
-    /// All parameters, the fitted ones and the others.
+    /// All parameters, fitted or not.
     pub values: Values,
-    /// What was fitted, in the order of the covariance.
+    /// The fitted parameters, in the order of the covariance.
     pub fitted: Vec<Parameter>,
-    /// What the samples do not determine; `values` holds what was given.
+    /// The parameters that the samples do not determine; `values` holds the given values.
     pub undetermined: Vec<Parameter>,
-    /// For each of these the combination that the samples leave open, its own part first.
+    /// The open combination of each of these parameters, starting with its own part.
     pub open: Vec<OpenCombination>,
-    /// What the samples would have beyond the end of its range that `values` holds.
+    /// The parameters at a bound that the samples would move beyond it; `values` holds the bound.
     pub at_bound: Vec<Parameter>,
     /// Covariance of the fitted parameters, in their units.
     pub covariance: DMatrix<f64>,
-    /// Why the search has ended.
+    /// The reason why the search ended.
     pub termination: Termination,
-    /// How often the model was evaluated with its derivatives.
+    /// Number of model evaluations with derivatives.
     pub evaluation_count: usize,
-    /// Errors against the reference, where there is one.
+    /// Errors against the reference, if there is one.
     pub errors: ForceErrors,
 }
 
-/// What a fit to the wrench gives.
+/// The result of a fit to the wrench.
 #[derive(Clone, Debug)]
 pub struct WrenchFit {
     /// The cables in the robot's order.
     pub cables: Vec<CableFit>,
     /// What the forces were compared with.
     pub reference: WrenchReference,
-    /// Wrench by the frictionless forces less the outside wrench, over every sample where that is known.
+    /// Wrench of the frictionless forces minus the external wrench, over every sample in which that is known.
     pub before: WrenchErrors,
-    /// The same by the compensated forces.
+    /// The same with the compensated forces.
     pub after: WrenchErrors,
-    /// The same on blocks of the log held out, with parameters from the other blocks; empty for a log too short for it.
+    /// The same on held-out blocks of the log, with parameters from the other blocks; empty if the log is too short.
     pub held_out: WrenchErrors,
 }
 
 impl CableFit {
-    /// Standard error of a parameter, in its unit; `None` where it was not fitted.
+    /// Returns the standard error of a parameter, in its unit; `None` if it was not fitted.
     #[must_use]
     pub fn standard_error(&self, parameter: &Parameter) -> Option<f64> {
         let place = self.fitted.iter().position(|fitted| fitted == parameter)?;
         Some(self.covariance.get((place, place))?.sqrt())
     }
 
-    /// Correlations of the fitted parameters, −1 to 1, in the order of the covariance; NaN for one of which there is no error.
+    /// Returns the correlations of the fitted parameters, −1 to 1, in the order of the covariance; NaN for a parameter without an error.
     #[must_use]
     pub fn correlation(&self) -> DMatrix<f64> {
         let errors: Vec<f64> = self.covariance.diagonal().iter().map(|variance| variance.sqrt()).collect();

@@ -1,4 +1,4 @@
-//! The result of an identification for machines, `format = "fric-fit/1"`, with what is to be told beside it.
+//! The machine-readable result of an identification, `format = "fric-fit/1"`, with additional data for reports.
 
 use fric_core::parameters::NO_PRESLIDING_N_PER_M;
 use fric_core::robot::file::RobotFile;
@@ -15,17 +15,17 @@ use crate::errors::{ForceError, WrenchError, WrenchResult};
 use crate::search::optimizer::Termination;
 use crate::search::vector::Parameter;
 
-/// What was fitted to what.
+/// The fits, by the kind of reference.
 #[derive(Clone, Debug)]
 pub enum Fits {
-    /// Each cable to its force at the platform.
+    /// Each cable fitted to its force at the platform.
     Forces(Vec<CableFit>),
-    /// All cables to the outside wrench.
+    /// All cables fitted to the external wrench.
     Wrench(WrenchFit),
 }
 
 impl Fits {
-    /// The cables in the robot's order.
+    /// Returns the fits of the cables, in the robot's order.
     #[must_use]
     pub fn cables(&self) -> &[CableFit] {
         match self {
@@ -35,18 +35,18 @@ impl Fits {
     }
 }
 
-/// All of an identification.
+/// The result of an identification.
 #[derive(Clone, Debug, Serialize)]
 pub struct FitResult {
-    /// Name and version of the form.
+    /// Name and version of the format.
     pub format: &'static str,
     /// Name of the robot.
     pub robot: String,
-    /// `forces`, `wrench`, or `mass` where the wrench is that of the platform's mass.
+    /// `forces`, `wrench`, or `mass` if the wrench is computed from the platform's mass.
     pub reference: &'static str,
     /// The cables in the robot's order.
     pub cables: Vec<FitCableResult>,
-    /// Errors of the wrench, where it is the reference.
+    /// Errors of the wrench, if it is the reference.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub wrench: Option<WrenchResult>,
 }
@@ -56,25 +56,25 @@ pub struct FitResult {
 pub struct FitCableResult {
     /// Its name.
     pub name: String,
-    /// Samples learned from.
+    /// Number of training samples.
     pub samples: usize,
-    /// Samples not learned from.
+    /// Samples that were left out.
     pub left_out: LeftOut,
-    /// Why the search has ended.
+    /// The reason why the search ended.
     pub termination: &'static str,
-    /// How often the model was evaluated with its derivatives.
+    /// Number of model evaluations with derivatives.
     pub evaluations: usize,
     /// Values, fitted or kept.
     pub parameters: Numbers,
-    /// Standard errors of those fitted.
+    /// Standard errors of the fitted values.
     pub standard_errors: Numbers,
-    /// What the samples do not determine; the given value is kept.
+    /// Parameters that the samples do not determine; they keep the given value.
     pub undetermined: Vec<String>,
-    /// Combinations that the samples leave open: what is kept of this cable, with what moves along with it.
+    /// Combinations that the samples leave open: a kept parameter of this cable, with the parameters that change with it.
     pub open: Vec<OpenResult>,
-    /// What is at an end of its range, where the samples would have it beyond.
+    /// Parameters at a bound that the samples would move beyond it.
     pub at_bound: Vec<String>,
-    /// Error as if nothing rubbed.
+    /// Error without friction compensation.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub before: Option<ForceError>,
     /// Error with these values.
@@ -83,12 +83,12 @@ pub struct FitCableResult {
     /// Mean of the reference, N.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mean_reference_n: Option<f64>,
-    /// Faults of the recording that were corrected before.
+    /// Faults of the recording that were corrected before the fit.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<FaultResult>,
 }
 
-/// A combination of parameters that the samples leave open: changed together by these steps they do the same.
+/// A combination of parameters that the samples leave open: changing them together by these steps has no effect.
 #[derive(Clone, Debug, Serialize)]
 #[serde(transparent)]
 pub struct OpenResult(pub Vec<OpenPartResult>);
@@ -111,16 +111,16 @@ pub struct OpenPartResult {
     pub step: f64,
 }
 
-/// Samples that were not learned from.
+/// Counts of the samples that were left out.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct LeftOut {
-    /// Faulty, or without tension on the cable.
+    /// Faulty samples, or samples without tension on the cable.
     pub flagged: usize,
-    /// Nothing to compare with.
+    /// Samples without a reference.
     pub without_reference: usize,
-    /// At the start of a log.
+    /// Samples at the start of a log.
     pub warm_up: usize,
-    /// Too far out.
+    /// Outliers.
     pub outliers: usize,
 }
 
@@ -129,7 +129,7 @@ pub struct LeftOut {
 pub struct Numbers(pub Vec<(String, f64)>);
 
 impl Numbers {
-    /// The number of a name.
+    /// Returns the number of a name.
     #[must_use]
     pub fn get(&self, name: &str) -> Option<f64> {
         self.0.iter().find(|(of, _)| of == name).map(|(_, value)| *value)
@@ -147,10 +147,10 @@ impl Serialize for Numbers {
 }
 
 impl FitResult {
-    /// Name and version of the form.
+    /// Name and version of the format.
     pub const FORMAT: &str = "fric-fit/1";
 
-    /// Of a robot's fits.
+    /// Creates the result of a robot's fits.
     #[must_use]
     pub fn new(robot: &RobotFile, fits: &Fits) -> Self {
         let names = robot.cable_names();
@@ -172,7 +172,7 @@ impl FitResult {
         }
     }
 
-    /// The same with what was wrong with the recording of each cable.
+    /// Adds the recording faults of each cable.
     #[must_use]
     pub fn with_faults(mut self, faults: &[Vec<RecordingFault>]) -> Self {
         for (cable, faults) in self.cables.iter_mut().zip(faults) {
@@ -181,16 +181,16 @@ impl FitResult {
         self
     }
 
-    /// For people: \[P\] table I, how sure it is, and what the log does not tell.
+    /// Returns a summary for people: \[P\] table I, the uncertainties, and what the log does not determine.
     #[must_use]
     pub fn summary(&self) -> String {
         summary::describe(self)
     }
 
-    /// Makes sure that at least one sample was used.
+    /// Checks that at least one sample was used.
     ///
     /// # Errors
-    /// [`FitError`] with the likely cause.
+    /// Returns a [`FitError`] with the likely cause if none was.
     pub fn check_used(&self) -> Result<(), FitError> {
         let Some(first) = self.cables.first().filter(|_| self.cables.iter().all(|cable| cable.samples == 0)) else {
             return Ok(());
@@ -199,10 +199,10 @@ impl FitResult {
         Err(FitError::new(format!("no sample can be used: {cause}"), advice))
     }
 
-    /// What people have to know beside the summary.
+    /// Returns warnings that people need beside the summary.
     #[must_use]
     pub fn warnings(&self, fits: &Fits, readiness: &Readiness) -> Vec<String> {
-        // Cables with the same trouble share a line.
+        // Cables with the same problem share a line.
         let mut unused: Vec<(&str, Vec<&str>)> = Vec::new();
         let told = |place: &usize| readiness.is_lacking(*place);
         for (_, cable) in self.cables.iter().enumerate().filter(|(place, cable)| cable.samples == 0 && !told(place)) {
@@ -217,7 +217,7 @@ impl FitResult {
         };
         let mut warnings: Vec<String> = unused.into_iter().map(told_unused).collect();
         for (cable, fit) in self.cables.iter().zip(fits.cables()) {
-            // What is left unfitted is told below the tables.
+            // Cables that were not fitted are listed below the tables.
             if !matches!(fit.termination, Termination::Converged | Termination::NothingToFit) {
                 warnings.push(format!(
                     "{}: the search ended without converging ({}); the values are the best found: look at the error \
@@ -231,7 +231,7 @@ impl FitResult {
     }
 }
 
-/// Why there is not one sample to learn from, and what to do.
+/// Returns why there is no training sample, and what to do.
 fn why_unused(left_out: &LeftOut) -> (&'static str, &'static str) {
     let LeftOut { flagged, without_reference, warm_up, outliers: _ } = *left_out;
     if warm_up >= flagged.max(without_reference) {
@@ -244,7 +244,7 @@ fn why_unused(left_out: &LeftOut) -> (&'static str, &'static str) {
     }
 }
 
-/// The parts of a combination that is one, with the cables' names.
+/// Returns the parts of a genuine combination, with the cables' names.
 fn open_result(open: &OpenCombination, names: &[&str]) -> Option<OpenResult> {
     let parts = open.parts.iter().filter(|part| part.step.is_finite());
     let part = |part: &OpenPart| {

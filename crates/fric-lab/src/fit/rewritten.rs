@@ -1,4 +1,4 @@
-//! The robot file with what was found.
+//! Writes the fitted values into the robot file.
 
 use fric_core::CableParams;
 use fric_core::effects::Effect;
@@ -9,16 +9,16 @@ use fric_core::robot::file::{RobotFile, RobotFileError};
 use super::report::CableFit;
 use crate::search::vector::Parameter;
 
-/// The text of a robot file with the fitted values of its cables, in order; everything else stays as it is written.
-/// `origin` says where it is from, for errors.
+/// Returns the text of a robot file with the fitted values of its cables, in the robot's order; everything else stays as written. `origin` names the
+/// source of the file in error messages.
 ///
 /// # Errors
-/// [`RobotFileError`] as [`rewrite`].
+/// Returns the [`RobotFileError`] of [`rewrite`].
 pub fn rewritten(text: &str, origin: &str, fits: &[CableFit]) -> Result<String, RobotFileError> {
     let robot = RobotFile::parse(text, origin)?;
     let new = |(fit, cable): (&'_ CableFit, &CableParams)| {
         let given = cable.values();
-        // Settings of an effect that the file has not got are new too.
+        // Settings of an effect that the file lacks are new too.
         let is_new = |parameter: &Parameter| {
             fit.fitted.contains(parameter)
                 || fit.values[parameter.place()].to_bits() != given[parameter.place()].to_bits()
@@ -30,16 +30,16 @@ pub fn rewritten(text: &str, origin: &str, fits: &[CableFit]) -> Result<String, 
     with_values(text, origin, &new.collect::<Vec<_>>())
 }
 
-/// What is new of a cable.
+/// The new values of a cable.
 #[derive(Clone, Debug)]
 pub struct NewValues<'a> {
     /// All values.
     pub values: &'a Values,
-    /// Those to write.
+    /// The parameters to write.
     pub parameters: Vec<Parameter>,
 }
 
-/// The text of a robot file with new values of its cables, in order; see [`rewritten`].
+/// Returns the text of a robot file with new values of its cables, in the robot's order; see [`rewritten`].
 pub fn with_values(text: &str, origin: &str, cables: &[NewValues<'_>]) -> Result<String, RobotFileError> {
     let robot = RobotFile::parse(text, origin)?;
     let names = robot.cable_names();
@@ -74,7 +74,7 @@ pub fn with_values(text: &str, origin: &str, cables: &[NewValues<'_>]) -> Result
 /// Parameters of effects, by kind and key.
 type EffectValues = Vec<(&'static str, Vec<(&'static str, f64)>)>;
 
-/// Parameters of each effect that are to be written.
+/// Returns the parameters of each effect to write.
 fn effects_of(new: &NewValues<'_>) -> EffectValues {
     let mut effects = EffectValues::new();
     for parameter in &new.parameters {

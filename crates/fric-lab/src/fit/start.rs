@@ -1,9 +1,8 @@
-//! Where a search starts: from the data, not from what the robot file says.
+//! Start values of a search, computed from the data and not from the robot file.
 //!
-//! - μ, F_pv and ε: while a cable slides far from its last reversal, friction is all but linear in them, and σ does not
-//!   matter. One step of Gauss and Newton from nothing gives them.
-//! - σ: the sum of squares is compared over four orders of magnitude of the presliding distance; every valley of it is a
-//!   start.
+//! - μ, F_pv and ε: while a cable slides far from its last reversal, friction is nearly linear in them and σ does not matter. One Gauss-Newton step
+//!   from zero gives them.
+//! - σ: the sum of squares is compared over four orders of magnitude of the presliding distance; each of its local minima is a start.
 
 use std::ops::Range;
 
@@ -16,28 +15,28 @@ use crate::search::problem::{Comparison, Member, Problem};
 use crate::search::solve::search;
 use crate::search::vector::{Coordinate, Parameter, with};
 
-/// μ about which friction is linearised.
+/// Value of μ at which friction is linearised.
 const TYPICAL_MU: f64 = 0.02;
-/// Presliding distances that are tried, m: half an order of magnitude apart.
+/// Trial presliding distances, m, half an order of magnitude apart.
 const DISTANCES_M: [f64; 8] = [1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2];
-/// And these multiples of the best of them: an eighth of an order of magnitude apart.
+/// Trial multiples of the best distance, an eighth of an order of magnitude apart.
 const CLOSER: [f64; 4] = [0.56, 0.75, 1.33, 1.78];
-/// So many per cent of the moving samples are too near to their last reversal to count as sliding.
+/// This percentage of the moving samples is too near to the last reversal to count as sliding.
 const NOT_SLIDING_PERCENT: usize = 60;
-/// A pulley's viscous friction at this speed is no more than the sensor force.
+/// Speed at which a pulley's viscous friction does not exceed the sensor force.
 const FAST_M_PER_S: f64 = 1.0;
-/// Way since the last reversal in which a cable may preslide, m.
+/// Range of the distance since the last reversal over which a cable may preslide, m.
 const PRESLIDING_M: Range<f64> = 1e-5..1e-2;
-/// Cycles that are enough for a linear step.
+/// Number of cycles that suffices for a linear step.
 const ENOUGH_SLIDING: usize = 1024;
-/// Cycles over which σ is looked for.
+/// Number of cycles over which σ is searched.
 const STRETCH: usize = 8192;
-/// A refined start further than this factor from the coarse one has lost its way.
+/// A refined start that differs from the coarse one by more than this factor is rejected.
 const REFINEMENT: f64 = 3.0;
-/// A valley whose sum of squares is above this multiple of the least is no start.
+/// A local minimum whose sum of squares exceeds this multiple of the least one is no start.
 const SHALLOW: f64 = 1.5;
 
-/// Values for each cable to start from; the most promising first.
+/// Returns start values for each cable, the most promising first.
 pub fn starts(problem: &Problem<'_>, given: &[Values], cycle_s: f64) -> Vec<Vec<Values>> {
     let searched = if is_simple(problem) { most_presliding(problem) } else { longest_log(problem) };
     let stretch = stretch_of(problem, &searched);
@@ -53,8 +52,8 @@ pub fn starts(problem: &Problem<'_>, given: &[Values], cycle_s: f64) -> Vec<Vec<
     coarse.into_iter().map(refine).collect()
 }
 
-/// μ and σ of a single cable on the stretch where it preslides most: a few evaluations of it bring a start near enough that the
-/// whole log needs fewer. `None` where there is nothing to gain.
+/// Returns the problem of μ and σ of a single cable on the stretch with the most presliding. A few evaluations of it improve a start so much that the
+/// whole log needs fewer. Returns `None` if there is nothing to gain.
 fn stretch_of<'a>(problem: &Problem<'a>, cycles: &Range<usize>) -> Option<Problem<'a>> {
     let (Comparison::Forces, [member]) = (&problem.comparison, problem.members.as_slice()) else { return None };
     let mut used = problem.used.get(cycles.clone())?.to_vec();
@@ -69,8 +68,7 @@ fn stretch_of<'a>(problem: &Problem<'a>, cycles: &Range<usize>) -> Option<Proble
     })
 }
 
-/// The valleys that the sum of squares over some cycles has over the presliding distance; the deepest first, and on request once
-/// more and closer.
+/// Returns the local minima of the sum of squares over the presliding distance, the deepest first; on request the best one is refined.
 fn valleys(
     problem: &Problem<'_>,
     given: &[Values],
@@ -82,7 +80,7 @@ fn valleys(
     if !problem.members.iter().any(|member| varies(member, SIGMA)) {
         return vec![sliding];
     }
-    // What each cable's friction is that is stored over the distance; none for one whose σ is held.
+    // The friction of each cable that is stored over the distance; none for a cable whose σ is held.
     let stored_n = |(member, values): (&Member<'_>, &Values)| {
         let tension_n = mean(member.record.rows.iter().map(|row| row.signals.sensor_force_n.max(0.0)));
         let stored_n = member.record.params.memory_m_per_n(values[MU].max(1e-4), 1.0) * tension_n;
@@ -114,7 +112,7 @@ fn valleys(
         .collect();
     valleys.sort_by(|one, other| one.1.total_cmp(&other.1));
     if let Some((sigmas, loss, distance_m)) = valleys.first_mut().filter(|_| closer) {
-        // How long a cable remembers follows from it.
+        // The length of a cable's memory follows from this distance.
         let closer = tried(&CLOSER.map(|factor| factor * *distance_m)).into_iter().filter(|(_, other)| *other < *loss);
         if let Some(best) = closer.min_by(|(_, one), (_, other)| one.total_cmp(other)) {
             (*sigmas, *loss) = best;
@@ -141,7 +139,7 @@ fn mean(numbers: impl Iterator<Item = f64>) -> f64 {
     if count > 0.0 { sum / count } else { 0.0 }
 }
 
-/// μ, F_pv and ε by one linear step on the sliding samples; σ as stiff as can be.
+/// Computes μ, F_pv and ε by one linear step on the sliding samples, with σ as stiff as possible.
 fn slide(problem: &Problem<'_>, given: &[Values], cycle_s: f64) -> Vec<Values> {
     let linear = |parameter: &Parameter| [MU, VISCOUS, OFFSET].contains(&parameter.place());
     let mut reduced = problem.clone();
@@ -158,7 +156,7 @@ fn slide(problem: &Problem<'_>, given: &[Values], cycle_s: f64) -> Vec<Values> {
         *used &= sliding;
     }
     let mut slid = linear_step(&reduced, &nothing, cycle_s);
-    // Motion too slow for viscous friction to show gives it any size, and the rest what makes up for it.
+    // If the motion is too slow to show viscous friction, the step gives it an arbitrary size, and the other parameters compensate.
     let mut is_wild = false;
     for (member, values) in reduced.members.iter_mut().zip(slid.iter().flatten()) {
         let tension_n = mean(member.record.rows.iter().map(|row| row.signals.sensor_force_n.max(0.0)));
@@ -173,8 +171,8 @@ fn slide(problem: &Problem<'_>, given: &[Values], cycle_s: f64) -> Vec<Values> {
     slid.unwrap_or(nothing)
 }
 
-/// Residuals and Jacobian of sliding samples. Without presliding a cycle does not depend on those before: for a single
-/// cable some of them, evenly spread, are enough.
+/// Returns residuals and Jacobian of sliding samples. Without presliding a cycle does not depend on earlier ones, so for a single cable some evenly
+/// spread cycles suffice.
 fn sliding_gram(problem: &Problem<'_>, values: &[Values]) -> Option<Gram> {
     let stiff = values.iter().all(|of| of[SIGMA] >= NO_PRESLIDING_N_PER_M);
     let (Comparison::Forces, [member], true) =
@@ -196,10 +194,10 @@ fn sliding_gram(problem: &Problem<'_>, values: &[Values]) -> Option<Gram> {
     reduced.gram(values)
 }
 
-/// One step of Gauss and Newton from `values`, into the parameters' ranges; `None` where it leads nowhere.
+/// Takes one Gauss-Newton step from `values`, clamped to the parameters' ranges; `None` if it leads nowhere.
 fn linear_step(problem: &Problem<'_>, values: &[Values], cycle_s: f64) -> Option<Vec<Values>> {
     let (matrix, gradient, _) = sliding_gram(problem, values)?.normal_equations();
-    // A share of the diagonal keeps what the samples do not determine near nothing.
+    // A fraction of the diagonal keeps undetermined parameters near zero.
     let damped = &matrix + DMatrix::from_diagonal(&matrix.diagonal().map(|square| 1e-9 * square + f64::MIN_POSITIVE));
     let step = damped.cholesky().map(|factor| factor.solve(&gradient));
     let step = step.filter(|step| step.iter().all(|part| part.is_finite()))?;
@@ -216,8 +214,8 @@ fn linear_step(problem: &Problem<'_>, values: &[Values], cycle_s: f64) -> Option
     Some(stepped)
 }
 
-/// Whether no cable has an effect. With effects, of whose values nothing is known yet, a part of the log may lead astray,
-/// and a cycle may depend on those before.
+/// Whether no cable has an effect. With effects, whose values are still unknown, a part of the log may mislead, and a cycle may depend on earlier
+/// ones.
 fn is_simple(problem: &Problem<'_>) -> bool {
     let has_none = |member: &Member<'_>| {
         let values = member.record.params.values();
@@ -229,13 +227,13 @@ fn is_simple(problem: &Problem<'_>) -> bool {
     problem.members.iter().all(has_none)
 }
 
-/// The cycles of the longest log.
+/// Returns the cycles of the longest log.
 fn longest_log(problem: &Problem<'_>) -> Range<usize> {
     let logs = problem.members.first().into_iter().flat_map(|member| member.record.logs());
     logs.map(|(start, rows)| start..start + rows.len()).max_by_key(Range::len).unwrap_or(0..0)
 }
 
-/// Way of a cable since its last reversal in each cycle, m; 0 where it rests.
+/// Returns the distance that a cable has moved since its last reversal, m per cycle; 0 at rest.
 fn ways_since_reversal(rows: &[Row]) -> impl Iterator<Item = f64> {
     let mut way_m = 0.0_f64;
     rows.iter().map(move |row| {
@@ -245,7 +243,7 @@ fn ways_since_reversal(rows: &[Row]) -> impl Iterator<Item = f64> {
     })
 }
 
-/// Samples in which most cables are far from their last reversal.
+/// Returns the samples in which most cables are far from their last reversal.
 fn sliding_samples(problem: &Problem<'_>) -> Vec<bool> {
     let mut counts = vec![0_usize; problem.used.len()];
     for member in &problem.members {
@@ -263,7 +261,7 @@ fn sliding_samples(problem: &Problem<'_>) -> Vec<bool> {
     counts.into_iter().map(|count| 4 * count >= 3 * problem.members.len()).collect()
 }
 
-/// The stretch of a log in which the cables preslide most: there σ shows.
+/// Returns the stretch of a log with the most presliding, where σ has the greatest influence.
 fn most_presliding(problem: &Problem<'_>) -> Range<usize> {
     let mut sums = vec![0_u32; problem.used.len() + 1];
     for member in &problem.members {

@@ -10,7 +10,7 @@ use crate::discover::words::recording_lines;
 use crate::search::vector::Parameter;
 use crate::text::{digits_of, number, plain, table, wrapped};
 
-/// \[P\] table I, how sure it is, and what the log does not tell.
+/// Returns \[P\] table I, the uncertainties, and what the log does not determine.
 pub(crate) fn describe(result: &FitResult) -> String {
     let from = match result.reference {
         "forces" => "the cable forces at the platform",
@@ -36,12 +36,12 @@ pub(crate) fn describe(result: &FitResult) -> String {
     text
 }
 
-/// A cell that may be empty.
+/// Returns the text of a cell that may be empty.
 fn cell(text: Option<String>) -> String {
     text.unwrap_or_else(|| "–".to_owned())
 }
 
-/// A parameter as the tables show it: name and unit, factor from its own unit, digits.
+/// A parameter as shown in the tables: name and unit, conversion factor, digits.
 struct Shown {
     place: usize,
     symbol: &'static str,
@@ -50,7 +50,7 @@ struct Shown {
     digits: usize,
 }
 
-/// In the order of [`Parameter::all`], with the units of \[P\] table I.
+/// The friction parameters in the order of [`Parameter::all`], with the units of \[P\] table I.
 const FRICTION: [Shown; FRICTION_COUNT] = [
     Shown { place: MU, symbol: "μ", unit: "", factor: 1.0, digits: 5 },
     Shown { place: SIGMA, symbol: "σ", unit: "[N/mm]", factor: 1e-3, digits: 4 },
@@ -63,7 +63,7 @@ impl Shown {
         Some(value_of(numbers, self.place)? * self.factor)
     }
 
-    /// The value; in brackets where it is not identified but that of the robot file.
+    /// Returns the value, in brackets if it is not identified but taken from the robot file.
     fn value(&self, cable: &FitCableResult) -> String {
         let text = self.of(&cable.parameters).map(|value| number(value, self.digits));
         let is_identified = value_of(&cable.standard_errors, self.place).is_some();
@@ -79,18 +79,18 @@ impl Shown {
     }
 }
 
-/// The number of a parameter by its place.
+/// Returns the number of a parameter by its index.
 fn value_of(numbers: &Numbers, place: usize) -> Option<f64> {
     numbers.get(&Parameter::all().nth(place)?.to_string())
 }
 
-/// The mean of the numbers there are.
+/// Returns the mean of the available numbers.
 fn mean(numbers: impl Iterator<Item = f64>) -> Option<f64> {
     let (sum, count) = numbers.fold((0.0, 0.0), |(sum, count), number| (sum + number, count + 1.0));
     (count > 0.0).then(|| sum / count)
 }
 
-/// A column of a table: name and unit, a cell for each cable, and one below them.
+/// A column of a table: name and unit, a cell per cable, and a cell below them.
 struct Column {
     header: String,
     cells: Vec<String>,
@@ -131,7 +131,7 @@ impl Column {
     }
 }
 
-/// The cables with these columns; the row below them is `last`, where it has a name.
+/// Returns the table of the cables with these columns. If `last` has a name, it labels the row below them.
 fn table_of(result: &FitResult, title: &str, columns: &[Column], last: Option<&str>) -> String {
     let header: Vec<&str> = std::iter::once(title).chain(columns.iter().map(|column| column.header.as_str())).collect();
     let row = |place: usize, name: &str| -> Vec<String> {
@@ -144,7 +144,7 @@ fn table_of(result: &FitResult, title: &str, columns: &[Column], last: Option<&s
     table(&header, 1, &rows)
 }
 
-/// \[P\] table I; columns that nothing is known of are left out.
+/// Returns \[P\] table I without columns that are unknown for all cables.
 fn paper_table(result: &FitResult) -> String {
     let parameters = FRICTION.iter().filter(|shown| shown.place != OFFSET);
     let mut columns: Vec<Column> = parameters.filter_map(|shown| Column::of_parameter(result, shown)).collect();
@@ -154,12 +154,12 @@ fn paper_table(result: &FitResult) -> String {
     table_of(result, "cable", &columns, (result.cables.len() > 1).then_some("mean"))
 }
 
-/// The columns in words.
+/// Explanation of the columns.
 const LEGEND: &str = "μ is the friction of each bearing, σ the stiffness of the cable before it slides, F_pv the viscous friction of each \
                       pulley. The mean error is that of |force − reference| over all samples: before, as if nothing rubbed; after, \
                       with these values.";
 
-/// What the columns are.
+/// Returns the explanation of the columns.
 fn legend(result: &FitResult) -> String {
     let mut text = String::new();
     if result.cables.iter().any(|cable| cable.before.is_some()) {
@@ -177,7 +177,7 @@ fn legend(result: &FitResult) -> String {
     text
 }
 
-/// How sure each value is, and what \[P\] table I leaves out.
+/// Returns the uncertainty of each value and the columns that \[P\] table I does not have.
 fn error_table(result: &FitResult) -> String {
     let mut columns = Vec::new();
     for shown in &FRICTION {
@@ -189,14 +189,14 @@ fn error_table(result: &FitResult) -> String {
     table_of(result, "cable", &columns, None)
 }
 
-/// The parameters of an effect with their standard errors; nothing for an effect that no cable has.
+/// Returns the parameters of an effect with their standard errors; empty for an effect that no cable has.
 fn effect_table(result: &FitResult, effect: Effect) -> String {
     let mut columns = Vec::new();
     for parameter in Parameter::all().filter(|parameter| parameter.effect() == Some(effect)) {
         let name = parameter.to_string();
         let value = |cable: &FitCableResult| {
             let value = cable.parameters.get(&name)?;
-            // As many digits as the error, which has two.
+            // The value has as many digits as its error, which has two.
             let error = cable.standard_errors.get(&name);
             Some(match error {
                 Some(error) => number(value, digits_of(error)),
@@ -215,7 +215,7 @@ fn effect_table(result: &FitResult, effect: Effect) -> String {
     if columns.is_empty() { String::new() } else { format!("\n{}", table_of(result, effect.kind(), &columns, None)) }
 }
 
-/// What the values were learned from; one row where it is the same for all.
+/// Returns the table of the training samples; one row if it is the same for all cables.
 fn sample_table(result: &FitResult) -> String {
     type Count = fn(&FitCableResult) -> usize;
     let no_reference = if result.reference == "forces" { "no reference" } else { "no wrench" };
@@ -244,10 +244,10 @@ fn sample_table(result: &FitResult) -> String {
     table(&header, 1, &rows)
 }
 
-/// What the log cannot determine, and what to record for it.
+/// Returns what the log cannot determine, and what to record for it.
 fn undetermined(result: &FitResult) -> String {
     let mut text = String::new();
-    // A cable without samples has been told of.
+    // A cable without samples has already been reported.
     let learned: Vec<&FitCableResult> = result.cables.iter().filter(|cable| cable.samples > 0).collect();
     for parameter in Parameter::all() {
         let name = parameter.to_string();
@@ -288,18 +288,18 @@ fn undetermined(result: &FitResult) -> String {
     text
 }
 
-/// The parameter with the symbol of the tables, where it has one.
+/// Returns the parameter with its symbol in the tables, if it has one.
 fn shown_name(parameter: &Parameter) -> String {
     let symbol = FRICTION.iter().find(|shown| shown.place == parameter.place());
     symbol.map_or_else(|| parameter.to_string(), |shown| format!("{} ({parameter})", shown.symbol))
 }
 
-/// The cables' names, unless it is all of several.
+/// Returns the cables' names, unless it is all of several.
 fn listed(cables: &[&str], result: &FitResult) -> String {
     if cables.len() == result.cables.len() && cables.len() > 1 { "any cable".to_owned() } else { cables.join(", ") }
 }
 
-/// What goes with a parameter that is kept.
+/// Returns the parameters that change with a kept parameter.
 fn open_combination(cable: &FitCableResult, open: &OpenResult) -> String {
     let Some((held, others)) = open.0.split_first() else { return String::new() };
     let unit = |name: &str| Parameter::named(name).map_or("", |parameter| parameter.row().unit);

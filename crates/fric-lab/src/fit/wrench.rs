@@ -1,15 +1,14 @@
 //! Identification of all cables at once from the wrench on the platform, without a force sensor there.
 //!
-//! With the outside wrench `w` known, `A^T f(p) + w = 0` (\[P\] 3) holds for the true parameters: six equations a sample for
-//! the parameters of all cables. Neither force sensors at the platform nor a change of the robot are needed.
+//! With a known external wrench `w`, `A^T f(p) + w = 0` (\[P\] 3) holds for the true parameters: six equations per sample for the parameters of all
+//! cables. The fit needs neither force sensors at the platform nor a change of the robot.
 //!
-//! **What it cannot see.** Forces that hold each other in balance (`A^T f = 0`: inner tension) change no wrench. A robot of
-//! m cables has m − 6 such combinations in each pose; over a run through the workspace they turn, so that what friction
-//! does to a cable still shows. A constant offset hardly turns: ε of the cables is often seen in combinations only. So friction is
-//! fitted first with the offsets held; then those join in that the samples turn out to determine.
+//! **Limits.** Forces in mutual balance (`A^T f = 0`, inner tension) do not change the wrench. A robot of m cables has m − 6 such combinations in
+//! each pose. They turn during a run through the workspace, so the friction of a cable still shows. A constant offset hardly turns: ε of the cables
+//! is often determined only in combinations. So friction is fitted first with the offsets held, and then the offsets that the samples determine are
+//! added.
 //!
-//! The six deviations are weighed by the inverse of their covariance, found from the first fit; the standard errors do not
-//! rely on it.
+//! The six deviations are weighted by the inverse of their covariance, estimated from the first fit. The standard errors do not rely on it.
 
 use fric_core::Wrench;
 use fric_core::parameters::{OFFSET, Values};
@@ -34,17 +33,18 @@ use crate::search::solve::{Solution, Unknown, contradicts, search, settle, solve
 use crate::search::vector::Parameter;
 use crate::weight;
 
-/// A line between two measurements counts as such where it is off by less than this share of the noise: at most 6 % of its variance.
+/// A sample between two measurements counts if the connecting line is off by less than this fraction of the noise, which is at most 6 % of its
+/// variance.
 const STRAIGHT_RATIO: f64 = 0.25;
 
-/// Fits all cables to the outside wrench. Only for a robot of which every cable has an attachment, and for
-/// [`Measurements`] with [`Reference::Wrench`](super::Reference::Wrench).
+/// Fits all cables to the external wrench. Every cable of the robot needs an attachment, and the [`Measurements`] need
+/// [`Reference::Wrench`](super::Reference::Wrench).
 ///
-/// The parameters come from all samples. How well they do on samples that they were not learned from is found beforehand, by
-/// the parameters of every other block of the log on the blocks between.
+/// The parameters come from all samples. Their error on unseen samples is computed beforehand: parameters from every other block of the log are
+/// applied to the blocks between.
 ///
 /// # Errors
-/// [`FitError`] where the wrench cannot tell the forces of the cables.
+/// Returns a [`FitError`] if the wrench does not determine the forces of the cables.
 pub fn fit_wrench(
     measurements: &Measurements<'_>,
     options: &FitOptions,
@@ -65,22 +65,22 @@ pub fn fit_wrench(
     Ok(WrenchFit { cables, reference: references.kind, before, after, held_out })
 }
 
-/// What the forces of the cables are compared with.
+/// The wrenches that the forces of the cables are compared with.
 #[derive(Debug)]
 pub struct ReferenceWrenches {
-    /// The wrench in the log, else that of the mass.
+    /// Whether the wrench is from the log or from the mass.
     pub kind: WrenchReference,
-    /// The wrench from outside in each sample; NaN where there is none.
+    /// The external wrench of each sample; NaN if there is none.
     pub outside: Vec<Vector6<f64>>,
-    /// Which samples are not on a line from one measured wrench to the next.
+    /// Which samples are measured rather than interpolated between two measured wrenches.
     pub measured: Vec<bool>,
-    /// Which are on such a line, and it cannot be off by as much as would matter.
+    /// Which samples are interpolated with an error too small to matter.
     straight: Vec<bool>,
 }
 
 impl ReferenceWrenches {
     /// # Errors
-    /// [`FitError`] where they cannot tell the forces of the cables.
+    /// Returns a [`FitError`] if the wrenches do not determine the forces of the cables.
     pub fn of(measurements: &Measurements<'_>) -> Result<Self, FitError> {
         let is_measured = measurements.platform().wrenches.iter().any(Option::is_some);
         let kind = if is_measured { WrenchReference::Measured } else { WrenchReference::Mass };
@@ -92,13 +92,14 @@ impl ReferenceWrenches {
         Ok(references)
     }
 
-    /// Whether a sample may be compared with.
+    /// Returns whether each sample can be compared.
     fn counts(&self) -> Vec<bool> {
         self.measured.iter().zip(&self.straight).map(|(measured, straight)| *measured || *straight).collect()
     }
 
-    /// Between two measurements, of which the lines before and after turn by the slopes `j` and `k`, the wrench is off the line by `h·(|j| + |k|)/4` at
-    /// most, with one corner between them or a steady curve. That is to be small beside the noise.
+    /// Marks the interpolated samples with a small error. Between two measurements at a distance `h`, where the adjacent lines change their slope by
+    /// `j` and `k`, the wrench differs from the line by at most `h·(|j| + |k|)/4`, for a single corner or a steady curvature. This must be small
+    /// beside the noise.
     fn find_straight(&mut self, measurements: &Measurements<'_>) {
         let Some(record) = measurements.cables().next().filter(|_| self.measured.contains(&false)) else { return };
         let Some(noise) = self.white_noise(measurements) else { return };
@@ -114,7 +115,7 @@ impl ReferenceWrenches {
             if intervals_s.is_empty() {
                 continue;
             }
-            // What was measured on a line does not show: no interval is longer than most.
+            // A measurement that happens to lie on a line is not detected, so no interval is longer than usual.
             let middle = intervals_s.len() / 2;
             let usual_s = *intervals_s.select_nth_unstable_by(middle, f64::total_cmp).1;
             let mut straight = Vec::new();
@@ -133,7 +134,7 @@ impl ReferenceWrenches {
         }
     }
 
-    /// Standard deviation of the white noise in the sums of forces and wrench, where it was measured; `None` where that is too seldom.
+    /// Returns the standard deviation of the white noise in the sum of forces and wrench, at measured samples; `None` if there are too few.
     fn white_noise(&self, measurements: &Measurements<'_>) -> Option<Vector6<f64>> {
         let records: Vec<CableRecord<'_>> = measurements.cables().collect();
         let structure = measurements.platform().structure.as_slice();
@@ -159,14 +160,14 @@ impl ReferenceWrenches {
 pub struct FirstModel {
     /// Values of each cable.
     pub values: Vec<Values>,
-    /// What was varied of each: what acts.
+    /// The free parameters of each cable: those that act.
     pub free: Vec<Vec<Parameter>>,
-    /// Standing of each sample for all cables together.
+    /// The standing of each sample for all cables together.
     pub standings: Vec<Standing>,
 }
 
-/// Fits what acts in the given model to all samples; offsets stay as given, for they are seen in combinations only. What the samples determine is not
-/// asked: a model that lacks something does not know.
+/// Fits the parameters that act in the given model to all samples. Offsets stay as given, because they are determined only in combinations. Whether
+/// the samples determine a parameter is not checked, because a model with a missing effect cannot tell.
 pub fn first_model(
     measurements: &Measurements<'_>,
     references: &ReferenceWrenches,
@@ -185,24 +186,24 @@ pub fn first_model(
     FirstModel { values: solution.values, free, standings }
 }
 
-/// What is fitted to what.
+/// The data of a fit.
 struct Case<'a> {
     records: Vec<CableRecord<'a>>,
-    /// Columns of the structure matrix, all cables of a sample one after the other.
+    /// Columns of the structure matrix: all cables of a sample, one sample after the other.
     structure: &'a [Vector6<f64>],
     references: &'a ReferenceWrenches,
     options: &'a FitOptions,
     progress: &'a Progress,
 }
 
-/// What is to be searched.
+/// A problem ready for the search.
 struct Prepared<'a> {
     problem: Problem<'a>,
     starts: Vec<Vec<Values>>,
     standings: Vec<Standing>,
 }
 
-/// What was found.
+/// The outcome of a search.
 struct Found<'a> {
     problem: Problem<'a>,
     solution: Solution,
@@ -214,7 +215,7 @@ impl<'a> Case<'a> {
         self.records.iter().map(|record| record.params.values()).collect()
     }
 
-    /// Errors on the blocks held out from a fit to the others; none where the log is too short for it.
+    /// Returns the errors on held-out blocks from a fit to the others; empty if the log is too short.
     fn held_out(&self) -> WrenchErrors {
         let blocks = self.records.first().map(split).unwrap_or_default();
         let mut is_held_out = vec![false; self.references.outside.len()];
@@ -238,7 +239,7 @@ impl<'a> Case<'a> {
         self.records.first().map_or(f64::NAN, |record| record.cycle_s)
     }
 
-    /// The problem of the samples that count and the parameters wanted, with where to begin.
+    /// Returns the problem of the samples that count and the wanted parameters, with its starts.
     fn prepared(
         &self,
         counts: &dyn Fn(usize) -> bool,
@@ -283,19 +284,19 @@ impl<'a> Case<'a> {
         Prepared { problem, starts, standings }
     }
 
-    /// The parameters by the samples that count.
+    /// Identifies the parameters from the samples that count.
     fn identified(&self, counts: &dyn Fn(usize) -> bool) -> Found<'a> {
         let Self { options, progress, .. } = *self;
         let (given, cycle_s) = (self.given(), self.cycle_s());
-        // Friction first, then the offsets with it; all once to learn how the six deviations scatter, and once with that.
+        // Fits friction first, then the offsets too: once to estimate the scatter of the six deviations, and once weighted with it.
         let Prepared { mut problem, starts, mut standings } =
             self.prepared(counts, &|_, parameter| parameter.place() != OFFSET);
         let mut solution = solve(&mut problem, starts, &given, cycle_s, options.weighing, &mut standings);
         let mut earlier = Earlier::default();
         match self.offsets(&problem, &solution, cycle_s) {
             Offsets::Contradicted => {
-                // Friction that seemed undetermined beside wrong offsets gets another chance, and other starts: offsets that look wrong may also
-                // mean that the first search ended far from the least minimum, to which the given friction may be nearer.
+                // Friction parameters that seemed undetermined beside wrong offsets are tried again, from other starts too: offsets that look wrong
+                // may also mean that the first search ended in a local minimum, and the given friction may be nearer to the global one.
                 problem.members = self.members(&|_, _| true);
                 earlier.evaluation_count += solution.evaluation_count;
                 let mut starts = vec![solution.values, given.clone()];
@@ -330,7 +331,7 @@ impl<'a> Case<'a> {
         Found { problem, solution, standings }
     }
 
-    /// All cables with what is to be varied of them, as far as it is wanted.
+    /// Returns all cables with their free parameters that are wanted.
     fn members(&self, is_wanted: &dyn Fn(&CableRecord<'_>, &Parameter) -> bool) -> Vec<Member<'a>> {
         let member = |record: &CableRecord<'a>| {
             let mut free = self.options.free(record.params);
@@ -340,7 +341,7 @@ impl<'a> Case<'a> {
         self.records.iter().map(member).collect()
     }
 
-    /// What the samples tell of the offsets, beside the friction found without them.
+    /// Returns what the samples say about the offsets, given the friction found without them.
     fn offsets(&self, problem: &Problem<'_>, solution: &Solution, cycle_s: f64) -> Offsets {
         let mut trial = problem.clone();
         for (member, offset) in trial.members.iter_mut().zip(self.members(&|_, parameter| parameter.place() == OFFSET))
@@ -361,8 +362,8 @@ impl<'a> Case<'a> {
         Offsets::Apart { determined: unknowns(determined), vague: unknowns(vague) }
     }
 
-    /// Deviation of the wrench by the cable forces from the one outside, with frictionless and with compensated forces, over the
-    /// samples that count. On a line between two measurements too: a replay with the parameters found has these errors.
+    /// Returns the wrench of the cable forces minus the external one, with frictionless and with compensated forces, over the samples that count.
+    /// Interpolated samples are included, because a replay with the fitted parameters reports these errors.
     fn errors(&self, problem: &Problem<'_>, values: &[Values], counts: &dyn Fn(usize) -> bool) -> [WrenchErrors; 2] {
         let forces = problem.forces(values).unwrap_or_default();
         let count = problem.members.len();
@@ -385,15 +386,15 @@ impl<'a> Case<'a> {
     }
 }
 
-/// What samples tell of the offsets.
+/// What the samples say about the offsets.
 enum Offsets {
-    /// The given ones are wrong, whatever is known of each: a wrong mass, a payload, a sensor's gain.
+    /// The given offsets are wrong, although the single ones may be uncertain: a wrong mass, a payload, a sensor's gain.
     Contradicted,
-    /// Those determined are to be varied, the others held.
+    /// The determined offsets are varied, the vague ones are held.
     Apart { determined: Vec<Unknown>, vague: Vec<Unknown> },
 }
 
-/// What earlier searches of several have found.
+/// The results of earlier searches.
 #[derive(Default)]
 struct Earlier {
     undetermined: Vec<Unknown>,
@@ -415,7 +416,7 @@ impl Earlier {
     }
 }
 
-/// The outside wrench of each sample; NaN where there is none.
+/// Returns the external wrench of each sample; NaN if there is none.
 fn outside_wrenches(measurements: &Measurements<'_>, reference: WrenchReference) -> Vec<Vector6<f64>> {
     let platform = measurements.platform();
     let vector = |wrench: &Option<Wrench>| wrench.as_ref().map_or_else(|| Vector6::repeat(f64::NAN), Wrench::to_vector);
@@ -427,7 +428,7 @@ fn outside_wrenches(measurements: &Measurements<'_>, reference: WrenchReference)
     logs.flat_map(|poses| weight::wrenches(measurements.robot(), poses)).map(|wrench| vector(&wrench)).collect()
 }
 
-/// Standing of each sample for all cables together: what is the matter with the first that it cannot be used for.
+/// Returns the standing of each sample for all cables together: that of the first cable for which it cannot be used.
 fn together(of_cables: &[Vec<Standing>]) -> Vec<Standing> {
     let count = of_cables.first().map_or(0, Vec::len);
     let of_sample = |place: usize| {
@@ -437,8 +438,7 @@ fn together(of_cables: &[Vec<Standing>]) -> Vec<Standing> {
     (0..count).map(of_sample).collect()
 }
 
-/// What turns the deviations at `values` into independent ones of variance 1; `None` where they span fewer than six
-/// directions.
+/// Returns the matrix that transforms the deviations at `values` into independent ones of variance 1; `None` if they span fewer than six directions.
 fn scatter(problem: &Problem<'_>, values: &[Values]) -> Option<Matrix6<f64>> {
     let mut deviations = Vec::new();
     problem.residuals(values, |_, residuals| {

@@ -1,9 +1,9 @@
-//! What can be wrong with a log whose wrench hysteresis is wanted.
+//! Errors in a log for the wrench hysteresis.
 
 use fric_core::ParamError;
 use thiserror::Error;
 
-/// What to do, each the end of a sentence.
+/// Advice, each the end of a sentence.
 mod advice {
     pub const GEOMETRY: &str = "give every cable both";
     pub const POSE: &str = "name the pose's topic as `pose` under `[log]` in the robot file, or record it";
@@ -12,14 +12,14 @@ mod advice {
     pub const CABLES: &str = "see what `fric-cli replay` says about the cables";
 }
 
-/// Why there is no hysteresis to tell.
+/// The reason why the hysteresis cannot be computed.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum HysteresisError {
-    /// The robot file's parameters are not right.
+    /// The parameters of the robot file are invalid.
     #[error("the robot's parameters are not right: {0}")]
     Robot(#[from] ParamError),
-    /// A cable that no wrench can be made of.
+    /// A cable has no geometry, so there is no wrench.
     #[error("{cable} has no `base_m` and `platform_m` in the robot file, so there is no wrench; {}", advice::GEOMETRY)]
     NoGeometry {
         /// The first such cable.
@@ -28,19 +28,19 @@ pub enum HysteresisError {
     /// No sample has a pose.
     #[error("the log has no pose of the platform, so there is no wrench; {}", advice::POSE)]
     NoPose,
-    /// A platform at rest.
+    /// The platform does not move.
     #[error("the platform does not move in this log; {}", advice::RECORD)]
     NoMovement,
-    /// Movements in which no axis can be told from another.
+    /// The axes of the movements cannot be distinguished.
     #[error(
         "the platform moves along several axes at once, never along or about one base axis alone; {}",
         advice::RECORD
     )]
     SeveralAxes,
-    /// Straight movements, but no place that is passed both ways.
+    /// There are straight movements, but no position is crossed in both directions.
     #[error("the platform passes no position in both directions of an axis; {}", advice::RECORD)]
     NoCrossing,
-    /// Crossings without a wrench.
+    /// The crossings have no wrench.
     #[error(
         "at every crossing the force of a cable is missing or the platform is out of reach, so there is no wrench; {}",
         advice::CABLES
@@ -49,7 +49,7 @@ pub enum HysteresisError {
 }
 
 impl HysteresisError {
-    /// What to do: the words that end the error's sentence, where it has any.
+    /// Returns the advice that ends the error's sentence, if there is any.
     #[must_use]
     pub fn advice(&self) -> Option<&'static str> {
         match self {

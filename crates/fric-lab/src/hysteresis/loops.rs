@@ -1,31 +1,31 @@
-//! The loops of which a hysteresis is the width: the wrench on the way along an axis, there and back.
+//! The hysteresis loops: the wrench over the position along an axis, back and forth.
 
 use super::pass::Components;
 use crate::axis::CartesianAxis;
 
-/// Bins over the way to either side of the position together.
+/// Number of bins over the range to both sides of the position.
 const BINS: usize = 40;
 
-/// The component of the wrench along an axis over the way, in means of bins.
+/// The wrench component along an axis over the position, in bin means.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HysteresisLoop {
     /// The axis.
     pub axis: CartesianAxis,
-    /// Middles of the bins from the position, m, or rad about an axis.
+    /// Bin centres relative to the position, m, or rad about an axis.
     pub at: Vec<f64>,
-    /// Back and forwards: from frictionless and from compensated forces, N or N m, less the log's outside wrench where that is known; NaN
-    /// where the platform was not.
+    /// Backward and forward: from frictionless and from compensated forces, N or N m, minus the log's external wrench if it is known; NaN where the
+    /// platform was not.
     pub directions: [Vec<[f64; 2]>; 2],
 }
 
-/// Sums over the way, as it comes.
+/// Sums over the position in the order of samples.
 #[derive(Debug)]
 pub(super) struct LoopSums {
     reach_m: f64,
     tolerance_m: f64,
-    /// Back and forwards: count, without, with.
+    /// Backward and forward: count, without compensation, with compensation.
     bins: [Vec<[f64; 3]>; 2],
-    /// 1 forwards, −1 back, 0 before it moves, and the furthest way since.
+    /// Direction (1 forward, −1 backward, 0 before it moves) and the furthest position since.
     heading: Option<(f64, f64)>,
 }
 
@@ -34,7 +34,7 @@ impl LoopSums {
         Self { reach_m, tolerance_m, bins: [vec![[0.0; 3]; BINS], vec![[0.0; 3]; BINS]], heading: None }
     }
 
-    /// Takes in a sample; `None` where the platform is not on the axis, or the wrench not known.
+    /// Adds a sample; `components` is `None` if the platform is not on the axis or the wrench is unknown.
     pub fn add(&mut self, along_m: f64, components: Option<&Components>) {
         let Some(components) = components else {
             self.heading = None;
@@ -42,7 +42,7 @@ impl LoopSums {
         };
         let (mut sign, furthest_m) = self.heading.unwrap_or((0.0, along_m));
         if sign == 0.0 {
-            // A platform at rest goes in no direction yet.
+            // A platform at rest has no direction yet.
             let moved_m = along_m - furthest_m;
             if moved_m.abs() <= self.tolerance_m {
                 self.heading = Some((0.0, furthest_m));
@@ -69,7 +69,7 @@ impl LoopSums {
         }
     }
 
-    /// The loop; `lever_m` is the way of an angle of 1 rad, 1 along an axis.
+    /// Returns the loop. `lever_m` converts an angle to a distance; 1 along an axis.
     pub fn finish(&self, axis: CartesianAxis, lever_m: f64) -> HysteresisLoop {
         #[expect(clippy::cast_precision_loss, reason = "a small count")]
         let middle = |place: usize| ((place as f64 + 0.5) / BINS as f64 * 2.0 - 1.0) * self.reach_m / lever_m;
@@ -86,7 +86,7 @@ impl LoopSums {
 mod tests {
     use super::*;
 
-    /// Friction of 2 against the way: 1 less on the way there, 1 more on the way back, about a slope.
+    /// A friction of 2 against the motion: 1 less forward, 1 more backward, around a slope.
     #[test]
     fn a_loop_is_as_wide_as_what_it_is_of() {
         let mut sums = LoopSums::new(1.0, 0.01);

@@ -1,17 +1,15 @@
-//! Hysteresis of the wrench: how much the measured wrench depends on the side from which a position is reached.
+//! Hysteresis of the wrench: the dependence of the measured wrench on the direction from which a position is reached.
 //!
-//! For: table II of \[P\]. The platform crosses one position along, and turning about, the base axes, both ways. On each axis
-//! the component of the outside wrench `−A^T f` (\[P\] 3) along it is taken at the position in each pass; the width of the
-//! hysteresis is the difference of the means over the passes in either direction, as a magnitude. It is given for the
-//! frictionless forces (without compensation) and for the compensated ones, and what the second is of the first is the
-//! lasting share.
+//! It gives table II of \[P\]. The platform crosses one position along and about the base axes, in both directions. For each axis, the component of
+//! the external wrench `−A^T f` (\[P\] 3) along it is evaluated at the position in each pass. The width of the hysteresis is the magnitude of the
+//! difference between the means over the passes in each direction. It is computed for the frictionless forces (without compensation) and for the
+//! compensated ones; the ratio of the second to the first is the remaining fraction.
 //!
-//! Where a log has the true outside wrench, that is subtracted: what is really applied does not count as hysteresis. Where
-//! it has none, gravity is the same in both directions, and inertia is none at constant speed; other forces would count.
+//! If a log contains the true external wrench, it is subtracted, so that applied forces do not count as hysteresis. Without it, gravity is equal in
+//! both directions and inertia vanishes at constant speed, but other forces would count.
 //!
-//! Two readings of the log, each in bounded memory: [`Survey`] finds the crossed position from the poses, [`Hysteresis`]
-//! runs the compensator as the control loop would ([`Replay`]) and gathers the passes. Samples that are not finite break the
-//! pass that they are in and nothing else.
+//! The log is read twice, each time in bounded memory: [`Survey`] finds the crossed position from the poses; [`Hysteresis`] runs the compensator as
+//! in the control loop ([`Replay`]) and collects the passes. Non-finite samples interrupt the current pass only.
 
 mod error;
 mod loops;
@@ -33,39 +31,38 @@ pub use loops::HysteresisLoop;
 pub use result::{AxisResult, HysteresisResult, WidthResult};
 pub use survey::{CrossedPose, Survey};
 
-/// A platform so many tolerances aside is not on the axis.
+/// A platform this many tolerances aside is not on the axis.
 const ON_AXIS: f64 = 3.0;
 
-/// A width of at least so many standard errors is more than scatter.
+/// A width is significant from this many standard errors on.
 const SIGNIFICANT: f64 = 2.0;
 
 /// Width of a hysteresis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Width {
-    /// Difference of the means in either direction, N or N m.
+    /// Difference of the means in both directions, N or N m.
     pub width: f64,
-    /// Its standard error by the scatter of the passes; `None` with a single pass in a direction.
+    /// Standard error from the scatter of the passes; `None` if a direction has a single pass.
     pub standard_error: Option<f64>,
 }
 
-/// Hysteresis along, or about, one axis.
+/// Hysteresis along or about one axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxisHysteresis {
     /// The axis.
     pub axis: CartesianAxis,
-    /// Passes in both directions together.
+    /// Number of passes in both directions together.
     pub pass_count: u64,
-    /// From frictionless forces.
+    /// Width from frictionless forces.
     pub without: Width,
-    /// From compensated forces.
+    /// Width from compensated forces.
     pub with: Width,
-    /// Whether the outside wrench of the log was subtracted.
+    /// Whether the external wrench of the log was subtracted.
     pub is_applied_subtracted: bool,
 }
 
 impl AxisHysteresis {
-    /// Width with compensation per width without; `None` where the width without is none but scatter: within twice its
-    /// standard error.
+    /// Returns the width with compensation divided by the width without; `None` if the width without is within twice its standard error.
     #[must_use]
     pub fn lasting_ratio(&self) -> Option<f64> {
         let scatter = SIGNIFICANT * self.without.standard_error.unwrap_or(0.0);
@@ -73,7 +70,7 @@ impl AxisHysteresis {
     }
 }
 
-/// The second reading of a log: the passes.
+/// The second reading of a log, which collects the passes.
 #[derive(Debug)]
 pub struct Hysteresis {
     replay: Replay,
@@ -86,7 +83,7 @@ struct AxisPasses {
     axis: CartesianAxis,
     finder: PassFinder,
     loops: LoopSums,
-    /// Against and in the direction of the axis.
+    /// Passes against and in the direction of the axis.
     directions: [Gathered; 2],
 }
 
@@ -95,16 +92,16 @@ struct AxisPasses {
 struct Gathered {
     without: Statistics,
     with: Statistics,
-    /// The same less what is truly applied, of passes for which that is known.
+    /// The same minus the applied wrench, for passes in which that is known.
     without_less_applied: Statistics,
     with_less_applied: Statistics,
 }
 
 impl Hysteresis {
-    /// For a robot and the position that its log crosses.
+    /// Creates the second reading for a robot and the position that its log crosses.
     ///
     /// # Errors
-    /// [`HysteresisError::Robot`] as [`Replay::new`].
+    /// Returns [`HysteresisError::Robot`] for the errors of [`Replay::new`].
     pub fn new(robot: &RobotFile, crossed: &CrossedPose) -> Result<Self, HysteresisError> {
         let finder = |axis: CartesianAxis| {
             let (reach_m, tolerance_m) = (crossed.reach_m(axis)?, crossed.scale.tolerance_m);
@@ -137,16 +134,16 @@ impl Hysteresis {
         }
     }
 
-    /// The axes crossed both ways, in the order x, y, z, a, b, c.
+    /// Returns the axes crossed in both directions, in the order x, y, z, a, b, c.
     ///
     /// # Errors
-    /// [`HysteresisError::NoWrench`] if there is none.
+    /// Returns [`HysteresisError::NoWrench`] if there is none.
     pub fn axes(&self) -> Result<Vec<AxisHysteresis>, HysteresisError> {
         let axes: Vec<_> = self.axes.iter().filter_map(AxisPasses::hysteresis).collect();
         if axes.is_empty() { Err(HysteresisError::NoWrench) } else { Ok(axes) }
     }
 
-    /// The loops of the axes crossed both ways, in the same order.
+    /// Returns the loops of the axes crossed in both directions, in the same order.
     #[must_use]
     pub fn loops(&self) -> Vec<HysteresisLoop> {
         let crossed = self.axes.iter().filter(|passes| passes.hysteresis().is_some());
@@ -154,7 +151,7 @@ impl Hysteresis {
         crossed.map(|passes| passes.loops.finish(passes.axis, lever_m(passes.axis))).collect()
     }
 
-    /// The replay behind it, for what it has to say about the cables.
+    /// Returns the underlying replay, for its warnings about the cables.
     #[must_use]
     pub fn replay(&self) -> &Replay {
         &self.replay
@@ -178,7 +175,7 @@ impl AxisPasses {
 
     fn hysteresis(&self) -> Option<AxisHysteresis> {
         let [back, forward] = &self.directions;
-        // All or none: passes with and without it cannot be compared.
+        // All passes or none: passes with and without subtraction cannot be compared.
         let is_applied_subtracted =
             self.directions.iter().all(|gathered| gathered.without_less_applied.count == gathered.without.count);
         let [without, with] = if is_applied_subtracted {
@@ -199,7 +196,7 @@ impl AxisPasses {
     }
 }
 
-/// Count, mean and scatter, by running sums.
+/// Count, mean and scatter, from running sums.
 #[derive(Clone, Copy, Debug, Default)]
 struct Statistics {
     count: u64,
@@ -215,7 +212,7 @@ impl Statistics {
         self.squares += before * (value - self.mean);
     }
 
-    /// Of the means of both; `None` where one has nothing.
+    /// Returns the width from the means of both directions; `None` if one has no passes.
     fn width(back: &Self, forward: &Self) -> Option<Width> {
         (back.count > 0 && forward.count > 0).then(|| Width {
             width: (forward.mean - back.mean).abs(),

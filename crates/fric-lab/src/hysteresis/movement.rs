@@ -1,35 +1,35 @@
-//! The way of a platform taken apart into straight movements along, and turns about, one base axis at a time.
+//! Divides the motion of a platform into straight movements along, and rotations about, one base axis at a time.
 //!
-//! Angles count as the way of a point at the length of a lever, so that one tolerance is for both. What is smaller than
-//! the tolerance is noise; rests do not part a movement, a turn-back or a way to the side does.
+//! Angles count as the distance that a point at the end of a lever travels, so that one tolerance serves for both. Anything below the tolerance is
+//! noise. Rests do not divide a movement; reversals and lateral motion do.
 
 use fric_core::Pose;
 use nalgebra::Vector6;
 
 use crate::axis::{CartesianAxis, displacement};
 
-/// A movement is at least this many tolerances long.
+/// Minimum length of a movement, in tolerances.
 const SHORTEST: f64 = 2.0;
-/// It goes aside by at most this share of its length; others go along several axes at once.
+/// Maximum lateral deviation of a movement, relative to its length. A greater deviation means motion along several axes at once.
 const ASIDE_RATIO: f64 = 0.15;
 
-/// What counts as still on the same line.
+/// The scale for deviations from a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scale {
-    /// Deviations within it are none, m.
+    /// Tolerance for deviations, m.
     pub tolerance_m: f64,
-    /// Length by which angles become ways, m.
+    /// Lever that converts angles to distances, m.
     pub lever_m: f64,
 }
 
 impl Scale {
-    /// Where a pose is seen from another, angles as ways, m.
+    /// Returns the displacement of a pose from another, with angles as distances, m.
     pub fn displacement(&self, pose: &Pose, from: &Pose) -> Vector6<f64> {
         let Self { lever_m, .. } = *self;
         displacement(pose, from).component_mul(&Vector6::new(1.0, 1.0, 1.0, lever_m, lever_m, lever_m))
     }
 
-    /// Way along an axis and the largest deviation from it, m.
+    /// Returns the distance along an axis and the greatest deviation from it, m.
     pub fn along_and_aside(&self, pose: &Pose, from: &Pose, axis: CartesianAxis) -> (f64, f64) {
         split(&self.displacement(pose, from), axis)
     }
@@ -47,15 +47,15 @@ pub struct Movement {
     pub axis: CartesianAxis,
     pub from: Pose,
     pub to: Pose,
-    /// Whether it goes in the direction of the axis.
+    /// Whether it runs in the direction of the axis.
     pub is_forward: bool,
 }
 
-/// The movements of poses that come one after the other.
+/// Finds the movements in a sequence of poses.
 #[derive(Debug)]
 pub struct Movements {
     scale: Scale,
-    /// Where the present movement, or the rest, started.
+    /// The pose at which the present movement, or the rest, started.
     anchor: Option<Pose>,
     moving: Option<Moving>,
     strayed_m: f64,
@@ -76,12 +76,12 @@ impl Movements {
         Self { scale, anchor: None, moving: None, strayed_m: 0.0 }
     }
 
-    /// How far the platform went along several axes at once, m.
+    /// Returns how far the platform moved along several axes at once, m.
     pub fn strayed_m(&self) -> f64 {
         self.strayed_m
     }
 
-    /// Takes in the next pose; gives the movement that it ends.
+    /// Adds the next pose and returns the movement that it ends, if any.
     pub fn add(&mut self, pose: &Pose) -> Option<Movement> {
         let anchor = *self.anchor.get_or_insert(*pose);
         let Some(moving) = &mut self.moving else {
@@ -104,7 +104,7 @@ impl Movements {
         None
     }
 
-    /// The movement in progress, at the end of the poses.
+    /// Returns the movement in progress at the end of the poses, if any.
     pub fn end(&mut self) -> Option<Movement> {
         let (moving, from) = self.moving.take().zip(self.anchor)?;
         self.anchor = Some(moving.furthest);
@@ -115,7 +115,7 @@ impl Movements {
         Some(Movement { axis: moving.axis, from, to: moving.furthest, is_forward: moving.sign > 0.0 })
     }
 
-    /// Begins a movement once the platform is far enough from the anchor.
+    /// Starts a movement once the platform is far enough from the anchor.
     fn start(&mut self, pose: &Pose, anchor: &Pose) {
         let way_m = self.scale.displacement(pose, anchor);
         let (axis, along_m, aside_m) = CartesianAxis::ALL

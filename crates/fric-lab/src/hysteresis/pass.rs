@@ -1,36 +1,35 @@
-//! Passes across a position along one axis, and the wrench in each at the position itself.
+//! Passes across a position along one axis, with the wrench at the position itself.
 //!
-//! A pass comes from half the movement's reach on the one side and goes to half of it on the other without turning
-//! back. The value of a pass is that of a straight line, fitted by least squares to the samples in a window about the
-//! position, at the position: an average that does not mind if there are more samples on one side. With fewer than four
-//! samples in the window it is interpolated between the two samples around the position.
+//! A pass starts at half the movement's reach on one side and ends at half the reach on the other, without reversal. Its value is that of a straight
+//! line at the position, fitted by least squares to the samples in a window around it; an uneven distribution of samples does not bias it. With fewer
+//! than four samples in the window, the value is interpolated between the two samples around the position.
 
-/// A pass starts and ends at least this share of the reach away: inertia and presliding are over.
+/// A pass starts and ends at least this fraction of the reach away, so that inertia and presliding are over.
 const MARGIN_SHARE: f64 = 0.5;
-/// Half width of the window, as a share of the reach.
+/// Half width of the window, as a fraction of the reach.
 const WINDOW_SHARE: f64 = 0.1;
 
-/// What is averaged in a pass: components of the wrench along the axis.
+/// The averaged quantities: wrench components along the axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Components {
     /// From frictionless forces.
     pub without: f64,
     /// From compensated forces.
     pub with: f64,
-    /// What is truly applied; NaN where the log does not know.
+    /// Applied wrench; NaN if the log does not contain it.
     pub applied: f64,
 }
 
 /// One pass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pass {
-    /// Whether in the direction of the axis.
+    /// Whether it is in the direction of the axis.
     pub is_forward: bool,
-    /// At the position.
+    /// The components at the position.
     pub components: Components,
 }
 
-/// Finds the passes along one axis in samples that come one after the other.
+/// Finds the passes along one axis in a sequence of samples.
 #[derive(Debug)]
 pub struct PassFinder {
     reach_m: f64,
@@ -50,14 +49,14 @@ struct Current {
 }
 
 impl PassFinder {
-    /// For movements that reach so far to either side; what is within the tolerance is no turning back.
+    /// Creates a finder for movements with this reach to either side. Motion within the tolerance is no reversal.
     pub fn new(reach_m: f64, tolerance_m: f64) -> Self {
         Self { reach_m, tolerance_m, current: None, last: None }
     }
 
-    /// Takes in a sample so far along the axis from the position; gives the pass that it completes.
+    /// Adds a sample at a distance along the axis from the position, and returns the pass that it completes, if any.
     ///
-    /// `components` is `None` where the platform is not on the axis, or the wrench not known.
+    /// `components` is `None` if the platform is not on the axis or the wrench is unknown.
     pub fn add(&mut self, along_m: f64, components: Option<Components>) -> Option<Pass> {
         let Some(components) = components else {
             self.current = None;
@@ -108,7 +107,7 @@ impl Components {
 
 const NOTHING: Components = Components { without: 0.0, with: 0.0, applied: 0.0 };
 
-/// A straight line through samples, by running sums.
+/// A straight line through samples, from running sums.
 #[derive(Debug)]
 struct Line {
     count: f64,
@@ -125,7 +124,7 @@ impl Default for Line {
 }
 
 impl Line {
-    /// Fewer samples are interpolated between.
+    /// With fewer samples the value is interpolated.
     const LEAST_SAMPLES: f64 = 4.0;
 
     fn add(&mut self, along_m: f64, components: &Components) {
@@ -139,7 +138,7 @@ impl Line {
         self.products = self.products.map2(&deviation, |sum, product| sum + product);
     }
 
-    /// The line at the position; `None` with too few samples, or all in one place.
+    /// Returns the value of the line at the position; `None` with too few samples, or all at one place.
     fn at_zero(&self) -> Option<Components> {
         if self.count < Self::LEAST_SAMPLES || self.squares_m2 <= 0.0 {
             return None;
@@ -180,7 +179,7 @@ mod tests {
         assert!(passes(turned).is_empty());
         assert!(passes([0.0, 0.2, 0.8]).is_empty());
         assert!(passes([-0.4, 0.2, 0.8]).is_empty());
-        // Noise is no turning back.
+        // Noise is no reversal.
         assert_eq!(passes([-1.0, -0.4, 0.1, 0.095, 0.3, 0.8]).len(), 1);
     }
 

@@ -12,37 +12,36 @@ use crate::text::{table, to_millimetre};
 /// `fric-hysteresis/1`.
 #[derive(Clone, Debug, Serialize)]
 pub struct HysteresisResult {
-    /// Name and version of the form.
+    /// Name and version of the format.
     pub format: &'static str,
     /// Name of the robot.
     pub robot: String,
     /// All axes: x, y, z, a, b, c.
     pub axes: Vec<AxisResult>,
-    /// Where they are crossed, m.
+    /// The crossed position, m.
     #[serde(skip)]
     pub position_m: [f64; 3],
 }
 
-/// An axis that is not crossed has 0 passes and no widths, one whose width without compensation is none but scatter no
-/// ratio.
+/// One axis. An axis that is not crossed has 0 passes and no widths; one whose width without compensation is not significant has no ratio.
 #[derive(Clone, Debug, Serialize)]
 pub struct AxisResult {
     /// Its name.
     pub axis: &'static str,
     /// Unit of the widths.
     pub unit: &'static str,
-    /// Passes in both directions together.
+    /// Number of passes in both directions together.
     pub passes: u64,
-    /// From frictionless forces.
+    /// Width from frictionless forces.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub without: Option<WidthResult>,
-    /// From compensated forces.
+    /// Width from compensated forces.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub with: Option<WidthResult>,
-    /// Width with compensation per width without.
+    /// Width with compensation divided by the width without.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lasting_ratio: Option<f64>,
-    /// Whether the log's own outside wrench was taken off.
+    /// Whether the log's external wrench was subtracted.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub applied_subtracted: Option<bool>,
 }
@@ -50,18 +49,18 @@ pub struct AxisResult {
 /// Width of a hysteresis.
 #[derive(Clone, Debug, Serialize)]
 pub struct WidthResult {
-    /// Difference of the means in either direction.
+    /// Difference of the means in both directions.
     pub width: f64,
-    /// Its standard error; none with a single pass in a direction.
+    /// Its standard error; none if a direction has a single pass.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub standard_error: Option<f64>,
 }
 
 impl HysteresisResult {
-    /// Name and version of the form.
+    /// Name and version of the format.
     pub const FORMAT: &str = "fric-hysteresis/1";
 
-    /// Of the axes that a robot has crossed.
+    /// Creates the result from the axes that a robot has crossed.
     #[must_use]
     pub fn new(robot: &RobotFile, crossed: &CrossedPose, axes: &[AxisHysteresis]) -> Self {
         Self {
@@ -72,7 +71,7 @@ impl HysteresisResult {
         }
     }
 
-    /// For people.
+    /// Returns a summary for people.
     #[must_use]
     pub fn summary(&self) -> String {
         describe(self)
@@ -93,7 +92,7 @@ fn axis_result(axis: CartesianAxis, all: &[AxisHysteresis]) -> AxisResult {
     }
 }
 
-/// The result as a table, as table II of \[P\] has it.
+/// Formats the result as a table, like table II of \[P\].
 fn describe(result: &HysteresisResult) -> String {
     let [x_m, y_m, z_m] = result.position_m.map(to_millimetre);
     let rows: Vec<_> = result

@@ -1,8 +1,8 @@
-//! Which position a log crosses: found from its poses, wherever the log starts and whatever else is in it.
+//! Finds the position that a log crosses from its poses, wherever the log starts and whatever else it contains.
 //!
-//! Movements along the same line are gathered to a track. Where tracks of several axes, each passed both ways, meet, is
-//! the crossed position: of all meeting points the one with most axes, of these the one with most passes. A track that
-//! meets none is crossed in its middle. Tracks are limited in number, so memory does not grow with the log.
+//! Movements along one line are collected in a track. The crossed position is where tracks of several axes, each passed in both directions, meet: of
+//! all such points the one with the most axes, and among these the one with the most passes. A track that meets no other is crossed in its middle.
+//! The number of tracks is limited, so memory does not grow with the log.
 
 use fric_core::robot::file::RobotFile;
 use fric_core::{Pose, Sample};
@@ -12,21 +12,21 @@ use super::error::HysteresisError;
 use super::movement::{Movement, Movements, Scale};
 use crate::axis::{CartesianAxis, rotation};
 
-/// Tolerance as a share of the mean cable length: a millimetre at 1 m.
+/// Tolerance relative to the mean cable length: one millimetre at 1 m.
 const TOLERANCE_SHARE: f64 = 1e-3;
-/// The lever of angles is at least this share of the mean cable length, for platforms that are a point.
+/// Minimum lever for angles relative to the mean cable length, for platforms that are a point.
 const LEVER_SHARE: f64 = 0.05;
-/// Lines this many tolerances apart are one.
+/// Lines up to this many tolerances apart count as one.
 const SAME_LINE: f64 = 2.0;
-/// Most tracks; movements along further ones are left out.
+/// Maximum number of tracks; movements along further ones are ignored.
 const MOST_TRACKS: usize = 256;
-/// Most movements of a track whose ends are kept.
+/// Maximum number of movements of a track whose ends are kept.
 const MOST_SPANS: usize = 64;
 
-/// The first reading of a log: its poses.
+/// The first reading of a log, which collects its poses.
 #[derive(Debug)]
 pub struct Survey {
-    /// Entry into the last pulley and attachment of each cable, m.
+    /// Entry point into the last pulley and attachment point of each cable, m.
     cables_m: Vec<[Vector3<f64>; 2]>,
     found: Option<Found>,
 }
@@ -44,39 +44,39 @@ struct Track {
     axis: CartesianAxis,
     /// A pose on the line.
     origin: Pose,
-    /// Movements against and in the direction of the axis.
+    /// Number of movements against and in the direction of the axis.
     counts: [usize; 2],
     /// Ends of the movements along the axis from the origin, m.
     spans_m: Vec<[f64; 2]>,
 }
 
-/// A track that is passed both ways.
+/// A track that is passed in both directions.
 #[derive(Clone, Copy, Debug)]
 struct Line {
     axis: CartesianAxis,
     origin: Pose,
-    /// Ends of the usual movement along the axis from the origin, m.
+    /// Ends of the typical movement along the axis from the origin, m.
     span_m: [f64; 2],
     passes: usize,
 }
 
-/// The position that a log crosses, and along which axes.
+/// The position that a log crosses, and the axes along which it does.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CrossedPose {
     pose: Pose,
-    /// How far the movements reach to either side, m, angles as ways; `None` for an axis that is not crossed.
+    /// Reach of the movements to either side, m, with angles as distances; `None` for an axis that is not crossed.
     reaches_m: [Option<f64>; 6],
     pub(super) scale: Scale,
 }
 
 impl CrossedPose {
-    /// Where the axes cross.
+    /// Returns the pose at which the axes cross.
     #[must_use]
     pub fn pose(&self) -> &Pose {
         &self.pose
     }
 
-    /// Whether the log has movements across it along, or about, this axis, both ways.
+    /// Whether the log crosses it along or about this axis in both directions.
     #[must_use]
     pub fn has_axis(&self, axis: CartesianAxis) -> bool {
         self.reach_m(axis).is_some()
@@ -88,10 +88,10 @@ impl CrossedPose {
 }
 
 impl Survey {
-    /// For a robot whose cables all have geometry.
+    /// Creates a survey for a robot whose cables all have geometry.
     ///
     /// # Errors
-    /// [`HysteresisError::NoGeometry`] names the first cable without.
+    /// Returns [`HysteresisError::NoGeometry`] with the first cable without geometry.
     pub fn new(robot: &RobotFile) -> Result<Self, HysteresisError> {
         let names = robot.cable_names().into_iter();
         let cables = names.zip(robot.params().cables()).map(|(name, cable)| {
@@ -101,7 +101,7 @@ impl Survey {
         Ok(Self { cables_m: cables.collect::<Result<_, HysteresisError>>()?, found: None })
     }
 
-    /// Takes in the pose of the next sample; one without, or with one that is not finite, is passed over.
+    /// Adds the pose of the next sample; a missing or non-finite pose is skipped.
     pub fn add(&mut self, sample: &Sample<'_>) {
         let Some(pose) = sample.pose.filter(Pose::is_usable) else { return };
         let found = self.found.get_or_insert_with(|| {
@@ -113,10 +113,10 @@ impl Survey {
         }
     }
 
-    /// The position that most axes cross.
+    /// Returns the position that most axes cross.
     ///
     /// # Errors
-    /// [`HysteresisError`] says what the log lacks.
+    /// Returns a [`HysteresisError`] that says what the log lacks.
     pub fn finish(self) -> Result<CrossedPose, HysteresisError> {
         let mut found = self.found.ok_or(HysteresisError::NoPose)?;
         if let Some(movement) = found.movements.end() {
@@ -168,7 +168,7 @@ impl Found {
     }
 }
 
-/// Which axes cross at a pose, and how many movements do.
+/// Returns which axes cross at a pose, and how many movements do.
 fn crossed(lines: &[Line], scale: &Scale, pose: Pose) -> (CrossedPose, usize) {
     let mut reaches_m = [None; 6];
     let mut passes = 0;
@@ -189,7 +189,7 @@ fn crossed(lines: &[Line], scale: &Scale, pose: Pose) -> (CrossedPose, usize) {
 }
 
 impl Track {
-    /// Ends of the usual movement, m: the medians of both ends.
+    /// Returns the ends of the typical movement, m: the medians of both ends.
     fn span_m(&self) -> [f64; 2] {
         let median = |pick: fn(&[f64; 2]) -> f64| {
             let mut ends_m: Vec<f64> = self.spans_m.iter().map(pick).collect();
@@ -199,7 +199,7 @@ impl Track {
         [median(|[start_m, _]| *start_m), median(|[_, end_m]| *end_m)]
     }
 
-    /// The line, if it is passed both ways.
+    /// Returns the line, if it is passed in both directions.
     fn line(&self) -> Option<Line> {
         let [back, forward] = self.counts;
         let Self { axis, origin, .. } = *self;
@@ -208,7 +208,7 @@ impl Track {
 }
 
 impl Line {
-    /// The pose on the line at a way from its origin.
+    /// Returns the pose on the line at a distance from its origin.
     fn at(&self, scale: &Scale, along_m: f64) -> Pose {
         let Pose { position_m, orientation } = self.origin;
         if self.axis.is_rotation() {
@@ -220,7 +220,7 @@ impl Line {
     }
 }
 
-/// Tolerance and lever for a robot of this size.
+/// Returns tolerance and lever for a robot of this size.
 fn scale(cables_m: &[[Vector3<f64>; 2]], pose: &Pose) -> Scale {
     #[expect(clippy::cast_precision_loss, reason = "a number of cables")]
     let count = cables_m.len().max(1) as f64;

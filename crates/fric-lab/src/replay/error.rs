@@ -1,4 +1,4 @@
-//! How far two signals are apart, accumulated.
+//! Accumulated deviation between two signals.
 
 /// Root mean square and mean of the magnitude of a series of deviations.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -9,7 +9,7 @@ pub struct Deviation {
 }
 
 impl Deviation {
-    /// Takes in one deviation; not finite ones are left out.
+    /// Adds a deviation; non-finite ones are ignored.
     pub fn add(&mut self, deviation: f64) {
         if deviation.is_finite() {
             self.count += 1;
@@ -18,19 +18,19 @@ impl Deviation {
         }
     }
 
-    /// How many were taken in.
+    /// Returns the number of deviations.
     #[must_use]
     pub fn count(&self) -> u64 {
         self.count
     }
 
-    /// Root mean square; `None` without any.
+    /// Returns the root mean square; `None` if there are no deviations.
     #[must_use]
     pub fn rms(&self) -> Option<f64> {
         self.mean(self.squares).map(f64::sqrt)
     }
 
-    /// Mean of the magnitude; `None` without any.
+    /// Returns the mean of the magnitude; `None` if there are no deviations.
     #[must_use]
     pub fn mean_magnitude(&self) -> Option<f64> {
         self.mean(self.magnitudes)

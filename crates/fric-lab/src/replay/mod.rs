@@ -1,11 +1,10 @@
-//! Replay: the samples of a log through the very cycle that runs in the control loop, compared with the reference.
+//! Replay: runs the samples of a log through the cycle of the control loop and compares the result with the reference.
 //!
-//! [`Replay::step`] runs one cycle and accumulates the errors before (sensor force turned into tension as if nothing
-//! rubbed) and after (compensated). It keeps sums only: memory does not grow with the log. Samples without a reference
-//! count for nothing in the errors; flagged ones count as all others, since the control loop has to live with them.
+//! [`Replay::step`] runs one cycle and accumulates the errors before compensation (tension computed from the sensor force without friction) and after
+//! it. It keeps only sums, so memory does not grow with the log. Samples without a reference do not enter the errors; flagged samples do, because the
+//! control loop must use them too.
 //!
-//! The wrench is compared with the one in the log; where the log has none, with that of the platform's mass and pose in quiet
-//! motion, as `fit` does.
+//! The wrench is compared with the one in the log or, without it, with that of the platform's mass and pose in slow motion, as in `fit`.
 
 mod error;
 mod warnings;
@@ -19,24 +18,24 @@ use crate::weight::Weight;
 
 pub use error::Deviation;
 
-/// What has been accumulated for a cable.
+/// The accumulated results of a cable.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CableErrors {
-    /// Cycles with any flag of [`fric_core::CableStatus`].
+    /// Number of cycles with any flag of [`fric_core::CableStatus`].
     pub flagged_count: u64,
-    /// Each flag that has been raised, as bits.
+    /// Every flag that was raised, as bits.
     pub flags: u32,
-    /// How many of the last cycles miss their pose and nothing else: a log ends between two poses.
+    /// Number of final cycles that lack only their pose, because a log ends between two poses.
     pub(crate) poseless_end_count: u64,
-    /// The flags before these.
+    /// The flags before these cycles.
     pub(crate) flags_before_end: u32,
-    /// Frictionless force less reference, N.
+    /// Frictionless force minus reference, N.
     pub before_n: Deviation,
-    /// Compensated force less reference, N.
+    /// Compensated force minus reference, N.
     pub after_n: Deviation,
 }
 
-/// What has been accumulated for the wrench.
+/// The accumulated errors of the wrench.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WrenchErrors {
     force_squares: f64,
@@ -54,7 +53,7 @@ impl WrenchErrors {
         }
     }
 
-    /// Root mean square of the force deviation's length, N, and of the torque's, N m; `None` without any.
+    /// Returns the root mean square of the force error's magnitude, N, and of the torque error's, N m; `None` if there are none.
     #[must_use]
     pub fn rms(&self) -> Option<(f64, f64)> {
         #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
@@ -63,17 +62,17 @@ impl WrenchErrors {
     }
 }
 
-/// What the wrench is compared with.
+/// The reference of the wrench.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WrenchReference {
     /// The wrench in the log.
     Measured,
-    /// That of the platform's mass and pose, in quiet motion.
+    /// The wrench of the platform's mass and pose, in slow motion.
     Mass,
 }
 
 impl WrenchReference {
-    /// In a word, as in the results for machines.
+    /// Returns the name used in the machine-readable results.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -90,7 +89,7 @@ pub struct Replay {
     cables: Vec<CableErrors>,
     wrench_before: WrenchErrors,
     wrench_after: WrenchErrors,
-    /// `None` without mass or geometry, and from the first measured wrench on.
+    /// `None` without mass or geometry, and after the first measured wrench.
     by_mass: Option<ByMass>,
     cycle_count: u64,
     cycle_s: f64,
@@ -101,7 +100,7 @@ pub struct Replay {
 #[derive(Debug)]
 struct ByMass {
     weight: Weight,
-    /// Wrenches by frictionless and by compensated forces, of the cycles that wait for theirs.
+    /// Wrenches by frictionless and by compensated forces, of the cycles whose reference is still pending.
     waiting: VecDeque<Option<(Wrench, Wrench)>>,
     before: WrenchErrors,
     after: WrenchErrors,
@@ -127,28 +126,28 @@ impl ByMass {
     }
 }
 
-/// With these a wrench is none: a cable's force or direction is not known.
+/// With these flags there is no wrench: a cable's force or direction is unknown.
 const NO_WRENCH: CableStatus =
     CableStatus::SENSOR_NOT_FINITE.union(CableStatus::POSE_MISSING).union(CableStatus::POSE_UNREACHABLE);
 
-/// Outcome of one cycle of a replay.
+/// The output of one replayed cycle.
 #[derive(Clone, Copy, Debug)]
 pub struct ReplayedCycle<'a> {
     /// The cables in the robot's order.
     pub cables: &'a [CableOutput],
-    /// Wrench from outside by the compensated forces; `None` also while the pose or a cable's force is not known.
+    /// External wrench by the compensated forces; `None` also while the pose or a cable's force is unknown.
     pub outside_wrench: Option<Wrench>,
-    /// The same as if nothing rubbed.
+    /// The same by the frictionless forces.
     pub frictionless_wrench: Option<Wrench>,
-    /// How long the cycle took, the compensator alone, ns.
+    /// Computing time of the compensator in this cycle, ns.
     pub cycle_ns: u64,
 }
 
 impl Replay {
-    /// A replay with a fresh compensator.
+    /// Creates a replay with a new compensator.
     ///
     /// # Errors
-    /// As [`AnyCompensator::new`].
+    /// Returns the errors of [`AnyCompensator::new`].
     pub fn new(robot: &RobotParams<'_>) -> Result<Self, ParamError> {
         Ok(Self {
             compensator: AnyCompensator::new(robot)?,
@@ -199,7 +198,7 @@ impl Replay {
         ReplayedCycle { cables: self.compensator.outputs(), outside_wrench, frictionless_wrench, cycle_ns }
     }
 
-    /// Wrench from outside in the last cycle as if nothing rubbed; `None` as [`ReplayedCycle::outside_wrench`].
+    /// Returns the external wrench of the last cycle by the frictionless forces; `None` as in [`ReplayedCycle::outside_wrench`].
     #[must_use]
     pub fn frictionless_wrench(&self) -> Option<Wrench> {
         let frictionless_n = self.compensator.outputs().iter().map(|cable| cable.frictionless_n);
@@ -210,13 +209,13 @@ impl Replay {
         !self.compensator.wrench_status().intersects(NO_WRENCH)
     }
 
-    /// Errors of the cables so far, in the robot's order.
+    /// Returns the errors of the cables so far, in the robot's order.
     #[must_use]
     pub fn cables(&self) -> &[CableErrors] {
         &self.cables
     }
 
-    /// Errors of the wrench so far: before, after.
+    /// Returns the errors of the wrench so far: before and after compensation.
     #[must_use]
     pub fn wrench(&self) -> (&WrenchErrors, &WrenchErrors) {
         match &self.by_mass {
@@ -225,13 +224,13 @@ impl Replay {
         }
     }
 
-    /// What the wrench is compared with.
+    /// Returns the reference of the wrench.
     #[must_use]
     pub fn wrench_reference(&self) -> WrenchReference {
         if self.by_mass.is_some() { WrenchReference::Mass } else { WrenchReference::Measured }
     }
 
-    /// Cycles run so far.
+    /// Returns the number of cycles so far.
     #[must_use]
     pub fn cycle_count(&self) -> u64 {
         self.cycle_count

@@ -1,4 +1,4 @@
-//! What is worth knowing about a replay, a sentence each.
+//! Warnings about a replay, one sentence each.
 
 use fric_core::CableStatus;
 use fric_core::robot::file::{CableTable, RobotFile};
@@ -6,19 +6,19 @@ use fric_core::robot::file::{CableTable, RobotFile};
 use super::Replay;
 use crate::fit::readiness::without_reference;
 
-/// Poses come at 10 Hz or faster: a log ends no further than this behind the last one.
+/// Poses come at 10 Hz or faster, so a log ends no later than this after the last one.
 const POSE_INTERVAL_S: f64 = 0.1;
 
 impl Replay {
-    /// Cycles that a log may go on behind its last pose.
+    /// Returns the number of cycles that a log may continue after its last pose.
     fn cycles_between_poses(&self) -> u64 {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive, and saturates")]
         let cycles = (POSE_INTERVAL_S / self.cycle_s).ceil() as u64;
         cycles
     }
 
-    /// What does nothing, what there is no error of, what is not compensated and what was flagged, so far; `robot` is the
-    /// one replayed.
+    /// Returns warnings about inputs that had no effect, missing references, uncompensated cables and flagged cycles so far. `robot` is the replayed
+    /// robot.
     #[must_use]
     pub fn warnings(&self, robot: &RobotFile) -> Vec<String> {
         let mut warnings = robot.warnings();
@@ -36,7 +36,7 @@ impl Replay {
         warnings
     }
 
-    /// What of it is about the cables, whatever they are compared with.
+    /// Returns those warnings that concern the cables, independent of the reference.
     #[must_use]
     pub fn cable_warnings(&self, robot: &RobotFile) -> Vec<String> {
         let mut warnings = Vec::new();
@@ -47,9 +47,9 @@ impl Replay {
             let names = names.join(", ");
             warnings.push(format!("the robot file gives no `friction` for {names}: nothing is compensated there"));
         }
-        // Nothing is extrapolated past the last pose, which is no trouble.
+        // Poses are not extrapolated past the last one, which is no problem.
         let end_count = |count: u64| if count <= self.cycles_between_poses() { count } else { 0 };
-        // Cables with the same trouble share a line.
+        // Cables with the same problem share a line.
         let mut flagged: Vec<(u64, u32, Vec<&str>)> = Vec::new();
         for (name, cable) in robot.cable_names().into_iter().zip(self.cables()) {
             let end_count = end_count(cable.poseless_end_count);

@@ -2,14 +2,14 @@
 
 use super::conditions::{Condition, Spacing};
 
-/// Bins of a condition that hold as many samples each.
+/// Bins of a condition with equal numbers of samples.
 pub struct Bins {
-    /// One more than there are bins.
+    /// Bin edges: one more than there are bins.
     pub edges: Vec<f64>,
 }
 
 impl Bins {
-    /// Over the samples that have both; `None` where all are the same.
+    /// Creates the bins over the samples that have both condition and residual. Returns `None` if the condition is constant.
     pub fn new(condition: &Condition, residual_n: &[f64]) -> Option<Self> {
         let mut sorted: Vec<f64> = condition
             .values
@@ -30,18 +30,18 @@ impl Bins {
         };
         edges.dedup_by(|one, other| one.to_bits() == other.to_bits());
         if let ([low, high], Spacing::Crowds(2 | 3)) = (edges.as_slice(), condition.bins) {
-            // Two values: each a bin of its own.
+            // Two distinct values get a bin each.
             edges = vec![*low, f64::midpoint(*low, *high), *high];
         }
         (edges.len() > 2).then_some(Self { edges })
     }
 
-    /// How many.
+    /// Returns the number of bins.
     pub fn count(&self) -> usize {
         self.edges.len() - 1
     }
 
-    /// The bin of a value.
+    /// Returns the bin of a value.
     pub fn of(&self, value: f64) -> Option<usize> {
         let inside = value.is_finite() && value <= *self.edges.last()?;
         let place = self.edges.partition_point(|edge| *edge <= value);

@@ -1,27 +1,27 @@
-//! The operating conditions of every cycle: what friction may depend on, and a disagreement with the model sit in.
+//! The operating conditions of every cycle: quantities that friction may depend on, and over which a disagreement with the model may be concentrated.
 
 use super::record::{CableRecord, Row};
 use crate::replay::Deviation;
 
-/// Cycles over which rates are taken.
+/// Number of cycles over which rates are computed.
 const RATE_CYCLES: usize = 20;
-/// Most bins of a condition, and of the length, along which a defect is narrow.
+/// Maximum number of bins of a condition, and of the length, along which a defect is narrow.
 const BINS: usize = 16;
 const LENGTH_BINS: usize = 64;
-/// A cable slower than this share of its usual speed rests: where it does is a matter of the run.
+/// A cable slower than this fraction of its usual speed is at rest, and its position there depends only on the run.
 const RESTING_RATIO: f64 = 0.02;
 
-/// How a condition is divided into bins.
+/// The division of a condition into bins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Spacing {
-    /// So many with as many samples each.
+    /// This many bins with equal numbers of samples.
     Crowds(usize),
-    /// So many of the same width.
+    /// This many bins of equal width.
     Widths(usize),
 }
 
 impl Spacing {
-    /// The same with no more than so many bins.
+    /// Returns the same spacing with at most `most` bins.
     pub fn at_most(self, most: usize) -> Self {
         match self {
             Self::Crowds(count) => Self::Crowds(count.min(most)),
@@ -37,13 +37,13 @@ pub struct Condition {
     pub signal: &'static str,
     /// Its unit.
     pub unit: &'static str,
-    /// Its value in each cycle; NaN where it has none.
+    /// Its value in each cycle; NaN if it has none.
     pub values: Vec<f64>,
-    /// How to look at it.
+    /// Its division into bins.
     pub bins: Spacing,
 }
 
-/// All conditions of a cable that its record tells.
+/// Returns all conditions of a cable that its record contains.
 pub fn conditions(record: &CableRecord<'_>) -> Vec<Condition> {
     let mut conditions = Vec::new();
     let mut add = |signal, unit, bins, of_log: &dyn Fn(&[Row]) -> Vec<f64>| {
@@ -83,20 +83,20 @@ pub fn conditions(record: &CableRecord<'_>) -> Vec<Condition> {
     conditions
 }
 
-/// The time: what warms up or wears goes with it.
+/// Returns the time as a condition, for warm-up and wear.
 pub fn time(record: &CableRecord<'_>) -> Condition {
     let values = (0..record.rows.len()).map(|cycle| record.time_s(cycle)).collect();
     Condition { signal: "time", unit: "s", values, bins: Spacing::Crowds(BINS) }
 }
 
-/// Root mean square of the speed, m/s.
+/// Returns the root mean square of the speed, m/s.
 fn usual_speed_m_per_s(record: &CableRecord<'_>) -> f64 {
     let mut speed = Deviation::default();
     record.rows.iter().filter(|row| row.is_sound()).for_each(|row| speed.add(row.signals.speed_m_per_s));
     speed.rms().unwrap_or(0.0)
 }
 
-/// −1, 0 or 1.
+/// Returns −1, 0 or 1.
 pub fn sign(number: f64) -> f64 {
     if number > 0.0 {
         1.0
@@ -107,7 +107,7 @@ pub fn sign(number: f64) -> f64 {
     }
 }
 
-/// Way since the last reversal, m; a cable that rests keeps it.
+/// Returns the distance since the last reversal, m. A cable at rest keeps it.
 fn ways_since_reversal_m(rows: &[Row]) -> Vec<f64> {
     let mut way_m = 0.0_f64;
     rows.iter()
@@ -119,7 +119,7 @@ fn ways_since_reversal_m(rows: &[Row]) -> Vec<f64> {
         .collect()
 }
 
-/// Rates of a signal over some cycles on either side.
+/// Returns the rates of a signal over some cycles on either side.
 fn rates(rows: &[Row], cycle_s: f64, value: fn(&Row) -> f64) -> Vec<f64> {
     let half = RATE_CYCLES / 2;
     let rate = |place: usize| {

@@ -1,21 +1,22 @@
-//! References that were measured less often than the cycle runs: between two measurements there is the line that joins them, and
-//! the line is no measurement. It bends only where something was measured.
+//! Detects references that were measured less often than the cycle runs. Between two measurements such a reference is interpolated linearly, and the
+//! interpolated values are no measurements. Only a measurement bends the line.
 
 use fric_core::Wrench;
 
 use super::record::{CableRecord, Measurements, Row};
 
-/// A log's reference is joined by lines where more than this share of its moving samples lies on the line of their neighbours. A
-/// reference of few digits at the rate of the cycle has less by chance; one with more than a third of that rate has less too.
+/// A log's reference counts as interpolated if more than this fraction of its moving samples lies on the line between their neighbours. A reference
+/// with few digits at the rate of the cycle has a smaller fraction by chance; so does one measured at more than a third of that rate.
 const LEAST_ON_LINE: f64 = 0.25;
-/// And where it bends so often while it moves, Hz: more seldom it is a motion made of lines, measured throughout and without noise.
+/// Minimum rate of bends while the reference changes, Hz. Fewer bends indicate a signal that consists of straight lines, measured throughout and
+/// without noise.
 const LEAST_RATE_HZ: f64 = 10.0;
-/// What rounding bends a line, as a share of its steps, for the times, and of its value.
+/// Bend caused by rounding, as a fraction of a line's steps (rounded times) and of its value.
 const ROUNDING_OF_STEP: f64 = 1e-8;
 const ROUNDING_OF_VALUE: f64 = 8.0 * f64::EPSILON;
 
-/// Which cycles are no cycles between two measurements of the reference: all where it was measured at the rate of the cycle, or is
-/// known.
+/// Returns which cycles are measured rather than interpolated between two measurements of the reference: all if it was measured at the rate of the
+/// cycle, or is known.
 pub fn measured(record: &CableRecord<'_>) -> Vec<bool> {
     if record.reference_is_known {
         return vec![true; record.rows.len()];
@@ -28,7 +29,7 @@ pub fn measured(record: &CableRecord<'_>) -> Vec<bool> {
     record.logs().flat_map(of_log).collect()
 }
 
-/// The same of the wrench, whose components were measured at the same times.
+/// Returns the same for the wrench, whose components were measured at the same times.
 pub fn measured_wrenches(measurements: &Measurements<'_>) -> Vec<bool> {
     let wrenches = &measurements.platform().wrenches;
     let Some(record) = measurements.cables().next() else { return vec![true; wrenches.len()] };
@@ -48,7 +49,7 @@ pub fn measured_wrenches(measurements: &Measurements<'_>) -> Vec<bool> {
     record.logs().flat_map(of_wrenches).collect()
 }
 
-/// For one log: times and references.
+/// Returns the same for one log of times and references.
 fn of_log(points: &[(f64, f64)]) -> Vec<bool> {
     let bends_n: Vec<f64> = (0..points.len()).map(|place| bend_n(points, place).unwrap_or(f64::NAN)).collect();
     let moves = |place: usize| match points.get(place.wrapping_sub(1)..=place) {
@@ -77,7 +78,7 @@ fn of_log(points: &[(f64, f64)]) -> Vec<bool> {
     if count < LEAST_RATE_HZ * moving_s { vec![true; points.len()] } else { measured }
 }
 
-/// By how much the sample after one is off the line through it and the sample before, N; 0 within rounding.
+/// Returns how far the next sample is off the line through this sample and the one before, N; 0 within rounding.
 fn bend_n(points: &[(f64, f64)], place: usize) -> Option<f64> {
     let [(before_s, before_n), (now_s, now_n), (after_s, after_n)] =
         *points.get(place.checked_sub(1)?..=place + 1)?.first_chunk()?;
@@ -95,7 +96,7 @@ mod tests {
 
     use super::*;
 
-    /// A slow wave with noise, measured at some times.
+    /// Returns a slow wave with noise, measured at some times.
     fn knots(times_s: impl Iterator<Item = f64>) -> Vec<(f64, f64)> {
         let mut random = ChaCha8Rng::seed_from_u64(1);
         times_s
@@ -106,7 +107,7 @@ mod tests {
             .collect()
     }
 
-    /// The same at a kilohertz, by the lines between.
+    /// Returns the same series at 1 kHz, interpolated linearly.
     fn joined(knots: &[(f64, f64)]) -> Vec<(f64, f64)> {
         let at = |cycle: i32| {
             let time_s = f64::from(cycle) * 1e-3;
@@ -119,7 +120,7 @@ mod tests {
 
     #[test]
     fn lines_bend_where_something_was_measured() {
-        // At 100 Hz in step with the cycle; between cycles; at times that wander; at 300 Hz.
+        // At 100 Hz in step with the cycle; between cycles; at drifting times; at 300 Hz.
         let wandering = |k: i32| f64::from(k) * 0.01 + 0.004 * (f64::from(k) * 0.7).sin();
         let series: [Vec<(f64, f64)>; 4] = [
             knots((0..502).map(|k| f64::from(k) * 0.01)),
@@ -143,7 +144,7 @@ mod tests {
         }
     }
 
-    /// Lines and corners without noise, such as the acceleration of a motion with a steady jerk.
+    /// Lines and corners without noise, such as the acceleration of a motion with constant jerk.
     #[test]
     fn a_motion_of_lines_is_measured_throughout() {
         let corners = knots((0..22).map(|k| f64::from(k) * 0.25));

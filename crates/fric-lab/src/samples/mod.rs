@@ -1,8 +1,8 @@
-//! The samples of a log as `fit` and `discover` take them.
+//! The samples of a log in the form that `fit` and `discover` use.
 //!
-//! [`record`] conditions a log once into one row per cycle and cable. [`selection`] counts which rows are used and why others are not,
-//! [`interpolated`] finds references on a line between two measurements, [`split`] divides a record into blocks to learn from and blocks held
-//! out. [`conditions`] gives the operating conditions of each cycle, [`bins`] divides their range, [`noise`] estimates the white noise.
+//! [`record`] conditions a log once into one row per cycle and cable. [`selection`] decides which rows are used and why others are not.
+//! [`interpolated`] finds references that lie on a line between two measurements. [`split`] divides a record into training blocks and held-out
+//! blocks. [`conditions`] gives the operating conditions of each cycle, [`bins`] divides their range, and [`noise`] estimates the white noise.
 
 pub mod bins;
 pub mod conditions;

@@ -1,32 +1,31 @@
-//! The noise of sensor and reference together, from the residual alone.
+//! Estimates the noise of sensor and reference together, from the residual alone.
 //!
-//! Differences of fourth order, `(r₀ − 4r₁ + 6r₂ − 4r₃ + r₄)/√70`, leave white noise as it is and all but remove what changes
-//! slowly: whatever the model misses. Their mean square is taken over short blocks, and the median of these, so that a few
-//! stretches with more do not count. A missing sample costs the differences that it is in and nothing else: a block goes on after a
-//! gap. Noise that remembers is not seen by it.
+//! Differences of fourth order, `(r₀ − 4r₁ + 6r₂ − 4r₃ + r₄)/√70`, preserve white noise and nearly remove slow changes, which the model misses. Their
+//! mean square is computed over short blocks, and the median of these is used, so that a few noisier stretches do not count. A missing sample removes
+//! only the differences that contain it: a block continues after a gap. Correlated noise is not detected.
 
-/// Samples of a block.
+/// Number of samples in a block.
 const BLOCK: usize = 200;
 /// Binomial coefficients of the difference, and the root of the sum of their squares.
 const COEFFICIENTS: [f64; 5] = [1.0, -4.0, 6.0, -4.0, 1.0];
 const NORM: f64 = 8.366_600_265_340_756;
-/// How many differences that do not depend on each other the overlapping ones of a block are worth, each.
+/// Number of independent differences that each overlapping difference of a block is worth.
 const INDEPENDENT_RATIO: f64 = 0.3;
 
-/// The mean of a χ² distribution over its median, for the overlapping differences of a block: `(1 − 2/(9·n))⁻³`.
+/// Returns the ratio of the mean of a χ² distribution to its median, for the overlapping differences of a block: `(1 − 2/(9·n))⁻³`.
 fn mean_per_median(block: usize) -> f64 {
     #[expect(clippy::cast_precision_loss, reason = "a small count")]
     let count = INDEPENDENT_RATIO * block as f64;
     (1.0 - 2.0 / (9.0 * count)).powi(-3)
 }
 
-/// Standard deviation of the white noise in a residual, in its unit; NaN where a sample is missing. `None` where all that have four
-/// neighbours do not fill a block.
+/// Returns the standard deviation of the white noise in a residual, in its unit. The residual is NaN where a sample is missing. Returns `None` if the
+/// samples with four neighbours do not fill a block.
 pub fn white_noise(residual: &[f64]) -> Option<f64> {
     white_noise_in(residual, BLOCK)
 }
 
-/// The same over blocks of so many samples, for residuals that are short.
+/// Returns the same over blocks of `block` samples, for short residuals.
 pub(crate) fn white_noise_in(residual: &[f64], block: usize) -> Option<f64> {
     let mut squares = block_squares(residual, block);
     if squares.is_empty() {
@@ -37,8 +36,8 @@ pub(crate) fn white_noise_in(residual: &[f64], block: usize) -> Option<f64> {
     Some((*median * mean_per_median(block)).sqrt())
 }
 
-/// The same of a signal that changes slowly by itself, where the noise is there all the time: `None` where a tenth of the blocks has less than half of it, as steps
-/// of a resolution have while nothing moves.
+/// Returns the same for a signal that itself changes slowly, if the noise is permanent. Returns `None` if a tenth of the blocks has less than half of
+/// it, as with the steps of a resolution while nothing moves.
 pub fn lasting_white_noise(signal: &[f64]) -> Option<f64> {
     let mut squares = block_squares(signal, BLOCK);
     squares.sort_unstable_by(f64::total_cmp);
@@ -46,8 +45,8 @@ pub fn lasting_white_noise(signal: &[f64]) -> Option<f64> {
     (quiet > 0.25 * median).then(|| (median * mean_per_median(BLOCK)).sqrt())
 }
 
-/// The same with the stretches that have more: root mean square over all blocks. An encoder's steps, for one, make noise of a model's
-/// accelerations while the cable moves.
+/// Returns the same including noisier stretches: the root mean square over all blocks. An encoder's steps, for instance, make the accelerations of a
+/// model noisy while the cable moves.
 pub fn white_noise_throughout(residual: &[f64]) -> Option<f64> {
     let squares = block_squares(residual, BLOCK);
     #[expect(clippy::cast_precision_loss, reason = "a count of blocks")]
@@ -55,7 +54,7 @@ pub fn white_noise_throughout(residual: &[f64]) -> Option<f64> {
     (count > 0.0).then(|| (squares.iter().sum::<f64>() / count).sqrt())
 }
 
-/// Mean square of the differences in each block of so many samples.
+/// Returns the mean square of the differences in each block of `block` samples.
 fn block_squares(residual: &[f64], block: usize) -> Vec<f64> {
     let difference =
         |window: &[f64]| window.iter().zip(COEFFICIENTS).map(|(number, factor)| number * factor).sum::<f64>() / NORM;

@@ -1,7 +1,7 @@
-//! What a log holds for an identification: the signals of each cable as the cycle takes them, sample by sample.
+//! The data of a log for an identification: the signals of each cable as the cycle uses them, sample by sample.
 //!
-//! A log is conditioned once ([`fric_core::signals`]) and then evaluated many times. Memory: 80 bytes a sample and cable,
-//! and 8 a sample; for a fit to the wrench 48 bytes more for each cable and 150 for the platform.
+//! A log is conditioned once ([`fric_core::signals`]) and then evaluated many times. Memory: 80 bytes per sample and cable plus 8 per sample; a fit
+//! to the wrench needs 48 more per cable and 150 for the platform.
 
 use std::ops::Range;
 
@@ -14,21 +14,21 @@ use nalgebra::Vector6;
 use super::noise::lasting_white_noise;
 use crate::clock::Clock;
 
-/// What a fit compares the model with, and so what has to be kept of a sample.
+/// The reference that a fit compares the model with; it decides what is kept of a sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Reference {
     /// Cable forces measured at the platform (\[P\] 18).
     #[default]
     Forces,
-    /// The outside wrench on the platform: measured, or else by the platform's mass.
+    /// The external wrench on the platform: measured, or else computed from the platform's mass.
     Wrench,
 }
 
 impl Reference {
-    /// Both.
+    /// All references.
     pub const ALL: [Self; 2] = [Self::Forces, Self::Wrench];
 
-    /// In a word.
+    /// Returns the name.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -41,20 +41,20 @@ impl Reference {
 /// One cycle of one cable.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
-    /// Signals as the friction takes them; the length is NaN before the first.
+    /// Signals as the friction model uses them; the length is NaN before the first one.
     pub signals: Conditioned<f64>,
     /// Wrap of the pulley that follows the pose.
     pub pose_wrap: PoseWrap,
-    /// Cable force measured at the platform, N; NaN where there is none.
+    /// Cable force measured at the platform, N; NaN if there is none.
     pub reference_n: f64,
-    /// No pose that can be used, for a cable that needs one.
+    /// Whether a cable that needs a pose has no usable one.
     pub pose_fault: bool,
-    /// Cycles since the first of its log.
+    /// Cycles since the first one of its log.
     pub cycle: f64,
 }
 
 impl Row {
-    /// Whether a fit can learn from the cycle: no fault of sensor, motion or pose, and tension on the cable.
+    /// Whether a fit can use the cycle: no fault of sensor, motion or pose, and tension on the cable.
     #[must_use]
     pub fn is_sound(&self) -> bool {
         !self.signals.hold() && !self.pose_fault && self.signals.sensor_force_n > 0.0
@@ -68,7 +68,7 @@ pub struct PlatformRecord {
     pub structure: Vec<Vector6<f64>>,
     /// Pose of each cycle.
     pub poses: Vec<Option<Pose>>,
-    /// Measured outside wrench of each cycle.
+    /// Measured external wrench of each cycle.
     pub wrenches: Vec<Option<Wrench>>,
 }
 
@@ -88,7 +88,7 @@ pub struct Measurements<'a> {
     pose_wraps: Vec<PoseWrap>,
 }
 
-/// Where the time of the present log begins.
+/// The start of the present log's time.
 #[derive(Clone, Copy, Debug, Default)]
 struct LogStart {
     first_nanos: Option<i64>,
@@ -96,7 +96,7 @@ struct LogStart {
 }
 
 impl<'a> Measurements<'a> {
-    /// None yet, of a robot.
+    /// Creates empty measurements for a robot.
     #[must_use]
     pub fn new(robot: &RobotParams<'a>, reference: Reference) -> Self {
         let count = robot.cables().len();
@@ -115,7 +115,7 @@ impl<'a> Measurements<'a> {
         }
     }
 
-    /// The samples that follow are of another log: what a cable remembers does not go over.
+    /// Starts another log: the memory of a cable does not carry over.
     pub fn start_log(&mut self) {
         self.clock = Clock::new(self.robot.cycle_s());
         self.cycle = BEFORE_FIRST;
@@ -128,7 +128,7 @@ impl<'a> Measurements<'a> {
         }
     }
 
-    /// Takes in the next sample of the log.
+    /// Adds the next sample of the log.
     pub fn add(&mut self, sample: &Sample<'_>) {
         if self.starts.is_empty() {
             self.start_log();
@@ -167,19 +167,19 @@ impl<'a> Measurements<'a> {
         }
     }
 
-    /// The robot.
+    /// Returns the robot.
     #[must_use]
     pub fn robot(&self) -> &RobotParams<'a> {
         &self.robot
     }
 
-    /// What is kept to compare with.
+    /// Returns the reference that is kept.
     #[must_use]
     pub fn reference(&self) -> Reference {
         self.reference
     }
 
-    /// The same with other cycles of some cables.
+    /// Returns the same measurements with other cycles for some cables.
     pub(crate) fn with_rows(&self, rows: &[Option<Vec<Row>>]) -> Self {
         let mut changed = self.clone();
         for (cable, rows) in changed.cables.iter_mut().zip(rows) {
@@ -190,25 +190,25 @@ impl<'a> Measurements<'a> {
         changed
     }
 
-    /// How many samples.
+    /// Returns the number of samples.
     #[must_use]
     pub fn len(&self) -> usize {
         self.cables.first().map_or(0, Vec::len)
     }
 
-    /// Whether there is none.
+    /// Whether there are no samples.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// When each log begins, s: several logs are one after the other.
+    /// Returns the start of each log, s. Several logs follow one another.
     #[must_use]
     pub fn log_starts_s(&self) -> Vec<f64> {
         self.starts.iter().map(|start| self.times_s.get(*start).copied().unwrap_or(0.0)).collect()
     }
 
-    /// A cable's parameters and its cycles; `None` past the robot's cables.
+    /// Returns a cable's parameters and cycles; `None` past the robot's cables.
     #[must_use]
     pub fn cable(&self, index: usize) -> Option<CableRecord<'_>> {
         let (params, rows) = (self.robot.cables().get(index)?, self.cables.get(index)?);
@@ -220,27 +220,27 @@ impl<'a> Measurements<'a> {
         Some(CableRecord { params, rows, starts, times_s, cycle_s, interval_s, reference_is_known, length_play_m })
     }
 
-    /// All cables in order.
+    /// Returns all cables in order.
     pub fn cables(&self) -> impl Iterator<Item = CableRecord<'_>> {
         (0..self.cables.len()).filter_map(|index| self.cable(index))
     }
 
-    /// The platform; empty unless the reference is the wrench.
+    /// Returns the platform; empty unless the reference is the wrench.
     pub(crate) fn platform(&self) -> &PlatformRecord {
         &self.platform
     }
 
-    /// The pose of each sample; empty unless the reference is the wrench.
+    /// Returns the pose of each sample; empty unless the reference is the wrench.
     pub(crate) fn poses(&self) -> &[Option<Pose>] {
         &self.platform.poses
     }
 
-    /// Columns of the structure matrix, all cables of a sample one after the other; empty unless the reference is the wrench.
+    /// Returns the columns of the structure matrix, all cables of a sample one after the other; empty unless the reference is the wrench.
     pub(crate) fn structure(&self) -> &[Vector6<f64>] {
         &self.platform.structure
     }
 
-    /// Where each log begins.
+    /// Returns the index of the first sample of each log.
     pub(crate) fn starts(&self) -> &[usize] {
         &self.starts
     }
@@ -248,7 +248,7 @@ impl<'a> Measurements<'a> {
 
 const NOTHING: CableInput = CableInput { sensor_force_n: f64::NAN, length_m: f64::NAN, speed_m_per_s: f64::NAN };
 
-/// Median time between two samples, s; `None` of fewer than two, or where most have the stamp of the one before.
+/// Returns the median time between two samples, s; `None` for fewer than two, or if most have the stamp of the one before.
 fn usual_interval_s(times_s: &[f64]) -> Option<f64> {
     let mut intervals: Vec<f64> = times_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let middle = intervals.len() / 2;
@@ -256,37 +256,37 @@ fn usual_interval_s(times_s: &[f64]) -> Option<f64> {
     median.filter(|interval_s| *interval_s > 0.0)
 }
 
-/// Half the play that keeps noise of the length out best, as a multiple of the noise's standard deviation. With one of 1σ the rms of a log of `3 µm` comes to 1.42 of its noise, of 2σ to 1.03, of 3σ to 1.09, of
-/// 4σ to 1.21; without, to 3.7.
+/// Half width of the play that suppresses noise of the length best, as a multiple of the noise's standard deviation. On a log with noise of 3 µm, the
+/// rms is 1.42 of its noise with 1σ, 1.03 with 2σ, 1.09 with 3σ, 1.21 with 4σ, and 3.7 without play.
 pub const PLAY_OF_NOISE: f64 = 2.0;
 
 /// The cycles of one cable.
 #[derive(Clone, Copy, Debug)]
 pub struct CableRecord<'a> {
-    /// Its parameters as they were.
+    /// Its given parameters.
     pub params: &'a CableParams,
     /// Its cycles, one log after the other.
     pub rows: &'a [Row],
     pub(crate) starts: &'a [usize],
     pub(crate) times_s: &'a [f64],
-    /// What the loop runs at, s: the duration of a cycle.
+    /// Cycle time of the control loop, s.
     pub cycle_s: f64,
-    /// What the log was recorded at, s: the time between two samples for the most part.
+    /// Usual time between two samples of the log, s.
     pub interval_s: f64,
-    /// The reference was not measured: it may be constant, and is no line between measurements.
+    /// Whether the reference is known rather than measured: it may then be constant, and does not count as interpolated.
     pub(crate) reference_is_known: bool,
-    /// What of the measured length counts as noise to either side, and not as motion, m.
+    /// Play to either side within which a change of the measured length counts as noise, m.
     pub(crate) length_play_m: f64,
 }
 
 impl<'a> CableRecord<'a> {
-    /// A stretch of its cycles, as a log of its own.
+    /// Returns a stretch of its cycles, as a log of its own.
     pub(crate) fn stretch(&self, cycles: &Range<usize>) -> Self {
         let rows = self.rows.get(cycles.clone()).unwrap_or_default();
         Self { rows, starts: &[0], times_s: self.times_s.get(cycles.clone()).unwrap_or_default(), ..*self }
     }
 
-    /// Other cycles of the same cable, as one log.
+    /// Returns other cycles of the same cable, as one log.
     pub(crate) fn as_one_log<'b>(&self, rows: &'b [Row]) -> CableRecord<'b>
     where
         'a: 'b,
@@ -294,7 +294,7 @@ impl<'a> CableRecord<'a> {
         CableRecord { rows, starts: &[0], times_s: &[], ..*self }
     }
 
-    /// The same cycles with other parameters to start from.
+    /// Returns the same cycles with other start parameters.
     pub(crate) fn with_params<'b>(&self, params: &'b CableParams) -> CableRecord<'b>
     where
         'a: 'b,
@@ -302,7 +302,7 @@ impl<'a> CableRecord<'a> {
         CableRecord { params, ..*self }
     }
 
-    /// The same cycles with other signals.
+    /// Returns the same cycles with other signals.
     pub(crate) fn with_signals<'b>(&self, rows: &'b [Row]) -> CableRecord<'b>
     where
         'a: 'b,
@@ -310,7 +310,7 @@ impl<'a> CableRecord<'a> {
         CableRecord { rows, ..*self }
     }
 
-    /// Standard deviation of the white noise of the length, m; `None` where none is there all the time.
+    /// Returns the standard deviation of the white noise of the length, m; `None` if there is no permanent noise.
     pub(crate) fn length_noise_m(&self) -> Option<f64> {
         let of_log = |(_, rows): (usize, &[Row])| {
             rows.iter().map(|row| row.signals.length_m).chain([f64::NAN]).collect::<Vec<f64>>()
@@ -318,7 +318,7 @@ impl<'a> CableRecord<'a> {
         lasting_white_noise(&self.logs().flat_map(of_log).collect::<Vec<f64>>())
     }
 
-    /// The same with cycles that were conditioned with a play of so much.
+    /// Returns the record with cycles that were conditioned with this play.
     pub(crate) fn behind_play<'b>(&self, rows: &'b [Row], length_play_m: f64) -> CableRecord<'b>
     where
         'a: 'b,
@@ -326,7 +326,7 @@ impl<'a> CableRecord<'a> {
         CableRecord { rows, length_play_m, ..*self }
     }
 
-    /// Its cycles, conditioned anew by other limits.
+    /// Returns its cycles, conditioned again with other limits.
     pub(crate) fn conditioned(&self, limits: &SignalLimits) -> Vec<Row> {
         let mut rows = Vec::with_capacity(self.rows.len());
         for (_, log) in self.logs() {
@@ -351,7 +351,7 @@ impl<'a> CableRecord<'a> {
         rows
     }
 
-    /// When a cycle is, s since the first sample; several logs one after the other.
+    /// Returns the time of a cycle, s since the first sample. Several logs follow one another.
     #[must_use]
     pub fn time_s(&self, cycle: usize) -> f64 {
         let (past, last_s) = match self.times_s {
@@ -363,7 +363,7 @@ impl<'a> CableRecord<'a> {
         self.times_s.get(cycle).copied().unwrap_or(without_pause_s)
     }
 
-    /// The cycles of each log, with the place of the first.
+    /// Returns the cycles of each log, with the index of the first.
     pub fn logs(&self) -> impl Iterator<Item = (usize, &'a [Row])> {
         let rows = self.rows;
         let ends = self.starts.iter().skip(1).copied().chain([rows.len()]);

@@ -1,27 +1,27 @@
-//! Which samples a fit learns from, and why not from the others.
+//! Selects the samples that a fit uses, with the reasons for leaving out the others.
 
 use fric_core::parameters::{MU, SIGMA, Values};
 
 use super::record::{CableRecord, Row};
 
-/// How many samples count, and how many not for which reason. Every sample is in one of these.
+/// Counts of used samples, and of samples left out by reason. Every sample is counted once.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SampleCounts {
-    /// Learned from.
+    /// Samples used for training.
     pub used: usize,
-    /// Faulty sensor, motion or pose, or no tension.
+    /// Samples with a faulty sensor, motion or pose, or without tension.
     pub flagged: usize,
-    /// No reference, or one that stood still while the cable moved.
+    /// Samples without a reference, or with one that is frozen while the cable moves.
     pub without_reference: usize,
-    /// Between two measurements of the reference, which has been joined by lines.
+    /// Samples between two measurements of a linearly interpolated reference.
     pub interpolated: usize,
-    /// From the start of a log until what the pulleys had stored before no longer matters.
+    /// Samples at the start of a log, until the friction stored before no longer matters.
     pub warm_up: usize,
-    /// Too far from everything else to be a measurement.
+    /// Samples too far from the others to be measurements.
     pub outliers: usize,
 }
 
-/// Where a sample is counted.
+/// The standing of a sample: used, or the reason why not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Standing {
     Used,
@@ -32,19 +32,18 @@ pub enum Standing {
     Outlier,
 }
 
-/// A reference that keeps its last bit over this way of the cable is no measurement, m.
+/// A reference that stays bit-identical while the cable travels this distance is no measurement, m.
 const STILL_TRAVEL_M: f64 = 1e-3;
-/// Fewest samples in a row with the same reference for that.
+/// Minimum number of consecutive samples with the same reference for that.
 const STILL_COUNT: usize = 20;
-/// What is left of the friction stored at the start of a log when it no longer matters.
+/// Remaining fraction of the friction stored at the start of a log at which it no longer matters.
 const FORGOTTEN: f64 = 1e-3;
-/// A log's way, as a multiple of what it takes to forget, from which on it is used at all.
+/// Minimum travel of a log, as a multiple of the distance of the warm-up, for the log to be used.
 const LEAST_WAY_RATIO: f64 = 1.25;
-/// A cable that moves less than this at all rests, whatever its winch does to hold the force, m.
+/// A cable with a smaller range of motion is at rest, even if its winch moves to hold the force, m.
 const LEAST_RANGE_M: f64 = 3e-5;
 
-/// Standing of each sample before anything is known about the friction; `has_reference` says whether there is something
-/// to compare with.
+/// Returns the standing of each sample before anything is known about the friction. `has_reference` says whether a sample has a reference.
 pub fn first_look(record: &CableRecord<'_>, has_reference: impl Fn(usize, &Row) -> bool) -> Vec<Standing> {
     let standing = |(place, row): (usize, &Row)| {
         if !row.is_sound() {
@@ -58,7 +57,7 @@ pub fn first_look(record: &CableRecord<'_>, has_reference: impl Fn(usize, &Row) 
     record.rows.iter().enumerate().map(standing).collect()
 }
 
-/// Takes out references that stand still to the last bit while the cable moves.
+/// Leaves out references that are bit-identical while the cable moves.
 pub fn leave_out_still_references(record: &CableRecord<'_>, standings: &mut [Standing]) {
     let mut start = 0;
     for run in record.rows.chunk_by(|one, next| one.reference_n.to_bits() == next.reference_n.to_bits()) {
@@ -71,16 +70,16 @@ pub fn leave_out_still_references(record: &CableRecord<'_>, standings: &mut [Sta
     }
 }
 
-/// Takes out references that nobody measured, but lines between two measurements give.
+/// Leaves out references that were interpolated between two measurements.
 pub fn leave_out_interpolated(measured: &[bool], standings: &mut [Standing]) {
     let rows = standings.iter_mut().zip(measured).filter(|(standing, _)| **standing == Standing::Used);
     rows.filter(|(_, measured)| !**measured).for_each(|(standing, _)| *standing = Standing::Interpolated);
 }
 
-/// Takes out the start of each log, until the friction stored before is forgotten.
+/// Leaves out the start of each log, until the friction stored before is forgotten.
 ///
-/// Whatever way a cable moves, `exp(−Σσ|Δl|/f_c)` of the stored friction is left, with σ and f_c of the pulley that keeps
-/// it longest; `values` need to be right to some ten per cent only.
+/// After travel of a cable, `exp(−Σσ|Δl|/f_c)` of the stored friction remains, with σ and f_c of the pulley that keeps it longest. `values` only need
+/// to be right to some ten per cent.
 pub fn leave_out_warm_up(record: &CableRecord<'_>, values: &Values, standings: &mut [Standing]) {
     let memory_m = record.params.memory_m_per_n(values[MU], values[SIGMA]);
     if memory_m <= 0.0 {
@@ -93,8 +92,8 @@ pub fn leave_out_warm_up(record: &CableRecord<'_>, values: &Values, standings: &
     }
 }
 
-/// How many cycles of a log it takes to forget; all where its cable moves hardly further than that, or rests: such a log tells
-/// nothing that could be relied on.
+/// Returns the number of warm-up cycles of a log: all of them if its cable hardly moves further than that or is at rest, because such a log is
+/// unreliable.
 fn warm_up(rows: &[Row], memory_m: f64) -> usize {
     let forgotten = -FORGOTTEN.ln();
     let (mut exponent, mut cycles) = (0.0, 0);
@@ -112,7 +111,7 @@ fn warm_up(rows: &[Row], memory_m: f64) -> usize {
     rows.len()
 }
 
-/// Counts them.
+/// Counts the samples by standing.
 pub fn count(standings: &[Standing]) -> SampleCounts {
     let of = |wanted: Standing| standings.iter().filter(|standing| **standing == wanted).count();
     SampleCounts {

@@ -1,14 +1,14 @@
-//! Which samples are learned from, and which are held out to judge by.
+//! Divides the samples into training samples and held-out samples.
 //!
-//! The log is cut into blocks of equal length; of each two neighbours one is learned from and the other held out, by a
-//! fixed draw, so that no rhythm of the run falls in step with it. The model runs through all of them, for friction
-//! remembers; only what is compared differs.
+//! The log is cut into blocks of equal length. Of every two neighbouring blocks one is used for training and the other held out, by a fixed
+//! pseudo-random draw, so that no rhythm of the run coincides with it. The model runs through all blocks, because friction has memory; only the
+//! comparison differs.
 
 use std::ops::Range;
 
 use super::record::CableRecord;
 
-/// Most blocks of a log, and what they last at least, s.
+/// Maximum number of blocks of a log, and their minimum duration, s.
 const MOST_BLOCKS: f64 = 48.0;
 const SHORTEST_S: f64 = 0.25;
 
@@ -17,20 +17,20 @@ const SHORTEST_S: f64 = 0.25;
 pub struct Block {
     /// Its cycles.
     pub cycles: Range<usize>,
-    /// Held out from the fit.
+    /// Whether the block is held out from the fit.
     pub held_out: bool,
 }
 
-/// Blocks of all logs of a cable, in order.
+/// Returns the blocks of all logs of a cable, in order.
 pub fn split(record: &CableRecord<'_>) -> Vec<Block> {
     let mut draw = DRAW;
     record.logs().flat_map(|(start, rows)| cut(start..start + rows.len(), record.interval_s, &mut draw)).collect()
 }
 
-/// Where the draw begins.
+/// Seed of the draw.
 pub(crate) const DRAW: u32 = 0x9e37_79b9;
 
-/// Blocks of one log.
+/// Returns the blocks of one log.
 pub(crate) fn cut(log: Range<usize>, interval_s: f64, draw: &mut u32) -> Vec<Block> {
     #[expect(clippy::cast_precision_loss, reason = "a count of cycles")]
     let longest = (log.len() as f64 * interval_s / SHORTEST_S).floor();
@@ -40,7 +40,7 @@ pub(crate) fn cut(log: Range<usize>, interval_s: f64, draw: &mut u32) -> Vec<Blo
     let mut first_held_out = false;
     let block = |place: usize| {
         if place.is_multiple_of(2) {
-            // xorshift: one bit a pair.
+            // xorshift: one bit per pair of blocks.
             *draw ^= *draw << 13;
             *draw ^= *draw >> 17;
             *draw ^= *draw << 5;

@@ -1,15 +1,15 @@
-//! Numbers that carry their derivatives along: the [`Scalar`] with which the cycle's equations are differentiated.
+//! Dual numbers, which carry derivatives along: the [`Scalar`] that differentiates the cycle's equations.
 //!
-//! `value + Σ gradient_k·ε_k` with `ε_j·ε_k = 0`: every operation follows the chain rule exactly, so a result holds the
-//! derivatives of what the equations computed, to rounding. Comparisons look at the value alone; at a kink the derivative is
-//! that of the branch taken, and that of a magnitude at 0 is 0.
+//! A dual number is `value + Σ gradient_k·ε_k` with `ε_j·ε_k = 0`. Every operation follows the chain rule exactly, so a result holds the derivatives
+//! of the computed equations, to rounding. Comparisons use the value alone. At a kink the derivative is that of the branch taken; the derivative of a
+//! magnitude at 0 is 0.
 #![allow(clippy::inline_always, reason = "a call in the cycle's equations would pass the derivatives through memory")]
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use fric_core::scalar::Scalar;
 
-/// A number, or several side by side, with the derivatives by `N` parameters.
+/// A number, or several side by side, with the derivatives with respect to `N` parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dual<V, const N: usize> {
     /// The number.
@@ -19,20 +19,20 @@ pub struct Dual<V, const N: usize> {
 }
 
 impl<V: Scalar, const N: usize> Dual<V, N> {
-    /// A number that does not depend on any parameter.
+    /// Creates a number that does not depend on any parameter.
     #[inline(always)]
     #[must_use]
     pub fn constant(value: V) -> Self {
         Self { value, gradient: [V::splat(0.0); N] }
     }
 
-    /// `value` with the derivatives scaled, the chain rule of one argument.
+    /// Returns `value` with the derivatives scaled by `slope`: the chain rule for one argument.
     #[inline(always)]
     fn chain(self, value: V, slope: V) -> Self {
         Self { value, gradient: self.gradient.map(|part| slope * part) }
     }
 
-    /// `value` with derivatives made of those of both.
+    /// Returns `value` with derivatives combined from those of both arguments.
     #[inline(always)]
     fn combine(self, other: Self, value: V, part: impl Fn(V, V) -> V) -> Self {
         Self { value, gradient: std::array::from_fn(|k| part(self.gradient[k], other.gradient[k])) }
@@ -157,7 +157,7 @@ impl<V: Scalar, const N: usize> Scalar for Dual<V, N> {
 mod tests {
     use super::*;
 
-    /// Each operation against the central difference of the same expression in plain numbers.
+    /// Compares each operation with the central difference of the same expression in plain numbers.
     #[test]
     fn every_operation_follows_the_chain_rule() {
         fn expression<T: Scalar>(x: T, y: T) -> [T; 14] {
@@ -199,8 +199,8 @@ mod tests {
         }
     }
 
-    /// The exponent of Dahl's law by its closed form near 1, where the form itself is no use:
-    /// `ln(u'/u) = −w·g(b·w)` with `w = k·e^{bL}`, `L = ln u`, as a series in `b = a − 1`.
+    /// Compares the exponent of Dahl's law near 1 with a series in `b = a − 1`, because the closed form itself is singular there: `ln(u'/u) =
+    /// −w·g(b·w)` with `w = k·e^{bL}`, `L = ln u`.
     #[test]
     fn the_exponent_of_presliding_has_its_derivative_at_one() {
         use fric_core::effects::presliding_shape::PreslidingShape;
@@ -220,7 +220,7 @@ mod tests {
                 let constant = Dual::<f64, 1>::constant;
                 let [start, sliding, sigma] = [start_n, sliding_n, sigma].map(constant);
                 let stepped = PreslidingShape { exponent }.step(start, sliding, sigma, constant(displacement_m));
-                // What the series leaves out is of the third order in b, and of the second in the derivative.
+                // The neglected terms are of third order in b, and of second order in the derivative.
                 let rest = 50.0 * beyond * beyond + 1e-12;
                 assert!((stepped.value - s * sliding_n * (1.0 - left)).abs() < rest, "{start_n} {beyond:e}");
                 let derivative = -s * sliding_n * left * slope;

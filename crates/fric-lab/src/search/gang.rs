@@ -1,9 +1,8 @@
-//! Several searches, each with its own cable, whose passes run side by side.
+//! Runs the passes of several searches side by side, each with its own cable.
 //!
-//! A pass over one cable waits for its own results most of the time: the friction of a cycle needs that of the cycle before. Four
-//! cables in the lanes of one pass take hardly longer than one. So up to [`LANES`] searches form a gang: each, when it needs a pass, waits
-//! until all others want one too or have ended; the last one to come runs it for all. What a search gets does not depend on
-//! who else is there: lanes do not know of each other.
+//! A pass over one cable mostly waits for its own results, because the friction of a cycle needs that of the cycle before. Four cables in the lanes
+//! of one pass take hardly longer than one. So up to [`LANES`] searches form a gang. A search that needs a pass waits until all others need one too
+//! or have ended; the last one to arrive runs the pass for all. The result of a search does not depend on the others, because lanes do not interact.
 
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -17,10 +16,10 @@ use rayon::prelude::*;
 use super::pass::{Forces, LanePass, Part, room_for, with_room_for};
 use super::vector::Parameter;
 
-/// Samples between two looks at the request to stop.
+/// Samples between two checks of the stop flag.
 const CHUNK: usize = 2048;
 
-/// Searches that wait for each other's passes.
+/// A group of searches that run their passes together.
 #[derive(Debug)]
 pub struct Gang<'a> {
     seats: Mutex<Vec<State<'a>>>,
@@ -28,20 +27,20 @@ pub struct Gang<'a> {
     stop: &'a AtomicBool,
 }
 
-/// What a search is about.
+/// The state of a search.
 #[derive(Debug)]
 enum State<'a> {
-    /// On its own.
+    /// The search runs on its own.
     Busy,
-    /// Waits for a pass, with the room for it.
+    /// The search waits for a pass and holds the buffer for its result.
     Waiting(Box<Part<'a>>, Forces),
-    /// Its pass is done, `None` when stopped, and it has yet to notice.
+    /// The pass is done (`None` if stopped), but the search has not picked it up.
     Served(Option<Forces>),
-    /// Ended.
+    /// The search has ended.
     Gone,
 }
 
-/// The place of one search in a gang; it counts as ended when this is dropped.
+/// The seat of one search in a gang. Dropping it ends the search's membership.
 #[derive(Debug)]
 pub struct Seat<'a> {
     gang: &'a Gang<'a>,
@@ -49,36 +48,36 @@ pub struct Seat<'a> {
     last: RefCell<Option<Last<'a>>>,
 }
 
-/// What was asked for last, and what came out.
+/// The last request and its result.
 #[derive(Debug)]
 struct Last<'a> {
     part: Part<'a>,
     forces: Arc<Forces>,
-    /// Whether they were moved from where they came out.
+    /// Whether the forces were extrapolated from those of the pass.
     moved: bool,
 }
 
 impl<'a> Gang<'a> {
-    /// Of so many searches, at most [`LANES`]; each has to take its [`Seat`].
+    /// Creates a gang of `count` searches, at most [`LANES`]. Each search must take its [`Seat`].
     pub fn new(count: usize, stop: &'a AtomicBool) -> Self {
         let seats = (0..count.min(LANES)).map(|_| State::Busy).collect();
         Self { seats: Mutex::new(seats), turn: Condvar::new(), stop }
     }
 
-    /// The seat of a search.
+    /// Returns the seat of a search.
     pub fn seat(&'a self, place: usize) -> Seat<'a> {
         Seat { gang: self, place, last: RefCell::new(None) }
     }
 
-    /// A search that panicked has left its state whole: each change of it is a single one.
+    /// Locks the states. A search that panicked leaves its state consistent, because each change is a single assignment.
     fn lock(&self) -> MutexGuard<'_, Vec<State<'a>>> {
         self.seats.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 impl<'a> Seat<'a> {
-    /// Forces of a cable in every cycle, with the derivatives that its part asks for, or more; `None` when stopped. Those of the
-    /// last pass are at hand.
+    /// Returns the forces of a cable in every cycle, with at least the derivatives that its part asks for; `None` if stopped. The forces of the last
+    /// pass are cached.
     pub fn forces(&self, part: &Part<'a>) -> Option<Arc<Forces>> {
         if let Some(last) = self.last.borrow().as_ref().filter(|last| last.part.serves(part)) {
             return Some(Arc::clone(&last.forces));
@@ -89,7 +88,7 @@ impl<'a> Seat<'a> {
         Some(forces)
     }
 
-    /// Moves the forces of the last pass by their derivatives, should they be those `at`, to what they are for other `values`.
+    /// If the forces of the last pass belong to `at`, extrapolates them by their derivatives to other `values`.
     pub fn step(&self, at: &Part<'a>, values: &Values) {
         if let Some(last) = self.last.borrow_mut().as_mut().filter(|last| last.part.serves(at)) {
             let change = |of: &Parameter| values[of.place()] - last.part.values[of.place()];
@@ -100,7 +99,7 @@ impl<'a> Seat<'a> {
         }
     }
 
-    /// Forgets forces that were moved: the next are those of a pass, to the last bit.
+    /// Discards extrapolated forces, so that the next ones come from a pass, to the last bit.
     pub fn forget_moved(&self) {
         self.last.borrow_mut().take_if(|last| last.moved);
     }
@@ -138,8 +137,8 @@ impl Drop for Seat<'_> {
     }
 }
 
-/// Runs the passes of those that wait for the fewest cycles, with as many derivatives, together; the others wait on, for these may
-/// join them. Nobody else has anything to do meanwhile.
+/// Runs a joint pass for those waiting searches that need the fewest cycles and equal numbers of derivatives. The others keep waiting, because these
+/// may join them later. No other search has work to do meanwhile.
 fn serve(seats: &mut [State<'_>], stop: &AtomicBool) {
     let wish = |seat: &State<'_>| match seat {
         State::Waiting(part, _) => Some((part.record.rows.len(), room_for(part.carried()))),
@@ -165,7 +164,7 @@ fn serve_together<const N: usize>(waiting: Vec<(&mut State<'_>, (Part<'_>, Force
     }
 }
 
-/// Forces of several cables in every cycle, as many side by side as there are lanes; `None` when stopped.
+/// Returns the forces of several cables in every cycle, as many in parallel as there are lanes; `None` if stopped.
 pub fn forces_of(parts: &[Part<'_>], stop: &AtomicBool) -> Option<Vec<Forces>> {
     let of_lanes = |parts: &[Part<'_>]| {
         let rooms = vec![Forces::default(); parts.len()];
@@ -176,7 +175,7 @@ pub fn forces_of(parts: &[Part<'_>], stop: &AtomicBool) -> Option<Vec<Forces>> {
     Some(all?.into_iter().flatten().collect())
 }
 
-/// Forces of up to [`LANES`] cables in every cycle, in the room given for each; `None` when stopped.
+/// Computes the forces of up to [`LANES`] cables in every cycle, in the buffer given for each; returns `None` if stopped.
 pub fn all_forces<const N: usize>(
     parts: &[Part<'_>],
     mut forces: Vec<Forces>,

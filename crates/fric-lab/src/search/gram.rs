@@ -1,17 +1,16 @@
-//! A least-squares problem reduced to as many rows as it has parameters.
+//! Reduces a least-squares problem to as many rows as it has parameters.
 //!
-//! For: residuals `r` and Jacobian `J` of any number of samples, taken in row by row, as the upper triangle `R` and the
-//! vector `q` with `RᵀR = JᵀJ`, `Rᵀq' = Jᵀr` and `‖q‖ = ‖r‖`: everything that Levenberg–Marquardt looks at. Memory does not
-//! grow with the log. By normal equations of columns scaled to unit length: the condition number is squared, which costs
-//! half the digits of a nearly undetermined parameter and nothing of the others; sums are taken in blocks, so that
-//! rounding does not grow with the number of samples.
+//! The residuals `r` and the Jacobian `J` of any number of samples are added row by row and reduced to the upper triangle `R` and the vector `q` with
+//! `RᵀR = JᵀJ`, `Rᵀq' = Jᵀr` and `‖q‖ = ‖r‖`, which is all that Levenberg–Marquardt uses. Memory does not grow with the log. The reduction uses
+//! normal equations of columns scaled to unit length. This squares the condition number, which costs half the digits of a nearly undetermined
+//! parameter and nothing of the others. Sums are computed in blocks, so that rounding errors do not grow with the number of samples.
 
 use nalgebra::{DMatrix, DVector};
 
-/// Rows that are summed up before they join the rest.
+/// Number of rows that are summed up before they are added to the total.
 const BLOCK: usize = 1024;
 
-/// `[J r]ᵀ[J r]`, the upper triangle column by column.
+/// The upper triangle of `[J r]ᵀ[J r]`, stored column by column.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gram {
     columns: usize,
@@ -21,14 +20,14 @@ pub struct Gram {
 }
 
 impl Gram {
-    /// Of no rows yet, for `parameters` columns beside the residual.
+    /// Creates an empty sum for `parameters` columns beside the residual.
     pub fn new(parameters: usize) -> Self {
         let columns = parameters + 1;
         let count = columns * (columns + 1) / 2;
         Self { columns, sums: vec![0.0; count], block: vec![0.0; count], in_block: 0 }
     }
 
-    /// Takes in one row: the derivatives of a residual, then the residual.
+    /// Adds one row: the derivatives of a residual, then the residual.
     #[inline]
     pub fn add(&mut self, row: &[f64]) {
         add_products(&mut self.block, row);
@@ -45,7 +44,7 @@ impl Gram {
         self.in_block = 0;
     }
 
-    /// `JᵀJ`, `Jᵀr` and `rᵀr`.
+    /// Returns `JᵀJ`, `Jᵀr` and `rᵀr`.
     pub fn normal_equations(&self) -> (DMatrix<f64>, DVector<f64>, f64) {
         let entry = |row: usize, column: usize| {
             let (low, high) = (row.min(column), row.max(column));
@@ -61,7 +60,7 @@ impl Gram {
 /// Adds the products of all pairs of numbers to a triangle of sums, column by column.
 #[inline]
 pub fn add_products(sums: &mut [f64], numbers: &[f64]) {
-    // Nearly every fit has four parameters, and a residual with them.
+    // Nearly every fit has four parameters, plus the residual.
     match numbers.len() {
         4 => add_products_of::<4>(sums, numbers),
         5 => add_products_of::<5>(sums, numbers),
@@ -69,7 +68,7 @@ pub fn add_products(sums: &mut [f64], numbers: &[f64]) {
     }
 }
 
-/// With as many numbers as are known beforehand, loops unroll.
+/// Adds the products of a fixed count of numbers, so that the compiler unrolls the loops.
 #[inline]
 fn add_products_of<const COUNT: usize>(sums: &mut [f64], numbers: &[f64]) {
     if let (Some(sums), Some(numbers)) = (sums.get_mut(..COUNT * (COUNT + 1) / 2), numbers.first_chunk::<COUNT>()) {
@@ -91,15 +90,15 @@ fn add_products_each(sums: &mut [f64], numbers: &[f64]) {
 /// The reduced problem.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Triangle {
-    /// `R`, with one more row, of zeros, than columns.
+    /// `R`, with an additional row of zeros.
     pub jacobian: DMatrix<f64>,
-    /// `q`, of the same number of rows.
+    /// `q`, with the same number of rows.
     pub residuals: DVector<f64>,
 }
 
 impl Triangle {
-    /// From normal equations, by Cholesky's factorisation of the scaled matrix. A column that is zero, or depends on those
-    /// before it to rounding, has an all but zero diagonal in `R`.
+    /// Computes the triangle from normal equations, by Cholesky factorisation of the scaled matrix. A column that is zero, or linearly dependent on
+    /// those before it to rounding, has a nearly zero diagonal in `R`.
     pub fn new(matrix: &DMatrix<f64>, gradient: &DVector<f64>, squares: f64) -> Self {
         let count = gradient.len();
         let scale: Vec<f64> = matrix.diagonal().iter().map(|square| square.sqrt()).collect();
@@ -112,7 +111,7 @@ impl Triangle {
                 (0..row).map(|k| jacobian[(k, row)] * jacobian[(k, column)]).sum()
             };
             let square = matrix[(row, row)] * unit(row) * unit(row) - before(&jacobian, row);
-            // Rounding leaves some 1e-16 for each addition; below that nothing is known of the column's own direction.
+            // Each addition leaves a rounding error of about 1e-16. Below this limit the column's own direction is unknown.
             let pivot = square.max(1e-14).sqrt();
             for column in row..count {
                 let product = matrix[(row, column)] * unit(row) * unit(column) - before(&jacobian, column);
@@ -129,15 +128,14 @@ impl Triangle {
         Self { jacobian, residuals }
     }
 
-    /// What to subtract from the parameters to reach the minimum, were the residuals linear in them; `None` where some have no
-    /// effect.
+    /// Returns the vector to subtract from the parameters to reach the minimum of the linearised problem; `None` if some parameters have no effect.
     pub fn step(&self) -> Option<Vec<f64>> {
         let count = self.jacobian.ncols();
         let step = self.jacobian.rows(0, count).solve_upper_triangular(&self.residuals.rows(0, count))?;
         Some(step.iter().copied().collect())
     }
 
-    /// By which share of itself the sum of squares would fall at most, were the residuals linear in the parameters.
+    /// Returns the greatest relative decrease of the sum of squares that the linearised problem allows.
     pub fn reducible_ratio(&self) -> f64 {
         let left = self.residuals.iter().next_back().map_or(f64::NAN, |left| left * left);
         let squares = self.residuals.norm_squared();
@@ -170,7 +168,7 @@ mod tests {
         assert!((reduced.transpose() * &reduced - &matrix).amax() < 1e-12 * matrix.amax());
         assert!((reduced.transpose() * &q - jacobian.transpose() * &residuals).amax() < 1e-9 * gradient.amax());
         assert!((q.norm() - residuals.norm()).abs() < 1e-9 * residuals.norm());
-        // The least-squares solution is that of the long problem by a QR factorisation.
+        // The least-squares solution equals that of the full problem by QR factorisation.
         let solve = |jacobian: DMatrix<f64>, residuals: &DVector<f64>| {
             let qr = jacobian.qr();
             qr.r().solve_upper_triangular(&(qr.q().transpose() * residuals)).unwrap()

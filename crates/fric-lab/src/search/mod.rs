@@ -1,8 +1,8 @@
 //! The least-squares search that `fit` and `discover` share.
 //!
-//! [`pass`] runs the cycle of `fric-core` over records in numbers that carry derivatives ([`dual`]), four cables side by side; several
-//! searches share one pass through a [`gang`]. [`problem`] defines residuals and Jacobian, [`gram`] reduces them to a small triangle as they
-//! come, [`optimizer`] runs Levenberg-Marquardt on it in the coordinates of [`vector`], and [`solve`] adds outliers and what stays undetermined.
+//! [`pass`] runs the cycle of `fric-core` over records in numbers that carry derivatives ([`dual`]), four cables side by side. Several searches share
+//! one pass through a [`gang`]. [`problem`] defines residuals and Jacobian, and [`gram`] reduces them to a small triangle as they are computed.
+//! [`optimizer`] runs Levenberg–Marquardt on the triangle in the coordinates of [`vector`]. [`solve`] handles outliers and undetermined parameters.
 
 pub mod dual;
 pub mod gang;

@@ -1,6 +1,6 @@
-//! The optimiser: Levenberg–Marquardt after MINPACK, by the crate `levenberg-marquardt`.
+//! The optimiser: Levenberg–Marquardt as in MINPACK, by the crate `levenberg-marquardt`.
 //!
-//! The problem comes to it reduced ([`Triangle`]), which leaves every one of its decisions as it would be on the long one.
+//! It works on the reduced problem ([`Triangle`]), on which each of its decisions is the same as on the full one.
 
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt, TerminationReason};
 use nalgebra::storage::Owned;
@@ -9,40 +9,40 @@ use nalgebra::{DMatrix, DVector, Dyn};
 use super::gram::Triangle;
 use super::vector::Coordinate;
 
-/// Relative reduction of the sum of squares at which a search ends in any case.
+/// Relative decrease of the sum of squares at which a search ends in any case.
 const SQUARES_TOLERANCE: f64 = 1e-10;
-/// And relative change of the coordinates. They have standard errors of 1e-4 of their value and more.
+/// Relative change of the coordinates at which a search ends in any case. Their standard errors are 1e-4 of their value or more.
 const STEP_TOLERANCE: f64 = 1e-8;
-/// Evaluations per parameter before giving up.
+/// Maximum number of evaluations per parameter.
 const PATIENCE: usize = 20;
-/// And where a place several standard errors from the minimum would do.
+/// The same maximum if a point several standard errors from the minimum suffices.
 const PATIENCE_AFAR: usize = 2;
-/// Models that are only compared are given up after so many evaluations in any case: on a surface that is rough on a small scale a
-/// search creeps, and what it gains is no evidence.
+/// A search that only has to come this near to its minimum compares models and gets fewer evaluations. On a surface that is rough on a small scale a
+/// search creeps, and its gain is no evidence.
 const NEAR_TO_COMPARE: f64 = 0.5;
 const MOST_TO_COMPARE: usize = 100;
 
-/// A coordinate that changes the residuals by less than so many standard errors over its whole range does nothing.
+/// A coordinate that changes the residuals by less than this many standard errors over its whole range has no effect.
 const IDLE_ERRORS: f64 = 1e-3;
 
-/// Why a search has ended.
+/// The reason why a search has ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Termination {
-    /// At a minimum: neither the sum of squares nor the parameters change any more.
+    /// The search reached a minimum: neither the sum of squares nor the parameters change any more.
     Converged,
-    /// After the most evaluations allowed; the values are the best so far.
+    /// The search reached the maximum number of evaluations; the values are the best so far.
     OutOfPatience,
-    /// The model gave numbers that are not finite, or no step made it better.
+    /// The model gave non-finite numbers, or no step improved it.
     Stalled,
-    /// There was nothing to vary, or no sample to learn from.
+    /// There was nothing to vary, or no training sample.
     NothingToFit,
-    /// On request.
+    /// The search was stopped on request.
     Stopped,
 }
 
 impl Termination {
-    /// In a word or two, as in the result's JSON.
+    /// Returns the name used in the result's JSON.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -55,37 +55,37 @@ impl Termination {
     }
 }
 
-/// Where a search has ended.
+/// The end of a search.
 #[derive(Clone, Debug)]
 pub struct Minimum {
     /// The values.
     pub values: Vec<f64>,
-    /// Those of the last evaluation, from which a short step led there.
+    /// The values of the last evaluation, one short step before `values`.
     pub evaluated: Vec<f64>,
-    /// Why there.
+    /// The reason why the search ended.
     pub termination: Termination,
-    /// How often the model was evaluated.
+    /// Number of model evaluations.
     pub evaluation_count: usize,
-    /// Sum of squares there.
+    /// Sum of squares at `values`.
     pub squares: f64,
 }
 
-/// `JᵀJ`, `Jᵀr` and `rᵀr` by the values.
+/// `JᵀJ`, `Jᵀr` and `rᵀr` with respect to the values.
 pub type NormalEquations = (DMatrix<f64>, DVector<f64>, f64);
 
-/// Minimises the sum of squares of `evaluate`, which gives `None` to stop, over values in the ranges of their coordinates.
+/// Minimises the sum of squares of `evaluate` over values within the ranges of their coordinates. `evaluate` returns `None` to stop.
 ///
-/// `residual_count` is that of the long problem: δ standard errors away from the minimum, in any direction, the sum of squares is
-/// greater by δ² of so many parts of it. The search has arrived where δ is no more than `near_errors`; errors as they would be if
-/// residuals did not remember: true ones are no smaller. Within one standard error a step over which all coordinates are
-/// [straight](Coordinate::is_straight) is the last: what it misses the minimum by goes with its square, and is not evaluated any more.
+/// `residual_count` is the number of residuals of the full problem. At a distance of δ standard errors from the minimum, in any direction, the sum of
+/// squares is greater by a fraction `δ²/residual_count`. The search ends if δ is at most `near_errors`. The standard errors assume uncorrelated
+/// residuals; the true ones are no smaller. Within one standard error, a step over which all coordinates are [straight](Coordinate::is_straight) is
+/// the last one and is not evaluated: its remaining error is quadratic in the step.
 ///
-/// A coordinate by which nothing changes at the start waits until the others have come to their minimum: the time in which something grows tells
-/// nothing before it has a size, and with a size that is a guess the first step leads the time anywhere. One that does nothing there either stays:
-/// the ratio of a friction that there is not would run to an end of its range.
+/// A coordinate that has no effect at the start is held until the others have reached their minimum. For example, a time constant has no effect while
+/// the effect has no size, and with a guessed size the first step would move the time constant anywhere. A coordinate that has no effect at that
+/// minimum either stays: the ratio of a friction that does not exist would run to the end of its range.
 ///
-/// A coordinate that a step leads beyond its range stays at that end, and the search goes on with the others; at its minimum those have
-/// their turn again that would rather be inside (an active set; J. Nocedal, S. J. Wright, *Numerical Optimization*, 2006, ch. 16.7).
+/// A coordinate that a step moves beyond its range stays at that bound, and the search continues with the others. At their minimum, bounded
+/// coordinates that gain from moving inside are released (an active set; J. Nocedal, S. J. Wright, *Numerical Optimization*, 2006, ch. 16.7).
 pub fn minimize(
     coordinates: &[Coordinate],
     start: &[f64],
@@ -147,15 +147,15 @@ pub fn minimize(
     }
 }
 
-/// A search with where it is.
+/// A search and its present point.
 struct Search<'a, E> {
     evaluate: E,
     coordinates: &'a [Coordinate],
     residual_count: usize,
     near_errors: f64,
-    /// As a step led there: beyond the ends perhaps, where the values are those of the ends.
+    /// Coordinates where the last step led. They may lie beyond the bounds, where the values are those of the bounds.
     places: Vec<f64>,
-    /// By the coordinates; `None` when stopped.
+    /// The normal equations with respect to the coordinates; `None` if stopped.
     at: Option<NormalEquations>,
     evaluation_count: usize,
 }
@@ -179,7 +179,7 @@ impl<E: FnMut(&[f64]) -> Option<NormalEquations>> Search<'_, E> {
         });
     }
 
-    /// Whether anything changes by a coordinate here: over its whole range more than a part of a standard error.
+    /// Whether a coordinate has an effect here: more than a fraction of a standard error over its whole range.
     fn tells(&self, index: usize) -> bool {
         let Some((matrix, _, squares)) = &self.at else { return true };
         let (of, slopes) = (self.coordinates[index], matrix[(index, index)]);
@@ -190,7 +190,7 @@ impl<E: FnMut(&[f64]) -> Option<NormalEquations>> Search<'_, E> {
         slopes > 0.0 && slopes * whole * whole > IDLE_ERRORS * IDLE_ERRORS * variance
     }
 
-    /// Which coordinates are beyond their ends.
+    /// Returns the coordinates that are beyond their bounds.
     fn beyond(&self) -> impl Iterator<Item = usize> {
         let all = self.coordinates.iter().zip(&self.places).enumerate();
         all.filter(|(_, (of, place))| of.kept_in(**place).to_bits() != place.to_bits()).map(|(index, _)| index)
@@ -201,7 +201,7 @@ impl<E: FnMut(&[f64]) -> Option<NormalEquations>> Search<'_, E> {
         all.for_each(|(of, place)| *place = of.kept_in(*place));
     }
 
-    /// Slope and curvature of half the sum of squares over a value at an end of its range, all else at a place near by.
+    /// Returns the slope and curvature of half the sum of squares with respect to a value at its bound, with all other coordinates at a nearby point.
     fn bend(&self, index: usize, there: &[f64]) -> Option<(f64, f64)> {
         let (matrix, gradient, _) = self.at.as_ref()?;
         let ways = there.iter().zip(&self.places).map(|(there, here)| there - here);
@@ -211,7 +211,7 @@ impl<E: FnMut(&[f64]) -> Option<NormalEquations>> Search<'_, E> {
         Some((gradient / slope, matrix[(index, index)] / (slope * slope)))
     }
 
-    /// Whether a coordinate at an end of its range has something to gain inside.
+    /// Whether moving a coordinate from its bound into the range reduces the sum of squares.
     fn gains_inside(&self, index: usize, there: &[f64]) -> bool {
         let (Some((slope, curvature)), Some((_, _, squares))) = (self.bend(index, there), &self.at) else {
             return false;
@@ -223,7 +223,7 @@ impl<E: FnMut(&[f64]) -> Option<NormalEquations>> Search<'_, E> {
         is_inward && errors_square > self.near_errors * self.near_errors
     }
 
-    /// Where the sum of squares would be least along a coordinate at an end of its range.
+    /// Returns the coordinate at which the sum of squares is least, starting from a bound.
     fn inside(&self, index: usize, there: &[f64]) -> f64 {
         let (of, here) = (self.coordinates[index], self.places[index]);
         let Some((slope, curvature)) = self.bend(index, there) else { return here };
@@ -232,7 +232,7 @@ impl<E: FnMut(&[f64]) -> Option<NormalEquations>> Search<'_, E> {
         if outward { here } else { of.place_of(value - slope / curvature) }
     }
 
-    /// Searches among some of the coordinates, from here: why it has ended, and the minimum where it is a short step off.
+    /// Searches among some of the coordinates from the present point. Returns why it ended, and the minimum if it is a short step away.
     fn among(&mut self, free: Vec<usize>, patience: usize) -> (Termination, Option<Vec<f64>>) {
         if free.is_empty() {
             let is_stopped = self.at.is_none();
@@ -286,14 +286,14 @@ impl<E: FnMut(&[f64]) -> Option<NormalEquations>> Adapter<'_, '_, E> {
         });
     }
 
-    /// All places with those that vary.
+    /// Returns all coordinates with the free ones replaced.
     fn with(&self, free: impl IntoIterator<Item = f64>) -> Vec<f64> {
         let mut places = self.search.places.clone();
         self.free.iter().zip(free).for_each(|(index, place)| places[*index] = place);
         places
     }
 
-    /// The minimum where it is near, or here where hardly anything is to be gained; `None` where it is far.
+    /// Returns the minimum if it is near, or the present point if hardly anything can be gained; `None` if the minimum is far.
     fn arrival(&self) -> Option<Vec<f64>> {
         let (search, triangle) = (&*self.search, self.triangle.as_ref()?);
         #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
@@ -331,7 +331,7 @@ impl<E: FnMut(&[f64]) -> Option<NormalEquations>> LeastSquaresProblem<f64, Dyn, 
         self.triangle.as_ref().map(|triangle| DVector::from_row_slice(triangle.residuals.as_slice()))
     }
 
-    /// None where the search has arrived, or has left the range of a coordinate: that ends it.
+    /// Returns `None`, which ends the search, if it has arrived or left the range of a coordinate.
     fn jacobian(&self) -> Option<DMatrix<f64>> {
         if self.arrival().is_some() || self.search.beyond().next().is_some() {
             return None;
@@ -349,7 +349,7 @@ mod tests {
     use super::{Termination, minimize};
     use crate::search::vector::{Coordinate, Parameter};
 
-    /// `size·(1 − exp(−t/time))` over 28 s against one of −0.3 and 12 s.
+    /// Fits `size·(1 − exp(−t/time))` over 28 s to one with −0.3 and 12 s.
     #[test]
     fn a_time_constant_waits_for_the_size_of_what_it_is_of() {
         let at = |size: f64, time_s: f64, t_s: f64| size * (1.0 - (-t_s / time_s).exp());
@@ -359,7 +359,7 @@ mod tests {
             for t_s in (0..2800).map(|sample| 0.01 * f64::from(sample)) {
                 let decay = (-t_s / time_s).exp();
                 let slopes = DVector::from_vec(vec![1.0 - decay, -size * decay * t_s / (time_s * time_s)]);
-                // A disturbance that no size or time accounts for.
+                // A disturbance that no size or time constant explains.
                 let residual = at(size, time_s, t_s) - at(-0.3, 12.0, t_s) - 0.01 * (40.0 * t_s).sin();
                 matrix += &slopes * slopes.transpose();
                 gradient += &slopes * residual;

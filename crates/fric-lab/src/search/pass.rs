@@ -1,4 +1,4 @@
-//! Passes of the cycle's equations over the records of cables, with the derivatives by chosen parameters.
+//! Passes of the cycle's equations over the records of cables, with derivatives with respect to chosen parameters.
 
 use fric_core::parameters::{OFFSET, Values};
 use fric_core::scalar::Scalar;
@@ -8,8 +8,8 @@ use super::dual::Dual;
 use super::vector::Parameter;
 use crate::samples::record::{CableRecord, Row};
 
-/// Runs `$run::<N>` with the number of derivatives, of few, that one group of cables carries along where there are `$count` in
-/// all. The compiler writes the whole cycle for each: more than the greatest take several groups.
+/// Runs `$run::<N>`, where `N` is the number of derivatives that one group of cables carries for `$count` derivatives in all. The compiler generates
+/// the whole cycle for each of a few `N`; larger counts use several groups.
 macro_rules! with_room_for {
     ($count:expr, $run:ident($($argument:expr),* $(,)?)) => {
         match $count {
@@ -21,7 +21,7 @@ macro_rules! with_room_for {
 }
 pub(crate) use with_room_for;
 
-/// The derivatives that all groups together have room for.
+/// Returns the number of derivatives that all groups together have room for.
 pub fn room_for(count: usize) -> usize {
     fn room<const N: usize>(count: usize) -> usize {
         N * count.div_ceil(N.max(1))
@@ -34,17 +34,17 @@ pub fn room_for(count: usize) -> usize {
 pub struct Part<'a> {
     pub record: CableRecord<'a>,
     pub values: Values,
-    /// What to differentiate by.
+    /// The parameters to differentiate with respect to.
     pub free: Vec<Parameter>,
 }
 
 impl Part<'_> {
-    /// How many derivatives its pass has to carry along: none for the offset, by which every force has the derivative 1.
+    /// Returns how many derivatives the pass has to carry. The offset needs none, because the derivative of every force with respect to it is 1.
     pub fn carried(&self) -> usize {
         carried(&self.free).count()
     }
 
-    /// Whether the forces of this part are those of the other, with its derivatives or more.
+    /// Whether the forces of this part are those of the other, with at least its derivatives.
     pub fn serves(&self, other: &Self) -> bool {
         let bits = |part: &Self| part.values.map(f64::to_bits);
         std::ptr::eq(self.record.rows, other.record.rows)
@@ -57,7 +57,7 @@ fn carried(free: &[Parameter]) -> impl Iterator<Item = &Parameter> {
     free.iter().filter(|parameter| parameter.place() != OFFSET)
 }
 
-/// Forces of one cable at the platform with their derivatives, cycle by cycle.
+/// Forces of one cable at the platform and their derivatives, cycle by cycle.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Forces {
     derivative_count: usize,
@@ -65,14 +65,14 @@ pub struct Forces {
 }
 
 impl Forces {
-    /// None any more, with so many derivatives and room for so many cycles.
+    /// Removes all forces and reserves room for `cycles` with this number of derivatives.
     pub fn clear(&mut self, derivative_count: usize, cycles: usize) {
         self.derivative_count = derivative_count;
         self.numbers.clear();
         self.numbers.reserve(cycles * (derivative_count + 1));
     }
 
-    /// What they are, by their derivatives, where each parameter is greater by a little.
+    /// Extrapolates the forces linearly for small changes of the parameters.
     pub fn step(&mut self, by: &[f64]) {
         for numbers in self.numbers.chunks_exact_mut(self.derivative_count + 1) {
             if let Some((force_n, derivatives)) = numbers.split_first_mut() {
@@ -81,7 +81,7 @@ impl Forces {
         }
     }
 
-    /// Force in N and derivatives in a cycle; NaN past the end.
+    /// Returns the force, N, and its derivatives in a cycle; NaN past the end.
     #[inline]
     pub fn at(&self, cycle: usize) -> (f64, &[f64]) {
         let width = self.derivative_count + 1;
@@ -94,15 +94,15 @@ impl Forces {
 #[derive(Debug)]
 pub struct LanePass<'a, const N: usize> {
     parts: Vec<Part<'a>>,
-    /// Of each part, which number of a cycle goes where in its forces: the force, what is carried, and 1.
+    /// For each part, the order in which the numbers of a cycle enter its forces: the force, the carried derivatives, and 1.
     columns: Vec<Vec<usize>>,
-    /// Each carries `N` of the derivatives.
+    /// The groups at rest; each carries `N` of the derivatives.
     at_rest: Vec<CableGroup<Dual<Lanes, N>>>,
     groups: Vec<CableGroup<Dual<Lanes, N>>>,
 }
 
 impl<'a, const N: usize> LanePass<'a, N> {
-    /// Of the first [`LANES`] parts.
+    /// Creates a pass over the first [`LANES`] parts.
     pub fn new(parts: impl IntoIterator<Item = Part<'a>>) -> Self {
         let parts: Vec<Part<'a>> = parts.into_iter().take(LANES).collect();
         let of_lane = |lane: usize| parts.get(lane).or(parts.last());
@@ -131,12 +131,12 @@ impl<'a, const N: usize> LanePass<'a, N> {
         Self { at_rest, groups: Vec::new(), columns, parts }
     }
 
-    /// Starts a log: nothing is remembered.
+    /// Starts a log with an empty memory.
     pub fn rest(&mut self) {
         self.groups.clone_from(&self.at_rest);
     }
 
-    /// The cycles `from..to`; the forces of each part go to the end of `forces`.
+    /// Runs the cycles `from..to` and appends the forces of each part to `forces`.
     pub fn advance(&mut self, from: usize, to: usize, forces: &mut [Forces]) {
         let Some(last) = self.parts.len().checked_sub(1) else { return };
         let rows: [&[Row]; LANES] = std::array::from_fn(|lane| {
@@ -167,20 +167,20 @@ fn cycle(row: &Row) -> CableCycle<'_> {
     CableCycle { signals: &row.signals, pose_wrap: row.pose_wrap, cycle: row.cycle }
 }
 
-/// Forces of one cable for several values side by side, without derivatives.
+/// Forces of one cable for several sets of values side by side, without derivatives.
 #[derive(Debug)]
 pub struct CandidatePass {
     groups: Vec<CableGroup<Lanes>>,
 }
 
 impl CandidatePass {
-    /// Begun at rest; one candidate in each lane of the values.
+    /// Creates a pass at rest, with one candidate in each lane of the values.
     pub fn new(record: &CableRecord<'_>, candidates: &[Values<Lanes>]) -> Self {
         let group = |values| CableGroup::new(&[record.params], values, record.cycle_s, |_| false);
         Self { groups: candidates.iter().filter_map(group).collect() }
     }
 
-    /// Begun at rest, with the same values; `ratio` gives the μ of a candidate's pulley as a multiple of the cable's.
+    /// Creates a pass at rest with the same values for all candidates. `ratio` gives the μ of a candidate's pulley as a multiple of the cable's μ.
     pub fn of_mu_ratios(
         record: &CableRecord<'_>,
         values: &Values,
@@ -195,11 +195,11 @@ impl CandidatePass {
         Self { groups: unlike.collect() }
     }
 
-    /// Forces in these cycles in place of what `forces` holds: those of all candidates in the first, then in the next.
+    /// Replaces the content of `forces` by the forces in these cycles: those of all candidates in the first cycle, then in the next.
     pub fn advance(&mut self, rows: &[Row], forces: &mut Vec<f64>) {
         forces.clear();
         for row in rows {
-            // Side by side: a group waits for its own last cycle most of the time.
+            // The groups run side by side, because each mostly waits for its own previous cycle.
             forces.extend(
                 self.groups.iter_mut().flat_map(|group| group.step(|_| cycle(row)).platform_force_n.to_array()),
             );

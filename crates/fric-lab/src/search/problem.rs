@@ -1,8 +1,8 @@
-//! The least-squares problem of \[P\] 18, and the same with the platform's wrench in place of force sensors.
+//! The least-squares problem of \[P\] 18, and its variant with the platform's wrench instead of force sensors.
 //!
-//! - Cable forces: one residual a sample, `f(p) − f_ref`, for one cable.
-//! - Wrench: six residuals a sample, `w + A^T f(p)` (\[P\] 3), for all cables together; forces and torques are brought to
-//!   one scale by a [`whitening`](Comparison::Wrench) matrix.
+//! - Cable forces: one residual per sample, `f(p) − f_ref`, for one cable.
+//! - Wrench: six residuals per sample, `w + A^T f(p)` (\[P\] 3), for all cables together. A [`whitening`](Comparison::Wrench) matrix brings forces
+//!   and torques to one scale.
 
 use std::ops::Range;
 use std::rc::Rc;
@@ -23,19 +23,19 @@ use crate::certainty::groups::Groups;
 use crate::certainty::scores::Scores;
 use crate::samples::record::CableRecord;
 
-/// Samples that are evaluated before they are assembled.
+/// Number of samples that are evaluated before they are assembled.
 const CHUNK: usize = 2048;
 
 /// A cable of the problem.
 #[derive(Clone, Debug)]
 pub struct Member<'a> {
     pub record: CableRecord<'a>,
-    /// The parameters that vary.
+    /// The free parameters.
     pub free: Vec<Parameter>,
 }
 
 impl<'a> Member<'a> {
-    /// Its part in a pass.
+    /// Returns the cable's part in a pass.
     fn part(&self, values: &Values, derivatives: bool) -> Part<'a> {
         let free = if derivatives { self.free.clone() } else { Vec::new() };
         Part { record: self.record, values: *values, free }
@@ -45,30 +45,30 @@ impl<'a> Member<'a> {
 /// What the model is compared with.
 #[derive(Clone, Debug)]
 pub enum Comparison<'a> {
-    /// The cable force at the platform, of a single cable.
+    /// The cable force at the platform, for a single cable.
     Forces,
-    /// The outside wrench.
+    /// The external wrench.
     Wrench {
-        /// Columns of the structure matrix, all cables of a sample one after the other.
+        /// Columns of the structure matrix: all cables of a sample, one sample after the other.
         structure: &'a [Vector6<f64>],
-        /// The wrench of each sample; NaN where there is none.
+        /// The wrench of each sample; NaN if there is none.
         outside: &'a [Vector6<f64>],
-        /// Turns deviations into numbers of variance 1 that do not depend on each other.
+        /// Transforms deviations into independent numbers of variance 1.
         whitening: Box<Matrix6<f64>>,
     },
 }
 
-/// How deviations are weighed.
+/// The loss function for deviations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Loss {
-    /// By their square.
+    /// Squared deviation.
     Squares,
-    /// By their square up to a bound, linearly beyond (Huber), in the unit of the residuals.
+    /// Squared deviation up to a bound, linear beyond it (Huber). The bound is in the unit of the residuals.
     Huber(f64),
 }
 
 impl Loss {
-    /// The number whose square is the loss, and its slope: `r`, or `±√(2b|r| − b²)` beyond the bound `b`.
+    /// Returns the number whose square is the loss, and its slope: `r`, or `±√(2b|r| − b²)` beyond the bound `b`.
     fn root(self, residual: f64) -> (f64, f64) {
         match self {
             Self::Huber(bound) if residual.abs() > bound => {
@@ -79,7 +79,7 @@ impl Loss {
         }
     }
 
-    /// The slope where the root is this.
+    /// Returns the slope for a value of the root.
     fn slope_at(self, root: f64) -> f64 {
         match self {
             Self::Huber(bound) if root.abs() > bound => bound / root.abs(),
@@ -96,22 +96,22 @@ pub struct Problem<'a> {
     pub loss: Loss,
     /// Which samples count.
     pub used: Vec<bool>,
-    /// Set from outside to end every evaluation.
+    /// Flag that ends every evaluation when set from outside.
     pub stop: &'a AtomicBool,
-    /// Where a single cable has its passes run beside those of others.
+    /// The gang seat through which a single cable runs its passes beside others.
     pub seat: Option<Rc<Seat<'a>>>,
 }
 
-/// The rows of a sample: derivatives by every free parameter, then the residual.
+/// The rows of a sample: derivatives with respect to every free parameter, then the residual.
 pub type Rows<'a> = std::slice::ChunksExact<'a, f64>;
 
 impl Problem<'_> {
-    /// How many parameters vary, of all cables.
+    /// Returns the number of free parameters of all cables.
     pub fn parameter_count(&self) -> usize {
         self.members.iter().map(|member| member.free.len()).sum()
     }
 
-    /// How many residuals count.
+    /// Returns the number of residuals that count.
     pub fn residual_count(&self) -> usize {
         let of_sample = match self.comparison {
             Comparison::Forces => 1,
@@ -120,13 +120,13 @@ impl Problem<'_> {
         self.used.iter().filter(|used| **used).count() * of_sample
     }
 
-    /// Residuals and Jacobian at the values of each cable, reduced; `None` when stopped.
+    /// Returns residuals and Jacobian at the values of each cable, in reduced form; `None` if stopped.
     pub fn gram(&self, values: &[Values]) -> Option<Gram> {
         let mut gram = Gram::new(self.parameter_count());
         self.visit(values, true, |_, rows| rows.for_each(|row| gram.add(row))).then_some(gram)
     }
 
-    /// The same with the samples' scores, which are also summed up in groups if there are any.
+    /// Returns the same with the samples' scores, which are also summed up per group if `groups` is given.
     pub fn gram_and_scores(&self, values: &[Values], groups: Option<Groups>) -> Option<(Gram, Scores)> {
         let count = self.parameter_count();
         let mut gram = Gram::new(count);
@@ -146,7 +146,7 @@ impl Problem<'_> {
         completed.then_some((gram, scores))
     }
 
-    /// Residuals of every sample that counts, with the sample's place: one, or six whitened.
+    /// Visits the residuals of every sample that counts, with the sample's index: one residual, or six whitened ones.
     pub fn residuals(&self, values: &[Values], mut visit: impl FnMut(usize, &[f64])) {
         let mut residuals = Vec::new();
         self.visit(values, false, |place, rows| {
@@ -156,12 +156,13 @@ impl Problem<'_> {
         });
     }
 
-    /// Every row: derivatives by the free parameters, then the residual.
+    /// Visits every row: derivatives with respect to the free parameters, then the residual.
     pub fn rows(&self, values: &[Values], mut visit: impl FnMut(&[f64])) {
         self.visit(values, true, |_, rows| rows.for_each(&mut visit));
     }
 
-    /// `Jᵀd` for several changes `d` of the force of one member, given side by side for every cycle: a column each.
+    /// Returns `Jᵀd` for several changes `d` of the force of one member, as one column per change. `changes_n` holds the changes side by side for
+    /// every cycle.
     pub fn projected(&self, values: &[Values], member: usize, changes_n: &[f64], count: usize) -> DMatrix<f64> {
         let mut sums = DMatrix::zeros(self.parameter_count(), count);
         let mut levers = Vec::new();
@@ -183,8 +184,8 @@ impl Problem<'_> {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// Sum of the losses for several σ at once, of all cables: `sigmas_n_per_m[candidate][cable]`; over consecutive cycles of
-    /// a log, of which the first eighth lets the cables forget that they began at rest; of the cycles until it is stopped.
+    /// Returns the sum of the losses of all cables for several σ at once: `sigmas_n_per_m[candidate][cable]`. The cycles must be consecutive cycles
+    /// of a log; the first eighth only lets the friction settle after the start at rest. If stopped, the sum covers the cycles up to then.
     pub fn losses_by_sigma(&self, values: &[Values], sigmas_n_per_m: &[Vec<f64>], cycles: &Range<usize>) -> Vec<f64> {
         let count = sigmas_n_per_m.len();
         let pass_of = |(index, (member, values)): (usize, (&Member<'_>, &Values))| {
@@ -228,7 +229,7 @@ impl Problem<'_> {
         sums
     }
 
-    /// Residuals of a sample from the forces of all cables.
+    /// Computes the residuals of a sample from the forces of all cables.
     fn compare(&self, place: usize, forces_n: &[f64], residuals: &mut Vec<f64>) {
         residuals.clear();
         match &self.comparison {
@@ -246,7 +247,7 @@ impl Problem<'_> {
         }
     }
 
-    /// Derivatives of a sample's residuals by the force of each cable: one column a cable.
+    /// Computes the derivatives of a sample's residuals with respect to the force of each cable: one column per cable.
     pub fn levers(&self, place: usize, levers: &mut Vec<Vector6<f64>>) {
         levers.clear();
         match &self.comparison {
@@ -259,7 +260,7 @@ impl Problem<'_> {
     }
 }
 
-/// Room for what is made of each sample.
+/// Buffers for the rows of a sample.
 #[derive(Default)]
 struct Assembly {
     forces_n: Vec<f64>,
@@ -269,7 +270,7 @@ struct Assembly {
 }
 
 impl Assembly {
-    /// Rows of a sample from the forces of all cables with their derivatives; without derivatives, residuals alone.
+    /// Computes the rows of a sample from the forces of all cables and their derivatives; without derivatives, only the residuals.
     fn assemble(&mut self, problem: &Problem<'_>, place: usize, forces: &[Forces], cycle: usize, derivatives: bool) {
         let Self { forces_n, residuals, levers, rows } = self;
         forces_n.clear();
@@ -291,7 +292,7 @@ impl Assembly {
 }
 
 impl<'a> Problem<'a> {
-    /// Forces of every cable in every cycle, without derivatives; `None` when stopped.
+    /// Returns the forces of every cable in every cycle, without derivatives; `None` if stopped.
     pub fn forces(&self, values: &[Values]) -> Option<Vec<Arc<Forces>>> {
         let parts: Vec<Part<'_>> =
             self.members.iter().zip(values).map(|(member, values)| member.part(values, false)).collect();
@@ -303,19 +304,19 @@ impl<'a> Problem<'a> {
         of_lanes.map(|forces| forces.into_iter().flatten().map(Arc::new).collect())
     }
 
-    /// Lets the next forces be those of a pass again, after [`step`](Self::step).
+    /// Makes the next forces come from a pass again after [`step`](Self::step).
     pub fn forget_step(&self) {
         self.seat.iter().for_each(|seat| seat.forget_moved());
     }
 
-    /// Goes from values that were evaluated last to others by the derivatives there.
+    /// Extrapolates from the values evaluated last to other values by the derivatives.
     pub fn step(&self, at: &[Values], to: &[Values]) {
         if let (Some(seat), [member], [at], [to]) = (&self.seat, self.members.as_slice(), at, to) {
             seat.step(&member.part(at, true), to);
         }
     }
 
-    /// Evaluates all samples that count, with the derivatives by the free parameters or without; false when stopped.
+    /// Evaluates all samples that count, with or without derivatives with respect to the free parameters. Returns false if stopped.
     pub fn visit(&self, values: &[Values], derivatives: bool, visit: impl FnMut(usize, Rows<'_>)) -> bool {
         let parts: Vec<Part<'a>> =
             self.members.iter().zip(values).map(|(member, values)| member.part(values, derivatives)).collect();
@@ -330,7 +331,7 @@ impl<'a> Problem<'a> {
 }
 
 impl Problem<'_> {
-    /// Evaluates a single cable by forces at hand, of which a row is all but made.
+    /// Evaluates a single cable from available forces, which already form nearly complete rows.
     fn visit_single(&self, part: &Part<'_>, forces: &Forces, mut visit: impl FnMut(usize, Rows<'_>)) {
         let mut of_sample = vec![0.0; part.free.len() + 1];
         for (place, (row, _)) in part.record.rows.iter().zip(&self.used).enumerate().filter(|(_, (_, used))| **used) {
@@ -345,7 +346,7 @@ impl Problem<'_> {
     }
 }
 
-/// Chunk by chunk, so that memory does not grow with the log.
+/// Evaluates chunk by chunk, so that memory does not grow with the log.
 fn visit_chunks<const N: usize>(
     problem: &Problem<'_>,
     parts: &[Part<'_>],

@@ -1,4 +1,4 @@
-//! From a problem and a start to values with their covariance: search, outliers, what is not determined.
+//! Solves a problem from start values to estimates with covariance: search, outliers, undetermined parameters.
 
 use fric_core::parameters::Values;
 use nalgebra::DMatrix;
@@ -11,54 +11,54 @@ use crate::certainty::undetermined::reported_covariance;
 use crate::fit::report::OpenCombination;
 use crate::samples::selection::Standing;
 
-/// Deviations beyond this many standard deviations that their neighbours do not share are no measurements.
+/// Deviations beyond this many standard deviations count as outliers if their neighbours do not share them.
 const OUTLIER_RATIO: f64 = 8.0;
-/// So many samples to either side are neighbours: of what is shorter than them it cannot be told that it lasts.
+/// Number of samples to either side that count as neighbours. A deviation that lasts no longer cannot be distinguished from an outlier.
 const NEIGHBOURS: usize = 2;
-/// More outliers than this share of the samples are no outliers: the model does not describe them.
+/// Maximum fraction of samples that can be outliers. If there are more, the model does not describe the samples.
 const MOST_OUTLIERS_RATIO: f64 = 0.02;
 /// Huber's bound in standard deviations: 95 % efficient for normal noise.
 const HUBER_RATIO: f64 = 1.345;
-/// Standard deviation of a normal distribution per median of the magnitude.
+/// Ratio of the standard deviation to the median magnitude of a normal distribution.
 const DEVIATION_PER_MEDIAN: f64 = 1.482_602_218_505_602;
-/// A given value that raises the sum of squares by more than this share contradicts the samples.
+/// A given value contradicts the samples if it raises the sum of squares by more than this fraction.
 pub(crate) const CONTRADICTION_RATIO: f64 = 0.01;
-/// A search goes on to within so many standard errors of the minimum.
+/// A search continues to within this many standard errors of the minimum.
 pub(crate) const NEAR_ERRORS: f64 = 0.01;
-/// Rounds of search and new look at the deviations.
+/// Maximum number of rounds of search and outlier detection.
 const ROUNDS: usize = 3;
 
-/// How to weigh deviations that are far out.
+/// The treatment of large deviations.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Weighing {
     /// Least squares; deviations that cannot be measurements are left out.
     #[default]
     LeastSquares,
-    /// Huber's loss: squares up to 1.345 standard deviations, linear beyond.
+    /// Huber's loss: quadratic up to 1.345 standard deviations, linear beyond.
     Huber,
 }
 
 /// A parameter of one of the problem's cables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Unknown {
-    /// Which cable of the problem.
+    /// Index of the cable in the problem.
     pub member: usize,
-    /// Which parameter.
+    /// The parameter.
     pub parameter: Parameter,
 }
 
-/// What came out.
+/// The solution of a problem.
 #[derive(Clone, Debug)]
 pub struct Solution {
     /// Values of each cable.
     pub values: Vec<Values>,
-    /// What was varied at last, in the order of the covariance.
+    /// The finally free parameters, in the order of the covariance.
     pub unknowns: Vec<Unknown>,
-    /// What the samples do not determine; held at the given values.
+    /// Parameters that the samples do not determine; held at the given values.
     pub undetermined: Vec<Unknown>,
-    /// What each of them is confused with.
+    /// The combination that each of them is confused with.
     pub open: Vec<OpenCombination>,
-    /// What is at an end of its range, where the samples would have it beyond.
+    /// Parameters at a bound that the samples would move beyond it.
     pub at_bound: Vec<Unknown>,
     /// Covariance of the estimates.
     pub covariance: DMatrix<f64>,
@@ -66,8 +66,8 @@ pub struct Solution {
     pub evaluation_count: usize,
 }
 
-/// Solves a problem from the starts given, the most promising first, and holds what the samples do not determine. `standings` of its
-/// samples are updated with the outliers.
+/// Solves a problem from the given starts, the most promising first, and holds parameters that the samples do not determine. Marks outliers in
+/// `standings`.
 pub fn solve(
     problem: &mut Problem<'_>,
     starts: Vec<Vec<Values>>,
@@ -84,7 +84,7 @@ pub fn solve(
     solution
 }
 
-/// The same with all varied, determined or not.
+/// Does the same with all parameters free, determined or not.
 pub(crate) fn settle(
     problem: &mut Problem<'_>,
     starts: Vec<Vec<Values>>,
@@ -123,7 +123,7 @@ pub(crate) fn settle(
 }
 
 impl Solution {
-    /// Goes on from where the last search has ended.
+    /// Continues from where the last search ended.
     pub(crate) fn search_on(&mut self, problem: &Problem<'_>, cycle_s: f64) {
         let (found, minimum) = search(problem, &self.values, cycle_s);
         self.evaluation_count += minimum.evaluation_count;
@@ -131,17 +131,17 @@ impl Solution {
     }
 }
 
-/// Whether the samples contradict values that were held: with them free the sum of squares is smaller by far.
+/// Whether the samples contradict values that were held: the sum of squares is far smaller with them free.
 pub(crate) fn contradicts(held: &Problem<'_>, at: &[Values], free: &Problem<'_>, found: &[Values]) -> bool {
     squares(held, at) > squares(free, found) * (1.0 + CONTRADICTION_RATIO)
 }
 
-/// Sum of squares at some values; NaN when stopped.
+/// Returns the sum of squares at some values; NaN if stopped.
 pub(crate) fn squares(problem: &Problem<'_>, values: &[Values]) -> f64 {
     problem.gram(values).map_or(f64::NAN, |gram| gram.normal_equations().2)
 }
 
-/// What a problem varies.
+/// Returns the free parameters of a problem.
 pub(crate) fn unknowns(problem: &Problem<'_>) -> Vec<Unknown> {
     let of_member = |(member, of): (usize, &Member<'_>)| {
         of.free.iter().map(|parameter| Unknown { member, parameter: *parameter }).collect::<Vec<_>>()
@@ -149,7 +149,7 @@ pub(crate) fn unknowns(problem: &Problem<'_>) -> Vec<Unknown> {
     problem.members.iter().enumerate().flat_map(of_member).collect()
 }
 
-/// Varies a parameter no longer: it takes its given value.
+/// Stops varying a parameter and sets it to its given value.
 pub(crate) fn hold(problem: &mut Problem<'_>, unknown: Unknown, values: &mut [Values], given: &[Values]) {
     let place = unknown.parameter.place();
     if let Some(member) = problem.members.get_mut(unknown.member) {
@@ -160,12 +160,12 @@ pub(crate) fn hold(problem: &mut Problem<'_>, unknown: Unknown, values: &mut [Va
     }
 }
 
-/// The minimum from a start.
+/// Returns the minimum reached from a start.
 pub(crate) fn search(problem: &Problem<'_>, start: &[Values], cycle_s: f64) -> (Vec<Values>, Minimum) {
     search_near(problem, start, cycle_s, NEAR_ERRORS)
 }
 
-/// A place no further from the minimum than so many standard errors, see [`optimizer::minimize`].
+/// Returns a point at most `near_errors` standard errors from the minimum; see [`optimizer::minimize`].
 pub fn search_near(problem: &Problem<'_>, start: &[Values], cycle_s: f64, near_errors: f64) -> (Vec<Values>, Minimum) {
     let unknowns = unknowns(problem);
     let coordinates: Vec<Coordinate> =
@@ -188,11 +188,10 @@ pub fn search_near(problem: &Problem<'_>, start: &[Values], cycle_s: f64, near_e
     (values, minimum)
 }
 
-/// Looks at the deviations anew: leaves out what cannot be a measurement, or sets Huber's bound. Whether something has
-/// changed.
+/// Examines the deviations again: leaves out outliers, or sets Huber's bound. Returns whether anything changed.
 fn look_again(problem: &mut Problem<'_>, values: &[Values], weighing: Weighing, standings: &mut [Standing]) -> bool {
     problem.loss = Loss::Squares;
-    // What was left out before is judged again: a worse fit may have been at fault.
+    // Former outliers are judged again, because a worse fit may have caused them.
     let mut before = Vec::new();
     for (place, (standing, used)) in standings.iter_mut().zip(&mut problem.used).enumerate() {
         if *standing == Standing::Outlier {
@@ -202,7 +201,7 @@ fn look_again(problem: &mut Problem<'_>, values: &[Values], weighing: Weighing, 
     }
     let most = problem.used.len();
     let mut places = Vec::with_capacity(most);
-    // One of a cable's force, six of a wrench.
+    // One series for a cable's force, six for a wrench.
     let mut series: Vec<Vec<f64>> = Vec::new();
     problem.residuals(values, |place, residuals| {
         series.resize_with(residuals.len(), || Vec::with_capacity(most));
@@ -239,8 +238,8 @@ fn look_again(problem: &mut Problem<'_>, values: &[Values], weighing: Weighing, 
     outliers != before
 }
 
-/// Whether a residual is far out, and its neighbours are not: less than half as far, by their median. What lasts is no spike but
-/// something that the model misses, and the samples have a right to be fitted.
+/// Whether a residual is large while its neighbours are not: their median is less than half as large. A deviation that lasts is no outlier but
+/// something that the model misses, so its samples must be fitted.
 fn is_spike(residuals: &[f64], place: usize, far: f64) -> bool {
     let Some(residual) = residuals.get(place).filter(|residual| residual.abs() > far) else { return false };
     let around = residuals.iter().skip(place.saturating_sub(NEIGHBOURS)).take(NEIGHBOURS + place.min(NEIGHBOURS) + 1);
@@ -262,7 +261,7 @@ mod tests {
         assert_eq!(is_found(&[0.1, -0.2, 0.1, 50.0, 0.3, -0.1, 0.2]), [3]);
         assert_eq!(is_found(&[0.1, -0.2, 0.1, -50.0, -40.0, -0.1, 0.2, 0.1]), [3, 4]);
         assert_eq!(is_found(&[50.0, 0.1, 0.2, 0.1, -0.1, 50.0]), [0, 5]);
-        // A step, a pulse of three samples, the top of a triangle, and a spike on an excursion.
+        // A step, a pulse of three samples, the top of a triangle, and an outlier on an excursion.
         assert!(is_found(&[0.1, 0.0, 0.1, 9.0, 9.2, 9.1, 9.0]).is_empty());
         assert!(is_found(&[0.1, 0.0, 0.1, 9.0, 9.2, 9.1, 0.1, 0.0]).is_empty());
         assert!(is_found(&[0.0, 3.0, 6.0, 9.0, 12.0, 9.0, 6.0, 3.0, 0.0]).is_empty());

@@ -1,9 +1,9 @@
-//! Which parameters a fit varies, and the coordinates it varies them in.
+//! The parameters that a fit varies, and the coordinates in which it varies them.
 //!
-//! Ranges are kept by a change of coordinates, so that the optimiser itself knows no bounds: a positive quantity that may
-//! be of any size is varied by its logarithm, one of both signs whose range nobody meets as it is, and every other one
-//! `p ∈ [a, b]` by `u` with `p = a + (b − a)·sin²(u/2)`. A coordinate is of the size of what can be known of it: the
-//! optimiser ends when steps are small beside the coordinates, each times its effect.
+//! A change of coordinates enforces the ranges, so that the optimiser itself needs no bounds. A positive quantity of unknown magnitude is varied by
+//! its logarithm, a quantity of both signs with bounds that are never reached is varied directly, and every other `p ∈ [a, b]` is varied by `u` with
+//! `p = a + (b − a)·sin²(u/2)`. The coordinate scale matches the resolution of the parameter, because the optimiser ends when steps are small
+//! relative to the coordinates, each weighted by its effect.
 
 use std::fmt;
 
@@ -12,7 +12,7 @@ use fric_core::effects::time_delay::{DELAY, delay_range_s};
 use fric_core::parameters::{self, FRICTION_COUNT, ParameterRow, Values};
 use fric_core::robot::unknown_name;
 
-/// One parameter of a cable: its place in [`Values`] with its row.
+/// One parameter of a cable: its index in [`Values`] and its catalogue row.
 #[derive(Clone, Copy, Debug)]
 pub struct Parameter {
     place: usize,
@@ -21,26 +21,26 @@ pub struct Parameter {
 }
 
 impl Parameter {
-    /// Every parameter there is, in the order of [`Values`].
+    /// Returns every parameter, in the order of [`Values`].
     pub fn all() -> impl Iterator<Item = Self> {
         parameters::parameters().enumerate().map(|(place, (effect, row))| Self { place, effect, row })
     }
 
-    /// Those of an effect of the catalogue, or of the friction that every model has.
+    /// Returns the parameters of an effect of the catalogue, or of the friction that every model has.
     pub fn of(effect: Effect) -> impl Iterator<Item = Self> {
         Self::all().skip(effect.places().start).take(effect.places().len())
     }
 
-    /// The parameter of a name: a key of the robot file's `friction`, or `effect.key`.
+    /// Returns the parameter with this name: a key of the robot file's `friction`, or `effect.key`.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         Self::all().find(|parameter| parameter.to_string() == name)
     }
 
-    /// The parameters of several names.
+    /// Returns the parameters with these names.
     ///
     /// # Errors
-    /// What is wrong with the first name that is unknown or comes twice, in a sentence without its full stop.
+    /// Returns a sentence without its full stop about the first name that is unknown or repeated.
     pub fn all_named<'a>(names: impl IntoIterator<Item = &'a str>) -> Result<Vec<Self>, String> {
         let mut parameters = Vec::new();
         for name in names {
@@ -56,19 +56,19 @@ impl Parameter {
         Ok(parameters)
     }
 
-    /// Its place in [`Values`].
+    /// Returns its index in [`Values`].
     #[must_use]
     pub fn place(&self) -> usize {
         self.place
     }
 
-    /// Its effect; `None` for those of `friction`.
+    /// Returns its effect; `None` for the parameters of `friction`.
     #[must_use]
     pub fn effect(&self) -> Option<Effect> {
         self.effect
     }
 
-    /// Unit, range and neutral value.
+    /// Returns its row: unit, range and neutral value.
     #[must_use]
     pub fn row(&self) -> &'static ParameterRow {
         self.row
@@ -81,7 +81,7 @@ impl Parameter {
     }
 }
 
-/// The name of [`Parameter::named`].
+/// Writes the name that [`Parameter::named`] accepts.
 impl fmt::Display for Parameter {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(effect) = self.effect {
@@ -99,8 +99,8 @@ impl PartialEq for Parameter {
 
 impl Eq for Parameter {}
 
-/// The coordinate in which a number is varied: its logarithm where its range is one of orders of magnitude, an angle in any other range, in which a
-/// long step towards an end grows shorter, or itself.
+/// The coordinate in which a number is varied: its logarithm if the range spans orders of magnitude, an angle in any other range (so that long steps
+/// towards a bound become shorter), or the number itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coordinate {
     min: f64,
@@ -115,22 +115,21 @@ enum Shape {
     Bounded,
 }
 
-/// A range of more than this many is one of orders of magnitude.
+/// A range spans orders of magnitude if the ratio of its ends exceeds this value.
 const WIDE_RATIO: f64 = 1e3;
-/// Bounds of both signs beyond this are never met, in the parameter's unit.
+/// Bounds of both signs beyond this value are never reached, in the parameter's unit.
 const FAR: f64 = 1e3;
-/// Starts keep this share of a range's width away from its ends, and a search goes no nearer than that share: at an end itself the
-/// coordinate has no slope.
+/// Starts and searches keep this fraction of the range's width away from the bounds, because the coordinate has zero slope at a bound.
 const START_RATIO: f64 = 1e-9;
 const END_RATIO: f64 = 1e-10;
-/// How far slopes may part over a step that counts as straight: a thousandth of a standard error is too little to matter.
+/// Maximum relative difference of slopes over a step that counts as straight: a thousandth of a standard error is too little to matter.
 const STRAIGHT_RATIO: f64 = 1e-3;
 
 impl Coordinate {
-    /// Of a number that may be anything.
+    /// The coordinate of an unbounded number.
     pub const UNBOUNDED: Self = Self { min: f64::NEG_INFINITY, max: f64::INFINITY, shape: Shape::Plain };
 
-    /// Of a parameter at a cycle time.
+    /// Returns the coordinate of a parameter at a cycle time.
     pub fn of(parameter: &Parameter, cycle_s: f64) -> Self {
         let ParameterRow { min, max, .. } = *parameter.row;
         let (min, max) = if parameter.place == DELAY { delay_range_s(cycle_s) } else { (min, max) };
@@ -144,19 +143,19 @@ impl Coordinate {
         Self { min, max, shape }
     }
 
-    /// Least and greatest value.
+    /// Returns the least and the greatest value.
     pub fn range(self) -> (f64, f64) {
         (self.min, self.max)
     }
 
-    /// The end of the range that a search was driven to: nearer than any start is, or than `near`.
+    /// Returns the bound that a search was driven to: the value is nearer to it than any start, or than `near`.
     pub fn bound_at(self, value: f64, near: f64) -> Option<f64> {
         let bound = if value - self.min < self.max - value { self.min } else { self.max };
         let margin = if self.shape == Shape::Bounded { 0.5 * START_RATIO * (self.max - self.min) } else { 0.0 };
         ((value - bound).abs() <= margin.max(near)).then_some(bound)
     }
 
-    /// The coordinate of a value; one out of range is moved into it.
+    /// Returns the coordinate of a value. A value out of range is moved into it.
     pub fn place_of(self, value: f64) -> f64 {
         match self.shape {
             Shape::Logarithmic => value.clamp(self.min, self.max).ln(),
@@ -167,7 +166,7 @@ impl Coordinate {
         }
     }
 
-    /// The nearest place that a search may go to.
+    /// Returns the nearest coordinate that a search may use.
     pub fn kept_in(self, place: f64) -> f64 {
         match self.shape {
             Shape::Logarithmic => place.clamp(self.min.ln(), self.max.ln()),
@@ -176,13 +175,13 @@ impl Coordinate {
         }
     }
 
-    /// Whether the value follows the coordinate in proportion from one place to another, to [`STRAIGHT_RATIO`].
+    /// Whether the value is linear in the coordinate from one point to another, to [`STRAIGHT_RATIO`].
     pub fn is_straight(self, from: f64, to: f64) -> bool {
         let (before, after) = (self.value_at(from).1, self.value_at(to).1);
         (after - before).abs() <= STRAIGHT_RATIO * before.abs()
     }
 
-    /// The value at a coordinate, and its slope.
+    /// Returns the value at a coordinate, and its slope.
     pub fn value_at(self, place: f64) -> (f64, f64) {
         match self.shape {
             Shape::Logarithmic => {
@@ -199,12 +198,12 @@ impl Coordinate {
     }
 }
 
-/// The angle at a share of a range.
+/// Returns the angle at a fraction of a range.
 fn angle_of(share: f64) -> f64 {
     2.0 * share.sqrt().asin()
 }
 
-/// `values` with `changed` at the places of `free`.
+/// Returns `values` with `changed` in the positions of `free`.
 pub fn with(values: &Values, free: &[Parameter], changed: impl IntoIterator<Item = f64>) -> Values {
     let mut values = *values;
     for (parameter, value) in free.iter().zip(changed) {

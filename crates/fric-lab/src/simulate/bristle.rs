@@ -1,25 +1,23 @@
-//! The friction truth: a bristle in each pulley's bearing.
+//! The true friction of the simulation: a bristle in each pulley's bearing.
 //!
-//! A bearing sticks through an elastic bristle of stiffness `σ/n`. Its deflection z follows the cable and gives way as
-//! its force approaches what the bearing can hold, `f_c = μ·F_N`:
+//! A bearing sticks through an elastic bristle of stiffness `σ/n`. Its deflection z follows the cable and saturates as its force approaches the
+//! greatest friction of the bearing, `f_c = μ·F_N`:
 //!
-//! `dz/dt = v·g(u)`, `u = 1 − sgn(v)·(σ/n)·z/f_c`, `g(u) = sgn(u)·|u|^a`, friction force `f = (σ/n)·z` (\[P\] 16 for the
-//! deflection instead of the force; its exponent a is 1 unless an effect says otherwise), with the *exact* normal force
-//! `F_N = √(F_{j−1}² − 2F_{j−1}F_j cos α + F_j²)` (\[P\] 7). [Effects](super::effects) change what `f_c` is made of.
+//! `dz/dt = v·g(u)`, `u = 1 − sgn(v)·(σ/n)·z/f_c`, `g(u) = sgn(u)·|u|^a`, friction force `f = (σ/n)·z` (\[P\] 16 for the deflection instead of the
+//! force; its exponent a is 1 unless an effect changes it), with the *exact* normal force `F_N = √(F_{j−1}² − 2F_{j−1}F_j cos α + F_j²)` (\[P\] 7).
+//! [Effects](super::effects) change how `f_c` is computed.
 //!
-//! The tension is given at the platform, so the chain is solved from there to the winch: `F_{j−1} = F_j − f_j − F_pv·v −
-//! m·dv/dt` (\[P\] 5, 6, and Newton for a pulley with mass), and the sensor shows `F_s = F_1 − F_0 cos α₁` (\[P\] 11), or
-//! `F_0` where it is in line with the cable.
+//! The tension is given at the platform, so the chain is solved from there to the winch: `F_{j−1} = F_j − f_j − F_pv·v − m·dv/dt` (\[P\] 5, 6, and
+//! Newton for a pulley with mass). The sensor shows `F_s = F_1 − F_0 cos α₁` (\[P\] 11), or `F_0` if it is in line with the cable.
 //!
-//! A cable that stretches moves over its pulleys also when the winch rests: over pulley j of n with the winch's speed and
-//! `(j/n)·c·dF_n/dt`, c its compliance from the winch to the platform.
+//! An elastic cable moves over its pulleys even when the winch rests: over pulley j of n with the winch's speed plus `(j/n)·c·dF_n/dt`, where c is
+//! its compliance from the winch to the platform.
 //!
-//! Nothing here is the compensator's: not the unknown (deflection, not force), not the normal force (exact, not its
-//! approximation \[P\] 8), not the direction (platform to winch), not the integration: the two-stage, L-stable,
-//! diagonally implicit Runge-Kutta method of second order with `γ = 1 − √2/2`, several steps to a cycle. An L-stable one
-//! because a bearing without presliding is an infinitely stiff bristle.
+//! Nothing is shared with the compensator: the unknown is the deflection, not the force; the normal force is exact, not the approximation \[P\] 8;
+//! the chain runs from the platform to the winch; and the integration uses the two-stage, L-stable, diagonally implicit Runge-Kutta method of second
+//! order with `γ = 1 − √2/2`, several steps per cycle. L-stability is needed because a bearing without presliding is an infinitely stiff bristle.
 //!
-//! The cable never slips on a pulley here. A cable that friction would slacken at the winch has no tension there.
+//! The cable never slips on a pulley in this model. If friction would slacken a cable at the winch, its tension there is zero.
 
 use core::f64::consts::SQRT_2;
 
@@ -27,42 +25,42 @@ use super::presliding;
 use super::truth::TruthEffects;
 use crate::effects::truth::{Contact, TruthEffect};
 
-/// Stiffness that stands for "no presliding", N/m: friction reverses within nanometres.
+/// Stiffness that represents "no presliding", N/m: friction reverses within nanometres.
 pub const STIFF_N_PER_M: f64 = 1e9;
-/// Integration steps in a cycle.
+/// Integration steps per cycle.
 pub const SUBSTEPS: u32 = 10;
 
 const GAMMA: f64 = 1.0 - SQRT_2 / 2.0;
-/// The normal force depends on the friction that is sought; so many rounds settle it for every μ a robot file may have.
+/// The normal force depends on the unknown friction. This number of fixed-point iterations suffices for every μ that a robot file may have.
 const MOST_ROUNDS: u32 = 200;
-/// Friction is settled to this share of the tension.
+/// Relative tolerance of the friction iteration, as a fraction of the tension.
 const SETTLED_SHARE: f64 = 1e-11;
 
-/// A cable at one instant.
+/// The state of a cable at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
     /// Tension at the platform, N.
     pub force_n: f64,
     /// Length, m, positive paying out.
     pub length_m: f64,
-    /// Its rate, m/s.
+    /// Rate of the length, m/s.
     pub speed_m_per_s: f64,
-    /// Its second derivative, m/s².
+    /// Second derivative of the length, m/s².
     pub acceleration_m_per_s2: f64,
     /// Rate of the tension, N/s.
     pub force_n_per_s: f64,
     /// cos α of the pulley whose wrap follows the pose.
     pub pose_cos: f64,
-    /// Since the start, s.
+    /// Time since the start, s.
     pub time_s: f64,
 }
 
-/// A pulley as nature has it.
+/// The true parameters of a pulley.
 #[derive(Clone, Copy, Debug)]
 pub struct PulleyTruth {
-    /// Bearing friction, 1.
+    /// Bearing friction coefficient, dimensionless.
     pub mu: f64,
-    /// cos of its wrap; `None` where that follows the pose.
+    /// Cosine of its wrap angle; `None` if the wrap follows the pose.
     pub cos_wrap: Option<f64>,
     /// `F_pv`, N s/m.
     pub viscous_n_s_per_m: f64,
@@ -72,7 +70,7 @@ pub struct PulleyTruth {
 #[derive(Debug)]
 pub struct BristleChain {
     pulleys: Vec<Bristle>,
-    /// Whether the first pulley carries the sensor; in line with the cable otherwise.
+    /// Whether the first pulley carries the sensor; otherwise the sensor is in line with the cable.
     sensor_pulley: bool,
     effects: TruthEffects,
 }
@@ -82,24 +80,24 @@ struct Bristle {
     pulley: PulleyTruth,
     stiffness_n_per_m: f64,
     deflection_m: f64,
-    /// Exponent of the presliding, 1.
+    /// Exponent of presliding, dimensionless.
     exponent: f64,
-    /// Mass at the rim, kg.
+    /// Pulley mass reduced to the rim, kg.
     mass_kg: f64,
-    /// Stretch of the cable from the winch to here per tension, m/N.
+    /// Stretch of the cable from the winch to this pulley per tension, m/N.
     compliance_m_per_n: f64,
-    /// The pulley nearest to the platform.
+    /// Whether it is the pulley nearest to the platform.
     is_last: bool,
-    /// Part of what all pulleys share.
+    /// Fraction of the quantities that all pulleys share.
     share: f64,
-    /// It has a μ of its own.
+    /// Whether it has a μ of its own.
     has_own_mu: bool,
-    /// How many times the friction of its load it holds at most.
+    /// Greatest friction that it holds, as a multiple of its load-dependent friction.
     held_ratio: f64,
 }
 
 impl BristleChain {
-    /// At rest with all bristles relaxed; `sigma_n_per_m` is the whole cable's, shared evenly.
+    /// Creates a chain at rest with all bristles relaxed. `sigma_n_per_m` is the stiffness of the whole cable, divided evenly among the pulleys.
     pub fn new(pulleys: &[PulleyTruth], sigma_n_per_m: f64, sensor_pulley: bool, effects: TruthEffects) -> Self {
         #[expect(clippy::cast_precision_loss, reason = "a number of pulleys")]
         let [count, places] = [pulleys.len(), pulleys.len().max(1)].map(|count| count as f64);
@@ -119,7 +117,7 @@ impl BristleChain {
         Self { pulleys, sensor_pulley, effects }
     }
 
-    /// What acts on the cable, to go on in time.
+    /// Returns the effects on the cable, to advance them in time.
     pub fn effects(&mut self) -> &mut TruthEffects {
         &mut self.effects
     }
@@ -129,14 +127,14 @@ impl BristleChain {
         self.effects.pulley_mass_kg().abs() > 0.0
     }
 
-    /// From one cycle to the next. In between, force and wrap change linearly and speed as the parabola that has both
-    /// speeds at its ends and covers the change of length.
+    /// Integrates from one cycle to the next. In between, force and wrap change linearly. The speed follows the parabola that matches both end speeds
+    /// and the change of length.
     pub fn advance(&mut self, from: &Moment, to: &Moment, cycle_s: f64, substeps: u32) {
         let span = Span::new(from, to, cycle_s);
         let step = 1.0 / f64::from(substeps);
         for part in 0..substeps {
             let start = f64::from(part) * step;
-            // Stage times of the Runge-Kutta method; the second one is the end of the step.
+            // The stage times of the Runge-Kutta method; the second one is the end of the step.
             let stages = [span.at(start + GAMMA * step), span.at(start + step)];
             let mut forces_n = stages.map(|stage| self.chain_end_n(&stage));
             for bristle in self.pulleys.iter_mut().rev() {
@@ -154,7 +152,7 @@ impl BristleChain {
         }
     }
 
-    /// What the sensor feels, N.
+    /// Returns the force on the sensor, N.
     pub fn sensor_force_n(&self, at: &Moment) -> f64 {
         let mut downstream_n = self.chain_end_n(at);
         let mut upstream_n = downstream_n;
@@ -168,13 +166,13 @@ impl BristleChain {
         }
     }
 
-    /// Bearing friction that the sensor feels while all pulleys slide one way, per tension and to first order in μ: with the pulleys'
-    /// μ, and with a μ of 1; without a pulley that has one of its own.
+    /// Returns the bearing friction that the sensor measures per tension while all pulleys slide in one direction, to first order in μ: with the
+    /// pulleys' μ, and with a μ of 1. A pulley with a μ of its own is left out.
     pub fn sliding_per_tension(&self, pose_cos: f64) -> [f64; 2] {
         let mut sums = [0.0; 2];
         for (place, bristle) in self.pulleys.iter().enumerate().filter(|(_, bristle)| !bristle.has_own_mu) {
             let cos = bristle.pulley.cos_wrap.unwrap_or(pose_cos);
-            // A sensor pulley feels its own friction on the winch's side alone, the others' on both.
+            // A sensor pulley adds its own friction on the winch side only; the friction of the other pulleys acts on both sides.
             let felt = if self.sensor_pulley && place == 0 { -cos / (1.0 - cos) } else { 1.0 };
             let share = felt * libm::sqrt(2.0 - 2.0 * cos);
             sums = [sums[0] + bristle.pulley.mu * share, sums[1] + share];
@@ -182,13 +180,13 @@ impl BristleChain {
         sums
     }
 
-    /// Tension behind the last pulley, N: that at the platform, but for what ripples in between.
+    /// Returns the tension behind the last pulley, N: the tension at the platform, apart from ripples in between.
     fn chain_end_n(&self, at: &Moment) -> f64 {
         let unnamed_n = self.effects.platform_force_n(at.speed_m_per_s, at.length_m, at.force_n);
         (at.force_n - unnamed_n) / self.effects.platform_factor(at.length_m)
     }
 
-    /// Force of each bristle, N, from the winch.
+    /// Returns the force of each bristle, N, starting at the winch.
     #[cfg(test)]
     fn friction_n(&self) -> Vec<f64> {
         self.pulleys.iter().map(|bristle| bristle.stiffness_n_per_m * bristle.deflection_m).collect()
@@ -200,7 +198,7 @@ impl Bristle {
         self.pulley.cos_wrap.unwrap_or(at.pose_cos)
     }
 
-    /// How fast the cable runs over this pulley, m/s.
+    /// Returns the speed of the cable over this pulley, m/s.
     fn speed_m_per_s(&self, at: &Moment) -> f64 {
         at.speed_m_per_s + self.compliance_m_per_n * at.force_n_per_s
     }
@@ -213,7 +211,7 @@ impl Bristle {
         (downstream_n - self.stiffness_n_per_m * deflection_m - viscous_n - inertia_n).max(0.0)
     }
 
-    /// One step; `forces_n` are the tensions behind the pulley at the stages, on return those before it.
+    /// Integrates one step. `forces_n` holds the tensions behind the pulley at the stages; on return, those before it.
     fn step(&mut self, stages: &[Moment; 2], forces_n: &mut [f64; 2], step_s: f64, effects: &TruthEffects) {
         let [first, second] = stages;
         let own_s = GAMMA * step_s;
@@ -228,7 +226,7 @@ impl Bristle {
         self.deflection_m = second_m;
     }
 
-    /// μ without what depends on the load, and friction beside it, N.
+    /// Returns the load-independent μ, and friction independent of the load, N.
     fn sliding(&self, at: &Moment, effects: &TruthEffects) -> (f64, f64) {
         let speed_m_per_s = self.speed_m_per_s(at);
         let contact = Contact {
@@ -241,7 +239,7 @@ impl Bristle {
         (self.pulley.mu * effects.mu_factor(&contact), effects.drag_n(&contact))
     }
 
-    /// What the bearing holds under the tension behind it at a deflection, N.
+    /// Returns the greatest friction of the bearing for the tension behind it at a deflection, N.
     fn sliding_n(
         &self,
         (mu, drag_n): (f64, f64),
@@ -255,7 +253,7 @@ impl Bristle {
         mu * effects.load_factor(normal_n) * normal_n + drag_n
     }
 
-    /// The deflection after the part that the load does not bear has gone back.
+    /// Returns the deflection after the part that the load does not hold has relaxed.
     fn slipped_back_m(&self, deflection_m: f64, at: &Moment, force_n: f64, effects: &TruthEffects) -> f64 {
         if self.held_ratio.is_infinite() {
             return deflection_m;
@@ -287,7 +285,7 @@ impl Bristle {
     }
 }
 
-/// One cycle as functions of the share of it that has passed.
+/// One cycle, as functions of its elapsed fraction.
 struct Span {
     from: Moment,
     to: Moment,
@@ -298,7 +296,7 @@ struct Span {
 impl Span {
     fn new(from: &Moment, to: &Moment, cycle_s: f64) -> Self {
         let mean_m_per_s = (to.length_m - from.length_m) / cycle_s;
-        // ∫₀¹ 6s(1 − s) ds = 1: the parabola adds what the straight line between both speeds misses.
+        // ∫₀¹ 6s(1 − s) ds = 1: the parabola adds what a straight line between the two speeds misses.
         let excess_m_per_s = mean_m_per_s - 0.5 * (from.speed_m_per_s + to.speed_m_per_s);
         Self { from: *from, to: *to, cycle_s, excess_m_per_s }
     }

@@ -1,4 +1,4 @@
-//! Effects on the chain of bristles, each against a closed form or another method.
+//! Tests of effects on the chain of bristles, each against a closed form or another method.
 
 use super::*;
 use core::f64::consts::{FRAC_PI_2, PI};
@@ -10,7 +10,7 @@ use crate::simulate::HiddenEffect;
 use crate::simulate::truth::CableCause;
 
 type Outcome = Result<(), Box<dyn core::error::Error>>;
-/// Sliding friction at a normal force, both in N.
+/// Sliding friction, N, as a function of the normal force, N.
 type Law = Box<dyn Fn(f64) -> f64>;
 
 const MU: f64 = 0.03;
@@ -31,10 +31,10 @@ fn moment(force_n: f64, length_m: f64, speed_m_per_s: f64, time_s: f64) -> Momen
     Moment { force_n, length_m, speed_m_per_s, acceleration_m_per_s2: 0.0, force_n_per_s: 0.0, pose_cos: 1.0, time_s }
 }
 
-/// Friction of one pulley of 180° at constant speed and tension, after a long way, at a time since the start.
+/// Returns the friction of one pulley with a wrap of 180° at constant speed and tension, after a long distance, at a time since the start.
 fn steady_n(texts: &[&str], speed_m_per_s: f64, start_s: f64) -> Result<f64, Box<dyn core::error::Error>> {
     let mut chain = BristleChain::new(&[pulley(MU, PI, VISCOUS)], 5000.0, true, with(texts)?);
-    // So many cycles that it comes 40 mm far, on a short path's clock.
+    // The number of cycles covers 40 mm in a short time.
     let cycle_s = 0.04 / 400.0 / speed_m_per_s.abs();
     let at = |cycle: u32| {
         let since_s = cycle_s * f64::from(cycle);
@@ -46,7 +46,7 @@ fn steady_n(texts: &[&str], speed_m_per_s: f64, start_s: f64) -> Result<f64, Box
     Ok(chain.friction_n()[0])
 }
 
-/// At 180° the normal force is `F_0 + F_1 = 2F_1 − f − F_pv v` exactly; the friction that holds it, by bisection.
+/// Solves for the friction by bisection. At 180° the normal force is exactly `F_0 + F_1 = 2F_1 − f − F_pv v`.
 fn balanced_n(sliding_n: impl Fn(f64) -> f64, speed_m_per_s: f64, viscous: f64) -> f64 {
     let miss_n = |f: f64| f - speed_m_per_s.signum() * sliding_n(2.0 * FORCE_N - f - viscous * speed_m_per_s);
     let (mut low, mut high) = (-FORCE_N, FORCE_N);
@@ -104,7 +104,7 @@ fn friction_that_drifts_does_not_turn_round() -> Outcome {
     Ok(())
 }
 
-/// \[P\] 16 by the classical Runge-Kutta method on the force, 2,000 steps to a cycle, there and back.
+/// Compares with \[P\] 16, integrated by the classical Runge-Kutta method on the force with 2,000 steps per cycle, in both directions.
 #[test]
 fn the_exponent_of_presliding_bends_the_hysteresis() -> Outcome {
     for exponent in [0.6, 1.0, 1.5, 1.8, 2.5] {
@@ -139,7 +139,7 @@ fn the_exponent_of_presliding_bends_the_hysteresis() -> Outcome {
     Ok(())
 }
 
-/// A push at rest of a period of 0.4 s.
+/// Returns a push at rest with a period of 0.4 s.
 fn pushed(cycle: u32) -> Moment {
     let time_s = 0.001 * f64::from(cycle);
     let rate = 5.0 * PI;
@@ -159,7 +159,7 @@ fn one_elastic_pulley_at_rest_is_one_that_the_winch_moves_as_the_stretch_would()
         with(&[&format!("cable_elasticity:compliance_m_per_n={compliance}")])?,
     );
     let mut wound = BristleChain::new(&[pulley(MU, PI, 0.0)], 1000.0, true, with(&[])?);
-    // Within a cycle both move evenly.
+    // Within a cycle both change linearly.
     let as_wound = |cycle: u32, speed_m_per_s| {
         let at = pushed(cycle);
         Moment { length_m: compliance * at.force_n, speed_m_per_s, force_n_per_s: 0.0, ..at }
@@ -178,15 +178,15 @@ fn one_elastic_pulley_at_rest_is_one_that_the_winch_moves_as_the_stretch_would()
     Ok(())
 }
 
-/// A hand on the platform while the winch rests: it reverses the friction of the far pulleys first, and of the work that it does
-/// on each, what the bristle does not keep is lost, never won.
+/// A hand pushes the platform while the winch rests. This reverses the friction of the far pulleys first. Of the work done on each pulley, the part
+/// that the bristle does not store is dissipated, never gained.
 #[test]
 fn pushes_at_rest_reverse_friction_from_the_platform_on() -> Outcome {
     let pulleys = [pulley(MU, PI, 0.1), pulley(MU, FRAC_PI_2, 0.1), pulley(MU, FRAC_PI_2, 0.1)];
     let compliance = 1e-4;
     let chain = |text: &[&str]| -> Result<BristleChain, Box<dyn core::error::Error>> {
         let mut chain = BristleChain::new(&pulleys, 1000.0, true, with(text)?);
-        // Paying out, then rest: friction stands at its positive end.
+        // The cable pays out and then rests, so friction is at its positive limit.
         for cycle in 0..200 {
             let at = |cycle: u32| moment(FORCE_N, 1e-4 * f64::from(cycle), 0.1, 0.0);
             chain.advance(&at(cycle), &at(cycle + 1), 0.001, SUBSTEPS);
@@ -216,7 +216,7 @@ fn pushes_at_rest_reverse_friction_from_the_platform_on() -> Outcome {
     let end_n = elastic.friction_n();
     let lost_j = [0, 1, 2].map(|place| work_j[place] - kept_j(&end_n, place) + kept_j(&start_n, place));
     assert_eq!(stiff.friction_n(), start_n);
-    // Relative to where they started, the farther the more.
+    // Relative to the start values, the change increases with the distance from the winch.
     let turned = [0, 1, 2].map(|place| (start_n[place] - least_n[place]) / start_n[place]);
     assert!(turned[0] < turned[1] && turned[1] < turned[2] && turned[2] > 1.1, "{turned:?}");
     assert!(lost_j.iter().all(|lost_j| *lost_j > 1e-7), "{lost_j:?}");

@@ -30,7 +30,7 @@ fn slide(chain: &mut BristleChain, force_n: f64, speed_m_per_s: f64, cycles: u32
     at(cycles)
 }
 
-/// \[P\] 10 and 11, solved for `F_s` from `F_n` backwards by the paper's approximate normal force.
+/// Returns `F_s` from `F_n` by \[P\] 10 and 11, solved backwards with the paper's approximate normal force.
 fn steady_sensor_n(pulleys: &[(f64, f64, f64)], force_n: f64, speed_m_per_s: f64) -> f64 {
     let sign = speed_m_per_s.signum();
     let mut downstream_n = force_n;
@@ -43,9 +43,9 @@ fn steady_sensor_n(pulleys: &[(f64, f64, f64)], force_n: f64, speed_m_per_s: f64
     downstream_n - upstream_n * pulleys[0].1.cos()
 }
 
-/// With m the mean and d the difference of both tensions, \[P\] 7 is `√(k²m² + d² cos²(α/2))`, \[P\] 8 is `k·m`: the exact
-/// normal force is larger by the share `(d cos(α/2)/(k m))²/2` to second order. The friction of each pulley is off by
-/// that share, and so, summed over the chain, is the sensor.
+/// With the mean m and the difference d of both tensions, \[P\] 7 is `√(k²m² + d² cos²(α/2))` and \[P\] 8 is `k·m`. The exact normal force is
+/// therefore greater by the fraction `(d cos(α/2)/(k m))²/2` to second order. The friction of each pulley differs by this fraction, and so does the
+/// sensor, summed over the chain.
 #[test]
 fn steady_sliding_is_the_papers_up_to_the_second_order_of_the_normal_force() {
     let force_n = 8.0;
@@ -69,7 +69,7 @@ fn steady_sliding_is_the_papers_up_to_the_second_order_of_the_normal_force() {
                     })
                     .sum();
                 let (is_n, said_n) = (chain.sensor_force_n(&end), steady_sensor_n(&pulleys, force_n, speed_m_per_s));
-                // The sensor at 180° feels both sides.
+                // A sensor at 180° measures both sides.
                 let difference_n = (is_n - said_n).abs();
                 assert!(difference_n <= 2.5 * bound_n + 1e-9, "{difference_n} N, bound {bound_n} N");
             }
@@ -77,9 +77,9 @@ fn steady_sliding_is_the_papers_up_to_the_second_order_of_the_normal_force() {
     }
 }
 
-/// One pulley of 180°: the exact normal force is `F_0 + F_1`, no second order. Tension at the pulley is given at the
-/// platform side, so `f_c(f) = μ(2F_1 − f)`, and `df/dl = σ(1 − f/f_c)` at constant `F_1`. For a small μ it is
-/// `f ≈ f_c(1 − e^{−σl/f_c})`; the full solution is that of the separable equation, here by quadrature.
+/// For one pulley of 180°, the exact normal force is `F_0 + F_1`, without a second-order term. The tension is given on the platform side, so `f_c(f)
+/// = μ(2F_1 − f)`, and `df/dl = σ(1 − f/f_c)` at constant `F_1`. For a small μ the solution is `f ≈ f_c(1 − e^{−σl/f_c})`; the full solution of the
+/// separable equation is computed by quadrature here.
 #[test]
 fn the_hysteresis_of_one_pulley_is_dahls_exponential() {
     let (mu, sigma, force_n) = (0.02, 1000.0, 10.0);
@@ -93,7 +93,7 @@ fn the_hysteresis_of_one_pulley_is_dahls_exponential() {
             let next_m = travelled_m + sign * speed_m_per_s * 0.001;
             let at = |length_m| moment(force_n, length_m, sign * speed_m_per_s);
             chain.advance(&at(travelled_m), &at(next_m), 0.001, SUBSTEPS);
-            // Independent: f_c = μ(2F_1 − f) with its f of the middle of the step, in 100 exact exponential steps.
+            // Independent method: f_c = μ(2F_1 − f) with f at the middle of the step, in 100 exact exponential steps.
             for _ in 0..100 {
                 let part_m = speed_m_per_s * 1e-5;
                 let half = |f: f64, dl: f64, f_c: f64| sign * f_c + (f - sign * f_c) * (-sigma * dl / f_c).exp();
@@ -111,7 +111,7 @@ fn the_hysteresis_of_one_pulley_is_dahls_exponential() {
     }
 }
 
-/// Exponential itself: constant sliding limit, as with a weightless friction: a limit case with μ tiny and σ scaled.
+/// The exponential itself: a constant sliding limit, obtained with a tiny μ and a scaled σ.
 #[test]
 fn constant_sliding_limit_gives_the_closed_form() {
     let (mu, force_n) = (1e-6, 1e4);
@@ -128,7 +128,7 @@ fn constant_sliding_limit_gives_the_closed_form() {
     }
 }
 
-/// Smooth motion, varying tension and wrap: twice the steps, a quarter of the error.
+/// Smooth motion with varying tension and wrap: twice the steps give a quarter of the error.
 #[test]
 fn integration_is_of_second_order() {
     let truth =
@@ -184,7 +184,7 @@ fn a_sensor_in_line_feels_the_winch_side() {
     assert!((chain.sensor_force_n(&end) - 10.0 * 0.98 / 1.02).abs() < 1e-6);
 }
 
-/// Friction takes energy, never gives it, over a closed loop of displacement.
+/// Over a closed loop of displacement, friction dissipates energy and never supplies it.
 #[test]
 fn a_closed_loop_dissipates() {
     let mut chain = BristleChain::new(&[pulley(0.05, PI, 0.0), pulley(0.05, 1.0, 0.0)], 1000.0, true, no_effects());

@@ -1,30 +1,29 @@
 //! Tension distribution: positive cable forces that hold the platform.
 //!
-//! Wanted is `A^T f = −w` with the wrench w that acts on the platform from outside, `f` near given mean tensions `f_m`:
-//! `f = f_m − A·(A^T A)⁺·(w + A^T f_m)` (Pott's closed form; `A^T` is 6×m and `(·)⁺` the pseudo-inverse, so that a robot
-//! with fewer than six cables gets the least-squares solution). Where that leaves a cable below the least tension, the
-//! forces are raised along the projection of (1, …, 1) on the null space of `A^T`, which changes no wrench. What the null
-//! space cannot raise is held at the least tension; the platform is then not in balance by its cables alone.
+//! The forces satisfy `A^T f = −w` for the external wrench w on the platform, with `f` near given mean tensions `f_m`: `f = f_m − A·(A^T A)⁺·(w + A^T
+//! f_m)` (Pott's closed form; `A^T` is 6×m and `(·)⁺` the pseudo-inverse, so a robot with fewer than six cables gets the least-squares solution). If
+//! a cable is then below the least tension, the forces are raised along the projection of (1, …, 1) onto the null space of `A^T`, which does not
+//! change the wrench. Cables that the null space cannot raise are held at the least tension; the cables alone then do not balance the platform.
 //!
-//! Torque rows are divided by the mean moment arm, so that N and N m weigh alike.
+//! Torque rows are divided by the mean moment arm, so that N and N m have equal weight.
 
 mod bounded;
 
 use nalgebra::{Matrix6, SymmetricEigen, Vector6};
 
-/// Eigenvalues of `A^T A` below this share of the greatest count as zero.
+/// Eigenvalues of `A^T A` below this fraction of the greatest count as zero.
 const RANK_SHARE: f64 = 1e-9;
 
 /// How well a solution holds the platform.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Balance {
-    /// Largest component of `A^T f + w`, torques divided by the moment arm, N.
+    /// Largest component of `A^T f + w`, with torques divided by the moment arm, N.
     pub residual_n: f64,
     /// Whether a cable had to be held at the least tension outside the null space.
     pub clamped: bool,
 }
 
-/// The solver, with room for its intermediate results.
+/// The solver, with buffers for intermediate results.
 #[derive(Clone, Debug)]
 pub struct Distribution {
     arm_m: f64,
@@ -34,21 +33,20 @@ pub struct Distribution {
 }
 
 impl Distribution {
-    /// For moment arms of about `arm_m` (0 where all cables meet in the platform origin) and tensions of `least_n` at
-    /// least.
+    /// Creates a solver for moment arms of about `arm_m` (0 if all cables meet in the platform origin) and a least tension of `least_n`.
     pub fn new(arm_m: f64, least_n: f64) -> Self {
         let arm_m = if arm_m > 0.0 { arm_m } else { 1.0 };
         Self { arm_m, least_n, columns: Vec::new(), rise: Vec::new() }
     }
 
-    /// Forces for the structure matrix with these columns (force, torque) and the outside wrench (N, N m).
+    /// Computes forces for the structure matrix with these columns (force, torque) and the external wrench (N, N m).
     ///
-    /// `forces_n` holds the mean tensions before and the forces after.
+    /// On entry `forces_n` holds the mean tensions, on return the forces.
     pub fn solve(&mut self, structure: &[Vector6<f64>], wrench: &Vector6<f64>, forces_n: &mut [f64]) -> Balance {
         let wrench = self.take(structure, wrench);
         let square = self.columns.iter().map(|column| column * column.transpose()).sum();
         let pseudo_inverse = Self::pseudo_inverse(&square);
-        // The second pass removes the rounding of the first.
+        // The second pass removes the rounding errors of the first.
         for _ in 0..2 {
             let multiplier = pseudo_inverse * self.unbalance(&wrench, forces_n);
             for (force_n, column) in forces_n.iter_mut().zip(&self.columns) {
@@ -64,7 +62,7 @@ impl Distribution {
         Balance { residual_n: self.unbalance(&wrench, forces_n).amax(), clamped }
     }
 
-    /// Takes in a structure matrix, torques divided by the moment arm; gives the wrench likewise.
+    /// Stores a structure matrix with torques divided by the moment arm, and returns the wrench scaled the same way.
     fn take(&mut self, structure: &[Vector6<f64>], wrench: &Vector6<f64>) -> Vector6<f64> {
         let arm_m = self.arm_m;
         let scaled = |vector: &Vector6<f64>| {
@@ -75,12 +73,12 @@ impl Distribution {
         scaled(wrench)
     }
 
-    /// `A^T f + w`.
+    /// Returns `A^T f + w`.
     fn unbalance(&self, wrench: &Vector6<f64>, forces_n: &[f64]) -> Vector6<f64> {
         self.columns.iter().zip(forces_n).fold(*wrench, |sum, (column, force_n)| sum + column * *force_n)
     }
 
-    /// Pseudo-inverse of a symmetric matrix, `(A^T A)⁺`, by its eigenvectors.
+    /// Returns the pseudo-inverse of a symmetric matrix, `(A^T A)⁺`, from its eigenvectors.
     fn pseudo_inverse(square: &Matrix6<f64>) -> Matrix6<f64> {
         let SymmetricEigen { eigenvalues, eigenvectors } = SymmetricEigen::new(*square);
         let least = eigenvalues.amax() * RANK_SHARE;
@@ -88,13 +86,13 @@ impl Distribution {
         eigenvectors * Matrix6::from_diagonal(&inverse) * eigenvectors.transpose()
     }
 
-    /// Adds the least multiple of the null space's part of (1, …, 1) that brings every force it can to `least_n`.
+    /// Adds the least multiple of the projection of (1, …, 1) onto the null space that raises every force it can to `least_n`.
     fn raise(&mut self, pseudo_inverse: &Matrix6<f64>, forces_n: &mut [f64]) {
         let sum: Vector6<f64> = self.columns.iter().sum();
         let multiplier = pseudo_inverse * sum;
         self.rise.clear();
         self.rise.extend(self.columns.iter().map(|column| 1.0 - column.dot(&multiplier)));
-        // A part of (1, …, 1) that is all but none is rounding.
+        // A tiny component of the projection is rounding.
         let needed = self.rise.iter().zip(forces_n.iter()).filter(|(rise, _)| **rise > 1e-2);
         let multiple = needed.map(|(rise, force_n)| (self.least_n - force_n) / rise).fold(0.0, f64::max);
         for (force_n, rise) in forces_n.iter_mut().zip(&self.rise) {
@@ -107,7 +105,7 @@ impl Distribution {
 pub mod tests {
     use super::*;
 
-    /// Eight cables from the corners of a box to those of a smaller one, crossed in height.
+    /// Returns eight cables from the corners of a box to those of a smaller one, crossed in height.
     pub fn eight(place: [f64; 3]) -> Vec<Vector6<f64>> {
         let corners = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]];
         let columns = [1.0, -1.0].into_iter().flat_map(|height| {
@@ -140,7 +138,7 @@ pub mod tests {
 
     #[test]
     fn is_the_nearest_solution_to_the_mean() {
-        // Orthogonal to the null space: moving along any null vector only leads further away from the mean.
+        // The difference is orthogonal to the null space: a step along any null vector only increases the distance from the mean.
         let columns = eight([0.1, 0.05, 0.02]);
         let wrench = Vector6::new(0.0, 0.0, -4.0, 0.0, 0.0, 0.0);
         let mut forces_n = [20.0; 8];

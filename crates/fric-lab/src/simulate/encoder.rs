@@ -1,7 +1,7 @@
-//! What the winch's encoder makes of its motion.
+//! The winch's encoder.
 //!
-//! Without noise and with an infinitely fine scale length and speed are those of the motion. Otherwise the drive knows
-//! counts alone, and its speed is the difference of two lengths over a cycle.
+//! Without noise and with unlimited resolution, length and speed are those of the motion. Otherwise the drive only knows counts, and its speed is the
+//! difference of two lengths over a cycle.
 
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
@@ -22,7 +22,7 @@ impl Encoder {
         Self { resolution_m, noise_m, random, last_length_m: None }
     }
 
-    /// What is logged of a motion, one cycle after the last.
+    /// Returns the logged values of a motion, one cycle after the last call.
     pub fn read(&mut self, motion: CableMotion, cycle_s: f64) -> CableMotion {
         if self.resolution_m <= 0.0 && self.noise_m <= 0.0 {
             return motion;

@@ -1,9 +1,9 @@
-//! What can be wrong with a simulation.
+//! Errors in the set-up of a simulation.
 
 use fric_core::ParamError;
 use thiserror::Error;
 
-/// What to do, each the end of a sentence.
+/// Advice, each the end of a sentence.
 mod advice {
     pub const EFFECT: &str = "give each effect once, with all its parameters";
     pub const DISTURBANCE: &str = "give each disturbance once, with all its parameters";
@@ -12,7 +12,7 @@ mod advice {
     pub const PLATFORM: &str = "give every cable both, or simulate the identification run";
 }
 
-/// Why a simulation cannot be set up. Running it cannot fail.
+/// The reason why a simulation cannot be set up. Running it cannot fail.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SimulationError {
@@ -23,9 +23,9 @@ pub enum SimulationError {
         key: &'static str,
         /// Its value.
         value: f64,
-        /// Least allowed.
+        /// Least allowed value.
         min: f64,
-        /// Greatest allowed.
+        /// Greatest allowed value.
         max: f64,
     },
     /// Two hidden effects of one kind.
@@ -40,31 +40,31 @@ pub enum SimulationError {
         /// Its name.
         kind: &'static str,
     },
-    /// The robot file's parameters are not right.
+    /// The parameters of the robot file are invalid.
     #[error("the robot's parameters are not right: {0}")]
     Robot(#[from] ParamError),
-    /// No place was found where every cable can leave its last pulley.
+    /// No position was found where every cable can leave its last pulley.
     #[error("the platform finds no place where all cables can leave their last pulleys; {}", advice::GEOMETRY)]
     NoWorkspace,
-    /// Loads that are known, of cables that hold a platform.
+    /// A known load is given for cables that hold a platform.
     #[error(
         "`reference` under [log] is a known load, but the cables hold a platform, which pulls as it moves; {}",
         advice::LOAD
     )]
     KnownLoad,
-    /// A crossing run of a robot without a platform that all cables hold.
+    /// A crossing run was requested for a robot without a platform to which all cables are attached.
     #[error(
         "a crossing run needs a platform that all cables are attached to, and {cable} has no `base_m` and `platform_m`; {}",
         advice::PLATFORM
     )]
     NoPlatform {
-        /// The first cable without.
+        /// The first cable without attachment.
         cable: String,
     },
 }
 
 impl SimulationError {
-    /// What to do: the words that end the error's sentence, where it has any.
+    /// Returns the advice that ends the error's sentence, if there is any.
     #[must_use]
     pub fn advice(&self) -> Option<&'static str> {
         match self {
@@ -78,37 +78,37 @@ impl SimulationError {
     }
 }
 
-/// Why what is to be hidden, a [`HiddenEffect`](super::HiddenEffect) or a [`Disturbance`](super::Disturbance), was refused.
+/// The reason why a [`HiddenEffect`](super::HiddenEffect) or a [`Disturbance`](super::Disturbance) was refused.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum HiddenError {
-    /// The catalogue has nothing of that name.
+    /// The catalogue has no entry with this name.
     #[error("there is no {noun} `{kind}`; {}known are {known}", did_you_mean(*nearest))]
     UnknownKind {
         /// `effect` or `disturbance`.
         noun: &'static str,
-        /// The name given.
+        /// The given name.
         kind: String,
-        /// The one that was probably meant.
+        /// The name that was probably meant.
         nearest: Option<&'static str>,
         /// All names, as a list.
         known: String,
     },
-    /// It has no such parameter.
+    /// The kind has no such parameter.
     #[error("the {noun} `{kind}` has no parameter `{key}`; {}it has {known}", did_you_mean(*nearest))]
     UnknownKey {
         /// `effect` or `disturbance`.
         noun: &'static str,
         /// Its name.
         kind: &'static str,
-        /// The key given.
+        /// The given key.
         key: String,
-        /// The one that was probably meant.
+        /// The key that was probably meant.
         nearest: Option<&'static str>,
         /// All keys with unit and range, as a list.
         known: String,
     },
-    /// A parameter that is given twice.
+    /// A parameter was given twice.
     #[error("the {noun} `{kind}` has the parameter `{key}` twice")]
     RepeatedKey {
         /// `effect` or `disturbance`.
@@ -118,7 +118,7 @@ pub enum HiddenError {
         /// The key.
         key: &'static str,
     },
-    /// No parameter at all, so that nothing would be hidden.
+    /// No parameter was given, so nothing would be hidden.
     #[error("the {noun} `{kind}` has no value, which would hide nothing; write `{kind}:key=value` with {known}")]
     NoParameter {
         /// `effect` or `disturbance`.
@@ -128,19 +128,19 @@ pub enum HiddenError {
         /// All keys with unit and range, as a list.
         known: String,
     },
-    /// Something that is not `key=value`.
+    /// A text is not `key=value`.
     #[error("`{text}` is not `key=value` with a number; the {noun} `{kind}` has {known}")]
     NotAValue {
         /// `effect` or `disturbance`.
         noun: &'static str,
         /// Its name.
         kind: &'static str,
-        /// The text given.
+        /// The given text.
         text: String,
         /// All keys with unit and range, as a list.
         known: String,
     },
-    /// A value that is not finite or out of range.
+    /// A value is not finite or out of range.
     #[error("`{key}` of the {noun} `{kind}` is {value}; allowed is {min} to {max}{}", with_unit(unit))]
     OutOfRange {
         /// `effect` or `disturbance`.
@@ -149,23 +149,23 @@ pub enum HiddenError {
         kind: &'static str,
         /// The parameter.
         key: &'static str,
-        /// The value given.
+        /// The given value.
         value: f64,
-        /// Least allowed.
+        /// Least allowed value.
         min: f64,
-        /// Greatest allowed.
+        /// Greatest allowed value.
         max: f64,
         /// Its unit.
         unit: &'static str,
     },
 }
 
-/// A question in front of what is known; nothing where no name is like the one given.
+/// Returns a "did you mean" question; empty if no name is similar.
 fn did_you_mean(nearest: Option<&str>) -> String {
     nearest.map_or_else(String::new, |name| format!("did you mean `{name}`? "))
 }
 
-/// A unit behind a number; nothing for a ratio.
+/// Returns the unit to print behind a number; empty for a ratio.
 pub(super) fn with_unit(unit: &str) -> String {
     if unit == "1" { String::new() } else { format!(" {unit}") }
 }

@@ -1,4 +1,4 @@
-//! An effect to hide in a log, as stated on the command line: `kind:key=value,…`.
+//! An effect to hide in a log, in the command-line form `kind:key=value,…`.
 
 use std::fmt;
 use std::str::FromStr;
@@ -11,7 +11,7 @@ use super::stated::{self, Allowed, Kind};
 
 /// An effect of the catalogue with values, checked against its row.
 ///
-/// A parameter that is not given has the value that the same file entry without it would have.
+/// A parameter that is not given takes the same default as in the robot file.
 ///
 /// ```
 /// use fric_core::effects::Effect;
@@ -36,7 +36,7 @@ impl HiddenEffect {
     /// Reads `kind:key=value,key=value`.
     ///
     /// # Errors
-    /// [`HiddenError`] names what is wrong and what is known or allowed.
+    /// Returns a [`HiddenError`] that names the mistake and the known or allowed values.
     pub fn parse(text: &str) -> Result<Self, HiddenError> {
         let (kind, entries) = stated::split(text);
         let effect = find(kind)?;
@@ -44,41 +44,41 @@ impl HiddenEffect {
         Self::of(effect, &values)
     }
 
-    /// An effect from its name, with values by key.
+    /// Creates an effect from its name, with values by key.
     ///
     /// # Errors
-    /// [`HiddenError`] names what is wrong and what is known or allowed.
+    /// Returns a [`HiddenError`] that names the mistake and the known or allowed values.
     pub fn new(kind: &str, values: &[(&str, f64)]) -> Result<Self, HiddenError> {
         Self::of(find(kind)?, values)
     }
 
-    /// An effect with values by key.
+    /// Creates an effect with values by key.
     ///
     /// # Errors
-    /// As [`new`](Self::new).
+    /// Returns the errors of [`new`](Self::new).
     pub fn of(effect: Effect, values: &[(&str, f64)]) -> Result<Self, HiddenError> {
         let values = stated_kind(effect).check(values)?;
         let mut params = EffectParams::NEUTRAL;
         for &(key, value) in &values {
-            // Checked against the same row.
+            // The value was already checked against the same row.
             let _ = params.set(effect, key, value);
         }
         Ok(Self { effect, values, params })
     }
 
-    /// Which one.
+    /// Returns the effect.
     #[must_use]
     pub fn effect(&self) -> Effect {
         self.effect
     }
 
-    /// The values given, by key.
+    /// Returns the given values, by key.
     #[must_use]
     pub fn values(&self) -> &[(&'static str, f64)] {
         &self.values
     }
 
-    /// The parameters that were not given, by key, with the values that they have instead.
+    /// Returns the parameters that were not given, by key, with their default values.
     #[must_use]
     pub fn defaults(&self) -> Vec<(&'static str, f64)> {
         let missing = |key: &str| self.values.iter().all(|(given, _)| *given != key);
@@ -86,7 +86,7 @@ impl HiddenEffect {
         all.filter_map(|parameter| Some((parameter.key, self.params.get(self.effect, parameter.key)?))).collect()
     }
 
-    /// The effect as the compensator's parameters would state it; all other effects are neutral.
+    /// Returns the effect as parameters of the compensator; all other effects are neutral.
     #[must_use]
     pub fn params(&self) -> &EffectParams {
         &self.params
@@ -100,7 +100,7 @@ impl FromStr for HiddenEffect {
     }
 }
 
-/// As [`HiddenEffect::parse`] reads it.
+/// Writes the form that [`HiddenEffect::parse`] reads.
 impl fmt::Display for HiddenEffect {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         stated::write(formatter, self.effect.kind(), &self.values)
@@ -119,7 +119,7 @@ fn stated_kind(effect: Effect) -> Kind {
     Kind { noun: NOUN, name: effect.kind(), parameters: effect.row().parameters.iter().map(allowed).collect() }
 }
 
-/// With commas between.
+/// Joins names with commas.
 pub(super) fn list(names: impl Iterator<Item = String>) -> String {
     names.collect::<Vec<_>>().join(", ")
 }

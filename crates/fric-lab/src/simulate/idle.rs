@@ -1,13 +1,12 @@
-//! A platform under admittance control that nobody touches: the idle oscillation of \[P\], and what compensation leaves of it.
+//! A platform under admittance control that nobody touches: the idle oscillation of \[P\], and how much compensation reduces it.
 //!
-//! The loop of \[P\] IV C, closed around the simulated robot: sensor forces → (compensation) → wrench → virtual body
-//! ([`fric_core::admittance`]) → set point of the pose → servo → motion of platform and cables → bristles on every
-//! pulley → sensor forces. Friction in the pulleys shows in the sensors as a wrench that no hand exerts; the virtual body
-//! gives way to it, which reverses friction, and so on.
+//! The loop of \[P\] IV C is closed around the simulated robot: sensor forces → (compensation) → wrench → virtual body ([`fric_core::admittance`]) →
+//! set point of the pose → servo → motion of platform and cables → bristles on every pulley → sensor forces. Friction in the pulleys appears in the
+//! sensors as a wrench that nobody exerts. The virtual body yields to it, which reverses the friction, and so on.
 //!
-//! The friction is that of [`super::bristle`], never the compensator's, and each pulley's μ differs from the one that the
-//! compensator knows. The servo is one of second order, critically damped, the same on all axes. Tensions hold the platform's
-//! weight and inertia about a constant prestress; turns are quasi-static as elsewhere in the simulation.
+//! The friction is that of [`super::bristle`], never the compensator's, and each pulley's μ differs from the value that the compensator knows. The
+//! servo is critically damped and of second order, the same on all axes. The tensions hold the platform's weight and inertia around a constant
+//! prestress. Rotations are quasi-static, as elsewhere in the simulation.
 
 use fric_core::admittance::{Admittance, AdmittanceOptions, SetPoint};
 use fric_core::robot::file::RobotFile;
@@ -25,41 +24,41 @@ use super::tension::TensionLevel;
 use super::truth::TruthEffects;
 use super::{SimulationError, SimulationOptions};
 
-/// What is simulated.
+/// Options of the idle simulation.
 #[derive(Clone, Debug)]
 pub struct IdleOptions {
     /// The virtual body.
     pub body: AdmittanceOptions,
-    /// Whether the wrench is made of compensated cable forces; of the sensors' alone otherwise.
+    /// Whether the wrench uses compensated cable forces instead of the raw sensor forces.
     pub compensated: bool,
-    /// Time, s.
+    /// Duration, s.
     pub duration_s: f64,
     /// Natural angular frequency of the servo, rad/s.
     pub servo_rad_per_s: f64,
-    /// A hand pushes along (1, 1, 1) in the first half second, N, and lets go.
+    /// Force with which a hand pushes along (1, 1, 1) in the first half second, N.
     pub push_n: f64,
-    /// Standard deviation of the sensors' noise, N.
+    /// Standard deviation of the sensor noise, N.
     pub sensor_noise_n: f64,
-    /// Each pulley's μ differs from the file's by up to this share.
+    /// Maximum relative difference of each pulley's μ from the file's value.
     pub mu_spread_ratio: f64,
-    /// Of noise and spread.
+    /// Seed of noise and spread.
     pub seed: u64,
 }
 
-/// How the platform moved.
+/// The motion of the platform.
 #[derive(Clone, Debug, PartialEq)]
 pub struct IdleMotion {
-    /// Where the platform's origin is from the rest pose, base axes, m, a row per cycle.
+    /// Displacement of the platform's origin from the rest pose, base axes, m, one row per cycle.
     pub displacement_m: Vec<[f64; 3]>,
 }
 
-/// Why the loop cannot be closed.
+/// The reason why the loop cannot be closed.
 #[derive(Debug, Error)]
 pub enum IdleError {
-    /// Time, push, noise or spread is out of its range.
+    /// Duration, push, noise or spread is out of range.
     #[error(transparent)]
     Options(#[from] SimulationError),
-    /// The virtual body or the servo is none, or the library does not take the robot.
+    /// The virtual body or the servo is invalid, or the library rejects the robot.
     #[error(transparent)]
     Param(#[from] ParamError),
     /// A cable has no attachment, or cannot leave its pulley with the platform at the origin.
@@ -70,7 +69,7 @@ pub enum IdleError {
 }
 
 impl IdleMotion {
-    /// Amplitude in the second half of the time: half of the way between the extremes on the axis where it is greatest, m.
+    /// Returns the amplitude in the second half of the run: half the peak-to-peak motion on the axis where it is greatest, m.
     #[must_use]
     pub fn amplitude_m(&self) -> f64 {
         let late = self.displacement_m.get(self.displacement_m.len() / 2..).unwrap_or_default();
@@ -87,7 +86,7 @@ impl IdleMotion {
 /// Runs the loop.
 ///
 /// # Errors
-/// [`IdleError`]; running cannot fail.
+/// Returns an [`IdleError`] if the loop cannot be set up; running cannot fail.
 pub fn idle(robot: &RobotFile, options: &IdleOptions) -> Result<IdleMotion, IdleError> {
     let params = robot.params();
     let simulated = SimulationOptions {
@@ -112,7 +111,7 @@ pub fn idle(robot: &RobotFile, options: &IdleOptions) -> Result<IdleMotion, Idle
     while displacement_m.len() < cycle_count {
         let at = plant.follow(&set_point, options);
         displacement_m.push([at.displacement.x, at.displacement.y, at.displacement.z]);
-        // Set points of length and speed, as in [P]; the pose is the set point too.
+        // Length and speed are set points, as in [P]; so is the pose.
         signals.clear();
         let of_cables = params.cables().iter().zip(&plant.chains).zip(&plant.moments).zip(&mut noise);
         signals.extend(of_cables.map(|(((cable, chain), moment), noise)| {
@@ -139,7 +138,7 @@ pub fn idle(robot: &RobotFile, options: &IdleOptions) -> Result<IdleMotion, Idle
     Ok(IdleMotion { displacement_m })
 }
 
-/// Servo, platform, cables and pulleys.
+/// The plant: servo, platform, cables and pulleys.
 struct Plant {
     cycle_s: f64,
     platform: Platform,
@@ -167,7 +166,7 @@ impl Plant {
         let level = TensionLevel::of_platform(&platform, tables);
         let chains =
             tables.iter().enumerate().map(|(cable, table)| chain(table, simulated, cable, TruthEffects::default()));
-        // A mass of 1 on a spring of ω² with the damping 2ω that lets it just not swing.
+        // A unit mass on a spring of ω² with the critical damping 2ω.
         let (damping, stiffness) = (2.0 * options.servo_rad_per_s, options.servo_rad_per_s * options.servo_rad_per_s);
         let servo = AdmittanceOptions {
             mass_kg: [1.0; 3],
@@ -195,7 +194,7 @@ impl Plant {
         })
     }
 
-    /// One cycle towards a set point; gives where the platform is.
+    /// Follows a set point for one cycle and returns the state of the platform.
     fn follow(&mut self, set_point: &SetPoint, options: &IdleOptions) -> SetPoint {
         let pull = set_point.displacement * (options.servo_rad_per_s * options.servo_rad_per_s);
         let force = Wrench { force_n: pull.fixed_rows::<3>(0).into(), torque_nm: pull.fixed_rows::<3>(3).into() };
@@ -210,7 +209,7 @@ impl Plant {
             let push_n = options.push_n / f64::sqrt(3.0);
             wrench += Vector6::new(push_n, push_n, push_n, 0.0, 0.0, 0.0);
         }
-        // A pose that leaves a cable no way out keeps the last directions.
+        // If a cable has no way out at this pose, the last directions are kept.
         self.platform.structure(&at.pose, &mut self.columns);
         self.forces_n.fill(self.mean_n);
         self.distribution.solve(&self.columns, &wrench, &mut self.forces_n);

@@ -1,20 +1,20 @@
-//! A simulated cable robot: the samples of a log with known friction, as a stream.
+//! A simulated cable robot that streams the samples of a log with known friction.
 //!
-//! For: logs to try the compensator, identification and discovery on, with effects hidden in them. [`Simulation`] yields
-//! one cycle after another in bounded memory; the caller writes them where it likes.
+//! The logs serve to test the compensator, identification and discovery, with effects hidden in them. [`Simulation`] yields one cycle after another
+//! in bounded memory; the caller writes them.
 //!
-//! What is simulated: the platform runs one of the runs of \[P\] ([`crate::trajectory`]); its cables hold it with tensions
-//! that wander; on every pulley a bristle rubs (\[P\] 4–7, 16, in a form and by a method of its own); winches move a
-//! little in standstill; sensor and reference are noisy. On request every effect of the catalogue is hidden in it
-//! ([`HiddenEffect`]), and [`Disturbance`]s that no catalogue has; a hand pushes, noise wanders, lengths are those of an
-//! encoder. [`sweep`] makes many such logs at random. Turns are quasi-static: the robot file has no inertia tensor. What is not
-//! simulated: sagging cables, slip on a pulley, waves along an elastic cable.
+//! The simulation contains the following. The platform runs one of the runs of \[P\] ([`crate::trajectory`]). Its cables hold it with varying
+//! tensions. A bristle on every pulley creates friction (\[P\] 4–7, 16, in a different form and solved by a different method). Winches move slightly
+//! at standstill. Sensor and reference are noisy. On request, every effect of the catalogue ([`HiddenEffect`]) and [`Disturbance`]s outside the
+//! catalogue are hidden in the log; a hand pushes, noise drifts, and lengths come from an encoder. [`sweep`] makes many such logs at random.
+//! Rotations are quasi-static, because the robot file has no inertia tensor. Sagging cables, slip on a pulley and waves along an elastic cable are
+//! not simulated.
 //!
-//! Parameters are the robot file's friction values: they are the truth here. `offset_n` is added to the reference, so that
-//! a fit finds the same offset. Input is checked at set-up ([`SimulationError`]); running cannot fail.
+//! The friction values of the robot file are the true parameters. `offset_n` is added to the reference, so that a fit finds the same offset. The
+//! input is checked at set-up ([`SimulationError`]); running cannot fail.
 //!
-//! The friction shares no code with the compensator's, only the kinematics and the types: where both agree, they have
-//! not agreed by construction. Sign convention: see [`fric_core::pulley`].
+//! The friction shares no code with the compensator, only the kinematics and the types, so their agreement is not by construction. Sign convention:
+//! see [`fric_core::pulley`].
 
 mod bristle;
 pub(crate) mod distribution;

@@ -1,4 +1,4 @@
-//! What a simulation can be told.
+//! Options of a simulation.
 
 use super::disturbances::Disturbance;
 use super::error::SimulationError;
@@ -6,29 +6,27 @@ use super::hidden::HiddenEffect;
 
 /// Longest run, s: 100 days.
 const LONGEST_S: f64 = 8.64e6;
-/// Most noise, N.
+/// Maximum noise, N.
 const LOUDEST_N: f64 = 1e6;
-/// Most noise and coarsest step of an encoder, m.
+/// Maximum noise and step of an encoder, m.
 const COARSEST_M: f64 = 1.0;
 
-/// What the platform does.
+/// The movement of the platform.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Run {
-    /// The identification run, [`Trajectory::identification`](crate::trajectory::Trajectory::identification), under tensions
-    /// that wander.
+    /// The identification run, [`Trajectory::identification`](crate::trajectory::Trajectory::identification), under varying tensions.
     #[default]
     Identification,
-    /// The crossing run, [`Trajectory::crossing`](crate::trajectory::Trajectory::crossing), under a steady prestress, so that
-    /// one pass differs from the next by noise and micro motion alone. For robots whose cables are all attached to a
-    /// platform.
+    /// The crossing run, [`Trajectory::crossing`](crate::trajectory::Trajectory::crossing), under a constant prestress, so that passes differ only by
+    /// noise and micro motion. All cables of the robot must be attached to a platform.
     Crossing,
 }
 
 impl Run {
-    /// All there are.
+    /// All runs.
     pub const ALL: [Self; 2] = [Self::Identification, Self::Crossing];
 
-    /// In one word, as the command line has it.
+    /// Returns the name used on the command line.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -38,7 +36,7 @@ impl Run {
     }
 }
 
-/// How to simulate a robot. The robot itself, its friction included, is the robot file's.
+/// Options of a simulation. The robot, including its friction, comes from the robot file.
 ///
 /// ```
 /// use fric_lab::simulate::SimulationOptions;
@@ -47,41 +45,41 @@ impl Run {
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct SimulationOptions {
-    /// What the platform does.
+    /// The movement of the platform.
     pub run: Run,
-    /// The same seed gives the same bits.
+    /// Seed; equal seeds give equal bits.
     pub seed: u64,
-    /// How long, s; one run if not given. A shorter time cuts the run, a longer one repeats it.
+    /// Duration, s; one run by default. A shorter time cuts the run, a longer one repeats it.
     pub duration_s: Option<f64>,
     /// Standard deviation of the white Gaussian noise of each cable's force sensor, N.
     pub sensor_noise_n: f64,
     /// Standard deviation of the white Gaussian noise of each reference force at the platform, N.
     pub reference_noise_n: f64,
-    /// How far each pulley's μ is from the cable's at most, as a share of it: uniform in `±mu_spread_ratio`, 0…1.
+    /// Maximum relative difference of each pulley's μ from the cable's: uniform in `±mu_spread_ratio`, 0…1.
     pub mu_spread_ratio: f64,
-    /// Standard deviation by which each sensor's zero wanders to and fro, N.
+    /// Standard deviation of the drift of each sensor's zero, N.
     pub sensor_wander_n: f64,
-    /// Standard deviation by which each reference force wanders, N.
+    /// Standard deviation of the drift of each reference force, N.
     pub reference_wander_n: f64,
-    /// Correlation time of both, s.
+    /// Correlation time of both drifts, s.
     pub wander_s: f64,
-    /// How hard a hand pushes, slowly and at random, also while the winches rest: the platform along each base axis, each
-    /// cable of a test bench along itself, N at most.
+    /// Greatest force with which a hand pushes slowly and at random, even while the winches rest, N: on the platform along each base axis, or on each
+    /// cable of a test bench along the cable.
     pub hand_n: f64,
-    /// Standard deviation of the white Gaussian noise of each logged length, m. With it or a resolution the logged speed is
-    /// the difference of two logged lengths over a cycle, as an encoder alone gives it.
+    /// Standard deviation of the white Gaussian noise of each logged length, m. With noise or a resolution, the logged speed is the difference of two
+    /// logged lengths over a cycle, as from a bare encoder.
     pub length_noise_m: f64,
-    /// Step of the logged length, m; 0: none.
+    /// Resolution of the logged length, m; 0 for none.
     pub length_resolution_m: f64,
-    /// Effects that act on every cable beside those in the robot file.
+    /// Effects that act on every cable in addition to those in the robot file.
     pub effects: Vec<HiddenEffect>,
-    /// What else spoils the log of every cable, in no catalogue of effects.
+    /// Disturbances outside the catalogue that act on the log of every cable.
     pub disturbances: Vec<Disturbance>,
 }
 
 impl Default for SimulationOptions {
-    /// One identification run with 0.02 N of noise at the sensor and 0.01 N at the reference, all pulleys of a cable alike,
-    /// exact lengths, nobody near, nothing hidden.
+    /// Returns one identification run with 0.02 N of noise at the sensor and 0.01 N at the reference, equal pulleys per cable, exact lengths, no
+    /// hand, and nothing hidden.
     fn default() -> Self {
         Self {
             run: Run::default(),
@@ -103,7 +101,7 @@ impl Default for SimulationOptions {
 }
 
 impl SimulationOptions {
-    /// Whether all numbers are in range for a robot with this cycle time.
+    /// Checks whether all numbers are in range for a robot with this cycle time.
     pub(super) fn check(&self, cycle_s: f64) -> Result<(), SimulationError> {
         let ranges = [
             ("duration_s", self.duration_s.unwrap_or(cycle_s), cycle_s, LONGEST_S),

@@ -1,14 +1,14 @@
-//! The simulated platform: which wrench acts on it and how its cables pull.
+//! The simulated platform: the wrench on it and the directions of its cables.
 //!
-//! Newton and Euler about the platform origin read `A^T f + w = 0` with `w = m·[g − a; R c × (g − a)]`, a the
-//! acceleration of the origin and c the centre of mass (\[P\] 2, gravity and inertia on the side of w). Rotation is
-//! quasi-static: the robot file has no inertia tensor, so what angular acceleration and the centre of mass on its circle
-//! add is left out. Exact while the platform does not turn.
+//! Newton-Euler about the platform origin reads `A^T f + w = 0` with `w = m·[g − a; R c × (g − a)]`, where a is the acceleration of the origin and c
+//! the centre of mass (\[P\] 2, with gravity and inertia in w). Rotation is quasi-static: the robot file has no inertia tensor, so the terms of
+//! angular acceleration and of the centripetal acceleration of the centre of mass are omitted. The equation is exact while the platform does not
+//! rotate.
 
 use fric_core::{CableParams, Pose, RobotParams, Wrench};
 use nalgebra::{UnitQuaternion, Vector3, Vector6};
 
-/// Mass, attachment points and cables, those without geometry left out.
+/// Mass, attachment points and cables; cables without geometry are left out.
 #[derive(Clone, Debug)]
 pub struct Platform {
     mass_kg: f64,
@@ -38,28 +38,28 @@ impl Platform {
         }
     }
 
-    /// Attached cables.
+    /// Returns the number of attached cables.
     pub fn cable_count(&self) -> usize {
         self.cables.len()
     }
 
-    /// Weight, N.
+    /// Returns the weight, N.
     pub fn weight_n(&self) -> f64 {
         self.mass_kg * self.gravity_m_per_s2.norm()
     }
 
-    /// Unit vector of gravity; downwards where there is none.
+    /// Returns the unit vector of gravity; downwards if there is none.
     pub fn down(&self) -> Vector3<f64> {
         self.gravity_m_per_s2.try_normalize(1e-9).unwrap_or_else(|| -Vector3::z())
     }
 
-    /// Root mean square distance of the attachments from the platform origin, m.
+    /// Returns the root mean square distance of the attachments from the platform origin, m.
     pub fn arm_m(&self) -> f64 {
         let squares: Vec<f64> = self.cables.iter().map(|cable| cable.platform_m.norm_squared()).collect();
         mean(&squares).sqrt()
     }
 
-    /// Least and greatest corner of the points where the cables enter their last pulleys.
+    /// Returns the least and the greatest corner of the points where the cables enter their last pulleys.
     pub fn base_corners_m(&self) -> [Vector3<f64>; 2] {
         let start = [f64::INFINITY, f64::NEG_INFINITY].map(Vector3::repeat);
         self.cables
@@ -67,13 +67,13 @@ impl Platform {
             .fold(start, |[least, greatest], cable| [least.inf(&cable.base_m), greatest.sup(&cable.base_m)])
     }
 
-    /// The platform at a place, along the base axes.
+    /// Returns the pose at a position, aligned with the base axes.
     pub fn pose(position_m: Vector3<f64>) -> Pose {
         Pose { position_m, orientation: UnitQuaternion::identity() }
     }
 
-    /// Columns `[u; R b × u]` of `A^T`, u from the platform to where the cable leaves its pulley; false where one cannot
-    /// leave its pulley, and then the columns are as they were.
+    /// Computes the columns `[u; R b × u]` of `A^T`, with u from the platform to the point where the cable leaves its pulley. Returns false if a
+    /// cable cannot leave its pulley; the columns are then unchanged.
     pub fn structure(&self, pose: &Pose, columns: &mut Vec<Vector6<f64>>) -> bool {
         if self.cables.iter().any(|cable| cable.params.direction(pose).is_none()) {
             return false;
@@ -86,7 +86,7 @@ impl Platform {
         true
     }
 
-    /// The wrench of gravity and inertia at an orientation and an acceleration of the platform.
+    /// Returns the wrench of gravity and inertia at an orientation and an acceleration of the platform.
     pub fn outside_wrench(
         &self,
         orientation: &UnitQuaternion<f64>,
@@ -97,7 +97,7 @@ impl Platform {
     }
 }
 
-/// `−A^T f`: the wrench that acts on the platform from outside when it moves as its cables pull.
+/// Returns `−A^T f`: the external wrench on the platform if it moves exactly as its cables pull.
 pub fn balanced_wrench(columns: &[Vector6<f64>], forces_n: impl Iterator<Item = f64>) -> Wrench {
     let sum = columns.iter().zip(forces_n).fold(Vector6::zeros(), |sum, (column, force_n)| sum - column * force_n);
     Wrench { force_n: sum.fixed_rows::<3>(0).into_owned(), torque_nm: sum.fixed_rows::<3>(3).into_owned() }

@@ -1,19 +1,19 @@
-//! One implicit stage of a bristle's deflection, for any exponent of Dahl's law.
+//! Solves one implicit stage of a bristle's deflection for any exponent of Dahl's law.
 //!
-//! Equation: `z = b + h·v·g(u)`, `u = 1 − s·σ·z/f_c`, `g(u) = sgn(u)·|u|^a`. Symbols: `b` `base_m`, `h·v` `travel_m` with
-//! sign s, σ `stiffness_n_per_m`, `f_c` `sliding_n`, a `exponent`. Source: \[P\] 16, which leaves out the sign of u: beyond
-//! `f_c` (the load has fallen) the bristle gives way faster than the cable moves.
+//! Equation: `z = b + h·v·g(u)`, `u = 1 − s·σ·z/f_c`, `g(u) = sgn(u)·|u|^a`. Symbols: `b` `base_m`, `h·v` `travel_m` with sign s, σ
+//! `stiffness_n_per_m`, `f_c` `sliding_n`, a `exponent`. Source: \[P\] 16, which omits the sign of u: beyond `f_c` (after the load has fallen) the
+//! bristle relaxes faster than the cable moves.
 //!
-//! With `k = σ·|h·v|/f_c` and `u_b` that of b it is `u + k·g(u) = u_b`, which rises in u: one solution, with the sign of
-//! `u_b`.
+//! With `k = σ·|h·v|/f_c` and `u_b` belonging to b, the equation is `u + k·g(u) = u_b`, which increases with u: there is one solution, with the sign
+//! of `u_b`.
 
-/// Newton's method on a rising convex function: from the second step on it comes down to the solution without passing it.
+/// Maximum number of Newton steps on an increasing convex function. From the second step on, the iterates approach the solution from above without
+/// passing it.
 const MOST_STEPS: u32 = 60;
-/// Relative change of u that ends it; the next step would be its square.
+/// Relative change of u that ends the iteration; the next step would be its square.
 const SETTLED: f64 = 1e-9;
 
-/// The deflection at the end of the stage, m, sought from a guess on. A bearing that holds nothing relaxes its bristle at
-/// once.
+/// Returns the deflection at the end of the stage, m, starting from a guess. A bearing that holds no friction relaxes its bristle at once.
 pub fn stage(base_m: f64, travel_m: f64, stiffness_n_per_m: f64, sliding_n: f64, exponent: f64, guess_m: f64) -> f64 {
     let give_n = travel_m.abs() * stiffness_n_per_m;
     if sliding_n <= 0.0 {
@@ -30,9 +30,9 @@ pub fn stage(base_m: f64, travel_m: f64, stiffness_n_per_m: f64, sliding_n: f64,
     (1.0 - left) / stiffness_per_m
 }
 
-/// `u ≥ 0` of `u + k·u^a = base` for `base ≥ 0`.
+/// Returns the solution `u ≥ 0` of `u + k·u^a = base` for `base ≥ 0`.
 ///
-/// Solved for the one of u and `u^a` in which the equation is convex: `w^p + …` with `p ≥ 1`.
+/// The equation is solved for u or `u^a`, whichever makes it convex: `w^p + …` with `p ≥ 1`.
 fn remaining(base: f64, give: f64, exponent: f64, guess: f64) -> f64 {
     let power = exponent.max(1.0 / exponent);
     // (weight of w, weight of w^p)

@@ -1,4 +1,4 @@
-//! What is hidden in a log as people state it: `kind:key=value,…`, read and checked against a catalogue.
+//! Effects and disturbances in text form, `kind:key=value,…`, read and checked against a catalogue.
 
 use std::fmt;
 
@@ -7,7 +7,7 @@ use fric_core::robot::nearest_name;
 use super::error::{HiddenError, with_unit};
 use super::hidden::list;
 
-/// A parameter that something to hide has.
+/// An allowed parameter.
 #[derive(Clone, Copy, Debug)]
 pub struct Allowed {
     pub key: &'static str,
@@ -16,7 +16,7 @@ pub struct Allowed {
     pub max: f64,
 }
 
-/// Something that can be hidden.
+/// A kind that can be hidden.
 #[derive(Clone, Debug)]
 pub struct Kind {
     /// `effect` or `disturbance`.
@@ -25,13 +25,13 @@ pub struct Kind {
     pub parameters: Vec<Allowed>,
 }
 
-/// Splits text into kind and values.
+/// Splits a text into kind and values.
 pub fn split(text: &str) -> (&str, impl Iterator<Item = &str>) {
     let (kind, list) = text.split_once(':').unwrap_or((text, ""));
     (kind.trim(), list.split(',').map(str::trim).filter(|entry| !entry.is_empty()))
 }
 
-/// Nothing is called that.
+/// Returns the error for an unknown kind.
 pub fn unknown(noun: &'static str, kind: &str, known: impl Iterator<Item = &'static str> + Clone) -> HiddenError {
     HiddenError::UnknownKind {
         noun,
@@ -42,7 +42,7 @@ pub fn unknown(noun: &'static str, kind: &str, known: impl Iterator<Item = &'sta
 }
 
 impl Kind {
-    /// Reads `key=value` each.
+    /// Reads each entry as `key=value`.
     pub fn read<'a>(&self, entries: impl Iterator<Item = &'a str>) -> Result<Vec<(&'a str, f64)>, HiddenError> {
         let read = |entry: &'a str| {
             let value = entry.split_once('=').and_then(|(key, value)| Some((key.trim(), value.trim().parse().ok()?)));
@@ -56,7 +56,7 @@ impl Kind {
         entries.map(read).collect()
     }
 
-    /// The values with the keys of the catalogue: at least one, none twice, all in range.
+    /// Returns the values with the keys of the catalogue. There must be at least one, none repeated, and all in range.
     pub fn check(&self, values: &[(&str, f64)]) -> Result<Vec<(&'static str, f64)>, HiddenError> {
         let &Self { noun, name: kind, .. } = self;
         if values.is_empty() {
@@ -94,7 +94,7 @@ impl Kind {
     }
 }
 
-/// As it is read.
+/// Writes the text form.
 pub fn write(formatter: &mut fmt::Formatter<'_>, kind: &str, values: &[(&str, f64)]) -> fmt::Result {
     write!(formatter, "{kind}:")?;
     for (place, (key, value)) in values.iter().enumerate() {

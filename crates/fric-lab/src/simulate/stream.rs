@@ -25,29 +25,29 @@ use crate::excite::Excitation;
 use crate::random::uniform;
 use crate::trajectory::{Limits, SetPoint, Trajectory};
 
-/// Stamp of the first cycle: 28 May 2026, 20:26:40 UTC. The same in every run, so that equal seeds give equal logs.
+/// Stamp of the first cycle: 28 May 2026, 20:26:40 UTC. It is the same in every run, so that equal seeds give equal logs.
 pub const START_NANOS: i64 = 1_780_000_000_000_000_000;
 
-/// In how many places of a run the pulleys' share in the friction is looked at.
+/// Number of positions of a run at which the pulleys' contributions to the friction are averaged.
 const MU_PLACES: u32 = 1000;
 
-/// A simulated robot at work; memory does not depend on the duration.
+/// A running simulation; its memory does not depend on the duration.
 #[derive(Debug)]
 pub struct Simulation {
     cycle_s: f64,
     total_cycles: u64,
     done_cycles: u64,
     motion: Motion,
-    /// The run that states the loads.
+    /// The run, if it states the loads.
     stated: Option<Excitation>,
     platform: Platform,
     tension: Tension,
-    /// How the tension of each cable varies by itself.
+    /// The variation of each cable's own tension.
     variations: Vec<Variation>,
-    /// A hand on the platform, along each axis, or on each cable of a test bench.
+    /// The pushes of a hand: on the platform along each axis, or on each cable of a test bench.
     pushes: Vec<Variation>,
     hand_n: f64,
-    /// The first of the cables that are simulated; the forces are those of all.
+    /// Index of the first simulated cable; the forces are those of all cables.
     first_cable: usize,
     cables: Vec<SimulatedCable>,
     sensor_noise_n: f64,
@@ -60,32 +60,32 @@ pub struct Simulation {
     imbalance: Option<Imbalance>,
 }
 
-/// Cycles in which the cables did not hold the platform.
+/// Cycles in which the cables could not hold the platform.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Imbalance {
-    /// How many.
+    /// Number of cycles.
     pub cycle_count: u64,
-    /// The most that was missing: the largest component of `A^T f + w`, torques divided by the mean moment arm, N.
+    /// Greatest imbalance: the largest component of `A^T f + w`, with torques divided by the mean moment arm, N.
     pub missing_n: f64,
-    /// When, s since the start.
+    /// Time of the greatest imbalance, s since the start.
     pub time_s: f64,
-    /// Where the platform's origin was then, base frame, m.
+    /// Position of the platform's origin at that time, base frame, m.
     pub position_m: Vector3<f64>,
 }
 
-/// Where the tensions come from.
+/// The source of the tensions.
 #[derive(Debug)]
 enum Tension {
-    /// The platform holds itself by all cables.
+    /// All cables hold the platform.
     Platform {
         level: TensionLevel,
         distribution: Box<Distribution>,
         common: Variation,
-        /// Whether the prestress varies, or stays at its mean.
+        /// Whether the prestress varies instead of staying at its mean.
         wanders: bool,
         balanced: bool,
     },
-    /// Each cable has a load of its own.
+    /// Each cable has its own load.
     Bench { level: TensionLevel, load: Option<KnownReference> },
 }
 
@@ -105,7 +105,7 @@ struct SimulatedCable {
     reading_n: Option<f64>,
 }
 
-/// What a seeded stream of random numbers is for; streams of one seed do not depend on each other.
+/// The use of a stream of random numbers. Streams of one seed are independent.
 #[derive(Clone, Copy)]
 pub enum Purpose {
     Spread,
@@ -117,7 +117,7 @@ pub enum Purpose {
     ReferenceWander,
     Hand,
     Encoder,
-    /// And those after it: of the disturbances one after the other.
+    /// This and the following streams belong to the disturbances, one after the other.
     Disturbance,
 }
 
@@ -132,25 +132,25 @@ fn random_of(seed: u64, purpose: u64, cable: usize) -> ChaCha8Rng {
 }
 
 impl Simulation {
-    /// Sets the robot up: finds a workspace, draws what the seed decides, hides the effects.
+    /// Sets up the robot: finds a workspace, draws what the seed decides, and hides the effects.
     ///
-    /// A robot whose cables are all attached to the platform moves it; its tensions hold it (see
-    /// [`is_balanced`](Self::is_balanced)). Cables without geometry run the same movements each for itself, under a load
-    /// that varies, or the one that the robot file knows. What the platform does is [`SimulationOptions::run`]. A cable with `presliding = "lumped"` has a
-    /// bristle on each pulley too: nature knows no other. `traction_mu` and `validated` of the file have no effect.
+    /// If all cables are attached to the platform, the robot moves it and its tensions hold it (see [`is_balanced`](Self::is_balanced)). Each cable
+    /// without geometry runs the same movements alone, under a varying load or the load that the robot file knows. [`SimulationOptions::run`] selects
+    /// the movement. A cable with `presliding = "lumped"` also has a bristle on each pulley, which is the physical model. `traction_mu` and
+    /// `validated` of the file have no effect.
     ///
     /// # Errors
-    /// [`SimulationError`] for an option out of range, an effect that cannot be simulated, a robot without a place where
-    /// all its cables can run, a known load of cables that hold a platform, and a crossing run without a platform.
+    /// Returns a [`SimulationError`] for an option out of range, an effect that cannot be simulated, a robot without a position where all its cables
+    /// can run, a known load of cables that hold a platform, and a crossing run without a platform.
     pub fn new(robot: &RobotFile, options: &SimulationOptions) -> Result<Self, SimulationError> {
         Self::of(robot, options, 0..robot.options().cable.len(), None)
     }
 
-    /// The log of a run that was made beforehand, with its movements and, where it states them, its loads;
-    /// [`SimulationOptions::run`] has no effect. The run repeats where `duration_s` is longer.
+    /// Sets up the log of a prepared run with its movements and, if it states them, its loads. [`SimulationOptions::run`] has no effect. The run
+    /// repeats if `duration_s` is longer.
     ///
     /// # Errors
-    /// As [`new`](Self::new).
+    /// Returns the errors of [`new`](Self::new).
     pub fn following(
         robot: &RobotFile,
         options: &SimulationOptions,
@@ -159,7 +159,7 @@ impl Simulation {
         Self::of(robot, options, 0..robot.options().cable.len(), Some(run))
     }
 
-    /// The log of some of the robot's cables, which pull as they do with all the others, but without the others' friction.
+    /// Sets up the log of some of the robot's cables. They pull as they do with all the others, but the others' friction is not computed.
     pub(super) fn of(
         robot: &RobotFile,
         options: &SimulationOptions,
@@ -244,39 +244,39 @@ impl Simulation {
         })
     }
 
-    /// How many cycles there will be.
+    /// Returns the total number of cycles.
     #[must_use]
     pub fn total_cycles(&self) -> u64 {
         self.total_cycles
     }
 
-    /// The run that is repeated.
+    /// Returns the run that is repeated.
     #[must_use]
     pub fn trajectory(&self) -> &Trajectory {
         self.motion.trajectory()
     }
 
-    /// Whether the cables alone hold the platform, so that the outside wrench is gravity and inertia. If not (too few
-    /// cables, say) it is still `−A^T f`, and what is missing to balance comes from a guide. False on a test bench.
+    /// Whether the cables alone hold the platform, so that the external wrench is gravity and inertia. If not (for instance with too few cables), the
+    /// wrench is still `−A^T f`, and a guide bears the imbalance. False on a test bench.
     #[must_use]
     pub fn is_balanced(&self) -> bool {
         matches!(self.tension, Tension::Platform { balanced: true, .. })
     }
 
-    /// Whether the platform has weight and hangs from base points that are all at one height, but runs at that height or
-    /// above: its cables are then nearly level, and no real robot would be used like that.
+    /// Whether the platform has weight, hangs from base points at one height, and runs at that height or above. Its cables are then nearly
+    /// horizontal, which no real robot would use.
     #[must_use]
     pub fn is_among_anchors(&self) -> bool {
         self.is_among_anchors
     }
 
-    /// The cycles so far in which the cables alone did not hold the platform; `None` if they did, and on a test bench.
+    /// Returns the cycles so far in which the cables alone could not hold the platform; `None` if there were none, and on a test bench.
     #[must_use]
     pub fn imbalance(&self) -> Option<&Imbalance> {
         self.imbalance.as_ref()
     }
 
-    /// The one μ that stands for those of a cable's pulleys: their mean over the run, each as far as the sensor feels it.
+    /// Returns the equivalent μ of a cable: the mean over its pulleys and the run, weighted by their influence on the sensor.
     pub(super) fn mean_mu(&self, cable: usize) -> Option<f64> {
         let SimulatedCable { chain, winch, .. } = self.cables.get(cable)?;
         let step_s = self.motion.trajectory().duration_s() / f64::from(MU_PLACES);
@@ -286,10 +286,10 @@ impl Simulation {
         Some(with_mu / with_one)
     }
 
-    /// The next cycle; `None` after the last. What it lends is overwritten by the following one.
+    /// Returns the next cycle; `None` after the last. The following call overwrites the borrowed data.
     ///
-    /// Lengths and speeds are without noise. Reference forces are the true ones with offset and noise, for every cable.
-    /// The pose is there where a cable is attached to the platform, the true wrench `−A^T f` where all are.
+    /// Lengths and speeds are without noise. Reference forces are the true ones with offset and noise, for every cable. The pose is present if a
+    /// cable is attached to the platform, and the true wrench `−A^T f` if all are.
     ///
     /// ```
     /// use fric_core::robot::file::RobotFile;
@@ -356,7 +356,7 @@ impl Simulation {
         })
     }
 
-    /// True cable forces at the platform at a time.
+    /// Computes the true cable forces at the platform at a time.
     fn set_tensions(&mut self, platform: Option<&SetPoint>, time_s: f64) {
         let (mean_n, common_share, wanders) = match &self.tension {
             Tension::Platform { level, wanders: false, .. } => (level.mean_n, 0.0, false),
@@ -372,7 +372,7 @@ impl Simulation {
         if let Tension::Bench { level, load } = &self.tension {
             let forces_n = self.forces_n.iter_mut().skip(self.first_cable);
             for (force_n, cable) in forces_n.zip(&self.cables) {
-                // The reference is what is known, and the offset between it and the force at the platform.
+                // The reference is known, and so is the offset between it and the force at the platform.
                 let known_n = |load: KnownReference| {
                     load.force_n(cable.winch.acceleration_m_per_s2(&self.motion, time_s)) - cable.offset_n
                 };
@@ -435,7 +435,7 @@ impl SimulatedCable {
         })
     }
 
-    /// Moves on to a time; gives the force at the sensor.
+    /// Advances to a time and returns the force at the sensor.
     fn advance(
         &mut self,
         motion: &Motion,
@@ -444,7 +444,7 @@ impl SimulatedCable {
         force_n: f64,
         cycle_s: f64,
     ) -> f64 {
-        // The workspace has been tried: only a place between those tried could have no way out, and holds the cable.
+        // The workspace was checked, so only a position between the checked ones can have no way out; the cable then stops.
         let held = CableMotion { length_m: self.wound.length_m, speed_m_per_s: 0.0 };
         self.wound = self.winch.motion(motion, platform, time_s).unwrap_or(held);
         let CableMotion { length_m, speed_m_per_s } = self.play.follow(self.wound);
@@ -465,7 +465,7 @@ impl SimulatedCable {
         self.chain.sensor_force_n(&moment)
     }
 
-    /// The motion in the log.
+    /// Returns the logged motion.
     fn logged(&mut self, motion: &Motion, time_s: f64, cycle_s: f64) -> CableMotion {
         let mut wound = self.wound;
         if self.lead_s.abs() > 0.0 {
@@ -475,7 +475,7 @@ impl SimulatedCable {
         self.encoder.read(wound, cycle_s)
     }
 
-    /// The force in the log.
+    /// Returns the logged force.
     fn reading_n(&mut self, sensor_force_n: f64, noise_n: f64, time_s: f64, cycle_s: f64) -> f64 {
         let length_m = self.wound.length_m;
         let effects = self.chain.effects();
@@ -491,7 +491,7 @@ impl SimulatedCable {
     }
 }
 
-/// The cable's pulleys with their own μ.
+/// Returns the cable's pulleys with their individual μ.
 pub fn chain(table: &CableTable, options: &SimulationOptions, cable: usize, effects: TruthEffects) -> BristleChain {
     let spread = &mut random(options.seed, Purpose::Spread, cable);
     let ratio = options.mu_spread_ratio;
@@ -513,7 +513,7 @@ pub fn chain(table: &CableTable, options: &SimulationOptions, cable: usize, effe
 mod tests {
     use super::*;
 
-    /// A cable by itself is pulled, moved and read as it is among all.
+    /// A cable alone has the same tension, motion and readings as among all cables.
     #[test]
     fn one_cable_of_a_robot_is_that_of_the_whole() -> Result<(), Box<dyn core::error::Error>> {
         let robot = RobotFile::parse(include_str!("../../../../examples/mini-ipanema.toml"), "example")?;

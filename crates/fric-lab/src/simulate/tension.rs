@@ -1,7 +1,7 @@
-//! How tight the cables are, and how that varies: prestress of a platform, load of a test bench.
+//! Cable tensions and their variation: prestress of a platform, load of a test bench.
 //!
-//! A run must show each cable under many loads, or friction that grows with load cannot be told from friction that does
-//! not. Tensions therefore wander over about a factor of three, slowly beside the movements.
+//! A run must contain many loads of each cable; otherwise load-dependent friction cannot be distinguished from load-independent friction. The
+//! tensions therefore vary over about a factor of three, slowly compared with the movements.
 
 use fric_core::robot::file::CableTable;
 use rand_chacha::ChaCha8Rng;
@@ -10,20 +10,20 @@ use super::platform::Platform;
 use super::waves::Waves;
 use crate::trajectory::FASTEST_M_PER_S;
 
-/// Mean tension of a robot without mass, N: that of a small robot whose sensors work up to 20 N at 180°.
+/// Mean tension of a robot without mass, N: that of a small robot with sensors up to 20 N at 180°.
 const LIGHT_N: f64 = 4.0;
-/// Mean tension per weight of the platform.
+/// Mean tension divided by the platform's weight.
 const PER_WEIGHT: f64 = 1.0;
-/// Least tension per mean tension, beside what viscous friction takes.
+/// Least tension divided by mean tension, apart from the viscous friction.
 const LEAST_SHARE: f64 = 0.1;
-/// Prestress common to all cables: amplitudes as shares of the mean, and frequencies in Hz.
+/// Prestress common to all cables: amplitudes relative to the mean, and frequencies in Hz.
 const COMMON: [(f64, f64); 2] = [(0.27, 0.09), (0.13, 0.31)];
-/// What each cable adds of its own.
+/// Additional prestress of each cable.
 const OWN: [(f64, f64); 2] = [(0.06, 0.17), (0.04, 0.53)];
 /// Load of a test bench: slow waves, and steps.
 const LOAD: [(f64, f64); 2] = [(0.25, 0.07), (0.1, 0.23)];
 const LOAD_STEPS: [(f64, f64); 2] = [(0.1, 0.11), (0.07, 0.19)];
-/// Pushes of a hand, as shares of the hardest.
+/// Pushes of a hand: amplitudes relative to the greatest push, and frequencies in Hz.
 const PUSHES: [(f64, f64); 3] = [(0.5, 0.22), (0.3, 0.55), (0.2, 1.2)];
 
 /// Mean and least tension at the platform.
@@ -34,14 +34,14 @@ pub struct TensionLevel {
 }
 
 impl TensionLevel {
-    /// For a platform held by its cables. Viscous friction at full speed is added, so that it does not slacken a cable at
-    /// its winch.
+    /// Returns the level for a platform that its cables hold. It includes the viscous friction at full speed, which therefore does not slacken a
+    /// cable at its winch.
     pub fn of_platform(platform: &Platform, tables: &[CableTable]) -> Self {
         let viscous_n_s_per_m = most_viscous_n_s_per_m(tables);
         Self::new((PER_WEIGHT * platform.weight_n()).max(LIGHT_N), viscous_n_s_per_m)
     }
 
-    /// For a test bench with the platform's weight hung on the cables.
+    /// Returns the level for a test bench with the platform's weight on the cables.
     pub fn of_bench(weight_n: f64, tables: &[CableTable]) -> Self {
         #[expect(clippy::cast_precision_loss, reason = "a number of cables")]
         let each_n = weight_n / tables.len().max(1) as f64;
@@ -55,20 +55,20 @@ impl TensionLevel {
         Self { mean_n: mean_n + drag_n, least_n: LEAST_SHARE * mean_n + drag_n }
     }
 
-    /// The lowest and the highest prestress there can be.
+    /// Returns the lowest and the highest possible prestress.
     pub fn extremes_n(&self) -> [f64; 2] {
         let swing: f64 = COMMON.iter().chain(&OWN).map(|(amplitude, _)| amplitude).sum();
         [self.mean_n * (1.0 - swing), self.mean_n * (1.0 + swing)]
     }
 }
 
-/// The greatest sum of `F_pv` along a cable.
+/// Returns the greatest sum of `F_pv` along a cable.
 fn most_viscous_n_s_per_m(tables: &[CableTable]) -> f64 {
     let whole = |table: &CableTable| table.pulleys.iter().map(|_| table.friction.viscous_n_s_per_m).sum();
     tables.iter().map(whole).fold(0.0, f64::max)
 }
 
-/// Tension over time.
+/// Variation of a tension over time.
 #[derive(Clone, Debug)]
 pub struct Variation {
     waves: Waves,
@@ -76,27 +76,27 @@ pub struct Variation {
 }
 
 impl Variation {
-    /// The part of a platform's prestress that all cables share.
+    /// Returns the part of a platform's prestress that all cables share.
     pub fn common(random: &mut ChaCha8Rng) -> Self {
         Self { waves: Waves::new(&COMMON, random), steps: Waves::new(&[], random) }
     }
 
-    /// A cable's own part of it.
+    /// Returns a cable's own part of the prestress.
     pub fn own(random: &mut ChaCha8Rng) -> Self {
         Self { waves: Waves::new(&OWN, random), steps: Waves::new(&[], random) }
     }
 
-    /// The load of a cable on a test bench.
+    /// Returns the load of a cable on a test bench.
     pub fn load(random: &mut ChaCha8Rng) -> Self {
         Self { waves: Waves::new(&LOAD, random), steps: Waves::new(&LOAD_STEPS, random) }
     }
 
-    /// A hand that pushes to and fro, as a share of its hardest push.
+    /// Returns the pushes of a hand, relative to the greatest push.
     pub fn pushes(random: &mut ChaCha8Rng) -> Self {
         Self { waves: Waves::new(&PUSHES, random), steps: Waves::new(&[], random) }
     }
 
-    /// Share of the mean tension by which the tension differs from it.
+    /// Returns the relative deviation from the mean tension.
     pub fn share(&self, time_s: f64) -> f64 {
         self.waves.value(time_s) + self.steps.steps(time_s)
     }

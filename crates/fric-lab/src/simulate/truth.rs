@@ -1,10 +1,10 @@
-//! What effects and disturbances do to the simulated robot.
+//! The influence of effects and disturbances on the simulated robot.
 //!
-//! Each implements [`TruthEffect`](crate::effects::truth::TruthEffect) from the physics, not from the compensator's code: [`effects`](crate::effects) those of the catalogue,
-//! [`disturbances`](super::disturbances) what is in none.
+//! Each implements [`TruthEffect`](crate::effects::truth::TruthEffect) from the physics, not from the compensator's code: [`effects`](crate::effects)
+//! those of the catalogue, [`disturbances`](super::disturbances) those outside it.
 //!
-//! Where several act at one place, factors multiply and forces add up; of what the sensor shows the bend of its curve comes first, then
-//! the gain, offsets, noise, then what the amplifier makes of the sum.
+//! Where several act at one place, factors multiply and forces add. In the sensor signal the nonlinear curve comes first, then the gain, offsets and
+//! noise, and then the amplifier.
 
 use fric_core::effects::Effect;
 use fric_core::effects::EffectParams;
@@ -17,13 +17,13 @@ use super::hidden::HiddenEffect;
 use crate::effects;
 use crate::effects::truth::{Cause, Contact, TruthEffect};
 
-/// What the effects of one cable are made from beside their parameters.
+/// The inputs, besides their parameters, from which the effects of one cable are created.
 pub struct CableCause<'a> {
-    /// Length where the run starts, m.
+    /// Length at the start of the run, m.
     pub start_length_m: f64,
-    /// What the sensor shows of the tension without friction, 1.
+    /// Ratio of the sensor signal to the tension without friction, dimensionless.
     pub sensor_ratio: f64,
-    /// A stream of random numbers for the disturbance at a place of the list.
+    /// Returns a stream of random numbers for the disturbance at an index of the list.
     pub random: &'a dyn Fn(usize) -> ChaCha8Rng,
 }
 
@@ -32,7 +32,7 @@ pub struct CableCause<'a> {
 pub struct TruthEffects(Vec<Box<dyn TruthEffect>>);
 
 impl TruthEffects {
-    /// The effects that the robot file gives a cable, the hidden ones and the disturbances, all of which act.
+    /// Creates the effects from the robot file's entries of a cable, the hidden effects and the disturbances. All of them act.
     pub fn new(
         of_file: &[EffectTable],
         hidden: &[HiddenEffect],
@@ -41,7 +41,7 @@ impl TruthEffects {
     ) -> Result<Self, SimulationError> {
         let mut all = Self::default();
         for table in of_file {
-            // A robot file has effects of the catalogue only.
+            // A robot file contains only effects of the catalogue.
             let Some(effect) = Effect::of_kind(&table.kind) else { continue };
             let mut params = EffectParams::NEUTRAL;
             for (key, value) in &table.parameters {
@@ -70,7 +70,7 @@ impl TruthEffects {
     }
 
     fn sum(&self, part: impl Fn(&(dyn TruthEffect + 'static)) -> f64) -> f64 {
-        // Not `sum`, whose empty sum is −0.
+        // `sum` is avoided because its empty sum is −0.
         self.0.iter().fold(0.0, |sum, effect| sum + part(effect.as_ref()))
     }
 }

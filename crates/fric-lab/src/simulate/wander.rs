@@ -1,12 +1,12 @@
-//! Noise that wanders: a zero that drifts to and fro, as amplifiers do.
+//! Drifting noise: a slowly moving zero, as amplifiers have.
 //!
-//! `w_{k+1} = φ·w_k + √(1 − φ²)·s·n_k`, `φ = e^{−T/τ}`: normally distributed with standard deviation s, correlated over
-//! the time τ (an Ornstein-Uhlenbeck process, sampled exactly every cycle T). It starts in its steady state.
+//! `w_{k+1} = φ·w_k + √(1 − φ²)·s·n_k`, `φ = e^{−T/τ}`: normally distributed with standard deviation s, correlated over the time τ (an
+//! Ornstein-Uhlenbeck process, sampled exactly every cycle T). It starts in its stationary state.
 
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-/// One signal's wandering.
+/// The drift of one signal.
 #[derive(Debug)]
 pub struct Wander {
     standard_deviation_n: f64,
@@ -22,7 +22,7 @@ impl Wander {
         Self { standard_deviation_n, kept_ratio, value_n: standard_deviation_n * start, random }
     }
 
-    /// The present value; goes on by a cycle.
+    /// Returns the present value and advances by a cycle.
     pub fn advance(&mut self) -> f64 {
         let value_n = self.value_n;
         if self.standard_deviation_n > 0.0 {

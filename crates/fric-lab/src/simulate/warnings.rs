@@ -1,9 +1,9 @@
-//! What is worth knowing about a simulation, a sentence each.
+//! Warnings about a simulation, one sentence each.
 
 use super::stream::{Imbalance, Simulation};
 
 impl Simulation {
-    /// What of the run no real robot could do, so far.
+    /// Returns warnings about those parts of the run so far that no real robot could do.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();

@@ -1,6 +1,6 @@
-//! Slow variation: sums of a few sinusoids with seeded phases, and load steps with soft edges.
+//! Slow variations: sums of a few sinusoids with seeded phases, and load steps with soft edges.
 //!
-//! Pure functions of time: nothing to integrate, no memory, no jump wherever a run is cut or repeated.
+//! These are pure functions of time: they need no integration and no memory, and do not jump wherever a run is cut or repeated.
 
 use core::f64::consts::TAU;
 
@@ -22,8 +22,8 @@ struct Wave {
 }
 
 impl Waves {
-    /// One sinusoid for each `(amplitude, hertz)`; frequencies are drawn within ±20 % so that no two cables beat alike,
-    /// phases over the circle.
+    /// Creates one sinusoid per `(amplitude, hertz)`. Frequencies are drawn within ±20 %, so that no two cables vary in step; phases are drawn over
+    /// the full circle.
     pub fn new(parts: &[(f64, f64)], random: &mut ChaCha8Rng) -> Self {
         let parts = parts.iter().map(|&(amplitude, hertz)| Wave {
             amplitude,
@@ -37,13 +37,13 @@ impl Waves {
         self.parts.iter().map(|wave| wave.amplitude * libm::sin(wave.rad_per_s * time_s + wave.phase_rad)).sum()
     }
 
-    /// Derivative with respect to time.
+    /// Returns the derivative with respect to time.
     pub fn rate(&self, time_s: f64) -> f64 {
         let rate = |wave: &Wave| wave.amplitude * wave.rad_per_s * libm::cos(wave.rad_per_s * time_s + wave.phase_rad);
         self.parts.iter().map(rate).sum()
     }
 
-    /// Each sinusoid driven into saturation: it stays at ±amplitude and changes within a tenth of its period.
+    /// Returns the sum with each sinusoid driven into saturation: it stays at ±amplitude and changes within a tenth of its period.
     pub fn steps(&self, time_s: f64) -> f64 {
         let step = |wave: &Wave| wave.amplitude * libm::tanh(5.0 * libm::sin(wave.rad_per_s * time_s + wave.phase_rad));
         self.parts.iter().map(step).sum()

@@ -1,9 +1,9 @@
-//! Where the platform runs: a box in the middle of the cables' base points.
+//! The workspace of the platform: a box in the middle of the cables' base points.
 //!
-//! Boxes are tried from the largest down, first around the middle of the base points, then below it (a robot hung from
-//! a ceiling), until at a grid of places in the box, under the run's accelerations and at the lowest and highest
-//! prestress, every cable can leave its last pulley and pull. A robot that its cables cannot hold anywhere (too few of
-//! them, say) runs in the box where the least is missing in the middle, as if a guide carried the rest.
+//! Boxes are tried from the largest down, first around the middle of the base points, then below it (for a suspended robot). A box is accepted if, on
+//! a grid of positions, under the run's accelerations and at the lowest and highest prestress, every cable can leave its last pulley and pull. A
+//! robot that its cables cannot hold anywhere (for instance with too few cables) runs in the box with the least imbalance in the middle, as if a
+//! guide carried the rest.
 
 use fric_core::Pose;
 use nalgebra::{UnitQuaternion, Vector3, Vector6};
@@ -17,37 +17,37 @@ use crate::trajectory::{
     ACCELERATION_M_PER_S2, CROSSING_HALF_M, CROSSING_HALF_RAD, STROKE_ACCELERATION_M_PER_S2, Trajectory, WorkBox,
 };
 
-/// Half edges as shares of the base points' half extent, from the largest.
+/// Trial half edges relative to the half extent of the base points, the largest first.
 const SHARES: [f64; 7] = [0.32, 0.26, 0.2, 0.14, 0.1, 0.06, 0.03];
-/// How far below the middle, as shares of the largest half extent.
+/// Trial depths below the middle, relative to the largest half extent.
 const DEPTHS: [f64; 5] = [0.0, 0.4, 0.7, 1.0, 1.5];
 /// Longest half edge, m: rectangles through a larger box would take minutes.
 const LONGEST_HALF_EDGE_M: f64 = 0.2;
-/// Extent below which the base points lie in a plane, as a share of the largest.
+/// Base points with an extent below this fraction of the largest lie in a plane.
 const FLAT_SHARE: f64 = 0.05;
-/// Edge of the box across such a plane, as a share of the largest.
+/// Edge of the box perpendicular to such a plane, relative to the largest edge.
 const ACROSS_SHARE: f64 = 0.4;
 
-/// Missing forces below this share of the mean tension are rounding.
+/// An imbalance below this fraction of the mean tension is rounding.
 pub const SHORT_SHARE: f64 = 1e-9;
 
-/// Turns of a crossing run that are tried, as shares of its own.
+/// Trial rotations of a crossing run, relative to its full rotation.
 const TURN_SHARES: [f64; 4] = [1.0, 0.5, 0.25, 0.125];
 
-/// How far aside of a single base point, per depth below it.
+/// Lateral offset from a single base point, relative to the depth below it.
 const ASIDE_SHARE: f64 = 0.75;
 
-/// A box and whether the cables alone hold the platform in it.
+/// A box, and whether the cables alone hold the platform in it.
 #[derive(Clone, Copy, Debug)]
 pub struct Workspace {
     pub work_box: WorkBox,
     pub balanced: bool,
-    /// The platform has weight and hangs from base points at one height, and the box is not below them.
+    /// Whether the platform has weight, hangs from base points at one height, and the box is not below them.
     pub among_anchors: bool,
 }
 
 impl Workspace {
-    /// The box for a platform with at least one cable.
+    /// Finds the box for a platform with at least one cable.
     pub fn find(platform: &Platform, level: &TensionLevel) -> Result<Self, SimulationError> {
         let mut trial = Trial::new(platform, level);
         let mut best: Option<(f64, WorkBox)> = None;
@@ -67,16 +67,16 @@ impl Workspace {
         Ok(Self { work_box, balanced: false, among_anchors: among_anchors(platform, &work_box) })
     }
 
-    /// The crossing run in its middle, as far to all sides as there is room.
+    /// Returns the crossing run in its middle, as large in each direction as there is room.
     pub fn crossing(&self, platform: &Platform, level: &TensionLevel) -> Trajectory {
         let half_m = self.work_box.half_edges_m.map(|half_m| half_m.min(CROSSING_HALF_M));
         Trajectory::crossing(self.work_box.center_m, &half_m, &turns_rad(platform, level, self))
     }
 }
 
-/// How far the platform can turn to either side about each base axis in the middle of a workspace, rad: the turn of a
-/// crossing run, or the half, a quarter … of it that every cable can follow, and hold where the cables hold the platform at
-/// all; 0 where not even the last.
+/// Returns how far the platform can rotate in either direction about each base axis in the middle of a workspace, rad: the rotation of a crossing
+/// run, or a half, a quarter … of it, such that every cable can follow, and hold the platform if the cables hold it at all; 0 if even the smallest
+/// fails.
 fn turns_rad(platform: &Platform, level: &TensionLevel, workspace: &Workspace) -> Vector3<f64> {
     let mut trial = Trial::new(platform, level);
     let mut allowed = |turn_rad: Vector3<f64>| {
@@ -91,8 +91,8 @@ fn turns_rad(platform: &Platform, level: &TensionLevel, workspace: &Workspace) -
     }))
 }
 
-/// Of the axes and diagonals inside the box the one along which the cable that moves least moves most, with the platform
-/// in the middle; `None` where a cable does not get there.
+/// Returns the axis or diagonal of the box along which the least-moving cable moves most, with the platform in the middle; `None` if a cable cannot
+/// reach it.
 pub fn direction_in(platform: &Platform, center_m: Vector3<f64>, half_edges_m: &Vector3<f64>) -> Option<Vector3<f64>> {
     let mut columns = Vec::new();
     platform.structure(&Platform::pose(center_m), &mut columns).then_some(())?;
@@ -109,12 +109,12 @@ fn among_anchors(platform: &Platform, work_box: &WorkBox) -> bool {
     platform.weight_n() > 0.0 && is_level && depth_m - along_m(&work_box.half_edges_m) <= 0.0
 }
 
-/// A box of a share of the base points' extent at a depth, or `None` where the cables do not get to its middle.
+/// Returns a box at a depth with a fraction of the base points' extent; `None` if the cables cannot reach its middle.
 fn candidate(platform: &Platform, depth: f64, share: f64) -> Option<WorkBox> {
     let [least_m, greatest_m] = platform.base_corners_m();
     let half_m = (greatest_m - least_m) * 0.5;
-    // A single base point has no extent: the platform then hangs within a metre of it, aside, for straight behind a
-    // swivelling pulley there is no way out.
+    // A single base point has no extent. The platform then hangs within a metre of it and to the side, because directly behind a swivelling pulley
+    // there is no way out.
     let single = half_m.max() <= 1e-6;
     let largest_m = if single { 0.5 } else { half_m.max() };
     let level = if platform.down().x.abs() < 0.9 { Vector3::x() } else { Vector3::y() };
@@ -129,7 +129,7 @@ fn candidate(platform: &Platform, depth: f64, share: f64) -> Option<WorkBox> {
     Some(WorkBox { center_m, half_edges_m, direction })
 }
 
-/// Of the axes and diagonals inside the box the one along which the cable that moves least moves most.
+/// Returns the axis or diagonal of the box along which the least-moving cable moves most.
 fn best_direction(half_edges_m: &Vector3<f64>, columns: &[Vector6<f64>]) -> Option<Vector3<f64>> {
     let parts = [0.0, 1.0, -1.0];
     let mut best: Option<(f64, Vector3<f64>)> = None;
@@ -138,7 +138,7 @@ fn best_direction(half_edges_m: &Vector3<f64>, columns: &[Vector6<f64>]) -> Opti
         let Some(direction) = Vector3::from(direction).try_normalize(1e-9).filter(|_| !outside) else { continue };
         let moved = |column: &Vector6<f64>| column.fixed_rows::<3>(0).dot(&direction).abs();
         let least = columns.iter().map(moved).fold(f64::INFINITY, f64::min);
-        // A hundredth more, so that rounding does not choose between equals.
+        // The margin of a hundredth keeps rounding from choosing between equal directions.
         if best.is_none_or(|(other, _)| least > other + 0.01) {
             best = Some((least, direction));
         }
@@ -160,8 +160,8 @@ impl<'a> Trial<'a> {
         Self { platform, level, distribution, columns: Vec::new(), forces_n: Vec::new() }
     }
 
-    /// The first force found that the cables fail to provide in the box, N, starting from its middle; 0 if they provide
-    /// all. `None` where a cable cannot leave its pulley.
+    /// Returns the first imbalance found in the box, N, starting from its middle; 0 if the cables provide all forces. Returns `None` if a cable
+    /// cannot leave its pulley.
     fn missing_in_n(&mut self, work_box: &WorkBox) -> Option<f64> {
         let parts = [-1.0, 0.0, 1.0];
         let grid = parts.into_iter().flat_map(|x| parts.into_iter().flat_map(move |y| parts.map(|z| [x, y, z])));
@@ -187,7 +187,7 @@ impl<'a> Trial<'a> {
         Some(0.0)
     }
 
-    /// What the cables fail to provide at the pose of the columns, N.
+    /// Returns the imbalance at the pose of the columns, N.
     fn missing_n(&mut self, orientation: &UnitQuaternion<f64>, acceleration_m_per_s2: Vector3<f64>) -> f64 {
         let wrench = self.platform.outside_wrench(orientation, &acceleration_m_per_s2);
         let mut missing_n = 0.0_f64;

@@ -1,9 +1,8 @@
-//! The run of \[P\], section IV B: one position crossed again and again, along each axis and about it.
+//! The run of \[P\], section IV B: crosses one position repeatedly, along each axis and about it.
 //!
-//! For: the hysteresis of the wrench, which is what the wrench differs by at one and the same pose when it is reached
-//! from the one side and from the other. Each crossing is at constant speed, so that inertia does not take part, and
-//! starts and ends so far away that presliding is over. \[P\] states neither amplitudes nor speeds; all numbers are this
-//! module's.
+//! It measures the hysteresis of the wrench, which is the difference at one pose reached from either side. Each crossing has constant speed, so that
+//! inertia has no effect, and starts and ends so far away that presliding is over. \[P\] states neither amplitudes nor speeds; all numbers are chosen
+//! here.
 
 use nalgebra::Vector3;
 
@@ -11,22 +10,22 @@ use super::identification::{ACCELERATION_M_PER_S2, BREAK_S, STEP_M_PER_S};
 use super::{Phase, Trajectory};
 use crate::axis::CartesianAxis;
 
-/// How far the platform goes to either side of the position, m, where there is room: many presliding distances.
+/// Distance to either side of the position, m, if there is room: many presliding distances.
 pub const CROSSING_HALF_M: f64 = 0.05;
-/// How far it turns to either side, rad, where the cables allow it: 5°.
+/// Rotation to either side, rad, if the cables allow it: 5°.
 pub const CROSSING_HALF_RAD: f64 = 5.0 * core::f64::consts::PI / 180.0;
-/// Angular speed, rad/s: a turn takes as long as a movement.
+/// Angular speed, rad/s: a rotation takes as long as a translation.
 pub const CROSSING_RAD_PER_S: f64 = 0.15;
 /// Limit of angular acceleration, rad/s².
 pub const CROSSING_RAD_PER_S2: f64 = 7.2;
-/// How often the position is crossed there and back on each axis.
+/// Number of times that the position is crossed back and forth on each axis.
 pub const CROSSING_CYCLES: usize = 4;
 
 impl Trajectory {
-    /// Crosses `center_m` by `half_m` to either side along the base axes and by `half_rad` about them, each there and
-    /// back [`CROSSING_CYCLES`] times with rests at the ends; an axis with 0 is left out.
+    /// Crosses `center_m` by `half_m` to either side along the base axes and by `half_rad` about them, each back and forth [`CROSSING_CYCLES`] times
+    /// with rests at the ends. An axis with 0 is left out.
     ///
-    /// The platform keeps the orientation of the base axes but for the turns.
+    /// Apart from the rotations, the platform keeps the orientation of the base axes.
     #[must_use]
     pub fn crossing(center_m: Vector3<f64>, half_m: &Vector3<f64>, half_rad: &Vector3<f64>) -> Self {
         let mut run = Self::starting_at(center_m, BREAK_S);

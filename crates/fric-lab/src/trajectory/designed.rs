@@ -1,9 +1,8 @@
-//! Runs that are put together from pieces, each from the middle of the box and back to it, under a load of its own.
+//! Runs composed of pieces, each from the middle of the box and back to it, with its own load.
 //!
-//! For: the design of experiments, which chooses the pieces. A run begins with a short movement there and back, so that what
-//! the bearings remember of the time before is forgotten, and goes on with its pieces one after the other. Between two pieces
-//! of different loads the platform rests while the load changes. A load is a share: 0 is the least force that the cables may
-//! have, 1 the greatest. Position, speed and load are pure functions of time, as of every [`Trajectory`].
+//! The design of experiments chooses the pieces. A run starts with a short movement back and forth, which erases the bearings' memory of earlier
+//! motion, and continues with its pieces. Between two pieces with different loads the platform rests while the load changes. A load is a fraction: 0
+//! is the least allowed cable force, 1 the greatest. Position, speed and load are pure functions of time, as in every [`Trajectory`].
 
 use core::f64::consts::PI;
 
@@ -12,48 +11,48 @@ use nalgebra::Vector3;
 use super::identification::{ACCELERATION_M_PER_S2, STEP_M_PER_S};
 use super::{Limits, Phase, Trajectory, WorkBox};
 
-/// Length of the movement that a run begins with, m: many presliding distances.
+/// Length of the movement at the start of a run, m: many presliding distances.
 const LEAD_IN_M: f64 = 0.01;
 /// Rest before it, s.
 const LEAD_IN_REST_S: f64 = 0.1;
-/// How long the load takes to change, s.
+/// Duration of a load change, s.
 pub const LOAD_CHANGE_S: f64 = 0.4;
-/// Shares of the load that [`Shape::LoadSteps`] goes through.
+/// Load fractions that [`Shape::LoadSteps`] passes through.
 const LOAD_STEPS: [f64; 3] = [0.9, 0.1, 0.5];
 
 /// A piece of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piece {
-    /// How the platform moves.
+    /// The movement of the platform.
     pub shape: Shape,
-    /// The load, 0…1.
+    /// The load, as a fraction 0…1.
     pub load_share: f64,
 }
 
-/// How the platform, or the cable of a test bench, moves in a piece.
+/// The movement of the platform, or of the cable of a test bench, in a piece.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shape {
-    /// Steps in one direction with rests, then as many back.
+    /// Steps in one direction with rests, then equally many back.
     StopAndGo {
         /// Length of a step, m.
         step_m: f64,
-        /// Rest after each, s.
+        /// Rest after each step, s.
         rest_s: f64,
         /// Steps in each direction.
         count: usize,
     },
-    /// Steps there and back with rests.
+    /// Steps back and forth with rests.
     Alternating {
         /// Length of a step, m.
         step_m: f64,
-        /// Rest after each, s.
+        /// Rest after each step, s.
         rest_s: f64,
-        /// How often there and back.
+        /// Number of back-and-forth repetitions.
         count: usize,
     },
-    /// Strokes about the middle, there and back.
+    /// Strokes around the middle, back and forth.
     Strokes {
-        /// Along x, y or z (0, 1, 2); along the direction of the box where `None`.
+        /// Axis x, y or z (0, 1, 2); `None` for the direction of the box.
         axis: Option<usize>,
         /// Length of a stroke, m.
         length_m: f64,
@@ -61,10 +60,10 @@ pub enum Shape {
         speed_m_per_s: f64,
         /// Greatest acceleration, m/s².
         acceleration_m_per_s2: f64,
-        /// How often there and back.
+        /// Number of back-and-forth repetitions.
         count: usize,
     },
-    /// The platform rests while the load goes up, down, and to its middle.
+    /// The platform rests while the load rises, falls, and returns to its middle.
     LoadSteps {
         /// Rest after each change, s.
         rest_s: f64,
@@ -91,7 +90,7 @@ impl Loads {
         self.ramps.last().map_or(self.start_share, |ramp| ramp.to_share)
     }
 
-    /// The share at a time, by a raised cosine while it changes.
+    /// Returns the load fraction at a time, by a raised cosine while it changes.
     pub fn share_at(&self, time_s: f64) -> f64 {
         let begun = self.ramps.partition_point(|ramp| ramp.start_s <= time_s);
         let Some(ramp) = begun.checked_sub(1).and_then(|last| self.ramps.get(last)) else { return self.start_share };
@@ -101,9 +100,9 @@ impl Loads {
 }
 
 impl Trajectory {
-    /// A run of pieces in a box, within limits; where it takes less than `duration_s` it rests at the end.
+    /// Creates a run of pieces in a box, within limits. If it takes less than `duration_s`, it rests at the end.
     ///
-    /// Movements that are longer than the box are made shorter, speeds and accelerations beyond the limits are lowered to them.
+    /// Movements longer than the box are shortened; speeds and accelerations beyond the limits are reduced to them.
     #[must_use]
     pub fn designed(work_box: &WorkBox, limits: &Limits, pieces: &[Piece], duration_s: f64) -> Self {
         let start_share = pieces.first().map_or(0.5, |piece| piece.load_share);
@@ -121,7 +120,7 @@ impl Trajectory {
     }
 }
 
-/// A run in the making.
+/// A run under construction.
 struct Builder {
     run: Trajectory,
     work_box: WorkBox,
@@ -141,7 +140,7 @@ impl Builder {
                         self.step_to(Phase::StopAndGo, to_m, rest_s);
                     }
                 }
-                // Sums of steps have the noise of their roundings.
+                // Sums of steps accumulate rounding errors.
                 self.step_to(Phase::StopAndGo, center_m, 0.0);
             }
             Shape::Alternating { step_m, rest_s, count } => {
@@ -168,7 +167,7 @@ impl Builder {
         }
     }
 
-    /// From the middle to the surface of the box along a direction, m.
+    /// Returns the distance from the middle to the surface of the box along a direction, m.
     fn reach_m(&self, direction: &Vector3<f64>) -> f64 {
         self.work_box.reach_m(direction)
     }
@@ -184,7 +183,7 @@ impl Builder {
         self.run.go(phase, to_m, speed_m_per_s, acceleration_m_per_s2);
     }
 
-    /// Rests while the load goes to a share; no time passes where it is there already.
+    /// Rests while the load changes to a fraction; takes no time if the load is already there.
     fn load(&mut self, to_share: f64) {
         let start_s = self.run.duration_s;
         let Some(loads) = &mut self.run.loads else { return };

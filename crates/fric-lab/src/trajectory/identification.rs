@@ -1,11 +1,11 @@
 //! The identification run of \[P\], section III C, as a path of the platform over time.
 //!
-//! Its phases and why: small steps with breaks, stop-and-go in one direction and alternating, show presliding; strokes
-//! of rising speed show viscous friction; rectangles through the workspace vary tension and wrap. The path is a pure
-//! function of time, closed and at rest at both ends, so that it repeats without a jump.
+//! Its phases have different purposes: small steps with breaks, in one direction and alternating, show presliding; strokes of increasing speed show
+//! viscous friction; rectangles through the workspace vary tension and wrap. The path is a pure function of time, closed and at rest at both ends, so
+//! that it repeats without a jump.
 //!
-//! \[P\] states amplitudes, speeds and breaks; acceleration limits, the amplitudes between the stated ends and the order
-//! within a phase are this module's. An amplitude is the length of a step, not half of it.
+//! \[P\] states amplitudes, speeds and breaks; the acceleration limits, the amplitudes between the stated ends and the order within a phase are
+//! chosen here. An amplitude is the length of a step, not half of it.
 
 use nalgebra::Vector3;
 
@@ -19,26 +19,25 @@ pub const STEP_M_PER_S: f64 = 0.083;
 pub const BREAK_S: f64 = 0.5;
 /// Length of the fast alternating movements, m.
 pub const STROKE_M: f64 = 0.1;
-/// Their speeds, m/s, there and back twice with each.
+/// Speeds of the strokes, m/s; each is used twice in both directions.
 pub const STROKES_M_PER_S: [f64; 6] = [0.167, 0.333, 0.5, 0.667, 0.833, 1.0];
-/// The greatest of them.
+/// The greatest speed of the strokes, m/s.
 pub const FASTEST_M_PER_S: f64 = 1.0;
 /// Speeds along the rectangles, m/s.
 pub const RECTANGLES_M_PER_S: [f64; 2] = [0.167, 0.5];
 /// Acceleration limit of small movements and rectangles, m/s².
 pub const ACCELERATION_M_PER_S2: f64 = 4.0;
-/// Acceleration limit of the fastest strokes, m/s²: 1 m/s within 100 mm needs it. Slower ones take as long to get up to
-/// speed.
+/// Acceleration limit of the fastest strokes, m/s², needed to reach 1 m/s within 100 mm. Slower strokes accelerate for the same time.
 pub const STROKE_ACCELERATION_M_PER_S2: f64 = 16.0;
 
 impl Trajectory {
-    /// The run inside a box. Where the box is too small for a movement along its direction, that is made shorter; a
-    /// speed or acceleration beyond the limits is lowered to them.
+    /// Creates the run inside a box. A movement that is too long for the box along its direction is shortened; a speed or acceleration beyond the
+    /// limits is reduced to them.
     #[must_use]
     pub fn identification(work_box: &WorkBox, limits: &Limits) -> Self {
         let WorkBox { center_m, half_edges_m, direction } = *work_box;
         let mut run = Capped { run: Self::starting_at(center_m, BREAK_S), limits: *limits };
-        // From the middle to the box's surface along the direction.
+        // The distance from the middle to the box's surface along the direction.
         let reach_m = work_box.reach_m(&direction);
         let fit = |length_m: f64| length_m.min(2.0 * reach_m);
 
@@ -62,7 +61,7 @@ impl Trajectory {
             }
         }
         run.go(Phase::Stroke, center_m, STEP_M_PER_S, ACCELERATION_M_PER_S2);
-        // Round the top and the bottom of the box and along the edge between, so that every corner is passed.
+        // The path goes around the top and the bottom of the box and along an edge between, so that it passes every corner.
         let round = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0], [1.0, 1.0]];
         for speed_m_per_s in RECTANGLES_M_PER_S {
             for [x, y, z] in [1.0, -1.0].into_iter().flat_map(|z| round.map(|[x, y]| [x, y, z])) {
@@ -76,7 +75,7 @@ impl Trajectory {
     }
 }
 
-/// A run in the making, with its limits.
+/// A run under construction, with its limits.
 struct Capped {
     run: Trajectory,
     limits: Limits,

@@ -1,9 +1,8 @@
-//! Runs of a platform as pure functions of time: what a simulated robot does, and what a real one is to do.
+//! Runs of a platform as pure functions of time, for simulated and real robots.
 //!
-//! [`Trajectory::identification`] is the identification run of \[P\], section III C; [`Trajectory::crossing`] crosses one
-//! position along and about each axis, \[P\] section IV B. Both are made of straight movements and turns from rest to
-//! rest, closed and at rest at both ends, so that they repeat without a jump. Finite for any finite input; nothing
-//! here knows of cables.
+//! [`Trajectory::identification`] is the identification run of \[P\], section III C; [`Trajectory::crossing`] crosses one position along and about
+//! each axis, \[P\] section IV B. Both consist of straight movements and rotations from rest to rest, closed and at rest at both ends, so that they
+//! repeat without a jump. They are finite for any finite input and independent of the cables.
 
 mod crossing;
 mod designed;
@@ -24,10 +23,10 @@ pub use identification::{
     STROKE_ACCELERATION_M_PER_S2, STROKE_M, STROKES_M_PER_S,
 };
 
-/// Where a run takes place.
+/// The region of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WorkBox {
-    /// Its middle, base frame, m.
+    /// Its centre, base frame, m.
     pub center_m: Vector3<f64>,
     /// Half its edges, along the base axes, m; 0 where the run has no extent.
     pub half_edges_m: Vector3<f64>,
@@ -36,7 +35,7 @@ pub struct WorkBox {
 }
 
 impl WorkBox {
-    /// From its middle to its surface along a unit vector, m.
+    /// Returns the distance from its centre to its surface along a unit vector, m.
     #[must_use]
     pub fn reach_m(&self, direction: &Vector3<f64>) -> f64 {
         let along = self.half_edges_m.iter().zip(direction.iter()).filter(|(_, part)| part.abs() > 1e-9);
@@ -44,7 +43,7 @@ impl WorkBox {
     }
 }
 
-/// Caps on a run's own speeds and accelerations.
+/// Limits for a run's own speeds and accelerations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
     /// Greatest speed of the platform, m/s, above 0.
@@ -54,28 +53,28 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// None: the run as it is.
+    /// No limits: the run is unchanged.
     pub const NONE: Self = Self { speed_m_per_s: f64::INFINITY, acceleration_m_per_s2: f64::INFINITY };
 }
 
-/// What a part of a run is for.
+/// The purpose of a part of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Phase {
     /// Steps in one direction with breaks, then back in the other.
     StopAndGo,
-    /// Steps there and back with breaks.
+    /// Steps back and forth with breaks.
     Alternating,
-    /// Strokes of 100 mm there and back, faster and faster.
+    /// Strokes of 100 mm back and forth, at increasing speed.
     Stroke,
-    /// Along rectangles through the workspace.
+    /// Movements along rectangles through the workspace.
     Rectangle,
-    /// Across the middle along or about an axis, there and back.
+    /// Movements through the middle along or about an axis, back and forth.
     Crossing(CartesianAxis),
 }
 
 impl Phase {
-    /// One word for it, as it stands in files.
+    /// Returns the name used in files.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -88,32 +87,32 @@ impl Phase {
     }
 }
 
-/// A movement from rest to rest: straight, or a turn about a base axis.
+/// A movement from rest to rest: a straight line, or a rotation about a base axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Leg {
-    /// What it is for.
+    /// Its purpose.
     pub phase: Phase,
-    /// When it starts, s.
+    /// Start time, s.
     pub start_s: f64,
-    /// Where it starts, m.
+    /// Start position, m.
     pub from_m: Vector3<f64>,
-    /// Where it ends, m.
+    /// End position, m.
     pub to_m: Vector3<f64>,
-    /// Rotation vector at its start, base axes, rad.
+    /// Rotation vector at the start, base axes, rad.
     pub from_rad: Vector3<f64>,
-    /// Rotation vector at its end, base axes, rad: a multiple of that at the start, for a turn goes about one axis.
+    /// Rotation vector at the end, base axes, rad: a multiple of that at the start, because a rotation has one axis.
     pub to_rad: Vector3<f64>,
     stroke: Stroke,
 }
 
 impl Leg {
-    /// When it ends, s; the platform rests until the next leg starts.
+    /// Returns the end time, s; the platform rests until the next leg starts.
     #[must_use]
     pub fn end_s(&self) -> f64 {
         self.start_s + self.stroke.duration_s()
     }
 
-    /// Its greatest speed, m/s; 0 for a turn.
+    /// Returns the greatest speed, m/s; 0 for a rotation.
     #[must_use]
     pub fn peak_m_per_s(&self) -> f64 {
         if self.is_turn() { 0.0 } else { self.stroke.peak() }
@@ -140,7 +139,7 @@ pub struct SetPoint {
 }
 
 impl SetPoint {
-    /// At rest at a place, along the base axes.
+    /// Returns the set point at rest at a position, aligned with the base axes.
     fn resting_at(position_m: Vector3<f64>) -> Self {
         Self {
             position_m,
@@ -151,7 +150,7 @@ impl SetPoint {
         }
     }
 
-    /// Position and orientation.
+    /// Returns position and orientation.
     #[must_use]
     pub fn pose(&self) -> Pose {
         Pose { position_m: self.position_m, orientation: self.orientation }
@@ -164,12 +163,12 @@ pub struct Trajectory {
     legs: Vec<Leg>,
     start_m: Vector3<f64>,
     duration_s: f64,
-    /// Where the run states how tight the cables are.
+    /// The loads, if the run states the cable tensions.
     loads: Option<Loads>,
 }
 
 impl Trajectory {
-    /// A run that starts at rest at a place, with a rest before its first movement.
+    /// Creates a run that starts at rest at a position, with a rest before its first movement.
     fn starting_at(start_m: Vector3<f64>, rest_s: f64) -> Self {
         Self { legs: Vec::new(), start_m, duration_s: rest_s, loads: None }
     }
@@ -182,7 +181,7 @@ impl Trajectory {
         self.legs.last().map_or_else(Vector3::zeros, |leg| leg.to_rad)
     }
 
-    /// Adds a straight movement; none where the platform is there already.
+    /// Adds a straight movement, unless the platform is there already.
     fn go(&mut self, phase: Phase, to_m: Vector3<f64>, speed_m_per_s: f64, acceleration_m_per_s2: f64) {
         let (from_m, rotation_rad) = (self.place_m(), self.rotation_rad());
         let distance_m = (to_m - from_m).norm();
@@ -193,7 +192,7 @@ impl Trajectory {
         }
     }
 
-    /// Adds a turn to a rotation vector about the axis of the present one.
+    /// Adds a rotation to a rotation vector about the axis of the present one.
     fn turn(&mut self, phase: Phase, to_rad: Vector3<f64>, speed_rad_per_s: f64, acceleration_rad_per_s2: f64) {
         let (place_m, from_rad) = (self.place_m(), self.rotation_rad());
         let angle_rad = (to_rad - from_rad).norm();
@@ -213,32 +212,32 @@ impl Trajectory {
         self.duration_s += rest_s;
     }
 
-    /// The movements in order.
+    /// Returns the movements in order.
     #[must_use]
     pub fn legs(&self) -> &[Leg] {
         &self.legs
     }
 
-    /// How long one run takes, s.
+    /// Returns the duration of one run, s.
     #[must_use]
     pub fn duration_s(&self) -> f64 {
         self.duration_s
     }
 
-    /// The last movement that has started at a time of the first run.
+    /// Returns the last movement that has started at a time of the first run.
     fn leg_at(&self, time_s: f64) -> Option<&Leg> {
         let started = self.legs.partition_point(|leg| leg.start_s <= time_s);
         started.checked_sub(1).and_then(|last| self.legs.get(last))
     }
 
-    /// What the run is for at a time, rests counting to the movement before them; `None` for a run without movements.
+    /// Returns the purpose of the run at a time; a rest belongs to the movement before it. Returns `None` for a run without movements.
     #[must_use]
     pub fn phase_at(&self, time_s: f64) -> Option<Phase> {
         self.leg_at(self.within_s(time_s)).or(self.legs.first()).map(|leg| leg.phase)
     }
 
-    /// How tight the cables are at a time, between the least force that they may have, 0, and the greatest, 1; `None` for a run
-    /// that leaves it open.
+    /// Returns the cable tension at a time, as a fraction between the least allowed force, 0, and the greatest, 1; `None` for a run that does not
+    /// state it.
     #[must_use]
     pub fn load_share_at(&self, time_s: f64) -> Option<f64> {
         self.loads.as_ref().map(|loads| loads.share_at(self.within_s(time_s)))
@@ -248,7 +247,7 @@ impl Trajectory {
         time_s - self.duration_s * libm::floor(time_s / self.duration_s)
     }
 
-    /// Where the platform is at a time; the run repeats before its start and after its end.
+    /// Returns the set point of the platform at a time; the run repeats before its start and after its end.
     #[must_use]
     pub fn at(&self, time_s: f64) -> SetPoint {
         let within_s = self.within_s(time_s);

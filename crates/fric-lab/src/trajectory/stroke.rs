@@ -1,13 +1,13 @@
 //! A movement along a line, or about an axis, from rest to rest with bounded acceleration and jerk.
 //!
-//! Distances are in m or rad, whichever the movement is in; speeds and accelerations are theirs per s and s².
+//! Distances are in m or rad, depending on the movement; speeds and accelerations are per s and s².
 //!
-//! Speed follows a raised cosine up, stays, and follows it down: with the ramp `T = πv/(2a)`,
-//! `v(t) = v/2·(1 − cos(πt/T))`, so that acceleration starts and ends at zero and has its greatest value `a` half way.
+//! The speed rises along a raised cosine, stays constant, and falls along one: with the ramp `T = πv/(2a)`, `v(t) = v/2·(1 − cos(πt/T))`, so that the
+//! acceleration starts and ends at zero and reaches its maximum `a` half way.
 
 use core::f64::consts::PI;
 
-/// Distance along the way over time.
+/// Distance along a line over time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stroke {
     distance: f64,
@@ -25,8 +25,7 @@ pub struct Along {
 }
 
 impl Stroke {
-    /// A stroke of `distance ≥ 0` that reaches `speed`, or what the distance allows, with at most `acceleration`. Both
-    /// limits are positive.
+    /// Creates a stroke of `distance ≥ 0` that reaches `speed`, or what the distance allows, with at most `acceleration`. Both limits are positive.
     pub fn new(distance: f64, speed: f64, acceleration: f64) -> Self {
         // Both ramps together cover v·T = πv²/(2a).
         let reachable = libm::sqrt(distance * acceleration * 2.0 / PI);
@@ -41,12 +40,12 @@ impl Stroke {
         2.0 * self.ramp_s + self.cruise_s
     }
 
-    /// The greatest speed on the way.
+    /// Returns the greatest speed.
     pub fn peak(&self) -> f64 {
         self.peak
     }
 
-    /// Where and how fast at a time; at rest before the start and after the end.
+    /// Returns distance, speed and acceleration at a time; at rest before the start and after the end.
     pub fn at(&self, time_s: f64) -> Along {
         let left_s = self.duration_s() - time_s;
         if left_s <= 0.0 || self.ramp_s <= 0.0 {

@@ -1,8 +1,7 @@
 //! One SQLite file of a bag: its topics, and its messages in the order of time.
 //!
-//! The messages' times are read some thousands at a time, in the order of the recorder's index; the messages themselves one by
-//! one. Where the index or a page of the file is damaged, the table is read in the order in which it was written, around what
-//! cannot be read.
+//! The messages' times are read some thousands at a time, in the order of the recorder's index; the messages themselves are read one by one. If the
+//! index or a page of the file is damaged, the table is read in the order of writing, skipping unreadable parts.
 
 use std::collections::VecDeque;
 use std::fs;
@@ -11,22 +10,22 @@ use std::path::{Path, PathBuf};
 use rusqlite::{Connection, OpenFlags, OptionalExtension as _, Row};
 use tempfile::NamedTempFile;
 
-/// So many times are read at once.
+/// Number of times read at once.
 const PAGE_LEN: u32 = 4096;
-/// Where rows cannot be read, so many are stepped over, twice as many each time, until there are none.
+/// Maximum number of skips over unreadable rows, each twice as long as the one before.
 const MOST_STEPS: u32 = 24;
 
 /// Time and number of a message.
 type Key = (i64, i64);
 
-/// A topic as the database has it.
+/// A topic as stored in the database.
 #[derive(Debug, Clone)]
 pub(super) struct StoredTopic {
     pub id: i64,
     pub name: String,
     pub type_name: String,
     pub encoding: String,
-    /// Its language, such as `ros2msg`, and its text; empty where the recorder kept none.
+    /// Language of its definition, such as `ros2msg`, and the text; empty if the recorder stored none.
     pub definition: (String, String),
 }
 
@@ -40,30 +39,30 @@ enum Order {
 /// A file with messages.
 #[derive(Debug)]
 pub(super) struct Database {
-    /// As the bag has it, compressed or not.
+    /// Path in the bag, compressed or not.
     pub path: PathBuf,
     pub len: u64,
     connection: Connection,
-    /// Where it is unpacked to, as long as it is read.
+    /// The decompressed temporary file, which is kept while it is read.
     _unpacked: Option<NamedTempFile>,
     order: Order,
     keys: VecDeque<Key>,
-    /// The last message read in the order of time, and the last number looked at in the other.
+    /// The last message read in the order of time, and the last number tried in the other order.
     last: Key,
     last_number: i64,
     greatest_number: i64,
     first_nanos: Option<i64>,
     pub lost_count: u64,
-    /// What SQLite said of the first that could not be read.
+    /// SQLite's message about the first unreadable row.
     pub problem: Option<String>,
 }
 
 impl Database {
-    /// Opens a file, as it is or unpacked.
+    /// Opens a file, or its decompressed copy.
     pub fn open(path: &Path, len: u64, unpacked: Option<NamedTempFile>) -> rusqlite::Result<Self> {
         let file = unpacked.as_ref().map_or(path, NamedTempFile::path);
         let connection = connect(file)?;
-        // A file that is shorter than its header says is read as far as it goes.
+        // A file that is shorter than its header states is read as far as possible.
         connection.pragma_update(None, "writable_schema", true)?;
         let mut database = Self {
             path: path.to_owned(),
@@ -95,12 +94,12 @@ impl Database {
         Ok(database)
     }
 
-    /// Time of the first message; the greatest there is where it is not known.
+    /// Returns the time of the first message; the greatest value if it is unknown.
     pub fn first_nanos(&self) -> i64 {
         self.first_nanos.unwrap_or(i64::MAX)
     }
 
-    /// The topics; those that can be read.
+    /// Returns the readable topics.
     pub fn topics(&self) -> rusqlite::Result<Vec<StoredTopic>> {
         let definition = |type_name: &str| {
             let sql = "SELECT encoding, encoded_message_definition FROM message_definitions WHERE topic_type = ?1";
@@ -118,7 +117,7 @@ impl Database {
         statement.query_map([], topic)?.collect()
     }
 
-    /// Reads the next message into `data`; its time and the number of its topic, `None` at the end.
+    /// Reads the next message into `data`. Returns its time and the number of its topic, `None` at the end.
     pub fn next(&mut self, data: &mut Vec<u8>) -> Option<(i64, i64)> {
         loop {
             let Some((stamp_nanos, number)) = self.keys.pop_front() else {
@@ -140,7 +139,7 @@ impl Database {
         }
     }
 
-    /// The share of the messages that have been read.
+    /// Returns the fraction of the messages read so far.
     #[expect(clippy::cast_precision_loss, reason = "a share")]
     pub fn progress_ratio(&self) -> f64 {
         let number = if self.order == Order::Time { self.last.1 } else { self.last_number };
@@ -161,7 +160,7 @@ impl Database {
         })
     }
 
-    /// Reads times and numbers of messages; whether there may be more.
+    /// Reads times and numbers of messages. Returns whether there may be more.
     fn read_keys(&mut self) -> bool {
         if self.order == Order::Time {
             let sql = "SELECT timestamp, id FROM messages WHERE timestamp >= ?1 AND (timestamp > ?1 OR id > ?2) \
@@ -171,7 +170,7 @@ impl Database {
             if let Some(error) = problem {
                 self.note(&error);
                 self.order = Order::Number;
-                // What follows in the order of time is not known to be whole.
+                // The rest in the order of time may be incomplete.
                 self.keys.clear();
             }
             return self.order == Order::Number || !self.keys.is_empty();
@@ -195,7 +194,7 @@ impl Database {
         false
     }
 
-    /// The keys as far as they can be read, and what is the matter with the next.
+    /// Returns the keys as far as they can be read, and the error of the next one.
     fn select(&self, sql: &str, one: i64, other: i64) -> (VecDeque<Key>, Option<rusqlite::Error>) {
         let mut keys = VecDeque::new();
         let mut read = || -> rusqlite::Result<()> {
@@ -216,7 +215,7 @@ fn connect(path: &Path) -> rusqlite::Result<Connection> {
     let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
     let mut log = path.as_os_str().to_owned();
     log.push("-wal");
-    // What the recorder had not yet taken over stands beside the file, and is read with it.
+    // Data that the recorder had not yet merged are in a file beside it, and are read with it.
     let has_log = fs::metadata(log).is_ok_and(|log| log.len() > 0);
     match path.to_str().filter(|_| !has_log) {
         Some(text) => {

@@ -1,6 +1,6 @@
-//! Definitions of the message types that robots' signals come in, for bags whose recorder kept none.
+//! Definitions of common robot message types, for bags whose recorder stored none.
 
-/// A type and its own lines.
+/// Each type and the lines of its own definition.
 const TYPES: [(&str, &str); 24] = [
     ("builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"),
     ("std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n"),
@@ -34,7 +34,7 @@ const TYPES: [(&str, &str); 24] = [
     ("geometry_msgs/WrenchStamped", "std_msgs/Header header\ngeometry_msgs/Wrench wrench\n"),
 ];
 
-/// The `ros2msg` text of a type such as `sensor_msgs/msg/JointState`, with those that it is made of; `None` of another.
+/// Returns the `ros2msg` text of a type such as `sensor_msgs/msg/JointState`, including the types that it uses; `None` for an unknown type.
 pub(super) fn of_type(name: &str) -> Option<String> {
     let name = name.replacen("/msg/", "/", 1);
     let own = |name: &str| TYPES.iter().find(|(of, _)| *of == name).map(|(_, lines)| *lines);

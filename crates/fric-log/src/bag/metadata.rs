@@ -1,4 +1,4 @@
-//! `metadata.yaml`: which files a bag has, and how they are compressed.
+//! `metadata.yaml`: the files of a bag and their compression.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -8,21 +8,21 @@ use saphyr::{LoadableYamlNode, Yaml};
 
 /// The file that the recorder writes when it ends.
 const METADATA: &str = "metadata.yaml";
-/// How the files of a bag end.
+/// File extensions of a bag's files.
 const ENDINGS: [&str; 2] = ["mcap", "db3"];
-/// How compressed files end, behind that.
+/// Additional extension of compressed files.
 pub(super) const COMPRESSED: &str = "zstd";
 
 /// The files of a bag.
 #[derive(Debug, Default, PartialEq)]
 pub(super) struct Files {
     pub paths: Vec<PathBuf>,
-    /// What is out of the ordinary, a sentence each.
+    /// Remarks about anything unusual, one sentence each.
     pub remarks: Vec<String>,
 }
 
 impl Files {
-    /// The files of the bag in a folder: those that its metadata names, else those that look like it.
+    /// Finds the files of the bag in a folder: those that its metadata names, else those with a matching extension.
     pub fn find(folder: &Path) -> io::Result<Self> {
         let listed = match fs::read_to_string(folder.join(METADATA)) {
             Ok(text) => named(&text),
@@ -56,7 +56,7 @@ impl Files {
     }
 }
 
-/// The file of a name, which may have been compressed or unpacked since, or stand beside the metadata by its last name.
+/// Returns the file with a name; it may have been compressed or decompressed since, or be beside the metadata under its base name.
 fn at(folder: &Path, name: &str, there: &[PathBuf]) -> Option<PathBuf> {
     let path = folder.join(name);
     if path.is_file() {
@@ -74,7 +74,7 @@ fn is_of_bag(path: &Path) -> bool {
     path.is_file() && ending(&inner).is_some_and(|ending| ENDINGS.contains(&ending.as_str()))
 }
 
-/// The files that the metadata names.
+/// Returns the files that the metadata names.
 fn named(text: &str) -> Option<Vec<String>> {
     let documents = Yaml::load_from_str(text).ok()?;
     let bag = documents.first()?.as_mapping_get("rosbag2_bagfile_information")?;

@@ -1,8 +1,8 @@
-//! Bags of rosbag2: SQLite files, or a folder with such or with MCAP files, compressed or not.
+//! Bags of rosbag2: SQLite files, or a folder with SQLite or MCAP files, compressed or not.
 //!
-//! Read as the recorder wrote them, also where it was ended before it had written `metadata.yaml`; damaged ones as far as they
-//! go. Messages and files compressed with zstd are decompressed, files into a temporary file. Older recorders kept no message
-//! definitions: those of the usual types are known here.
+//! Bags are read as the recorder wrote them, even if it was stopped before it wrote `metadata.yaml`; damaged ones are read as far as possible.
+//! Messages and files compressed with zstd are decompressed, files into a temporary file. Older recorders stored no message definitions; those of
+//! common types are built in.
 
 mod database;
 mod definitions;
@@ -21,10 +21,10 @@ use self::database::{Database, StoredTopic};
 use self::metadata::Files;
 use crate::recording::{Channel, Message, Recording, RecordingError, Schema, SourceFile, open_file};
 
-/// What an SQLite file begins with.
+/// The first bytes of an SQLite file.
 const SQLITE: &[u8] = b"SQLite format 3\0";
 
-/// What a bag holds.
+/// The content of a bag.
 pub(crate) enum Opened {
     /// MCAP files.
     Recording(Box<Recording>),
@@ -38,14 +38,14 @@ pub(crate) struct Bag {
     databases: Vec<Database>,
     current: usize,
     channels: Vec<Arc<Channel>>,
-    /// For each file, the channel of each topic's number.
+    /// For each file, the channel of each topic number.
     by_topic: Vec<HashMap<i64, usize>>,
     data: Vec<u8>,
     unpacker: Unpacker,
     unknown_count: u64,
 }
 
-/// Opens the bag in a folder; with what is out of the ordinary.
+/// Opens the bag in a folder. Also returns remarks about anything unusual.
 pub(crate) fn open_folder(folder: &Path) -> Result<(Opened, Vec<String>), RecordingError> {
     let refused = |source| RecordingError::Open { path: folder.to_owned(), source };
     let Files { paths, mut remarks } = Files::find(folder).map_err(refused)?;
@@ -88,11 +88,11 @@ pub(crate) fn open_folder(folder: &Path) -> Result<(Opened, Vec<String>), Record
     Ok((opened, remarks))
 }
 
-/// The SQLite files at these paths; `None` where one of them is something else.
+/// Opens the SQLite files at these paths; `None` if one of them is something else.
 pub(crate) fn open_files(paths: &[&Path]) -> Result<Option<Bag>, RecordingError> {
     let mut databases = Vec::new();
     for path in paths {
-        // What cannot be opened is told where recordings are.
+        // Files that cannot be opened are reported by the recording reader.
         let Ok((file, len)) = open_file(path) else { return Ok(None) };
         if !begins_with(&file, SQLITE).unwrap_or(false) {
             return Ok(None);
@@ -157,7 +157,7 @@ impl Bag {
         &self.channels
     }
 
-    /// The next message: of one file after the other, each in the order of time.
+    /// Returns the next message: one file after the other, each in the order of time.
     pub fn next_message(&mut self) -> Option<Message<'_>> {
         let (channel, log_time_nanos) = loop {
             let database = self.databases.get_mut(self.current)?;
@@ -176,7 +176,7 @@ impl Bag {
         Some(Message { channel, sequence: 0, log_time_nanos, publish_time_nanos: log_time_nanos, data })
     }
 
-    /// How many bytes have been read, of how many.
+    /// Returns the bytes read so far, and the total.
     pub fn progress(&self) -> (u64, u64) {
         #[expect(
             clippy::cast_precision_loss,
@@ -190,12 +190,12 @@ impl Bag {
         (read, self.databases.iter().map(|database| database.len).sum())
     }
 
-    /// How many messages could not be read.
+    /// Returns the number of messages that could not be read.
     pub fn lost_messages(&self) -> u64 {
         self.unknown_count + self.databases.iter().map(|database| database.lost_count).sum::<u64>()
     }
 
-    /// What could not be read. Complete when all messages have been read.
+    /// Returns warnings about unreadable data, complete when all messages have been read.
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
         for Database { path, problem, lost_count, .. } in &self.databases {

@@ -1,4 +1,4 @@
-//! Messages and files that the recorder has compressed.
+//! Decompresses messages and files that the recorder compressed.
 
 use std::fs::File;
 use std::io::{self, BufReader, BufWriter, Seek, SeekFrom};
@@ -8,19 +8,19 @@ use tempfile::NamedTempFile;
 
 use crate::recording::CHUNK_LIMIT_BYTES;
 
-/// What compressed data begin with; a message in CDR begins with a zero.
+/// The first bytes of compressed data; a CDR message begins with a zero.
 const MAGIC: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
 
-/// Decompresses messages, those that are compressed.
+/// Decompresses those messages that are compressed.
 #[derive(Debug, Default)]
 pub(crate) struct Unpacker {
     content: Vec<u8>,
-    /// How many could not be decompressed.
+    /// Number of messages that could not be decompressed.
     pub lost_count: u64,
 }
 
 impl Unpacker {
-    /// The content of a message; nothing of one that is damaged, which no decoder takes for a message.
+    /// Returns the content of a message; empty for a damaged one, which no decoder accepts.
     pub fn content<'a>(&'a mut self, data: &'a [u8]) -> &'a [u8] {
         if !data.starts_with(&MAGIC) {
             return data;
@@ -36,7 +36,7 @@ impl Unpacker {
         &self.content
     }
 
-    /// What could not be decompressed, if anything.
+    /// Returns a warning if messages could not be decompressed.
     pub fn warning(&self) -> Option<String> {
         let count = self.lost_count;
         let messages =
@@ -51,7 +51,7 @@ impl Unpacker {
     }
 }
 
-/// A file that was compressed as a whole, in a temporary file, and what is missing of it.
+/// Decompresses a whole file into a temporary one. Also returns a remark if some of it is missing.
 pub(super) fn unpacked(path: &Path, file: File) -> io::Result<(NamedTempFile, Option<String>)> {
     let mut target = NamedTempFile::new()?;
     let mut decoder = zstd::stream::read::Decoder::new(BufReader::new(file))?;

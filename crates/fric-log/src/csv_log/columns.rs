@@ -1,4 +1,4 @@
-//! Which column is which signal.
+//! Assigns columns to signals.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -9,22 +9,22 @@ use fric_core::robot::nearest_name;
 use super::CsvError;
 use super::form::Form;
 
-/// A column that is read.
+/// A column to read.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Column {
-    /// Which of the file's.
+    /// Its index in the file.
     pub index: usize,
     pub table: ColumnTable,
 }
 
 impl Column {
-    /// The value of a number that stands there.
+    /// Converts a number of the column to a value.
     pub fn value(&self, number: f64) -> f64 {
         let ColumnTable { factor, offset, .. } = self.table;
         number * factor + offset
     }
 
-    /// The power of ten by which the times in this column become nanoseconds, where they do by one alone.
+    /// Returns the power of ten that converts the times of this column to nanoseconds, if a power of ten suffices.
     pub fn nanos_exponent(&self) -> Option<u32> {
         let units = [(1.0, 9), (1e-3, 6), (1e-6, 3), (1e-9, 0)];
         let is_unit = |(factor, _): &(f64, u32)| factor.to_bits() == self.table.factor.to_bits();
@@ -32,21 +32,21 @@ impl Column {
     }
 }
 
-/// Where the signals of a robot are in a file.
+/// The columns of a robot's signals in a file.
 #[derive(Debug, Clone)]
 pub(super) struct Columns {
     pub time: Column,
-    /// By cable.
+    /// Force columns, by cable.
     pub force_n: Vec<Option<Column>>,
     pub length_m: Vec<Option<Column>>,
     pub speed_m_per_s: Vec<Option<Column>>,
     pub reference_n: Vec<Option<Column>>,
-    /// Whole or empty.
+    /// Complete or empty.
     pub pose: Vec<Option<Column>>,
     pub wrench: Vec<Option<Column>>,
 }
 
-/// What is looked for in a file.
+/// The signals to find in a file.
 pub(super) struct Wanted<'a> {
     pub columns: &'a BTreeMap<String, ColumnTable>,
     pub cable_names: &'a [String],
@@ -56,7 +56,7 @@ pub(super) struct Wanted<'a> {
 }
 
 impl Columns {
-    /// Finds the columns of a file, and says what there is only a part of.
+    /// Finds the columns of a file, and adds remarks about incomplete signals.
     pub fn find(path: &Path, form: &Form, wanted: &Wanted<'_>, remarks: &mut Vec<String>) -> Result<Self, CsvError> {
         let finder = Finder { path, names: &form.names, columns: wanted.columns };
         let of_cables = |quantity: &str| {
@@ -99,7 +99,7 @@ impl Columns {
     }
 }
 
-/// The first column that is missing where no cable has both force and length.
+/// Returns the first missing column if no cable has both force and length.
 fn incomplete<'a>(
     names: &'a [String],
     force_n: &[Option<Column>],
@@ -109,7 +109,7 @@ fn incomplete<'a>(
     if cables().any(|((_, force), length)| force.is_some() && length.is_some()) {
         return None;
     }
-    // Rather of a cable that has one of the two.
+    // A cable that has one of the two is preferred.
     let begun = cables().find(|((_, force), length)| force.is_some() || length.is_some());
     let ((name, force), _) = begun.or_else(|| cables().next())?;
     Some((if force.is_some() { "length_m" } else { "force_n" }, name.as_str()))
@@ -122,7 +122,7 @@ struct Finder<'a> {
 }
 
 impl Finder<'_> {
-    /// The column of a signal; one that the robot file names has to be there.
+    /// Returns the column of a signal; one that the robot file names must exist.
     fn find(&self, key: &str) -> Result<Option<Column>, CsvError> {
         let stated = self.columns.get(key);
         let table = stated.cloned().unwrap_or_else(|| ColumnTable::plain(key));
@@ -139,7 +139,7 @@ impl Finder<'_> {
 
     fn missing(&self, wanted: &str) -> CsvError {
         let mut columns = self.names.to_vec();
-        // The one that was probably meant first.
+        // The column that was probably meant comes first.
         if let Some(nearest) = nearest_name(wanted, self.names.iter().map(String::as_str))
             && let Some(place) = self.names.iter().position(|name| name == nearest)
         {

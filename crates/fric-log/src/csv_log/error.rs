@@ -1,11 +1,11 @@
-//! Why a CSV log gives no rows.
+//! Errors of CSV logs.
 
 use std::io;
 use std::path::PathBuf;
 
 use thiserror::Error;
 
-/// What to do, each the end of a sentence.
+/// Advice, each the end of a sentence.
 mod advice {
     pub const DISK: &str = "check the disk, or copy the file and try again";
     pub const UTF8: &str = "save it as CSV in UTF-8";
@@ -20,25 +20,25 @@ mod advice {
                             tabs between them";
 }
 
-/// Why a CSV log gives no rows.
+/// The reason why a CSV log gives no rows.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum CsvError {
-    /// The operating system does not hand it over.
+    /// The operating system cannot read the file.
     #[error("`{}` could not be read; {}", path.display(), advice::DISK)]
     Read {
         /// The file.
         path: PathBuf,
-        /// What the operating system said.
+        /// Message of the operating system.
         source: io::Error,
     },
-    /// It is text of another encoding.
+    /// The text has another encoding.
     #[error("`{}` is text in UTF-16; {}", path.display(), advice::UTF8)]
     NotUtf8 {
         /// The file.
         path: PathBuf,
     },
-    /// It begins with numbers.
+    /// The file begins with numbers instead of a header.
     #[error("`{}`, line {line}: there are numbers where the names of the columns should be; {}", path.display(), advice::HEADER)]
     NoHeader {
         /// The file.
@@ -46,7 +46,7 @@ pub enum CsvError {
         /// The line, from 1.
         line: u64,
     },
-    /// A signal that is needed has no column.
+    /// A required signal has no column.
     #[error(
         "`{}` has no column `{wanted}`; it has {}; {}",
         path.display(), listed(columns), advice::NAME
@@ -54,12 +54,12 @@ pub enum CsvError {
     Missing {
         /// The file.
         path: PathBuf,
-        /// The column looked for.
+        /// The wanted column.
         wanted: String,
-        /// Those there are.
+        /// The existing columns.
         columns: Vec<String>,
     },
-    /// Two columns of the name of a signal.
+    /// Two columns have the name of a signal.
     #[error("`{}`: the column `{column}` stands there twice; {}", path.display(), advice::RENAME)]
     Repeated {
         /// The file.
@@ -67,7 +67,7 @@ pub enum CsvError {
         /// Its name.
         column: String,
     },
-    /// A cell that is no number.
+    /// A cell is not a number.
     #[error("`{}`, line {line}, column `{column}`: `{text}` is no number; {}", path.display(), advice::CELL)]
     Cell {
         /// The file.
@@ -76,21 +76,21 @@ pub enum CsvError {
         line: u64,
         /// The column.
         column: String,
-        /// What stands there.
+        /// Its content.
         text: String,
     },
-    /// There is nothing below the header.
+    /// There are no rows below the header.
     #[error("`{}` has no whole row of numbers below its header; {}", path.display(), advice::RECORD)]
     NoRow {
         /// The file.
         path: PathBuf,
     },
-    /// No row can be used.
+    /// No row is usable.
     #[error("`{}` has no row that can be used; the first: {problem}; {}", path.display(), advice::ROWS)]
     NoUsableRow {
         /// The file.
         path: PathBuf,
-        /// What is wrong with the first one.
+        /// The problem of the first one.
         problem: String,
     },
     /// No row has a force and a length.
@@ -101,7 +101,7 @@ pub enum CsvError {
     },
 }
 
-/// So many columns are named in an error.
+/// Maximum number of columns named in an error.
 const MOST_LISTED: usize = 10;
 
 fn listed(columns: &[String]) -> String {
@@ -112,7 +112,7 @@ fn listed(columns: &[String]) -> String {
 }
 
 impl CsvError {
-    /// What to do: the words that end the error's sentence.
+    /// Returns the advice that ends the error's sentence.
     #[must_use]
     pub const fn advice(&self) -> &'static str {
         match self {

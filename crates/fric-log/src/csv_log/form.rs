@@ -1,12 +1,12 @@
-//! What a CSV file looks like: where its rows begin, what stands between the cells, what the columns are called.
+//! The form of a CSV file: where its rows begin, the separator, and the names of the columns.
 
 use csv::{ByteRecord, ReaderBuilder};
 
 use super::number::Decimals;
 
-/// What may stand between cells.
+/// Possible separators.
 const SEPARATORS: [u8; 3] = *b",;\t";
-/// Begins a line that is none of the table.
+/// Marks a line that is not part of the table.
 pub(super) const COMMENT: u8 = b'#';
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
@@ -14,28 +14,28 @@ const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Form {
     pub separator: u8,
-    /// In the order of the file.
+    /// Column names, in the order of the file.
     pub names: Vec<String>,
-    /// Where the first row begins, and in which line, from 1.
+    /// Position of the first row, and its line, from 1.
     pub rows_at: u64,
     pub first_line: u64,
-    /// Whether numbers stand in the place of the names.
+    /// Whether there are numbers in place of the names.
     pub lacks_header: bool,
-    /// Whether the row under the header has as many cells, one number among them at least.
+    /// Whether the row under the header has as many cells, at least one of them a number.
     pub has_fitting_row: bool,
 }
 
-/// A line and where it is.
+/// A line and its position.
 #[derive(Clone, Copy)]
 struct Line<'a> {
     text: &'a [u8],
     at: usize,
-    /// From 1.
+    /// Line number, from 1.
     number: u64,
 }
 
 impl Form {
-    /// The form of a file that begins with these bytes; `None` where there is nothing but comments.
+    /// Determines the form of a file that begins with these bytes; `None` if there are only comments.
     pub fn find(beginning: &[u8]) -> Option<Self> {
         let table = beginning.strip_prefix(BYTE_ORDER_MARK).unwrap_or(beginning);
         let mut at = beginning.len() - table.len();
@@ -51,7 +51,7 @@ impl Form {
             let line = filled.next()?;
             match line.text {
                 [COMMENT, text @ ..] => comment = Some(text.trim_ascii()),
-                // Of spreadsheets.
+                // The separator line of spreadsheets.
                 [b's', b'e', b'p', b'=', separator] => separators = vec![*separator],
                 _ => break line,
             }
@@ -60,7 +60,7 @@ impl Form {
         let separator = separators.iter().copied().max_by_key(|separator| {
             let count = cells(header.text, *separator).len();
             let fits = row.is_none_or(|row| cells(row.text, *separator).len() == count);
-            // The first of equals, which `max_by_key` takes last.
+            // The first of equal ones; `max_by_key` would take the last.
             (count > 1 && fits, count, std::cmp::Reverse(*separator))
         })?;
         let mut names = cells(header.text, separator);
@@ -82,13 +82,13 @@ impl Form {
     }
 }
 
-/// Where the line behind one begins.
+/// Returns the position of the next line.
 fn next_line(bytes: &[u8], at: usize) -> usize {
     let rest = bytes.get(at..).unwrap_or_default();
     rest.iter().position(|byte| *byte == b'\n').map_or(bytes.len(), |end| at + end + 1)
 }
 
-/// The cells of a line, unquoted and without blanks around them.
+/// Returns the cells of a line, unquoted and trimmed.
 fn cells(line: &[u8], separator: u8) -> Vec<String> {
     let mut reader = ReaderBuilder::new().has_headers(false).delimiter(separator).from_reader(line);
     let mut record = ByteRecord::new();
@@ -97,18 +97,18 @@ fn cells(line: &[u8], separator: u8) -> Vec<String> {
     record.iter().map(|cell| unquoted(text_of(cell).trim()).to_owned()).collect()
 }
 
-/// A name without the quotes that a blank in front of them makes part of it.
+/// Removes quotes from a name, which belong to it if a blank precedes them.
 fn unquoted(name: &str) -> &str {
     name.strip_prefix('"').and_then(|name| name.strip_suffix('"')).unwrap_or(name)
 }
 
-/// How many of the cells are numbers.
+/// Returns the number of numeric cells.
 fn number_count(cells: &[String]) -> usize {
     let is_number = |cell: &&String| !cell.is_empty() && Decimals::default().number(cell).is_some();
     cells.iter().filter(is_number).count()
 }
 
-/// Bytes as text: UTF-8, else Latin-1, in which spreadsheets write headers.
+/// Decodes bytes as UTF-8, else as Latin-1, which spreadsheets use for headers.
 pub(super) fn text_of(bytes: &[u8]) -> String {
     std::str::from_utf8(bytes).map_or_else(|_| bytes.iter().copied().map(char::from).collect(), ToOwned::to_owned)
 }

@@ -1,13 +1,13 @@
-//! CSV logs: a header, and a row of numbers for each time.
+//! CSV logs: a header, and one row of numbers per time.
 //!
-//! Found out by itself: comma, semicolon or tab between the cells, decimal points or commas, a byte order mark, quotes,
-//! lines with `#` in front, a header in one of these. Empty cells and `nan` are gaps of their signal. Columns are called as
-//! [`ColumnTable`](fric_core::robot::file::ColumnTable)'s keys, or as the robot file says. A row with too many cells or too
-//! few, or without a time, is left out and counted; text where a number should be is an error. The last line counts only if
-//! it has its end: what is missing of its last number cannot be seen.
+//! The following is detected automatically: comma, semicolon or tab as separator, decimal points or commas, a byte order mark, quotes, lines starting
+//! with `#`, and a header in one of these. Empty cells and `nan` are gaps of their signal. Columns are named like the keys of
+//! [`ColumnTable`](fric_core::robot::file::ColumnTable), or as the robot file states. A row with too many or too few cells, or without a time, is
+//! left out and counted; text in place of a number is an error. The last line counts only if it has a line end, because its last number may be
+//! incomplete.
 //!
-//! Rows are read one after the other, memory does not grow with the log. Several files are the parts of one, in the order of
-//! their first times.
+//! Rows are read one after the other, and memory does not grow with the log. Several files are the parts of one log, in the order of their first
+//! times.
 
 mod columns;
 mod error;
@@ -29,17 +29,17 @@ use self::number::{Decimals, scaled};
 use self::units::{Quantity, Units};
 use crate::signals::{Role, SignalPaths};
 
-/// Bytes in which the header and the first row of a file end.
+/// Number of bytes that contain the header and the first row of a file.
 const BEGINNING_BYTES: u64 = 1 << 18;
-/// Bytes that are searched for the last line end.
+/// Number of bytes that are searched for the last line end.
 const ENDING_BYTES: u64 = 1 << 20;
 
-/// One or several CSV files, read as one.
+/// One or several CSV files, read as one log.
 #[derive(Debug)]
 pub struct CsvLog {
     files: Vec<CsvFile>,
     state: State,
-    /// Of which file the rows are, and how far these are read.
+    /// Index of the present file, and the reading position.
     current: usize,
     bytes_read: u64,
     decimals: Decimals,
@@ -58,14 +58,14 @@ struct CsvFile {
     path: PathBuf,
     file: File,
     len: u64,
-    /// Where its last whole line ends.
+    /// End of its last complete line.
     end: u64,
     form: Form,
 }
 
 #[derive(Debug)]
 enum State {
-    /// Nothing is read yet.
+    /// Nothing has been read yet.
     Open,
     Reading(Box<(Columns, Reader<BufReader<Take<File>>>)>),
     Ended,
@@ -75,20 +75,20 @@ enum State {
 #[derive(Debug, Default)]
 pub(crate) struct CsvRow {
     pub stamp_nanos: i64,
-    /// By role but length and speed, which stand behind the force: the values, empty where the row has none.
+    /// Values by role, except length and speed, which follow the force; empty if the row has none.
     values: [Vec<f64>; 6],
 }
 
 impl CsvRow {
-    /// The values of a signal: force, length and, where the file has them, speed of each cable; reference of each cable;
-    /// position and orientation; force and torque. `None` where the row has none.
+    /// Returns the values of a signal: force, length and, if the file has it, speed of each cable; reference of each cable; position and orientation;
+    /// force and torque. `None` if the row has none.
     pub fn values(&self, role: Role) -> Option<&[f64]> {
         Some(self.values[role as usize].as_slice()).filter(|values| !values.is_empty())
     }
 }
 
 impl CsvLog {
-    /// Opens a file, which has bytes; `None` where it does not look like CSV.
+    /// Opens a non-empty file; `None` if it does not look like CSV.
     pub(crate) fn open(path: &Path, mut file: File, len: u64) -> Result<Option<Self>, CsvError> {
         let refused = |source| CsvError::Read { path: path.to_owned(), source };
         let mut beginning = Vec::new();
@@ -132,24 +132,24 @@ impl CsvLog {
         }))
     }
 
-    /// Adds the files of another one.
+    /// Appends the files of another log.
     pub(crate) fn join(&mut self, other: Self) {
         self.files.extend(other.files);
         self.remarks.extend(other.remarks);
     }
 
-    /// Names of the columns of the first file.
+    /// Returns the column names of the first file.
     #[must_use]
     pub fn column_names(&self) -> &[String] {
         self.files.first().map_or(&[], |file| file.form.names.as_slice())
     }
 
-    /// How many bytes have been read, of how many.
+    /// Returns the bytes read so far, and the total.
     pub(crate) fn progress(&self) -> (u64, u64) {
         (self.bytes_read, self.files.iter().map(|file| file.len).sum())
     }
 
-    /// What was out of the ordinary. Complete when all rows have been read.
+    /// Returns warnings about anything unusual, complete when all rows have been read.
     pub(crate) fn warnings(&self) -> Vec<String> {
         let mut warnings = self.remarks.clone();
         if let Some(problem) = &self.first_problem {
@@ -161,7 +161,7 @@ impl CsvLog {
         warnings
     }
 
-    /// The columns of a signal in the first file, as they are called there; empty where there are none.
+    /// Returns the names of a signal's columns in the first file; empty if there are none.
     pub(crate) fn columns_of(&self, role: Role) -> Vec<&str> {
         let State::Reading(reading) = &self.state else { return Vec::new() };
         let columns = &reading.0;
@@ -175,7 +175,7 @@ impl CsvLog {
         groups.iter().flat_map(|group| group.iter().flatten()).map(|column| column.table.column.as_str()).collect()
     }
 
-    /// The next row for a robot with cables of these names; `None` at the end.
+    /// Returns the next row for a robot with cables of these names; `None` at the end.
     pub(crate) fn next_row(&mut self, names: &[String], paths: &SignalPaths) -> Result<Option<&CsvRow>, CsvError> {
         let wanted = Wanted {
             columns: paths.columns(),
@@ -208,7 +208,7 @@ impl CsvLog {
         }
     }
 
-    /// Puts the files into the order of their first times.
+    /// Sorts the files by their first times.
     fn sort(&mut self, wanted: &Wanted<'_>) -> Result<(), CsvError> {
         let mut starts = Vec::new();
         for place in 0..self.files.len() {
@@ -225,7 +225,7 @@ impl CsvLog {
         Ok(())
     }
 
-    /// Begins with the current file.
+    /// Starts the current file.
     fn start(&mut self, wanted: &Wanted<'_>) -> Result<(), CsvError> {
         let Some(CsvFile { path, file, end, form, .. }) = self.files.get(self.current) else { return Ok(()) };
         let mut remarks = Vec::new();
@@ -246,7 +246,7 @@ impl CsvLog {
         Ok(())
     }
 
-    /// Reads the next row of the current file that can be used; false at its end.
+    /// Reads the next usable row of the current file. Returns false at its end.
     fn read_row(&mut self) -> Result<bool, CsvError> {
         let State::Reading(reading) = &mut self.state else { return Ok(false) };
         let (columns, reader) = &mut **reading;
@@ -294,7 +294,7 @@ impl CsvLog {
         })
     }
 
-    /// Rows, but not one with a number for a cable.
+    /// Returns the error for rows without any number for a cable.
     pub(crate) fn without_numbers(&self) -> CsvError {
         CsvError::NoNumber { path: self.files.first().map(|file| file.path.clone()).unwrap_or_default() }
     }
@@ -328,7 +328,7 @@ impl<'a> Cells<'a> {
         self.decimals.number(text).ok_or_else(|| self.wrong(column))
     }
 
-    /// The time; `None` where there is none.
+    /// Returns the time; `None` if there is none.
     fn stamp_nanos(&mut self, column: &Column) -> Result<Option<i64>, CsvError> {
         if let Some(exponent) = column.nanos_exponent()
             && let Ok(text) = std::str::from_utf8(self.text(column))
@@ -345,7 +345,7 @@ impl<'a> Cells<'a> {
         stamp_nanos.map(Some).ok_or_else(|| self.wrong(column))
     }
 
-    /// The values of a row; a signal of which no value is known, or not the whole of a pose or wrench, is left empty.
+    /// Fills in the values of a row. A signal without any known value, or an incomplete pose or wrench, is left empty.
     fn fill(&mut self, columns: &Columns, row: &mut CsvRow, units: &mut Units) -> Result<(), CsvError> {
         let Columns { force_n, length_m, speed_m_per_s, reference_n, pose, wrench, .. } = columns;
         let has_speed = speed_m_per_s.iter().any(Option::is_some);
@@ -388,14 +388,14 @@ impl<'a> Cells<'a> {
     }
 }
 
-/// Where the last line with an end ends.
+/// Returns the end of the last complete line.
 fn last_line_end(file: &mut File, len: u64) -> io::Result<u64> {
     let from = len.saturating_sub(ENDING_BYTES);
     file.seek(SeekFrom::Start(from))?;
     let mut ending = Vec::new();
     file.take(ENDING_BYTES).read_to_end(&mut ending)?;
     let end = ending.iter().rposition(|byte| *byte == b'\n').map_or(0, |place| place + 1);
-    // Blanks behind it are no line.
+    // Blanks after it are not a line.
     let is_blank = ending.get(end..).unwrap_or_default().iter().all(u8::is_ascii_whitespace);
     Ok(if is_blank { len } else { from + end as u64 })
 }

@@ -1,6 +1,6 @@
-//! Numbers and times as people and programs write them.
+//! Parses numbers and times as people and programs write them.
 
-/// What a decimal point and a decimal comma look like in one file: it has one or the other.
+/// The decimal separator of a file, which is either a point or a comma throughout.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Decimals {
     has_points: bool,
@@ -8,12 +8,12 @@ pub(super) struct Decimals {
 }
 
 impl Decimals {
-    /// The number in a cell; NaN where it is empty or says so. `None` where it is none, or where commas stand beside points.
+    /// Returns the number in a cell; NaN if it is empty or says so. `None` if it is not a number, or if commas and points are mixed.
     pub fn number(&mut self, cell: &str) -> Option<f64> {
         if cell.is_empty() {
             return Some(f64::NAN);
         }
-        // What is refused says nothing of the file.
+        // A rejected number says nothing about the file.
         if cell.contains(',') {
             let is_one = !self.has_points && !cell.contains('.') && cell.matches(',').count() == 1;
             let number = cell.replace(',', ".").parse().ok().filter(|_| is_one)?;
@@ -27,7 +27,7 @@ impl Decimals {
     }
 }
 
-/// A decimal number times `10^exponent`, exactly, rounded to an integer; `None` where it is not written as plain digits.
+/// Returns a decimal number times `10^exponent`, exactly, rounded to an integer; `None` if it is not written in plain digits.
 pub(super) fn scaled(cell: &str, exponent: u32) -> Option<i64> {
     let (is_negative, digits) = match cell.strip_prefix('-') {
         Some(digits) => (true, digits),

@@ -1,6 +1,6 @@
-//! Values that look as if they were in another unit than their column's.
+//! Detects values that seem to have another unit than their column.
 
-/// A quantity whose unit is watched.
+/// A quantity whose unit is checked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Quantity {
     Force,
@@ -8,7 +8,7 @@ pub(super) enum Quantity {
     Speed,
 }
 
-/// The sizes of the values of one quantity.
+/// The magnitudes of the values of one quantity.
 #[derive(Debug, Clone, Copy, Default)]
 struct Sizes {
     count: u64,
@@ -16,21 +16,21 @@ struct Sizes {
     greatest: f64,
 }
 
-/// The sizes of all values so far.
+/// The magnitudes of all values so far.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Units([Sizes; 3]);
 
-/// Mean force beyond which it is rather in grams or millinewtons: the greatest cable robots that carry sensors pull with less, N.
+/// Mean force above which the unit is probably grams or millinewtons, N: the largest cable robots with sensors have lower forces.
 const GREAT_FORCE_N: f64 = 2000.0;
-/// Force below which all values are rather kilonewtons, N.
+/// Force below which all values are probably in kilonewtons, N.
 const SMALL_FORCE_N: f64 = 0.1;
-/// Length beyond which it is rather in millimetres: a hall's diagonal, m.
+/// Length above which the unit is probably millimetres, m: the diagonal of a hall.
 const GREAT_LENGTH_M: f64 = 150.0;
-/// Speed beyond which it is rather in millimetres a second, m/s.
+/// Speed above which the unit is probably millimetres per second, m/s.
 const GREAT_SPEED_M_PER_S: f64 = 30.0;
 
 impl Units {
-    /// Takes in a value, converted.
+    /// Adds a converted value.
     pub fn add(&mut self, quantity: Quantity, value: f64) {
         if value.is_finite() {
             let Sizes { count, sum, greatest } = &mut self.0[quantity as usize];
@@ -40,7 +40,7 @@ impl Units {
         }
     }
 
-    /// What looks like another unit, a sentence each.
+    /// Returns warnings about quantities that seem to have another unit, one sentence each.
     pub fn warnings(&self) -> Vec<String> {
         let [force, length, speed] = self.0;
         #[expect(clippy::cast_precision_loss, reason = "a mean for people")]

@@ -1,4 +1,4 @@
-//! Why a log cannot be opened.
+//! Errors of opening a log.
 
 use std::path::PathBuf;
 
@@ -9,28 +9,28 @@ use crate::recording::RecordingError;
 
 const APART: &str = "name files of one kind, or each in a run of its own";
 
-/// Why a log cannot be opened.
+/// The reason why a log cannot be opened.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum LogError {
-    /// As a recording of messages.
+    /// The files cannot be opened as a recording of messages.
     #[error(transparent)]
     Recording(#[from] RecordingError),
-    /// As a table.
+    /// The files cannot be opened as a table.
     #[error(transparent)]
     Csv(#[from] CsvError),
-    /// Several files are the parts of one log, but not of one kind.
+    /// Several files, which should be the parts of one log, are of different kinds.
     #[error("`{}` is CSV and `{}` is not, and several files are the parts of one log; {APART}", csv.display(), other.display())]
     Mixed {
-        /// The one.
+        /// A CSV file.
         csv: PathBuf,
-        /// The other.
+        /// A file of another kind.
         other: PathBuf,
     },
 }
 
 impl LogError {
-    /// What to do: the words that end the error's sentence, where it has any.
+    /// Returns the advice that ends the error's sentence, if there is any.
     #[must_use]
     pub fn advice(&self) -> Option<&'static str> {
         match self {

@@ -1,7 +1,7 @@
-//! A log, whatever it is kept in: what the commands read.
+//! A log of any supported kind, as the commands read it.
 //!
-//! [`Log::open`] looks at the bytes, not at the name, to find out what a file is. [`SignalReader`](crate::signals::SignalReader)
-//! makes rows of any of them, so that nothing beyond needs to know which it was.
+//! [`Log::open`] detects the kind of a file from its bytes, not from its name. [`SignalReader`](crate::signals::SignalReader) produces rows from any
+//! of them, so that no other code depends on the kind.
 
 mod error;
 mod storage;
@@ -20,20 +20,20 @@ use crate::recording::{Attachment, Channel, FileDamage, Message, Recording, Reco
 #[derive(Debug)]
 pub struct Log {
     pub(crate) content: Content,
-    /// What was out of the ordinary when it was opened.
+    /// Remarks from opening the log.
     remarks: Vec<String>,
-    /// For the messages of a bag of MCAP files, which may be compressed each by itself.
+    /// For messages of a bag of MCAP files, which may be compressed individually.
     unpacker: Option<Unpacker>,
 }
 
-/// What a log is kept in.
+/// The storage of a log.
 #[derive(Debug)]
 pub(crate) enum Content {
     /// Messages in MCAP files.
     Recording(Box<Recording>),
     /// Messages in SQLite files.
     Bag(Box<Bag>),
-    /// Rows.
+    /// Rows of CSV files.
     Csv(Box<CsvLog>),
 }
 
@@ -51,7 +51,7 @@ impl Log {
     /// Opens the files of one log, in any order, or the folder of a bag.
     ///
     /// # Errors
-    /// If no file is named, one cannot be opened or is no log, or if they are of several kinds.
+    /// Returns a [`LogError`] if no file is named, one cannot be opened or is not a log, or if they are of several kinds.
     pub fn open<P: AsRef<Path>>(paths: &[P]) -> Result<Self, LogError> {
         let paths: Vec<&Path> = paths.iter().map(AsRef::as_ref).collect();
         if let [folder] = *paths
@@ -90,7 +90,7 @@ impl Log {
         }
     }
 
-    /// The channels known so far, each at the place of its [`Channel::id`]; a log of rows has none.
+    /// Returns the channels known so far, each at the index [`Channel::id`]; a log of rows has none.
     #[must_use]
     pub fn channels(&self) -> &[Arc<Channel>] {
         match &self.content {
@@ -100,16 +100,16 @@ impl Log {
         }
     }
 
-    /// The next message in the order of log time; `None` at the end, and of a log of rows.
+    /// Returns the next message in the order of log time; `None` at the end, and for a log of rows.
     ///
     /// # Errors
-    /// As [`Recording::next_message`].
+    /// Returns the errors of [`Recording::next_message`].
     pub fn next_message(&mut self) -> Result<Option<Message<'_>>, RecordingError> {
         match &mut self.content {
             Content::Recording(recording) => {
                 let message = recording.next_message()?;
                 let Some((message, unpacker)) = message.zip(self.unpacker.as_mut()) else { return Ok(message) };
-                // What is not CDR may begin as compressed data do.
+                // Data other than CDR may begin like compressed data.
                 let is_cdr = message.channel.message_encoding == "cdr";
                 let data = if is_cdr { unpacker.content(message.data) } else { message.data };
                 Ok(Some(Message { data, ..message }))
@@ -119,7 +119,7 @@ impl Log {
         }
     }
 
-    /// Names of the columns of a log of rows.
+    /// Returns the column names of a log of rows.
     #[must_use]
     pub fn column_names(&self) -> Option<&[String]> {
         match &self.content {
@@ -128,7 +128,7 @@ impl Log {
         }
     }
 
-    /// Names of the attachments.
+    /// Returns the names of the attachments.
     #[must_use]
     pub fn attachment_names(&self) -> Vec<String> {
         match &self.content {
@@ -140,7 +140,7 @@ impl Log {
     /// Reads an attachment by its name; `None` if there is none.
     ///
     /// # Errors
-    /// As [`Recording::attachment`].
+    /// Returns the errors of [`Recording::attachment`].
     pub fn attachment(&self, name: &str) -> Result<Option<Attachment>, RecordingError> {
         match &self.content {
             Content::Recording(recording) => recording.attachment(name),
@@ -148,7 +148,7 @@ impl Log {
         }
     }
 
-    /// Where the beginning of a file is missing, and with it what its messages are: that file.
+    /// Returns a file whose beginning is missing, so that the types of its messages are unknown.
     #[must_use]
     pub fn beheaded(&self) -> Option<&Path> {
         match &self.content {
@@ -159,7 +159,7 @@ impl Log {
         }
     }
 
-    /// How many messages could not be read.
+    /// Returns the number of messages that could not be read.
     pub(crate) fn lost_messages(&self) -> u64 {
         match &self.content {
             Content::Recording(recording) => recording.damage().lost_messages(),
@@ -168,7 +168,7 @@ impl Log {
         }
     }
 
-    /// What could not be read, and what is out of the ordinary, a sentence each. Complete when all has been read.
+    /// Returns warnings about unreadable data and anything unusual, one sentence each; complete when everything has been read.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = self.remarks.clone();
@@ -181,7 +181,7 @@ impl Log {
         warnings
     }
 
-    /// How many bytes have been read so far, for a progress bar: [`Self::total_bytes`] at the end.
+    /// Returns the bytes read so far, for a progress bar: [`Self::total_bytes`] at the end.
     #[must_use]
     pub fn bytes_read(&self) -> u64 {
         match &self.content {
@@ -191,7 +191,7 @@ impl Log {
         }
     }
 
-    /// The size of all files.
+    /// Returns the size of all files.
     #[must_use]
     pub fn total_bytes(&self) -> u64 {
         match &self.content {
@@ -202,9 +202,9 @@ impl Log {
     }
 }
 
-/// The CSV file at a path; `None` where something else is, or nothing that can be opened.
+/// Opens the CSV file at a path; `None` if it is something else or cannot be opened.
 fn csv_at(path: &Path) -> Result<Option<CsvLog>, LogError> {
-    // What cannot be opened is told where recordings are.
+    // Files that cannot be opened are reported by the recording reader.
     let Ok((file, len)) = open_file(path) else { return Ok(None) };
     Ok(CsvLog::open(path, file, len)?)
 }

@@ -1,34 +1,34 @@
-//! How a log is kept: what of a file its signals do not say.
+//! The storage of a log: properties of its files that its signals do not show.
 
 use super::{Content, Log};
 
-/// How a log is kept.
+/// The storage of a log.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Storage {
-    /// What the files are, for people.
+    /// The kind of the files, for people.
     pub kind: &'static str,
-    /// The size of all files.
+    /// Size of all files.
     pub size_bytes: u64,
-    /// The chunks of MCAP files; `None` for other files, and where messages stand outside chunks only.
+    /// The chunks of MCAP files; `None` for other files, and if all messages are outside chunks.
     pub chunks: Option<Chunks>,
 }
 
 /// The chunks of a recording.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Chunks {
-    /// How many there are.
+    /// Number of chunks.
     pub count: u64,
     /// Their compressions, each once: `zstd`, `lz4` or `none`.
     pub compressions: Vec<&'static str>,
     /// Their size in the files.
     pub stored_bytes: u64,
-    /// Their size when decompressed, as their headers have it.
+    /// Their decompressed size, as stated in their headers.
     pub content_bytes: u64,
 }
 
 impl Log {
-    /// How it is kept, by the headers of its chunks.
+    /// Returns the storage, from the headers of the chunks.
     #[must_use]
     pub fn storage(&self) -> Storage {
         let (kind, chunks) = match &self.content {

@@ -1,4 +1,4 @@
-//! Message paths written back in the notation they are read from.
+//! Formats message paths in their notation.
 
 use std::fmt::{self, Display, Formatter, Write as _};
 

@@ -1,8 +1,7 @@
-//! Message paths: where in a log a signal is found.
+//! Message paths: the location of a signal in a log.
 //!
-//! A path is a topic, or a topic and the way to a field inside its messages, in the notation of
-//! Foxglove: `/cable_states`, `/joints.effort[:]`, `/force.data[2]`, `/platform.pose.position`,
-//! `/tf.transforms[:]{child_frame_id=="platform"}.transform.translation.x`.
+//! A path is a topic, or a topic and the path to a field inside its messages, in the notation of Foxglove: `/cable_states`, `/joints.effort[:]`,
+//! `/force.data[2]`, `/platform.pose.position`, `/tf.transforms[:]{child_frame_id=="platform"}.transform.translation.x`.
 //!
 //! | part | meaning |
 //! |---|---|
@@ -12,10 +11,8 @@
 //! | `[:]`, `[1:4]`, `[:3]`, `[-2:]` | several elements; **both** ends belong to the slice |
 //! | `{name=="x"}`, `{id!=3}`, `{on==true}` | only where the member has, or has not, the value |
 //!
-//! This module knows the notation only. Whether a field exists is asked of a
-//! [`MessageType`](crate::schema::MessageType). Foxglove's variables (`$x`), functions (`.@abs`) and
-//! order comparisons are not supported. No numbers of a message pass through here, so there is
-//! nothing to say about non-finite ones.
+//! This module covers only the notation. Whether a field exists is decided by [`MessageType`](crate::schema::MessageType). Foxglove's variables
+//! (`$x`), functions (`.@abs`) and order comparisons are not supported. No numbers of messages are processed here.
 
 mod display;
 mod parse;
@@ -23,7 +20,7 @@ mod parse;
 use std::ops::Range;
 use std::str::FromStr;
 
-/// A topic and, where wanted, a field inside its messages.
+/// A topic and, optionally, a field inside its messages.
 ///
 /// ```
 /// use fric_log::path::MessagePath;
@@ -37,11 +34,11 @@ use std::str::FromStr;
 pub struct MessagePath {
     /// The topic, without quotes.
     pub topic: String,
-    /// The way to the field; empty where the path is a bare topic.
+    /// The path to the field; empty for a bare topic.
     pub field: FieldPath,
 }
 
-/// The way from a message to a field inside it; empty for the message itself.
+/// The path from a message to a field inside it; empty for the message itself.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Hash)]
 pub struct FieldPath {
     steps: Vec<Step>,
@@ -54,16 +51,16 @@ pub enum Step {
     Member(String),
     /// Into these elements of an array.
     Elements(Selection),
-    /// On only where the condition holds.
+    /// Continue only if the condition holds.
     Where(Condition),
 }
 
-/// Which elements of an array a path selects.
+/// The elements of an array that a path selects.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Selection {
     /// One element; negative numbers count from the end, −1 being the last.
     One(i64),
-    /// All elements from `first` to `last`, both included; `None` is the array's own end.
+    /// All elements from `first` to `last`, both included; `None` means the array's end.
     Slice {
         /// The first element, negative from the end; `None` is 0.
         first: Option<i64>,
@@ -72,18 +69,18 @@ pub enum Selection {
     },
 }
 
-/// A filter: a member compared with a fixed value.
+/// A filter: a comparison of a member with a fixed value.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Condition {
-    /// The names leading to the member, from the filtered object on.
+    /// The names leading to the member, starting at the filtered object.
     pub member: Vec<String>,
     /// `true` for `==`, `false` for `!=`.
     pub equal: bool,
-    /// What the member is compared with.
+    /// The value to compare with.
     pub value: Literal,
 }
 
-/// A value written in a [`Condition`].
+/// A value in a [`Condition`].
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub enum Literal {
     /// A text in quotes.
@@ -92,41 +89,41 @@ pub enum Literal {
     Integer(i64),
 }
 
-/// A message path that cannot be read.
+/// The error of a message path that cannot be parsed.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("message path `{path}`, character {position}: expected {expected}, found {found}")]
 pub struct PathError {
     /// The whole path as given.
     pub path: String,
-    /// Which character is wrong, counted from 1.
+    /// Position of the wrong character, counted from 1.
     pub position: usize,
-    /// What would have been right there.
+    /// What is expected there.
     pub expected: &'static str,
-    /// What stands there instead.
+    /// What is there instead.
     pub found: String,
 }
 
 impl FieldPath {
-    /// The steps from the message to the field.
+    /// Returns the steps from the message to the field.
     #[must_use]
     pub fn steps(&self) -> &[Step] {
         &self.steps
     }
 
-    /// Whether the path stays at the message itself.
+    /// Whether the path denotes the message itself.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.steps.is_empty()
     }
 
-    /// This path, continued into a member.
+    /// Returns this path, continued into a member.
     #[must_use]
     pub fn member(mut self, name: &str) -> Self {
         self.steps.push(Step::Member(name.to_owned()));
         self
     }
 
-    /// This path, continued by another one: `pose` and `position.x` give `pose.position.x`.
+    /// Returns this path, continued by another one: `pose` and `position.x` give `pose.position.x`.
     #[must_use]
     pub fn join(mut self, rest: &Self) -> Self {
         self.steps.extend_from_slice(&rest.steps);
@@ -151,7 +148,7 @@ impl FromStr for MessagePath {
 impl FromStr for FieldPath {
     type Err = PathError;
 
-    /// Reads a field path without a topic: `header.stamp`, `effort[:]`, or nothing.
+    /// Parses a field path without a topic: `header.stamp`, `effort[:]`, or nothing.
     fn from_str(text: &str) -> Result<Self, PathError> {
         parse::field_path(text)
     }
@@ -161,7 +158,7 @@ impl Selection {
     /// All elements, `[:]`.
     pub const ALL: Self = Self::Slice { first: None, last: None };
 
-    /// The selected elements of an array of `count`; empty where it has none of them.
+    /// Returns the selected elements of an array of `count`; empty if it has none of them.
     ///
     /// ```
     /// use fric_log::path::Selection;

@@ -13,12 +13,12 @@ const LITERAL: &str = "a text in quotes, a whole number, `true` or `false`";
 const FILTER_END: &str = "`}`";
 const TEXT_END: &str = "the closing quote";
 
-/// Whether a topic may hold the character without being quoted.
+/// Whether a topic may contain the character without quotes.
 pub(super) fn is_topic_character(character: char) -> bool {
     !character.is_whitespace() && !matches!(character, '.' | '[' | ']' | '{' | '}' | '"')
 }
 
-/// Whether a field name may hold the character without being quoted.
+/// Whether a field name may contain the character without quotes.
 pub(super) fn is_name_character(character: char) -> bool {
     character.is_alphanumeric() || character == '_'
 }
@@ -118,7 +118,7 @@ impl Parser<'_> {
         Ok(name)
     }
 
-    /// A text in single or double quotes; a backslash takes the next character as it is.
+    /// Parses a text in single or double quotes; a backslash escapes the next character.
     fn quoted(&mut self) -> Result<String, PathError> {
         let mut text = String::new();
         let mut quote = None;
@@ -150,7 +150,7 @@ impl Parser<'_> {
         if self.take("]") { Ok(selection) } else { Err(self.error(INDEX_END)) }
     }
 
-    /// A whole number, or nothing where there is neither a digit nor a minus sign.
+    /// Parses an integer; `None` if there is neither a digit nor a minus sign.
     fn integer(&mut self, expected: &'static str) -> Result<Option<i64>, PathError> {
         let sign = usize::from(self.peek() == Some('-'));
         let digits = self.rest().get(sign..).unwrap_or_default();

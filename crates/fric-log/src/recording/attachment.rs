@@ -8,16 +8,16 @@ use super::window::{read_into, read_up_to};
 /// The largest attachment that is read into memory.
 pub const ATTACHMENT_LIMIT_BYTES: u64 = 64 * 1024 * 1024;
 
-/// What an attachment is called and how large it is.
+/// Name and size of an attachment.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AttachmentInfo {
     /// Its name.
     pub name: String,
     /// Its media type, for example `application/toml`.
     pub media_type: String,
-    /// When it was recorded.
+    /// Time of recording.
     pub log_time_nanos: u64,
-    /// When it was created.
+    /// Time of creation.
     pub create_time_nanos: u64,
     /// Its size.
     pub size_bytes: u64,
@@ -38,13 +38,13 @@ impl AttachmentInfo {
 /// An attachment with its content.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Attachment {
-    /// What it is.
+    /// Its name and size.
     pub info: AttachmentInfo,
     /// Its content.
     pub data: Vec<u8>,
 }
 
-/// Reads an attachment and checks it.
+/// Reads an attachment and verifies it.
 pub(super) fn read_attachment(source: &SourceFile, place: &AttachmentPlace) -> Result<Attachment, RecordingError> {
     let failed = |error| source.read_error(place.offset_bytes, error);
     let length = usize::try_from(place.data_len).ok().filter(|_| place.data_len <= ATTACHMENT_LIMIT_BYTES);

@@ -1,16 +1,15 @@
-//! The channels of a recording under dense numbers, whatever ids its files use.
+//! The channels of a recording under dense numbers, independent of the ids in its files.
 //!
-//! Each file numbers its schemas and channels by itself, and says so again in every chunk and in its summary. Channels of
-//! different files (or ids) that agree in everything are one channel here, so that a split recording reads as one. What
-//! stands beside the messages counts more than what the summary says; two statements beside the messages that differ are
-//! a conflict.
+//! Each file numbers its schemas and channels itself, and repeats the definitions in every chunk and in its summary. Channels of different files (or
+//! ids) that agree in everything are one channel here, so that a split recording reads as one. Definitions beside the messages take precedence over
+//! those in the summary; two different definitions beside the messages are a conflict.
 
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
 use super::record::{ChannelFields, SchemaFields, op};
 
-/// How the messages of a channel are to be understood.
+/// The definition of a channel's messages.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Schema {
     /// Its name, for ROS 2 the type: `sensor_msgs/msg/JointState`.
@@ -21,22 +20,22 @@ pub struct Schema {
     pub data: Vec<u8>,
 }
 
-/// A stream of messages of one kind.
+/// A stream of messages of one type.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Channel {
-    /// Its place in [`Recording::channels`](super::Recording::channels), not the id in the file.
+    /// Its index in [`Recording::channels`](super::Recording::channels), not the id in the file.
     pub id: usize,
     /// Its topic.
     pub topic: String,
-    /// How its messages are encoded: `cdr`, `json`, `protobuf`.
+    /// Encoding of its messages: `cdr`, `json`, `protobuf`.
     pub message_encoding: String,
     /// Its schema; `None` if it has none, or if it was lost with a damaged part of the file.
     pub schema: Option<Arc<Schema>>,
-    /// What the recorder noted about it.
+    /// Metadata from the recorder.
     pub metadata: BTreeMap<String, String>,
 }
 
-/// How a definition was received.
+/// The result of receiving a definition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Received {
     /// Known or new.
@@ -47,12 +46,12 @@ pub(super) enum Received {
     Conflict,
 }
 
-/// Where a definition comes from.
+/// The source of a definition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Source {
-    /// Collected by the scan, to fall back on.
+    /// Collected by the scan, as a fallback.
     Scan,
-    /// Read with the messages it is for.
+    /// Read together with its messages.
     Messages,
 }
 
@@ -66,7 +65,7 @@ struct ChannelEntry {
     body: Box<[u8]>,
     source: Source,
     schema_id: u16,
-    /// Topic, encoding and metadata, to build the channel again if its schema becomes known later.
+    /// Topic, encoding and metadata, to rebuild the channel if its schema becomes known later.
     channel: Channel,
 }
 
@@ -99,7 +98,7 @@ impl ChannelTable {
         &self.channels
     }
 
-    /// The dense number of a file's channel.
+    /// Returns the dense number of a file's channel.
     #[inline]
     pub(super) fn dense(&self, file: u32, channel_id: u16) -> Option<usize> {
         let table = self.files.get(file as usize)?;
@@ -112,7 +111,7 @@ impl ChannelTable {
         self.channels.get(dense)
     }
 
-    /// Takes a schema or channel record of a file. The ids of channels that a conflict makes ambiguous go to `rejected`.
+    /// Processes a schema or channel record of a file. The ids of channels that a conflict makes ambiguous are added to `rejected`.
     pub(super) fn define(
         &mut self,
         file: u32,
@@ -208,7 +207,7 @@ impl ChannelTable {
         Received::Fine
     }
 
-    /// Finds or makes the dense number of a file's channel.
+    /// Finds or creates the dense number of a file's channel.
     fn resolve(&mut self, file: u32, channel_id: u16) {
         let Some(table) = self.files.get_mut(file as usize) else {
             return;

@@ -1,14 +1,14 @@
-//! What could not be read of a recording, and how to say it to its owner.
+//! Unreadable parts of a recording, and their description for people.
 //!
 //! The account is bounded: every file keeps counts and the first [`PLACES_KEPT`] places, however damaged it is.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// How many places are remembered for each file; the rest are only counted.
+/// Maximum number of places stored per file; the rest are only counted.
 pub const PLACES_KEPT: usize = 16;
 
-/// What is wrong at one place of a file.
+/// The kind of damage at one place of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum DamageKind {
@@ -16,29 +16,29 @@ pub enum DamageKind {
     Magic,
     /// Bytes that are no record, or a record whose structure is broken.
     Garbage,
-    /// The length or the kind of a record was wrong; the record was recovered with the help of its other lengths.
+    /// The length or the kind of a record was wrong; the record was recovered from its other lengths.
     HeaderRepaired,
-    /// The checksum of a chunk does not fit its content; none of its messages is delivered.
+    /// The checksum of a chunk does not match its content; none of its messages is delivered.
     ChunkChecksum,
     /// A chunk cannot be decompressed; none of its messages is delivered.
     ChunkDecompression,
-    /// A chunk's content is shorter or longer than its header says; none of its messages is delivered.
+    /// A chunk's content is shorter or longer than its header states; none of its messages is delivered.
     ChunkSize,
     /// A chunk claims to be larger than [`CHUNK_LIMIT_BYTES`](super::CHUNK_LIMIT_BYTES); it is not read.
     ChunkTooLarge,
-    /// A chunk is cut off; the messages in front of the cut are delivered.
+    /// A chunk is truncated; the messages before the end are delivered.
     ChunkCut,
-    /// The records inside a chunk do not follow each other; the messages in front of the break are delivered.
+    /// The records inside a chunk are inconsistent; the messages before the break are delivered.
     ChunkRecords,
     /// A schema or channel record cannot be parsed.
     Definition,
-    /// A schema or channel id is defined again with another content; messages it makes ambiguous are not delivered.
+    /// A schema or channel id is redefined with another content; messages that this makes ambiguous are not delivered.
     Conflict,
-    /// Messages of a channel that is defined nowhere; they are not delivered.
+    /// Messages of an undefined channel; they are not delivered.
     UnknownChannel,
-    /// The checksum of the data section does not fit; its messages are delivered, but some may be wrong.
+    /// The checksum of the data section does not match; its messages are delivered, but some may be wrong.
     DataChecksum,
-    /// The checksum of the summary section does not fit; the summary is not used.
+    /// The checksum of the summary section does not match; the summary is not used.
     SummaryChecksum,
 }
 
@@ -66,43 +66,43 @@ impl DamageKind {
 /// One damaged place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DamagedPlace {
-    /// What is wrong.
+    /// The kind of damage.
     pub kind: DamageKind,
-    /// Where in the file.
+    /// Position in the file.
     pub offset_bytes: u64,
-    /// How many bytes of the file could not be used because of it.
+    /// Number of bytes of the file that are unusable because of it.
     pub lost_bytes: u64,
     /// First and last log time between which messages may be missing, as far as known.
     pub log_time_nanos: Option<(u64, u64)>,
 }
 
-/// How far the end of a file is there.
+/// The completeness of the end of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum FileEnd {
     /// The file is complete.
     #[default]
     Complete,
-    /// All messages were written, but the summary behind them is cut off.
+    /// All messages were written, but the summary after them is truncated.
     SummaryCut,
-    /// The file ends within the messages: the recorder was stopped hard, or the copy did not finish.
+    /// The file ends within the messages: the recorder was stopped abruptly, or the copy did not finish.
     MessagesCut,
 }
 
-/// What could not be read of one file.
+/// The unreadable parts of one file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FileDamage {
     path: PathBuf,
     places: Vec<DamagedPlace>,
     place_count: u64,
     lost_bytes: u64,
-    /// Read, but not deliverable.
+    /// Messages that were read but cannot be delivered.
     lost_messages: u64,
-    /// Counted by the statistics, but not read.
+    /// Messages that the statistics count but that were not read.
     missing_messages: u64,
     last_place: Option<(DamageKind, u64)>,
     log_time_nanos: Option<(u64, u64)>,
     end: FileEnd,
-    /// Log time of the first message of the recording, to give times relative to it.
+    /// Log time of the first message of the recording, the origin of relative times.
     start_time_nanos: u64,
 }
 
@@ -122,56 +122,56 @@ impl FileDamage {
         }
     }
 
-    /// The file.
+    /// Returns the path of the file.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// The first [`PLACES_KEPT`] damaged places, in the order in which they were found.
+    /// Returns the first [`PLACES_KEPT`] damaged places, in the order in which they were found.
     #[must_use]
     pub fn places(&self) -> &[DamagedPlace] {
         &self.places
     }
 
-    /// How many damaged places there are.
+    /// Returns the number of damaged places.
     #[must_use]
     pub fn place_count(&self) -> u64 {
         self.place_count
     }
 
-    /// How many bytes of the file could not be used.
+    /// Returns the number of unusable bytes of the file.
     #[must_use]
     pub fn lost_bytes(&self) -> u64 {
         self.lost_bytes
     }
 
-    /// How many messages are known to be lost. Final only at the end of the recording, and a lower bound where the file has
-    /// no statistics to compare with.
+    /// Returns the number of messages known to be lost. It is final only at the end of the recording, and a lower bound if the file has no
+    /// statistics.
     #[must_use]
     pub fn lost_messages(&self) -> u64 {
         self.lost_messages.saturating_add(self.missing_messages)
     }
 
-    /// First and last log time between which messages may be missing, as far as known.
+    /// Returns the first and the last log time between which messages may be missing, as far as known.
     #[must_use]
     pub fn log_time_nanos(&self) -> Option<(u64, u64)> {
         self.log_time_nanos
     }
 
-    /// How far the end of the file is there.
+    /// Returns the completeness of the end of the file.
     #[must_use]
     pub fn end(&self) -> FileEnd {
         self.end
     }
 
-    /// Whether the file does not begin as a recording does: what stood in front of its first readable record is lost.
+    /// Whether the file does not begin like a recording: everything before its first readable record is lost.
     #[must_use]
     pub fn lacks_beginning(&self) -> bool {
         self.places.iter().any(|place| place.offset_bytes == 0)
     }
 
-    /// Whether nothing is wrong with the file.
+    /// Whether the file has no damage.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.place_count == 0 && self.lost_messages() == 0 && self.end == FileEnd::Complete
@@ -198,14 +198,14 @@ impl FileDamage {
         self.lost_bytes = self.lost_bytes.saturating_add(count);
     }
 
-    /// Adds a place unless the last one is the same.
+    /// Adds a place unless it equals the last one.
     pub(super) fn add_once(&mut self, place: DamagedPlace) {
         if self.last_place != Some((place.kind, place.offset_bytes)) {
             self.add(place);
         }
     }
 
-    /// Messages that the statistics count and that were not found.
+    /// Sets the number of messages that the statistics count but that were not found.
     pub(super) fn set_missing_messages(&mut self, count: u64) {
         self.missing_messages = count;
     }
@@ -248,7 +248,7 @@ impl FileDamage {
     }
 }
 
-/// Seconds from `start` to `time`, for people.
+/// Returns the seconds from `start` to `time`, for people.
 fn seconds_after(start_nanos: u64, time_nanos: u64) -> f64 {
     #[expect(
         clippy::cast_precision_loss,
@@ -258,7 +258,7 @@ fn seconds_after(start_nanos: u64, time_nanos: u64) -> f64 {
     if time_nanos >= start_nanos { seconds(time_nanos - start_nanos) } else { -seconds(start_nanos - time_nanos) }
 }
 
-/// One sentence about the file; empty if nothing is wrong.
+/// Writes one sentence about the file; empty if it has no damage.
 impl fmt::Display for FileDamage {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.is_empty() {
@@ -284,9 +284,9 @@ impl fmt::Display for FileDamage {
     }
 }
 
-/// What could not be read of a recording, file by file.
+/// The unreadable parts of a recording, file by file.
 ///
-/// Grows while messages are read, because a chunk is checked when its turn comes.
+/// The account grows while messages are read, because a chunk is checked only when it is reached.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Damage {
     files: Vec<FileDamage>,
@@ -297,31 +297,31 @@ impl Damage {
         Self { files }
     }
 
-    /// All files of the recording in the order in which they were recorded, the undamaged among them.
+    /// Returns all files of the recording in the order of recording, including undamaged ones.
     #[must_use]
     pub fn files(&self) -> &[FileDamage] {
         &self.files
     }
 
-    /// Whether nothing is wrong, as far as was read.
+    /// Whether there is no damage, as far as the recording has been read.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.files.iter().all(FileDamage::is_empty)
     }
 
-    /// How many places of all files are damaged.
+    /// Returns the number of damaged places of all files.
     #[must_use]
     pub fn place_count(&self) -> u64 {
         self.files.iter().map(FileDamage::place_count).sum()
     }
 
-    /// How many messages are known to be lost; see [`FileDamage::lost_messages`].
+    /// Returns the number of messages known to be lost; see [`FileDamage::lost_messages`].
     #[must_use]
     pub fn lost_messages(&self) -> u64 {
         self.files.iter().map(FileDamage::lost_messages).sum()
     }
 
-    /// Whether the end of a file is missing, with messages in it.
+    /// Whether the end of a file is missing, including messages.
     #[must_use]
     pub fn is_cut(&self) -> bool {
         self.files.iter().any(|file| file.end == FileEnd::MessagesCut)
@@ -332,7 +332,7 @@ impl Damage {
     }
 }
 
-/// One sentence for each damaged file, each on its own line; empty if nothing is wrong.
+/// Writes one sentence per damaged file, each on its own line; empty if there is no damage.
 impl fmt::Display for Damage {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let damaged = self.files.iter().filter(|file| !file.is_empty());

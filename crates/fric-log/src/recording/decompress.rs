@@ -1,7 +1,6 @@
-//! Decompresses the content of chunks without trusting the sizes they claim.
+//! Decompresses the content of chunks without trusting their stated sizes.
 //!
-//! The buffer holds at most the claimed size, which the caller has limited, and is grown as data arrives once it exceeds
-//! [`ONE_SHOT_LIMIT`].
+//! The buffer has at most the stated size, which the caller has limited; beyond [`ONE_SHOT_LIMIT`] it grows as data arrive.
 
 use std::io::{self, BufRead};
 
@@ -10,12 +9,12 @@ use zstd::zstd_safe::{DCtx, InBuffer, OutBuffer, ResetDirective};
 use super::damage::DamageKind;
 use super::record::Compression;
 
-/// Up to this claimed size the buffer is provided at once, which lets zstd work without a window of its own.
+/// Up to this stated size the buffer is allocated at once, which lets zstd work without a window of its own.
 const ONE_SHOT_LIMIT: usize = 16 * 1024 * 1024;
-/// The first piece of a buffer that is grown step by step.
+/// Initial size of a growing buffer.
 const FIRST_PIECE: usize = 4 * 1024 * 1024;
 
-/// Reused state of the decompressors.
+/// Reusable state of the decompressors.
 pub(super) struct Decompressor {
     zstd: DCtx<'static>,
 }
@@ -25,7 +24,7 @@ impl Decompressor {
         Self { zstd: DCtx::create() }
     }
 
-    /// Decompresses `stored` into the cleared `content`, which must become `content_len` long unless `stored` is cut off.
+    /// Decompresses `stored` into the cleared `content`, which must become `content_len` long unless `stored` is truncated.
     pub(super) fn decompress(
         &mut self,
         compression: Compression,
@@ -51,7 +50,7 @@ impl Decompressor {
             Compression::Lz4 => stream_lz4(stored, content_len, content),
         };
         if is_cut {
-            // What could be decompressed of a chunk that is cut off is good, however it ended.
+            // The decompressed part of a truncated chunk is valid, whatever follows.
             content.truncate(content_len);
             return Ok(());
         }
@@ -82,7 +81,7 @@ impl Decompressor {
     }
 }
 
-/// Grows a full buffer by its own size, but not beyond `content_len`.
+/// Doubles a full buffer, but not beyond `content_len`.
 fn make_room(content: &mut Vec<u8>, content_len: usize) {
     let left = content_len.saturating_sub(content.len());
     content.reserve_exact(content.len().max(FIRST_PIECE).min(left));

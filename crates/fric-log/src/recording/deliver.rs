@@ -1,4 +1,4 @@
-//! Finds the next message: loads segments when the order asks for them, and accounts for what cannot be delivered.
+//! Finds the next message: loads segments when the order requires it, and counts undeliverable messages.
 
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ use super::record::framed_at;
 use super::segment::Segment;
 
 impl Recording {
-    /// The next message that can be delivered, with the dense number of its channel.
+    /// Returns the next deliverable message, with the dense number of its channel.
     #[inline]
     pub(super) fn find_next(&mut self) -> Result<Option<(usize, Head)>, RecordingError> {
         loop {
@@ -45,7 +45,7 @@ impl Recording {
         }
     }
 
-    /// The channel of a message of the current segment; `None` if the message cannot be delivered.
+    /// Returns the channel of a message of the current segment; `None` if the message cannot be delivered.
     #[inline]
     fn channel_of(&mut self, head: &Head) -> Result<Option<usize>, RecordingError> {
         let channel_id = head.fields.channel_id;
@@ -62,8 +62,8 @@ impl Recording {
         }
     }
 
-    /// Looks for a channel that is not defined in what was read so far: a chunk further behind in the order of time may
-    /// stand further in front in the file, and hold the definition. Done once for each file.
+    /// Searches a channel that the segments read so far do not define. A chunk that is later in time may be earlier in the file and contain the
+    /// definition. Done once per file.
     #[cold]
     fn search_channel(&mut self, file: u32, channel_id: u16) -> Result<Option<usize>, RecordingError> {
         let count = self.counts.get_mut(file as usize);
@@ -88,7 +88,7 @@ impl Recording {
         let mut loader = Loader::new();
         let mut buffer = Vec::new();
         for (place, segment) in segments.iter().enumerate() {
-            // What is larger is not worth the memory it would take beside the rest.
+            // A larger segment is not worth the additional memory.
             if segment.file != file || segment.content_len > super::reader::AHEAD_BYTES {
                 continue;
             }
@@ -139,7 +139,7 @@ impl Recording {
         Ok(())
     }
 
-    /// Notes the damage and the definitions of a loaded segment and opens it.
+    /// Records the damage and the definitions of a loaded segment and opens it.
     fn take_in(&mut self, loaded: Loaded, segment: &Segment) {
         let file = segment.file;
         if let Some(kind) = loaded.problem {
@@ -192,7 +192,7 @@ impl Recording {
         }
     }
 
-    /// At the end, the statistics tell how many messages are missing.
+    /// Computes the number of missing messages from the statistics at the end.
     fn note_end(&mut self) {
         self.bytes_read = self.total_bytes();
         for (file, count) in self.counts.iter().enumerate() {

@@ -1,11 +1,11 @@
-//! What can make a recording unreadable as a whole.
+//! Errors that make a recording unreadable as a whole.
 //!
 //! Damage inside a recording that can be skipped is not an error; see [`Damage`](super::Damage).
 
 use std::io;
 use std::path::PathBuf;
 
-/// What to do, each the end of a sentence.
+/// Advice, each the end of a sentence.
 mod advice {
     pub const NAME: &str = "give at least one MCAP file";
     pub const PATH: &str = "check the path";
@@ -22,14 +22,14 @@ mod advice {
     pub const REPORT: &str = "please report it with the recording";
 }
 
-/// Why a recording, or a part of it that was asked for, cannot be read.
+/// The reason why a recording, or a requested part of it, cannot be read.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecordingError {
     /// No path was given.
     #[error("no recording was named; {}", advice::NAME)]
     NoFiles,
-    /// There is no such file.
+    /// The file does not exist.
     #[error("there is no file `{}`; {}", path.display(), advice::PATH)]
     Missing {
         /// The path as given.
@@ -58,7 +58,7 @@ pub enum RecordingError {
     Open {
         /// The path as given.
         path: PathBuf,
-        /// What the operating system said.
+        /// Message of the operating system.
         source: io::Error,
     },
     /// The file has no bytes.
@@ -77,31 +77,31 @@ pub enum RecordingError {
         /// What to do.
         advice: &'static str,
     },
-    /// An SQLite file that is no bag, or cannot be read at all.
+    /// An SQLite file is not a bag, or cannot be read at all.
     #[error("`{}` cannot be read as a rosbag2 database: {reason}; {}", path.display(), advice::EMPTY)]
     NotBag {
         /// The path as given.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The problem.
         reason: String,
     },
-    /// A folder with files of both kinds.
+    /// A folder contains files of both kinds.
     #[error("`{}` holds a bag of MCAP files and one of SQLite files; {}", path.display(), advice::ONE)]
     SeveralStorages {
         /// The folder.
         path: PathBuf,
     },
-    /// The operating system failed to read bytes it had promised.
+    /// The operating system failed to read bytes that should exist.
     #[error("`{}` could not be read at byte {offset_bytes}; {}", path.display(), advice::DISK)]
     Read {
         /// The path as given.
         path: PathBuf,
-        /// Where reading failed.
+        /// Position at which reading failed.
         offset_bytes: u64,
-        /// What the operating system said.
+        /// Message of the operating system.
         source: io::Error,
     },
-    /// The content of an attachment does not fit its checksum.
+    /// The content of an attachment does not match its checksum.
     #[error(
         "the attachment `{name}` at byte {offset_bytes} of `{}` is damaged (checksum {found:#010x} instead of {expected:#010x}); {}",
         path.display(), advice::COPY
@@ -111,14 +111,14 @@ pub enum RecordingError {
         name: String,
         /// The file it is in.
         path: PathBuf,
-        /// Where its record starts.
+        /// Start of its record.
         offset_bytes: u64,
         /// The checksum in the file.
         expected: u32,
         /// The checksum of the bytes in the file.
         found: u32,
     },
-    /// An attachment is too large to be held in memory.
+    /// An attachment is too large for memory.
     #[error(
         "the attachment `{name}` at byte {offset_bytes} of `{}` has {size_bytes} bytes, more than the {limit_bytes} that can be read; {}",
         path.display(), advice::EXTRACT
@@ -128,26 +128,26 @@ pub enum RecordingError {
         name: String,
         /// The file it is in.
         path: PathBuf,
-        /// Where its record starts.
+        /// Start of its record.
         offset_bytes: u64,
         /// Its size.
         size_bytes: u64,
-        /// The most that is read.
+        /// Greatest readable size.
         limit_bytes: u64,
     },
     /// The thread that reads ahead could not be started.
     #[error("the thread that reads ahead could not be started; {}", advice::MEMORY)]
     StartReader {
-        /// What the operating system said.
+        /// Message of the operating system.
         source: io::Error,
     },
-    /// The thread that reads ahead ended by a bug.
+    /// The read-ahead thread ended because of a bug.
     #[error("the thread that reads ahead ended unexpectedly, by a bug in fric; {}", advice::REPORT)]
     ReaderStopped,
 }
 
 impl RecordingError {
-    /// What to do: the words that end the error's sentence, where it has any.
+    /// Returns the advice that ends the error's sentence, if there is any.
     #[must_use]
     pub fn advice(&self) -> Option<&'static str> {
         Some(match self {

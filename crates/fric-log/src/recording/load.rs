@@ -1,4 +1,4 @@
-//! Loads one segment: reads it, decompresses it, checks it, and finds out in which order its messages stand.
+//! Loads one segment: reads, decompresses and checks it, and determines the order of its messages.
 
 use std::fs::File;
 use std::io;
@@ -9,27 +9,27 @@ use super::record::{Compression, MessageFields, framed_at, op};
 use super::segment::{CHUNK_LIMIT_BYTES, Segment};
 use super::window::read_into;
 
-/// Log time and place in the content of a message.
+/// Log time and position in the content of a message.
 pub(super) type MessagePlace = (u64, u32);
 
 /// A segment in memory.
 pub(super) struct Loaded {
-    /// Place of the segment in the loading order.
+    /// Index of the segment in the loading order.
     pub(super) segment: usize,
-    /// Records, all of which are complete.
+    /// Complete records.
     pub(super) content: Vec<u8>,
-    /// The messages by time, if they do not stand in that order.
+    /// The messages sorted by time, if they are not stored in that order.
     pub(super) order: Option<Vec<MessagePlace>>,
-    /// Where the schemas and channels stand.
+    /// Positions of the schemas and channels.
     pub(super) definitions: Vec<u32>,
     pub(super) message_count: u64,
-    /// Time of the last message in front of a break.
+    /// Time of the last message before a break.
     pub(super) last_time_nanos: Option<u64>,
     pub(super) problem: Option<DamageKind>,
 }
 
 impl Loaded {
-    /// The memory it takes.
+    /// Returns the memory it takes.
     pub(super) fn memory_len(&self) -> u64 {
         let order = self.order.as_ref().map_or(0, Vec::len);
         (self.content.len() + order * size_of::<MessagePlace>()) as u64
@@ -43,7 +43,7 @@ pub(super) struct Loader {
 }
 
 impl Loader {
-    /// A larger read buffer than this is not kept for the next chunk.
+    /// Maximum size of a read buffer that is kept for the next chunk.
     const KEPT_LEN: usize = 8 * 1024 * 1024;
 
     pub(super) fn new() -> Self {
@@ -91,7 +91,7 @@ impl Loader {
         else {
             return Ok(Some(DamageKind::ChunkTooLarge));
         };
-        // No compressor makes data much larger, so that the stored size is bounded by the other.
+        // No compressor enlarges data much, so the content size bounds the stored size.
         let slack = match segment.compression {
             Compression::None => 0,
             Compression::Lz4 | Compression::Zstd => content_len / 64 + 64 * 1024,
@@ -119,7 +119,7 @@ impl Loader {
     }
 }
 
-/// Walks over the records, cuts off what is broken, and notes the order of the messages.
+/// Scans the records, cuts off broken ones, and determines the order of the messages.
 fn examine(loaded: &mut Loaded) {
     let mut offset = 0;
     let mut last_time = 0;
@@ -163,7 +163,7 @@ fn sorted_messages(content: &[u8]) -> Vec<MessagePlace> {
         }
         offset = record.next;
     }
-    // The place breaks ties, so that messages of the same time keep their order.
+    // The position breaks ties, so that messages of the same time keep their order.
     places.sort_unstable();
     places
 }

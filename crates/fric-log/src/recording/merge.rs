@@ -1,8 +1,8 @@
-//! Puts the messages of overlapping segments into one order: by log time, at equal times as they stand in the files.
+//! Merges the messages of overlapping segments into one order: by log time, and at equal times as in the files.
 //!
-//! A message is given out only when no segment that is still to be loaded can hold an earlier one. In the usual case, one
-//! segment after the other, that is one comparison for each message. Segments that overlap are open together, up to
-//! [`OPEN_BYTES`] of content; what would need more is given out without waiting, and may then come late.
+//! A message is delivered only when no segment that is still to be loaded can contain an earlier one. Usually segments do not overlap, which costs
+//! one comparison per message. Overlapping segments are open together, up to [`OPEN_BYTES`] of content; beyond that, messages are delivered without
+//! waiting and may then be late.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -12,10 +12,10 @@ use super::load::{Loaded, MessagePlace};
 use super::record::{MESSAGE_FIELDS_LEN, MessageFields, framed_at, op};
 use super::segment::Segment;
 
-/// How many bytes of overlapping segments are open together. One segment may be larger if it is alone.
+/// Maximum number of bytes of overlapping open segments. One segment may be larger if it is alone.
 pub(super) const OPEN_BYTES: u64 = 40 * 1024 * 1024;
 
-/// Orders messages: log time, then rank of the segment.
+/// The order of messages: log time, then rank of the segment.
 type Key = (u64, u32);
 
 /// The next message of a segment.
@@ -26,16 +26,16 @@ pub(super) struct Head {
     end: usize,
 }
 
-/// A loaded segment with a place in it.
+/// A loaded segment with a reading position.
 pub(super) struct OpenSegment {
     loaded: Loaded,
     pub(super) file: u32,
     rank: u32,
     memory_len: u64,
-    /// Ids of channels whose messages are not to be delivered.
+    /// Ids of channels whose messages must not be delivered.
     pub(super) rejected: Vec<u16>,
     head: Option<Head>,
-    /// Where to go on: in the content, or in the list of places if there is one.
+    /// The next position: in the content, or in the list of positions if there is one.
     next: usize,
 }
 
@@ -62,7 +62,7 @@ impl OpenSegment {
         self.head.map(|head| (head.fields.log_time_nanos, self.rank))
     }
 
-    /// Goes on to the next message.
+    /// Advances to the next message.
     #[inline]
     fn advance(&mut self) {
         self.head = match &self.loaded.order {
@@ -101,11 +101,11 @@ fn head_at(content: &[u8], (_, place): MessagePlace) -> Option<Head> {
     })
 }
 
-/// What is to be done next.
+/// The next action.
 pub(super) enum Step {
     /// The head of the current segment is the next message.
     Deliver(Head),
-    /// The next segment has to be loaded and added.
+    /// The next segment must be loaded and added.
     Load,
     /// A segment has no more messages.
     Retire(OpenSegment),
@@ -124,9 +124,9 @@ pub(super) struct Merge {
     heap: BinaryHeap<Reverse<(u64, u32, usize)>>,
     open_bytes: u64,
     current: Option<OpenSegment>,
-    /// The current segment goes on as long as its messages come before this.
+    /// The current segment continues as long as its messages come before this key.
     limit: Option<Key>,
-    /// The head of the current segment was given out.
+    /// Whether the head of the current segment was delivered.
     is_head_used: bool,
 }
 
@@ -145,7 +145,7 @@ impl Merge {
         }
     }
 
-    /// Decides what is next. After [`Step::Deliver`] the message counts as given out.
+    /// Determines the next action. After [`Step::Deliver`] the message counts as delivered.
     #[inline]
     pub(super) fn step(&mut self) -> Step {
         if let Some(current) = &mut self.current {
@@ -207,7 +207,7 @@ impl Merge {
         self.heap.push(Reverse((time, rank, slot)));
     }
 
-    /// The segment that [`Step::Load`] asks for counts as loaded from now on.
+    /// Returns the segment that [`Step::Load`] asks for, which counts as loaded from now on.
     pub(super) fn start_next(&mut self) -> Option<(usize, Segment)> {
         let place = self.next_segment;
         let segment = self.segments.get(place)?.clone();
@@ -215,7 +215,7 @@ impl Merge {
         Some((place, segment))
     }
 
-    /// Adds a loaded segment; gives it back if it has no messages.
+    /// Adds a loaded segment; returns it if it has no messages.
     pub(super) fn add(&mut self, open: OpenSegment) -> Option<OpenSegment> {
         let Some(key) = open.key() else {
             return Some(open);
@@ -225,7 +225,7 @@ impl Merge {
         None
     }
 
-    /// Whether the current segment must not deliver a channel's messages, and the file it is of.
+    /// Returns the file of the current segment, and whether it must not deliver the channel's messages.
     #[inline]
     pub(super) fn current_file(&self, channel_id: u16) -> Option<(u32, bool)> {
         let current = self.current.as_ref()?;
@@ -233,12 +233,12 @@ impl Merge {
         Some((current.file, is_rejected))
     }
 
-    /// Place of the current segment in the loading order.
+    /// Returns the index of the current segment in the loading order.
     pub(super) fn current_segment(&self) -> Option<usize> {
         self.current.as_ref().map(|current| current.loaded.segment)
     }
 
-    /// The payload of a message of the current segment.
+    /// Returns the payload of a message of the current segment.
     #[inline]
     pub(super) fn payload(&self, head: &Head) -> &[u8] {
         self.current.as_ref().and_then(|current| current.loaded.content.get(head.data_at..head.end)).unwrap_or_default()

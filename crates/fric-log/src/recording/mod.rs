@@ -1,26 +1,25 @@
 //! Recordings: one or several MCAP files as one stream of messages in the order of their log time.
 //!
-//! For reading logs as they come from the field: cut off when the recorder lost power, damaged on the disk, split into
-//! several files, written topic after topic. What is readable is read, what is not is counted in [`Damage`]; only a file
-//! that is no MCAP at all, or that the operating system does not hand over, is a [`RecordingError`].
+//! The module reads logs from the field: truncated when the recorder lost power, damaged on the disk, split into several files, written topic by
+//! topic. Everything readable is read, and the rest is counted in [`Damage`]; only a file that is not MCAP at all, or that the operating system
+//! cannot read, is a [`RecordingError`].
 //!
-//! Not here: what the bytes of a message mean, and what to do about gaps. The indexes in the file are not used, so that a
-//! wrong index cannot hide messages.
+//! The meaning of a message's bytes, and the treatment of gaps, are handled elsewhere. The indexes in the file are not used, so that a wrong index
+//! cannot hide messages.
 //!
 //! # Bounds
 //!
-//! - Memory: 40 MiB of chunks that overlap in time and 8 MiB read ahead, both decompressed, plus one chunk as stored and
-//!   the buffers in use for recycling; more only for a single chunk that is larger than that, up to
-//!   [`CHUNK_LIMIT_BYTES`], beyond which a chunk is counted as damaged. About 80 bytes for each chunk of the recording.
-//! - Order: exact as long as the chunks that overlap at any time fit into these 40 MiB and the times in the chunks' headers
-//!   do not begin too late; otherwise messages come as early as possible and [`Recording::late_count`] tells how many came late.
-//! - One thread reads and decompresses ahead; it starts with the first message asked for and ends with the [`Recording`].
+//! - Memory: 40 MiB of chunks that overlap in time and 8 MiB of read-ahead, both decompressed, plus one chunk as stored and the recycled buffers. It
+//!   takes more only for a single chunk that is larger than that, up to [`CHUNK_LIMIT_BYTES`], beyond which a chunk counts as damaged. In addition,
+//!   about 80 bytes per chunk of the recording.
+//! - Order: exact as long as the overlapping chunks fit into these 40 MiB and the times in the chunks' headers do not begin too late; otherwise
+//!   messages come as early as possible, and [`Recording::late_count`] counts late ones.
+//! - One thread reads and decompresses ahead; it starts with the first requested message and ends with the [`Recording`].
 //!
 //! # What is trusted
 //!
-//! A chunk with a checksum is delivered only if it fits. A chunk without one, or one that is cut off, is delivered as far
-//! as its records are complete. Messages outside chunks have no checksum of their own: if that of the data section does
-//! not fit, they are delivered and [`Damage`] says so.
+//! A chunk with a checksum is delivered only if it matches. A chunk without one, or a truncated one, is delivered as far as its records are complete.
+//! Messages outside chunks have no checksum of their own: if that of the data section does not match, they are delivered and [`Damage`] reports it.
 
 mod attachment;
 mod channels;
@@ -57,38 +56,38 @@ use self::scan::AttachmentPlace;
 use self::segment::Segment;
 use crate::log::Chunks;
 
-/// A message, borrowed from the recording until the next one is asked for.
+/// A message, borrowed from the recording until the next one is requested.
 #[derive(Debug, Clone, Copy)]
 pub struct Message<'a> {
     /// Its channel.
     pub channel: &'a Arc<Channel>,
-    /// Its number, as the publisher counts.
+    /// Its sequence number from the publisher.
     pub sequence: u32,
-    /// When it was recorded.
+    /// Time of recording.
     pub log_time_nanos: u64,
-    /// When it was published.
+    /// Time of publication.
     pub publish_time_nanos: u64,
-    /// Its content, encoded as the channel says.
+    /// Its content, in the channel's encoding.
     pub data: &'a [u8],
 }
 
-/// How many messages a file has.
+/// The message counts of a file.
 #[derive(Debug, Clone, Copy)]
 struct FileCount {
-    /// By its own statistics.
+    /// Count in its own statistics.
     expected: Option<u64>,
-    /// In the segments that could be read.
+    /// Count in the readable segments.
     found: u64,
-    /// All its chunks were searched for a missing channel.
+    /// Whether all its chunks were searched for a missing channel.
     is_searched: bool,
 }
 
-/// Two files of a recording that hold messages of the same time.
+/// Two files of a recording that contain messages of the same time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Overlap<'a> {
-    /// The one that begins first.
+    /// The file that begins first.
     pub earlier: &'a Path,
-    /// The other one.
+    /// The other file.
     pub later: &'a Path,
     /// First and last log time that both cover.
     pub log_time_nanos: (u64, u64),
@@ -102,7 +101,7 @@ struct Late {
     most_nanos: u64,
 }
 
-/// One or several MCAP files, read as one.
+/// One or several MCAP files, read as one recording.
 ///
 /// ```no_run
 /// use fric_log::recording::Recording;
@@ -140,31 +139,30 @@ impl std::fmt::Debug for Recording {
 }
 
 impl Recording {
-    /// Opens the files of one recording, in any order, and finds out what is in them, without reading their chunks.
+    /// Opens the files of one recording, in any order, and determines their content without reading their chunks.
     ///
     /// # Errors
     ///
-    /// If no file is named, or one of them cannot be opened or read, is empty, or is not MCAP. Damage is no error.
+    /// Returns a [`RecordingError`] if no file is named, or one of them cannot be opened or read, is empty, or is not MCAP. Damage is not an error.
     pub fn open<P: AsRef<Path>>(paths: &[P]) -> Result<Self, RecordingError> {
         let paths: Vec<&Path> = paths.iter().map(AsRef::as_ref).collect();
         open::open(&paths)
     }
 
-    /// The same for files that are open, with the names that they have for people.
+    /// Creates the same from open files, with their names for people.
     pub(crate) fn of_files(files: Vec<SourceFile>) -> Result<Self, RecordingError> {
         open::open_sources(files)
     }
 
-    /// The channels known so far, each at the place of its [`Channel::id`].
+    /// Returns the channels known so far, each at the index [`Channel::id`].
     ///
-    /// A file with a complete summary has all of them here from the start; others become known, and are appended, when
-    /// the chunks that define them are read.
+    /// For a file with a complete summary all of them are known from the start; others are appended when the chunks that define them are read.
     #[must_use]
     pub fn channels(&self) -> &[Arc<Channel>] {
         self.channels.channels()
     }
 
-    /// What is attached to the recording.
+    /// Returns the attachments of the recording.
     #[must_use]
     pub fn attachments(&self) -> impl ExactSizeIterator<Item = AttachmentInfo> {
         self.attachments.iter().map(|(_, place)| AttachmentInfo::new(place))
@@ -174,7 +172,7 @@ impl Recording {
     ///
     /// # Errors
     ///
-    /// If the attachment cannot be read, does not fit its checksum, or exceeds [`ATTACHMENT_LIMIT_BYTES`].
+    /// Returns a [`RecordingError`] if the attachment cannot be read, does not match its checksum, or exceeds [`ATTACHMENT_LIMIT_BYTES`].
     pub fn attachment(&self, name: &str) -> Result<Option<Attachment>, RecordingError> {
         let mut places = self.attachments.iter().rev();
         let found = places.find(|(_, place)| place.name == name);
@@ -184,19 +182,19 @@ impl Recording {
         attachment::read_attachment(source, place).map(Some)
     }
 
-    /// The metadata records of all files.
+    /// Returns the metadata records of all files.
     #[must_use]
     pub fn metadata(&self) -> &[Metadata] {
         &self.metadata
     }
 
-    /// What could not be read. Complete when all messages have been read.
+    /// Returns the unreadable parts, complete when all messages have been read.
     #[must_use]
     pub fn damage(&self) -> &Damage {
         &self.damage
     }
 
-    /// First and last log time by the chunks' headers; `None` if there are no messages.
+    /// Returns the first and the last log time from the chunks' headers; `None` if there are no messages.
     #[must_use]
     pub fn log_time_range_nanos(&self) -> Option<(u64, u64)> {
         let segments = || self.segments.iter().filter(|segment| !segment.is_blank());
@@ -205,7 +203,7 @@ impl Recording {
         Some((start, end))
     }
 
-    /// Its chunks, by their headers; `None` without any.
+    /// Returns its chunks, from their headers; `None` if there are none.
     #[must_use]
     pub fn chunks(&self) -> Option<Chunks> {
         let mut chunks = Chunks::default();
@@ -221,9 +219,9 @@ impl Recording {
         (chunks.count > 0).then_some(chunks)
     }
 
-    /// Files that are hardly parts of one recording: each with the one before it that lasts longest, where the times in
-    /// their chunks' headers overlap by more than a tenth of the shorter one. At the seam of a recording that was split a
-    /// few messages may change places.
+    /// Returns files that are probably not parts of one recording: pairs whose times in the chunks' headers overlap by more than a tenth of the
+    /// shorter one. Each file is compared with the preceding one that lasts longest. At the boundary of a split recording a few messages may be
+    /// swapped.
     #[must_use]
     pub fn overlaps(&self) -> Vec<Overlap<'_>> {
         let mut overlaps = Vec::new();
@@ -248,41 +246,41 @@ impl Recording {
         overlaps
     }
 
-    /// How many messages the files say they have, if all of them say so.
+    /// Returns the number of messages that the files state, if all of them state it.
     #[must_use]
     pub fn expected_message_count(&self) -> Option<u64> {
         self.counts.iter().map(|count| count.expected).sum()
     }
 
-    /// How many messages came after one with a later log time.
+    /// Returns the number of messages that came after one with a later log time.
     #[must_use]
     pub fn late_count(&self) -> u64 {
         self.late.count
     }
 
-    /// By how much the latest of them came late.
+    /// Returns the greatest delay of a late message.
     #[must_use]
     pub fn most_late_nanos(&self) -> u64 {
         self.late.most_nanos
     }
 
-    /// How many bytes of the files have been read so far, for a progress bar: [`Self::total_bytes`] at the end.
+    /// Returns the bytes read so far, for a progress bar: [`Self::total_bytes`] at the end.
     #[must_use]
     pub fn bytes_read(&self) -> u64 {
         self.bytes_read
     }
 
-    /// The size of all files.
+    /// Returns the size of all files.
     #[must_use]
     pub fn total_bytes(&self) -> u64 {
         self.files.iter().map(|source| source.len).sum()
     }
 
-    /// The next message in the order of log time, at equal times as they stand in the files; `None` at the end.
+    /// Returns the next message in the order of log time, and at equal times as in the files; `None` at the end.
     ///
     /// # Errors
     ///
-    /// If a file that was opened can no longer be read. The next call goes on behind the part concerned.
+    /// Returns a [`RecordingError`] if an opened file can no longer be read. The next call continues after the affected part.
     #[inline]
     pub fn next_message(&mut self) -> Result<Option<Message<'_>>, RecordingError> {
         let Some((dense, head)) = self.find_next()? else {

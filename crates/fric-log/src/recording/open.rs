@@ -1,4 +1,4 @@
-//! Opens the files of a recording and puts what their scans found together.
+//! Opens the files of a recording and combines the results of their scans.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -33,7 +33,7 @@ pub(super) fn open_sources(files: Vec<SourceFile>) -> Result<Recording, Recordin
     for file in files {
         scanned.push(scan_file(file)?);
     }
-    // The parts of a split recording in the order in which they were recorded; those without messages stay behind.
+    // The parts of a split recording are sorted by the time of recording; those without messages come last.
     scanned.sort_by_key(|(_, scan)| start_time(scan).unwrap_or(u64::MAX));
     let recording_start = scanned.first().and_then(|(_, scan)| start_time(scan));
 
@@ -103,7 +103,7 @@ fn scan_file(source: SourceFile) -> Result<(SourceFile, FileScan), RecordingErro
     }
 }
 
-/// Opens a file that is one and has bytes, and its size.
+/// Opens a regular, non-empty file. Also returns its size.
 pub(crate) fn open_file(path: &Path) -> Result<(File, u64), RecordingError> {
     let path_buf = || path.to_path_buf();
     let failed = |source: io::Error| match source.kind() {
@@ -112,7 +112,7 @@ pub(crate) fn open_file(path: &Path) -> Result<(File, u64), RecordingError> {
         io::ErrorKind::IsADirectory => RecordingError::Directory { path: path_buf() },
         _ => RecordingError::Open { path: path_buf(), source },
     };
-    // Asked for by name first: opening a pipe would wait for its writer.
+    // The path is checked first, because opening a pipe would wait for its writer.
     let metadata = std::fs::metadata(path).map_err(failed)?;
     if metadata.is_dir() {
         return Err(RecordingError::Directory { path: path_buf() });
@@ -128,7 +128,7 @@ pub(crate) fn open_file(path: &Path) -> Result<(File, u64), RecordingError> {
     Ok((file, len))
 }
 
-/// What a file that is not MCAP may be, and what to do about it.
+/// Returns what a file that is not MCAP may be, and what to do about it.
 fn looks_like(mut file: &File) -> io::Result<(&'static str, &'static str)> {
     const RIGHT_FILE: &str = "name the file that the recorder wrote (it usually ends in `.mcap`)";
     let mut start = Vec::new();

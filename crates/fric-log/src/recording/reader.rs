@@ -1,7 +1,7 @@
-//! The thread that loads segments ahead of the one who reads messages.
+//! The thread that loads segments ahead of the reader.
 //!
-//! It loads them in the given order and stops when [`AHEAD_COUNT`] segments or [`AHEAD_BYTES`] bytes wait to be taken; a
-//! larger segment is loaded only once it is asked for. Dropping the [`Reader`] ends the thread.
+//! It loads them in the given order and stops when [`AHEAD_COUNT`] segments or [`AHEAD_BYTES`] bytes are waiting; a larger segment is loaded only
+//! when it is requested. Dropping the [`Reader`] ends the thread.
 
 use std::collections::VecDeque;
 use std::fs::File;
@@ -14,11 +14,11 @@ use super::error::RecordingError;
 use super::load::{Loaded, Loader};
 use super::segment::Segment;
 
-/// How many segments wait at most.
+/// Maximum number of waiting segments.
 const AHEAD_COUNT: usize = 2;
-/// How many decompressed bytes wait at most, the segment being loaded included.
+/// Maximum number of waiting decompressed bytes, including the segment being loaded.
 pub(super) const AHEAD_BYTES: u64 = 8 * 1024 * 1024;
-/// How many used buffers are kept, and how large they may be.
+/// Maximum number of kept buffers, and their maximum size.
 const SPARE_COUNT: usize = 3;
 const SPARE_LEN: usize = 4 * 1024 * 1024;
 
@@ -38,7 +38,7 @@ impl SourceFile {
 #[derive(Default)]
 struct State {
     ready: VecDeque<io::Result<Loaded>>,
-    /// Claimed sizes of what is ready or being loaded.
+    /// Stated sizes of the segments that are ready or being loaded.
     ahead_lens: VecDeque<u64>,
     is_wanted: bool,
     is_stopped: bool,
@@ -54,12 +54,12 @@ struct Shared {
 
 impl Shared {
     fn lock(&self) -> MutexGuard<'_, State> {
-        // The state is valid between any two statements, so that a panic elsewhere does not matter.
+        // The state is valid between any two statements, so a panic elsewhere does not matter.
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-/// Tells the owner that the thread is gone, however it ended.
+/// Notifies the owner that the thread has ended, for whatever reason.
 struct EndNotice(Arc<Shared>);
 
 impl Drop for EndNotice {
@@ -87,7 +87,7 @@ impl Reader {
         Ok(Self { shared, thread: Some(thread) })
     }
 
-    /// The next segment; waits for it if necessary. `None` if the thread ended without it.
+    /// Returns the next segment and waits for it if necessary. Returns `None` if the thread ended without it.
     pub(super) fn take(&self) -> Option<io::Result<Loaded>> {
         let mut state = self.shared.lock();
         loop {
@@ -108,7 +108,7 @@ impl Reader {
         }
     }
 
-    /// Gives a buffer back to be used again.
+    /// Returns a buffer for reuse.
     pub(super) fn give_back(&self, buffer: Vec<u8>) {
         let mut state = self.shared.lock();
         if state.spare.len() < SPARE_COUNT && buffer.capacity() <= SPARE_LEN {
@@ -143,7 +143,7 @@ fn load_all(shared: &Shared, files: &[SourceFile], segments: &[Segment]) {
     }
 }
 
-/// Waits until a segment may be loaded, and gives the buffer for it; `None` if the thread is to stop.
+/// Waits until a segment may be loaded and returns a buffer for it; `None` if the thread must stop.
 fn wait_for_room(shared: &Shared, content_len: u64) -> Option<Vec<u8>> {
     let mut state = shared.lock();
     loop {

@@ -1,25 +1,25 @@
-//! The byte layout of single MCAP records, parsed from slices that are already in memory.
+//! The byte layout of single MCAP records, parsed from slices in memory.
 //!
-//! The `mcap` crate's own `parse_record` is not used here: it reserves memory by the string lengths it reads (up to 4 GiB
-//! each) and slices attachments without checking, so a damaged file could abort the process. Everything below returns
-//! `None` instead, and borrows from the slice rather than allocating by a length found in it.
+//! The `mcap` crate's own `parse_record` is not used here: it reserves memory for the string lengths that it reads (up to 4 GiB each) and slices
+//! attachments without checks, so a damaged file could abort the process. The functions below return `None` instead, and borrow from the slice rather
+//! than allocating by a length found in it.
 
 use std::collections::BTreeMap;
 
 pub(super) use mcap::records::op;
 
-/// Opcode and length in front of every record.
+/// Length of opcode and length field before every record.
 pub(super) const RECORD_HEADER_LEN: u64 = 9;
 /// [`RECORD_HEADER_LEN`] as an index.
 pub(super) const HEADER_LEN: usize = 9;
-/// Channel id, sequence, log time and publish time in front of a message's payload.
+/// Length of channel id, sequence, log time and publish time before a message's payload.
 pub(super) const MESSAGE_FIELDS_LEN: usize = 22;
-/// Fields of a chunk record in front of its (compressed) content, without the name of the compression.
+/// Length of the fields of a chunk record before its (compressed) content, without the name of the compression.
 const CHUNK_FIXED_LEN: u64 = 40;
-/// Enough of a record's body to judge its structure.
+/// Length of a record's body that suffices to judge its structure.
 pub(super) const CHUNK_PREFIX_LEN: usize = 48;
 
-/// Takes little-endian fields off the front of a slice.
+/// Takes little-endian fields from the front of a slice.
 pub(super) struct Fields<'a> {
     rest: &'a [u8],
 }
@@ -57,7 +57,7 @@ impl<'a> Fields<'a> {
         self.array().map(u64::from_le_bytes)
     }
 
-    /// Bytes with a 32-bit length in front.
+    /// Takes bytes that are preceded by a 32-bit length.
     pub(super) fn block(&mut self) -> Option<&'a [u8]> {
         let length = self.u32()?;
         self.bytes(usize::try_from(length).ok()?)
@@ -94,20 +94,20 @@ impl RecordHeader {
         Some(Self { opcode: fields.u8()?, body_len: fields.u64()? })
     }
 
-    /// Header and body together; `None` if the sum overflows, which no file can hold.
+    /// Returns the length of header and body together; `None` if the sum overflows, which no file can contain.
     pub(super) fn total_len(self) -> Option<u64> {
         self.body_len.checked_add(RECORD_HEADER_LEN)
     }
 }
 
-/// One record inside a buffer: its opcode, its body, and where the next one starts.
+/// One record inside a buffer: its opcode, its body, and the position of the next one.
 pub(super) struct Framed<'a> {
     pub(super) opcode: u8,
     pub(super) body: &'a [u8],
     pub(super) next: usize,
 }
 
-/// The record at `offset` of `data`, if all of it is there.
+/// Returns the record at `offset` of `data`, if it is complete.
 #[inline]
 pub(super) fn framed_at(data: &[u8], offset: usize) -> Option<Framed<'_>> {
     let (header, rest) = data.get(offset..)?.split_first_chunk::<HEADER_LEN>()?;
@@ -117,7 +117,7 @@ pub(super) fn framed_at(data: &[u8], offset: usize) -> Option<Framed<'_>> {
     Some(Framed { opcode, body, next: offset + HEADER_LEN + length })
 }
 
-/// The fields in front of a message's payload.
+/// The fields before a message's payload.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct MessageFields {
     pub(super) channel_id: u16,
@@ -140,7 +140,7 @@ impl MessageFields {
     }
 }
 
-/// How a chunk's content is stored.
+/// The compression of a chunk's content.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Compression {
     None,
@@ -149,7 +149,7 @@ pub(super) enum Compression {
 }
 
 impl Compression {
-    /// For people.
+    /// Returns the name for people.
     pub(super) const fn name(self) -> &'static str {
         match self {
             Self::None => "none",
@@ -168,7 +168,7 @@ pub(super) struct ChunkFields {
     pub(super) uncompressed_crc: u32,
     pub(super) compression: Compression,
     pub(super) stored_len: u64,
-    /// From the start of the record's body to the content.
+    /// Offset of the content from the start of the record's body.
     pub(super) content_at: u64,
 }
 
@@ -197,7 +197,7 @@ impl ChunkFields {
         })
     }
 
-    /// The length of the record's body as its own fields give it.
+    /// Returns the length of the record's body according to its own fields.
     pub(super) fn body_len(&self) -> Option<u64> {
         self.content_at.checked_add(self.stored_len)
     }
@@ -242,18 +242,18 @@ impl<'a> ChannelFields<'a> {
     }
 }
 
-/// Name and entries of a metadata record.
+/// Parses name and entries of a metadata record.
 pub(super) fn parse_metadata(body: &[u8]) -> Option<(&str, BTreeMap<String, String>)> {
     let mut fields = Fields::new(body);
     Some((fields.text()?, fields.text_map()?))
 }
 
-/// How many messages a statistics record counts.
+/// Parses the message count of a statistics record.
 pub(super) fn parse_statistics(body: &[u8]) -> Option<u64> {
     Fields::new(body).u64()
 }
 
-/// Start of the summary section and its checksum, from a footer.
+/// Parses the start of the summary section and its checksum from a footer.
 pub(super) fn parse_footer(body: &[u8]) -> Option<(u64, u32)> {
     let mut fields = Fields::new(body);
     let summary_start = fields.u64()?;
@@ -269,12 +269,12 @@ pub(super) struct AttachmentFields<'a> {
     pub(super) name: &'a str,
     pub(super) media_type: &'a str,
     pub(super) data_len: u64,
-    /// From the start of the record's body to the data.
+    /// Offset of the data from the start of the record's body.
     pub(super) data_at: u64,
 }
 
 impl<'a> AttachmentFields<'a> {
-    /// The checksum behind the data.
+    /// Length of the checksum after the data.
     const CRC_LEN: u64 = 4;
 
     pub(super) fn parse(prefix: &'a [u8]) -> Option<Self> {
@@ -295,7 +295,7 @@ impl<'a> AttachmentFields<'a> {
         })
     }
 
-    /// The length of the record's body as its own fields give it.
+    /// Returns the length of the record's body according to its own fields.
     pub(super) fn body_len(&self) -> Option<u64> {
         self.data_at.checked_add(self.data_len)?.checked_add(Self::CRC_LEN)
     }

@@ -1,8 +1,8 @@
-//! Walks over the top-level records of one file and notes where everything is.
+//! Scans the top-level records of one file and notes their positions.
 //!
-//! Reads record headers and definitions, not the content of chunks. The indexes that the file may contain are passed over:
-//! they can be missing, wrong or newer than the data, and the walk finds the same by itself. Keeps about 80 bytes for each
-//! chunk, or for each mebibyte of messages outside chunks; definitions are kept once each.
+//! The scan reads record headers and definitions, not the content of chunks. Indexes in the file are skipped: they may be missing, wrong or newer
+//! than the data, and the scan finds the same without them. It keeps about 80 bytes per chunk, or per mebibyte of messages outside chunks;
+//! definitions are kept once each.
 
 use std::collections::{BTreeMap, HashSet};
 use std::fs::File;
@@ -18,18 +18,18 @@ use super::segment::Segment;
 use super::structure::{MessageBatch, Verdict, find_record, judge, looks_like_message_index};
 use super::window::{RunningChecksum, Window, read_into};
 
-/// How many bytes of messages outside chunks are taken together.
+/// Number of bytes of messages outside chunks that form one segment.
 const RUN_LEN: u64 = 1024 * 1024;
-/// How much of the messages outside chunks is looked at together, at least.
+/// Minimum number of bytes of messages outside chunks that are examined together.
 const SEQUENCE_LEN: usize = 64 * 1024;
-/// The largest schema, channel or metadata record that is read.
+/// Maximum size of a schema, channel or metadata record.
 const DEFINITION_LIMIT: u64 = 64 * 1024 * 1024;
-/// How much of an attachment record is read to find its name.
+/// Number of bytes of an attachment record that are read to find its name.
 const ATTACHMENT_PREFIX_LEN: usize = 64 * 1024;
-/// How many gaps may wait for the segment behind them.
+/// Maximum number of gaps that wait for the next segment.
 const WAITING_GAPS: usize = 16;
 
-/// A schema or channel record, as found.
+/// A schema or channel record.
 #[derive(Debug)]
 pub(super) struct Definition {
     pub(super) opcode: u8,
@@ -45,7 +45,7 @@ pub(super) struct AttachmentPlace {
     pub(super) log_time_nanos: u64,
     pub(super) create_time_nanos: u64,
     pub(super) offset_bytes: u64,
-    /// From the start of the record to its data.
+    /// Offset of its data from the start of the record.
     pub(super) data_at: u64,
     pub(super) data_len: u64,
 }
@@ -59,25 +59,25 @@ pub struct Metadata {
     pub entries: BTreeMap<String, String>,
 }
 
-/// Everything that the walk found.
+/// The result of the scan.
 pub(super) struct FileScan {
     pub(super) segments: Vec<Segment>,
     pub(super) definitions: Vec<Definition>,
     pub(super) summary_definitions: Vec<Definition>,
     pub(super) attachments: Vec<AttachmentPlace>,
     pub(super) metadata: Vec<Metadata>,
-    /// How many messages the file says it has.
+    /// Number of messages that the file states.
     pub(super) message_count: Option<u64>,
     pub(super) damage: FileDamage,
     /// Whether anything was recognised at all.
     pub(super) is_mcap: bool,
 }
 
-/// Walks over a file.
+/// Scans a file.
 ///
 /// # Errors
 ///
-/// If the operating system fails to read, with the offset that the walk had reached.
+/// Returns the error of the operating system, with the offset that the scan had reached.
 pub(super) fn scan(file: &File, file_len: u64, path: PathBuf) -> Result<FileScan, (u64, io::Error)> {
     let mut scanner = Scanner::new(file, file_len, path);
     let result = scanner.walk().and_then(|()| scanner.finish());
@@ -102,20 +102,20 @@ struct Scanner<'a> {
     file: &'a File,
     window: Window<'a>,
     found: FileScan,
-    /// Definitions are often repeated.
+    /// Known definitions, because they are often repeated.
     known: HashSet<(u8, Box<[u8]>)>,
-    /// Messages outside chunks that are being taken together; the count says how many.
+    /// Messages outside chunks that are being collected, with their count.
     run: Option<(Segment, u64)>,
     gaps: Vec<DamagedPlace>,
-    /// Of the data section, as long as there are no chunks.
+    /// Checksum of the data section, as long as there are no chunks.
     checksum: Option<RunningChecksum>,
     data_end: Option<DataEnd>,
     footer: Option<Footer>,
     has_closing_magic: bool,
     buffer: Vec<u8>,
-    /// Of the last record that was taken for what it says.
+    /// Opcode of the last accepted record.
     last_opcode: u8,
-    /// Where the walk is.
+    /// Position of the scan.
     offset: u64,
 }
 
@@ -165,7 +165,7 @@ impl<'a> Scanner<'a> {
         Ok(())
     }
 
-    /// Takes what is at `offset` and says where to go on.
+    /// Processes the record at `offset` and returns where to continue.
     fn step(&mut self, offset: u64) -> io::Result<u64> {
         if self.run.is_some() && self.data_end.is_none() {
             let end = self.take_messages(offset)?;
@@ -190,7 +190,7 @@ impl<'a> Scanner<'a> {
                 }
                 self.found.is_mcap = true;
                 self.accept(offset, header, repaired)?;
-                // A damaged message index does not end the row that it stands in.
+                // A damaged message index does not interrupt its sequence.
                 if header.opcode != op::MESSAGE || self.run.is_some() {
                     self.last_opcode = header.opcode;
                 }
@@ -212,7 +212,7 @@ impl<'a> Scanner<'a> {
                 if find_record(&mut self.window, offset + 1)?.is_some() {
                     return self.resume(offset, offset + 1, true);
                 }
-                // Nothing but rubbish up to the end of the file: the message itself is the last good one.
+                // Only garbage follows up to the end of the file, so the message itself is the last good one.
                 self.accept(offset, header, false)?;
                 self.resume(end, end, true)
             }
@@ -227,14 +227,14 @@ impl<'a> Scanner<'a> {
         }
     }
 
-    /// Looks for the next record from `search_from` on and counts what lies between as lost.
+    /// Searches the next record from `search_from` on and counts the bytes between as lost.
     fn resume(&mut self, offset: u64, search_from: u64, is_rubbish: bool) -> io::Result<u64> {
         let next = find_record(&mut self.window, search_from)?;
         let end = next.unwrap_or(self.window.file_len());
         if next.is_some() || is_rubbish || self.footer.is_some() {
             self.gap(offset, end - offset);
         } else {
-            // A record that began properly and is cut off by the end of the file is no damaged place of its own.
+            // A record that began properly and is truncated by the end of the file is not a damaged place of its own.
             self.found.damage.add_lost_bytes(end - offset);
         }
         Ok(end)
@@ -244,7 +244,7 @@ impl<'a> Scanner<'a> {
         self.found.damage.add(DamagedPlace { kind, offset_bytes, lost_bytes, log_time_nanos: None });
     }
 
-    /// Notes unreadable bytes; the time they cover is known only when the next segment is.
+    /// Records unreadable bytes; the time they cover is known only with the next segment.
     fn gap(&mut self, offset_bytes: u64, lost_bytes: u64) {
         self.close_run();
         if self.gaps.len() >= WAITING_GAPS {
@@ -264,8 +264,8 @@ impl<'a> Scanner<'a> {
 
     fn push_segment(&mut self, mut segment: Segment) {
         self.close_gaps(Some(segment.start_time_nanos));
-        // The times in a chunk's header have no checksum. A start that is wrongly late would make its messages come late,
-        // one that is early costs little; so the end of the segment in front, which is where most go on, counts too.
+        // The times in a chunk's header have no checksum. A start that is wrongly late would make its messages late, while one that is too early
+        // costs little. So the end of the previous segment, where most chunks continue, is considered too.
         let last = self.found.segments.last().filter(|last| !last.is_blank());
         let last_end = last.map_or(u64::MAX, |last| last.end_time_nanos);
         segment.load_time_nanos = segment.start_time_nanos.min(segment.end_time_nanos).min(last_end);
@@ -291,7 +291,7 @@ impl<'a> Scanner<'a> {
         }
         match header.opcode {
             op::CHUNK => {
-                // Chunks have checksums of their own, and are not read here.
+                // Chunks have checksums of their own and are not read here.
                 self.checksum = None;
                 self.accept_chunk(offset, header, is_repaired)?;
             }
@@ -301,7 +301,7 @@ impl<'a> Scanner<'a> {
                 let body = self.window.bytes(offset + RECORD_HEADER_LEN, 8)?;
                 self.found.message_count = parse_statistics(body);
             }
-            // Files that were joined: what follows is data again.
+            // In joined files, data follow again here.
             op::HEADER => self.data_end = None,
             op::DATA_END => {
                 let body = self.window.bytes(offset + RECORD_HEADER_LEN, 4)?;
@@ -348,12 +348,12 @@ impl<'a> Scanner<'a> {
         run
     }
 
-    /// Takes the messages that stand in the window and are beyond doubt; stops in front of what needs a closer look.
+    /// Accepts the unambiguous messages in the window, and stops before anything that needs closer examination.
     fn take_messages(&mut self, offset: u64) -> io::Result<u64> {
         let file_len = self.window.file_len();
         let mut batch = MessageBatch::find(self.window.buffered(offset)?, file_len - offset);
         if batch.count == 0 {
-            // The window may only have to go on.
+            // The window may only need to advance.
             self.window.bytes(offset, SEQUENCE_LEN)?;
             batch = MessageBatch::find(self.window.buffered(offset)?, file_len - offset);
         }
@@ -374,7 +374,7 @@ impl<'a> Scanner<'a> {
 
     fn accept_message(&mut self, offset: u64, header: RecordHeader) -> io::Result<()> {
         let body = self.window.bytes(offset + RECORD_HEADER_LEN, MESSAGE_FIELDS_LEN)?;
-        // No message is expected behind the index of a chunk or in the summary: it is their damaged record.
+        // After the index of a chunk, or in the summary, no message is expected: it is a damaged record of these.
         let is_index = matches!(self.last_opcode, op::CHUNK | op::MESSAGE_INDEX)
             && looks_like_message_index(body, header.body_len);
         if is_index || self.data_end.is_some() {
@@ -394,7 +394,7 @@ impl<'a> Scanner<'a> {
     fn accept_definition(&mut self, offset: u64, header: RecordHeader, is_repaired: bool) -> io::Result<()> {
         let is_summary = self.data_end.is_some();
         if is_repaired {
-            // A run is loaded as it stands in the file, where the header is still wrong.
+            // A run is loaded as it is in the file, where the header is still wrong.
             self.close_run();
         } else if !is_summary {
             self.extend_run(offset, RECORD_HEADER_LEN + header.body_len);
@@ -414,7 +414,7 @@ impl<'a> Scanner<'a> {
         Ok(())
     }
 
-    /// Reads a body into the buffer; says no and notes the damage if it is too large.
+    /// Reads a body into the buffer. If it is too large, records the damage and returns false.
     fn read_body(&mut self, offset: u64, header: RecordHeader) -> io::Result<bool> {
         let length = usize::try_from(header.body_len).ok();
         let Some(length) = length.filter(|_| header.body_len <= DEFINITION_LIMIT) else {
@@ -431,7 +431,7 @@ impl<'a> Scanner<'a> {
             self.gap(offset, header.body_len + RECORD_HEADER_LEN);
             return Ok(());
         };
-        // Behind the content there may be fields of a newer format, unless the header is what was repaired.
+        // After the content there may be fields of a newer format, unless the header itself was repaired.
         let body_len = match chunk.body_len() {
             Some(body_len) if !is_repaired => body_len,
             _ => header.body_len,
@@ -524,7 +524,7 @@ impl<'a> Scanner<'a> {
         Ok(())
     }
 
-    /// The checksum of the data section is the only one that covers messages outside chunks.
+    /// Checks the data section. Its checksum is the only one that covers messages outside chunks.
     fn check_data(&mut self) -> io::Result<()> {
         let (Some(data_end), Some(mut checksum)) = (self.data_end, self.checksum.take()) else {
             return Ok(());

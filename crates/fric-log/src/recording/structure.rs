@@ -1,8 +1,7 @@
-//! Judges whether the bytes at some offset are an MCAP record, and finds the next one behind damage.
+//! Decides whether the bytes at some offset are an MCAP record, and finds the next one after damage.
 //!
-//! Almost every record states its size twice: in its header, and by the lengths of the fields inside. A record whose two
-//! sizes agree is taken as it is; where they differ, the one that leads to another record wins. Messages and unknown
-//! records have no size inside and are believed if another record follows.
+//! Almost every record states its size twice: in its header, and by the lengths of its fields. A record whose two sizes agree is accepted; if they
+//! differ, the one that leads to another record wins. Messages and unknown records have no inner size and are accepted if another record follows.
 
 use std::io;
 
@@ -12,22 +11,22 @@ use super::record::{
 };
 use super::window::Window;
 
-/// How much of a body is looked at to find its size: enough for any sensible name in front of the last length.
+/// Number of bytes of a body that are examined to find its size: enough for any sensible name before the last length.
 const PREFIX_LEN: usize = 4096;
 
-/// How much of a message is looked at to tell it from other records.
+/// Number of bytes of a message that are examined to distinguish it from other records.
 const MESSAGE_PREFIX_LEN: usize = 512;
-/// The largest size of records without variable fields, with room for fields of newer formats.
+/// Maximum size of records without variable fields, with room for fields of newer formats.
 const SMALL_LEN: u64 = 1024;
-/// No record is believed to be larger.
+/// Size above which a record is rejected.
 const IMPOSSIBLE_LEN: u64 = 1 << 40;
 
-/// What stands at an offset.
+/// The content at an offset.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Verdict {
     /// A record that ends within the file. `repaired`: its header was wrong and has been corrected.
     Whole { header: RecordHeader, repaired: bool },
-    /// A chunk whose fields in front of its content are broken, but whose end is known.
+    /// A chunk whose fields before its content are broken, but whose end is known.
     BrokenChunk { body_len: u64 },
     /// A record that is intact as far as the file goes.
     Cut(RecordHeader),
@@ -40,15 +39,15 @@ pub(super) enum Verdict {
 /// One field of a record's layout.
 #[derive(Clone, Copy)]
 enum Field {
-    /// So many bytes.
+    /// This many bytes.
     Fixed(usize),
-    /// Bytes with a 32-bit length in front.
+    /// Bytes preceded by a 32-bit length.
     Block,
-    /// Bytes with a 64-bit length in front.
+    /// Bytes preceded by a 64-bit length.
     LongBlock,
 }
 
-/// The fields of the records that state their own size.
+/// Returns the fields of a record type that states its own size.
 fn layout(opcode: u8) -> Option<&'static [Field]> {
     use Field::{Block, Fixed, LongBlock};
     Some(match opcode {
@@ -69,7 +68,7 @@ fn layout(opcode: u8) -> Option<&'static [Field]> {
     })
 }
 
-/// The size of a body by the lengths inside; `None` if the prefix is too short to tell or the record has none.
+/// Returns the size of a body according to its inner lengths; `None` if the prefix is too short or the record has none.
 fn described_len(opcode: u8, prefix: &[u8]) -> Option<u64> {
     let mut total = 0_u64;
     for field in layout(opcode)? {
@@ -89,7 +88,7 @@ fn described_len(opcode: u8, prefix: &[u8]) -> Option<u64> {
     Some(total)
 }
 
-/// Messages that stand one behind the other.
+/// Consecutive messages.
 pub(super) struct MessageBatch {
     pub(super) len: usize,
     pub(super) count: u64,
@@ -98,8 +97,8 @@ pub(super) struct MessageBatch {
 }
 
 impl MessageBatch {
-    /// The messages at the start of `bytes` that [`judge`] would take for what they are, each with another behind it.
-    /// `rest` is how far the file goes on from there.
+    /// Finds those messages at the start of `bytes` that [`judge`] would accept, each followed by another one. `rest` is the length of the file from
+    /// there on.
     pub(super) fn find(bytes: &[u8], rest: u64) -> Self {
         let mut batch = Self { len: 0, count: 0, start_time_nanos: u64::MAX, end_time_nanos: 0 };
         while let Some(record) = framed_at(bytes, batch.len)
@@ -119,10 +118,10 @@ impl MessageBatch {
     }
 }
 
-/// The opcode that a supposed message had before one of its bits was flipped, if its body fits that record to the byte.
+/// Returns the original opcode of a supposed message after a single bit flip, if its body matches that record to the byte.
 ///
-/// Only where a message cannot look the same by chance: a header is expected at the start of the file only, and a message
-/// would have to be sent at a very special time to look like a channel.
+/// Only opcodes that a message cannot resemble by chance are considered: a header is expected only at the start of the file, and a message would need
+/// a very special time to resemble a channel.
 fn disguised(prefix: &[u8], body_len: u64, is_first: bool) -> Option<u8> {
     let is_like = |opcode| described_len(opcode, prefix) == Some(body_len);
     if is_first && is_like(op::HEADER) {
@@ -136,7 +135,7 @@ fn disguised(prefix: &[u8], body_len: u64, is_first: bool) -> Option<u8> {
 
 /// Whether a supposed message has the structure of a message index.
 pub(super) fn looks_like_message_index(prefix: &[u8], body_len: u64) -> bool {
-    /// Log time and offset.
+    /// Length of an entry: log time and offset.
     const ENTRY_LEN: u64 = 16;
     described_len(op::MESSAGE_INDEX, prefix) == Some(body_len) && body_len % ENTRY_LEN == 6
 }
@@ -145,7 +144,7 @@ fn is_known(opcode: u8) -> bool {
     (op::HEADER..=op::DATA_END).contains(&opcode)
 }
 
-/// Where a body of `body_len` behind the record header at `offset` ends, if that is within `file_len`.
+/// Returns the end of a body of `body_len` after the record header at `offset`, if it is within `file_len`.
 fn end_within(offset: u64, body_len: u64, file_len: u64) -> Option<u64> {
     offset.checked_add(RECORD_HEADER_LEN)?.checked_add(body_len).filter(|end| *end <= file_len)
 }
@@ -186,7 +185,7 @@ pub(super) fn judge(window: &mut Window<'_>, offset: u64) -> io::Result<Verdict>
             None => Verdict::Cut(header),
         });
     }
-    // Anything that is a chunk in all but its opcode is one.
+    // A record that is a chunk in everything but its opcode counts as a chunk.
     if chunk_len == Some(header.body_len) && outer_end.is_some() {
         return Ok(whole(op::CHUNK, header.body_len, true));
     }
@@ -198,7 +197,7 @@ pub(super) fn judge(window: &mut Window<'_>, offset: u64) -> io::Result<Verdict>
         Some(end) => follows(window, end)?,
         None => false,
     };
-    // Fields of a newer format behind the known ones, or an unknown record.
+    // Fields of a newer format follow the known ones, or the record is unknown.
     if outer_leads_on && is_readable && described.is_none_or(|length| length < header.body_len) {
         let is_damaged_chunk = match (header.opcode, described) {
             (op::CHUNK, Some(length)) => !leads_on(window, offset, length)?,
@@ -213,14 +212,14 @@ pub(super) fn judge(window: &mut Window<'_>, offset: u64) -> io::Result<Verdict>
         return Ok(whole(header.opcode, length, true));
     }
     Ok(match (header.opcode, outer_leads_on, is_readable) {
-        // The length inside is wrong: let the checksum judge the content.
+        // The inner length is wrong, so the checksum decides about the content.
         (op::CHUNK, true, true) => whole(op::CHUNK, header.body_len, true),
         (op::CHUNK, true, false) => Verdict::BrokenChunk { body_len: header.body_len },
         _ => Verdict::None,
     })
 }
 
-/// Whether another record follows a body of `body_len` behind the record header at `offset`.
+/// Whether another record follows a body of `body_len` after the record header at `offset`.
 fn leads_on(window: &mut Window<'_>, offset: u64, body_len: u64) -> io::Result<bool> {
     match end_within(offset, body_len, window.file_len()) {
         Some(end) => follows(window, end),
@@ -228,19 +227,19 @@ fn leads_on(window: &mut Window<'_>, offset: u64, body_len: u64) -> io::Result<b
     }
 }
 
-/// Whether a record, or the end of the file, can begin at `offset`. Looks at the header only.
+/// Whether a record, or the end of the file, can begin at `offset`. Examines only the header.
 fn follows(window: &mut Window<'_>, offset: u64) -> io::Result<bool> {
     let rest = window.file_len().saturating_sub(offset);
     let bytes = window.bytes(offset, HEADER_LEN)?;
     if rest < RECORD_HEADER_LEN {
-        // The end, the closing magic, or a header that is cut off.
+        // The end, the closing magic, or a truncated header.
         return Ok(bytes.first().is_none_or(|first| is_known(*first)) || mcap::MAGIC.starts_with(bytes));
     }
     let Some(header) = RecordHeader::parse(bytes) else {
         return Ok(false);
     };
     let fits = header.total_len().is_some_and(|total| total <= rest);
-    // A known record may be cut off, but not by terabytes.
+    // A known record may be truncated, but not by terabytes.
     Ok(match header.opcode {
         op::MESSAGE => header.body_len >= MESSAGE_FIELDS_LEN as u64 && (fits || header.body_len < IMPOSSIBLE_LEN),
         op::DATA_END => fits && (4..=SMALL_LEN).contains(&header.body_len),
@@ -250,7 +249,7 @@ fn follows(window: &mut Window<'_>, offset: u64) -> io::Result<bool> {
     })
 }
 
-/// Whether a record begins at `offset` beyond reasonable doubt, as is needed when searching through arbitrary bytes.
+/// Whether a record begins at `offset` beyond reasonable doubt, as a search through arbitrary bytes requires.
 fn is_certain(window: &mut Window<'_>, offset: u64) -> io::Result<bool> {
     match judge(window, offset)? {
         Verdict::Whole { header, repaired: false } => {
@@ -260,7 +259,7 @@ fn is_certain(window: &mut Window<'_>, offset: u64) -> io::Result<bool> {
             if header.opcode != op::MESSAGE {
                 return Ok(is_known(header.opcode) && follows(window, end)?);
             }
-            // Messages are the least distinctive records: ask for a second one, unless the file ends there.
+            // Messages are the least distinctive records, so a second one is required, unless the file ends there.
             let next = RecordHeader::parse(window.bytes(end, HEADER_LEN)?);
             match next.and_then(|next| end_within(end, next.body_len, window.file_len())) {
                 Some(next_end) => follows(window, next_end),
@@ -272,7 +271,7 @@ fn is_certain(window: &mut Window<'_>, offset: u64) -> io::Result<bool> {
     }
 }
 
-/// The first offset from `start` on at which a record certainly begins, or at which the closing magic stands.
+/// Returns the first offset from `start` on at which a record certainly begins, or the closing magic is found.
 pub(super) fn find_record(window: &mut Window<'_>, start: u64) -> io::Result<Option<u64>> {
     let mut offset = start;
     loop {
@@ -297,7 +296,7 @@ pub(super) fn find_record(window: &mut Window<'_>, start: u64) -> io::Result<Opt
     Ok((is_magic && magic_at >= start).then_some(magic_at))
 }
 
-/// A known opcode and a length below a terabyte.
+/// Whether the bytes are a known opcode and a length below a terabyte.
 fn is_candidate(bytes: &[u8]) -> bool {
     matches!(bytes, [opcode, _, _, _, _, _, 0, 0, 0] if is_known(*opcode))
 }

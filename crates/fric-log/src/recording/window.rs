@@ -1,14 +1,14 @@
 //! Buffered reading at any position of a file, shared between threads without a common cursor.
 //!
-//! [`Window`] is for walks: a jump costs one small read, reading on in sequence reads ever larger pieces. Its memory is one
-//! buffer of at most [`WINDOW_LEN`] bytes, whatever lengths the file claims.
+//! [`Window`] is for scans: a jump costs one small read, and sequential reading uses increasingly larger reads. Its memory is one buffer of at most
+//! [`WINDOW_LEN`] bytes, whatever lengths the file states.
 
 use std::fs::File;
 use std::io;
 
-/// The largest piece that [`Window`] reads at once.
+/// Maximum size of a single read of [`Window`].
 pub(super) const WINDOW_LEN: usize = 256 * 1024;
-/// What is read after a jump.
+/// Size of a read after a jump.
 const JUMP_LEN: usize = 4 * 1024;
 
 #[cfg(unix)]
@@ -21,7 +21,7 @@ fn read_at(file: &File, buffer: &mut [u8], offset: u64) -> io::Result<usize> {
     std::os::windows::fs::FileExt::seek_read(file, buffer, offset)
 }
 
-/// Fills `buffer` from `offset`; fewer bytes than asked for only at the end of the file.
+/// Fills `buffer` from `offset`; reads fewer bytes only at the end of the file.
 pub(super) fn read_up_to(file: &File, buffer: &mut [u8], offset: u64) -> io::Result<usize> {
     let mut filled = 0;
     while let Some(rest) = buffer.get_mut(filled..)
@@ -39,7 +39,7 @@ pub(super) fn read_up_to(file: &File, buffer: &mut [u8], offset: u64) -> io::Res
 
 /// Reads exactly `length` bytes from `offset` into the cleared `buffer`.
 pub(super) fn read_into(file: &File, buffer: &mut Vec<u8>, offset: u64, length: usize) -> io::Result<()> {
-    // Shrinking first keeps `resize` from clearing more than the part that was never used.
+    // Shrinking first keeps `resize` from clearing more than the unused part.
     buffer.truncate(length);
     buffer.resize(length, 0);
     if read_up_to(file, buffer, offset)? == length { Ok(()) } else { Err(io::ErrorKind::UnexpectedEof.into()) }
@@ -49,13 +49,13 @@ pub(super) fn read_into(file: &File, buffer: &mut Vec<u8>, offset: u64, length: 
 #[derive(Default)]
 pub(super) struct RunningChecksum {
     hasher: crc32fast::Hasher,
-    /// The stretch goes up to here so far.
+    /// Present end of the stretch.
     end: u64,
     buffer: Vec<u8>,
 }
 
 impl RunningChecksum {
-    /// The checksum of the bytes from `start` to `end`.
+    /// Returns the checksum of the bytes from `start` to `end`.
     pub(super) fn of(file: &File, start: u64, end: u64) -> io::Result<u32> {
         let mut checksum = Self { end: start, ..Self::default() };
         checksum.catch_up(file, end)?;
@@ -73,7 +73,7 @@ impl RunningChecksum {
         Ok(())
     }
 
-    /// Adds the bytes that follow.
+    /// Adds the following bytes.
     pub(super) fn add(&mut self, bytes: &[u8]) {
         self.hasher.update(bytes);
         self.end += bytes.len() as u64;
@@ -91,7 +91,7 @@ pub(super) struct Window<'a> {
     buffer: Vec<u8>,
     /// File offset of the buffer's first byte.
     start: u64,
-    /// How much the next read in sequence takes.
+    /// Size of the next sequential read.
     stride: usize,
 }
 
@@ -104,7 +104,7 @@ impl<'a> Window<'a> {
         self.file_len
     }
 
-    /// Up to `length` bytes from `offset`: fewer at the end of the file, and never more than [`WINDOW_LEN`].
+    /// Returns up to `length` bytes from `offset`: fewer at the end of the file, and never more than [`WINDOW_LEN`].
     pub(super) fn bytes(&mut self, offset: u64, length: usize) -> io::Result<&[u8]> {
         let rest = self.file_len.saturating_sub(offset);
         let length = length.min(WINDOW_LEN).min(usize::try_from(rest).unwrap_or(WINDOW_LEN));
@@ -118,7 +118,7 @@ impl<'a> Window<'a> {
         Ok(self.buffer.get(at..end).unwrap_or_default())
     }
 
-    /// All that is buffered from `offset` on, at least one byte unless the file ends there.
+    /// Returns all buffered bytes from `offset` on, at least one unless the file ends there.
     pub(super) fn buffered(&mut self, offset: u64) -> io::Result<&[u8]> {
         if self.bytes(offset, 1)?.is_empty() {
             return Ok(&[]);

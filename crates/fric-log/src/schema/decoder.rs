@@ -1,4 +1,4 @@
-//! One channel's decoder, whichever the encoding.
+//! The decoder of one channel, for any encoding.
 
 use prost_reflect::MessageDescriptor;
 
@@ -11,7 +11,7 @@ use super::{json, protobuf};
 
 /// Reads the wanted fields of one channel's messages; made by [`MessageType::decoder`](super::MessageType::decoder).
 ///
-/// It owns the buffers it reads into, about as large as what is wanted from the largest message so far.
+/// It owns its buffers, which are about as large as the wanted data of the largest message so far.
 #[derive(Debug, Clone)]
 pub struct Decoder {
     reader: Reader,
@@ -26,10 +26,10 @@ enum Reader {
 }
 
 impl Decoder {
-    /// Reads one message. The values are those of this message only, but for [`Texts::revision`](super::Texts::revision).
+    /// Reads one message. The values belong to this message only, except for [`Texts::revision`](super::Texts::revision).
     ///
     /// # Errors
-    /// Where the bytes do not agree with the schema. The next message can be read all the same.
+    /// Returns a [`DecodeError`] if the bytes do not agree with the schema. The next message can still be read.
     pub fn read(&mut self, data: &[u8]) -> Result<&Values, DecodeError> {
         match &mut self.reader {
             Reader::Cdr(reader) => reader.read(data, &mut self.values)?,

@@ -1,8 +1,8 @@
-//! What can be wrong with a schema, with a wanted field, and with a message.
+//! Errors of schemas, wanted fields, and messages.
 
 use thiserror::Error;
 
-/// A schema that cannot be used, or a field that its messages do not have.
+/// The error of an unusable schema, or of a field that its messages do not have.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum SchemaError {
@@ -33,9 +33,9 @@ pub enum SchemaError {
         name: String,
         /// Line, counted from 1 over the whole schema text.
         line: usize,
-        /// What would have been right there.
+        /// What is expected there.
         expected: &'static str,
-        /// What stands there instead.
+        /// What is there instead.
         found: String,
     },
     /// A `ros2msg` schema uses a type it does not define.
@@ -66,7 +66,7 @@ pub enum SchemaError {
     Recursive {
         /// The schema's name.
         name: String,
-        /// Line of the field that closes the circle.
+        /// Line of the field that closes the cycle.
         line: usize,
         /// The type.
         type_name: String,
@@ -96,29 +96,29 @@ pub enum SchemaError {
         path: String,
         /// The type at that point.
         type_name: String,
-        /// The name asked for.
+        /// The requested name.
         member: String,
-        /// The names there are.
+        /// The existing names.
         available: String,
     },
-    /// A path goes on in a way the field does not allow.
+    /// A path continues in a way that the field does not allow.
     #[error("`{path}`: {found} is at this place, which needs {expected}")]
     Path {
         /// The whole field path.
         path: String,
         /// What the path has reached, with the part of the path that leads to it.
         found: String,
-        /// How the path would have to go on.
+        /// How the path must continue.
         expected: &'static str,
     },
-    /// A field is not of the kind it is wanted as.
+    /// A field is not of the wanted kind.
     #[error("`{path}` is {found}, but {wanted} is wanted there")]
     Kind {
         /// The whole field path.
         path: String,
         /// The field's type.
         found: String,
-        /// What was wanted.
+        /// The wanted kind.
         wanted: &'static str,
     },
     /// A wanted field is, or comes after, a `wstring`.
@@ -134,7 +134,7 @@ pub enum SchemaError {
     },
 }
 
-/// A message whose bytes do not agree with its schema.
+/// The error of a message whose bytes do not agree with its schema.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum DecodeError {
@@ -154,12 +154,12 @@ pub enum DecodeError {
     Truncated {
         /// The field, or the first of several unread ones in a row.
         field: String,
-        /// Where the field, or its missing part, starts.
+        /// Position of the field, or of its missing part.
         offset: usize,
         /// Length of the message, in bytes.
         length: usize,
     },
-    /// An array or text claims more than the message has left.
+    /// An array or text states a length that exceeds the rest of the message.
     #[error(
         "field `{field}`, byte {offset}: {count} elements are announced, but the message has only {remaining} bytes left; \
          it is damaged or not of its schema"
@@ -167,7 +167,7 @@ pub enum DecodeError {
     Count {
         /// The field.
         field: String,
-        /// Where the count stands.
+        /// Position of the count.
         offset: usize,
         /// The count.
         count: usize,
@@ -179,7 +179,7 @@ pub enum DecodeError {
     Text {
         /// The field.
         field: String,
-        /// Where the text starts.
+        /// Position of the text.
         offset: usize,
     },
     /// The message is not JSON.
@@ -199,22 +199,22 @@ pub enum DecodeError {
     Missing {
         /// The wanted field.
         field: String,
-        /// What was looked into.
+        /// What was searched.
         place: &'static str,
         /// The missing name.
         member: String,
     },
-    /// A value is not of the kind wanted.
+    /// A value is not of the wanted kind.
     #[error("field `{field}` holds {found}, but {wanted} is wanted there")]
     Kind {
         /// The wanted field.
         field: String,
-        /// What the message holds.
+        /// What the message contains.
         found: &'static str,
-        /// What was wanted.
+        /// The wanted kind.
         wanted: &'static str,
     },
-    /// A time does not fit 64 bits of nanoseconds, or its nanoseconds are a second or more.
+    /// A time does not fit into 64 bits of nanoseconds, or its nanoseconds are a second or more.
     #[error(
         "field `{field}`: the time is out of range (64 bits of nanoseconds, less than a second of them in `nanosec`)"
     )]

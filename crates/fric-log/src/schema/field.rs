@@ -1,10 +1,10 @@
-//! What a field path leads to, found from the schema alone.
+//! The target of a field path, determined from the schema alone.
 
 use crate::path::{Condition, FieldPath, Literal, Step};
 
 use super::error::SchemaError;
 
-/// What a field holds.
+/// The content of a field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum FieldKind {
@@ -12,37 +12,37 @@ pub enum FieldKind {
     Number,
     /// A text.
     Text,
-    /// A time stamp or a time span.
+    /// A time stamp or a duration.
     Time,
     /// A message with members of its own.
     Message,
     /// Something that cannot be read as any of these: protobuf `bytes` and maps.
     Other,
-    /// Not said by the schema; only JSON messages have such fields.
+    /// Not determined by the schema; only JSON messages have such fields.
     Unknown,
 }
 
 /// The type of a field.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FieldType {
-    /// What the field, or each of its elements, holds.
+    /// The content of the field, or of each of its elements.
     pub kind: FieldKind,
-    /// Whether a message may hold any other number of them than one.
+    /// Whether a message may contain a number of them other than one.
     pub many: bool,
-    /// The name in the schema, of one element: `float64`, `geometry_msgs/Pose`, `foxglove.Pose`.
+    /// The name of one element in the schema: `float64`, `geometry_msgs/Pose`, `foxglove.Pose`.
     pub type_name: String,
 }
 
-/// A field of a message and what it is wanted as.
+/// A wanted field of a message and its wanted kind.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Wanted {
-    /// The way to the field.
+    /// The path to the field.
     pub path: FieldPath,
-    /// What is wanted of it.
+    /// The wanted kind.
     pub kind: WantedKind,
 }
 
-/// What a field is wanted as.
+/// The wanted kind of a field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum WantedKind {
     /// As `f64`: any number type, truth values as 0 and 1, enumerations as their numbers.
@@ -54,21 +54,21 @@ pub enum WantedKind {
 }
 
 impl Wanted {
-    /// The field as numbers.
+    /// Creates a wanted field of numbers.
     #[must_use]
     pub fn numbers(path: FieldPath) -> Self {
         let kind = WantedKind::Numbers;
         Self { path, kind }
     }
 
-    /// The field as texts.
+    /// Creates a wanted field of texts.
     #[must_use]
     pub fn texts(path: FieldPath) -> Self {
         let kind = WantedKind::Texts;
         Self { path, kind }
     }
 
-    /// The field as times.
+    /// Creates a wanted field of times.
     #[must_use]
     pub fn times(path: FieldPath) -> Self {
         let kind = WantedKind::Times;
@@ -77,7 +77,7 @@ impl Wanted {
 }
 
 impl WantedKind {
-    /// The kind of field that gives this.
+    /// Returns the kind of field that can be read this way.
     pub(super) fn field_kind(self) -> FieldKind {
         match self {
             Self::Numbers => FieldKind::Number,
@@ -95,14 +95,14 @@ impl WantedKind {
     }
 }
 
-/// A type in whichever schema language, as seen by [`lookup`].
+/// A type in any schema language, as seen by [`lookup`].
 pub(super) trait TypeNode: Sized {
     fn kind(&self) -> FieldKind;
     fn type_name(&self) -> String;
     fn is_array(&self) -> bool;
-    /// The type of one element.
+    /// Returns the type of one element.
     fn element(self) -> Self;
-    /// The type of a member; `None` where there is none of this name.
+    /// Returns the type of a member; `None` if there is none of this name.
     fn member(&self, name: &str) -> Option<Self>;
     fn member_names(&self) -> Vec<String>;
 }

@@ -1,9 +1,8 @@
 //! Messages of encoding `json`.
 //!
-//! A schema is not looked at: Foxglove's JSON Schemas leave too much open to say what a field is. Numbers may be
-//! written as such, as `true` and `false`, as `null` (NaN), or as text (`"NaN"`, `"-Infinity"`, or 64-bit integers as
-//! protobuf's JSON mapping writes them). Times may be `{"sec": …, "nanosec": …}` (or `nsec`), RFC 3339 texts, or
-//! numbers of seconds.
+//! The schema is ignored, because Foxglove's JSON Schemas leave too much open to determine a field's type. Numbers may be written as such, as `true`
+//! and `false`, as `null` (NaN), or as text (`"NaN"`, `"-Infinity"`, or 64-bit integers as in protobuf's JSON mapping). Times may be `{"sec": …,
+//! "nanosec": …}` (or `nsec`), RFC 3339 texts, or numbers of seconds.
 
 use std::borrow::Cow;
 
@@ -74,7 +73,7 @@ impl Node for Value {
     }
 }
 
-/// A whole number, which may be written as text.
+/// Returns an integer, which may be written as text.
 fn integer(value: &Value) -> Option<i64> {
     match value {
         Value::String(text) => text.parse().ok(),

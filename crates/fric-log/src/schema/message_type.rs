@@ -13,7 +13,7 @@ use super::protobuf::{self, ProtobufNode};
 use super::ros2msg::{self, RosNode};
 use super::types::TypeTable;
 
-/// The type of a channel's messages, as far as encoding and schema tell.
+/// The type of a channel's messages, as far as encoding and schema determine it.
 ///
 /// ```
 /// use fric_log::schema::{FieldKind, MessageType, Wanted};
@@ -52,11 +52,11 @@ enum Source {
 }
 
 impl MessageType {
-    /// Reads a schema. All four texts are those of the log: the channel's message encoding, and the schema's name,
-    /// encoding and data, empty where a channel has no schema.
+    /// Reads a schema. All four texts are those of the log: the channel's message encoding, and the schema's name, encoding and data, empty if a
+    /// channel has no schema.
     ///
     /// # Errors
-    /// Where the encodings are not supported or the schema is wrong.
+    /// Returns a [`SchemaError`] if the encodings are not supported or the schema is invalid.
     pub fn new(
         message_encoding: &str,
         schema_name: &str,
@@ -80,19 +80,18 @@ impl MessageType {
         Ok(Self { name: schema_name.to_owned(), source })
     }
 
-    /// The schema's name as in the log, such as `sensor_msgs/msg/JointState`.
+    /// Returns the schema's name as in the log, such as `sensor_msgs/msg/JointState`.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// What a field is; the empty path asks for the message itself.
+    /// Returns the type of a field; the empty path denotes the message itself.
     ///
-    /// A filter or a slice in the path makes it `many`. For JSON any path is answered with
-    /// [`FieldKind::Unknown`].
+    /// A filter or a slice in the path makes it `many`. For JSON any path gives [`FieldKind::Unknown`].
     ///
     /// # Errors
-    /// Where messages of this type have no such field.
+    /// Returns a [`SchemaError`] if messages of this type have no such field.
     pub fn field(&self, path: &FieldPath) -> Result<FieldType, SchemaError> {
         match &self.source {
             Source::Cdr(types) => field::lookup(RosNode::root(types), path),
@@ -101,10 +100,10 @@ impl MessageType {
         }
     }
 
-    /// A decoder that reads the wanted fields from messages of this type.
+    /// Returns a decoder that reads the wanted fields from messages of this type.
     ///
     /// # Errors
-    /// Where a wanted field does not exist, is not of the kind wanted, or cannot be reached.
+    /// Returns a [`SchemaError`] if a wanted field does not exist, is not of the wanted kind, or cannot be reached.
     pub fn decoder(&self, wanted: &[Wanted]) -> Result<Decoder, SchemaError> {
         match &self.source {
             Source::Cdr(types) => {

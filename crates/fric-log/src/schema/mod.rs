@@ -1,7 +1,7 @@
-//! Message payloads: from schemas and bytes to the few numbers that are wanted.
+//! Message payloads: extracts the few wanted numbers from bytes by means of schemas.
 //!
-//! A [`MessageType`] is read from a schema once; it answers what a field is. Its [`Decoder`] is
-//! compiled once for the wanted fields and then reads them from one message after the other.
+//! A [`MessageType`] is read from a schema once and describes its fields. Its [`Decoder`] is compiled once for the wanted fields and then reads them
+//! from one message after the other.
 //!
 //! | messages | schemas | |
 //! |---|---|---|
@@ -9,8 +9,8 @@
 //! | `json` | any or none | the schema is not looked at: what is wanted must be in the messages |
 //! | `protobuf` | `protobuf` | members that are not sent have their default values |
 //!
-//! Nothing here knows what a signal means, nor which topic it comes from. Numbers pass as they are, NaN and
-//! infinities included; JSON's `null` is NaN.
+//! This module knows neither the meaning of a signal nor its topic. Numbers are passed on unchanged, including NaN and infinities; JSON's `null` is
+//! NaN.
 
 mod cdr;
 mod decoder;

@@ -1,4 +1,4 @@
-//! Wanted fields read from messages that are decoded as a whole: JSON and protobuf.
+//! Reads wanted fields from messages that are decoded as a whole: JSON and protobuf.
 
 use std::borrow::Cow;
 
@@ -11,15 +11,15 @@ use super::values::Slot;
 
 /// A decoded value.
 pub(super) trait Node: Clone {
-    /// A member; `None` where the value has none of this name.
+    /// Returns a member; `None` if the value has none of this name.
     fn member(&self, name: &str) -> Option<Cow<'_, Self>>;
-    /// The elements, if the value is an array.
+    /// Returns the elements, if the value is an array.
     fn elements(&self) -> Option<&[Self]>;
     fn number(&self) -> Option<f64>;
     fn text(&self) -> Option<&str>;
-    /// The time in nanoseconds.
+    /// Returns the time in nanoseconds.
     fn time_nanos(&self) -> Option<Result<i64, OutOfRange>>;
-    /// What the value is, for errors: `a text`, `an array`.
+    /// Returns a description of the value for errors: `a text`, `an array`.
     fn describe(&self) -> &'static str;
 }
 
@@ -60,7 +60,7 @@ fn member<'a, N: Node>(node: &'a N, name: &str, wanted: &Wanted) -> Result<Cow<'
     })
 }
 
-/// Whether the condition holds; a value of another kind than the one written is unequal.
+/// Whether the condition holds; a value of another kind than the literal is unequal.
 fn holds<N: Node>(node: &N, condition: &Condition, wanted: &Wanted) -> Result<bool, DecodeError> {
     let mut found = Cow::Borrowed(node);
     for name in &condition.member {

@@ -1,7 +1,7 @@
 //! Messages of encoding `protobuf`, described by a `FileDescriptorSet`.
 //!
-//! A message is decoded as a whole and then looked into; members that were not sent have their default values.
-//! `google.protobuf.Timestamp` and `Duration` are times. Maps and `bytes` cannot be wanted.
+//! A message is decoded as a whole and then searched; members that were not sent have their default values. `google.protobuf.Timestamp` and
+//! `Duration` are times. Maps and `bytes` cannot be read.
 
 use std::borrow::Cow;
 

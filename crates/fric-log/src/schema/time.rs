@@ -1,12 +1,12 @@
-//! Times in whole nanoseconds, put together from what message formats give.
+//! Converts the times of message formats to whole nanoseconds.
 
 const NANOS_PER_S: i64 = 1_000_000_000;
 
-/// A time that 64 bits of nanoseconds do not hold, or whose nanoseconds make a second or more.
+/// The error of a time that does not fit into 64 bits of nanoseconds, or whose nanoseconds are a second or more.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct OutOfRange;
 
-/// Nanoseconds of seconds and nanoseconds, which may count in opposite directions.
+/// Converts seconds and nanoseconds, which may have opposite signs, to nanoseconds.
 pub(super) fn from_parts(seconds: i64, nanos: i64) -> Result<i64, OutOfRange> {
     if nanos.unsigned_abs() >= NANOS_PER_S.unsigned_abs() {
         return Err(OutOfRange);
@@ -15,11 +15,11 @@ pub(super) fn from_parts(seconds: i64, nanos: i64) -> Result<i64, OutOfRange> {
     i64::try_from(total).map_err(|_| OutOfRange)
 }
 
-/// Nanoseconds of a number of seconds, rounded.
+/// Converts seconds to nanoseconds, rounded.
 ///
 /// An `f64` of seconds since 1970 resolves about 0.2 µs.
 pub(super) fn from_seconds(seconds: f64) -> Result<i64, OutOfRange> {
-    // The fraction is split off first, as the product alone would lose digits.
+    // The fraction is separated first, because the product alone would lose digits.
     let whole = seconds.floor();
     if !(-9.0e9..9.0e9).contains(&whole) {
         return Err(OutOfRange);
@@ -29,7 +29,7 @@ pub(super) fn from_seconds(seconds: f64) -> Result<i64, OutOfRange> {
     Ok(whole * NANOS_PER_S + nanos)
 }
 
-/// Nanoseconds since 1970 of an RFC 3339 time such as `2024-05-01T12:00:00.25+02:00`.
+/// Parses an RFC 3339 time such as `2024-05-01T12:00:00.25+02:00` to nanoseconds since 1970.
 pub(super) fn from_rfc3339(text: &str) -> Option<Result<i64, OutOfRange>> {
     let mut rest = text.as_bytes();
     let year = digits(&mut rest, 4)?;
@@ -82,7 +82,7 @@ fn digit(rest: &mut &[u8]) -> Option<i64> {
     take(rest, b"0123456789").map(|digit| i64::from(digit - b'0'))
 }
 
-/// One digit or more; those past the ninth are cut off.
+/// Parses one digit or more; those past the ninth are cut off.
 fn fraction_nanos(rest: &mut &[u8]) -> Option<i64> {
     let mut nanos = digit(rest)? * (NANOS_PER_S / 10);
     let mut unit = NANOS_PER_S / 100;
@@ -107,7 +107,7 @@ fn days_in_month(year: i64, month: i64) -> i64 {
 }
 
 fn days_since_1970(year: i64, month: i64, day: i64) -> i64 {
-    // Leap days before the year, in the calendar extended backwards.
+    // Leap days before the year, in the proleptic calendar.
     let leap_days = |year: i64| {
         let past = year - 1;
         past.div_euclid(4) - past.div_euclid(100) + past.div_euclid(400)

@@ -1,4 +1,4 @@
-//! The message types a `ros2msg` schema describes, each stored once and referred to by number.
+//! The message types that a `ros2msg` schema describes, each stored once and referenced by index.
 
 /// A number type of ROS 2, named as in message definitions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -17,7 +17,7 @@ pub(super) enum Primitive {
 }
 
 impl Primitive {
-    /// The type of this name; `byte` and `char` are unsigned bytes in ROS 2.
+    /// Returns the type of this name; `byte` and `char` are unsigned bytes in ROS 2.
     pub(super) fn named(name: &str) -> Option<Self> {
         Some(match name {
             "bool" => Self::Bool,
@@ -35,7 +35,7 @@ impl Primitive {
         })
     }
 
-    /// The name in message definitions.
+    /// Returns the name in message definitions.
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Bool => "bool",
@@ -52,7 +52,7 @@ impl Primitive {
         }
     }
 
-    /// Encoded size, in bytes.
+    /// Returns the encoded size, in bytes.
     pub(super) fn size(self) -> usize {
         match self {
             Self::Bool | Self::Int8 | Self::Uint8 => 1,
@@ -63,7 +63,7 @@ impl Primitive {
     }
 }
 
-/// What a field, or each element of an array field, is.
+/// The type of a field, or of each element of an array field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Element {
     Number(Primitive),
@@ -73,12 +73,12 @@ pub(super) enum Element {
     Message(usize),
 }
 
-/// How many elements a field has.
+/// The number of elements of a field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Count {
     One,
     Fixed(usize),
-    /// As many as the message says; a bound in the schema is not checked.
+    /// The number is stated in the message; a bound in the schema is not checked.
     Sequence,
 }
 
@@ -94,15 +94,15 @@ pub(super) struct Message {
     /// `package/Type`, without `/msg`.
     pub name: String,
     pub fields: Vec<Field>,
-    /// Set where the message is a time stamp or a time span.
+    /// Whether the message is a time stamp or a duration.
     pub time: bool,
-    /// The fewest bytes a message of this type can take.
+    /// Minimum number of bytes of a message of this type.
     pub min_bytes: usize,
     /// The encoding as one block, for plain CDR and for plain CDR2.
     blocks: [Option<Block>; 2],
 }
 
-/// An encoding that starts at a multiple of `align` and from there always takes `size` bytes, again a multiple.
+/// An encoding that starts at a multiple of `align` and always takes `size` bytes, also a multiple.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Block {
     pub align: usize,
@@ -114,7 +114,7 @@ impl Message {
         self.fields.iter().find(|field| field.name == name)
     }
 
-    /// The encoding as one block where numbers are aligned to at most `max_align`, 8 or 4.
+    /// Returns the encoding as one block if numbers are aligned to at most `max_align`, 8 or 4.
     pub(super) fn block(&self, max_align: usize) -> Option<Block> {
         let [cdr1, cdr2] = self.blocks;
         if max_align == 8 { cdr1 } else { cdr2 }
@@ -125,12 +125,12 @@ impl Message {
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(super) struct TypeTable {
     messages: Vec<Message>,
-    /// Index of the type the schema is about.
+    /// Index of the schema's own type.
     pub root: usize,
 }
 
 impl TypeTable {
-    /// Adds a type whose members' types are in the table already; its number.
+    /// Adds a type whose members' types are already in the table. Returns its index.
     pub(super) fn push(&mut self, name: String, fields: Vec<Field>, time: bool) -> usize {
         let bytes = |field: &Field| {
             let one = self.min_bytes(field.element);
@@ -146,14 +146,14 @@ impl TypeTable {
             name,
             fields,
             time,
-            // An empty structure is given one byte.
+            // An empty structure takes one byte.
             min_bytes: min_bytes.max(1),
             blocks,
         });
         self.messages.len() - 1
     }
 
-    /// The type of this number. An index from elsewhere gives an empty message.
+    /// Returns the type with this index. An unknown index gives an empty message.
     pub(super) fn message(&self, index: usize) -> &Message {
         static NOTHING: Message =
             Message { name: String::new(), fields: Vec::new(), time: false, min_bytes: 1, blocks: [None; 2] };
@@ -164,7 +164,7 @@ impl TypeTable {
         self.messages.iter().position(|message| message.name == name)
     }
 
-    /// The fewest bytes one element can take.
+    /// Returns the minimum number of bytes of one element.
     pub(super) fn min_bytes(&self, element: Element) -> usize {
         match element {
             Element::Number(primitive) => primitive.size(),
@@ -182,7 +182,7 @@ impl TypeTable {
         }
     }
 
-    /// The fields as one block: the first one has the strictest alignment, and the end keeps it.
+    /// Returns the fields as one block, if the first one has the strictest alignment and the end keeps it.
     fn block(&self, fields: &[Field], max_align: usize) -> Option<Block> {
         let mut whole: Option<Block> = None;
         for field in fields {

@@ -1,15 +1,14 @@
 //! The numbers, texts and times read from one message.
 //!
-//! The buffers are reused from message to message, so that reading stops allocating after the first few.
-//! Numbers are passed on as they are, NaN and infinities included.
+//! The buffers are reused from message to message, so that reading stops allocating after the first few. Numbers are passed on unchanged, including
+//! NaN and infinities.
 
-/// What was read from a message, by the place of the field in the list of wanted fields.
+/// The content of a message, by the index of the field in the list of wanted fields.
 ///
-/// A path that selects nothing in this message, such as `[3]` of an array of two or a filter that
-/// nothing passes, gives nothing: an empty list.
+/// A path that selects nothing in this message, such as `[3]` of an array of two or a filter that nothing passes, gives an empty list.
 #[derive(Debug, Clone, Default)]
 pub struct Values {
-    /// Those of the wanted fields, then those in which filters are tested.
+    /// Slots of the wanted fields, followed by those for testing filters.
     slots: Vec<Slot>,
     wanted: usize,
 }
@@ -19,9 +18,9 @@ pub struct Values {
 pub struct Texts {
     current: TextList,
     next: TextList,
-    /// The encoded form of `current`, or empty where it is not known.
+    /// The encoded form of `current`, or empty if it is not known.
     raw: Vec<u8>,
-    /// Whether this message has the same texts, so that `next` is not to be looked at.
+    /// Whether this message has the same texts, so that `next` is unused.
     kept: bool,
     revision: u64,
 }
@@ -40,7 +39,7 @@ pub(super) struct Slot {
 }
 
 impl Values {
-    /// The numbers of the wanted field of this index; empty for an unknown index.
+    /// Returns the numbers of the wanted field with this index; empty for an unknown index.
     ///
     /// 64-bit integers beyond ±2⁵³ are rounded to the nearest `f64`.
     #[must_use]
@@ -48,7 +47,7 @@ impl Values {
         self.slot(index).map_or(&[], |slot| &slot.numbers)
     }
 
-    /// The number of a field that has exactly one.
+    /// Returns the number of a field that has exactly one.
     #[must_use]
     pub fn number(&self, index: usize) -> Option<f64> {
         match self.numbers(index) {
@@ -57,13 +56,13 @@ impl Values {
         }
     }
 
-    /// The times of the wanted field of this index, in nanoseconds, exact; empty for an unknown index.
+    /// Returns the exact times of the wanted field with this index, in nanoseconds; empty for an unknown index.
     #[must_use]
     pub fn times_nanos(&self, index: usize) -> &[i64] {
         self.slot(index).map_or(&[], |slot| &slot.times_nanos)
     }
 
-    /// The time of a field that has exactly one, in nanoseconds.
+    /// Returns the time of a field that has exactly one, in nanoseconds.
     #[must_use]
     pub fn time_nanos(&self, index: usize) -> Option<i64> {
         match self.times_nanos(index) {
@@ -72,7 +71,7 @@ impl Values {
         }
     }
 
-    /// The texts of the wanted field of this index; empty for an unknown index.
+    /// Returns the texts of the wanted field with this index; empty for an unknown index.
     #[must_use]
     pub fn texts(&self, index: usize) -> &Texts {
         static NONE: Texts = Texts {
@@ -89,12 +88,12 @@ impl Values {
         self.slots.get(..self.wanted)?.get(index)
     }
 
-    /// Room for the wanted fields, and for as many slots in all.
+    /// Creates space for the wanted fields, and for `slots` slots in all.
     pub(super) fn new(wanted: usize, slots: usize) -> Self {
         Self { slots: vec![Slot::default(); slots.max(wanted)], wanted }
     }
 
-    /// Gets ready for the next message.
+    /// Prepares for the next message.
     pub(super) fn begin(&mut self) -> &mut [Slot] {
         for slot in &mut self.slots {
             slot.numbers.clear();
@@ -105,7 +104,7 @@ impl Values {
         &mut self.slots
     }
 
-    /// Takes over the texts of a message that was read to its end.
+    /// Takes over the texts of a completely read message.
     pub(super) fn finish(&mut self) {
         for texts in self.slots.iter_mut().map(|slot| &mut slot.texts) {
             if !texts.kept && !texts.next.is_same(&texts.current) {
@@ -115,7 +114,7 @@ impl Values {
         }
     }
 
-    /// Forgets the encoded texts, which the next message is then not compared with.
+    /// Discards the encoded texts, so that the next message is not compared with them.
     pub(super) fn forget_raw_texts(&mut self) {
         for slot in &mut self.slots {
             slot.texts.raw.clear();
@@ -124,19 +123,19 @@ impl Values {
 }
 
 impl Texts {
-    /// The texts in their order.
+    /// Returns the texts in order.
     #[must_use]
     pub fn iter(&self) -> impl ExactSizeIterator<Item = &str> {
         (0..self.len()).map(|index| self.get(index).unwrap_or_default())
     }
 
-    /// The text at a place.
+    /// Returns the text at an index.
     #[must_use]
     pub fn get(&self, index: usize) -> Option<&str> {
         self.current.get(index)
     }
 
-    /// How many there are.
+    /// Returns the number of texts.
     #[must_use]
     pub fn len(&self) -> usize {
         self.current.ends.len()
@@ -148,10 +147,10 @@ impl Texts {
         self.current.ends.is_empty()
     }
 
-    /// A number that grows whenever a message brings other texts than the one before.
+    /// Returns a number that grows whenever a message contains other texts than the one before.
     ///
-    /// As long as it stays the same, whatever was derived from the texts, such as the order of the cables
-    /// of a `JointState`, holds. It starts at 0 with no texts.
+    /// While it is unchanged, everything derived from the texts, such as the order of the cables of a `JointState`, stays valid. It starts at 0 with
+    /// no texts.
     #[must_use]
     pub fn revision(&self) -> u64 {
         self.revision
@@ -162,7 +161,7 @@ impl Texts {
         self.next.ends.push(self.next.text.len());
     }
 
-    /// The length of the encoded texts of the last message, if `bytes` starts with the same.
+    /// Returns the length of the encoded texts of the last message, if `bytes` starts with the same.
     pub(super) fn keep_if_same(&mut self, bytes: &[u8]) -> Option<usize> {
         let same = !self.raw.is_empty() && bytes.starts_with(&self.raw);
         self.kept = same;
@@ -174,7 +173,7 @@ impl Texts {
         self.raw.extend_from_slice(bytes);
     }
 
-    /// The text read last from this message.
+    /// Returns the text read last from this message.
     pub(super) fn last_read(&self) -> Option<&str> {
         self.next.get(self.next.ends.len().checked_sub(1)?)
     }
@@ -194,10 +193,9 @@ impl TextList {
         self.text.get(start..end)
     }
 
-    /// Whether both hold the same texts.
+    /// Whether both contain the same texts.
     ///
-    /// Slots without texts are the rule; comparing their empty buffers, which point nowhere, would cost some
-    /// processors more than reading a whole message.
+    /// Most slots have no texts; comparing their empty buffers, which point nowhere, would cost some processors more than reading a whole message.
     fn is_same(&self, other: &Self) -> bool {
         match (self.ends.is_empty(), other.ends.is_empty()) {
             (true, true) => true,

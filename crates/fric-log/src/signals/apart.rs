@@ -1,10 +1,10 @@
-//! Signals that are of other times than the cable signal: most often the stamps are of another clock.
+//! Signals recorded at other times than the cable signal, usually because their stamps come from another clock.
 
 use std::fmt;
 
 use super::{Role, SignalReader};
 
-/// A signal that has messages, but all before the first or all behind the last time of the cable signal: no row has it.
+/// A signal whose messages are all before the first or all after the last time of the cable signal, so that no row contains it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TimesApart {
     /// The signal.
@@ -14,22 +14,22 @@ pub struct TimesApart {
     cable_times: Times,
 }
 
-/// From when to when the messages of a signal are.
+/// The time range of a signal's messages.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Times {
     first_nanos: i64,
     last_nanos: i64,
-    /// Whether these are stamps in the messages; else they are log times.
+    /// Whether these are stamps in the messages; otherwise they are log times.
     is_stamped: bool,
 }
 
 impl TimesApart {
-    /// What to do, a sentence without its full stop.
+    /// What to do, one sentence without its full stop.
     pub const ADVICE: &str =
         "Record both at the same time and stamp them by one clock; a stamp of zero counts as the log time";
 }
 
-/// Both ranges, and what to do.
+/// Writes both ranges and what to do.
 impl fmt::Display for TimesApart {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { message_count, times, cable_times, .. } = self;
@@ -49,7 +49,7 @@ impl fmt::Display for Times {
 }
 
 impl SignalReader {
-    /// Whether no row can have a signal as its times are apart from those of the cable signal. Complete when all rows have been
+    /// Returns the ranges if no row can contain a signal because its times do not overlap those of the cable signal; complete when all rows have been
     /// read.
     #[must_use]
     pub fn times_apart(&self, role: Role) -> Option<TimesApart> {

@@ -1,4 +1,4 @@
-//! One signal out of one channel's messages, in the robot's order.
+//! Reads one signal from one channel's messages, in the robot's order.
 
 use crate::path::FieldPath;
 use crate::recording::{Channel, Message};
@@ -15,23 +15,23 @@ pub(super) struct ChannelReader {
     decoder: Decoder,
     layout: Layout,
     order: Order,
-    /// So many of the first quantities each message must have.
+    /// Number of leading quantities that each message must contain.
     required_count: usize,
 }
 
-/// Why a message gives no sample.
+/// The reason why a message gives no sample.
 #[derive(Debug)]
 pub(super) enum Rejection {
-    /// It should; what is wrong with it.
+    /// The message is unusable, with the problem.
     Unusable(String),
-    /// It is about other cables or frames.
+    /// The message concerns other cables or frames.
     Foreign,
 }
 
 /// A decoded message: its time, and its numbers in the robot's order.
 pub(super) struct Decoded<'a> {
     pub stamp_nanos: i64,
-    /// Whether the message says so; else it is its log time.
+    /// Whether the time comes from the message; otherwise it is its log time.
     pub is_stamped: bool,
     role: Role,
     layout: &'a Layout,
@@ -44,7 +44,7 @@ impl ChannelReader {
     /// Finds the fields of a role with the help of a message.
     ///
     /// # Errors
-    /// [`Unfit`] where the channel's messages, or this one, do not have them.
+    /// Returns an [`Unfit`] if the channel's messages, or this one, do not contain them.
     pub fn new(
         role: Role,
         path: &FieldPath,
@@ -69,7 +69,7 @@ impl ChannelReader {
     /// Decodes a message.
     ///
     /// # Errors
-    /// [`Rejection`] where it has no sample.
+    /// Returns a [`Rejection`] if it contains no sample.
     pub fn read(&mut self, message: &Message<'_>, cables: &[String]) -> Result<Decoded<'_>, Rejection> {
         let values = self.decoder.read(message.data).map_err(|error| Rejection::Unusable(error.to_string()))?;
         match self.role {
@@ -113,7 +113,7 @@ impl ChannelReader {
         })
     }
 
-    /// What a message is about that is not about the robot; for the last message read.
+    /// Describes the content of the last message if it does not concern the robot.
     pub fn describe_foreign(&self, cables: &[String]) -> String {
         match self.layout.names {
             Some(_) => self.order.describe(cables),
@@ -123,13 +123,13 @@ impl ChannelReader {
 }
 
 impl Decoded<'_> {
-    /// The cables without numbers, as bits.
+    /// Returns the cables without numbers, as bits.
     pub fn missing_cables(&self) -> u64 {
         self.order.missing_cables()
     }
 
-    /// Writes the numbers: for cables one block of the robot's cables per quantity, NaN where the message has none; the
-    /// block of speeds is left out if the message has no speeds.
+    /// Writes the numbers: for cables one block of the robot's cables per quantity, NaN where the message has none; the block of speeds is left out
+    /// if the message has no speeds.
     pub fn fill(&self, out: &mut Vec<f64>) {
         let indices = &self.layout.numbers;
         if matches!(self.role, Role::Pose | Role::Wrench) {
@@ -157,11 +157,11 @@ impl Decoded<'_> {
     }
 }
 
-/// Which quantity of the cable signal the speed is.
+/// Index of the speed among the quantities of the cable signal.
 const SPEED: usize = 2;
 const NOTHING: &str = "it holds no numbers";
 
-/// The cable signal lacks a quantity.
+/// Returns the message about a missing quantity of the cable signal.
 fn missing(quantity: usize) -> String {
     if quantity == 0 {
         return "it brings no forces (`effort`); name the topic or path of the sensor forces as `cable` under `[log]` in \

@@ -1,4 +1,4 @@
-//! Why there are no rows.
+//! Errors of reading rows.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -10,7 +10,7 @@ use crate::csv_log::CsvError;
 use crate::recording::RecordingError;
 use crate::schema::SchemaError;
 
-/// What to do, each the end of a sentence.
+/// Advice, each the end of a sentence.
 mod advice {
     pub const TOPIC: &str = "Name the right one as `cable` under `[log]` in the robot file";
     pub const TOPIC_OR_PATH: &str =
@@ -20,32 +20,32 @@ mod advice {
     pub const BEGINNING: &str = "use a complete copy of the recording";
 }
 
-/// Why there are no rows.
+/// The reason why there are no rows.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum SignalError {
     /// The recording cannot be read any further.
     #[error(transparent)]
     Recording(#[from] RecordingError),
-    /// The CSV file cannot be read, or has not what is needed.
+    /// The CSV file cannot be read, or lacks required data.
     #[error(transparent)]
     Csv(#[from] CsvError),
     /// The recording has no cable signal.
     #[error("the log has no messages on `{topic}`, the topic of the cable signals; {}", available(topics))]
     NoCableTopic {
-        /// The topic looked for.
+        /// The wanted topic.
         topic: String,
-        /// Those there are.
+        /// The existing topics.
         topics: Vec<String>,
     },
-    /// The recording has no cable signal, and the beginning of a file, which says whose its messages are, is lost.
+    /// The recording has no cable signal, and the beginning of a file, which defines its channels, is lost.
     #[error(
         "the beginning of `{}` is missing, and with it the channels and schemas that say on which topics its messages \
          are: the cable signals on `{topic}` cannot be told from others; {}",
         path.display(), advice::BEGINNING
     )]
     NoBeginning {
-        /// The topic looked for.
+        /// The wanted topic.
         topic: String,
         /// The file.
         path: PathBuf,
@@ -55,18 +55,18 @@ pub enum SignalError {
     CableFields {
         /// The topic.
         topic: String,
-        /// Why.
+        /// The reason.
         source: SchemaError,
     },
-    /// Not one message on the cable topic could be used.
+    /// No message on the cable topic is usable.
     #[error("no message on `{topic}`, the topic of the cable signals, can be used; the first: {reason}")]
     NoUsableMessage {
         /// The topic.
         topic: String,
-        /// What is wrong with the first one.
+        /// The problem of the first one.
         reason: String,
     },
-    /// No row is in the part that was asked for.
+    /// The requested part contains no row.
     #[error("no row of the log is {}: its last is {last_s:.3} s after its first; {}", Between(part), advice::PART)]
     NothingInPart {
         /// The part.
@@ -74,7 +74,7 @@ pub enum SignalError {
         /// Time of the last row that was read, s after the first.
         last_s: f64,
     },
-    /// There is force but no length.
+    /// There is a force but no length.
     #[error("the messages on `{topic}` bring forces but no cable lengths (`position`); {}", advice::LENGTH)]
     NoLength {
         /// The topic.
@@ -83,7 +83,7 @@ pub enum SignalError {
 }
 
 impl SignalError {
-    /// What to do: the words that end the error's sentence, where it has any.
+    /// Returns the advice that ends the error's sentence, if there is any.
     #[must_use]
     pub fn advice(&self) -> Option<&'static str> {
         match self {
@@ -99,7 +99,7 @@ impl SignalError {
     }
 }
 
-/// A part in words.
+/// Formats a part in words.
 struct Between<'a>(&'a Part);
 
 impl fmt::Display for Between<'_> {

@@ -1,11 +1,10 @@
 //! The reference of a cable under a hanging mass, row by row.
 //!
-//! The force at the platform is `m·(g − a)` ([`KnownReference`]). The acceleration `a` comes from the length: its second
-//! difference over rows at least [`WINDOW_NANOS`] apart, which is the mean acceleration under a triangle of that width. The
-//! cable has to be in quiet motion for it: with a jerk within the window the mean is not the acceleration of the moment, and
-//! after one the mass swings on the stretch of the cable, which no length tells. So a row has a reference only where all
-//! accelerations within the window are at most [`GREATEST_ACCELERATION_M_PER_S2`], and the first and last rows of a log have
-//! none. Rows come twice the window later than they are read.
+//! The force at the platform is `m·(g − a)` ([`KnownReference`]). The acceleration `a` comes from the length: its second difference over rows at
+//! least [`WINDOW_NANOS`] apart, which is the mean acceleration under a triangular window of that width. This requires quiet motion: with jerk within
+//! the window the mean differs from the momentary acceleration, and afterwards the mass oscillates on the elastic cable, which the length does not
+//! show. So a row has a reference only if all accelerations within the window are at most [`GREATEST_ACCELERATION_M_PER_S2`], and the first and last
+//! rows of a log have none. Rows are delayed by twice the window.
 
 use std::collections::VecDeque;
 
@@ -13,32 +12,32 @@ use fric_core::{CableInput, KnownReference, Sample};
 
 use super::waiting::Row;
 
-/// Half the width of the window, and the shortest distance of rows for a difference.
+/// Half the width of the window, and the minimum distance of rows for a difference.
 const WINDOW_NANOS: i64 = 20_000_000;
 /// Rows further apart than this say nothing about the acceleration between them.
 const FARTHEST_NANOS: i64 = 10 * WINDOW_NANOS;
-/// Beyond this the motion is not quiet, m/s²: 5 % of the weight. At half, ramps of 0.3 m/s² have no reference; at double, the
-/// mass may swing by 10 % of its weight after a ramp has ended.
+/// Greatest acceleration of quiet motion, m/s²: 5 % of the weight. At half this value, ramps of 0.3 m/s² have no reference; at double, the mass may
+/// oscillate by 10 % of its weight after the end of a ramp.
 const GREATEST_ACCELERATION_M_PER_S2: f64 = 0.5;
 
-/// Rows on their way to their reference.
+/// Rows that wait for their reference.
 #[derive(Debug)]
 pub(super) struct HangingRows {
     reference: KnownReference,
-    /// Those given out that others still need, then those that wait, in the order they came.
+    /// Delivered rows that others still need, then the waiting ones, in the order of arrival.
     rows: VecDeque<Waiting>,
-    /// The first of them that waits.
+    /// Index of the first waiting row.
     next: usize,
     is_ended: bool,
 }
 
-/// A row that waits.
+/// A waiting row.
 #[derive(Debug)]
 struct Waiting {
     row: Row,
-    /// Which time it belongs to: a clock that was set back begins another.
+    /// The time base it belongs to: a clock that was set back starts another one.
     time: u32,
-    /// By cable, NaN where it is not known; empty until it is needed.
+    /// Accelerations by cable, NaN if unknown; empty until needed.
     accelerations_m_per_s2: Vec<f64>,
 }
 
@@ -47,33 +46,33 @@ impl HangingRows {
         Self { reference, rows: VecDeque::new(), next: 0, is_ended: false }
     }
 
-    /// Takes in the row that follows.
+    /// Adds the next row.
     pub fn push(&mut self, row: Row) {
         let is_back = |last: &Waiting| last.row.stamp_nanos >= row.stamp_nanos;
         let time = self.rows.back().map_or(0, |last| last.time + u32::from(is_back(last)));
         self.rows.push_back(Waiting { row, time, accelerations_m_per_s2: Vec::new() });
     }
 
-    /// No row follows.
+    /// Marks the end: no row follows.
     pub fn end(&mut self) {
         self.is_ended = true;
     }
 
-    /// Whether the next row has all it can get, or there is none to wait for.
+    /// Whether the next row is final, or there is none to wait for.
     pub fn is_ready(&self) -> bool {
         let next = self.rows.get(self.next).zip(self.rows.back());
         self.is_ended
             || next.is_some_and(|(row, last)| row.time != last.time || last.after_nanos(row) >= 2 * WINDOW_NANOS)
     }
 
-    /// The time of the next row; `None` after the last.
+    /// Returns the time of the next row; `None` after the last.
     pub fn next_stamp_nanos(&self) -> Option<i64> {
         self.rows.get(self.next).map(|waiting| waiting.row.stamp_nanos)
     }
 
-    /// The next row; `None` after the last.
+    /// Returns the next row; `None` after the last.
     pub fn pop(&mut self) -> Option<Sample<'_>> {
-        // What is before the window is needed up to its last row, from which the acceleration of the next one is told.
+        // Of the rows before the window the last one is needed for the acceleration of the next row.
         while self.next > 0 && self.rows.get(1).is_some_and(|second| self.is_behind(second)) {
             self.rows.pop_front();
             self.next -= 1;
@@ -111,12 +110,12 @@ impl HangingRows {
             .is_some_and(|next| row.time == next.time && row.after_nanos(next).abs() <= WINDOW_NANOS)
     }
 
-    /// Whether a row is as far before the next as a difference takes, or of a time before its own.
+    /// Whether a row is far enough before the next for a difference, or belongs to an earlier time base.
     fn is_behind(&self, row: &Waiting) -> bool {
         self.rows.get(self.next).is_some_and(|next| row.time != next.time || next.after_nanos(row) >= WINDOW_NANOS)
     }
 
-    /// Acceleration of each cable in a row, m/s².
+    /// Returns the acceleration of each cable in a row, m/s².
     fn accelerations_m_per_s2(&self, index: usize) -> Vec<f64> {
         let Some(now) = self.rows.get(index) else { return Vec::new() };
         let apart = |row: &&Waiting| row.after_nanos(now).abs() >= WINDOW_NANOS;
@@ -137,7 +136,7 @@ impl HangingRows {
 }
 
 impl Waiting {
-    /// How much later than another it is.
+    /// Returns how much later it is than another row.
     fn after_nanos(&self, other: &Self) -> i64 {
         self.row.stamp_nanos.saturating_sub(other.row.stamp_nanos)
     }

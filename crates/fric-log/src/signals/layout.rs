@@ -1,13 +1,13 @@
-//! Which fields of a message a signal is made of.
+//! Determines the fields of a message that form a signal.
 //!
-//! Asked of the schema; where that leaves the fields open (JSON), of a message.
+//! The schema determines them; if it leaves them open (JSON), a message does.
 
 use crate::path::{FieldPath, Step};
 use crate::schema::{DecodeError, FieldKind, MessageType, SchemaError, Wanted};
 
 use super::Role;
 
-/// The fields of a signal, in the order in which a decoder is asked for them.
+/// The fields of a signal, in the order for the decoder.
 #[derive(Debug, Default)]
 pub(super) struct Layout {
     pub wanted: Vec<Wanted>,
@@ -15,19 +15,19 @@ pub(super) struct Layout {
     pub stamps: Vec<usize>,
     /// Index of the cables' names.
     pub names: Option<usize>,
-    /// Indices of the numbers: force, length, speed of cables; the one array of length, speed and reference; position
-    /// and orientation of the pose, force and torque of the wrench, coordinate by coordinate.
+    /// Indices of the numbers: force, length, speed of cables; the single array of length, speed and reference; position and orientation of the pose,
+    /// force and torque of the wrench, coordinate by coordinate.
     pub numbers: Vec<Option<usize>>,
 }
 
-/// Why there is no layout.
+/// The reason why there is no layout.
 #[derive(Debug)]
 pub(super) enum Unfit {
     /// No message of this type has the fields.
     Type(SchemaError),
-    /// All is there but cable lengths.
+    /// Only cable lengths are missing.
     NoLength,
-    /// This message has not, but the next one may.
+    /// This message lacks them, but the next one may have them.
     Message(String),
     /// The path selects nothing in this message, but may in the next one.
     Nothing,
@@ -46,7 +46,7 @@ pub(crate) struct Probe<'a> {
 }
 
 impl Probe<'_> {
-    /// Whether there is a field to be read as wanted, with several elements or one.
+    /// Whether there is a field of the wanted kind, with several elements or one.
     pub(crate) fn has(&self, wanted: Wanted, kind: FieldKind) -> bool {
         match self.message_type.field(&wanted.path) {
             Ok(field) if field.kind == FieldKind::Unknown => {
@@ -62,7 +62,7 @@ impl Probe<'_> {
         self.has(Wanted::numbers(path), FieldKind::Number)
     }
 
-    /// Checks that there are numbers; where only messages can tell, that this one has.
+    /// Checks that there are numbers; if only messages can tell, that this one has them.
     fn require_numbers(&self, path: &FieldPath) -> Result<(), Unfit> {
         if self.message_type.field(path)?.kind != FieldKind::Unknown {
             return Ok(());
@@ -75,10 +75,10 @@ impl Probe<'_> {
 }
 
 impl Layout {
-    /// The fields of `role` at `path`.
+    /// Finds the fields of `role` at `path`.
     ///
     /// # Errors
-    /// [`Unfit`] where the messages, or this one, do not have them.
+    /// Returns an [`Unfit`] if the messages, or this one, do not contain them.
     pub fn find(role: Role, path: &FieldPath, probe: &Probe<'_>) -> Result<Self, Unfit> {
         let mut layout = Self::default();
         match role {
@@ -98,7 +98,7 @@ impl Layout {
         self.wanted.len() - 1
     }
 
-    /// The stamps of the objects on the path, from the innermost to the message itself.
+    /// Finds the stamps of the objects on the path, from the innermost to the message itself.
     fn find_stamps(&mut self, path: &FieldPath, probe: &Probe<'_>) {
         let steps = path.steps();
         for count in (0..=steps.len()).rev() {
@@ -111,8 +111,8 @@ impl Layout {
         }
     }
 
-    /// An object with names and arrays, as `JointState`; or a path to the numbers themselves, the neighbours of which
-    /// are looked at too. The first of `members` has to be there.
+    /// Finds the numbers in an object with names and arrays, such as `JointState`, or at a path to the numbers themselves, whose neighbours are
+    /// searched too. The first of `members` must exist.
     fn cable_numbers(&mut self, path: &FieldPath, probe: &Probe<'_>, members: &[&str]) -> Result<(), Unfit> {
         let steps = path.steps();
         let is_direct = !path.is_empty() && probe.has_numbers(path.clone());
@@ -127,7 +127,7 @@ impl Layout {
             member.chain(selection.map(Step::Elements)).collect()
         };
         let first = if is_direct { path.clone() } else { field(members.first().copied().unwrap_or_default()) };
-        // Says what is wrong with the path, or which members there are instead.
+        // Reports what is wrong with the path, or which members exist instead.
         probe.require_numbers(&first)?;
         let names = field("name");
         if probe.has(Wanted::texts(names.clone()), FieldKind::Text) {
@@ -144,7 +144,7 @@ impl Layout {
         Ok(())
     }
 
-    /// Two vectors, coordinate by coordinate, under the first of several names that the messages have.
+    /// Finds two vectors, coordinate by coordinate, under the first of several names that the messages have.
     fn vectors(&mut self, path: &FieldPath, probe: &Probe<'_>, forms: &[Vectors]) -> Result<(), Unfit> {
         let first = |form: &Vectors| members(path, form.prefix).member(form.first).member("x");
         let form = forms.iter().find(|form| probe.require_numbers(&first(form)).is_ok());
@@ -165,7 +165,7 @@ fn members(path: &FieldPath, names: &[&str]) -> FieldPath {
     names.iter().fold(path.clone(), |path, name| path.member(name))
 }
 
-/// How a message may name two vectors.
+/// Possible names of two vectors in a message.
 struct Vectors {
     prefix: &'static [&'static str],
     first: &'static str,
@@ -173,7 +173,7 @@ struct Vectors {
     second_coordinates: &'static [&'static str],
 }
 
-/// Where an object may have its stamp.
+/// Possible locations of an object's stamp.
 pub(crate) const STAMPS: [&[&str]; 3] = [&["header", "stamp"], &["stamp"], &["timestamp"]];
 
 const QUATERNION: &[&str] = &["x", "y", "z", "w"];

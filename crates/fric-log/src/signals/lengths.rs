@@ -1,4 +1,4 @@
-//! Poses that are computed from the cable lengths, row by row.
+//! Poses computed from the cable lengths, row by row.
 
 use std::sync::Arc;
 
@@ -6,11 +6,11 @@ use fric_core::forward::{FEWEST_CABLES, NoPose, PoseFollower};
 use fric_core::robot::file::RobotFile;
 use fric_core::{CableInput, Pose};
 
-/// A residual beyond this share of the lengths (both rms) is told: lengths, or the geometry in the robot file, are off. At half, cables that sag or stretch by 0.05 % are told of; at
-/// double, 1 cm on one of eight cables of 1 m is not.
+/// Residual relative to the lengths (both rms) above which a warning says that the lengths, or the geometry in the robot file, are wrong. At half
+/// this value, cables that sag or stretch by 0.05 % cause a warning; at double, 1 cm on one of eight cables of 1 m does not.
 const TOLD_RATIO: f64 = 1e-3;
 
-/// The poses of rows that follow one another.
+/// The poses of consecutive rows.
 #[derive(Debug)]
 pub(super) struct PosesFromLengths {
     robot: Arc<RobotFile>,
@@ -18,16 +18,16 @@ pub(super) struct PosesFromLengths {
     pub summary: LengthPoses,
 }
 
-/// What became of the rows of a log whose poses come from the cable lengths.
+/// Statistics of a log's rows whose poses come from the cable lengths.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct LengthPoses {
     /// Rows with a pose.
     pub posed_count: u64,
-    /// Rows without, as fewer than six cables have a length there.
+    /// Rows without a pose because fewer than six cables have a length.
     pub too_few_count: u64,
-    /// Rows without, as no pose agrees with the lengths or the search for one came to no end.
+    /// Rows without a pose because no pose agrees with the lengths, or the search did not converge.
     pub apart_count: u64,
-    /// Rows without, as the lengths leave a direction of the pose open.
+    /// Rows without a pose because the lengths do not determine a direction.
     pub undetermined_count: u64,
     residual_squares_m2: f64,
     length_squares_m2: f64,
@@ -38,7 +38,7 @@ impl PosesFromLengths {
         Self { robot, follower: PoseFollower::default(), summary: LengthPoses::default() }
     }
 
-    /// The pose of the next row, `None` where its lengths give none. Rows before the part that is given out do not count.
+    /// Returns the pose of the next row, `None` if its lengths give none. Rows before the requested part are not counted.
     pub fn next_pose(&mut self, cables: &[CableInput], counts: bool) -> Option<Pose> {
         let found = self.follower.next_pose(&self.robot.params(), cables);
         if counts {
@@ -59,27 +59,27 @@ impl PosesFromLengths {
 }
 
 impl LengthPoses {
-    /// Rows without a pose.
+    /// Returns the number of rows without a pose.
     #[must_use]
     pub fn unposed_count(&self) -> u64 {
         self.too_few_count + self.apart_count + self.undetermined_count
     }
 
-    /// What the lengths are off at the poses, rms over cables and rows, m; `None` without a pose.
+    /// Returns the error of the lengths at the poses, rms over cables and rows, m; `None` without a pose.
     #[must_use]
     #[expect(clippy::cast_precision_loss, reason = "a count of rows")]
     pub fn residual_rms_m(&self) -> Option<f64> {
         (self.posed_count > 0).then(|| (self.residual_squares_m2 / self.posed_count as f64).sqrt())
     }
 
-    /// What there is to know, in words: the residual, and why rows have no pose.
+    /// Returns remarks in words: the residual, and why rows have no pose.
     #[must_use]
     pub fn remarks(&self) -> Vec<String> {
         let residual = self.residual_rms_m().map(|rms_m| format!("residual {:.3} mm rms", rms_m * 1e3));
         residual.into_iter().chain(self.lacks()).collect()
     }
 
-    /// What is not as it should be, in words, each with what to do.
+    /// Returns warnings in words, each with what to do.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let residual = self

@@ -1,17 +1,16 @@
-//! From messages to the robot's signals: what the cycle needs, joined on the time of the cable signals.
+//! Converts messages to the robot's signals: the inputs of the cycle, joined on the times of the cable signals.
 //!
-//! [`SignalReader`] takes a [`Log`](crate::log::Log) and the paths of the robot file and gives one
-//! [`Sample`](fric_core::Sample), a row, per cable message, as a stream: memory does not grow with the length of the log.
-//! Of CSV, the filled cells of a row are the messages, so that all that follows holds of it too.
+//! [`SignalReader`] takes a [`Log`](crate::log::Log) and the paths of the robot file and streams one [`Sample`](fric_core::Sample), a row, per cable
+//! message; memory does not grow with the length of the log. In CSV, the filled cells of a row act as messages, so everything below applies to it
+//! too.
 //!
 //! # Time
 //!
-//! A message's time is its `header.stamp` (else a `stamp` or `timestamp` beside the data, or nearer to the root), else
-//! (none, or zero) its log time. The rows have the times of the cable signal; pose, wrench, reference and, where they come
-//! on topics of their own, length and speed are interpolated linearly between the two messages around it; a message of
-//! the row's very time is passed bit by bit. Nothing is extrapolated past the first and the last message, nor bridged over
-//! a gap: an interval of more than ten times the longest usual one. Usual are the last 32 intervals, the longest eighth
-//! left out; the first eight are judged by one another.
+//! A message's time is its `header.stamp` (or a `stamp` or `timestamp` beside the data, or nearer to the root), else (if there is none, or it is
+//! zero) its log time. The rows have the times of the cable signal. Pose, wrench, reference and, if they have their own topics, length and speed are
+//! interpolated linearly between the two surrounding messages; a message with exactly the row's time is passed on unchanged. Values are neither
+//! extrapolated past the first and the last message nor interpolated over a gap: an interval of more than ten times the longest usual one. The usual
+//! ones are the last 32 intervals without the longest eighth; the first eight are judged by one another.
 //!
 //! | what a topic does | what is done | counted as |
 //! |---|---|---|
@@ -24,24 +23,23 @@
 //! | a message that does not agree with its schema, has not one number per name, or a name twice | it is left out | `undecodable_count` |
 //! | a message about other cables, or without what the path selects | it is left out | nothing |
 //!
-//! A row waits for the messages of other topics that come later in the log: for [`WAIT_NANOS`] of log time, and while no
-//! topic has more than [`WAITING_LIMIT`] messages waiting. What comes later still is as if it had not come. When several
-//! topics' clocks are set back together, each is followed when the rows get there, whichever notices first; once the cable
-//! signal's is known to be, one message of another topic is enough.
+//! A row waits for later messages of other topics: for [`WAIT_NANOS`] of log time, and while no topic has more than [`WAITING_LIMIT`] waiting
+//! messages. Messages that come even later are ignored. If the clocks of several topics are set back together, each topic follows when the rows reach
+//! that time, whichever is noticed first; once the step of the cable signal is known, one message of another topic suffices.
 //!
 //! # Numbers
 //!
-//! NaN and infinities pass through: the core flags them for the cable concerned. A cable that a message does not name is
-//! NaN in that row. A quaternion that is none, such as all zeros, gives no pose; the sign of a quaternion does not matter.
+//! NaN and infinities are passed on: the core flags them for the cable concerned. A cable that a message does not name is NaN in that row. An invalid
+//! quaternion, such as all zeros, gives no pose; the sign of a quaternion does not matter.
 //!
-//! Speed that a message does not have (an empty `velocity`, or NaN in it) is the derivative of the parabola through the lengths last
-//! known before, in, and first known after the row ([`KnownLength::speed_m_per_s`]), also over a gap.
+//! A missing speed (an empty `velocity`, or NaN in it) is the derivative of the parabola through the last known length before, the length in, and the
+//! first known length after the row ([`KnownLength::speed_m_per_s`]), even over a gap.
 //!
-//! A pose that is computed from the cable lengths ([`SignalPaths::with_pose_from_lengths`], [`fric_core::forward`]) is that of the lengths of each row; a row whose lengths
-//! give none has none.
+//! With a pose from the cable lengths ([`SignalPaths::with_pose_from_lengths`], [`fric_core::forward`]), each row has the pose of its own lengths; a
+//! row whose lengths give no pose has none.
 //!
-//! A reference that is known and not measured ([`SignalPaths::with_known_reference`]) is that of every cable in each row in
-//! which the cable has a sensor force; under a hanging mass only while the cable is in quiet motion.
+//! A known reference ([`SignalPaths::with_known_reference`]) applies to every cable in each row in which the cable has a sensor force; under a
+//! hanging mass only while the cable is in quiet motion.
 
 mod apart;
 mod channel;
@@ -75,15 +73,15 @@ use fric_core::robot::file::{ColumnTable, RobotFile};
 
 use crate::path::MessagePath;
 
-/// How long a row waits for messages of other topics, in log time.
+/// Maximum time that a row waits for messages of other topics, in log time.
 pub const WAIT_NANOS: u64 = 10_000_000_000;
-/// How many messages of a topic wait at most: for rows, or rows for them.
+/// Maximum number of waiting messages of a topic: for rows, or rows for them.
 pub const WAITING_LIMIT: usize = 16_384;
 
 /// The signals of a robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Role {
-    /// Sensor force, and length and speed unless they have paths of their own.
+    /// Sensor force, and length and speed unless they have their own paths.
     Cable,
     /// Cable length.
     Length,
@@ -93,15 +91,15 @@ pub enum Role {
     Reference,
     /// Pose of the platform.
     Pose,
-    /// Outside wrench on the platform.
+    /// External wrench on the platform.
     Wrench,
 }
 
 impl Role {
-    /// All of them.
+    /// All roles.
     pub const ALL: [Self; 6] = [Self::Cable, Self::Length, Self::Speed, Self::Reference, Self::Pose, Self::Wrench];
 
-    /// Its key under `[log]` in the robot file.
+    /// Returns its key under `[log]` in the robot file.
     #[must_use]
     pub const fn key(self) -> &'static str {
         match self {
@@ -115,7 +113,7 @@ impl Role {
     }
 }
 
-/// Where each signal is; `None` is a signal that is not looked for.
+/// The location of each signal; `None` for a signal that is not read.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SignalPaths {
     paths: [Option<MessagePath>; 6],
@@ -125,7 +123,7 @@ pub struct SignalPaths {
 }
 
 impl SignalPaths {
-    /// Sets the path of a role; that of the reference takes the place of a known one, that of the pose of one from the lengths.
+    /// Sets the path of a role. A path of the reference replaces a known one, a path of the pose replaces one from the lengths.
     #[must_use]
     pub fn with(mut self, role: Role, path: Option<MessagePath>) -> Self {
         self.paths[role as usize] = path;
@@ -138,68 +136,68 @@ impl SignalPaths {
         self
     }
 
-    /// Sets a reference that is known, in place of one in the log.
+    /// Sets a known reference, which replaces one in the log.
     #[must_use]
     pub fn with_known_reference(self, reference: KnownReference) -> Self {
         Self { known_reference: Some(reference), ..self.with(Role::Reference, None) }
     }
 
-    /// The reference that is known and not looked for in the log.
+    /// Returns the known reference, which is not read from the log.
     #[must_use]
     pub fn known_reference(&self) -> Option<KnownReference> {
         self.known_reference
     }
 
-    /// Has the pose computed from the cable lengths, by the geometry of this robot, in place of one in the log.
+    /// Lets the pose be computed from the cable lengths with the geometry of this robot, which replaces one in the log.
     #[must_use]
     pub fn with_pose_from_lengths(self, robot: Arc<RobotFile>) -> Self {
         Self { pose_robot: Some(robot), ..self.with(Role::Pose, None) }
     }
 
-    /// The robot by whose geometry the pose is computed from the cable lengths; `None` where it is looked for in the log.
+    /// Returns the robot with whose geometry the pose is computed from the cable lengths; `None` if it is read from the log.
     #[must_use]
     pub fn pose_robot(&self) -> Option<&Arc<RobotFile>> {
         self.pose_robot.as_ref()
     }
 
-    /// Sets the columns that a CSV log calls otherwise than by default, by the keys of `[log.columns]`.
+    /// Sets the columns of a CSV log whose names differ from the defaults, by the keys of `[log.columns]`.
     #[must_use]
     pub fn with_columns(self, columns: BTreeMap<String, ColumnTable>) -> Self {
         Self { columns, ..self }
     }
 
-    /// The columns that a CSV log calls otherwise than by default.
+    /// Returns the columns of a CSV log whose names differ from the defaults.
     #[must_use]
     pub fn columns(&self) -> &BTreeMap<String, ColumnTable> {
         &self.columns
     }
 
-    /// The path of a role.
+    /// Returns the path of a role.
     #[must_use]
     pub fn get(&self, role: Role) -> Option<&MessagePath> {
         self.paths[role as usize].as_ref()
     }
 }
 
-/// What was counted on one topic's way into the rows.
+/// Counts of one topic's messages.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct TrackCounts {
-    /// Messages used.
+    /// Used messages.
     pub message_count: u64,
-    /// Messages with the stamp of the one before, and nothing new.
+    /// Messages with the stamp of the one before and nothing new.
     pub duplicate_count: u64,
     /// Times at which messages named only some of the cables that the topic has named.
     pub partial_count: u64,
-    /// Single messages behind the time.
+    /// Single late messages.
     pub late_count: u64,
-    /// Times the clock was set back.
+    /// Number of times that the clock was set back.
     pub clock_step_count: u64,
-    /// Pauses.
+    /// Gaps.
     pub gap_count: u64,
-    /// Messages that could not be used.
+    /// Unusable messages.
     pub undecodable_count: u64,
     /// First and last stamp, in nanoseconds.
     pub stamps_nanos: Option<(i64, i64)>,
-    /// The usual interval (median of the last 32), in nanoseconds.
+    /// Usual interval (median of the last 32), in nanoseconds.
     pub interval_nanos: f64,
 }

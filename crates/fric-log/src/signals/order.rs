@@ -1,14 +1,14 @@
-//! Which cables the entries of a message are of: matched by name, never by place.
+//! Assigns the entries of a message to cables, by name and never by position.
 
 use crate::schema::Texts;
 
 use super::channel::Rejection;
 
-/// The order of a channel's messages, found anew whenever their names change.
+/// The order of a channel's messages, determined anew whenever their names change.
 #[derive(Debug, Default)]
 pub(super) struct Order {
     revision: Option<u64>,
-    /// For each entry of a message, the cable it is of.
+    /// For each entry of a message, its cable.
     cables: Vec<Option<usize>>,
     is_robots: bool,
     is_foreign: bool,
@@ -19,10 +19,10 @@ pub(super) struct Order {
 }
 
 impl Order {
-    /// Looks at a message's names; how many there are.
+    /// Processes a message's names and returns their number.
     ///
     /// # Errors
-    /// [`Rejection`] where none is the robot's, or one is there twice.
+    /// Returns a [`Rejection`] if none is the robot's, or one occurs twice.
     #[inline]
     pub fn update(&mut self, names: &Texts, cables: &[String]) -> Result<usize, Rejection> {
         if self.revision != Some(names.revision()) {
@@ -37,7 +37,7 @@ impl Order {
         }
     }
 
-    /// For each entry of a message, the cable it is of.
+    /// Returns the cable of each entry of a message.
     pub fn cables(&self) -> &[Option<usize>] {
         &self.cables
     }
@@ -47,13 +47,13 @@ impl Order {
         self.is_robots
     }
 
-    /// The cables that a message does not name, as bits; none where messages have no names. Cables past the 64th, which no
-    /// compensator takes, share a bit.
+    /// Returns the cables that a message does not name, as bits; none if messages have no names. Cables past the 64th, which no compensator supports,
+    /// share a bit.
     pub fn missing_cables(&self) -> u64 {
         self.missing_cables
     }
 
-    /// What is named instead of the robot's cables.
+    /// Describes the names that are not the robot's cables.
     pub fn describe(&self, cables: &[String]) -> String {
         let found = if self.names.is_empty() { "nothing at all".to_owned() } else { self.names.join(", ") };
         format!("it names none of the robot's cables ({}), but {found}", cables.join(", "))

@@ -1,13 +1,13 @@
-//! How fast a topic's messages follow one another, and which of its intervals are gaps.
+//! The rate of a topic's messages, and the detection of gaps.
 
-/// An interval of so many usual ones is a gap.
+/// A gap is longer than this many usual intervals.
 const GAP_RATIO: i64 = 10;
-/// So many intervals are looked at.
+/// Number of intervals considered.
 const WINDOW: usize = 32;
-/// The usual interval is taken anew after so many messages.
+/// The usual interval is updated after this many messages.
 const STRIDE: usize = 8;
 
-/// The intervals of late, and what is usual among them.
+/// The recent intervals and their usual value.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Pace {
     recent_nanos: [i64; WINDOW],
@@ -17,7 +17,7 @@ pub(super) struct Pace {
 }
 
 impl Pace {
-    /// Adds an interval; whether what is usual was found anew.
+    /// Adds an interval. Returns whether the usual interval was updated.
     pub fn add(&mut self, interval_nanos: i64) -> bool {
         if let Some(place) = self.recent_nanos.get_mut(self.count % WINDOW) {
             *place = interval_nanos;
@@ -30,26 +30,26 @@ impl Pace {
         is_due
     }
 
-    /// Whether enough intervals have been seen to tell a gap.
+    /// Whether enough intervals have been seen to detect a gap.
     pub const fn is_settled(&self) -> bool {
         self.count >= STRIDE
     }
 
-    /// Whether an interval is longer than ten of those that are usual.
+    /// Whether an interval is longer than ten usual ones.
     ///
-    /// Usual are the last 32, the longest eighth of them left out (one at least, if there is another): neither a bad
-    /// start nor single pauses count, while messages that come in bursts have the pause between bursts as usual.
+    /// The usual ones are the last 32 without the longest eighth (at least one, if there is another). So neither a bad start nor single pauses count,
+    /// while messages in bursts have the pause between bursts as their usual interval.
     pub const fn is_gap(&self, interval_nanos: i64) -> bool {
         interval_nanos > self.longest_usual_nanos.saturating_mul(GAP_RATIO)
     }
 
-    /// How many of the intervals before the pace was settled are gaps.
+    /// Returns the number of gaps among the intervals before the pace was settled.
     pub fn early_gap_count(&self) -> u64 {
         let early = self.recent_nanos.iter().take(self.count.min(STRIDE));
         early.map(|interval| u64::from(self.is_gap(*interval))).sum()
     }
 
-    /// The middle one of the last 32 intervals.
+    /// Returns the median of the last 32 intervals.
     pub const fn median_nanos(&self) -> i64 {
         self.median_nanos
     }

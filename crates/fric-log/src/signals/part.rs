@@ -2,19 +2,19 @@
 
 use super::TrackCounts;
 
-/// Which rows of a log are given out: from a time on and before another, seconds after the first row.
+/// The part of a log to deliver: from one time up to another, seconds after the first row.
 ///
-/// All that comes before is read all the same, so that rows are what they are in the whole log: speeds that are derived,
-/// values that are interpolated. What comes after is not.
+/// Everything before it is read all the same, so that rows are the same as in the whole log: derived speeds, interpolated values. Everything after it
+/// is not read.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Part {
-    /// The first second of it; from the first row on if `None`.
+    /// Start of the part; the first row if `None`.
     pub start_s: Option<f64>,
-    /// Where it ends, itself not within; with the log if `None`.
+    /// End of the part, exclusive; the end of the log if `None`.
     pub end_s: Option<f64>,
 }
 
-/// Where a row is.
+/// The position of a row relative to the part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Side {
     Before,
@@ -22,7 +22,7 @@ pub(super) enum Side {
     After,
 }
 
-/// The part that is given out, and how far the log has come.
+/// The part to deliver, and the progress of the log.
 #[derive(Debug, Default)]
 pub(super) struct Progress {
     pub part: Part,
@@ -31,12 +31,12 @@ pub(super) struct Progress {
     pub last_s: f64,
     pub has_begun: bool,
     pub is_over: bool,
-    /// By role, what had been counted before the part began.
+    /// The counts before the part began, by role.
     pub before: [TrackCounts; 6],
 }
 
 impl Progress {
-    /// Where a row is; rows come one after the other.
+    /// Returns the position of a row; rows must come in order.
     pub fn side(&mut self, stamp_nanos: i64) -> Side {
         let first_nanos = *self.first_nanos.get_or_insert(stamp_nanos);
         #[expect(clippy::cast_precision_loss, reason = "as the times of a log are given in seconds")]
@@ -50,7 +50,7 @@ impl Progress {
 }
 
 impl TrackCounts {
-    /// What has been counted since.
+    /// Returns the counts since then.
     pub(super) fn since(&self, before: &Self) -> Self {
         Self {
             message_count: self.message_count.saturating_sub(before.message_count),

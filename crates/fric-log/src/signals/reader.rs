@@ -33,7 +33,7 @@ use crate::recording::Message;
 pub struct SignalReader {
     log: Log,
     topics: Topics,
-    /// By channel.
+    /// Roles by channel.
     channels: Vec<Option<ChannelRoles>>,
     tracks: Tracks,
     is_ended: bool,
@@ -46,9 +46,9 @@ pub struct SignalReader {
     speeds: SpeedRows,
     /// Rows that wait for the acceleration of a hanging mass.
     hanging: Option<HangingRows>,
-    /// Computes the poses, where they come from the lengths.
+    /// Computes the poses, if they come from the lengths.
     length_poses: Option<PosesFromLengths>,
-    /// The part that is given out.
+    /// The part to deliver.
     progress: Progress,
 }
 
@@ -56,7 +56,7 @@ pub struct SignalReader {
 #[derive(Debug, Default)]
 struct Tracks {
     cable: Track,
-    /// Of all roles but the cable signal, in their order.
+    /// Tracks of all roles except the cable signal, in order.
     others: [Track; 5],
 }
 
@@ -72,36 +72,36 @@ impl Tracks {
     }
 }
 
-/// What is looked for, and what was wrong with it.
+/// The wanted topics, and their problems.
 #[derive(Debug)]
 struct Topics {
     paths: SignalPaths,
     cable_names: Vec<String>,
-    /// By role: whether rows wait for it. Not if it is not looked for, or its type has not got it.
+    /// By role: whether rows wait for it. They do not if it is not wanted, or its type lacks it.
     is_awaited: [bool; 6],
     has_cable_messages: bool,
     /// By role: whether any message has a stamp.
     is_stamped: [bool; 6],
-    /// By role: what is wrong with the first message that cannot be used.
+    /// By role: the problem of the first unusable message.
     first_problem: [Option<String>; 6],
-    /// By role: what the first message is about that is not about the robot.
+    /// By role: the content of the first message that does not concern the robot.
     first_foreign: [Option<String>; 6],
 }
 
-/// Who reads a channel.
+/// The readers of a channel.
 #[derive(Debug, Default)]
 struct ChannelRoles {
     readers: Vec<ChannelReader>,
-    /// Roles whose fields could not be found in the messages so far, but may be in others.
+    /// Roles whose fields were not found in the messages so far, but may be in others.
     open: Vec<Role>,
 }
 
 impl SignalReader {
-    /// Rows of a log for a robot with cables of these names.
+    /// Creates a reader for a robot with cables of these names.
     #[must_use]
     pub fn new(log: impl Into<Log>, paths: SignalPaths, cable_names: &[impl AsRef<str>]) -> Self {
         let log = log.into();
-        // Rows of a table bring lengths and speeds beside the forces.
+        // Rows of a table contain lengths and speeds with the forces.
         let is_table = log.column_names().is_some();
         let paths = if is_table { paths.with(Role::Length, None).with(Role::Speed, None) } else { paths };
         let topics = Topics {
@@ -135,20 +135,20 @@ impl SignalReader {
         }
     }
 
-    /// Gives out a part of the log only.
+    /// Restricts the rows to a part of the log.
     #[must_use]
     pub fn within(mut self, part: Part) -> Self {
         self.progress.part = part;
         self
     }
 
-    /// The log, for its damage and its progress.
+    /// Returns the log, for its damage and its progress.
     #[must_use]
     pub fn log(&self) -> &Log {
         &self.log
     }
 
-    /// Where a signal is looked for, for people: its topic or path, or the columns of a table; `None` if it is not.
+    /// Returns the location of a signal for people: its topic or path, or the columns of a table; `None` if it is not read.
     #[must_use]
     pub fn place(&self, role: Role) -> Option<String> {
         const SHOWN: usize = 3;
@@ -162,26 +162,26 @@ impl SignalReader {
         })
     }
 
-    /// Where the signals are looked for.
+    /// Returns the locations of the signals.
     #[must_use]
     pub fn paths(&self) -> &SignalPaths {
         &self.topics.paths
     }
 
-    /// What has been counted for a role so far, since the part began; stamps and interval are those of all that was read.
+    /// Returns the counts of a role since the part began; stamps and interval cover everything read.
     #[must_use]
     pub fn counts(&self, role: Role) -> TrackCounts {
         self.tracks.get(role).counts().since(&self.progress.before[role as usize])
     }
 
-    /// What became of poses from the cable lengths so far, since the part began; `None` where the pose is looked for in the log.
+    /// Returns the statistics of poses from the cable lengths since the part began; `None` if the pose is read from the log.
     #[must_use]
     pub fn length_poses(&self) -> Option<LengthPoses> {
         self.length_poses.as_ref().map(|poses| poses.summary)
     }
 
-    /// What was wrong with the first message of a role that could not be used. If none could be as none was about the
-    /// robot: what the first one was about.
+    /// Returns the problem of the first unusable message of a role. If none is usable because none concerns the robot, returns the content of the
+    /// first one.
     #[must_use]
     pub fn first_problem(&self, role: Role) -> Option<&str> {
         let foreign = self.topics.first_foreign[role as usize].as_deref();
@@ -194,10 +194,10 @@ impl SignalReader {
         self.topics.is_stamped[role as usize]
     }
 
-    /// The next row; `None` at the end of the log.
+    /// Returns the next row; `None` at the end of the log.
     ///
     /// # Errors
-    /// [`SignalError`] where the recording cannot be read on, or has no usable cable signal.
+    /// Returns a [`SignalError`] if the recording cannot be read on, or has no usable cable signal.
     pub fn next_row(&mut self) -> Result<Option<Sample<'_>>, SignalError> {
         while !self.progress.is_over {
             let Some(stamp_nanos) = self.make_row()? else {
@@ -205,7 +205,7 @@ impl SignalReader {
                 break;
             };
             match self.progress.side(stamp_nanos) {
-                // Only a row that is taken out makes room for the next, and poses follow one another.
+                // Only taking a row makes room for the next, and poses need every row.
                 Side::Before => drop(self.take_row(false)),
                 Side::After => self.progress.is_over = true,
                 Side::Within => {
@@ -223,7 +223,7 @@ impl SignalReader {
         Err(SignalError::NothingInPart { part, last_s })
     }
 
-    /// The row that was made, with the pose that its lengths have, if it is to be that.
+    /// Returns the prepared row, with the pose from its lengths if requested.
     fn take_row(&mut self, counts: bool) -> Option<Sample<'_>> {
         let row = match &mut self.hanging {
             Some(hanging) => hanging.pop(),
@@ -235,7 +235,7 @@ impl SignalReader {
         }
     }
 
-    /// Makes the next row, in the buffer or in front of those that hang; its time, `None` at the end of the log.
+    /// Prepares the next row, in the buffer or in front of the hanging ones. Returns its time, `None` at the end of the log.
     fn make_row(&mut self) -> Result<Option<i64>, SignalError> {
         let Some(mut hanging) = self.hanging.take() else {
             return Ok(self.next_with_speeds()?.then_some(self.buffer.row.stamp_nanos));
@@ -250,7 +250,7 @@ impl SignalReader {
         outcome.map(|()| hanging.next_stamp_nanos())
     }
 
-    /// Puts the next row, with its speeds, into the buffer; false at the end of the log.
+    /// Puts the next row, with its speeds, into the buffer. Returns false at the end of the log.
     fn next_with_speeds(&mut self) -> Result<bool, SignalError> {
         if !self.buffer.derives_speed() {
             return self.join_row();
@@ -270,7 +270,7 @@ impl SignalReader {
         Ok(has_row)
     }
 
-    /// Joins the next row; false at the end of the log.
+    /// Joins the next row. Returns false at the end of the log.
     fn join_row(&mut self) -> Result<bool, SignalError> {
         while !self.is_ready() {
             if self.is_ended {
@@ -292,7 +292,7 @@ impl SignalReader {
         Ok(true)
     }
 
-    /// Whether the oldest cable sample has all that it can get.
+    /// Whether the oldest cable sample is final.
     fn is_ready(&self) -> bool {
         let Tracks { cable, others } = &self.tracks;
         let Some(oldest) = cable.samples().front() else { return false };
@@ -301,7 +301,7 @@ impl SignalReader {
         }
         let awaited = self.topics.is_awaited.iter().skip(1);
         let mut tracks = others.iter().zip(awaited);
-        // Messages of the same time may name the cables that are missing.
+        // Messages of the same time may name the missing cables.
         let is_whole = oldest.missing_cables == 0 || cable.samples().len() > 1;
         is_whole && tracks.all(|(track, is_awaited)| !is_awaited || track.has_reached(oldest.stamp_nanos))
             || self.log_time_nanos.saturating_sub(oldest.log_time_nanos) >= WAIT_NANOS
@@ -309,7 +309,7 @@ impl SignalReader {
             || others.iter().any(|track| track.samples().len() >= WAITING_LIMIT)
     }
 
-    /// Takes in what comes next of the log: a message, or a row of a table.
+    /// Reads the next item of the log: a message, or a row of a table.
     fn read_next(&mut self) -> Result<(), SignalError> {
         if matches!(self.log.content, Content::Csv(_)) { self.read_table_row() } else { self.read_message() }
     }
@@ -327,7 +327,7 @@ impl SignalReader {
             return Ok(());
         };
         let stamp_nanos = row.stamp_nanos;
-        // A table has no log time of its own: what counts is how long a row waits.
+        // A table has no log time of its own; only the waiting time of a row matters.
         let start_nanos = *self.table_start_nanos.get_or_insert(stamp_nanos);
         let log_time_nanos = u64::try_from(stamp_nanos.saturating_sub(start_nanos)).unwrap_or(0);
         self.log_time_nanos = self.log_time_nanos.max(log_time_nanos);
@@ -386,13 +386,13 @@ impl SignalReader {
         Ok(())
     }
 
-    /// The rows of the time before a clock step are out: all goes on in the new time.
+    /// Switches to the new time when the rows before a clock step are done.
     fn follow_cable_step(&mut self, old_nanos: i64) {
         let Tracks { cable, others } = &mut self.tracks;
         cable.follow_step();
         let Some(new_nanos) = cable.samples().back().map(|sample| sample.stamp_nanos) else { return };
         for track in others.iter_mut().filter(|track| !track.is_stepped()) {
-            // Those that have not noticed yet would hide what is to come.
+            // Topics that have not noticed the step yet would hide later messages.
             let newest = track.samples().back().map(|sample| sample.stamp_nanos);
             if newest.is_some_and(|newest| newest.abs_diff(old_nanos) < newest.abs_diff(new_nanos)) {
                 track.expect_step();
@@ -425,7 +425,7 @@ impl SignalReader {
     }
 }
 
-/// How the columns of a signal are called where the robot file says nothing.
+/// Returns the default column names of a signal.
 fn default_columns(role: Role) -> &'static str {
     match role {
         Role::Cable | Role::Length | Role::Speed => "NAME.force_n, NAME.length_m",
@@ -436,7 +436,7 @@ fn default_columns(role: Role) -> &'static str {
 }
 
 impl Topics {
-    /// The roles that are looked for on a topic.
+    /// Returns the roles of a topic.
     fn roles_of(&self, topic: &str) -> ChannelRoles {
         let roles = Role::ALL.into_iter();
         let open = roles.filter(|role| self.paths.get(*role).is_some_and(|path| path.topic == topic)).collect();

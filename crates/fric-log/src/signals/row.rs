@@ -1,4 +1,4 @@
-//! The row given out: the signals of one time, put together from the tracks.
+//! The delivered row: the signals of one time, combined from the tracks.
 
 use fric_core::{KnownReference, Pose, Wrench};
 
@@ -6,20 +6,20 @@ use super::track::{Around, Track, Tracked};
 use super::waiting::Row;
 use super::{Role, SignalPaths};
 
-/// The row given out, and what it takes to put the next one together.
+/// The delivered row, with the buffers for the next one.
 #[derive(Debug)]
 pub(super) struct RowBuffer {
     pub row: Row,
     has_length_path: bool,
     has_speed_path: bool,
-    /// The reference of every cable, where it is the same all the time.
+    /// The constant reference of every cable, if there is one.
     constant_n: Option<f64>,
-    /// Room for lengths and speeds of their own topics.
+    /// Buffer for lengths and speeds with their own topics.
     numbers: Vec<f64>,
     poses: [KnownPose; 2],
 }
 
-/// The pose of a sample of the pose track; number 0 is no sample.
+/// The pose of a sample of the pose track; number 0 means no sample.
 #[derive(Debug, Clone, Copy, Default)]
 struct KnownPose {
     number: u64,
@@ -41,12 +41,12 @@ impl RowBuffer {
         }
     }
 
-    /// Whether speeds that a message does not have come from the lengths.
+    /// Whether missing speeds are derived from the lengths.
     pub fn derives_speed(&self) -> bool {
         !self.has_speed_path
     }
 
-    /// The row of a cable sample; `others` are the tracks of the other roles, advanced to its time.
+    /// Fills the row of a cable sample; `others` are the tracks of the other roles, advanced to its time.
     pub fn fill(&mut self, sample: &Tracked, others: &[Track; 5]) {
         let [length, speed, reference, pose, wrench] = others;
         self.row.stamp_nanos = sample.stamp_nanos;
@@ -99,7 +99,7 @@ impl RowBuffer {
         Some(before.interpolate(&self.pose_of(around.after)?, around.ratio))
     }
 
-    /// The pose of a sample, normalised once: rows are often more frequent than poses.
+    /// Returns the pose of a sample, normalised once, because rows are often more frequent than poses.
     fn pose_of(&mut self, sample: &Tracked) -> Option<Pose> {
         let [older, newer] = &mut self.poses;
         if newer.number == sample.number {
@@ -117,7 +117,7 @@ impl RowBuffer {
     }
 }
 
-/// The values of a track at a time, NaN where there are none.
+/// Returns the values of a track at a time, NaN if there are none.
 fn interpolate(track: &Track, stamp_nanos: i64, out: &mut [f64]) {
     match track.around(stamp_nanos) {
         Some(around) => around.interpolate(out),

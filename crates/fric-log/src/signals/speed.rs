@@ -1,32 +1,32 @@
-//! Speed where none is measured.
+//! Derives the speed if it is not measured.
 //!
-//! The derivative, at the row's time, of the parabola through the lengths before, in and after the row. It does not lag: the change
-//! since the row before would be the speed of half a cycle ago, and with it viscous friction and what the pulleys take to be
-//! accelerated would be too late. A control loop that has no speed of its own has to live with that lag; a log has not.
+//! It is the derivative, at the row's time, of the parabola through the lengths before, in and after the row, and has no lag. The difference to the
+//! previous row would be the speed of half a cycle ago, which would delay viscous friction and the acceleration of the pulleys. A control loop
+//! without a measured speed has this lag; a log need not.
 
 use std::collections::VecDeque;
 use std::ops::Range;
 
 use super::waiting::Row;
 
-/// A length of a cable that is known, and when.
+/// A known length of a cable, and its time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct KnownLength {
     /// Nanoseconds since 1970.
     pub stamp_nanos: i64,
-    /// m.
+    /// Length, m.
     pub length_m: f64,
 }
 
 impl KnownLength {
-    /// `None` where the length is not finite.
+    /// Creates a known length; `None` if it is not finite.
     #[must_use]
     pub fn new(stamp_nanos: i64, length_m: f64) -> Option<Self> {
         length_m.is_finite().then_some(Self { stamp_nanos, length_m })
     }
 
-    /// Speed at this time by the lengths that were known before and after; by one of them where the other is not known, 0 by none. One that
-    /// is not earlier, or not later, counts as not known.
+    /// Returns the speed at this time from the known lengths before and after; from one of them if the other is unknown, 0 from none. A length that
+    /// is not earlier, or not later, counts as unknown.
     ///
     /// ```
     /// use fric_log::signals::KnownLength;
@@ -50,7 +50,7 @@ impl KnownLength {
         }
     }
 
-    /// The time to a later one, and the change of length by that time.
+    /// Returns the time to a later length, and the change of length.
     fn change_to(self, later: Self) -> Option<(f64, f64)> {
         #[expect(clippy::cast_precision_loss, reason = "an interval between rows")]
         let interval_s = later.stamp_nanos.saturating_sub(self.stamp_nanos) as f64 * 1e-9;
@@ -58,14 +58,13 @@ impl KnownLength {
     }
 }
 
-/// Rows on their way to their speeds.
+/// Rows that wait for their speeds.
 ///
-/// The next length of a cable is looked for in as many rows as there are cables: where each has messages of its own, it
-/// comes within them.
+/// The next length of a cable is searched in as many rows as there are cables: if each has its own messages, it is among them.
 #[derive(Debug)]
 pub(super) struct SpeedRows {
     rows: VecDeque<Row>,
-    /// By cable: what was known before the row in front.
+    /// By cable: the known length before the front row.
     before: Vec<Option<KnownLength>>,
     is_ended: bool,
 }
@@ -75,7 +74,7 @@ impl SpeedRows {
         Self { rows: VecDeque::new(), before: vec![None; cable_count], is_ended: false }
     }
 
-    /// Whether the row that follows has all its speeds and none waits before it: it need not be taken in.
+    /// Whether the next row has all its speeds and none waits before it, so that it need not be stored.
     pub fn passes(&mut self, row: &Row) -> bool {
         if !self.rows.is_empty() || self.cables().any(|cable| row.lacks_speed(cable)) {
             return false;
@@ -86,23 +85,23 @@ impl SpeedRows {
         true
     }
 
-    /// Takes in the row that follows.
+    /// Adds the next row.
     pub fn push(&mut self, row: Row) {
         self.rows.push_back(row);
     }
 
-    /// No row follows.
+    /// Marks the end: no row follows.
     pub fn end(&mut self) {
         self.is_ended = true;
     }
 
-    /// Whether the row in front has all it can get, or there is none to wait for.
+    /// Whether the front row is final, or there is none to wait for.
     pub fn is_ready(&self) -> bool {
         let has_all = |row: &Row| self.cables().all(|cable| !row.lacks_speed(cable) || self.after(cable).is_some());
         self.is_ended || self.rows.len() > self.before.len() || self.rows.front().is_some_and(has_all)
     }
 
-    /// The row in front; `None` after the last.
+    /// Returns the front row; `None` after the last.
     pub fn pop(&mut self) -> Option<Row> {
         let after: Vec<Option<KnownLength>> = self.cables().map(|cable| self.after(cable)).collect();
         let mut row = self.rows.pop_front()?;
@@ -123,7 +122,7 @@ impl SpeedRows {
         0..self.before.len()
     }
 
-    /// The next length of a cable after the row in front.
+    /// Returns the next length of a cable after the front row.
     fn after(&self, cable: usize) -> Option<KnownLength> {
         self.rows.iter().skip(1).find_map(|row| row.known_length(cable))
     }

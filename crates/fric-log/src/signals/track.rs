@@ -1,28 +1,28 @@
-//! One signal over time: stamps put in order, values between them interpolated.
+//! One signal over time: sorts stamps and interpolates values between them.
 //!
-//! A track holds the samples that rows may still need. When its clock is set back, those since then are kept apart until
-//! the rows get there too: a topic may notice earlier or later than the cable signal does.
+//! A track holds the samples that rows may still need. When its clock is set back, later samples are kept apart until the rows reach that time too: a
+//! topic may notice the step earlier or later than the cable signal.
 
 use std::collections::VecDeque;
 
 use super::pace::Pace;
 use super::{TrackCounts, WAITING_LIMIT};
 
-/// So many messages in a row that go on from an earlier time are a clock that was set back, not late messages.
+/// This many consecutive messages that continue from an earlier time mean that the clock was set back; fewer are late messages.
 pub const CLOCK_STEP_MESSAGES: usize = 8;
 
-/// A stamp and what was measured then.
+/// A stamp and the values measured then.
 #[derive(Debug, Default)]
 pub(super) struct Tracked {
     pub stamp_nanos: i64,
-    /// When it was recorded.
+    /// Time of recording.
     pub log_time_nanos: u64,
-    /// Which of the track's samples it is.
+    /// Number of the sample in the track.
     pub number: u64,
     pub values: Vec<f64>,
     /// The cables that no message of this time has named yet, as bits.
     pub missing_cables: u64,
-    /// Whether more than a usual interval lies before it.
+    /// Whether more than a usual interval precedes it.
     after_gap: bool,
 }
 
@@ -33,13 +33,13 @@ pub(super) struct Track {
     /// Samples since the clock was set back, until the rows follow.
     ahead: VecDeque<Tracked>,
     is_stepped: bool,
-    /// Samples behind the time, until it is clear what they are.
+    /// Samples with earlier stamps, until their cause is clear.
     suspects: VecDeque<Tracked>,
-    /// For so many more messages the cable signal's clock step makes this topic's likely.
+    /// Number of messages during which the cable signal's clock step makes this topic's likely.
     expecting: usize,
     spare: Vec<Vec<f64>>,
     last_nanos: Option<i64>,
-    /// Rows up to this time have all that they can get.
+    /// Rows up to this time are final for this track.
     reached_nanos: Option<i64>,
     pace: Pace,
     counts: TrackCounts,
@@ -56,12 +56,12 @@ impl Track {
         self.counts.undecodable_count += 1;
     }
 
-    /// The samples of the time in which the rows are.
+    /// Returns the samples of the rows' present time base.
     pub fn samples(&self) -> &VecDeque<Tracked> {
         &self.samples
     }
 
-    /// Takes in a sample without the cables missing (as bits); `fill` writes its values into an empty vector.
+    /// Adds a sample without the missing cables (as bits); `fill` writes its values into an empty vector.
     pub fn push(
         &mut self,
         stamp_nanos: i64,
@@ -78,7 +78,7 @@ impl Track {
                 self.complete(stamp_nanos, missing_cables, fill);
                 return;
             }
-            // Suspects that this one does not go on from are no clock.
+            // If this sample does not continue from the suspects, they are no clock step.
             if suspected_nanos > Some(stamp_nanos) {
                 self.drop_suspects(stamp_nanos);
             }
@@ -98,12 +98,12 @@ impl Track {
         }
     }
 
-    /// What is left at the end of the log: single stragglers.
+    /// Counts the remaining suspects at the end of the log as late messages.
     pub fn finish(&mut self) {
         self.drop_suspects(i64::MIN);
     }
 
-    /// Takes in a message of the time of the newest sample or suspect: of the cables that were missing there.
+    /// Merges a message with the time of the newest sample or suspect: it contains cables that were missing there.
     #[cold]
     fn complete(&mut self, stamp_nanos: i64, missing_cables: u64, fill: impl FnOnce(&mut Vec<f64>)) {
         let accepted = if self.is_stepped { &mut self.ahead } else { &mut self.samples };
@@ -170,7 +170,7 @@ impl Track {
         }
     }
 
-    /// The first intervals are judged by one another.
+    /// Judges the first intervals by one another.
     #[cold]
     fn judge_early_intervals(&mut self) {
         self.counts.gap_count = self.pace.early_gap_count();
@@ -198,12 +198,12 @@ impl Track {
         self.suspects = suspects;
     }
 
-    /// Whether the clock was set back and the rows have not followed.
+    /// Whether the clock was set back and the rows have not followed yet.
     pub fn is_stepped(&self) -> bool {
         self.is_stepped
     }
 
-    /// Goes on in the new time; what is left of the one before is forgotten.
+    /// Switches to the new time and discards the rest of the old one.
     pub fn follow_step(&mut self) {
         self.clear();
         self.is_stepped = false;
@@ -214,7 +214,7 @@ impl Track {
         self.reach(newest_nanos);
     }
 
-    /// The cable signal's clock was set back, so that this one's will have been: one message is enough to tell.
+    /// Expects a clock step because the cable signal had one; one message then suffices to detect it.
     pub fn expect_step(&mut self) {
         self.clear();
         self.expecting = CLOCK_STEP_MESSAGES;
@@ -223,13 +223,13 @@ impl Track {
         }
     }
 
-    /// Forgets the samples of the time in which the rows are.
+    /// Discards the samples of the rows' present time base.
     fn clear(&mut self) {
         self.reached_nanos = None;
         self.spare.extend(self.samples.drain(..).map(|sample| sample.values));
     }
 
-    /// Nothing is kept for rows that may never come.
+    /// Limits the samples kept for rows that may never come.
     #[cold]
     fn keep_within_limit(&mut self) {
         if self.samples.len() > WAITING_LIMIT {
@@ -249,24 +249,24 @@ impl Track {
         }
     }
 
-    /// Takes out the oldest sample.
+    /// Removes and returns the oldest sample.
     pub fn pop(&mut self) -> Option<Tracked> {
         self.samples.pop_front()
     }
 
-    /// Gives a sample's memory back.
+    /// Takes a sample's memory for reuse.
     pub fn recycle(&mut self, sample: Tracked) {
         self.spare.push(sample.values);
     }
 
-    /// Whether all is there that a row of this time can get.
+    /// Whether everything is available that a row of this time can get.
     #[inline]
     pub fn has_reached(&self, stamp_nanos: i64) -> bool {
         self.reached_nanos >= Some(stamp_nanos)
     }
 
-    /// Gets ready for the row of a time: follows a clock step if the time is rather after it, and forgets all but the
-    /// last sample at or before the time.
+    /// Prepares for the row of a time: follows a clock step if the time rather belongs after it, and discards all but the last sample at or before
+    /// the time.
     pub fn advance(&mut self, stamp_nanos: i64) {
         while self.samples.get(1).is_some_and(|next| next.stamp_nanos <= stamp_nanos) {
             self.spare.extend(self.samples.pop_front().map(|sample| sample.values));
@@ -290,7 +290,7 @@ impl Track {
         ahead < distance(self.samples.front()).min(distance(self.samples.get(1)))
     }
 
-    /// The samples around a time and the share of the way between them; `None` outside the samples and in gaps.
+    /// Returns the samples around a time and the interpolation ratio between them; `None` outside the samples and in gaps.
     ///
     /// Call [`advance`](Self::advance) with the same time first.
     pub fn around(&self, stamp_nanos: i64) -> Option<Around<'_>> {
@@ -311,15 +311,15 @@ impl Track {
 pub(super) struct Around<'a> {
     pub before: &'a Tracked,
     pub after: &'a Tracked,
-    /// Share of the way; 0 where the sample before has this very time.
+    /// Interpolation ratio; 0 if the sample before has exactly this time.
     pub ratio: f64,
 }
 
 impl Around<'_> {
-    /// The values at the time, as many as there is room for; a sample's own values are passed bit by bit.
+    /// Writes the values at the time, as many as `out` holds; a sample's own values are passed on unchanged.
     pub fn interpolate(&self, out: &mut [f64]) {
         let Self { before, after, ratio } = self;
-        // Without the difference a NaN in a message not needed would spoil the number.
+        // Without this distinction a NaN in the unused message would spoil the number.
         if *ratio == 0.0 {
             for (place, value) in out.iter_mut().zip(&before.values) {
                 *place = *value;

@@ -1,4 +1,4 @@
-//! The signals of one time, as what has to wait for later ones keeps them.
+//! The signals of one time, as stored while a row waits for later ones.
 
 use fric_core::{CableInput, Pose, Sample, Wrench};
 
@@ -33,12 +33,12 @@ impl Row {
         }
     }
 
-    /// The length of a cable.
+    /// Returns the length of a cable.
     pub fn known_length(&self, cable: usize) -> Option<KnownLength> {
         KnownLength::new(self.stamp_nanos, self.cables.get(cable)?.length_m)
     }
 
-    /// Whether a cable has a length and no speed.
+    /// Whether a cable has a length but no speed.
     pub fn lacks_speed(&self, cable: usize) -> bool {
         self.cables.get(cable).is_some_and(|cable| cable.speed_m_per_s.is_nan() && cable.length_m.is_finite())
     }

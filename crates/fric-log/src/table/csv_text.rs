@@ -7,10 +7,9 @@ use csv::{ErrorKind, ReaderBuilder, StringRecord, Trim};
 
 use super::{NumberTable, TableError};
 
-/// Reads all columns. Blanks around cells and a byte order mark do not matter.
+/// Reads all columns. Blanks around cells and a byte order mark are ignored.
 ///
-/// A last row without a line end is left out, with a warning, even where it has all its cells: what is missing of the last
-/// number cannot be seen.
+/// A last row without a line end is left out, with a warning, even if it has all its cells, because its last number may be incomplete.
 pub(super) fn read(path: &Path) -> Result<NumberTable, TableError> {
     let refused = |error: csv::Error| refusal(path, error);
     let text = fs::read(path).map_err(|source| TableError::File { path: path.to_owned(), source })?;
@@ -42,7 +41,7 @@ pub(super) fn read(path: &Path) -> Result<NumberTable, TableError> {
     Ok(NumberTable { columns, warnings: is_cut.then(warning).into_iter().collect() })
 }
 
-/// The header and the lines that have their end, and whether there was something behind them.
+/// Returns the header and the complete lines, and whether anything followed them.
 fn whole_lines(text: &[u8]) -> (&[u8], bool) {
     let end = text.iter().rposition(|byte| matches!(byte, b'\n' | b'\r'));
     match end.and_then(|end| text.split_at_checked(end + 1)) {
@@ -77,7 +76,7 @@ fn refusal(path: &Path, error: csv::Error) -> TableError {
         ErrorKind::UnequalLengths { expected_len, len, .. } => {
             TableError::Length { path, line, found: len, expected: expected_len }
         }
-        // Text that is no UTF-8; nothing is deserialised or sought.
+        // The text is not UTF-8; nothing is deserialised or sought.
         _ => TableError::NotText { path, line },
     }
 }

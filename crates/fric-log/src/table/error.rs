@@ -1,4 +1,4 @@
-//! What can be wrong with a table.
+//! Errors of tables.
 
 use std::io;
 use std::path::PathBuf;
@@ -8,25 +8,25 @@ use thiserror::Error;
 use crate::recording::RecordingError;
 use crate::schema::SchemaError;
 
-/// Why a table was refused.
+/// The reason why a table was refused.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum TableError {
-    /// The operating system does not hand it over.
+    /// The operating system cannot read the file.
     #[error("cannot read {}: {source}; check the path", path.display())]
     File {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         source: io::Error,
     },
-    /// There is nothing in it.
+    /// The file is empty.
     #[error("{} has no row of numbers below its header; record again", path.display())]
     Empty {
         /// The file.
         path: PathBuf,
     },
-    /// Its only row has no line end, so that a number of it may be cut off.
+    /// Its only row has no line end, so its last number may be incomplete.
     #[error(
         "{} has no whole row of numbers below its header: its last line has no line end and is left out; if that line is \
          whole, put a line end behind it", path.display()
@@ -35,7 +35,7 @@ pub enum TableError {
         /// The file.
         path: PathBuf,
     },
-    /// It is no text.
+    /// The file is not text.
     #[error("{} is neither CSV nor MCAP: line {line} is no UTF-8 text; name another file", path.display())]
     NotText {
         /// The file.
@@ -43,15 +43,15 @@ pub enum TableError {
         /// The line, from 1.
         line: u64,
     },
-    /// It is CSV with something else between the columns than commas.
+    /// The file is CSV with a separator other than a comma.
     #[error("{}: the header holds `{separator}` and no comma; put commas between the columns", path.display())]
     Separator {
         /// The file.
         path: PathBuf,
-        /// What was found.
+        /// The separator found.
         separator: char,
     },
-    /// A column twice.
+    /// A column occurs twice.
     #[error("{}: column `{column}` stands there twice; take one of the two out", path.display())]
     Repeated {
         /// The file.
@@ -59,19 +59,19 @@ pub enum TableError {
         /// Its name.
         column: String,
     },
-    /// A row with too many cells, or too few.
+    /// A row has too many or too few cells.
     #[error("{}, line {line}: {found} cells under a header of {expected}; complete the row or take it out", path.display())]
     Length {
         /// The file.
         path: PathBuf,
         /// The line, from 1.
         line: u64,
-        /// Cells of the row.
+        /// Number of cells in the row.
         found: u64,
-        /// Columns of the header.
+        /// Number of columns in the header.
         expected: u64,
     },
-    /// A cell that is no number.
+    /// A cell is not a number.
     #[error(
         "{}, line {line}, column `{column}`: `{text}` is no number; write digits with a point, or leave the cell empty \
          where there is no value", path.display()
@@ -83,10 +83,10 @@ pub enum TableError {
         line: u64,
         /// The column.
         column: String,
-        /// What stands there.
+        /// Its content.
         text: String,
     },
-    /// A log without the wanted fields.
+    /// A log has none of the wanted fields.
     #[error(
         "{}: no topic has messages with a field `{example}` or another column of a run (topics: {found}); record one \
          message a sample, with the columns as its fields", path.display()
@@ -96,20 +96,20 @@ pub enum TableError {
         path: PathBuf,
         /// A wanted field.
         example: String,
-        /// The topics there are, and what of the file could not be read.
+        /// The existing topics, and unreadable parts of the file.
         found: String,
     },
-    /// A log whose messages with the wanted fields are all wrong.
+    /// A log has only invalid messages with the wanted fields.
     #[error("{}: no message on `{topic}` can be used ({problem}); record again", path.display())]
     NoUsableMessage {
         /// The file.
         path: PathBuf,
         /// The topic.
         topic: String,
-        /// What is wrong with the first one.
+        /// The problem of the first one.
         problem: String,
     },
-    /// Several topics with wanted fields.
+    /// Several topics have wanted fields.
     #[error("{}: columns of a run are on several topics ({topics}); put them into the messages of one", path.display())]
     SeveralTopics {
         /// The file.
@@ -120,14 +120,14 @@ pub enum TableError {
     /// The log cannot be read.
     #[error(transparent)]
     Recording(#[from] RecordingError),
-    /// A wanted field is no number.
+    /// A wanted field is not a number.
     #[error("{}, topic `{topic}`: {source}; record numbers", path.display())]
     Schema {
         /// The file.
         path: PathBuf,
         /// The topic.
         topic: String,
-        /// What is wrong.
+        /// The problem.
         source: Box<SchemaError>,
     },
 }

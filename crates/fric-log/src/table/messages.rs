@@ -10,7 +10,7 @@ use crate::signals::{Probe, STAMPS};
 
 use super::{NumberTable, TIME_COLUMN, TableError};
 
-/// The columns of one topic in the making.
+/// The columns of one topic under construction.
 #[derive(Debug, Default)]
 struct Source {
     channels: Vec<ChannelFields>,
@@ -20,19 +20,19 @@ struct Source {
     first_problem: Option<String>,
 }
 
-/// What the messages of one channel have of the columns; a topic may have several, such as one of each start of its node.
+/// The columns that the messages of one channel contain. A topic may have several channels, for instance one per start of its node.
 #[derive(Debug)]
 struct ChannelFields {
     id: usize,
-    /// `None` without a column but a time.
+    /// `None` without a column except the time.
     decoder: Option<Decoder>,
-    /// For each number of the decoder, the column it is of.
+    /// For each number of the decoder, the index of its column.
     places: Vec<usize>,
-    /// Which of the decoder's fields the stamp is, where the time is none of the columns.
+    /// Index of the stamp among the decoder's fields, if the time is not a column.
     stamp: Option<usize>,
 }
 
-/// Reads the wanted fields of the one topic that has any.
+/// Reads the wanted fields of the only topic that has any.
 pub(super) fn read(path: &Path, wanted: &[String]) -> Result<NumberTable, TableError> {
     let mut recording = Recording::open(&[path])?;
     let mut sources: BTreeMap<String, Source> = BTreeMap::new();
@@ -58,7 +58,7 @@ pub(super) fn read(path: &Path, wanted: &[String]) -> Result<NumberTable, TableE
     let Some((topic, source)) = sources.pop_first() else {
         let example = wanted.first().cloned().unwrap_or_default();
         let topics = if topics.is_empty() { "none".to_owned() } else { topics };
-        // Damage may be why there is none.
+        // Damage may be the reason why there is none.
         let found = std::iter::once(topics).chain(warnings).collect::<Vec<_>>().join("; ");
         return Err(TableError::NoTopic { path: path.to_owned(), example, found });
     };
@@ -73,7 +73,7 @@ pub(super) fn read(path: &Path, wanted: &[String]) -> Result<NumberTable, TableE
 }
 
 impl Source {
-    /// Takes in a message as a row.
+    /// Adds a message as a row.
     fn add(&mut self, message: &Message<'_>, wanted: &[String]) -> Result<(), SchemaError> {
         let id = message.channel.id;
         if !self.channels.iter().any(|channel| channel.id == id) {
@@ -104,14 +104,14 @@ impl Source {
         Ok(())
     }
 
-    /// Which of the wanted fields a channel's messages have; those that are new become columns.
+    /// Finds the wanted fields in a channel's messages; new ones become columns.
     fn find(&mut self, message: &Message<'_>, wanted: &[String]) -> Result<ChannelFields, SchemaError> {
         let channel = message.channel;
         let none = ChannelFields { id: channel.id, decoder: None, places: Vec::new(), stamp: None };
         let (name, encoding, data) = channel.schema.as_ref().map_or(("", "", &[][..]), |schema| {
             (schema.name.as_str(), schema.encoding.as_str(), schema.data.as_slice())
         });
-        // What cannot be read at all has none of the columns.
+        // A channel that cannot be read has none of the columns.
         let Ok(message_type) = MessageType::new(&channel.message_encoding, name, encoding, data) else {
             return Ok(none);
         };
@@ -135,7 +135,7 @@ impl Source {
         Ok(ChannelFields { decoder, places, stamp, ..none })
     }
 
-    /// The place of a column, which has NaN in the rows so far if it is new.
+    /// Returns the index of a column; a new one gets NaN in the rows so far.
     fn place_of(&mut self, name: &str) -> usize {
         self.columns.iter().position(|(known, _)| known == name).unwrap_or_else(|| {
             self.columns.push((name.to_owned(), vec![f64::NAN; self.stamps_nanos.len()]));
@@ -144,7 +144,7 @@ impl Source {
     }
 }
 
-/// The columns, with the time since the first row in front if it is none of them.
+/// Returns the columns, preceded by the time since the first row if it is not among them.
 fn with_time(mut columns: Vec<(String, Vec<f64>)>, stamps_nanos: &[i64]) -> Vec<(String, Vec<f64>)> {
     if !columns.iter().any(|(name, _)| name == TIME_COLUMN) {
         let first_nanos = stamps_nanos.first().copied().unwrap_or(0);

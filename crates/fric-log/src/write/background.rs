@@ -1,8 +1,8 @@
-//! The thread that frames, compresses and writes messages while the next ones are made.
+//! The thread that frames, compresses and writes messages while the next ones are produced.
 //!
-//! Messages go over in batches of [`BATCH_BYTES`], of which [`WAITING_COUNT`] wait at most; used ones come back to be filled again. The
-//! thread starts with the first full batch and ends with the first error, which the next batch then gets. One thread
-//! writes everything in the given order, so that the file does not depend on the scheduler.
+//! Messages are passed in batches of [`BATCH_BYTES`], of which at most [`WAITING_COUNT`] wait; used ones are returned for reuse. The thread starts
+//! with the first full batch and ends with the first error, which the next batch then receives. One thread writes everything in the given order, so
+//! that the file does not depend on the scheduler.
 
 use std::io::{self, Seek, Write};
 use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
@@ -11,15 +11,15 @@ use std::thread::JoinHandle;
 use mcap::records::MessageHeader;
 use mcap::{McapResult, Writer};
 
-/// Small against the processor's caches, large against the cost of handing over.
+/// Small compared with the processor's caches, large compared with the cost of passing a batch.
 const BATCH_BYTES: usize = 128 * 1024;
 const WAITING_COUNT: usize = 2;
 
-/// Messages one after the other.
+/// Consecutive messages.
 #[derive(Default)]
 struct Batch {
     bytes: Vec<u8>,
-    /// Of each message the channel, the stamp in nanoseconds, and where its bytes end.
+    /// For each message the channel, the stamp in nanoseconds, and the end of its bytes.
     messages: Vec<(u16, u64, usize)>,
 }
 
@@ -40,9 +40,9 @@ impl Batch {
     }
 }
 
-/// An MCAP writer whose messages are written by a thread of its own. Dropping it ends the thread.
+/// An MCAP writer whose messages are written by a separate thread. Dropping it ends the thread.
 pub(super) struct BackgroundWriter<W: Write + Seek + Send + 'static> {
-    /// `None` while the thread has it, and after an error.
+    /// `None` while the thread owns it, and after an error.
     writer: Option<Writer<W>>,
     thread: Option<WriterThread<W>>,
     filling: Batch,
@@ -53,10 +53,10 @@ impl<W: Write + Seek + Send + 'static> BackgroundWriter<W> {
         Self { writer: Some(writer), thread: None, filling: Batch::default() }
     }
 
-    /// Takes over a message, to be written sooner or later.
+    /// Takes over a message, which is written sooner or later.
     ///
     /// # Errors
-    /// Where an earlier message cannot be written, or there is no thread to be had. Nothing can be written then.
+    /// Returns an error if an earlier message cannot be written, or no thread can be started. Nothing can be written then.
     pub(super) fn write(&mut self, channel_id: u16, stamp_nanos: u64, data: &[u8]) -> McapResult<()> {
         let Batch { bytes, messages } = &mut self.filling;
         bytes.extend_from_slice(data);
@@ -64,10 +64,10 @@ impl<W: Write + Seek + Send + 'static> BackgroundWriter<W> {
         if bytes.len() < BATCH_BYTES { Ok(()) } else { self.hand_over() }
     }
 
-    /// The writer, with all messages so far in it.
+    /// Returns the writer with all messages so far.
     ///
     /// # Errors
-    /// Where one of them cannot be written. Nothing can be written then.
+    /// Returns an error if one of them cannot be written. Nothing can be written then.
     pub(super) fn writer(&mut self) -> McapResult<&mut Writer<W>> {
         if let Some(thread) = self.thread.take() {
             self.writer = Some(thread.join()?);
@@ -78,7 +78,7 @@ impl<W: Write + Seek + Send + 'static> BackgroundWriter<W> {
         Ok(writer)
     }
 
-    /// As [`writer`](Self::writer).
+    /// Returns the errors of [`writer`](Self::writer).
     pub(super) fn into_writer(mut self) -> McapResult<Writer<W>> {
         self.writer()?;
         Ok(self.writer.take().ok_or_else(no_writer)?)
@@ -94,7 +94,7 @@ impl<W: Write + Seek + Send + 'static> BackgroundWriter<W> {
         if thread.full.as_ref().is_some_and(|full| full.send(batch).is_ok()) {
             return Ok(());
         }
-        // It has ended by itself: by an error.
+        // The thread has ended by itself, because of an error.
         match self.thread.take() {
             Some(thread) => Err(thread.join().err().unwrap_or_else(|| no_writer().into())),
             None => Err(no_writer().into()),
@@ -122,7 +122,7 @@ impl<W: Write + Seek + Send + 'static> WriterThread<W> {
         Ok(Self { full: Some(full), used, handle: Some(handle) })
     }
 
-    /// Waits until everything is written, and gives the writer back. A panic of the thread goes on here.
+    /// Waits until everything is written and returns the writer. A panic of the thread is resumed here.
     fn join(mut self) -> McapResult<Writer<W>> {
         self.full = None;
         match self.handle.take().map(JoinHandle::join) {
@@ -137,7 +137,7 @@ impl<W: Write + Seek + Send + 'static> Drop for WriterThread<W> {
     fn drop(&mut self) {
         self.full = None;
         if let Some(handle) = self.handle.take() {
-            // The file goes with the thread; nobody wants to know any more what became of it.
+            // The file is dropped with the thread; its result is no longer needed.
             let _ = handle.join();
         }
     }
@@ -151,7 +151,7 @@ fn write_all<W: Write + Seek>(
     for mut batch in to_write {
         batch.write(&mut writer)?;
         batch.clear();
-        // Without a taker nothing more will come.
+        // Without a receiver no further batch will come.
         let _ = give_back.send(batch);
     }
     Ok(writer)
@@ -179,7 +179,7 @@ mod tests {
             if self.file.position() + bytes.len() as u64 <= self.room {
                 return self.file.write(bytes);
             }
-            // Once: the MCAP writer writes when it is dropped, too.
+            // Only once: the MCAP writer also writes when it is dropped.
             assert!(!std::mem::take(&mut self.panics), "a bug in the sink");
             Err(io::ErrorKind::StorageFull.into())
         }
@@ -195,7 +195,7 @@ mod tests {
         }
     }
 
-    /// Writes 4 MiB, so that the thread meets the end of the room while more comes.
+    /// Writes 4 MiB, so that the thread reaches the limit while more data arrive.
     fn fill(room: u64, panics: bool) -> (BackgroundWriter<Full>, McapResult<()>) {
         let sink = Full { file: Cursor::default(), room, panics };
         let mut writer = WriteOptions::new().compression(None).create(sink).unwrap();

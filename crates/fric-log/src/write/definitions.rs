@@ -40,7 +40,7 @@ pub(super) fn wrench() -> String {
     )
 }
 
-/// The definition of the status message, with the flags' names and bits as constants in upper case.
+/// Returns the definition of the status message, with the flags' names and bits as constants in upper case.
 pub(super) fn cable_status(bits: &[(&str, u32)]) -> Result<String, WriteError> {
     let mut fields = String::from("# Per cable, in the order of name: the sum of the bits that are set\n");
     for (name, bit) in bits {
@@ -56,7 +56,7 @@ pub(super) fn cable_status(bits: &[(&str, u32)]) -> Result<String, WriteError> {
     Ok(join(&fields, &[]))
 }
 
-/// The definition of a message of numbers, one field each.
+/// Returns the definition of a message of numbers, one field each.
 pub(super) fn numbers(fields: &[String]) -> Result<String, WriteError> {
     let mut text = String::from("std_msgs/Header header\n");
     for name in fields {

@@ -1,4 +1,4 @@
-//! The messages that can be written, each to a channel of its own type.
+//! The messages that can be written, each on a channel of its own type.
 
 use fric_core::{Pose, Wrench};
 
@@ -23,7 +23,7 @@ pub struct WrenchChannel(Channel);
 #[derive(Debug)]
 pub struct CableStatusChannel(Channel);
 
-/// The numbers of a `JointState`, in the order of the channel's names; each array may be empty instead.
+/// The numbers of a `JointState`, in the order of the channel's names; each array may be empty.
 ///
 /// For cables the units are metres, metres per second, newtons.
 #[derive(Debug, Clone, Copy, Default)]
@@ -44,9 +44,9 @@ pub struct NumbersChannel(Channel);
 struct Channel {
     id: u16,
     topic: String,
-    /// How many names its messages have.
+    /// Number of names in its messages.
     names: usize,
-    /// What stands between the stamp and the numbers.
+    /// The bytes between the stamp and the numbers.
     texts: Vec<u8>,
 }
 
@@ -54,7 +54,7 @@ impl LogWriter {
     /// Adds a topic of joint states, all of them with these names.
     ///
     /// # Errors
-    /// Where the topic is taken or the file cannot be written.
+    /// Returns a [`WriteError`] if the topic is taken or the file cannot be written.
     pub fn add_joint_state(
         &mut self,
         topic: &str,
@@ -69,7 +69,7 @@ impl LogWriter {
     /// Adds a topic of poses.
     ///
     /// # Errors
-    /// Where the topic is taken or the file cannot be written.
+    /// Returns a [`WriteError`] if the topic is taken or the file cannot be written.
     pub fn add_pose(&mut self, topic: &str, frame_id: &str) -> Result<PoseChannel, WriteError> {
         self.add(topic, definitions::POSE, &definitions::pose(), frame_id, None).map(PoseChannel)
     }
@@ -77,7 +77,7 @@ impl LogWriter {
     /// Adds a topic of wrenches.
     ///
     /// # Errors
-    /// Where the topic is taken or the file cannot be written.
+    /// Returns a [`WriteError`] if the topic is taken or the file cannot be written.
     pub fn add_wrench(&mut self, topic: &str, frame_id: &str) -> Result<WrenchChannel, WriteError> {
         self.add(topic, definitions::WRENCH, &definitions::wrench(), frame_id, None).map(WrenchChannel)
     }
@@ -85,7 +85,7 @@ impl LogWriter {
     /// Adds a topic of cable states; `bits` are the names and values of the flags.
     ///
     /// # Errors
-    /// Where the topic is taken, a flag's name is none, or the file cannot be written.
+    /// Returns a [`WriteError`] if the topic is taken, a flag's name is invalid, or the file cannot be written.
     pub fn add_cable_status(
         &mut self,
         topic: &str,
@@ -98,20 +98,20 @@ impl LogWriter {
         self.add(topic, definitions::CABLE_STATUS, &schema, frame_id, Some(&names)).map(CableStatusChannel)
     }
 
-    /// Adds a topic of messages of the type `name`, such as `fric_msgs/msg/TendonRun`, with a header and a `float64` for each field.
+    /// Adds a topic of messages of the type `name`, such as `fric_msgs/msg/TendonRun`, with a header and one `float64` per field.
     ///
     /// # Errors
-    /// Where the topic is taken, a field's name is none, or the file cannot be written.
+    /// Returns a [`WriteError`] if the topic is taken, a field's name is invalid, or the file cannot be written.
     pub fn add_numbers(&mut self, topic: &str, name: &str, fields: &[String]) -> Result<NumbersChannel, WriteError> {
         let schema = definitions::numbers(fields)?;
         let channel = self.add(topic, name, &schema, "", None)?;
         Ok(NumbersChannel(Channel { names: fields.len(), ..channel }))
     }
 
-    /// Writes one number for each field; stamp, log time and publish time are `stamp_nanos` since 1970.
+    /// Writes one number per field; stamp, log time and publish time are `stamp_nanos` since 1970.
     ///
     /// # Errors
-    /// Where there is not one number per field, the stamp is too late, or the file cannot be written.
+    /// Returns a [`WriteError`] if there is not one number per field, the stamp is too late, or the file cannot be written.
     pub fn write_numbers(
         &mut self,
         channel: &NumbersChannel,
@@ -129,7 +129,7 @@ impl LogWriter {
     /// Writes one joint state; stamp, log time and publish time are `stamp_nanos` since 1970.
     ///
     /// # Errors
-    /// Where an array has neither no element nor one per name, the stamp is too late, or the file cannot be written.
+    /// Returns a [`WriteError`] if a non-empty array does not have one element per name, the stamp is too late, or the file cannot be written.
     pub fn write_joint_state(
         &mut self,
         channel: &JointStateChannel,
@@ -153,10 +153,10 @@ impl LogWriter {
     /// Writes one pose, in the frame of the channel; stamp, log time and publish time are `stamp_nanos` since 1970.
     ///
     /// # Errors
-    /// Where the stamp is too late or the file cannot be written.
+    /// Returns a [`WriteError`] if the stamp is too late or the file cannot be written.
     pub fn write_pose(&mut self, channel: &PoseChannel, stamp_nanos: u64, pose: &Pose) -> Result<(), WriteError> {
         self.write(&channel.0, stamp_nanos, |payload| {
-            // The quaternion's coordinates stand as in the message: x, y, z, w.
+            // The quaternion's coordinates are in the order of the message: x, y, z, w.
             for number in pose.position_m.iter().chain(pose.orientation.coords.iter()) {
                 payload.f64(*number);
             }
@@ -166,7 +166,7 @@ impl LogWriter {
     /// Writes one wrench, in the axes of the channel's frame; stamp, log time and publish time are `stamp_nanos` since 1970.
     ///
     /// # Errors
-    /// Where the stamp is too late or the file cannot be written.
+    /// Returns a [`WriteError`] if the stamp is too late or the file cannot be written.
     pub fn write_wrench(
         &mut self,
         channel: &WrenchChannel,
@@ -183,7 +183,7 @@ impl LogWriter {
     /// Writes the flags of all cables; stamp, log time and publish time are `stamp_nanos` since 1970.
     ///
     /// # Errors
-    /// Where there is not one flag word per name, the stamp is too late, or the file cannot be written.
+    /// Returns a [`WriteError`] if there is not one flag word per name, the stamp is too late, or the file cannot be written.
     pub fn write_cable_status(
         &mut self,
         channel: &CableStatusChannel,

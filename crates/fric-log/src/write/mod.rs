@@ -1,12 +1,11 @@
-//! Writing logs: MCAP with the ROS 2 messages that fric puts out.
+//! Writing logs: MCAP with the ROS 2 messages that fric produces.
 //!
-//! A log appears in its place, whole, when it is finished, see [`output`](crate::output). The same calls give the same
-//! bytes: chunks of a fixed size, all written by one thread, no clock.
+//! A log appears in its place, complete, when it is finished; see [`output`](crate::output). Equal calls give equal bytes: chunks have a fixed size,
+//! one thread writes them all, and no clock is used.
 //!
-//! Writes exactly the message types named here, with the `ros2msg` definitions of the ROS 2 packages they come
-//! from. NaN and infinities are written as they are. A thread of its own frames, compresses and writes, so that a message that
-//! cannot be written may be told by a later call, at the latest by [`LogWriter::finish`]. A [`LogWriter`] holds one chunk's
-//! index and less than a megabyte of messages.
+//! Exactly the message types named here are written, with the `ros2msg` definitions of the ROS 2 packages they come from. NaN and infinities are
+//! written unchanged. A separate thread frames, compresses and writes, so that a later call, at the latest [`LogWriter::finish`], may report a
+//! message that cannot be written. A [`LogWriter`] holds one chunk's index and less than a megabyte of messages.
 
 mod background;
 mod definitions;
@@ -61,7 +60,7 @@ impl LogWriter {
     /// Starts a log that will be at `path` once finished; `inputs` and `force` are those of [`OutputFile::create`].
     ///
     /// # Errors
-    /// As [`OutputFile::create`].
+    /// Returns the errors of [`OutputFile::create`].
     pub fn create(path: &Path, inputs: &[impl AsRef<Path>], force: bool) -> Result<Self, WriteError> {
         let file = OutputFile::create(path, inputs, force)?;
         let writer = WriteOptions::new()
@@ -77,10 +76,10 @@ impl LogWriter {
         Ok(Self { writer, path: path.to_owned(), topics: Vec::new(), payload: Payload::default() })
     }
 
-    /// Attaches the text of the robot file, best before the first channel is added.
+    /// Attaches the text of the robot file, preferably before the first channel is added.
     ///
     /// # Errors
-    /// Where the file cannot be written.
+    /// Returns a [`WriteError`] if the file cannot be written.
     pub fn attach_robot_file(&mut self, toml: &str) -> Result<(), WriteError> {
         let attachment = Attachment {
             log_time: 0,
@@ -96,7 +95,7 @@ impl LogWriter {
     /// Completes the log and puts it in its place.
     ///
     /// # Errors
-    /// Where the file cannot be written, or another one has appeared in its place and `force` is not set.
+    /// Returns a [`WriteError`] if the file cannot be written, or if another one has appeared in its place and `force` is not set.
     pub fn finish(self) -> Result<(), WriteError> {
         Ok(self.complete()?.place()?)
     }
@@ -104,7 +103,7 @@ impl LogWriter {
     /// Writes the log to its end, without putting it in its place.
     ///
     /// # Errors
-    /// Where a message, this one or an earlier one, cannot be written.
+    /// Returns a [`WriteError`] if a message, this one or an earlier one, cannot be written.
     pub fn complete(self) -> Result<CompleteFile, WriteError> {
         let Self { writer, path, .. } = self;
         let mut writer = writer.into_writer().map_err(|source| mcap_error(&path, source))?;
@@ -141,7 +140,7 @@ fn mcap_error(path: &Path, source: McapError) -> WriteError {
     }
 }
 
-/// What the operating system said, of which the writers of records (`binrw`) and of chunks leave the text alone.
+/// Returns the message of the operating system, of which the writers of records (`binrw`) and of chunks only pass on the text.
 fn refused(error: &McapError) -> Option<io::Error> {
     let text = match error {
         McapError::Parse(error) => error.to_string(),

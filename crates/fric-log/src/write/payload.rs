@@ -5,7 +5,7 @@ use super::error::WriteError;
 const HEADER: [u8; 4] = [0, 1, 0, 0];
 const NANOS_PER_S: u64 = 1_000_000_000;
 
-/// A message under construction; its buffer is kept for the next one.
+/// A message under construction, whose buffer is reused.
 #[derive(Debug, Default)]
 pub(super) struct Payload {
     bytes: Vec<u8>,
@@ -20,7 +20,7 @@ impl Payload {
     pub(super) fn start(&mut self, topic: &str, stamp_nanos: u64) -> Result<(), WriteError> {
         let sec = i32::try_from(stamp_nanos / NANOS_PER_S)
             .map_err(|_| WriteError::Stamp { topic: topic.to_owned(), stamp_nanos })?;
-        // Below 10⁹, so that nothing is lost.
+        // The remainder is below 10⁹, so nothing is lost.
         let nanosec = u32::try_from(stamp_nanos % NANOS_PER_S).unwrap_or(u32::MAX);
         self.bytes.clear();
         self.bytes.extend_from_slice(&HEADER);
@@ -29,7 +29,7 @@ impl Payload {
         Ok(())
     }
 
-    /// Appends what was encoded for this very place before.
+    /// Appends bytes that were encoded earlier for this position.
     pub(super) fn encoded(&mut self, bytes: &[u8]) {
         self.bytes.extend_from_slice(bytes);
     }
@@ -39,7 +39,7 @@ impl Payload {
         self.bytes.extend_from_slice(&number.to_le_bytes());
     }
 
-    /// A sequence whose length is known to fit 32 bits.
+    /// Appends a sequence whose length is known to fit into 32 bits.
     pub(super) fn f64_sequence(&mut self, numbers: &[f64]) {
         self.count(numbers.len());
         for &number in numbers {
@@ -47,7 +47,7 @@ impl Payload {
         }
     }
 
-    /// A sequence whose length is known to fit 32 bits.
+    /// Appends a sequence whose length is known to fit into 32 bits.
     pub(super) fn u32_sequence(&mut self, numbers: &[u32]) {
         self.count(numbers.len());
         for number in numbers {
@@ -68,7 +68,7 @@ impl Payload {
     }
 }
 
-/// The texts that follow the stamp of a header: its frame and, where a message has them, its names.
+/// Encodes the texts that follow the stamp of a header: its frame and, if a message has them, its names.
 pub(super) fn encode_texts(frame_id: &str, names: Option<&[String]>) -> Result<Vec<u8>, WriteError> {
     let mut bytes = Vec::new();
     text(&mut bytes, frame_id)?;

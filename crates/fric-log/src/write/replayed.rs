@@ -1,4 +1,4 @@
-//! The log that a replay puts out.
+//! The output log of a replay.
 
 use std::path::Path;
 
@@ -20,10 +20,10 @@ pub struct ReplayedLog {
 }
 
 impl ReplayedLog {
-    /// Starts a log as [`LogWriter::create`] does; `robot_text` is the robot file's.
+    /// Starts a log like [`LogWriter::create`]; `robot_text` is the text of the robot file.
     ///
     /// # Errors
-    /// As [`LogWriter::create`].
+    /// Returns the errors of [`LogWriter::create`].
     pub fn create(
         path: &Path,
         inputs: &[impl AsRef<Path>],
@@ -48,7 +48,7 @@ impl ReplayedLog {
     /// Writes one cycle.
     ///
     /// # Errors
-    /// Where there is not one output per cable, the stamp is before 1970 or too late, or the file cannot be written.
+    /// Returns a [`WriteError`] if there is not one output per cable, the stamp is before 1970 or too late, or the file cannot be written.
     pub fn write(
         &mut self,
         stamp_nanos: i64,
@@ -74,7 +74,7 @@ impl ReplayedLog {
     /// Completes the log and puts it in its place.
     ///
     /// # Errors
-    /// As [`LogWriter::finish`].
+    /// Returns the errors of [`LogWriter::finish`].
     pub fn finish(self) -> Result<(), WriteError> {
         self.log.finish()
     }
@@ -82,7 +82,7 @@ impl ReplayedLog {
     /// Writes the log to its end, without putting it in its place.
     ///
     /// # Errors
-    /// As [`LogWriter::complete`].
+    /// Returns the errors of [`LogWriter::complete`].
     pub fn complete(self) -> Result<CompleteFile, WriteError> {
         self.log.complete()
     }

@@ -6,7 +6,7 @@ use crate::output::CompleteFile;
 
 use super::{JointState, JointStateChannel, LogWriter, PoseChannel, WrenchChannel, WriteError};
 
-/// A log of a robot's signals: those of the cables in every sample, the others where they are added and known.
+/// A log of a robot's signals: those of the cables in every sample, the others if they are added and known.
 pub struct SampledLog {
     log: LogWriter,
     cables: JointStateChannel,
@@ -20,13 +20,13 @@ impl SampledLog {
     /// Adds the topic of the cable signals to a log.
     ///
     /// # Errors
-    /// As [`LogWriter::add_joint_state`], and so do the others that add a topic.
+    /// Returns the errors of [`LogWriter::add_joint_state`], as the other functions that add a topic do.
     pub fn new(mut log: LogWriter, topic: &str, cable_names: &[impl AsRef<str>]) -> Result<Self, WriteError> {
         let cables = log.add_joint_state(topic, "base", cable_names)?;
         Ok(Self { log, cables, reference: None, pose: None, wrench: None, numbers: Default::default() })
     }
 
-    /// Adds the topic of the forces at the platform, unless it is there.
+    /// Adds the topic of the forces at the platform, unless it exists.
     ///
     /// # Errors
     /// See [`Self::new`].
@@ -37,7 +37,7 @@ impl SampledLog {
         Ok(())
     }
 
-    /// Adds the topic of the pose, unless it is there.
+    /// Adds the topic of the pose, unless it exists.
     ///
     /// # Errors
     /// See [`Self::new`].
@@ -48,7 +48,7 @@ impl SampledLog {
         Ok(())
     }
 
-    /// Adds the topic of the wrench, unless it is there.
+    /// Adds the topic of the wrench, unless it exists.
     ///
     /// # Errors
     /// See [`Self::new`].
@@ -59,10 +59,10 @@ impl SampledLog {
         Ok(())
     }
 
-    /// Writes a sample; pose and wrench only `with_platform`, a reference only where any cable's is known.
+    /// Writes a sample: pose and wrench only `with_platform`, a reference only if that of any cable is known.
     ///
     /// # Errors
-    /// Where the stamp is before 1970 or too late, or the file cannot be written.
+    /// Returns a [`WriteError`] if the stamp is before 1970 or too late, or the file cannot be written.
     pub fn write(&mut self, sample: &Sample<'_>, with_platform: bool) -> Result<(), WriteError> {
         let Self { log, cables, reference, pose, wrench, numbers } = self;
         let stamp_nanos = sample.stamp_nanos;
@@ -95,7 +95,7 @@ impl SampledLog {
     /// Completes the log and puts it in its place.
     ///
     /// # Errors
-    /// As [`LogWriter::finish`].
+    /// Returns the errors of [`LogWriter::finish`].
     pub fn finish(self) -> Result<(), WriteError> {
         self.log.finish()
     }
@@ -103,7 +103,7 @@ impl SampledLog {
     /// Writes the log to its end, without putting it in its place.
     ///
     /// # Errors
-    /// As [`LogWriter::complete`].
+    /// Returns the errors of [`LogWriter::complete`].
     pub fn complete(self) -> Result<CompleteFile, WriteError> {
         self.log.complete()
     }

@@ -12,8 +12,8 @@ use crate::errors::Outcome;
 use crate::results;
 use crate::watch::with_own_threads;
 
-/// Finds what the file of a manipulator lacks, from a run with the tension at the base and gratings: friction at the holes, their
-/// memory, a grating that drifts, a hole with a μ of its own; and, with markers, what of bending, loads and measurement is stated wrong.
+/// Finds what the file of a manipulator lacks, from a run with the tension at the base and gratings: friction at the holes, their memory, a drifting
+/// grating, a hole with its own μ. With markers, it also finds wrong values of bending, loads and measurement.
 #[pyfunction]
 pub fn continuum_discover(py: Python<'_>, manipulator: &Manipulator, run: &TendonRun) -> Outcome<Py<PyAny>> {
     check_disks(manipulator, &run.run)?;

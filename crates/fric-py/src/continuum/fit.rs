@@ -1,4 +1,4 @@
-//! `fit`: a manipulator's numbers from its runs.
+//! `fit`: identifies a manipulator's numbers from its runs.
 
 use std::path::PathBuf;
 
@@ -15,12 +15,12 @@ use crate::log;
 use crate::results;
 use crate::watch::with_own_threads;
 
-/// Identifies stiffness, geometry, loads and friction of a manipulator from runs that each have two of tension at the base, gratings and
-/// markers. `runs` is one or several, each from a relaxed tendon on.
+/// Identifies stiffness, geometry, loads and friction of a manipulator from runs that each have two of: tension at the base, gratings, markers.
+/// `runs` is one or several runs, each starting with a relaxed tendon.
 ///
 /// `parameters` names what to identify: "backbone_stiffness", "segment_stiffness", "tendon_offset", "precurvature", "marker_frame", "tip_load",
-/// "gravity_direction", "mu", "hole_mu", "sigma", "base_gain", "base_offset", "tension_lag", "calibration". What the runs cannot tell stays as the
-/// manipulator has it, and is a LogWarning.
+/// "gravity_direction", "mu", "hole_mu", "sigma", "base_gain", "base_offset", "tension_lag", "calibration". Parameters that the runs do not determine
+/// keep the manipulator's values and cause a LogWarning.
 ///
 /// >>> arm = continuum.Manipulator.read("examples/tendon-prototype.toml")
 /// >>> stiffer = continuum.Manipulator.from_toml(arm.to_toml().replace("200e9", "220e9"))

@@ -1,4 +1,4 @@
-//! `friction` at every hole, `hole`: μ of a single one.
+//! `friction` at every hole, and `hole`: μ of a single one.
 
 use fric_core::continuum::Tendon;
 use fric_lab::continuum::ContinuumError;
@@ -14,7 +14,7 @@ use crate::errors::Outcome;
 use crate::log;
 use crate::results;
 
-/// The friction at every hole over a run, from its gratings; a dead one is bridged and a LogWarning.
+/// The friction at every hole over a run, from its gratings. A dead grating is interpolated and causes a LogWarning.
 ///
 /// >>> arm = continuum.Manipulator.read("examples/tendon-prototype.toml")
 /// >>> tendon = continuum.simulate(arm, run="mixed")

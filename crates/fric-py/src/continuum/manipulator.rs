@@ -13,7 +13,7 @@ use crate::arrays::fixed;
 use crate::errors::Outcome;
 use crate::travel::Reduced;
 
-/// A continuum manipulator: what its manipulator file says.
+/// A continuum manipulator: the content of its manipulator file.
 ///
 /// >>> arm = continuum.Manipulator.read("examples/tendon-prototype.toml")
 /// >>> arm.name, arm.disk_count, arm.has_gratings
@@ -33,7 +33,7 @@ impl Manipulator {
         Ok(Self { file: ManipulatorFile::parse(&text, origin)?, text })
     }
 
-    /// Where the result of a function comes from that took this manipulator and runs of these files.
+    /// Returns the provenance of a function's result for this manipulator and runs of these files.
     pub fn provenance(&self, function: &str, files: &[PathBuf]) -> Provenance {
         Provenance::of_call(function, files, Some((&self.file.tables().name, &self.text)))
     }
@@ -41,7 +41,7 @@ impl Manipulator {
 
 #[pymethods]
 impl Manipulator {
-    /// The manipulator of a manipulator file.
+    /// Reads a manipulator file.
     #[staticmethod]
     fn read(path: PathBuf) -> Outcome<Self> {
         let text = fric_core::text_file::read(&path)
@@ -49,18 +49,18 @@ impl Manipulator {
         Self::parse(text, &path.display().to_string())
     }
 
-    /// The manipulator of a manipulator file's text.
+    /// Creates a manipulator from the text of a manipulator file.
     #[staticmethod]
     fn from_toml(text: &str) -> Outcome<Self> {
         Self::parse(text.to_owned(), "text")
     }
 
-    /// The text of the file, comments included.
+    /// Returns the text of the file, comments included.
     fn to_toml(&self) -> &str {
         &self.text
     }
 
-    /// Writes the manipulator file, whole or not at all; an existing file is replaced only with `force`.
+    /// Writes the manipulator file, completely or not at all; an existing file is replaced only with `force`.
     #[pyo3(signature = (path, *, force = false))]
     fn write(&self, path: PathBuf, force: bool) -> Outcome {
         let inputs: [PathBuf; 0] = [];
@@ -73,7 +73,7 @@ impl Manipulator {
         &self.file.tables().name
     }
 
-    /// Disks beyond the base plate; as many segments and holes.
+    /// Number of disks without the base plate, which is also the number of segments and holes.
     #[getter]
     fn disk_count(&self) -> usize {
         self.file.params().disk_count()
@@ -95,7 +95,7 @@ impl Manipulator {
         other.cast::<Self>().is_ok_and(|other| self.text == other.get().text)
     }
 
-    /// Pickled, and copied, as the text of its file.
+    /// Pickles, and copies, the text of its file.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py, (String,)>> {
         Ok((slf.getattr("from_toml")?, (slf.get().text.clone(),)))
     }

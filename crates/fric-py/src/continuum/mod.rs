@@ -1,4 +1,4 @@
-//! `fric.continuum`: tendons through disks. Functions have the prefix here that the Python module then takes off.
+//! `fric.continuum`: tendons through disks. The functions here have a prefix that the Python module removes.
 
 mod calibration;
 mod discover;
@@ -26,10 +26,10 @@ use fric_lab::continuum::{ContinuumError, Run, corrected};
 
 use crate::errors::Outcome;
 
-/// The name of a run that is from no file.
+/// The name of a run that does not come from a file.
 const ARRAYS: &str = "arrays";
 
-/// What the gratings of a manipulator say in a run; `None` where either has none.
+/// Returns the tensions of a manipulator's gratings in a run; `None` if either has none.
 fn measured(manipulator: &Manipulator, run: &Run) -> Result<Option<Vec<GratingSample>>, ContinuumError> {
     match Gratings::from_file(&manipulator.file)? {
         Some(gratings) if run.has_shifts() => gratings.read(run).map(Some),
@@ -37,18 +37,18 @@ fn measured(manipulator: &Manipulator, run: &Run) -> Result<Option<Vec<GratingSa
     }
 }
 
-/// Rows one after the other.
+/// Concatenates rows.
 fn flat(rows: &[Vec<f64>]) -> Vec<f64> {
     rows.iter().flatten().copied().collect()
 }
 
-/// The run in the base frame, with a right sensor at the base, as the file of the manipulator says.
+/// Returns the run corrected for the frame and the base sensor stated in the manipulator's file.
 fn in_base_frame(manipulator: &Manipulator, run: &Run) -> Outcome<Run> {
     check_disks(manipulator, run)?;
     Ok(corrected(run, &manipulator.file)?)
 }
 
-/// A run that belongs to a manipulator.
+/// Checks that a run belongs to a manipulator.
 fn check_disks(manipulator: &Manipulator, run: &Run) -> Outcome {
     let (count, needed) = (run.disk_count(), manipulator.file.params().disk_count());
     if count == needed {

@@ -1,4 +1,4 @@
-//! `TendonRun`: what was measured on a manipulator; `read_run`, `read_loads`.
+//! `TendonRun`: the measurements on a manipulator; `read_run`, `read_loads`.
 
 use std::path::PathBuf;
 
@@ -30,8 +30,8 @@ pub struct TendonRun {
 
 #[pymethods]
 impl TendonRun {
-    /// A run from arrays: `shift_nm` (N, disks), NaN where a grating is dead; `marker_m` (N, disks, 2), centres of the disks in the
-    /// base frame; `shift_reference_nm` (N,) of a grating without load. Any but the time may be left out.
+    /// A run from arrays: `shift_nm` (N, disks), NaN if a grating is dead; `marker_m` (N, disks, 2), centres of the disks in the base frame;
+    /// `shift_reference_nm` (N,) of an unloaded grating. Any array except the time may be left out.
     #[staticmethod]
     #[pyo3(signature = (manipulator, *, time_s, tension_base_n=None, shift_nm=None, shift_reference_nm=None, marker_m=None))]
     fn from_arrays(
@@ -93,7 +93,7 @@ impl TendonRun {
         self.run.has_shifts().then(|| fixed_rows(py, all(), self.run.disk_count())).transpose()
     }
 
-    /// Shift of the grating without load, nm, (N,).
+    /// Shift of the unloaded grating, nm, (N,).
     #[getter]
     fn shift_reference_nm(&self, py: Python<'_>) -> Option<Py<PyArray1<f64>>> {
         self.run.has_reference().then(|| self.column(py, |sample| sample.shift_reference_nm))
@@ -124,7 +124,7 @@ impl TendonRun {
         format!("<TendonRun of {} samples: {}>", self.run.samples().len(), self.name())
     }
 
-    /// Pickled, and copied, with its numbers.
+    /// Pickles, and copies, its numbers.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> Outcome<Reduced<'py, Pickled>> {
         let run = &slf.get().run;
         let rows = run.samples().iter().flat_map(numbers_of).collect();
@@ -132,7 +132,7 @@ impl TendonRun {
         Ok((slf.getattr("_unpickled")?, (rows, run.disk_count(), slf.get().source.clone())))
     }
 
-    /// The one that was pickled.
+    /// Creates the pickled run.
     #[staticmethod]
     fn _unpickled(rows: &Bound<'_, PyAny>, disk_count: usize, source: Option<String>) -> Outcome<Self> {
         let width = 3 + 3 * disk_count;
@@ -144,17 +144,17 @@ impl TendonRun {
 }
 
 impl TendonRun {
-    /// A run from no file.
+    /// Creates a run that does not come from a file.
     pub fn new(run: Run) -> Self {
         Self { run, source: None }
     }
 
-    /// Its name for people: the path it was read from.
+    /// Returns its name for people: the path it was read from.
     pub fn name(&self) -> &str {
         self.source.as_deref().unwrap_or(ARRAYS)
     }
 
-    /// The file it was read from, where there is one.
+    /// Returns the file it was read from, if there is one.
     pub fn files(&self) -> Vec<PathBuf> {
         self.source.iter().map(PathBuf::from).collect()
     }
@@ -164,10 +164,10 @@ impl TendonRun {
     }
 }
 
-/// Samples, a row each, the number of disks, and the file.
+/// Samples (one row each), the number of disks, and the file.
 type Pickled = (Py<PyArray2<f64>>, usize, Option<String>);
 
-/// A sample as numbers: time, tension, shift without load, then shifts and markers of the disks.
+/// Returns a sample as numbers: time, tension, shift of the unloaded grating, then shifts and markers of the disks.
 fn numbers_of(sample: &RunSample) -> Vec<f64> {
     let RunSample { time_s, tension_base_n, shift_nm, shift_reference_nm, marker_m } = sample;
     let known = [*time_s, *tension_base_n, *shift_reference_nm];
@@ -186,14 +186,15 @@ fn sample_of(row: &[f64], disk_count: usize) -> RunSample {
     }
 }
 
-/// To the bit, so that NaN is NaN.
+/// Returns the bits of a run, so that NaN equals NaN.
 fn bits(run: &Run) -> Vec<u64> {
     run.samples().iter().flat_map(numbers_of).map(f64::to_bits).collect()
 }
 
-/// Reads a run: CSV, or MCAP with a message for each sample. What is out of the ordinary in the file is a LogWarning.
+/// Reads a run: CSV, or MCAP with one message per sample. Unusual content of the file causes a LogWarning.
 ///
-/// The columns are `time_s`, `tension_base_n`, `shift_1_nm` …, `shift_reference_nm`, `marker_1_x_m`, `marker_1_y_m` …; any group but the time may be missing.
+/// The columns are `time_s`, `tension_base_n`, `shift_1_nm` …, `shift_reference_nm`, `marker_1_x_m`, `marker_1_y_m` …; any group except the time may
+/// be missing.
 #[pyfunction]
 pub fn continuum_read_run(py: Python<'_>, path: PathBuf, manipulator: &Manipulator) -> Outcome<TendonRun> {
     let count = manipulator.file.params().disk_count();
@@ -202,7 +203,7 @@ pub fn continuum_read_run(py: Python<'_>, path: PathBuf, manipulator: &Manipulat
     Ok(TendonRun { run: Run::from_columns(&table.columns, count)?, source: Some(path.display().to_string()) })
 }
 
-/// Reads load steps for `calibrate`: loads, N, (N,), and shifts, nm, (N, disks), the temperature taken off where the file has
+/// Reads load steps for `calibrate`: loads, N, (N,), and shifts, nm, (N, disks). The temperature effect is removed if the file has
 /// `shift_reference_nm` and the manipulator the wavelengths. The columns are `load_g` or `load_n`, `shift_1_nm` …
 #[pyfunction]
 #[expect(clippy::type_complexity, reason = "a pair of arrays")]

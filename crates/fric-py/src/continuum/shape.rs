@@ -1,4 +1,4 @@
-//! `shape`: shapes by four ways of friction.
+//! `shape`: shapes by four friction models.
 
 use fric_core::robot::unknown_name;
 use fric_lab::continuum::comparison::{Selection, WayShapes, compare};
@@ -16,11 +16,11 @@ use crate::errors::{Fault, Outcome};
 use crate::log;
 use crate::results;
 
-/// The shapes of a run by all ways of friction for which it has what they need, compared with the markers.
+/// The shapes of a run by all friction models whose inputs it contains, compared with the markers.
 ///
-/// `shapes` are picked, spread over the run; with `mixed`, from the samples in which the gratings show friction of both
-/// directions; with `at_s` those at these times. `ways` names the ways of friction to compute: "none", "coulomb", "measured", "history"; all
-/// by default.
+/// `shapes` is the number of shapes to pick, spread over the run; with `mixed`, from the samples in which the gratings show friction in both
+/// directions; with `at_s`, those at these times. `ways` names the friction models to compute: "none", "coulomb", "measured", "history"; all by
+/// default.
 ///
 /// >>> import numpy as np
 /// >>> arm = continuum.Manipulator.read("examples/tendon-prototype.toml")
@@ -72,7 +72,7 @@ pub fn continuum_shape(
     Ok(results::of(py, "ShapeResult", (shown, fixed(py, result.time_s.clone()), series))?.unbind())
 }
 
-/// The ways of these names; all where none are named.
+/// Returns the friction models of these names; all if none are named.
 fn wanted_ways(names: Option<Vec<String>>) -> Outcome<Vec<Way>> {
     let Some(names) = names else { return Ok(Way::ALL.to_vec()) };
     let of_name = |name: &String| {
@@ -81,7 +81,7 @@ fn wanted_ways(names: Option<Vec<String>>) -> Outcome<Vec<Way>> {
     names.iter().map(of_name).collect()
 }
 
-/// The arrays of a way by their names.
+/// Returns the arrays of a friction model by name.
 fn series_of<'py>(py: Python<'py>, way: &WayShapes, disks: usize) -> Outcome<Bound<'py, PyDict>> {
     let shapes = &way.shapes;
     let rows = |of: fn(&ComputedShape) -> &[f64]| fixed_rows(py, shapes.iter().flat_map(of).copied().collect(), disks);

@@ -10,9 +10,10 @@ use crate::arrays::{fixed, fixed_rows};
 use crate::errors::{Fault, Outcome};
 use crate::results;
 
-/// A run of a simulated manipulator whose truth is not the model: an elastica of many links, holes in which the tendon sticks and slips.
+/// A run of a simulated manipulator whose true physics differ from the model: an elastica of many links, with holes in which the tendon sticks and
+/// slips.
 ///
-/// `run` is "one_way" (pulled) or "mixed" (pulled and released by turns). The same seed gives the same numbers.
+/// `run` is "one_way" (pulled) or "mixed" (alternately pulled and released). Equal seeds give equal numbers.
 ///
 /// >>> arm = continuum.Manipulator.read("examples/tendon-prototype.toml")
 /// >>> tendon = continuum.simulate(arm, greatest_tension_n=1.0)

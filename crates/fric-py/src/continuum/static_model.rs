@@ -14,17 +14,17 @@ use crate::watch::Watch;
 
 /// Static model of a manipulator, as in the control loop: the same code, the same bits.
 ///
-/// `solve` is one step: tensions at the base in, the shape out. `tension_for` is the inverse: a bend, or a position of the tip, in, the tension
-/// at the base out. `run` and `follow` do the same over arrays. With `friction="history"`, the default, each hole remembers how the
-/// tendon has moved through it: give every step of the run, from the relaxed tendon on. The other ways of friction are "none", Coulomb's with every hole
-/// sliding as pulled ("pulling") or the other way ("releasing"), and "measured" by `tension_n` in the segments.
+/// `solve` is one step: it computes the shape for tensions at the base. `tension_for` is the inverse: it computes the tension at the base for a bend,
+/// or for a position of the tip. `run` and `follow` do the same over arrays. With `friction="history"`, the default, each hole remembers the motion
+/// of the tendon through it, so pass every step of the run, starting with the relaxed tendon. The other friction models are "none", Coulomb friction
+/// with every hole sliding as in pulling ("pulling") or in the opposite direction ("releasing"), and "measured" by `tension_n` in the segments.
 ///
 /// Tensions at the base are numbers for the first tendon alone, or pairs for both. They are those of the tendons; `[base_sensor]` of the file is not
-/// applied. What is not finite is flagged in `status`, and the model stays as it was.
+/// applied. Non-finite input is flagged in `status` and leaves the model unchanged.
 ///
-/// The drive: `least_tension_n` is what each tendon keeps while the other one is pulled, `greatest_tension_n` the most that each may have (by default the
-/// first tendon's capacity, and nothing for the second). A goal nearer than `hold_rad` (for the tip: this share of the arm's length) leaves the tensions as
-/// they are.
+/// The drive: `least_tension_n` is the tension that each tendon keeps while the other one is pulled, `greatest_tension_n` the greatest tension of
+/// each (by default the first tendon's capacity, and nothing for the second). A goal nearer than `hold_rad` (for the tip: relative to the
+/// manipulator's length) keeps the tensions.
 ///
 /// >>> arm = continuum.Manipulator.read("examples/tendon-prototype.toml")
 /// >>> model = continuum.StaticModel(arm)
@@ -43,15 +43,15 @@ pub struct StaticModel {
     manipulator: Py<Manipulator>,
 }
 
-/// The state of a static model at one moment: the last shape and what the holes remember.
+/// The state of a static model at one time: the last shape and the memory of the holes.
 #[pyclass(module = "fric.continuum", frozen, eq)]
 #[derive(PartialEq)]
 pub struct StaticSnapshot {
-    /// All of it, bit for bit; the number of disks first.
+    /// The full state, bit for bit; the number of disks first.
     words: Vec<u64>,
 }
 
-/// The friction of a call.
+/// The friction model of a call.
 enum Way {
     Given(Friction<'static>),
     /// Tensions in the segments, row by row, of one tendon or of both.
@@ -64,7 +64,7 @@ enum Way {
 const HISTORY: &str = "history";
 const MEASURED: &str = "measured";
 
-/// The ways of friction by their names.
+/// Returns the friction model of a name.
 fn friction_of(name: &str) -> Option<Friction<'static>> {
     match name {
         HISTORY => Some(Friction::History),
@@ -79,13 +79,13 @@ fn unknown_friction(name: &str, known: &[&str]) -> Fault {
     Fault::config(unknown_name("friction", name, known.iter().copied()))
 }
 
-/// How many axes an argument has.
+/// Returns the number of axes of an argument.
 fn axis_count(value: &Bound<'_, PyAny>) -> Outcome<usize> {
     let array = value.py().import("numpy")?.call_method1("asarray", (value,))?;
     Ok(array.cast::<PyUntypedArray>()?.ndim())
 }
 
-/// Tensions at the base of both tendons, row by row.
+/// Returns the tensions at the base of both tendons, row by row.
 fn base_tensions(value: &Bound<'_, PyAny>, rows: &[Axis]) -> Outcome<Vec<[f64; 2]>> {
     let entries = "of the first tendon, or pairs of both";
     if axis_count(value)? > rows.len() {
@@ -122,7 +122,7 @@ impl Way {
         }
     }
 
-    /// That of a row.
+    /// Returns the friction of a row.
     fn of_row(&self, row: usize, disk_count: usize) -> Friction<'_> {
         match self {
             Self::Given(friction) => *friction,
@@ -137,7 +137,7 @@ impl Way {
     }
 }
 
-/// Goals, row by row: bends or positions of the tip.
+/// Returns the goals, row by row: bends or positions of the tip.
 fn goals(bend_rad: Option<&Bound<'_, PyAny>>, tip_m: Option<&Bound<'_, PyAny>>, rows: &[Axis]) -> Outcome<Vec<Goal>> {
     match (bend_rad, tip_m) {
         (Some(value), None) => {
@@ -153,7 +153,7 @@ fn goals(bend_rad: Option<&Bound<'_, PyAny>>, tip_m: Option<&Bound<'_, PyAny>>, 
     }
 }
 
-/// The friction of a goal.
+/// Returns the friction of a goal.
 fn goal_friction(name: &str) -> Outcome<Friction<'static>> {
     friction_of(name).ok_or_else(|| unknown_friction(name, &[HISTORY, "none", "pulling", "releasing"]))
 }
@@ -163,7 +163,7 @@ impl StaticModel {
         self.model.params().disk_count()
     }
 
-    /// Work over rows; ended by Ctrl-C, the model is as it was before.
+    /// Works over rows. If Ctrl-C ends the work, the model is unchanged.
     fn work(
         &mut self,
         py: Python<'_>,
@@ -212,8 +212,8 @@ impl StaticModel {
         Ok(Self { model, drive, options, manipulator })
     }
 
-    /// The shape for the tension at the base, N: a number for the first tendon, or a pair for both. With `friction="measured"` `tension_n` has the
-    /// tension in each segment, (disks,) or (2, disks).
+    /// Returns the shape for the tension at the base, N: a number for the first tendon, or a pair for both. With `friction="measured"`, `tension_n`
+    /// contains the tension in each segment, (disks,) or (2, disks).
     #[pyo3(signature = (base_tension_n, *, friction="history", tension_n=None))]
     fn solve(
         &mut self,
@@ -231,10 +231,10 @@ impl StaticModel {
         rows.into_python(py, None, self.disk_count())
     }
 
-    /// As many steps as the array has rows; other threads run meanwhile.
+    /// Runs as many steps as the array has rows; other threads run meanwhile.
     ///
-    /// `base_tension_n` is (N,) or (N, 2), `tension_n` of `friction="measured"` (N, disks) or (N, 2, disks). Ended by Ctrl-C, the model
-    /// is as it was before.
+    /// `base_tension_n` is (N,) or (N, 2), `tension_n` of `friction="measured"` (N, disks) or (N, 2, disks). If Ctrl-C ends the call, the model is
+    /// unchanged.
     #[pyo3(
         signature = (base_tension_n, *, friction="history", tension_n=None, progress=None),
         text_signature = "(self, base_tension_n, *, friction='history', tension_n=None, progress=False)"
@@ -259,9 +259,9 @@ impl StaticModel {
         rows.into_python(py, Some(base_n.len()), disk_count)
     }
 
-    /// The tensions at the base that bring the arm to a bend, rad, or its tip to a position, base frame, m; give one of them.
+    /// Returns the tensions at the base that bring the manipulator to a bend, rad, or its tip to a position, base frame, m; pass one of them.
     ///
-    /// What the holes remember stays as it is: `solve`, with the tension that was set or measured then, moves it on.
+    /// The memory of the holes is unchanged: `solve`, with the tension that was then set or measured, advances it.
     #[pyo3(signature = (*, bend_rad=None, tip_m=None, friction="history"))]
     fn tension_for(
         &mut self,
@@ -278,8 +278,8 @@ impl StaticModel {
         rows.into_python(py, None)
     }
 
-    /// The tensions at the base for a whole path: bends, (N,), or positions of the tip, (N, 2). Each goal starts from where the command
-    /// of the one before has brought the arm. Other threads run meanwhile; ended by Ctrl-C, the model is as it was before.
+    /// Returns the tensions at the base for a whole path: bends, (N,), or positions of the tip, (N, 2). Each goal starts from the result of the
+    /// previous command. Other threads run meanwhile. If Ctrl-C ends the call, the model is unchanged.
     #[pyo3(
         signature = (*, bend_rad=None, tip_m=None, friction="history", progress=None),
         text_signature = "(self, *, bend_rad=None, tip_m=None, friction='history', progress=False)"
@@ -298,23 +298,23 @@ impl StaticModel {
             let goal = goals.get(row).copied().unwrap_or(Goal::BendRad(f64::NAN));
             let command = model.tension_for(goal, friction, drive);
             rows.push(&command);
-            // What is the matter with the shape is so with the command.
+            // A fault of the shape is also one of the command.
             let _ = model.solve(command.base_tension_n, friction);
         })?;
         rows.into_python(py, Some(goals.len()))
     }
 
-    /// Back to the state after set-up: straight, without tension, with relaxed holes.
+    /// Resets to the state after set-up: straight, without tension, with relaxed holes.
     fn reset(&mut self) {
         self.model.reset();
     }
 
-    /// The state at this moment.
+    /// Returns the present state.
     fn snapshot(&self) -> StaticSnapshot {
         StaticSnapshot { words: self.state_words() }
     }
 
-    /// Goes on from a snapshot of the same manipulator as if nothing had happened since.
+    /// Restores a snapshot of the same manipulator; the following steps have the same bits as after the snapshot.
     fn restore(&mut self, snapshot: &StaticSnapshot) -> Outcome {
         Ok(self.model.restore_words(&snapshot.words)?)
     }
@@ -336,7 +336,7 @@ impl StaticModel {
         format!("<StaticModel of {:?}: {} disks>", self.manipulator.get().file.tables().name, self.disk_count())
     }
 
-    /// Pickled, and copied, as its manipulator, its drive and its state: it goes on with the same bits.
+    /// Pickles, and copies, the manipulator, the drive and the state; the copy continues with the same bits.
     #[expect(clippy::type_complexity, reason = "a tuple for Python")]
     fn __reduce__<'py>(
         slf: &Bound<'py, Self>,
@@ -349,7 +349,7 @@ impl StaticModel {
         Ok((slf.getattr("_unpickled")?, state))
     }
 
-    /// The one that was pickled.
+    /// Creates the pickled model.
     #[staticmethod]
     fn _unpickled(
         version: &str,
@@ -372,12 +372,12 @@ impl StaticSnapshot {
         format!("<StaticSnapshot: {} disks>", self.words.first().copied().unwrap_or(0))
     }
 
-    /// Pickled, and copied, as the numbers it holds.
+    /// Pickles, and copies, the numbers of the state.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> Outcome<Reduced<'py, (String, Vec<u64>)>> {
         Ok((slf.getattr("_unpickled")?, (travel::VERSION.to_owned(), slf.get().words.clone())))
     }
 
-    /// The one that was pickled.
+    /// Creates the pickled snapshot.
     #[staticmethod]
     fn _unpickled(version: &str, words: Vec<u64>) -> Outcome<Self> {
         travel::check_version(version)?;

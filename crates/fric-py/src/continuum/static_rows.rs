@@ -1,4 +1,4 @@
-//! Shapes and commands of a static model as arrays, with a row a step or just one.
+//! Shapes and commands of a static model as arrays, with one row per step or a single row.
 
 use fric_core::continuum::{AnyStaticModel, Command, ShapeStatus, Tendon};
 use pyo3::prelude::*;
@@ -21,7 +21,7 @@ pub struct ShapeRows {
 }
 
 impl ShapeRows {
-    /// The shape of a model after a solution.
+    /// Adds the shape of a model after a solution.
     pub fn push(&mut self, status: ShapeStatus, model: &AnyStaticModel) {
         self.disk_position_m.extend(model.disk_position_m().as_flattened());
         self.segment_bend_rad.extend(model.segment_bend_rad());
@@ -35,7 +35,7 @@ impl ShapeRows {
         self.is_new.push(status.has_shape());
     }
 
-    /// A `Shape`; of just one row where `row_count` is `None`.
+    /// Returns a `Shape`, with a single row if `row_count` is `None`.
     pub fn into_python(self, py: Python<'_>, row_count: Option<usize>, disk_count: usize) -> Outcome<Py<PyAny>> {
         let shape = |widths: &[usize]| row_count.iter().chain(widths).copied().collect::<Vec<_>>();
         let of_both = shape(&[2, disk_count]);
@@ -64,7 +64,7 @@ pub struct CommandRows {
 }
 
 impl CommandRows {
-    /// Takes in a command.
+    /// Adds a command.
     pub fn push(&mut self, command: &Command) {
         self.base_tension_n.extend(command.base_tension_n);
         self.bend_rad.push(command.bend_rad);
@@ -73,7 +73,7 @@ impl CommandRows {
         self.is_reached.push(command.status.is_reached());
     }
 
-    /// A `Command`; of just one row where `row_count` is `None`.
+    /// Returns a `Command`, with a single row if `row_count` is `None`.
     pub fn into_python(self, py: Python<'_>, row_count: Option<usize>) -> Outcome<Py<PyAny>> {
         let shape = |widths: &[usize]| row_count.iter().chain(widths).copied().collect::<Vec<_>>();
         let fields = (

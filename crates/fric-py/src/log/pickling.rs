@@ -1,5 +1,5 @@
-//! Logs that travel. A pickle holds the arrays, not the file they were read from: that may be elsewhere, or another, where it is
-//! opened, and a log need not be from a file.
+//! Pickling of logs. A pickle contains the arrays, not the file they were read from: at the destination the file may be elsewhere or different, and a
+//! log need not come from a file.
 
 use std::path::PathBuf;
 
@@ -17,7 +17,7 @@ use crate::travel::Reduced;
 type Pickled<'py> =
     (Vec<String>, Py<PyArray1<i64>>, [Py<PyArray2<f64>>; ARRAYS.len()], Option<Py<Robot>>, Vec<PathBuf>);
 
-/// The arrays of numbers, and how many columns each has; 0 stands for one for each cable.
+/// The arrays of numbers, and their numbers of columns; 0 means one per cable.
 const ARRAYS: [(&str, usize); 8] = [
     ("sensor_force_n", 0),
     ("length_m", 0),
@@ -34,7 +34,7 @@ impl Log {
     fn __eq__(&self, py: Python<'_>, other: &Bound<'_, PyAny>) -> Outcome<bool> {
         let Ok(other) = other.cast::<Self>() else { return Ok(false) };
         let other = other.get();
-        // To the bit, so that NaN is NaN.
+        // Compares bits, so that NaN equals NaN.
         let bits = |log: &Self| {
             log.with_rows(py, |rows| {
                 let columns = [
@@ -56,7 +56,7 @@ impl Log {
         Ok(is_same && robot(self) == robot(other) && bits(self)? == bits(other)?)
     }
 
-    /// Pickled, and copied, with its arrays.
+    /// Pickles, and copies, its arrays.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py, Pickled<'py>>> {
         let (py, log) = (slf.py(), slf.get());
         let arrays = [
@@ -79,7 +79,7 @@ impl Log {
         Ok((slf.getattr("_unpickled")?, state))
     }
 
-    /// The one that was pickled.
+    /// Creates the pickled log.
     #[staticmethod]
     fn _unpickled(
         py: Python<'_>,

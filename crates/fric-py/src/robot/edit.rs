@@ -1,4 +1,4 @@
-//! Values in a robot by their place in the robot file.
+//! Access to values of a robot by their position in the robot file.
 
 use fric_core::robot::file::{RobotFile, RobotFileError};
 use toml::Value;
@@ -12,19 +12,19 @@ pub enum Step {
     Index(usize),
 }
 
-/// The value of a key in the table at a place; `None` where the file leaves it out.
+/// Returns the value of a key in the table at a position; `None` if the file omits it.
 pub fn get(file: &RobotFile, place: &[Step], key: &str) -> Outcome<Option<Value>> {
     let mut root = tree(file)?;
     Ok(table_at(&mut root, place).and_then(|table| table.remove(key)))
 }
 
-/// The table at a place; `None` where the file leaves it out.
+/// Returns the table at a position; `None` if the file omits it.
 pub fn table(file: &RobotFile, place: &[Step]) -> Outcome<Option<Value>> {
     let mut root = tree(file)?;
     Ok(table_at(&mut root, place).map(|table| Value::Table(std::mem::take(table))))
 }
 
-/// A robot with other values for keys of the table at a place, `None` to leave a key out; checked as a file is.
+/// Returns a robot with other values for keys of the table at a position, `None` to omit a key; checked like a file.
 pub fn with(file: &RobotFile, place: &[Step], values: Vec<(String, Option<Value>)>) -> Outcome<RobotFile> {
     let mut root = tree(file)?;
     if let Some(table) = table_at(&mut root, place) {
@@ -37,14 +37,14 @@ pub fn with(file: &RobotFile, place: &[Step], values: Vec<(String, Option<Value>
     }
     let text = toml::to_string(&root).map_err(unwritable)?;
     RobotFile::parse(&text, "robot").map_err(|error| match error {
-        // What is wrong with values names the cable by itself, what is wrong with keys and types does not.
+        // Errors in values name the cable themselves, errors in keys and types do not.
         RobotFileError::Invalid { problem, .. } if problem.starts_with("cable \"") => Fault::config(problem),
         RobotFileError::Invalid { problem, .. } => Fault::config(cable_of(file, place) + &problem),
         error => error.into(),
     })
 }
 
-/// Whose table stands at a place, for errors: `cable "x": `, or nothing.
+/// Returns the cable of the table at a position, for errors: `cable "x": `, or nothing.
 pub fn cable_of(file: &RobotFile, place: &[Step]) -> String {
     let [Step::Key("cable"), Step::Index(index), ..] = place else { return String::new() };
     format!("cable \"{}\": ", file.cable_names().get(*index).copied().unwrap_or_default())

@@ -1,4 +1,4 @@
-//! `Robot`: a robot file, editable, right at every moment.
+//! `Robot`: an editable robot file that is always valid.
 
 mod edit;
 mod tables;
@@ -18,10 +18,10 @@ pub use self::tables::{Cable, Friction, LogPaths, Monitor, Platform};
 use self::tables::{Keys, Place, misspelt, pairs};
 use crate::errors::{Fault, Outcome};
 
-/// A cable robot: what its robot file says.
+/// A cable robot: the content of its robot file.
 ///
-/// Its attributes are the keys of the file, units included; setting one checks the whole robot, and a value that is not
-/// allowed raises ConfigError and leaves the robot as it was.
+/// Its attributes are the keys of the file, including units. Setting one checks the whole robot; an invalid value raises ConfigError and leaves the
+/// robot unchanged.
 ///
 /// >>> robot = Robot.read("examples/mini-ipanema.toml")
 /// >>> robot.name, robot.cycle_s, len(robot.cables)
@@ -36,7 +36,7 @@ use crate::errors::{Fault, Outcome};
 #[pyclass(module = "fric")]
 #[derive(Clone)]
 pub struct Robot {
-    /// The file as edited.
+    /// The file with all edits.
     pub file: RobotFile,
     /// Its text, as long as nothing is edited.
     text: Option<Arc<str>>,
@@ -46,7 +46,7 @@ const KEYS: Keys = Keys { class: "Robot", all: &["name", "cycle_s", "platform", 
 
 #[pymethods]
 impl Robot {
-    /// The robot of a robot file.
+    /// Reads a robot file.
     #[staticmethod]
     fn read(path: PathBuf) -> Outcome<Self> {
         let text =
@@ -54,13 +54,13 @@ impl Robot {
         Self::parse(text, &path.display().to_string())
     }
 
-    /// The robot of a robot file's text.
+    /// Creates a robot from the text of a robot file.
     #[staticmethod]
     fn from_toml(text: &str) -> Outcome<Self> {
         Self::parse(text.to_owned(), "text")
     }
 
-    /// The robot as the text of a robot file: as it was read, comments included, unless an attribute has been set since.
+    /// Returns the robot as the text of a robot file: as it was read, comments included, unless an attribute has been set since.
     pub fn to_toml(&self) -> Outcome<String> {
         if let Some(text) = &self.text {
             return Ok(text.as_ref().to_owned());
@@ -68,11 +68,11 @@ impl Robot {
         self.file.to_toml().map_err(|error| Fault::config(format!("the robot cannot be written as TOML: {error}")))
     }
 
-    /// Writes the robot file, whole or not at all; an existing file is replaced only with `force`.
+    /// Writes the robot file, completely or not at all; an existing file is replaced only with `force`.
     #[pyo3(signature = (path, *, force = false))]
     fn write(&self, path: PathBuf, force: bool) -> Outcome {
         let text = self.to_toml()?;
-        // The file that it was read from may be replaced as any other.
+        // The file that it was read from may be replaced like any other.
         let inputs: [PathBuf; 0] = [];
         Ok(OutputFile::create(&path, &inputs, force)?.finish_with(&text)?)
     }
@@ -101,13 +101,13 @@ impl Robot {
         Platform::new(Place::new(slf.unbind(), &[Step::Key("platform")]))
     }
 
-    /// When a signal counts as faulty.
+    /// Limits beyond which a signal counts as faulty.
     #[getter]
     fn monitor(slf: Bound<'_, Self>) -> Monitor {
         Monitor::new(Place::new(slf.unbind(), &[Step::Key("monitor")]))
     }
 
-    /// Where the signals are in a log.
+    /// Location of the signals in a log.
     #[getter]
     fn log(slf: Bound<'_, Self>) -> LogPaths {
         LogPaths::new(Place::new(slf.unbind(), &[Step::Key("log")]))
@@ -120,7 +120,7 @@ impl Robot {
         Ok(PyTuple::new(slf.py(), (0..count).map(|index| cable_at(slf, index)))?)
     }
 
-    /// The cable of a name.
+    /// Returns the cable with this name.
     fn cable(slf: &Bound<'_, Self>, name: &str) -> Outcome<Cable> {
         Ok(cable_at(slf, slf.borrow().cable_index(name)?))
     }
@@ -149,7 +149,7 @@ impl Robot {
         format!("<Robot {:?}: {count} cables, cycle {} s>", self.name(), self.cycle_s())
     }
 
-    /// Pickled, and copied, as the text of its file.
+    /// Pickles, and copies, the text of its file.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> Outcome<(Bound<'py, PyAny>, (String,))> {
         let class: Bound<'py, PyType> = slf.get_type();
         Ok((class.getattr("from_toml")?, (slf.borrow().to_toml()?,)))
@@ -157,22 +157,22 @@ impl Robot {
 }
 
 impl Robot {
-    /// The robot of a text; `origin` says where it is from, for errors.
+    /// Creates the robot of a text; `origin` names its source in error messages.
     pub fn parse(text: String, origin: &str) -> Outcome<Self> {
         Ok(Self { file: RobotFile::parse(&text, origin)?, text: Some(text.into()) })
     }
 
-    /// A robot file with the text it was read from.
+    /// Creates a robot from a file and its text.
     pub fn new(file: RobotFile, text: String) -> Self {
         Self { file, text: Some(text.into()) }
     }
 
-    /// Takes another file in the place of this one.
+    /// Replaces the file by another one.
     fn edit(&mut self, file: RobotFile) {
         *self = Self { file, text: None };
     }
 
-    /// Which cable has a name.
+    /// Returns the index of the cable with this name.
     pub fn cable_index(&self, name: &str) -> Outcome<usize> {
         let names = self.file.cable_names();
         let place = names.iter().position(|other| *other == name);
@@ -181,7 +181,7 @@ impl Robot {
 }
 
 fn edit_keys(robot: &Bound<'_, Robot>, given: &[(String, Bound<'_, PyAny>)]) -> Outcome {
-    // Reading the values may run Python code that looks at the robot.
+    // Reading the values may run Python code that accesses the robot.
     let given = KEYS.read(given, "")?;
     let file = edit::with(&robot.borrow().file, &[], given)?;
     robot.borrow_mut().edit(file);

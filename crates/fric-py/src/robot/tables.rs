@@ -9,7 +9,7 @@ use super::edit::{self, Step};
 use super::{Robot, values};
 use crate::errors::{Fault, Outcome};
 
-/// A table of a robot: where it stands.
+/// The position of a robot's table.
 pub struct Place {
     robot: Py<Robot>,
     steps: Vec<Step>,
@@ -29,12 +29,12 @@ impl Place {
         edit::get(&self.robot.borrow(py).file, &self.steps, key)
     }
 
-    /// All of it.
+    /// Returns the whole table.
     fn table(&self, py: Python<'_>) -> Outcome<Option<toml::Value>> {
         edit::table(&self.robot.borrow(py).file, &self.steps)
     }
 
-    /// What gives the table anew: a function of the robot, or of its cable, and its arguments.
+    /// Returns what recreates the table: a function of the robot, or of its cable, and its arguments.
     fn reduced<'py>(&self, py: Python<'py>) -> Outcome<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let robot = self.robot.bind(py);
         let cable = |index: usize| -> Outcome<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
@@ -62,7 +62,7 @@ impl Place {
 
     fn set(&self, py: Python<'_>, given: &[(String, Bound<'_, PyAny>)], keys: &Keys) -> Outcome {
         let cable = edit::cable_of(&self.robot.borrow(py).file, &self.steps);
-        // Reading the values may run Python code that looks at the robot.
+        // Reading the values may run Python code that accesses the robot.
         let given = keys.read(given, &cable)?;
         let file = edit::with(&self.robot.borrow(py).file, &self.steps, given)?;
         self.robot.borrow_mut(py).edit(file);
@@ -72,16 +72,16 @@ impl Place {
 
 /// The keys of a class.
 pub struct Keys {
-    /// The class.
+    /// Name of the class.
     pub class: &'static str,
-    /// All of them.
+    /// All keys.
     pub all: &'static [&'static str],
-    /// Those that can be left out.
+    /// Optional keys.
     pub optional: &'static [&'static str],
 }
 
 impl Keys {
-    /// Values for keys as they are to stand in the file; `cable` says whose they are, for errors.
+    /// Returns the values for keys as in the file; `cable` names the cable for errors.
     pub fn read(
         &self,
         given: &[(String, Bound<'_, PyAny>)],
@@ -100,7 +100,7 @@ impl Keys {
         given.iter().map(read).collect()
     }
 
-    /// Makes sure that `name` can be set.
+    /// Checks that `name` can be set.
     pub fn check(&self, name: &str) -> PyResult<()> {
         if self.all.contains(&name) {
             return Ok(());
@@ -110,7 +110,7 @@ impl Keys {
     }
 }
 
-/// An attribute that an object does not have.
+/// Returns the error of a missing attribute.
 pub fn misspelt(object: &Bound<'_, PyAny>, name: &str) -> PyErr {
     let names =
         || Some((object.get_type().dir().ok()?.extract::<Vec<String>>().ok()?, object.get_type().qualname().ok()?));
@@ -122,13 +122,13 @@ pub fn misspelt(object: &Bound<'_, PyAny>, name: &str) -> PyErr {
     PyAttributeError::new_err(format!("{class}: {}", unknown_name("attribute", name, public)))
 }
 
-/// Keyword arguments.
+/// Returns the keyword arguments.
 pub fn pairs<'py>(given: Option<&Bound<'py, PyDict>>) -> Outcome<Vec<(String, Bound<'py, PyAny>)>> {
     let Some(given) = given else { return Ok(Vec::new()) };
     given.iter().map(|(key, value)| Ok((key.extract()?, value))).collect()
 }
 
-/// A class for a table: a read attribute for each key, all of them set through `__setattr__` and `set`, which check.
+/// Defines the class of a table: a readable attribute per key; `__setattr__` and `set` set and check them.
 macro_rules! table {
     (
         $(#[$doc:meta])* $name:ident, optional: [$($optional:ident),*];
@@ -146,7 +146,7 @@ macro_rules! table {
                 optional: &[$(stringify!($optional)),*],
             };
 
-            /// The table at a place.
+            /// Creates the table at a position.
             pub(super) fn new(place: Place) -> Self {
                 Self(place)
             }
@@ -162,7 +162,7 @@ macro_rules! table {
                 }
             )*
 
-            /// Sets several keys at once, checked together; None leaves a key out.
+            /// Sets several keys at once, checked together; None omits a key.
             #[pyo3(signature = (**values))]
             fn set(&self, py: Python<'_>, values: Option<&Bound<'_, PyDict>>) -> Outcome {
                 self.0.set(py, &pairs(values)?, &Self::KEYS)
@@ -192,7 +192,7 @@ macro_rules! table {
                 Ok(self.0.table(py)? == other.get().0.table(py)?)
             }
 
-            /// Pickled, and copied, as what its robot gives.
+            /// Pickles, and copies, the robot's table.
             fn __reduce__<'py>(&self, py: Python<'py>) -> Outcome<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
                 self.0.reduced(py)
             }

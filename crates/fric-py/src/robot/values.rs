@@ -1,11 +1,11 @@
-//! Values of the robot file as Python has them.
+//! Converts values of the robot file to Python and back.
 
 use pyo3::IntoPyObjectExt as _;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyMapping, PyMappingProxy, PyString, PyTuple};
 use toml::{Table, Value};
 
-/// Numbers, text, tuples and read-only dicts: nothing that could be changed without the robot knowing.
+/// Returns numbers, text, tuples and read-only dicts: nothing that could be changed behind the robot's back.
 pub fn to_python<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<'py, PyAny>> {
     match value {
         Value::String(text) => text.into_bound_py_any(py),
@@ -27,12 +27,12 @@ pub fn to_python<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<'py, PyA
     }
 }
 
-/// Back again, `None` for Python's None, which leaves a key out; `Err` is the class of what cannot stand in a file.
+/// Converts back; `None` for Python's None, which omits a key. `Err` is the class of a value that cannot be in a file.
 pub fn from_python(value: &Bound<'_, PyAny>) -> Result<Option<Value>, String> {
     within(value, DEEPEST)
 }
 
-/// Lists and dicts within one another, no more than this: a list may hold itself.
+/// Maximum nesting of lists and dicts, because a list may contain itself.
 const DEEPEST: usize = 8;
 
 fn within(value: &Bound<'_, PyAny>, depth: usize) -> Result<Option<Value>, String> {

@@ -1,4 +1,4 @@
-//! A chart as SVG text: two axes with ticks, and what is drawn between them. Text of a file is escaped.
+//! A chart as SVG text: two axes with ticks, and the marks between them. Text from files is escaped.
 
 use std::fmt::Write as _;
 
@@ -9,20 +9,20 @@ use super::series::Extent;
 
 const LEFT: f64 = 52.0;
 const RIGHT: f64 = 8.0;
-/// Room for the unit of y, which no tick may run into.
+/// Space for the unit of y, which ticks must not overlap.
 const TOP: f64 = 20.0;
 const BOTTOM: f64 = 24.0;
 /// Height of a row.
 const ROW: f64 = 30.0;
-/// Share of its size below which a chart is not shrunk: its letters could not be read.
+/// A chart is not scaled below this fraction of its size, because its letters would become illegible.
 const LEAST_SCALE: f64 = 0.69;
-/// Between a bar, or a line, and the words behind it.
+/// Gap between a bar, or a line, and the text after it.
 const GAP: f64 = 6.0;
-/// Least distance between ticks on the axes.
+/// Minimum distance between ticks on the axes.
 const TICK_X: f64 = 56.0;
 const TICK_Y: f64 = 34.0;
 
-/// What an axis shows.
+/// The range of an axis.
 #[derive(Clone, Copy, Debug)]
 pub struct Span {
     pub least: f64,
@@ -31,7 +31,7 @@ pub struct Span {
 }
 
 impl Span {
-    /// From one value to another, with a margin of a share of the distance at both ends.
+    /// Creates a range with a margin at both ends, relative to its length.
     pub fn with_margin(extent: Extent, share: f64, unit: &'static str) -> Self {
         let margin = ((extent.greatest - extent.least) * share).max(1e-9);
         Self { least: extent.least - margin, greatest: extent.greatest + margin, unit }
@@ -41,7 +41,7 @@ impl Span {
         self.greatest - self.least
     }
 
-    /// Where a value is between the ends, 0 to 1.
+    /// Returns the position of a value between the ends, 0 to 1.
     fn share(self, value: f64, is_log: bool) -> f64 {
         if is_log {
             (value / self.least).ln() / (self.greatest / self.least).ln()
@@ -50,7 +50,7 @@ impl Span {
         }
     }
 
-    /// Round values, about `most` of them, with their labels.
+    /// Returns round values, about `most` of them, with their labels.
     fn ticks(self, is_log: bool, most: f64) -> Vec<(f64, String)> {
         if is_log {
             decades(self.least, self.greatest, most).into_iter().map(|tick| (tick, significant(tick))).collect()
@@ -60,12 +60,12 @@ impl Span {
     }
 }
 
-/// A unit in brackets; what is counted has none.
+/// Returns a unit in brackets; empty for counts.
 fn bracketed(unit: &str) -> String {
     if matches!(unit, "" | "hole" | "grating") { unit.to_owned() } else { format!("[{unit}]") }
 }
 
-/// A chart in the making: what is drawn later lies above.
+/// A chart under construction; later marks are drawn on top.
 #[derive(Debug)]
 pub struct Chart {
     svg: String,
@@ -78,12 +78,12 @@ pub struct Chart {
 }
 
 impl Chart {
-    /// Of a given size in pixels of its own, shown as wide as the page.
+    /// Creates a chart of a given size in its own pixels, shown at the width of the page.
     pub fn new(x: Span, y: Span, width: f64, height: f64) -> Self {
         Self::with_scales(x, y, [false; 2], width, height)
     }
 
-    /// The same with x, y or both on a logarithmic scale; such a span is above 0.
+    /// Creates the same with x, y or both on a logarithmic scale; such a range must be above 0.
     pub fn with_scales(x: Span, y: Span, is_log: [bool; 2], width: f64, height: f64) -> Self {
         let mut chart = Self { is_log, ..Self::empty(x, y, LEFT, width, height) };
         chart.draw_y_axis();
@@ -91,7 +91,7 @@ impl Chart {
         chart
     }
 
-    /// With a row for each name, one below the other, of heights 1 from y = 0 on.
+    /// Creates a chart with one row per name, one below the other, each of height 1 from y = 0 on.
     pub fn in_rows(x: Span, names: &[&str], width: f64) -> Self {
         let count = count_of(names);
         let rows = Span { least: -count, greatest: 0.0, unit: "" };
@@ -105,7 +105,7 @@ impl Chart {
         chart
     }
 
-    /// With steps of width 1 from x = 0 on, whose edges have these values.
+    /// Creates a chart with steps of width 1 from x = 0 on, whose edges have these values.
     pub fn in_steps(edges: &[f64], unit: &'static str, y: Span, width: f64, height: f64) -> Self {
         let steps = Span { least: 0.0, greatest: count_of(edges) - 1.0, unit };
         let mut chart = Self::empty(steps, y, LEFT, width, height);
@@ -122,13 +122,13 @@ impl Chart {
         chart
     }
 
-    /// Without anything in it.
+    /// Creates an empty chart.
     fn empty(x: Span, y: Span, left: f64, width: f64, height: f64) -> Self {
         let frame = [left, width - RIGHT, TOP, height - BOTTOM];
         Self { svg: String::new(), x, y, is_log: [false; 2], frame }
     }
 
-    /// With both axes in the same scale, at most so high; what is left of the width shows more of x.
+    /// Creates a chart with equal scales on both axes and a maximum height; the remaining width shows more of x.
     pub fn to_scale(x: Span, y: Span, width: f64, most_height: f64) -> Self {
         let (inner_width, inner_height) = (width - LEFT - RIGHT, most_height - TOP - BOTTOM);
         let per_unit = (inner_width / x.length()).min(inner_height / y.length());
@@ -174,7 +174,7 @@ impl Chart {
         let unit = bracketed(self.x.unit);
         for (tick, text) in ticks {
             let at = self.at_x(tick);
-            // The unit stands at the end.
+            // The unit is at the end.
             let is_far_right = at + 0.5 * width_of(&text) > right + 2.0 - width_of(&unit);
             let text = if is_far_right { String::new() } else { text };
             let _ = write!(
@@ -192,7 +192,7 @@ impl Chart {
         );
     }
 
-    /// An upright bar for each extent; those with nothing in them are left out.
+    /// Draws a vertical bar for each extent; empty extents are left out.
     pub fn bars(&mut self, class: &str, bars: impl Iterator<Item = (f64, Extent)>) {
         let something = bars.filter(|(_, extent)| extent.is_something());
         let path = something.fold(String::new(), |mut path, (x, extent)| {
@@ -203,7 +203,7 @@ impl Chart {
         let _ = write!(self.svg, "<path class=\"{class}\" d=\"{path}\"/>");
     }
 
-    /// A line through points, broken where one is not finite.
+    /// Draws a line through points, interrupted at non-finite ones.
     pub fn line(&mut self, class: &str, points: impl Iterator<Item = [f64; 2]>) {
         let mut command = 'M';
         let path = points.fold(String::new(), |mut path, [x, y]| {
@@ -218,7 +218,7 @@ impl Chart {
         let _ = write!(self.svg, "<path class=\"{class}\" d=\"{path}\"/>");
     }
 
-    /// A band between the least and the greatest at each x, broken where one of them is not finite.
+    /// Draws a band between the least and the greatest value at each x, interrupted where one of them is not finite.
     pub fn band(&mut self, class: &str, xs: &[f64], least: &[f64], greatest: &[f64]) {
         let is_there = |place: usize| least[place].is_finite() && greatest[place].is_finite();
         let mut path = String::new();
@@ -238,7 +238,7 @@ impl Chart {
         let _ = write!(self.svg, "<path class=\"{class}\" d=\"{path}\"/>");
     }
 
-    /// A level line from end to end, with a word above or below it.
+    /// Draws a horizontal line over the full width, with a text above or below it.
     pub fn level(&mut self, class: &str, y: f64, text: &str, is_above: bool) {
         let [left, right, ..] = self.frame;
         let at = self.at_y(y);
@@ -246,12 +246,12 @@ impl Chart {
         self.text(right - 4.0, if is_above { at - 4.0 } else { at + 14.0 }, "end", text);
     }
 
-    /// An upright line from top to bottom.
+    /// Draws a vertical line over the full height.
     pub fn upright(&mut self, class: &str, x: f64) {
         self.upright_with(class, x, "");
     }
 
-    /// The same with a word at its top.
+    /// Draws the same with a text at its top.
     pub fn upright_with(&mut self, class: &str, x: f64, text: &str) {
         let [left, right, top, bottom] = self.frame;
         let at = self.at_x(x);
@@ -263,7 +263,7 @@ impl Chart {
         self.text(if is_right { at - 4.0 } else { at + 4.0 }, top + 10.0, if is_right { "end" } else { "start" }, text);
     }
 
-    /// A bar along a row of [`Self::in_rows`] from x = 0 on, with a word behind it that an upright line at `line` does not cross.
+    /// Draws a bar along a row of [`Self::in_rows`] from x = 0 on, followed by a text that a vertical line at `line` does not cross.
     pub fn bar(&mut self, class: &str, row: usize, x: f64, text: &str, line: f64) {
         let (from, to, at) = (self.at_x(0.0), self.at_x(x), self.at_y(middle_of(row)));
         let (top, height) = (at - 0.32 * ROW, 0.64 * ROW);
@@ -277,7 +277,7 @@ impl Chart {
         self.text(if is_crossed { line + GAP } else { words }, at + 4.0, "start", text);
     }
 
-    /// A cell of a map: a row of [`Self::in_rows`] between two x, by how strong it is, 0 to 1.
+    /// Draws a cell of a map: a row of [`Self::in_rows`] between two x, with a strength of 0 to 1.
     pub fn cell(&mut self, class: &str, row: usize, [from, to]: [f64; 2], strength: f64) {
         let (start, end) = (self.at_x(from), self.at_x(to));
         let (top, height, width) = (self.at_y(middle_of(row)) - 0.45 * ROW, 0.9 * ROW, (end - start).max(0.5));
@@ -287,7 +287,7 @@ impl Chart {
         );
     }
 
-    /// A stretch of x as a strip along the foot.
+    /// Draws a range of x as a strip along the bottom.
     pub fn strip(&mut self, class: &str, from: f64, to: f64) {
         let [.., bottom] = self.frame;
         let (start, end) = (self.at_x(from), self.at_x(to));
@@ -298,13 +298,13 @@ impl Chart {
         );
     }
 
-    /// A rectangle from one corner to the other.
+    /// Draws a rectangle between two corners.
     pub fn rectangle(&mut self, class: &str, [x0, y0]: [f64; 2], [x1, y1]: [f64; 2]) {
         let corners = [[x0, y0], [x1, y0], [x1, y1], [x0, y1], [x0, y0]];
         self.line(class, corners.into_iter());
     }
 
-    /// A dot with a word above it, or below where there is no room.
+    /// Draws a dot with a text above it, or below if there is no room.
     pub fn dot(&mut self, class: &str, [x, y]: [f64; 2], text: &str) {
         let [.., top, _] = self.frame;
         let (at_x, at_y) = (self.at_x(x), self.at_y(y));
@@ -313,7 +313,7 @@ impl Chart {
         self.text(at_x, text_y, "middle", text);
     }
 
-    /// A stretch of x, shaded, with a word at its top where there is room for it.
+    /// Shades a range of x, with a text at its top if there is room for it.
     pub fn stretch(&mut self, class: &str, from: f64, to: f64, text: &str) {
         let [.., top, bottom] = self.frame;
         let (start, end) = (self.at_x(from), self.at_x(to));
@@ -336,7 +336,7 @@ impl Chart {
         self.svg += &html! { text x=(x) y=(y) text-anchor=(anchor) { (text) } }.into_string();
     }
 
-    /// The drawing; the label is what a screen reader says of it.
+    /// Returns the drawing; the label is for screen readers.
     pub fn into_svg(self, label: &str) -> String {
         let [_, right, _, bottom] = self.frame;
         let (width, height) = (right + RIGHT, bottom + BOTTOM);
@@ -347,7 +347,7 @@ impl Chart {
     }
 }
 
-/// About as wide as a text is drawn.
+/// Returns the approximate width of a text.
 fn width_of(text: &str) -> f64 {
     #[expect(clippy::cast_precision_loss, reason = "a word")]
     let letters = text.chars().count() as f64;
@@ -360,14 +360,14 @@ fn count_of<T>(items: &[T]) -> f64 {
     count
 }
 
-/// The y of a row's middle.
+/// Returns the y of a row's middle.
 fn middle_of(row: usize) -> f64 {
     #[expect(clippy::cast_precision_loss, reason = "a small count")]
     let row = row as f64;
     -row - 0.5
 }
 
-/// Round numbers between two bounds, at most about `most` of them.
+/// Returns round numbers between two bounds, at most about `most` of them.
 fn ticks(least: f64, greatest: f64, most: f64) -> impl Iterator<Item = f64> {
     let raw = (greatest - least) / most.max(1.0);
     let power = 10.0_f64.powf(raw.log10().floor());
@@ -376,7 +376,7 @@ fn ticks(least: f64, greatest: f64, most: f64) -> impl Iterator<Item = f64> {
     (0..1000).map(move |index| (first + f64::from(index)) * step).take_while(move |tick| *tick <= greatest)
 }
 
-/// Powers of ten between two bounds, and twice and five times them where there are few.
+/// Returns powers of ten between two bounds, and 2 and 5 times these if there are few.
 fn decades(least: f64, greatest: f64, most: f64) -> Vec<f64> {
     #[expect(clippy::cast_possible_truncation, reason = "exponents of ten")]
     let (from, to) = (least.log10().floor() as i32, greatest.log10().ceil() as i32);
@@ -385,7 +385,7 @@ fn decades(least: f64, greatest: f64, most: f64) -> Vec<f64> {
     all.filter(|tick| (least..=greatest).contains(tick)).collect()
 }
 
-/// A tick without the noise of binary fractions.
+/// Formats a tick without the rounding noise of binary fractions.
 fn label(tick: f64) -> String {
     let text = format!("{tick:.6}");
     let text = text.trim_end_matches('0').trim_end_matches('.');

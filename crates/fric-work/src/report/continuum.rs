@@ -18,12 +18,12 @@ use super::{Page, number};
 use crate::provenance::Provenance;
 use crate::verdict::{self, Verdict};
 
-/// Columns of a map.
+/// Number of columns of a map.
 const MAP_COLUMNS: usize = 240;
-/// Shapes of a friction page.
+/// Number of shapes on a friction page.
 const SHOWN_TIMES: usize = 6;
 
-/// The page of `continuum calibrate`.
+/// Returns the page of `continuum calibrate`.
 #[must_use]
 pub fn calibration(result: &CalibrationResult, provenance: &Provenance) -> String {
     let count = result.gratings.len();
@@ -51,7 +51,7 @@ pub fn calibration(result: &CalibrationResult, provenance: &Provenance) -> Strin
     plain(title, verdict::of_calibration(result), content, Plots::default(), provenance)
 }
 
-/// The page of `continuum friction`.
+/// Returns the page of `continuum friction`.
 #[must_use]
 pub fn friction(result: &FrictionResult, provenance: &Provenance) -> String {
     let (series, mut plots) = (&result.series, Plots::default());
@@ -78,7 +78,7 @@ pub fn friction(result: &FrictionResult, provenance: &Provenance) -> String {
     plain(title, verdict::of_hole_frictions(result), content, plots, provenance)
 }
 
-/// The page of `continuum shape`.
+/// Returns the page of `continuum shape`.
 #[must_use]
 pub fn shape(result: &ShapeResult, run: &Run, ways: &[WayShapes], provenance: &Provenance) -> String {
     let mut plots = Plots::default();
@@ -118,7 +118,7 @@ pub fn shape(result: &ShapeResult, run: &Run, ways: &[WayShapes], provenance: &P
     plain(title, verdict::of_shapes(result), content, plots, provenance)
 }
 
-/// The page of `discover` with a manipulator.
+/// Returns the page of `discover` for a manipulator.
 #[must_use]
 pub fn discovery(found: &TendonDiscovery, provenance: &Provenance) -> String {
     let (result, mut plots) = (&found.result, Plots::default());
@@ -158,25 +158,25 @@ pub fn discovery(found: &TendonDiscovery, provenance: &Provenance) -> String {
     plain(title, verdict::of_tendon(result), content, plots, provenance)
 }
 
-/// The lines of the gratings as a table by themselves.
+/// Returns the lines of the gratings as a table.
 #[must_use]
 pub fn calibration_table(result: &CalibrationResult) -> String {
     gratings(result).into_string()
 }
 
-/// The friction at the holes as a table by itself.
+/// Returns the friction at the holes as a table.
 #[must_use]
 pub fn friction_table(result: &FrictionResult) -> String {
     friction_by_hole(result).into_string()
 }
 
-/// The errors of the ways as a table by themselves.
+/// Returns the errors of the friction models as a table.
 #[must_use]
 pub fn shape_table(result: &ShapeResult) -> String {
     errors_by_way(result).into_string()
 }
 
-/// What was found as a table by itself.
+/// Returns the findings as a table.
 #[must_use]
 pub fn discovery_table(result: &TendonDiscoverResult) -> String {
     html! {
@@ -195,14 +195,14 @@ pub fn discovery_table(result: &TendonDiscoverResult) -> String {
     .into_string()
 }
 
-/// The page of a single hole.
+/// Returns the page of a single hole.
 #[must_use]
 pub fn hole(result: &HoleResult, provenance: &Provenance) -> String {
     let verdict = verdict::of_hole(result);
     plain("Friction of a hole".to_owned(), verdict, coefficient(result), Plots::default(), provenance)
 }
 
-/// Its coefficient as a table by itself.
+/// Returns the hole's coefficient as a table.
 #[must_use]
 pub fn hole_table(result: &HoleResult) -> String {
     coefficient(result).into_string()
@@ -221,14 +221,14 @@ fn coefficient(result: &HoleResult) -> Markup {
     }
 }
 
-/// The page of `continuum fit`.
+/// Returns the page of `continuum fit`.
 #[must_use]
 pub fn fit(result: &TendonFitResult, provenance: &Provenance) -> String {
     let title = format!("{}: identification", result.manipulator);
     plain(title, verdict::of_tendon_fit(result), identified(result), Plots::default(), provenance)
 }
 
-/// Its values as a table by itself.
+/// Returns the fitted values as a table.
 #[must_use]
 pub fn fit_table(result: &TendonFitResult) -> String {
     identified(result).into_string()
@@ -247,7 +247,7 @@ fn identified(result: &TendonFitResult) -> Markup {
     }
 }
 
-/// Lines of the gratings.
+/// Returns the lines of the gratings.
 fn gratings(result: &CalibrationResult) -> Markup {
     html! {
         table {
@@ -266,7 +266,7 @@ fn gratings(result: &CalibrationResult) -> Markup {
     }
 }
 
-/// Friction at each hole over the run.
+/// Returns the friction at each hole over the run.
 fn friction_by_hole(result: &FrictionResult) -> Markup {
     html! {
         table {
@@ -284,7 +284,7 @@ fn friction_by_hole(result: &FrictionResult) -> Markup {
     }
 }
 
-/// Distances from the markers.
+/// Returns the distances from the markers.
 fn errors_by_way(result: &ShapeResult) -> Markup {
     html! {
         table {
@@ -300,12 +300,12 @@ fn errors_by_way(result: &ShapeResult) -> Markup {
     }
 }
 
-/// A page without cables to switch off.
+/// Returns a page without cables to switch off.
 fn plain(title: String, verdict: Verdict, content: Markup, plots: Plots, provenance: &Provenance) -> String {
     Page { title, verdict, content, plots, cables: Vec::new(), provenance }.into_html()
 }
 
-/// Residuals of each segment before and after, in one scale.
+/// Returns the residuals of each segment before and after, on one scale.
 fn residuals(found: &TendonDiscovery) -> Vec<Plot> {
     let of = |rows: &[Vec<f64>], segment: usize| {
         Values::Line(rows.iter().map(|row| row.get(segment).copied().unwrap_or(f64::NAN)).collect())
@@ -330,7 +330,7 @@ fn residuals(found: &TendonDiscovery) -> Vec<Plot> {
     plots
 }
 
-/// Friction of each hole over time as lines.
+/// Returns the friction of each hole over time as lines.
 fn friction_over_time(result: &FrictionResult) -> Plot {
     let mut plot = Plot::new("Friction of each hole", Axis::TIME, Axis::new("friction", "N"));
     let holes = result.series.friction_n.iter().map(Vec::len).max().unwrap_or(0);
@@ -343,7 +343,7 @@ fn friction_over_time(result: &FrictionResult) -> Plot {
     plot
 }
 
-/// Friction over holes and time as a map: color by sign, strength by size.
+/// Returns the friction over holes and time as a map: color by sign, strength by magnitude.
 fn map(result: &FrictionResult) -> Markup {
     let series = &result.series;
     let holes = series.friction_n.iter().map(Vec::len).max().unwrap_or(0);
@@ -406,7 +406,7 @@ fn keys<'a>(names: impl Iterator<Item = &'a str>) -> Markup {
     html! { @for name in names { (key(name, name)) } }
 }
 
-/// An axis of holes or gratings, 1 to count.
+/// Returns an axis of holes or gratings, 1 to count.
 fn holes(count: usize, unit: &'static str) -> Span {
     Span { least: 0.4, greatest: count_as_number(count) + 0.6, unit }
 }
@@ -417,14 +417,14 @@ fn count_as_number(count: usize) -> f64 {
     number
 }
 
-/// The edges of one of `count` bars side by side at a place of an axis.
+/// Returns the edges of one of `count` adjacent bars at a position of an axis.
 fn bar_edges(place: usize, bar: usize, count: usize) -> [f64; 2] {
     let width = 0.8 / count_as_number(count);
     let from = count_as_number(place) + 0.6 + width * count_as_number(bar);
     [from, from + 0.9 * width]
 }
 
-/// Friction at each hole as signed bars side by side, with what the hole can hold as a line on both sides.
+/// Draws the friction at each hole as signed adjacent bars, with the greatest friction of the hole as a line on both sides.
 fn bars(ways: &[(&'static str, &[f64], &[f64])], width: f64) -> String {
     let mut extent = Extent::NOTHING;
     extent.add(0.0);
@@ -463,7 +463,7 @@ fn frictions(shape: &PickedShape) -> String {
     bars(&ways, 470.0)
 }
 
-/// A shape to scale, x along the straight manipulator.
+/// Draws a shape to scale, x along the straight manipulator.
 fn drawn(shape: &PickedShape) -> String {
     let finite = |places: &[[f64; 2]]| {
         places.iter().filter(|place| place.iter().all(|one| one.is_finite())).copied().collect::<Vec<_>>()
@@ -490,7 +490,7 @@ fn drawn(shape: &PickedShape) -> String {
     chart.into_svg("Shape of the manipulator in metres, to scale")
 }
 
-/// Mean distance of each way over time.
+/// Plots the mean distance of each friction model over time.
 fn errors(plots: &mut Plots, run: &Run, ways: &[WayShapes]) -> Markup {
     let samples = run.samples();
     let mut plot = Plot::new("Mean distance", Axis::TIME, Axis::new("distance", "mm"));

@@ -1,4 +1,4 @@
-//! The page of `discover --report`: the verdicts, then for each cable what was found, where, and how sure it is.
+//! The page of `discover --report`: the verdicts, then for each cable the findings with position and uncertainty.
 
 use fric_lab::discover::result::{
     Candidate, DiscoverCableResult, DiscoverResult, EffectResult, TablePoint, TableResult, WhereResult, WrenchGap,
@@ -18,17 +18,17 @@ use super::{Page, number};
 use crate::provenance::Provenance;
 use crate::verdict;
 
-/// Intervals of residuals that a page keeps at most, of all cables together: it stays below 3 MB.
+/// Maximum number of residual intervals on a page, for all cables together, which keeps it below 3 MB.
 const MOST_INTERVALS: usize = 130_000;
-/// Longest lag of an autocorrelation that is shown, s.
+/// Longest lag of an autocorrelation in a plot, s.
 const LONGEST_LAG_S: f64 = 2.0;
-/// Points of a spectrum that are shown: as many of each octave.
+/// Number of plotted points of a spectrum per octave.
 const PER_OCTAVE: f64 = 24.0;
-/// Widths of a chart that is alone, and of one of two.
+/// Width of a single chart, and of one of two.
 const WIDE: f64 = 960.0;
 const HALF: f64 = 470.0;
 
-/// The page.
+/// Returns the page.
 #[must_use]
 pub fn page(result: &DiscoverResult, discoveries: &[CableDiscovery], provenance: &Provenance) -> String {
     let mut plots = Plots::default();
@@ -59,11 +59,11 @@ pub fn page(result: &DiscoverResult, discoveries: &[CableDiscovery], provenance:
     Page { title, verdict: verdict::of_discovery(result), content, plots, cables: names, provenance }.into_html()
 }
 
-/// What the plots over time of all cables have in common, so that they can be compared.
+/// The common properties of the time plots of all cables, for comparison.
 struct Common {
-    /// Both ends of the residuals, N.
+    /// Common range of the residuals, N.
     scale: Extent,
-    /// Samples in one of the intervals that the page keeps.
+    /// Number of samples per interval of the page.
     per_interval: usize,
 }
 
@@ -81,7 +81,7 @@ impl Common {
         times_s.iter().copied().step_by(self.per_interval).collect()
     }
 
-    /// Least and greatest of a residual in each interval.
+    /// Returns the least and the greatest residual in each interval.
     fn band(&self, residual_n: &[f64]) -> Values {
         let extent = |values: &[f64]| {
             let mut extent = Extent::NOTHING;
@@ -95,13 +95,13 @@ impl Common {
     }
 }
 
-/// The verdicts as a table by themselves.
+/// Returns the verdicts as a table.
 #[must_use]
 pub fn table(result: &DiscoverResult) -> String {
     overview(result, |_, name| html! { (name) }).into_string()
 }
 
-/// The verdicts; `named` is a cable's name, which may lead to it.
+/// Returns the verdicts; `named` formats a cable's name, possibly as a link.
 fn overview(result: &DiscoverResult, named: impl Fn(usize, &str) -> Markup) -> Markup {
     html! {
         table {
@@ -133,7 +133,7 @@ fn overview(result: &DiscoverResult, named: impl Fn(usize, &str) -> Markup) -> M
     }
 }
 
-/// All cables together.
+/// Returns the findings for all cables together.
 fn of_wrench(gap: &WrenchGap) -> Markup {
     html! {
         h2 { "All cables together: " span class={ "verdict " (gap.verdict) } { (gap.verdict) } }
@@ -152,7 +152,7 @@ fn of_wrench(gap: &WrenchGap) -> Markup {
 }
 
 fn details(plots: &mut Plots, common: &Common, cable: &DiscoverCableResult, found: &CableDiscovery) -> Markup {
-    // The plot that a stretch of time leads to.
+    // The plot that a time interval links to.
     let over_time_id = plots.next_id();
     html! {
         @for effect in &cable.effects { (effect_in_words(effect)) }
@@ -176,7 +176,7 @@ fn details(plots: &mut Plots, common: &Common, cable: &DiscoverCableResult, foun
         (periodic(plots, cable, found))
         @for profile in &found.profiles { (over_condition(cable, profile)) }
         (places("Where the given model disagrees", &cable.places, &over_time_id))
-        // Without an effect the rest is all of the gap.
+        // Without an effect the rest equals the whole gap.
         @if let Some(rest) = cable.unexplained.as_ref().filter(|_| !cable.effects.is_empty() || cable.places.is_empty()) {
             (places("Where the rest lies", &rest.places, &over_time_id))
         }
@@ -204,7 +204,7 @@ fn effect_in_words(effect: &EffectResult) -> Markup {
     }
 }
 
-/// A table over its condition, with how sure each place is.
+/// Draws a table over its condition, with the uncertainty of each point.
 fn of_table(table: &TableResult) -> String {
     let percents = if table.changes == "friction" { 100.0 } else { 1.0 };
     let half = |point: &TablePoint| HALF_INTERVAL * percents * point.standard_error.unwrap_or(0.0);
@@ -230,7 +230,7 @@ fn key(color: &str, text: &str) -> Markup {
     html! { span.keys { span.key style=(format!("background: var(--{color})")) {} (text) } " " }
 }
 
-/// A step for each effect that entered.
+/// Draws a step for each effect that entered.
 fn ladder(cable: &DiscoverCableResult) -> String {
     let rms_n = |error: Option<f64>| error.unwrap_or(f64::NAN);
     let mut steps = vec![("given model".to_owned(), rms_n(cable.before.map(|error| error.rms_n)), None)];
@@ -240,7 +240,7 @@ fn ladder(cable: &DiscoverCableResult) -> String {
     let names: Vec<&str> = steps.iter().map(|(name, ..)| name.as_str()).collect();
     let floor_n = cable.noise_floor_n.unwrap_or(0.0);
     let greatest = steps.iter().map(|(_, rms_n, _)| *rms_n).fold(floor_n, f64::max);
-    // Room for the words behind the longest bar.
+    // Space for the text after the longest bar.
     let x = Span { least: 0.0, greatest: 1.35 * greatest.max(1e-9), unit: "N" };
     let mut chart = Chart::in_rows(x, &names, WIDE);
     for (row, (_, rms_n, closed)) in steps.iter().enumerate() {
@@ -253,7 +253,7 @@ fn ladder(cable: &DiscoverCableResult) -> String {
         + &html! { p.soft { "Dotted: the noise, " (newtons(floor_n)) "." } }.into_string()
 }
 
-/// The intervals to look at: of the rest where there is one, else of the condition that tells most.
+/// Returns the intervals to look at: those of the rest if there is one, else those of the most informative condition.
 fn looked_at(cable: &DiscoverCableResult) -> Vec<[f64; 2]> {
     let mut all = Vec::new();
     all.extend(cable.faults.iter().flat_map(|fault| fault.intervals_s.iter().copied()));
@@ -280,7 +280,7 @@ fn over_time(common: &Common, cable: &DiscoverCableResult, found: &CableDiscover
     plot
 }
 
-/// Friction over speed and over length, measured and by both models.
+/// Plots friction over speed and over length, measured and by both models.
 fn curves(plots: &mut Plots, cable: &DiscoverCableResult, found: &CableDiscovery) -> Markup {
     let is_extended = !cable.effects.is_empty();
     let speeds = &found.curves.over_speed;
@@ -331,7 +331,7 @@ fn curves(plots: &mut Plots, cable: &DiscoverCableResult, found: &CableDiscovery
     }
 }
 
-/// The spectrum of the residual with the lines that were found, and its autocorrelation.
+/// Plots the spectrum of the residual with the lines found, and its autocorrelation.
 fn periodic(plots: &mut Plots, cable: &DiscoverCableResult, found: &CableDiscovery) -> Markup {
     let is_extended = !cable.effects.is_empty();
     let residuals = [
@@ -368,7 +368,7 @@ fn periodic(plots: &mut Plots, cable: &DiscoverCableResult, found: &CableDiscove
     }
 }
 
-/// A spectrum by as many points for each octave, the mean power of each.
+/// Reduces a spectrum to a fixed number of points per octave, each the mean power.
 fn per_octave(spectrum: &Spectrum) -> (Vec<f64>, Vec<f64>) {
     let mut points: Vec<(f64, f64, f64, f64)> = Vec::new();
     for (frequency_hz, density) in spectrum.frequency_hz.iter().zip(&spectrum.density) {
@@ -385,7 +385,7 @@ fn per_octave(spectrum: &Spectrum) -> (Vec<f64>, Vec<f64>) {
     points.into_iter().map(|(_, sum_hz, power, count)| (sum_hz / count, (power / count).sqrt())).unzip()
 }
 
-/// The residuals over a condition: how large, and in which direction.
+/// Plots the residuals over a condition: magnitude and direction.
 fn over_condition(cable: &DiscoverCableResult, profile: &Profile) -> Markup {
     let is_extended = !cable.effects.is_empty();
     html! {
@@ -413,25 +413,25 @@ fn over_condition(cable: &DiscoverCableResult, profile: &Profile) -> Markup {
     }
 }
 
-/// Corners of a flight of steps.
+/// Returns the corners of a step function.
 fn steps(values: &[f64]) -> impl Iterator<Item = [f64; 2]> {
     #[expect(clippy::cast_precision_loss, reason = "a small count")]
     let edge = |step: usize| step as f64;
     values.iter().enumerate().flat_map(move |(step, value)| [[edge(step), *value], [edge(step + 1), *value]])
 }
 
-/// Edges of a profile's bins in a unit that suits them, and the unit.
+/// Returns the edges of a profile's bins in a suitable unit, and the unit.
 fn edges(profile: &Profile) -> (Vec<f64>, &'static str) {
     let edges = profile.bins.first().map(|bin| bin.from).into_iter().chain(profile.bins.iter().map(|bin| bin.to));
     let greatest = edges.clone().map(f64::abs).fold(0.0, f64::max);
     let middle = profile.bins.get(profile.bins.len() / 2).map_or(greatest, |bin| bin.from);
     let (factor, unit) = scaled_unit(middle, profile.unit);
-    // What is nothing beside the rest is written as such.
+    // Values that are negligible beside the others are written as 0.
     let shown = |edge: f64| if edge.abs() < 1e-4 * greatest { 0.0 } else { edge * factor };
     (edges.map(shown).collect(), if unit == "1" { "" } else { unit })
 }
 
-/// What is drawn of a profile: the class of each model with what is taken of its cells.
+/// Returns the traces of a profile: the class of each model, with the picked value of its cells.
 fn traces(profile: &Profile, is_extended: bool, pick: impl Fn(&ProfileCell) -> f64) -> Vec<(&'static str, Vec<f64>)> {
     let before: Vec<f64> = profile.bins.iter().map(|bin| pick(&bin.before)).collect();
     let after: Vec<f64> = profile.bins.iter().map(|bin| pick(&bin.after)).collect();
@@ -498,7 +498,7 @@ fn places(title: &str, places: &[WhereResult], plot: &str) -> Markup {
     }
 }
 
-/// Stretches of time that lead there in a plot.
+/// Returns links from time intervals to a plot.
 fn looks(intervals_s: &[[f64; 2]], plot: &str) -> Markup {
     html! {
         @for (place, one) in intervals_s.iter().enumerate() {
@@ -509,7 +509,7 @@ fn looks(intervals_s: &[[f64; 2]], plot: &str) -> Markup {
     }
 }
 
-/// What became of a candidate.
+/// Returns the outcome of a candidate.
 fn outcome(cable: &DiscoverCableResult, candidate: &Candidate) -> String {
     if cable.effects.iter().any(|effect| effect.kind == candidate.kind) {
         return "named".to_owned();

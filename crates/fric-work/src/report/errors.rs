@@ -1,4 +1,4 @@
-//! The page of `replay --report`: the errors as tables and over time, the friction over its conditions, the forces and the wrench.
+//! The page of `replay --report`: errors as tables and over time, friction over its conditions, forces and wrench.
 
 use fric_lab::errors::{WrenchError, WrenchResult};
 use maud::{Markup, html};
@@ -11,12 +11,12 @@ use crate::provenance::Provenance;
 use crate::replay::ReplayResult;
 use crate::verdict::left_in_words;
 
-/// Colors of cables that are drawn together; later ones are dashed.
+/// Colors of cables in a common plot; later ones are dashed.
 pub(super) const COLORS: [&str; 8] = ["c0", "c1", "c2", "c3", "c4", "c5", "c6", "c7"];
 /// Components of the wrench.
 const COMPONENTS: [&str; 6] = ["x", "y", "z", "about x", "about y", "about z"];
 
-/// The page.
+/// Returns the page.
 #[must_use]
 pub fn page(result: &ReplayResult, series: &Series, provenance: &Provenance) -> String {
     let mut plots = Plots::default();
@@ -51,7 +51,7 @@ pub fn page(result: &ReplayResult, series: &Series, provenance: &Provenance) -> 
     Page { title, verdict: result.verdict(), content, plots, cables: names, provenance }.into_html()
 }
 
-/// The errors as a table by themselves.
+/// Returns the errors as a table.
 #[must_use]
 pub fn table(result: &ReplayResult) -> String {
     cables(result).into_string()
@@ -115,14 +115,14 @@ fn band(series: &Series, channel: Channel, name: &str, color: &'static str) -> O
     series.band(channel).map(|(least, greatest)| Trace::new(name, color, Values::Band(least, greatest)))
 }
 
-/// Gives plots that are compared the same scale, around zero.
+/// Gives plots for comparison a common scale, around zero.
 fn share_scale(plots: &mut [Option<Plot>]) {
     let mut all = Extent { least: 0.0, greatest: 0.0 };
     plots.iter().flatten().for_each(|plot| all.merge(plot.extent()));
     plots.iter_mut().flatten().for_each(|plot| plot.span = Some(all));
 }
 
-/// Deviations of the cables before and after compensation; `None` where there are none.
+/// Plots the deviations of the cables before and after compensation; `None` if there are none.
 fn deviations(series: &Series, count: usize) -> Vec<Option<Plot>> {
     let of_cable = |cable: usize| {
         let before = band(series, Channel::Before(cable), "before: uncompensated", "before")?;
@@ -137,7 +137,7 @@ fn deviations(series: &Series, count: usize) -> Vec<Option<Plot>> {
     plots
 }
 
-/// Friction over speed, and over the length both ways, before and after.
+/// Plots friction over speed, and over the length in both directions, before and after.
 fn frictions(plots: &mut Plots, friction: &CableFriction) -> Markup {
     let speeds: Vec<(f64, &Friction)> = friction.over_speed.filled().collect();
     let at: Vec<f64> = speeds.iter().map(|(speed, _)| 1e3 * speed).collect();
@@ -192,7 +192,7 @@ fn frictions(plots: &mut Plots, friction: &CableFriction) -> Markup {
     }
 }
 
-/// The compensated force of every cable.
+/// Plots the compensated force of every cable.
 fn forces(plots: &mut Plots, series: &Series, names: &[&str]) -> Markup {
     let mut plot = Plot::new("Compensated force of every cable at the platform", Axis::TIME, Axis::new("force", "N"));
     for (cable, name) in names.iter().enumerate() {
@@ -208,7 +208,7 @@ fn forces(plots: &mut Plots, series: &Series, names: &[&str]) -> Markup {
     }
 }
 
-/// The wrench over time, forces in one scale and torques in another.
+/// Plots the wrench over time, with one scale for forces and another for torques.
 fn wrench(plots: &mut Plots, series: &Series) -> Markup {
     let is_compared = series.is_wrench_compared();
     let what = if is_compared { "error" } else { "wrench" };

@@ -1,4 +1,4 @@
-//! The page of a fit: values with their errors, correlations, and what is left of the gap to the reference.
+//! The page of a fit: values with their errors, correlations, and the remaining gap to the reference.
 
 use fric_lab::fit::result::{FitCableResult, FitResult};
 use fric_lab::text::plain;
@@ -11,7 +11,7 @@ use crate::fit_report::{Correlation, correlations, value_text};
 use crate::provenance::Provenance;
 use crate::verdict::{self, left_in_words};
 
-/// The page; `fits` are those of the result.
+/// Returns the page; `fits` belong to the result.
 #[must_use]
 pub fn page(result: &FitResult, fits: &[fric_lab::fit::CableFit], provenance: &Provenance) -> String {
     let content = html! {
@@ -38,7 +38,7 @@ pub fn page(result: &FitResult, fits: &[fric_lab::fit::CableFit], provenance: &P
     Page { title, verdict, content, plots, cables: Vec::new(), provenance }.into_html()
 }
 
-/// The values as a table by itself.
+/// Returns the values as a table.
 #[must_use]
 pub fn table(result: &FitResult) -> String {
     values(&result.cables).into_string()
@@ -69,7 +69,7 @@ fn values(cables: &[FitCableResult]) -> Markup {
     }
 }
 
-/// What else is to be said of a value.
+/// Returns the remark on a value.
 pub(crate) fn remark(cable: &FitCableResult, name: &str) -> &'static str {
     let is_in = |names: &[String]| names.iter().any(|other| other == name);
     if is_in(&cable.undetermined) {
@@ -83,7 +83,7 @@ pub(crate) fn remark(cable: &FitCableResult, name: &str) -> &'static str {
     }
 }
 
-/// What the fitted model leaves of the error, a share.
+/// Returns the remaining fraction of the error with the fitted model.
 pub(crate) fn left(cable: &FitCableResult) -> Option<f64> {
     let (before, after) = cable.before.zip(cable.after)?;
     Some(after.rms_n / before.rms_n).filter(|left| left.is_finite())

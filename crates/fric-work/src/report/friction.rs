@@ -1,16 +1,16 @@
-//! Friction of a cable over its speed and over its length, gathered cycle by cycle; memory does not grow with the log.
+//! Friction of a cable over its speed and over its length, collected cycle by cycle. Memory does not grow with the log.
 //!
-//! Measured friction is the reference less the frictionless force, the model's is the compensated force less the frictionless one. Both
-//! are at the platform, and negative where the platform feels less than the sensor.
+//! Measured friction is the reference minus the frictionless force; the model's is the compensated force minus the frictionless one. Both are at the
+//! platform, and negative where the platform feels less than the sensor.
 
 use fric_core::{CableInput, CableOutput};
 
-/// Bins over a condition, half of them below zero.
+/// Number of bins over a condition, half of them below zero.
 const BINS: usize = 64;
-/// Width of a bin before it has to grow, in the condition's unit.
+/// Initial width of a bin, in the condition's unit.
 const FIRST_WIDTH: f64 = 1e-6;
 
-/// Count, mean and scatter of numbers, by running sums.
+/// Count, mean and scatter of numbers, from running sums.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Scatter {
     count: f64,
@@ -38,12 +38,12 @@ impl Scatter {
         }
     }
 
-    /// Mean; NaN without a number.
+    /// Returns the mean; NaN without a number.
     pub(crate) fn mean(&self) -> f64 {
         if self.count > 0.0 { self.mean } else { f64::NAN }
     }
 
-    /// Standard deviation; NaN without a number.
+    /// Returns the standard deviation; NaN without a number.
     pub(crate) fn deviation(&self) -> f64 {
         if self.count > 0.0 { (self.squares / self.count).sqrt() } else { f64::NAN }
     }
@@ -52,11 +52,11 @@ impl Scatter {
 /// Friction in one bin.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Friction {
-    /// Measured, N.
+    /// Measured friction, N.
     pub measured: Scatter,
-    /// By the model, N.
+    /// Friction of the model, N.
     pub model: Scatter,
-    /// What the model leaves: measured less model, N.
+    /// Measured friction minus that of the model, N.
     pub left: Scatter,
 }
 
@@ -68,7 +68,7 @@ impl Friction {
     }
 }
 
-/// Friction over a condition whose range is not known before: bins on both sides of zero, twice as wide where they do not reach.
+/// Friction over a condition of initially unknown range: bins on both sides of zero, whose width doubles when the range is exceeded.
 #[derive(Clone, Debug)]
 pub(crate) struct Binned {
     width: f64,
@@ -103,7 +103,7 @@ impl Binned {
     fn widen(&mut self) {
         let mut wide = vec![Friction::default(); BINS];
         for (place, bin) in self.bins.iter().enumerate() {
-            // Two bins become one, and zero stays an edge.
+            // Two bins merge, and zero stays an edge.
             if let Some(both) = wide.get_mut(place.midpoint(BINS / 2)) {
                 both.merge(*bin);
             }
@@ -112,7 +112,7 @@ impl Binned {
         self.width *= 2.0;
     }
 
-    /// Middles of the bins from the first to the last with anything in it, and what is in them.
+    /// Returns the centres of the bins from the first to the last non-empty one, with their content.
     pub(crate) fn filled(&self) -> impl Iterator<Item = (f64, &Friction)> {
         let is_filled = |bin: &Friction| bin.model.count > 0.0;
         let first = self.bins.iter().position(is_filled).unwrap_or(0);
@@ -126,9 +126,9 @@ impl Binned {
 /// Friction of one cable.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct CableFriction {
-    /// Over the speed, m/s, positive paying out.
+    /// Friction over the speed, m/s, positive paying out.
     pub over_speed: Binned,
-    /// Over the length since the first sample, m, reeling in and paying out.
+    /// Friction over the length since the first sample, m: reeling in, and paying out.
     pub over_length: [Binned; 2],
     first_length_m: Option<f64>,
     last: Option<(i64, f64)>,
@@ -136,7 +136,7 @@ pub(crate) struct CableFriction {
 }
 
 impl CableFriction {
-    /// Takes in a cycle without a flag.
+    /// Adds a cycle without a flag.
     pub(crate) fn add(&mut self, stamp_nanos: i64, input: &CableInput, output: &CableOutput, reference_n: f64) {
         let (measured_n, model_n) =
             (reference_n - output.frictionless_n, output.force_at_platform_n - output.frictionless_n);
@@ -166,7 +166,7 @@ impl CableFriction {
 mod tests {
     use super::*;
 
-    /// Against sums over the samples themselves.
+    /// Compares with sums over the samples themselves.
     #[test]
     fn bins_that_grow_keep_mean_and_scatter() {
         let mut binned = Binned::default();

@@ -1,4 +1,4 @@
-//! The page of a hysteresis: its width along and about each axis, and the loops of which it is the width.
+//! The page of a hysteresis: its width along and about each axis, and the underlying loops.
 
 use fric_lab::hysteresis::{HysteresisLoop, HysteresisResult, WidthResult};
 use maud::{Markup, html};
@@ -9,7 +9,7 @@ use super::series::Extent;
 use crate::provenance::Provenance;
 use crate::verdict::{self, left_in_words};
 
-/// The page; `loops` are those of the axes that were crossed.
+/// Returns the page; `loops` belong to the crossed axes.
 #[must_use]
 pub fn page(result: &HysteresisResult, loops: &[HysteresisLoop], provenance: &Provenance) -> String {
     let [x, y, z] = result.position_m.map(fric_lab::text::to_millimetre);
@@ -27,7 +27,7 @@ pub fn page(result: &HysteresisResult, loops: &[HysteresisLoop], provenance: &Pr
     Page { title, verdict: verdict::of_hysteresis(result), content, plots, cables: Vec::new(), provenance }.into_html()
 }
 
-/// The widths as a table by themselves.
+/// Returns the widths as a table.
 #[must_use]
 pub fn table(result: &HysteresisResult) -> String {
     widths(result).into_string()
@@ -61,7 +61,7 @@ fn width(width: Option<&WidthResult>, unit: &str) -> String {
     format!("{width:.4}{error} {unit}")
 }
 
-/// The plots, each loop about its own mean, so that widths can be compared among forces and among torques.
+/// Returns the plots, each loop around its own mean, so that widths can be compared among forces and among torques.
 fn loops_in_one_scale(loops: &[HysteresisLoop]) -> Vec<(Plot, Vec<f64>)> {
     let mut all: Vec<(Plot, Vec<f64>)> = loops.iter().map(of_axis).collect();
     for unit in ["N", "Nm"] {

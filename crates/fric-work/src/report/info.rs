@@ -1,4 +1,4 @@
-//! The page of `info`: what is in a log, what can be done with it, and its signals over time.
+//! The page of `info`: the content of a log, what can be done with it, and its signals over time.
 
 use maud::{Markup, html};
 
@@ -9,14 +9,14 @@ use super::series::{Signal, SignalSeries};
 use crate::provenance::Provenance;
 use crate::verdict::{Tone, Verdict, counted};
 
-/// A table with its heads.
+/// A table with its headings.
 #[derive(Clone, Debug, Default)]
 pub struct InfoTable {
     /// What it is of.
     pub title: &'static str,
-    /// Heads of the columns, with units in brackets.
+    /// Column headings, with units in brackets.
     pub heads: Vec<&'static str>,
-    /// Cells, row by row; the first of a row names it.
+    /// Cells, row by row; the first cell of a row is its name.
     pub rows: Vec<Vec<String>>,
 }
 
@@ -27,18 +27,18 @@ pub struct InfoStep {
     pub name: String,
     /// Whether it is possible.
     pub is_possible: bool,
-    /// What is missing, or to be said of it.
+    /// Missing data, or other remarks.
     pub remarks: Vec<String>,
 }
 
-/// What is told of a log.
+/// The description of a log.
 #[derive(Debug, Default)]
 pub struct Overview<'a> {
     /// Name of the robot or manipulator; `None` where no model is known.
     pub model: Option<&'a str>,
-    /// Topics or columns, signals.
+    /// Tables of topics or columns, and of signals.
     pub tables: Vec<InfoTable>,
-    /// What can be done with the log; empty without a model.
+    /// Steps that can be done with the log; empty without a model.
     pub steps: Vec<InfoStep>,
     /// The cables with their signals.
     pub cables: Vec<&'a str>,
@@ -46,7 +46,7 @@ pub struct Overview<'a> {
     pub series: Option<SignalSeries>,
 }
 
-/// The page.
+/// Returns the page.
 #[must_use]
 pub fn page(overview: &Overview<'_>, provenance: &Provenance) -> String {
     let mut plots = Plots::default();
@@ -119,7 +119,7 @@ fn listed(table: &InfoTable) -> Markup {
     }
 }
 
-/// Forces and lengths of every cable.
+/// Plots forces and lengths of every cable.
 fn signals(plots: &mut Plots, series: &SignalSeries, cables: &[&str]) -> Markup {
     let of = |title: &str, signal: Signal, axis: Axis| {
         let mut plot = Plot::new(title, Axis::TIME, axis);

@@ -23,26 +23,26 @@ pub use run::RunSeries;
 pub use series::{Series, SignalSeries};
 
 const STYLE: &str = include_str!("style.css");
-/// Makes the plots answer.
+/// The script that makes the plots interactive.
 const SCRIPT: &str = include_str!("page.js");
-/// Draws them: uPlot 1.6.32, as its authors build it.
+/// The plotting library: uPlot 1.6.32, as its authors build it.
 const UPLOT: &str = include_str!("../../vendor/uplot/uPlot.iife.min.js");
 const UPLOT_STYLE: &str = include_str!("../../vendor/uplot/uPlot.min.css");
 const UPLOT_LICENCE: &str = include_str!("../../vendor/uplot/LICENSE");
 
-/// A number where there is one.
+/// Formats a number, if there is one.
 fn number(value: Option<f64>) -> String {
     value.map_or_else(|| "–".to_owned(), |value| format!("{value:.4}"))
 }
 
 /// A page: the verdict in a sentence, what to do, then the evidence.
 struct Page<'a> {
-    /// What the page is about, in a few words.
+    /// Title of the page, in a few words.
     title: String,
     verdict: Verdict,
     content: Markup,
     plots: Plots,
-    /// Names of the cables that can be switched off.
+    /// Names of the cables that can be hidden.
     cables: Vec<&'a str>,
     provenance: &'a Provenance,
 }
@@ -88,13 +88,13 @@ impl Page<'_> {
     }
 }
 
-/// The library with its licence, which every copy bears, in place of its address.
+/// Returns the library with its licence, which every copy must carry, in place of its address.
 fn library() -> String {
     let code = UPLOT.split_once("*/\n").map_or(UPLOT, |(_, code)| code);
     format!("/*! uPlot 1.6.32\n{UPLOT_LICENCE}*/\n{code}")
 }
 
-/// Where the page comes from.
+/// Returns the provenance of the page.
 fn made(provenance: &Provenance) -> Markup {
     let Provenance { program, version, made, command, inputs } = provenance;
     html! {

@@ -1,7 +1,7 @@
-//! A plot of a page: drawn as SVG, listed as a table behind it, and handed as numbers to the script that makes it answer the mouse.
+//! A plot of a page: drawn as SVG, listed as a table behind it, and passed as numbers to the script that makes it interactive.
 //!
-//! The three show the same numbers: values are rounded once, to the digits of the plot. Over time there are too many to be listed or
-//! written as text; they go to the script in 16 bits between the least and the greatest, as least and greatest of intervals.
+//! All three show the same numbers: values are rounded once, to the digits of the plot. Time series are too long to be listed or written as text;
+//! they are passed to the script in 16 bits between the least and the greatest value, as minimum and maximum of intervals.
 
 use std::fmt::Write as _;
 
@@ -14,14 +14,14 @@ use serde_json::{Value, json};
 use super::chart::{Chart, Span};
 use super::series::Extent;
 
-/// Most points of a line as SVG.
+/// Maximum number of points of a line in SVG.
 const MOST_POINTS: usize = 480;
-/// Most rows of a table.
+/// Maximum number of rows of a table.
 const MOST_ROWS: usize = 40;
-/// Steps between the least and the greatest value of what is written in 16 bits; one more stands for none.
+/// Number of steps between the least and the greatest value in 16 bits; the remaining code means no value.
 const STEPS: u16 = u16::MAX - 1;
 
-/// What an axis shows.
+/// The description of an axis.
 #[derive(Clone, Copy, Debug)]
 pub struct Axis {
     pub name: &'static str,
@@ -46,13 +46,13 @@ impl Axis {
     }
 }
 
-/// The numbers of a trace, one for each x; NaN where there is none.
+/// The numbers of a trace, one per x; NaN if there is none.
 #[derive(Clone, Debug)]
 pub enum Values {
     Line(Vec<f64>),
-    /// Least and greatest.
+    /// Least and greatest value.
     Band(Vec<f64>, Vec<f64>),
-    /// A mean, and what it may be off to either side.
+    /// Mean, and its uncertainty to either side.
     Spread(Vec<f64>, Vec<f64>),
 }
 
@@ -60,11 +60,11 @@ pub enum Values {
 #[derive(Clone, Debug)]
 pub struct Trace {
     pub name: String,
-    /// Its color: a variable of the style.
+    /// Its color: a variable of the style sheet.
     pub color: &'static str,
-    /// What can be switched off on the whole page, such as `before`.
+    /// Its role, such as `before`, which can be hidden on the whole page.
     pub role: &'static str,
-    /// The cable that it belongs to, where a plot has several.
+    /// Its cable, if a plot has several.
     pub cable: Option<usize>,
     pub is_dashed: bool,
     pub values: Values,
@@ -76,30 +76,30 @@ impl Trace {
     }
 }
 
-/// A plot in the making.
+/// A plot under construction.
 #[derive(Clone, Debug)]
 pub struct Plot {
     pub title: String,
     pub x: Axis,
     pub y: Axis,
-    /// Digits behind the point of what is shown of y.
+    /// Number of decimals of y.
     pub digits: usize,
     pub traces: Vec<Trace>,
-    /// Stretches of x to look at.
+    /// Ranges of x to look at.
     pub looks: Vec<[f64; 2]>,
-    /// Stretches of x along the foot.
+    /// Ranges of x marked along the bottom.
     pub strips: Vec<[f64; 2]>,
-    /// Upright lines with a word.
+    /// Vertical lines with a text.
     pub uprights: Vec<(f64, String)>,
-    /// Level lines with a word.
+    /// Horizontal lines with a text.
     pub levels: Vec<(f64, String)>,
-    /// Both ends of y where several plots have the same, else its own.
+    /// Common range of y for several plots; otherwise its own.
     pub span: Option<Extent>,
     pub size: [f64; 2],
 }
 
 impl Plot {
-    /// As wide as a page.
+    /// Creates a plot of the full page width.
     pub fn new(title: impl Into<String>, x: Axis, y: Axis) -> Self {
         Self {
             title: title.into(),
@@ -116,12 +116,12 @@ impl Plot {
         }
     }
 
-    /// One of two side by side.
+    /// Makes it one of two side by side.
     pub fn half(self) -> Self {
         Self { size: [470.0, 240.0], ..self }
     }
 
-    /// What the traces span, without a margin.
+    /// Returns the range of the traces, without a margin.
     pub fn extent(&self) -> Extent {
         let mut extent = Extent::NOTHING;
         let mut add = |value: f64| {
@@ -154,12 +154,12 @@ impl Plot {
         Span::with_margin(extent, 0.06, self.y.unit)
     }
 
-    /// Title and axes in a sentence.
+    /// Returns title and axes as a sentence.
     fn caption(&self) -> String {
         format!("{}: {}", self.title, self.axes())
     }
 
-    /// What is drawn over what, on which scales.
+    /// Returns the names of both axes and their scales.
     fn axes(&self) -> String {
         let scale = |axis: Axis| if axis.is_log { "logarithmic" } else { "linear" };
         let scales = if self.x.is_log == self.y.is_log {
@@ -171,7 +171,7 @@ impl Plot {
     }
 }
 
-/// The plots of a page, with the numbers that its script needs.
+/// The plots of a page, with the numbers for its script.
 #[derive(Debug, Default)]
 pub struct Plots {
     xs: Vec<Vec<f64>>,
@@ -180,12 +180,12 @@ pub struct Plots {
 }
 
 impl Plots {
-    /// Names the next plot, to lead to it.
+    /// Returns the name of the next plot, for links to it.
     pub fn next_id(&self) -> String {
         format!("plot-{}", self.drawn.len())
     }
 
-    /// The figure; all traces have their values at `xs`.
+    /// Returns the figure; all traces have their values at `xs`.
     pub fn figure(&mut self, plot: &Plot, xs: &[f64]) -> Markup {
         let id = self.next_id();
         let is_time = plot.x.name == Axis::TIME.name;
@@ -238,7 +238,7 @@ impl Plots {
         self.xs.len() - 1
     }
 
-    /// The numbers for the script, as JSON that no letter ends; `None` without a plot.
+    /// Returns the numbers for the script, as JSON that no character can terminate; `None` without a plot.
     pub fn into_json(self, cables: &[&str]) -> Option<String> {
         if self.drawn.is_empty() {
             return None;
@@ -258,7 +258,7 @@ impl Plots {
     }
 }
 
-/// A number with as many digits as a chart needs.
+/// Returns a number with the digits that a chart needs.
 fn shortest(value: f64) -> Value {
     significant_number(value, 7)
 }
@@ -270,13 +270,13 @@ fn significant_number(value: f64, digits: usize) -> Value {
     format!("{value:.*e}", digits - 1).parse::<f64>().map_or(Value::Null, |number| json!(number))
 }
 
-/// Rounded as they are shown.
+/// Returns the values, rounded as shown.
 fn rounded(values: &[f64], digits: usize) -> Value {
     let one = |value: &f64| number(*value, digits).parse::<f64>().ok().filter(|value| value.is_finite());
     values.iter().map(|value| one(value).map_or(Value::Null, |value| json!(value))).collect()
 }
 
-/// In 16 bits between the least and the greatest.
+/// Encodes values in 16 bits between the least and the greatest.
 fn coded(values: &[f64]) -> Value {
     let mut extent = Extent::NOTHING;
     for value in values {
@@ -295,14 +295,14 @@ fn coded(values: &[f64]) -> Value {
     json!({"u16": BASE64_STANDARD.encode(bytes), "least": extent.least, "step": step})
 }
 
-/// Times as single floats.
+/// Encodes times as single-precision floats.
 fn coded_finely(values: &[f64]) -> Value {
     #[expect(clippy::cast_possible_truncation, reason = "7 digits suffice to draw")]
     let bytes: Vec<u8> = values.iter().flat_map(|value| (*value as f32).to_le_bytes()).collect();
     json!({"f32": BASE64_STANDARD.encode(bytes)})
 }
 
-/// As SVG.
+/// Draws the plot as SVG.
 fn drawn(plot: &Plot, xs: &[f64], y: Span) -> String {
     let mut extent = Extent::NOTHING;
     xs.iter().filter(|x| !plot.x.is_log || **x > 0.0).for_each(|x| extent.add(*x));
@@ -316,7 +316,7 @@ fn drawn(plot: &Plot, xs: &[f64], y: Span) -> String {
     let x = Span { least: extent.least, greatest: extent.greatest, unit: plot.x.unit };
     let mut chart = Chart::with_scales(x, y, [plot.x.is_log, plot.y.is_log], width, height);
     for [from, to] in &plot.looks {
-        // As wide as can be seen.
+        // At least wide enough to be visible.
         let more = (0.5 * (2e-3 * (x.greatest - x.least) - (to - from))).max(0.0);
         chart.stretch("look", (from - more).max(x.least), (to + more).min(x.greatest), "");
     }
@@ -352,7 +352,7 @@ fn drawn(plot: &Plot, xs: &[f64], y: Span) -> String {
     chart.into_svg(&plot.caption())
 }
 
-/// Intervals merged until few enough are left to be drawn.
+/// Merges intervals until few enough are left to draw.
 fn merged(xs: &[f64], least: &[f64], greatest: &[f64]) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
     let count = xs.len().div_ceil(MOST_POINTS).max(1);
     let fold = |values: &[f64], pick: fn(f64, f64) -> f64| {
@@ -366,7 +366,7 @@ fn thinned(points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     points.into_iter().step_by(count).collect()
 }
 
-/// As a table.
+/// Lists the plot as a table.
 fn listed(plot: &Plot, xs: &[f64]) -> Markup {
     let is_time = plot.x.name == Axis::TIME.name;
     let per_row = xs.len().div_ceil(if is_time { 12 } else { MOST_ROWS }).max(1);

@@ -1,4 +1,4 @@
-//! The page of `excite --preview`: where the run goes, how fast, with which cable forces, and what it is expected to tell.
+//! The page of `excite --preview`: path, speed and cable forces of the run, and what it is expected to answer.
 
 use fric_core::robot::file::RobotFile;
 use fric_lab::excite::Excitation;
@@ -28,12 +28,12 @@ fn time(series: &RunSeries) -> Span {
     Span { least: 0.0, greatest: series.end_s().max(1e-9), unit: "s" }
 }
 
-/// A quantity over time.
+/// Returns a quantity over time.
 fn over_time(series: &RunSeries, pick: fn(&RunInterval) -> Extent) -> impl Iterator<Item = (f64, Extent)> {
     series.intervals().iter().map(move |interval| (interval.start_s, pick(interval)))
 }
 
-/// The page; `expectations` are those of a designed run, a line each, empty for the identification run.
+/// Returns the page. `expectations` belong to a designed run, one line each; empty for the identification run.
 #[must_use]
 pub fn page(
     robot: &RobotFile,
@@ -86,7 +86,7 @@ pub fn page(
     Page { title, verdict, content, plots: Plots::default(), cables: Vec::new(), provenance }.into_html()
 }
 
-/// Plan view and side view.
+/// Returns plan view and side view.
 fn views(robot: &RobotFile, excitation: &Excitation, work_box: &WorkBox) -> Markup {
     html! {
         p {
@@ -103,10 +103,10 @@ fn views(robot: &RobotFile, excitation: &Excitation, work_box: &WorkBox) -> Mark
     }
 }
 
-/// x to the right and another base axis upwards, to scale.
+/// Draws a view with x to the right and another base axis upwards, to scale.
 fn view(robot: &RobotFile, excitation: &Excitation, work_box: &WorkBox, up: usize) -> String {
     let flat = |place_m: [f64; 3]| [place_m[0], place_m[up]];
-    // Base points that lie behind one another share a dot.
+    // Base points that coincide in this view share a dot.
     let mut bases: Vec<([f64; 2], Vec<&str>)> = Vec::new();
     for cable in &robot.options().cable {
         let Some(base_m) = cable.base_m else { continue };
@@ -149,7 +149,7 @@ fn length(series: &RunSeries) -> String {
 
 fn speed(series: &RunSeries) -> String {
     let mut greatest = series.speed();
-    // Room for the names of the phases.
+    // Space for the names of the phases.
     greatest.greatest *= 1.15;
     let mut chart = Chart::new(time(series), Span::with_margin(greatest, 0.02, "m/s"), 960.0, 220.0);
     draw_phases(series, &mut chart);

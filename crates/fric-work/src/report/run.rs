@@ -1,39 +1,39 @@
-//! A run of set points, thinned out to what a screen can show; memory does not depend on its length.
+//! A run of set points, reduced to what a screen can show. Memory does not depend on its length.
 
 use fric_lab::excite::ExcitedCycle;
 use fric_lab::trajectory::Phase;
 
 use super::series::Extent;
 
-/// As many intervals as a chart has pixels to show.
+/// Maximum number of intervals, about the width of a chart in pixels.
 const MOST_INTERVALS: u64 = 900;
 
-/// A run, thinned out to what a page can show.
+/// A run, reduced to what a page can show.
 #[derive(Debug)]
 pub struct RunSeries {
     cycles_per_interval: u64,
     cycles_in_last: u64,
     intervals: Vec<RunInterval>,
-    /// Speed, least and greatest force of the last cycle: an interval goes on from there.
+    /// Speed, least and greatest force of the last cycle, where the next interval starts.
     last: [f64; 3],
     phases: Vec<PhaseSpan>,
     end_s: f64,
 }
 
-/// What the robot does in one interval.
+/// The range of the motion in one interval.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RunInterval {
     pub start_s: f64,
-    /// Of the platform, or of the fastest cable without one, m/s.
+    /// Speed of the platform, or of the fastest cable without one, m/s.
     pub speed: Extent,
     /// Least and greatest force of the cables, N.
     pub least_n: Extent,
     pub greatest_n: Extent,
-    /// Of the cables, m.
+    /// Lengths of the cables, m.
     pub length_m: Extent,
 }
 
-/// What the robot does in one phase.
+/// The motion in one phase.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PhaseSpan {
     pub phase: Phase,
@@ -44,7 +44,7 @@ pub(crate) struct PhaseSpan {
 }
 
 impl RunSeries {
-    /// Before the first of so many cycles.
+    /// Creates an empty run of `total_cycles`.
     #[must_use]
     pub fn new(total_cycles: u64) -> Self {
         Self {
@@ -57,7 +57,7 @@ impl RunSeries {
         }
     }
 
-    /// Takes in one cycle.
+    /// Adds a cycle.
     pub fn add(&mut self, cycle: &ExcitedCycle<'_>) {
         let ExcitedCycle { time_s, phase, platform, cables, tensions_n, .. } = *cycle;
         let speed = platform.map_or_else(
@@ -99,13 +99,13 @@ impl RunSeries {
         }
     }
 
-    /// Speeds of the whole run, from 0, m/s.
+    /// Returns the range of speeds of the whole run, from 0, m/s.
     pub(crate) fn speed(&self) -> Extent {
         let fastest = self.phases.iter().map(|phase| phase.fastest).fold(0.0, f64::max);
         Extent { least: 0.0, greatest: fastest }
     }
 
-    /// Cable forces of the whole run, N, where there are any.
+    /// Returns the range of cable forces of the whole run, N, if there are any.
     pub(crate) fn tension_n(&self) -> Option<Extent> {
         let mut all = Extent::NOTHING;
         for phase in &self.phases {
@@ -114,17 +114,17 @@ impl RunSeries {
         all.is_something().then_some(all)
     }
 
-    /// The intervals in order.
+    /// Returns the intervals in order.
     pub(crate) fn intervals(&self) -> &[RunInterval] {
         &self.intervals
     }
 
-    /// The phases in order.
+    /// Returns the phases in order.
     pub(crate) fn phases(&self) -> &[PhaseSpan] {
         &self.phases
     }
 
-    /// Time of the last cycle, s.
+    /// Returns the time of the last cycle, s.
     pub(crate) fn end_s(&self) -> f64 {
         self.end_s
     }

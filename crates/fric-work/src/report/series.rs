@@ -1,22 +1,22 @@
-//! What a replay does over time, as least and greatest of intervals; memory does not grow with the log.
+//! A replay over time, as minimum and maximum of intervals. Memory does not grow with the log.
 
 use fric_core::{Sample, Wrench};
 use fric_lab::replay::ReplayedCycle;
 
 use super::friction::CableFriction;
 
-/// Extents that are kept at most: their page is below 3 MB, two numbers of 16 bits each, written in base64.
+/// Maximum number of extents: a page with them is below 3 MB, with two numbers of 16 bits each, encoded in base64.
 const MOST_EXTENTS: usize = 320_000;
-/// Intervals are merged in pairs when there would be more, whatever the number of channels.
+/// Maximum number of intervals, whatever the number of channels; beyond it they are merged in pairs.
 const MOST_INTERVALS: usize = 40_000;
-/// Stretches that are told apart at most.
+/// Maximum number of separate stretches.
 const MOST_STRETCHES: usize = 200;
-/// Of a cable: before, after, compensated force.
+/// Channels per cable: before, after, compensated force.
 const PER_CABLE: usize = 3;
-/// Of the wrench: six components before and after.
+/// Channels of the wrench: six components before and after.
 const OF_WRENCH: usize = 12;
 
-/// Least and greatest of what was added.
+/// Least and greatest of the added values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Extent {
     pub least: f64,
@@ -43,7 +43,7 @@ impl Extent {
         self
     }
 
-    /// Least and greatest; NaN where there is nothing.
+    /// Returns the least and the greatest value; NaN without values.
     pub(crate) fn ends(self) -> (f64, f64) {
         if self.is_something() { (self.least, self.greatest) } else { (f64::NAN, f64::NAN) }
     }
@@ -56,24 +56,24 @@ impl Extent {
 /// A quantity of a replay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Channel {
-    /// Frictionless force less reference, N.
+    /// Frictionless force minus reference, N.
     Before(usize),
-    /// Compensated force less reference, N.
+    /// Compensated force minus reference, N.
     After(usize),
     /// Compensated force, N.
     Force(usize),
-    /// A component of the wrench by frictionless forces, N or N m; less the reference where the log has one.
+    /// A component of the wrench by frictionless forces, N or N m, minus the reference if the log has one.
     WrenchBefore(usize),
     /// The same by compensated forces.
     WrenchAfter(usize),
 }
 
-/// Least and greatest of some channels, interval by interval.
+/// Least and greatest values of some channels, interval by interval.
 #[derive(Debug)]
 struct Intervals {
     channels: usize,
     most: usize,
-    /// Intervals one after the other, all channels of one together.
+    /// Extents of the intervals in sequence, with all channels of one interval together.
     extents: Vec<Extent>,
     /// Time of each interval's first sample since the start, s.
     starts_s: Vec<f64>,
@@ -86,7 +86,7 @@ impl Intervals {
     fn new(channels: usize) -> Self {
         Self {
             channels,
-            // Even, for they are merged in pairs.
+            // An even number, because intervals are merged in pairs.
             most: (MOST_EXTENTS / channels.max(1)).clamp(512, MOST_INTERVALS) & !1,
             extents: Vec::new(),
             starts_s: Vec::new(),
@@ -96,7 +96,7 @@ impl Intervals {
         }
     }
 
-    /// Begins a sample, with an interval of its own where the last is full.
+    /// Begins a sample, in a new interval if the last one is full.
     fn begin(&mut self, stamp_nanos: i64) {
         let first_nanos = *self.first_nanos.get_or_insert(stamp_nanos);
         #[expect(clippy::cast_precision_loss, reason = "to be drawn")]
@@ -119,7 +119,7 @@ impl Intervals {
         }
     }
 
-    /// Forgets the channels from one on.
+    /// Removes the data of the channels from one on.
     fn clear_from(&mut self, channel: usize) {
         for interval in self.extents.chunks_mut(self.channels) {
             interval.iter_mut().skip(channel).for_each(|extent| *extent = Extent::NOTHING);
@@ -137,7 +137,7 @@ impl Intervals {
         self.samples_per_interval *= 2;
     }
 
-    /// Least and greatest of a channel in each interval, NaN where there is none; `None` where there is none at all.
+    /// Returns the least and the greatest value of a channel in each interval, NaN where there is none; `None` if there is none at all.
     fn band(&self, channel: usize) -> Option<(Vec<f64>, Vec<f64>)> {
         let extents = self.extents.iter().skip(channel).step_by(self.channels);
         let is_any = extents.clone().any(|extent| extent.is_something());
@@ -152,7 +152,7 @@ pub struct SignalSeries(Intervals);
 /// A signal of a cable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Signal {
-    /// Force that the sensor shows, N.
+    /// Force shown by the sensor, N.
     Sensor,
     /// Force measured at the platform, N.
     Reference,
@@ -161,13 +161,13 @@ pub(crate) enum Signal {
 }
 
 impl SignalSeries {
-    /// Before the first sample of so many cables.
+    /// Creates an empty series for `cable_count` cables.
     #[must_use]
     pub fn new(cable_count: usize) -> Self {
         Self(Intervals::new(PER_CABLE * cable_count))
     }
 
-    /// Takes in a sample.
+    /// Adds a sample.
     pub fn add(&mut self, sample: &Sample<'_>) {
         self.0.begin(sample.stamp_nanos);
         for (cable, (input, reference_n)) in sample.cables.iter().zip(sample.reference_force_n).enumerate() {
@@ -195,14 +195,14 @@ impl SignalSeries {
 pub struct Series {
     cable_count: usize,
     intervals: Intervals,
-    /// Stretches in which a cable is flagged, s.
+    /// Time intervals in which a cable is flagged, s.
     flagged_s: Vec<Vec<[f64; 2]>>,
     is_wrench_compared: bool,
     frictions: Vec<CableFriction>,
 }
 
 impl Series {
-    /// Before the first cycle of so many cables.
+    /// Creates an empty series for `cable_count` cables.
     #[must_use]
     pub fn new(cable_count: usize) -> Self {
         Self {
@@ -225,7 +225,7 @@ impl Series {
         }
     }
 
-    /// Takes in one cycle.
+    /// Adds a cycle.
     pub fn add(&mut self, sample: &Sample<'_>, cycle: &ReplayedCycle<'_>) {
         self.intervals.begin(sample.stamp_nanos);
         for (cable, (output, reference_n)) in cycle.cables.iter().zip(sample.reference_force_n).enumerate() {
@@ -247,12 +247,12 @@ impl Series {
         self.intervals.note(self.place(channel), value);
     }
 
-    /// Notes that a cable is flagged in the last interval; what is nearer than an interval is one stretch.
+    /// Marks a cable as flagged in the last interval. Flags less than an interval apart form one stretch.
     fn flag(&mut self, cable: usize) {
         let [.., last_s] = self.intervals.starts_s.as_slice() else { return };
         let before_s = self.intervals.starts_s.iter().rev().nth(1).copied().unwrap_or(*last_s);
         let Some(all) = self.flagged_s.get_mut(cable) else { return };
-        // More of them are not told apart.
+        // Beyond the maximum, stretches are merged.
         let is_full = all.len() >= MOST_STRETCHES;
         match all.last_mut().filter(|stretch| is_full || stretch[1] >= before_s) {
             Some(stretch) => stretch[1] = *last_s,
@@ -262,7 +262,7 @@ impl Series {
 
     fn note_wrenches(&mut self, reference: Option<Wrench>, before: Wrench, after: Wrench) {
         if reference.is_some() && !self.is_wrench_compared {
-            // What came before the first reference is no deviation.
+            // Values before the first reference are not deviations.
             self.is_wrench_compared = true;
             self.intervals.clear_from(PER_CABLE * self.cable_count);
         }
@@ -279,27 +279,27 @@ impl Series {
         }
     }
 
-    /// Starts of the intervals, s.
+    /// Returns the start times of the intervals, s.
     pub(crate) fn starts_s(&self) -> &[f64] {
         &self.intervals.starts_s
     }
 
-    /// Least and greatest of a quantity in each interval, NaN where there is none; `None` where there is none at all.
+    /// Returns the least and the greatest value of a quantity in each interval, NaN where there is none; `None` if there is none at all.
     pub(crate) fn band(&self, channel: Channel) -> Option<(Vec<f64>, Vec<f64>)> {
         self.intervals.band(self.place(channel))
     }
 
-    /// Stretches in which a cable was flagged, s.
+    /// Returns the time intervals in which a cable was flagged, s.
     pub(crate) fn flagged_s(&self, cable: usize) -> &[[f64; 2]] {
         self.flagged_s.get(cable).map_or(&[], Vec::as_slice)
     }
 
-    /// Whether the wrench is what it is off the one in the log.
+    /// Whether the wrench is the deviation from the one in the log.
     pub(crate) fn is_wrench_compared(&self) -> bool {
         self.is_wrench_compared
     }
 
-    /// The friction of a cable over its conditions.
+    /// Returns the friction of a cable over its conditions.
     pub(crate) fn friction(&self, cable: usize) -> Option<&CableFriction> {
         self.frictions.get(cable)
     }

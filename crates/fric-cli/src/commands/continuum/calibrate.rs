@@ -1,4 +1,4 @@
-//! `continuum calibrate`: load steps to the lines of the gratings.
+//! `continuum calibrate`: fits the lines of the gratings to load steps.
 
 use fric_core::continuum::edit::{ManipulatorEdit, rewrite};
 use fric_lab::continuum::fbg::Calibration;

@@ -1,4 +1,4 @@
-//! `continuum fit`: a manipulator's numbers from its runs.
+//! `continuum fit`: identifies a manipulator's numbers from its runs.
 
 use fric_core::continuum::edit::rewrite;
 use fric_lab::continuum::identify::{Quantity, TendonFitOptions, identify};

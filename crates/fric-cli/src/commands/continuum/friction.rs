@@ -1,4 +1,4 @@
-//! `continuum friction`: what the gratings say about every hole.
+//! `continuum friction`: the friction at every hole, from the gratings.
 
 use fric_core::continuum::Tendon;
 use fric_lab::continuum::ContinuumError;

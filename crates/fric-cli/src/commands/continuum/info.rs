@@ -1,4 +1,4 @@
-//! `info` on the run of a manipulator: which groups it has, and what is impossible without the others.
+//! `info` on the run of a manipulator: its groups of columns, and what is impossible without the others.
 
 use std::path::Path;
 
@@ -37,10 +37,10 @@ struct GroupResult {
     remarks: Vec<String>,
 }
 
-/// Most disks that a file without a model is searched for.
+/// Greatest number of disks to search for in a file without a model.
 const DISKS: usize = fric_core::continuum::MAX_DISKS;
 
-/// Shows what is in a run. Without a model the number of disks is that of its columns.
+/// Shows the content of a run. Without a model the number of disks is that of its columns.
 pub fn run(path: &Path, model: Option<&Path>, json: JsonTarget, report: Option<OutputFile>) -> Outcome {
     let model = model.map(Model::read).transpose()?;
     let disk_count = model.as_ref().map(Model::disk_count);
@@ -71,7 +71,7 @@ pub fn run(path: &Path, model: Option<&Path>, json: JsonTarget, report: Option<O
     json.finish(&outcome, &describe(&outcome, path), page.into_iter().collect())
 }
 
-/// What the page tells.
+/// Returns the content of the page.
 fn overview(result: &InfoResult) -> Overview<'_> {
     let groups = result.groups.iter().map(|group| {
         let columns = if group.present { group.columns.to_string() } else { "–".to_owned() };

@@ -1,4 +1,4 @@
-//! `continuum`: one file per subcommand, and what they share.
+//! `continuum`: one file per subcommand, and their common functions.
 
 mod calibrate;
 pub mod discover;
@@ -27,7 +27,7 @@ use crate::model::{has_format, read_text};
 use crate::output::{self, JsonTarget, Written};
 use crate::warnings::warn_all;
 
-/// Bytes in which the header of a run as text ends.
+/// Maximum length of a text run's header, in bytes.
 const LONGEST_HEADER: u64 = 4096;
 
 /// Runs the command.
@@ -42,15 +42,15 @@ pub fn run(command: &ContinuumCommand) -> Outcome {
     }
 }
 
-/// Whether a model is a manipulator file rather than a robot's.
+/// Whether a model is a manipulator file rather than a robot file.
 pub fn is_manipulator(model: Option<&Path>) -> bool {
     model.is_some_and(|model| text_file::read(model).is_ok_and(|text| has_format(&text, FORMAT)))
 }
 
-/// Whether a log is text under a header with a column of a manipulator's run.
+/// Whether a log is text with a header that has a column of a manipulator's run.
 pub fn is_text_run(log: &Path) -> bool {
     let begin = || {
-        // A pipe would be waited for.
+        // Reading from a pipe would block.
         fs::metadata(log).ok().filter(Metadata::is_file)?;
         let mut begin = Vec::new();
         File::open(log).ok()?.take(LONGEST_HEADER).read_to_end(&mut begin).ok()?;
@@ -63,7 +63,7 @@ pub fn is_text_run(log: &Path) -> bool {
     begin().is_some_and(|text| text.lines().next().is_some_and(is_of_manipulator))
 }
 
-/// A manipulator and the text it was read from.
+/// A manipulator and the text of its file.
 pub struct Model {
     pub file: ManipulatorFile,
     pub text: String,
@@ -71,7 +71,7 @@ pub struct Model {
 }
 
 impl Model {
-    /// The manipulator file at a path.
+    /// Reads the manipulator file at a path.
     pub fn read(path: &Path) -> Outcome<Self> {
         let (text, origin) = read_text(path, "manipulator")?;
         let file = ManipulatorFile::parse(&text, &origin)?;
@@ -87,19 +87,19 @@ impl Model {
     }
 }
 
-/// The columns of a file, after warnings about it.
+/// Reads the columns of a file and prints warnings about it.
 pub fn read_table(path: &Path, wanted: &[String]) -> Outcome<Vec<(String, Vec<f64>)>> {
     let table = NumberTable::read(path, wanted)?;
     warn_all(&table.warnings);
     Ok(table.columns)
 }
 
-/// A failure that begins with the file it is about.
+/// Returns a failure that names its file.
 fn about(path: &Path, error: ContinuumError) -> Failure {
     Failure::from(error).in_file(path)
 }
 
-/// A run, in the base frame and with a right sensor as the file of its manipulator says, and that.
+/// Reads a run, corrected for the frame and the base sensor stated in the file of its manipulator, and that manipulator.
 fn read_run(arguments: &RunArguments) -> Outcome<(Model, Run)> {
     let model = Model::read(&arguments.model)?;
     let columns = read_table(&arguments.run, &columns::of_run(model.disk_count()))?;
@@ -108,7 +108,7 @@ fn read_run(arguments: &RunArguments) -> Outcome<(Model, Run)> {
     Ok((model, run))
 }
 
-/// What the gratings say in a run; `None` where it has no shifts, or the file no gratings.
+/// Returns the tensions of the gratings in a run; `None` if it has no shifts, or the file no gratings.
 fn read_gratings(path: &Path, model: &Model, run: &Run) -> Outcome<Option<Vec<GratingSample>>> {
     let gratings = Gratings::from_file(&model.file)?;
     match gratings {
@@ -124,14 +124,14 @@ fn read_gratings(path: &Path, model: &Model, run: &Run) -> Outcome<Option<Vec<Gr
     }
 }
 
-/// Outputs besides the table.
+/// Outputs other than the table.
 struct Outputs {
     json: JsonTarget,
     report: Option<OutputFile>,
 }
 
 impl Outputs {
-    /// Checks the places of all outputs; `also` is a further one of the command.
+    /// Checks the places of all outputs; `also` is an additional one of the command.
     fn prepare(page: &ReportArguments, inputs: &[PathBuf], also: Option<&Path>) -> Outcome<Self> {
         let ReportArguments { report, result } = page;
         let json_file = result.json.as_deref().filter(|path| !output::is_stdout(path));
@@ -141,7 +141,7 @@ impl Outputs {
         Ok(Self { json, report })
     }
 
-    /// Writes page, table and JSON, beside `files`.
+    /// Writes page, table and JSON, together with `files`.
     fn finish(
         self,
         result: &impl serde::Serialize,

@@ -1,4 +1,4 @@
-//! `continuum shape`: shapes by four ways of friction against the markers.
+//! `continuum shape`: compares shapes by four friction models with the markers.
 
 use fric_core::continuum::Tendon;
 use fric_lab::continuum::ContinuumError;

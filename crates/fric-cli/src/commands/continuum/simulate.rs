@@ -18,7 +18,7 @@ use crate::output::{self, Written};
 const TOPIC: &str = "/tendon_run";
 const MESSAGE: &str = "fric_msgs/msg/TendonRun";
 
-/// What was really there: `fric-continuum-truth/1`.
+/// The true state: `fric-continuum-truth/1`.
 #[derive(Debug, Serialize)]
 struct Truth<'a> {
     format: &'static str,
@@ -80,7 +80,7 @@ pub fn run(arguments: &TendonSimulateArguments) -> Outcome {
     output::show_with("", files, "")
 }
 
-/// A number on the command line is the command line's fault.
+/// Converts an error to a failure; a wrong number is a mistake on the command line.
 fn refused(error: ContinuumError) -> Failure {
     match error {
         ContinuumError::OptionOutOfRange { key, value, min, max } => {
@@ -108,7 +108,7 @@ fn truth_of<'a>(manipulator: &'a str, run: &'a SimulatedRun) -> Truth<'a> {
     }
 }
 
-/// Where the run goes.
+/// The destination of the run.
 enum Target {
     Log(Box<LogWriter>),
     Text(OutputFile),
@@ -156,7 +156,7 @@ fn write_calibration(file: OutputFile, run: &SimulatedRun, disk_count: usize) ->
     write_text(file, &names, rows)
 }
 
-/// All digits, so that the reader has the very numbers.
+/// Writes all digits, so that the reader gets the exact numbers.
 fn write_text(file: OutputFile, names: &[String], rows: impl Iterator<Item = Vec<f64>>) -> Outcome<CompleteFile> {
     let path = file.path().to_owned();
     let mut writer = csv::Writer::from_writer(file);

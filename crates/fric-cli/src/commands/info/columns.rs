@@ -1,4 +1,4 @@
-//! The columns of a log of rows, and the signals that they are.
+//! The columns of a log of rows, and their signals.
 
 use fric_core::text_file::printable;
 use fric_lab::text::table;
@@ -11,10 +11,10 @@ use crate::model::Model;
 #[derive(Debug, Serialize)]
 pub struct ColumnResult {
     column: String,
-    /// What it is used as, in the words of `[log.columns]`.
+    /// Its use, in the words of `[log.columns]`.
     #[serde(skip_serializing_if = "Option::is_none")]
     signal: Option<String>,
-    /// What turns its numbers into the signal's unit.
+    /// Factor that converts its numbers to the signal's unit.
     #[serde(skip_serializing_if = "Option::is_none")]
     factor: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -22,7 +22,7 @@ pub struct ColumnResult {
 }
 
 impl ColumnResult {
-    /// For people.
+    /// Returns the cells for people.
     pub fn cells(&self) -> [String; 4] {
         let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
         let signal = self.signal.clone().unwrap_or_else(|| "–".to_owned());
@@ -30,7 +30,7 @@ impl ColumnResult {
     }
 }
 
-/// The columns of a log; none of a log of messages.
+/// Returns the columns of a log; empty for a log of messages.
 pub fn results(log: &Log, model: Option<&Model>) -> Vec<ColumnResult> {
     let stated = model.map(|model| &model.robot.options().log.columns);
     let column = |name: &String| {
@@ -46,7 +46,7 @@ pub fn results(log: &Log, model: Option<&Model>) -> Vec<ColumnResult> {
     log.column_names().unwrap_or_default().iter().map(column).collect()
 }
 
-/// For people.
+/// Returns a table for people.
 pub fn table_of(columns: &[ColumnResult]) -> String {
     let rows: Vec<_> = columns.iter().map(ColumnResult::cells).collect();
     table(&["column", "signal", "factor", "offset"], 2, &rows)

@@ -7,7 +7,7 @@ use fric_work::report::info::{self, InfoTable, Overview};
 use super::{InfoResult, SignalResult};
 use crate::steps::StepResult;
 
-/// The page of a log.
+/// Returns the page of a log.
 pub fn page(result: &InfoResult, cables: &[&str], series: Option<SignalSeries>, provenance: &Provenance) -> String {
     let number =
         |value: Option<f64>, digits: usize| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.digits$}"));

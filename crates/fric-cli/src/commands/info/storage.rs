@@ -1,4 +1,4 @@
-//! How a log is kept, how long it is and when it begins.
+//! Storage, duration and start of a log.
 
 use std::fmt::Write as _;
 use std::time::{Duration, UNIX_EPOCH};
@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use super::{TopicResult, seconds};
 
-/// Of all files together.
+/// Properties of all files together.
 #[derive(Debug, Serialize)]
 pub struct StorageResult {
     kind: &'static str,
@@ -19,7 +19,7 @@ pub struct StorageResult {
     /// Time of the first message or row, since 1970.
     #[serde(skip_serializing_if = "Option::is_none")]
     start_s: Option<f64>,
-    /// From the first message or row to the last.
+    /// Time from the first message or row to the last.
     #[serde(skip_serializing_if = "Option::is_none")]
     duration_s: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -37,7 +37,7 @@ struct ChunkResult {
 }
 
 impl StorageResult {
-    /// Of a log whose topics have been read, from its first message on.
+    /// Creates the result of a log whose topics have been read, starting at its first message.
     pub fn new(storage: &Storage, topics: &[TopicResult], start_nanos: Option<u64>) -> Self {
         let read: Vec<&TopicResult> = topics.iter().filter(|topic| topic.messages > 0).collect();
         let from_s = read.iter().map(|topic| topic.from_s).reduce(f64::min);
@@ -59,7 +59,7 @@ impl StorageResult {
         }
     }
 
-    /// Of a log of rows, the times of the first and the last sample.
+    /// Sets the times of the first and the last sample of a log of rows.
     pub fn set_rows(&mut self, stamp_nanos: Option<[i64; 2]>) {
         if let (None, Some([first, last])) = (self.start_nanos, stamp_nanos) {
             self.start_nanos = u64::try_from(first).ok();
@@ -68,7 +68,7 @@ impl StorageResult {
         }
     }
 
-    /// For people, a line each.
+    /// Returns lines for people.
     pub fn lines(&self, attachments: &[String]) -> String {
         let mut text = String::new();
         // Writing to a String cannot fail.

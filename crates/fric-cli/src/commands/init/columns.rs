@@ -1,10 +1,10 @@
-//! Which column of a CSV log is which signal, by its name and unit.
+//! Guesses the signals of a CSV log's columns from their names and units.
 
 use fric_core::robot::file::{POSE_COLUMNS, TIME_COLUMN, WRENCH_COLUMNS};
 
 use super::draft::{ColumnGuess, Draft};
 
-/// What a column may hold.
+/// The possible content of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
     Time,
@@ -13,7 +13,7 @@ enum Kind {
     Speed,
 }
 
-/// Units by what stands in brackets, or behind the last underscore.
+/// Units in brackets, or after the last underscore.
 const UNITS: [(&str, Kind, f64); 22] = [
     ("s", Kind::Time, 1.0),
     ("sec", Kind::Time, 1.0),
@@ -39,7 +39,7 @@ const UNITS: [(&str, Kind, f64); 22] = [
     ("mm_per_s", Kind::Speed, 1e-3),
 ];
 
-/// Words in the names of columns that say what they hold, where no unit does.
+/// Words in column names that indicate the content if no unit does.
 const WORDS: [(&str, Kind); 19] = [
     ("time", Kind::Time),
     ("timestamp", Kind::Time),
@@ -61,10 +61,10 @@ const WORDS: [(&str, Kind); 19] = [
     ("vel", Kind::Speed),
     ("v", Kind::Speed),
 ];
-/// Words that say that a force is one at the platform.
+/// Words that mark a force at the platform.
 const REFERENCE_WORDS: [&str; 3] = ["ref", "reference", "platform"];
 
-/// Guesses the signals of the columns of these names.
+/// Guesses the signals of columns with these names.
 pub fn guess(names: &[String], draft: &mut Draft) {
     let has = |name: &str| names.iter().any(|known| known == name);
     let mut unknown = Vec::new();
@@ -121,7 +121,7 @@ pub fn guess(names: &[String], draft: &mut Draft) {
     if !unknown.is_empty() {
         draft.notes.push(format!("not used: {}", unknown.join(", ")));
     }
-    // A reference of a cable that has no force is none.
+    // A reference of a cable without a force is dropped.
     found.retain(|guess| {
         guess.key == TIME_COLUMN || draft.cables.iter().any(|cable| guess.key.starts_with(&format!("{cable}.")))
     });
@@ -129,7 +129,7 @@ pub fn guess(names: &[String], draft: &mut Draft) {
     draft.columns = found;
 }
 
-/// The signal that a column seems to be, and the factor to its unit.
+/// Returns the probable signal of a column, and the factor to its unit.
 fn signal(name: &str) -> Option<(String, f64)> {
     if name == TIME_COLUMN {
         return Some((name.to_owned(), 1.0));
@@ -161,7 +161,7 @@ fn signal(name: &str) -> Option<(String, f64)> {
     Some((key, factor))
 }
 
-/// The words of a name, numbers by themselves, and its unit: in brackets, or behind an underscore.
+/// Returns the words of a name, with numbers separate, and its unit: in brackets, or after an underscore.
 fn parts(name: &str) -> (Vec<String>, Option<&str>) {
     let brackets = name.find(['[', '(']).and_then(|open| {
         let inside = name.get(open + 1..)?.split([']', ')']).next()?;

@@ -1,11 +1,11 @@
-//! The text of the robot file in the making.
+//! The text of the robot file under construction.
 
 use std::fmt::Write as _;
 
 use fric_core::text_file::name_problem;
 use fric_lab::text::wrapped;
 
-/// A column of a CSV log and the signal that it seems to be.
+/// A column of a CSV log and its probable signal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ColumnGuess {
     /// The key under `[log.columns]`.
@@ -14,7 +14,7 @@ pub struct ColumnGuess {
     pub factor: f64,
 }
 
-/// What is known so far.
+/// The known content so far.
 #[derive(Debug)]
 pub struct Draft {
     name: String,
@@ -25,12 +25,12 @@ pub struct Draft {
     pub paths: Vec<(&'static str, String)>,
     pub columns: Vec<ColumnGuess>,
     pub has_pose: bool,
-    /// What could not be guessed, each a comment.
+    /// Signals that could not be guessed, as comments.
     pub notes: Vec<String>,
 }
 
 impl Draft {
-    /// Of a robot of this name, if it is one.
+    /// Creates a draft for a robot of this name, if the name is valid.
     pub fn new(name: String) -> Self {
         let name = if name.is_empty() || name_problem(&name).is_some() { "robot".to_owned() } else { name };
         Self {
@@ -51,7 +51,7 @@ impl Draft {
         }
     }
 
-    /// What was guessed, for people.
+    /// Returns a summary of the guesses for people.
     pub fn summary(&self) -> String {
         let Self { cables, notes, interval_s, .. } = self;
         let rate = interval_s.map_or_else(String::new, |it| format!(", a sample every {} s", rounded(it)));
@@ -63,7 +63,7 @@ impl Draft {
         text
     }
 
-    /// The robot file.
+    /// Returns the robot file.
     pub fn text(&self) -> String {
         let Self { name, interval_s, cables, paths, columns, has_pose, notes } = self;
         let mut text = String::from(
@@ -112,7 +112,7 @@ impl Draft {
     }
 }
 
-/// To three digits, as a cycle is set.
+/// Rounds to three digits, as cycle times usually are.
 fn rounded(interval_s: f64) -> f64 {
     format!("{interval_s:.2e}").parse().unwrap_or(interval_s)
 }

@@ -1,4 +1,4 @@
-//! `init`: a robot file to start from, with every signal of a log that could be guessed.
+//! `init`: creates an initial robot file with every signal of a log that can be guessed.
 
 mod columns;
 mod draft;
@@ -14,7 +14,7 @@ use crate::failure::{Failure, Outcome};
 use crate::output::{self, Written};
 use draft::Draft;
 
-/// So many samples tell how far they are apart.
+/// Number of samples that suffices to determine their interval.
 const MOST_ROWS: usize = 2000;
 
 /// Runs the command.
@@ -28,7 +28,7 @@ pub fn run(arguments: &InitArguments) -> Outcome {
         Some(names) => columns::guess(names, &mut draft),
         None => topics::guess(&mut log, &mut draft)?,
     }
-    // The samples as the draft finds them say what the cycle is.
+    // The cycle time follows from the samples as the draft finds them.
     let robot = parsed(&draft.text())?;
     let interval_s = interval_s(Log::open(logs)?, &robot);
     draft.set_interval_s(interval_s);
@@ -50,7 +50,7 @@ fn parsed(text: &str) -> Outcome<RobotFile> {
     })
 }
 
-/// The usual interval of the samples; `None` where there are none.
+/// Returns the usual interval of the samples; `None` if there are none.
 fn interval_s(log: Log, robot: &RobotFile) -> Option<f64> {
     let paths = SignalPaths::of_robot(robot).ok()?;
     let mut reader = SignalReader::new(log, paths, &robot.cable_names());

@@ -1,4 +1,4 @@
-//! Which topic is which signal, by the types of the messages and the names of the topics.
+//! Guesses the signals of topics from the message types and the topic names.
 
 use std::collections::BTreeMap;
 
@@ -11,17 +11,17 @@ use fric_log::schema::{MessageType, Wanted};
 use super::draft::Draft;
 use crate::failure::Outcome;
 
-/// A log is searched so far for topics.
+/// Maximum number of messages that are searched for topics.
 const MOST_MESSAGES: usize = 50_000;
 
-/// What a topic's messages hold.
+/// The content of a topic's messages.
 #[derive(Debug, Default)]
 struct Topic {
     type_name: String,
     joints: Option<Joints>,
 }
 
-/// Of messages like `JointState`.
+/// The content of messages like `JointState`.
 #[derive(Debug, Default)]
 struct Joints {
     names: Vec<String>,
@@ -80,7 +80,7 @@ pub fn guess(log: &mut Log, draft: &mut Draft) -> Outcome {
     Ok(())
 }
 
-/// Chooses the topic of a signal, and says what it could not choose.
+/// Chooses the topic of a signal, and adds a note if it cannot.
 fn choose(
     draft: &mut Draft,
     key: &'static str,

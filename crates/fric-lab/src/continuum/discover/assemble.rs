@@ -1,4 +1,4 @@
-//! From the outcome of a search to its result.
+//! Assembles the result of a search from its outcome.
 
 use fric_core::continuum::file::USUAL_SIGMA_N_PER_M;
 
@@ -23,7 +23,7 @@ use crate::discover::result::{DiscoverResult, Evidence};
 use crate::errors::ForceError;
 use crate::fit::result::Numbers;
 
-/// The result of an outcome, with what to write; `named` is what is in the file of the case already, and was found.
+/// Returns the result of an outcome, with the changes to write. `named` lists the findings that are already in the file of the case.
 pub fn told(case: &Case<'_>, outcome: &Outcome, named: &[Named], log: &str) -> TendonDiscovery {
     let Outcome { noise_n, verdict, before, after, last, findings, tried, markers, .. } = outcome;
     let closed = |fit: &Fit| {
@@ -109,11 +109,11 @@ fn marker_errors(markers: &[Option<MarkerFit>; 2]) -> Option<TendonMarkers> {
     })
 }
 
-/// What is left: of the tensions, and of the markers where they are not noise.
+/// Returns the rest: of the tensions, and of the markers if it exceeds the noise.
 fn rest(case: &Case<'_>, outcome: &Outcome) -> TendonRest {
     let Outcome { given, after, last, are_tensions_explained, markers: [_, markers], .. } = outcome;
     let off = markers.as_ref().filter(|markers| !markers.is_noise());
-    // Gratings that are wrong make shapes that are wrong; the bending is told where they cannot account for the shapes.
+    // Wrong gratings cause wrong shapes. The bending is reported if the gratings cannot explain the shapes.
     let is_bending = |markers: &&MarkerFit| *are_tensions_explained || markers.is_beyond(case, excess_n(after));
     let bending = off.filter(is_bending).and_then(|markers| of_markers(case, &last.fit, markers));
     let tensions = if *are_tensions_explained { None } else { of_tensions(case, given) };
@@ -138,7 +138,7 @@ fn named(pairs: &[(&str, f64)]) -> Numbers {
     Numbers(pairs.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect())
 }
 
-/// Of what an effect has that was fitted.
+/// Returns the standard errors of an effect's fitted parameters.
 fn standard_errors(case: &Case<'_>, effect: Effect, last: &Final) -> Numbers {
     let found = match effect {
         Effect::Coulomb => last.shared_mu_error().map(|error| ("mu", error)),
@@ -152,7 +152,7 @@ fn standard_errors(case: &Case<'_>, effect: Effect, last: &Final) -> Numbers {
     named(found.as_slice())
 }
 
-/// The grating or the hole of an effect.
+/// Returns the grating or the hole of an effect.
 fn place_of(effect: Effect) -> Numbers {
     match effect {
         Effect::Coulomb | Effect::Presliding => named(&[]),

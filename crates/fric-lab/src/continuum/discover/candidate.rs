@@ -1,48 +1,48 @@
-//! What may be wrong in the numbers of a manipulator file: the candidates of the joint search.
+//! Candidates of the joint search: numbers of a manipulator file that may be wrong.
 
 use fric_core::continuum::file::ManipulatorTables;
 
 use crate::continuum::identify::unknown::Unknown;
 
-/// A candidate. Places count from 0.
+/// A candidate. Indices count from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Candidate {
     /// Bending stiffness of the backbone.
     Stiffness,
-    /// That of one segment.
+    /// Bending stiffness of one segment.
     SegmentStiffness(usize),
     /// Distance of the holes from the backbone.
     TendonOffset,
-    /// Curvature without load.
+    /// Curvature of the unloaded manipulator.
     Precurvature,
-    /// Frame of the markers.
+    /// Pose of the markers' frame.
     MarkerFrame,
-    /// Mass on the tip, or a force where the file has no gravity.
+    /// Mass on the tip, or a force if the file has no gravity.
     TipLoad,
     /// Direction of gravity.
     GravityDirection,
-    /// A shift that all gratings have alike from a time on.
+    /// A common shift of all gratings from a time on.
     Temperature,
-    /// Gain of the sensor at the base.
+    /// Gain of the tension sensor at the base.
     BaseGain,
-    /// Its offset.
+    /// Offset of the tension sensor at the base.
     BaseOffset,
-    /// Its lag.
+    /// Lag of the tension sensor at the base.
     TensionLag,
-    /// A hole whose μ is far from that of the others.
+    /// A hole whose μ differs strongly from that of the others.
     Hole(usize),
-    /// All holes.
+    /// Individual μ of all holes.
     AllHoles,
     /// A grating that drifts.
     Drift(usize),
-    /// A grating whose line is not the calibrated one.
+    /// A grating whose calibration line is wrong.
     Line(usize),
-    /// All of them.
+    /// The calibration lines of all gratings.
     AllLines,
 }
 
 impl Candidate {
-    /// Those that the run can tell about; what concerns the bending needs markers.
+    /// Returns the candidates that the run can show. Those of the bending need markers.
     pub fn all(tables: &ManipulatorTables, has_markers: bool) -> Vec<Self> {
         let count = tables.disk_count;
         let mut all =
@@ -68,13 +68,13 @@ impl Candidate {
         all
     }
 
-    /// Whether the joint search names it. The others take part so that nothing else is named in their place; friction of holes and drifts are named by the
-    /// search on the tensions, and a wrong line has no name.
+    /// Whether the joint search names the candidate. The others only keep wrong names from being given: friction of holes and drifts are named by the
+    /// search on the tensions, and a wrong calibration line has no name.
     pub fn is_named(self) -> bool {
         !matches!(self, Self::Hole(_) | Self::AllHoles | Self::Drift(_) | Self::Line(_) | Self::AllLines)
     }
 
-    /// Its name in results.
+    /// Returns the name used in results.
     pub fn kind(self) -> &'static str {
         match self {
             Self::Stiffness | Self::SegmentStiffness(_) => "backbone_stiffness",
@@ -93,7 +93,7 @@ impl Candidate {
         }
     }
 
-    /// Numbers that are free with it and have their stated values without.
+    /// Returns the numbers that are free with the candidate and keep their stated values without it.
     pub fn frees(self, tables: &ManipulatorTables) -> Vec<Unknown> {
         match self {
             Self::Stiffness => vec![Unknown::Stiffness],
@@ -113,7 +113,8 @@ impl Candidate {
         }
     }
 
-    /// Of several that explain a run alike the one of the greatest rank is written: lengths are measured with a calliper, stiffness is not.
+    /// Returns the rank. Of several candidates that explain a run equally, the one with the greatest rank is written: lengths are measured with a
+    /// calliper, stiffness is not.
     pub fn rank(self) -> u8 {
         match self {
             Self::Stiffness => 9,
@@ -129,7 +130,7 @@ impl Candidate {
         }
     }
 
-    /// What causes it, and what to do about it on the machine.
+    /// Returns the cause, and what to do about it on the machine.
     pub fn cause_and_remedy(self) -> [&'static str; 2] {
         match self {
             Self::Stiffness => [

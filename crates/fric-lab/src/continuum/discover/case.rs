@@ -1,4 +1,4 @@
-//! A run prepared for the search: thinned, split into what is learned from and what is held out.
+//! Prepares a run for the search: decimated, and split into training samples and held-out samples.
 
 use fric_core::continuum::file::{ManipulatorFile, OneOrEach};
 use fric_core::continuum::{ManipulatorParams, Tendon};
@@ -13,53 +13,53 @@ use crate::replay::Deviation;
 use crate::samples::noise::white_noise_in;
 use crate::samples::split::{DRAW, cut};
 
-/// Samples compared at most; the history may take long steps while the tension moves one way.
+/// Maximum number of samples to compare. The history may take long steps while the tension changes in one direction.
 const MOST_SAMPLES: usize = 800;
-/// Least samples, of which half are held out.
+/// Minimum number of samples, of which half are held out.
 const LEAST_SAMPLES: usize = 40;
-/// Turning points of the tension beyond this share of the greatest one are kept.
+/// Turning points of the tension are kept if they exceed this fraction of the greatest tension.
 const TURN_RATIO: f64 = 0.005;
-/// Samples of a block of the noise's estimate.
+/// Number of samples in a block of the noise estimate.
 const NOISE_BLOCK: usize = 40;
 
-/// A run and what was measured in it.
+/// A run with its measurements.
 pub struct Case<'a> {
     pub file: &'a ManipulatorFile,
     pub samples: Vec<RunSample>,
-    /// Tension in each segment, N; NaN where there is none.
+    /// Tension in each segment, N; NaN if it was not measured.
     pub observed_n: Vec<Vec<f64>>,
     pub held_out: Vec<bool>,
-    /// Gratings that are dead, or out of proportion to their neighbours.
+    /// Whether each grating is dead, or disproportionate to its neighbours.
     pub is_dead: Vec<Vec<bool>>,
-    /// How far each tension is off by one standard error of its line's constant and of its slope, N.
+    /// Error of each tension for one standard error of its calibration line's constant and of its slope, N.
     pub line_error_n: Vec<Vec<[f64; 2]>>,
-    /// N/nm of each grating.
+    /// Slope of each grating's calibration, N/nm.
     pub newton_per_nm: Vec<f64>,
-    /// Noise of the gratings, N, beside which the lines' errors are weighed: from the given model's residual.
+    /// Noise of the gratings, N, used to weight the errors of the calibration lines; estimated from the given model's residual.
     pub noise_n: f64,
     pub run_samples: usize,
 }
 
-/// Residuals of a model: gratings less model, N, and their sums.
+/// Residuals of a model (gratings minus model, N) and their sums.
 #[derive(Clone, Debug)]
 pub struct Fit {
     pub model: Model,
-    /// Without what the gratings' lines are found to be off by.
+    /// Residuals after subtracting the estimated errors of the calibration lines.
     pub residual_n: Vec<Vec<f64>>,
-    /// What they are off by, in standard errors of constant and slope.
+    /// Estimated errors of the calibration lines, in standard errors of constant and slope.
     pub line_errors: Vec<[f64; 2]>,
-    /// Sum of squares over what is learned from, N², the lines' errors included: each as a residual of so many times the noise.
+    /// Training sum of squares, N². The errors of the lines are included, each as a residual in units of the noise.
     pub squares: f64,
-    /// Over what is held out.
+    /// Error over the held-out samples.
     pub held_out_n: Deviation,
     /// Tension of the model in each segment, N.
     pub tension_n: Vec<Vec<f64>>,
-    /// Markers less disks, m; NaN where one is hidden or there is no shape, empty without markers.
+    /// Markers minus disks, m; NaN if a marker is hidden or there is no shape, empty without markers.
     pub marker_m: Vec<Vec<[f64; 2]>>,
 }
 
 impl<'a> Case<'a> {
-    /// `kept` are the samples that are compared.
+    /// Prepares a run. `kept` holds the samples to compare.
     pub fn new(
         file: &'a ManipulatorFile,
         run: &Run,
@@ -101,7 +101,7 @@ impl<'a> Case<'a> {
         Ok(case)
     }
 
-    /// The model that the file states.
+    /// Returns the model that the file states.
     pub fn given(&self) -> Model {
         let mu = self.file.params().mu(Tendon::Agonist).to_vec();
         let way = if mu.iter().all(|mu| *mu == 0.0) {
@@ -122,7 +122,7 @@ impl<'a> Case<'a> {
         }
     }
 
-    /// The same run with nothing held out.
+    /// Returns the same run with nothing held out.
     pub fn whole(&self) -> Self {
         Self {
             samples: self.samples.clone(),
@@ -135,16 +135,16 @@ impl<'a> Case<'a> {
         }
     }
 
-    /// The manipulator with this μ at the holes and so many times its bending stiffness.
+    /// Returns the manipulator with this μ at the holes and a scaled bending stiffness.
     pub fn params(&self, mu: &[f64], stiffness_ratio: f64) -> Option<ManipulatorParams> {
         let mut tables = self.file.tables().clone();
         tables.tendon.mu = OneOrEach::Each(mu.to_vec());
         tables.backbone.youngs_modulus_pa *= stiffness_ratio;
-        // A tendon like the first stays as it was; it is slack.
+        // A second tendon equal to the first stays unchanged; it is slack.
         ManipulatorFile::check(tables).ok().map(|file| *file.params())
     }
 
-    /// Tension of a model in each segment, N; NaN where it has no shape, `None` where it has none at all.
+    /// Returns the tension of a model in each segment, N; NaN where it has no shape, `None` if it has none at all.
     pub fn tensions_n(&self, model: &Model) -> Option<Vec<Vec<f64>>> {
         let computed = shapes(&self.params(&model.mu, 1.0)?, &self.samples, model.way, &[]).ok()?;
         let tensions = |shape: ComputedShape| {
@@ -153,7 +153,7 @@ impl<'a> Case<'a> {
         Some(computed.into_iter().map(tensions).collect())
     }
 
-    /// A model with its residuals; `None` where it has no shapes.
+    /// Returns a model with its residuals; `None` if it has no shapes.
     pub fn fit(&self, model: &Model) -> Option<Fit> {
         let computed = shapes(&self.params(&model.mu, 1.0)?, &self.samples, model.way, &[]).ok()?;
         let start_s = self.samples.first()?.time_s;
@@ -196,7 +196,7 @@ impl<'a> Case<'a> {
         })
     }
 
-    /// What the lines of the gratings may be off by over the run, root mean square of one standard error, N.
+    /// Returns the root mean square error of the tensions over the run for one standard error of the calibration lines, N.
     pub fn line_error_rms_n(&self) -> f64 {
         let mut all = Deviation::default();
         for [constant_n, slope_n] in self.line_error_n.iter().flatten() {
@@ -205,7 +205,8 @@ impl<'a> Case<'a> {
         all.rms().unwrap_or(0.0)
     }
 
-    /// Tensions that are learned from: what the evidence counts. What gratings of all samples share, the error of their lines, is a term of its own.
+    /// Returns the number of training tensions, which the evidence counts. The error of a calibration line, which all samples share, is a separate
+    /// term.
     pub fn learned_count(&self) -> f64 {
         let learned = self.observed_n.iter().zip(&self.held_out).filter(|(_, held_out)| !**held_out);
         #[expect(clippy::cast_precision_loss, reason = "a count of tensions")]
@@ -213,10 +214,10 @@ impl<'a> Case<'a> {
         count
     }
 
-    /// Standard deviation of the gratings' noise, N, from a residual.
+    /// Returns the standard deviation of the gratings' noise, N, from a residual.
     ///
     /// # Errors
-    /// [`ContinuumError::UntoldNoise`] where gaps leave too little of it.
+    /// Returns [`ContinuumError::UntoldNoise`] if gaps leave too few samples.
     pub fn noise_of(&self, fit: &Fit) -> Result<f64, ContinuumError> {
         let mut series = Vec::new();
         for grating in 0..self.newton_per_nm.len() {
@@ -227,7 +228,7 @@ impl<'a> Case<'a> {
     }
 }
 
-/// Markers less disks; NaN where a marker is hidden or there is no shape.
+/// Returns markers minus disks; NaN if a marker is hidden or there is no shape.
 pub fn off_markers(shape: &ComputedShape, sample: &RunSample) -> Vec<[f64; 2]> {
     let has_shape = shape.status.has_shape();
     let off = |([x_m, y_m], [marker_x_m, marker_y_m]): (&[f64; 2], &[f64; 2])| {
@@ -236,12 +237,12 @@ pub fn off_markers(shape: &ComputedShape, sample: &RunSample) -> Vec<[f64; 2]> {
     shape.disk_position_m.iter().zip(&sample.marker_m).map(off).collect()
 }
 
-/// Places of samples: some, evenly, and all turning points of the tension.
+/// Returns indices of samples: some, evenly spaced, and all turning points of the tension.
 pub fn thinned(samples: &[RunSample]) -> Vec<usize> {
     thinned_to(samples, MOST_SAMPLES)
 }
 
-/// The same with so many samples at most beside the turning points.
+/// Returns the same with at most `most` samples besides the turning points.
 pub fn thinned_to(samples: &[RunSample], most: usize) -> Vec<usize> {
     let stride = samples.len().div_ceil(most).max(1);
     let greatest_n = samples.iter().map(|sample| sample.tension_base_n).fold(0.0, f64::max);

@@ -1,4 +1,4 @@
-//! What the extended file says: what was found, and values fitted to the run where it contradicts those given.
+//! Determines the content of the extended file: the findings, and fitted values where the run contradicts the given ones.
 
 use fric_core::continuum::edit::ManipulatorEdit;
 use fric_core::continuum::file::USUAL_SIGMA_N_PER_M;
@@ -8,7 +8,7 @@ use super::model::{Effect, Model};
 use super::naming::Outcome;
 use crate::continuum::shape_errors::Way;
 
-/// What to change in the file given.
+/// Returns the changes to the given file.
 pub fn edit(case: &Case<'_>, outcome: &Outcome) -> ManipulatorEdit {
     let Outcome { given, last, findings, .. } = outcome;
     let model = &last.fit.model;
@@ -33,7 +33,7 @@ pub fn edit(case: &Case<'_>, outcome: &Outcome) -> ManipulatorEdit {
     }
 }
 
-/// Drift of a shift, that which the file states included.
+/// Returns the drift of a shift, including that which the file states.
 pub fn drift(case: &Case<'_>, model: &Model, grating: usize) -> f64 {
     let stated = case.file.tables().gratings.as_ref().and_then(|table| table.drift_nm_per_s.get(grating)).copied();
     let found = model.drift_n_per_s.get(grating).zip(case.newton_per_nm.get(grating));

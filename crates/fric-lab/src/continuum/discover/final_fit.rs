@@ -1,4 +1,4 @@
-//! The values that are written: fitted to all samples, and only where the run contradicts what the file states.
+//! The values to write: fitted to all samples, but only where the run contradicts the file.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -15,19 +15,18 @@ use crate::fit::HALF_INTERVAL;
 #[derive(Clone, Debug)]
 pub struct Final {
     pub fit: Fit,
-    /// What the covariance is of, and that: with all that the run has to tell, the shared μ that stays as given included, for that it stays does not
-    /// make it known.
+    /// The parameters of the covariance. They include a shared μ that stays as given, because keeping it does not make it known.
     parameters: Vec<Parameter>,
     covariance: Option<DMatrix<f64>>,
-    /// The disk that a refit would have put further off, where that is why the given μ stays, with that μ.
+    /// If the given μ stays because a refit would move a disk further off: that disk, and the refitted μ.
     pub kept: Option<(Worse, f64)>,
 }
 
 impl Final {
-    /// Of an extended model; `whole` is the run with nothing held out.
+    /// Fits an extended model. `whole` is the run with nothing held out.
     ///
-    /// The μ that holes share stays as given where its 95 % interval, the calibration's error included, holds the given value, where something
-    /// unexplained could be in it, and where shapes would become worse.
+    /// The μ that holes share stays as given if its 95 % interval, including the calibration's error, contains the given value, if it may contain
+    /// something unexplained, or if shapes would become worse.
     pub fn new(
         whole: &Case<'_>,
         given: &Fit,
@@ -66,7 +65,7 @@ impl Final {
         Some(Self { parameters: fit.model.parameters(), covariance: covariance(whole, &fit), fit, kept: None })
     }
 
-    /// Whether the interval of the shared μ does not hold the given one.
+    /// Whether the interval of the shared μ excludes the given one.
     fn contradicts(&self, given: &Fit) -> bool {
         let Some(error) = self.standard_error(Parameter::SharedMu) else {
             return false;
@@ -78,13 +77,13 @@ impl Final {
         (found - stated).abs() > HALF_INTERVAL * error
     }
 
-    /// Standard error of a number that was fitted; `None` of another, and of one that the run does not determine.
+    /// Returns the standard error of a fitted number; `None` for any other, and for one that the run does not determine.
     pub fn standard_error(&self, parameter: Parameter) -> Option<f64> {
         let place = self.parameters.iter().position(|fitted| *fitted == parameter)?;
         Some(self.covariance.as_ref()?.get((place, place))?.sqrt()).filter(|error| error.is_finite())
     }
 
-    /// Of [`shared_mu`].
+    /// Returns the standard error of [`shared_mu`].
     pub fn shared_mu_error(&self) -> Option<f64> {
         if let Some(error) = self.standard_error(Parameter::SharedMu) {
             return Some(error);
@@ -97,7 +96,7 @@ impl Final {
     }
 }
 
-/// μ of the holes that share one, of the mean hole where none does.
+/// Returns the μ of the holes that share one, or of the mean hole if none does.
 pub fn shared_mu(model: &Model) -> f64 {
     let shared = model.mu.iter().zip(&model.is_own).find(|(_, is_own)| !**is_own);
     #[expect(clippy::cast_precision_loss, reason = "a small count")]
@@ -105,12 +104,12 @@ pub fn shared_mu(model: &Model) -> f64 {
     shared.map_or(mean, |(mu, _)| *mu)
 }
 
-/// Holes that are alike differ by ±10 %: one whose μ is within this share of that of the others has none of its own. At 0.2 some right files
-/// have holes named, at twice the share a hole half as rough again as the others is passed over.
+/// Minimum relative difference of a hole's μ from that of the others to count as its own. Equal holes differ by ±10 %. At 0.2, holes are named in
+/// some correct files; at twice this value, a hole with half as much friction again as the others is missed.
 const OWN_RATIO: f64 = 0.3;
 
-/// How clear the μ of a hole of its own is from that of the others, from 1 on: in half widths of the 95 % interval of the difference, and in
-/// [`OWN_RATIO`]. Each μ counts as a share of what the file states, where it states any.
+/// Returns how clearly the μ of a hole differs from that of the others; 1 is the threshold. The difference is measured in half widths of its 95 %
+/// interval and in [`OWN_RATIO`]. Each μ counts relative to the value in the file, if the file states one.
 pub fn is_own_mu(given: &Model, model: &Model, covariance: Option<&DMatrix<f64>>, hole: usize) -> f64 {
     let parameters = model.parameters();
     let has_given = given.mu.iter().all(|mu| *mu > 0.0);

@@ -1,5 +1,5 @@
-//! A model's numbers by least squares over what is learned from: Gauss–Newton with slopes by differences, which are taken once, for the
-//! tensions are nearly linear in all of them.
+//! Fits a model's numbers to the training samples by least squares: Gauss–Newton with slopes by finite differences. The slopes are computed once,
+//! because the tensions are nearly linear in all numbers.
 
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -14,17 +14,17 @@ use crate::search::gram::Gram;
 
 const MOST_STEPS: u32 = 8;
 const MOST_HALVINGS: u32 = 6;
-/// A step that would lower the sum of squares by less is not made, and one that does is the last.
+/// Relative decrease of the sum of squares below which a step is not taken; a step that achieves less is the last one.
 const SETTLED_RATIO: f64 = 1e-6;
 
-/// The model with its numbers fitted; `None` where it has no shapes.
+/// Returns the model with its numbers fitted; `None` if it has no shapes.
 pub fn fitted(case: &Case<'_>, start: &Model) -> Option<Fit> {
     let now = case.fit(start)?;
     let slopes = start.parameters().iter().map(|parameter| by_parameter(case, &now, *parameter)).collect::<Option<_>>();
     Some(descended(case, now, &slopes?))
 }
 
-/// The same from a start that is computed, with slopes that all candidates beside a model share.
+/// Does the same from an evaluated start, with slopes that all candidates beside a model share.
 pub fn fitted_from(case: &Case<'_>, now: Fit, by_hole: &HoleSlopes) -> Option<Fit> {
     let slopes = by_hole.slopes(case, &now.model, &now.model.parameters())?;
     Some(descended(case, now, &slopes))
@@ -36,7 +36,7 @@ fn descended(case: &Case<'_>, mut now: Fit, slopes: &Slopes) -> Fit {
         return now;
     }
     for _ in 0..MOST_STEPS {
-        // The lines' errors find their minimum by themselves.
+        // The errors of the calibration lines are minimised directly.
         let Some(problem) = Linearised::new(case, &now, slopes) else { break };
         if problem.gain_n2() < SETTLED_RATIO * now.squares {
             break;
@@ -60,11 +60,11 @@ fn descended(case: &Case<'_>, mut now: Fit, slopes: &Slopes) -> Fit {
     now
 }
 
-/// Covariance of a fitted model's parameters: under residuals that remember, under lines of the gratings that are known no better than their
-/// calibration makes them, and under holes that share a μ although each has its own; `None` where the run does not determine them.
+/// Returns the covariance of a fitted model's parameters. It accounts for correlated residuals, for the calibration errors of the gratings, and for
+/// holes that share a μ although each has its own. Returns `None` if the run does not determine the parameters.
 ///
-/// A hole whose μ is off by δ moves the parameters by `(JᵀJ)⁻¹Jᵀs·δ` with the slopes `s` of the tensions (delta method). The shared μ is that of the
-/// mean hole, which moves too, by its share. How far holes are off in the mean is estimated from the run ([`shared_spread`]).
+/// An error δ of a hole's μ moves the parameters by `(JᵀJ)⁻¹Jᵀs·δ`, with the slopes `s` of the tensions (delta method). The shared μ is that of the
+/// mean hole, which moves as well, by its share. The mean error of the holes is estimated from the run ([`shared_spread`]).
 pub fn covariance(case: &Case<'_>, fit: &Fit) -> Option<DMatrix<f64>> {
     let parameters = fit.model.parameters();
     let by_hole = HoleSlopes::new(case, fit)?;
@@ -91,14 +91,14 @@ pub fn covariance(case: &Case<'_>, fit: &Fit) -> Option<DMatrix<f64>> {
     Some(covariance)
 }
 
-/// Derivatives of the residuals by each parameter.
+/// Derivatives of the residuals with respect to each parameter.
 pub type Slopes = Vec<Vec<Vec<f64>>>;
 
-/// Derivatives of the residuals by the μ of each hole; none without friction. Those by other parameters follow from them.
+/// Derivatives of the residuals with respect to the μ of each hole; empty without friction. Those with respect to other parameters follow from them.
 pub struct HoleSlopes(Slopes);
 
 impl HoleSlopes {
-    /// `None` where the model has no shapes.
+    /// Computes the slopes. Returns `None` if the model has no shapes.
     pub fn new(case: &Case<'_>, now: &Fit) -> Option<Self> {
         let count = if now.model.way == Way::None { 0 } else { now.model.mu.len() };
         let by_hole = (0..count).into_par_iter().map(|hole| by_parameter(case, now, Parameter::OwnMu(hole)));
@@ -114,7 +114,7 @@ impl HoleSlopes {
         parameters.iter().map(of).collect()
     }
 
-    /// All holes that share a μ are scaled together.
+    /// Scales all holes that share a μ together.
     fn by_shared_mu(&self, model: &Model) -> Option<Vec<Vec<f64>>> {
         let shared_mu = model.get(Parameter::SharedMu);
         let mut sum: Vec<Vec<f64>> = self.0.first()?.iter().map(|row| vec![0.0; row.len()]).collect();
@@ -128,7 +128,7 @@ impl HoleSlopes {
     }
 }
 
-/// By one parameter, by differences where it is a μ.
+/// Returns the derivatives with respect to one parameter, by finite differences if it is a μ.
 fn by_parameter(case: &Case<'_>, now: &Fit, parameter: Parameter) -> Option<Vec<Vec<f64>>> {
     if let Parameter::Drift(grating) = parameter {
         return by_drift(case, grating);
@@ -151,7 +151,7 @@ fn by_drift(case: &Case<'_>, grating: usize) -> Option<Vec<Vec<f64>>> {
     Some(case.samples.iter().map(|sample| row(sample.time_s)).collect())
 }
 
-/// Residuals learned from and their slopes, those by the errors of the gratings' lines last, reduced.
+/// Training residuals and their slopes in reduced form, with the errors of the calibration lines last.
 pub struct Linearised {
     parameters: usize,
     gradient: DVector<f64>,
@@ -163,7 +163,7 @@ pub struct Linearised {
 }
 
 impl Linearised {
-    /// `None` where the run does not determine the parameters. The gratings of a sample belong together.
+    /// Linearises the problem. Returns `None` if the run does not determine the parameters. The gratings of a sample belong together.
     fn new(case: &Case<'_>, now: &Fit, slopes: &Slopes) -> Option<Self> {
         let (parameters, lines) = (slopes.len(), 2 * now.line_errors.len());
         let count = parameters + lines;
@@ -193,18 +193,18 @@ impl Linearised {
         Some(Self { parameters, gradient, inverse, scores, noise_n: case.noise_n, variance_n2 })
     }
 
-    /// By how much the step lowers the sum of squares, N².
+    /// Returns the decrease of the sum of squares by the step, N².
     fn gain_n2(&self) -> f64 {
         self.gradient.dot(&(&self.inverse * &self.gradient))
     }
 
-    /// To the minimum.
+    /// Returns the step to the minimum.
     pub fn step(&self) -> DVector<f64> {
         -(&self.inverse * &self.gradient).rows(0, self.parameters).into_owned()
     }
 
-    /// Of the parameters: that of generalised least squares, and where the residuals remember, of each parameter the greater variance that
-    /// blocks of the run tell. Blocks alone tell too little: a short run has fewer of them than a fit has numbers.
+    /// Returns the covariance of the parameters: that of generalised least squares or, for each parameter with correlated residuals, the greater
+    /// variance from blocks of the run. Blocks alone are not enough, because a short run has fewer of them than a fit has numbers.
     pub fn covariance(&self) -> DMatrix<f64> {
         let white = &self.inverse * self.variance_n2;
         let mut in_blocks = self.scores.covariance(&self.inverse);
@@ -216,7 +216,7 @@ impl Linearised {
         })
     }
 
-    /// How the parameters move with something that has these slopes, by one of it.
+    /// Returns the change of the parameters per unit of a cause with these slopes.
     fn moved_by(&self, case: &Case<'_>, slopes_by_it: &[Vec<f64>], slopes: &Slopes) -> DVector<f64> {
         let mut pull = DVector::zeros(self.inverse.ncols());
         for (sample, row) in slopes_by_it.iter().enumerate().filter(|(sample, _)| !case.held_out[*sample]) {
@@ -231,7 +231,7 @@ impl Linearised {
     }
 }
 
-/// Slopes of one residual: by the parameters, and by the errors of all lines, of which its own alone matter.
+/// Returns the slopes of one residual: with respect to the parameters and to the errors of all lines, of which only its own is non-zero.
 fn row_of(case: &Case<'_>, slopes: &Slopes, sample: usize, segment: usize) -> Vec<f64> {
     let mut numbers: Vec<f64> = slopes.iter().map(|all| all[sample][segment]).collect();
     for (line, errors_n) in case.line_error_n[sample].iter().enumerate() {

@@ -1,7 +1,7 @@
-//! What goes with what is left: the one regressor among a few physical ones that accounts for most of it.
+//! Finds what the rest correlates with: the one physical regressor that explains most of it.
 //!
-//! Nothing is named by it. It tells where to look: a temperature shifts all gratings alike, a backbone that is stiffer than stated puts all disks
-//! off along the way that they take when it bends.
+//! The regressor is not a name but a hint: a temperature change shifts all gratings equally, and a backbone that is stiffer than stated displaces all
+//! disks along their bending motion.
 
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
@@ -10,31 +10,31 @@ use super::case::{Case, Fit};
 use super::markers::{MarkerFit, residuals};
 use crate::fit::result::Numbers;
 
-/// Share of the rest's squares below which it goes with none of them.
+/// Minimum fraction of the rest's squares that a regressor must explain.
 const LEAST_SHARE: f64 = 0.5;
-/// Change of the stiffness by which its derivative is taken.
+/// Relative change of the stiffness for its derivative by finite differences.
 const STIFFNESS_CHANGE: f64 = 0.01;
-/// What a kelvin does to a grating of silica, `α_Λ + α_n`, 1/K, and where the file states no wavelength, that of the C band, nm.
+/// Temperature sensitivity of a silica grating, `α_Λ + α_n`, 1/K, and the C-band wavelength, nm, which is used if the file states none.
 const SILICA_PER_K: f64 = 6.85e-6;
 const USUAL_WAVELENGTH_NM: f64 = 1550.0;
 
-/// What a rest goes with.
+/// A regressor that a rest correlates with.
 #[derive(Clone, Debug, Serialize)]
 pub struct GoesWith {
-    /// `grating` or `marker`: whose rest it is.
+    /// `grating` or `marker`: the signal of the rest.
     pub signal: &'static str,
     /// `temperature`, `temperature_step`, `temperature_drift`, `tension`; `bending`, `frame`, `frame_drift`.
     pub with: &'static str,
-    /// Share of the squares that it accounts for.
+    /// Fraction of the squares that it explains.
     pub share: f64,
-    /// How much of it there is.
+    /// Its size.
     pub parameters: Numbers,
-    /// For people.
+    /// A sentence for people.
     #[serde(skip)]
     pub sentence: String,
 }
 
-/// Rows of regressors, the last entry what they have to account for; those with a gap are left out.
+/// Rows of regressors, with the explained quantity last. Rows with a gap are left out.
 struct Rows {
     normal: DMatrix<f64>,
     right: DVector<f64>,
@@ -55,7 +55,7 @@ impl Rows {
         all
     }
 
-    /// Share of the squares that the regressors account for, and their coefficients.
+    /// Returns the fraction of the squares that the regressors explain, and their coefficients.
     fn solved(&self) -> Option<(f64, Vec<f64>)> {
         let found = self.normal.clone().cholesky()?.solve(&self.right);
         (self.squares > 0.0).then(|| (found.dot(&self.right) / self.squares, found.as_slice().to_vec()))
@@ -71,8 +71,8 @@ fn best(candidates: impl IntoIterator<Item = GoesWith>) -> Option<GoesWith> {
     likely.max_by(|one, other| one.share.total_cmp(&other.share))
 }
 
-/// The step of all shifts that accounts for most of a rest: its share of the squares, the shift, nm, and the sample from which on it is there. One pass
-/// from the end adds a sample to what is after the step; the rest before it has no part but in the squares.
+/// Returns the step of all shifts that explains most of a rest: its fraction of the squares, the shift, nm, and the sample at which it starts. One
+/// pass from the end adds samples to the part after the step; the part before it only contributes to the total squares.
 fn best_step(rest_n: &[Vec<f64>], newton_per_nm: &dyn Fn(usize) -> f64) -> Option<(f64, f64, usize)> {
     let mut sums = Vec::with_capacity(rest_n.len());
     let (mut normal, mut right, mut squares) = (0.0, 0.0, 0.0);
@@ -90,7 +90,7 @@ fn best_step(rest_n: &[Vec<f64>], newton_per_nm: &dyn Fn(usize) -> f64) -> Optio
     found.filter(|_| squares > 0.0).max_by(|(one, ..), (other, ..)| one.total_cmp(other))
 }
 
-/// What the rest of the tensions goes with; `given` is the model as the file states it, for a fit bends what is not friction into friction.
+/// Returns the regressor of the tensions' rest. `given` is the model as stated in the file, because a fit would adjust the friction to other causes.
 pub fn of_tensions(case: &Case<'_>, given: &Fit) -> Option<GoesWith> {
     let start_s = case.samples.first()?.time_s;
     let wavelengths = case.file.tables().gratings.as_ref().and_then(|table| table.wavelength_nm.as_ref());
@@ -154,13 +154,13 @@ pub fn of_tensions(case: &Case<'_>, given: &Fit) -> Option<GoesWith> {
         );
         found("tension", share, &[("ratio", ratio[0])], text)
     });
-    // A step has a number more, its time, and the drift and the constant are among what it comes near to.
+    // A step has one more parameter, its time, and approximates a drift or a constant.
     let simple = best([constant, drift, tension].into_iter().flatten());
     let is_clearer = |step: &GoesWith| simple.as_ref().is_none_or(|one| 1.0 - step.share < 0.5 * (1.0 - one.share));
     best(step.filter(is_clearer)).or(simple)
 }
 
-/// What the rest of the markers goes with.
+/// Returns the regressor of the markers' rest.
 pub fn of_markers(case: &Case<'_>, fit: &Fit, markers: &MarkerFit) -> Option<GoesWith> {
     let start_s = case.samples.first()?.time_s;
     let stiffer_m = residuals(case, &fit.model, &case.samples, &markers.tension_n, 1.0 + STIFFNESS_CHANGE)?;
@@ -181,7 +181,7 @@ pub fn of_markers(case: &Case<'_>, fit: &Fit, markers: &MarkerFit) -> Option<Goe
         parameters: numbers(parameters),
         sentence: format!("{:.0} % of it {text}", 100.0 * share),
     };
-    // What a shape changes by where the stiffness does, as a share of it: markers less disks, hence the sign.
+    // The relative change of a shape with the stiffness. The sign is that of markers minus disks.
     let change = |sample: usize, disk: usize, axis: usize| {
         let at = |rows: &[Vec<[f64; 2]>]| rows.get(sample).and_then(|row| row.get(disk)).map(|place| place[axis]);
         at(&markers.residual_m).zip(at(&stiffer_m)).map_or(f64::NAN, |(now, moved)| (now - moved) / STIFFNESS_CHANGE)
@@ -217,7 +217,7 @@ pub fn of_markers(case: &Case<'_>, fit: &Fit, markers: &MarkerFit) -> Option<Goe
         let parameters = [("x_m_per_s", rate[0]), ("y_m_per_s", rate[1]), ("angle_rad_per_s", rate[2])];
         found("frame_drift", share, &parameters, text)
     });
-    // The frame has two numbers more than the bending.
+    // The frame has two more parameters than the bending.
     let frame = best([still, moving].into_iter().flatten());
     let is_clearer = |bending: &GoesWith| frame.as_ref().is_none_or(|one| bending.share > one.share - 0.02);
     best(bending.filter(is_clearer)).or(frame)
@@ -227,7 +227,7 @@ pub fn of_markers(case: &Case<'_>, fit: &Fit, markers: &MarkerFit) -> Option<Goe
 mod tests {
     use super::*;
 
-    /// One regression for each sample at which it may begin, as [`Rows`] does them.
+    /// Compares with one regression for each possible start of the step, computed by [`Rows`].
     #[test]
     fn one_pass_finds_the_step_of_all_regressions() {
         let slopes = [11.0, 10.5, 12.0];

@@ -1,8 +1,8 @@
-//! One cost for tensions and markers together, and fits of any set of numbers on it.
+//! A common cost for tensions and markers, and fits of any set of numbers to it.
 //!
-//! Each signal counts in the unit of its white noise, with what the model itself is off by. Friction and the lines of the gratings are free in every
-//! fit within what is known of them: each hole's μ within a spread around the one that they share, each line within the error of its
-//! calibration. So nothing enters a set for what these can explain.
+//! Each signal is scaled by its white noise together with the model's own error. Friction and the calibration lines are free in every fit within
+//! their prior uncertainty: each hole's μ within a spread around the shared one, each line within its calibration error. So no candidate enters a set
+//! for something that these can explain.
 
 use std::sync::Arc;
 
@@ -19,59 +19,59 @@ use crate::continuum::identify::unknown::Unknown;
 use crate::continuum::run::Run;
 use crate::samples::noise::white_noise_throughout;
 
-/// μ at which the search begins where the file has no friction.
+/// Start value of μ if the file has no friction.
 const START_MU: f64 = 0.15;
-/// Standard deviation of the logarithm of a hole's μ about the shared one: that of an even spread of ±10 %.
+/// Standard deviation of the logarithm of a hole's μ around the shared one: that of a uniform spread of ±10 %.
 const HOLE_SPREAD: f64 = 0.06;
-/// The same of what is all but free: shared μ and σ, and a hole of its own.
+/// The same for numbers that are nearly free: shared μ and σ, and an individual hole.
 const LOOSE: f64 = 1.0;
-/// A line that is not the calibrated one, in standard errors of the calibration.
+/// Prior of a wrong calibration line, in standard errors of the calibration.
 const LOOSE_LINE: f64 = 1000.0;
-/// A free number is this many times its widest interval from the stated value at most, as a standard deviation: no bound, but what keeps normal equations regular.
+/// Prior standard deviation of a free number, as a multiple of its widest interval. It is no bound, but keeps the normal equations regular.
 const WIDE: f64 = 20.0;
 
 const MOST_STEPS: usize = 8;
 const MOST_HALVINGS: i32 = 5;
-/// A step that lowers the cost by less is the last.
+/// A step that decreases the cost by less than this is the last one.
 const SETTLED: f64 = 0.05;
 
 /// The run with all numbers that take part.
 pub struct Joint {
     pub runs: Runs,
-    /// Numbers of all candidates and of the friction; the lines follow, two of each grating.
+    /// Numbers of all candidates and of the friction. The lines follow, two numbers per grating.
     unknowns: Vec<Unknown>,
     line_count: usize,
     pub length_m: f64,
 }
 
-/// Units of the signals.
+/// Scales of the signals.
 #[derive(Clone, Copy, Debug)]
 pub struct Units {
     pub tension_n: f64,
     pub marker_m: f64,
 }
 
-/// A state with what is left.
+/// A state with its residual.
 #[derive(Clone)]
 pub struct Point {
     pub state: State,
     evaluation: Arc<Evaluation>,
-    /// Tensions and markers of each sample, N and m; NaN where there is none.
+    /// Residual tensions and markers of each sample, N and m; NaN if there is none.
     left: Vec<f64>,
 }
 
-/// Which numbers are free, and how freely.
+/// The free numbers and their prior standard deviations.
 #[derive(Clone, Debug)]
 pub struct Set {
     active: Vec<usize>,
     precision: Vec<f64>,
 }
 
-/// Slopes of what is left by all numbers.
+/// Derivatives of the residual with respect to all numbers.
 #[derive(Clone)]
 pub struct Jacobian(Vec<Vec<f64>>);
 
-/// Of a free number: with all that is counted, and with white noise alone.
+/// Standard errors of a free number: with all contributions, and with white noise alone.
 #[derive(Clone, Copy, Debug)]
 pub struct StandardError {
     pub place: usize,
@@ -79,7 +79,7 @@ pub struct StandardError {
     pub white: f64,
 }
 
-/// Sums of squares by signal, m² and N², and the numbers that were added.
+/// Sums of squares by signal, m² and N², and their numbers of terms.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Sums {
     pub tension_n2: f64,
@@ -89,14 +89,14 @@ pub struct Sums {
 }
 
 impl Jacobian {
-    /// The slopes by one number taken anew.
+    /// Replaces the slopes of one number.
     pub fn replace(&mut self, place: usize, slope: Vec<f64>) {
         self.0[place] = slope;
     }
 }
 
 impl Joint {
-    /// `None` where nothing can be compared.
+    /// Prepares the cost. Returns `None` if nothing can be compared.
     pub fn new(file: &ManipulatorFile, run: &Run, candidates: &[Candidate]) -> Option<Self> {
         let mut runs = Runs::new(file, std::slice::from_ref(run)).ok()?;
         let tendon = &mut runs.given.tendon;
@@ -121,12 +121,12 @@ impl Joint {
         Some(Self { runs, unknowns, line_count, length_m })
     }
 
-    /// The file as it is.
+    /// Returns the state of the file as it is.
     pub fn start(&self) -> Option<Point> {
         self.point(self.runs.start(&self.unknowns), None)
     }
 
-    /// The file as it is but for one number, at a distance from what it states.
+    /// Returns the state of the file with one number changed by a distance.
     pub fn at(&self, unknown: Unknown, distance: f64) -> Option<Point> {
         let start = self.runs.start(&self.unknowns);
         self.point(self.moved(&start, self.place(unknown)?, distance), None)
@@ -139,7 +139,7 @@ impl Joint {
         Some(Point { state, evaluation: Arc::new(evaluation), left })
     }
 
-    /// Units by the white noise of a point.
+    /// Returns the scales from the white noise of a point.
     pub fn units(&self, point: &Point) -> Units {
         let noise = |is_marker: bool| {
             let mut series = Vec::new();
@@ -165,7 +165,7 @@ impl Joint {
         }
     }
 
-    /// The numbers that every fit has free, with what is known of them.
+    /// Returns the numbers that are free in every fit, with their priors.
     pub fn common(&self) -> Set {
         let mut set = Set { active: Vec::new(), precision: Vec::new() };
         for (place, unknown) in self.unknowns.iter().enumerate() {
@@ -184,7 +184,7 @@ impl Joint {
         set
     }
 
-    /// A set with a candidate.
+    /// Returns a set extended by a candidate.
     pub fn with(&self, set: &Set, candidate: Candidate) -> Set {
         let mut set = set.clone();
         for unknown in candidate.frees(&self.runs.given) {
@@ -216,12 +216,12 @@ impl Joint {
         set
     }
 
-    /// So many numbers does a candidate add.
+    /// Returns how many numbers a candidate adds.
     pub fn numbers(&self, candidate: Candidate) -> f64 {
         let count = match candidate {
             Candidate::Hole(_) => 1,
             Candidate::AllHoles => self.runs.given.disk_count,
-            // The time of the step is a number too.
+            // The time of the step counts as a number too.
             Candidate::Line(_) | Candidate::Temperature => 2,
             Candidate::AllLines => 2 * self.line_count,
             _ => candidate.frees(&self.runs.given).len(),
@@ -255,12 +255,12 @@ impl Joint {
         state
     }
 
-    /// The distance of a number from what the file states.
+    /// Returns the distance of a number from the value in the file.
     pub fn found(&self, point: &Point, unknown: Unknown) -> f64 {
         self.place(unknown).map_or(0.0, |place| self.distance(&point.state, place))
     }
 
-    /// Slopes of what is left by one number.
+    /// Returns the derivatives of the residual with respect to one number.
     pub fn slope(&self, point: &Point, place: usize) -> Option<Vec<f64>> {
         let change = match self.unknowns.get(place) {
             Some(unknown) => unknown.small(&self.runs.given, self.runs.greatest_tension_n),
@@ -270,7 +270,7 @@ impl Joint {
         Some(moved.left.iter().zip(&point.left).map(|(moved, now)| (moved - now) / change).collect())
     }
 
-    /// At a point.
+    /// Returns the derivatives at a point.
     pub fn jacobian(&self, point: &Point) -> Option<Jacobian> {
         let all = 0..self.unknowns.len() + 2 * self.line_count;
         all.into_par_iter().map(|place| self.slope(point, place)).collect::<Option<_>>().map(Jacobian)
@@ -282,7 +282,7 @@ impl Joint {
         (tension_width, marker_width)
     }
 
-    /// What one over the unit is at each place, 0 at gaps.
+    /// Returns the inverse scale at each index; 0 at gaps.
     fn weights(&self, point: &Point, units: Units) -> Vec<f64> {
         let (tension_width, marker_width) = self.widths();
         let weight = |(place, left): (usize, &f64)| {
@@ -292,7 +292,7 @@ impl Joint {
         point.left.iter().enumerate().map(weight).collect()
     }
 
-    /// By signal.
+    /// Returns the sums by signal.
     pub fn sums(&self, point: &Point) -> Sums {
         let (tension_width, marker_width) = self.widths();
         let mut sums = Sums::default();
@@ -308,7 +308,7 @@ impl Joint {
         sums
     }
 
-    /// χ² and what is known of the free numbers.
+    /// Returns χ² including the priors of the free numbers.
     pub fn cost(&self, point: &Point, set: &Set, units: Units) -> f64 {
         let sums = self.sums(point);
         let known = set
@@ -319,7 +319,7 @@ impl Joint {
         sums.tension_n2 / units.tension_n.powi(2) + sums.marker_m2 / units.marker_m.powi(2) + known.sum::<f64>()
     }
 
-    /// The normal equations of all numbers.
+    /// Returns the normal equations of all numbers.
     pub fn gram(&self, point: &Point, jacobian: &Jacobian, units: Units) -> (DMatrix<f64>, DVector<f64>) {
         let weights = self.weights(point, units);
         let columns: Vec<Vec<f64>> = jacobian.0.par_iter().map(|column| weighted(column, &weights)).collect();
@@ -339,7 +339,7 @@ impl Joint {
         (matrix, right)
     }
 
-    /// By how much a set lowers the cost as the slopes have it, and its step.
+    /// Returns the linearised decrease of the cost by a set, and its step.
     pub fn linear(
         &self,
         point: &Point,
@@ -358,7 +358,7 @@ impl Joint {
         Some((-step.dot(&gradient), step))
     }
 
-    /// The minimum of a set; `jacobian` is that of a point near by, of which only the slopes by the numbers of `fresh` are taken anew.
+    /// Returns the minimum of a set. `jacobian` belongs to a nearby point; only the slopes of the numbers in `fresh` are recomputed.
     pub fn fitted(
         &self,
         start: &Point,
@@ -405,7 +405,7 @@ impl Joint {
         Some(now)
     }
 
-    /// The point with all numbers beside a set as the file states them.
+    /// Returns the point with all numbers outside a set as the file states them.
     fn neutral(&self, point: &Point, set: &Set) -> Option<Point> {
         let mut state = point.state.clone();
         for (place, (_, distance)) in state.unknowns.iter_mut().enumerate() {
@@ -416,7 +416,7 @@ impl Joint {
         if state == point.state { Some(point.clone()) } else { self.point(state, Some(point)) }
     }
 
-    /// The normal equations of a set, in a matrix of all numbers.
+    /// Returns the normal equations of a set, in a matrix of all numbers.
     fn gram_of(&self, point: &Point, jacobian: &Jacobian, set: &Set, units: Units) -> (DMatrix<f64>, DVector<f64>) {
         let weights = self.weights(point, units);
         let columns: Vec<Vec<f64>> = set.active.iter().map(|place| weighted(&jacobian.0[*place], &weights)).collect();
@@ -434,8 +434,9 @@ impl Joint {
         (matrix, right)
     }
 
-    /// Standard error of each free number of a set at its minimum, by place. Noise of a grating moves all disks beyond it, and residuals remember: the
-    /// scatter of the scores of whole samples and of blocks counts where it is greater than that of white noise; and what the model is not.
+    /// Returns the standard error of each free number of a set at its minimum, by index. Noise of a grating moves all disks beyond it, and residuals
+    /// are correlated, so the scatter of the scores of whole samples and of blocks counts where it exceeds that of white noise. The error of the
+    /// model itself is added.
     pub fn errors(&self, point: &Point, set: &Set, jacobian: &Jacobian) -> Option<Vec<StandardError>> {
         let sums = self.sums(point);
         let rms = |square: f64, count: f64, unit: f64| {
@@ -488,7 +489,7 @@ impl Joint {
         Some(set.active.iter().enumerate().map(error).collect())
     }
 
-    /// The sample from which on a shift of all gratings lowers the cost most, beside a set.
+    /// Returns the sample from which on a common shift of all gratings decreases the cost most, beside a set.
     pub fn step_begin(&self, point: &Point, set: &Set, jacobian: &Jacobian, units: Units) -> Option<usize> {
         let shift = self.place(Unknown::CommonShift)?;
         let weights = self.weights(point, units);
@@ -530,7 +531,7 @@ impl Joint {
     }
 }
 
-/// A column in units of the noise; gaps are 0.
+/// Returns a column in units of the noise; gaps are 0.
 fn weighted(column: &[f64], weights: &[f64]) -> Vec<f64> {
     let one = |(value, weight): (&f64, &f64)| if *weight > 0.0 && value.is_finite() { value * weight } else { 0.0 };
     column.iter().zip(weights).map(one).collect()

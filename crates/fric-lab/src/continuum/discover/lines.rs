@@ -1,18 +1,18 @@
-//! What the lines of the gratings are off by, estimated along with a model.
+//! Estimates the errors of the gratings' calibration lines together with a model.
 //!
-//! The calibration tells constant and slope of each line to a standard error. In a fit both are unknowns, in standard errors, and count as
-//! measured once to be 0 ± 1 (generalised least squares): what a line is off by is common to all samples, and no evidence for an effect.
+//! The calibration gives constant and slope of each line with a standard error. In a fit both errors are unknowns, in standard errors, with the prior
+//! 0 ± 1 (generalised least squares). The error of a line is common to all samples and therefore no evidence for an effect.
 
 use nalgebra::{Matrix2, Vector2};
 
 use super::case::Case;
 
-/// Standard errors that a line can be off by, constant and slope together: one line in a thousand is further off (√χ² of two numbers). What is
-/// beyond stays in the residual.
+/// Maximum error of a line in standard errors, constant and slope together: one line in a thousand exceeds it (√χ² of two numbers). Anything beyond
+/// stays in the residual.
 const MOST_ERRORS: f64 = 3.7;
 
-/// Takes off a residual what the lines are off by, as far as the calibration leaves it open. Gives the standard errors of each line's constant and
-/// slope.
+/// Subtracts the estimated errors of the lines from a residual, as far as the calibration allows. Returns them in standard errors of each line's
+/// constant and slope.
 pub fn take_off(case: &Case<'_>, residual_n: &mut [Vec<f64>]) -> Vec<[f64; 2]> {
     let mut errors = Vec::with_capacity(case.newton_per_nm.len());
     for segment in 0..case.newton_per_nm.len() {

@@ -1,9 +1,9 @@
-//! What of bending, loads and measurement a file has wrong, from tensions and markers together.
+//! Finds wrong numbers of bending, loads and measurement in a file, from tensions and markers together.
 //!
-//! One candidate after the other enters where it lowers the joint cost most; whatever entered is tried again without, and with another in its place. Friction of
-//! holes, drifts and wrong lines take part as candidates, so that nothing is named for them, and leave their names to the search on the tensions.
-//! A gain that is practically nothing, or that is less than what is left, gives no name. Candidates that explain the run alike within what the model
-//! itself is off by are told together.
+//! Candidates enter one after the other, each time the one that decreases the joint cost most. Every entered candidate is then tested again for
+//! removal and for replacement. Friction of holes, drifts and wrong lines take part as candidates so that nothing else is named in their place; the
+//! search on the tensions names them. A gain that is negligible, or smaller than the rest, gives no name. Candidates that explain the run equally
+//! well, within the model's own error, are reported together.
 
 use fric_core::continuum::file::{ManipulatorFile, ManipulatorTables};
 use rayon::prelude::*;
@@ -18,40 +18,40 @@ use crate::continuum::run::{Run, RunSample};
 use crate::fit::HALF_INTERVAL;
 use crate::fit::result::Numbers;
 
-/// Samples compared at most: shapes are quasi-static, and turning points are kept.
+/// Maximum number of samples to compare. Shapes are quasi-static, and turning points are kept.
 const MOST_SAMPLES: usize = 200;
-/// Candidates that are fitted in each step: so many of those with a name, and of the others, by what the slopes promise.
+/// Number of candidates with a name, and of others, that are fitted in each step, in the order of their predicted gains.
 const MOST_TRIALS: usize = 4;
 const MOST_OTHER_TRIALS: usize = 3;
 const MOST_CANDIDATES: usize = 4;
-/// Left squares per number above which a fit counts as stuck, and where it is begun again, in widest intervals.
+/// Remaining squares per number above which a fit counts as stuck, and the points from which it is restarted, in widest intervals.
 const STUCK_RATIO: f64 = 2.0;
 const RESTARTS: [f64; 6] = [-6.0, -4.0, -2.0, 2.0, 4.0, 6.0];
-/// Candidates that promise this share of the best one's evidence are fitted to the end before they are compared.
+/// Candidates that promise this fraction of the best one's evidence are fitted completely before they are compared.
 const NEAR_RATIO: f64 = 0.8;
-/// What is practically nothing: this share of the greatest tension, and of the length.
+/// Negligible change, as a fraction of the greatest tension and of the length.
 const PRACTICAL_RATIO: f64 = 0.0005;
-/// What a kelvin does to a grating of silica, `α_Λ + α_n`, 1/K, and where the file states no wavelength, that of the C band, nm.
+/// Temperature sensitivity of a silica grating, `α_Λ + α_n`, 1/K, and the C-band wavelength, nm, which is used if the file states none.
 const SILICA_PER_K: f64 = 6.85e-6;
 const USUAL_WAVELENGTH_NM: f64 = 1550.0;
 
-/// What was found.
+/// The findings of the search.
 pub struct Machine {
     pub named: Vec<Named>,
-    /// The tables of the file with it.
+    /// The tables of the file with the findings.
     pub tables: ManipulatorTables,
-    /// μ of each hole beside it, as far as the run tells it from the one that the holes share; empty where the file has no friction that remembers.
+    /// μ of each hole, as far as the run distinguishes it from the shared one; empty if the file has no friction with memory.
     pub mu: Vec<f64>,
 }
 
 impl Machine {
-    /// That nothing was found.
+    /// Returns empty findings.
     pub fn none(file: &ManipulatorFile) -> Self {
         Self { named: Vec::new(), tables: file.tables().clone(), mu: Vec::new() }
     }
 }
 
-/// A candidate that is named.
+/// A named candidate.
 #[derive(Clone, Debug)]
 pub struct Named {
     pub candidate: Candidate,
@@ -61,21 +61,21 @@ pub struct Named {
     pub gap_closed: f64,
     /// The best other candidate in its place, and its evidence.
     pub runner_up: Option<(Candidate, f64)>,
-    /// Candidates that the run does not tell from it.
+    /// Candidates that the run does not distinguish from it.
     pub alike: Vec<Candidate>,
 }
 
-/// A candidate that was fitted.
+/// A fitted candidate.
 struct Trial {
     candidate: Candidate,
     at: Place,
-    /// By how much it lowers the cost.
+    /// Decrease of the cost.
     gain: f64,
-    /// Schwarz's criterion with it less without it, as if all noise was white.
+    /// BIC with the candidate minus BIC without it, assuming white noise.
     delta_bic: f64,
 }
 
-/// A candidate that entered, with what else was tried in its place.
+/// A candidate that entered, with the alternatives tried in its place.
 #[derive(Clone)]
 struct Entry {
     candidate: Candidate,
@@ -94,7 +94,7 @@ struct Place {
     units: Units,
 }
 
-/// Looks for what is wrong; `None` where tensions and markers cannot be compared.
+/// Searches for wrong numbers. Returns `None` if tensions and markers cannot be compared.
 pub fn search(file: &ManipulatorFile, run: &Run) -> Option<Machine> {
     let kept = thinned_to(run.samples(), MOST_SAMPLES);
     let samples: Vec<RunSample> = kept.iter().filter_map(|place| run.samples().get(*place)).cloned().collect();
@@ -132,7 +132,7 @@ impl Search {
         Some(Place { point, set, jacobian, units })
     }
 
-    /// The minimum near a point that was found with slopes of another one.
+    /// Returns the minimum near a point that was found with slopes of another one.
     fn settled(&self, point: Point, set: Set) -> Option<Place> {
         let near = self.place(point, set)?;
         let point = self.joint.fitted(&near.point, &near.set, &near.jacobian, &[], near.units)?;
@@ -144,7 +144,7 @@ impl Search {
         candidates.iter().fold(common.clone(), |set, candidate| self.joint.with(&set, *candidate))
     }
 
-    /// The candidate that lowers the cost most beside those that are there, if one is worth it.
+    /// Returns the candidate that decreases the cost most beside the present ones, if it is significant.
     fn enter(&mut self, now: &mut Place, chosen: &[Candidate]) -> Option<(Entry, Place)> {
         self.begin_step(now, chosen);
         let gram = self.joint.gram(&now.point, &now.jacobian, now.units);
@@ -174,7 +174,7 @@ impl Search {
             (is_possible && is_enough).then_some((candidate, point, set, delta_bic))
         };
         let trials: Vec<(Candidate, Point, Set, f64)> = picked.into_par_iter().filter_map(trial).collect();
-        // What is near to the best is fitted with slopes of its own.
+        // Candidates near the best are fitted with their own slopes.
         let best = trials.iter().map(|(.., delta_bic)| *delta_bic).fold(0.0, f64::min);
         let near = trials.into_par_iter().filter(|(.., delta_bic)| *delta_bic <= NEAR_RATIO * best);
         let sharpened = |(candidate, point, set, _): (Candidate, Point, Set, f64)| {
@@ -209,7 +209,7 @@ impl Search {
         None
     }
 
-    /// How many times the variance of a candidate's numbers is that by white noise: what its gain is to be divided by before it is evidence.
+    /// Returns the ratio of the variance of a candidate's numbers to that under white noise. The gain must be divided by it to be evidence.
     fn design(&self, trial: &Trial) -> f64 {
         let joint = &self.joint;
         let Some(errors) = joint.errors(&trial.at.point, &trial.at.set, &trial.at.jacobian) else {
@@ -221,8 +221,8 @@ impl Search {
         own.map(|error| (error.whole / error.white).powi(2)).filter(|ratio| ratio.is_finite()).fold(1.0, f64::max)
     }
 
-    /// A better minimum, where a fit by slopes got stuck: a manipulator under its weight can fall to another side within the range that is searched. Tried from the
-    /// values of the file, with the candidate's number at some distances from the stated one.
+    /// Returns a better minimum if a fit got stuck: a manipulator under its weight can fall to another side within the search range. The search
+    /// restarts from the values of the file, with the candidate's number at some distances from the stated one.
     fn restarted(&self, point: Point, set: &Set, fresh: &[Unknown], units: Units) -> Point {
         let cost = self.joint.cost(&point, set, units);
         let [unknown] = fresh else { return point };
@@ -244,7 +244,7 @@ impl Search {
         }
     }
 
-    /// From when on a shift of all gratings would explain most, where the file has none.
+    /// Sets the time from which on a common shift of all gratings would explain most, if the file states none.
     fn begin_step(&mut self, now: &mut Place, chosen: &[Candidate]) {
         let Some(shift) = self.joint.place(Unknown::CommonShift) else { return };
         let Some(gratings) = &mut self.joint.runs.given.gratings else { return };
@@ -264,7 +264,7 @@ impl Search {
         }
     }
 
-    /// Each candidate tried again: whether it is worth its place beside the others, and whether another one is better there.
+    /// Tests each candidate again: whether it is significant beside the others, and whether another one is better in its place.
     fn reconsidered(&mut self, mut entries: Vec<Entry>, mut now: Place, before: &Place) -> Option<(Vec<Entry>, Place)> {
         let mut at = 0;
         while at < entries.len() {
@@ -302,7 +302,7 @@ impl Search {
         Some((entries, now))
     }
 
-    /// What is named in the end.
+    /// Returns the final names.
     fn named(&self, file: &ManipulatorFile, entries: &[Entry], before: &Place, now: &Place) -> Option<Machine> {
         let joint = &self.joint;
         let count = self.count(&now.point);
@@ -311,7 +311,7 @@ impl Search {
             sums.tension_n2 / now.units.tension_n.powi(2) + sums.marker_m2 / now.units.marker_m.powi(2)
         };
         let left = (squares(&now.point) - count).max(0.0);
-        // Lines that are wrong make shapes wrong, and a rest that is more than the noise may be anything.
+        // Wrong lines cause wrong shapes, and a rest above the noise may have any cause.
         let has_wrong_lines =
             entries.iter().any(|entry| matches!(entry.candidate, Candidate::AllLines | Candidate::Line(_)));
         if has_wrong_lines || left > count {
@@ -372,7 +372,7 @@ impl Search {
         self.joint.runs.given.tip.mass_kg + self.joint.found(point, Unknown::TipMass) >= 0.0
     }
 
-    /// Whether what is left falls by more than what is practically nothing, in tensions or in distances of the disks.
+    /// Whether the residual decreases by more than a negligible amount, in tensions or in distances of the disks.
     fn is_practical(&self, before: &Point, after: &Point) -> bool {
         let [one, other] = [before, after].map(|point| self.joint.sums(point));
         let tension_n2 = (one.tension_n2 - other.tension_n2) / one.tension_count.max(1.0);
@@ -381,7 +381,7 @@ impl Search {
             || marker_m2 > (PRACTICAL_RATIO * self.joint.length_m).powi(2)
     }
 
-    /// By so much may two candidates differ that explain a run alike: chance, and what the model itself is off by.
+    /// Returns the difference up to which two candidates explain a run equally: chance plus the model's own error.
     fn margin(&self, now: &Place) -> f64 {
         let sums = self.joint.sums(&now.point);
         let tension = MODEL_TENSION_RATIO * self.joint.runs.greatest_tension_n / now.units.tension_n;
@@ -390,8 +390,8 @@ impl Search {
     }
 }
 
-/// Which of some trials, the best first, enters: of those that are alike what has no name here where it is as good, else what is least likely to be stated
-/// right.
+/// Returns the index of the trial that enters; the best trial comes first. Among equal trials it is one without a name here if it is as good, else
+/// the one whose stated value is least reliable.
 fn taken(trials: &[Trial], margin: f64) -> usize {
     let best = trials.first().map_or(0.0, |trial| trial.delta_bic);
     let is_unnamed = |trial: &Trial| !trial.candidate.is_named() && trial.delta_bic < best + LEAST_EVIDENCE;
@@ -400,7 +400,7 @@ fn taken(trials: &[Trial], margin: f64) -> usize {
     trials.iter().position(is_unnamed).or_else(|| by_rank().map(|(place, _)| place)).unwrap_or(0)
 }
 
-/// Parameters of a candidate and their standard errors.
+/// Returns the parameters of a candidate and their standard errors.
 fn numbers(
     candidate: Candidate,
     given: &ManipulatorTables,

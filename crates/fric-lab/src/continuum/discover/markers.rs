@@ -1,7 +1,7 @@
-//! What the markers say: shapes under the tensions that the gratings show.
+//! Compares markers with the shapes under the tensions that the gratings measure.
 //!
-//! With measured tensions the friction has no part in a shape. What is then left between disks and markers, above the noise of the markers
-//! and beyond what the calibration of the gratings leaves open, is in the bending: in stiffness, geometry, loads, or in the markers' frame.
+//! With measured tensions the friction has no influence on a shape. A difference between disks and markers above the markers' noise and beyond the
+//! calibration error of the gratings must come from the bending: from stiffness, geometry, loads, or the markers' frame.
 
 use super::case::{Case, Fit, off_markers};
 use super::model::Model;
@@ -12,35 +12,35 @@ use crate::continuum::shape_errors::{Way, shapes};
 use crate::replay::Deviation;
 use crate::samples::noise::white_noise_throughout;
 
-/// What counts as noise: so many standard errors of the gratings' lines, and an error of the noise's own estimate.
+/// Limits of noise: this many standard errors of the calibration lines, and a relative error of the noise estimate itself.
 const LINE_ERRORS: f64 = 2.0;
 const NOISE_ERROR_RATIO: f64 = 0.3;
-/// Share of the manipulator's length that is practically nothing. Segments of constant curvature make 0.02 % of it at a bend of 130°; at half the share
-/// quiet runs of a right model come near to the bound, at twice a bending stiffness that is 0.5 % off is passed over.
+/// Negligible distance as a fraction of the manipulator's length. Segments of constant curvature cause 0.02 % at a bend of 130°. At half this value,
+/// quiet runs of a correct model come near the bound; at twice, a bending stiffness that is 0.5 % off is missed.
 const PRACTICAL_RATIO: f64 = 0.0005;
-/// Samples at which the shapes' dependence on the lines is computed, at most.
+/// Maximum number of samples at which the influence of the lines on the shapes is computed.
 const MOST_SHAPES: usize = 40;
 
-/// Disks against markers under the tensions that the gratings show.
+/// Distances between disks and markers under the tensions that the gratings measure.
 #[derive(Clone, Debug)]
 pub struct MarkerFit {
-    /// Markers less disks, m; NaN where one is hidden or there is no shape.
+    /// Markers minus disks, m; NaN if a marker is hidden or there is no shape.
     pub residual_m: Vec<Vec<[f64; 2]>>,
-    /// Tensions fed, N.
+    /// The applied tensions, N.
     pub tension_n: Vec<Vec<f64>>,
-    /// Noise of a distance, root mean square, m: of the markers, and what the gratings' noise makes of the shapes.
+    /// Root mean square noise of a distance, m: noise of the markers, and of the shapes due to the gratings' noise.
     pub noise_m: f64,
-    /// What one standard error of the gratings' lines makes of the shapes, root mean square, m.
+    /// Root mean square displacement of the disks for one standard error of the calibration lines, m.
     pub line_error_m: f64,
     /// Distances over all disks.
     pub distance_m: Deviation,
     pub greatest_m: f64,
-    /// What is practically nothing, m.
+    /// Negligible distance, m.
     practical_m: f64,
 }
 
 impl MarkerFit {
-    /// Of a model; `None` without markers, or with too few to tell their noise.
+    /// Computes the distances of a model. Returns `None` without markers, or with too few to estimate their noise.
     pub fn new(case: &Case<'_>, fit: &Fit) -> Option<Self> {
         if case.samples.iter().all(|sample| sample.marker_m.is_empty()) {
             return None;
@@ -64,27 +64,27 @@ impl MarkerFit {
         self.distance_m.rms().unwrap_or(0.0)
     }
 
-    /// What there is above the noise, root mean square, m.
+    /// Returns the root mean square distance above the noise, m.
     pub fn excess_m(&self) -> f64 {
         (self.rms_m().powi(2) - self.noise_m.powi(2)).max(0.0).sqrt()
     }
 
-    /// Whether the disks are further off than gratings that are off by so much would put them, alike in all segments: in proportion to what one
-    /// standard error of their lines, independent from segment to segment, does, twice.
+    /// Whether the disks are further off than a common error `tension_n` of all gratings could explain: more than twice the displacement by one
+    /// standard error of the independent calibration lines, scaled to this error.
     pub fn is_beyond(&self, case: &Case<'_>, tension_n: f64) -> bool {
         #[expect(clippy::cast_precision_loss, reason = "a small count")]
         let alike = (case.newton_per_nm.len() as f64).sqrt();
         self.excess_m() > LINE_ERRORS * alike * self.line_error_m * tension_n / case.line_error_rms_n()
     }
 
-    /// Whether noise and calibration account for all but what is practically nothing.
+    /// Whether noise and calibration explain all but a negligible part.
     pub fn is_noise(&self) -> bool {
         let allowed_m = (LINE_ERRORS * self.line_error_m).hypot(NOISE_ERROR_RATIO * self.noise_m);
         self.excess_m() <= allowed_m.hypot(self.practical_m)
     }
 }
 
-/// Tensions by the gratings, known drifts taken off; those of the model where a grating is dead.
+/// Returns the tensions measured by the gratings, with known drifts removed; those of the model where a grating is dead.
 fn tensions(case: &Case<'_>, fit: &Fit) -> Vec<Vec<f64>> {
     let start_s = case.samples.first().map_or(0.0, |sample| sample.time_s);
     let rows = case.observed_n.iter().zip(&case.is_dead).zip(&fit.tension_n).zip(&case.samples);
@@ -98,7 +98,7 @@ fn tensions(case: &Case<'_>, fit: &Fit) -> Vec<Vec<f64>> {
     .collect()
 }
 
-/// Markers less disks for given tensions and so many times the bending stiffness.
+/// Returns markers minus disks for given tensions and a scaled bending stiffness.
 pub fn residuals(
     case: &Case<'_>,
     model: &Model,
@@ -116,7 +116,7 @@ pub fn residuals(
     Some(computed.iter().zip(samples).map(|(shape, sample)| off_markers(shape, sample)).collect())
 }
 
-/// Noise of a distance: of both coordinates of all disks together. Hidden markers are passed over.
+/// Returns the noise of a distance, from both coordinates of all disks together. Hidden markers are skipped.
 fn noise_m(residual_m: &[Vec<[f64; 2]>]) -> Option<f64> {
     let disk_count = residual_m.iter().map(Vec::len).max().unwrap_or(0);
     let mut series = Vec::new();
@@ -128,7 +128,7 @@ fn noise_m(residual_m: &[Vec<[f64; 2]>]) -> Option<f64> {
     white_noise_throughout(&series).map(|noise_m| noise_m * std::f64::consts::SQRT_2)
 }
 
-/// What one standard error of each line moves the disks by, root mean square over disks and samples, m.
+/// Returns the root mean square displacement of the disks over disks and samples for one standard error of each line, m.
 fn line_error_m(case: &Case<'_>, model: &Model, tension_n: &[Vec<f64>]) -> Option<f64> {
     let stride = case.samples.len().div_ceil(MOST_SHAPES).max(1);
     let shown: Vec<usize> = (0..case.samples.len()).step_by(stride).collect();

@@ -1,11 +1,12 @@
-//! Discovery on a manipulator: what a manipulator file lacks, or has wrong.
+//! Discovery on a manipulator: what a manipulator file lacks or has wrong.
 //!
-//! First bending, loads and measurement: `machine` searches among the `candidate`s on one cost of tensions and markers (`joint`), with friction and the lines of
-//! the gratings free within what is known of them. With what it names in the file follows the search for friction, on the tensions alone.
+//! The search starts with bending, loads and measurement: `machine` searches among the `candidate`s on one cost of tensions and markers (`joint`),
+//! with friction and calibration lines free within their prior uncertainty. With these findings in the file, the search for friction follows, on the
+//! tensions alone.
 //!
-//! The workflow is that of [`crate::discover`]: the given model, fitted to half of the run in blocks, leaves a gap above the noise on
-//! the other half; candidates enter one after the other where they help on the samples held out; what is left is noise, or
-//! unexplained. The residual is that of the tensions in the segments: gratings less model.
+//! The workflow is that of [`crate::discover`]. The given model, fitted to half of the run in blocks, leaves a gap above the noise on the other half.
+//! Candidates enter one after the other if they help on the held-out samples. The rest is noise or unexplained. The residual is that of the tensions
+//! in the segments: gratings minus model.
 //!
 //! | effect | the file has | what it names |
 //! |---|---|---|
@@ -14,15 +15,14 @@
 //! | `sensor_drift` | | the shift of a grating drifts with time, as one that warms up |
 //! | `hole_friction` | | a hole has a μ of its own |
 //!
-//! A line of a grating that is wrong, as of another grating, has no name: a drift has to account for more than it would, and where something is
-//! left a name is put only on a grating, or a hole between two, at which nothing is.
+//! A wrong calibration line (for instance that of another grating) has no name: a drift must explain more than it would. If a rest remains, a
+//! grating, or a hole between two gratings, is only named if no rest remains there.
 //!
-//! What the gratings' calibration leaves open of their lines is estimated along with each model (`lines`), and what then remains is noise where samples that
-//! follow each other have nothing in common (`noise`). Where the run has markers
-//! they take part in the verdict too: shapes under the tensions that the gratings show (`markers`) have to meet them within the noise of both. What is left goes
-//! with one of a few physical things, or with none (`goes_with`). No effect enters the file that makes shapes or tensions worse
-//! than as given (`worse`), and no value that the run does not contradict (`final_fit`). Intervals hold the calibration's error and that holes which
-//! share a μ do differ (`spread`).
+//! The calibration errors of the lines are estimated together with each model (`lines`). The remaining residual is noise if consecutive samples are
+//! uncorrelated (`noise`). If the run has markers, they contribute to the verdict: shapes under the measured tensions (`markers`) must agree with
+//! them within the noise of both. The rest may correlate with one of a few physical causes (`goes_with`). An effect that makes shapes or tensions
+//! worse than with the given file is not written (`worse`), nor is a value that the run does not contradict (`final_fit`). Intervals include the
+//! calibration error and the differences between holes that share a μ (`spread`).
 
 mod assemble;
 mod candidate;
@@ -64,27 +64,27 @@ pub use result::{
     MarkerError, TendonDiscoverResult, TendonEffect, TendonMarkers, TendonPlace, TendonRest, TendonResult, TendonTried,
 };
 
-/// What a discovery found.
+/// The result of a discovery.
 #[derive(Clone, Debug)]
 pub struct TendonDiscovery {
-    /// For machines and people.
+    /// The result for machines and people.
     pub result: TendonDiscoverResult,
-    /// What to change in the manipulator file.
+    /// The changes to the manipulator file.
     pub edit: ManipulatorEdit,
-    /// Times that were compared, s.
+    /// Times of the compared samples, s.
     pub time_s: Vec<f64>,
     /// Residual of the given model, fitted, in each segment, N; NaN where nothing was measured.
     pub residual_before_n: Vec<Vec<f64>>,
-    /// And of the extended one.
+    /// Residual of the extended model in each segment, N; NaN where nothing was measured.
     pub residual_after_n: Vec<Vec<f64>>,
 }
 
-/// Looks for what a manipulator file lacks; `log` is the name of the run.
+/// Searches for what a manipulator file lacks. `log` is the name of the run.
 ///
 /// # Errors
-/// [`ContinuumError::MissingGroup`] without the tension at the base or gratings, [`ContinuumError::NoGratings`] if the file does not say how shifts become
-/// tensions, [`ContinuumError::TooShort`] for a run with too few samples to hold any out, [`ContinuumError::UntoldNoise`] for gratings of more gaps
-/// than samples, [`ContinuumError::OverCapacity`].
+/// Returns [`ContinuumError::MissingGroup`] without the tension at the base or gratings, [`ContinuumError::NoGratings`] if the file does not say how
+/// shifts become tensions, [`ContinuumError::TooShort`] for a run with too few samples to hold any out, [`ContinuumError::UntoldNoise`] for gratings
+/// with more gaps than samples, or [`ContinuumError::OverCapacity`].
 pub fn discover(file: &ManipulatorFile, run: &Run, log: &str) -> Result<TendonDiscovery, ContinuumError> {
     let lack = |what, remedy| ContinuumError::MissingGroup { what, consequence: "there is nothing to compare", remedy };
     if !run.has_tension() {
@@ -100,14 +100,14 @@ pub fn discover(file: &ManipulatorFile, run: &Run, log: &str) -> Result<TendonDi
     let case = Case::new(file, &as_given, &gratings, &kept)?;
     let Machine { named, tables, mu: mu_of_holes } = machine::search(file, run).unwrap_or_else(|| Machine::none(file));
     let extended = if named.is_empty() { None } else { ManipulatorFile::check(tables).ok() };
-    // Friction is looked for with what was found in the file.
+    // The search for friction starts with these findings in the file.
     let with_found = match &extended {
         Some(extended) => {
             let run = corrected(run, extended)?;
             let gratings = Gratings::from_file(extended)?.ok_or(ContinuumError::NoGratings)?;
             let with_found = Case::new(extended, &run, &gratings, &kept)?;
             let outcome = naming::name(&with_found)?.beside(&case)?;
-            // A lag with which the tensions still do not meet is something else, as the ends of a pull in one direction are.
+            // A lag with which the tensions still disagree is something else, for instance the ends of a pull in one direction.
             let is_lag = named.iter().any(|one| one.candidate == Candidate::TensionLag);
             (outcome.verdict != Verdict::Unexplained || !is_lag).then_some((extended, with_found, outcome))
         }
@@ -124,7 +124,7 @@ pub fn discover(file: &ManipulatorFile, run: &Run, log: &str) -> Result<TendonDi
         let discovery = assemble::told(&case, &outcome, &[], log);
         (outcome, discovery)
     };
-    // Where the search for friction names nothing and the file changes all the same, the holes are as the joint fit has them.
+    // If the search for friction names nothing but the file changes, the holes get the values of the joint fit.
     let is_settled = outcome.findings.is_empty() && outcome.verdict != Verdict::Unexplained;
     if is_settled && !mu_of_holes.is_empty() && discovery.edit != ManipulatorEdit::default() {
         discovery.edit.mu = mu_of_holes;

@@ -1,19 +1,19 @@
-//! A model of the tendon as the discovery varies it.
+//! A model of the tendon with the numbers that the discovery varies.
 
 use crate::continuum::shape_errors::Way;
 
 /// Friction at the holes and the drift of the gratings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Model {
-    /// How friction is found.
+    /// The friction model.
     pub way: Way,
     /// μ of each hole.
     pub mu: Vec<f64>,
-    /// Whether the μ that holes share stays as the file states it.
+    /// Whether the shared μ of the holes stays as stated in the file.
     pub is_shared_given: bool,
-    /// Holes whose μ is their own: the others' is scaled without them.
+    /// Holes with a μ of their own; the shared scale does not include them.
     pub is_own: Vec<bool>,
-    /// Gratings that drift, and by how much their tension does, N/s.
+    /// Whether each grating drifts, and its drift as a tension, N/s.
     pub drifts: Vec<bool>,
     pub drift_n_per_s: Vec<f64>,
 }
@@ -21,18 +21,18 @@ pub struct Model {
 /// A step of the search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effect {
-    /// Friction at all.
+    /// Friction at the holes.
     Coulomb,
-    /// Holes that remember.
+    /// Holes with memory.
     Presliding,
-    /// A grating, from 0, that drifts.
+    /// A drifting grating, counted from 0.
     SensorDrift(usize),
-    /// A hole, from 0, with its own μ.
+    /// A hole with its own μ, counted from 0.
     HoleFriction(usize),
 }
 
 impl Effect {
-    /// Its name in results.
+    /// Returns the name used in results.
     pub fn kind(self) -> &'static str {
         match self {
             Self::Coulomb => "coulomb",
@@ -42,7 +42,7 @@ impl Effect {
         }
     }
 
-    /// What causes it, and what to do about it on the machine.
+    /// Returns the cause, and what to do about it on the machine.
     pub fn cause_and_remedy(self) -> [&'static str; 2] {
         match self {
             Self::Coulomb => [
@@ -67,19 +67,19 @@ impl Effect {
     }
 }
 
-/// A number of a model that is fitted.
+/// A fitted number of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parameter {
-    /// μ of the holes that share one; where the file states several, all are scaled.
+    /// The shared μ of the holes; if the file states several, all are scaled.
     SharedMu,
-    /// μ of a hole of its own.
+    /// The μ of an individual hole.
     OwnMu(usize),
     /// Drift of a grating.
     Drift(usize),
 }
 
 impl Model {
-    /// What is fitted.
+    /// Returns the fitted parameters.
     pub fn parameters(&self) -> Vec<Parameter> {
         let has_friction = self.way != Way::None;
         let shared =
@@ -89,7 +89,7 @@ impl Model {
         shared.into_iter().chain(own).chain(all(&self.drifts).into_iter().map(Parameter::Drift)).collect()
     }
 
-    /// One of its numbers.
+    /// Returns one of its numbers.
     pub fn get(&self, parameter: Parameter) -> f64 {
         let found = match parameter {
             Parameter::SharedMu => self.mu.iter().zip(&self.is_own).find(|(_, is_own)| !**is_own).map(|(mu, _)| mu),
@@ -99,7 +99,7 @@ impl Model {
         found.copied().unwrap_or(0.0)
     }
 
-    /// The model with another one; μ is kept within its range.
+    /// Returns the model with another value; μ is kept within its range.
     pub fn with(&self, parameter: Parameter, value: f64) -> Self {
         let mut model = self.clone();
         match parameter {
@@ -123,7 +123,7 @@ impl Model {
         model
     }
 
-    /// The model with holes whose μ is their own.
+    /// Returns the model with holes that have their own μ.
     pub fn with_holes(&self, holes: &[usize]) -> Self {
         let mut model = self.clone();
         for hole in holes {
@@ -134,7 +134,7 @@ impl Model {
         model
     }
 
-    /// The model with a grating that drifts.
+    /// Returns the model with a drifting grating.
     pub fn with_drift(&self, grating: usize) -> Self {
         let mut model = self.clone();
         if let Some(drifts) = model.drifts.get_mut(grating) {
@@ -144,6 +144,6 @@ impl Model {
     }
 }
 
-/// Range of μ that is searched; not 0, so that it can be scaled again.
+/// Search range of μ; the lower limit is not 0, so that μ can be scaled again.
 const LEAST_MU: f64 = 1e-4;
 const MOST_MU: f64 = 0.9;

@@ -1,4 +1,4 @@
-//! Which effects are missing: the best candidate enters where it helps on the samples that were held out.
+//! Finds the missing effects: the best candidate enters if it helps on the held-out samples.
 
 use super::case::{Case, Fit};
 use super::final_fit::{Final, is_own_mu};
@@ -11,37 +11,37 @@ use super::worse::{are_tensions_worse, worse_shape};
 use crate::continuum::error::ContinuumError;
 use crate::discover::Verdict;
 
-/// Evidence that an effect needs: Schwarz's criterion falls by more.
+/// Minimum decrease of the BIC for an effect.
 pub const LEAST_EVIDENCE: f64 = 10.0;
-/// What is within this ratio of the best error is as good.
+/// Candidates within this ratio of the best error are as good.
 const AS_GOOD_RATIO: f64 = 1.05;
-/// Share of the gap that an effect has to close.
+/// Minimum fraction of the gap that an effect must close.
 const LEAST_SHARE: f64 = 0.2;
-/// Most effects, but for holes that enter together.
+/// Maximum number of effects, not counting holes that enter together.
 const MOST_EFFECTS: usize = 6;
 
 /// An effect that was found.
 #[derive(Clone, Debug)]
 pub struct Finding {
     pub effect: Effect,
-    /// With it and all before it.
+    /// The fit with it and all before it.
     pub fit: Fit,
     pub delta_bic: f64,
     pub runner_up: Option<(Effect, f64)>,
 }
 
-/// A candidate that helped and did not suffice.
+/// A candidate that helped but did not suffice.
 #[derive(Clone, Debug)]
 pub struct Tried {
     pub effect: Effect,
     pub delta_bic: f64,
-    /// Error with it on samples held out, N.
+    /// Error with it on held-out samples, N.
     pub rms_n: f64,
-    /// Why it is not named.
+    /// The reason why it is not named.
     pub reason: String,
 }
 
-/// What came of it.
+/// The outcome of the search.
 #[derive(Clone, Debug)]
 pub struct Outcome {
     pub noise_n: f64,
@@ -50,21 +50,21 @@ pub struct Outcome {
     pub given: Fit,
     pub before: Fit,
     pub after: Fit,
-    /// What is written, fitted to all samples.
+    /// The model to write, fitted to all samples.
     pub last: Final,
     pub findings: Vec<Finding>,
     pub tried: Vec<Tried>,
-    /// Whether the markers alone make it unexplained, where it is.
+    /// Whether only the markers make it unexplained, if it is.
     pub are_tensions_explained: bool,
-    /// With the given model and with the extended one.
+    /// Distances with the given model and with the extended one.
     pub markers: [Option<MarkerFit>; 2],
 }
 
 impl Outcome {
-    /// The outcome of a search in an extended file, told beside the file that was given: what it was before, and that it is extended.
+    /// Combines the outcome of a search in an extended file with the file that was given: the error before, and the verdict that it is extended.
     ///
     /// # Errors
-    /// [`ContinuumError::UntoldNoise`] where the given file has no shapes.
+    /// Returns [`ContinuumError::UntoldNoise`] if the given file has no shapes.
     pub fn beside(self, given_case: &Case<'_>) -> Result<Self, ContinuumError> {
         let given = given_case.given();
         let stated = given_case.fit(&given).ok_or(ContinuumError::UntoldNoise)?;
@@ -75,16 +75,16 @@ impl Outcome {
     }
 }
 
-/// Searches for what is missing.
+/// Searches for missing effects.
 ///
-/// Where the disks are off their markers no hole is named, for its μ is found from the bend; that tensions fit with holes of their own leaves the
-/// bending alone to be told.
+/// If the disks disagree with their markers, no hole is named, because its μ follows from the bend. If the tensions fit with individual holes, only
+/// the bending remains to be reported.
 ///
-/// Where something is left, a name is not put on a grating, or on a hole between two, that still disagrees: what is wrong there is
-/// something else. Nor is it put on an effect with which shapes or tensions are worse than as given.
+/// If a rest remains, a grating, or a hole between two gratings, that still disagrees is not named: its cause is something else. An effect that makes
+/// shapes or tensions worse than with the given file is not named either.
 ///
 /// # Errors
-/// [`ContinuumError::UntoldNoise`] where gaps, or a model without shapes, leave nothing that tells the noise.
+/// Returns [`ContinuumError::UntoldNoise`] if gaps, or a model without shapes, leave no residual to estimate the noise from.
 pub fn name(case: &Case<'_>) -> Result<Outcome, ContinuumError> {
     let given = case.fit(&case.given()).ok_or(ContinuumError::UntoldNoise)?;
     let given_markers = MarkerFit::new(case, &given);
@@ -153,7 +153,7 @@ pub fn name(case: &Case<'_>) -> Result<Outcome, ContinuumError> {
     }
 }
 
-/// What a search among some effects found.
+/// The findings of a search among some effects.
 struct Search {
     noise_n: f64,
     verdict: Verdict,
@@ -163,7 +163,7 @@ struct Search {
     tried: Vec<Tried>,
 }
 
-/// Effects at gratings that still disagree.
+/// Returns the effects at gratings that still disagree.
 fn disagreeing(case: &Case<'_>, found: &Search) -> Vec<Effect> {
     let disagrees = |grating: usize| !is_noise_at(case, &found.after, grating);
     let is_wrong = |effect: &Effect| match *effect {
@@ -174,7 +174,7 @@ fn disagreeing(case: &Case<'_>, found: &Search) -> Vec<Effect> {
     found.findings.iter().map(|finding| finding.effect).filter(is_wrong).collect()
 }
 
-/// Puts effects among those that helped and did not suffice.
+/// Moves effects to those that helped but did not suffice.
 fn refuse(found: &Search, effects: &[Effect], reason: &str, tried: &mut Vec<Tried>) {
     for finding in found.findings.iter().filter(|finding| effects.contains(&finding.effect)) {
         let Finding { effect, fit, delta_bic, .. } = finding;
@@ -182,14 +182,14 @@ fn refuse(found: &Search, effects: &[Effect], reason: &str, tried: &mut Vec<Trie
     }
 }
 
-/// Searches among all effects but the distrusted.
+/// Searches among all effects except the distrusted ones.
 fn search(case: &Case<'_>, distrusted: &[Effect]) -> Result<Search, ContinuumError> {
     let given = case.given();
     let before = fitted(case, &given).or_else(|| case.fit(&given)).ok_or(ContinuumError::UntoldNoise)?;
     let mut now = before.clone();
     let mut findings: Vec<Finding> = Vec::new();
     let mut tried: Vec<Tried> = Vec::new();
-    // Until the verdict would be that nothing is missing: what was written, given again, has then nothing more to name.
+    // Continues until the verdict would be that nothing is missing, so that a discovery with the written file names nothing more.
     while findings.len() < MOST_EFFECTS && !is_negligible(case, &now) {
         let gap_n = excess_n(&now);
         let (spread, single): (Vec<Trial>, Vec<Trial>) =
@@ -197,7 +197,7 @@ fn search(case: &Case<'_>, distrusted: &[Effect]) -> Result<Search, ContinuumErr
         let closed = |trial: &Trial| 1.0 - excess_n(&trial.fit) / gap_n;
         let helps = |trial: &Trial| trial.delta_bic < -LEAST_EVIDENCE;
         let is_enough = |trial: &Trial| helps(trial) && closed(trial) > LEAST_SHARE;
-        // What suffices comes before what does not, and a spread over all holes last: it would swallow one of them.
+        // Sufficient candidates come first, and a spread over all holes comes last, because it would absorb any of them.
         let mut ranking = ranked(single);
         if let Some(place) = ranking.iter().position(is_enough) {
             ranking[..=place].rotate_right(1);
@@ -223,7 +223,7 @@ fn search(case: &Case<'_>, distrusted: &[Effect]) -> Result<Search, ContinuumErr
     (now, findings) = clear(case, now, findings, &mut tried);
     let is_accounted = is_accounted || is_negligible(case, &now);
     if !is_accounted {
-        // A name for less than what is left would be a guess.
+        // A name for less than the rest would be a guess.
         let left_n = excess_n(&now);
         while let Some(last) = findings.last() {
             let earlier = findings.iter().rev().find(|other| other.fit.model != last.fit.model);
@@ -262,7 +262,7 @@ fn too_little(trial: &Trial, closed: f64) -> Tried {
     }
 }
 
-/// The best of the trials first: of those that are as good, the one with fewer effects.
+/// Sorts the trials, the best first; among equally good ones, that with fewer effects.
 fn ranked(mut trials: Vec<Trial>) -> Vec<Trial> {
     let least_n = trials.iter().map(|trial| rms_n(&trial.fit)).fold(f64::INFINITY, f64::min);
     let rank = |trial: &Trial| {
@@ -273,9 +273,9 @@ fn ranked(mut trials: Vec<Trial>) -> Vec<Trial> {
     trials
 }
 
-/// Leaves only those holes named whose μ is clear from that of the others ([`is_own_mu`]). Beside a named one they keep a μ of their own, for the
-/// evidence is that of all that entered. Without any all share one again, and nothing is written of holes: that they differ may account for what is
-/// left all the same, only that the run does not tell which.
+/// Keeps only those holes as findings whose μ is clearly different from that of the others ([`is_own_mu`]). Beside a named hole, the other holes that
+/// entered keep their own μ, because the evidence is that of all. Without a named hole, all share one μ again and no hole is written; their
+/// differences may still explain the rest, but the run does not tell which holes differ.
 fn clear(case: &Case<'_>, mut now: Fit, mut findings: Vec<Finding>, tried: &mut Vec<Tried>) -> (Fit, Vec<Finding>) {
     let is_hole = |finding: &Finding| matches!(finding.effect, Effect::HoleFriction(_));
     let clearness = holes_clearness(case, &now, &findings);
@@ -301,7 +301,7 @@ fn clear(case: &Case<'_>, mut now: Fit, mut findings: Vec<Finding>, tried: &mut 
     (now, findings)
 }
 
-/// How clear each hole found is told from the others, in half widths of the 95 % interval.
+/// Returns how clearly each hole found differs from the others, in half widths of the 95 % interval.
 fn holes_clearness(case: &Case<'_>, now: &Fit, findings: &[Finding]) -> Vec<(usize, f64)> {
     let given = case.given();
     let covariance = covariance(case, now);
@@ -312,7 +312,7 @@ fn holes_clearness(case: &Case<'_>, now: &Fit, findings: &[Finding]) -> Vec<(usi
     findings.iter().filter_map(clearness).collect()
 }
 
-/// The model with one μ for all holes, as the file has them in proportion, fitted.
+/// Returns the fitted model with one μ for all holes, in the proportions of the file.
 fn with_shared_mu(case: &Case<'_>, model: &Model) -> Option<Fit> {
     let given = case.given();
     let unit = |hole: usize| given.mu.get(hole).copied().filter(|mu| *mu > 0.0).unwrap_or(1.0);

@@ -1,20 +1,21 @@
-//! What of a residual is more than noise.
+//! The part of a residual that is more than noise.
 //!
-//! What a model misses changes slowly: samples that follow each other have it in common, and of white noise nothing. So the mean product of a residual
-//! with itself some samples later is the square of what is missed, without the noise and without an estimate of it; of white noise
-//! alone it is 0 with a standard error of the mean square over the root of the number of products. How large the gap was before does not enter.
+//! Model errors change slowly, so consecutive samples share them, whereas white noise is uncorrelated. The mean product of a residual with its copy
+//! some samples later is therefore the square of the model error, without the noise and without a noise estimate. For white noise it is 0 with a
+//! standard error of the mean square divided by the root of the number of products. The size of the gap before plays no role.
 
 use super::case::{Case, Fit};
 
-/// A residual is multiplied with each of so many that follow. What is over within fewer samples, as the turning round of a hole, shows in part only.
+/// Number of following samples with which each residual is multiplied. A model error that lasts for fewer samples, such as the reversal of a hole, is
+/// only partly detected.
 const LAGS: usize = 4;
-/// Standard errors beyond which a mean product is not noise: one in a thousand.
+/// Number of standard errors beyond which a mean product is not noise: one in a thousand.
 const STANDARD_ERRORS: f64 = 3.0;
-/// Share of the greatest tension that is practically nothing in the verdict: twice what Dahl's contacts make of holes that stick and slip in runs with
-/// both directions, 0.4 mN of 1.7 N.
+/// Negligible error in the verdict, as a fraction of the greatest tension. It is twice the difference between Dahl's contacts and holes that stick
+/// and slip in runs with both directions, 0.4 mN of 1.7 N.
 const PRACTICAL_RATIO: f64 = 0.0005;
 
-/// What neighbours have in common.
+/// The common part of consecutive samples.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Common {
     products: f64,
@@ -24,7 +25,7 @@ pub struct Common {
 }
 
 impl Common {
-    /// Takes in a series; a gap takes its products with it.
+    /// Adds a series. A gap removes its products.
     pub fn add(&mut self, series: &[f64]) {
         for (place, value) in series.iter().enumerate().filter(|(_, value)| value.is_finite()) {
             self.squares += value * value;
@@ -36,12 +37,12 @@ impl Common {
         }
     }
 
-    /// Root mean square of what is common, in the unit of the series.
+    /// Returns the root mean square of the common part, in the unit of the series.
     pub fn rms(&self) -> f64 {
         (self.products / self.product_count.max(1.0)).max(0.0).sqrt()
     }
 
-    /// What chance makes of it.
+    /// Returns the value that chance would give.
     pub fn chance(&self) -> f64 {
         let mean_square = self.squares / self.count.max(1.0);
         (STANDARD_ERRORS * mean_square / self.product_count.max(1.0).sqrt()).sqrt()
@@ -52,7 +53,7 @@ pub fn rms_n(fit: &Fit) -> f64 {
     fit.held_out_n.rms().unwrap_or(f64::INFINITY)
 }
 
-/// Of one grating, from 0.
+/// Returns the series of one grating, counted from 0.
 fn series(fit: &Fit, grating: usize) -> Vec<f64> {
     fit.residual_n.iter().map(|row| row.get(grating).copied().unwrap_or(f64::NAN)).collect()
 }
@@ -63,18 +64,19 @@ fn common(fit: &Fit) -> Common {
     common
 }
 
-/// What a residual has above the noise, root mean square over learned and held-out samples, N: what a fit takes from the one it adds to the other.
+/// Returns the root mean square of a residual above the noise over training and held-out samples, N. Using both balances what a fit removes from one
+/// and adds to the other.
 pub fn excess_n(fit: &Fit) -> f64 {
     common(fit).rms()
 }
 
-/// Whether what is left is noise, or practically nothing: nothing to look for.
+/// Whether the rest is noise or negligible, so that the search ends.
 pub fn is_negligible(case: &Case<'_>, fit: &Fit) -> bool {
     let common = common(fit);
     common.rms() <= common.chance().hypot(practical_n(case))
 }
 
-/// Whether one grating, from 0, has noise left alone.
+/// Whether the rest of one grating, counted from 0, is noise.
 pub fn is_noise_at(case: &Case<'_>, fit: &Fit, grating: usize) -> bool {
     let mut common = Common::default();
     common.add(&series(fit, grating));

@@ -1,10 +1,10 @@
-//! Segments and disks by their share of what is left.
+//! Segments and disks, sorted by their fraction of the rest.
 
 use super::case::Fit;
 use super::markers::MarkerFit;
 use super::result::TendonPlace;
 
-/// Segments by their share of the squared residual.
+/// Returns the segments by their fraction of the squared residual.
 pub fn segments(fit: &Fit) -> Vec<TendonPlace> {
     by_share("grating", fit.model.mu.len(), |segment| {
         let values = fit.residual_n.iter().filter_map(|row| row.get(segment));
@@ -12,7 +12,7 @@ pub fn segments(fit: &Fit) -> Vec<TendonPlace> {
     })
 }
 
-/// Disks by their share of the squared distance.
+/// Returns the disks by their fraction of the squared distance.
 pub fn disks(markers: &MarkerFit) -> Vec<TendonPlace> {
     by_share("marker", markers.residual_m.iter().map(Vec::len).max().unwrap_or(0), |disk| {
         let places = markers.residual_m.iter().filter_map(|row| row.get(disk));

@@ -1,4 +1,4 @@
-//! The result of a tendon's discovery: `fric-discover/1`, with the tendon in the place of a cable.
+//! The result of a tendon's discovery: `fric-discover/1`, with the tendon in place of a cable.
 
 use serde::Serialize;
 
@@ -10,7 +10,7 @@ use crate::fit::result::Numbers;
 /// `fric-discover/1` of a manipulator.
 #[derive(Clone, Debug, Serialize)]
 pub struct TendonDiscoverResult {
-    /// Name and version of the form.
+    /// Name and version of the format.
     pub format: &'static str,
     /// The run.
     pub log: Vec<String>,
@@ -25,47 +25,47 @@ pub struct TendonDiscoverResult {
 pub struct TendonResult {
     /// `tendon`.
     pub name: &'static str,
-    /// Samples of the run.
+    /// Number of samples of the run.
     pub samples: usize,
     /// Standard deviation of the gratings' noise, N.
     pub noise_floor_n: f64,
-    /// What one standard error of the gratings' lines is over the run, N.
+    /// Root mean square error of the tensions for one standard error of the calibration lines, N.
     pub calibration_error_n: f64,
-    /// Error of the given model, fitted, on samples held out.
+    /// Error of the given model, fitted, on held-out samples.
     pub before: Option<ForceError>,
-    /// Error of the extended one.
+    /// Error of the extended model on held-out samples.
     pub after: Option<ForceError>,
-    /// Share of the gap that the extended model has closed.
+    /// Fraction of the gap that the extended model closes.
     pub gap_closed: Option<f64>,
     /// `complete`, `extended` or `unexplained`.
     pub verdict: &'static str,
-    /// Segments in which the given model disagrees, what tells most first.
+    /// Segments in which the given model disagrees, the most informative first.
     #[serde(rename = "where")]
     pub places: Vec<TendonPlace>,
-    /// Distances between disks and markers under the tensions that the gratings show; absent where too few markers tell their noise.
+    /// Distances between disks and markers under the measured tensions; absent if too few markers allow a noise estimate.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub markers: Option<TendonMarkers>,
-    /// What was found, in the order in which it entered.
+    /// The findings, in the order in which they entered.
     pub effects: Vec<TendonEffect>,
-    /// Candidates that helped and did not suffice, best first.
+    /// Candidates that helped but did not suffice, the best first.
     pub tried: Vec<TendonTried>,
-    /// Why the file keeps a μ that the run contradicts; absent where it keeps none.
+    /// The reason why the file keeps a μ that the run contradicts; absent if it keeps none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub kept: Option<String>,
-    /// Where what no effect accounts for lies.
+    /// The rest that no effect explains.
     pub unexplained: Option<TendonRest>,
 }
 
-/// Disks against markers; the friction has no part in it.
+/// Distances between disks and markers, which do not depend on the friction.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct TendonMarkers {
-    /// Noise of a distance, root mean square, mm: of markers and gratings.
+    /// Root mean square noise of a distance, mm, due to markers and gratings.
     pub noise_mm: f64,
-    /// What one standard error of the gratings' lines moves the disks by, root mean square, mm.
+    /// Root mean square displacement of the disks for one standard error of the calibration lines, mm.
     pub calibration_error_mm: f64,
-    /// With the given file.
+    /// Distances with the given file.
     pub before: MarkerError,
-    /// With the extended one.
+    /// Distances with the extended file.
     pub after: MarkerError,
 }
 
@@ -74,20 +74,20 @@ pub struct TendonMarkers {
 pub struct MarkerError {
     /// Root mean square, mm.
     pub rms_mm: f64,
-    /// Greatest, mm.
+    /// Greatest distance, mm.
     pub max_mm: f64,
 }
 
-/// A candidate that helped and did not suffice.
+/// A candidate that helped but did not suffice.
 #[derive(Clone, Debug, Serialize)]
 pub struct TendonTried {
     /// Its name.
     pub kind: &'static str,
-    /// Which: `grating` or `hole`, from 1 at the base.
+    /// Its index: `grating` or `hole`, from 1 at the base.
     pub parameters: Numbers,
-    /// What speaks for it.
+    /// Evidence for it.
     pub evidence: Evidence,
-    /// Why it is not named.
+    /// The reason why it is not named.
     pub reason: String,
 }
 
@@ -96,13 +96,13 @@ pub struct TendonTried {
 pub struct TendonPlace {
     /// `grating` or `marker`.
     pub signal: &'static str,
-    /// Which, from 1 at the base.
+    /// Its number, from 1 at the base.
     pub from: usize,
-    /// The same.
+    /// The same number.
     pub to: usize,
-    /// `1`.
+    /// Always `1`.
     pub unit: &'static str,
-    /// Share of the squared residual that it holds.
+    /// Its fraction of the squared residual.
     pub share_of_excess: f64,
 }
 
@@ -113,15 +113,15 @@ pub struct TendonEffect {
     pub kind: &'static str,
     /// Its parameters by key; `grating` and `hole` count from 1 at the base.
     pub parameters: Numbers,
-    /// Standard errors of those that were fitted, by key.
+    /// Standard errors of the fitted parameters, by key.
     pub standard_errors: Numbers,
-    /// Share of the gap closed with it and all before it.
+    /// Fraction of the gap closed by this effect and all before it.
     pub gap_closed: Option<f64>,
-    /// What speaks for it.
+    /// Evidence for it.
     pub evidence: Evidence,
     /// The best other candidate.
     pub runner_up: Option<TendonRunnerUp>,
-    /// Effects that the run does not tell from it: any one of them may be there in its place.
+    /// Effects that the run does not distinguish from it: any of them may be present instead.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub alike: Vec<&'static str>,
     /// Cause and remedy.
@@ -129,26 +129,26 @@ pub struct TendonEffect {
     pub words: [&'static str; 2],
 }
 
-/// Another effect that might have been it.
+/// Another effect that may be present instead.
 #[derive(Clone, Debug, Serialize)]
 pub struct TendonRunnerUp {
     /// Its name.
     pub kind: &'static str,
-    /// Schwarz's criterion with it less without it.
+    /// BIC with the effect minus BIC without it.
     pub delta_bic: f64,
 }
 
-/// What no effect accounts for.
+/// A rest that no effect explains.
 #[derive(Clone, Debug, Serialize)]
 pub struct TendonRest {
     /// Error of the tensions above the noise, N.
     pub rms_n: f64,
-    /// Distance of the disks from their markers above the noise, mm; absent where it is noise.
+    /// Distance of the disks from their markers above the noise, mm; absent if it is noise.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rms_mm: Option<f64>,
-    /// Segments and disks in which it lies: those of the signal that is not noise.
+    /// Segments and disks in which it is concentrated, for the signals that exceed the noise.
     #[serde(rename = "where")]
     pub places: Vec<TendonPlace>,
-    /// What it goes with, where it does so with one thing for the most part.
+    /// The cause that explains most of it, if there is one.
     pub goes_with: Vec<GoesWith>,
 }

@@ -1,16 +1,17 @@
-//! How far the μ of single holes are from the one that they share.
+//! The spread of the individual holes' μ around the one that they share.
 //!
-//! Each hole has its own μ. Where the run cannot tell them apart, or no one is beyond chance, they share one; that they do differ still moves it.
-//! The scatter of the single estimates beyond their own errors tells by how much (method of moments: R. DerSimonian, N. Laird, *Meta-analysis in
-//! clinical trials*, Controlled Clinical Trials 7, 1986; here with correlated errors). A run that hardly tells the holes apart hardly tells how far
-//! they are; what it cannot exclude counts: the estimate and one standard error.
+//! Each hole has its own μ. Holes share one μ if the run cannot distinguish them or if no difference exceeds chance, but their differences still
+//! affect the shared value. The spread is estimated from the scatter of the individual estimates beyond their own errors (method of moments: R.
+//! DerSimonian, N. Laird, *Meta-analysis in clinical trials*, Controlled Clinical Trials 7, 1986; here with correlated errors). A run that hardly
+//! distinguishes the holes hardly determines their spread, so the upper limit counts: the estimate plus one standard error.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::fitting::Linearised;
 use super::model::Model;
 
-/// Standard deviation of the μ of holes that share one, as a share of it; `problem` has the μ of each of them as its first parameters.
+/// Returns the standard deviation of the μ of holes that share one, relative to it. The first parameters of `problem` are the μ of each of these
+/// holes.
 pub fn shared_spread(problem: &Linearised, model: &Model, holes: &[usize]) -> f64 {
     let count = holes.len();
     let mu = DVector::from_iterator(count, holes.iter().map(|hole| model.mu[*hole]));
@@ -20,8 +21,8 @@ pub fn shared_spread(problem: &Linearised, model: &Model, holes: &[usize]) -> f6
     spread(&ratios, relative)
 }
 
-/// `τ² = max(0, xᵀPx − (n − 1))/tr P + √(2(n − 1))/tr P` with `P = C⁻¹ − C⁻¹11ᵀC⁻¹/1ᵀC⁻¹1` of values x with covariance C: without a spread `xᵀPx` is
-/// χ² of n − 1. 0 where C has no inverse.
+/// Returns `τ² = max(0, xᵀPx − (n − 1))/tr P + √(2(n − 1))/tr P` with `P = C⁻¹ − C⁻¹11ᵀC⁻¹/1ᵀC⁻¹1`, for values x with covariance C. Without a spread,
+/// `xᵀPx` is χ² of n − 1. Returns 0 if C has no inverse.
 pub fn spread(values: &DVector<f64>, covariance: DMatrix<f64>) -> f64 {
     let Some(weights) = covariance.cholesky().map(|factor| factor.inverse()) else { return 0.0 };
     let sums = weights.column_sum();
@@ -37,7 +38,7 @@ pub fn spread(values: &DVector<f64>, covariance: DMatrix<f64>) -> f64 {
 mod tests {
     use super::*;
 
-    /// Of equal and independent errors: the variance of the values less that of their errors, and `√(2/(n − 1))` of the latter.
+    /// For equal and independent errors, τ² is the variance of the values minus that of their errors, plus `√(2/(n − 1))` of the latter.
     #[test]
     fn a_scatter_beyond_the_errors_is_a_spread() {
         let values = DVector::from_vec(vec![1.0, -2.0, 4.0, 0.5, -3.5]);

@@ -8,7 +8,7 @@ use crate::fit::HALF_INTERVAL;
 use crate::text::{quantity, table, wrapped};
 
 impl TendonDiscoverResult {
-    /// For people.
+    /// Returns a summary for people.
     #[must_use]
     pub fn summary(&self) -> String {
         let number =
@@ -51,7 +51,7 @@ impl TendonDiscoverResult {
             if !effect.alike.is_empty() {
                 text += &wrapped("  or      ", &effect.alternatives());
             }
-            // Once for holes that were found together.
+            // Printed once for holes that were found together.
             if effects.get(place + 1).is_none_or(|next| next.kind != effect.kind) {
                 let [cause, remedy] = effect.words;
                 text += &wrapped("  cause   ", cause);
@@ -81,7 +81,7 @@ impl TendonDiscoverResult {
 }
 
 impl TendonEffect {
-    /// What may be there in its place, for people.
+    /// Returns the effects that may be present instead, in words.
     #[must_use]
     pub fn alternatives(&self) -> String {
         format!(
@@ -104,7 +104,7 @@ impl TendonMarkers {
 }
 
 impl TendonTried {
-    /// For people.
+    /// Returns a sentence for people.
     #[must_use]
     pub fn sentence(&self) -> String {
         let mut text = self.kind.to_owned();
@@ -117,7 +117,7 @@ impl TendonTried {
 }
 
 impl TendonRest {
-    /// For people.
+    /// Returns a sentence for people.
     #[must_use]
     pub fn sentence(&self) -> String {
         let most = |signal: &str| self.places.iter().find(|place| place.signal == signal);

@@ -1,4 +1,4 @@
-//! Candidates beside a model, each fitted to what is learned from.
+//! Fits candidates beside a model to the training samples.
 
 use rayon::prelude::*;
 
@@ -8,7 +8,7 @@ use super::model::{Effect, Model};
 use super::naming::LEAST_EVIDENCE;
 use crate::continuum::shape_errors::Way;
 
-/// Where the search for μ begins in a model without friction.
+/// Start value of μ in a model without friction.
 const START_MU: f64 = 0.15;
 
 /// A candidate with its fit; several effects may belong together.
@@ -19,18 +19,18 @@ pub struct Trial {
 }
 
 impl Trial {
-    /// Whether it gives all holes a μ of their own.
+    /// Whether it gives all holes their own μ.
     pub fn is_spread(&self) -> bool {
         matches!(self.effects[..], [Effect::HoleFriction(_), _, ..])
     }
 }
 
-/// Whether what a grating shows goes with the time rather than with its tension: a line of it that is wrong in slope and offset, which is
-/// no effect of the catalogue, must not account for it as well as a drift does.
+/// Whether a grating's error correlates with the time rather than with its tension: a wrong calibration line (slope and offset), which is no effect
+/// of the catalogue, must not explain it as well as a drift.
 fn is_told_from_line(case: &Case<'_>, fit: &Fit, grating: usize) -> bool {
     let Some(start_s) = case.samples.first().map(|sample| sample.time_s) else { return false };
     let drift_n_per_s = fit.model.drift_n_per_s.get(grating).copied().unwrap_or(0.0);
-    // What the drift leaves, the tension, and what there is without the drift.
+    // The residual with the drift, the tension, and the residual without the drift.
     let learned = fit.residual_n.iter().zip(&case.observed_n).zip(case.samples.iter().zip(&case.held_out));
     let points: Vec<[f64; 3]> = learned
         .filter(|(_, (_, held_out))| !**held_out)
@@ -49,11 +49,11 @@ fn is_told_from_line(case: &Case<'_>, fit: &Fit, grating: usize) -> bool {
     let (tension, common, shown) = (product(&|x, _| x * x), product(&|x, y| x * y), product(&|_, y| y * y));
     let of_line = if tension > 0.0 { shown - common * common / tension } else { shown };
     let of_drift: f64 = points.iter().map(|[left_n, ..]| left_n * left_n).sum();
-    // The line has a number more.
+    // The line has one more parameter.
     count * (of_line / of_drift).ln() + count.ln() > LEAST_EVIDENCE
 }
 
-/// All candidates beside what is there but the distrusted, each fitted to what is learned from.
+/// Returns all candidates beside the present model except the distrusted ones, each fitted to the training samples.
 pub fn trials(case: &Case<'_>, now: &Fit, distrusted: &[Effect]) -> Vec<Trial> {
     let model = &now.model;
     let count = model.mu.len();
@@ -75,7 +75,7 @@ pub fn trials(case: &Case<'_>, now: &Fit, distrusted: &[Effect]) -> Vec<Trial> {
             candidates.push((vec![Effect::HoleFriction(place)], model.with_holes(&[place])));
         }
     }
-    // A spread over the holes: none of them alone closes much of the gap.
+    // A spread over the holes, because none of them alone closes much of the gap.
     let holes: Vec<usize> = (0..count)
         .filter(|hole| model.is_own.get(*hole) == Some(&false) && !distrusted.contains(&Effect::HoleFriction(*hole)))
         .collect();
@@ -86,7 +86,7 @@ pub fn trials(case: &Case<'_>, now: &Fit, distrusted: &[Effect]) -> Vec<Trial> {
     let learned = case.learned_count();
     let Some(by_hole) = HoleSlopes::new(case, now) else { return Vec::new() };
     let trial = |(effects, candidate): (Vec<Effect>, Model)| {
-        // What is to be fitted begins as it is: tensions and residuals are those at hand.
+        // Candidates with the same friction model start from the present tensions and residuals.
         let fit = if candidate.way == model.way {
             fitted_from(case, Fit { model: candidate, ..now.clone() }, &by_hole)?
         } else {

@@ -1,27 +1,27 @@
-//! Whether a model makes shapes or tensions worse than another one.
+//! Tests whether a model makes shapes or tensions worse than another one.
 //!
-//! Two models are compared on the same samples, so that their common noise cancels: the squares of their errors are subtracted sample by
-//! sample, and the mean difference has to be beyond two standard errors, which blocks of the run tell. An increase that the noise of
-//! the markers would hide in the mean of so many samples does not count either.
+//! Two models are compared on the same samples, so that their common noise cancels: the squares of their errors are subtracted sample by sample, and
+//! the mean difference must exceed two standard errors, estimated from blocks of the run. An increase that the markers' noise would hide in the mean
+//! of so many samples does not count either.
 
 use super::case::Fit;
 use super::markers::MarkerFit;
 
-/// Blocks whose scatter tells the standard error.
+/// Number of blocks for the standard error.
 const BLOCKS: usize = 10;
 const STANDARD_ERRORS: f64 = 2.0;
 
 /// A shape that becomes worse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Worse {
-    /// Disk, from 0.
+    /// Index of the disk, from 0.
     pub disk: usize,
-    /// Root mean square of the distance before and after, m.
+    /// Root mean square distance before and after, m.
     pub before_m: f64,
     pub after_m: f64,
 }
 
-/// The disk whose distance from its marker grows most, by the model's own friction or by the measured one; `None` where none does.
+/// Returns the disk whose distance from its marker grows most, with the model's own friction or with the measured one; `None` if none does.
 pub fn worse_shape(
     [before, after]: [&Fit; 2],
     [markers_before, markers_after]: [Option<&MarkerFit>; 2],
@@ -59,7 +59,7 @@ fn grown([before, after]: [&[Vec<[f64; 2]>]; 2], noise_m: f64) -> Option<Worse> 
     all.max_by(|one, other| (one.after_m - one.before_m).total_cmp(&(other.after_m - other.before_m)))
 }
 
-/// Means of two lists over the places where both are finite, and how many these are.
+/// Returns the means of two lists over the indices where both are finite, and the number of these.
 fn mean_of_both(one: &[f64], other: &[f64]) -> Option<([f64; 2], f64)> {
     let pairs: Vec<_> = one.iter().zip(other).filter(|(one, other)| (*one + *other).is_finite()).collect();
     #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
@@ -68,7 +68,7 @@ fn mean_of_both(one: &[f64], other: &[f64]) -> Option<([f64; 2], f64)> {
     (count > 0.0).then(|| (sums.map(|sum| sum / count), count))
 }
 
-/// Whether the second list is greater in the mean, by more than blocks of it scatter.
+/// Whether the second list is greater on average, by more than the scatter of its blocks.
 fn is_beyond_chance(one: &[f64], other: &[f64]) -> bool {
     let changes: Vec<f64> =
         one.iter().zip(other).map(|(one, other)| other - one).filter(|one| one.is_finite()).collect();
@@ -92,7 +92,7 @@ mod tests {
 
     #[test]
     fn noise_is_not_worse_and_a_step_is() {
-        // The same noise beside nothing, and beside half as much again.
+        // The same noise, compared with zero and with half as much again.
         let noise: Vec<f64> = (0..100_u32).map(|place| f64::from(place * 7919 % 101) / 101.0).collect();
         let turned: Vec<f64> = noise.iter().rev().copied().collect();
         assert!(!is_beyond_chance(&noise, &turned));

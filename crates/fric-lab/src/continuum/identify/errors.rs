@@ -1,9 +1,9 @@
-//! How sure the unknowns are: intervals that hold.
+//! The uncertainty of the unknowns: intervals that contain the true values.
 //!
-//! Four things add up. White noise, or where residuals remember what blocks of the run tell (the greater of the two). The lines of the gratings, which the
-//! fit has along. Holes that share a μ although each has its own. And what the model is not: segments of constant curvature, Dahl's contacts.
-//! This last part repeats itself in every sample, so no statistics of a run tell it; it is put in by what the model is off by from an
-//! independent elastica with holes that stick and slip.
+//! Four contributions add up. The first is noise: white noise, or the estimate from blocks of the run for correlated residuals, whichever is greater.
+//! The second is the calibration error of the lines, which the fit includes. The third is that holes share a μ although each has its own. The fourth
+//! is the error of the model itself: segments of constant curvature, Dahl's contacts. It repeats in every sample, so the statistics of a run cannot
+//! show it; its size comes from a comparison with an independent elastica whose holes stick and slip.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -13,18 +13,18 @@ use super::unknown::Unknown;
 use crate::continuum::discover::spread;
 use fric_core::continuum::file::OneOrEach;
 
-/// What the model is off by in tension as a share of the greatest, root mean square: 0.4 mN of 1.7 N in runs with both directions, against the elastica with
-/// each hole's own μ (docs/manipulators.md).
+/// Root mean square error of the model's tensions relative to the greatest tension: 0.4 mN of 1.7 N in runs with both directions, against the
+/// elastica with each hole's own μ (docs/manipulators.md).
 pub const MODEL_TENSION_RATIO: f64 = 0.00024;
-/// And of the disks as a share of the length, where the bend is 130°.
+/// The same for the disks relative to the length, at a bend of 130°.
 pub const MODEL_MARKER_RATIO: f64 = 0.0002;
-/// Share of what the model is off by that goes along with one unknown: it is smooth, and so near to some combination of a handful of them.
+/// Fraction of the model error that acts along one unknown. The error is smooth, and therefore near some combination of a handful of unknowns.
 const ALONG_RATIO: f64 = 0.5;
 
-/// Of the two readings of the law of friction, as a standard error.
+/// Standard error of μ as a fraction of the difference between the two forms of the friction law.
 const LAW_SHARE: f64 = 0.85;
 
-/// Covariance of the unknowns as distances, without the lines; `None` where the run says nothing.
+/// Returns the covariance of the unknowns as distances, without the lines; `None` if the run says nothing.
 pub fn covariance(runs: &Runs, solution: &Solution) -> Option<DMatrix<f64>> {
     let normal = solution.normal(&[])?;
     let count = solution.state.unknowns.len();
@@ -36,7 +36,7 @@ pub fn covariance(runs: &Runs, solution: &Solution) -> Option<DMatrix<f64>> {
     Some(covariance)
 }
 
-/// Noise: white or, of each unknown, that of blocks where it is greater; the lines' prior is in the inverse.
+/// Returns the contribution of noise: white or, for each unknown, that of blocks if it is greater. The prior of the lines is part of the inverse.
 fn statistical(normal: &Normal, count: usize) -> DMatrix<f64> {
     let white = &normal.inverse;
     let lines = normal.inverse.columns(count, normal.inverse.ncols() - count);
@@ -48,7 +48,7 @@ fn statistical(normal: &Normal, count: usize) -> DMatrix<f64> {
     DMatrix::from_fn(count, count, |row, column| factor(row) * factor(column) * white[(row, column)])
 }
 
-/// What the model is not: of size b in each of N residuals of a signal, and along with each unknown by a share.
+/// Returns the contribution of the model error: of size b in each of N residuals of a signal, and along each unknown by a fraction.
 fn systematic(runs: &Runs, solution: &Solution, normal: &Normal) -> DMatrix<f64> {
     #[expect(clippy::cast_precision_loss, reason = "a small count")]
     let length_m = runs.given.pitch_m * runs.given.disk_count as f64;
@@ -63,8 +63,8 @@ fn systematic(runs: &Runs, solution: &Solution, normal: &Normal) -> DMatrix<f64>
     &normal.inverse * sum * &normal.inverse
 }
 
-/// Holes that differ while the model has one μ for all, or a list that is scaled: each moves the unknowns by its own slopes (delta method), by as much as the run
-/// cannot exclude.
+/// Returns the contribution of holes that differ while the model has one μ for all, or a list that is scaled. Each hole moves the unknowns by its own
+/// slopes (delta method), by as much as the run cannot exclude.
 fn of_holes(runs: &Runs, solution: &Solution) -> Option<DMatrix<f64>> {
     let unknowns: Vec<Unknown> = solution.state.unknowns.iter().map(|(unknown, _)| *unknown).collect();
     let has_friction = match &runs.given.tendon.mu {
@@ -80,11 +80,11 @@ fn of_holes(runs: &Runs, solution: &Solution) -> Option<DMatrix<f64>> {
     let with_holes = solution.normal(&slopes)?;
     let whole = DMatrix::from(&with_holes.matrices[0] + &with_holes.matrices[1]);
     let shared = unknowns.iter().position(|unknown| *unknown == Unknown::SharedMu);
-    // The shared one is the mean of the others, so it leaves while each hole is looked at.
+    // The shared μ is the mean of the others, so it is left out while each hole is considered.
     let others: Vec<usize> = (0..whole.nrows()).filter(|place| Some(*place) != shared).collect();
     let picked = DMatrix::from_fn(others.len(), others.len(), |row, column| {
         let (row, column) = (others[row], others[column]);
-        // The lines' prior.
+        // The prior of the lines.
         let prior = if row == column && row >= count + holes.len() { 1.0 } else { 0.0 };
         whole[(row, column)] + prior
     });
@@ -112,8 +112,9 @@ fn of_holes(runs: &Runs, solution: &Solution) -> Option<DMatrix<f64>> {
     Some(covariance)
 }
 
-/// Whether a hole is pressed by the part of both tensions that stands on it, as the model has it, or by their whole sum, differs by `√(1 − μ²)`; a
-/// lab's value may be either. The share is that with which the interval still holds both, beside a noise of about the same size.
+/// Adds the uncertainty of the friction law. The normal force on a hole is either the normal component of both tensions, as in the model, or their
+/// full sum; the two differ by `√(1 − μ²)`, and a lab's value may be either. With this fraction the interval still contains both, beside noise of
+/// about the same size.
 fn add_law(runs: &Runs, solution: &Solution, covariance: &mut DMatrix<f64>) {
     let tables = solution.state.tables(&runs.given);
     for (place, (unknown, _)) in solution.state.unknowns.iter().enumerate() {

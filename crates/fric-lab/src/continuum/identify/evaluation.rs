@@ -1,8 +1,8 @@
-//! What a manipulator file predicts for runs, and what is left of the measurements.
+//! The prediction of a manipulator file for runs, and the residual of the measurements.
 //!
-//! Two signals are compared. The tension in each segment, where there are gratings: with the model's, from the history of the tension at the base. The
-//! markers: with the disks of the shape under the tensions that the gratings show, in which the friction has no part; without gratings with
-//! those of the model's own tensions.
+//! Two signals are compared. If there are gratings, the tension in each segment is compared with the model's, computed from the history of the
+//! tension at the base. The markers are compared with the disks of the shape under the measured tensions, which does not depend on the friction;
+//! without gratings, under the model's own tensions.
 
 use fric_core::continuum::ManipulatorParams;
 use fric_core::continuum::Tendon;
@@ -17,7 +17,7 @@ use super::super::run::{Run, RunSample};
 use super::super::shape_errors::{ComputedShape, Way, shapes};
 use super::unknown::Unknown;
 
-/// Runs to compare with, and the file at which the search begins.
+/// Runs to compare with, and the file at which the search starts.
 pub struct Runs {
     pub given: ManipulatorTables,
     all: Vec<One>,
@@ -28,13 +28,13 @@ pub struct Runs {
 /// One run.
 struct One {
     whole: Run,
-    /// Samples that are compared.
+    /// Samples to compare.
     kept: Vec<usize>,
-    /// Gratings that are dead in them.
+    /// Whether each grating is dead in them.
     is_dead: Vec<Vec<bool>>,
 }
 
-/// Distances from the file, and what the lines of the gratings are off by, in standard errors of their constants and slopes.
+/// Distances from the file, and the errors of the calibration lines, in standard errors of their constants and slopes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
     pub unknowns: Vec<(Unknown, f64)>,
@@ -42,7 +42,7 @@ pub struct State {
 }
 
 impl State {
-    /// The tables of a state.
+    /// Returns the tables of a state.
     pub fn tables(&self, given: &ManipulatorTables) -> ManipulatorTables {
         let mut tables = given.clone();
         for (unknown, distance) in &self.unknowns {
@@ -52,29 +52,29 @@ impl State {
     }
 }
 
-/// A state with what it predicts.
+/// A state with its prediction.
 pub struct Evaluation {
     pub runs: Vec<RunEvaluation>,
 }
 
-/// The same of a run.
+/// The prediction for one run.
 pub struct RunEvaluation {
     history: Option<Computed>,
     measured: Option<Computed>,
-    /// Sample by sample.
+    /// Residuals, sample by sample.
     pub rows: Vec<Row>,
 }
 
-/// What is left in one sample; NaN where nothing was measured or there is no shape.
+/// The residual of one sample; NaN where nothing was measured or there is no shape.
 #[derive(Clone, Debug, Default)]
 pub struct Row {
-    /// Gratings less model, N.
+    /// Gratings minus model, N.
     pub tension_n: Vec<f64>,
-    /// Markers less disks, x and y by turns, base frame, m.
+    /// Markers minus disks, x and y alternating, base frame, m.
     pub marker_m: Vec<f64>,
 }
 
-/// Shapes with what they were computed from, so that they need not be computed again.
+/// Shapes with their inputs, so that they need not be computed again.
 #[derive(Clone)]
 struct Computed {
     params: ManipulatorParams,
@@ -83,11 +83,11 @@ struct Computed {
 }
 
 impl Runs {
-    /// Looks at what the runs hold.
+    /// Prepares the comparison with the runs.
     ///
     /// # Errors
-    /// [`ContinuumError::MissingGroup`] where nothing can be compared, [`ContinuumError::NoGratings`] where the shifts are needed and the file has no
-    /// lines, [`ContinuumError::OverCapacity`].
+    /// Returns [`ContinuumError::MissingGroup`] if nothing can be compared, [`ContinuumError::NoGratings`] if the shifts are needed and the file has
+    /// no lines, or [`ContinuumError::OverCapacity`].
     pub fn new(file: &ManipulatorFile, runs: &[Run]) -> Result<Self, ContinuumError> {
         let gratings = Gratings::from_file(file)?;
         let lack =
@@ -124,7 +124,7 @@ impl Runs {
         Ok(Self { given: file.tables().clone(), all, has_gratings, greatest_tension_n })
     }
 
-    /// Times of the samples of the first run that are compared, s.
+    /// Returns the times of the compared samples of the first run, s.
     pub fn times_s(&self) -> Vec<f64> {
         let first = self.all.first();
         let time_s = |run: &One, place: &usize| run.whole.samples().get(*place).map(|sample| sample.time_s);
@@ -135,7 +135,7 @@ impl Runs {
         self.all.iter().all(|run| run.whole.has_markers())
     }
 
-    /// Samples compared in each run.
+    /// Returns the number of compared samples in each run.
     pub fn sample_counts(&self) -> Vec<usize> {
         self.all.iter().map(|run| run.kept.len()).collect()
     }
@@ -144,13 +144,13 @@ impl Runs {
         self.all.iter().all(|run| run.whole.has_tension())
     }
 
-    /// The start: the file as it is, with right lines.
+    /// Returns the start: the file as it is, with correct lines.
     pub fn start(&self, unknowns: &[Unknown]) -> State {
         let lines = if self.has_gratings { vec![[0.0; 2]; self.given.disk_count] } else { Vec::new() };
         State { unknowns: unknowns.iter().map(|unknown| (*unknown, 0.0)).collect(), lines }
     }
 
-    /// What a state predicts; `None` where its numbers are no manipulator. Shapes that `near` has already are taken from there.
+    /// Returns the prediction of a state; `None` if its numbers do not form a manipulator. Shapes that `near` already contains are reused.
     pub fn evaluate(&self, state: &State, near: Option<&Evaluation>) -> Option<Evaluation> {
         let file = ManipulatorFile::check(state.tables(&self.given)).ok()?;
         let gratings = if self.has_gratings { Gratings::from_file(&file).ok()? } else { None };
@@ -235,7 +235,7 @@ impl One {
         Some(RunEvaluation { history, measured, rows })
     }
 
-    /// Tensions by the gratings; those of the model, else of no friction, where one is dead.
+    /// Returns the tensions of the gratings; where one is dead, those of the model, or without friction if there is none.
     fn fed(&self, observed: &[Vec<f64>], history: Option<&Computed>) -> Vec<Vec<f64>> {
         let one = |(place, row): (usize, &Vec<f64>)| {
             let own = history.and_then(|one| one.shapes.get(place));
@@ -276,7 +276,7 @@ fn same_bits(one: &[f64], other: &[f64]) -> bool {
     one.len() == other.len() && one.iter().zip(other).all(|(one, other)| one.to_bits() == other.to_bits())
 }
 
-/// How the file has friction.
+/// Returns the friction model of the file.
 fn way(file: &ManipulatorFile) -> Way {
     if file.params().mu(Tendon::Agonist).iter().all(|mu| *mu == 0.0) {
         Way::None

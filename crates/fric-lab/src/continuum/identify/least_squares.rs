@@ -1,7 +1,7 @@
-//! The unknowns by least squares: Gauss–Newton with slopes by differences, the lines of the gratings along with them.
+//! Fits the unknowns by least squares: Gauss–Newton with slopes by finite differences, together with the errors of the calibration lines.
 //!
-//! Each signal is measured in its own unit: at first its white noise, then what the fit leaves of it, root mean square, so that a signal which the model
-//! meets less well counts less. What the lines of the gratings are off by counts as measured once to be 0 ± 1 standard error.
+//! Each signal is scaled: first by its white noise, then by the root mean square of its residual after the fit, so that a signal that the model
+//! describes less well has less weight. The errors of the lines have the prior 0 ± 1 standard error.
 
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -12,37 +12,37 @@ use crate::certainty::scores::Scores;
 use crate::certainty::undetermined::inverse_of_normal;
 use crate::samples::noise::white_noise_throughout;
 
-/// Steps of one search.
+/// Maximum number of steps of one search.
 const MOST_STEPS: usize = 12;
-/// Halvings of a step.
+/// Maximum number of halvings of a step.
 const MOST_HALVINGS: i32 = 8;
-/// A step that would lower χ² by less is not made: no unknown moves by a tenth of its error then.
+/// A step that would decrease χ² by less is not taken: no unknown would move by a tenth of its error.
 const SETTLED: f64 = 0.01;
-/// How often the units of the signals are taken anew.
+/// Number of times that the scales are updated.
 const ROUNDS: usize = 2;
 
-/// Unit of each signal.
+/// Scale of each signal.
 #[derive(Clone, Copy, Debug)]
 pub struct Units {
     pub tension_n: f64,
     pub marker_m: f64,
 }
 
-/// An end of the search.
+/// The end of a search.
 pub struct Solution {
     pub state: State,
     pub evaluation: Evaluation,
     pub units: Units,
-    /// Slopes of the residuals at the end, in the order of the unknowns, then of the lines' constants and slopes.
+    /// Derivatives of the residuals at the end, in the order of the unknowns, then of the lines' constants and slopes.
     slopes: Vec<Slopes>,
 }
 
-/// Derivatives of all residuals by one number: run, sample, tensions before markers.
+/// Derivatives of all residuals with respect to one number: run, sample, tensions before markers.
 type Slopes = Vec<Vec<Vec<f64>>>;
 
-/// The normal equations in units of the signals.
+/// The normal equations in scaled units.
 pub struct Normal {
-    /// By tensions and by markers.
+    /// Contributions of tensions and of markers.
     pub matrices: [DMatrix<f64>; 2],
     pub counts: [f64; 2],
     pub gradient: DVector<f64>,
@@ -91,7 +91,7 @@ pub fn solve(runs: &Runs, start: State) -> Option<Solution> {
 }
 
 impl Solution {
-    /// The normal equations at the end; `more` are slopes of further numbers, put before the lines.
+    /// Returns the normal equations at the end. `more` holds the slopes of further numbers, which come before the lines.
     pub fn normal(&self, more: &[Slopes]) -> Option<Normal> {
         let count = self.state.unknowns.len();
         let (own, lines) = self.slopes.split_at_checked(count)?;
@@ -99,7 +99,7 @@ impl Solution {
         normal(&self.evaluation, &self.state, &slopes, self.units)
     }
 
-    /// Slopes by other unknowns than its own.
+    /// Returns the slopes with respect to other unknowns.
     pub fn slopes_by(&self, runs: &Runs, unknowns: &[Unknown]) -> Option<Vec<Slopes>> {
         let mut state = self.state.clone();
         let own = state.unknowns.len();
@@ -110,7 +110,7 @@ impl Solution {
     }
 }
 
-/// The state moved along a step.
+/// Returns the state moved by a fraction of a step.
 fn moved(state: &State, step: &DVector<f64>, share: f64) -> State {
     let mut moved = state.clone();
     let distances = moved.unknowns.iter_mut().map(|(_, distance)| distance);
@@ -132,7 +132,7 @@ fn slope_by(runs: &Runs, state: &State, now: &Evaluation, place: usize) -> Optio
     Some(difference(&runs.evaluate(&moved, Some(now))?, now, small))
 }
 
-/// By one standard error of each line's constant and slope; none where these are known.
+/// Returns the slopes per standard error of each line's constant and slope; empty if the lines are known.
 fn line_slopes(runs: &Runs, state: &State, now: &Evaluation) -> Option<Vec<Slopes>> {
     let slope = |place: usize| {
         let mut moved = state.clone();
@@ -155,7 +155,7 @@ fn difference(moved: &Evaluation, now: &Evaluation, change: f64) -> Slopes {
     .collect()
 }
 
-/// Units of the signals from their white noise.
+/// Returns the scales from the white noise of the signals.
 fn white(evaluation: &Evaluation) -> Units {
     let noise = |of: fn(&Row) -> &Vec<f64>| {
         let mut series = Vec::new();
@@ -174,7 +174,7 @@ fn white(evaluation: &Evaluation) -> Units {
     }
 }
 
-/// Units from what is left.
+/// Returns the scales from the residual.
 fn left(evaluation: &Evaluation, units: Units) -> Units {
     let (mut squares, mut counts) = ([0.0; 2], [0.0; 2]);
     each_row(evaluation, |row, _, _| {
@@ -192,7 +192,7 @@ fn left(evaluation: &Evaluation, units: Units) -> Units {
     Units { tension_n: rms(0, units.tension_n), marker_m: rms(1, units.marker_m) }
 }
 
-/// Calls with every row, its run and its sample.
+/// Calls `each` with every row, its run and its sample.
 fn each_row(evaluation: &Evaluation, mut each: impl FnMut(&Row, usize, usize)) {
     for (run, of_run) in evaluation.runs.iter().enumerate() {
         for (sample, row) in of_run.rows.iter().enumerate() {
@@ -201,7 +201,7 @@ fn each_row(evaluation: &Evaluation, mut each: impl FnMut(&Row, usize, usize)) {
     }
 }
 
-/// χ² of a state.
+/// Returns χ² of a state.
 fn squares(evaluation: &Evaluation, state: &State, units: Units) -> f64 {
     let mut sum: f64 = state.lines.as_flattened().iter().map(|one| one * one).sum();
     each_row(evaluation, |row, _, _| {

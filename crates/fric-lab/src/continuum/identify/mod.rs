@@ -1,8 +1,8 @@
-//! Identification of a manipulator from runs: bending, frame, loads and friction by markers, gratings and the tension at the base, any two of them.
+//! Identification of a manipulator from runs: bending, frame, loads and friction from markers, gratings and the tension at the base, any two of them.
 //!
-//! [`identify`] varies the numbers of the manipulator file ([`Unknown`]) until the model meets what was measured (`evaluation` says what is
-//! compared, `least_squares` searches, `errors` has the intervals). What the runs cannot tell is held as the file states it and reported: the
-//! directions of small eigenvalues of the information, as the identification of cables finds them.
+//! [`identify`] varies the numbers of the manipulator file ([`Unknown`]) until the model agrees with the measurements (`evaluation` defines the
+//! comparison, `least_squares` searches, `errors` computes the intervals). Numbers that the runs do not determine are held as in the file and
+//! reported: they lie along directions with small eigenvalues of the information matrix, as in the identification of cables.
 
 pub(super) mod errors;
 pub(super) mod evaluation;
@@ -29,31 +29,31 @@ pub use quantity::Quantity;
 pub use result::{Disagreement, TendonFitResult, Undetermined};
 pub use unknown::Unknown;
 
-/// Least samples of all runs together.
+/// Minimum number of samples of all runs together.
 const LEAST_SAMPLES: usize = 20;
 
-/// What to identify.
+/// Options of an identification.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TendonFitOptions {
-    /// These; [`Quantity::usual`] if `None`.
+    /// The quantities to identify; [`Quantity::usual`] if `None`.
     pub quantities: Option<Vec<Quantity>>,
 }
 
-/// What an identification found.
+/// The outcome of an identification.
 #[derive(Clone, Debug)]
 pub struct Identification {
-    /// For machines and people.
+    /// The result for machines and people.
     pub result: TendonFitResult,
-    /// What to change in the manipulator file.
+    /// The changes to the manipulator file.
     pub edit: ManipulatorEdit,
 }
 
-/// Identifies the numbers of a manipulator from its runs; `names` are those of the runs.
+/// Identifies the numbers of a manipulator from its runs. `names` holds the names of the runs.
 ///
 /// # Errors
-/// [`ContinuumError::MissingGroup`] where a run has nothing to compare, [`ContinuumError::NoGratings`] where its shifts are needed and the file does not say
-/// how they become tensions, [`ContinuumError::TooShort`], [`ContinuumError::OverCapacity`], [`ContinuumError::NotIdentified`] where the model has no
-/// shapes for the runs.
+/// Returns [`ContinuumError::MissingGroup`] if a run has nothing to compare, [`ContinuumError::NoGratings`] if its shifts are needed and the file
+/// does not say how they become tensions, [`ContinuumError::TooShort`], [`ContinuumError::OverCapacity`], or [`ContinuumError::NotIdentified`] if the
+/// model has no shapes for the runs.
 pub fn identify(
     file: &ManipulatorFile,
     runs: &[Run],
@@ -81,7 +81,7 @@ pub fn identify(
         let solution = solve(&runs, start).ok_or(ContinuumError::NotIdentified)?;
         let tables = solution.state.tables(&runs.given);
         if Unknown::TipMass.is_below_range(&runs.given, &solution.state.unknowns) {
-            // A mass below zero is noise, or something else.
+            // A negative mass is noise, or stands for something else.
             runs.given.tip.mass_kg = 0.0;
             unknowns.retain(|unknown| *unknown != Unknown::TipMass);
             undetermined.push(Undetermined::at_bound(Unknown::TipMass));
@@ -95,7 +95,7 @@ pub fn identify(
         let widest: Vec<f64> =
             unknowns.iter().map(|unknown| unknown.widest(&tables, runs.greatest_tension_n)).collect();
         let Some(direction) = open(&covariance, &widest).into_iter().next() else { break (solution, covariance) };
-        // Where the file's value is contradicted another one has to stay.
+        // If the file's value is contradicted, another number must be held.
         let is_contradicted = |place: &usize| {
             let distance = solution.state.unknowns.get(*place).map_or(0.0, |(_, distance)| *distance);
             distance.abs() > HALF_INTERVAL * covariance[(*place, *place)].max(0.0).sqrt()
@@ -126,7 +126,7 @@ pub fn identify(
     Ok(Identification { result, edit })
 }
 
-/// Directions that the runs leave open, in units of the widest intervals.
+/// Returns the directions that the runs leave open, in units of the widest intervals.
 fn open(covariance: &DMatrix<f64>, widest: &[f64]) -> Vec<OpenDirection> {
     let scaled = DMatrix::from_fn(widest.len(), widest.len(), |row, column| {
         covariance[(row, column)] / (widest[row] * widest[column])
@@ -135,7 +135,7 @@ fn open(covariance: &DMatrix<f64>, widest: &[f64]) -> Vec<OpenDirection> {
     open_directions(&inverse_of_normal(&scaled).unwrap_or(silent))
 }
 
-/// A frame or a sensor that is as good as none is not written.
+/// Removes a frame or a sensor correction that is practically neutral.
 fn tidy(
     given: &fric_core::continuum::file::ManipulatorTables,
     wanted: &mut fric_core::continuum::file::ManipulatorTables,
@@ -150,7 +150,7 @@ fn tidy(
     }
 }
 
-/// The lines as found, with the errors that they had.
+/// Returns the fitted lines, with their original errors.
 fn lines(file: &ManipulatorFile, solution: &Solution) -> Result<Vec<GratingLine>, ContinuumError> {
     let Some(gratings) = Gratings::from_file(file)? else { return Ok(Vec::new()) };
     let each = gratings.lines().iter().zip(gratings.line_errors()).zip(&solution.state.lines);

@@ -1,45 +1,45 @@
-//! What a user asks to be identified, by name.
+//! Quantities that a user can identify, by name.
 
 use fric_core::continuum::file::{ManipulatorTables, OneOrEach};
 use fric_core::robot::unknown_name;
 
 use super::unknown::Unknown;
 
-/// A physical thing; one or several numbers of the manipulator file.
+/// A physical quantity: one or several numbers of the manipulator file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// Bending stiffness of the backbone.
     BackboneStiffness,
-    /// That of each segment.
+    /// Bending stiffness of each segment.
     SegmentStiffness,
     /// Distance of the holes from the backbone.
     TendonOffset,
-    /// Curvature without load.
+    /// Curvature of the unloaded manipulator.
     Precurvature,
-    /// Frame of the markers.
+    /// Pose of the markers' frame.
     MarkerFrame,
-    /// Mass on the tip where there is gravity in the plane, else a force.
+    /// Mass on the tip if there is gravity in the plane, else a force.
     TipLoad,
     /// Direction of gravity.
     GravityDirection,
-    /// Friction coefficient: one, or hole by hole where the file has a list.
+    /// Friction coefficient: one, or one per hole if the file has a list.
     Mu,
     /// Friction coefficient of each hole.
     HoleMu,
     /// Presliding stiffness.
     Sigma,
-    /// Gain of the sensor at the base.
+    /// Gain of the tension sensor at the base.
     BaseGain,
-    /// Its offset.
+    /// Offset of the tension sensor at the base.
     BaseOffset,
-    /// Its lag.
+    /// Lag of the tension sensor at the base.
     TensionLag,
-    /// Lines of the gratings.
+    /// Calibration lines of the gratings.
     Calibration,
 }
 
 impl Quantity {
-    /// All there are.
+    /// All quantities.
     pub const ALL: [Self; 14] = [
         Self::BackboneStiffness,
         Self::SegmentStiffness,
@@ -57,7 +57,7 @@ impl Quantity {
         Self::Calibration,
     ];
 
-    /// Its name.
+    /// Returns its name.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -78,10 +78,10 @@ impl Quantity {
         }
     }
 
-    /// Those of a list of names.
+    /// Returns the quantities of a list of names.
     ///
     /// # Errors
-    /// A sentence about the first name that is unknown, with the nearest, or that contradicts another.
+    /// Returns a sentence about the first name that is unknown, with the nearest known one, or that contradicts another.
     pub fn all_named<'a>(names: impl IntoIterator<Item = &'a str>) -> Result<Vec<Self>, String> {
         let mut all = Vec::new();
         for name in names {
@@ -100,7 +100,7 @@ impl Quantity {
         Ok(all)
     }
 
-    /// What is identified where nothing is named.
+    /// Returns the quantities that are identified by default.
     #[must_use]
     pub fn usual(tables: &ManipulatorTables) -> Vec<Self> {
         let usual = [
@@ -113,13 +113,13 @@ impl Quantity {
             Self::Mu,
             Self::Sigma,
         ];
-        // A force on the tip that is no weight is not usual.
+        // A force on the tip that is no weight is not a default.
         let is_usual =
             |quantity: &Self| *quantity != Self::TipLoad || tables.gravity_m_per_s2.iter().any(|part| *part != 0.0);
         usual.into_iter().filter(|quantity| is_usual(quantity) && !quantity.unknowns(tables).is_empty()).collect()
     }
 
-    /// The numbers behind it; none where the manipulator leaves no place for it.
+    /// Returns its numbers; empty if it does not apply to the manipulator.
     pub(super) fn unknowns(self, tables: &ManipulatorTables) -> Vec<Unknown> {
         let count = tables.disk_count;
         let all: Vec<Unknown> = match self {

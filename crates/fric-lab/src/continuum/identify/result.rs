@@ -13,47 +13,47 @@ use crate::fit::result::Numbers;
 /// `fric-continuum-fit/1`.
 #[derive(Clone, Debug, Serialize)]
 pub struct TendonFitResult {
-    /// Name and version of the form.
+    /// Name and version of the format.
     pub format: &'static str,
     /// Name of the manipulator.
     pub manipulator: String,
     /// The runs.
     pub runs: Vec<String>,
-    /// Samples of each that were compared.
+    /// Number of compared samples of each run.
     pub samples: Vec<usize>,
-    /// Values found, by key.
+    /// Identified values, by key.
     pub parameters: Numbers,
     /// Their standard errors.
     pub standard_errors: Numbers,
-    /// What the file given states.
+    /// Values in the given file.
     pub given: Numbers,
-    /// What the runs cannot tell.
+    /// Numbers that the runs do not determine.
     pub undetermined: Vec<Undetermined>,
-    /// With the file given.
+    /// Errors with the given file.
     pub before: Disagreement,
-    /// With the fitted one.
+    /// Errors with the fitted file.
     pub after: Disagreement,
 }
 
-/// Numbers that the runs cannot tell apart, or not at all.
+/// Numbers that the runs cannot distinguish, or do not determine at all.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Undetermined {
     /// Keys of the numbers, the held one first.
     pub parameters: Vec<String>,
-    /// For people.
+    /// A sentence for people.
     pub sentence: String,
 }
 
-/// How far model and measurements are apart; absent where they cannot be compared.
+/// Differences between model and measurements; absent if they cannot be compared.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Disagreement {
-    /// Gratings less model, root mean square, N.
+    /// Root mean square of gratings minus model, N.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tension_rms_n: Option<f64>,
-    /// Distance of the disks from their markers, mean, mm: under the tensions that the gratings show, without gratings under the model's.
+    /// Mean distance of the disks from their markers, mm: under the measured tensions or, without gratings, under the model's.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub marker_mean_mm: Option<f64>,
-    /// The greatest, mm.
+    /// Greatest distance, mm.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub marker_max_mm: Option<f64>,
 }
@@ -119,7 +119,7 @@ impl Undetermined {
 }
 
 impl TendonFitResult {
-    /// Name and version of the form.
+    /// Name and version of the format.
     pub const FORMAT: &'static str = "fric-continuum-fit/1";
 
     pub(super) fn new(

@@ -5,7 +5,7 @@ use crate::fit::HALF_INTERVAL;
 use crate::text::{quantity, table, wrapped};
 
 impl TendonFitResult {
-    /// For people.
+    /// Returns a summary for people.
     #[must_use]
     pub fn summary(&self) -> String {
         let row = |(key, value): &(String, f64)| {
@@ -31,7 +31,7 @@ impl TendonFitResult {
         text
     }
 
-    /// One sentence for each thing that the runs cannot tell.
+    /// Returns one sentence for each number that the runs do not determine.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         self.undetermined.iter().map(|open| open.sentence.clone()).collect()

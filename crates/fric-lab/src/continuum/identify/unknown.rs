@@ -1,59 +1,59 @@
-//! The numbers of a manipulator file that a run may tell, each as a distance from what the file states.
+//! The numbers of a manipulator file that a run may determine, each as a distance from its value in the file.
 //!
-//! An unknown is 0 where the file is right. Stiffness, distance of the holes, μ and σ count as the logarithm of their ratio to the file's
-//! value, so that they stay positive; the others as a difference, in the unit of their key.
+//! An unknown is 0 if the file is right. Stiffness, distance of the holes, μ and σ are logarithms of the ratio to the file's value, so that they stay
+//! positive; the others are differences, in the unit of their key.
 
 use fric_core::continuum::file::{ManipulatorTables, OneOrEach};
 use fric_core::continuum::measuring::{BaseSensorTable, MarkersTable};
 
-/// Friction coefficient at which the search begins where the file states none.
+/// Start value of the friction coefficient if the file states none.
 const START_MU: f64 = 0.15;
-/// Greatest change of a logarithm, so that no value leaves its range by a wild step.
+/// Maximum change of a logarithm, which keeps a wild step from leaving the range.
 const MOST_LOG: f64 = 3.0;
-/// Range of μ that is searched.
+/// Search range of μ.
 const MU_RANGE: (f64, f64) = (1e-4, 0.9);
 
-/// A number that is identified. Places count from 0.
+/// A number to identify. Indices count from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unknown {
     /// Bending stiffness of the backbone.
     Stiffness,
-    /// That of one segment.
+    /// Bending stiffness of one segment.
     SegmentStiffness(usize),
     /// Distance of the holes from the backbone.
     HoleRadius,
-    /// Curvature of all segments without load.
+    /// Curvature of all segments of the unloaded manipulator.
     Precurvature,
     /// Offset of the markers' frame along x (0) or y (1).
     MarkerOffset(usize),
-    /// Turn of the markers' frame.
+    /// Rotation of the markers' frame.
     MarkerAngle,
     /// Mass on the tip.
     TipMass,
     /// Force on the tip along x (0) or y (1).
     TipForce(usize),
-    /// By how much gravity is turned.
+    /// Rotation of gravity.
     GravityAngle,
-    /// μ of all holes; those of a list are scaled together.
+    /// μ of all holes; the values of a list are scaled together.
     SharedMu,
     /// μ of one hole.
     HoleMu(usize),
     /// Presliding stiffness of all holes.
     Sigma,
-    /// Gain of the sensor at the base.
+    /// Gain of the tension sensor at the base.
     BaseGain,
-    /// Its offset.
+    /// Offset of the tension sensor at the base.
     BaseOffset,
-    /// Its lag.
+    /// Lag of the tension sensor at the base.
     BaseLag,
-    /// Shift that all gratings have alike from a time on.
+    /// Common shift of all gratings from a time on.
     CommonShift,
-    /// Drift of the shift of one grating.
+    /// Drift of one grating's shift.
     Drift(usize),
 }
 
 impl Unknown {
-    /// Key of its value in results.
+    /// Returns the key of its value in results.
     #[must_use]
     pub fn key(self) -> String {
         match self {
@@ -77,7 +77,7 @@ impl Unknown {
         }
     }
 
-    /// Whether the tables leave a place for it: no gravity can be turned where there is none.
+    /// Whether it applies to the tables: without gravity, for example, there is nothing to rotate.
     #[must_use]
     pub fn is_possible(self, tables: &ManipulatorTables) -> bool {
         let has_gravity = tables.gravity_m_per_s2.iter().any(|part| *part != 0.0);
@@ -92,7 +92,7 @@ impl Unknown {
         }
     }
 
-    /// The tables with it this far from what they state.
+    /// Changes the tables by this distance.
     pub fn put(self, tables: &mut ManipulatorTables, distance: f64) {
         let ratio = distance.clamp(-MOST_LOG, MOST_LOG).exp();
         let count = tables.disk_count;
@@ -133,7 +133,7 @@ impl Unknown {
                 tables.markers = Some(MarkersTable { angle_rad: markers.angle_rad + distance, ..markers });
             }
             Self::TipMass => {
-                // The search may pass below zero, where the force of a negative weight stands in; no such file is written.
+                // The search may pass below zero, where the force of a negative weight acts. Such a file is not written.
                 let mass_kg = tables.tip.mass_kg + distance;
                 tables.tip.mass_kg = mass_kg.max(0.0);
                 for (force_n, gravity) in tables.tip.force_n.iter_mut().zip(tables.gravity_m_per_s2) {
@@ -187,7 +187,7 @@ impl Unknown {
         }
     }
 
-    /// Its value in tables, in the unit of its key. The angle of gravity is that of its vector, from x to y.
+    /// Returns its value in tables, in the unit of its key. The angle of gravity is that of its vector, from x to y.
     #[must_use]
     pub fn value(self, tables: &ManipulatorTables) -> f64 {
         let backbone = &tables.backbone;
@@ -232,7 +232,7 @@ impl Unknown {
         }
     }
 
-    /// Value for a distance of one, near these tables: what turns an error of the distance into one of the value.
+    /// Returns the value per unit of distance near these tables, which converts an error of the distance to one of the value.
     #[must_use]
     pub fn value_per_distance(self, tables: &ManipulatorTables) -> f64 {
         match self {
@@ -247,8 +247,8 @@ impl Unknown {
         }
     }
 
-    /// Half the width of the widest 95 % interval with which it still counts as determined, as a distance: about what moves the tip by a
-    /// hundredth of the length, or the tension by a twentieth.
+    /// Returns half the width of the widest 95 % interval that still counts as determined, as a distance: about what moves the tip by a hundredth of
+    /// the length, or the tension by a twentieth.
     #[must_use]
     pub fn widest(self, tables: &ManipulatorTables, greatest_tension_n: f64) -> f64 {
         #[expect(clippy::cast_precision_loss, reason = "a small count")]
@@ -273,7 +273,7 @@ impl Unknown {
         }
     }
 
-    /// Change over which its slopes are taken: small, and far above what the solver leaves.
+    /// Returns the step for its finite differences: small, and far above the solver's tolerance.
     #[must_use]
     pub fn small(self, tables: &ManipulatorTables, greatest_tension_n: f64) -> f64 {
         let share = match self {
@@ -283,14 +283,14 @@ impl Unknown {
         share * self.widest(tables, greatest_tension_n)
     }
 
-    /// Whether a state has the mass on the tip below zero.
+    /// Whether a state has a negative mass on the tip.
     pub(super) fn is_below_range(self, given: &ManipulatorTables, state: &[(Self, f64)]) -> bool {
         let found = state.iter().find(|(unknown, _)| *unknown == self);
         found.is_some_and(|(_, distance)| self == Self::TipMass && given.tip.mass_kg + distance < 0.0)
     }
 
-    /// Which of several that a run cannot tell apart, and whose stated values it does not contradict, stays as the file states it: the least. Lengths are measured with a calliper; stiffness and
-    /// friction are what a fit is done for.
+    /// Returns the rank. Of several numbers that a run cannot distinguish and whose stated values it does not contradict, the one with the least rank
+    /// is held: lengths are measured with a calliper, while stiffness and friction are the purpose of a fit.
     #[must_use]
     pub fn rank(self) -> u8 {
         match self {

@@ -1,4 +1,4 @@
-//! The calibration of all gratings, as figures 4 and 5 of \[C\] have it.
+//! The calibration of all gratings, as in figures 4 and 5 of \[C\].
 
 use fric_core::continuum::edit::GratingLine;
 use serde::Serialize;
@@ -9,28 +9,28 @@ use crate::text::table;
 /// `fric-continuum-calibrate/1`.
 #[derive(Clone, Debug, Serialize)]
 pub struct CalibrationResult {
-    /// Name and version of the form.
+    /// Name and version of the format.
     pub format: &'static str,
     /// Name of the manipulator.
     pub manipulator: String,
     /// Loads of the steps, N.
     pub load_n: Vec<f64>,
-    /// One for each grating from the base.
+    /// One entry per grating, starting at the base.
     pub gratings: Vec<GratingResult>,
 }
 
-/// One grating: `T = a·Δλ + b`. Ratios are shares of the greatest load.
+/// One grating: `T = a·Δλ + b`. Ratios are relative to the greatest load.
 #[derive(Clone, Debug, Serialize)]
 pub struct GratingResult {
-    /// From 1 at the base.
+    /// Its number, from 1 at the base.
     pub grating: usize,
     /// a, N/nm.
     pub newton_per_nm: f64,
     /// b, N.
     pub offset_n: f64,
-    /// Greatest standard error of a tension from one shift within the loads, N.
+    /// Greatest standard error of a tension from one shift within the range of the loads, N.
     pub standard_error_n: f64,
-    /// What is not known of the line itself.
+    /// The uncertainty of the line itself.
     #[serde(flatten)]
     pub line_error: LineError,
     /// Residual of each step.
@@ -44,10 +44,10 @@ pub struct GratingResult {
 }
 
 impl CalibrationResult {
-    /// Name and version of the form.
+    /// Name and version of the format.
     pub const FORMAT: &str = "fric-continuum-calibrate/1";
 
-    /// Of lines fitted to load steps.
+    /// Creates the result from lines fitted to load steps.
     #[must_use]
     pub fn new(manipulator: &str, steps: &[LoadStep], lines: &[Calibration]) -> Self {
         let grating = |(place, line): (usize, &Calibration)| GratingResult {
@@ -69,7 +69,7 @@ impl CalibrationResult {
         }
     }
 
-    /// The line of each grating, for the manipulator file.
+    /// Returns the line of each grating, for the manipulator file.
     #[must_use]
     pub fn lines(&self) -> Vec<GratingLine> {
         let line = |one: &GratingResult| GratingLine {
@@ -83,7 +83,7 @@ impl CalibrationResult {
         self.gratings.iter().map(line).collect()
     }
 
-    /// For people.
+    /// Returns a summary for people.
     #[must_use]
     pub fn summary(&self) -> String {
         let percent = |ratio: f64| format!("{:.2}", 100.0 * ratio);

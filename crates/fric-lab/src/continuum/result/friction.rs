@@ -1,4 +1,4 @@
-//! The friction at every hole over a run, as figures 7, 11 and 14 of \[C\].
+//! The friction at every hole over a run, as in figures 7, 11 and 14 of \[C\].
 
 use std::fmt::Write as _;
 
@@ -10,58 +10,58 @@ use crate::continuum::gratings::GratingSample;
 use crate::continuum::run::Run;
 use crate::text::{table, wrapped};
 
-/// `fric-continuum-friction/1`. Friction is positive where the base side is tighter; null where it is not known.
+/// `fric-continuum-friction/1`. Friction is positive if the base side is tighter, and null if it is unknown.
 #[derive(Clone, Debug, Serialize)]
 pub struct FrictionResult {
-    /// Name and version of the form.
+    /// Name and version of the format.
     pub format: &'static str,
     /// Name of the manipulator.
     pub manipulator: String,
-    /// How many samples.
+    /// Number of samples.
     pub samples: usize,
-    /// One for each hole from the base plate.
+    /// One entry per hole, starting at the base plate.
     pub holes: Vec<HoleSummary>,
-    /// Samples in which both directions are there beyond doubt.
+    /// Number of samples in which both directions occur with certainty.
     pub directions_differ_samples: usize,
-    /// When, s.
+    /// Time intervals of these samples, s.
     pub directions_differ_s: Vec<[f64; 2]>,
     /// Gratings that were dead in some samples.
     pub bridged: Vec<BridgedGrating>,
-    /// Sample by sample.
+    /// The values, sample by sample.
     pub series: FrictionSeries,
 }
 
 /// A hole over the whole run.
 #[derive(Clone, Debug, Serialize)]
 pub struct HoleSummary {
-    /// From 1 in the base plate.
+    /// Its number, from 1 in the base plate.
     pub hole: usize,
-    /// Mean, N.
+    /// Mean friction, N.
     pub mean_n: f64,
-    /// Least, N.
+    /// Least friction, N.
     pub least_n: f64,
-    /// Greatest, N.
+    /// Greatest friction, N.
     pub greatest_n: f64,
     /// Mean standard error of one sample, N.
     pub standard_error_n: f64,
-    /// Share of the samples with positive friction beyond two standard errors.
+    /// Fraction of the samples with positive friction beyond two standard errors.
     pub positive_ratio: f64,
-    /// Share of the samples with negative friction beyond two standard errors.
+    /// Fraction of the samples with negative friction beyond two standard errors.
     pub negative_ratio: f64,
 }
 
-/// A grating that was dead, its tension put on the line between its neighbours.
+/// A dead grating, whose tension was interpolated.
 #[derive(Clone, Debug, Serialize)]
 pub struct BridgedGrating {
-    /// From 1 at the base.
+    /// Its number, from 1 at the base.
     pub grating: usize,
-    /// In how many samples.
+    /// Number of samples.
     pub samples: usize,
-    /// When, s.
+    /// Time intervals, s.
     pub intervals_s: Vec<[f64; 2]>,
 }
 
-/// One entry for each sample; inner lists have one for each hole.
+/// Lists with one entry per sample; inner lists have one entry per hole.
 #[derive(Clone, Debug, Serialize)]
 pub struct FrictionSeries {
     /// Time, s.
@@ -70,12 +70,12 @@ pub struct FrictionSeries {
     pub friction_n: Vec<Vec<f64>>,
     /// Its standard error, N.
     pub standard_error_n: Vec<Vec<f64>>,
-    /// Whether both directions are there beyond doubt.
+    /// Whether both directions occur with certainty.
     pub directions_differ: Vec<bool>,
 }
 
 impl BridgedGrating {
-    /// Those of a run.
+    /// Returns the dead gratings of a run.
     #[must_use]
     pub fn all(run: &Run, measured: &[GratingSample]) -> Vec<Self> {
         let time_s: Vec<f64> = run.samples().iter().map(|sample| sample.time_s).collect();
@@ -89,7 +89,7 @@ impl BridgedGrating {
             .collect()
     }
 
-    /// In one sentence.
+    /// Returns a warning in one sentence.
     #[must_use]
     pub fn warning(&self, sample_count: usize) -> String {
         let when = if self.samples == sample_count {
@@ -105,10 +105,10 @@ impl BridgedGrating {
 }
 
 impl FrictionResult {
-    /// Name and version of the form.
+    /// Name and version of the format.
     pub const FORMAT: &str = "fric-continuum-friction/1";
 
-    /// From what the gratings say; the tension at the base is taken as exact.
+    /// Computes the friction from the gratings. The tension at the base counts as exact.
     #[must_use]
     pub fn new(manipulator: &str, run: &Run, measured: &[GratingSample]) -> Self {
         let distributions: Vec<FrictionDistribution> = distributions(run, measured).collect();
@@ -134,7 +134,7 @@ impl FrictionResult {
         }
     }
 
-    /// For people.
+    /// Returns a summary for people.
     #[must_use]
     pub fn summary(&self) -> String {
         let number = |value: f64| if value.is_finite() { format!("{value:.4}") } else { "–".to_owned() };
@@ -195,7 +195,7 @@ impl HoleSummary {
             let ratio = mean(&|hole| f64::from(u8::from(hole.direction() == direction)));
             if holes.is_empty() { 0.0 } else { ratio }
         };
-        // Without any, what is least or greatest is not known either.
+        // Without finite values, least and greatest are unknown.
         let end = |pick: fn(f64, f64) -> f64| holes.iter().map(|hole| hole.friction_n).fold(f64::NAN, pick);
         Self {
             hole: place + 1,

@@ -1,4 +1,4 @@
-//! The friction coefficient of a single hole, as figure 9 of \[C\].
+//! The friction coefficient of a single hole, as in figure 9 of \[C\].
 
 use serde::Serialize;
 
@@ -7,30 +7,30 @@ use crate::continuum::friction::HoleCoefficient;
 /// `fric-continuum-hole/1`.
 #[derive(Clone, Debug, Serialize)]
 pub struct HoleResult {
-    /// Name and version of the form.
+    /// Name and version of the format.
     pub format: &'static str,
-    /// Loads.
+    /// Number of loads.
     pub loads: usize,
     /// μ.
     pub mu: f64,
     /// Its standard error.
     pub standard_error: f64,
-    /// The interval that holds it in 95 of 100 cases.
+    /// The 95 % confidence interval.
     pub interval: [f64; 2],
 }
 
 impl HoleResult {
-    /// Name and version of the form.
+    /// Name and version of the format.
     pub const FORMAT: &str = "fric-continuum-hole/1";
 
-    /// Of a coefficient.
+    /// Creates the result of a coefficient.
     #[must_use]
     pub fn new(found: &HoleCoefficient) -> Self {
         let HoleCoefficient { mu, standard_error, interval, count } = *found;
         Self { format: Self::FORMAT, loads: count, mu, standard_error, interval }
     }
 
-    /// For people.
+    /// Returns a summary for people.
     #[must_use]
     pub fn summary(&self) -> String {
         let Self { loads, mu, standard_error, interval: [from, to], .. } = self;

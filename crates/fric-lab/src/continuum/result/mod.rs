@@ -1,4 +1,4 @@
-//! What comes out of the work on a manipulator, for machines (`serde`) and as tables for people.
+//! Results of the analysis of a manipulator, for machines (`serde`) and as tables for people.
 
 mod calibration;
 mod friction;
@@ -10,7 +10,7 @@ pub use friction::{BridgedGrating, FrictionResult, FrictionSeries, HoleSummary};
 pub use hole::HoleResult;
 pub use shape::{ErrorResult, PickedShape, ShapeResult, WayErrors, WaySeries, WayShape};
 
-/// Stretches of time in which something holds, from the first to the last sample of each, s.
+/// Returns the time intervals in which a condition holds, from the first to the last sample of each, s.
 fn intervals_s(time_s: &[f64], holds: impl Iterator<Item = bool>) -> Vec<[f64; 2]> {
     let mut intervals: Vec<[f64; 2]> = Vec::new();
     let mut was = false;
@@ -25,7 +25,7 @@ fn intervals_s(time_s: &[f64], holds: impl Iterator<Item = bool>) -> Vec<[f64; 2
     intervals
 }
 
-/// The same for people, the first few.
+/// Formats the first few intervals for people.
 fn intervals_text(intervals: &[[f64; 2]]) -> String {
     const MOST: usize = 3;
     let shown: Vec<String> = intervals.iter().take(MOST).map(|[from, to]| format!("{from} … {to} s")).collect();
@@ -33,7 +33,7 @@ fn intervals_text(intervals: &[[f64; 2]]) -> String {
     shown.join(", ") + &more
 }
 
-/// A length in mm, or a dash.
+/// Formats a length in mm, or a dash.
 fn millimetres(value: Option<f64>) -> String {
     value.map_or_else(|| "–".to_owned(), |value| format!("{value:.2}"))
 }

@@ -1,4 +1,4 @@
-//! Shapes by the four ways of friction beside the markers, as figures 10 to 15 of \[C\].
+//! Shapes by the four friction models beside the markers, as in figures 10 to 15 of \[C\].
 
 use std::fmt::Write as _;
 
@@ -12,13 +12,13 @@ use crate::continuum::run::Run;
 use crate::continuum::shape_errors::{ShapeErrors, Way};
 use crate::text::{table, wrapped};
 
-/// Errors that \[C\] has measured on its prototype, mm: what they are of, and max and mean of none, Coulomb and measured.
+/// Errors that \[C\] measured on its prototype, mm: title, and max and mean for none, Coulomb and measured.
 const PUBLISHED: [(&str, [[f64; 2]; 3]); 2] = [
     ("[C] fig. 12, one way", [[9.37, 5.03], [3.06, 2.21], [2.84, 2.03]]),
     ("[C] fig. 15, mixed", [[15.1, 10.56], [19.11, 16.47], [2.87, 1.75]]),
 ];
 
-/// What the ways are whose names do not say it.
+/// Explanation of the friction models whose names are not self-explanatory.
 const LEGEND: [(Way, &str); 3] = [
     (Way::Coulomb, "friction with all holes sliding one way"),
     (Way::Measured, "friction from the gratings"),
@@ -26,75 +26,75 @@ const LEGEND: [(Way, &str); 3] = [
 ];
 const PUBLISHED_LEGEND: &str = "; [C] is what the paper measured on its prototype, of which this is a model";
 
-/// `fric-continuum-shape/1`. Distances are absent where there are no markers.
+/// `fric-continuum-shape/1`. Distances are absent if there are no markers.
 #[derive(Clone, Debug, Serialize)]
 pub struct ShapeResult {
-    /// Name and version of the form.
+    /// Name and version of the format.
     pub format: &'static str,
     /// Name of the manipulator.
     pub manipulator: String,
-    /// How many samples.
+    /// Number of samples.
     pub samples: usize,
-    /// Each way over the shapes that were picked, and over all samples.
+    /// Errors of each friction model over the selected shapes and over all samples.
     pub ways: Vec<WayErrors>,
-    /// The shapes that were picked.
+    /// The selected shapes.
     pub shapes: Vec<PickedShape>,
     /// Gratings that were dead in some samples.
     pub bridged: Vec<BridgedGrating>,
     /// Times of all samples, s.
     pub time_s: Vec<f64>,
-    /// Each way at all samples.
+    /// Each friction model at all samples.
     pub series: Vec<WaySeries>,
-    /// Whether the manipulator is the one that [`PUBLISHED`] is of.
+    /// Whether the manipulator is the one of [`PUBLISHED`].
     #[serde(skip)]
     is_prototype: bool,
 }
 
-/// Errors of a way.
+/// Errors of one friction model.
 #[derive(Clone, Debug, Serialize)]
 pub struct WayErrors {
     /// Its name.
     pub way: &'static str,
-    /// Of the shapes that were picked.
+    /// Errors over the selected shapes.
     pub picked: ErrorResult,
-    /// Of all samples.
+    /// Errors over all samples.
     pub all: ErrorResult,
-    /// Samples for which the model has no shape.
+    /// Number of samples for which the model has no shape.
     pub missing: usize,
 }
 
 /// Distances between disks and markers.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct ErrorResult {
-    /// Greatest, mm.
+    /// Greatest distance, mm.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub max_mm: Option<f64>,
-    /// Mean over disks and shapes, mm.
+    /// Mean distance over disks and shapes, mm.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mean_mm: Option<f64>,
 }
 
-/// One shape by all ways.
+/// One shape by all friction models.
 #[derive(Clone, Debug, Serialize)]
 pub struct PickedShape {
-    /// Its place among the samples, from 0.
+    /// Index of the sample, from 0.
     pub sample: usize,
     /// Time, s.
     pub time_s: f64,
-    /// Tension at the base, N; null where it was not measured.
+    /// Tension at the base, N; null if it was not measured.
     pub tension_base_n: f64,
-    /// Centres of the disks as measured, m; empty without markers.
+    /// Measured centres of the disks, m; empty without markers.
     pub marker_m: Vec<[f64; 2]>,
-    /// By each way.
+    /// The shape by each friction model.
     pub ways: Vec<WayShape>,
 }
 
-/// One shape by one way.
+/// One shape by one friction model.
 #[derive(Clone, Debug, Serialize)]
 pub struct WayShape {
     /// Its name.
     pub way: &'static str,
-    /// Distances.
+    /// Distances between disks and markers.
     #[serde(flatten)]
     pub errors: ErrorResult,
     /// Bend of the manipulator, rad.
@@ -105,16 +105,16 @@ pub struct WayShape {
     pub tension_n: Vec<f64>,
     /// Friction at each hole, N.
     pub friction_n: Vec<f64>,
-    /// What each hole can hold, N.
+    /// Greatest friction that each hole can hold, N.
     pub bound_n: Vec<f64>,
 }
 
-/// A way over the run, one entry for each sample.
+/// One friction model over the run, with one entry per sample.
 #[derive(Clone, Debug, Serialize)]
 pub struct WaySeries {
     /// Its name.
     pub way: &'static str,
-    /// What the model had to say.
+    /// Status of the model.
     pub status: Vec<String>,
     /// Bend of the manipulator, rad.
     pub bend_rad: Vec<f64>,
@@ -129,8 +129,8 @@ impl From<&ShapeErrors> for ErrorResult {
     }
 }
 
-/// Whether a manipulator has what is published of the prototype of \[C\], and no load: dimensions within 1 %, the bending stiffness,
-/// of which E is not published, within 10 %.
+/// Whether a manipulator agrees with the published prototype of \[C\] and has no load: dimensions within 1 %, and the bending stiffness, for which E
+/// is not published, within 10 %.
 fn is_prototype(params: &ManipulatorParams) -> bool {
     let published = ManipulatorOptions::published();
     let near = |one: f64, other: f64, share: f64| (one - other).abs() <= share * other;
@@ -143,10 +143,10 @@ fn is_prototype(params: &ManipulatorParams) -> bool {
 }
 
 impl ShapeResult {
-    /// Name and version of the form.
+    /// Name and version of the format.
     pub const FORMAT: &str = "fric-continuum-shape/1";
 
-    /// Of a run of a manipulator that has been computed; `picked` are places of samples.
+    /// Creates the result of a computed run. `picked` holds indices of samples.
     #[must_use]
     pub fn new(
         manipulator: &str,
@@ -207,14 +207,14 @@ impl ShapeResult {
         }
     }
 
-    /// Greatest bend of the last way, which is the nearest to the truth, rad.
+    /// Returns the greatest bend of the last friction model, which is nearest to the truth, rad.
     #[must_use]
     pub fn greatest_bend_rad(&self) -> f64 {
         let last = self.series.last().map_or(&[][..], |way| &way.bend_rad);
         last.iter().fold(0.0, |most, bend_rad| bend_rad.abs().max(most))
     }
 
-    /// What is out of the ordinary, a sentence each.
+    /// Returns warnings, one sentence each.
     #[must_use]
     pub fn warnings(&self, ways: &[WayShapes]) -> Vec<String> {
         let mut warnings: Vec<String> = self.bridged.iter().map(|one| one.warning(self.samples)).collect();
@@ -232,13 +232,13 @@ impl ShapeResult {
         warnings
     }
 
-    /// For people: a table of at most 80 columns, with mean distances.
+    /// Returns a table for people, at most 80 columns wide, with mean distances.
     #[must_use]
     pub fn summary(&self) -> String {
         self.table(false)
     }
 
-    /// For people: the same table; `wide` with the greatest distances too.
+    /// Returns the same table; `wide` adds the greatest distances.
     #[must_use]
     pub fn table(&self, wide: bool) -> String {
         let picked = |mean: String, max: String| if wide { vec![mean, max] } else { vec![mean] };

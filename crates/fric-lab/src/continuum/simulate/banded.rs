@@ -1,6 +1,6 @@
-//! A symmetric matrix whose entries lie near its diagonal, and its Cholesky factor.
+//! A symmetric banded matrix and its Cholesky factor.
 
-/// The lower half, row by row: entry (i, i − d) stands at `i·(width + 1) + width − d`.
+/// A symmetric banded matrix. The lower half is stored row by row: entry (i, i − d) is at `i·(width + 1) + width − d`.
 #[derive(Clone, Debug)]
 pub struct Banded {
     width: usize,
@@ -16,7 +16,7 @@ impl Banded {
         self.entries.fill(0.0);
     }
 
-    /// Adds to the entry (row, column) of the lower half; what is above the diagonal is passed over.
+    /// Adds to the entry (row, column) of the lower half; entries above the diagonal are ignored.
     pub fn add(&mut self, row: usize, column: usize, value: f64) {
         if column <= row {
             let place = self.place(row, column);
@@ -32,7 +32,7 @@ impl Banded {
         self.entries.len() / (self.width + 1)
     }
 
-    /// The factor L of `A + shift·1 = LLᵀ`; `None` where that is not positive definite.
+    /// Returns the factor L of `A + shift·1 = LLᵀ`; `None` if that is not positive definite.
     pub fn factor(&self, shift: f64) -> Option<Factor> {
         let mut lower = self.clone();
         for row in 0..self.size() {
@@ -62,7 +62,7 @@ impl Banded {
 pub struct Factor(Banded);
 
 impl Factor {
-    /// Solves for a right side, in place.
+    /// Solves for a right-hand side, in place.
     pub fn solve(&self, right: &mut [f64]) {
         let Self(lower) = self;
         let row_before = |row: usize| {

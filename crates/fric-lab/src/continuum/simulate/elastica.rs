@@ -1,61 +1,61 @@
-//! The backbone truth: a finely divided elastica of least energy.
+//! The true backbone of the simulation: a finely divided elastica of minimum energy.
 //!
-//! Every segment is a row of short rigid links with a spring in each joint, EI over the length of a link. What bends it is the
-//! length of the straight tendons between the disks, each under its tension, and dead weight. The shape is the minimum of
+//! Every segment is a chain of short rigid links with a spring in each joint, with a stiffness of EI divided by the length of a link. The loads are
+//! the straight tendons between the disks, each under its tension, and dead weight. The shape is the minimum of
 //!
 //! `V = Σ ½(EI/h)(ψ_{k+1} − ψ_k)² + Σ T_j·ℓ_j − Σ W·p`
 //!
-//! over the directions ψ of the links, found by Newton's method with a banded Cholesky factor and a search along the step for
-//! less energy. A disk sits in a joint and has the mean direction of its two links; the joints in the base and the tip have half a
-//! link on one side. Nothing of this is the model's: not the unknowns, not the curvature (that of an elastica,
-//! not constant), not the balance of forces (none is written down), not the method.
+//! over the directions ψ of the links, found by Newton's method with a banded Cholesky factor and a line search that decreases the energy. A disk
+//! sits in a joint and has the mean direction of its two links; the joints at the base and the tip have half a link on one side. The model shares
+//! none of this: not the unknowns, not the curvature (that of an elastica, not constant), not the balance of forces (none is written down), not the
+//! method.
 
 use fric_core::continuum::ManipulatorParams;
 use nalgebra::Vector2;
 
 use super::banded::{Banded, Factor};
 
-/// Newton steps of one minimum.
+/// Maximum number of Newton steps for one minimum.
 const MOST_STEPS: u32 = 200;
 
 /// A manipulator of many links.
 #[derive(Clone, Debug)]
 pub struct Elastica {
     segments: usize,
-    /// Links in a segment.
+    /// Number of links in a segment.
     links: usize,
     link_m: f64,
     hole_m: f64,
     /// EI/h, N m.
     spring_nm: f64,
-    /// Stiffness of each joint, N m, and its angle without load, rad.
+    /// Stiffness of each joint, N m, and its unloaded angle, rad.
     springs: Vec<(f64, f64)>,
-    /// Force of all that is beyond a link, half its own weight included, N.
+    /// Force of everything beyond a link, including half its own weight, N.
     beyond_n: Vec<Vector2<f64>>,
-    /// Directions of the links, and of the last disk.
+    /// Directions of the links, and of the last disk, rad.
     angle_rad: Vec<f64>,
     hessian: Banded,
 }
 
-/// One straight tendon between two disks.
+/// A straight piece of tendon between two disks.
 #[derive(Clone, Debug)]
 pub struct Strand {
     /// Length, m.
     pub length_m: f64,
     /// Direction towards the tip.
     pub direction: Vector2<f64>,
-    /// Place of the first of the angles it depends on.
+    /// Index of the first angle that it depends on.
     first: usize,
-    /// Derivatives of its length with respect to them, m.
+    /// Derivatives of its length with respect to these angles, m.
     slopes_m: Vec<f64>,
 }
 
-/// Why no shape was found: the energy has no minimum near, as when a column buckles beyond all bounds.
+/// The error that no shape was found: the energy has no minimum nearby, for instance when a column buckles without limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NoMinimum;
 
 impl Elastica {
-    /// Straight, with `links` links in a segment.
+    /// Creates a straight manipulator with `links` links in a segment.
     pub fn new(params: &ManipulatorParams, links: usize) -> Self {
         let segments = params.disk_count();
         let count = segments * links;
@@ -86,7 +86,7 @@ impl Elastica {
         }
     }
 
-    /// The direction of the disk at the end of a segment (0: the base plate) as a mean of angles: their places.
+    /// Returns the indices of the angles whose mean is the direction of the disk at the end of a segment (0: the base plate).
     fn disk(&self, disk: usize) -> [Option<usize>; 2] {
         match disk {
             0 => [None, None],
@@ -99,12 +99,12 @@ impl Elastica {
         self.disk(disk).into_iter().flatten().map(|place| 0.5 * self.angle_rad[place]).sum()
     }
 
-    /// Bend of the whole manipulator, rad.
+    /// Returns the bend of the whole manipulator, rad.
     pub fn bend_rad(&self) -> f64 {
         self.disk_rad(self.segments)
     }
 
-    /// Centres of the disks, m.
+    /// Returns the centres of the disks, m.
     pub fn disk_position_m(&self) -> Vec<[f64; 2]> {
         let mut place_m = Vector2::zeros();
         let segments = self.angle_rad[..self.segments * self.links].chunks(self.links);
@@ -116,7 +116,7 @@ impl Elastica {
             .collect()
     }
 
-    /// The tendon in a segment (from 0) at a side, +1 towards +y.
+    /// Returns the tendon in a segment (from 0) on a side, +1 towards +y.
     pub fn strand(&self, segment: usize, side: f64) -> Strand {
         let offset_m = side * self.hole_m;
         let first = (segment * self.links).saturating_sub(1);
@@ -139,7 +139,7 @@ impl Elastica {
         Strand { length_m, direction, first, slopes_m }
     }
 
-    /// Energy up to a constant, N m.
+    /// Returns the energy up to a constant, N m.
     fn energy_nm(&self, tension_n: [&[f64]; 2]) -> f64 {
         let mut energy = 0.0;
         self.joints(|_, _, stiffness, difference| energy += 0.5 * stiffness * difference * difference);
@@ -154,7 +154,7 @@ impl Elastica {
         energy
     }
 
-    /// Calls with the places of both links of every joint (`None`: the base), its stiffness and its angle beyond that without load.
+    /// Calls `each` for every joint with the indices of both links (`None`: the base), its stiffness and its angle relative to the unloaded state.
     fn joints(&self, mut each: impl FnMut(Option<usize>, usize, f64, f64)) {
         for ((place, angle), (stiffness, rest_rad)) in self.angle_rad.iter().enumerate().zip(&self.springs) {
             let before = place.checked_sub(1);
@@ -162,7 +162,7 @@ impl Elastica {
         }
     }
 
-    /// Writes the second derivatives of the energy; the first are returned.
+    /// Writes the second derivatives of the energy and returns the first ones.
     fn derivatives(&mut self, tension_n: [&[f64]; 2]) -> Vec<f64> {
         let mut hessian = std::mem::replace(&mut self.hessian, Banded::new(0, 0));
         hessian.clear();
@@ -221,7 +221,7 @@ impl Elastica {
         }
     }
 
-    /// Goes to the nearest minimum of the energy under these tensions of both tendons in the segments, N. Returns the factor of the second
+    /// Moves to the nearest minimum of the energy under these tensions of both tendons in the segments, N. Returns the factor of the second
     /// derivatives there.
     pub fn settle(&mut self, tension_n: [&[f64]; 2]) -> Result<Factor, NoMinimum> {
         let mut energy_nm = self.energy_nm(tension_n);
@@ -248,7 +248,7 @@ impl Elastica {
                     *angle = begin - share * change;
                 }
                 let trial_nm = self.energy_nm(tension_n);
-                // Near the minimum the energy no longer tells one point from another; the full step is right there.
+                // Near the minimum the energy cannot distinguish the points any more; the full step is right there.
                 if trial_nm < energy_nm || longest < 1e-6 {
                     (energy_nm, found) = (trial_nm, true);
                     break;
@@ -266,7 +266,7 @@ impl Elastica {
         Err(NoMinimum)
     }
 
-    /// What one newton more in the strand of each segment does to the length of each strand of that side, m/N.
+    /// Returns the change in length of each piece of tendon on a side per newton of tension in each of them, m/N.
     pub fn compliance(&self, factor: &Factor, side: f64) -> Vec<Vec<f64>> {
         let strands: Vec<Strand> = (0..self.segments).map(|segment| self.strand(segment, side)).collect();
         strands
@@ -286,7 +286,8 @@ impl Elastica {
     }
 }
 
-/// Stiffness of a joint, N m, and its angle without load, rad: half a link on either side, each of its own segment; at base and tip one half.
+/// Returns the stiffness of a joint, N m, and its unloaded angle, rad: half a link on either side, each of its own segment; at base and tip only one
+/// half.
 fn joint(params: &ManipulatorParams, links: usize, link_m: f64, place: usize) -> (f64, f64) {
     let half = |link: usize| {
         let segment = link / links;
@@ -312,7 +313,7 @@ fn unit(angle_rad: f64) -> Vector2<f64> {
     Vector2::new(libm::cos(angle_rad), libm::sin(angle_rad))
 }
 
-/// A quarter turn on from [`unit`], and its derivative.
+/// Returns the unit vector that is a quarter turn ahead of [`unit`], which is also the derivative of [`unit`].
 fn normal(angle_rad: f64) -> Vector2<f64> {
     Vector2::new(-libm::sin(angle_rad), libm::cos(angle_rad))
 }
@@ -343,7 +344,7 @@ mod tests {
         let tension_n = [&tension_n[0][..], &tension_n[1][..]];
         let gradient = elastica.derivatives(tension_n);
         let size = gradient.len();
-        // The product of the Hessian with unit vectors, through its factor: H⁻¹(dg) must give the unit vector back.
+        // The product of the Hessian with unit vectors, through its factor: H⁻¹(dg) must return the unit vector.
         let shift = 1.0;
         let factor = elastica.hessian.factor(shift).unwrap();
         for place in [0, 3, 4, 5, 17, size - 2, size - 1] {
@@ -383,8 +384,8 @@ mod tests {
 
     #[test]
     fn a_stepped_and_curved_backbone_is_that_of_the_formula() {
-        // Without load it is an arc; a tip moment's stand-in, a small force F across, deflects a cantilever of two stiffnesses, EI_1 over the
-        // half at the base, by F/3·((L³ − (L/2)³)/EI_1 + (L/2)³/EI_2).
+        // Without load it is an arc. A small transverse force F deflects a cantilever of two stiffnesses, with EI_1 in the half at the base, by
+        // F/3·((L³ − (L/2)³)/EI_1 + (L/2)³/EI_2).
         let published = ManipulatorOptions { disk_mass_kg: 0.0, ..ManipulatorOptions::published() };
         let settled = |options: &ManipulatorOptions<'_>| {
             let mut elastica = Elastica::new(&ManipulatorParams::new(options).unwrap(), 40);
@@ -405,7 +406,7 @@ mod tests {
 
     #[test]
     fn a_cantilever_sags_by_the_formula() {
-        // wL⁴/(8EI) for a light weight across, and FL³/(3EI).
+        // wL⁴/(8EI) for a small transverse weight, and FL³/(3EI).
         let published = ManipulatorOptions { disk_mass_kg: 0.0, ..ManipulatorOptions::published() };
         let sag = |options: &ManipulatorOptions<'_>, links: usize| {
             let mut elastica = Elastica::new(&ManipulatorParams::new(options).unwrap(), links);

@@ -1,25 +1,25 @@
-//! The friction truth: a tendon that sticks and slips in its holes.
+//! The true friction of the simulation: a tendon that sticks and slips in its holes.
 //!
-//! Rate-independent: after each step of the base tension the state is the one that makes
+//! The law is rate-independent: after each step of the base tension the state minimises
 //!
 //! `V(ψ) − T_0·u_1 + Σ c_i·|u_i − u_i,before|`
 //!
-//! least, the energy with the work of the base tension and what the holes dissipate, with `u_i` the way of the (inextensible) tendon
-//! through hole i towards the base and `c_i = μ_i·|T_{i−1} + T_i|` taken at the end of the step (\[C\] 12, 13, by the vectors
-//! themselves). Its dual is solved: frictions within `±c_i`, such that a tendon moves only where friction is at its bound.
-//! There is no presliding, no Dahl state and no stretch of the tendon in it.
+//! This is the energy with the work of the base tension and the dissipation in the holes, where `u_i` is the displacement of the (inextensible)
+//! tendon through hole i towards the base and `c_i = μ_i·|T_{i−1} + T_i|` is evaluated at the end of the step (\[C\] 12, 13, with the vectors
+//! themselves). The dual problem is solved: frictions within `±c_i`, such that a tendon moves only where its friction is at the bound. It contains no
+//! presliding, no Dahl state and no stretch of the tendon.
 
 use super::elastica::{Elastica, NoMinimum};
 use nalgebra::Vector2;
 
-/// Rounds of one step, in which bounds and compliance are renewed.
+/// Maximum number of rounds per step, each of which updates bounds and compliance.
 const MOST_ROUNDS: u32 = 400;
-/// Sweeps over the holes in one round.
+/// Maximum number of sweeps over the holes per round.
 const MOST_SWEEPS: u32 = 4000;
-/// Frictions are settled to this, N.
+/// Tolerance of the frictions, N.
 const SETTLED_N: f64 = 1e-10;
 
-/// A manipulator with its first tendon in rubbing holes.
+/// A manipulator with its first tendon in holes with friction.
 #[derive(Clone, Debug)]
 pub struct Rubbing {
     elastica: Elastica,
@@ -27,12 +27,12 @@ pub struct Rubbing {
     friction_n: Vec<f64>,
     bound_n: Vec<f64>,
     tension_n: Vec<f64>,
-    /// Way of the tendon through each hole, m.
+    /// Displacement of the tendon through each hole, m.
     travel_m: Vec<f64>,
 }
 
 impl Rubbing {
-    /// With a tendon that lies without tension in the manipulator as it hangs.
+    /// Creates the manipulator as it hangs, with a tendon without tension.
     pub fn new(mut elastica: Elastica, mu: Vec<f64>) -> Result<Self, NoMinimum> {
         elastica.settle([&[], &[]])?;
         let zeros = vec![0.0; mu.len()];
@@ -52,22 +52,22 @@ impl Rubbing {
         &self.elastica
     }
 
-    /// `T_{i−1} − T_i`, N.
+    /// Returns `T_{i−1} − T_i`, N.
     pub fn friction_n(&self) -> &[f64] {
         &self.friction_n
     }
 
-    /// `c_i`, N.
+    /// Returns `c_i`, N.
     pub fn bound_n(&self) -> &[f64] {
         &self.bound_n
     }
 
-    /// In each segment, N.
+    /// Returns the tension in each segment, N.
     pub fn tension_n(&self) -> &[f64] {
         &self.tension_n
     }
 
-    /// From the tip: each strand that has become shorter has let tendon out through the holes before it.
+    /// Returns the displacements, summed from the tip: each piece of tendon that has become shorter has moved tendon out through the holes before it.
     fn travel(&self) -> Vec<f64> {
         let mut sum_m = 0.0;
         let mut travel_m: Vec<f64> = (0..self.mu.len())
@@ -90,7 +90,7 @@ impl Rubbing {
         self.friction_n.iter().map(behind).collect()
     }
 
-    /// `μ_i·|T_{i−1} + T_i|` with the tensions as vectors on the hole.
+    /// Returns `μ_i·|T_{i−1} + T_i|` with the tensions as vectors on the hole.
     fn bounds(&self, base_n: f64) -> Vec<f64> {
         let mut before = base_n * Vector2::x();
         let each = |(segment, (mu, tension_n)): (usize, (&f64, &f64))| {
@@ -102,7 +102,7 @@ impl Rubbing {
         self.mu.iter().zip(&self.tension_n).enumerate().map(each).collect()
     }
 
-    /// One step: the base tension changes, everything settles.
+    /// Changes the base tension and finds the new equilibrium.
     pub fn step(&mut self, base_n: f64) -> Result<(), NoMinimum> {
         let before_m = self.travel_m.clone();
         for _ in 0..MOST_ROUNDS {
@@ -123,14 +123,14 @@ impl Rubbing {
         Err(NoMinimum)
     }
 
-    /// How much less a tendon moves through hole i for one newton more of friction at hole k, m/N.
+    /// Returns how much less the tendon moves through hole i per newton more of friction at hole k, m/N.
     fn softness(&self, compliance: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let count = self.mu.len();
         let beyond = |one: usize, other: usize| compliance[other..].iter().flat_map(|row| &row[one..]).sum::<f64>();
         (0..count).map(|one| (0..count).map(|other| -beyond(one, other)).collect()).collect()
     }
 
-    /// Frictions within their bounds that leave motion only where they are at them, for motions that change linearly.
+    /// Returns frictions within their bounds that allow motion only where they are at the bound, for motions that are linear in the frictions.
     fn frictions(&self, softness: &[Vec<f64>], motion_m: &[f64]) -> Vec<f64> {
         let mut friction_n: Vec<f64> =
             self.friction_n.iter().zip(&self.bound_n).map(|(now, bound)| now.clamp(-bound, *bound)).collect();

@@ -1,11 +1,10 @@
-//! A simulated manipulator whose truth is not the model: runs with gratings, markers and what was really there.
+//! A simulated manipulator whose true physics differ from the model: runs with gratings, markers and the true state.
 //!
-//! The backbone is an elastica of many links, found as the minimum of its energy; the tendon sticks and slips in holes whose μ
-//! spread, by a rate-independent principle of least energy and dissipation. No curvature is constant, no
-//! Dahl state exists, no function of [`fric_core::continuum`] is called but for its parameters. Gravity and tip load act
-//! where the parameters have them. One tendon is pulled; the other is slack.
+//! The backbone is an elastica of many links at the minimum of its energy. The tendon sticks and slips in holes with different μ, by a
+//! rate-independent principle of minimum energy and dissipation. There is no constant curvature and no Dahl state, and apart from its parameters no
+//! function of [`fric_core::continuum`] is called. Gravity and tip load act as in the parameters. One tendon is pulled; the other is slack.
 //!
-//! The same seed gives the same bits.
+//! Equal seeds give equal bits.
 
 mod banded;
 mod elastica;
@@ -24,25 +23,25 @@ use super::fbg::{Calibration, LoadStep};
 use super::run::RunSample;
 use crate::random::uniform;
 
-/// Standard gravity, m/s²: what a gram on a calibration hook weighs.
+/// Standard gravity, m/s², which converts a mass on a calibration hook to its weight.
 pub const STANDARD_GRAVITY_M_PER_S2: f64 = 9.80665;
-/// Samples of a simulated run in a second.
+/// Samples per second of a simulated run.
 const SAMPLES_PER_S: f64 = 10.0;
 
-/// What is done with the tendon.
+/// The actuation of the tendon.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Experiment {
-    /// It is pulled: friction has one direction everywhere.
+    /// Pulling only: friction has one direction everywhere.
     OneWay,
-    /// It is pulled and released by turns: directions differ along the tendon.
+    /// Alternate pulling and releasing: directions differ along the tendon.
     Mixed,
 }
 
 impl Experiment {
-    /// All there are.
+    /// All experiments.
     pub const ALL: [Self; 2] = [Self::OneWay, Self::Mixed];
 
-    /// In one word.
+    /// Returns the name in one word.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -51,7 +50,7 @@ impl Experiment {
         }
     }
 
-    /// Turning points of the base tension, as shares of the greatest.
+    /// Returns the turning points of the base tension, relative to the greatest one.
     fn turns(self) -> &'static [f64] {
         match self {
             Self::OneWay => &[0.012, 1.0],
@@ -59,7 +58,7 @@ impl Experiment {
         }
     }
 
-    /// Base tensions at [`SAMPLES_PER_S`], N.
+    /// Returns the base tensions at [`SAMPLES_PER_S`], N.
     fn tensions(self, greatest_n: f64) -> Vec<f64> {
         const STEP_RATIO: f64 = 0.015;
         let turns = self.turns();
@@ -75,27 +74,27 @@ impl Experiment {
     }
 }
 
-/// How to simulate a run.
+/// Options of a simulated run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TendonSimulationOptions {
-    /// What is done.
+    /// The actuation.
     pub experiment: Experiment,
     /// Greatest tension at the base, N.
     pub greatest_tension_n: f64,
-    /// The same seed gives the same bits.
+    /// Seed; equal seeds give equal bits.
     pub seed: u64,
-    /// How far each hole's μ is from the stated one at most, as a share of it: uniform in `±mu_spread_ratio`, 0…1.
+    /// Maximum relative difference of each hole's μ from the stated one: uniform in `±mu_spread_ratio`, 0…1.
     pub mu_spread_ratio: f64,
     /// Standard deviation of the white Gaussian noise of each grating, nm.
     pub grating_noise_nm: f64,
     /// Standard deviation of the white Gaussian noise of each coordinate of a marker, m.
     pub marker_noise_m: f64,
-    /// Links in a segment, 4…200.
+    /// Number of links in a segment, 4…200.
     pub link_count: usize,
 }
 
 impl Default for TendonSimulationOptions {
-    /// Pulled to 1.7 N, μ spread by ±10 %, gratings good to half a picometre, markers to a quarter of a millimetre.
+    /// Returns a pull to 1.7 N, μ spread by ±10 %, gratings accurate to half a picometre, and markers to a quarter of a millimetre.
     fn default() -> Self {
         Self {
             experiment: Experiment::OneWay,
@@ -109,14 +108,14 @@ impl Default for TendonSimulationOptions {
     }
 }
 
-/// What was really there at one sample, first tendon.
+/// The true state at one sample, first tendon.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TendonTruth {
     /// Tension in each segment, N.
     pub tension_n: Vec<f64>,
     /// Friction at each hole, N.
     pub friction_n: Vec<f64>,
-    /// What each hole could hold, N.
+    /// Greatest friction that each hole can hold, N.
     pub bound_n: Vec<f64>,
     /// Bend of the whole manipulator, rad.
     pub bend_rad: f64,
@@ -134,9 +133,9 @@ impl TendonTruth {
 /// A simulated run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SimulatedRun {
-    /// What was measured.
+    /// The measurements.
     pub samples: Vec<RunSample>,
-    /// What was really there, sample by sample.
+    /// The true state, sample by sample.
     pub truth: Vec<TendonTruth>,
     /// Load steps on the same gratings, 20…200 g in steps of 20 g.
     pub calibration: Vec<LoadStep>,
@@ -147,8 +146,8 @@ pub struct SimulatedRun {
 /// Simulates a run of a manipulator.
 ///
 /// # Errors
-/// [`ContinuumError::OptionOutOfRange`]; [`ContinuumError::TooGreatTension`] above what the tendon can bear;
-/// [`ContinuumError::NoShape`] where the manipulator finds no equilibrium.
+/// Returns [`ContinuumError::OptionOutOfRange`], [`ContinuumError::TooGreatTension`] above the tendon's capacity, or [`ContinuumError::NoShape`] if
+/// the manipulator has no equilibrium.
 pub fn simulate(params: &ManipulatorParams, options: &TendonSimulationOptions) -> Result<SimulatedRun, ContinuumError> {
     options.check()?;
     let (greatest_tension_n, capacity_n) = (options.greatest_tension_n, params.capacity_n(Tendon::Agonist));
@@ -159,7 +158,7 @@ pub fn simulate(params: &ManipulatorParams, options: &TendonSimulationOptions) -
     let spread = options.mu_spread_ratio;
     let mu: Vec<f64> =
         params.mu(Tendon::Agonist).iter().map(|mu| mu * (1.0 + uniform(&mut random, -spread, spread))).collect();
-    // Gratings of silica fibre differ by some per cent, and hang in their holders by some millinewton.
+    // Gratings of silica fibre differ by some per cent, and their mounts preload them by some millinewtons.
     let gratings: Vec<Calibration> = mu
         .iter()
         .map(|_| Calibration::known(uniform(&mut random, 10.5, 12.2), uniform(&mut random, -0.03, 0.03), 0.0))
@@ -203,12 +202,12 @@ pub fn simulate(params: &ManipulatorParams, options: &TendonSimulationOptions) -
     Ok(SimulatedRun { samples, truth, calibration, mu })
 }
 
-/// The elastica under given tensions in the segments of both tendons, N, without holes: centres of its disks, m, and its bend, rad.
+/// Returns the centres of the disks, m, and the bend, rad, of the elastica under given tensions in the segments of both tendons, N, without holes.
 ///
-/// An empty slice is a slack tendon. It is the truth that [`fric_core::continuum::StaticModel`] is compared with.
+/// An empty slice is a slack tendon. The result is the truth that [`fric_core::continuum::StaticModel`] is compared with.
 ///
 /// # Errors
-/// [`ContinuumError::NoShape`] where the energy has no minimum near.
+/// Returns [`ContinuumError::NoShape`] if the energy has no minimum nearby.
 pub fn elastica(
     params: &ManipulatorParams,
     link_count: usize,

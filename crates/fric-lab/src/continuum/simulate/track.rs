@@ -1,9 +1,9 @@
-//! A path of bends, followed through the inverse of the model on the simulated manipulator: how far the tip is from where it is
-//! wanted, by what is known of friction.
+//! Follows a path of bends through the inverse of the model on the simulated manipulator, and measures the distance of the tip from its goal for each
+//! friction model.
 //!
-//! The goals are places of the tip that the simulated manipulator itself has had: it is pulled once, and the tip is recorded at each wanted
-//! bend. Then the inverse of the model ([`AnyStaticModel::tension_for`]) gives the tension at the base for one after the other, the elastica
-//! with its sticking holes goes there in small steps, and nothing of where it ends comes back: what is wrong with a tension stays wrong.
+//! The goals are tip positions that the simulated manipulator itself has had: it is pulled once, and the tip is recorded at each wanted bend. The
+//! inverse of the model ([`AnyStaticModel::tension_for`]) then gives the tension at the base for one goal after the other, and the elastica with its
+//! sticking holes moves there in small steps. There is no feedback, so the error of a tension remains.
 
 use fric_core::continuum::{
     AnyStaticModel, Direction, Drive, DriveOptions, Friction, Goal, GoalStatus, ManipulatorParams, Tendon,
@@ -17,54 +17,54 @@ use crate::continuum::error::ContinuumError;
 use crate::continuum::shape_errors::Way;
 use crate::random::uniform;
 
-/// Longest step of the tension that the simulated manipulator takes at once, as a share of the tendon's capacity.
+/// Longest step of the tension that the simulated manipulator takes at once, as a fraction of the tendon's capacity.
 const STEP_RATIO: f64 = 0.006;
 
-/// How to follow a path.
+/// Options of a path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrackOptions {
-    /// Wanted bends one after the other, rad.
+    /// Wanted bends in sequence, rad.
     pub bend_rad: Vec<f64>,
-    /// The same seed gives the same bits.
+    /// Seed; equal seeds give equal bits.
     pub seed: u64,
-    /// How far each hole's μ is from the stated one at most, as a share of it: uniform in `±mu_spread_ratio`, 0…1.
+    /// Maximum relative difference of each hole's μ from the stated one: uniform in `±mu_spread_ratio`, 0…1.
     pub mu_spread_ratio: f64,
-    /// Links in a segment, 4…200.
+    /// Number of links in a segment, 4…200.
     pub link_count: usize,
 }
 
-/// One goal of a path by one way of friction.
+/// One goal of a path with one friction model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrackedGoal {
-    /// Wanted place of the tip, m.
+    /// Wanted position of the tip, m.
     pub wanted_m: [f64; 2],
-    /// Where the simulated manipulator has it, m.
+    /// Position of the simulated manipulator's tip, m.
     pub tip_m: [f64; 2],
     /// Tension at the base, N.
     pub tension_base_n: f64,
-    /// What the inverse had to say.
+    /// Status of the inverse.
     pub status: GoalStatus,
 }
 
 impl TrackedGoal {
-    /// How far the tip is from where it is wanted, m.
+    /// Returns the distance of the tip from the goal, m.
     #[must_use]
     pub fn error_m(&self) -> f64 {
         libm::hypot(self.tip_m[0] - self.wanted_m[0], self.tip_m[1] - self.wanted_m[1])
     }
 }
 
-/// A path by one way of friction.
+/// A path with one friction model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Track {
-    /// Which way: none, Coulomb with the direction of each change, or history.
+    /// The friction model: none, Coulomb with the direction of each change, or history.
     pub way: Way,
-    /// Goal by goal.
+    /// The goals in sequence.
     pub goals: Vec<TrackedGoal>,
 }
 
 impl Track {
-    /// Mean distance of the tip from where it is wanted, m.
+    /// Returns the mean distance of the tip from the goals, m.
     #[must_use]
     pub fn mean_error_m(&self) -> f64 {
         #[expect(clippy::cast_precision_loss, reason = "a number of goals")]
@@ -73,11 +73,12 @@ impl Track {
     }
 }
 
-/// Follows a path three times: without compensation of friction, with Coulomb's in the direction of each change of the bend, and with the
-/// holes' history.
+/// Follows a path three times: without friction compensation, with Coulomb friction in the direction of each change of the bend, and with the holes'
+/// history.
 ///
 /// # Errors
-/// [`ContinuumError::OptionOutOfRange`] for an option or a bend that the arm cannot have; [`ContinuumError::NoShape`] where the manipulator finds no equilibrium.
+/// Returns [`ContinuumError::OptionOutOfRange`] for an option or a bend that is out of range, or [`ContinuumError::NoShape`] if the manipulator has
+/// no equilibrium.
 pub fn track(params: &ManipulatorParams, options: &TrackOptions) -> Result<Vec<Track>, ContinuumError> {
     options.check()?;
     let mut random = ChaCha8Rng::seed_from_u64(options.seed);
@@ -92,7 +93,7 @@ pub fn track(params: &ManipulatorParams, options: &TrackOptions) -> Result<Vec<T
         .collect()
 }
 
-/// The simulated manipulator, and the tension at its base.
+/// The simulated manipulator and the tension at its base.
 #[derive(Clone)]
 struct Arm {
     rubbing: Rubbing,
@@ -106,7 +107,7 @@ impl Arm {
         Ok(Self { rubbing, step_n: STEP_RATIO * params.capacity_n(Tendon::Agonist), tension_base_n: 0.0 })
     }
 
-    /// Goes to a tension at the base in small steps.
+    /// Moves to a tension at the base in small steps.
     fn pull(&mut self, tension_base_n: f64) -> Result<(), ContinuumError> {
         let from_n = self.tension_base_n;
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small positive number")]
@@ -132,7 +133,7 @@ fn no_shape(tension_base_n: f64) -> ContinuumError {
     ContinuumError::NoShape { time_s: 0.0, tension_base_n }
 }
 
-/// Where the tip is at each of these bends while the arm is pulled once; between two steps of the tension on a line.
+/// Returns the position of the tip at each of these bends while the arm is pulled once, interpolated linearly between two steps of the tension.
 fn recorded(mut arm: Arm, params: &ManipulatorParams, bend_rad: &[f64]) -> Result<Vec<[f64; 2]>, ContinuumError> {
     let min = arm.bend_rad();
     let max_rad = bend_rad.iter().copied().fold(min, f64::max);
@@ -177,7 +178,7 @@ fn follow(
         };
         let command = model.tension_for(Goal::TipM(wanted_m), friction, &drive);
         let [tension_base_n, _] = command.base_tension_n;
-        // The shape is where the next search starts; with the history it is the memory too.
+        // The shape is where the next search starts; with the history it is also the memory.
         let _ = model.solve(command.base_tension_n, friction);
         arm.pull(tension_base_n)?;
         before_rad = bend_rad;

@@ -1,7 +1,7 @@
-//! Faults of a recording that are corrected before model and log are compared, for whoever compares and looks for no effect: `replay` on request, and `fit`.
+//! Recording faults that `fit`, and `replay` on request, correct before they compare model and log. Neither searches for effects.
 //!
-//! They are found as the discovery finds them (`timing`, `length_noise`), by the model that is given. What that model lacks may look like a reference that comes late: the discovery
-//! alone looks again with what it has found.
+//! The faults are found as in the discovery (`timing`, `length_noise`), but with the given model. An effect that is missing from this model may look
+//! like a late reference. Only the discovery repeats the check with the effects that it has found.
 
 use fric_core::Sample;
 use rayon::prelude::*;
@@ -11,12 +11,13 @@ use super::{length_noise, timing};
 use crate::fit::{CableFit, CableRecord, FitOptions, Measurements, Progress, Row, fit_cables, residuals_n};
 use crate::samples::noise::white_noise;
 
-/// A fit corrects the time of a reference by itself only where no more than this multiple of the white noise is left then: else something else is missing, which may look like a late
-/// reference. Tuned on 24 simulated logs of others: the two that have such a fault come to 0.99 and 0.97 of their noise, the four in which a missing effect looks like it to 1.38, 1.69, 2.6 and
-/// 4.7. With 1.12 the same are told; with 1.5 also the first of the four.
+/// A fit corrects the time of a reference only if the residual after the correction is at most this multiple of the white noise. Otherwise an effect
+/// may be missing that looks like a late reference. Tuned on 24 simulated logs of others: the two logs with such a fault come to 0.99 and 0.97 of
+/// their noise; the four in which a missing effect mimics it come to 1.38, 1.69, 2.6 and 4.7. With 1.12 the decisions are the same; with 1.5 the
+/// first of the four is corrected wrongly.
 const NOTHING_LEFT_RATIO: f64 = 1.25;
 
-/// What was corrected in a log, cable by cable.
+/// The corrections of a log, cable by cable.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Corrections {
     cables: Vec<CableCorrection>,
@@ -26,11 +27,11 @@ pub struct Corrections {
 #[derive(Clone, Debug, Default, PartialEq)]
 struct CableCorrection {
     faults: Vec<RecordingFault>,
-    /// The reference of each sample where it belongs, N; `None` where its time is right.
+    /// The reference of each sample at its correct time, N; `None` if its time was right.
     references_n: Option<Vec<f64>>,
 }
 
-/// The faults of cables with a reference that can be corrected: one that comes late or runs by another clock, and a length that trembles.
+/// Finds the correctable faults of all cables that have a reference: a reference that is late or runs on another clock, and a noisy length.
 #[must_use]
 pub fn corrections(measurements: &Measurements<'_>, progress: &Progress) -> Corrections {
     let given: Vec<CableRecord<'_>> = measurements.cables().collect();
@@ -54,19 +55,19 @@ pub fn corrections(measurements: &Measurements<'_>, progress: &Progress) -> Corr
 }
 
 impl Corrections {
-    /// What was wrong with the recording of a cable.
+    /// Returns the recording faults of a cable.
     #[must_use]
     pub fn faults(&self, cable: usize) -> &[RecordingFault] {
         self.cables.get(cable).map_or(&[], |cable| &cable.faults)
     }
 
-    /// The play that keeps the noise of the lengths out, m to either side; `None` where there is none that matters.
+    /// Returns the play that suppresses the noise of the lengths, m to either side; `None` if the noise does not matter.
     #[must_use]
     pub fn length_noise_m(&self) -> Option<f64> {
         self.length_noise_m
     }
 
-    /// A sample of the log with its references where they belong; `number` counts the samples from 0, `room` holds the forces.
+    /// Returns a sample of the log with its references at their correct times. `number` counts the samples from 0; `room` is a buffer for the forces.
     pub fn corrected<'a>(&self, number: usize, sample: &Sample<'a>, room: &'a mut Vec<f64>) -> Sample<'a> {
         if self.cables.iter().all(|cable| cable.references_n.is_none()) {
             return *sample;
@@ -82,19 +83,19 @@ impl Corrections {
     }
 }
 
-/// A fit with the references where they belong.
+/// A fit to references at their correct times.
 #[derive(Clone, Debug)]
 pub struct CorrectedFit<'a> {
-    /// The cables in the robot's order.
+    /// The fits of the cables, in the robot's order.
     pub cables: Vec<CableFit>,
-    /// What was wrong with the recording of each.
+    /// The recording faults of each cable.
     pub faults: Vec<Vec<RecordingFault>>,
-    /// What they were fitted to, where anything was wrong.
+    /// The corrected measurements that the cables were fitted to; `None` if nothing was wrong.
     pub measurements: Option<Measurements<'a>>,
 }
 
-/// [`fit_cables`], and once more with the references that come late where they belong. The first fit is the result of a cable where what it leaves does not go with the rate of the reference,
-/// or where the second leaves more than noise.
+/// Runs [`fit_cables`], and runs it again with late references moved to their correct times. A cable keeps its first fit if that fit's residual is
+/// not correlated with the rate of the reference, or if the second fit leaves more than noise.
 #[must_use]
 pub fn fit_cables_corrected<'a>(
     measurements: &Measurements<'a>,
@@ -141,7 +142,7 @@ pub fn fit_cables_corrected<'a>(
     }
 }
 
-/// Whether a residual is white noise and little else.
+/// Whether a residual is little more than white noise.
 fn is_noise(residual_n: &[f64]) -> bool {
     let known = || residual_n.iter().filter(|left_n| left_n.is_finite());
     #[expect(clippy::cast_precision_loss, reason = "a count of samples")]

@@ -1,8 +1,9 @@
-//! Noise of the measured length, which a model takes for motion: each tremble rubs.
+//! Noise of the measured length. A model takes it for motion, and each small movement adds friction.
 //!
-//! The cycle keeps it out with a play of `length_noise_m` of the robot's monitor: only what pushes against the edge of the play is motion. A play takes away as much
-//! of each true reversal, so it must be no wider than it has to be. White noise of the standard deviation σ is kept out best by one of 2σ to either side: where the
-//! model with it agrees better with the log than without, on samples that neither was fitted to, the noise is a fault of the recording.
+//! The cycle suppresses this noise with a play of `length_noise_m` of the robot's monitor: only a length that pushes against the edge of the play
+//! counts as motion. The play takes the same distance away from each true reversal, so it must be no wider than necessary. A play of 2σ to either
+//! side suppresses white noise of the standard deviation σ best. The noise is a recording fault if the model with this play agrees better with the
+//! log than without it, on samples that neither was fitted to.
 
 use std::sync::atomic::AtomicBool;
 
@@ -14,20 +15,20 @@ use crate::discover::cable::held_out_squares;
 use crate::fit::{CableRecord, Measurements, Row};
 use crate::samples::record::PLAY_OF_NOISE;
 
-/// The squares have to fall by this share: the rms by a quarter of a per cent, as an effect has to.
+/// Minimum relative decrease of the sum of squares. It corresponds to 0.25 % of the rms, as for an effect.
 const LEAST_GAIN: f64 = 0.005;
 
-/// Signals without the noise of the lengths.
+/// Signals from which the noise of the lengths was removed.
 pub struct Steadied {
     /// The cycles of each cable.
     pub rows: Vec<Vec<Row>>,
     /// The play that keeps the noise out, m to either side.
     pub length_play_m: f64,
-    /// What to tell of each cable: none where its length bears no noise that matters.
+    /// The fault of each cable; `None` where the noise of its length does not matter.
     pub faults: Vec<Option<RecordingFault>>,
 }
 
-/// The cables without the noise of their lengths, where it matters.
+/// Returns the records without the noise of their lengths where it matters.
 pub fn records<'a>(given: &[CableRecord<'a>], steadied: Option<&'a Steadied>) -> Vec<CableRecord<'a>> {
     match steadied {
         Some(steadied) => {
@@ -38,7 +39,7 @@ pub fn records<'a>(given: &[CableRecord<'a>], steadied: Option<&'a Steadied>) ->
     }
 }
 
-/// The measurements without the noise of the lengths; `None` where there is none that matters, or the robot's monitor keeps one out already.
+/// Removes the noise of the lengths from the measurements. Returns `None` if the noise does not matter or the robot's monitor already has a play.
 pub fn steadied(measurements: &Measurements<'_>, stop: &AtomicBool) -> Option<Steadied> {
     let limits = measurements.robot().monitor().limits();
     let records: Vec<CableRecord<'_>> = measurements.cables().collect();
@@ -57,7 +58,7 @@ pub fn steadied(measurements: &Measurements<'_>, stop: &AtomicBool) -> Option<St
         return None;
     }
     let noise_m: Vec<Option<f64>> = records.par_iter().map(noise_that_matters_m).collect();
-    // The monitor has one for all cables.
+    // The monitor has one play for all cables.
     let length_noise_m = PLAY_OF_NOISE * noise_m.iter().flatten().copied().reduce(f64::max)?;
     let limits = SignalLimits { length_noise_m, ..limits };
     let fault = |noise_m: Option<f64>| {

@@ -1,8 +1,8 @@
-//! Lines in the spectrum of a residual: a hum, as from the mains.
+//! Spectral lines of a residual: hum, for instance from the mains.
 //!
 //! A line stands out from its neighbours by many times their median, everywhere in the log; what a moving cable does is broad.
 //!
-//! Its phase follows the time, lost samples or not. Over a long pause, and from one log to the next, it begins anew.
+//! The phase of a line follows the time, even across lost samples. It starts anew after a long pause and with each log.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -14,17 +14,17 @@ use super::{Fault, RecordingFault};
 const LEAST_RATIO: f64 = 12.0;
 /// A line below this many turns in a stretch is no line but a slow change, and as many tell its phase.
 const FEWEST_TURNS: usize = 8;
-/// Lines that are looked for.
+/// Maximum number of lines.
 const MOST_LINES: usize = 8;
 /// And the least share of the noise's power that one has to have.
 pub const LEAST_SHARE: f64 = 0.01;
 
-/// A sine of fixed frequency.
+/// A sine of a fixed frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
     /// Its frequency, Hz.
     pub frequency_hz: f64,
-    /// In each run of rows.
+    /// The wave in each run of rows.
     waves: Vec<Wave>,
 }
 
@@ -32,7 +32,7 @@ pub struct Line {
 #[derive(Clone, Debug, PartialEq)]
 struct Wave {
     rows: Range<usize>,
-    /// Samples that it was seen in.
+    /// Number of samples that contain it.
     count: f64,
     /// Factors of sine and cosine, in the residual's unit.
     sine: f64,
@@ -40,7 +40,7 @@ struct Wave {
 }
 
 impl Line {
-    /// Half its height from peak to peak; the root mean square of several.
+    /// Returns half the peak-to-peak height, as the root mean square over the runs.
     #[must_use]
     pub fn amplitude(&self) -> f64 {
         if let [wave] = self.waves.as_slice() {
@@ -52,13 +52,13 @@ impl Line {
         if count > 0.0 { (squares / count).sqrt() } else { 0.0 }
     }
 
-    /// The fault of the recording that it is.
+    /// Returns the line as a recording fault.
     pub fn fault(&self) -> RecordingFault {
         let parameters = vec![("frequency_hz", self.frequency_hz), ("amplitude_n", self.amplitude())];
         RecordingFault { fault: Fault::Hum, parameters, intervals_s: Vec::new() }
     }
 
-    /// Adds it, times a factor, to a number of each row.
+    /// Adds the line, times a factor, to one number per row.
     pub fn add_to<'a>(&self, numbers: impl Iterator<Item = &'a mut f64>, factor: f64, times: &Times) {
         let values = self.waves.iter().flat_map(|wave| {
             times.of_run(&wave.rows).iter().map(|place| {
@@ -70,7 +70,7 @@ impl Line {
     }
 }
 
-/// The lines of a residual that have nothing to do with motion and load, the strongest first; NaN where there is no sample.
+/// Returns the lines of a residual that are unrelated to motion and load, the strongest first. The residual is NaN where there is no sample.
 pub fn lines(residual: &[f64], times: &Times, signals: &[Together]) -> Vec<Line> {
     let mut rest = residual.to_vec();
     let mut lines = Vec::new();
@@ -108,9 +108,9 @@ pub fn mean_square(numbers: &[f64]) -> f64 {
     sum / count
 }
 
-/// The frequency near a coarse one at which a sine fits best over all runs.
+/// Returns the frequency near a coarse one at which a sine fits best over all runs.
 fn refine(residual: &[f64], coarse_hz: f64, width_hz: f64, times: &Times) -> Line {
-    // Over a whole run a sine is far narrower than over a stretch: a grid first, then golden section.
+    // A sine is far narrower in frequency over a whole run than over a segment, so a grid search comes first, then golden section.
     let narrow_hz = 1.0 / (times.longest() * times.interval_s);
     let fit = |frequency_hz: f64| project(residual, frequency_hz, times);
     let (mut low_hz, mut high_hz) = (coarse_hz - 1.5 * width_hz, coarse_hz + 1.5 * width_hz);
@@ -130,7 +130,7 @@ fn refine(residual: &[f64], coarse_hz: f64, width_hz: f64, times: &Times) -> Lin
     fit(0.5 * (low_hz + high_hz))
 }
 
-/// The sine of a frequency that fits best, in each run.
+/// Fits a sine of the given frequency in each run.
 fn project(residual: &[f64], frequency_hz: f64, times: &Times) -> Line {
     let wave =
         |run: &Range<usize>| project_run(residual.get(run.clone()).unwrap_or_default(), frequency_hz, times, run);
@@ -138,7 +138,7 @@ fn project(residual: &[f64], frequency_hz: f64, times: &Times) -> Line {
 }
 
 fn project_run(residual: &[f64], frequency_hz: f64, times: &Times, run: &Range<usize>) -> Wave {
-    // The angle grows by one step a row: a rotation costs less than a sine and a cosine.
+    // The angle grows by one step per row. A rotation costs less than a sine and a cosine.
     let (step_sin, step_cos) = (TAU * frequency_hz * times.interval_s).sin_cos();
     let (mut sin, mut cos, mut expected) = (0.0_f64, 1.0_f64, f64::NAN);
     let (mut ss, mut cc, mut sc, mut sr, mut cr, mut count) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
@@ -175,14 +175,14 @@ mod tests {
         (0..50_000).map(|_| StandardNormal.sample(&mut random)).collect()
     }
 
-    /// Of one log without gaps.
+    /// Returns the times of one log without gaps.
     fn times(count: usize) -> Times {
         #[expect(clippy::cast_precision_loss, reason = "a small count")]
         let places = (0..count).map(|place| place as f64).collect();
         Times { places, runs: std::iter::once(0..count).collect(), interval_s: 1e-3 }
     }
 
-    /// Seven rows are lost, and there is a second log, in which the hum is twice as high.
+    /// Seven rows are lost, and the hum in a second log is twice as high.
     #[test]
     fn hum_keeps_its_phase_over_lost_rows_and_has_one_in_each_log() {
         let mut residual = noise(3);
@@ -197,7 +197,7 @@ mod tests {
         let found = lines(&residual, &of_logs, &[]);
         assert_eq!(found.len(), 1, "{found:?}");
         assert!((found[0].frequency_hz - 50.02).abs() < 1e-3);
-        // Of 30,000 samples with the height 1 and 20,000 with 2.
+        // 30,000 samples have the height 1, and 20,000 have the height 2.
         assert!((found[0].amplitude() - 2.2_f64.sqrt()).abs() < 0.03, "{}", found[0].amplitude());
         found[0].add_to(residual.iter_mut(), -1.0, &of_logs);
         let left = residual.iter().map(|number| number * number).sum::<f64>() / 50_000.0;
@@ -219,7 +219,7 @@ mod tests {
         assert!((found[0].waves[0].sine - 1.3 * 0.4_f64.cos()).abs() < 0.05);
     }
 
-    /// A train of pulses has a line at every whole multiple of its frequency, and so has what friction makes of it.
+    /// A train of pulses has a line at every integer multiple of its frequency, and so has the friction that it causes.
     #[test]
     fn harmonics_of_the_motion_are_no_hum() {
         let mut residual = noise(5);
@@ -234,7 +234,7 @@ mod tests {
         let found = lines(&residual, &of_log, &[vec![motion.clone()]]);
         assert_eq!(found.len(), 1, "{found:?}");
         assert!((found[0].frequency_hz - 50.0).abs() < 1e-2);
-        // A line of one sensor alone may be its own hum.
+        // A line in one sensor alone may be that sensor's own hum.
         assert_eq!(lines(&residual, &of_log, &[vec![motion, noise(6)]]).len(), 2);
     }
 

@@ -1,4 +1,4 @@
-//! What is wrong with a log itself and no matter of friction.
+//! Faults of the recording itself, which have nothing to do with friction.
 //!
 //! Each such fault has a name, values and a place in time, and is corrected before model and log are compared: stretches in which a sensor stands still or is at the
 //! end of its range, or where it spikes, are left out, hum (`lines`) and vibrations (`vibration`) come off the reference, the noise of the length (`length_noise`) is kept from being motion, and a reference
@@ -17,73 +17,74 @@ use std::ops::Range;
 use crate::fit::{CableRecord, Row};
 use crate::samples::selection::Standing;
 
-/// Samples in a row with the same force, to the last bit, from which on a sensor stands still.
+/// Minimum number of consecutive samples with a bit-identical force for a frozen sensor.
 const FEWEST_STILL: usize = 20;
-/// And this many times the length of the runs that happen all the time, for sensors of few digits.
+/// Such a run must also be this many times as long as the usual runs, for sensors with few digits.
 const STILL_RATIO: usize = 8;
-/// Samples at the greatest or the least force of a log from which on it is the end of the sensor's range.
+/// Minimum number of samples at the greatest or least force of a log for this force to be the end of the sensor's range.
 const FEWEST_AT_END: usize = 20;
-/// A spike is so far off the medians of so many neighbours on either side, as a multiple of what half of the samples are; of white noise one in 10¹³ is.
-/// And so many times as far as these medians are apart.
+/// A spike differs from the medians of its neighbours on either side by more than this multiple of the median deviation; in white noise one sample in
+/// 10¹³ does. It also differs by more than this multiple of the difference between these two medians.
 const SPIKE_RATIO: f64 = 12.0;
 const SPIKE_NEIGHBOURS: usize = 4;
 const AGREEMENT: f64 = 4.0;
-/// And more than this share of the force: friction of 8 % that turns round for a cycle makes 16 % of it.
+/// A spike also exceeds this fraction of the force. Friction of 8 % that reverses for one cycle makes 16 %.
 const FRICTION_RATIO: f64 = 0.25;
-/// Values of a coarse converter: samples of each on the average, and how far from a multiple of the step one may be, by rounding.
+/// Limits for the values of a coarse converter: the minimum average number of samples per value, and the maximum distance of a value from a multiple
+/// of the step, which allows for rounding.
 const FEWEST_A_STEP: usize = 20;
 const OFF_STEP: f64 = 1e-3;
-/// What is left out after a stretch, s: the friction in the model has to find back.
+/// Time that is left out after a faulty stretch, s. The friction of the model has to settle again.
 const AFTER_S: f64 = 0.1;
-/// Two stretches with less than this between them are one, s.
+/// Two stretches closer than this are merged, s.
 const MERGED_S: f64 = 0.1;
 
-/// What is the matter with a recording.
+/// The kind of a recording fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// A line in the spectrum that goes with nothing the cable does.
+    /// A spectral line that is unrelated to the motion and load of the cable.
     Hum,
     /// A damped oscillation of one frequency, as of a sensor on a mount that gives way.
     Vibration,
     /// The length trembles, and the model takes it for motion.
     NoisyLength,
-    /// The force sensor repeats itself.
+    /// The force sensor repeats one value.
     Frozen,
-    /// The force sensor is at the end of its range.
+    /// The force sensor is saturated.
     Clipped,
-    /// The force sensor shows single values that are far from those before and after.
+    /// The force sensor shows single values far from those before and after.
     Spikes,
     /// The converter behind the force sensor has coarse steps.
     CoarseConverter,
-    /// The reference comes late.
+    /// The reference is late.
     ReferenceDelay,
-    /// The clock of the reference runs otherwise than that of the winch.
+    /// The clock of the reference runs at another rate than the clock of the winch.
     ClockSkew,
 }
 
-/// A fault of a recording: it says something about the log, not about the machine.
+/// A fault of a recording. It concerns the log, not the machine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordingFault {
-    /// Which.
+    /// The kind of the fault.
     pub fault: Fault,
-    /// What is known of it, by key with its unit.
+    /// The values of the fault, by key with the unit.
     pub parameters: Vec<(&'static str, f64)>,
-    /// When, s since the first sample; empty where it is there all the time.
+    /// Time intervals of the fault, s since the first sample; empty if it lasts throughout the log.
     pub intervals_s: Vec<[f64; 2]>,
 }
 
-/// Cycles in which the sensor is not to be believed.
+/// Cycles in which the sensor cannot be trusted.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FaultyStretch {
-    /// Why not.
+    /// The kind of the fault.
     pub fault: Fault,
-    /// When.
+    /// The cycles.
     pub cycles: Range<usize>,
 }
 
-/// Stretches of a cable's log with a faulty sensor, in the order of time.
+/// Returns the stretches of a cable's log with a faulty sensor, in the order of time.
 pub fn faulty_stretches(record: &CableRecord<'_>) -> Vec<FaultyStretch> {
-    // Where the sensor shows no number, that of the last good sample stands for it: such samples are flagged already.
+    // A sample without a number takes the last good one and is already flagged.
     let shown_n = |row: &Row| if row.signals.sensor_finite { row.signals.sensor_force_n } else { f64::NAN };
     let shown: Vec<f64> = record.rows.iter().map(shown_n).collect();
     let runs: Vec<Range<usize>> = shown
@@ -98,7 +99,7 @@ pub fn faulty_stretches(record: &CableRecord<'_>) -> Vec<FaultyStretch> {
     let mut stretches = Vec::new();
     let ends = ends_of_range(&shown, usual);
     let is_end = |force_n: f64| ends.iter().any(|end| end.to_bits() == force_n.to_bits());
-    // A steady force stays within a coarse step: nothing tells such a sensor from one that stands still.
+    // A steady force stays within one coarse step, so such a sensor cannot be distinguished from a frozen one.
     let is_coarse = coarse_step_n(record).is_some();
     for run in runs {
         let Some(force_n) = shown.get(run.start) else { continue };
@@ -113,8 +114,8 @@ pub fn faulty_stretches(record: &CableRecord<'_>) -> Vec<FaultyStretch> {
     merged(stretches, record.interval_s)
 }
 
-/// Places at which a signal is far from its neighbours on both sides, which agree, as no noise is: it jumps there and back. Where most values are those of the neighbours,
-/// nothing tells the noise.
+/// Returns the places at which a signal jumps away and back: it is far from its neighbours on both sides, and the neighbours agree. Noise does not do
+/// this. Where most values equal their neighbours, the noise cannot be estimated.
 fn spikes(shown: &[f64]) -> impl Iterator<Item = Range<usize>> {
     let middle = |values: &[f64]| {
         let mut values: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
@@ -140,7 +141,7 @@ fn spikes(shown: &[f64]) -> impl Iterator<Item = Range<usize>> {
     far.map(|(place, _)| place..place + 1)
 }
 
-/// The step of the values that a sensor shows, N, where all of them are whole multiples of one apart, and each is there many times.
+/// Returns the step of the sensor's values, N, if all values are integer multiples of one step apart and each occurs many times.
 pub fn coarse_step_n(record: &CableRecord<'_>) -> Option<f64> {
     let mut values: Vec<f64> =
         record.rows.iter().filter(|row| row.signals.sensor_finite).map(|row| row.signals.sensor_force_n).collect();
@@ -155,7 +156,7 @@ pub fn coarse_step_n(record: &CableRecord<'_>) -> Option<f64> {
     gaps().all(|gap_n| (gap_n / step_n - (gap_n / step_n).round()).abs() < OFF_STEP).then_some(step_n)
 }
 
-/// Length of the runs that half of the samples are in.
+/// Returns the run length that half of the samples belong to.
 fn usual_length(runs: &[Range<usize>], samples: usize) -> usize {
     let mut lengths: Vec<usize> = runs.iter().map(Range::len).collect();
     lengths.sort_unstable();
@@ -169,7 +170,7 @@ fn usual_length(runs: &[Range<usize>], samples: usize) -> usize {
     1
 }
 
-/// The greatest and the least force, where the sensor stays at it as no signal with noise would.
+/// Returns the greatest and the least force if the sensor stays there longer than a noisy signal would.
 fn ends_of_range(forces_n: &[f64], usual: usize) -> Vec<f64> {
     let mut ends = Vec::new();
     for pick in [f64::max as fn(f64, f64) -> f64, f64::min] {
@@ -197,7 +198,7 @@ fn merged(stretches: Vec<FaultyStretch>, interval_s: f64) -> Vec<FaultyStretch> 
     merged
 }
 
-/// The faults that such stretches are, by kind.
+/// Returns the faults of these stretches, grouped by kind.
 pub fn of_stretches(stretches: &[FaultyStretch], time_s: impl Fn(usize) -> f64) -> Vec<RecordingFault> {
     let of_kind = |fault: Fault| {
         let alike = stretches.iter().filter(|stretch| stretch.fault == fault);
@@ -208,7 +209,7 @@ pub fn of_stretches(stretches: &[FaultyStretch], time_s: impl Fn(usize) -> f64) 
     [Fault::Frozen, Fault::Clipped, Fault::Spikes].into_iter().filter_map(of_kind).collect()
 }
 
-/// Leaves such stretches, and the moment after each, out of what counts.
+/// Excludes such stretches, and the time after each, from the samples that count.
 pub fn leave_out(stretches: &[FaultyStretch], interval_s: f64, standings: &mut [Standing]) {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
     let after = (AFTER_S / interval_s) as usize;

@@ -1,8 +1,8 @@
-//! A reference that comes late, or whose clock runs otherwise than the winch's.
+//! A reference that is late, or whose clock runs at another rate than the winch's.
 //!
-//! What is wrong with its time shows in the residual as the rate of the reference: with a reference that is late by ε it is `ε·dF/dt`. Delay and skew are improved by that,
-//! what the parameters of the model make up for taken off, until they stand still, and kept where the model then agrees better on samples held out. A
-//! reference that comes early is none: that is a sensor that follows late, and a matter of the machine.
+//! A time error shows in the residual as the rate of the reference: a reference that is late by ε leaves `ε·dF/dt`. Delay and skew are improved
+//! iteratively from this part of the residual, after removing what the model's parameters can compensate. They are kept if the model then agrees
+//! better on held-out samples. An early reference is no such fault: it indicates a sensor that lags, which concerns the machine.
 
 use std::sync::atomic::AtomicBool;
 
@@ -16,38 +16,41 @@ use crate::fit::{CableRecord, Row};
 use crate::samples::interpolated::measured;
 use crate::samples::split::{Block, split};
 
-/// The squares held out have to fall by this share: the rms by a quarter of a per cent, as an effect has to.
+/// Minimum relative decrease of the held-out sum of squares. It corresponds to 0.25 % of the rms, as for an effect.
 const LEAST_GAIN: f64 = 0.005;
-/// Improvements at most, and the part of an interval between samples below which one is none. Noise of the reference makes its rate larger and each improvement smaller, so that it takes more of
-/// them: with 8, 6 ms of a bench whose forces change slowly come out 5 % short.
+/// Maximum number of improvements, and the fraction of a sample interval below which an improvement counts as none. Noise in the reference makes its
+/// rate larger and each improvement smaller, so more improvements are needed. With 8, a delay of 6 ms on a bench with slowly changing forces comes
+/// out 5 % short.
 const ROUNDS: usize = 24;
 const SMALL: f64 = 1e-2;
-/// Rates are taken over so many samples on either side.
+/// Number of samples on either side over which rates are computed.
 const RATE_SAMPLES: usize = 5;
 
-/// What a fit leaves goes with the rate of the reference by more than this share of its squares before its time is looked at: a twentieth of what it has to gain, for parameters that make
-/// up for some of it. At half, more logs are looked at in vain; at double, a delay whose rate the parameters make up for to 90 % is missed.
+/// The time of the reference is examined if more than this fraction of the residual's squares is correlated with the rate of the reference. It is a
+/// twentieth of the required gain, because parameters may compensate for part of it. At half this value more logs are examined in vain; at double, a
+/// delay whose rate the parameters compensate for to 90 % is missed.
 const SUSPICIOUS_SHARE: f64 = 0.05 * LEAST_GAIN;
 
-/// How the time of a reference is wrong.
+/// The time error of a reference.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Shift {
-    /// How late it is at the first sample, s.
+    /// Delay at the first sample, s.
     delay_s: f64,
-    /// By how much later with each second, 1.
+    /// Growth of the delay per second, dimensionless.
     skew: f64,
 }
 
-/// What was made of one kind of shift.
+/// The result of correcting one kind of shift.
 struct Corrected {
     shift: Shift,
     rows: Vec<Row>,
     trial: Trial,
 }
 
-/// A cable's cycles with the reference where it belongs, and what to tell; `None` where its time is right, or nothing tells, as with a model without friction.
+/// Returns the cable's cycles with the reference at its correct time, and the fault to report. Returns `None` if the time is right or cannot be
+/// determined, for instance with a model without friction.
 pub fn retimed(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<(Vec<Row>, RecordingFault)> {
-    // A model without friction leaves all of it, which has rates of its own.
+    // A model without friction leaves all of the friction in the residual, which has rates of its own.
     if record.reference_is_known || record.params.friction().mu <= 0.0 {
         return None;
     }
@@ -60,8 +63,8 @@ pub fn retimed(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<(Vec<Row>,
         return None;
     }
     let late = case.corrected(&as_it_is, false)?;
-    // A line between two samples has less noise than either: held out, a shift by parts of an interval looks better than one by whole ones, and a skew better than none. What is left
-    // after the delay has to go with the rate.
+    // A value interpolated between two samples has less noise than either. On held-out samples a shift by a fraction of an interval therefore looks
+    // better than one by whole intervals, and a skew looks better than none. So the rest after the delay must still be correlated with the rate.
     let (_, more) = case.improvement(&late.rows, &late.trial, true)?;
     let may_be_skewed = more >= LEAST_GAIN * late.trial.training;
     let skewed = if may_be_skewed { Some(case.corrected(&as_it_is, true)?) } else { None };
@@ -77,7 +80,8 @@ pub fn retimed(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<(Vec<Row>,
     is_late.then(|| (late.rows, fault(Fault::ReferenceDelay, vec![("delay_s", delay_s)])))
 }
 
-/// Whether what a fit leaves, N, goes with the rate of the reference at all, at once or by and by; far less work than [`retimed`].
+/// Whether a fit's residual, N, is correlated with the rate of the reference at all, constantly or growing with time. This check is far cheaper than
+/// [`retimed`].
 pub fn may_be_off(record: &CableRecord<'_>, left_n: &[f64]) -> bool {
     let rates = rates(record, record.rows);
     let (mut left, mut products, mut squares) = (0.0, [0.0; 2], [0.0; 2]);
@@ -95,13 +99,13 @@ pub fn may_be_off(record: &CableRecord<'_>, left_n: &[f64]) -> bool {
     left > 0.0 && (explains(0) || explains(1))
 }
 
-/// When a sample was, s since the first of its log.
+/// Returns the time of a sample, s since the first sample of its log.
 #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
 fn seconds(record: &CableRecord<'_>, place: usize) -> f64 {
     place as f64 * record.interval_s
 }
 
-/// How fast the reference changes, N/s; NaN where that is not known.
+/// Returns the rate of the reference, N/s; NaN where it is unknown.
 fn rates(record: &CableRecord<'_>, rows: &[Row]) -> Vec<f64> {
     let mut rates = vec![f64::NAN; rows.len()];
     for (start, log) in record.logs() {
@@ -115,7 +119,7 @@ fn rates(record: &CableRecord<'_>, rows: &[Row]) -> Vec<f64> {
     rates
 }
 
-/// A cable with its log.
+/// One cable with its log.
 #[derive(Clone, Copy)]
 struct Case<'a> {
     record: CableRecord<'a>,
@@ -134,7 +138,7 @@ impl<'a> Case<'a> {
         Workbench { record: record.with_signals(rows), blocks, counts, measured, stop }
     }
 
-    /// The delay, with a skew or without, that leaves least.
+    /// Returns the delay, with or without a skew, that leaves the smallest residual.
     fn corrected(&self, as_it_is: &Trial, with_skew: bool) -> Option<Corrected> {
         let (mut shift, mut rows, mut trial) = (Shift::default(), self.record.rows.to_vec(), as_it_is.clone());
         for _ in 0..ROUNDS {
@@ -151,7 +155,7 @@ impl<'a> Case<'a> {
         Some(Corrected { shift, rows, trial })
     }
 
-    /// What shift would leave less, and how much less, N².
+    /// Returns the shift that would reduce the residual, and by how much, N².
     fn improvement(&self, rows: &[Row], trial: &Trial, with_skew: bool) -> Option<(Shift, f64)> {
         let bench = self.bench(rows);
         let rate_n_per_s = rates(&self.record, rows);
@@ -174,7 +178,7 @@ impl<'a> Case<'a> {
         Some((shift, found.dot(&right)))
     }
 
-    /// The cycles with the reference of later samples, on the line between two; NaN past the ends of each log.
+    /// Returns the cycles with references interpolated linearly from later samples; NaN past the ends of each log.
     fn shifted(&self, shift: Shift) -> Vec<Row> {
         let mut rows = self.record.rows.to_vec();
         for (start, log) in self.record.logs() {

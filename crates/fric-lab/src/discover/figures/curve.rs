@@ -1,14 +1,14 @@
-//! Friction of a cable over its speed and over its length, measured and by the models: what a figure shows of the law itself.
+//! Friction of a cable over its speed and its length, measured and modelled: a plot of the law itself.
 //!
-//! Measured friction is the reference less the force that the sensor shows as if nothing rubbed; a model's is its force less the same.
+//! Measured friction is the reference minus the force that the sensor would imply without friction; a model's friction is its force minus the same.
 //! Both are at the platform, and negative where the platform feels less than the sensor.
 
 use crate::fit::CableRecord;
 use crate::samples::conditions::sign;
 
-/// Bins over a condition.
+/// Number of bins over a condition.
 const BINS: usize = 40;
-/// Share of the samples whose speed is within the bins; the few faster ones would leave the others no room.
+/// Fraction of the samples whose speed lies within the bins. The few faster samples would squeeze the others.
 const WITHIN: f64 = 0.995;
 
 /// Friction in one bin of a condition; NaN where nothing was measured.
@@ -16,22 +16,22 @@ const WITHIN: f64 = 0.995;
 pub struct FrictionPoint {
     /// Middle of the bin, m/s or m.
     pub at: f64,
-    /// Mean of the measured friction, N.
+    /// Mean measured friction, N.
     pub measured_n: f64,
-    /// Its standard deviation, N.
+    /// Standard deviation of the measured friction, N.
     pub deviation_n: f64,
-    /// Mean by the given model, fitted, N.
+    /// Mean friction of the given model, fitted, N.
     pub before_n: f64,
-    /// Mean by the extended model, N.
+    /// Mean friction of the extended model, N.
     pub after_n: f64,
 }
 
 /// Friction over both conditions.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FrictionCurves {
-    /// Over the speed, m/s, positive paying out.
+    /// Friction over the speed, m/s, positive paying out.
     pub over_speed: Vec<FrictionPoint>,
-    /// Over the cable length, m, reeling in and paying out.
+    /// Friction over the cable length, m: reeling in, and paying out.
     pub over_length: [Vec<FrictionPoint>; 2],
 }
 
@@ -93,7 +93,7 @@ impl Curve {
     }
 }
 
-/// The curves of a cable with these residuals, N, NaN where a sample does not count.
+/// Returns the curves of a cable from these residuals, N, which are NaN where a sample does not count.
 pub fn curves(record: &CableRecord<'_>, before_n: &[f64], after_n: &[f64]) -> FrictionCurves {
     let gain = record.params.frictionless_gain();
     let counts = |place: usize| {

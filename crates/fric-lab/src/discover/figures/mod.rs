@@ -1,4 +1,4 @@
-//! What figures show of a discovery: residuals over a condition, friction over speed and length, spectrum and autocorrelation.
+//! Data for the figures of a discovery: residuals over a condition, friction over speed and length, spectrum and autocorrelation.
 
 pub mod curve;
 pub mod profile;

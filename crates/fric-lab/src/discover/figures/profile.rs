@@ -1,10 +1,10 @@
-//! A residual over one operating condition, before and after: what a figure shows of a place.
+//! A residual over one operating condition, before and after the extension.
 
 use crate::fit::CableRecord;
 use crate::samples::bins::Bins;
 use crate::samples::conditions::{Condition, Spacing, sign};
 
-/// Most bins of a figure.
+/// Maximum number of bins in a figure.
 const MOST_BINS: usize = 32;
 
 /// Two residuals over one condition.
@@ -14,39 +14,39 @@ pub struct Profile {
     pub signal: &'static str,
     /// Its unit.
     pub unit: &'static str,
-    /// In the order of the condition.
+    /// The bins, in ascending order of the condition.
     pub bins: Vec<ProfileBin>,
-    /// The bins are as wide as each other; otherwise they hold as many samples.
+    /// Whether the bins have equal widths; otherwise they hold equal numbers of samples.
     pub are_even: bool,
 }
 
 /// One bin of the condition.
 #[derive(Clone, Copy, Debug)]
 pub struct ProfileBin {
-    /// Where it begins, in the condition's unit.
+    /// Lower edge, in the condition's unit.
     pub from: f64,
-    /// Where it ends.
+    /// Upper edge, in the condition's unit.
     pub to: f64,
     /// Residual of the given model.
     pub before: ProfileCell,
-    /// And of the extended one.
+    /// Residual of the extended model.
     pub after: ProfileCell,
 }
 
 /// A residual in one bin.
 #[derive(Clone, Copy, Debug)]
 pub struct ProfileCell {
-    /// Mean while the cable is paid out, N; NaN without a sample.
+    /// Mean while the cable pays out, N; NaN without a sample.
     pub paying_out_n: f64,
-    /// And while it is reeled in.
+    /// Mean while the cable reels in, N; NaN without a sample.
     pub reeling_in_n: f64,
-    /// Root mean square in any direction, N.
+    /// Root mean square over all directions, N.
     pub rms_n: f64,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
 struct Sums {
-    /// Paying out, reeling in, any direction.
+    /// Sample counts: paying out, reeling in, all directions.
     counts: [f64; 3],
     totals: [f64; 2],
     squares: f64,
@@ -73,7 +73,7 @@ impl Sums {
     }
 }
 
-/// Both residuals, N, NaN where a sample does not count, over a condition; `None` where it is the same all along.
+/// Returns both residuals, N, over a condition; they are NaN where a sample does not count. Returns `None` if the condition is constant.
 pub fn profile(record: &CableRecord<'_>, condition: &Condition, before_n: &[f64], after_n: &[f64]) -> Option<Profile> {
     let condition = &Condition { bins: condition.bins.at_most(MOST_BINS), ..condition.clone() };
     let bins = Bins::new(condition, before_n)?;

@@ -1,41 +1,41 @@
-//! The spectrum of a residual and its autocorrelation: what is periodic in it, and how long it remembers.
+//! Spectrum and autocorrelation of a residual: its periodic content and its memory.
 //!
-//! The spectrum is that of Welch: the mean of the periodograms of segments that overlap by half, each with a Hann window and without
-//! its mean, one-sided, as amplitude density in N/√Hz. Samples that do not count, and pauses, end a segment; where no stretch is long
-//! enough for a segment, there is no spectrum.
+//! The spectrum follows Welch: the mean of the periodograms of segments that overlap by half, each with a Hann window and its mean removed,
+//! one-sided, as amplitude density in N/√Hz. Samples that do not count, and pauses, end a segment. If no stretch is long enough for a segment, the
+//! spectrum is empty.
 
 use realfft::RealFftPlanner;
 
-/// Samples of a segment, at most and at least; halved until a stretch is long enough.
+/// Maximum and minimum number of samples in a segment. The length is halved until a stretch is long enough.
 const SEGMENT: [usize; 2] = [8192, 128];
-/// Longer than so many intervals is a pause.
+/// A gap longer than this many sample intervals is a pause.
 const PAUSE: f64 = 1.5;
-/// Products that are averaged for one lag at most.
+/// Maximum number of products averaged for one lag.
 const MOST_PRODUCTS: usize = 50_000;
-/// Lags of an autocorrelation.
+/// Number of lags of an autocorrelation.
 const LAGS: usize = 200;
 
 /// Amplitude density over frequency.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Spectrum {
-    /// Hz, from the first above 0 on.
+    /// Frequencies, Hz, from the first above 0.
     pub frequency_hz: Vec<f64>,
-    /// N/√Hz.
+    /// Amplitude densities, N/√Hz.
     pub density: Vec<f64>,
 }
 
-/// Correlation of a residual with itself, later.
+/// Correlation of a residual with its own delayed copy.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Autocorrelation {
-    /// How much later, s, from 0 on.
+    /// Delays, s, starting at 0.
     pub lag_s: Vec<f64>,
-    /// −1 to 1.
+    /// Correlations, −1 to 1.
     pub correlation: Vec<f64>,
-    /// Half the 95 % interval of white noise about 0.
+    /// Half the width of the 95 % interval of white noise around 0.
     pub white: f64,
 }
 
-/// Time between two samples for the most part, s; `None` of fewer than two.
+/// Returns the median time between two samples, s; `None` for fewer than two.
 fn interval_s(times_s: &[f64]) -> Option<f64> {
     let mut intervals: Vec<f64> =
         times_s.windows(2).map(|pair| pair[1] - pair[0]).filter(|interval_s| *interval_s > 0.0).collect();
@@ -43,7 +43,7 @@ fn interval_s(times_s: &[f64]) -> Option<f64> {
     (!intervals.is_empty()).then(|| *intervals.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
-/// Stretches of finite samples without a pause.
+/// Returns stretches of finite samples without a pause.
 fn stretches<'a>(times_s: &[f64], residual_n: &'a [f64], interval_s: f64) -> Vec<&'a [f64]> {
     let mut all = Vec::new();
     let mut start = 0;
@@ -59,7 +59,7 @@ fn stretches<'a>(times_s: &[f64], residual_n: &'a [f64], interval_s: f64) -> Vec
     all
 }
 
-/// The spectrum of a residual, N, NaN where a sample does not count, at these times.
+/// Returns the spectrum of a residual, N, at these times. The residual is NaN where a sample does not count.
 #[must_use]
 pub fn spectrum(times_s: &[f64], residual_n: &[f64]) -> Spectrum {
     let Some(interval_s) = interval_s(times_s).filter(|_| times_s.len() == residual_n.len()) else {
@@ -98,7 +98,7 @@ pub fn spectrum(times_s: &[f64], residual_n: &[f64]) -> Spectrum {
             segments += 1.0;
         }
     }
-    // Both signs of a frequency in one, except at half the sampling rate.
+    // The one-sided density combines both signs of a frequency, except at half the sampling rate.
     let sides = |index: usize| if index == size / 2 { 1.0 } else { 2.0 };
     let density = |(index, sum): (usize, &f64)| (sides(index) * sum / segments / power * interval_s).sqrt();
     Spectrum {
@@ -107,7 +107,7 @@ pub fn spectrum(times_s: &[f64], residual_n: &[f64]) -> Spectrum {
     }
 }
 
-/// The autocorrelation of a residual up to a lag.
+/// Returns the autocorrelation of a residual up to the longest lag.
 #[must_use]
 pub fn autocorrelation(times_s: &[f64], residual_n: &[f64], longest_s: f64) -> Autocorrelation {
     let Some(interval_s) = interval_s(times_s).filter(|_| times_s.len() == residual_n.len()) else {
@@ -156,7 +156,7 @@ mod tests {
         let sine: Vec<f64> = times_s.iter().map(|time_s| 0.3 * (std::f64::consts::TAU * 50.0 * time_s).sin()).collect();
         let Spectrum { frequency_hz, density } = spectrum(&times_s, &sine);
         let step_hz = frequency_hz[0];
-        // Parseval: the area of the power density is the mean square, 0.3²/2.
+        // Parseval: the area under the power density is the mean square, 0.3²/2.
         let power: f64 = density.iter().map(|value| value * value * step_hz).sum();
         assert!((power - 0.045).abs() < 0.045 * 0.01, "{power}");
         let peak = (0..density.len()).max_by(|one, other| density[*one].total_cmp(&density[*other])).unwrap();

@@ -1,4 +1,4 @@
-//! Which candidates a model lets in.
+//! Rules by which candidates enter a model.
 
 use fric_core::effects::Effect;
 
@@ -10,21 +10,21 @@ use super::{NEGLIGIBLE, STRONG_BIC, Search};
 use crate::candidates::catalogue::fitted;
 use crate::discover::workbench::Trial;
 
-/// Most effects of one cable.
+/// Maximum number of effects per cable.
 const MOST_EFFECTS: usize = 8;
 
-/// A candidate that something speaks for.
+/// A candidate with evidence in its favour.
 struct Entrant {
     effect: Effect,
     trial: Trial,
-    /// By how much memory in the residual weakens the evidence, at least 1.
+    /// Factor by which memory in the residual weakens the evidence, at least 1.
     inflation: f64,
     delta_bic: f64,
 }
 
 impl Search<'_, '_> {
-    /// Lets candidates in as long as they help, but for those that were refused: the best with strong evidence, or, where none has it alone, those
-    /// that have it together.
+    /// Adds candidates as long as they help, except those that were refused: the best one with strong evidence, or, if none has strong evidence
+    /// alone, those that have it together.
     pub(super) fn enter(&mut self, found: &mut Vec<Effect>) {
         while found.len() < MOST_EFFECTS {
             let model = self.fit(found);
@@ -47,7 +47,7 @@ impl Search<'_, '_> {
                     let inflation = inflation(self.bench, &trial, &fitted(effect));
                     Entrant { effect, delta_bic: self.delta_bic(&model, &trial, inflation), inflation, trial }
                 })
-                // What memory in the residual makes of chance is no reason to go on.
+                // Apparent evidence that comes only from the memory of the residual is no reason to continue.
                 .filter(|entrant| entrant.delta_bic < 0.0)
                 .collect();
             // The best is the one with the most evidence for its number of parameters, whatever the memory: one for all, that of the best fit.
@@ -67,7 +67,7 @@ impl Search<'_, '_> {
         }
     }
 
-    /// Those of some candidates for each of which there is strong evidence beside the others, by linear steps from the model.
+    /// Returns those candidates that each have strong evidence beside the others, estimated by linear steps from the model.
     fn strong_together(&self, model: &Trial, entrants: &[Entrant]) -> Vec<Effect> {
         let problem = self.bench.problem(&model.free, None);
         let mut residual_n = self.bench.residuals_n(&model.values);
@@ -100,7 +100,7 @@ impl Search<'_, '_> {
         Vec::new()
     }
 
-    /// Adds effects to a model, each beside those before it, from its own starts.
+    /// Adds effects to a model one after the other, each from its own start values.
     pub(super) fn add(&mut self, found: &mut Vec<Effect>, effects: &[Effect]) {
         for effect in effects {
             self.beside(found, &[*effect]);

@@ -1,11 +1,11 @@
-//! By how much the memory of a residual weakens the evidence for a parameter.
+//! Weakening of the evidence for a parameter by the memory of the residual.
 
 use crate::certainty::undetermined::inverse_of_normal;
 use crate::discover::workbench::{Trial, Workbench};
 use crate::fit::Parameter;
 
-/// The greatest ratio of the variance of some of a model's parameters, as correlated residuals scatter them, to that of
-/// residuals that do not depend on each other; at least 1, infinite where nothing is known.
+/// Returns the greatest ratio of two variances over some of a model's parameters: the variance under correlated residuals divided by that under
+/// independent residuals. It is at least 1, and infinite where nothing is known.
 pub fn inflation(bench: &Workbench<'_>, model: &Trial, of: &[Parameter]) -> f64 {
     let problem = bench.problem(&model.free, None);
     let Some((gram, scores)) = problem.gram_and_scores(&[model.values], None) else { return f64::INFINITY };
@@ -20,8 +20,8 @@ pub fn inflation(bench: &Workbench<'_>, model: &Trial, of: &[Parameter]) -> f64 
         .fold(1.0, |most, ratio| if ratio.is_finite() { most.max(ratio) } else { f64::INFINITY })
 }
 
-/// Difference of Schwarz's criterion for so many samples that do not depend on each other, a ratio of the sums of squares, and so many
-/// more parameters; of less than two samples there is no evidence.
+/// Returns the BIC difference for `count` independent samples, a ratio of the sums of squares, and `more` additional parameters. Fewer than two
+/// samples give no evidence.
 pub fn delta_bic(count: f64, squares_ratio: f64, more: f64) -> f64 {
     if count < 2.0 { f64::INFINITY } else { count * squares_ratio.ln() + more * count.ln() }
 }

@@ -1,4 +1,4 @@
-//! The models that a search has fitted: each set of effects once.
+//! Cache of the models that a search has fitted: each set of effects is fitted once.
 
 use fric_core::effects::Effect;
 use fric_core::parameters::{MU, OFFSET};
@@ -9,20 +9,20 @@ use crate::candidates::ripple::{period_of, periods};
 use crate::discover::workbench::{Model, NEAR_ERRORS, Trial};
 use crate::fit::Parameter;
 
-/// No equation of friction is believed to less than this share of what it adds to the force of the sensor: what the equation of a
-/// strong effect leaves must not be taken for a weak one.
+/// No friction equation is trusted to better than this fraction of the force that it adds. Otherwise the model error of a strong effect would be
+/// taken for a weak effect.
 const BELIEVED_RATIO: f64 = 1e-3;
-/// Candidates are first brought so near to their minima that what is left to gain is this part of what a candidate needs to enter.
+/// Candidates are first optimised until the remaining gain is below this fraction of what a candidate needs to enter.
 const UNDECIDED: f64 = 0.5;
-/// The named model is brought this near to its minimum, in standard errors.
+/// Distance from its minimum to which the named model is optimised, in standard errors.
 const AT_MINIMUM: f64 = 0.01;
 
 impl Search<'_, '_> {
-    /// Each candidate that a model lacks, fitted beside all that it has; the ladder of friction comes before everything else.
+    /// Fits each candidate that a model lacks beside its present effects. The ladder of friction comes before everything else.
     pub(super) fn round(&mut self, found: &[Effect]) -> Vec<(Effect, Trial)> {
         let model = self.fit(found);
         let slides = model.values[MU] > 0.0;
-        // An offset of the sensor and one at the platform are the same to the force.
+        // A sensor offset and an offset at the platform have the same effect on the force.
         let has_offset = model.free.iter().any(|parameter| parameter.place() == OFFSET);
         let lacking = |friction: bool| -> Vec<Effect> {
             Effect::ALL
@@ -43,7 +43,7 @@ impl Search<'_, '_> {
         self.beside(found, &lacking(false))
     }
 
-    /// The model with one more effect, for each of several.
+    /// Fits the model with one more effect, for each of several.
     pub(super) fn beside(&mut self, found: &[Effect], candidates: &[Effect]) -> Vec<(Effect, Trial)> {
         let with = |effect: &Effect| set_of(&[found, &[*effect]].concat());
         let model = self.fit(found);
@@ -72,7 +72,7 @@ impl Search<'_, '_> {
                 self.fits.insert(owner, trial);
             }
         }
-        // Those that may enter, and may be the best, come to their minima.
+        // Candidates that may enter and may be the best are optimised to their minima.
         let trained = |effect: &Effect| self.fits.get(&with(effect)).map(|trial| trial.training);
         let enough = model.training - UNDECIDED * needed;
         let bound = candidates.iter().filter_map(trained).fold(enough, |least, training| least.min(training + needed));
@@ -85,7 +85,7 @@ impl Search<'_, '_> {
         candidates.iter().filter_map(|effect| Some((*effect, self.fits.get(&with(effect))?.clone()))).collect()
     }
 
-    /// Brings the models with some sets of effects to their minima, the periods of ripples with them: a scan finds these only nearly.
+    /// Optimises the models with some sets of effects to their minima, including the periods of ripples, which a scan finds only approximately.
     pub(super) fn refine(&mut self, sets: impl Iterator<Item = Set>) {
         let refined = |set: Set| {
             let trial = self.fits.get(&set)?;
@@ -100,7 +100,7 @@ impl Search<'_, '_> {
         self.fits.extend(sets.into_iter().zip(fits));
     }
 
-    /// The model with a set of effects. One that has not been tried yet is fitted from the best that has one more.
+    /// Returns the fitted model with a set of effects. A set that has not been tried starts from the best fit that has one effect more.
     pub(super) fn fit(&mut self, found: &[Effect]) -> Trial {
         let set = set_of(found);
         self.refine(std::iter::once(set.clone()));
@@ -124,24 +124,24 @@ impl Search<'_, '_> {
         trial
     }
 
-    /// Brings the model with a set of effects to its very minimum.
+    /// Optimises the model with a set of effects to convergence.
     pub(super) fn polish(&mut self, found: &[Effect]) {
         let model = self.fit(found).model();
         self.fits.insert(set_of(found), self.bench.fit(&model, AT_MINIMUM));
     }
 
-    /// Mean square above the noise of the samples held out, as a share of the noise's.
+    /// Returns the held-out mean square above the noise, as a fraction of the noise variance.
     pub(super) fn excess(&self, trial: &Trial) -> f64 {
         trial.held_out / self.noise_squares - 1.0
     }
 
-    /// By how much the squares of the samples held out have to fall for a candidate to be let in beside a model, N².
+    /// Returns the decrease of the held-out sum of squares that a candidate needs to enter beside a model, N².
     pub(super) fn least_gain(&mut self, model: &Trial) -> f64 {
         let gap = (model.held_out - self.noise_squares).max(0.0);
         (LEAST_GAIN * gap).max(self.believed_squares(model)).max(LEAST_SIZE * self.noise_squares)
     }
 
-    /// What a model is not believed to, of the squares held out, N².
+    /// Returns the part of the held-out sum of squares to which a model is not trusted, N².
     fn believed_squares(&self, model: &Trial) -> f64 {
         let added_n = self.bench.added_n(&model.values);
         let squares: f64 =
@@ -150,7 +150,7 @@ impl Search<'_, '_> {
     }
 }
 
-/// Whether a model has so much less of the squares held out than another, N².
+/// Whether the held-out sum of squares decreases by at least `enough`, N².
 pub fn gains(before: &Trial, after: &Trial, enough: f64) -> bool {
     before.held_out - after.held_out > enough
 }

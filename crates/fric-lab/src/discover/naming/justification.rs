@@ -1,4 +1,4 @@
-//! What an effect in a model has to show in order to stay.
+//! Criteria that an effect must meet to stay in a model.
 
 use fric_core::effects::Effect;
 use fric_core::effects::sensor_offset::OFFSET as OFFSET_OF_SENSOR;
@@ -17,16 +17,16 @@ use crate::search::vector::Coordinate;
 
 /// A parameter within this fraction of its bound counts as stuck at the bound, by the way from its neutral value.
 const END_RATIO: f64 = 0.01;
-/// The size of an effect, as a share of itself, differs between operating conditions by less than this (root mean square): it then explains as one constant
-/// four fifths of what it would with one in each condition.
+/// Maximum relative scatter (rms) of an effect's size between operating conditions. Below it, one constant explains at least four fifths of what one
+/// size per condition would.
 const MOST_SCATTER_RATIO: f64 = 0.5;
-/// Of what is above the noise, no more than this share is what the effect would explain if its size went with a condition,
+/// Maximum fraction of the excess above the noise that the effect may explain if its size varied with a condition,
 const MOST_BENT: f64 = 0.5;
-/// unless it would hardly change over the condition, as a share of itself: then the name is right, and what is left is another, smaller effect.
+/// unless its size would vary by less than this fraction over the condition. Then the name is right, and the rest is another, smaller effect.
 const MOST_TILT: f64 = 0.2;
 
 impl Search<'_, '_> {
-    /// Every effect of a model with what speaks for it, and why it cannot stay if it cannot.
+    /// Returns every effect of a model with its evidence and, if it cannot stay, the reason.
     pub(super) fn justified(&mut self, found: &[Effect]) -> Vec<Named> {
         let set = set_of(found);
         let model = self.fit(found);
@@ -60,7 +60,7 @@ impl Search<'_, '_> {
         named
     }
 
-    /// Whether there is no strong evidence for an effect beside another one of a size that robots usually have.
+    /// Whether strong evidence for an effect is missing once another effect of a typical size is in the model.
     fn usual_instead(&mut self, found: &[Effect], effect: Effect, inflation: f64) -> Option<Refusal> {
         let is_usual = |(other, refusal): (&Effect, &Refusal)| {
             (*refusal == Refusal::Usual && !found.contains(other)).then_some(*other)
@@ -74,7 +74,7 @@ impl Search<'_, '_> {
         })
     }
 
-    /// A law without a name that makes some of the effects superfluous.
+    /// Returns a law without a name that makes some of the effects superfluous.
     fn rival(&self, model: &Trial, named: &[Named]) -> Option<Rival> {
         let effects: Vec<(Vec<Parameter>, Values)> =
             named.iter().map(|named| (fitted(named.effect), without(named.effect, &model.values))).collect();
@@ -87,7 +87,7 @@ impl Search<'_, '_> {
         (!rival.replaces.iter().any(|place| named[*place].effect.is_friction())).then_some(rival)
     }
 
-    /// Why an effect cannot stay in a model.
+    /// Returns the reason why an effect cannot stay in a model.
     fn refusal(&self, model: &Trial, effect: Effect, without_it: &Trial, inflation: f64) -> Option<Refusal> {
         let cycle_s = self.bench.record.cycle_s;
         if is_at_end(effect, &model.values, cycle_s) {
@@ -112,8 +112,8 @@ impl Search<'_, '_> {
         doubt(&portrait, is_noise)
     }
 
-    /// The parameter that an effect cannot be told from, where the log determines none of the effect's own, be the others of them known; an offset at the platform is one
-    /// that every cable may have.
+    /// Returns the parameter that an effect cannot be distinguished from, if the log determines none of the effect's own parameters even with its
+    /// others known. An offset at the platform is considered too, because every cable may have one.
     fn confused_with(&self, model: &Trial, effect: Effect) -> Option<&'static str> {
         let mut free = model.free.clone();
         let has_offset = free.iter().any(|parameter| [OFFSET, OFFSET_OF_SENSOR].contains(&parameter.place()));
@@ -122,7 +122,7 @@ impl Search<'_, '_> {
         let (covariance, all) =
             crate::certainty::undetermined::vagueness(&self.bench.problem(&free, None), &[model.values]);
         let own = |of: &crate::search::solve::Unknown| of_effect.contains(&of.parameter);
-        // What only the effect's own parameters share is no matter of another's.
+        // Confusion among the effect's own parameters does not concern other effects.
         let alone = |of: &Parameter| {
             let free: Vec<Parameter> =
                 free.iter().copied().filter(|other| other == of || !of_effect.contains(other)).collect();
@@ -144,7 +144,7 @@ impl Search<'_, '_> {
     }
 }
 
-/// Whether something else is taken for an effect, whose size then is not one constant.
+/// Whether something else is mistaken for an effect, so that its size is not one constant.
 fn doubt(portrait: &Portrait<'_>, is_noise: bool) -> Option<Refusal> {
     let all = portrait.steadiness();
     let scatters = |of: &&Steadiness| of.scatter > MOST_SCATTER_RATIO * MOST_SCATTER_RATIO;
@@ -156,8 +156,8 @@ fn doubt(portrait: &Portrait<'_>, is_noise: bool) -> Option<Refusal> {
     bent.max_by(|one, other| one.bent.total_cmp(&other.bent)).map(|bent| Refusal::Bent(bent.signal))
 }
 
-/// Whether a parameter of an effect has run into an end of its range that is not its neutral value; of friction that every model
-/// has the ranges are orders of magnitude.
+/// Whether a parameter of an effect is stuck at a bound other than its neutral value. For friction that every model has, the ranges span orders of
+/// magnitude.
 pub fn is_at_end(effect: Effect, values: &Values, cycle_s: f64) -> bool {
     let has_run = |parameter: &Parameter| {
         let (least, greatest) = Coordinate::of(parameter, cycle_s).range();
@@ -198,7 +198,7 @@ mod tests {
                 assert_eq!(is_at_end(effect, &values, CYCLE_S), has_run, "{effect:?}: {value}");
             }
         }
-        // At an end that is the neutral value there is only little of the effect.
+        // At a bound that is the neutral value the effect is merely small.
         assert!(!is_at_end(Effect::PulleyInertia, &neutral(), CYCLE_S));
     }
 }

@@ -1,14 +1,14 @@
-//! Which effects are missing: candidates enter, are exchanged, and have to justify themselves.
+//! Finds which effects are missing: candidates enter, are exchanged, and must justify themselves.
 //!
-//! 1. *Enter.* Every candidate is fitted together with all that the model has. The best on the samples learned from with strong evidence
-//!    enters if it also helps on those held out. Where none has strong evidence alone, those enter that have it beside each other. Friction that
-//!    every model has needs no strong evidence here: what is missing of it hides the rest.
-//! 2. *Leave.* An effect stays if the evidence for it is strong, if it is large enough to matter, if its parameters keep clear of the
-//!    ends of their ranges and can be told from the others, if it has one size in every operating condition, and if neither a law without a name
-//!    nor an effect of a size that robots usually have makes it superfluous. One that cannot stay is set aside, and the next has its turn.
-//! 3. *Exchange.* For every effect that stays, all others are tried in its place.
+//! 1. *Enter.* Every candidate is fitted together with everything that the model has. The best one on the training samples enters if its evidence is
+//!    strong and it also helps on the held-out samples. If none has strong evidence alone, those enter that have it beside each other. Friction that
+//!    every model has needs no strong evidence here, because a missing part of it hides everything else.
+//! 2. *Leave.* An effect stays if all of the following hold: the evidence for it is strong; it is large enough to matter; its parameters keep clear
+//!    of their bounds and can be distinguished from the others; it has one size in every operating condition; and neither an unnamed law nor an
+//!    effect of typical size makes it superfluous. An effect that cannot stay is set aside, and the next one is tried.
+//! 3. *Exchange.* Each remaining effect is compared with every other effect in its place.
 //!
-//! What was set aside gets another turn beside all that has been found since.
+//! Effects that were set aside are tried again beside everything that was found since.
 
 mod entry;
 pub mod evidence;
@@ -32,84 +32,85 @@ use crate::effects::Around;
 use crate::fit::Parameter;
 use crate::samples::conditions::Condition;
 
-/// Of the squares above the noise that are left, a candidate has to take away this share to enter.
+/// Minimum fraction of the remaining squares above the noise that a candidate must remove to enter.
 pub const LEAST_GAIN: f64 = 0.02;
-/// A candidate takes away at least this share of the noise's own squares, half of what is negligible: the rms falls by a quarter of a per
-/// cent. Less is what the equation of another effect leaves: at 0.002, four of 250 extended files were given a second name so small.
+/// A candidate removes at least this fraction of the noise's own squares, half of what is negligible: the rms falls by 0.25 %. A smaller gain is
+/// typical of the model error of another effect: at 0.002, four of 250 extended files received a second name of this size.
 pub const LEAST_SIZE: f64 = 0.5 * NEGLIGIBLE;
-/// What is left above the noise, as a share of it, from which on no further name is sought: the rms is half of it above.
+/// Excess above the noise, as a fraction of the noise variance, below which no further name is sought. The rms then exceeds the noise by half of this
+/// fraction.
 pub const NEGLIGIBLE: f64 = 0.01;
-/// Minimum ΔBIC to keep an effect, and to prefer one name over another. 10 would do if the memory of the residual were
-/// known; where noise wanders, the best of a dozen candidates comes to nearly 30 by chance.
+/// Minimum ΔBIC to keep an effect, and to prefer one name over another. 10 would suffice if the memory of the residual were known. Under drifting
+/// noise, the best of a dozen candidates reaches nearly 30 by chance.
 pub const STRONG_BIC: f64 = 30.0;
-/// Rounds of entering, exchanging and justifying, and passes in which everything that was refused gets another turn.
+/// Maximum number of rounds of entering, exchanging and justifying, and of passes in which everything that was refused is tried again.
 const ROUNDS: usize = 8;
 const PASSES: usize = 2;
 
-/// A set of effects, in their order.
+/// A set of effects, sorted.
 type Set = Vec<Effect>;
 
-/// An effect in a model with what speaks for it.
+/// An effect in a model with its evidence.
 #[derive(Clone, Debug)]
 pub struct Named {
-    /// Its effect.
+    /// The effect.
     pub effect: Effect,
-    /// The model without it, fitted anew.
+    /// The model without the effect, fitted again.
     pub without: Trial,
     /// The best other effect in its place.
     pub runner_up: Option<(Effect, Trial)>,
-    /// By how much memory in the residual weakens the evidence, at least 1.
+    /// Factor by which memory in the residual weakens the evidence, at least 1.
     pub inflation: f64,
-    /// Why it cannot stay.
+    /// The reason why the effect cannot stay.
     refusal: Option<Refusal>,
 }
 
-/// Why a candidate that helps is not named.
+/// The reason why a candidate that helps is not named.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
-    /// The evidence for it is weaker than what chance gives.
+    /// The evidence is weaker than what chance produces.
     Weak,
-    /// Its parameter runs to the end of its range.
+    /// A parameter is stuck at the bound of its range.
     AtBound,
-    /// The log cannot tell it from the parameter of this name.
+    /// The log cannot distinguish the effect from the parameter of this name.
     Open(&'static str),
-    /// Its size differs between operating conditions of this name: something else is taken for it.
+    /// The effect's size differs between operating conditions of this name, so something else is mistaken for it.
     Unsteady(&'static str),
-    /// A law without a name that goes with this explains more in its place, and leaves little for it to explain.
+    /// An unnamed law over this signal explains more in the effect's place and leaves it little to explain.
     StandsIn(&'static str),
-    /// It is no more than what robots without it have.
+    /// The effect is no stronger than in robots without it.
     Usual,
-    /// What it explains is not more than what another one of a usual size does.
+    /// The effect explains no more than this other effect does at a typical size.
     UsualInstead(Effect),
-    /// What is left would go away if its size went with this condition: its law is another one.
+    /// The rest would vanish if the effect's size varied with this condition, so its law is a different one.
     Bent(&'static str),
 }
 
-/// What came out.
+/// The outcome of naming.
 #[derive(Clone, Debug)]
 pub struct Naming {
-    /// The model with all that was found.
+    /// The model with all effects found.
     pub model: Trial,
-    /// What was found, in the order in which it entered.
+    /// The effects found, in the order in which they entered.
     pub named: Vec<Named>,
-    /// The models on the way from the first to the last, one more than effects.
+    /// The models from the given one to the final one: one more than there are effects.
     pub ladder: Vec<Trial>,
-    /// Every candidate's first fit beside the given model.
+    /// The first fit of every candidate beside the given model.
     pub first_round: Vec<(Effect, Trial)>,
-    /// Candidates that help the model with all that was found and do not suffice, the best first.
+    /// Candidates that improve the final model but do not suffice, the best first.
     pub tried: Vec<Tried>,
 }
 
-/// A candidate that helps and does not suffice.
+/// A candidate that helps but does not suffice.
 #[derive(Clone, Debug)]
 pub struct Tried {
-    /// Its effect.
+    /// The effect.
     pub effect: Effect,
-    /// The model with it.
+    /// The model with the effect.
     pub trial: Trial,
-    /// By how much memory in the residual weakens the evidence, at least 1.
+    /// Factor by which memory in the residual weakens the evidence, at least 1.
     pub inflation: f64,
-    /// Why it is not named.
+    /// The reason why it is not named.
     pub refusal: Refusal,
 }
 
@@ -121,16 +122,16 @@ pub struct Search<'b, 'a> {
     around: Around,
     conditions: &'b [Condition],
     fits: BTreeMap<Set, Trial>,
-    /// Candidates that were refused, and why.
+    /// Refused candidates and the reasons.
     refused: BTreeMap<Effect, Refusal>,
-    /// Of effects in sets: by how much memory weakens the evidence, and why they cannot stay.
+    /// For effects in sets: the factor by which memory weakens the evidence, and the reason why the effect cannot stay.
     judged: BTreeMap<(Set, Effect), (f64, Option<Refusal>)>,
-    /// Sets that no law without a name makes superfluous.
+    /// Sets that no unnamed law makes superfluous.
     unrivalled: BTreeSet<Set>,
 }
 
 impl<'b, 'a> Search<'b, 'a> {
-    /// From the given model, fitted; `noise_n` is the standard deviation of the noise.
+    /// Starts a search from the fitted given model. `noise_n` is the standard deviation of the noise.
     pub fn new(
         bench: &'b Workbench<'a>,
         noise_n: f64,
@@ -154,7 +155,8 @@ impl<'b, 'a> Search<'b, 'a> {
         }
     }
 
-    /// Names what the model lacks; what was found before has a place in it from the start, and has to justify itself with the rest.
+    /// Names the effects that the model lacks. Effects that were found before are in the model from the start and must justify themselves like the
+    /// others.
     pub fn run(&mut self, before: &[Effect]) -> Naming {
         let base = self.fit(&[]);
         let first_round = if self.excess(&base) > NEGLIGIBLE { self.round(&[]) } else { Vec::new() };
@@ -178,7 +180,7 @@ impl<'b, 'a> Search<'b, 'a> {
         Naming { model: self.fit(&found), named, ladder, first_round, tried }
     }
 
-    /// Candidates that no log like this can justify.
+    /// Returns the candidates that no log like this one can justify.
     fn beyond_the_log(&self) -> BTreeMap<Effect, Refusal> {
         if self.bench.knows_load(self.noise_n) {
             return BTreeMap::new();
@@ -187,8 +189,8 @@ impl<'b, 'a> Search<'b, 'a> {
         of_the_curve.into_iter().map(|effect| (effect, Refusal::Open("offset_n"))).collect()
     }
 
-    /// Lets candidates in and has them justify themselves until nothing changes; what cannot is set aside, and the next has its turn. What
-    /// remains is exchanged for what is better in its place.
+    /// Adds candidates and tests whether they can stay, until nothing changes. A candidate that cannot stay is set aside, and the next one is tried.
+    /// The remaining effects are then exchanged for better ones.
     fn pass(&mut self, found: &mut Vec<Effect>) -> Vec<Named> {
         for _ in 0..ROUNDS {
             let before = self.refused.len();
@@ -201,7 +203,7 @@ impl<'b, 'a> Search<'b, 'a> {
         self.leave(found)
     }
 
-    /// Sets aside what cannot justify itself, the weakest first.
+    /// Sets aside the effects that cannot justify themselves, the weakest first.
     fn leave(&mut self, found: &mut Vec<Effect>) -> Vec<Named> {
         loop {
             let named = self.justified(found);
@@ -211,28 +213,28 @@ impl<'b, 'a> Search<'b, 'a> {
             let Some(Named { effect, refusal: Some(refusal), .. }) = weakest else { return named };
             let (effect, refusal) = (*effect, *refusal);
             found.retain(|of| *of != effect);
-            // What could not be told from it can be told without it.
+            // Effects that could not be distinguished from this one can be distinguished without it.
             let keys: Vec<&str> = Parameter::of(effect).map(|parameter| parameter.row().key).collect();
             self.refused.retain(|_, refusal| !matches!(refusal, Refusal::Open(key) if keys.contains(key)));
             self.refused.insert(effect, refusal);
         }
     }
 
-    /// Difference of Schwarz's criterion from one model to another over the samples learned from; negative speaks for the other.
+    /// Returns the BIC difference from one model to another over the training samples; a negative value favours the second.
     pub fn delta_bic(&self, from: &Trial, to: &Trial, inflation: f64) -> f64 {
         #[expect(clippy::cast_precision_loss, reason = "counts")]
         let (count, more) = (self.bench.count(false) as f64 / inflation, to.free.len() as f64 - from.free.len() as f64);
         delta_bic(count, to.training / from.training, more)
     }
 
-    /// The same for a table, from the squares without and with it.
+    /// Returns the same difference for a table, from the sums of squares without and with it.
     pub fn delta_bic_of_table(&self, [without, with]: [f64; 2], inflation: f64) -> f64 {
         #[expect(clippy::cast_precision_loss, reason = "counts")]
         let (count, more) = (self.bench.count(false) as f64 / inflation, SHARES as f64);
         delta_bic(count, with / without, more)
     }
 
-    /// Tries all other effects in the place of each; whether one was better.
+    /// Tries every other effect in the place of each effect. Returns whether one was better.
     fn exchange(&mut self, found: &mut [Effect]) -> bool {
         let mut is_changed = false;
         for place in 0..found.len() {
@@ -249,7 +251,7 @@ impl<'b, 'a> Search<'b, 'a> {
         is_changed
     }
 
-    /// The best other effect in the place of one; friction that every model has stays.
+    /// Returns the best other effect in the place of one. Friction that every model has is not replaced.
     fn alternative(&mut self, found: &[Effect], place: usize) -> Option<(Effect, Trial)> {
         let effect = *found.get(place)?;
         if effect.is_friction() {
@@ -257,13 +259,13 @@ impl<'b, 'a> Search<'b, 'a> {
         }
         let others: Vec<Effect> = found.iter().copied().filter(|other| *other != effect).collect();
         let others = self.round(&others).into_iter().filter(|(other, _)| *other != effect);
-        // What the log cannot tell from it is another name for it.
+        // An effect that the log cannot distinguish from it is another name for it.
         let beyond = self.beyond_the_log();
         let is_rival = |other: &Effect| beyond.contains_key(other) || !self.refused.contains_key(other);
         best(others.filter(|(other, _)| is_rival(other)).collect::<Vec<_>>())
     }
 
-    /// The candidates that help a model and do not suffice, the best first.
+    /// Returns the candidates that help a model but do not suffice, the best first.
     fn tried(&mut self, found: &[Effect]) -> Vec<Tried> {
         let model = self.fit(found);
         if self.excess(&model) <= NEGLIGIBLE {
@@ -290,7 +292,7 @@ impl<'b, 'a> Search<'b, 'a> {
     }
 }
 
-/// The values of a model without an effect.
+/// Returns the values of a model without an effect.
 fn without(effect: Effect, values: &Values) -> Values {
     let mut neutral = *values;
     for parameter in Parameter::of(effect) {
@@ -299,7 +301,7 @@ fn without(effect: Effect, values: &Values) -> Values {
     neutral
 }
 
-/// The best on the samples learned from.
+/// Returns the best trial on the training samples.
 fn best(tried: impl IntoIterator<Item = (Effect, Trial)>) -> Option<(Effect, Trial)> {
     tried.into_iter().min_by(|(_, one), (_, other)| one.training.total_cmp(&other.training))
 }

@@ -1,4 +1,4 @@
-//! What is left of a signal when the parameters of a model make up for what they can of it.
+//! The part of a signal that the parameters of a model cannot compensate.
 
 use fric_core::parameters::Values;
 use nalgebra::{DMatrix, DVector};
@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::certainty::undetermined::inverse_of_normal;
 use crate::search::problem::Problem;
 
-/// Signals less what small changes of a problem's parameters make of them, over the samples that count; NaN elsewhere.
+/// Returns the signals minus their projection on small changes of a problem's parameters, over the samples that count; NaN elsewhere.
 pub fn less_projection(problem: &Problem<'_>, values: &Values, signals: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
     let used = problem.used.iter().enumerate().filter(|(_, used)| **used);
     let places: Vec<usize> = used.map(|(place, _)| place).collect();
@@ -42,7 +42,7 @@ pub fn less_projection(problem: &Problem<'_>, values: &Values, signals: &[Vec<f6
     Some(left)
 }
 
-/// A linear least-squares problem of a few columns, reduced to their products with each other and with what they have to account for.
+/// A linear least-squares problem of a few columns, stored as the inner products of the columns with each other and with the residual.
 #[derive(Clone, Debug)]
 pub struct Columns {
     matrix: DMatrix<f64>,
@@ -50,7 +50,7 @@ pub struct Columns {
 }
 
 impl Columns {
-    /// Of columns of which the first `included` are in the residual already; samples whose residual is NaN do not count.
+    /// Creates the problem. The first `included` columns are already part of the residual; samples whose residual is NaN do not count.
     pub fn new(columns: &[Vec<f64>], included: usize, residual_n: &[f64]) -> Self {
         let count = columns.len();
         let (mut matrix, mut right) = (DMatrix::<f64>::zeros(count, count), DVector::<f64>::zeros(count));
@@ -70,10 +70,10 @@ impl Columns {
         Self { matrix, right }
     }
 
-    /// By how much some of the columns make the sum of squares fall.
+    /// Returns the decrease of the sum of squares due to some of the columns.
     pub fn gain(&self, places: &[usize]) -> f64 {
         let part = DMatrix::from_fn(places.len(), places.len(), |row, column| {
-            // Columns that are all but the same are as good as one.
+            // The ridge makes nearly identical columns act as one.
             let ridge = if row == column { 1.0 + 1e-9 } else { 1.0 };
             self.matrix[(places[row], places[column])] * ridge
         });

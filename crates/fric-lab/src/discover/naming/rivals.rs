@@ -1,4 +1,4 @@
-//! Plain laws that the names of a catalogue may stand in for.
+//! Simple laws that effects of the catalogue may wrongly stand in for.
 //!
 //! Where a force sensor's curve is bent, say, a gain, an offset and a nonlinear load explain nearly all of it together, each
 //! with strong evidence, and none of them is there. So a few plain laws are tried as rivals, each as one more column of the
@@ -13,39 +13,40 @@ use crate::discover::workbench::{Trial, Workbench};
 use crate::fit::{Parameter, Row};
 use crate::search::problem::Problem;
 
-/// Rates are taken over so many cycles on either side.
+/// Number of cycles on either side over which rates are computed.
 const RATE_CYCLES: usize = 5;
-/// Time constants of what warms up, as shares of the log's duration.
+/// Time constants of warm-up, as fractions of the log's duration.
 const TIME_CONSTANT_RATIOS: [f64; 4] = [0.06, 0.12, 0.25, 0.5];
 
-/// Of what is above the noise, a law takes away more than this share where it bends that of an effect,
+/// A law that bends an effect's own law removes more than this fraction of the excess above the noise,
 const MOST_BENT: f64 = 0.25;
-/// which explains less than this share of what it does by itself beside it.
+/// and the effect beside the law explains less than this fraction of what it explains alone.
 const LEAST_BESIDE_RATIO: f64 = 0.5;
 
 /// A law that makes some of the effects superfluous.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rival {
-    /// What it goes with.
+    /// The signal that the law depends on.
     pub signal: &'static str,
-    /// Places of the effects.
+    /// Indices of the effects.
     pub replaces: Vec<usize>,
-    /// What it explains with the effects that remain, N².
+    /// Decrease of the sum of squares by the law together with the remaining effects, N².
     gain: f64,
 }
 
-/// What chance makes of sums of squares.
+/// The influence of chance on sums of squares.
 #[derive(Clone, Copy, Debug)]
 pub struct Chance {
-    /// By how much one has to fall for it to be evidence, N²,
+    /// Decrease that counts as evidence, N².
     pub enough: f64,
-    /// and where what is left is white, N².
+    /// The same decrease if the residual is white, N².
     pub white: f64,
     /// Standard deviation of the noise, N.
     pub noise_n: f64,
 }
 
-/// The rival that explains most, of effects with their parameters and the model's values without each; a law that an effect states is none to that effect.
+/// Returns the rival that explains most. `effects` lists effects with their parameters and the model's values without each. A law that an effect
+/// itself states is no rival to that effect.
 pub fn best_rival(
     bench: &Workbench<'_>,
     model: &Trial,
@@ -64,7 +65,7 @@ pub fn best_rival(
         residual_n.iter().zip(&without_n).map(|(with, without)| with - without).collect()
     };
     let mut signals: Vec<Vec<f64>> = effects.iter().map(added_by).collect();
-    // What warms up is friction, and not, say, the inertia that is on trial.
+    // Friction warms up; the inertia on trial, for example, does not.
     let mut without = model.values;
     for (parameters, neutral) in effects {
         for place in parameters.iter().filter(|parameter| !parameter.is_friction()).map(Parameter::place) {
@@ -103,7 +104,7 @@ pub fn best_rival(
         let replaces: Vec<usize> = all.iter().copied().filter(|place| !places.contains(place)).collect();
         let (together, gain) = (gain(&[&all[..], &[effects.len() + law]].concat()), gain(&places));
         if replaces.is_empty() && together - by_name > enough.max(MOST_BENT * excess) {
-            // Much of what is left goes with the law, more than chance makes of it, and one of the names shares what it explains with it.
+            // The law wins if it explains much of the rest, more than chance would, and shares what it explains with one of the names.
             let of_name = |name: &usize| {
                 let others: Vec<usize> = all.iter().copied().filter(|other| other != name).collect();
                 let beside = [&others[..], &[effects.len() + law]].concat();
@@ -113,7 +114,7 @@ pub fn best_rival(
             let (_, name) = shares.filter(|(share, _)| *share < LEAST_BESIDE_RATIO)?;
             return Some(Rival { signal, replaces: vec![name], gain: together });
         }
-        // One more for each name less.
+        // Each name that is removed requires one parameter less.
         #[expect(clippy::cast_precision_loss, reason = "a small count")]
         let is_better = match replaces.len() {
             0 => false,
@@ -125,9 +126,9 @@ pub fn best_rival(
     names.iter().enumerate().filter_map(of_law).max_by(|one, other| one.gain.total_cmp(&other.gain))
 }
 
-/// A plain law.
+/// A simple law.
 struct Law {
-    /// What it goes with.
+    /// The signal that the law depends on.
     signal: &'static str,
     /// The effect that it is to first order, if it is one.
     of: Option<Effect>,
@@ -192,7 +193,7 @@ fn laws(bench: &Workbench<'_>, friction_n: &[f64]) -> Vec<Law> {
     laws
 }
 
-/// Differences of a signal over some cycles on either side, within each log.
+/// Returns the differences of a signal over some cycles on either side, within each log.
 fn rates(logs: impl Iterator<Item = std::ops::Range<usize>>, signal: &[f64]) -> Vec<f64> {
     let mut rates = vec![f64::NAN; signal.len()];
     for log in logs {

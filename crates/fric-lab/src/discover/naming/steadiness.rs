@@ -1,12 +1,11 @@
-//! Whether an effect is the one constant that its name promises.
+//! Tests whether an effect has one constant size.
 //!
-//! A physical effect has one size, whatever the cable does. Something else that is taken for it has another size in each operating
-//! condition: what is called a presliding exponent over short ways is none over long ones. So the size of the effect is
-//! estimated anew in the bins of every condition, by one step of least squares from the fitted model with everything else in it
-//! allowed for, and compared with the size over all.
+//! A physical effect has one size, whatever the cable does. Something else that is mistaken for it has a different size in each operating condition:
+//! a presliding exponent found over short strokes disappears over long ones. So the size of the effect is estimated again in the bins of every
+//! condition, by one least-squares step from the fitted model with all other parameters free, and compared with the overall size.
 //!
-//! With `e` the force that the effect adds, `ẽ` what is left of it when all other parameters make up for what they can, and `r` the
-//! residual, the size in a bin as a share of the fitted one is `1 − Σẽr/Σẽ²` over the bin's samples.
+//! Let `e` be the force that the effect adds, `ẽ` the part of it that the other parameters cannot compensate, and `r` the residual. The size in a
+//! bin, relative to the fitted size, is `1 − Σẽr/Σẽ²` over the bin's samples.
 
 use fric_core::parameters::Values;
 
@@ -17,20 +16,21 @@ use crate::samples::bins::Bins;
 use crate::samples::conditions::Condition;
 use crate::search::problem::Problem;
 
-/// An effect as a share of its fitted size, over one condition.
+/// Relative size of an effect over one condition.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Steadiness {
     /// The condition.
     pub signal: &'static str,
-    /// Mean square by which the size differs from the fitted one over the bins, weighed by what each tells of it, less what chance makes of it.
+    /// Weighted mean square deviation of the size from the fitted one over the bins, minus the contribution of chance. The weights are the
+    /// information of the bins.
     pub scatter: f64,
-    /// What is above the noise that the effect would explain if it grew or fell in proportion to the condition, as a share.
+    /// Fraction of the excess above the noise that the effect would explain if its size varied linearly with the condition.
     pub bent: f64,
-    /// By how much it would then grow or fall over the range of the condition, as a share of its fitted size.
+    /// Change of the size over the range of the condition in that case, relative to the fitted size.
     pub tilt: f64,
 }
 
-/// What an effect adds to a model, with everything else allowed for.
+/// The contribution of an effect to a model that the other parameters cannot compensate.
 pub struct Portrait<'a> {
     residual_n: Vec<f64>,
     own_n: Vec<f64>,
@@ -40,8 +40,8 @@ pub struct Portrait<'a> {
 }
 
 impl<'a> Portrait<'a> {
-    /// Of an effect with these fitted parameters; `neutral` are the model's values without it. `noise` is the standard deviation of the noise, N, and
-    /// how many samples are worth an independent one. `None` where there are no numbers.
+    /// Computes the portrait of an effect with these fitted parameters. `neutral` are the model's values without it. `noise` holds the standard
+    /// deviation of the noise, N, and the number of samples that are worth one independent sample. Returns `None` if a number is not finite.
     pub fn of(
         bench: &Workbench<'_>,
         model: &Trial,
@@ -59,8 +59,8 @@ impl<'a> Portrait<'a> {
         Some(Self { residual_n, own_n, conditions, noise_n, inflation })
     }
 
-    /// Mean square by which chance scatters a sum of products, N²: that of the residual, by how many of its samples are worth an
-    /// independent one. What other effects have left scatters the sums as noise does.
+    /// Returns the variance by chance of a sum of products, N²: the variance of the residual times the number of its samples that are worth one
+    /// independent sample. What other effects have left scatters the sums as noise does.
     fn variance(&self) -> f64 {
         let finite = self.residual_n.iter().filter(|number| number.is_finite());
         let (squares, count) =
@@ -68,7 +68,7 @@ impl<'a> Portrait<'a> {
         squares / count * self.inflation
     }
 
-    /// The steadiness over each condition that is divided into bins.
+    /// Returns the steadiness over each condition that is divided into bins.
     pub fn steadiness(&self) -> Vec<Steadiness> {
         let finite = self.residual_n.iter().filter(|number| number.is_finite());
         let excess: f64 = finite.map(|number| number * number - self.noise_n * self.noise_n).sum();
@@ -78,7 +78,7 @@ impl<'a> Portrait<'a> {
     fn over(&self, condition: &Condition, excess: f64) -> Option<Steadiness> {
         let bins = Bins::new(condition, &self.residual_n)?;
         let (first, last) = (*bins.edges.first()?, *bins.edges.last()?);
-        // Of each bin, and of the condition as a whole, from 0 to 1.
+        // Sums per bin, and over the whole condition scaled to 0…1.
         let mut sums = vec![(0.0_f64, 0.0_f64); bins.count()];
         let (mut tilt, mut moments) = (0.0, [0.0_f64; 3]);
         let samples = condition.values.iter().zip(&self.residual_n).zip(&self.own_n);

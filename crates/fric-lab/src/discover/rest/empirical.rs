@@ -1,15 +1,16 @@
-//! A table for what is left and has no name: how large it is and where, without a word about what it is.
+//! A table for a rest without a name. It says how large the rest is and where, not what it is.
 //!
-//! Where naming is over and the rest is more than noise, tables over each condition of the cycle are tried, of a force and of a factor on the friction, over the whole range of the
-//! condition and over the part in which the rest sits:
+//! Tables are tried after naming if the rest exceeds the noise: over each condition of the cycle, of a force and of a factor on the friction, over
+//! the whole range of the condition and over the part in which the rest is concentrated.
 //!
-//! 1. *Fit.* The shares of a table and the parameters of the model together, by penalised least squares on the samples learned from: `Σr² + λ·Σ(second differences)²`. Condition, kind and λ are those that
-//!    predict best the blocks that a fit on the other blocks learned from has not seen.
-//! 2. *Keep.* A table has to take away [`LEAST_CLOSED`] of the squares above the noise on the samples held out, with a gain beyond the scatter of their blocks, and
-//!    in other conditions: for each third of every other condition, and of the time, a table learned outside of it has to do so within it, as far as it has seen its own condition.
-//! 3. What another cable's signals explain better is theirs.
+//! 1. *Fit.* The shares of a table and the parameters of the model are fitted together, by penalised least squares on the training samples: `Σr² +
+//!    λ·Σ(second differences)²`. Condition, kind and λ are chosen by cross-validation over the blocks.
+//! 2. *Keep.* A table must remove [`LEAST_CLOSED`] of the squares above the noise on the held-out samples, with a gain beyond the scatter of their
+//!    blocks. It must also hold in other conditions: for each third of every other condition, and of the time, a table learned outside this third
+//!    must remove enough inside it, as far as it has covered its own condition.
+//! 3. A rest that another cable's signals explain better gets no table.
 //!
-//! Each uses the cycle's own derivatives, so what is kept runs in the cycle as it was judged.
+//! All fits use the cycle's own derivatives, so a table runs in the cycle exactly as it was judged.
 
 use std::ops::Range;
 
@@ -25,32 +26,35 @@ use crate::discover::workbench::{Model, Workbench};
 use crate::fit::Parameter;
 use crate::search::problem::Problem;
 
-/// Of the squares above the noise a table takes away at least this share on samples held out. What it leaves of a gap in root mean squares is then no more than 0.7 of it.
+/// Minimum fraction of the squares above the noise that a table removes on held-out samples. The remaining rms gap is then at most 0.7 of the
+/// original one.
 const LEAST_CLOSED: f64 = 0.5;
-/// And this share in conditions that it has not been learned in, where something is to be taken away.
+/// The same minimum in conditions where the table was not learned, if there is an excess.
 const LEAST_CLOSED_ELSEWHERE: f64 = 0.25;
-/// Its gain is more than this many standard errors by the scatter of blocks.
+/// Minimum gain in standard errors, by the scatter of blocks.
 const LEAST_SIGNIFICANCE: f64 = 3.0;
-/// Excess squares below this share of the noise's are little.
+/// Excess squares below this fraction of the noise variance count as small.
 const LITTLE: f64 = 0.2;
-/// Penalties on the second differences of a table that are tried, as shares of the mean information on a share.
+/// Trial penalties on the second differences of a table, relative to the mean information on a share.
 const PENALTIES: [f64; 5] = [1e-5, 1e-4, 1e-3, 1e-2, 1e-1];
-/// A pull towards no table at all, likewise: what a table and the friction can both be is the friction's.
+/// Penalty on the size of the table, on the same scale. It assigns to friction what both table and friction can explain.
 const RIDGE: f64 = 1e-6;
-/// Parts of the blocks learned from, each predicted by the others.
+/// Number of folds for cross-validation over the training blocks.
 const FOLDS: usize = 4;
-/// The ends of a range leave out this share of the samples on either side: all but outliers, or where most are, with places that lie closer.
+/// Fractions of the samples that the range of a table leaves out at either end: all samples except outliers, or the central part with more closely
+/// spaced points.
 const TAIL_RATIOS: [f64; 2] = [0.002, 0.05];
-/// A part of a range is worth a table of its own below this share of it, with as much around it, as a share of its width.
+/// A part of a condition's range gets a table of its own if it is narrower than this fraction of the range. Such a table extends beyond the part by
+/// this fraction of its width.
 const NARROW_RATIO: f64 = 0.5;
 const MARGIN_RATIO: f64 = 1.0;
-/// Rounds of fitting the table beside the model and the model beside the table.
+/// Rounds that alternate between fitting the table and fitting the model.
 const ROUNDS: usize = 3;
-/// Most rows that are looked at to choose and to check: of longer logs every so many.
+/// Maximum number of rows used to choose and to check. Longer logs are decimated.
 const MOST_ROWS: usize = 60_000;
-/// A share is known where samples weigh on it with this many.
+/// A share is known if its samples weigh at least this much.
 const LEAST_WEIGHT: f64 = 20.0;
-/// Thirds of a condition with fewer samples tell nothing.
+/// Minimum number of samples in a third of a condition.
 const FEWEST_SAMPLES: usize = 200;
 
 /// What a table changes.
@@ -62,24 +66,24 @@ pub enum Changes {
     Friction,
 }
 
-/// A table that holds.
+/// A table that passed the checks.
 #[derive(Clone, Debug)]
 pub struct Table {
     /// The model with it.
     pub values: Values,
-    /// What was fitted.
+    /// The fitted parameters.
     pub fitted: Vec<Parameter>,
-    /// Covariance of what was fitted, by the scatter of blocks.
+    /// Covariance of the fitted parameters, by the scatter of blocks.
     pub covariance: DMatrix<f64>,
-    /// Sum of squares on the samples learned from without and with it, N².
+    /// Training sum of squares without and with the table, N².
     pub training: [f64; 2],
-    /// By how much the memory of the residual weakens the evidence, at least 1.
+    /// Factor by which memory in the residual weakens the evidence, at least 1.
     pub inflation: f64,
-    /// Share of all squares of the samples held out that it takes away.
+    /// Fraction of the held-out sum of squares that the table removes.
     pub gain_ratio: f64,
 }
 
-/// The best table for what a model leaves, if one holds; `places` are where the rest sits.
+/// Returns the best table for the residual of a model, if one passes the checks. `places` are the conditions in which the rest is concentrated.
 pub fn table(bench: &Workbench<'_>, model: &Model, noise_n: f64, places: &[Place]) -> Option<Table> {
     let without = bench.try_one(model);
     let residual_n = bench.residuals_n(&without.values);
@@ -89,7 +93,7 @@ pub fn table(bench: &Workbench<'_>, model: &Model, noise_n: f64, places: &[Place
     }
     let base = without.model();
     let mut candidates = candidates(bench, &base, &residual_n, places);
-    // One load tells nothing of what goes with the load: a table over it would make any force that one.
+    // A constant load says nothing about how the force depends on it. A table over the load would turn any force into that constant.
     candidates.retain(|candidate| candidate.over != Over::Load || bench.knows_load(noise_n));
     let chosen = candidates.iter().filter_map(|candidate| candidate.tried(bench, &base));
     let chosen = chosen.min_by(|one, other| one.predicted.total_cmp(&other.predicted))?;
@@ -105,7 +109,7 @@ pub fn table(bench: &Workbench<'_>, model: &Model, noise_n: f64, places: &[Place
     holds.then_some(Table { values, fitted, covariance, training, inflation, gain_ratio: gain / squares.sum })
 }
 
-/// A model's values without a table.
+/// Returns a model's values without a table.
 pub fn without_table(values: &Values) -> Values {
     let mut neutral = *values;
     for parameter in Parameter::of(Effect::Empirical) {
@@ -150,7 +154,7 @@ impl Squares {
     }
 }
 
-/// A condition of a table in each cycle.
+/// Returns the value of a table's condition in each cycle.
 fn condition(bench: &Workbench<'_>, over: Over) -> Vec<f64> {
     let gain = bench.record.params.frictionless_gain();
     let of = |row: &crate::fit::Row| match over {
@@ -161,7 +165,7 @@ fn condition(bench: &Workbench<'_>, over: Over) -> Vec<f64> {
     bench.record.rows.iter().map(of).collect()
 }
 
-/// A table to try: where it lies and what it changes.
+/// A table to try: its range and what it changes.
 #[derive(Clone, Debug)]
 struct Layout {
     over: Over,
@@ -169,7 +173,7 @@ struct Layout {
     changes: Changes,
 }
 
-/// Every table to try.
+/// Returns every table to try.
 fn candidates(bench: &Workbench<'_>, base: &Model, residual_n: &[f64], places: &[Place]) -> Vec<Layout> {
     let slides = base.values[MU] > 0.0;
     let mut layouts = Vec::new();
@@ -202,7 +206,7 @@ fn candidates(bench: &Workbench<'_>, base: &Model, residual_n: &[f64], places: &
     layouts
 }
 
-/// The name of a table's condition in results.
+/// Returns the name of a table's condition in results.
 pub fn signal_of(over: Over) -> &'static str {
     match over {
         Over::Speed => "speed",
@@ -211,7 +215,7 @@ pub fn signal_of(over: Over) -> &'static str {
     }
 }
 
-/// Whether a parameter of a table does nothing: the range of a condition that it is not over, a share that is none.
+/// Whether a parameter of a table has no effect: the range of another condition, or a share of zero.
 pub fn is_idle(parameter: &Parameter, values: &Values) -> bool {
     let is_size = [SIZE, RATIO].contains(&parameter.place());
     let own = Over::of(|place| values[place]).map_or(0..0, |over| over.from()..over.to() + 1);
@@ -221,7 +225,7 @@ pub fn is_idle(parameter: &Parameter, values: &Values) -> bool {
         && values[parameter.place()].abs() <= 0.0
 }
 
-/// Physics that look like a table.
+/// Returns the physical causes that look like such a table.
 pub fn looks_like(over: Over, is_force: bool) -> &'static [&'static str] {
     match (over, is_force) {
         (Over::Speed, true) => &[
@@ -259,7 +263,7 @@ pub fn looks_like(over: Over, is_force: bool) -> &'static [&'static str] {
 }
 
 impl Layout {
-    /// A model's values with this table, of a size and of shares.
+    /// Returns a model's values with this table, with the given size and shares.
     fn set(&self, base: &Values, size: f64, shares: &[f64]) -> Values {
         let mut values = without_table(base);
         values[match self.changes {
@@ -273,7 +277,7 @@ impl Layout {
         values
     }
 
-    /// The same from what the shares change, in N or as shares of μ: the greatest is a share of 1.
+    /// Returns the same from the changes, in N or as fractions of μ, scaled so that the greatest share is 1.
     fn scaled(&self, base: &Values, changes: &[f64]) -> Values {
         let greatest = changes.iter().fold(0.0, |most: f64, change| most.max(change.abs()));
         let size = if greatest > 0.0 { greatest } else { 1.0 };
@@ -281,7 +285,7 @@ impl Layout {
         self.set(base, size, &shares)
     }
 
-    /// What a model's table changes at each of its places.
+    /// Returns what a model's table changes at each of its points.
     fn changes_of(&self, values: &Values) -> Vec<f64> {
         let size = values[match self.changes {
             Changes::Force => SIZE,
@@ -290,7 +294,7 @@ impl Layout {
         SHARE_PLACES.map(|place| size * values[place]).collect()
     }
 
-    /// The derivatives of a model with this table, of a size of 1, by what was free and by the shares.
+    /// Returns the derivatives of a model with this table, at a size of 1, with respect to the free parameters and the shares.
     fn rows(&self, bench: &Workbench<'_>, base: &Model, values: &Values) -> Rows {
         let mut free = base.free.clone();
         free.extend(shares());
@@ -329,7 +333,7 @@ impl Layout {
         rows
     }
 
-    /// The table fitted beside the model, with the penalty that predicts best.
+    /// Fits the table beside the model with the penalty that predicts best.
     fn tried(&self, bench: &Workbench<'_>, base: &Model) -> Option<Tried> {
         let values = self.set(&base.values, 1.0, &[0.0; SHARES]);
         let rows = self.rows(bench, base, &values);
@@ -354,12 +358,12 @@ impl Layout {
     }
 }
 
-/// Parameters of the shares.
+/// Returns the parameters of the shares.
 fn shares() -> impl Iterator<Item = Parameter> {
     Parameter::of(Effect::Empirical).filter(|parameter| SHARE_PLACES.contains(&parameter.place()))
 }
 
-/// The block of each cycle.
+/// Returns the block of each cycle.
 fn block_of_each(bench: &Workbench<'_>) -> Vec<Option<usize>> {
     let mut blocks = vec![None; bench.counts.len()];
     for (place, block) in bench.blocks.iter().enumerate() {
@@ -370,7 +374,7 @@ fn block_of_each(bench: &Workbench<'_>) -> Vec<Option<usize>> {
     blocks
 }
 
-/// Derivatives and residual of samples, side by side.
+/// Derivatives and residuals of samples, side by side.
 struct Rows {
     width: usize,
     /// Column of the first share; the last column is the residual.
@@ -390,7 +394,7 @@ impl Rows {
         self.numbers.get(row * self.width..(row + 1) * self.width).unwrap_or_default()
     }
 
-    /// Normal equations of some of them.
+    /// Returns the normal equations of the wanted rows.
     fn normal(&self, wanted: impl Fn(usize) -> bool) -> Normal {
         let mut normal = Normal::none(self.width);
         for row in (0..self.count()).filter(|row| wanted(*row)) {
@@ -400,7 +404,7 @@ impl Rows {
     }
 }
 
-/// Products of columns, the residual's last.
+/// Inner products of the columns; the residual is the last column.
 #[derive(Clone, Debug)]
 struct Normal(DMatrix<f64>);
 
@@ -409,7 +413,7 @@ impl Normal {
         Self(DMatrix::zeros(width, width))
     }
 
-    /// Above the diagonal.
+    /// Adds the products of a row, above the diagonal only.
     fn add(&mut self, row: &[f64]) {
         for (one, number) in row.iter().enumerate().filter(|(_, number)| **number != 0.0) {
             for (other, factor) in row.iter().enumerate().skip(one) {
@@ -435,7 +439,7 @@ impl Normal {
         self.0.nrows() - 1
     }
 
-    /// The matrix with the penalty on the second differences of the shares, and on their size.
+    /// Returns the matrix with the penalties on the second differences of the shares and on their size.
     fn penalised(&self, first_share: usize, penalty: f64) -> DMatrix<f64> {
         let free = self.free();
         let mut matrix = self.0.view((0, 0), (free, free)).into_owned();
@@ -455,7 +459,7 @@ impl Normal {
         matrix
     }
 
-    /// The step to the minimum, where the shares' `changes` are now these.
+    /// Returns the step to the minimum, given the present `changes` of the shares.
     fn solved(&self, first_share: usize, penalty: f64, changes: &[f64]) -> Option<DVector<f64>> {
         let free = self.free();
         let matrix = self.penalised(first_share, penalty);
@@ -468,13 +472,13 @@ impl Normal {
         Some(-(inverse_of_normal(&matrix)? * slope).column(0).into_owned())
     }
 
-    /// The sum of squares after a step.
+    /// Returns the sum of squares after a step.
     fn squares_after(&self, step: &DVector<f64>) -> f64 {
         let whole = step.clone().push(1.0);
         (&self.0 * &whole).dot(&whole)
     }
 
-    /// The step of the model alone, without a table.
+    /// Returns the step of the model alone, without a table.
     fn without_shares(&self, first_share: usize) -> Option<DVector<f64>> {
         let free = self.free();
         let mut step = DVector::zeros(free);
@@ -489,11 +493,11 @@ impl Normal {
     }
 }
 
-/// A table with how well it predicts.
+/// A table with its prediction error.
 struct Tried {
     layout: Layout,
     penalty: f64,
-    /// Squares of the samples learned from, each predicted from other blocks, N².
+    /// Sum of squares over the training samples, each predicted from other blocks, N².
     predicted: f64,
     rows: Rows,
 }
@@ -517,7 +521,7 @@ impl Tried {
         })
     }
 
-    /// The same of rows that are inside of something.
+    /// Performs the same check on the rows for which `is_inside` holds.
     fn holds_in(&self, is_inside: impl Fn(usize) -> bool, noise_n: f64) -> bool {
         let rows = &self.rows;
         let outside = rows.normal(|row| !rows.held_out[row] && !is_inside(row));
@@ -526,7 +530,7 @@ impl Tried {
         else {
             return true;
         };
-        // As far as the table has been learned.
+        // Only the part of the condition that the table has learned is checked.
         let mut weights = [0.0; SHARES];
         let mut greatest = [0.0_f64; SHARES];
         let of_shares = |row: usize| rows.at(row).get(rows.first_share..rows.width - 1).unwrap_or_default();
@@ -564,7 +568,7 @@ impl Tried {
         }
     }
 
-    /// The table and the model beside it at their minimum: values, covariance, inflation, what was fitted.
+    /// Returns the table and the model beside it at their minimum: values, covariance, inflation, fitted parameters.
     fn finished(&self, bench: &Workbench<'_>, base: &Model) -> Option<(Values, DMatrix<f64>, f64, Vec<Parameter>)> {
         let layout = &self.layout;
         let mut model = base.clone();
@@ -587,7 +591,7 @@ impl Tried {
         let rows = rows?;
         let learned = rows.normal(|row| !rows.held_out[row]);
         let inverse = inverse_of_normal(&learned.penalised(rows.first_share, self.penalty))?;
-        // The scatter of what the blocks say.
+        // The covariance follows from the scatter of the blocks' scores.
         let free = learned.free();
         let mut scores = vec![DVector::<f64>::zeros(free); bench.blocks.len()];
         let mut squares = 0.0;
@@ -605,7 +609,7 @@ impl Tried {
         let inflation = (rows.first_share..free)
             .map(|place| covariance[(place, place)] / (variance * inverse[(place, place)]))
             .fold(1.0, f64::max);
-        // From newtons, or shares of μ, to shares of the table.
+        // Converts from newtons, or fractions of μ, to shares of the table.
         let size = model.values[if layout.changes == Changes::Force { SIZE } else { RATIO }];
         for place in rows.first_share..free {
             covariance.row_mut(place).unscale_mut(size);
@@ -616,7 +620,7 @@ impl Tried {
     }
 }
 
-/// The lower, middle and upper third of some numbers, as ranges that hold something.
+/// Returns the lower, middle and upper third of some numbers, as non-empty ranges.
 fn thirds(numbers: &[f64]) -> Vec<Range<f64>> {
     let mut sorted: Vec<f64> = numbers.iter().copied().filter(|number| number.is_finite()).collect();
     sorted.sort_by(f64::total_cmp);

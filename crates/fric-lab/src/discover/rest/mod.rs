@@ -1,7 +1,7 @@
-//! What is left when all names are given: noise that wanders, or something that has no name.
+//! Classifies the rest after naming: drift of the sensors, or something without a name.
 //!
-//! A sensor's wander is noise: it goes on while the cable rests as it does while it moves, and is spread over the log. What
-//! changes with the motion or with the load, is a function of a condition, sits in a narrow stretch of time, or is many times the noise, is not.
+//! Sensor drift is noise. It continues while the cable rests and is spread over the log. A rest is not drift if it changes with the motion or the
+//! load, is a function of a condition, is concentrated in a narrow stretch of time, or is many times the noise.
 
 pub mod empirical;
 pub mod neighbours;
@@ -14,24 +14,26 @@ use self::places::{Excess, Place};
 use crate::candidates::ripple::ripple_power;
 use crate::fit::Row;
 
-/// Of a wander, no more than this share lies in a tenth of the log.
+/// Maximum fraction of a drift that lies in one tenth of the log.
 const MOST_IN_TENTH: f64 = 0.6;
-/// Nor is more than this share one level and one wave, of a period above this, s, seen by means over this time: noise forgets.
+/// Maximum fraction of a drift that is one level and one wave with a period above this value, s, computed from means over this time. Noise has no
+/// such long memory.
 const MOST_WAVE: f64 = 0.7;
 const QUICKEST_S: f64 = 4.0;
 const WINDOW_S: f64 = 0.25;
-/// And it is no more than this many times the noise: what is greater needs another cause.
+/// Maximum ratio of a drift to the noise. A greater one needs another cause.
 const MOST_WANDER: f64 = 2.0;
-/// Windows over which slow changes are seen, s: below the memory of a wander.
+/// Windows over which slow changes are computed, s; shorter than the memory of a drift.
 const CHANGE_S: f64 = 0.1;
-/// Fewer windows tell no mean.
+/// Minimum number of windows for a mean.
 const FEWEST_QUIET: usize = 16;
-/// Changes with and without motion are alike up to this many standard deviations of chance.
+/// Changes with and without motion count as equal up to this many standard deviations of chance.
 const LEAST_RANKS_APART: f64 = 3.0;
-/// An excess above this share of the noise's mean square is worth an explanation: the rms is 5 % above the floor.
+/// Minimum excess, as a fraction of the noise variance, that needs an explanation. The rms is then 5 % above the floor.
 pub const WORTH: f64 = 0.1;
 
-/// Mean square of the sensors' wander in an excess, as a share of the noise's; `places` are the conditions that it is a function of.
+/// Returns the mean square of the sensors' drift in an excess, as a fraction of the noise variance. `places` are the conditions that the excess is a
+/// function of.
 pub fn wander(excess: &Excess<'_>, places: &[Place]) -> f64 {
     let is_wander = excess.share() < MOST_WANDER * MOST_WANDER
         && places.is_empty()
@@ -40,12 +42,12 @@ pub fn wander(excess: &Excess<'_>, places: &[Place]) -> f64 {
     if is_wander { excess.share() * (1.0 - share_of_motion(excess)) } else { 0.0 }
 }
 
-/// Share of the slow changes of a residual that come with motion of the cable or change of its load.
+/// Returns the fraction of a residual's slow changes that comes with motion of the cable or a change of its load.
 ///
-/// Means over windows of [`CHANGE_S`] change from one to the next by white noise, by the wander, and by what the model misses of motion and load. The
-/// first is known, the second is the same in all, and the third is not in windows in which neither changes. So the mean
-/// square in these tells the wander's. What chance makes of the difference counts as none: ranks of both kinds of windows are compared by the test of Mann and
-/// Whitney.
+/// Means over windows of [`CHANGE_S`] differ from one window to the next by white noise, by the drift, and by the model's errors in motion and load.
+/// The white noise is known. The drift is the same in all windows. The model's errors vanish in windows in which neither motion nor load changes, so
+/// the mean square in these windows gives the drift. A difference that may be chance counts as none: a Mann-Whitney test compares the ranks of both
+/// kinds of windows.
 fn share_of_motion(excess: &Excess<'_>) -> f64 {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
     let length = (CHANGE_S / excess.record.interval_s).ceil().max(1.0) as usize;
@@ -72,11 +74,11 @@ fn share_of_motion(excess: &Excess<'_>) -> f64 {
             change.square.is_finite().then_some(change)
         }));
     }
-    // The quietest quarter of the quarter that moves least, or as many as tell a mean.
+    // Takes the quietest quarter of the quarter with the least motion, but at least as many windows as a mean needs.
     let mut all: Vec<&Change> = changes.iter().collect();
     all.sort_by(|one, other| one.way_m.total_cmp(&other.way_m));
     let moves = all.split_off((all.len() / 4).max(FEWEST_QUIET).min(all.len()));
-    // Even the micro motion of a winch that holds a force shows what the model misses.
+    // Even the small motion of a winch that holds a force reveals what the model misses.
     let with_motion =
         correlated_share(&all, |change| change.length_m).max(correlated_share(&all, |change| change.load_n));
     all.sort_by(|one, other| one.load_n.abs().total_cmp(&other.load_n.abs()));
@@ -101,7 +103,7 @@ struct Window {
 }
 
 impl Window {
-    /// Of rows with their residual; without a mean where half of it is missing.
+    /// Creates the window from rows with their residual. It has no mean if half of the residual is missing.
     fn of(rows: &[Row], residual_n: &[f64]) -> Self {
         let finite = || residual_n.iter().filter(|number| number.is_finite());
         #[expect(clippy::cast_precision_loss, reason = "small counts")]
@@ -116,19 +118,19 @@ impl Window {
     }
 }
 
-/// From one window to the next.
+/// The change from one window to the next.
 struct Change {
     /// Change of the mean residual, N.
     residual_n: f64,
-    /// Squared change of the mean residual less what white noise makes of it, N².
+    /// Squared change of the mean residual minus the contribution of white noise, N².
     square: f64,
     way_m: f64,
-    /// Change of the mean length, m, and of the mean load, N.
+    /// Change of the mean length, m.
     length_m: f64,
     load_n: f64,
 }
 
-/// Share of the squared changes of a residual that goes with another change, where that is more than chance.
+/// Returns the fraction of a residual's squared changes that correlates with another change; zero where this may be chance.
 fn correlated_share(changes: &[&Change], other: fn(&Change) -> f64) -> f64 {
     let [mut squares, mut others, mut products, mut count] = [0.0_f64; 4];
     for change in changes {
@@ -142,7 +144,7 @@ fn correlated_share(changes: &[&Change], other: fn(&Change) -> f64) -> f64 {
     if share * count > LEAST_RANKS_APART * LEAST_RANKS_APART { share } else { 0.0 }
 }
 
-/// By how many standard deviations of chance the changes of the one kind rank below those of the other.
+/// Returns by how many standard deviations of chance the changes of the first kind rank below those of the second.
 fn ranks_apart(low: &[&Change], high: &[&Change]) -> f64 {
     let mut all: Vec<(f64, bool)> = low.iter().map(|change| (change.square, true)).collect();
     all.extend(high.iter().map(|change| (change.square, false)));
@@ -155,7 +157,7 @@ fn ranks_apart(low: &[&Change], high: &[&Change]) -> f64 {
     (expected - ranks) / (of_low * of_high * (of_low + of_high + 1.0) / 12.0).sqrt()
 }
 
-/// Share of the excess that is one level and one slow wave.
+/// Returns the fraction of the excess that is one level and one slow wave.
 fn share_of_wave(excess: &Excess<'_>) -> f64 {
     let interval_s = excess.record.interval_s;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
@@ -180,7 +182,7 @@ fn share_of_wave(excess: &Excess<'_>) -> f64 {
     samples / count * (count * level_n * level_n + wave) / excess.sum()
 }
 
-/// Share of the excess in the tenth of the blocks that have most of it.
+/// Returns the fraction of the excess in the tenth of the blocks that contains most of it.
 fn share_of_tenth(excess: &Excess<'_>) -> f64 {
     let mut sums: Vec<f64> = excess
         .blocks
@@ -196,7 +198,7 @@ fn share_of_tenth(excess: &Excess<'_>) -> f64 {
     sums.iter().take(tenth).sum::<f64>() / excess.sum()
 }
 
-/// What counts, and what is sound between two neighbours of it, on the line from one measurement to the next.
+/// Returns the samples that count, and the sound samples between two of them, which lie on the line from one measurement to the next.
 pub fn with_interpolated(counts: &[bool], measured: &[bool], is_sound: impl Fn(usize) -> bool) -> Vec<bool> {
     let mut all = counts.to_vec();
     let mut before = 0;
@@ -211,7 +213,7 @@ pub fn with_interpolated(counts: &[bool], measured: &[bool], is_sound: impl Fn(u
     all
 }
 
-/// Cycles as stretches, for results.
+/// Converts a flag per cycle into ranges of cycles.
 pub fn ranges(cycles: impl Iterator<Item = bool>) -> Vec<Range<usize>> {
     let mut ranges: Vec<Range<usize>> = Vec::new();
     for (cycle, _) in cycles.enumerate().filter(|(_, wanted)| *wanted) {

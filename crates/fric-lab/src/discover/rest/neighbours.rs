@@ -1,29 +1,29 @@
-//! Which signals of the other cables an unexplained residual goes with: what couples into a sensor often comes from next door.
+//! Signals of the other cables that correlate with an unexplained residual. Disturbances of a sensor often couple in from a neighbour.
 //!
-//! What a signal has in common with the cable's own force and speed is taken off first: all cables of a platform pull together.
+//! The part of each signal that the cable's own force and speed explain is removed first, because all cables of a platform act together.
 
 use nalgebra::{Matrix3, Vector3};
 
 use crate::fit::{CableRecord, Row};
 use crate::samples::split::{Block, split};
 
-/// A correlation of less than this is not told,
+/// Minimum correlation to report.
 const LEAST_CORRELATION: f64 = 0.3;
-/// nor one of less than this many standard errors, by the blocks' scatter.
+/// Minimum correlation in standard errors, by the scatter of the blocks.
 const LEAST_SIGNIFICANCE: f64 = 4.0;
 
-/// A signal of another cable that a residual goes with.
+/// A signal of another cable that correlates with a residual.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Neighbour {
-    /// The cable's place.
+    /// Index of the cable.
     pub cable: usize,
     /// The signal.
     pub signal: &'static str,
-    /// Correlation with the residual, without what both have in common with the cable's own force and speed.
+    /// Correlation with the residual, after removing from both what the cable's own force and speed explain.
     pub correlation: f64,
 }
 
-/// What the residual of one cable goes with, N in each cycle; `own` is that cable's place. The strongest first.
+/// Returns the signals that correlate with the residual of one cable, N in each cycle, the strongest first. `own` is the index of that cable.
 pub fn neighbours_of(residual_n: &[f64], own: usize, records: &[CableRecord<'_>]) -> Vec<Neighbour> {
     let Some(record) = records.get(own) else { return Vec::new() };
     let (blocks, own_columns) = (split(record), columns(record));
@@ -38,14 +38,14 @@ pub fn neighbours_of(residual_n: &[f64], own: usize, records: &[CableRecord<'_>]
     neighbours
 }
 
-/// Sensor force and speed of a cable in each cycle.
+/// Returns sensor force and speed of a cable in each cycle.
 fn columns(record: &CableRecord<'_>) -> [Vec<f64>; 2] {
     let of = |row: &Row| [row.signals.sensor_force_n, row.signals.speed_m_per_s];
     [0, 1].map(|signal| record.rows.iter().map(|row| of(row)[signal]).collect())
 }
 
-/// Correlation of a residual with a signal, without what a constant and two signals of its own tell of both; `None` where it is
-/// small, or may be chance.
+/// Returns the correlation of a residual with a signal, after removing from both what a constant and the cable's own two signals explain. Returns
+/// `None` if it is small or may be chance.
 fn correlation(residual: &[f64], own: &[Vec<f64>; 2], other: &[f64], blocks: &[Block]) -> Option<f64> {
     let regressors = |cycle: usize| {
         let value = |column: &[f64]| column.get(cycle).copied().unwrap_or(f64::NAN);
@@ -86,7 +86,7 @@ fn correlation(residual: &[f64], own: &[Vec<f64>; 2], other: &[f64], blocks: &[B
 mod tests {
     use super::*;
 
-    /// A residual of half another cable's signal and as much of its own noise; both cables' signals have a wave in common.
+    /// The residual is half of another cable's signal plus equal noise of its own; the signals of both cables contain a common wave.
     #[test]
     fn finds_what_comes_from_next_door_and_not_what_all_cables_have() {
         let wave = |cycle: i32, period: f64| (f64::from(cycle) / period).sin();

@@ -1,10 +1,10 @@
-//! Where a disagreement sits: in which operating conditions the residual is more than noise.
+//! Operating conditions in which the residual exceeds the noise.
 //!
-//! Two questions are asked of every condition. How much of the excess is a function of it, told apart by the direction of
-//! motion: means over bins of the samples learned from, tried on those held out, so that chance gains nothing. And in
-//! which range of it the excess is densest, by the samples learned from, and how much more of it than its share those held
-//! out have there. What chance would gain by the means is seen when the signs of the blocks' residuals are drawn at random; the
-//! scatter over the blocks tells how sure the density is. Both hold for residuals that remember no longer than a block.
+//! Two measures are computed for every condition. The first is how much of the excess is a function of the condition, separately for each direction
+//! of motion: means over bins of the training samples are tested on the held-out samples, so that chance gains nothing. The second is the range of
+//! the condition in which the excess is densest: the training samples choose the range, and the held-out samples tell how much more of the excess
+//! than of the samples lies there. The chance level of the first measure comes from residuals shifted in time against the conditions; the uncertainty
+//! of the second comes from the scatter over the blocks. Both are valid for residuals with a memory no longer than a block.
 
 use std::ops::Range;
 
@@ -15,76 +15,76 @@ use crate::samples::bins::Bins;
 use crate::samples::conditions::{Condition, sign};
 use crate::samples::split::Block;
 
-/// A gain of less than this many standard errors is chance.
+/// Minimum gain in standard errors; a smaller one is chance.
 const LEAST_SIGNIFICANCE: f64 = 4.0;
-/// A concentration of less than this many may be chance.
+/// Minimum concentration in standard errors; a smaller one may be chance.
 pub const LEAST_CONCENTRATION: f64 = 3.0;
-/// And one of less than this many is not even told.
+/// Minimum concentration to report, in standard errors.
 const WORTH_TELLING: f64 = 1.0;
-/// More of the excess than of the samples, as shares, that makes a range worth telling.
+/// Minimum difference between a range's fraction of the excess and its fraction of the samples.
 const LEAST_MORE: f64 = 0.1;
-/// A range with this share of the samples is no place.
+/// A range with this fraction of the samples is the whole condition, not a place.
 const WHOLE: f64 = 0.995;
-/// Bins beside the densest one belong to it down to this share of its density.
+/// Bins beside the densest one belong to it down to this fraction of its density.
 const SHOULDER: f64 = 0.4;
-/// Shifts of the residual against the conditions, in equal steps through the log, that show what chance would gain.
+/// Number of equal shifts of the residual against the conditions through the log, which give the chance level.
 const SHIFTS: usize = 79;
-/// A bin with fewer samples tells nothing.
+/// Minimum number of samples in a bin.
 const FEWEST_SAMPLES: f64 = 50.0;
-/// Intervals in time that are worth a look.
+/// Maximum number of time intervals to report.
 const MOST_INTERVALS: usize = 5;
-/// They are made of windows of this length, s, at least this loud beside the loudest.
+/// Length of the windows that intervals consist of, s, and the minimum excess of a window relative to the loudest.
 const WINDOW_S: f64 = 0.5;
 const LOUD: f64 = 0.25;
-/// Two with less than this between them are one, s.
+/// Two intervals closer than this are merged, s.
 const MERGED_S: f64 = 0.25;
 
-/// A range of a condition in which the excess sits.
+/// A range of a condition in which the excess is concentrated.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Place {
     /// The condition.
     pub signal: &'static str,
-    /// Where the range begins, in `unit`.
+    /// Lower end of the range, in `unit`.
     pub from: f64,
-    /// Where it ends.
+    /// Upper end of the range, in `unit`.
     pub to: f64,
     /// The condition's unit.
     pub unit: &'static str,
-    /// Least and greatest value that the condition has.
+    /// Least and greatest value of the condition.
     #[serde(skip)]
     pub range: [f64; 2],
-    /// Share of the excess in this range.
+    /// Fraction of the excess in this range.
     pub share_of_excess: f64,
-    /// Share of the samples in this range.
+    /// Fraction of the samples in this range.
     pub share_of_samples: f64,
-    /// Share of the excess that is a function of this condition and of the direction of motion.
+    /// Fraction of the excess that is a function of this condition and of the direction of motion.
     pub explains: f64,
-    /// How many standard errors that is above chance.
+    /// Number of standard errors above chance.
     pub significance: f64,
-    /// When to look, s since the first sample.
+    /// Time intervals to look at, s since the first sample.
     pub intervals_s: Vec<[f64; 2]>,
 }
 
-/// What is looked at.
+/// A residual whose excess above the noise is to be located.
 #[derive(Clone, Copy, Debug)]
 pub struct Excess<'a> {
     /// The cable.
     pub record: &'a CableRecord<'a>,
     /// Its blocks.
     pub blocks: &'a [Block],
-    /// What is left, N; NaN where a sample does not count.
+    /// The residual, N; NaN where a sample does not count.
     pub residual_n: &'a [f64],
     /// Standard deviation of the noise, N.
     pub noise_n: f64,
 }
 
 impl Excess<'_> {
-    /// Sum of the squares above the noise over all samples, N².
+    /// Returns the sum of the squares above the noise over all samples, N².
     pub fn sum(&self) -> f64 {
         self.residual_n.iter().filter(|number| number.is_finite()).map(|number| self.of(*number)).sum()
     }
 
-    /// That sum as a share of the noise's squares: of the mean square, how much is above the noise's.
+    /// Returns that sum divided by the noise's squares: the relative excess of the mean square.
     pub fn share(&self) -> f64 {
         #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
         let count = self.residual_n.iter().filter(|number| number.is_finite()).count() as f64;
@@ -95,7 +95,7 @@ impl Excess<'_> {
         residual_n * residual_n - self.noise_n * self.noise_n
     }
 
-    /// Where the excess sits, the most telling condition first.
+    /// Returns the conditions that the excess is a function of, the most informative first.
     pub fn places(&self, conditions: &[Condition]) -> Vec<Place> {
         let mut places: Vec<Place> = conditions.iter().filter_map(|condition| self.place(condition)).collect();
         places.retain(|place| place.significance >= LEAST_SIGNIFICANCE);
@@ -103,8 +103,8 @@ impl Excess<'_> {
         places
     }
 
-    /// Where the excess sits for people: conditions in a range of which it is concentrated, or that it is a function of,
-    /// what is sure and much first. The significance is the greater of the two.
+    /// Returns the places to report to people: conditions with a range in which the excess is concentrated, or that the excess is a function of, the
+    /// most certain and largest first. The significance is the greater of the two.
     pub fn concentrations(&self, conditions: &[Condition]) -> Vec<Place> {
         let mut places: Vec<Place> = conditions
             .iter()
@@ -122,7 +122,7 @@ impl Excess<'_> {
         places
     }
 
-    /// How many standard errors the excess in the densest range is above what its share of the samples would have.
+    /// Returns by how many standard errors the excess in the densest range exceeds the range's fraction of the samples.
     fn concentration(&self, condition: &Condition) -> Option<f64> {
         let bins = Bins::new(condition, self.residual_n)?;
         let range = self.densest(&bins, condition, |block| !block.held_out)?;
@@ -152,14 +152,14 @@ impl Excess<'_> {
         Some(sum / error).filter(|significance| significance.is_finite())
     }
 
-    /// Where it sits in one condition; `None` where there is nothing to compare.
+    /// Returns the place in one condition; `None` if there is nothing to compare.
     pub fn place(&self, condition: &Condition) -> Option<Place> {
         let bins = Bins::new(condition, self.residual_n)?;
         let range = self.densest(&bins, condition, |_| true)?;
         self.place_in(condition, &bins, range)
     }
 
-    /// The same for a range of bins.
+    /// Returns the same for a range of bins.
     pub fn place_in(&self, condition: &Condition, bins: &Bins, range: Range<usize>) -> Option<Place> {
         let total = self.sum();
         let (explains, significance) = self.explained(bins, condition);
@@ -186,13 +186,13 @@ impl Excess<'_> {
         })
     }
 
-    /// Values of a condition with the residual, where there are both.
+    /// Returns the values of a condition with the residual, where both exist.
     fn samples(&self, condition: &Condition) -> impl Iterator<Item = (f64, f64)> {
         let samples = condition.values.iter().copied().zip(self.residual_n.iter().copied());
         samples.filter(|(value, residual_n)| value.is_finite() && residual_n.is_finite())
     }
 
-    /// How much of the squares of all samples a function of the condition and of the direction takes away, and its significance.
+    /// Returns the decrease of the sum of squares over all samples by a function of the condition and the direction, and its significance.
     fn explained(&self, bins: &Bins, condition: &Condition) -> (f64, f64) {
         let mut cells = vec![None; self.residual_n.len()];
         for block in self.blocks {
@@ -212,8 +212,8 @@ impl Excess<'_> {
         (found, significance(found, &chances))
     }
 
-    /// What the means over cells of the samples learned from take away of the squares of those held out, in proportion to all; the
-    /// residuals shifted in time by so many cycles. `cells` are those of the cycles, and 1 where they are held out.
+    /// Returns the decrease of the held-out sum of squares by the means over cells of the training samples, scaled to all samples. The residuals are
+    /// shifted in time by `shift` cycles. `cells` holds the cell of each cycle, and 1 where the cycle is held out.
     fn gain_of_means(&self, cells: &[Option<(usize, usize)>], count: usize, shift: usize) -> f64 {
         let mut sums = vec![[(0.0_f64, 0.0_f64); 2]; count];
         let (later, earlier) = self.residual_n.split_at(shift);
@@ -235,7 +235,7 @@ impl Excess<'_> {
         if held_out > 0.0 { gain * all / held_out } else { 0.0 }
     }
 
-    /// The contiguous bins about the one with most excess a sample, in some blocks.
+    /// Returns the contiguous bins around the one with the highest excess per sample, in some blocks.
     fn densest(&self, bins: &Bins, condition: &Condition, of: impl Fn(&Block) -> bool) -> Option<Range<usize>> {
         let mut sums = vec![(0.0, 0.0); bins.count()];
         for cycle in self.blocks.iter().filter(|block| of(block)).flat_map(|block| block.cycles.clone()) {
@@ -261,7 +261,7 @@ impl Excess<'_> {
         Some(from..to)
     }
 
-    /// The stretches of time in which wanted samples have most excess, in the order of time.
+    /// Returns the time intervals in which the wanted samples have most excess, in the order of time.
     pub fn intervals_s(&self, wanted: impl Fn(usize) -> bool) -> Vec<[f64; 2]> {
         let mut windows: Vec<(Range<f64>, f64)> = Vec::new();
         for (cycle, residual_n) in self.residual_n.iter().enumerate().filter(|(_, number)| number.is_finite()) {
@@ -291,7 +291,7 @@ impl Excess<'_> {
     }
 }
 
-/// How many standard deviations of what chance gains what was found is above it.
+/// Returns by how many standard deviations a gain exceeds those obtained by chance.
 fn significance(found: f64, chances: &[f64]) -> f64 {
     #[expect(clippy::cast_precision_loss, reason = "a small count")]
     let count = chances.len() as f64;
@@ -300,7 +300,7 @@ fn significance(found: f64, chances: &[f64]) -> f64 {
     if scatter > 0.0 { (found - mean) / scatter } else { 0.0 }
 }
 
-/// 1 or −1 for a draw and a block, without a pattern that a run could have (`SplitMix64`).
+/// Returns 1 or −1 for a draw and a block, without a pattern that a run could have (`SplitMix64`).
 pub fn random_sign(draw: u64, block: usize) -> f64 {
     let mut bits = (draw << 32 | block as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -308,7 +308,7 @@ pub fn random_sign(draw: u64, block: usize) -> f64 {
     if (bits ^ (bits >> 31)) & 1 == 1 { 1.0 } else { -1.0 }
 }
 
-/// Sum of numbers, and its standard error by their scatter.
+/// Returns the sum of numbers and its standard error, estimated from their scatter.
 pub fn sum_and_error(numbers: &[f64]) -> (f64, f64) {
     #[expect(clippy::cast_precision_loss, reason = "a count of blocks")]
     let count = numbers.len() as f64;

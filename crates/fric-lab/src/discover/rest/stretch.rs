@@ -1,35 +1,35 @@
-//! A piece of the cable that rubs where the rest does not: a kink, a splice, a broken strand.
+//! A section of the cable with more friction than the rest: a kink, a splice, a broken strand.
 //!
-//! It resists the motion, one way and the other, while one narrow stretch of the cable's length passes. Every stretch of a few
-//! bins is tried on the samples learned from as a force of constant size against the motion; the best of them is tried on those
-//! held out. The signs of the blocks' residuals drawn at random tell what the best of so many stretches gains by chance.
+//! The section resists the motion in both directions while one narrow range of the cable's length passes. Every range of a few bins is tried on the
+//! training samples as a constant force against the motion; the best one is tested on the held-out samples. The chance level of the best range comes
+//! from random signs of the blocks' residuals.
 
 use super::places::{Excess, Place, random_sign};
 use crate::samples::bins::Bins;
 use crate::samples::conditions::{Condition, sign};
 
-/// A stretch holds no more than this share of the samples,
+/// Maximum fraction of the samples in the range,
 const NARROW: f64 = 0.2;
-/// takes away at least this share of the excess,
+/// minimum fraction of the excess that it removes,
 const LEAST_SHARE: f64 = 0.25;
-/// and more than it does in any of so many draws.
+/// and number of random draws, each of which it must exceed.
 const DRAWS: u64 = 200;
-/// It reaches this many bins further than where the constant force fits best: it fades out there.
+/// Number of bins by which the range is extended beyond the best constant force, because the force fades out there.
 const MARGIN_BINS: usize = 2;
 
-/// A stretch of cable with trouble of its own: cycles to leave out, and where it is.
+/// A section of cable with a local defect: the cycles to leave out, and its position.
 #[derive(Clone, Debug)]
 pub struct Stretch {
-    /// Which cycles.
+    /// Whether each cycle is within the section.
     pub cycles: Vec<bool>,
-    /// Where.
+    /// The position of the section.
     pub place: Place,
 }
 
-/// What the bins of one block hold: residual in the direction of motion, and samples.
+/// Sums over the bins of one block: residual in the direction of motion, and sample count.
 type Sums = Vec<(f64, f64)>;
 
-/// The stretch of cable that rubs for itself, if there is one.
+/// Returns the section of cable with friction of its own, if there is one.
 pub fn stretch_of_cable(excess: &Excess<'_>, conditions: &[Condition]) -> Option<Stretch> {
     let length = conditions.iter().find(|condition| condition.signal == "length")?;
     let bins = Bins::new(length, excess.residual_n)?;
@@ -57,25 +57,25 @@ pub fn stretch_of_cable(excess: &Excess<'_>, conditions: &[Condition]) -> Option
     }
     let (from, to) = (found.from.saturating_sub(MARGIN_BINS), (found.to + MARGIN_BINS).min(bins.count()));
     let range = *bins.edges.get(from)?..=*bins.edges.get(to)?;
-    // A cable that rests there too: it stores what rubbed.
+    // Cycles at rest within the section count too, because the presliding state stores its friction.
     let cycles = excess.record.rows.iter().map(|row| range.contains(&row.signals.length_m)).collect();
     let place = excess.place_in(length, &bins, from..to)?;
     Some(Stretch { cycles, place })
 }
 
-/// A stretch of bins.
+/// A range of bins.
 struct Found {
     from: usize,
     to: usize,
-    /// What it takes away of the squares of all samples, N².
+    /// Decrease of the sum of squares over all samples, N².
     gain: f64,
 }
 
-/// The stretch that is best on the blocks learned from, with its gain on those held out in proportion to all; the residuals of each
-/// block times `flip`.
+/// Returns the best range on the training blocks, with its gain on the held-out blocks scaled to all samples. The residuals of each block are
+/// multiplied by `flip`.
 fn best_of(blocks: &[(bool, Sums)], flip: impl Fn(usize) -> f64) -> Option<Found> {
     let bins = blocks.first()?.1.len();
-    // Sums up to each bin, so that any stretch is a difference: of the blocks learned from, and of those held out.
+    // Cumulative sums over the bins, for the training blocks and the held-out blocks, so that any range is a difference.
     let mut up_to = [vec![(0.0, 0.0); bins + 1], vec![(0.0, 0.0); bins + 1]];
     for (place, (held_out, sums)) in blocks.iter().enumerate() {
         let mut all = (0.0, 0.0);

@@ -1,15 +1,15 @@
-//! Which pieces a run is put together from: one after the other is added that is worth most for its time, then each is exchanged for
-//! a better one as long as there is one (the exchange of V. V. Fedorov, *Theory of Optimal Experiments*, 1972, ch. 3).
+//! Chooses the pieces of a run: the piece with the greatest value for its duration is added first, and then each piece is exchanged for a better one
+//! as long as there is one (the exchange of V. V. Fedorov, *Theory of Optimal Experiments*, 1972, ch. 3).
 
 use super::criterion::{Sums, Test, Tests, objective};
 
-/// Rounds of exchange at most.
+/// Maximum number of exchange rounds.
 const ROUNDS: usize = 6;
-/// An exchange has to be worth this much, in the logarithm of a score.
+/// Minimum gain of an exchange, in the logarithm of a score.
 const WORTH: f64 = 1e-3;
 
-/// The pieces of a run that takes no longer than `time_s`, by their places; a piece may be there several times. `durations_s` are those of
-/// the pieces.
+/// Returns the indices of the pieces of a run that takes no longer than `time_s`; a piece may occur several times. `durations_s` holds the durations
+/// of the pieces.
 pub fn choose(tests: &Tests, durations_s: &[f64], time_s: f64) -> Vec<usize> {
     let mut chosen: Vec<usize> = Vec::new();
     for _ in 0..ROUNDS {
@@ -33,7 +33,7 @@ fn fill(tests: &Tests, durations_s: &[f64], time_s: f64, chosen: &mut Vec<usize>
     }
 }
 
-/// Exchanges each piece for the best in its place; whether one was.
+/// Exchanges each piece for the best in its place. Returns whether any was exchanged.
 fn exchange(tests: &Tests, durations_s: &[f64], time_s: f64, chosen: &mut [usize]) -> bool {
     let mut improved = false;
     for slot in 0..chosen.len() {
@@ -51,13 +51,13 @@ fn exchange(tests: &Tests, durations_s: &[f64], time_s: f64, chosen: &mut [usize
     improved
 }
 
-/// Pieces that there is time for beside those chosen.
+/// Returns the pieces that fit into the remaining time.
 fn fitting(durations_s: &[f64], chosen: &[usize], time_s: f64) -> Vec<usize> {
     let taken_s: f64 = chosen.iter().filter_map(|place| durations_s.get(*place)).sum();
     (0..durations_s.len()).filter(|place| durations_s[*place] <= time_s - taken_s).collect()
 }
 
-/// The first of the best.
+/// Returns the first of the best.
 fn best(all: impl Iterator<Item = (usize, f64)>) -> Option<(usize, f64)> {
     all.reduce(|best, other| if other.1 > best.1 { other } else { best })
 }
@@ -70,7 +70,7 @@ fn sums_of(tests: &Tests, chosen: &[usize]) -> Vec<Vec<Sums>> {
     tests.iter().map(|tests| tests.iter().map(of_test).collect()).collect()
 }
 
-/// What the run is worth with one more piece.
+/// Returns the value of the run with one more piece.
 fn with_piece(tests: &Tests, sums: &[Vec<Sums>], place: usize) -> f64 {
     let of_question = |(tests, sums): (&Vec<Test>, &Vec<Sums>)| {
         let added = tests

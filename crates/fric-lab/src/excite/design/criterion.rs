@@ -1,10 +1,9 @@
-//! What a run is worth for a question, from sums over its pieces.
+//! The value of a run for a question, from sums over its pieces.
 //!
-//! Let `J` be the derivatives of the force at the platform by all parameters that a model varies, `r` what the model misses of a noise-free
-//! log, `N` the samples and `s` the noise. Of `r` a refit leaves `R = rᵀr − rᵀJ(JᵀJ)⁻¹Jᵀr`, to first order. The expected evidence
-//! against the model is `ΔBIC = N/2·ln(1 + R/(N·s²))`, for the discovery learns from half of the samples. Of a parameter the run
-//! leaves the variance `s²·((JᵀJ)⁻¹)ᵢᵢ`: the other parameters of the model are as unknown as it. `JᵀJ`, `Jᵀr` and `rᵀr` of a run are the
-//! sums of those of its pieces.
+//! Let `J` be the derivatives of the force at the platform with respect to all free parameters of a model, `r` the residual of the model on a
+//! noise-free log, `N` the number of samples and `s` the noise. A refit leaves `R = rᵀr − rᵀJ(JᵀJ)⁻¹Jᵀr` of the squares, to first order. The expected
+//! evidence against the model is `ΔBIC = N/2·ln(1 + R/(N·s²))`, because the discovery trains on half of the samples. The variance of a parameter is
+//! `s²·((JᵀJ)⁻¹)ᵢᵢ`, with all other parameters of the model unknown too. `JᵀJ`, `Jᵀr` and `rᵀr` of a run are the sums over its pieces.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -26,18 +25,18 @@ pub struct Sums {
 }
 
 impl Sums {
-    /// Of no samples.
+    /// Creates empty sums.
     pub fn new(parameters: usize) -> Self {
         let (matrix, gradient) = (DMatrix::zeros(parameters, parameters), DVector::zeros(parameters));
         Self { matrix, gradient, squares: 0.0, count: 0.0 }
     }
 
-    /// How many parameters.
+    /// Returns the number of parameters.
     pub fn parameter_count(&self) -> usize {
         self.gradient.len()
     }
 
-    /// With those of another piece.
+    /// Returns the sums of both pieces together.
     pub fn with(&self, other: &Self) -> Self {
         Self {
             matrix: &self.matrix + &other.matrix,
@@ -47,7 +46,7 @@ impl Sums {
         }
     }
 
-    /// What a refit leaves of the squares, N².
+    /// Returns the squares that a refit leaves, N².
     fn left(&self) -> f64 {
         let explained = inverse_of_normal(&self.matrix)
             .map_or(0.0, |inverse| (self.gradient.transpose() * inverse * &self.gradient)[(0, 0)]);
@@ -55,7 +54,7 @@ impl Sums {
     }
 }
 
-/// Sums of each log of a problem with one cable; `None` when stopped.
+/// Returns the sums of each log of a problem with one cable; `None` if stopped.
 pub fn sums_of_logs(problem: &Problem<'_>, values: &Values) -> Option<Vec<Sums>> {
     let count = problem.parameter_count();
     let starts: Vec<usize> = problem.members.first()?.record.logs().map(|(start, _)| start).collect();
@@ -73,21 +72,21 @@ pub fn sums_of_logs(problem: &Problem<'_>, values: &Values) -> Option<Vec<Sums>>
     completed.then(|| sums.collect())
 }
 
-/// What is asked of the sums.
+/// The measure of a test.
 #[derive(Clone, Debug)]
 pub enum Measure {
-    /// How plainly the model is refuted.
+    /// The evidence against the model.
     Evidence,
-    /// How well parameters are known: place among those varied, the parameter, its value.
+    /// The uncertainty of parameters: index among the free ones, the parameter, its value.
     Knowledge {
-        /// The parameters that are wanted.
+        /// The wanted parameters.
         wanted: Vec<(usize, Parameter, f64)>,
-        /// What counts as known.
+        /// The scale of uncertainties that matter.
         yardstick: Yardstick,
     },
 }
 
-/// A model that is put to the test, linear about some values, with its sums over each piece.
+/// A model under test, linearised at some values, with its sums over each piece.
 #[derive(Clone, Debug)]
 pub struct Test {
     pub measure: Measure,
@@ -97,7 +96,7 @@ pub struct Test {
 }
 
 impl Test {
-    /// What a run with these sums is worth: 1 is just enough, twice the samples are worth twice as much.
+    /// Returns the value of a run with these sums: 1 is just enough, and twice the samples give twice the value.
     pub fn score(&self, sums: &Sums) -> f64 {
         let variance = self.noise_n * self.noise_n;
         match &self.measure {
@@ -119,13 +118,13 @@ impl Test {
     }
 }
 
-/// All that a run is to tell: for each question the tests that it has to pass, of which the hardest counts.
+/// Everything that a run is to answer: the tests of each question, of which the hardest counts.
 pub type Tests = Vec<Vec<Test>>;
 
-/// A score below this is nothing: it keeps the logarithm finite.
+/// Lower limit of a score, which keeps the logarithm finite.
 const NOTHING: f64 = 1e-6;
 
-/// Sum of the logarithms of all questions' scores: twice as much on one weighs as much as twice as much on another.
+/// Returns the sum of the logarithms of all questions' scores. A doubled score therefore counts the same for every question.
 pub fn objective(tests: &Tests, sums: &[Vec<Sums>]) -> f64 {
     let of_question = |(tests, sums): (&Vec<Test>, &Vec<Sums>)| {
         let scores = tests.iter().zip(sums).map(|(test, sums)| test.score(sums));

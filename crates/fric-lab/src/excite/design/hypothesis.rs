@@ -1,5 +1,4 @@
-//! Two models of a cable that a run is to tell apart: how large their effects are, what each predicts, and what evidence is to be
-//! expected against the wrong one.
+//! Two models of a cable that a run is to distinguish: the size of their effects, their predictions, and the expected evidence against the wrong one.
 
 use fric_core::CableParams;
 use fric_core::effects::Effect;
@@ -17,25 +16,25 @@ use crate::fit::{CableRecord, FitOptions, Parameter, Row};
 use crate::samples::split::split;
 use std::sync::atomic::AtomicBool;
 
-/// Strength of an effect whose size is not known, as a share of what machines have at most.
+/// Strength of an effect of unknown size, relative to the maximum in machines.
 const STRENGTH_RATIO: f64 = 0.5;
 /// Mean normal force of a pulley per tension: 2 at 180°, √2 at 90°.
 const NORMAL_PER_TENSION: f64 = 1.6;
 
-/// One of the models: a base with an effect, or the base alone.
+/// One of the models: a base with or without an effect.
 #[derive(Clone, Debug)]
 pub struct Hypothesis {
     pub values: Values,
-    /// What an identification varies.
+    /// The parameters that an identification varies.
     pub free: Vec<Parameter>,
 }
 
 impl Hypothesis {
-    /// The model of these values, with an effect that is varied in any case.
+    /// Creates the model of these values with an effect, which is varied in any case.
     pub fn new(params: &CableParams, effect: Option<Effect>, values: &Values) -> Option<Self> {
         let params = params.with_values(values).ok()?;
         let mut free = FitOptions::default().free(&params);
-        // Also where a refit has made it small.
+        // The effect is varied even if a refit has made it small.
         for parameter in effect.into_iter().flat_map(catalogue::fitted) {
             if !free.contains(&parameter) {
                 free.push(parameter);
@@ -45,7 +44,7 @@ impl Hypothesis {
     }
 }
 
-/// Values without an effect.
+/// Returns the values without an effect.
 pub fn without(values: &Values, effect: Option<Effect>) -> Values {
     let mut values = *values;
     for parameter in effect.into_iter().flat_map(Parameter::of) {
@@ -54,7 +53,7 @@ pub fn without(values: &Values, effect: Option<Effect>) -> Values {
     values
 }
 
-/// Values with an effect as strong as half of what machines have; `None` for the friction that every model has.
+/// Returns the values with an effect of half the maximum strength in machines; `None` for the friction that every model has.
 pub fn with_typical(record: &CableRecord<'_>, values: &Values, effect: Effect, duration_s: f64) -> Option<Values> {
     let lab = effects::of(effect)?;
     let around = catalogue::around(record, values[MU], 0.0);
@@ -74,7 +73,7 @@ pub fn with_typical(record: &CableRecord<'_>, values: &Values, effect: Effect, d
     Some(values)
 }
 
-/// The log of a cable, were a model the truth, and room to fit others to it.
+/// The log of a cable if a model is true, with buffers to fit other models to it.
 pub struct Prediction<'a> {
     record: CableRecord<'a>,
     rows: Vec<Row>,
@@ -82,18 +81,18 @@ pub struct Prediction<'a> {
 }
 
 impl<'a> Prediction<'a> {
-    /// `None` where the model gives no finite forces.
+    /// Creates the prediction. Returns `None` if the model gives non-finite forces.
     pub fn new(record: &CableRecord<'a>, truth: &Values, stop: &'a AtomicBool) -> Option<Self> {
         Some(Self { record: *record, rows: sensed(record, truth)?, stop })
     }
 
-    /// Its cycles.
+    /// Returns its cycles.
     pub fn record(&self) -> CableRecord<'_> {
         self.record.with_signals(&self.rows)
     }
 
-    /// The model that comes nearest to the log with an effect in place of the truth's; `None` when stopped, or where there is no
-    /// start. `also` is another place to start from.
+    /// Returns the model that comes nearest to the log with an effect in place of the true one; `None` if stopped or without a start. `also` is an
+    /// additional start.
     pub fn fitted(
         &self,
         base: &Values,
@@ -124,18 +123,18 @@ impl<'a> Prediction<'a> {
         Some((hypothesis, best))
     }
 
-    /// `ΔBIC` to be expected against a model that was fitted to this log, as the discovery computes it: over the half of the samples that
-    /// it learns from, with noise of the standard deviation `noise_n`.
+    /// Returns the expected `ΔBIC` against a model that was fitted to this log, as the discovery computes it: over the half of the samples that it
+    /// trains on, with noise of the standard deviation `noise_n`.
     pub fn evidence(&self, truth: &Hypothesis, fitted: &Trial, noise_n: f64) -> f64 {
         #[expect(clippy::cast_precision_loss, reason = "counts")]
         let (count, more) = (0.5 * self.rows.len() as f64, fitted.free.len() as f64 - truth.free.len() as f64);
-        // Training and held-out blocks are half of the run each; both together depend less on which block is which.
+        // Training blocks and held-out blocks are half of the run each. Using both makes the result less dependent on their assignment.
         let squares_ratio = 1.0 + 0.5 * (fitted.training + fitted.held_out) / (count * noise_n * noise_n);
         delta_bic(count, squares_ratio, more)
     }
 }
 
-/// What a search begins from; of a ripple the periods too.
+/// Returns the surroundings of a search; for a ripple they include the periods.
 fn around(bench: &Workbench<'_>, current: &Values, noise_n: f64, effect: Effect) -> Around {
     let mut around = catalogue::around(&bench.record, current[MU], noise_n);
     if period_of(effect).is_some() {

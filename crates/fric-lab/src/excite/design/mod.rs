@@ -1,14 +1,13 @@
-//! The run that would tell: movements and loads chosen so that a log of them answers a question that another left open.
+//! The design of a run: movements and loads chosen so that a log of them answers a question that another log left open.
 //!
-//! A question is either which of two effects a cable has, or how large some parameters are. What a run is worth for it is computed from the
-//! cycle's own model (`criterion`): the model says what would be logged (`predicted`), and its derivatives how much of that another model
-//! could make up for. Runs are put together from pieces (`pieces`), each checked against all limits; `choose` takes those
-//! that are worth most. The evidence is then computed anew for the whole run, by fitting the wrong model to what the right one
-//! predicts (`hypothesis`), each of both models being right in turn; the values that the wrong model takes there join the choice of the next
-//! round.
+//! A question is either which of two effects a cable has, or how large some parameters are. The value of a run is computed from the cycle's own model
+//! (`criterion`): the model predicts the log (`predicted`), and its derivatives show how much of that another model could compensate. Runs consist of
+//! pieces (`pieces`), each checked against all limits; `choose` selects the pieces with the greatest value. The evidence is then recomputed for the
+//! whole run, by fitting the wrong model to the prediction of the right one (`hypothesis`), with each of both models being right in turn. The values
+//! that the wrong model takes there enter the selection of the next round.
 //!
-//! The method is that of optimal experiments: T-optimality to tell models apart (A. C. Atkinson, V. V. Fedorov, *Biometrika* 62 (1975),
-//! 57–70), the information of the wanted parameters with all others unknown to determine them (Fedorov 1972). Noise is taken to be white.
+//! The method is that of optimal experiments: T-optimality to distinguish models (A. C. Atkinson, V. V. Fedorov, *Biometrika* 62 (1975), 57–70), and
+//! the information of the wanted parameters with all others unknown to determine them (Fedorov 1972). Noise is assumed to be white.
 
 mod choose;
 mod criterion;
@@ -33,91 +32,91 @@ use crate::search::problem::{Comparison, Loss, Member, Problem};
 use crate::simulate::motion::Motion;
 use crate::trajectory::{LOAD_CHANGE_S, Piece, Trajectory, WorkBox};
 
-/// How long a run is where nothing else is asked for, s.
+/// Default duration of a run, s.
 pub const STANDARD_DURATION_S: f64 = 20.0;
-/// A run tells where its score is at least this.
+/// A run answers a question if its score is at least this.
 pub const LEAST_SCORE: f64 = 1.0;
-/// Shortest and longest run that is designed, s.
+/// Least and greatest duration of a designed run, s.
 const DURATIONS_S: [f64; 2] = [3.0, 600.0];
 /// Least and greatest noise, N.
 const NOISES_N: [f64; 2] = [1e-9, 1e6];
-/// Rounds of choice and refit, after a first one that tells how large the second effects are.
+/// Number of rounds of selection and refit, after a first one that determines the size of the second effects.
 const ROUNDS: usize = 2;
 
-/// What a run is to tell about a cable.
+/// A question about a cable that a run is to answer.
 #[derive(Clone, Debug)]
 pub struct Question {
-    /// Which cable, by its place in the robot file.
+    /// Index of the cable in the robot file.
     pub cable: usize,
-    /// Standard deviation of the noise of the force at the platform, N: of its sensor and of the cable's together.
+    /// Standard deviation of the noise of the force at the platform, N: of the reference sensor and the cable's sensor together.
     pub noise_n: f64,
-    /// The model; that of the robot file where `None`.
+    /// The model; `None` for that of the robot file.
     pub values: Option<Values>,
-    /// What is asked.
+    /// The subject of the question.
     pub aim: Aim,
 }
 
-/// What is asked.
+/// The subject of a question.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Aim {
-    /// Which of two effects the cable has beside the rest of its model; `None`: whether it has the other at all. An effect that the model
-    /// has not is taken as half as strong as machines have it, or as strong as looks most like the other.
+    /// Which of two effects the cable has in addition to the rest of its model; `None` asks whether it has the other effect at all. An effect that
+    /// the model lacks is assumed half as strong as the maximum in machines, or as strong as it looks most like the other.
     Separate([Option<Effect>; 2]),
     /// How large these parameters are.
     Determine(Vec<Parameter>),
 }
 
-/// A run with what it is expected to tell.
+/// A run with its expected results.
 #[derive(Clone, Debug)]
 pub struct Experiment {
-    /// The run, from its start.
+    /// The run, at its start.
     pub excitation: Excitation,
-    /// What it is expected to tell, question by question.
+    /// The expected result of each question.
     pub forecasts: Vec<Forecast>,
 }
 
-/// What is to be expected for one question.
+/// The expected result of one question.
 #[derive(Clone, Debug)]
 pub struct Forecast {
-    /// Which cable.
+    /// Index of the cable.
     pub cable: usize,
     /// Standard deviation of the noise, N.
     pub noise_n: f64,
-    /// With the designed run.
+    /// Result with the designed run.
     pub goal: Goal,
-    /// With the identification run, ended after the same time; `None` where that cannot be run.
+    /// Result with the identification run, cut to the same duration; `None` if it cannot be run.
     pub standard: Option<Goal>,
 }
 
-/// What is known after a run.
+/// The knowledge after a run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Goal {
-    /// `ΔBIC` in favour of the effect that the cable has: should it be the first, and should it be the second; `None` for no effect.
+    /// `ΔBIC` in favour of the effect that the cable has: if it is the first, and if it is the second; `None` for no effect.
     Separated {
         /// The effects.
         effects: [Option<Effect>; 2],
         /// The evidence.
         delta_bic: [Option<f64>; 2],
     },
-    /// Standard errors of parameters, as `fit` reports them where the noise is white.
+    /// Standard errors of parameters, as `fit` reports them under white noise.
     Determined(Vec<KnownParameter>),
 }
 
 /// A parameter with its standard error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KnownParameter {
-    /// Which.
+    /// The parameter.
     pub parameter: Parameter,
     /// Its value in the model.
     pub value: f64,
     /// Its standard error, in its unit.
     pub standard_error: f64,
-    /// Width of its interval as a multiple of the widest that determines it.
+    /// Width of its interval as a multiple of the widest one that determines it.
     pub vagueness: f64,
 }
 
 impl Goal {
-    /// How plainly the question is answered; from [`LEAST_SCORE`] on it is.
+    /// Returns the score of the question; it is answered from [`LEAST_SCORE`] on.
     #[must_use]
     pub fn score(&self) -> f64 {
         match self {
@@ -128,19 +127,18 @@ impl Goal {
         }
     }
 
-    /// Whether it is.
+    /// Whether the question is answered.
     #[must_use]
     pub fn tells(&self) -> bool {
         self.score() >= LEAST_SCORE
     }
 }
 
-/// Designs the run of `duration_s` that answers all questions as well as one can within the limits. Where it answers none of them, there is
-/// no run.
+/// Designs the run of `duration_s` that answers all questions as well as possible within the limits. If no run answers any of them, there is no run.
 ///
 /// # Errors
-/// [`ExcitationError`] as [`Excitation::new`]; [`ExcitationError::BadQuestion`] for a question that this robot cannot be asked;
-/// [`ExcitationError::CannotTell`] where no run tells anything.
+/// Returns the [`ExcitationError`] of [`Excitation::new`], [`ExcitationError::BadQuestion`] for a question that does not apply to this robot, and
+/// [`ExcitationError::CannotTell`] if no run answers anything.
 pub fn design(
     robot: &RobotFile,
     options: &ExcitationOptions,
@@ -155,7 +153,7 @@ pub fn design(
     Studio::new(robot, options, duration_s, questions, progress)?.design()
 }
 
-/// Everything that a design needs.
+/// The data of a design.
 struct Studio<'a> {
     robot: &'a RobotFile,
     options: ExcitationOptions,
@@ -163,7 +161,7 @@ struct Studio<'a> {
     questions: &'a [Question],
     progress: &'a Progress,
     pieces: Vec<Piece>,
-    /// How long each takes, with a change of the load before it, s.
+    /// Duration of each piece, including a change of the load before it, s.
     times_s: Vec<f64>,
     lead_in_s: f64,
     library: Measurements<'a>,
@@ -172,8 +170,9 @@ struct Studio<'a> {
 
 /// A question with its models.
 enum Case {
-    /// The model that is right with those that are to be told from it, in the order of the question's effects. `first` is the place of the one
-    /// whose size is known or assumed; the other is as large as looks most like it, and takes part as soon as that is known.
+    /// The true models with those to be distinguished from them, in the order of the question's effects. `first` is the index of the model whose
+    /// effect size is known or assumed. The other effect gets the size at which it looks most like the first, and takes part as soon as that is
+    /// known.
     Separate {
         base: Values,
         first: usize,
@@ -202,7 +201,7 @@ impl<'a> Studio<'a> {
         }
         let empty = Excitation::of_pieces(robot, options, &[], 0.0)?;
         let (work_box, limits) = (empty.work_box.unwrap_or(Motion::BENCH), options.limits());
-        // The box is looked for once.
+        // The box is determined once.
         let corners_m = |of: WorkBox| [of.center_m - of.half_edges_m, of.center_m + of.half_edges_m].map(Into::into);
         let options = ExcitationOptions { box_m: empty.work_box.map(corners_m), ..*options };
         let lead_in_s = Trajectory::designed(&work_box, &limits, &[], 0.0).duration_s();
@@ -220,7 +219,7 @@ impl<'a> Studio<'a> {
         let (mut pieces, mut library, mut refusal) = (Vec::new(), Measurements::new(&params, Reference::Forces), None);
         for piece in all {
             let mut run = Excitation::of_pieces(robot, &options, &[piece], 0.0)?;
-            // A piece that the cables cannot hold is none; where they hold none, the first says why.
+            // Pieces that the cables cannot hold are dropped. If they can hold none, the first one gives the reason.
             match predicted::samples(&params, &mut run) {
                 Ok(samples) => {
                     pieces.push(piece);
@@ -265,7 +264,7 @@ impl<'a> Studio<'a> {
             let goals = self.forecast(&measurements, &mut cases);
             self.step_done()?;
             if round == 0 {
-                // The first run is there to find how large the second effects are.
+                // The first run determines the size of the second effects.
                 self.questions.par_iter().zip(&mut cases).for_each(|(question, case)| {
                     self.establish(question, &measurements, case);
                 });
@@ -302,7 +301,7 @@ impl<'a> Studio<'a> {
         self.progress.stop_flag().load(Ordering::Relaxed)
     }
 
-    /// Why there are no figures: it was stopped, or a model gave none.
+    /// Returns the reason why there are no results: stopped, or a model gave none.
     fn broken_off(&self) -> ExcitationError {
         if self.is_stopped() {
             return ExcitationError::Stopped;
@@ -311,7 +310,7 @@ impl<'a> Studio<'a> {
         ExcitationError::BadQuestion { problem: problem.to_owned() }
     }
 
-    /// The models of a question. The first effect is as the model has it, or half as strong as machines have it.
+    /// Returns the models of a question. The first effect is as in the model, or half as strong as the maximum in machines.
     fn case(&self, question: &Question) -> Result<Case, ExcitationError> {
         let name = self.robot.cable_names().get(question.cable).copied().unwrap_or_default().to_owned();
         let bad = |problem: String| ExcitationError::BadQuestion { problem };
@@ -336,7 +335,7 @@ impl<'a> Studio<'a> {
                 if one == other || (one.is_none() && other.is_none()) {
                     return Err(bad("two different effects are needed to be told apart; name two".to_owned()));
                 }
-                // The one that the model has comes first: its size is known.
+                // The effect that the model has comes first, because its size is known.
                 let is_known = |effect: &Option<Effect>| effect.is_some_and(|effect| has(effect, &model));
                 let swapped = one.is_none() || (!is_known(one) && is_known(other));
                 let [known, second] = if swapped { [*other, *one] } else { [*one, *other] };
@@ -363,8 +362,8 @@ impl<'a> Studio<'a> {
         }
     }
 
-    /// Lets the second effect of a question be as large as looks most like the first on a run, which the last forecast was of. Where it is then
-    /// too small to be seen there, nothing is asked about it being there.
+    /// Gives the second effect of a question the size at which it looks most like the first on the run of the last forecast. If it is then too small
+    /// to be seen, the question of its presence is dropped.
     fn establish(&self, question: &Question, measurements: &Measurements<'_>, case: &mut Case) -> Option<()> {
         let Case::Separate { base, first, right, wrong } = case else { return Some(()) };
         let Aim::Separate(effects) = question.aim else { return Some(()) };
@@ -378,7 +377,7 @@ impl<'a> Studio<'a> {
         Some(())
     }
 
-    /// The run that is worth most by what is known of the models so far.
+    /// Returns the run with the greatest value, given the present knowledge of the models.
     fn chosen(&self, cases: &[Case]) -> Result<Excitation, ExcitationError> {
         let tests = self.tests(cases, &self.library)?;
         let time_s = self.duration_s - self.lead_in_s;
@@ -404,7 +403,7 @@ impl<'a> Studio<'a> {
         best.map(|(_, run)| run).ok_or_else(|| self.broken_off())
     }
 
-    /// The tests of all questions with their sums over each log.
+    /// Returns the tests of all questions with their sums over each log.
     fn tests(&self, cases: &[Case], measurements: &Measurements<'_>) -> Result<Tests, ExcitationError> {
         let of_case = |(question, case): (&Question, &Case)| {
             let record = measurements.cable(question.cable)?;
@@ -437,7 +436,7 @@ impl<'a> Studio<'a> {
         all.ok_or_else(|| self.broken_off())
     }
 
-    /// What a run is expected to tell; the models that come nearest on it join the cases.
+    /// Returns the expected results of a run, and adds the models that come nearest on it to the cases.
     fn forecast(&self, measurements: &Measurements<'_>, cases: &mut [Case]) -> Vec<Option<Goal>> {
         let of_case = |(question, case): (&Question, &mut Case)| {
             let record = measurements.cable(question.cable)?;
@@ -512,7 +511,7 @@ impl<'a> Studio<'a> {
     }
 }
 
-/// The least-squares problem of a cable over all its samples.
+/// Returns the least-squares problem of a cable over all its samples.
 fn problem_of<'r>(record: CableRecord<'r>, free: &[Parameter], stop: &'r AtomicBool) -> Problem<'r> {
     Problem {
         used: vec![true; record.rows.len()],
@@ -524,13 +523,13 @@ fn problem_of<'r>(record: CableRecord<'r>, free: &[Parameter], stop: &'r AtomicB
     }
 }
 
-/// The identification run, ended after a time.
+/// Returns the identification run, cut to a duration.
 fn standard_run(
     robot: &RobotFile,
     options: &ExcitationOptions,
     duration_s: f64,
 ) -> Result<Excitation, ExcitationError> {
-    // On a test bench the identification run leaves the load as it is.
+    // On a test bench the identification run does not change the load.
     let is_bench = !robot.params().cables().iter().any(fric_core::CableParams::has_geometry);
     let unbound = ExcitationOptions { min_tension_n: None, max_tension_n: None, ..*options };
     let mut run = Excitation::new(robot, if is_bench { &unbound } else { options })?;

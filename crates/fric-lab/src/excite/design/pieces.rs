@@ -1,37 +1,36 @@
-//! The pieces that a run can be put together from.
+//! The pieces from which a run can be composed.
 //!
-//! What they are to show: steps with short and long rests show presliding and what grows at rest; strokes from a few millimetres a
-//! second to the limit show what goes with speed and acceleration, short ones among them the reversals; long strokes go through
-//! the length of the cable and, along other axes, through wraps and tensions; loads from low to high tell what goes with the load
-//! from what does not.
+//! Steps with short and long rests show presliding and friction that grows at rest. Strokes from a few millimetres per second up to the limit show
+//! dependence on speed and acceleration, and short ones show the reversals. Long strokes cover the length of the cable and, along other axes, wraps
+//! and tensions. Loads from low to high show which friction depends on the load.
 
 use crate::trajectory::{
     ACCELERATION_M_PER_S2, Limits, Piece, STROKE_ACCELERATION_M_PER_S2, Shape, Trajectory, WorkBox,
 };
 
-/// Loads that pieces are made for, as shares of the way from the least force to the greatest.
+/// Loads of pieces, as fractions of the range from the least to the greatest force.
 const LOADS: [f64; 3] = [0.1, 0.5, 0.9];
-/// The one where the run cannot change it.
+/// The load of a run that cannot change it.
 const MIDDLE: f64 = 0.5;
 /// Alternating steps: length in m and rest in s.
 const ALTERNATING: [(f64, f64); 6] =
     [(0.000_3, 0.15), (0.001, 0.1), (0.003, 0.15), (0.003, 0.7), (0.01, 0.3), (0.01, 2.0)];
-/// Steps in one direction, likewise.
+/// Steps in one direction: length in m and rest in s.
 const STOP_AND_GO: [(f64, f64); 3] = [(0.001, 0.1), (0.004, 0.5), (0.01, 1.5)];
 /// Speeds of strokes, m/s.
 const SPEEDS_M_PER_S: [f64; 8] = [0.003, 0.01, 0.025, 0.06, 0.15, 0.35, 0.7, 1.0];
-/// From this speed on strokes are made with a low and with a high acceleration.
+/// From this speed on, strokes are made with a low and with a high acceleration.
 const BRISK_M_PER_S: f64 = 0.15;
-/// How long a short stroke and a long one go at their speed, s.
+/// Duration at constant speed of a short and of a long stroke, s.
 const SHORT_S: f64 = 0.15;
 const LONG_S: f64 = 1.0;
-/// How long a piece should take, s, and may take at most.
+/// Target duration of a piece, s, and its maximum.
 const PIECE_S: f64 = 1.6;
 const LONGEST_PIECE_S: f64 = 7.0;
-/// Most repetitions in a piece.
+/// Maximum number of repetitions in a piece.
 const MOST_REPETITIONS: usize = 12;
 
-/// All pieces of a box within limits; `states_loads` where the run can change the load, `has_axes` for a platform.
+/// Returns all pieces of a box within limits. `states_loads` says whether the run can change the load, `has_axes` whether there is a platform.
 pub fn pieces(work_box: &WorkBox, limits: &Limits, states_loads: bool, has_axes: bool, longest_s: f64) -> Vec<Piece> {
     let loads: &[f64] = if states_loads { &LOADS } else { &[MIDDLE] };
     let shapes = shapes(work_box, limits, has_axes);
@@ -48,7 +47,7 @@ pub fn pieces(work_box: &WorkBox, limits: &Limits, states_loads: bool, has_axes:
     pieces
 }
 
-/// How long a piece takes, s.
+/// Returns the duration of a piece, s.
 pub fn duration_s(work_box: &WorkBox, limits: &Limits, piece: &Piece) -> f64 {
     let of = |pieces: &[Piece]| Trajectory::designed(work_box, limits, pieces, 0.0).duration_s();
     of(&[*piece]) - of(&[])
@@ -90,7 +89,7 @@ fn shapes(work_box: &WorkBox, limits: &Limits, has_axes: bool) -> Vec<Shape> {
     shapes
 }
 
-/// A shape with as many repetitions as fill the time of a piece, at least one.
+/// Returns a shape with as many repetitions as fill the duration of a piece, at least one.
 fn repeated(work_box: &WorkBox, limits: &Limits, shape: impl Fn(usize) -> Shape) -> Shape {
     let takes_s = |count| duration_s(work_box, limits, &Piece { shape: shape(count), load_share: MIDDLE });
     let count = (1..=MOST_REPETITIONS).take_while(|count| *count == 1 || takes_s(*count) <= PIECE_S).last();

@@ -1,8 +1,8 @@
-//! What a robot would log on a run, without noise, by the cycle's own model.
+//! Predicts the noise-free log of a robot on a run, by the cycle's own model.
 //!
-//! Movements and forces at the platform are those of the run. The force that the sensor shows is the one that the model, run cycle by
-//! cycle, makes the force at the platform of: the cycle's equations solved for their input. In each cycle the platform force is all but
-//! linear in the sensor force, so that a secant or two gives it to rounding.
+//! Movements and forces at the platform are those of the run. The sensor force is the one for which the model, run cycle by cycle, gives this force
+//! at the platform: the cycle's equations are solved for their input. In each cycle the platform force is nearly linear in the sensor force, so one
+//! or two secant steps give it to rounding.
 
 use fric_core::parameters::{OFFSET, Values};
 use fric_core::robot::RobotParams;
@@ -12,26 +12,26 @@ use crate::excite::{Excitation, ExcitationError};
 use crate::fit::{CableRecord, Measurements, Reference, Row};
 use crate::trajectory::SetPoint;
 
-/// Secants in a cycle at most.
+/// Maximum number of secant steps per cycle.
 const SECANTS: usize = 6;
-/// A force at the platform is met to this share of it.
+/// Relative tolerance of the force at the platform.
 const MET_RATIO: f64 = 1e-10;
-/// A sensor without any noise under a constant load would pass for a frozen one.
+/// A sensor without any noise under a constant load would be taken for a frozen one.
 const TREMBLING_RATIO: f64 = 1e-9;
 
-/// The samples of a run, the sensor of each cable as if nothing rubbed.
+/// The samples of a run, with the sensor forces of a frictionless cable.
 #[derive(Default)]
 pub struct Samples {
     cable_count: usize,
     stamps_nanos: Vec<i64>,
     poses: Vec<Option<Pose>>,
-    /// Of all cables of a cycle, then of the next.
+    /// The inputs of all cables in a cycle, then in the next.
     inputs: Vec<CableInput>,
     forces_n: Vec<f64>,
 }
 
 impl Samples {
-    /// Adds them as a log of its own.
+    /// Adds the samples as a log of their own.
     pub fn enter(&self, measurements: &mut Measurements<'_>) {
         measurements.start_log();
         let cables = self.inputs.chunks_exact(self.cable_count).zip(self.forces_n.chunks_exact(self.cable_count));
@@ -43,7 +43,7 @@ impl Samples {
     }
 }
 
-/// The samples of a run; where the robot cannot run it, why.
+/// Returns the samples of a run.
 pub fn samples(robot: &RobotParams<'_>, run: &mut Excitation) -> Result<Samples, ExcitationError> {
     let mut samples = Samples { cable_count: robot.cables().len(), ..Samples::default() };
     let mut trembling = TREMBLING_RATIO;
@@ -63,14 +63,14 @@ pub fn samples(robot: &RobotParams<'_>, run: &mut Excitation) -> Result<Samples,
     Ok(samples)
 }
 
-/// The same as a log.
+/// Returns the same as a log.
 pub fn frictionless<'a>(robot: &RobotParams<'a>, run: &mut Excitation) -> Result<Measurements<'a>, ExcitationError> {
     let mut measurements = Measurements::new(robot, Reference::Forces);
     samples(robot, run)?.enter(&mut measurements);
     Ok(measurements)
 }
 
-/// The rows of a cable with the sensor forces that a model gives it; `None` where the model gives no finite force.
+/// Returns the rows of a cable with the sensor forces of a model; `None` if the model gives a non-finite force.
 pub fn sensed(record: &CableRecord<'_>, values: &Values) -> Option<Vec<Row>> {
     let mut rows = record.rows.to_vec();
     for (start, log) in record.logs() {
@@ -83,7 +83,7 @@ pub fn sensed(record: &CableRecord<'_>, values: &Values) -> Option<Vec<Row>> {
     Some(rows)
 }
 
-/// Finds the sensor force of a cycle and goes through it.
+/// Finds the sensor force of a cycle and steps the model with it.
 fn sense(group: &mut CableGroup<f64>, row: &mut Row) -> Option<()> {
     let wanted_n = row.reference_n;
     let deviation_n = |row: &Row| {
@@ -127,7 +127,7 @@ mod tests {
     use crate::search::gang::forces_of;
     use crate::search::pass::Part;
 
-    /// Whatever the model, the cycle makes the platform force of the run of what the sensor is predicted to show.
+    /// For every model, the cycle computes the run's platform force from the predicted sensor force.
     #[test]
     fn the_cycle_makes_the_force_at_the_platform_of_what_is_predicted() {
         let text = "format = \"fric-robot/1\"\nname = \"bench\"\ncycle_s = 0.004\n[platform]\nmass_kg = 0.5\n[[cable]]\n\

@@ -1,4 +1,4 @@
-//! A residual function as numbers, for another process.
+//! A residual function as plain numbers, for transfer to another process.
 
 use std::sync::Arc;
 
@@ -9,32 +9,32 @@ use super::{Cable, ResidualFunction};
 use crate::samples::record::Row;
 use crate::search::vector::Parameter;
 
-/// All that a residual function keeps beside the parameters of its cable.
+/// The data of a residual function except the parameters of its cable.
 #[derive(Clone, Debug)]
 pub struct KeptFunction {
-    /// What varies.
+    /// The free parameters.
     pub free: Vec<Parameter>,
-    /// Values to start from, of all parameters of the model.
+    /// Start values of all parameters of the model.
     pub start: Vec<f64>,
-    /// Cycles of all logs: eight numbers, and a bit for each fault and for being used.
+    /// Cycles of all logs: eight numbers each, and one number with a bit for each fault and for being used.
     pub rows: Vec<[f64; Self::WIDTH]>,
-    /// Where each log begins.
+    /// Index of the first cycle of each log.
     pub log_starts: Vec<usize>,
     /// Cycle time, s.
     pub cycle_s: f64,
     /// Time between two rows, s.
     pub interval_s: f64,
-    /// The reference is known rather than measured.
+    /// Whether the reference is known rather than measured.
     pub reference_is_known: bool,
 }
 
 impl KeptFunction {
-    /// Numbers of a row.
+    /// Count of numbers per row.
     pub const WIDTH: usize = 9;
 }
 
 impl ResidualFunction {
-    /// What it keeps.
+    /// Returns the data of the function.
     #[must_use]
     pub fn kept(&self) -> KeptFunction {
         let Cable { params: _, rows, starts, cycle_s, interval_s, reference_is_known } = self.cable.as_ref();
@@ -49,7 +49,8 @@ impl ResidualFunction {
         }
     }
 
-    /// The function that kept this, of a cable with the same parameters; `None` where `start` has not as many values as the model.
+    /// Restores the function from its data, for a cable with the same parameters. Returns `None` if `start` has another length than the model's
+    /// values.
     #[must_use]
     pub fn from_kept(params: &CableParams, kept: KeptFunction) -> Option<Self> {
         let KeptFunction { free, start, rows, log_starts, cycle_s, interval_s, reference_is_known } = kept;

@@ -1,4 +1,4 @@
-//! The residuals of \[P\] 18 as a function of the parameters, for optimisers of one's own.
+//! The residuals of \[P\] 18 as a function of the parameters, for use with other optimisers.
 
 mod kept;
 
@@ -18,10 +18,10 @@ use crate::search::gang::Gang;
 use crate::search::problem::{Comparison, Loss, Member, Problem};
 use crate::search::vector::{Coordinate, Parameter, with};
 
-/// Residuals `f(p) − f_ref` in N of a cable's sound samples, and their derivatives, as functions of its free parameters.
+/// Residuals `f(p) − f_ref`, N, of a cable's sound samples, and their derivatives, as functions of its free parameters.
 ///
-/// Samples are those that [`fit_cables`](super::fit_cables) ends with: flagged ones, those without a reference and the warm-up,
-/// which follows from the friction that was found, are left out. Outliers are not. It keeps them itself; copies share them.
+/// The samples are those that [`fit_cables`](super::fit_cables) ends with: flagged samples, samples without a reference, and the warm-up, which
+/// follows from the friction found, are left out. Outliers are kept. The function owns its samples; copies share them.
 #[derive(Clone, Debug)]
 pub struct ResidualFunction {
     cable: Arc<Cable>,
@@ -32,7 +32,7 @@ pub struct ResidualFunction {
 }
 
 impl ResidualFunction {
-    /// Of a cable, with what `options` says to vary.
+    /// Creates the function of a cable, with the free parameters that `options` selects.
     #[must_use]
     pub fn new(record: &CableRecord<'_>, options: &FitOptions) -> Self {
         let given = record.params.values();
@@ -45,36 +45,36 @@ impl ResidualFunction {
         Self { cable: Arc::new(Cable::of(record)), free, given, start, used }
     }
 
-    /// What varies, in the order of the arguments.
+    /// Returns the free parameters, in the order of the arguments.
     #[must_use]
     pub fn parameters(&self) -> &[Parameter] {
         &self.free
     }
 
-    /// Values to start from, by the data.
+    /// Returns start values from the data.
     #[must_use]
     pub fn start(&self) -> Vec<f64> {
         self.free.iter().map(|parameter| self.start[parameter.place()]).collect()
     }
 
-    /// Least and greatest value of each that the model takes.
+    /// Returns the least and the greatest value of each parameter that the model accepts.
     #[must_use]
     pub fn bounds(&self) -> Vec<(f64, f64)> {
         self.free.iter().map(|parameter| Coordinate::of(parameter, self.cable.cycle_s).range()).collect()
     }
 
-    /// How many residuals.
+    /// Returns the number of residuals.
     #[must_use]
     pub fn count(&self) -> usize {
         self.used.iter().filter(|used| **used).count()
     }
 
-    /// Place of each residual's sample in the record.
+    /// Returns the index in the record of each residual's sample.
     pub fn samples(&self) -> impl Iterator<Item = usize> {
         self.used.iter().enumerate().filter(|(_, used)| **used).map(|(place, _)| place)
     }
 
-    /// The residuals, N. Values past the parameters are not looked at, missing ones are the cable's own.
+    /// Returns the residuals, N. Surplus values are ignored; missing ones default to the cable's own.
     #[must_use]
     pub fn residuals(&self, values: &[f64]) -> Vec<f64> {
         let mut residuals = Vec::with_capacity(self.count());
@@ -85,7 +85,7 @@ impl ResidualFunction {
         residuals
     }
 
-    /// Their derivatives, row by row: N per unit of each parameter.
+    /// Returns the derivatives, row by row: N per unit of each parameter.
     #[must_use]
     pub fn jacobian(&self, values: &[f64]) -> Vec<f64> {
         let mut rows = Vec::with_capacity(self.count() * self.free.len());
@@ -109,7 +109,7 @@ impl ResidualFunction {
     }
 }
 
-/// A cable's record of its own.
+/// An owned copy of a cable's record.
 #[derive(Clone, Debug)]
 struct Cable {
     params: CableParams,

@@ -1,32 +1,31 @@
-//! Forces within bounds, as near as can be to given ones.
+//! Cable forces within bounds, as near as possible to given ones.
 //!
-//! `min Σ(f_i − t_i)²/2` subject to `A^T f = −w` and `l ≤ f_i ≤ u`, t the wanted forces: where no bound is met, this is the
-//! closed form of [`Distribution::solve`], and it fails only where there are no such forces at all.
-//! Its dual has six unknowns λ: `f_i(λ) = clamp(t_i − u_i·λ, l, u)`, to be chosen so that `g(λ) = A^T f(λ) + w` vanishes. g
-//! is the gradient of a concave function made of parabolas. It is maximised by the method of proximal points: less
-//! `|λ − λ_k|²/(2s)` it has one maximum λ_{k+1}, which Newton's method with a search along each step finds; with s
-//! growing, g vanishes after a few k. Where there are no such forces, λ grows without bound and g does not vanish.
+//! The problem is `min Σ(f_i − t_i)²/2` subject to `A^T f = −w` and `l ≤ f_i ≤ u`, where t are the wanted forces. If no bound is active, the solution
+//! is the closed form of [`Distribution::solve`]. The method fails only if no such forces exist. The dual problem has six unknowns λ: `f_i(λ) =
+//! clamp(t_i − u_i·λ, l, u)`, to be chosen so that `g(λ) = A^T f(λ) + w` vanishes. g is the gradient of a concave, piecewise quadratic function. It
+//! is maximised by the proximal point method: with the term `−|λ − λ_k|²/(2s)` it has one maximum λ_{k+1}, which Newton's method with a line search
+//! finds. With growing s, g vanishes after a few k. If no such forces exist, λ grows without bound and g does not vanish.
 
 use nalgebra::{Cholesky, Matrix6, Vector6};
 
 use super::Distribution;
 
-/// Softness s of each proximal step.
+/// Softness s of the proximal steps.
 const SOFTNESS: [f64; 12] = [1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e12];
-/// Newton steps within each; a handful do.
+/// Maximum number of Newton steps within each; a few suffice.
 const MOST_STEPS: usize = 60;
-/// Lengths tried for a step.
+/// Maximum number of trial lengths of a step.
 const MOST_TRIALS: usize = 100;
-/// A step ends where the slope along it is this share of what it was at its start.
+/// A line search ends when the slope along the step is below this fraction of its start value.
 const SMALL_SLOPE: f64 = 0.1;
-/// Residual per sum of all forces that counts as none.
+/// Residual that counts as zero, as a fraction of the sum of all forces.
 const RESIDUAL_SHARE: f64 = 1e-13;
 
 impl Distribution {
-    /// Forces within bounds (N) for the structure matrix with these columns and the outside wrench (N, N m).
+    /// Computes forces within bounds (N) for the structure matrix with these columns and the external wrench (N, N m).
     ///
-    /// `forces_n` holds the wanted forces before and the nearest ones that hold the platform after. False if there are
-    /// none; `forces_n` is then as it was.
+    /// On entry `forces_n` holds the wanted forces, on return the nearest ones that hold the platform. Returns false if there are none; `forces_n` is
+    /// then unchanged.
     pub fn solve_within(
         &mut self,
         structure: &[Vector6<f64>],
@@ -83,7 +82,7 @@ impl Distribution {
     }
 }
 
-/// Where a slope that never rises has become small, 1 if it has there; `None` if it never does.
+/// Returns the length at which a non-increasing slope has become small, 1 if it is small there; `None` if it never is.
 fn step_length(slope: impl Fn(f64) -> f64) -> Option<f64> {
     let small = SMALL_SLOPE * slope(0.0);
     if small <= 0.0 {
@@ -109,7 +108,7 @@ fn step_length(slope: impl Fn(f64) -> f64) -> Option<f64> {
 mod tests {
     use super::*;
 
-    /// Four cables in a plane.
+    /// Returns four cables in a plane.
     fn plane() -> Vec<Vector6<f64>> {
         [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]]
             .map(|[x, y]: [f64; 2]| Vector6::new(x, y, 0.0, 0.0, 0.0, 0.0) / 2.0_f64.sqrt())
@@ -124,7 +123,7 @@ mod tests {
     fn finds_forces_wherever_there_are_some() {
         let columns = plane();
         let mut distribution = Distribution::new(0.0, 0.0);
-        // The two pairs of opposite cables differ by (p_x ± p_y)/√2: within 1…10 N there are forces up to 9 N.
+        // The two pairs of opposite cables differ by (p_x ± p_y)/√2, so forces within 1…10 N exist up to a difference of 9 N.
         for (x, y) in (-14..=14).flat_map(|x| (-14..=14).map(move |y| (f64::from(x), f64::from(y)))) {
             let wrench = Vector6::new(x, y, 0.0, 0.0, 0.0, 0.0);
             let most_n = (x + y).abs().max((x - y).abs()) / 2.0_f64.sqrt();
@@ -142,7 +141,7 @@ mod tests {
 
     #[test]
     fn is_the_nearest_of_all() {
-        // All that hold differ by multiples of (1, 0, 1, 0) and (0, 1, 0, 1); a grid of them finds none nearer.
+        // All valid forces differ by multiples of (1, 0, 1, 0) and (0, 1, 0, 1). A grid of these finds none nearer.
         let (columns, wrench) = (plane(), Vector6::new(5.0, 2.0, 0.0, 0.0, 0.0, 0.0));
         let mut forces_n = [3.0; 4];
         assert!(Distribution::new(0.0, 0.0).solve_within(&columns, &wrench, [1.0, 10.0], &mut forces_n));
@@ -163,8 +162,8 @@ mod tests {
         assert!(!Distribution::new(0.0, 0.0).solve_within(&plane(), &wrench, [1.0, f64::INFINITY], &mut forces_n));
     }
 
-    /// Whether forces within bounds exist for eight cables, by the corners of the polygon that the bounds cut out of the
-    /// plane of the null space; `None` where a corner is as good as on a bound.
+    /// Whether forces within bounds exist for eight cables, from the corners of the polygon that the bounds cut out of the null-space plane; `None`
+    /// if a corner is almost on a bound.
     fn exists(columns: &[Vector6<f64>], wrench: &Vector6<f64>, [least_n, greatest_n]: [f64; 2]) -> Option<bool> {
         let matrix = nalgebra::SMatrix::<f64, 6, 8>::from_columns(columns);
         let eigen = nalgebra::SymmetricEigen::new(matrix.transpose() * matrix);
@@ -192,7 +191,7 @@ mod tests {
                 slack_n = slack_n.max(inside.fold(f64::INFINITY, f64::min));
             }
         }
-        // The corner itself lies on two bounds: its slack is zero, or below by as much as it misses.
+        // The corner itself lies on two bounds, so its slack is zero up to rounding.
         if (-1e-3..-1e-9).contains(&slack_n) { None } else { Some(slack_n >= -1e-9) }
     }
 

@@ -1,4 +1,4 @@
-//! A sensor whose amplifier ends: no reading beyond it.
+//! A sensor whose amplifier saturates: no reading exceeds its range.
 
 use super::{DisturbanceRow, parameter};
 use crate::effects::truth::{Cause, TruthEffect};

@@ -1,4 +1,4 @@
-//! A sensor that sends the same value again for a while, at intervals.
+//! A sensor that repeats the same value for a while, at intervals.
 
 use super::{DisturbanceRow, in_stretch, parameter};
 use crate::effects::truth::{Cause, TruthEffect};

@@ -1,4 +1,4 @@
-//! Mains hum in the sensor's cable: one line in the spectrum of what the sensor shows.
+//! Mains hum in the sensor's cable: one line in the spectrum of the sensor signal.
 
 use core::f64::consts::TAU;
 

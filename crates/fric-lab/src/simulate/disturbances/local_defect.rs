@@ -1,7 +1,7 @@
 //! A piece of the cable that does not run freely over the last pulley: a kink, a splice, a broken strand.
 //!
-//! While that piece passes, the bearing's sliding friction is higher by `drag_n·exp(−((l − l₀)/width)²)`, l the cable's
-//! length and `l₀` that at the start of the run plus `from_start_m`.
+//! While the piece passes, the bearing's sliding friction increases by `drag_n·exp(−((l − l₀)/width)²)`, where l is the cable's length and `l₀` the
+//! length at the start of the run plus `from_start_m`.
 
 use super::{DisturbanceRow, parameter};
 use crate::effects::truth::{Cause, Contact, TruthEffect};

@@ -1,7 +1,7 @@
-//! What spoils a log and is in no catalogue of friction effects: faults of sensor, amplifier, winch and cable.
+//! Disturbances of a log that are not in the catalogue of friction effects: faults of sensor, amplifier, winch and cable.
 //!
-//! For: logs whose disagreement with the model must be found and placed without being given a wrong name. To add one: a file
-//! here that implements [`TruthEffect`], and its row in [`DISTURBANCES`].
+//! They produce logs whose disagreement with the model must be found and located without a wrong name. To add one, create a file here that implements
+//! [`TruthEffect`], and add its row to [`DISTURBANCES`].
 
 mod clipped;
 mod frozen;
@@ -27,7 +27,7 @@ use crate::effects::truth::{Build, Cause, TruthEffect};
 pub struct DisturbanceRow {
     /// Its name.
     pub kind: &'static str,
-    /// What happens, in one sentence.
+    /// Its cause, in one sentence.
     pub cause: &'static str,
     /// Its parameters.
     pub parameters: &'static [DisturbanceParameter],
@@ -38,11 +38,11 @@ pub struct DisturbanceRow {
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct DisturbanceParameter {
-    /// Its key, with unit.
+    /// Its key, including the unit.
     pub key: &'static str,
     /// Its unit; `1` for a ratio.
     pub unit: &'static str,
-    /// Value where it is not given.
+    /// Default value.
     pub usual: f64,
     /// Least value.
     pub min: f64,
@@ -50,7 +50,7 @@ pub struct DisturbanceParameter {
     pub max: f64,
 }
 
-/// Every disturbance there is.
+/// Every disturbance.
 pub const DISTURBANCES: &[DisturbanceRow] =
     &[hum::ROW, frozen::ROW, clipped::ROW, step::ROW, quantised::ROW, warming::ROW, local_defect::ROW, vibration::ROW];
 
@@ -74,10 +74,10 @@ pub struct Disturbance {
 }
 
 impl Disturbance {
-    /// Reads `kind:key=value,key=value`. A parameter that is not given has its usual value.
+    /// Reads `kind:key=value,key=value`. A parameter that is not given takes its default value.
     ///
     /// # Errors
-    /// [`HiddenError`] names what is wrong and what is known or allowed.
+    /// Returns a [`HiddenError`] that names the mistake and the known or allowed values.
     pub fn parse(text: &str) -> Result<Self, HiddenError> {
         let (kind, entries) = stated::split(text);
         let kind = find(kind)?;
@@ -85,35 +85,35 @@ impl Disturbance {
         Ok(Self { kind: kind.name, values })
     }
 
-    /// A disturbance from its name and values by key.
+    /// Creates a disturbance from its name and values by key.
     ///
     /// # Errors
-    /// [`HiddenError`] names what is wrong and what is known or allowed.
+    /// Returns a [`HiddenError`] that names the mistake and the known or allowed values.
     pub fn new(kind: &str, values: &[(&str, f64)]) -> Result<Self, HiddenError> {
         let kind = find(kind)?;
         Ok(Self { kind: kind.name, values: kind.check(values)? })
     }
 
-    /// Its name in [`DISTURBANCES`].
+    /// Returns its name in [`DISTURBANCES`].
     #[must_use]
     pub fn kind(&self) -> &'static str {
         self.kind
     }
 
-    /// The values given, by key.
+    /// Returns the given values, by key.
     #[must_use]
     pub fn values(&self) -> &[(&'static str, f64)] {
         &self.values
     }
 
-    /// A parameter, given or usual; `None` for a key that it does not have.
+    /// Returns the value of a parameter, given or default; `None` for an unknown key.
     #[must_use]
     pub fn value(&self, key: &str) -> Option<f64> {
         let given = self.values.iter().find(|(other, _)| *other == key).map(|(_, value)| *value);
         given.or_else(|| Some(row(self.kind)?.parameters.iter().find(|parameter| parameter.key == key)?.usual))
     }
 
-    /// The parameters that were not given, by key, with the values that they have instead.
+    /// Returns the parameters that were not given, by key, with their default values.
     #[must_use]
     pub fn defaults(&self) -> Vec<(&'static str, f64)> {
         let missing = |key: &str| self.values.iter().all(|(given, _)| *given != key);
@@ -121,7 +121,7 @@ impl Disturbance {
         all.filter(|parameter| missing(parameter.key)).map(|parameter| (parameter.key, parameter.usual)).collect()
     }
 
-    /// At work on a cable.
+    /// Creates the disturbance of a cable.
     pub(super) fn build(&self, start_length_m: f64, random: &mut ChaCha8Rng) -> Box<dyn TruthEffect> {
         let value = |key: &str| self.value(key).unwrap_or_default();
         let mut cause = Cause { value: &value, start_length_m, sensor_ratio: 1.0, random };
@@ -136,14 +136,14 @@ impl FromStr for Disturbance {
     }
 }
 
-/// As [`Disturbance::parse`] reads it.
+/// Writes the form that [`Disturbance::parse`] reads.
 impl fmt::Display for Disturbance {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         stated::write(formatter, self.kind, &self.values)
     }
 }
 
-/// What a kind without a row would be; there is none.
+/// The effect of a kind without a row, which does not occur.
 #[derive(Debug)]
 struct Nothing;
 
@@ -161,12 +161,12 @@ fn find(kind: &str) -> Result<Kind, HiddenError> {
     Ok(Kind { noun: NOUN, name: row.kind, parameters: row.parameters.iter().map(allowed).collect() })
 }
 
-/// A row of parameters, shorter.
+/// Creates a parameter row.
 const fn parameter(key: &'static str, unit: &'static str, usual: f64, [min, max]: [f64; 2]) -> DisturbanceParameter {
     DisturbanceParameter { key, unit, usual, min, max }
 }
 
-/// Whether a time lies in one of the stretches of `length_s` that begin every `interval_s`, the first after `first_s`.
+/// Whether a time lies in one of the stretches of `length_s` that start every `interval_s`, the first after `first_s`.
 fn in_stretch(time_s: f64, first_s: f64, interval_s: f64, length_s: f64) -> bool {
     let since_s = time_s - first_s;
     since_s >= 0.0 && since_s - interval_s * libm::floor(since_s / interval_s) < length_s

@@ -1,4 +1,4 @@
-//! A sensor read by a converter of few bits.
+//! A sensor read by a converter with few bits.
 
 use super::{DisturbanceRow, parameter};
 use crate::effects::truth::{Cause, TruthEffect};

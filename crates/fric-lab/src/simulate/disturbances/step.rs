@@ -1,4 +1,4 @@
-//! A sensor whose zero jumps and jumps back: an amplifier that changes its range, a plug that moves.
+//! A sensor whose zero jumps and jumps back: an amplifier that changes its range, a loose plug.
 
 use super::{DisturbanceRow, in_stretch, parameter};
 use crate::effects::truth::{Cause, TruthEffect};

@@ -1,4 +1,4 @@
-//! From the description of a case to its log.
+//! Converts the description of a case into its log.
 
 use fric_core::robot::file::{RobotFile, RobotFileError};
 use rand_chacha::ChaCha8Rng;
@@ -16,67 +16,67 @@ use crate::simulate::hidden::HiddenEffect;
 use crate::simulate::options::SimulationOptions;
 use crate::simulate::stream::Simulation;
 
-/// Usual noise, N.
+/// Default noise, N.
 const SENSOR_NOISE_N: f64 = 0.02;
 const REFERENCE_NOISE_N: f64 = 0.01;
-/// Spread of μ over the pulleys.
+/// Relative spread of μ over the pulleys.
 const SPREAD_RATIO: f64 = 0.1;
-/// Length of a log from the test bench, s, and step of its encoder, m.
+/// Duration of a log from the test bench, s, and resolution of its encoder, m.
 const BENCH_S: f64 = 25.0;
 const BENCH_RESOLUTION_M: f64 = 2e-6;
-/// About how long the identification run of the small robot takes, s.
+/// Approximate duration of the small robot's identification run, s.
 const RUN_S: f64 = 52.0;
-/// Mean normal force of the three pulleys per tension: 2 at 180°, √2 at 90°, as much at the swivelling one.
+/// Mean normal force of the three pulleys per tension: 2 at 180°, √2 at 90°, and √2 at the swivelling one.
 const NORMAL_PER_TENSION: f64 = 1.6;
-/// Apart from the streams of the simulation itself, which has the same seed.
+/// Separates this random stream from those of the simulation, which has the same seed.
 const STREAM: u64 = u64::MAX;
 
-/// A log to be searched, and what is in it.
+/// A log to search, and its hidden content.
 #[derive(Debug)]
 pub struct CaseLog {
-    /// What a user has: the robot without the effect, with guesses for its friction. It has the one cable of the log.
+    /// The robot file of a user: without the effect and with guessed friction. It contains only the log's cable.
     pub robot: RobotFile,
-    /// Its text.
+    /// The text of the robot file.
     pub robot_text: String,
-    /// The log itself, a sample a cycle.
+    /// The log itself, one sample per cycle.
     pub simulation: Simulation,
-    /// What is to be found.
+    /// The hidden content.
     pub truth: CaseTruth,
 }
 
-/// What is in a log.
+/// The true content of a log.
 #[derive(Clone, Debug)]
 pub struct CaseTruth {
-    /// The robot of the log with its true friction, without the effects; its μ is the mean of the pulleys', as the sensor feels them.
+    /// The robot of the log with its true friction, without the effects. Its μ is the mean over the pulleys, as the sensor measures it.
     pub robot: RobotFile,
-    /// Effects of the catalogue.
+    /// Hidden effects of the catalogue.
     pub effects: Vec<HiddenEffect>,
-    /// What is in no catalogue.
+    /// Hidden disturbances outside the catalogue.
     pub disturbances: Vec<Disturbance>,
-    /// White noise of the force at the platform, sensor and reference together, N: no model comes below it.
+    /// White noise of the force at the platform, sensor and reference together, N: no model can have a smaller error.
     pub floor_n: f64,
 }
 
-/// Why there is no log of a case.
+/// The reason why a case has no log.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum SweepError {
-    /// It names an effect or disturbance that there is not, or is too strong for its range.
+    /// The case names an unknown effect or disturbance, or its strength is out of range.
     #[error(transparent)]
     Hidden(#[from] HiddenError),
-    /// Its robot is not right.
+    /// The robot of the case is invalid.
     #[error(transparent)]
     Robot(#[from] RobotFileError),
-    /// It cannot be simulated.
+    /// The case cannot be simulated.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
 }
 
 impl Case {
-    /// Draws what the seed decides and sets the simulation up.
+    /// Draws what the seed decides and sets up the simulation.
     ///
     /// # Errors
-    /// [`SweepError`] for a case that names what there is not, or whose numbers are out of range.
+    /// Returns a [`SweepError`] for a case with unknown names or numbers out of range.
     pub fn log(&self) -> Result<CaseLog, SweepError> {
         let random = &mut ChaCha8Rng::seed_from_u64(self.seed);
         random.set_stream(STREAM);
@@ -94,7 +94,7 @@ impl Case {
             if is_bench { bench(mass_kg, friction) } else { small_robot([cable].into_iter(), mass_kg, friction) }
         };
         let robot = |friction: &Friction| RobotFile::parse(&robot_text(friction), "sweep");
-        // Weight, and what viscous friction takes at 1 m/s.
+        // The weight plus the viscous friction at 1 m/s.
         let tension_n = mass_kg * 9.80665 + 3.0 * friction.viscous_n_s_per_m;
         let strength = &mut Sizing {
             strength_ratio: self.strength_ratio,
@@ -128,7 +128,7 @@ impl Case {
             let whole = RobotFile::parse(&small_robot(0..CABLE_COUNT, mass_kg, &friction), "sweep")?;
             Simulation::of(&whole, &options, cable..cable + 1, None)?
         };
-        // At 180° the sensor feels the cable twice.
+        // At 180° the sensor measures the cable force twice.
         let floor_n = libm::hypot(0.5 * options.sensor_noise_n, options.reference_noise_n);
         let mean = Friction { mu: simulation.mean_mu(0).unwrap_or(friction.mu), ..friction };
         let truth = CaseTruth { robot: robot(&mean)?, effects, disturbances, floor_n };

@@ -1,12 +1,12 @@
-//! Many logs at random with known effects hidden in them: what a search for missing effects is tried on.
+//! Many random logs with known hidden effects, to test the discovery.
 //!
-//! [`cases`] lists what is tried: nothing hidden, each effect in three strengths under three levels of noise, pairs and
-//! triples that can be told apart, four and five at once, other laws of presliding, noise that wanders, a hand on the platform, disturbances
-//! outside the catalogue alone and beside an effect, a drive on a test bench. [`Case::log`] makes the log of one, with the
-//! robot file that a user would have: without the effect, and with friction values that are guesses.
+//! [`cases`] lists the cases: nothing hidden, each effect in three strengths under three levels of noise, pairs and triples that can be
+//! distinguished, four and five effects at once, other laws of presliding, drifting noise, a hand on the platform, disturbances outside the catalogue
+//! alone and with an effect, and a drive on a test bench. [`Case::log`] makes the log of a case, with the robot file that a user would have: without
+//! the effect, and with guessed friction values.
 //!
-//! A case is a description and a seed; both together decide every bit of its log. Friction, tension, which of the eight
-//! cables of a small robot is looked at, and the sign and exact size of effects come from the seed.
+//! A case is a description and a seed, which together determine every bit of its log. Friction, tension, the choice among the eight cables of a small
+//! robot, and the sign and exact size of effects come from the seed.
 //!
 //! ```
 //! use fric_lab::simulate::sweep;
@@ -30,19 +30,19 @@ use fric_core::effects::Effect;
 
 use super::disturbances::DISTURBANCES;
 
-/// What a case is there to try.
+/// The purpose of a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[non_exhaustive]
 pub enum Group {
     /// Nothing is hidden.
     Nothing,
-    /// Nothing is hidden, but the noise is not white.
+    /// Nothing is hidden, but the noise drifts.
     Wander,
     /// Nothing is hidden, but a hand pushes the platform.
     Hand,
     /// One effect.
     Single,
-    /// Other exponents of the presliding than those of [`Group::Single`].
+    /// Other presliding exponents than those of [`Group::Single`].
     Law,
     /// Two effects.
     Pair,
@@ -50,16 +50,16 @@ pub enum Group {
     Triple,
     /// Four or five effects.
     Many,
-    /// A disturbance that is in no catalogue.
+    /// A disturbance outside the catalogue.
     Outside,
-    /// Such a disturbance and one effect.
+    /// A disturbance outside the catalogue and one effect.
     Mixed,
     /// One drive on a test bench: no pose, 25 s, speeds from an encoder.
     Bench,
 }
 
 impl Group {
-    /// In one word.
+    /// Returns the name in one word.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -78,31 +78,30 @@ impl Group {
     }
 }
 
-/// One log of a sweep, described.
+/// The description of one log of a sweep.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Case {
-    /// What it is there to try.
+    /// The purpose.
     pub group: Group,
-    /// Effects to hide, by the catalogue's names: what is to be found.
+    /// Effects to hide, which the discovery is to find.
     pub effects: Vec<Effect>,
-    /// What else to spoil it with, by the name in [`DISTURBANCES`].
+    /// A disturbance to hide, by its name in [`DISTURBANCES`].
     pub disturbance: Option<&'static str>,
-    /// How strong both are; 1 is plain to see. Below 0, an exponent of presliding is below 1.
+    /// Strength of both; 1 is clearly visible. Negative values mean a presliding exponent below 1.
     pub strength_ratio: f64,
     /// White noise as a multiple of 0.02 N at the sensor and 0.01 N at the reference.
     pub noise_ratio: f64,
-    /// Standard deviation by which the sensor wanders, N.
+    /// Standard deviation of the sensor's drift, N.
     pub sensor_wander_n: f64,
-    /// Standard deviation by which the reference wanders, N.
+    /// Standard deviation of the reference's drift, N.
     pub reference_wander_n: f64,
-    /// Hardest push of a hand along each base axis, N.
+    /// Greatest push of a hand along each base axis, N.
     pub hand_n: f64,
-    /// Decides the rest.
+    /// Seed for everything else.
     pub seed: u64,
 }
 
-/// Effects that pairs and triples are made of: one constant offset beside another, the fitted one at the platform, is too weak, and a table has no
-/// name to be found.
+/// Returns the effects for pairs and triples. An offset beside the fitted one at the platform is too weak, and a table has no name to be found.
 fn combined() -> Vec<Effect> {
     let left_out = [Effect::SensorOffset, Effect::Empirical];
     Effect::CATALOGUE.iter().copied().filter(|effect| !left_out.contains(effect)).collect()
@@ -127,23 +126,23 @@ const ALIKE: [(Effect, Effect); 15] = [
     (Effect::PulleyEccentricity, Effect::WinchRipple),
 ];
 
-/// Effects beside a disturbance.
+/// Effects to combine with a disturbance.
 const MIXED: [Effect; 4] = [Effect::Stribeck, Effect::DirectionAsymmetry, Effect::SensorGain, Effect::TimeDelay];
 const STRENGTHS: [f64; 3] = [1.0, 0.5, 0.25];
 const NOISES: [f64; 3] = [1.0, 0.5, 2.0];
-/// Exponents of the presliding as shares of 0.8 above 1: 0.6, 0.8, 1.25, 1.5, 2.2, 2.6.
+/// Presliding exponents minus 1 in units of 0.8: exponents of 0.6, 0.8, 1.25, 1.5, 2.2, 2.6.
 const LAWS: [f64; 6] = [-0.5, -0.25, 0.3125, 0.625, 1.5, 2.0];
-/// Every so many of the pairs that there are, and of the triples.
+/// Strides through all pairs, and through all triples.
 const PAIR_STRIDE: usize = 3;
 const TRIPLE_STRIDE: usize = 53;
-/// How many logs with four, and with five effects.
+/// Number of logs with four effects, and with five.
 const MANY: usize = 10;
-/// Effects that show while the winch rests and the load does not.
+/// Effects that show only if the load changes while the winch rests.
 const NEEDS_A_HAND: [Effect; 2] = [Effect::CableElasticity, Effect::LoadRelease];
-/// How hard the hand pushes, N along each axis: about 1.5 N in a cable.
+/// Push of the hand along each axis, N: about 1.5 N in a cable.
 const HAND_N: f64 = 3.0;
 
-/// All cases; each has a seed of its own.
+/// Returns all cases, each with its own seed.
 #[must_use]
 pub fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
@@ -196,13 +195,13 @@ pub fn cases() -> Vec<Case> {
 }
 
 impl Case {
-    /// Nothing hidden, usual noise, seed 0.
+    /// Returns a case with nothing hidden, default noise and seed 0.
     #[must_use]
     pub fn of(group: Group) -> Self {
         Self::hiding(group, &[])
     }
 
-    /// Effects at full strength, usual noise, seed 0, and a hand where nothing would be seen of the effect without.
+    /// Returns a case with effects at full strength, default noise and seed 0, and a hand if the effect would not show without it.
     #[must_use]
     pub fn hiding(group: Group, effects: &[Effect]) -> Self {
         Self {
@@ -218,7 +217,7 @@ impl Case {
         }
     }
 
-    /// In a few words: group, what is hidden, strength and noise where they are not 1, seed.
+    /// Returns a short name: group, hidden content, strength and noise if they are not 1, seed.
     #[must_use]
     pub fn name(&self) -> String {
         let mut words = vec![self.group.name().to_owned()];
@@ -250,7 +249,7 @@ fn pairs() -> Vec<[Effect; 2]> {
     each.filter(|[one, other]| !is_alike(*one, *other)).collect()
 }
 
-/// Four effects of those that can be told apart, or, from the tenth on, five: every so many, from another one each time.
+/// Returns four effects that can be distinguished or, from the tenth case on, five: taken at a stride with a different offset each time.
 fn many(which: usize) -> Vec<Effect> {
     let (wanted, stride) = (4 + which / MANY, [1, 5, 7, 11][which % 4]);
     let all = combined();

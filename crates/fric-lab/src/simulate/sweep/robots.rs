@@ -1,8 +1,8 @@
-//! The robots of a sweep: one cable of a small robot of eight, and one drive on a test bench.
+//! The robots of a sweep: one cable of a small robot with eight cables, and one drive on a test bench.
 
 use core::fmt::Write as _;
 
-/// Friction of a cable in a robot file.
+/// Friction values of a cable in a robot file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Friction {
     pub mu: f64,
@@ -10,13 +10,14 @@ pub struct Friction {
     pub viscous_n_s_per_m: f64,
 }
 
-/// What a user would start from.
+/// The values that a user would start from.
 pub const GUESS: Friction = Friction { mu: 0.02, sigma_n_per_m: 900.0, viscous_n_s_per_m: 0.2 };
 
-/// Cables of the small robot.
+/// Number of cables of the small robot.
 pub const CABLE_COUNT: usize = 8;
 
-/// A frame of 1.1 × 0.8 × 1.0 m, cables from its corners, sensor at 180°, a fixed pulley, a swivelling one.
+/// Returns a robot with a frame of 1.1 × 0.8 × 1.0 m and cables from its corners; each cable has a sensor pulley of 180°, a fixed pulley and a
+/// swivelling one.
 pub fn small_robot(cables: impl Iterator<Item = usize>, mass_kg: f64, friction: &Friction) -> String {
     let mut text = head(mass_kg);
     for cable in cables {
@@ -40,7 +41,7 @@ pub fn small_robot(cables: impl Iterator<Item = usize>, mass_kg: f64, friction: 
     text
 }
 
-/// A drive, a sensor pulley and two more, a weight.
+/// Returns a test bench: a drive, a sensor pulley and two more pulleys, and a weight.
 pub fn bench(mass_kg: f64, friction: &Friction) -> String {
     let pulleys = "{ wrap_deg = 180.0, sensor = true }, { wrap_deg = 90.0 }, { wrap_deg = 90.0 }";
     format!("{}[[cable]]\nname = \"drive\"\npulleys = [{pulleys}]\n{}", head(mass_kg), line(friction))

@@ -1,4 +1,4 @@
-//! How strong an effect or a disturbance of a sweep is.
+//! The strengths of effects and disturbances in a sweep.
 
 use fric_core::effects::Effect;
 
@@ -8,13 +8,13 @@ use crate::simulate::disturbances::Disturbance;
 use crate::simulate::error::HiddenError;
 use crate::simulate::hidden::HiddenEffect;
 
-/// An effect of the catalogue.
+/// Returns an effect of the catalogue.
 pub fn effect(effect: Effect, strength: &mut Sizing<'_>) -> Result<HiddenEffect, HiddenError> {
     let values = effects::of(effect).map(|lab| (lab.typical)(strength)).unwrap_or_default();
     HiddenEffect::of(effect, &values)
 }
 
-/// A disturbance.
+/// Returns a disturbance.
 pub fn disturbance(kind: &str, strength: &mut Sizing<'_>) -> Result<Disturbance, HiddenError> {
     let values = match kind {
         "hum" => {
@@ -22,7 +22,7 @@ pub fn disturbance(kind: &str, strength: &mut Sizing<'_>) -> Result<Disturbance,
             vec![("amplitude_n", strength.about(0.12)), ("frequency_hz", frequency_hz)]
         }
         "frozen" => vec![("interval_s", 10.0), ("length_s", strength.about(0.6))],
-        // The sensor at 180° feels the cable twice; the fuller the strength, the more is cut off.
+        // At 180° the sensor measures the cable force twice. A greater strength cuts off more.
         "clipped" => vec![("greatest_n", 2.0 * strength.tension_n * (1.6 - strength.about(0.25)))],
         "step" => vec![("shift_n", strength.either(0.3))],
         "quantised" => vec![("resolution_n", strength.about(0.3))],

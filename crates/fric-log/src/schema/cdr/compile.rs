@@ -1,4 +1,4 @@
-//! From types and wanted fields to a [`Program`].
+//! Compiles types and wanted fields to a [`Program`].
 
 use crate::path::{Condition, FieldPath, Selection, Step};
 use crate::schema::error::SchemaError;
@@ -8,7 +8,7 @@ use crate::schema::types::{Count, Element, Field, TypeTable};
 use super::emit::{Compiler, Generation, MAX_OPS, Place, Shared};
 use super::program::{Elements, Filter, Length, Op, Program};
 
-/// The program that reads the wanted fields, and how many slots it needs.
+/// Returns the program that reads the wanted fields, and the number of slots that it needs.
 ///
 /// The wanted fields must have been checked against the types; field `i` goes to slot `i`.
 pub(super) fn compile(
@@ -34,7 +34,7 @@ pub(super) fn compile(
     Ok((program, shared.slots))
 }
 
-/// A wanted field as seen from inside the message, with the steps still to go.
+/// A wanted field as seen from inside the message, with the remaining steps.
 #[derive(Clone, Copy)]
 struct Want<'a> {
     path: &'a FieldPath,
@@ -43,7 +43,7 @@ struct Want<'a> {
 }
 
 impl<'t> Compiler<'_, 't> {
-    /// Passes over, or reads, one element that is not part of an array.
+    /// Skips, or reads, one element that is not part of an array.
     fn element(&mut self, element: Element, wants: &[Want<'_>], name: &str) -> Result<(), SchemaError> {
         let types: &'t TypeTable = self.shared.types;
         match (element, wants) {
@@ -95,7 +95,7 @@ impl<'t> Compiler<'_, 't> {
         }
     }
 
-    /// All fields of a message in their order.
+    /// Processes all fields of a message in order.
     fn members(&mut self, index: usize, wants: &[Want<'_>], name: &str) -> Result<(), SchemaError> {
         let types: &'t TypeTable = self.shared.types;
         let message = types.message(index);
@@ -169,7 +169,7 @@ impl<'t> Compiler<'_, 't> {
         }
     }
 
-    /// An array whose wants all have the same selection.
+    /// Reads an array whose wants all have the same selection.
     fn read_array(
         &mut self,
         element: Element,
@@ -236,7 +236,7 @@ impl<'t> Compiler<'_, 't> {
         self.push(op, Place::UNKNOWN, name)
     }
 
-    /// A message of which wanted fields are read under a condition common to all of them.
+    /// Reads a message whose wanted fields share a condition.
     fn filter(
         &mut self,
         element: Element,
@@ -268,7 +268,7 @@ impl<'t> Compiler<'_, 't> {
         self.push(Op::Filter(Box::new(filter)), after, name)
     }
 
-    /// Compiles groups of wants that cannot be read in one go.
+    /// Compiles groups of wants that cannot be read in one pass.
     fn each(
         &mut self,
         groups: &[Vec<Want<'_>>],
@@ -295,7 +295,7 @@ fn is_where(step: &Step) -> bool {
     matches!(step, Step::Where(_))
 }
 
-/// The selection a want starts with, all elements if it names none, and the steps after it.
+/// Returns the selection that a want starts with (all elements if it states none), and the steps after it.
 fn selection<'a>(want: &Want<'a>) -> (Selection, &'a [Step]) {
     match want.steps.split_first() {
         Some((Step::Elements(selection), rest)) => (*selection, rest),

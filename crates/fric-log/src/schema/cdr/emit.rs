@@ -1,4 +1,4 @@
-//! Programs under construction: ops appended, and what is known of the position kept track of.
+//! Programs under construction: appends ops and tracks what is known about the position.
 
 use crate::path::FieldPath;
 use crate::schema::error::SchemaError;
@@ -6,19 +6,19 @@ use crate::schema::types::{Element, TypeTable};
 
 use super::program::{Op, Program};
 
-/// Most steps of a program, so that a schema of few lines cannot unroll into an endless one.
+/// Maximum number of steps of a program, so that a short schema cannot unroll into an endless one.
 pub(super) const MAX_OPS: usize = 50_000;
 
-/// The two generations of plain CDR.
+/// The two versions of plain CDR.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Generation {
-    /// Numbers of eight bytes lie at multiples of eight.
+    /// Numbers of eight bytes are aligned to eight.
     Cdr1,
-    /// Numbers of eight bytes lie at multiples of four; arrays of anything but numbers start with their size in bytes.
+    /// Numbers of eight bytes are aligned to four; arrays of anything but numbers start with their size in bytes.
     Cdr2,
 }
 
-/// What is known of the position: its remainder after division by `modulus`, a power of two.
+/// What is known about the position: its remainder modulo `modulus`, a power of two.
 #[derive(Clone, Copy)]
 pub(super) struct Place {
     pub modulus: usize,
@@ -28,18 +28,18 @@ pub(super) struct Place {
 impl Place {
     pub const UNKNOWN: Self = Self { modulus: 1, residue: 0 };
 
-    /// What is known after a counted sequence of elements of `size` bytes, which may also be empty.
+    /// Returns what is known after a counted sequence of elements of `size` bytes, which may be empty.
     pub fn after_sequence(size: usize) -> Self {
         let modulus = if size.is_multiple_of(4) { 4 } else { 1 };
         Self { modulus, residue: 0 }
     }
 }
 
-/// What a compiler shares with those of the programs within.
+/// The data that a compiler shares with those of inner programs.
 pub(super) struct Shared<'t> {
     pub types: &'t TypeTable,
     pub generation: Generation,
-    /// How many slots are in use.
+    /// Number of slots in use.
     pub slots: usize,
     pub ops_left: usize,
 }
@@ -49,19 +49,19 @@ pub(super) struct Compiler<'s, 't> {
     pub shared: &'s mut Shared<'t>,
     pub program: Program,
     pub place: Place,
-    /// Whether these ops run exactly once a message.
+    /// Whether these ops run exactly once per message.
     pub once: bool,
-    /// The first `wstring`, behind which no position is known.
+    /// The first `wstring`, after which no position is known.
     pub wide: Option<String>,
 }
 
 impl<'t> Compiler<'_, 't> {
-    /// A compiler for a program within this one.
+    /// Returns a compiler for a program within this one.
     pub(super) fn part(&mut self, place: Place, once: bool) -> Compiler<'_, 't> {
         Compiler { wide: self.wide.clone(), shared: &mut *self.shared, program: Program::default(), place, once }
     }
 
-    /// The strictest alignment there is.
+    /// Returns the strictest alignment.
     pub(super) fn max_align(&self) -> usize {
         match self.shared.generation {
             Generation::Cdr1 => 8,
@@ -69,7 +69,7 @@ impl<'t> Compiler<'_, 't> {
         }
     }
 
-    /// The size that CDR2 puts before arrays of anything but numbers.
+    /// Reads the size that CDR2 puts before arrays of anything but numbers.
     pub(super) fn start_array(&mut self, element: Element, name: &str) -> Result<(), SchemaError> {
         match (self.shared.generation, element) {
             (Generation::Cdr1, _) | (_, Element::Number(_)) => Ok(()),
@@ -77,13 +77,13 @@ impl<'t> Compiler<'_, 't> {
         }
     }
 
-    /// Passes over bytes that lie at a multiple of `align`.
+    /// Skips bytes that are aligned to `align`.
     pub(super) fn skip(&mut self, align: usize, bytes: usize, name: &str) -> Result<(), SchemaError> {
         self.align(align, name)?;
         self.advance(1, bytes, self.place_after(bytes), name)
     }
 
-    /// Moves to the next multiple of `align`, or of what the generation caps it to.
+    /// Moves to the next multiple of `align`, or of the limit of the CDR version.
     pub(super) fn align(&mut self, align: usize, name: &str) -> Result<(), SchemaError> {
         let align = align.min(self.max_align());
         if self.place.modulus < align {
@@ -94,7 +94,7 @@ impl<'t> Compiler<'_, 't> {
         self.advance(1, padding, self.place_after(padding), name)
     }
 
-    /// Moves on, by the last op if that only moves on as well.
+    /// Moves on, by extending the last op if that only moves too.
     fn advance(&mut self, align: usize, bytes: usize, after: Place, name: &str) -> Result<(), SchemaError> {
         if align == 1 && bytes == 0 || self.wide.is_some() {
             return Ok(());
@@ -107,15 +107,15 @@ impl<'t> Compiler<'_, 't> {
         self.push(Op::Advance { align, bytes }, after, name)
     }
 
-    /// What is known of the position so many bytes on.
+    /// Returns what is known about the position after `bytes`.
     pub(super) fn place_after(&self, bytes: usize) -> Place {
         let Place { modulus, residue } = self.place;
         Place { modulus, residue: residue.wrapping_add(bytes) % modulus }
     }
 
-    /// Appends an op, after which the position is known as said.
+    /// Appends an op, after which the position is known as stated.
     pub(super) fn push(&mut self, op: Op, after: Place, name: &str) -> Result<(), SchemaError> {
-        // Nothing behind a wide text is looked at.
+        // Nothing after a wide text is read.
         if self.wide.is_some() && op.only_skips() {
             return Ok(());
         }
@@ -133,7 +133,7 @@ impl<'t> Compiler<'_, 't> {
         Ok(())
     }
 
-    /// Whether the place of the wanted field `path` can be known.
+    /// Checks whether the position of the wanted field `path` can be known.
     pub(super) fn readable(&self, path: &FieldPath) -> Result<(), SchemaError> {
         match &self.wide {
             None => Ok(()),

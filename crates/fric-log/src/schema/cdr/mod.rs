@@ -1,10 +1,9 @@
 //! Messages of encoding `cdr`, read by a program compiled from schema and wanted fields.
 //!
-//! Plain CDR and plain CDR2 in both byte orders; parameter lists and delimited CDR2, which ROS 2 does not write for its
-//! messages, are refused. Every length is checked against the bytes that are left before anything is stored,
-//! so that what is allocated never exceeds a small multiple of the message. A message is read to its schema's
-//! end; what comes behind it (padding, members of a newer definition) is ignored. A text may lack its final NUL.
-//! NaN and infinities are delivered as they are.
+//! Plain CDR and plain CDR2 are supported in both byte orders; parameter lists and delimited CDR2, which ROS 2 does not use for its messages, are
+//! refused. Every length is checked against the remaining bytes before anything is stored, so that allocations never exceed a small multiple of the
+//! message. A message is read to the end of its schema; anything after it (padding, members of a newer definition) is ignored. A text may lack its
+//! final NUL. NaN and infinities are passed on.
 
 mod compile;
 mod emit;
@@ -29,11 +28,11 @@ pub(super) struct CdrReader {
     last_representation: Option<[u8; 2]>,
 }
 
-/// Bytes before the message proper, from whose end alignment is counted.
+/// Number of bytes before the actual message, from whose end alignment is counted.
 const HEADER_BYTES: usize = 4;
 
 impl CdrReader {
-    /// The reader, and how many slots of [`Values`] it needs.
+    /// Returns the reader, and the number of slots of [`Values`] that it needs.
     pub(super) fn new(types: &TypeTable, wanted: &[Wanted]) -> Result<(Self, usize), SchemaError> {
         let (cdr1, slots) = compile::compile(types, wanted, Generation::Cdr1)?;
         let (cdr2, _) = compile::compile(types, wanted, Generation::Cdr2)?;
@@ -47,12 +46,12 @@ impl CdrReader {
         };
         let representation = [first, second];
         if self.last_representation != Some(representation) {
-            // The same bytes may mean something else now.
+            // The same bytes may have another meaning now.
             values.forget_raw_texts();
             self.last_representation = Some(representation);
         }
         let slots = values.begin();
-        // The second pair of CDR2 identifiers is the one of RTPS 2.5, the first that of XTypes 1.3.
+        // The second pair of CDR2 identifiers is that of RTPS 2.5, the first that of XTypes 1.3.
         let result = match representation {
             [0, 0x00] => run::run::<BigEndian>(&self.cdr1, body, slots),
             [0, 0x01] => run::run::<LittleEndian>(&self.cdr1, body, slots),

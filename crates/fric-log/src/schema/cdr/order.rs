@@ -1,4 +1,4 @@
-//! Numbers from bytes in either order.
+//! Reads numbers from bytes in either order.
 
 use crate::schema::types::Primitive;
 
@@ -36,7 +36,7 @@ impl Order for BigEndian {
     }
 }
 
-/// Appends all numbers of the type in `bytes`; a rest too short for one is left out.
+/// Appends all numbers of the type in `bytes`; an incomplete last one is left out.
 pub(super) fn append<O: Order>(primitive: Primitive, bytes: &[u8], numbers: &mut Vec<f64>) {
     fn each<const N: usize>(bytes: &[u8], out: &mut Vec<f64>, number: impl Fn([u8; N]) -> f64) {
         out.extend(bytes.as_chunks::<N>().0.iter().map(|&bytes| number(bytes)));

@@ -1,35 +1,35 @@
-//! The steps by which wanted fields are read from CDR bytes.
+//! The steps that read wanted fields from CDR bytes.
 //!
-//! Every program consumes exactly the field or message it was compiled for, so that programs for the same bytes
-//! can be run one after the other from the same place.
+//! Every program consumes exactly the field or message that it was compiled for, so programs for the same bytes can run one after the other from the
+//! same position.
 
 use crate::path::{Literal, Selection};
 use crate::schema::types::Primitive;
 
-/// Steps run in order, each with the name of the field it is about.
+/// Steps run in order, each with the name of its field.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Program {
     pub ops: Vec<Op>,
-    /// One for each of `ops`; the first field where an op passes over several.
+    /// One name per op; the first field if an op skips several.
     pub fields: Vec<String>,
 }
 
-/// How many elements follow.
+/// The number of elements that follow.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Length {
     Fixed(usize),
-    /// A 32-bit count comes first; the position is aligned for it.
+    /// A 32-bit count comes first; the position is already aligned for it.
     Counted,
 }
 
-/// One step. Where an op reads a number or a count, the position is aligned for it already.
+/// One step. If an op reads a number or a count, the position is already aligned for it.
 #[derive(Debug, Clone)]
 pub(super) enum Op {
     /// Moves to the next multiple of `align` (a power of two), then on by `bytes`.
     Advance { align: usize, bytes: usize },
-    /// Passes over a counted sequence of elements, each of `size` bytes without gaps.
+    /// Skips a counted sequence of elements of `size` bytes each, without gaps.
     SkipBlocks { size: usize, align: usize },
-    /// Passes over texts.
+    /// Skips texts.
     SkipTexts { length: Length },
     /// Reads a number.
     Number { primitive: Primitive, slot: usize },
@@ -40,7 +40,7 @@ pub(super) enum Op {
         length: Length,
         selection: Selection,
         slot: usize,
-        /// Run exactly once a message, so that the bytes can be compared with the last message's.
+        /// Whether it runs exactly once per message, so that the bytes can be compared with the last message's.
         once: bool,
     },
     /// Reads seconds and nanoseconds.
@@ -57,16 +57,16 @@ pub(super) enum Op {
 #[derive(Debug, Clone)]
 pub(super) struct Elements {
     pub length: Length,
-    /// The fewest bytes an element can take.
+    /// Minimum number of bytes of an element.
     pub min_bytes: usize,
     pub selection: Selection,
-    /// For the elements of the selection.
+    /// Program for the elements of the selection.
     pub selected: Program,
-    /// For the elements outside the selection, if it leaves any.
+    /// Program for the elements outside the selection, if there are any.
     pub others: Program,
 }
 
-/// A message read only where a member has, or has not, a value.
+/// A message that is read only if a member has, or does not have, a value.
 #[derive(Debug, Clone)]
 pub(super) struct Filter {
     /// Reads the member into `slot`; need not consume the message.

@@ -1,4 +1,4 @@
-//! A [`Program`] run on the bytes of one message.
+//! Runs a [`Program`] on the bytes of one message.
 
 use std::str;
 
@@ -12,7 +12,7 @@ use super::program::{Filter, Length, Op, Program};
 
 const NANOS_PER_S: u32 = 1_000_000_000;
 
-/// Runs the program on `body`, the message behind its header.
+/// Runs the program on `body`, the message after its header.
 pub(super) fn run<O: Order>(program: &Program, body: &[u8], slots: &mut [Slot]) -> Result<(), DecodeError> {
     let mut reader = Reader { body, at: 0 };
     reader.program::<O>(program, slots)
@@ -23,13 +23,13 @@ struct Reader<'a> {
     at: usize,
 }
 
-/// Why an op failed; the field's name is added from the program.
+/// The reason why an op failed; the program adds the field's name.
 enum Failure {
     Truncated,
     Count(usize),
     Text(usize),
     Time,
-    /// Failed in a program within, which has named the field.
+    /// An inner program failed, which has named the field.
     Inner(DecodeError),
 }
 
@@ -158,14 +158,14 @@ impl<'a> Reader<'a> {
         self.program::<O>(program, slots).map_err(Failure::Inner)
     }
 
-    /// The bytes of one text, with its final NUL.
+    /// Returns the bytes of one text, including its final NUL.
     fn text<O: Order>(&mut self) -> Result<&'a [u8], Failure> {
         self.align(4);
         let length = self.count::<O>(Length::Counted, 1)?;
         self.take(length)
     }
 
-    /// How many elements follow, checked to be possible where each takes at least `min_bytes`.
+    /// Returns the number of elements that follow, checked to be possible if each takes at least `min_bytes`.
     fn count<O: Order>(&mut self, length: Length, min_bytes: usize) -> Result<usize, Failure> {
         let count = match length {
             Length::Fixed(count) => count,
@@ -180,7 +180,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The next multiple of `align`, a power of two; may lie behind the end.
+    /// Moves to the next multiple of `align`, a power of two; it may be beyond the end.
     fn align(&mut self, align: usize) {
         self.at = (self.at + (align - 1)) & !(align - 1);
     }

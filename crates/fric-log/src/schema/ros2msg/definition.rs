@@ -14,7 +14,7 @@ pub(super) struct Definition<'a> {
     pub fields: Vec<(FieldLine<'a>, usize)>,
 }
 
-/// Fields and types that a schema may have; those of real messages have some hundreds.
+/// Maximum number of fields and types of a schema; real messages have some hundreds.
 const MAX_LINES: usize = 50_000;
 
 /// Splits the text into its definitions; the first one is that of `schema_name`.
@@ -69,7 +69,7 @@ pub(super) fn split<'a>(schema_name: &str, text: &'a str) -> Result<Vec<Definiti
     Ok(done)
 }
 
-/// The type that the line after a separator announces.
+/// Returns the type that the line after a separator names.
 fn type_name(heading: &str) -> Result<&str, LineError<'_>> {
     match heading.trim().strip_prefix("MSG:").map(str::trim) {
         Some(name) if !name.is_empty() => Ok(name),

@@ -2,7 +2,7 @@
 
 use crate::schema::types::{Count, Primitive};
 
-/// What a line declares.
+/// The declaration of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Line<'a> {
     /// Nothing: blank, a comment, or a constant.
@@ -10,7 +10,7 @@ pub(super) enum Line<'a> {
     Field(FieldLine<'a>),
 }
 
-/// A declared field, its type not yet looked up.
+/// A declared field, whose type is not yet resolved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct FieldLine<'a> {
     pub type_name: &'a str,
@@ -18,7 +18,7 @@ pub(super) struct FieldLine<'a> {
     pub name: &'a str,
 }
 
-/// What was expected, and what was found instead.
+/// The expected and the actual content.
 pub(super) struct LineError<'a>(pub &'static str, pub &'a str);
 
 const TYPE: &str = "a type, such as `float64`, `string<=8`, `int32[3]` or `geometry_msgs/Pose`";
@@ -42,7 +42,7 @@ pub(super) fn parse(line: &str) -> Result<Line<'_>, LineError<'_>> {
     }
     let after_name = rest.trim_start();
     if let Some(value) = after_name.strip_prefix('=') {
-        // A text keeps its `#`; before any other value it would be an empty constant.
+        // A text constant keeps its `#`; before any other value it would make an empty constant.
         let missing = value.trim().is_empty() || (!is_text(type_name) && without_comment(value).trim().is_empty());
         return if missing || count != Count::One { Err(LineError(CONSTANT, line)) } else { Ok(Line::Nothing) };
     }
@@ -58,7 +58,7 @@ fn split_at_first(text: &str, is_end: impl Fn(char) -> bool) -> (&str, &str) {
     text.split_at(text.find(is_end).unwrap_or(text.len()))
 }
 
-/// The bare type and its count: `string<=8[<=3]` is a sequence of `string`.
+/// Returns the bare type and its count: `string<=8[<=3]` is a sequence of `string`.
 fn split_type(text: &str) -> Result<(&str, Count), LineError<'_>> {
     let (element, array) = split_at_first(text, |c| c == '[');
     let count = if array.is_empty() {
@@ -90,7 +90,7 @@ fn split_type(text: &str) -> Result<(&str, Count), LineError<'_>> {
     }
 }
 
-/// A count of 1 to 2³² − 1, the most that CDR can announce.
+/// Parses a count of 1 to 2³² − 1, the greatest that CDR can state.
 fn number(text: &str) -> Option<usize> {
     let count: u32 = text.trim().parse().ok()?;
     usize::try_from(count).ok().filter(|&count| count > 0)
@@ -110,7 +110,7 @@ fn is_default(text: &str, type_name: &str, count: Count) -> bool {
         return true;
     }
     if is_text(type_name) {
-        // Texts may hold anything, a `#` included.
+        // Texts may contain anything, including a `#`.
         return count == Count::One || text.starts_with('[');
     }
     let is_value = |value: &str| Primitive::named(type_name).is_some() && is_number(value.trim());
@@ -122,7 +122,7 @@ fn is_default(text: &str, type_name: &str, count: Count) -> bool {
     inside.is_some_and(|inside| inside.trim().is_empty() || inside.split(',').all(is_value))
 }
 
-/// Whether the text is a number in decimal, hexadecimal, octal or binary notation, or a truth value.
+/// Whether the text is a number in decimal, hexadecimal, octal or binary notation, or a boolean.
 fn is_number(text: &str) -> bool {
     let with_radix = |prefix, radix| {
         let digits = text.trim_start_matches(['+', '-']).strip_prefix(prefix);

@@ -1,4 +1,4 @@
-//! Type names looked up, and the whole checked to be finite.
+//! Resolves type names and checks that the whole is finite.
 
 use std::collections::HashMap;
 
@@ -13,7 +13,7 @@ const TIME_TYPES: [&str; 2] = ["builtin_interfaces/Time", "builtin_interfaces/Du
 /// Deepest nesting of types; ROS messages stay below ten.
 const MAX_DEPTH: usize = 64;
 
-/// Turns definitions, the first of which is the schema's own, into a table of types.
+/// Converts definitions, the first of which is the schema's own, to a table of types.
 pub(super) fn resolve(schema_name: &str, definitions: &[Definition<'_>]) -> Result<TypeTable, SchemaError> {
     let mut resolver = Resolver {
         schema_name,
@@ -43,7 +43,7 @@ struct Resolver<'a> {
 }
 
 impl<'a> Resolver<'a> {
-    /// Finishes the definition of this number and everything in it; its number among the messages.
+    /// Resolves the definition with this index and everything in it. Returns its index among the messages.
     fn definition(&mut self, index: usize, depth: usize) -> Result<usize, SchemaError> {
         let definitions: &'a [Definition<'a>] = self.definitions;
         let Some(definition) = definitions.get(index) else {
@@ -134,7 +134,7 @@ impl<'a> Resolver<'a> {
     }
 }
 
-/// Whether a type is a time: named so, and of signed seconds and nanoseconds.
+/// Whether a type is a time: it has such a name, and consists of signed seconds and nanoseconds.
 fn is_time(name: &str, fields: &[Field]) -> bool {
     let is = |field: &Field, primitive| field.count == Count::One && field.element == Element::Number(primitive);
     TIME_TYPES.contains(&name)
