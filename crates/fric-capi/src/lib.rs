@@ -1,7 +1,7 @@
 //! `libfric`: the compensator of `fric-core`, and its static model of continuum manipulators, for C and C++.
 //!
 //! For: control loops that are not written in Rust. Nothing is computed here; a cycle has the bits of
-//! [`fric_core::Compensator`], a shape and a command those of [`fric_core::continuum::StaticModel`]. What a C programmer reads is `include/fric.h`, made from these sources by cbindgen; the
+//! [`fric_core::Compensator`], a shape and a command those of [`fric_tendon::StaticModel`]. What a C programmer reads is `include/fric.h`, made from these sources by cbindgen; the
 //! C++ interface is `include/fric.hpp`.
 //!
 //! - **Set-up** may fail: it gives a code and one sentence. What fails in a way that it should not is caught
@@ -11,8 +11,8 @@
 //!   That is why the cycle needs no `catch_unwind`, and the release profile no `panic = "abort"`, which would take
 //!   Python its exceptions.
 //!
-//! Non-finite input is flagged as in [`fric_core::CableStatus`], [`fric_core::continuum::ShapeStatus`] and
-//! [`fric_core::continuum::GoalStatus`]; no number that comes out is non-finite.
+//! Non-finite input is flagged as in [`fric_core::CableStatus`], [`fric_tendon::ShapeStatus`] and
+//! [`fric_tendon::GoalStatus`]; no number that comes out is non-finite.
 #![allow(clippy::doc_markdown, reason = "the documentation is for C, where names stand bare")]
 
 mod abi;

@@ -7,7 +7,8 @@
 //! [`excite`] gives the identification run as set points for a real robot; [`fit`] identifies the parameters of the
 //! friction model from its log. [`replay`] runs the control loop's cycle over samples and sums up the errors, [`hysteresis`]
 //! tells what is left of the wrench's hysteresis. [`columns`] keeps the samples of a whole log in memory;
-//! [`errors`] and [`text`] are what results for machines and people share.
+//! [`errors`] and [`text`] are what results for machines and people share. [`statistics`] and [`random`] are for crates that do such
+//! work on other models.
 //!
 //! Nothing here reads or writes logs, and nothing here belongs into a control cycle.
 
@@ -18,18 +19,18 @@ mod candidates;
 mod certainty;
 mod clock;
 pub mod columns;
-pub mod continuum;
 pub mod discover;
 mod effects;
 pub mod errors;
 pub mod excite;
 pub mod fit;
 pub mod hysteresis;
-mod random;
+pub mod random;
 pub mod replay;
 mod samples;
 mod search;
 pub mod simulate;
+pub mod statistics;
 pub mod text;
 pub mod trajectory;
 mod weight;

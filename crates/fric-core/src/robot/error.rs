@@ -73,7 +73,7 @@ impl ParamError {
 ///
 /// # Errors
 /// [`ParamProblem::OutOfRange`] otherwise.
-pub(crate) fn check(key: &'static str, value: f64, min: f64, max: f64) -> Result<f64, ParamError> {
+pub fn check(key: &'static str, value: f64, min: f64, max: f64) -> Result<f64, ParamError> {
     if (min..=max).contains(&value) && value.is_finite() {
         Ok(value)
     } else {

@@ -9,11 +9,17 @@ use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor}
 use super::file::EffectTable;
 
 /// So many numbers and no more: `serde`'s own arrays pass over what is too much.
+///
+/// # Errors
+/// Of the deserializer, where the list has another length or something else than numbers.
 pub fn exactly<'de, const COUNT: usize, D: Deserializer<'de>>(deserializer: D) -> Result<[f64; COUNT], D::Error> {
     deserializer.deserialize_seq(Numbers)
 }
 
 /// The same for a key that may be left out.
+///
+/// # Errors
+/// As [`exactly`].
 pub fn exactly_if_given<'de, const COUNT: usize, D: Deserializer<'de>>(
     deserializer: D,
 ) -> Result<Option<[f64; COUNT]>, D::Error> {

@@ -48,18 +48,19 @@ struct Level {
 
 impl Scores {
     /// None yet.
+    #[must_use]
     pub fn new(parameters: usize) -> Self {
         Self { levels: Vec::new(), parameters, block: vec![0.0; parameters], groups: None }
     }
 
     /// None yet, to be summed up in groups too.
-    pub fn grouped(parameters: usize, groups: Groups) -> Self {
+    pub(crate) fn grouped(parameters: usize, groups: Groups) -> Self {
         let sums = groups.groupings.iter().map(|of| vec![0.0; of.count * parameters]).collect();
         Self { groups: Some((groups, sums)), ..Self::new(parameters) }
     }
 
     /// Takes in the score of the next sample, which has this place in the record of the groups.
-    pub fn add_of(&mut self, place: usize, score: &[f64]) {
+    pub(crate) fn add_of(&mut self, place: usize, score: &[f64]) {
         if let Some((groups, sums)) = &mut self.groups {
             for (grouping, sums) in groups.groupings.iter().zip(sums) {
                 let Some(group) = grouping.of_sample(place) else { continue };
@@ -70,7 +71,7 @@ impl Scores {
         self.add(score);
     }
 
-    /// Takes in the score of the next sample.
+    /// Takes in the score of the next sample: as many numbers as there are parameters.
     pub fn add(&mut self, score: &[f64]) {
         self.block.copy_from_slice(score);
         for level in &mut self.levels {
@@ -89,6 +90,7 @@ impl Scores {
     }
 
     /// Covariance of the estimate, from the inverse of `JᵀJ`.
+    #[must_use]
     pub fn covariance(&self, inverse: &DMatrix<f64>) -> DMatrix<f64> {
         let of_level = |level: &Level| {
             let scatter = DMatrix::from_fn(self.parameters, self.parameters, |row, column| {

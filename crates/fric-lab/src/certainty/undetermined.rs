@@ -236,6 +236,7 @@ fn uncertainty(
 
 /// Inverse of a matrix `JᵀJ`, scaled meanwhile; what has no effect at all gets an all but infinite variance of its own. `None` where
 /// the matrix is not of numbers.
+#[must_use]
 pub fn inverse_of_normal(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let count = matrix.nrows();
     let scale: Vec<f64> =

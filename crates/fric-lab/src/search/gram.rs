@@ -22,6 +22,7 @@ pub struct Gram {
 
 impl Gram {
     /// Of no rows yet, for `parameters` columns beside the residual.
+    #[must_use]
     pub fn new(parameters: usize) -> Self {
         let columns = parameters + 1;
         let count = columns * (columns + 1) / 2;
@@ -46,6 +47,7 @@ impl Gram {
     }
 
     /// `JᵀJ`, `Jᵀr` and `rᵀr`.
+    #[must_use]
     pub fn normal_equations(&self) -> (DMatrix<f64>, DVector<f64>, f64) {
         let entry = |row: usize, column: usize| {
             let (low, high) = (row.min(column), row.max(column));
