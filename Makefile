@@ -67,10 +67,10 @@ instructions: tools
 
 bare-metal:
 	@if rustup target add $(BARE_METAL) >/dev/null 2>&1; then \
-		$(CARGO) build --quiet --release -p fric-core --target $(BARE_METAL) && \
-		$(CARGO) build --quiet --release -p fric-core --features alloc --target $(BARE_METAL) && \
-		echo "fric-core builds for $(BARE_METAL)"; \
-	else echo "not checked: fric-core on bare metal; rustup cannot add $(BARE_METAL)"; fi
+		$(CARGO) build --quiet --release -p fric-core -p fric-tendon --target $(BARE_METAL) && \
+		$(CARGO) build --quiet --release -p fric-core -p fric-tendon --features fric-core/alloc,fric-tendon/alloc --target $(BARE_METAL) && \
+		echo "fric-core and fric-tendon build for $(BARE_METAL)"; \
+	else echo "not checked: fric-core and fric-tendon on bare metal; rustup cannot add $(BARE_METAL)"; fi
 
 miri:
 	@if rustup component add miri rust-src --toolchain nightly >/dev/null 2>&1; then \
@@ -105,10 +105,10 @@ release:
 bench:
 	$(CARGO) bench
 
-# Lines and branches of core, log and C interface that their own tests reach. Some 12 minutes; needs `cargo install cargo-llvm-cov` and
+# Lines and branches of core, tendon, log and C interface that their own tests reach. Some 12 minutes; needs `cargo install cargo-llvm-cov` and
 # `rustup component add llvm-tools --toolchain nightly`.
 coverage:
-	$(CARGO) +nightly llvm-cov --branch -p fric-core -p fric-log -p fric-capi --all-features --quiet --summary-only
+	$(CARGO) +nightly llvm-cov --branch -p fric-core -p fric-tendon -p fric-log -p fric-capi --all-features --quiet --summary-only
 
 # Licences of what is built in, for who passes binaries on; needs `cargo install cargo-about --features cli`.
 notices:

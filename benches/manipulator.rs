@@ -1,6 +1,6 @@
 //! One static solution of the published manipulator by each way of friction, its inverse, and a run of 60 s at 1 kHz by the history.
 //!
-//! `cargo bench -p fric-core --bench manipulator`
+//! `cargo bench -p fric-tendon --bench manipulator`
 
 #![allow(
     missing_docs,
@@ -15,9 +15,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use criterion::Criterion;
-use fric_core::continuum::{
-    Direction, Drive, DriveOptions, Friction, Goal, ManipulatorOptions, ManipulatorParams, StaticModel,
-};
+use fric_tendon::{Direction, Drive, DriveOptions, Friction, Goal, ManipulatorOptions, ManipulatorParams, StaticModel};
 
 fn model() -> StaticModel<8> {
     let params = ManipulatorParams::new(&ManipulatorOptions::published()).expect("published");

@@ -1,5 +1,5 @@
 //! What the discovery makes of simulated manipulators, for the tables of docs/manipulators.md:
-//! `cargo run --release -p fric-lab --example tendon_discover [RUNS] [SEED] [WORDS]`; words choose rows.
+//! `cargo run --release -p fric-tendon-lab --example tendon_discover [RUNS] [SEED] [WORDS]`; words choose rows.
 #![allow(
     missing_docs,
     clippy::cast_possible_truncation,
@@ -13,13 +13,13 @@
 
 use std::collections::BTreeMap;
 
-use fric_core::continuum::edit::{GratingLine, ManipulatorEdit, rewrite};
-use fric_core::continuum::file::ManipulatorFile;
-use fric_lab::continuum::discover::{TendonDiscovery, TendonResult, discover};
-use fric_lab::continuum::fbg::Calibration;
-use fric_lab::continuum::shape_errors::{ShapeErrors, Way, shapes};
-use fric_lab::continuum::simulate::{Experiment, SimulatedRun, TendonSimulationOptions, simulate};
-use fric_lab::continuum::{Run, RunSample, as_measured, corrected};
+use fric_tendon::edit::{GratingLine, ManipulatorEdit, rewrite};
+use fric_tendon::file::ManipulatorFile;
+use fric_tendon_lab::discover::{TendonDiscovery, TendonResult, discover};
+use fric_tendon_lab::fbg::Calibration;
+use fric_tendon_lab::shape_errors::{ShapeErrors, Way, shapes};
+use fric_tendon_lab::simulate::{Experiment, SimulatedRun, TendonSimulationOptions, simulate};
+use fric_tendon_lab::{Run, RunSample, as_measured, corrected};
 
 const PROTOTYPE: &str = include_str!("../examples/tendon-prototype.toml");
 /// Half a 95 % interval in standard errors.
@@ -97,7 +97,7 @@ fn told(tendon: &TendonResult) -> String {
 
 /// The same with segments and with what is not told apart.
 fn told_in_full(tendon: &TendonResult) -> String {
-    let name = |effect: &fric_lab::continuum::discover::TendonEffect| {
+    let name = |effect: &fric_tendon_lab::discover::TendonEffect| {
         let segment = effect.parameters.get("segment").map_or_else(String::new, |segment| format!(":{segment}"));
         let mut names = vec![format!("{}{segment}", effect.kind)];
         names.extend(effect.alike.iter().map(|other| (*other).to_owned()));
@@ -160,7 +160,7 @@ fn compared(discovery: &TendonDiscovery, run: &SimulatedRun) -> Vec<(&'static st
     let shared: Vec<f64> =
         (0..8).filter(|hole| !is_one || !named.contains(hole)).map(|hole| of_model(run.mu[hole])).collect();
     let mean = shared.iter().sum::<f64>() / shared.len() as f64;
-    let number = |effect: &fric_lab::continuum::discover::TendonEffect| {
+    let number = |effect: &fric_tendon_lab::discover::TendonEffect| {
         let (name, key, truth) = match effect.kind {
             "coulomb" => ("shared mu", "mu", mean),
             "hole_friction" => ("mu of a hole", "mu", of_model(run.mu[hole(effect.parameters.get("hole"))?])),

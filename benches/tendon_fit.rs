@@ -1,5 +1,5 @@
 //! What the identification makes of simulated manipulators, for the tables of docs/manipulators.md:
-//! `cargo run --release -p fric-lab --example tendon_fit [RUNS] [SEED] [WORDS]`; words choose rows.
+//! `cargo run --release -p fric-tendon-lab --example tendon_fit [RUNS] [SEED] [WORDS]`; words choose rows.
 #![allow(
     missing_docs,
     clippy::cast_precision_loss,
@@ -10,13 +10,13 @@
 
 use std::collections::BTreeMap;
 
-use fric_core::continuum::edit::{GratingLine, ManipulatorEdit, rewrite};
-use fric_core::continuum::file::ManipulatorFile;
-use fric_lab::continuum::fbg::Calibration;
-use fric_lab::continuum::identify::{TendonFitOptions, identify};
-use fric_lab::continuum::shape_errors::{ShapeErrors, Way, shapes};
-use fric_lab::continuum::simulate::{Experiment, TendonSimulationOptions, simulate};
-use fric_lab::continuum::{Run, RunSample, as_measured, corrected};
+use fric_tendon::edit::{GratingLine, ManipulatorEdit, rewrite};
+use fric_tendon::file::ManipulatorFile;
+use fric_tendon_lab::fbg::Calibration;
+use fric_tendon_lab::identify::{TendonFitOptions, identify};
+use fric_tendon_lab::shape_errors::{ShapeErrors, Way, shapes};
+use fric_tendon_lab::simulate::{Experiment, TendonSimulationOptions, simulate};
+use fric_tendon_lab::{Run, RunSample, as_measured, corrected};
 
 const PROTOTYPE: &str = include_str!("../examples/tendon-prototype.toml");
 /// Half a 95 % interval in standard errors.

@@ -6,7 +6,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 target=${CARGO_TARGET_DIR:-target}
-crates=(fric-core fric-log fric-lab fric-work fric-cli)
+crates=(fric-core fric-log fric-lab fric-tendon fric-tendon-lab fric-work fric-cli)
 
 refuse() {
     echo "no release: $1" >&2

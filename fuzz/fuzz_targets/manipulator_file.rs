@@ -1,8 +1,8 @@
 //! A text as a manipulator file: parsed, written and parsed again; its shape computed.
 #![no_main]
 
-use fric_core::continuum::file::{ManipulatorFile, ManipulatorFileError};
-use fric_core::continuum::{Direction, Friction, StaticModel, Tendon};
+use fric_tendon::file::{ManipulatorFile, ManipulatorFileError};
+use fric_tendon::{Direction, Friction, StaticModel, Tendon};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|text: &str| {

@@ -4,7 +4,7 @@
 use std::fs;
 use std::sync::LazyLock;
 
-use fric_lab::continuum::{Run, columns};
+use fric_tendon_lab::{Run, columns};
 use fric_log::table::NumberTable;
 use libfuzzer_sys::fuzz_target;
 use tempfile::TempDir;

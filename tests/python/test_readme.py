@@ -22,7 +22,7 @@ case "$*" in
     "run --release -p fric-cli -- "*) shift 5; exec fric-cli "$@" ;;
     "install --path crates/fric-cli") test -f crates/fric-cli/Cargo.toml ;;
     # Sweeps of hours: that there is such a program is all that is looked at.
-    "run --release -p fric-lab --example "*) grep -q "name = \\"$6\\"" crates/fric-lab/Cargo.toml ;;
+    "run --release -p fric-"*"lab --example "*) grep -q "name = \\"$6\\"" "crates/$4/Cargo.toml" ;;
     *) echo "not a command that the test knows: cargo $*" >&2; exit 1 ;;
 esac
 """
@@ -46,7 +46,7 @@ def blocks(page):
 def clone(tmp_path_factory):
     """What a clone has, with what is not committed yet."""
     folder = tmp_path_factory.mktemp("clone")
-    listed = ["git", "ls-files", "--cached", "--others", "--exclude-standard", "-z", "README.md", "examples", "crates/fric-cli", "crates/fric-lab/Cargo.toml"]
+    listed = ["git", "ls-files", "--cached", "--others", "--exclude-standard", "-z", "README.md", "examples", "crates/fric-cli", "crates/fric-lab/Cargo.toml", "crates/fric-tendon-lab/Cargo.toml"]
     files = subprocess.run(listed, cwd=ROOT, capture_output=True, text=True, check=True).stdout.split("\0")
     for name in filter(None, files):
         if (ROOT / name).is_file():

@@ -10,7 +10,7 @@ import sys
 import pytest
 from support import ROOT
 
-USERS_NEED = ["fric-core", "fric-log", "fric-lab", "fric-work", "fric-cli"]
+USERS_NEED = ["fric-core", "fric-log", "fric-lab", "fric-tendon", "fric-tendon-lab", "fric-work", "fric-cli"]
 RELEASE = ROOT / "packaging" / "release.sh"
 
 
@@ -73,7 +73,7 @@ def release(tree):
 def test_a_release_begins_with_the_packages(tree):
     done = release(tree)
     assert done.returncode == 7
-    assert "builds: package --quiet -p fric-core -p fric-log -p fric-lab -p fric-work -p fric-cli" in done.stdout
+    assert "builds: package --quiet -p fric-core -p fric-log -p fric-lab -p fric-tendon -p fric-tendon-lab -p fric-work -p fric-cli" in done.stdout
 
 
 def test_a_tree_with_changes_is_not_released(tree):

@@ -1,8 +1,8 @@
 //! `libfric`: the compensator of `fric-core`, and its static model of continuum manipulators, for C and C++.
 //!
-//! It serves control loops that are not written in Rust. Nothing is computed here: a cycle has the bits of [`fric_core::Compensator`], a shape and a
-//! command those of [`fric_core::continuum::StaticModel`]. The documentation for C is in `include/fric.h`, generated from these sources by cbindgen;
-//! the C++ interface is `include/fric.hpp`.
+//! For: control loops that are not written in Rust. Nothing is computed here; a cycle has the bits of
+//! [`fric_core::Compensator`], a shape and a command those of [`fric_tendon::StaticModel`]. What a C programmer reads is `include/fric.h`, made from these sources by cbindgen; the
+//! C++ interface is `include/fric.hpp`.
 //!
 //! - **Set-up** may fail: it returns a code and one sentence. Panics, which indicate a bug, are caught (`catch_unwind`), so that a bug at set-up does
 //!   not stop a machine.
@@ -10,8 +10,8 @@
 //!   wrong pointer or size gives a code. The cycle cannot panic; if it could, a function of `extern "C"` would end the process and never unwind into
 //!   C. Therefore the cycle needs no `catch_unwind`, and the release profile no `panic = "abort"`, which would deprive Python of its exceptions.
 //!
-//! Non-finite input is flagged as in [`fric_core::CableStatus`], [`fric_core::continuum::ShapeStatus`] and [`fric_core::continuum::GoalStatus`]; the
-//! output is always finite.
+//! Non-finite input is flagged as in [`fric_core::CableStatus`], [`fric_tendon::ShapeStatus`] and
+//! [`fric_tendon::GoalStatus`]; no number that comes out is non-finite.
 #![allow(clippy::doc_markdown, reason = "the documentation is for C, where names stand bare")]
 
 mod abi;

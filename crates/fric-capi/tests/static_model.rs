@@ -13,8 +13,8 @@ use fric::{
     fric_static_model_load_text, fric_static_model_name, fric_static_model_reset, fric_static_model_set_drive,
     fric_static_model_solve, fric_static_model_tension_for,
 };
-use fric_core::continuum::file::ManipulatorFile;
-use fric_core::continuum::{
+use fric_tendon::file::ManipulatorFile;
+use fric_tendon::{
     Command, Direction, Drive, DriveOptions, Friction, Goal, ManipulatorParams, Shape, StaticModel, Tendon,
 };
 

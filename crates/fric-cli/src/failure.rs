@@ -6,9 +6,7 @@ use std::io::{self, ErrorKind};
 use std::path::Path;
 
 use fric_core::ParamError;
-use fric_core::continuum::file::ManipulatorFileError;
 use fric_core::robot::file::RobotFileError;
-use fric_lab::continuum::ContinuumError;
 use fric_lab::excite::ExcitationError;
 use fric_lab::fit::FitError;
 use fric_lab::hysteresis::HysteresisError;
@@ -20,6 +18,8 @@ use fric_log::signals::{SignalError, TimesApart};
 use fric_log::table::TableError;
 use fric_log::write::WriteError;
 use fric_log::{in_full, reason, with_sources};
+use fric_tendon::file::ManipulatorFileError;
+use fric_tendon_lab::ContinuumError;
 
 use crate::terminal::{self, Label};
 

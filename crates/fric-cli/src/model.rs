@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use fric_core::continuum::file::FORMAT as MANIPULATOR_FORMAT;
 use fric_core::robot::file::{FORMAT as ROBOT_FORMAT, RobotFile};
 use fric_core::text_file;
 use fric_log::log::Log;
 use fric_log::robot::{ATTACHED, AttachedRobot, AttachedRobotError, ROBOT_FILE};
 use fric_log::signals::SignalPaths;
+use fric_tendon::file::FORMAT as MANIPULATOR_FORMAT;
 
 use crate::failure::{Failure, Outcome};
 use crate::terminal;

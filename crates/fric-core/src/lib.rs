@@ -46,7 +46,6 @@ pub mod cable_cycle;
 mod chain;
 mod columns;
 mod compensator;
-pub mod continuum;
 mod cycle;
 pub mod dahl;
 mod doubt;
@@ -70,11 +69,7 @@ pub mod swivel;
 #[cfg(feature = "robot-file")]
 pub mod text_file;
 mod tunable;
-#[cfg_attr(
-    not(feature = "alloc"),
-    allow(dead_code, reason = "only `AnyCompensator` and `AnyStaticModel` give their state away")
-)]
-mod words;
+pub mod words;
 
 #[cfg(feature = "alloc")]
 pub use any::{AnyCompensator, AnySnapshot, SnapshotMismatch};

@@ -28,8 +28,8 @@ pub struct ParameterRow {
 
 /// Represents "no presliding": motion of a picometre reverses any friction.
 pub const NO_PRESLIDING_N_PER_M: f64 = 1e15;
-/// Greatest μ; `2 − μk` of \[P\] 10 stays well above zero for every wrap.
-pub(crate) const GREATEST_MU: f64 = 0.9;
+/// `2 − μk` of \[P\] 10 stays well above zero for every wrap.
+pub const GREATEST_MU: f64 = 0.9;
 
 /// Parameters of the robot file's `friction`, the vector p of \[P\] 18.
 pub const FRICTION: [ParameterRow; FRICTION_COUNT] = [

@@ -1,20 +1,21 @@
-//! Converts the state of a compensator or of a manipulator's model to plain words and back, bit for bit.
+//! The state of a model in the loop as plain words, to be kept elsewhere and gone on from with the same bits.
 //!
-//! It serves programs that pass a running compensator or model to another process. Numbers keep their bits, including NaN. The meaning of a word
-//! follows from the order of the fields, so words are valid only for the version of this crate that produced them.
+//! For: programs that hand a running compensator to another process, and other crates whose models have such a state. Numbers keep their bits, NaN included. Which word is what
+//! follows from the order of the fields, so that words are of use to the version of this crate that they are from.
 
 use crate::columns::StateColumns;
 use crate::cycle::{CableOutput, CycleOutput};
 use crate::platform::Wrench;
 use crate::status::CableStatus;
 
-/// A type that consists of words.
-pub(crate) trait Words {
-    /// Visits each word in turn, to be read or replaced; their number does not depend on the values.
+/// What consists of words.
+pub trait Words {
+    /// Shows each word in turn, to be read or replaced; there are as many, whatever the values.
     fn each_word(&mut self, show: &mut dyn FnMut(&mut u64));
 }
 
-/// Implements [`Words`] for a structure, field by field; a missing field does not compile.
+/// [`Words`](crate::words::Words) of a structure, field by field; one that is left out does not compile.
+#[macro_export]
 macro_rules! words_of {
     ($name:ident $(<const $parameter:ident>)? { $($field:ident),* $(,)? }) => {
         impl $(<const $parameter: usize>)? $crate::words::Words for $name $(<$parameter>)? {
@@ -25,7 +26,7 @@ macro_rules! words_of {
         }
     };
 }
-pub(crate) use words_of;
+pub use words_of;
 
 impl Words for f64 {
     fn each_word(&mut self, show: &mut dyn FnMut(&mut u64)) {

@@ -11,12 +11,6 @@ mod bits;
 mod builds;
 mod chain;
 #[cfg(test)]
-mod continuum;
-#[cfg(test)]
-mod continuum_file;
-#[cfg(test)]
-mod continuum_state;
-#[cfg(test)]
 mod cycle;
 #[cfg(test)]
 mod dahl;
@@ -31,11 +25,11 @@ mod faults;
 #[cfg(test)]
 mod forward;
 #[cfg(test)]
-mod inverse;
-#[cfg(test)]
 mod oracle;
 #[cfg(test)]
 mod platform;
+#[cfg(test)]
+mod programs;
 #[cfg(test)]
 mod properties;
 #[cfg(test)]

@@ -4,9 +4,11 @@
 //! friction that streams the samples of a log, with hidden effects on request. Its friction is computed independently of the compensator, so that
 //! each verifies the other.
 //!
-//! [`excite`] gives the identification run as set points for a real robot. [`fit`] identifies the parameters of the friction model from its log.
-//! [`replay`] runs the control loop's cycle over samples and sums the errors. [`hysteresis`] computes the remaining hysteresis of the wrench.
-//! [`columns`] keeps the samples of a whole log in memory. [`errors`] and [`text`] are shared by the results for machines and people.
+//! [`excite`] gives the identification run as set points for a real robot; [`fit`] identifies the parameters of the
+//! friction model from its log. [`replay`] runs the control loop's cycle over samples and sums up the errors, [`hysteresis`]
+//! tells what is left of the wrench's hysteresis. [`columns`] keeps the samples of a whole log in memory;
+//! [`errors`] and [`text`] are what results for machines and people share. [`statistics`] and [`random`] are for crates that do such
+//! work on other models.
 //!
 //! This crate neither reads nor writes logs, and none of it is meant to run in a control cycle.
 
@@ -17,18 +19,18 @@ mod candidates;
 mod certainty;
 mod clock;
 pub mod columns;
-pub mod continuum;
 pub mod discover;
 mod effects;
 pub mod errors;
 pub mod excite;
 pub mod fit;
 pub mod hysteresis;
-mod random;
+pub mod random;
 pub mod replay;
 mod samples;
 mod search;
 pub mod simulate;
+pub mod statistics;
 pub mod text;
 pub mod trajectory;
 mod weight;

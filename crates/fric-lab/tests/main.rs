@@ -1,7 +1,6 @@
 //! Public behaviour of `fric-lab`.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
-mod continuum;
 mod discover;
 mod excite;
 mod fit;

@@ -3,11 +3,8 @@
 use std::io;
 use std::path::Path;
 
-use fric_core::continuum::file::ManipulatorFileError;
-use fric_core::continuum::{ManipulatorError, StateMismatch};
 use fric_core::robot::file::RobotFileError;
 use fric_core::{ParamError, SnapshotMismatch};
-use fric_lab::continuum::ContinuumError;
 use fric_lab::excite::ExcitationError;
 use fric_lab::hysteresis::HysteresisError;
 use fric_lab::simulate::{HiddenError, SimulationError};
@@ -18,6 +15,9 @@ use fric_log::signals::SignalError;
 use fric_log::table::TableError;
 use fric_log::write::WriteError;
 use fric_log::{in_full, reason};
+use fric_tendon::file::ManipulatorFileError;
+use fric_tendon::{ManipulatorError, StateMismatch};
+use fric_tendon_lab::ContinuumError;
 use numpy::AsSliceError;
 use pyo3::prelude::*;
 

@@ -30,7 +30,7 @@ mod watch;
 #[pyo3::pymodule(gil_used = true)]
 mod _fric {
     use fric_core::CableStatus;
-    use fric_core::continuum::{GoalStatus, ShapeStatus};
+    use fric_tendon::{GoalStatus, ShapeStatus};
     use pyo3::prelude::*;
     use pyo3::types::PyDict;
 

@@ -2,14 +2,14 @@
 //!
 //! Numbers in the sentences equal those of the tables, including the rounding.
 
-use fric_lab::continuum::discover::TendonDiscoverResult;
-use fric_lab::continuum::identify::TendonFitResult;
-use fric_lab::continuum::result::{CalibrationResult, FrictionResult, HoleResult, ShapeResult};
 use fric_lab::discover::result::{DiscoverCableResult, DiscoverResult};
 use fric_lab::errors::{ForceError, WrenchError};
 use fric_lab::fit::result::FitResult;
 use fric_lab::hysteresis::HysteresisResult;
 use fric_lab::text::listed;
+use fric_tendon_lab::discover::TendonDiscoverResult;
+use fric_tendon_lab::identify::TendonFitResult;
+use fric_tendon_lab::result::{CalibrationResult, FrictionResult, HoleResult, ShapeResult};
 
 use crate::replay::{CableResult, ReplayResult};
 
@@ -449,7 +449,7 @@ pub fn of_tendon_fit(result: &TendonFitResult) -> Verdict {
 /// Returns the verdict on the friction at the holes: the hole with the most.
 #[must_use]
 pub fn of_hole_frictions(result: &FrictionResult) -> Verdict {
-    let largest = |hole: &fric_lab::continuum::result::HoleSummary| hole.least_n.abs().max(hole.greatest_n.abs());
+    let largest = |hole: &fric_tendon_lab::result::HoleSummary| hole.least_n.abs().max(hole.greatest_n.abs());
     let finite = result.holes.iter().filter(|hole| largest(hole).is_finite());
     let worst = finite.max_by(|one, other| largest(one).total_cmp(&largest(other)));
     let sentence = worst.map_or_else(
@@ -469,7 +469,7 @@ pub fn of_hole_frictions(result: &FrictionResult) -> Verdict {
 /// Returns the verdict on shapes: the friction model nearest to the markers.
 #[must_use]
 pub fn of_shapes(result: &ShapeResult) -> Verdict {
-    let mean_mm = |way: &fric_lab::continuum::result::WayErrors| way.all.mean_mm;
+    let mean_mm = |way: &fric_tendon_lab::result::WayErrors| way.all.mean_mm;
     let mut known: Vec<(&str, f64)> = result
         .ways
         .iter()
@@ -513,7 +513,7 @@ pub fn of_tendon(result: &TendonDiscoverResult) -> Verdict {
             parts.push("Something is left without a name.".to_owned());
         }
         todo.extend(tendon.effects.iter().map(|effect| format!("{}: {}", effect.kind, effect.words[1])));
-        todo.extend(tendon.unexplained.iter().map(fric_lab::continuum::discover::TendonRest::sentence));
+        todo.extend(tendon.unexplained.iter().map(fric_tendon_lab::discover::TendonRest::sentence));
     }
     if todo.is_empty() {
         todo.push("Nothing: keep the model.".to_owned());

@@ -2,7 +2,7 @@
 
 use std::ffi::c_char;
 
-use fric_core::continuum::{Drive, DriveOptions, Friction, Goal};
+use fric_tendon::{Drive, DriveOptions, Friction, Goal};
 
 use super::handle::{ModelHandle, Work};
 use super::shape::{FRIC_FRICTION_MEASURED, friction_of};

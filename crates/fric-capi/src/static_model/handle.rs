@@ -4,8 +4,8 @@ use std::ffi::{CString, c_char};
 use std::path::Path;
 use std::ptr;
 
-use fric_core::continuum::file::ManipulatorFile;
-use fric_core::continuum::{AnyStaticModel, Drive, DriveOptions};
+use fric_tendon::file::ManipulatorFile;
+use fric_tendon::{AnyStaticModel, Drive, DriveOptions};
 
 use crate::cycle::usable;
 use crate::error_text::ErrorText;

@@ -1,6 +1,6 @@
 //! The forward model: the shape for the tensions at the base.
 
-use fric_core::continuum::{Direction, Friction, MAX_DISKS, Tendon};
+use fric_tendon::{Direction, Friction, MAX_DISKS, Tendon};
 
 use super::handle::{ModelHandle, Work};
 use crate::cycle::usable;
@@ -141,7 +141,7 @@ pub unsafe extern "C" fn fric_static_model_solve(
         let Some(friction) = friction_of(input.friction) else { return Outcome::BadValue };
         model.solve(input.base_tension_n, friction)
     };
-    let of_both = |list: fn(&fric_core::continuum::AnyStaticModel, Tendon) -> &[f64], place: usize| {
+    let of_both = |list: fn(&fric_tendon::AnyStaticModel, Tendon) -> &[f64], place: usize| {
         Tendon::BOTH.map(|tendon| list(model, tendon).get(place).copied().unwrap_or_default())
     };
     for (place, (position_m, bend_rad)) in model.disk_position_m().iter().zip(model.segment_bend_rad()).enumerate() {

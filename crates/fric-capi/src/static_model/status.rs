@@ -1,6 +1,6 @@
 //! The flags of a shape and of a command, equal to those of [`ShapeStatus`] and [`GoalStatus`].
 
-use fric_core::continuum::{GoalStatus, ShapeStatus};
+use fric_tendon::{GoalStatus, ShapeStatus};
 
 /// The shape has no fault.
 pub const FRIC_SHAPE_OK: u32 = 0;

@@ -72,8 +72,8 @@ impl ParamError {
 /// Returns `value` if it is finite and in `min…max`.
 ///
 /// # Errors
-/// Returns [`ParamProblem::OutOfRange`] otherwise.
-pub(crate) fn check(key: &'static str, value: f64, min: f64, max: f64) -> Result<f64, ParamError> {
+/// [`ParamProblem::OutOfRange`] otherwise.
+pub fn check(key: &'static str, value: f64, min: f64, max: f64) -> Result<f64, ParamError> {
     if (min..=max).contains(&value) && value.is_finite() {
         Ok(value)
     } else {

@@ -1,4 +1,4 @@
-//! Finds positions in a TOML text, and the intended name of a misspelt key.
+//! Where in a TOML text something stands, and what a misspelt key may have meant: for robot files, and for the files of other models.
 
 use core::fmt;
 use std::borrow::ToOwned;
@@ -26,7 +26,8 @@ impl fmt::Display for Line {
     }
 }
 
-/// Returns the line (from 1) of the innermost item of a path that the text contains.
+/// The line (from 1) of the innermost thing on a path that the text has.
+#[must_use]
 pub fn line_of(text: &str, path: &[Step]) -> Option<usize> {
     let root = DeTable::parse(text).ok()?;
     let mut offset = None;
@@ -53,13 +54,16 @@ pub fn line_of(text: &str, path: &[Step]) -> Option<usize> {
     Some(before.matches('\n').count() + 1)
 }
 
-/// Returns the line (from 1) of a parser error; an error at the end of the text is in the last non-empty line.
+/// The line (from 1) in which an error of the parser stands; one at the end of the text is in the last line with anything in it.
+#[must_use]
 pub fn error_line(text: &str, error: &toml::de::Error) -> Option<usize> {
     let end = text.trim_end().len();
     error.span().map(|span| text.get(..span.start.min(end)).unwrap_or(text).matches('\n').count() + 1)
 }
 
-/// Describes why a text did not become options, in one line and in the words of the file. `format` is the required value of the file's `format`.
+/// What is wrong with a text that did not become options, in one line and in the words of the file; `format` is what the file's
+/// `format` should be.
+#[must_use]
 pub fn describe(text: &str, error: &toml::de::Error, format: &str) -> String {
     let message = error.message().trim().replace('\n', "; ");
     let Ok(root) = DeTable::parse(text) else { return format!("is not valid TOML: {message}") };

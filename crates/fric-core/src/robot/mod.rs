@@ -9,11 +9,11 @@ pub mod edit;
 #[cfg(feature = "robot-file")]
 pub mod file;
 #[cfg(feature = "robot-file")]
-pub(crate) mod locate;
+pub mod locate;
 #[cfg(feature = "robot-file")]
 mod log_columns;
 #[cfg(feature = "robot-file")]
-pub(crate) mod read;
+pub mod read;
 #[cfg(feature = "robot-file")]
 pub(crate) mod reference;
 #[cfg(feature = "robot-file")]
@@ -23,8 +23,7 @@ mod table;
 #[cfg(feature = "robot-file")]
 mod warnings;
 
-pub(crate) use error::check;
-pub use error::{ParamError, ParamProblem};
+pub use error::{ParamError, ParamProblem, check};
 pub use known_reference::KnownReference;
 #[cfg(feature = "robot-file")]
 pub use locate::{nearest_name, unknown_name};

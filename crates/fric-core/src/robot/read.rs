@@ -8,12 +8,18 @@ use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor}
 
 use super::file::EffectTable;
 
-/// Reads exactly `COUNT` numbers, because `serde`'s own arrays ignore surplus ones.
+/// So many numbers and no more: `serde`'s own arrays pass over what is too much.
+///
+/// # Errors
+/// Of the deserializer, where the list has another length or something else than numbers.
 pub fn exactly<'de, const COUNT: usize, D: Deserializer<'de>>(deserializer: D) -> Result<[f64; COUNT], D::Error> {
     deserializer.deserialize_seq(Numbers)
 }
 
-/// Reads the same for an optional key.
+/// The same for a key that may be left out.
+///
+/// # Errors
+/// As [`exactly`].
 pub fn exactly_if_given<'de, const COUNT: usize, D: Deserializer<'de>>(
     deserializer: D,
 ) -> Result<Option<[f64; COUNT]>, D::Error> {

@@ -46,19 +46,20 @@ struct Level {
 }
 
 impl Scores {
-    /// Creates an empty sum.
+    /// None yet.
+    #[must_use]
     pub fn new(parameters: usize) -> Self {
         Self { levels: Vec::new(), parameters, block: vec![0.0; parameters], groups: None }
     }
 
-    /// Creates an empty sum that also collects sums per group.
-    pub fn grouped(parameters: usize, groups: Groups) -> Self {
+    /// None yet, to be summed up in groups too.
+    pub(crate) fn grouped(parameters: usize, groups: Groups) -> Self {
         let sums = groups.groupings.iter().map(|of| vec![0.0; of.count * parameters]).collect();
         Self { groups: Some((groups, sums)), ..Self::new(parameters) }
     }
 
-    /// Adds the score of the next sample. `place` is the sample's index in the record of the groups.
-    pub fn add_of(&mut self, place: usize, score: &[f64]) {
+    /// Takes in the score of the next sample, which has this place in the record of the groups.
+    pub(crate) fn add_of(&mut self, place: usize, score: &[f64]) {
         if let Some((groups, sums)) = &mut self.groups {
             for (grouping, sums) in groups.groupings.iter().zip(sums) {
                 let Some(group) = grouping.of_sample(place) else { continue };
@@ -69,7 +70,7 @@ impl Scores {
         self.add(score);
     }
 
-    /// Adds the score of the next sample.
+    /// Takes in the score of the next sample: as many numbers as there are parameters.
     pub fn add(&mut self, score: &[f64]) {
         self.block.copy_from_slice(score);
         for level in &mut self.levels {
@@ -87,7 +88,8 @@ impl Scores {
         self.levels.push(level);
     }
 
-    /// Returns the covariance of the estimate from the inverse of `JᵀJ`.
+    /// Covariance of the estimate, from the inverse of `JᵀJ`.
+    #[must_use]
     pub fn covariance(&self, inverse: &DMatrix<f64>) -> DMatrix<f64> {
         let of_level = |level: &Level| {
             let scatter = DMatrix::from_fn(self.parameters, self.parameters, |row, column| {

@@ -232,8 +232,9 @@ fn uncertainty(
     (Some(matrix), covariance, leverages)
 }
 
-/// Returns the inverse of `JᵀJ`, computed in scaled form. A parameter without any effect gets a nearly infinite variance of its own. Returns `None`
-/// if the matrix is not finite.
+/// Inverse of a matrix `JᵀJ`, scaled meanwhile; what has no effect at all gets an all but infinite variance of its own. `None` where
+/// the matrix is not of numbers.
+#[must_use]
 pub fn inverse_of_normal(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let count = matrix.nrows();
     let scale: Vec<f64> =

@@ -25,8 +25,9 @@ pub fn white_noise(residual: &[f64]) -> Option<f64> {
     white_noise_in(residual, BLOCK)
 }
 
-/// Returns the same over blocks of `block` samples, for short residuals.
-pub(crate) fn white_noise_in(residual: &[f64], block: usize) -> Option<f64> {
+/// The same over blocks of so many samples, for residuals that are short.
+#[must_use]
+pub fn white_noise_in(residual: &[f64], block: usize) -> Option<f64> {
     let mut squares = block_squares(residual, block);
     if squares.is_empty() {
         return None;
@@ -45,8 +46,9 @@ pub fn lasting_white_noise(signal: &[f64]) -> Option<f64> {
     (quiet > 0.25 * median).then(|| (median * mean_per_median(BLOCK)).sqrt())
 }
 
-/// Returns the same including noisier stretches: the root mean square over all blocks. An encoder's steps, for instance, make the accelerations of a
-/// model noisy while the cable moves.
+/// The same with the stretches that have more: root mean square over all blocks. An encoder's steps, for one, make noise of a model's
+/// accelerations while the cable moves.
+#[must_use]
 pub fn white_noise_throughout(residual: &[f64]) -> Option<f64> {
     let squares = block_squares(residual, BLOCK);
     #[expect(clippy::cast_precision_loss, reason = "a count of blocks")]

@@ -27,11 +27,17 @@ pub fn split(record: &CableRecord<'_>) -> Vec<Block> {
     record.logs().flat_map(|(start, rows)| cut(start..start + rows.len(), record.interval_s, &mut draw)).collect()
 }
 
-/// Seed of the draw.
-pub(crate) const DRAW: u32 = 0x9e37_79b9;
+/// Blocks of one log of so many cycles; like those of a cable with no other log.
+#[must_use]
+pub fn blocks(cycle_count: usize, interval_s: f64) -> Vec<Block> {
+    cut(0..cycle_count, interval_s, &mut { DRAW })
+}
 
-/// Returns the blocks of one log.
-pub(crate) fn cut(log: Range<usize>, interval_s: f64, draw: &mut u32) -> Vec<Block> {
+/// Where the draw begins.
+const DRAW: u32 = 0x9e37_79b9;
+
+/// Blocks of one log.
+fn cut(log: Range<usize>, interval_s: f64, draw: &mut u32) -> Vec<Block> {
     #[expect(clippy::cast_precision_loss, reason = "a count of cycles")]
     let longest = (log.len() as f64 * interval_s / SHORTEST_S).floor();
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to a small count")]

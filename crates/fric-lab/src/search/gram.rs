@@ -20,7 +20,8 @@ pub struct Gram {
 }
 
 impl Gram {
-    /// Creates an empty sum for `parameters` columns beside the residual.
+    /// Of no rows yet, for `parameters` columns beside the residual.
+    #[must_use]
     pub fn new(parameters: usize) -> Self {
         let columns = parameters + 1;
         let count = columns * (columns + 1) / 2;
@@ -44,7 +45,8 @@ impl Gram {
         self.in_block = 0;
     }
 
-    /// Returns `JᵀJ`, `Jᵀr` and `rᵀr`.
+    /// `JᵀJ`, `Jᵀr` and `rᵀr`.
+    #[must_use]
     pub fn normal_equations(&self) -> (DMatrix<f64>, DVector<f64>, f64) {
         let entry = |row: usize, column: usize| {
             let (low, high) = (row.min(column), row.max(column));

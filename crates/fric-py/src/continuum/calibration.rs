@@ -1,8 +1,8 @@
 //! `calibrate`: fits the lines of the gratings to load steps.
 
-use fric_core::continuum::edit::{ManipulatorEdit, rewrite};
-use fric_lab::continuum::fbg::{Calibration, LoadStep};
-use fric_lab::continuum::result::CalibrationResult;
+use fric_tendon::edit::{ManipulatorEdit, rewrite};
+use fric_tendon_lab::fbg::{Calibration, LoadStep};
+use fric_tendon_lab::result::CalibrationResult;
 use fric_work::provenance::Provenance;
 use fric_work::report::continuum as report;
 use pyo3::prelude::*;

@@ -1,7 +1,7 @@
 //! `discover`: what a manipulator file lacks.
 
-use fric_core::continuum::edit::rewrite;
-use fric_lab::continuum::discover::discover;
+use fric_tendon::edit::rewrite;
+use fric_tendon_lab::discover::discover;
 use fric_work::provenance::{Provenance, shown_path};
 use fric_work::report::continuum as report;
 use pyo3::prelude::*;

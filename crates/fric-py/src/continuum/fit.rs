@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use fric_core::continuum::edit::rewrite;
-use fric_lab::continuum::Run;
-use fric_lab::continuum::identify::{Quantity, TendonFitOptions, identify};
+use fric_tendon::edit::rewrite;
+use fric_tendon_lab::Run;
+use fric_tendon_lab::identify::{Quantity, TendonFitOptions, identify};
 use fric_work::provenance::Provenance;
 use fric_work::report::continuum as report;
 use pyo3::prelude::*;

@@ -1,9 +1,9 @@
 //! `friction` at every hole, and `hole`: μ of a single one.
 
-use fric_core::continuum::Tendon;
-use fric_lab::continuum::ContinuumError;
-use fric_lab::continuum::friction::{HoleLoad, hole_coefficient};
-use fric_lab::continuum::result::{FrictionResult, HoleResult};
+use fric_tendon::Tendon;
+use fric_tendon_lab::ContinuumError;
+use fric_tendon_lab::friction::{HoleLoad, hole_coefficient};
+use fric_tendon_lab::result::{FrictionResult, HoleResult};
 use fric_work::provenance::Provenance;
 use fric_work::report::continuum as report;
 use pyo3::prelude::*;

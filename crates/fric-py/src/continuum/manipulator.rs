@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use fric_core::continuum::Tendon;
-use fric_core::continuum::file::{ManipulatorFile, ManipulatorFileError};
 use fric_log::output::OutputFile;
+use fric_tendon::Tendon;
+use fric_tendon::file::{ManipulatorFile, ManipulatorFileError};
 use fric_work::provenance::Provenance;
 use numpy::PyArray1;
 use pyo3::prelude::*;

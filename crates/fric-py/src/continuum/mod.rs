@@ -21,8 +21,8 @@ pub use shape::continuum_shape;
 pub use simulate::continuum_simulate;
 pub use static_model::{StaticModel, StaticSnapshot};
 
-use fric_lab::continuum::gratings::{GratingSample, Gratings};
-use fric_lab::continuum::{ContinuumError, Run, corrected};
+use fric_tendon_lab::gratings::{GratingSample, Gratings};
+use fric_tendon_lab::{ContinuumError, Run, corrected};
 
 use crate::errors::Outcome;
 

@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use fric_lab::continuum::gratings::Gratings;
-use fric_lab::continuum::{Run, RunSample, columns, load_steps};
 use fric_log::table::NumberTable;
+use fric_tendon_lab::gratings::Gratings;
+use fric_tendon_lab::{Run, RunSample, columns, load_steps};
 use numpy::{PyArray1, PyArray2, PyArrayDyn};
 use pyo3::prelude::*;
 

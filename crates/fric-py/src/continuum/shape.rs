@@ -1,10 +1,10 @@
 //! `shape`: shapes by four friction models.
 
 use fric_core::robot::unknown_name;
-use fric_lab::continuum::comparison::{Selection, WayShapes, compare};
-use fric_lab::continuum::gratings::Gratings;
-use fric_lab::continuum::result::ShapeResult;
-use fric_lab::continuum::shape_errors::{ComputedShape, Way};
+use fric_tendon_lab::comparison::{Selection, WayShapes, compare};
+use fric_tendon_lab::gratings::Gratings;
+use fric_tendon_lab::result::ShapeResult;
+use fric_tendon_lab::shape_errors::{ComputedShape, Way};
 use fric_work::provenance::Provenance;
 use fric_work::report::continuum as report;
 use pyo3::prelude::*;

@@ -1,8 +1,8 @@
 //! `simulate`: the run of a simulated manipulator.
 
 use fric_core::robot::unknown_name;
-use fric_lab::continuum::simulate::{Experiment, TendonSimulationOptions, TendonTruth, simulate as simulate_tendon};
-use fric_lab::continuum::{Run, as_measured};
+use fric_tendon_lab::simulate::{Experiment, TendonSimulationOptions, TendonTruth, simulate as simulate_tendon};
+use fric_tendon_lab::{Run, as_measured};
 use pyo3::prelude::*;
 
 use super::{Manipulator, TendonRun};

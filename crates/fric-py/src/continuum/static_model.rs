@@ -1,7 +1,7 @@
 //! `StaticModel`: shapes and commands of a manipulator, one at a time or over arrays.
 
-use fric_core::continuum::{AnyStaticModel, Direction, Drive, DriveOptions, Friction, Goal};
 use fric_core::robot::unknown_name;
+use fric_tendon::{AnyStaticModel, Direction, Drive, DriveOptions, Friction, Goal};
 use numpy::{PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 

@@ -1,6 +1,6 @@
 //! Shapes and commands of a static model as arrays, with one row per step or a single row.
 
-use fric_core::continuum::{AnyStaticModel, Command, ShapeStatus, Tendon};
+use fric_tendon::{AnyStaticModel, Command, ShapeStatus, Tendon};
 use pyo3::prelude::*;
 
 use crate::arrays::array;

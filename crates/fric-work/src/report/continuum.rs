@@ -1,13 +1,13 @@
 //! Pages of `continuum`: calibration, friction at the holes, shapes to scale.
 
-use fric_lab::continuum::Run;
-use fric_lab::continuum::comparison::{WayShapes, spread};
-use fric_lab::continuum::discover::{TendonDiscoverResult, TendonDiscovery};
-use fric_lab::continuum::identify::TendonFitResult;
-use fric_lab::continuum::result::{CalibrationResult, FrictionResult, HoleResult, PickedShape, ShapeResult, WayShape};
-use fric_lab::continuum::shape_errors::{ShapeErrors, Way};
 use fric_lab::discover::words::percent;
 use fric_lab::fit::result::Numbers;
+use fric_tendon_lab::Run;
+use fric_tendon_lab::comparison::{WayShapes, spread};
+use fric_tendon_lab::discover::{TendonDiscoverResult, TendonDiscovery};
+use fric_tendon_lab::identify::TendonFitResult;
+use fric_tendon_lab::result::{CalibrationResult, FrictionResult, HoleResult, PickedShape, ShapeResult, WayShape};
+use fric_tendon_lab::shape_errors::{ShapeErrors, Way};
 use maud::{Markup, PreEscaped, html};
 
 use super::chart::{Chart, Span};
@@ -496,7 +496,7 @@ fn errors(plots: &mut Plots, run: &Run, ways: &[WayShapes]) -> Markup {
     let mut plot = Plot::new("Mean distance", Axis::TIME, Axis::new("distance", "mm"));
     plot.digits = 2;
     for way in ways {
-        let mean_mm = |(sample, shape): (&fric_lab::continuum::RunSample, _)| {
+        let mean_mm = |(sample, shape): (&fric_tendon_lab::RunSample, _)| {
             ShapeErrors::of(shape, &sample.marker_m).mean_mm().unwrap_or(f64::NAN)
         };
         let values = samples.iter().zip(&way.shapes).map(mean_mm).collect();

@@ -1,11 +1,11 @@
 //! `continuum calibrate`: fits the lines of the gratings to load steps.
 
-use fric_core::continuum::edit::{ManipulatorEdit, rewrite};
-use fric_lab::continuum::fbg::Calibration;
-use fric_lab::continuum::gratings::Gratings;
-use fric_lab::continuum::result::CalibrationResult;
-use fric_lab::continuum::{columns, load_steps};
 use fric_log::output::OutputFile;
+use fric_tendon::edit::{ManipulatorEdit, rewrite};
+use fric_tendon_lab::fbg::Calibration;
+use fric_tendon_lab::gratings::Gratings;
+use fric_tendon_lab::result::CalibrationResult;
+use fric_tendon_lab::{columns, load_steps};
 
 use super::{Model, Outputs, about, read_table};
 use crate::arguments::continuum::CalibrateArguments;

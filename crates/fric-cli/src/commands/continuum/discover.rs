@@ -1,9 +1,9 @@
 //! `discover` with a manipulator file.
 
-use fric_core::continuum::edit::rewrite;
-use fric_lab::continuum::discover::discover;
-use fric_lab::continuum::{Run, columns};
 use fric_log::output::OutputFile;
+use fric_tendon::edit::rewrite;
+use fric_tendon_lab::discover::discover;
+use fric_tendon_lab::{Run, columns};
 
 use super::{Model, about, read_table};
 use crate::arguments::{DiscoverArguments, ReferenceName};

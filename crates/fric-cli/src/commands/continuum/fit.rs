@@ -1,9 +1,9 @@
 //! `continuum fit`: identifies a manipulator's numbers from its runs.
 
-use fric_core::continuum::edit::rewrite;
-use fric_lab::continuum::identify::{Quantity, TendonFitOptions, identify};
-use fric_lab::continuum::{Run, columns};
 use fric_log::output::OutputFile;
+use fric_tendon::edit::rewrite;
+use fric_tendon_lab::identify::{Quantity, TendonFitOptions, identify};
+use fric_tendon_lab::{Run, columns};
 use fric_work::provenance::shown_path;
 
 use super::{Model, about, read_table};

@@ -1,8 +1,8 @@
 //! `continuum friction`: the friction at every hole, from the gratings.
 
-use fric_core::continuum::Tendon;
-use fric_lab::continuum::ContinuumError;
-use fric_lab::continuum::result::FrictionResult;
+use fric_tendon::Tendon;
+use fric_tendon_lab::ContinuumError;
+use fric_tendon_lab::result::FrictionResult;
 
 use super::{Outputs, about, read_gratings, read_run};
 use crate::arguments::continuum::FrictionArguments;

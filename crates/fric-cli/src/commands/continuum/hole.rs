@@ -1,8 +1,8 @@
 //! `continuum hole`: μ of a single hole.
 
-use fric_lab::continuum::friction::hole_coefficient;
-use fric_lab::continuum::result::HoleResult;
-use fric_lab::continuum::{columns, hole_loads};
+use fric_tendon_lab::friction::hole_coefficient;
+use fric_tendon_lab::result::HoleResult;
+use fric_tendon_lab::{columns, hole_loads};
 
 use super::{about, read_table};
 use crate::arguments::continuum::HoleArguments;

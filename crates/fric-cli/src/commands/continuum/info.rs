@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use fric_lab::continuum::gratings::Gratings;
-use fric_lab::continuum::{Run, columns};
 use fric_lab::text::table_with_text;
 use fric_log::output::OutputFile;
 use fric_log::table::NumberTable;
+use fric_tendon_lab::gratings::Gratings;
+use fric_tendon_lab::{Run, columns};
 use fric_work::report::info::{self, InfoTable, Overview};
 use serde::Serialize;
 
@@ -37,8 +37,8 @@ struct GroupResult {
     remarks: Vec<String>,
 }
 
-/// Greatest number of disks to search for in a file without a model.
-const DISKS: usize = fric_core::continuum::MAX_DISKS;
+/// Most disks that a file without a model is searched for.
+const DISKS: usize = fric_tendon::MAX_DISKS;
 
 /// Shows the content of a run. Without a model the number of disks is that of its columns.
 pub fn run(path: &Path, model: Option<&Path>, json: JsonTarget, report: Option<OutputFile>) -> Outcome {
@@ -90,14 +90,14 @@ fn overview(result: &InfoResult) -> Overview<'_> {
 }
 
 fn groups(run: &Run, gratings: Option<&Gratings>) -> Vec<GroupResult> {
-    let hidden = |is_bad: &dyn Fn(&fric_lab::continuum::RunSample) -> bool| {
+    let hidden = |is_bad: &dyn Fn(&fric_tendon_lab::RunSample) -> bool| {
         run.samples().iter().filter(|sample| is_bad(sample)).count()
     };
     let hidden_markers = hidden(&|sample| sample.marker_m.iter().flatten().any(|one| !one.is_finite()));
     let mut grating_remarks = Vec::new();
     if let Some(measured) = gratings.filter(|_| run.has_shifts()).and_then(|gratings| gratings.read(run).ok()) {
-        let bridged = fric_lab::continuum::result::BridgedGrating::all(run, &measured);
-        let text = |one: &fric_lab::continuum::result::BridgedGrating| {
+        let bridged = fric_tendon_lab::result::BridgedGrating::all(run, &measured);
+        let text = |one: &fric_tendon_lab::result::BridgedGrating| {
             format!("grating {} dead in {} samples", one.grating, one.samples)
         };
         grating_remarks.extend(bridged.iter().map(text));

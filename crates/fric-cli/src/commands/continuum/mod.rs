@@ -13,12 +13,12 @@ use std::fs::{self, File, Metadata};
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
-use fric_core::continuum::file::{FORMAT, ManipulatorFile};
 use fric_core::text_file;
-use fric_lab::continuum::gratings::{GratingSample, Gratings};
-use fric_lab::continuum::{ContinuumError, Run, columns, corrected};
 use fric_log::output::OutputFile;
 use fric_log::table::NumberTable;
+use fric_tendon::file::{FORMAT, ManipulatorFile};
+use fric_tendon_lab::gratings::{GratingSample, Gratings};
+use fric_tendon_lab::{ContinuumError, Run, columns, corrected};
 use fric_work::provenance::Provenance;
 
 use crate::arguments::continuum::{ContinuumCommand, ReportArguments, RunArguments};

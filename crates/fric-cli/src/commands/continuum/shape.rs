@@ -1,11 +1,11 @@
 //! `continuum shape`: compares shapes by four friction models with the markers.
 
-use fric_core::continuum::Tendon;
-use fric_lab::continuum::ContinuumError;
-use fric_lab::continuum::comparison::{Selection, compare};
-use fric_lab::continuum::gratings::Gratings;
-use fric_lab::continuum::result::ShapeResult;
-use fric_lab::continuum::shape_errors::Way;
+use fric_tendon::Tendon;
+use fric_tendon_lab::ContinuumError;
+use fric_tendon_lab::comparison::{Selection, compare};
+use fric_tendon_lab::gratings::Gratings;
+use fric_tendon_lab::result::ShapeResult;
+use fric_tendon_lab::shape_errors::Way;
 
 use super::{Outputs, about, read_gratings, read_run};
 use crate::arguments::continuum::{ShapeArguments, WayName};

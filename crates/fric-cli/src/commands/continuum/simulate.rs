@@ -3,10 +3,10 @@
 use std::io::Write as _;
 use std::path::Path;
 
-use fric_lab::continuum::simulate::{Experiment, SimulatedRun, TendonSimulationOptions, simulate};
-use fric_lab::continuum::{ContinuumError, as_measured, columns};
 use fric_log::output::{CompleteFile, OutputError, OutputFile};
 use fric_log::write::LogWriter;
+use fric_tendon_lab::simulate::{Experiment, SimulatedRun, TendonSimulationOptions, simulate};
+use fric_tendon_lab::{ContinuumError, as_measured, columns};
 use serde::Serialize;
 
 use super::Model;
@@ -95,7 +95,7 @@ fn refused(error: ContinuumError) -> Failure {
 }
 
 fn truth_of<'a>(manipulator: &'a str, run: &'a SimulatedRun) -> Truth<'a> {
-    let each = |of: fn(&fric_lab::continuum::simulate::TendonTruth) -> &[f64]| run.truth.iter().map(of).collect();
+    let each = |of: fn(&fric_tendon_lab::simulate::TendonTruth) -> &[f64]| run.truth.iter().map(of).collect();
     Truth {
         format: "fric-continuum-truth/1",
         manipulator,

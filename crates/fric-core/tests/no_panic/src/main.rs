@@ -4,10 +4,6 @@ use std::hint::black_box;
 
 use fric_core::effects::Effect;
 use fric_core::admittance::{Admittance, AdmittanceOptions, SetPoint};
-use fric_core::continuum::{
-    Command, Direction, Drive, DriveOptions, Friction, Goal, ManipulatorOptions, ManipulatorParams, ShapeStatus,
-    StaticModel,
-};
 use fric_core::robot::{
     CableOptions, FrictionOptions, GeometryOptions, MAX_PULLEYS, MonitorOptions, PlatformOptions, Presliding,
     PulleyOptions,
@@ -102,40 +98,6 @@ cycle_of!(three, 3);
 cycle_of!(eight, 8);
 cycle_of!(seventeen, 17);
 
-/// One solution of a manipulator, by any of the four ways.
-#[no_panic]
-#[inline(never)]
-fn solve(model: &mut StaticModel<8>, base_tension_n: [f64; 2], friction: Friction<'_>) -> ShapeStatus {
-    model.solve(base_tension_n, friction)
-}
-
-/// The tension for a goal.
-#[no_panic]
-#[inline(never)]
-fn tension_for(model: &mut StaticModel<8>, goal: Goal, friction: Friction<'_>, drive: &Drive) -> Command {
-    model.tension_for(goal, friction, drive)
-}
-
-fn manipulator() {
-    let options = ManipulatorOptions { gravity_m_per_s2: black_box([0.0, -9.81]), ..ManipulatorOptions::published() };
-    let params = ManipulatorParams::new(&options).unwrap();
-    let mut model = StaticModel::<8>::new(&params).unwrap();
-    let drive = Drive::new(&params, &DriveOptions::first_tendon(&params)).unwrap();
-    let measured = black_box([1.0; 8]);
-    for friction in [
-        Friction::None,
-        Friction::Coulomb(Direction::Pulling),
-        Friction::Measured([&measured, &[]]),
-        Friction::History,
-    ] {
-        black_box(solve(black_box(&mut model), black_box([1.0, 0.2]), black_box(friction)));
-        for goal in [Goal::BendRad(0.4), Goal::TipM([0.2, 0.1])] {
-            black_box(tension_for(black_box(&mut model), black_box(goal), black_box(friction), black_box(&drive)));
-        }
-    }
-    black_box(model.shape());
-}
-
 fn main() {
     let body = AdmittanceOptions {
         mass_kg: black_box([2.0; 3]),
@@ -149,7 +111,6 @@ fn main() {
     };
     let mut admittance = Admittance::new(&body, 0.001, &Pose::identity()).unwrap();
     black_box(admit(black_box(&mut admittance), black_box(Some(&Wrench::default()))));
-    manipulator();
     let pulleys = [
         PulleyOptions::Fixed { wrap_rad: core::f64::consts::PI, sensor: true },
         PulleyOptions::Swivel { radius_m: 0.01, axis: [0.0, 0.0, 1.0] },

@@ -1,11 +1,10 @@
 //! Random robots through random cycles: a hash of the bits of all that comes out, a line a robot.
 //!
 //! Every effect, both forms of presliding, slip limits, poses that are missing or out of reach, faulty signals, skipped
-//! cycles, new parameters while it runs; then the admittance and the shape of a manipulator. Set-up is part of it. Ends with the flags
+//! cycles, new parameters while it runs; then the admittance. Set-up is part of it. Ends with the flags
 //! that have been raised.
 
 use fric_core::admittance::{Admittance, AdmittanceOptions};
-use fric_core::continuum::{Direction, Friction, ManipulatorOptions, ManipulatorParams, StaticModel};
 use fric_core::effects::Effect;
 use fric_core::robot::{
     CableOptions, FrictionOptions, GeometryOptions, MonitorOptions, PlatformOptions, Presliding, PulleyOptions,
@@ -222,26 +221,6 @@ fn admittance() {
     println!("admittance: {:016x}", hash.0);
 }
 
-fn manipulator() {
-    let options = ManipulatorOptions { gravity_m_per_s2: [0.0, -9.81], ..ManipulatorOptions::published() };
-    let mut model = StaticModel::<8>::new(&ManipulatorParams::new(&options).unwrap()).unwrap();
-    let mut hash = Hash::START;
-    let measured = [0.8; 8];
-    for cycle in 0..40 {
-        let base_n = [0.5 + 0.03 * f64::from(cycle), 0.2];
-        for friction in [
-            Friction::None,
-            Friction::Coulomb(Direction::Pulling),
-            Friction::Measured([&measured, &[]]),
-            Friction::History,
-        ] {
-            assert!(model.solve(base_n, friction).is_ok());
-            hash.numbers(model.shape().disk_position_m().as_flattened());
-        }
-    }
-    println!("manipulator: {:016x}", hash.0);
-}
-
 fn main() {
     let mut random = Random(20);
     let mut flags = 0;
@@ -255,6 +234,5 @@ fn main() {
         flags |= run::<19>(&mut random, effects, 19);
     }
     admittance();
-    manipulator();
     println!("flags: {flags:#x}");
 }

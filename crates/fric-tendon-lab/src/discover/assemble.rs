@@ -1,0 +1,175 @@
+//! Assembles the result of a search from its outcome.
+
+use fric_lab::discover::Verdict;
+use fric_lab::discover::result::{DiscoverResult, Evidence};
+use fric_lab::errors::ForceError;
+use fric_lab::fit::result::Numbers;
+use fric_tendon::file::USUAL_SIGMA_N_PER_M;
+
+use super::TendonDiscovery;
+use super::case::{Case, Fit};
+use super::extended_file::{drift, edit};
+use super::final_fit::{Final, shared_mu};
+use super::goes_with::{of_markers, of_tensions};
+use super::machine::Named;
+use super::markers::MarkerFit;
+use super::model::{Effect, Model, Parameter};
+use super::naming::{Finding, Outcome, Tried};
+use super::noise::{excess_n, rms_n};
+use super::places::{disks, segments};
+use super::result::{
+    MarkerError, TendonDiscoverResult, TendonEffect, TendonMarkers, TendonRest, TendonResult, TendonRunnerUp,
+    TendonTried,
+};
+use super::worse::Worse;
+
+/// Returns the result of an outcome, with the changes to write. `named` lists the findings that are already in the file of the case.
+pub fn told(case: &Case<'_>, outcome: &Outcome, named: &[Named], log: &str) -> TendonDiscovery {
+    let Outcome { noise_n, verdict, before, after, last, findings, tried, markers, .. } = outcome;
+    let closed = |fit: &Fit| {
+        let gap_n = rms_n(before) - noise_n;
+        (*verdict != Verdict::Complete && gap_n > 0.0).then(|| (1.0 - (rms_n(fit) - noise_n) / gap_n).min(1.0))
+    };
+    let evidence = |delta_bic: f64, rms_n: Option<f64>| Evidence { delta_bic: Some(delta_bic), held_out_rms_n: rms_n };
+    let effect = |finding: &Finding| TendonEffect {
+        kind: finding.effect.kind(),
+        parameters: parameters(case, finding.effect, &last.fit.model),
+        standard_errors: standard_errors(case, finding.effect, last),
+        gap_closed: closed(&finding.fit),
+        evidence: evidence(finding.delta_bic, finding.fit.held_out_n.rms()),
+        runner_up: finding.runner_up.map(|(effect, delta_bic)| TendonRunnerUp { kind: effect.kind(), delta_bic }),
+        alike: Vec::new(),
+        words: finding.effect.cause_and_remedy(),
+    };
+    let of_machine = |one: &Named| TendonEffect {
+        kind: one.candidate.kind(),
+        parameters: one.parameters.clone(),
+        standard_errors: one.standard_errors.clone(),
+        gap_closed: Some(one.gap_closed),
+        evidence: evidence(one.delta_bic, after.held_out_n.rms()),
+        runner_up: one.runner_up.map(|(other, delta_bic)| TendonRunnerUp { kind: other.kind(), delta_bic }),
+        alike: one.alike.iter().map(|other| other.kind()).collect(),
+        words: one.candidate.cause_and_remedy(),
+    };
+    let helped = |tried: &Tried| TendonTried {
+        kind: tried.effect.kind(),
+        parameters: place_of(tried.effect),
+        evidence: evidence(tried.delta_bic, Some(tried.rms_n)),
+        reason: tried.reason.clone(),
+    };
+    let mut tried: Vec<&Tried> = tried.iter().collect();
+    tried.sort_by(|one, other| one.delta_bic.total_cmp(&other.delta_bic));
+    let tendon = TendonResult {
+        name: "tendon",
+        samples: case.run_samples,
+        noise_floor_n: *noise_n,
+        calibration_error_n: case.line_error_rms_n(),
+        before: ForceError::of(&before.held_out_n),
+        after: ForceError::of(&after.held_out_n),
+        gap_closed: closed(after),
+        verdict: verdict.name(),
+        places: if *verdict == Verdict::Complete { Vec::new() } else { segments(before) },
+        markers: marker_errors(markers),
+        effects: named.iter().map(of_machine).chain(findings.iter().map(effect)).collect(),
+        tried: tried.into_iter().map(helped).collect(),
+        kept: last.kept.map(|(worse, mu)| kept(&worse, mu)),
+        unexplained: (*verdict == Verdict::Unexplained).then(|| rest(case, outcome)),
+    };
+    TendonDiscovery {
+        result: TendonDiscoverResult {
+            format: DiscoverResult::FORMAT,
+            log: vec![log.to_owned()],
+            robot: case.file.tables().name.clone(),
+            cables: vec![tendon],
+        },
+        edit: edit(case, outcome),
+        time_s: case.samples.iter().map(|sample| sample.time_s).collect(),
+        residual_before_n: before.residual_n.clone(),
+        residual_after_n: after.residual_n.clone(),
+    }
+}
+
+fn kept(worse: &Worse, mu: f64) -> String {
+    format!(
+        "the file keeps its μ; fitted to the run it is {mu:.4}, and disk {} is then {:.2} mm off its marker (rms) instead of {:.2} mm.",
+        worse.disk + 1,
+        1e3 * worse.after_m,
+        1e3 * worse.before_m
+    )
+}
+
+fn marker_errors(markers: &[Option<MarkerFit>; 2]) -> Option<TendonMarkers> {
+    let [Some(before), Some(after)] = markers else { return None };
+    let error = |one: &MarkerFit| MarkerError { rms_mm: 1e3 * one.rms_m(), max_mm: 1e3 * one.greatest_m };
+    Some(TendonMarkers {
+        noise_mm: 1e3 * after.noise_m,
+        calibration_error_mm: 1e3 * after.line_error_m,
+        before: error(before),
+        after: error(after),
+    })
+}
+
+/// Returns the rest: of the tensions, and of the markers if it exceeds the noise.
+fn rest(case: &Case<'_>, outcome: &Outcome) -> TendonRest {
+    let Outcome { given, after, last, are_tensions_explained, markers: [_, markers], .. } = outcome;
+    let off = markers.as_ref().filter(|markers| !markers.is_noise());
+    // Wrong gratings cause wrong shapes. The bending is reported if the gratings cannot explain the shapes.
+    let is_bending = |markers: &&MarkerFit| *are_tensions_explained || markers.is_beyond(case, excess_n(after));
+    let bending = off.filter(is_bending).and_then(|markers| of_markers(case, &last.fit, markers));
+    let tensions = if *are_tensions_explained { None } else { of_tensions(case, given) };
+    let of_gratings = if *are_tensions_explained { Vec::new() } else { segments(after) };
+    let of_disks = off.map(disks).unwrap_or_default();
+    let places = if bending.is_some() { [of_disks, of_gratings] } else { [of_gratings, of_disks] };
+    TendonRest {
+        rms_n: excess_n(after),
+        rms_mm: off.map(|markers| 1e3 * markers.excess_m()),
+        places: places.concat(),
+        goes_with: bending.into_iter().chain(tensions).collect(),
+    }
+}
+
+fn count(place: usize) -> f64 {
+    #[expect(clippy::cast_precision_loss, reason = "a small count")]
+    let count = (place + 1) as f64;
+    count
+}
+
+fn named(pairs: &[(&str, f64)]) -> Numbers {
+    Numbers(pairs.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect())
+}
+
+/// Returns the standard errors of an effect's fitted parameters.
+fn standard_errors(case: &Case<'_>, effect: Effect, last: &Final) -> Numbers {
+    let found = match effect {
+        Effect::Coulomb => last.shared_mu_error().map(|error| ("mu", error)),
+        Effect::Presliding => None,
+        Effect::SensorDrift(grating) => {
+            let newton_per_nm = case.newton_per_nm.get(grating).map_or(f64::NAN, |slope| slope.abs());
+            last.standard_error(Parameter::Drift(grating)).map(|error| ("drift_nm_per_s", error / newton_per_nm))
+        }
+        Effect::HoleFriction(hole) => last.standard_error(Parameter::OwnMu(hole)).map(|error| ("mu", error)),
+    };
+    named(found.as_slice())
+}
+
+/// Returns the grating or the hole of an effect.
+fn place_of(effect: Effect) -> Numbers {
+    match effect {
+        Effect::Coulomb | Effect::Presliding => named(&[]),
+        Effect::SensorDrift(grating) => named(&[("grating", count(grating))]),
+        Effect::HoleFriction(hole) => named(&[("hole", count(hole))]),
+    }
+}
+
+fn parameters(case: &Case<'_>, effect: Effect, model: &Model) -> Numbers {
+    match effect {
+        Effect::Coulomb => named(&[("mu", shared_mu(model))]),
+        Effect::Presliding => named(&[("sigma_n_per_m", USUAL_SIGMA_N_PER_M)]),
+        Effect::SensorDrift(grating) => {
+            named(&[("grating", count(grating)), ("drift_nm_per_s", drift(case, model, grating))])
+        }
+        Effect::HoleFriction(hole) => {
+            named(&[("hole", count(hole)), ("mu", model.mu.get(hole).copied().unwrap_or(f64::NAN))])
+        }
+    }
+}

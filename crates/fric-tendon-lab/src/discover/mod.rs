@@ -1,0 +1,133 @@
+//! Discovery on a manipulator: what a manipulator file lacks or has wrong.
+//!
+//! The search starts with bending, loads and measurement: `machine` searches among the `candidate`s on one cost of tensions and markers (`joint`),
+//! with friction and calibration lines free within their prior uncertainty. With these findings in the file, the search for friction follows, on the
+//! tensions alone.
+//!
+//! The workflow is that of [`fric_lab::discover`]: the given model, fitted to half of the run in blocks, leaves a gap above the noise on
+//! the other half; candidates enter one after the other where they help on the samples held out; what is left is noise, or
+//! unexplained. The residual is that of the tensions in the segments: gratings less model.
+//!
+//! | effect | the file has | what it names |
+//! |---|---|---|
+//! | `coulomb` | `mu = 0` | friction at the holes at all |
+//! | `presliding` | no `sigma_n_per_m` | holes remember: their friction follows from the history, not from one direction |
+//! | `sensor_drift` | | the shift of a grating drifts with time, as one that warms up |
+//! | `hole_friction` | | a hole has a μ of its own |
+//!
+//! A wrong calibration line (for instance that of another grating) has no name: a drift must explain more than it would. If a rest remains, a
+//! grating, or a hole between two gratings, is only named if no rest remains there.
+//!
+//! The calibration errors of the lines are estimated together with each model (`lines`). The remaining residual is noise if consecutive samples are
+//! uncorrelated (`noise`). If the run has markers, they contribute to the verdict: shapes under the measured tensions (`markers`) must agree with
+//! them within the noise of both. The rest may correlate with one of a few physical causes (`goes_with`). An effect that makes shapes or tensions
+//! worse than with the given file is not written (`worse`), nor is a value that the run does not contradict (`final_fit`). Intervals include the
+//! calibration error and the differences between holes that share a μ (`spread`).
+
+mod assemble;
+mod candidate;
+mod case;
+mod extended_file;
+mod final_fit;
+mod fitting;
+mod goes_with;
+mod joint;
+mod lines;
+mod machine;
+mod markers;
+mod model;
+mod naming;
+mod noise;
+mod places;
+mod result;
+pub(super) mod spread;
+mod summary;
+mod trials;
+mod worse;
+
+use fric_lab::discover::Verdict;
+use fric_tendon::Tendon;
+use fric_tendon::edit::ManipulatorEdit;
+use fric_tendon::file::ManipulatorFile;
+
+use self::candidate::Candidate;
+use self::case::Case;
+use self::machine::Machine;
+use super::error::ContinuumError;
+use super::gratings::Gratings;
+use super::measuring::corrected;
+use super::run::Run;
+
+pub(super) use case::thinned;
+pub use goes_with::GoesWith;
+pub use result::{
+    MarkerError, TendonDiscoverResult, TendonEffect, TendonMarkers, TendonPlace, TendonRest, TendonResult, TendonTried,
+};
+
+/// The result of a discovery.
+#[derive(Clone, Debug)]
+pub struct TendonDiscovery {
+    /// The result for machines and people.
+    pub result: TendonDiscoverResult,
+    /// The changes to the manipulator file.
+    pub edit: ManipulatorEdit,
+    /// Times of the compared samples, s.
+    pub time_s: Vec<f64>,
+    /// Residual of the given model, fitted, in each segment, N; NaN where nothing was measured.
+    pub residual_before_n: Vec<Vec<f64>>,
+    /// Residual of the extended model in each segment, N; NaN where nothing was measured.
+    pub residual_after_n: Vec<Vec<f64>>,
+}
+
+/// Searches for what a manipulator file lacks. `log` is the name of the run.
+///
+/// # Errors
+/// Returns [`ContinuumError::MissingGroup`] without the tension at the base or gratings, [`ContinuumError::NoGratings`] if the file does not say how
+/// shifts become tensions, [`ContinuumError::TooShort`] for a run with too few samples to hold any out, [`ContinuumError::UntoldNoise`] for gratings
+/// with more gaps than samples, or [`ContinuumError::OverCapacity`].
+pub fn discover(file: &ManipulatorFile, run: &Run, log: &str) -> Result<TendonDiscovery, ContinuumError> {
+    let lack = |what, remedy| ContinuumError::MissingGroup { what, consequence: "there is nothing to compare", remedy };
+    if !run.has_tension() {
+        return Err(lack("tension at the base", "`tension_base_n`"));
+    }
+    if !run.has_shifts() {
+        return Err(lack("gratings", "`shift_1_nm` and so on"));
+    }
+    run.check_capacity(file.params().capacity_n(Tendon::Agonist))?;
+    let gratings = Gratings::from_file(file)?.ok_or(ContinuumError::NoGratings)?;
+    let kept = thinned(run.samples());
+    let as_given = corrected(run, file)?;
+    let case = Case::new(file, &as_given, &gratings, &kept)?;
+    let Machine { named, tables, mu: mu_of_holes } = machine::search(file, run).unwrap_or_else(|| Machine::none(file));
+    let extended = if named.is_empty() { None } else { ManipulatorFile::check(tables).ok() };
+    // The search for friction starts with these findings in the file.
+    let with_found = match &extended {
+        Some(extended) => {
+            let run = corrected(run, extended)?;
+            let gratings = Gratings::from_file(extended)?.ok_or(ContinuumError::NoGratings)?;
+            let with_found = Case::new(extended, &run, &gratings, &kept)?;
+            let outcome = naming::name(&with_found)?.beside(&case)?;
+            // A lag with which the tensions still disagree is something else, for instance the ends of a pull in one direction.
+            let is_lag = named.iter().any(|one| one.candidate == Candidate::TensionLag);
+            (outcome.verdict != Verdict::Unexplained || !is_lag).then_some((extended, with_found, outcome))
+        }
+        None => None,
+    };
+    let (outcome, mut discovery) = if let Some((extended, with_found, outcome)) = with_found {
+        let mut discovery = assemble::told(&with_found, &outcome, &named, log);
+        let ManipulatorEdit { mu, sigma_n_per_m, drift_nm_per_s, .. } = discovery.edit;
+        let bending = ManipulatorEdit::between(file.tables(), extended.tables());
+        discovery.edit = ManipulatorEdit { mu, sigma_n_per_m, drift_nm_per_s, ..bending };
+        (outcome, discovery)
+    } else {
+        let outcome = naming::name(&case)?;
+        let discovery = assemble::told(&case, &outcome, &[], log);
+        (outcome, discovery)
+    };
+    // If the search for friction names nothing but the file changes, the holes get the values of the joint fit.
+    let is_settled = outcome.findings.is_empty() && outcome.verdict != Verdict::Unexplained;
+    if is_settled && !mu_of_holes.is_empty() && discovery.edit != ManipulatorEdit::default() {
+        discovery.edit.mu = mu_of_holes;
+    }
+    Ok(discovery)
+}

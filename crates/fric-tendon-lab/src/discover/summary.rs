@@ -1,0 +1,148 @@
+//! The result of a tendon's discovery for people.
+
+use std::fmt::Write as _;
+
+use fric_lab::errors::ForceError;
+use fric_lab::fit::HALF_INTERVAL;
+use fric_lab::text::{quantity, table, wrapped};
+
+use super::result::{TendonDiscoverResult, TendonEffect, TendonMarkers, TendonRest, TendonTried};
+
+impl TendonDiscoverResult {
+    /// Returns a summary for people.
+    #[must_use]
+    pub fn summary(&self) -> String {
+        let number =
+            |error: Option<ForceError>| error.map_or_else(|| "–".to_owned(), |error| format!("{:.4}", error.rms_n));
+        let percent =
+            |share: Option<f64>| share.map_or_else(|| "–".to_owned(), |share| format!("{:.0} %", 100.0 * share));
+        let rows: Vec<[String; 7]> = self
+            .cables
+            .iter()
+            .map(|tendon| {
+                let mut kinds: Vec<&str> = tendon.effects.iter().map(|effect| effect.kind).collect();
+                kinds.dedup();
+                [
+                    tendon.name.to_owned(),
+                    tendon.verdict.to_owned(),
+                    if kinds.is_empty() { "–".to_owned() } else { kinds.join("\n") },
+                    format!("{:.4}", tendon.noise_floor_n),
+                    number(tendon.before),
+                    number(tendon.after),
+                    percent(tendon.gap_closed),
+                ]
+            })
+            .collect();
+        let header = ["", "verdict", "found", "noise\n[N]", "before\n[N]", "after\n[N]", "gap\nclosed"];
+        let mut text = format!("{}: what the model lacks\n\n{}", self.robot, table(&header, 3, &rows));
+        text += "\nBefore and after are the rms difference of tension between gratings and model,\non samples that no fit has seen.\n";
+        let effects: Vec<&TendonEffect> = self.cables.iter().flat_map(|tendon| &tendon.effects).collect();
+        for (place, effect) in effects.iter().enumerate() {
+            let values: Vec<String> = effect
+                .parameters
+                .0
+                .iter()
+                .map(|(name, value)| {
+                    let half_interval = effect.standard_errors.get(name).map(|error| HALF_INTERVAL * error);
+                    format!("{name} = {}", quantity(*value, half_interval, "1"))
+                })
+                .collect();
+            // Writing to a String cannot fail.
+            let _ = writeln!(text, "\n{}: {}", effect.kind, values.join(", "));
+            if !effect.alike.is_empty() {
+                text += &wrapped("  or      ", &effect.alternatives());
+            }
+            // Printed once for holes that were found together.
+            if effects.get(place + 1).is_none_or(|next| next.kind != effect.kind) {
+                let [cause, remedy] = effect.words;
+                text += &wrapped("  cause   ", cause);
+                text += &wrapped("  remedy  ", remedy);
+            }
+        }
+        for tendon in &self.cables {
+            if let Some(markers) = &tendon.markers {
+                text += "\n";
+                text += &wrapped("markers: ", &markers.sentence());
+            }
+            for tried in &tendon.tried {
+                text += "\n";
+                text += &wrapped("not named: ", &tried.sentence());
+            }
+            if let Some(kept) = &tendon.kept {
+                text += "\n";
+                text += &wrapped("kept: ", kept);
+            }
+            if let Some(rest) = &tendon.unexplained {
+                text += "\n";
+                text += &wrapped("unexplained: ", &rest.sentence());
+            }
+        }
+        text
+    }
+}
+
+impl TendonEffect {
+    /// Returns the effects that may be present instead, in words.
+    #[must_use]
+    pub fn alternatives(&self) -> String {
+        format!(
+            "{}: the run does not tell them apart. The file gets {}; shapes are right with either.",
+            self.alike.join(", or "),
+            self.kind
+        )
+    }
+}
+
+impl TendonMarkers {
+    fn sentence(&self) -> String {
+        let Self { noise_mm, calibration_error_mm, before, after } = self;
+        format!(
+            "with the tensions that the gratings show the disks are {:.2} mm off their markers (rms; at most {:.2} mm), {:.2} mm as \
+             given; noise makes {noise_mm:.2} mm of it, and one standard error of the calibration {calibration_error_mm:.2} mm.",
+            after.rms_mm, after.max_mm, before.rms_mm
+        )
+    }
+}
+
+impl TendonTried {
+    /// Returns a sentence for people.
+    #[must_use]
+    pub fn sentence(&self) -> String {
+        let mut text = self.kind.to_owned();
+        for (name, value) in &self.parameters.0 {
+            // Writing to a String cannot fail.
+            let _ = write!(text, " at {name} {value}");
+        }
+        format!("{text}: {}.", self.reason)
+    }
+}
+
+impl TendonRest {
+    /// Returns a sentence for people.
+    #[must_use]
+    pub fn sentence(&self) -> String {
+        let most = |signal: &str| self.places.iter().find(|place| place.signal == signal);
+        let mut text = String::new();
+        // Writing to a String cannot fail.
+        if let Some(place) = most("grating") {
+            let (share, grating) = (100.0 * place.share_of_excess, place.from);
+            let _ = write!(
+                text,
+                "{:.4} N of tension are left above the noise, {share:.0} % of the squares at grating {grating}. ",
+                self.rms_n
+            );
+        }
+        if let (Some(place), Some(rms_mm)) = (most("marker"), self.rms_mm) {
+            let (share, disk) = (100.0 * place.share_of_excess, place.from);
+            let _ = write!(
+                text,
+                "The disks are {rms_mm:.2} mm (rms) off their markers above the noise, {share:.0} % of the squares at disk {disk}. "
+            );
+        }
+        for one in &self.goes_with {
+            text += &one.sentence;
+            text += " ";
+        }
+        text + "No effect of the catalogue accounts for it."
+    }
+}

@@ -1,0 +1,151 @@
+//! The result of an identification: `fric-continuum-fit/1`.
+
+use fric_lab::fit::result::Numbers;
+use fric_tendon::file::ManipulatorTables;
+use nalgebra::DMatrix;
+use serde::Serialize;
+
+use super::evaluation::{Evaluation, Row};
+use super::least_squares::Solution;
+use super::quantity::Quantity;
+use super::unknown::Unknown;
+
+/// `fric-continuum-fit/1`.
+#[derive(Clone, Debug, Serialize)]
+pub struct TendonFitResult {
+    /// Name and version of the format.
+    pub format: &'static str,
+    /// Name of the manipulator.
+    pub manipulator: String,
+    /// The runs.
+    pub runs: Vec<String>,
+    /// Number of compared samples of each run.
+    pub samples: Vec<usize>,
+    /// Identified values, by key.
+    pub parameters: Numbers,
+    /// Their standard errors.
+    pub standard_errors: Numbers,
+    /// Values in the given file.
+    pub given: Numbers,
+    /// Numbers that the runs do not determine.
+    pub undetermined: Vec<Undetermined>,
+    /// Errors with the given file.
+    pub before: Disagreement,
+    /// Errors with the fitted file.
+    pub after: Disagreement,
+}
+
+/// Numbers that the runs cannot distinguish, or do not determine at all.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Undetermined {
+    /// Keys of the numbers, the held one first.
+    pub parameters: Vec<String>,
+    /// A sentence for people.
+    pub sentence: String,
+}
+
+/// Differences between model and measurements; absent if they cannot be compared.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Disagreement {
+    /// Root mean square of gratings minus model, N.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tension_rms_n: Option<f64>,
+    /// Mean distance of the disks from their markers, mm: under the measured tensions or, without gratings, under the model's.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub marker_mean_mm: Option<f64>,
+    /// Greatest distance, mm.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub marker_max_mm: Option<f64>,
+}
+
+impl Disagreement {
+    pub(super) fn of(evaluation: &Evaluation) -> Self {
+        let rows = || evaluation.runs.iter().flat_map(|run| &run.rows);
+        let (mut squares, mut count) = (0.0, 0.0);
+        for value in rows().flat_map(|row| &row.tension_n).filter(|value| value.is_finite()) {
+            squares += value * value;
+            count += 1.0;
+        }
+        let (mut sum_mm, mut max_mm, mut places) = (0.0, 0.0_f64, 0.0);
+        let disks =
+            |row: &Row| row.marker_m.chunks(2).map(|place| 1e3 * place[0].hypot(place[1])).collect::<Vec<f64>>();
+        for distance_mm in rows().flat_map(disks).filter(|distance| distance.is_finite()) {
+            sum_mm += distance_mm;
+            max_mm = max_mm.max(distance_mm);
+            places += 1.0;
+        }
+        Self {
+            tension_rms_n: (count > 0.0).then(|| (squares / count).sqrt()),
+            marker_mean_mm: (places > 0.0).then(|| sum_mm / places),
+            marker_max_mm: (places > 0.0).then_some(max_mm),
+        }
+    }
+}
+
+impl Undetermined {
+    pub(super) fn of(held: Unknown, parts: &[Unknown]) -> Self {
+        let others: Vec<String> =
+            parts.iter().filter(|unknown| **unknown != held).map(|unknown| unknown.key()).collect();
+        let sentence = if others.is_empty() {
+            format!("the runs do not tell `{}`; it stays as the file states it", held.key())
+        } else {
+            format!(
+                "the runs do not tell `{}` apart from `{}`; the first stays as the file states it, and the other is found for that value",
+                held.key(),
+                others.join("`, `")
+            )
+        };
+        Self { parameters: std::iter::once(held.key()).chain(others).collect(), sentence }
+    }
+
+    pub(super) fn at_bound(unknown: Unknown) -> Self {
+        let sentence = format!("`{}` would come out below zero; it is taken as 0", unknown.key());
+        Self { parameters: vec![unknown.key()], sentence }
+    }
+
+    pub(super) fn impossible(quantity: Quantity) -> Self {
+        let reason = match quantity {
+            Quantity::GravityDirection => {
+                "there is no weight in the plane of bending: state `gravity_m_per_s2` and the masses"
+            }
+            Quantity::Sigma => "the file has no single `sigma_n_per_m`",
+            _ => "the file leaves no place for it",
+        };
+        Self {
+            parameters: vec![quantity.name().to_owned()],
+            sentence: format!("`{}` is not identified: {reason}", quantity.name()),
+        }
+    }
+}
+
+impl TendonFitResult {
+    /// Name and version of the format.
+    pub const FORMAT: &'static str = "fric-continuum-fit/1";
+
+    pub(super) fn new(
+        given: &ManipulatorTables,
+        names: &[String],
+        samples: &[usize],
+        (before, solution): (&Evaluation, &Solution),
+        (unknowns, tables, covariance): (&[Unknown], &ManipulatorTables, &DMatrix<f64>),
+        undetermined: Vec<Undetermined>,
+    ) -> Self {
+        let numbers = |of: &dyn Fn(usize, Unknown) -> f64| {
+            Numbers(unknowns.iter().enumerate().map(|(place, unknown)| (unknown.key(), of(place, *unknown))).collect())
+        };
+        Self {
+            format: Self::FORMAT,
+            manipulator: given.name.clone(),
+            runs: names.to_vec(),
+            samples: samples.to_vec(),
+            parameters: numbers(&|_, unknown| unknown.value(tables)),
+            standard_errors: numbers(&|place, unknown| {
+                unknown.value_per_distance(tables) * covariance[(place, place)].max(0.0).sqrt()
+            }),
+            given: numbers(&|_, unknown| unknown.value(given)),
+            undetermined,
+            before: Disagreement::of(before),
+            after: Disagreement::of(&solution.evaluation),
+        }
+    }
+}

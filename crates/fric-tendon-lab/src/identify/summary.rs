@@ -1,0 +1,50 @@
+//! The result of an identification for people.
+
+use fric_lab::fit::HALF_INTERVAL;
+use fric_lab::text::{quantity, table, wrapped};
+
+use super::result::{Disagreement, TendonFitResult};
+
+impl TendonFitResult {
+    /// Returns a summary for people.
+    #[must_use]
+    pub fn summary(&self) -> String {
+        let row = |(key, value): &(String, f64)| {
+            let half = self.standard_errors.get(key).map(|error| HALF_INTERVAL * error);
+            let given = self.given.get(key).map_or_else(|| "–".to_owned(), |given| quantity(given, half, "1"));
+            let given = given.split(" ±").next().unwrap_or_default().to_owned();
+            [key.clone(), given, quantity(*value, half, "1")]
+        };
+        let rows: Vec<[String; 3]> = self.parameters.0.iter().map(row).collect();
+        let samples: usize = self.samples.iter().sum();
+        let mut text = format!("{}: {samples} samples of {} runs\n\n", self.manipulator, self.runs.len());
+        if self.runs.len() == 1 {
+            text = text.replace(" of 1 runs", "");
+        }
+        text += &table(&["", "given", "found"], 1, &rows);
+        text += "\nValues with 95 % intervals.\n";
+        for line in [differences("before", &self.before), differences("after", &self.after)] {
+            text += &line;
+        }
+        for open in &self.undetermined {
+            text += &wrapped("undetermined: ", &format!("{}.", open.sentence));
+        }
+        text
+    }
+
+    /// Returns one sentence for each number that the runs do not determine.
+    #[must_use]
+    pub fn warnings(&self) -> Vec<String> {
+        self.undetermined.iter().map(|open| open.sentence.clone()).collect()
+    }
+}
+
+fn differences(name: &str, one: &Disagreement) -> String {
+    let tension = one.tension_rms_n.map(|rms_n| format!("tension {:.2} mN off the gratings (rms)", 1e3 * rms_n));
+    let markers = one
+        .marker_mean_mm
+        .zip(one.marker_max_mm)
+        .map(|(mean_mm, max_mm)| format!("disks {mean_mm:.2} mm off the markers (mean; at most {max_mm:.2} mm)"));
+    let parts: Vec<String> = tension.into_iter().chain(markers).collect();
+    wrapped(&format!("{name}: "), &format!("{}.", parts.join(", ")))
+}

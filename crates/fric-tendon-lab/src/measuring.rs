@@ -1,0 +1,100 @@
+//! The measurement corrections of a manipulator file: frame of the markers, tension sensor at the base, common step of all gratings.
+//!
+//! [`corrected`] removes them from a run, [`as_measured`] applies them to a simulated one.
+
+use fric_tendon::file::ManipulatorFile;
+
+use super::error::ContinuumError;
+use super::run::{Run, RunSample};
+
+/// Returns the run in the base frame, with a corrected sensor at the base. Shifts stay unchanged: [`Gratings`](super::gratings::Gratings) removes
+/// their step and drift.
+///
+/// The tension at the base is `(shown(t + lag) − offset)/gain`, interpolated linearly between samples, constant beyond the ends, and never negative.
+///
+/// # Errors
+/// A checked run causes no error; the signature is that of [`Run`]'s check.
+pub fn corrected(run: &Run, file: &ManipulatorFile) -> Result<Run, ContinuumError> {
+    let tables = file.tables();
+    if tables.markers.is_none() && tables.base_sensor.is_none() {
+        return Ok(run.clone());
+    }
+    let (markers, sensor) = (tables.markers.unwrap_or_default(), tables.base_sensor.unwrap_or_default());
+    let samples = run.samples();
+    let correct = |sample: &RunSample| RunSample {
+        tension_base_n: ((tension_n(samples, sample.time_s + sensor.lag_s, sample.tension_base_n) - sensor.offset_n)
+            / sensor.gain)
+            .max(if sample.tension_base_n.is_nan() { f64::NAN } else { 0.0 }),
+        marker_m: sample.marker_m.iter().map(|marker_m| markers.in_base_frame(*marker_m)).collect(),
+        ..sample.clone()
+    };
+    Run::new(samples.iter().map(correct).collect(), run.disk_count())
+}
+
+/// Returns samples of a simulated manipulator as they would be measured with the file's frame, sensor and gratings.
+#[must_use]
+pub fn as_measured(samples: &[RunSample], file: &ManipulatorFile) -> Vec<RunSample> {
+    let tables = file.tables();
+    let (markers, sensor) = (tables.markers.unwrap_or_default(), tables.base_sensor.unwrap_or_default());
+    let gratings = tables.gratings.clone().unwrap_or_default();
+    let (step_nm, from_s) =
+        (gratings.common_step_nm.unwrap_or(0.0), gratings.common_step_s.unwrap_or(f64::NEG_INFINITY));
+    let measure = |sample: &RunSample| {
+        let step_nm = if sample.time_s >= from_s { step_nm } else { 0.0 };
+        let shown_n = sensor.gain * tension_n(samples, sample.time_s - sensor.lag_s, sample.tension_base_n);
+        RunSample {
+            tension_base_n: (shown_n + sensor.offset_n).max(0.0),
+            marker_m: sample.marker_m.iter().map(|marker_m| markers.measured(*marker_m)).collect(),
+            shift_nm: sample.shift_nm.iter().map(|shift_nm| shift_nm + step_nm).collect(),
+            ..sample.clone()
+        }
+    };
+    samples.iter().map(measure).collect()
+}
+
+/// Returns the tension at the base at any time, N; `own_n` if there are no samples.
+fn tension_n(samples: &[RunSample], time_s: f64, own_n: f64) -> f64 {
+    let behind = samples.partition_point(|sample| sample.time_s < time_s);
+    let (before, after) = (behind.checked_sub(1).and_then(|before| samples.get(before)), samples.get(behind));
+    match (before, after) {
+        (_, Some(own)) if own.time_s <= time_s => own.tension_base_n,
+        (Some(before), Some(after)) => {
+            let share = (time_s - before.time_s) / (after.time_s - before.time_s);
+            before.tension_base_n + share * (after.tension_base_n - before.tension_base_n)
+        }
+        (Some(only), None) | (None, Some(only)) => only.tension_base_n,
+        (None, None) => own_n,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PROTOTYPE: &str = include_str!("../../../examples/tendon-prototype.toml");
+
+    #[test]
+    fn what_is_put_on_comes_off() {
+        let text = PROTOTYPE.to_owned()
+            + "\n[markers]\noffset_m = [0.005, -0.003]\nangle_rad = 0.05\n\n[base_sensor]\ngain = 1.1\noffset_n = 0.02\nlag_s = 0.2\n";
+        let file = ManipulatorFile::parse(&text, "arm").unwrap();
+        let sample = |place: u32| RunSample {
+            time_s: 0.1 * f64::from(place),
+            tension_base_n: 0.1 + 0.03 * f64::from(place),
+            marker_m: vec![[0.037, 0.001 * f64::from(place)]; 8],
+            ..RunSample::default()
+        };
+        let samples: Vec<RunSample> = (0..30).map(sample).collect();
+        let shown = as_measured(&samples, &file);
+        // By definition: two samples later, 10 % more and 0.02 N; a rotation by a small angle moves along y.
+        assert!((shown[10].tension_base_n - (1.1 * samples[8].tension_base_n + 0.02)).abs() < 1e-12);
+        let expected_m = [0.005 + 0.037 * 0.05_f64.cos(), -0.003 + 0.037 * 0.05_f64.sin()];
+        assert!((shown[0].marker_m[0][0] - expected_m[0]).abs() < 1e-15);
+        assert!((shown[0].marker_m[0][1] - expected_m[1]).abs() < 1e-15);
+        let back = corrected(&Run::new(shown, 8).unwrap(), &file).unwrap();
+        for (back, sample) in back.samples().iter().zip(&samples).take(28) {
+            assert!((back.tension_base_n - sample.tension_base_n).abs() < 1e-12 || sample.time_s < 0.15);
+            assert!((back.marker_m[0][1] - sample.marker_m[0][1]).abs() < 1e-15);
+        }
+    }
+}

@@ -1,0 +1,198 @@
+//! What is hidden in a simulated run is named, and nothing else.
+
+mod intervals;
+mod markers;
+
+use fric_tendon::edit::{GratingLine, ManipulatorEdit, rewrite};
+use fric_tendon::file::ManipulatorFile;
+use fric_tendon_lab::discover::{TendonDiscovery, discover};
+use fric_tendon_lab::fbg::Calibration;
+use fric_tendon_lab::simulate::{Experiment, TendonSimulationOptions, simulate};
+use fric_tendon_lab::{ContinuumError, Run, RunSample};
+
+pub(super) const PROTOTYPE: &str = include_str!("../../../examples/tendon-prototype.toml");
+
+/// The text of the calibrated prototype, and a run of it with these μ.
+fn measured(experiment: Experiment, seed: u64, mu: &[f64]) -> (String, Vec<RunSample>) {
+    let options = TendonSimulationOptions { experiment, seed, ..TendonSimulationOptions::default() };
+    let edit = ManipulatorEdit { mu: mu.to_vec(), ..ManipulatorEdit::default() };
+    measured_of(&rewrite(PROTOTYPE, "truth", &edit).unwrap(), &options)
+}
+
+/// The text of the calibrated prototype, and a run of another manipulator.
+pub(super) fn measured_of(truth: &str, options: &TendonSimulationOptions) -> (String, Vec<RunSample>) {
+    let run = simulate(ManipulatorFile::parse(truth, "truth").unwrap().params(), options).unwrap();
+    let lines = Calibration::fit_all(&run.calibration).unwrap();
+    let line = |line: &Calibration| {
+        let error = line.line_error();
+        GratingLine {
+            newton_per_nm: line.newton_per_nm,
+            offset_n: line.offset_n,
+            standard_error_n: line.largest_standard_error_n(),
+            line_error_n: error.line_error_n,
+            slope_error_n_per_nm: error.slope_error_n_per_nm,
+            mean_shift_nm: error.mean_shift_nm,
+        }
+    };
+    let edit = ManipulatorEdit { lines: lines.iter().map(line).collect(), ..ManipulatorEdit::default() };
+    (rewrite(PROTOTYPE, "arm", &edit).unwrap(), run.samples)
+}
+
+fn found(text: &str, samples: &[RunSample]) -> TendonDiscovery {
+    let run = Run::new(samples.to_vec(), 8).unwrap();
+    discover(&ManipulatorFile::parse(text, "arm").unwrap(), &run, "run").unwrap()
+}
+
+/// The verdict and the names of what was found.
+fn told(discovery: &TendonDiscovery) -> (&'static str, Vec<&'static str>) {
+    let tendon = &discovery.result.cables[0];
+    (tendon.verdict, tendon.effects.iter().map(|effect| effect.kind).collect())
+}
+
+/// The same without the holes whose μ is their own: those of simulated manipulators differ by ±10 %, and a run with both directions tells some of them.
+fn told_but_holes(discovery: &TendonDiscovery) -> (&'static str, Vec<&'static str>) {
+    let (verdict, mut kinds) = told(discovery);
+    kinds.retain(|kind| *kind != "hole_friction");
+    (verdict, kinds)
+}
+
+fn without_sigma(text: &str) -> String {
+    text.lines().filter(|line| !line.starts_with("sigma_n_per_m")).map(|line| line.to_owned() + "\n").collect()
+}
+
+#[test]
+fn a_spread_of_friction_is_told_hole_by_hole_or_not_at_all() {
+    let (text, samples) = measured(Experiment::OneWay, 1, &[0.1753]);
+    assert_eq!(told(&found(&text, &samples)), ("complete", Vec::new()));
+    for seed in [2, 3] {
+        let (text, samples) = measured(Experiment::Mixed, seed, &[0.1753]);
+        let discovery = found(&text, &samples);
+        let (verdict, kinds) = told(&discovery);
+        assert_eq!(verdict, if kinds.is_empty() { "complete" } else { "extended" }, "{seed}");
+        assert!(kinds.iter().all(|kind| *kind == "hole_friction"), "{seed} {kinds:?}");
+        let written = rewrite(&text, "arm", &discovery.edit).unwrap();
+        assert_eq!(told(&found(&written, &samples)), ("complete", Vec::new()), "{seed}");
+    }
+    // Pulled one way, nothing tells the history from Coulomb's friction.
+    let (text, samples) = measured(Experiment::OneWay, 4, &[0.1753]);
+    assert_eq!(told(&found(&without_sigma(&text), &samples)), ("complete", Vec::new()));
+}
+
+/// The noise is that of the same run without gaps.
+#[test]
+fn samples_that_gratings_lack_do_not_hide_their_noise() {
+    let (text, mut samples) = measured(Experiment::Mixed, 2, &[0.1753]);
+    let whole = found(&text, &samples).result.cables[0].noise_floor_n;
+    for shift_nm in samples.iter_mut().step_by(20).flat_map(|sample| &mut sample.shift_nm) {
+        *shift_nm = f64::NAN;
+    }
+    let discovery = found(&text, &samples);
+    assert_ne!(told(&discovery).0, "unexplained");
+    let noise_n = discovery.result.cables[0].noise_floor_n;
+    assert!((noise_n / whole - 1.0).abs() < 0.1, "{noise_n} {whole}");
+    for (place, sample) in samples.iter_mut().enumerate() {
+        if place % 4 == 0 {
+            sample.shift_nm.fill(f64::NAN);
+        }
+    }
+    let file = ManipulatorFile::parse(&text, "arm").unwrap();
+    let refused = discover(&file, &Run::new(samples, 8).unwrap(), "run").unwrap_err();
+    assert_eq!(refused, ContinuumError::UntoldNoise);
+}
+
+#[test]
+fn friction_and_its_memory_are_named() {
+    let none = |text: &str| text.replace("mu = 0.1753 ", "mu = 0.0 ");
+    let (text, samples) = measured(Experiment::OneWay, 5, &[0.1753]);
+    let discovery = found(&none(&text), &samples);
+    assert_eq!(told(&discovery), ("extended", vec!["coulomb"]));
+    let mu = discovery.result.cables[0].effects[0].parameters.get("mu").unwrap();
+    assert!((mu / 0.1753 - 1.0).abs() < 0.1, "{mu}");
+    assert!(discovery.result.cables[0].gap_closed.unwrap() > 0.95);
+
+    let (text, samples) = measured(Experiment::Mixed, 6, &[0.1753]);
+    assert_eq!(told_but_holes(&found(&none(&text), &samples)), ("extended", vec!["coulomb", "presliding"]));
+    let discovery = found(&without_sigma(&text), &samples);
+    assert_eq!(told_but_holes(&discovery), ("extended", vec!["presliding"]));
+    // With what was found in the file nothing is missing.
+    let extended = rewrite(&without_sigma(&text), "arm", &discovery.edit).unwrap();
+    assert_eq!(told(&found(&extended, &samples)), ("complete", Vec::new()));
+}
+
+#[test]
+fn a_hole_of_its_own_is_named() {
+    let mut mu = [0.1753; 8];
+    mu[3] = 0.35;
+    for experiment in [Experiment::OneWay, Experiment::Mixed] {
+        let (text, samples) = measured(experiment, 1, &mu);
+        let discovery = found(&text, &samples);
+        assert_eq!(told_but_holes(&discovery), ("extended", Vec::new()), "{experiment:?}");
+        let effect = &discovery.result.cables[0].effects[0];
+        assert_eq!(effect.parameters.get("hole"), Some(4.0), "the roughest comes first");
+        assert!((effect.parameters.get("mu").unwrap() / 0.35 - 1.0).abs() < 0.15);
+        assert_eq!(discovery.edit.mu.len(), 8);
+    }
+}
+
+#[test]
+fn a_drifting_grating_is_named_and_another_fault_is_not() {
+    let (text, samples) = measured(Experiment::Mixed, 7, &[0.1753]);
+    let mut warm = samples.clone();
+    for sample in &mut warm {
+        sample.shift_nm[2] += 0.002 * sample.time_s;
+    }
+    let discovery = found(&text, &warm);
+    assert_eq!(told_but_holes(&discovery), ("extended", vec!["sensor_drift"]));
+    let effects = &discovery.result.cables[0].effects;
+    let effect = effects.iter().find(|effect| effect.kind == "sensor_drift").unwrap();
+    assert_eq!(effect.parameters.get("grating"), Some(3.0));
+    assert!((effect.parameters.get("drift_nm_per_s").unwrap() / 0.002 - 1.0).abs() < 0.1);
+    let extended = rewrite(&text, "arm", &discovery.edit).unwrap();
+    assert_eq!(told(&found(&extended, &warm)), ("complete", Vec::new()));
+
+    // Beside the fault of another grating it is still a drift.
+    for sample in &mut warm {
+        sample.shift_nm[6] += 0.01 * (5.0 * sample.time_s).sin();
+    }
+    assert_eq!(told_but_holes(&found(&text, &warm)), ("unexplained", vec!["sensor_drift"]));
+
+    let mut humming = samples;
+    for sample in &mut humming {
+        sample.shift_nm[4] += 0.01 * (5.0 * sample.time_s).sin();
+    }
+    let discovery = found(&text, &humming);
+    assert_eq!(told(&discovery), ("unexplained", Vec::new()));
+    let rest = discovery.result.cables[0].unexplained.as_ref().unwrap();
+    assert_eq!(rest.places[0].from, 5);
+}
+
+/// Lines of other gratings are wrong in slope and offset, and pulled one way the tension rises with the time as a drift does.
+#[test]
+fn lines_of_other_gratings_are_no_drift() {
+    for (experiment, seed, other) in
+        [(Experiment::OneWay, 6, 7), (Experiment::OneWay, 9, 10), (Experiment::Mixed, 7, 5)]
+    {
+        let (_, samples) = measured(experiment, seed, &[0.1753]);
+        let (text, _) = measured(experiment, other, &[0.1753]);
+        assert_eq!(told(&found(&text, &samples)), ("unexplained", Vec::new()), "{experiment:?} {seed} {other}");
+    }
+    // One of them alone.
+    let (text, mut samples) = measured(Experiment::OneWay, 11, &[0.1753]);
+    for sample in &mut samples {
+        sample.shift_nm[4] *= 1.15;
+    }
+    assert_eq!(told(&found(&text, &samples)), ("unexplained", Vec::new()));
+}
+
+#[test]
+fn runs_that_tell_nothing_are_refused() {
+    let (text, samples) = measured(Experiment::OneWay, 8, &[0.1753]);
+    let file = ManipulatorFile::parse(&text, "arm").unwrap();
+    let refused = |samples: Vec<RunSample>, file: &ManipulatorFile| {
+        discover(file, &Run::new(samples, 8).unwrap(), "run").unwrap_err()
+    };
+    assert!(matches!(refused(samples[..20].to_vec(), &file), ContinuumError::TooShort { count: 20, .. }));
+    let blind = samples.iter().map(|sample| RunSample { shift_nm: Vec::new(), ..sample.clone() }).collect();
+    assert!(refused(blind, &file).to_string().starts_with("the run has no gratings"));
+    assert_eq!(refused(samples, &ManipulatorFile::parse(PROTOTYPE, "arm").unwrap()), ContinuumError::NoGratings);
+}

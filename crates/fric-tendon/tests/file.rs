@@ -1,0 +1,172 @@
+//! The manipulator file: the published prototype, and the sentences for what is wrong.
+
+use std::path::Path;
+
+use fric_tendon::edit::{GratingLine, ManipulatorEdit, rewrite};
+use fric_tendon::file::{ManipulatorFile, OneOrEach};
+use fric_tendon::measuring::{BaseSensorTable, MarkersTable};
+use fric_tendon::{ManipulatorOptions, ManipulatorParams, Tendon};
+
+const PROTOTYPE: &str = include_str!("../../../examples/tendon-prototype.toml");
+
+/// The error of the prototype with one text replaced by another.
+fn said(from: &str, to: &str) -> String {
+    assert!(PROTOTYPE.contains(from), "{from}");
+    ManipulatorFile::parse(&PROTOTYPE.replace(from, to), "arm.toml").unwrap_err().to_string()
+}
+
+#[test]
+fn the_example_is_the_published_prototype() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/tendon-prototype.toml");
+    let file = ManipulatorFile::read(&path).unwrap();
+    assert_eq!(*file.params(), ManipulatorParams::new(&ManipulatorOptions::published()).unwrap());
+    let again = ManipulatorFile::parse(&file.to_toml().unwrap(), "again").unwrap();
+    assert_eq!(again, file);
+}
+
+#[test]
+fn holes_may_differ_and_so_may_tendons() {
+    let text = PROTOTYPE.replace("mu = 0.1753 ", "mu = [0.1, 0.2, 0.1, 0.2, 0.1, 0.2, 0.1, 0.2]")
+        + "\n[antagonist]\nmu = 0\nsigma_n_per_m = 1e4\naxial_stiffness_n = 5e3\ncapacity_n = 2.0\n";
+    let file = ManipulatorFile::parse(&text, "arm.toml").unwrap();
+    assert_eq!(file.params().mu(Tendon::Agonist)[..3], [0.1, 0.2, 0.1]);
+    assert_eq!(file.params().mu(Tendon::Antagonist), [0.0; 8]);
+    assert_eq!(file.params().capacity_n(Tendon::Antagonist), 2.0);
+    assert_eq!(ManipulatorFile::parse(&file.to_toml().unwrap(), "again").unwrap(), file);
+}
+
+#[test]
+fn every_mistake_gets_its_sentence() {
+    let long = said("mu = 0.1753 ", "mu = [0.1, 0.2]");
+    assert_eq!(long, "arm.toml, line 20: `mu` of the tendon has 2 entries; 8 are needed");
+    assert_eq!(
+        said("mu = 0.1753 ", "mu = nan"),
+        "arm.toml, line 20: `mu` of the tendon at place 1 is NaN, which is not a finite number; allowed is 0 to 0.9"
+    );
+    assert_eq!(
+        said("mu = 0.1753 ", "mu = \"low\""),
+        "arm.toml, line 20: `mu` is the text \"low\"; it must be a number, or a list with one for each hole"
+    );
+    assert_eq!(
+        said("thickness_m = 0.0003", "thickness_m = 0.3e9"),
+        "arm.toml, line 15: `thickness_m` is 3e8; allowed is 1e-6 to 1"
+    );
+    assert!(said("pitch_m", "pich_m").starts_with("arm.toml, line 7: unknown key `pich_m`; did you mean `pitch_m`?"));
+    assert_eq!(
+        said("[0.0, 0.0]", "[0.0, 0.0, -9.8]"),
+        "arm.toml, line 11: `gravity_m_per_s2` has 3 entries; it must be 2 numbers in brackets"
+    );
+    assert_eq!(
+        said("format = \"fric-continuum/1\"\n", ""),
+        "arm.toml, line 1: `format` is missing; write format = \"fric-continuum/1\""
+    );
+    assert_eq!(
+        said("continuum/1", "continuum/2"),
+        "arm.toml, line 3: `format` is \"fric-continuum/2\"; this version reads \"fric-continuum/1\""
+    );
+    let tip = ManipulatorFile::parse(&(PROTOTYPE.to_owned() + "\n[tip]\nmass_kg = -1.0\n"), "arm.toml").unwrap_err();
+    assert_eq!(tip.to_string(), "arm.toml, line 26: `mass_kg` is -1; allowed is 0 to 1000");
+    let missing = ManipulatorFile::read(Path::new("no-such.toml")).unwrap_err().to_string();
+    assert!(missing.starts_with("cannot read the manipulator file no-such.toml: "));
+}
+
+const GRATINGS: &str = "\n[gratings]\nwavelength_nm = 1550.0\nphotoelastic_ratio = 0.22\n";
+
+#[test]
+fn gratings_are_checked() {
+    let said = |lines: &str| {
+        let text = PROTOTYPE.to_owned() + "\n[gratings]\n" + lines;
+        ManipulatorFile::parse(&text, "arm.toml").unwrap_err().to_string()
+    };
+    assert!(ManipulatorFile::parse(&(PROTOTYPE.to_owned() + GRATINGS), "arm.toml").is_ok());
+    assert!(said("").starts_with("arm.toml, line 25: no tension follows from these gratings; give `newton_per_nm`"));
+    assert_eq!(
+        said("newton_per_nm = [11.0, 11.0]\n"),
+        "arm.toml, line 26: `newton_per_nm` has 2 entries; 8 are needed, one for each segment"
+    );
+    let zero = said("newton_per_nm = [11, 11, 0, 11, 11, 11, 11, 11]\n");
+    assert!(zero.contains("`newton_per_nm` of grating 3 is 0"), "{zero}");
+    let not_finite = said("newton_per_nm = [11, nan, 11, 11, 11, 11, 11, 11]\n");
+    assert!(not_finite.starts_with("arm.toml, line 26: `newton_per_nm` is NaN"), "{not_finite}");
+    assert!(said("newton_per_n = [1.0]\n").contains("did you mean `newton_per_nm`?"));
+    assert!(
+        said("wavelength_nm = 1550.0\nphotoelastic_ratio = 0.22\nlength_m = 0.004\n").contains("give both or none")
+    );
+}
+
+#[test]
+fn a_calibration_goes_into_the_file_and_nothing_else_changes() {
+    let with_calibration = |text: &str, origin: &str, lines: &[GratingLine]| {
+        rewrite(text, origin, &ManipulatorEdit { lines: lines.to_vec(), ..ManipulatorEdit::default() })
+    };
+    let line = |place: u32| GratingLine {
+        newton_per_nm: 11.0 + 0.1 * f64::from(place),
+        offset_n: -0.01,
+        standard_error_n: 0.005,
+        line_error_n: 0.002,
+        slope_error_n_per_nm: 0.03,
+        mean_shift_nm: 0.1,
+    };
+    let lines: Vec<GratingLine> = (0..8).map(line).collect();
+    let text = with_calibration(PROTOTYPE, "arm.toml", &lines).unwrap();
+    assert!(text.starts_with(PROTOTYPE), "{text}");
+    let read = ManipulatorFile::parse(&text, "arm.toml").unwrap();
+    let gratings = read.tables().gratings.clone().unwrap();
+    assert_eq!(gratings.newton_per_nm, lines.iter().map(|line| line.newton_per_nm).collect::<Vec<_>>());
+    assert_eq!((gratings.offset_n.len(), gratings.standard_error_n[7]), (8, 0.005));
+    assert_eq!(
+        (gratings.line_error_n[7], gratings.slope_error_n_per_nm[0], gratings.mean_shift_nm[3]),
+        (0.002, 0.03, 0.1)
+    );
+    // A second calibration replaces the first; what else is known of the gratings stays.
+    let stated = PROTOTYPE.to_owned() + GRATINGS;
+    let again =
+        with_calibration(&with_calibration(&stated, "arm.toml", &lines[..]).unwrap(), "arm.toml", &lines).unwrap();
+    assert_eq!(again.matches("\nnewton_per_nm").count(), 1);
+    assert!(again.contains("photoelastic_ratio = 0.22"));
+    assert!(with_calibration(PROTOTYPE, "arm.toml", &lines[..3]).unwrap_err().to_string().contains("8 are needed"));
+    assert!(with_calibration("gratings = 3", "arm.toml", &lines).is_err());
+}
+
+#[test]
+fn backbone_markers_and_base_sensor_may_be_stated() {
+    let text = PROTOTYPE.replace(
+        "mass_kg_per_m = 0.01413",
+        "mass_kg_per_m = 0.01413\nsegment_stiffness_ratio = [1, 1, 0.5, 1, 1, 1, 1, 1]\nprecurvature_per_m = 0.3",
+    ) + "\n[markers]\noffset_m = [0.005, 0.0]\nangle_rad = 0.05\n\n[base_sensor]\ngain = 1.02\nlag_s = 0.1\n";
+    let file = ManipulatorFile::parse(&text, "arm.toml").unwrap();
+    let stiffness = file.params().segment_stiffness_n_m2();
+    assert_eq!((stiffness[2], stiffness.len()), (0.5 * stiffness[0], 8));
+    assert!((file.params().rest_bend_rad()[7] - 0.3 * 0.037).abs() < 1e-15);
+    assert_eq!(file.tables().base_sensor.unwrap().offset_n, 0.0);
+    assert_eq!(ManipulatorFile::parse(&file.to_toml().unwrap(), "again").unwrap(), file);
+    let said =
+        |from: &str, to: &str| ManipulatorFile::parse(&text.replace(from, to), "arm.toml").unwrap_err().to_string();
+    assert_eq!(
+        said("1, 0.5, 1", "1, 0, 1"),
+        "arm.toml, line 18: `segment_stiffness_ratio` at place 3 is 0; allowed is 0.01 to 100"
+    );
+    assert!(said("precurvature_per_m = 0.3", "precurvature_per_m = 30").contains("allowed is -27.0270"));
+    assert_eq!(said("gain = 1.02", "gain = 0"), "arm.toml, line 32: `gain` is 0; allowed is 0.1 to 10");
+    assert!(said("angle_rad = 0.05", "angle_rad = inf").starts_with("arm.toml, line 29: `angle_rad` is inf"));
+    assert!(said("lag_s", "lags").contains("did you mean `lag_s`?"));
+}
+
+#[test]
+fn an_edit_makes_one_file_the_other() {
+    let given = ManipulatorFile::parse(PROTOTYPE, "arm.toml").unwrap();
+    let mut tables = given.tables().clone();
+    tables.hole_radius_m = 0.0157;
+    tables.gravity_m_per_s2 = [1.0, -9.0];
+    tables.backbone.youngs_modulus_pa = 1.9e11;
+    tables.backbone.precurvature_per_m = Some(OneOrEach::One(0.2));
+    tables.backbone.segment_stiffness_ratio = Some(OneOrEach::Each(vec![1.0, 0.5, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]));
+    tables.tip.mass_kg = 0.001;
+    tables.markers = Some(MarkersTable { offset_m: [0.001, 0.002], angle_rad: 0.1 });
+    tables.base_sensor = Some(BaseSensorTable { gain: 1.1, offset_n: 0.1, lag_s: 0.0 });
+    let edit = ManipulatorEdit::between(given.tables(), &tables);
+    let text = rewrite(PROTOTYPE, "arm.toml", &edit).unwrap();
+    assert_eq!(*ManipulatorFile::parse(&text, "new").unwrap().tables(), tables);
+    assert!(text.contains("# holes on a circle of 30 mm"));
+    assert_eq!(ManipulatorEdit::between(given.tables(), given.tables()), ManipulatorEdit::default());
+}
