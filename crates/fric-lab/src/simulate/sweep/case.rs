@@ -9,6 +9,7 @@ use super::robots::{CABLE_COUNT, Friction, GUESS, bench, small_robot};
 use super::values;
 use super::{Case, Group};
 use crate::effects::Sizing;
+use crate::excite::ExcitationError;
 use crate::random::uniform;
 use crate::simulate::disturbances::Disturbance;
 use crate::simulate::error::{HiddenError, SimulationError};
@@ -27,7 +28,7 @@ const BENCH_RESOLUTION_M: f64 = 2e-6;
 /// About how long the identification run of the small robot takes, s.
 const RUN_S: f64 = 52.0;
 /// Mean normal force of the three pulleys per tension: 2 at 180°, √2 at 90°, as much at the swivelling one.
-const NORMAL_PER_TENSION: f64 = 1.6;
+pub(super) const NORMAL_PER_TENSION: f64 = 1.6;
 /// Apart from the streams of the simulation itself, which has the same seed.
 const STREAM: u64 = u64::MAX;
 
@@ -67,6 +68,9 @@ pub enum SweepError {
     /// Its robot is not right.
     #[error(transparent)]
     Robot(#[from] RobotFileError),
+    /// Its robot finds no way to move.
+    #[error(transparent)]
+    Excitation(#[from] ExcitationError),
     /// It cannot be simulated.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
