@@ -11,7 +11,7 @@
 //! Nothing here fails: a search that does not converge says so in its [`Termination`]. Results do not depend on the
 //! number of threads.
 
-mod balance;
+pub(crate) mod balance;
 pub(crate) mod cables;
 mod error;
 mod options;

@@ -1,6 +1,7 @@
 //! What is hidden in a case, on which cables, and how strong.
 
 use fric_core::effects::Effect;
+use fric_core::effects::ripple::PERIOD_KEY;
 use rand_chacha::ChaCha8Rng;
 
 use super::super::case::NORMAL_PER_TENSION;
@@ -16,6 +17,8 @@ use crate::simulate::hidden::HiddenEffect;
 /// By how much a wrong mass is off at full strength, as a share, and a wrong point, m.
 const MASS_RATIO: f64 = 0.08;
 const BASE_M: f64 = 0.015;
+/// Circumference of the pulleys, m: a ripple turns with them, and a run goes through several turns.
+const PULLEY_M: f64 = core::f64::consts::TAU * 0.01;
 /// Standard gravity, m/s², and the mass below which the tensions do not fall further, kg.
 const G_M_PER_S2: f64 = 9.80665;
 const LIGHT_KG: f64 = 0.41;
@@ -136,7 +139,7 @@ fn effect_on(
 ) -> Result<HiddenEffect, HiddenError> {
     let friction = body.friction[cable];
     let tension_n = body.mass_kg.max(LIGHT_KG) * G_M_PER_S2 + 3.0 * friction.viscous_n_s_per_m;
-    values::effect(
+    let drawn = values::effect(
         effect,
         &mut Sizing {
             strength_ratio: case.strength_ratio,
@@ -146,7 +149,9 @@ fn effect_on(
             duration_s,
             random,
         },
-    )
+    )?;
+    let of_this_robot = |(key, value): &(&'static str, f64)| (*key, if *key == PERIOD_KEY { PULLEY_M } else { *value });
+    HiddenEffect::of(effect, &drawn.values().iter().map(of_this_robot).collect::<Vec<_>>())
 }
 
 /// A size of either sign, drawn around a full one.

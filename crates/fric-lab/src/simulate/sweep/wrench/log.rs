@@ -163,15 +163,15 @@ impl WrenchCase {
     }
 
     /// What the loop logs, with pose and wrench on lines between their measurements.
-    fn recorded(&self, simulation: &mut Simulation, hum: &[Option<Hum>], cycle_s: f64) -> Vec<WrenchCycle> {
+    fn recorded(&self, simulation: &mut Simulation, hum: &[Option<Hum>], interval_s: f64) -> Vec<WrenchCycle> {
         let random = &mut ChaCha8Rng::seed_from_u64(self.seed);
         random.set_stream(STREAM - 1);
         let mut cycles: Vec<WrenchCycle> = Vec::new();
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some 10,000")]
-        let count = (LOG_S / cycle_s) as usize;
+        let count = (LOG_S / interval_s) as usize;
         while let Some(sample) = simulation.next_cycle().filter(|_| cycles.len() < count) {
             #[expect(clippy::cast_precision_loss, reason = "some 10,000")]
-            let time_s = cycles.len() as f64 * cycle_s;
+            let time_s = cycles.len() as f64 * interval_s;
             // A platform on its cables has one.
             let Some(pose) = sample.pose else { break };
             let mut cables = sample.cables.to_vec();

@@ -96,10 +96,10 @@ impl WrenchGroup {
             Self::WinchRipple => "winch ripple on one",
             Self::Delay => "delay on one",
             Self::DelayOnAll => "delay on all",
-            Self::GainAndDrag => "gain on one, drag on all",
-            Self::GainAndStribeck => "gain on one, stribeck on another",
+            Self::GainAndDrag => "gain on one + drag on all",
+            Self::GainAndStribeck => "gain on one + stribeck on another",
             Self::Hum => "hum on one",
-            Self::HumAndGain => "hum on all, gain on one",
+            Self::HumAndGain => "hum on all + gain on one",
             Self::Mass => "wrong mass",
             Self::Base => "wrong base_m",
         }
