@@ -107,7 +107,9 @@ pub fn draw(case: &WrenchCase, duration_s: f64, random: &mut ChaCha8Rng) -> Resu
         }
         WrenchGroup::Base => {
             let [base_m, _] = &mut given.points_m[one];
-            base_m.iter_mut().for_each(|number| *number += either(case.strength_ratio * BASE_M, random));
+            for number in base_m {
+                *number += either(case.strength_ratio * BASE_M, random);
+            }
             misstated = Some(Misstated::Base(one));
         }
         _ => {}

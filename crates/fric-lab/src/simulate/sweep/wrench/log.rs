@@ -195,10 +195,10 @@ impl WrenchCase {
         let mut wrench = *wrench;
         let [force_n, torque_nm] = WRENCH_NOISE.map(|noise| self.noise_ratio * noise);
         for (part, noise) in [(&mut wrench.force_n, force_n), (&mut wrench.torque_nm, torque_nm)] {
-            part.iter_mut().for_each(|number| {
+            for number in part {
                 let drawn: f64 = StandardNormal.sample(random);
                 *number += noise * drawn;
-            });
+            }
         }
         wrench
     }
