@@ -207,7 +207,9 @@ fn print_groups(outcomes: &[Outcome]) {
     for outcome in outcomes {
         groups.entry(outcome.case.group).or_default().push(outcome);
     }
-    groups.values_mut().for_each(|of| of.sort_by_key(|outcome| outcome.case.seed));
+    for of in groups.values_mut() {
+        of.sort_by_key(|outcome| outcome.case.seed);
+    }
     println!(
         "\n| hidden | exactly right | names and cables right | false names | rms after / noise | force error / that of the true model |\n\
          |---|---|---|---|---|---|"
