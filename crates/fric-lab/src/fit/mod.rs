@@ -10,7 +10,7 @@
 //! The model is the cycle itself ([`fric_core::CableGroup`]), run with numbers that carry derivatives. Searches do not fail: one that does not
 //! converge reports so in its [`Termination`]. Results do not depend on the number of threads.
 
-mod balance;
+pub(crate) mod balance;
 pub(crate) mod cables;
 mod error;
 mod options;

@@ -166,11 +166,12 @@ pub struct FirstModel {
     pub standings: Vec<Standing>,
 }
 
-/// Fits the parameters that act in the given model to all samples. Offsets stay as given, because they are determined only in combinations. Whether
-/// the samples determine a parameter is not checked, because a model with a missing effect cannot tell.
+/// Fits what acts in the given model to the samples that count; offsets stay as given, for they are seen in combinations only. What the samples determine is not
+/// asked: a model that lacks something does not know.
 pub fn first_model(
     measurements: &Measurements<'_>,
     references: &ReferenceWrenches,
+    counts: &dyn Fn(usize) -> bool,
     acts: impl Fn(&Parameter, &Values) -> bool,
     progress: &Progress,
 ) -> FirstModel {
@@ -180,7 +181,7 @@ pub fn first_model(
     let case = Case { records, structure, references, options: &options, progress };
     let is_wanted =
         |record: &CableRecord<'_>, of: &Parameter| of.place() != OFFSET && acts(of, &record.params.values());
-    let Prepared { mut problem, starts, mut standings } = case.prepared(&|_| true, &is_wanted);
+    let Prepared { mut problem, starts, mut standings } = case.prepared(counts, &is_wanted);
     let solution = settle(&mut problem, starts, &case.given(), case.cycle_s(), options.weighing, &mut standings);
     let free = problem.members.into_iter().map(|member| member.free).collect();
     FirstModel { values: solution.values, free, standings }

@@ -244,7 +244,13 @@ impl Simulation {
         })
     }
 
-    /// Returns the total number of cycles.
+    /// The same movements under tensions that wander, also where the run states the loads.
+    pub(super) fn with_wandering_tensions(mut self) -> Self {
+        self.stated = None;
+        self
+    }
+
+    /// How many cycles there will be.
     #[must_use]
     pub fn total_cycles(&self) -> u64 {
         self.total_cycles

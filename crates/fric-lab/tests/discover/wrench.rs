@@ -3,9 +3,10 @@
 //! At a quarter of the usual rate, for the time it takes: the presliding of a cycle is coarser there than the white noise of six equations, so that
 //! names and values are looked at, and the verdict where nothing moves fast.
 
+use fric_core::Wrench;
 use fric_core::effects::Effect;
 use fric_core::robot::file::RobotFile;
-use fric_lab::discover::{Geometry, Verdict, WrenchDiscovery, discover_wrench};
+use fric_lab::discover::{Fault, Geometry, Verdict, WrenchDiscovery, discover_wrench};
 use fric_lab::fit::{Progress, Reference};
 use fric_lab::simulate::SimulationOptions;
 
@@ -18,10 +19,13 @@ fn robot(change: impl Fn(String) -> String) -> RobotFile {
     RobotFile::parse(&change(EXAMPLE.replace("cycle_s = 0.001", "cycle_s = 0.004")), "example").unwrap()
 }
 
+fn record(truth: &RobotFile, seed: u64, duration_s: f64) -> Log {
+    Log::record(truth, &SimulationOptions { duration_s: Some(duration_s), seed, ..SimulationOptions::default() })
+}
+
 /// What is found on a log of the one robot with the file of the other.
 fn look(truth: &RobotFile, given: &RobotFile, seed: u64, by_mass: bool) -> WrenchDiscovery {
-    let options = SimulationOptions { duration_s: Some(16.0), seed, ..SimulationOptions::default() };
-    let mut log = Log::record(truth, &options);
+    let mut log = record(truth, seed, 16.0);
     if by_mass {
         log.0.iter_mut().for_each(|cycle| cycle.outside_wrench = None);
     }
@@ -68,4 +72,53 @@ fn a_wrong_mass_is_no_friction() {
     assert_eq!(found.geometry.iter().map(|of| of.geometry).collect::<Vec<_>>(), [Geometry::Mass]);
     assert!(names(&found).iter().all(Vec::is_empty));
     assert!((found.geometry[0].numbers[0] - 0.41).abs() < 0.002, "{:?}", found.geometry);
+}
+
+/// A sine of 0.2 N and 50 Hz, cycle by cycle at 250 Hz.
+fn sine_n() -> impl Iterator<Item = f64> {
+    (0..).map(|cycle| 0.2 * (core::f64::consts::TAU * 50.0 * f64::from(cycle) * 0.004 + 0.3).sin())
+}
+
+#[test]
+fn hum_of_a_sensor_is_a_fault_of_the_recording() {
+    let truth = robot(|text| text);
+    // Longer than a stretch of the spectrum.
+    let mut log = record(&truth, 9, 18.0);
+    for (cycle, hum_n) in log.0.iter_mut().zip(sine_n()) {
+        cycle.cables[2].sensor_force_n += hum_n;
+    }
+    let found = discover_wrench(&log.measured(&truth, Reference::Wrench), &Progress::new()).unwrap();
+    assert!(found.geometry.is_empty() && names(&found).iter().all(Vec::is_empty), "{:?}", names(&found));
+    assert_eq!(found.verdict, Verdict::Complete);
+    for (cable, of) in found.cables.iter().enumerate() {
+        let faults: Vec<_> = of.faults.iter().map(|fault| (fault.fault, fault.parameters.clone())).collect();
+        if cable != 2 {
+            assert_eq!(faults, [], "cable {}", cable + 1);
+            continue;
+        }
+        let [(Fault::Hum, parameters)] = faults.as_slice() else { panic!("{faults:?}") };
+        let [(_, frequency_hz), (_, amplitude_n)] = parameters[..] else { panic!("{parameters:?}") };
+        // The noise leaves the amplitude to √(2/N) of it: 0.0004 N.
+        assert!((frequency_hz - 50.0).abs() < 0.01 && (amplitude_n - 0.2).abs() < 0.002, "{parameters:?}");
+    }
+}
+
+/// A cable that trembles pulls at the platform, which the wrench tells.
+#[test]
+fn a_trembling_cable_is_no_hum() {
+    let truth = robot(|text| text);
+    // Longer than a stretch of the spectrum.
+    let mut log = record(&truth, 9, 18.0);
+    for (cycle, force_n) in log.0.iter_mut().zip(sine_n()) {
+        cycle.cables[2].sensor_force_n += force_n;
+        let column = truth.params().cables()[2].structure_column(&cycle.pose.unwrap()).unwrap();
+        // A sensor at 180° feels its cable twice.
+        let wrench = cycle.outside_wrench.unwrap().to_vector() - column * (0.5 * force_n);
+        cycle.outside_wrench = Some(Wrench {
+            force_n: wrench.fixed_rows::<3>(0).into_owned(),
+            torque_nm: wrench.fixed_rows::<3>(3).into_owned(),
+        });
+    }
+    let found = discover_wrench(&log.measured(&truth, Reference::Wrench), &Progress::new()).unwrap();
+    assert!(found.cables.iter().all(|cable| cable.faults.is_empty()));
 }

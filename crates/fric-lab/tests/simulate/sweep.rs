@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 
 use fric_core::effects::Effect;
-use fric_lab::simulate::sweep::{Case, Group, SweepError, cases};
+use fric_lab::replay::WrenchReference;
+use fric_lab::simulate::sweep::{Case, Group, SweepError, WrenchCase, WrenchGroup, cases, wrench_cases};
 use fric_lab::simulate::{DISTURBANCES, HiddenError};
 
 fn bits(case: &Case, cycles: usize) -> Vec<u64> {
@@ -96,4 +97,47 @@ fn a_log_is_as_long_as_a_run_and_loaded_as_a_small_robot() {
 fn a_case_that_names_nothing_is_refused() {
     let error = Case { disturbance: Some("rust"), ..Case::of(Group::Outside) }.log().unwrap_err();
     assert!(matches!(error, SweepError::Hidden(HiddenError::UnknownKind { noun: "disturbance", .. })), "{error}");
+}
+
+#[test]
+fn there_are_logs_of_whole_robots_of_each_kind() {
+    let cases = wrench_cases();
+    assert!(cases.len() >= 60, "{}", cases.len());
+    let names: BTreeSet<String> = cases.iter().map(WrenchCase::name).collect();
+    let seeds: BTreeSet<u64> = cases.iter().map(|case| case.seed).collect();
+    assert_eq!((names.len(), seeds.len()), (cases.len(), cases.len()));
+    let groups: BTreeSet<WrenchGroup> = cases.iter().map(|case| case.group).collect();
+    for group in groups {
+        let of_group = cases.iter().filter(|case| case.group == group).count();
+        assert!(of_group >= 3, "{}: {of_group}", group.name());
+    }
+}
+
+/// `A^T f + w = 0` (\[P\] 3): the true forces hold the measured wrench to its noise, through the file's geometry.
+#[test]
+fn the_wrench_of_a_log_is_that_of_its_true_forces() {
+    let case = wrench_cases().into_iter().find(|case| case.group == WrenchGroup::Stribeck).unwrap();
+    assert_eq!((case.reference, case.wrench_every), (WrenchReference::Measured, 4));
+    let log = case.log().unwrap();
+    let with_effect: Vec<usize> = (0..8).filter(|cable| !log.truth.effects[*cable].is_empty()).collect();
+    assert_eq!(with_effect.len(), 2);
+    let [given, truth] = [&log.robot, &log.truth.robot].map(|robot| robot.options().cable.clone());
+    for cable in 0..8 {
+        assert!(given[cable].effects.is_empty() && given[cable].friction != truth[cable].friction);
+        assert_eq!(truth[cable].effects.len(), usize::from(with_effect.contains(&cable)));
+    }
+    let params = log.robot.params();
+    let (mut squares, mut count) = ([0.0; 2], 0.0);
+    for cycle in log.cycles.iter().step_by(case.wrench_every) {
+        let wrench = cycle.wrench.unwrap().to_vector();
+        let pulls = params.cables().iter().zip(&cycle.true_force_n);
+        let sum =
+            pulls.fold(wrench, |sum, (cable, force_n)| sum + cable.structure_column(&cycle.pose).unwrap() * *force_n);
+        squares[0] += sum.fixed_rows::<3>(0).norm_squared();
+        squares[1] += sum.fixed_rows::<3>(3).norm_squared();
+        count += 3.0;
+    }
+    let [force_n, torque_nm] = squares.map(|squares: f64| (squares / count).sqrt());
+    assert!((force_n / (0.01 * case.noise_ratio) - 1.0).abs() < 0.05, "{force_n}");
+    assert!((torque_nm / (0.0005 * case.noise_ratio) - 1.0).abs() < 0.05, "{torque_nm}");
 }

@@ -11,6 +11,7 @@ mod bench;
 mod geometry;
 mod naming;
 mod screen;
+mod sensors;
 
 use fric_core::Wrench;
 use fric_core::effects::Effect;
@@ -22,8 +23,10 @@ use self::bench::{Bench, Trial, Unknown};
 use self::geometry::{Changes, Description};
 use self::naming::{Named, Naming, Search};
 use self::screen::Candidate;
+use self::sensors::Sensors;
 use super::cable::{BELIEVED_RATIO, acts};
 use super::extended::extended;
+use super::faults::RecordingFault;
 use super::figures::curve::curves;
 use super::naming::Refusal;
 use super::report::{CableDiscovery, Finding, Model, RunnerUp, Tried, Unexplained, Verdict};
@@ -102,10 +105,13 @@ struct Edits {
 /// # Errors
 /// [`FitError`] where the wrench cannot tell the forces of the cables, or the log is too short to tell the noise.
 pub fn discover_wrench(measurements: &Measurements<'_>, progress: &Progress) -> Result<WrenchDiscovery, FitError> {
+    let sensors = Sensors::of(measurements, &ReferenceWrenches::of(measurements)?);
+    let measurements = &sensors.measurements;
     let references = ReferenceWrenches::of(measurements)?;
     let records: Vec<CableRecord<'_>> = measurements.cables().collect();
     progress.begin(LOOKS + 1);
-    let first = first_model(measurements, &references, acts, progress);
+    let is_sound = |place: usize| sensors.is_faulty.get(place) != Some(&true);
+    let first = first_model(measurements, &references, &is_sound, acts, progress);
     let description = Description {
         robot: measurements.robot(),
         reference: references.kind,
@@ -152,6 +158,7 @@ pub fn discover_wrench(measurements: &Measurements<'_>, progress: &Progress) -> 
         naming: &naming,
         fitted: &fitted,
         samples: crate::samples::selection::count(&first.standings),
+        faults: &sensors.faults,
     }
     .report(covariances.map(|[covariance, _]| covariance))
 }
@@ -213,6 +220,8 @@ struct Case<'b, 'a> {
     /// The extended model, fitted to all samples.
     fitted: &'b Trial,
     samples: crate::fit::SampleCounts,
+    /// What was wrong with the sensor of each cable.
+    faults: &'b [Vec<RecordingFault>],
 }
 
 impl Case<'_, '_> {
@@ -280,7 +289,7 @@ impl Case<'_, '_> {
     }
 
     fn cable(&self, cable: usize, covariance: &DMatrix<f64>) -> CableDiscovery {
-        let Self { bench, base, naming, fitted, samples } = *self;
+        let Self { bench, base, naming, fitted, samples, faults } = *self;
         let record = &bench.records[cable];
         let residual_n = |trial: &Trial| bench.of_cable_n(&trial.model, &bench.deviations(&trial.model), cable);
         let (residual_before_n, residual_after_n) = (residual_n(base), residual_n(fitted));
@@ -351,7 +360,7 @@ impl Case<'_, '_> {
             candidates: Vec::new(),
             tried: tried.collect(),
             places: Vec::new(),
-            faults: Vec::new(),
+            faults: faults.get(cable).cloned().unwrap_or_default(),
             unexplained,
             lack: None,
             profiles: Vec::new(),

@@ -9,6 +9,7 @@ use super::robots::{CABLE_COUNT, Friction, GUESS, bench, small_robot};
 use super::values;
 use super::{Case, Group};
 use crate::effects::Sizing;
+use crate::excite::ExcitationError;
 use crate::random::uniform;
 use crate::simulate::disturbances::Disturbance;
 use crate::simulate::error::{HiddenError, SimulationError};
@@ -26,9 +27,9 @@ const BENCH_S: f64 = 25.0;
 const BENCH_RESOLUTION_M: f64 = 2e-6;
 /// Approximate duration of the small robot's identification run, s.
 const RUN_S: f64 = 52.0;
-/// Mean normal force of the three pulleys per tension: 2 at 180°, √2 at 90°, and √2 at the swivelling one.
-const NORMAL_PER_TENSION: f64 = 1.6;
-/// Separates this random stream from those of the simulation, which has the same seed.
+/// Mean normal force of the three pulleys per tension: 2 at 180°, √2 at 90°, as much at the swivelling one.
+pub(super) const NORMAL_PER_TENSION: f64 = 1.6;
+/// Apart from the streams of the simulation itself, which has the same seed.
 const STREAM: u64 = u64::MAX;
 
 /// A log to search, and its hidden content.
@@ -67,7 +68,10 @@ pub enum SweepError {
     /// The robot of the case is invalid.
     #[error(transparent)]
     Robot(#[from] RobotFileError),
-    /// The case cannot be simulated.
+    /// Its robot finds no way to move.
+    #[error(transparent)]
+    Excitation(#[from] ExcitationError),
+    /// It cannot be simulated.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
 }

@@ -8,6 +8,8 @@
 //! A case is a description and a seed, which together determine every bit of its log. Friction, tension, the choice among the eight cables of a small
 //! robot, and the sign and exact size of effects come from the seed.
 //!
+//! [`wrench_cases`] lists logs of whole robots that are compared with the wrench on the platform.
+//!
 //! ```
 //! use fric_lab::simulate::sweep;
 //! # fn main() -> Result<(), fric_lab::simulate::sweep::SweepError> {
@@ -23,8 +25,10 @@
 mod case;
 mod robots;
 mod values;
+mod wrench;
 
 pub use case::{CaseLog, CaseTruth, SweepError};
+pub use wrench::{Misstated, WrenchCase, WrenchCaseLog, WrenchCycle, WrenchGroup, WrenchTruth, wrench_cases};
 
 use fric_core::effects::Effect;
 

@@ -1,8 +1,6 @@
 //! The robots of a sweep: one cable of a small robot with eight cables, and one drive on a test bench.
 
-use core::fmt::Write as _;
-
-/// Friction values of a cable in a robot file.
+/// Friction of a cable in a robot file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Friction {
     pub mu: f64,
@@ -23,35 +21,36 @@ pub fn small_robot(cables: impl Iterator<Item = usize>, mass_kg: f64, friction: 
     for cable in cables {
         let sign = |is_positive| if is_positive { 1.0 } else { -1.0 };
         let (x, y, z) = (sign(matches!(cable % 4, 0 | 3)), sign(cable % 4 < 2), sign(cable < 4));
-        let _ = write!(
-            text,
-            "[[cable]]\nname = \"cable{}\"\nbase_m = [{:?}, {:?}, {:?}]\nplatform_m = [{:?}, {:?}, {:?}]\n\
-             pulleys = [{{ wrap_deg = 180.0, sensor = true }}, {{ wrap_deg = 90.0 }}, \
-             {{ wrap = \"pose\", radius_m = 0.01, axis = [0.0, 0.0, {z:?}] }}]\n{}",
-            cable + 1,
-            0.55 * x,
-            0.4 * y,
-            0.5 * z,
-            0.06 * x,
-            0.05 * y,
-            -0.05 * z,
-            line(friction),
-        );
+        text += &cable_line(cable, [0.55 * x, 0.4 * y, 0.5 * z], [0.06 * x, 0.05 * y, -0.05 * z]);
+        text += &friction_line(friction);
     }
     text
 }
 
-/// Returns a test bench: a drive, a sensor pulley and two more pulleys, and a weight.
-pub fn bench(mass_kg: f64, friction: &Friction) -> String {
-    let pulleys = "{ wrap_deg = 180.0, sensor = true }, { wrap_deg = 90.0 }, { wrap_deg = 90.0 }";
-    format!("{}[[cable]]\nname = \"drive\"\npulleys = [{pulleys}]\n{}", head(mass_kg), line(friction))
+/// A cable without its friction: sensor at 180°, a fixed pulley, a swivelling one.
+pub fn cable_line(cable: usize, base_m: [f64; 3], platform_m: [f64; 3]) -> String {
+    format!(
+        "[[cable]]\nname = \"cable{}\"\nbase_m = {base_m:?}\nplatform_m = {platform_m:?}\n\
+         pulleys = [{{ wrap_deg = 180.0, sensor = true }}, {{ wrap_deg = 90.0 }}, \
+         {{ wrap = \"pose\", radius_m = 0.01, axis = [0.0, 0.0, {:?}] }}]\n",
+        cable + 1,
+        base_m[2].signum(),
+    )
 }
 
-fn head(mass_kg: f64) -> String {
+/// A drive, a sensor pulley and two more, a weight.
+pub fn bench(mass_kg: f64, friction: &Friction) -> String {
+    let pulleys = "{ wrap_deg = 180.0, sensor = true }, { wrap_deg = 90.0 }, { wrap_deg = 90.0 }";
+    format!("{}[[cable]]\nname = \"drive\"\npulleys = [{pulleys}]\n{}", head(mass_kg), friction_line(friction))
+}
+
+/// What stands before the cables.
+pub fn head(mass_kg: f64) -> String {
     format!("format = \"fric-robot/1\"\nname = \"rig\"\ncycle_s = 0.001\n[platform]\nmass_kg = {mass_kg:?}\n")
 }
 
-fn line(friction: &Friction) -> String {
+/// The line of a cable's friction.
+pub fn friction_line(friction: &Friction) -> String {
     let Friction { mu, sigma_n_per_m, viscous_n_s_per_m } = friction;
     format!(
         "friction = {{ mu = {mu:?}, sigma_n_per_m = {sigma_n_per_m:?}, viscous_n_s_per_m = {viscous_n_s_per_m:?} }}\n"
