@@ -84,12 +84,18 @@ fn hum_of_a_sensor_is_a_fault_of_the_recording() {
     let truth = robot(|text| text);
     // Longer than a stretch of the spectrum.
     let mut log = record(&truth, 9, 18.0);
+    let search = |log: &Log| discover_wrench(&log.measured(&truth, Reference::Wrench), &Progress::new()).unwrap();
+    let clean = search(&log);
     for (cycle, hum_n) in log.0.iter_mut().zip(sine_n()) {
         cycle.cables[2].sensor_force_n += hum_n;
     }
-    let found = discover_wrench(&log.measured(&truth, Reference::Wrench), &Progress::new()).unwrap();
+    let found = search(&log);
     assert!(found.geometry.is_empty() && names(&found).iter().all(Vec::is_empty), "{:?}", names(&found));
-    assert_eq!(found.verdict, Verdict::Complete);
+    // Nothing of it is left.
+    assert_eq!(found.verdict, clean.verdict);
+    for (with, without) in found.after.components.iter().zip(&clean.after.components) {
+        assert!((with / without - 1.0).abs() < 0.02, "{with} {without}");
+    }
     for (cable, of) in found.cables.iter().enumerate() {
         let faults: Vec<_> = of.faults.iter().map(|fault| (fault.fault, fault.parameters.clone())).collect();
         if cable != 2 {

@@ -129,7 +129,9 @@ impl Spectrum {
         #[expect(clippy::cast_precision_loss, reason = "a small constant")]
         let length = STRETCH as f64;
         let scale = 2.0 / (length * length * 0.375 * stretches);
-        powers.iter_mut().for_each(|power| *power *= scale);
+        for power in &mut powers {
+            *power *= scale;
+        }
         (stretches > 0.0).then_some(Self { powers, stretches })
     }
 
