@@ -435,7 +435,7 @@ impl FaultResult {
             ),
             Fault::Vibration => format!(
                 "it vibrates at {:.2} Hz, damped by {} of the critical, {} rms: a mount or a frame that rings; stiffen it, fix the sensor nearer to the \
-                 pulley, or drive it with less jerk; what it shows was taken off the reference",
+                 pulley, or drive it with less jerk",
                 value("frequency_hz"),
                 significant(value("damping_ratio")),
                 newtons(value("rms_n"))
