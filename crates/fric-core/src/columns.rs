@@ -358,7 +358,8 @@ impl<'a, const CABLES: usize> BlockOfCables<'a, CABLES> {
         block: usize,
         count: usize,
     ) -> Self {
-        Self { params, state, block, count }
+        // With the bound in sight, no access to a place has to ask whether the place exists.
+        Self { params, state, block, count: count.min(PLACES) }
     }
 
     #[inline(always)]

@@ -246,12 +246,15 @@ impl<const CABLES: usize> Compensator<CABLES> {
             let products = blocks.map(|block| Lanes::load(row, block) * Lanes::load(&forces_n, block));
             -products.fold(Lanes::splat(0.0), |sum, product| sum + product).sum()
         };
-        output.outside_wrench = self.state.gravity.map(|_| Wrench {
-            force_n: columns.direction.each_ref().map(along).into(),
-            torque_nm: columns.moment_arm_m.each_ref().map(along).into(),
+        // Both in one go: one after the other, the first would be copied twice.
+        let wrenches = self.state.gravity.as_ref().map(|gravity| {
+            let outside = Wrench {
+                force_n: columns.direction.each_ref().map(along).into(),
+                torque_nm: columns.moment_arm_m.each_ref().map(along).into(),
+            };
+            (outside, outside - *gravity)
         });
-        output.applied_wrench =
-            output.outside_wrench.zip(self.state.gravity).map(|(outside, gravity)| outside - gravity);
+        (output.outside_wrench, output.applied_wrench) = wrenches.unzip();
         output.wrench_status = wrench_status;
     }
 

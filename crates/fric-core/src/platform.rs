@@ -106,6 +106,7 @@ impl Wrench {
 
 impl core::ops::Sub for Wrench {
     type Output = Self;
+    #[inline]
     fn sub(self, other: Self) -> Self {
         Self { force_n: self.force_n - other.force_n, torque_nm: self.torque_nm - other.torque_nm }
     }
