@@ -1,32 +1,32 @@
-//! Functions of [`Scalar`]s that few effects need, built like the rest from exactly rounded operations.
+//! Functions of [`Scalar`]s that only a few effects need. They too are built from exactly rounded operations.
 
 use crate::scalar::{Mask, Scalar};
 
 /// 1.5·2⁵²: adding it rounds to an integer.
 const ROUND: f64 = 6_755_399_441_055_744.0;
-/// Up to here `ln(1 + x)/x` is a series, beyond it the logarithm itself.
+/// Greatest `|x|` at which `ln(1 + x)/x` is computed by a series; beyond it the logarithm is used.
 const SERIES: f64 = 0.25;
-/// `ln(1 + x)/x` where there is no logarithm.
+/// Value that stands for `ln(1 + x)/x` where `x ≤ −1`, which has no logarithm.
 const BEYOND: f64 = 1e3;
 
-/// The nearest integer, for magnitudes below 2⁵¹.
+/// Returns the nearest integer, for magnitudes below 2⁵¹.
 #[inline(always)]
 fn round<T: Scalar>(x: T) -> T {
     (x + T::splat(ROUND)) - T::splat(ROUND)
 }
 
-/// `ln(1 + x)/x`, 1 at 0: `2/(2 + x)·(1 + z²/3 + z⁴/5 + …)` with `z = x/(2 + x)` where it is small.
+/// Returns `ln(1 + x)/x`, 1 at 0. For small `x` it is the series `2/(2 + x)·(1 + z²/3 + z⁴/5 + …)` with `z = x/(2 + x)`.
 #[inline(always)]
 pub fn ln_1p_ratio<T: Scalar>(x: T) -> T {
     let (one, two) = (T::splat(1.0), T::splat(2.0));
     let (is_near, exists) = (x.within(SERIES), T::splat(-1.0).lt(x));
-    // Neither form is worked out where it is not defined.
+    // Each form is computed only where it is defined, so that no lane does an invalid operation.
     let small = x.keep(is_near);
     let large = T::select(is_near.not().and(exists), x, one);
     let inverse = one / (two + small);
     let z = small * inverse;
     let z2 = z * z;
-    // |z| ≤ 1/7: the first term left out is 1/21·7⁻²⁰.
+    // |z| ≤ 1/7, so the first omitted term is at most 1/21·7⁻²⁰.
     let odd = [19.0, 17.0, 15.0, 13.0, 11.0, 9.0, 7.0, 5.0, 3.0, 1.0];
     let sum = odd.into_iter().fold(T::splat(0.0), |sum, divisor| sum * z2 + T::splat(1.0 / divisor));
     let near = two * inverse * sum;
@@ -34,8 +34,7 @@ pub fn ln_1p_ratio<T: Scalar>(x: T) -> T {
     T::select(is_near, near, T::select(exists, far, T::splat(BEYOND)))
 }
 
-/// Sine and cosine of `2π·turns`, `|turns| < 2⁴⁹`; the Taylor polynomials on an eighth of a turn to both sides, whose remainders are
-/// below 2⁻⁵⁸.
+/// Returns sine and cosine of `2π·turns`, `|turns| < 2⁴⁹`, from Taylor polynomials on ±1/8 turn, whose remainders are below 2⁻⁵⁸.
 #[inline(always)]
 pub fn sin_cos_turns<T: Scalar>(turns: T) -> [T; 2] {
     let zero = T::splat(0.0);

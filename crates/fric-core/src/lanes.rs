@@ -1,8 +1,8 @@
 //! Cables side by side: the [`Scalar`]s of the control cycle.
 //!
-//! A thin layer over the `wide` crate, which maps it to SSE2, AVX, NEON or plain arrays. Lane `i` holds exactly the
-//! bits that `f64` would: no fused operations, no approximations. So how many lanes there are changes no result, and the
-//! cycle takes as many as suit the target ([`CycleLanes`]).
+//! A thin layer over the `wide` crate, which uses SSE2, AVX, NEON or plain arrays. Lane `i` holds exactly the bits of the same computation in `f64`:
+//! there are no fused operations and no approximations. The number of lanes therefore changes no result, and the cycle uses as many as suit the
+//! target ([`CycleLanes`]).
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -13,20 +13,20 @@ use wide::{f64x8, i64x8};
 use crate::functions;
 use crate::scalar::{EXP_LOWEST, Mask, Scalar, exp_parts};
 
-/// Numbers of a [`Lanes`].
+/// Number of lanes of a [`Lanes`].
 pub const LANES: usize = 4;
 
-/// What the control cycle asks of lanes beside arithmetic: columns of numbers, and masks as bits.
+/// What the control cycle needs of lanes besides arithmetic: access to columns of numbers, and masks as bits.
 pub trait Block: Scalar {
-    /// As many numbers of a column as there are lanes, counted in blocks of them; zeros past its end.
+    /// Loads a block of a column: as many numbers as there are lanes, from index `block` times that count. Numbers beyond the column are 0.
     fn load<const COUNT: usize>(column: &[f64; COUNT], block: usize) -> Self;
-    /// Writes what [`load`](Self::load) reads.
+    /// Stores a block of a column; numbers beyond the column are dropped.
     fn store<const COUNT: usize>(self, column: &mut [f64; COUNT], block: usize);
-    /// One bit a lane, lane 0 lowest.
+    /// Returns the mask as bits, one per lane, lane 0 lowest.
     fn bits(mask: Self::Mask) -> u32;
-    /// Whether it holds in every lane.
+    /// Whether the mask holds in every lane.
     fn all(mask: Self::Mask) -> bool;
-    /// The same truth value in every lane.
+    /// Returns the same truth value in every lane.
     fn mask(value: bool) -> Self::Mask;
 }
 
@@ -36,19 +36,19 @@ macro_rules! lanes {
         #[derive(Clone, Copy, Debug)]
         pub struct $lanes($float);
 
-        /// Truth values, one a lane.
+        /// Truth values, one per lane.
         #[derive(Clone, Copy, Debug)]
         pub struct $mask($float);
 
         impl $lanes {
-            /// Lanes from an array.
+            /// Creates lanes from an array.
             #[inline(always)]
             #[must_use]
             pub fn new(values: [f64; $count]) -> Self {
                 Self($float::new(values))
             }
 
-            /// The numbers, in order.
+            /// Returns the numbers, lane 0 first.
             #[inline(always)]
             #[must_use]
             pub fn to_array(self) -> [f64; $count] {
@@ -93,7 +93,7 @@ macro_rules! lanes {
         impl Block for $lanes {
             #[inline(always)]
             fn load<const COUNT: usize>(column: &[f64; COUNT], block: usize) -> Self {
-                // Both ways mean the same; the first needs no tail and is a plain load.
+                // Both ways give the same; the first has no tail and is a plain load.
                 if COUNT.is_multiple_of($count) {
                     return Self::new(column.as_chunks::<$count>().0.get(block).copied().unwrap_or_default());
                 }
@@ -170,7 +170,7 @@ macro_rules! lanes {
             }
             #[inline(always)]
             fn sqrt(self) -> Self {
-                // Where `wide` has no hardware root it falls back on its own; the exact one is `libm`'s.
+                // Without a hardware root `wide` computes one that is not exactly rounded; that of `libm` is.
                 if cfg!(any(target_feature = "sse2", target_feature = "neon", target_feature = "simd128")) {
                     Self(self.0.sqrt())
                 } else {
@@ -179,7 +179,7 @@ macro_rules! lanes {
             }
             #[inline(always)]
             fn max(self, other: Self) -> Self {
-                // The instruction of that name is this very selection, NaN and zeros included; elsewhere it is not.
+                // On x86 the instruction is exactly this selection, also for NaN and zeros; on other processors it is not.
                 if cfg!(target_feature = "sse2") {
                     return Self(self.0.fast_max(other.0));
                 }
@@ -236,15 +236,15 @@ lanes!(
     EightLanes, EightLanesMask, 8, f64x8, i64x8
 );
 
-/// The lanes of the control cycle where more than [`LANES`] cables are left: with AVX as many as two registers
-/// hold, of which one computes while the other waits for its root or quotient.
+/// The lanes of the control cycle while more than [`LANES`] cables remain. With AVX they fill two registers, so that one computes while the other
+/// waits for its root or quotient.
 #[cfg(target_feature = "avx")]
 pub type CycleLanes = EightLanes;
 #[cfg(not(target_feature = "avx"))]
 pub type CycleLanes = Lanes;
 
 impl Lanes {
-    /// The sum over the lanes, always added in the same order: `(0 + 1) + (2 + 3)`.
+    /// Returns the sum over the lanes, always added in the same order: `(0 + 1) + (2 + 3)`.
     #[inline(always)]
     #[must_use]
     pub fn sum(self) -> f64 {

@@ -1,14 +1,14 @@
-//! Pulley friction compensation for cable-driven robots, made for the inside of a 1 ms control loop.
+//! Pulley friction compensation for cable-driven robots, for use inside a 1 ms control loop.
 //!
-//! A cable robot measures its cable forces at the winch. Between winch and platform the pulleys rub: the force that the
-//! sensor shows is not the one that acts on the platform, and it depends on where the motion came from. [`Compensator`]
-//! turns sensor forces, cable lengths, speeds and the pose into platform forces and the platform wrench, once a cycle.
+//! A cable robot measures its cable forces at the winch. The pulleys between winch and platform have friction, so the sensor force differs from the
+//! force on the platform, and the difference depends on the previous motion. Once per cycle, [`Compensator`] computes the platform forces and the
+//! platform wrench from sensor forces, cable lengths, speeds and the pose.
 //!
-//! - **No allocation, no panic, no clock.** `no_std`; set-up can fail, [`Compensator::step`] cannot.
-//! - **Total.** Every input has an output that is finite; what is wrong with a signal stands in [`CableStatus`].
-//! - **Apart.** No bit of a cable's force depends on another cable's signals.
-//! - **The same everywhere.** The cycle uses exactly rounded operations, and for slip limits and set-up the `libm` crate's
-//!   functions, never the platform's, so the bits do not depend on platform, optimisation level or vector width.
+//! - **No allocation, no panic, no clock.** The crate is `no_std`. Set-up can fail; [`Compensator::step`] cannot.
+//! - **Total.** Every input gives a finite output; [`CableStatus`] tells what is wrong with a signal.
+//! - **Cables are separate.** No bit of a cable's force depends on another cable's signals.
+//! - **Reproducible.** The cycle uses exactly rounded operations, and the functions of the `libm` crate for slip limits and set-up, never those of the
+//!   platform. The bits therefore do not depend on platform, optimisation level or vector width.
 //!
 //! # One cycle
 //!
@@ -17,20 +17,16 @@
 //!
 //! # Sources
 //!
-//! \[P\] stands for W. Kraus, M. Kessler, A. Pott, *Pulley friction compensation for winch-integrated cable force
-//! measurement and verification on a cable-driven parallel robot*, ICRA 2015; numbers are its equations. Where this crate
-//! departs from it, the function's documentation says so and why.
+//! \[P\] is W. Kraus, M. Kessler, A. Pott, *Pulley friction compensation for winch-integrated cable force measurement and verification on a
+//! cable-driven parallel robot*, ICRA 2015; numbers after it are its equations. Each function documents where it deviates from the paper, and why.
 //!
 //! # Features
 //!
-//! Both are off by default: `alloc` is for robots whose number of cables is known only at run time (`AnyCompensator`);
-//! `robot-file` reads and writes the TOML robot file ([`robot::file`]) and needs `std`.
+//! Both are off by default. `alloc` adds robots whose number of cables is known only at run time (`AnyCompensator`). `robot-file` reads and writes
+//! the TOML robot file ([`robot::file`]) and needs `std`.
 #![no_std]
-#![allow(
-    clippy::inline_always,
-    reason = "the cycle is one loop over lanes; a call in it would pass vectors through memory"
-)]
-#![allow(clippy::doc_markdown, reason = "symbols of equations are no code items")]
+#![allow(clippy::inline_always, reason = "a call inside the loop over lanes would pass vectors through memory")]
+#![allow(clippy::doc_markdown, reason = "symbols of equations are not code items")]
 
 #[cfg(feature = "alloc")]
 extern crate alloc;

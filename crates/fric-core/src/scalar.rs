@@ -1,19 +1,18 @@
-//! The number type the model is written in.
+//! The number type of the model.
 //!
-//! Every equation of this crate is generic over [`Scalar`], so that one source serves three uses: plain `f64` (one
-//! cable, one number), [`Lanes`](crate::Lanes) (cables side by side, as in the control cycle), and any number that
-//! carries derivatives along. Choices that depend on data are [`select`](Scalar::select)s, not branches: all lanes take the
-//! same path, and the time that the equations take does not depend on what the cables do, but for what is out of the ordinary (signals that are
-//! held or repeat themselves, a sensor that has jumped), which takes longer.
+//! Every equation of this crate is generic over [`Scalar`], so that one source serves three uses: plain `f64` (one cable), [`Lanes`](crate::Lanes)
+//! (several cables side by side, as in the control cycle), and numbers that carry derivatives (a fit). Choices that depend on data are
+//! [`select`](Scalar::select)s, not branches, so all lanes take the same path and a cycle takes the same time whatever the cables do. The exceptions
+//! take longer: held or repeated signals, and a sensor that has jumped.
 //!
-//! Only operations that IEEE 754 rounds exactly are used (`+ − × ÷ √` and comparisons); transcendental functions, above
-//! all [`exp_negative`], are built from them, the logarithm by the `libm` crate. So results do not depend on the platform.
+//! Only operations that IEEE 754 rounds exactly are used (`+ − × ÷ √` and comparisons). Transcendental functions, mainly [`exp_negative`], are built
+//! from them; the logarithm is that of the `libm` crate. Results therefore do not depend on the platform.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use crate::functions;
 
-/// A real number, or several side by side, with comparison masks instead of branches.
+/// A real number, or several side by side. Comparisons give masks, which replace branches.
 pub trait Scalar:
     Copy
     + core::fmt::Debug
@@ -23,43 +22,43 @@ pub trait Scalar:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// The outcome of a comparison, one truth value per lane.
+    /// The result of a comparison, one truth value per lane.
     type Mask: Mask;
 
-    /// How many numbers stand side by side.
+    /// Number of lanes.
     const COUNT: usize;
 
-    /// The same constant in every lane.
+    /// Returns the same constant in every lane.
     fn splat(value: f64) -> Self;
-    /// A constant for each lane.
+    /// Returns a constant of its own in each lane.
     fn from_lanes(value: impl FnMut(usize) -> f64) -> Self;
-    /// The number in a lane, without what it carries along; the last lane's past the end.
+    /// Returns the number in a lane, without its derivatives. An index beyond the last lane gives the last lane.
     fn lane(self, lane: usize) -> f64;
-    /// `self < other`; false where either is NaN.
+    /// Whether `self < other`; false where either is NaN.
     fn lt(self, other: Self) -> Self::Mask;
-    /// `self ≤ other`; false where either is NaN.
+    /// Whether `self ≤ other`; false where either is NaN.
     fn le(self, other: Self) -> Self::Mask;
-    /// `self = other`; false where either is NaN.
+    /// Whether `self = other`; false where either is NaN.
     fn eq(self, other: Self) -> Self::Mask;
-    /// `if_true` where the mask holds, else `if_false`; what is not chosen may be NaN.
+    /// Returns `if_true` where the mask holds, else `if_false`; the value not chosen may be NaN.
     fn select(mask: Self::Mask, if_true: Self, if_false: Self) -> Self;
-    /// Magnitude.
+    /// Returns the magnitude.
     #[must_use]
     fn abs(self) -> Self;
-    /// Square root, correctly rounded.
+    /// Returns the square root, correctly rounded.
     #[must_use]
     fn sqrt(self) -> Self;
-    /// Exponential for arguments ≤ 0, see [`exp_negative`].
+    /// Returns the exponential of an argument ≤ 0, see [`exp_negative`].
     #[must_use]
     fn exp_negative(self) -> Self;
-    /// Natural logarithm of a positive number, lane after lane: for effects, which alone pay for it.
+    /// Returns the natural logarithm of a positive number. It is computed lane after lane; only some effects need it.
     #[must_use]
     fn ln(self) -> Self;
-    /// Sine and cosine of `2π·self`, for magnitudes below 2⁴⁹.
+    /// Returns sine and cosine of `2π·self`, for magnitudes below 2⁴⁹.
     #[must_use]
     fn sin_cos_turns(self) -> [Self; 2];
 
-    /// Exponential; arguments beyond ±708 count as that.
+    /// Returns the exponential; arguments beyond ±708 count as ±708.
     #[inline(always)]
     #[must_use]
     fn exp(self) -> Self {
@@ -67,32 +66,32 @@ pub trait Scalar:
         let fall = Self::select(falls, self, -self).exp_negative();
         Self::select(falls, fall, Self::splat(1.0) / fall)
     }
-    /// A positive number to a power; 1 for the power 0.
+    /// Returns a positive number raised to a power; exactly 1 for the power 0.
     #[inline(always)]
     #[must_use]
     fn pow(self, exponent: Self) -> Self {
         (exponent * self.ln()).exp()
     }
-    /// `ln(1 + self)/self`, 1 at 0 and smooth there; 1000 where there is no logarithm.
+    /// Returns `ln(1 + self)/self`: 1 at 0, where it is smooth; 1000 for `self ≤ −1`, which has no logarithm.
     #[inline(always)]
     #[must_use]
     fn ln_1p_ratio(self) -> Self {
         functions::ln_1p_ratio(self)
     }
 
-    /// The greater of the two; `other` where `self` is NaN.
+    /// Returns the greater of the two; `other` where `self` is NaN.
     #[inline(always)]
     #[must_use]
     fn max(self, other: Self) -> Self {
         Self::select(other.lt(self), self, other)
     }
-    /// The lesser of the two; `other` where `self` is NaN.
+    /// Returns the lesser of the two; `other` where `self` is NaN.
     #[inline(always)]
     #[must_use]
     fn min(self, other: Self) -> Self {
         Self::select(self.lt(other), self, other)
     }
-    /// −1, 0 or +1; 0 for NaN.
+    /// Returns −1, 0 or +1; 0 for NaN.
     #[inline(always)]
     #[must_use]
     fn sign(self) -> Self {
@@ -100,13 +99,13 @@ pub trait Scalar:
         let negative_or_zero = Self::select(self.lt(zero), Self::splat(-1.0), zero);
         Self::select(zero.lt(self), Self::splat(1.0), negative_or_zero)
     }
-    /// `self` times a number that carries nothing along: a signal, a wrap, a constant of the geometry.
+    /// Returns `self` times a number without derivatives: a signal, a wrap factor, a constant of the geometry.
     #[inline(always)]
     #[must_use]
     fn scale(self, constant: Self) -> Self {
         self * constant
     }
-    /// `self` where the mask holds, else 0.
+    /// Returns `self` where the mask holds, else 0.
     #[inline(always)]
     #[must_use]
     fn keep(self, mask: Self::Mask) -> Self {
@@ -119,20 +118,20 @@ pub trait Scalar:
     }
 }
 
-/// Truth values of one comparison.
+/// The truth values of a comparison.
 pub trait Mask: Copy + core::fmt::Debug {
     /// False in every lane.
     const NONE: Self;
-    /// Lane-wise and.
+    /// Returns the lane-wise "and".
     #[must_use]
     fn and(self, other: Self) -> Self;
-    /// Lane-wise or.
+    /// Returns the lane-wise "or".
     #[must_use]
     fn or(self, other: Self) -> Self;
-    /// Lane-wise not.
+    /// Returns the lane-wise "not".
     #[must_use]
     fn not(self) -> Self;
-    /// Whether it holds in any lane.
+    /// Whether the mask holds in any lane.
     #[must_use]
     fn any(self) -> bool;
 }
@@ -213,21 +212,20 @@ impl Scalar for f64 {
     }
 }
 
-/// Below this, [`exp_negative`] has reached the smallest normal number's neighbourhood (e⁻⁷⁰⁸ ≈ 3·10⁻³⁰⁸).
+/// Least argument of [`exp_negative`]: e⁻⁷⁰⁸ ≈ 3·10⁻³⁰⁸ is just above the smallest normal number.
 pub(crate) const EXP_LOWEST: f64 = -708.0;
-/// 1.5·2⁵²: adding it rounds to an integer, which then stands in the low bits of the mantissa.
+/// 1.5·2⁵²: adding it rounds to an integer, which is then in the low bits of the mantissa.
 const ROUND: f64 = 6_755_399_441_055_744.0;
-/// ln 2, upper part: 33 bits, so that its product with the exponent is exact.
+/// Upper part of ln 2, 33 bits, so that its product with the exponent is exact.
 const LN_2_UPPER: f64 = f64::from_bits(0x3fe6_2e42_fee0_0000);
-/// ln 2, the rest.
+/// Remainder of ln 2.
 const LN_2_LOWER: f64 = f64::from_bits(0x3dea_39ef_3579_3c76);
 
-/// The exponential of a number that is not positive: `e^x`, `x ≤ 0`.
+/// Returns the exponential `e^x` of a number `x ≤ 0`.
 ///
-/// Range reduction `x = n·ln 2 + r`, `|r| ≤ ln 2/2`, then the Taylor polynomial of degree 13, whose remainder on that
-/// interval is below 2⁻⁵⁸. Relative error at most 2 units in the last place for `x ∈ [−708, 0]` (checked against the
-/// platform's `exp` in the tests); smaller `x` give e⁻⁷⁰⁸, NaN gives e⁻⁷⁰⁸ too. Built from additions and
-/// multiplications only, so the bits are the same on every platform.
+/// The range is reduced by `x = n·ln 2 + r`, `|r| ≤ ln 2/2`; `e^r` is the Taylor polynomial of degree 13, whose remainder there is below 2⁻⁵⁸. The
+/// relative error is at most 2 units in the last place for `x ∈ [−708, 0]` (the tests compare with the platform's `exp`). Smaller `x` and NaN give
+/// e⁻⁷⁰⁸. Only additions and multiplications are used, so the bits are the same on every platform.
 ///
 /// ```
 /// use fric_core::scalar::exp_negative;
@@ -239,13 +237,13 @@ pub fn exp_negative<T: Scalar>(x: T) -> T {
     x.exp_negative()
 }
 
-/// `e^r` and the number whose low mantissa bits hold `n`, for `x = n·ln 2 + r`.
+/// Returns `e^r`, and a number whose low mantissa bits hold `n`, for `x = n·ln 2 + r`.
 #[inline(always)]
 pub(crate) fn exp_parts<T: Scalar>(x: T) -> (T, T) {
     let shifted = x * T::splat(core::f64::consts::LOG2_E) + T::splat(ROUND);
     let exponent = shifted - T::splat(ROUND);
     let r = (x - exponent * T::splat(LN_2_UPPER)) - exponent * T::splat(LN_2_LOWER);
-    // Estrin's scheme: short dependency chains, which is what a cycle of few cables waits for.
+    // Estrin's scheme has short dependency chains, which limit the speed of a cycle of few cables.
     let c = |divisor: f64| T::splat(1.0 / divisor);
     let r2 = r * r;
     let r4 = r2 * r2;
