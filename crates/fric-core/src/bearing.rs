@@ -1,7 +1,7 @@
-//! What rubs at a cable's bearings in one cycle: the law of friction with every effect that changes it.
+//! The friction law of a cable's bearings in one cycle, with every effect that changes it.
 //!
-//! Worked out once a cycle for all pulleys, as far as it is the same for all. Which effects act is looked at outside the
-//! arithmetic: those that do not cost nothing.
+//! What is the same for all pulleys is computed once per cycle. Which effects act is decided outside the arithmetic, so effects that do not act cost
+//! nothing.
 
 use crate::cable::{Cable, CableModel, Moment};
 use crate::dahl::dahl_step;
@@ -24,7 +24,7 @@ use crate::pulley::sliding_friction;
 use crate::scalar::{Mask, Scalar};
 use crate::signals::CableSignals;
 
-/// Effects that can take μ beyond what the sensor pulley bears.
+/// Effects that can raise μ beyond the greatest value that the sensor pulley allows.
 const RAISES_MU: Acting = Acting::raising_mu();
 
 /// The friction law of a cable's bearings in one cycle.
@@ -33,19 +33,19 @@ pub struct Bearing<T: Scalar> {
     acting: Acting,
     /// μ at the present speed and time, 1.
     mu: T,
-    /// The same of the pulley that has one of its own.
+    /// The same for the pulley of the effect `pulley_defect`, which has a μ of its own.
     defect_mu: T,
     greatest_mu: T,
     sigma_n_per_m: T,
     speed_m_per_s: T,
-    /// What one pulley takes to be accelerated, N.
+    /// Force that accelerates one pulley, N.
     accelerating_n: T,
-    /// What one pulley takes with the square of the speed, N.
+    /// Friction of one pulley that grows with the square of the speed, N.
     quadratic_n: T,
 }
 
 impl<T: Scalar> Bearing<T> {
-    /// The law for the signals of a cycle, with a factor on μ that has no name.
+    /// Computes the law for the signals of a cycle. `unnamed_factor` is the factor on μ of the effect `empirical`.
     #[inline(always)]
     pub fn new(
         model: &CableModel<T>,
@@ -59,7 +59,7 @@ impl<T: Scalar> Bearing<T> {
             let inertia = PulleyInertia::of(|place| cable.effect(place));
             let filtered_m_per_s = pulley_inertia::SPEEDS.map(|place| cable.memory(place));
             let (force_n, next_m_per_s) = inertia.force_n(signals.speed_m_per_s, filtered_m_per_s, moment.step_s);
-            // After a motion that is not to be believed the low passes begin anew: no bump.
+            // After an invalid motion the low-pass filters start anew, so that the force has no bump.
             for (place, next_m_per_s) in pulley_inertia::SPEEDS.into_iter().zip(next_m_per_s) {
                 cable.set_memory(place, T::select(signals.moves, next_m_per_s, T::splat(UNKNOWN)));
             }
@@ -112,7 +112,7 @@ impl<T: Scalar> Bearing<T> {
         }
     }
 
-    /// What a pulley adds to the tension without a presliding distance, N: what is viscous, and inertia.
+    /// Returns what a pulley adds to the tension without a presliding distance, N: viscous friction and inertia.
     #[inline(always)]
     pub fn viscous_n(&self, place: usize, cable: &impl Cable<T>) -> T {
         let mut viscous_n = cable.viscous_n(place, self.speed_m_per_s);
@@ -128,7 +128,7 @@ impl<T: Scalar> Bearing<T> {
         viscous_n
     }
 
-    /// μ of the pulley at a place between two tensions, moving in a direction (−1, 0, +1), 1.
+    /// Returns μ of the pulley at a position, between two tensions, for a direction of motion (−1, 0, +1).
     #[inline(always)]
     pub fn mu_at(&self, place: usize, (upstream_n, downstream_n): (T, T), direction: T, cable: &impl Cable<T>) -> T {
         let mut mu = self.mu;
@@ -146,25 +146,25 @@ impl<T: Scalar> Bearing<T> {
         if self.acting.has(RAISES_MU) { mu.min(self.greatest_mu) } else { mu }
     }
 
-    /// Whether μ depends on the load, so that [`mu_at`](Self::mu_at) has to be asked again.
+    /// Whether μ depends on the load, so that [`mu_at`](Self::mu_at) must be evaluated again after the tensions have changed.
     #[inline(always)]
     pub fn depends_on_load(&self) -> bool {
         self.acting.has(load_nonlinearity::ACTS)
     }
 
-    /// Whether some cable's bearings have friction that does not depend on the load.
+    /// Whether the bearings of any cable have friction that does not depend on the load.
     #[inline(always)]
     pub fn drags(&self) -> bool {
         self.acting.has(bearing_drag::ACTS)
     }
 
-    /// That friction of the pulley at a place, N.
+    /// Returns the load-independent friction of the pulley at a position, N.
     #[inline(always)]
     pub fn drag_n(place: usize, cable: &impl Cable<T>) -> T {
         BearingDrag::of(|place| cable.effect(place)).drag_n.scale(cable.present(place))
     }
 
-    /// Friction stored by the bearing of a pulley after a displacement, between two tensions, N.
+    /// Returns the friction stored by the bearing of a pulley after a displacement, between two tensions, N.
     #[inline(always)]
     pub fn move_pulley(
         &self,
@@ -182,8 +182,8 @@ impl<T: Scalar> Bearing<T> {
         self.preslide(stored_n, sliding_n, displacement_m, cable)
     }
 
-    /// The direction in which friction is asked for: that of the motion, and at rest, where a bearing gives back what it does not bear, that
-    /// of the friction stored.
+    /// Returns the direction for which sliding friction is computed: that of the motion. At rest, with the effect `load_release`, it is the direction
+    /// of the stored friction.
     #[inline(always)]
     pub fn direction(&self, displacement_m: T, stored_n: T, cable: &impl Cable<T>) -> T {
         let direction = displacement_m.sign();
@@ -195,7 +195,7 @@ impl<T: Scalar> Bearing<T> {
         T::select(releases.and(displacement_m.eq(zero)), stored_n.sign(), direction)
     }
 
-    /// Friction stored after a displacement, N.
+    /// Returns the friction stored after a displacement, N.
     #[inline(always)]
     pub fn preslide(&self, friction_n: T, sliding_n: T, displacement_m: T, cable: &impl Cable<T>) -> T {
         let friction_n = if self.acting.has(load_release::ACTS) {

@@ -1,7 +1,7 @@
-//! Friction of one cable over one cycle: the chain of its pulleys with presliding, in the two forms that are wanted.
+//! Friction of one cable over one cycle: the chain of its pulleys with presliding, in both forms.
 //!
-//! For: sensor force and displacement in, force at the platform out ([`cable_cycle`]), generic over [`Scalar`]. It does not judge
-//! signals: [`condition`](crate::signals::condition) sees to it that they are finite. State: the [`Cable`]'s.
+//! [`cable_cycle`] computes the force at the platform from sensor force and displacement, generic over [`Scalar`]. It does not check signals:
+//! [`condition`](crate::signals::condition) ensures that they are finite. State: that of the [`Cable`].
 //!
 //! Symbols and sign convention are those of [`pulley`](crate::pulley).
 
@@ -23,36 +23,36 @@ use crate::effects::{Acting, UNKNOWN};
 use crate::scalar::{Mask, Scalar};
 use crate::signals::CableSignals;
 
-/// Outcome of one cycle for one cable.
+/// The result of one cycle for one cable.
 #[derive(Clone, Copy, Debug)]
 pub struct CableForces<T: Scalar> {
     /// Force at the platform, N, the offset ε included.
     pub platform_force_n: T,
-    /// Friction: force at the platform less the frictionless one, without ε, N. With it all that effects add: inertia,
-    /// ripple, what is corrected of the sensor. 0 in a cable without tension.
+    /// Friction, N: force at the platform minus the force without friction, without ε. It includes what effects add: inertia, ripple, corrections of
+    /// the sensor. 0 in a cable without tension.
     pub friction_n: T,
-    /// Sensor force as it is shown, turned into cable tension as if nothing rubbed, N.
+    /// Cable tension computed from the measured sensor force without friction, N.
     pub frictionless_n: T,
-    /// The same of the corrected sensor force, N.
+    /// The same for the corrected sensor force, N.
     pub tension_n: T,
-    /// Friction stored: the sum of the pulleys' magnitudes, with `lumped` that of the cable, N.
+    /// Stored friction, N: the sum of the magnitudes over the pulleys; with `lumped` the magnitude for the cable.
     pub stored_n: T,
-    /// How far the contacts have moved at least, m.
+    /// Least displacement of the contacts, m.
     pub way_m: T,
-    /// The cable carries no tension at the platform, or none at all.
+    /// Whether the cable carries no tension at the platform, or none at all.
     pub slack: T::Mask,
-    /// Slip on a pulley.
+    /// Whether the cable slips on a pulley.
     pub slip: T::Mask,
 }
 
-/// One cycle of one cable (or of several in lanes) on conditioned signals.
+/// Computes one cycle of one cable (or of several in lanes) from conditioned signals.
 ///
-/// While a signal is faulty ([`hold`](CableSignals::hold)) the stored friction follows the motion with the last good force, and
-/// the output holds the last good friction, which takes no cable below zero tension. Slack releases the stored friction.
+/// While a signal is faulty ([`hold`](CableSignals::hold)), the stored friction follows the motion with the last valid force. The output holds the
+/// last valid friction, limited so that no cable goes below zero tension. A slack cable releases its stored friction.
 ///
-/// Viscous friction and inertia stay outside the Dahl state in both forms: they need no presliding distance (deviation from
-/// \[P\] 15, where viscous friction is inside). The macroscopic friction is taken from the frictionless cable,
-/// `F_f = F_n − F_s/(1 − c)`, so that presliding covers the sensor pulley too (deviation from \[P\] 15: `F_n − F_1`).
+/// Viscous friction and inertia are outside the Dahl state in both forms, because they need no presliding distance (deviation from \[P\] 15, where
+/// viscous friction is inside). Macroscopic friction is the difference from the cable without friction, `F_f = F_n − F_s/(1 − c)`, so that presliding
+/// covers the sensor pulley too (deviation from \[P\] 15: `F_n − F_1`).
 #[inline(always)]
 pub fn cable_cycle<T: Scalar>(
     model: &CableModel<T>,
@@ -85,7 +85,7 @@ pub fn cable_cycle<T: Scalar>(
     let chain = Chain { model, features, bearing, sensor_force_n, displacement_m, stretch_m };
     let Moved { mut chain_n, mut slip, stored_n } = over_pulleys(&chain, no_tension, cable);
     if features.leads {
-        // From what is stored, a step that is not.
+        // One step ahead, from the stored state, which it does not change.
         let ahead = Chain { displacement_m: signals.lead_m, stretch_m: zero, ..chain };
         let Moved { chain_n: ahead_n, slip: slips, .. } = over_pulleys(&ahead, no_tension, &mut Looked(cable));
         let leads = zero.lt(signals.lead_m.abs());
@@ -99,10 +99,10 @@ pub fn cable_cycle<T: Scalar>(
         chain_n = chain_n + unnamed.force_n;
     }
     let slack = no_tension.or(chain_n.lt(zero));
-    // A cable cannot push, whatever an untared sensor shows of a limp one.
+    // A cable cannot push, even if an untared sensor shows a negative force for a slack one.
     let pulled_n = chain_n.max(zero).keep(no_tension.not());
     let moving_n = pulled_n + model.offset_n;
-    // Nothing rubs in a cable without tension, whatever its sensor shows.
+    // A cable without tension has no friction, whatever its sensor shows.
     let friction_n = (moving_n - model.offset_n - frictionless_n).keep(no_tension.not());
 
     let hold = signals.hold;
@@ -127,14 +127,14 @@ pub fn cable_cycle<T: Scalar>(
         frictionless_n: shown_n,
         tension_n: frictionless_n,
         stored_n,
-        // Where the stretch goes against the winch, a contact may have moved by so little.
+        // If the stretch is against the motion of the winch, a contact may have moved by only this much.
         way_m: displacement_m.abs() - stretch_m.abs(),
         slack,
         slip: slip.and(slack.not()).and(hold.not()),
     }
 }
 
-/// What the chain comes to.
+/// The result of the chain of pulleys.
 struct Moved<T: Scalar> {
     /// Tension behind the last pulley, N.
     chain_n: T,
@@ -143,7 +143,7 @@ struct Moved<T: Scalar> {
     stored_n: T,
 }
 
-/// The chain in the forms that cables have. What is stored is moved on, and released without tension.
+/// Computes the chain in the forms of presliding that the cables have. It advances the stored friction, and releases it without tension.
 #[inline(always)]
 fn over_pulleys<T: Scalar>(chain: &Chain<'_, T>, no_tension: T::Mask, cable: &mut impl Cable<T>) -> Moved<T> {
     let lumped = chain.model.lumped;
@@ -174,7 +174,7 @@ const SENSOR: Acting = sensor_offset::ACTS
     .and(sensor_nonlinearity::ACTS)
     .and(winch_ripple::ACTS);
 
-/// The sensor force there is for the one shown, N: the lag is undone first, then what is added, then the gain and the bend of the curve.
+/// Returns the true sensor force for the measured one, N. It undoes the lag first, then added forces, then gain and nonlinearity.
 #[inline(always)]
 fn corrected_sensor<T: Scalar>(
     acting: Acting,
@@ -186,7 +186,7 @@ fn corrected_sensor<T: Scalar>(
     if acting.has(sensor_lag::ACTS) {
         let memory = sensor_lag::FORCES.map(|place| cable.memory(place));
         let (undone_n, memory) = SensorLag::of(|place| cable.effect(place)).undo(force_n, memory, moment.step_s);
-        // After a fault it begins anew: no bump.
+        // After a fault it starts anew, so that the force has no bump.
         for (place, next_n) in sensor_lag::FORCES.into_iter().zip(memory) {
             cable.set_memory(place, T::select(signals.sensor_fault, T::splat(UNKNOWN), next_n));
         }
@@ -214,7 +214,7 @@ fn corrected_sensor<T: Scalar>(
     force_n
 }
 
-/// The motion of the cable behind the play of its gear.
+/// Returns the motion of the cable behind the play of its gear.
 #[inline(always)]
 fn behind_play<T: Scalar>(signals: &CableSignals<T>, cable: &mut impl Cable<T>) -> CableSignals<T> {
     let zero = T::splat(0.0);
@@ -233,7 +233,7 @@ fn behind_play<T: Scalar>(signals: &CableSignals<T>, cable: &mut impl Cable<T>) 
     }
 }
 
-/// By how much the whole cable has stretched in this cycle, m; a sensor that tells nothing tells of no stretch.
+/// Returns by how much the whole cable has stretched in this cycle, m; 0 while the sensor is faulty.
 #[inline(always)]
 fn stretch<T: Scalar>(
     acting: Acting,

@@ -1,6 +1,6 @@
-//! Parameters and state of all cables, one column a quantity, so that cables side by side load as one.
+//! Parameters and state of all cables, stored one column per quantity, so that a block of neighbouring cables loads at once.
 //!
-//! Private to the crate: the structure-of-arrays behind [`Compensator`](crate::Compensator).
+//! This is the structure of arrays behind [`Compensator`](crate::Compensator), private to the crate.
 
 use crate::cable::{Cable, CableModel};
 use crate::doubt::{BEYOND_RATIO, Doubts, TOLERATED_N, Trust};
@@ -15,7 +15,7 @@ use crate::swivel::Swivel;
 
 /// Parameters that do not change while running.
 ///
-/// Aligned to four of them: a load can then be part of the instruction that uses it.
+/// Aligned to four numbers, so that a load can be part of the instruction that uses it.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
 pub struct ParamColumns<const CABLES: usize> {
@@ -33,18 +33,18 @@ pub struct ParamColumns<const CABLES: usize> {
     present: [[f64; CABLES]; PLACES],
     pulley_number: [[f64; CABLES]; PLACES],
     stretch_ratio: [[f64; CABLES]; PLACES],
-    /// 1 where the pulley at the last place follows the pose.
+    /// 1 if the wrap of the pulley at the last position follows the pose, else 0.
     follows_pose: [f64; CABLES],
     pub traction_mu: [f64; CABLES],
     pub least_force_n: [f64; CABLES],
     pub greatest_force_n: [f64; CABLES],
     pub greatest_speed_m_per_s: [f64; CABLES],
-    /// [`Trust`], with what is tolerated of the force in what the load bears.
+    /// See [`Trust`]; the tolerances of the force are added to what the load bears.
     pub sensor_jump_n: [f64; CABLES],
     pub tolerated_sensor_n: [f64; CABLES],
     pub tolerated_ratio: [f64; CABLES],
     pub recovery_cycles: [f64; CABLES],
-    /// A change of the sensor force that is no jump whatever the force, N.
+    /// Greatest change of the sensor force that is no jump at any force, N.
     pub calm_change_n: [f64; CABLES],
     pub bears_ratio: [f64; CABLES],
     pub bears_per_wrap: [f64; CABLES],
@@ -56,12 +56,12 @@ pub struct ParamColumns<const CABLES: usize> {
     radius_m: [f64; CABLES],
     platform_m: [[f64; CABLES]; 3],
     has_geometry: [f64; CABLES],
-    /// Where each pulley of a cable stands; [`PLACES`] for those that it does not have.
+    /// Position of each pulley of a cable; [`PLACES`] for pulleys that it does not have.
     pub pulley_place: [[usize; MAX_PULLEYS]; CABLES],
 }
 
 impl<const CABLES: usize> ParamColumns<CABLES> {
-    /// Columns of cables that are not there: no friction, no geometry.
+    /// Columns of cables that do not exist: no friction, no geometry.
     pub const EMPTY: Self = Self {
         mu: [0.0; CABLES],
         sigma_n_per_m: [1.0; CABLES],
@@ -102,7 +102,7 @@ impl<const CABLES: usize> ParamColumns<CABLES> {
 }
 
 impl<const CABLES: usize> ParamColumns<CABLES> {
-    /// Enters a cable of a robot with `place_count` places a cable.
+    /// Enters a cable of a robot with `place_count` positions per cable.
     pub fn set(&mut self, cable: usize, params: &CableParams, trust: &Trust, cycle_s: f64, place_count: usize) {
         let values = params.values();
         let model = CableModel::<f64>::new(|_| params, &values);
@@ -167,7 +167,7 @@ impl<const CABLES: usize> ParamColumns<CABLES> {
         }
     }
 
-    /// Parameters of the cables of a block.
+    /// Returns the parameters of the cables of a block.
     #[inline(always)]
     pub fn model<T: Block>(&self, block: usize) -> CableModel<T> {
         CableModel {
@@ -180,7 +180,7 @@ impl<const CABLES: usize> ParamColumns<CABLES> {
         }
     }
 
-    /// Last pulleys of a block.
+    /// Returns the last pulleys of a block.
     #[inline(always)]
     pub fn swivel<T: Block>(&self, block: usize) -> Swivel<T> {
         Swivel {
@@ -190,60 +190,60 @@ impl<const CABLES: usize> ParamColumns<CABLES> {
         }
     }
 
-    /// Attachment points of a block in the platform frame, m.
+    /// Returns the attachment points of a block in the platform frame, m.
     #[inline(always)]
     pub fn platform_m<T: Block>(&self, block: usize) -> [T; 3] {
         self.platform_m.each_ref().map(|column| T::load(column, block))
     }
 
-    /// How the friction stored at a place tells at the platform, 1: that of the sensor pulley is seen by the sensor, too
-    /// (\[P\] 11).
+    /// Returns the change of the force at the platform per newton of friction stored at a position. The sensor pulley differs, because the sensor
+    /// measures its friction too (\[P\] 11).
     pub fn platform_share(&self, cable: usize, place: usize) -> f64 {
         let at = |column: &[f64; CABLES]| column.get(cable).copied().unwrap_or(0.0);
         if place == 0 { -at(&self.sensor_cos) * at(&self.frictionless_gain) } else { 1.0 }
     }
 
-    /// `2 sin(α/2)` of the wrap at a place, with `by_pose` that of a wrap which follows the pose.
+    /// Returns `2 sin(α/2)` of the wrap at a position; `by_pose` is the value for a wrap that follows the pose.
     pub fn wrap_factor_of(&self, cable: usize, place: usize, place_count: usize, by_pose: f64) -> f64 {
         let at = |column: &[f64; CABLES]| column.get(cable).copied().unwrap_or(0.0);
         let is_posed = place + 1 == place_count && at(&self.follows_pose) > 0.0;
         if is_posed { by_pose } else { self.wrap_factor.get(place).map_or(0.0, at) }
     }
 
-    /// Whether both are of the same pulleys and attachments.
+    /// Whether both have the same pulleys and attachments.
     pub fn same_build(&self, other: &Self) -> bool {
         let bits = |of: &Self| [of.follows_pose, of.has_geometry].map(|column| column.map(f64::to_bits));
         bits(self) == bits(other) && self.pulley_place == other.pulley_place
     }
 
-    /// Which cables of a block have an attachment.
+    /// Returns which cables of a block have an attachment.
     #[inline(always)]
     pub fn with_geometry<T: Block>(&self, block: usize) -> T::Mask {
         T::splat(0.0).lt(T::load(&self.has_geometry, block))
     }
 
-    /// Where the last pulley's wrap follows the pose, in a block.
+    /// Returns for which cables of a block the wrap of the last pulley follows the pose.
     #[inline(always)]
     pub fn follows_pose<T: Block>(&self, block: usize) -> T::Mask {
         T::splat(0.0).lt(T::load(&self.follows_pose, block))
     }
 }
 
-/// What a cycle leaves for the next one. Plain numbers: copying it is the snapshot. Aligned like [`ParamColumns`].
+/// The state from one cycle to the next: plain numbers, so that a copy is a snapshot. Aligned like [`ParamColumns`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(32))]
 pub struct StateColumns<const CABLES: usize> {
-    /// Last good sensor force, N.
+    /// Last valid sensor force, N.
     pub sensor_force_n: [f64; CABLES],
-    /// Cycles since it has changed.
+    /// Cycles since its last change.
     pub frozen_count: [f64; CABLES],
     /// Last finite length, m; [`UNKNOWN`] before the first.
     pub length_m: [f64; CABLES],
-    /// How far the cable has got since the sensor has changed last, m.
+    /// Distance of the cable since the last change of the sensor force, m.
     pub frozen_travel_m: [f64; CABLES],
-    /// Last good friction in all, N.
+    /// Last valid total friction, N.
     pub friction_n: [f64; CABLES],
-    /// What is remembered of jumps, see [`Doubts`].
+    /// State of the jump detection, see [`Doubts`].
     pub unseen_cycles: [f64; CABLES],
     pub jump_cycles: [f64; CABLES],
     pub jump_from_n: [f64; CABLES],
@@ -254,24 +254,24 @@ pub struct StateColumns<const CABLES: usize> {
     pub lumped_friction_n: [f64; CABLES],
     /// Dahl states of the `per_pulley` form, N.
     pub pulley_friction_n: [[f64; CABLES]; PLACES],
-    /// What effects remember.
+    /// State of the effects.
     pub memory: [[f64; CABLES]; MEMORY],
-    /// Wrap factor and traction ratio of the pulley that follows the pose.
+    /// Wrap factor and tension ratio at slip of the pulley that follows the pose.
     pub pose_wrap_factor: [f64; CABLES],
     pub pose_traction_ratio: [f64; CABLES],
-    /// 1 once a pose has let the cable leave its last pulley.
+    /// 1 after the first pose at which the attachment was reachable, else 0.
     pub direction_known: [f64; CABLES],
     /// Columns of the structure matrix.
     pub direction: [[f64; CABLES]; 3],
     pub moment_arm_m: [[f64; CABLES]; 3],
     pub delayed_displacement_m: [DelayLine; CABLES],
     pub delayed_speed_m_per_s: [DelayLine; CABLES],
-    /// How far the delayed motion lags behind, m.
+    /// Distance by which the delayed motion lags behind, m.
     pub lag_m: [f64; CABLES],
 }
 
 impl<const CABLES: usize> StateColumns<CABLES> {
-    /// What is remembered of a block's signals.
+    /// Returns the signal state of a block.
     #[inline(always)]
     pub fn signals<T: Block>(&self, block: usize) -> SignalState<T> {
         SignalState {
@@ -291,7 +291,7 @@ impl<const CABLES: usize> StateColumns<CABLES> {
         signals.length_m.store(&mut self.length_m, block);
     }
 
-    /// What is remembered of a block's jumps.
+    /// Returns the state of the jump detection of a block.
     #[inline(always)]
     pub fn doubts<T: Block>(&self, block: usize) -> Doubts<T> {
         Doubts {
@@ -315,7 +315,7 @@ impl<const CABLES: usize> StateColumns<CABLES> {
         doubts.left_n.store(&mut self.left_n, block);
     }
 
-    /// At rest, nothing stored, no pose yet: the wrap that follows it taken as 90°.
+    /// At rest, no stored friction, no pose yet; a wrap that follows the pose is taken as 90°.
     pub const START: Self = Self {
         sensor_force_n: [0.0; CABLES],
         frozen_count: [0.0; CABLES],
@@ -342,7 +342,7 @@ impl<const CABLES: usize> StateColumns<CABLES> {
     };
 }
 
-/// The cables of a block with their state.
+/// The cables of a block, with their state.
 pub struct BlockOfCables<'a, const CABLES: usize> {
     params: &'a ParamColumns<CABLES>,
     state: &'a mut StateColumns<CABLES>,
@@ -358,7 +358,7 @@ impl<'a, const CABLES: usize> BlockOfCables<'a, CABLES> {
         block: usize,
         count: usize,
     ) -> Self {
-        // With the bound in sight, no access to a place has to ask whether the place exists.
+        // With this bound the compiler omits the check of the position in each access.
         Self { params, state, block, count: count.min(PLACES) }
     }
 
@@ -367,7 +367,7 @@ impl<'a, const CABLES: usize> BlockOfCables<'a, CABLES> {
         columns.get(place).map_or(T::splat(0.0), |column| T::load(column, self.block))
     }
 
-    /// What the pose gives at the last place of cables that follow it, else what is fixed.
+    /// Returns the value by the pose at the last position of cables that follow it, else the fixed one.
     #[inline(always)]
     fn posed<T: Block>(&self, place: usize, by_pose: &[f64; CABLES], fixed: &[[f64; CABLES]; PLACES]) -> T {
         let fixed: T = self.column(fixed, place);
@@ -453,10 +453,10 @@ impl<T: Block, const CABLES: usize> Cable<T> for BlockOfCables<'_, CABLES> {
     }
 }
 
-/// From no force to one that is none is no calm change, N.
+/// A change from 0 to an invalid force must not count as calm, N.
 const GREATEST_CALM_N: f64 = 1e8;
 
-/// `column[place] = value`, nothing where the place does not exist.
+/// Does `column[place] = value`; nothing if the position does not exist.
 fn put<V, const COUNT: usize>(column: &mut [V; COUNT], place: usize, value: V) {
     if let Some(entry) = column.get_mut(place) {
         *entry = value;

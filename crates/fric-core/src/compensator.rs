@@ -1,9 +1,8 @@
-//! The cycle as one object.
+//! The compensator: parameters and state of all cables, and one cycle of them.
 //!
-//! For: force at the platform and wrench from the winch-side signals, every cycle, in bounded time, without allocation,
-//! without panic, for every input there is. It does not read clocks, files or buses. Non-finite input is flagged
-//! ([`CableStatus`]) and never reaches another cable. Size: about 1 kB a cable, and 1 kB more a cable for the delay
-//! lines.
+//! Every cycle it computes the forces at the platform and the wrench from the signals at the winches, in bounded time, without allocation and without
+//! panic, for any input. It reads no clock, file or bus. Non-finite input is flagged ([`CableStatus`]) and never affects another cable. Size: about
+//! 1 kB per cable, and 1 kB more per cable for the delay lines.
 
 mod takeover;
 
@@ -84,18 +83,18 @@ pub struct Compensator<const CABLES: usize> {
     center_of_mass_m: Vector3<f64>,
 }
 
-/// What a cycle leaves behind, see [`Compensator::snapshot`].
+/// The state from one cycle to the next, see [`Compensator::snapshot`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct State<const CABLES: usize> {
     columns: StateColumns<CABLES>,
-    /// Every cable has an attachment and has been seen to leave its last pulley, so that there is a wrench.
+    /// Whether every cable has an attachment and a known direction, so that there is a wrench.
     directions_known: bool,
-    /// Wrench of gravity at the last pose since then.
+    /// Wrench of gravity at the last pose; `None` until all directions are known.
     gravity: Option<Wrench>,
-    /// The cycle, from the first, and the one before.
+    /// Number of this cycle, counted from the first, and of the previous one.
     cycle: f64,
     last_cycle: f64,
-    /// Some cable's sensor or stored friction is doubtful, so that all are reviewed.
+    /// Whether the sensor or the stored friction of any cable is doubtful, so that all are reviewed.
     doubtful: bool,
 }
 
@@ -121,7 +120,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
         doubtful: true,
     };
 
-    /// Set-up from checked parameters.
+    /// Creates a compensator from checked parameters.
     ///
     /// # Errors
     /// [`ParamError`] if the robot has more than `CABLES` cables.
@@ -161,29 +160,29 @@ impl<const CABLES: usize> Compensator<CABLES> {
         })
     }
 
-    /// How many cables the robot has.
+    /// Returns the number of cables of the robot.
     #[must_use]
     pub fn cable_count(&self) -> usize {
         self.cable_count
     }
 
-    /// Back to the state after set-up: at rest, nothing stored, no pose.
+    /// Resets the state to that after set-up: at rest, no stored friction, no pose.
     pub fn reset(&mut self) {
         self.state = Self::START;
     }
 
-    /// A copy of everything that a cycle leaves for the next.
+    /// Returns a copy of the whole state.
     #[must_use]
     pub fn snapshot(&self) -> Snapshot<CABLES> {
         Snapshot(self.state)
     }
 
-    /// Goes on from a snapshot as if nothing had happened since.
+    /// Restores the state of a snapshot.
     pub fn restore(&mut self, snapshot: &Snapshot<CABLES>) {
         self.state = snapshot.0;
     }
 
-    /// One cycle: total over all inputs, allocation-free, panic-free.
+    /// Computes one cycle, for any input, without allocation and without panic.
     #[inline]
     pub fn step(&mut self, input: &CycleInput<CABLES>) -> CycleOutput<CABLES> {
         let mut output = CycleOutput::default();
@@ -191,7 +190,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
         output
     }
 
-    /// [`step`](Self::step) into an output that the caller keeps.
+    /// Does the same as [`step`](Self::step), into an output of the caller.
     pub fn step_into(&mut self, input: &CycleInput<CABLES>, output: &mut CycleOutput<CABLES>) {
         let pose = input.pose.as_ref().filter(|pose| pose.is_usable());
         let rotation = pose.map(|pose| pose.orientation.to_rotation_matrix().into_inner());
@@ -201,8 +200,8 @@ impl<const CABLES: usize> Compensator<CABLES> {
         self.state.cycle = next_cycle(self.state.last_cycle, input.elapsed_cycles);
         let cables = CABLES.min(self.cable_count);
         let followed = pose.zip(rotation.as_ref()).filter(|_| self.any_geometry);
-        // One bit a lane, an entry for the first cable of each block. The geometry of all blocks comes first: it hangs on
-        // nothing but the pose, so that the processor works on several blocks at a time, and so it does then on the friction.
+        // One bit per lane, in the entry of each block's first cable. The geometry of all blocks is computed first. It depends on the pose alone, so
+        // the processor can work on several blocks at once; the friction of all blocks follows in the same way.
         let mut unreachable = [0; CABLES];
         if let Some((pose, rotation)) = followed {
             let mut first = 0;
@@ -241,12 +240,12 @@ impl<const CABLES: usize> Compensator<CABLES> {
         }
         let columns = &self.state.columns;
         let along = |row: &[f64; CABLES]| {
-            // In the same order whatever the lanes of the cycle.
+            // In the same order whatever the number of lanes in the cycle.
             let blocks = 0..CABLES.div_ceil(LANES).min(self.cable_count.div_ceil(LANES));
             let products = blocks.map(|block| Lanes::load(row, block) * Lanes::load(&forces_n, block));
             -products.fold(Lanes::splat(0.0), |sum, product| sum + product).sum()
         };
-        // Both in one go: one after the other, the first would be copied twice.
+        // Both at once; computed one after the other, the first is copied twice.
         let wrenches = self.state.gravity.as_ref().map(|gravity| {
             let outside = Wrench {
                 force_n: columns.direction.each_ref().map(along).into(),
@@ -258,10 +257,10 @@ impl<const CABLES: usize> Compensator<CABLES> {
         output.wrench_status = wrench_status;
     }
 
-    /// Friction stored at each pulley of a cable (from the winch), N: the distribution along the cable.
+    /// Returns the friction stored at each pulley of a cable, counted from the winch, N.
     ///
-    /// Coulomb part, without viscous friction; all zero with `lumped` presliding, which knows no pulleys. Entries past
-    /// the cable's pulleys, and cables that the robot does not have, are zero.
+    /// This is the Coulomb part, without viscous friction. It is 0 with `lumped` presliding, which has no state per pulley, for entries beyond the
+    /// cable's pulleys, and for cables that the robot does not have.
     #[must_use]
     pub fn pulley_friction_n(&self, cable: usize) -> [f64; MAX_PULLEYS] {
         let places = self.params.pulley_place.get(cable).copied().unwrap_or([PLACES; MAX_PULLEYS]);
@@ -269,8 +268,8 @@ impl<const CABLES: usize> Compensator<CABLES> {
         places.map(|place| columns.get(place).and_then(|column| column.get(cable)).copied().unwrap_or(0.0))
     }
 
-    /// The structure matrix `A^T` of the last cycle with a pose, force rows first; columns past the robot's cables are zero.
-    /// `None` before the first pose, and for a robot with a cable whose attachment is not given.
+    /// Returns the structure matrix `A^T` of the last cycle with a pose, force rows first; columns beyond the robot's cables are zero. `None` before the
+    /// first pose, and for a robot with a cable without attachment.
     #[must_use]
     pub fn structure_matrix(&self) -> Option<SMatrix<f64, 6, CABLES>> {
         self.state.gravity?;
@@ -282,8 +281,8 @@ impl<const CABLES: usize> Compensator<CABLES> {
         Some(SMatrix::from_fn(entry))
     }
 
-    /// Which cables of a block suffer from a cycle without a pose: those whose wrap follows it, and, once there has
-    /// been a wrench, all that it is made of.
+    /// Returns which cables of a block are affected by a cycle without a pose: those whose wrap follows it and, after the first wrench, all cables that
+    /// contribute to it.
     #[inline(always)]
     fn misses_pose<T: Block>(&self, block: usize) -> T::Mask {
         let stale_wrench = T::mask(self.state.gravity.is_some());
@@ -295,19 +294,19 @@ impl<const CABLES: usize> Compensator<CABLES> {
 struct Stepped<'a, const CABLES: usize> {
     /// Its first cable, a multiple of the lanes.
     first: usize,
-    /// What a lie may have left is looked at, suspicious or not.
+    /// Whether the stored friction is reviewed even without suspicion.
     all_reviewed: bool,
-    /// There is a usable pose.
+    /// Whether there is a usable pose.
     has_pose: bool,
-    /// Lanes whose attachment the pose puts out of reach.
+    /// Lanes whose attachment is out of reach at the pose.
     unreachable: u32,
-    /// Where the forces at the platform go, N.
+    /// Output: forces at the platform, N.
     forces_n: &'a mut [f64; CABLES],
 }
 
 impl<const CABLES: usize> Compensator<CABLES> {
-    /// Wrap, direction and moment arm of a block's cables at a pose; kept where the pose leaves a cable no way out. Gives
-    /// the lanes of which this is so.
+    /// Computes wrap, direction and moment arm of a block's cables at a pose; a cable whose attachment is out of reach keeps the last ones. Returns the
+    /// lanes of such cables.
     #[inline(never)]
     fn follow_pose<T: Block>(&mut self, first: usize, pose: &Pose, rotation: &Matrix3<f64>) -> u32 {
         let block = first / T::COUNT;
@@ -340,7 +339,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
         if self.features.traction {
             let traction_mu = T::load(&self.params.traction_mu, block);
             let [cos, sin] = exit.cos_sin_wrap;
-            // Only robots with a slip limit pay for an angle, an exponential a cable.
+            // Only robots with a slip limit need an angle and an exponential per cable.
             let ratio = T::from_lanes(|lane| {
                 traction_ratio(traction_mu.lane(lane), swivel::wrap_rad([cos.lane(lane), sin.lane(lane)]))
             });
@@ -350,7 +349,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
         T::bits(with_geometry.and(exit.reachable.not()))
     }
 
-    /// Signals, friction and status of a block's cables; gives every flag of any of them.
+    /// Computes signals, friction and status of a block's cables. Returns all flags of any of them.
     fn step_cables<T: Block>(
         &mut self,
         block: &mut Stepped<'_, CABLES>,
@@ -364,8 +363,8 @@ impl<const CABLES: usize> Compensator<CABLES> {
         }
     }
 
-    /// [`step_cables`](Self::step_cables), with and without effects a function of its own, so that the cycle without does not
-    /// pay for them.
+    /// Does [`step_cables`](Self::step_cables). With and without effects it is a separate function, so that the cycle without effects does not become
+    /// slower.
     #[inline(never)]
     fn step_block<T: Block, const EFFECTS: bool>(
         &mut self,
@@ -381,7 +380,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
         let first = block * T::COUNT;
         let missing = if stepped.has_pose { 0 } else { T::bits(self.misses_pose::<T>(block)) };
         let raw: RawSignals<T> = raw_signals(input, first);
-        // A sensor force that is no number is not calm either.
+        // A sensor force that is not a number is not calm either.
         let before_n = T::load(&self.state.columns.sensor_force_n, block);
         let calm = (raw.sensor_force_n - before_n).abs().le(T::load(&self.params.calm_change_n, block));
         let reviewed = (stepped.all_reviewed || T::bits(calm) != (1 << T::COUNT) - 1)
@@ -476,7 +475,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
         of_all
     }
 
-    /// Jumps of a block's sensors, before the cycle keeps its signals: one bit a cable.
+    /// Returns the jumps of a block's sensors, one bit per cable. It must run before the cycle stores its signals.
     #[cold]
     #[inline(never)]
     fn review_sensor<T: Block>(&mut self, block: usize, input: &CycleInput<CABLES>) -> u32 {
@@ -509,8 +508,8 @@ impl<const CABLES: usize> Compensator<CABLES> {
         T::bits(jump) & present
     }
 
-    /// What a block's cables have stored beyond what the load bears, or from a jump: the cycle's bits of both flags, after
-    /// [`review_sensor`](Self::review_sensor) has given the first.
+    /// Reviews the friction stored by a block's cables, after [`review_sensor`](Self::review_sensor) has returned `jump`. Returns the bits of
+    /// `SENSOR_JUMP` and `UNSETTLED` for this cycle.
     #[cold]
     #[inline(never)]
     fn review_friction<T: Block>(
@@ -534,7 +533,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
         let cable = BlockOfCables::new(&self.params, &mut self.state.columns, block, self.place_count);
         let value = |place| Cable::<T>::effect(&cable, place);
         let tension_n = tension_n.max(zero);
-        // μ as it is now beside that of the parameters, the greatest of the pulleys.
+        // Ratio of the present μ to that of the parameters, the greatest over the pulleys.
         let mut raised = one;
         if acting.has(load_nonlinearity::ACTS) {
             let law = LoadNonlinearity::of(value);
@@ -558,7 +557,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
         }
         let tolerated = [BEYOND_RATIO, TOLERATED_N].map(|tolerated| T::splat(tolerated) / platform_share);
         let ratio = (bears_ratio - tolerated[0] + bears_per_wrap * wrap_factor) * raised;
-        // Viscous friction is load of the pulleys behind; a slip limit takes it out of what is stored.
+        // Viscous friction loads the pulleys behind; a slip limit takes it from the stored friction.
         let limited_n = if self.features.traction { viscous_n } else { zero };
         let stored = Stored {
             jump: zero.lt(T::from_lanes(|lane| f64::from(jump >> lane & 1))),
@@ -579,13 +578,13 @@ impl<const CABLES: usize> Compensator<CABLES> {
         [jump, T::bits(unsettled) & present]
     }
 
-    /// Which lanes of a block are cables of the robot.
+    /// Returns which lanes of a block are cables of the robot.
     fn present_bits<T: Block>(&self, block: usize) -> u32 {
         (1 << self.cable_count.saturating_sub(block * T::COUNT).min(T::COUNT)) - 1
     }
 }
 
-/// The signals of a block's cables.
+/// Returns the signals of a block's cables.
 #[inline(always)]
 fn raw_signals<T: Block, const CABLES: usize>(input: &CycleInput<CABLES>, first: usize) -> RawSignals<T> {
     let signal = |of: fn(&CableInput) -> f64| T::from_lanes(|lane| input.cables.get(first + lane).map_or(0.0, of));
@@ -596,10 +595,10 @@ fn raw_signals<T: Block, const CABLES: usize>(input: &CycleInput<CABLES>, first:
     }
 }
 
-/// Effects by which a bearing may bear less than its parameters alone tell.
+/// Effects that can make a bearing's friction smaller than its parameters alone say.
 const BEARS_OTHERWISE: Acting = friction_drift::ACTS.and(load_nonlinearity::ACTS);
 
-/// Which cables of a block lead, and by how far the parabola does, m.
+/// Returns which cables of a block have a lead, and the displacement that it extrapolates, m.
 fn lead_block<T: Block, const CABLES: usize>(
     lines: &[DelayLine; CABLES],
     first: usize,
@@ -614,7 +613,7 @@ fn lead_block<T: Block, const CABLES: usize>(
     (T::splat(0.0).lt(leads), T::from_lanes(lead_m))
 }
 
-/// One cycle of a block's delay lines.
+/// Advances a block's delay lines by one cycle.
 fn shift_block<T: Block, const CABLES: usize>(
     lines: &mut [DelayLine; CABLES],
     first: usize,

@@ -1,8 +1,8 @@
-//! Cables without a robot around them, in any number type: one in plain numbers, four in lanes.
+//! Cables without a robot, in any number type: one in plain numbers, four in lanes.
 //!
-//! For: identification, which runs the cycle's equations with numbers that carry derivatives along. A cable has the bits that
-//! the [`Compensator`](crate::Compensator) gives it, whatever the type and whichever cables stand beside it. Signals come
-//! conditioned ([`condition`](crate::signals::condition)), the wrap of a last pulley that follows the pose as [`PoseWrap`].
+//! Identification uses it to run the cycle's equations with numbers that carry derivatives. A cable has the same bits as in the
+//! [`Compensator`](crate::Compensator), whatever the number type and the other cables. The caller supplies conditioned signals
+//! ([`condition`](crate::signals::condition)), and the wrap of a last pulley that follows the pose as [`PoseWrap`].
 
 use crate::cable::{Cable, CableModel, Features, Moment};
 use crate::cable_cycle::{CableForces, cable_cycle};
@@ -20,7 +20,7 @@ use crate::scalar::{Mask, Scalar};
 use crate::signals::{CableSignals, Conditioned};
 use crate::swivel;
 
-/// What the pose means for the last pulley of a cable.
+/// Wrap of a cable's last pulley at a pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoseWrap {
     /// `2 sin(β/2)` of its wrap.
@@ -30,17 +30,16 @@ pub struct PoseWrap {
 }
 
 impl PoseWrap {
-    /// The wrap, rad.
+    /// Returns the wrap, rad.
     #[must_use]
     pub fn wrap_rad(&self) -> f64 {
         2.0 * libm::asin((0.5 * self.wrap_factor).min(1.0))
     }
 
-    /// Before the first pose: 90°, no slip.
+    /// The wrap before the first pose: 90°, no slip.
     pub const START: Self = Self { wrap_factor: START_WRAP_FACTOR, traction_ratio: NO_SLIP };
 
-    /// The wrap at a pose; `None` for a cable without a pulley that follows it, and where the pose leaves the cable no
-    /// way out of it.
+    /// Returns the wrap at a pose; `None` for a cable without a pulley that follows the pose, and if the attachment lies inside the pulley's circle.
     #[must_use]
     pub fn at(params: &CableParams, pose: &Pose) -> Option<Self> {
         let geometry = params.geometry.as_ref().filter(|_| params.needs_pose())?;
@@ -51,7 +50,7 @@ impl PoseWrap {
     }
 }
 
-/// As many cables as a `T` has lanes, with their state.
+/// Up to as many cables as a `T` has lanes, with their state.
 #[derive(Clone, Debug)]
 pub struct CableGroup<T: Scalar> {
     model: CableModel<T>,
@@ -62,20 +61,20 @@ pub struct CableGroup<T: Scalar> {
     state: State<T>,
 }
 
-/// What stands for 0 in a delay, in a compliance and in a play that vary. At 0 a cable at rest does not move, so that it cannot be
-/// told which way a change of these would move it; this far from it, it can, and no force changes by anything that counts.
+/// Least values of a delay, a compliance and a play that vary. At exactly 0 a cable at rest does not move, and the derivative by these parameters
+/// would be 0 too. At these values the derivative is right, and forces change by a negligible amount.
 const LEAST_DELAY_S: f64 = 1e-12;
 const LEAST_COMPLIANCE_M_PER_N: f64 = 1e-15;
 const LEAST_PLAY_M: f64 = 1e-15;
 
-/// What the delay of set points remembers, lane by lane.
+/// State of the delay of set points, lane by lane.
 #[derive(Clone, Debug)]
 struct Delayed<T> {
     taps: [Taps; LANES],
     fractions: [T; 2],
     displacement_m: [DelayLine; LANES],
     speed_m_per_s: [DelayLine; LANES],
-    /// How far the delayed motion lags behind, m.
+    /// Distance by which the delayed motion lags behind, m.
     lag_m: T,
 }
 
@@ -88,7 +87,7 @@ struct State<T: Scalar> {
     stretch_ratio: [T; PLACES],
     greatest_mu: T,
     traction_ratio: [T; PLACES],
-    /// Where the pulley at the last place follows the pose.
+    /// Whether the wrap of the pulley at the last position follows the pose.
     follows_pose: T::Mask,
     pose_wrap_factor: T,
     posed_mu_ratio: T,
@@ -100,22 +99,22 @@ struct State<T: Scalar> {
     memory: [T; MEMORY],
 }
 
-/// What a cable of a group is fed in one cycle.
+/// The inputs of one cable of a group in one cycle.
 #[derive(Clone, Copy, Debug)]
 pub struct CableCycle<'a> {
     /// Its signals.
     pub signals: &'a Conditioned<f64>,
-    /// Wrap at the last pose there was.
+    /// Wrap at the last known pose.
     pub pose_wrap: PoseWrap,
-    /// Cycles since the first of the run, see [`next_cycle`](crate::signals::next_cycle).
+    /// Number of cycles since the first one of the run, see [`next_cycle`](crate::signals::next_cycle).
     pub cycle: f64,
 }
 
 impl<T: Scalar> CableGroup<T> {
-    /// Cables at rest with `values` in place of their own, one cable a lane; lanes without one repeat the last. A parameter
-    /// that `varies` takes part also at its neutral value, so that its derivative is right there.
+    /// Creates cables at rest, one per lane, with `values` replacing their own; further lanes repeat the last cable. A parameter that `varies` is
+    /// computed even at its neutral value, so that its derivative is right there.
     ///
-    /// Without any cable there is no group: `None`.
+    /// Returns `None` without any cable.
     #[must_use]
     pub fn new(
         cables: &[&CableParams],
@@ -180,9 +179,9 @@ impl<T: Scalar> CableGroup<T> {
         })
     }
 
-    /// The same `cables` with a μ of its own for each pulley: `ratio` gives it for a lane and a pulley, as a multiple of the cable's.
+    /// Returns the same `cables` with a μ of its own for each pulley: `ratio` is its multiple of the cable's μ, by lane and pulley.
     ///
-    /// It is the normal force that is multiplied, which comes to the same, but for a `load_nonlinearity`: that sees it too.
+    /// The normal force is multiplied instead of μ. This is equivalent except with `load_nonlinearity`, which depends on the normal force.
     #[must_use]
     pub fn with_mu_ratios(mut self, cables: &[&CableParams], ratio: impl Fn(usize, usize) -> f64) -> Self {
         let places: [Option<Places>; LANES] = core::array::from_fn(|lane| {
@@ -201,13 +200,13 @@ impl<T: Scalar> CableGroup<T> {
         self
     }
 
-    /// One cycle; `cycle` gives what the cable of a lane is fed.
+    /// Computes one cycle; `cycle` gives the inputs of the cable in a lane.
     #[inline(always)]
     pub fn step<'a>(&mut self, cycle: impl Fn(usize) -> CableCycle<'a>) -> CableForces<T> {
         if self.features.has_effects() { self.step_with_effects(cycle) } else { self.step_as::<false>(cycle) }
     }
 
-    /// A function of its own, so that the cycle without effects does not pay for it.
+    /// Computes one cycle with effects, in a separate function, so that the cycle without effects does not become slower.
     #[inline(never)]
     fn step_with_effects<'a>(&mut self, cycle: impl Fn(usize) -> CableCycle<'a>) -> CableForces<T> {
         self.step_as::<true>(cycle)
@@ -264,7 +263,7 @@ impl<T: Scalar> CableGroup<T> {
     }
 }
 
-/// One cycle of the delay lines of all lanes.
+/// Advances the delay lines of all lanes by one cycle.
 fn shift<T: Scalar>(
     lines: &mut [DelayLine; LANES],
     values: T,
@@ -281,7 +280,7 @@ fn shift<T: Scalar>(
 }
 
 impl<T: Scalar> State<T> {
-    /// What the pose gives at the last place of cables that follow it, else what is fixed.
+    /// Returns the value by the pose at the last position of cables that follow it, else the fixed one.
     #[inline(always)]
     fn posed(&self, place: usize, by_pose: T, fixed: &[T; PLACES]) -> T {
         let fixed = fixed.get(place).copied().unwrap_or(T::splat(0.0));

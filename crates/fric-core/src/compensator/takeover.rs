@@ -1,4 +1,4 @@
-//! One compensator's parameters in the place of another's, for [`TunableCompensator`](crate::TunableCompensator).
+//! Replaces the parameters of a running compensator by those of another, for [`TunableCompensator`](crate::TunableCompensator).
 
 use super::Compensator;
 use crate::effects::time_delay::DelayLine;
@@ -7,15 +7,15 @@ use crate::places::NO_SLIP;
 use crate::robot::{ParamError, ParamProblem};
 use crate::signals::BEFORE_FIRST;
 
-/// Shares of friction that cancel out further than this are none.
+/// If the shares of the pulleys cancel to less than this fraction of their magnitudes, friction is not distributed by them.
 const LEAST_OF_SIZE: f64 = 1e-3;
 
 impl<const CABLES: usize> Compensator<CABLES> {
-    /// Whether the parameters of another compensator can take over while this one runs.
+    /// Checks whether the parameters of another compensator can take over while this one runs.
     ///
     /// # Errors
-    /// [`ParamError`] if cycle time, number of cables, their pulleys or whether they have an attachment differ: that is another
-    /// robot, and what is stored at a pulley of one has no place in the other.
+    /// [`ParamError`] if the cycle time, the number of cables, their pulleys, or which of them have an attachment differ. That is another robot, and
+    /// friction stored at a pulley of one has no place in the other.
     pub fn check_exchange(&self, next: &Self) -> Result<(), ParamError> {
         if self.cycle_s.to_bits() != next.cycle_s.to_bits() {
             let problem = ParamProblem::Fixed { value: next.cycle_s, running: self.cycle_s };
@@ -33,14 +33,14 @@ impl<const CABLES: usize> Compensator<CABLES> {
         Ok(())
     }
 
-    /// Everything of `next` but its state, which is made to go with them.
+    /// Takes everything of `next` except its state; converts the own state to the new parameters.
     pub(crate) fn take_parameters(&mut self, next: &Self) {
         self.hand_over(next);
         self.assign_parameters(next);
     }
 
-    /// The state as the parameters of `next` can start from it: whatever stands still while its effect, form or limit does not act
-    /// is as unknown as at the start, and friction that is stored in one form goes on in the other.
+    /// Converts the state so that the parameters of `next` can start from it. State of an effect, form or limit that does not act before and after
+    /// the change becomes unknown, as at the start. Friction stored in one form of presliding is converted to the other.
     fn hand_over(&mut self, next: &Self) {
         let goes_on =
             |effect: Effect| self.features.acting.has(effect.acts()) && next.features.acting.has(effect.acts());
@@ -54,7 +54,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
         }
         if !delay {
             columns.delayed_displacement_m.fill(DelayLine::EMPTY);
-            // The speed goes on as it is until the line knows it.
+            // The speed is passed on undelayed until the delay line is filled.
             columns.delayed_speed_m_per_s.fill(DelayLine::UNFILLED);
         }
         let delays = self.params.delay.iter().zip(&next.params.delay);
@@ -62,7 +62,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
         for (cable, ((before, delay), (lag_m, line))) in delays.zip(lines).enumerate() {
             if before != delay {
                 *lag_m = line.lag(*delay);
-                // Another delay is another speed, not an acceleration.
+                // With another delay the speed jumps; that is no acceleration, so effects of motion start anew.
                 let of_motion = |effect: &&Effect| matches!(effect.row().memory, Memory::OfMotion(_));
                 for effect in Effect::CATALOGUE.iter().filter(of_motion) {
                     for column in columns.memory.get_mut(effect.memory_places()).unwrap_or_default() {
@@ -81,13 +81,13 @@ impl<const CABLES: usize> Compensator<CABLES> {
         }
     }
 
-    /// Whether something goes with the time of the run.
+    /// Whether any effect depends on the time of the run.
     fn drifts(&self) -> bool {
         self.features.acting.has(Acting::going_by_time())
     }
 
-    /// Friction stored in a cable, from the form that it has to that of `next`, with the same force at the platform: the sum over
-    /// the pulleys, or shares of it in the proportion in which pulleys rub, that of their wrap factors.
+    /// Converts the friction stored in a cable to the form of presliding of `next`, with the same force at the platform. From `per_pulley` to
+    /// `lumped` it is the sum over the pulleys; from `lumped` to `per_pulley` it is distributed in proportion to the wrap factors.
     fn hand_friction_over(&mut self, next: &Self, cable: usize) {
         let is_lumped = |of: &Self| of.params.lumped.get(cable).is_some_and(|lumped| *lumped > 0.0);
         let (was_lumped, is_lumped) = (is_lumped(self), is_lumped(next));
@@ -107,7 +107,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
                     let part = share(place) * wrap_factor(place);
                     (sum + part, size + part.abs())
                 });
-                // Where the sensor pulley outweighs what the others do, no shares would be of any sense.
+                // If the sensor pulley nearly cancels the others, no distribution makes sense, and the stored friction is released.
                 let unit_n = if sum.abs() > LEAST_OF_SIZE * size { *lumped_n / sum } else { 0.0 };
                 *lumped_n = 0.0;
                 of_cable.enumerate().for_each(|(place, stored_n)| *stored_n = unit_n * wrap_factor(place));
@@ -118,7 +118,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
     }
 
     fn assign_parameters(&mut self, next: &Self) {
-        // Named one by one, so that none that is added can be forgotten; assigned one by one, so that none passes the stack.
+        // Named one by one, so that a new field cannot be forgotten; assigned one by one, so that none is copied over the stack.
         let Self {
             params,
             state: _,
@@ -146,7 +146,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
         self.center_of_mass_m = *center_of_mass_m;
     }
 
-    /// Parameters and state of `other`.
+    /// Takes parameters and state of `other`.
     pub(crate) fn copy_from(&mut self, other: &Self) {
         self.assign_parameters(other);
         self.state = other.state;
