@@ -86,10 +86,10 @@ impl<T: Scalar> SensorLag<T> {
     }
 
     /// Returns the number of cycles after which earlier sensor signals are forgotten, whatever they were: to less than `10⁻¹²`, through two low-pass
-    /// filters in series.
+    /// filters in series. It includes the first cycle with a force that is right again, so that this one is still reviewed.
     pub fn recovery_cycles(&self, cycle_s: T) -> T {
         let lags = T::splat(0.0).lt(self.time_constant_s);
-        (T::splat(FORGOTTEN) * self.smoothing_s / cycle_s + T::splat(1.0)).keep(lags)
+        (T::splat(FORGOTTEN) * self.smoothing_s / cycle_s + T::splat(2.0)).keep(lags)
     }
 
     /// Returns the time constant in cycles, at least one.

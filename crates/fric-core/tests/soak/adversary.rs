@@ -6,8 +6,10 @@
 //! | believed | the twin has no `SENSOR_JUMP`, and is `UNSETTLED` only where it has stored more than `Σμk_j·T` |
 //!
 //! With `cable_elasticity` the play of the stretch may stay off by 3·`play_n`·`compliance_m_per_n`·σ, which is left out.
-//! What cannot be told is counted and left out: a spike of no more than [`greatest_change_n`] is what the cable can do, from its
-//! first cycle until, after its last, the force has come back to the twin's. The twin's own force changes by at most 0.4 of that in a cycle.
+//! Spikes that no signal shows are counted and left out, from their first cycle until, after their last, the force has come back to the twin's
+//! (both being slack is not coming back: the force is then 0 whatever is stored):
+//! - a spike of no more than [`greatest_change_n`], which is what the cable can do. The twin's own force changes by at most 0.4 of that in a cycle;
+//! - a spike that begins while an earlier jump persists and, to within that limit, cancels it or leads back to the force before it ([`Jumps`]).
 
 use fric_core::robot::{MonitorOptions, Presliding};
 use fric_core::{CableInput, CableParams, CableStatus, CycleInput, Pose};
@@ -25,7 +27,7 @@ const CYCLES: u64 = 20_000;
 pub struct Tally {
     /// Cycles of a cable beside its twin.
     pub cycles: u64,
-    /// Spikes, and those among them that are no jump.
+    /// Spikes, and those among them that no signal shows.
     pub spikes: u64,
     pub hidden: u64,
     /// Cycles of a cable in which its force was off, and in which that was left out.
@@ -73,8 +75,42 @@ struct Line {
     /// Cycles until the next spike begins, or this one ends.
     cycles_left: u64,
     spike: Option<Spike>,
-    /// A spike that is no jump stands, or has left something.
+    jumps: Jumps,
+    /// A spike that no signal shows stands, or has left something.
     hidden: bool,
+}
+
+/// The jumps that a sensor shows, written from the description of `SENSOR_JUMP`.
+#[derive(Default)]
+struct Jumps {
+    from_n: f64,
+    sum_n: f64,
+    cycles_left: f64,
+}
+
+impl Jumps {
+    /// Enters the force of a cycle; whether it looks like the end of an earlier jump.
+    fn enter(&mut self, [last_n, force_n]: [f64; 2], limit_n: f64, cycle_s: f64) -> bool {
+        let persists = self.cycles_left > 0.0;
+        self.cycles_left -= 1.0;
+        let change_n = force_n - last_n;
+        if change_n.abs() <= limit_n {
+            return false;
+        }
+        if !persists {
+            (self.from_n, self.sum_n) = (last_n, 0.0);
+        }
+        let is_back = (self.sum_n + change_n).abs() <= limit_n || (force_n - self.from_n).abs() <= limit_n;
+        if persists && is_back {
+            self.cycles_left = 0.0;
+            return true;
+        }
+        // A jump that is only partly taken back persists for its whole time.
+        let is_part = persists && change_n * self.sum_n < 0.0;
+        (self.from_n, self.sum_n) = if is_part { (f64::NAN, f64::NAN) } else { (self.from_n, self.sum_n + change_n) };
+        self.cycles_left = 5.0 / cycle_s;
+        false
+    }
 }
 
 #[derive(Clone, Copy)]
@@ -147,7 +183,8 @@ pub fn episode(seed: u64) -> Result<Tally, String> {
             let motion = Motion::new(&mut random, robot.cycle_s, monitor.length_jump_m, monitor.length_noise_m);
             let base_n = magnitude(&mut random, 2.0, 50.0);
             let cycles_left = 500 + random.below(1000);
-            Line { motion, base_n, force_n: base_n, target_n: base_n, cycles_left, spike: None, hidden: false }
+            let (jumps, spike) = (Jumps::default(), None);
+            Line { motion, base_n, force_n: base_n, target_n: base_n, cycles_left, spike, jumps, hidden: false }
         })
         .collect();
     let (mut twin, mut spoilt) = (robot.compensator(), robot.compensator());
@@ -166,7 +203,11 @@ pub fn episode(seed: u64) -> Result<Tally, String> {
         let mut bad = good;
         for (index, line) in lines.iter_mut().enumerate() {
             let force_n = &mut bad.cables[index].sensor_force_n;
-            if let Some(hidden) = line.spoil(&mut random, (shown_n[index], force_n), cable(index), &monitor) {
+            let begins = line.spoil(&mut random, (shown_n[index], force_n), cable(index), &monitor);
+            let limit_n = greatest_change_n(cable(index), &monitor, force_n.min(shown_n[index]));
+            let looks_like_an_end = line.jumps.enter([shown_n[index], *force_n], limit_n, robot.cycle_s);
+            if let Some(is_small) = begins {
+                let hidden = is_small || looks_like_an_end;
                 tally.spikes += 1;
                 tally.hidden += u64::from(hidden);
                 line.hidden |= hidden;
@@ -189,7 +230,8 @@ pub fn episode(seed: u64) -> Result<Tally, String> {
                     bad.cables[index], robot.cables[index],
                 ));
             }
-            if off_n < 0.01 * tolerated_n && line.spike.is_none() {
+            let is_slack = (one.status | other.status).contains(CableStatus::SLACK);
+            if off_n < 0.01 * tolerated_n && line.spike.is_none() && !is_slack {
                 line.hidden = false;
             }
             let has = |flag| other.status.contains(flag);
