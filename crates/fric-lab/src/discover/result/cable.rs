@@ -6,6 +6,7 @@ use serde::Serialize;
 use super::effect::{Candidate, EffectResult, TriedResult, effect_result, errors};
 use super::fault::FaultResult;
 use super::finite;
+use super::machine::{Machine, Robot, is_absent};
 use super::place::{UnexplainedResult, WhereResult, unexplained};
 use crate::discover::report::{CableDiscovery, Model, Verdict};
 use crate::discover::rest::empirical;
@@ -13,25 +14,34 @@ use crate::errors::ForceError;
 use crate::fit::Parameter;
 use crate::fit::result::{LeftOut, Numbers};
 
-/// One cable.
+/// One cable, or the tendon of a manipulator.
 #[derive(Clone, Debug, Serialize)]
-pub struct DiscoverCableResult {
+#[serde(bound = "")]
+pub struct DiscoverCableResult<M: Machine = Robot> {
     /// Its name.
     pub name: String,
     /// Number of samples that count.
     pub samples: usize,
     /// Samples that do not count.
-    pub left_out: LeftOut,
+    #[serde(skip_serializing_if = "is_absent")]
+    pub left_out: M::OfRobots<LeftOut>,
     /// The held-out samples, `from..to`, counted over all rows of all logs.
-    pub held_out_samples: Vec<[usize; 2]>,
+    #[serde(skip_serializing_if = "is_absent")]
+    pub held_out_samples: M::OfRobots<Vec<[usize; 2]>>,
     /// Time intervals of the held-out samples, s since the first sample.
-    pub held_out_s: Vec<[f64; 2]>,
+    #[serde(skip_serializing_if = "is_absent")]
+    pub held_out_s: M::OfRobots<Vec<[f64; 2]>>,
     /// Standard deviation of the white noise, N.
     pub noise_floor_n: Option<f64>,
     /// Standard deviation of slow sensor noise, N.
-    pub wander_n: Option<f64>,
+    #[serde(skip_serializing_if = "is_absent")]
+    pub wander_n: M::OfRobots<Option<f64>>,
     /// Standard deviation of the reference over the held-out samples, N: the error of a model that predicts a constant.
-    pub reference_variation_n: Option<f64>,
+    #[serde(skip_serializing_if = "is_absent")]
+    pub reference_variation_n: M::OfRobots<Option<f64>>,
+    /// Root mean square error of the reference for one standard error of its calibration, N; absent without a calibration.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub calibration_error_n: Option<f64>,
     /// Error of the given model, fitted; absent without a reference force.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub before: Option<ForceError>,
@@ -44,24 +54,35 @@ pub struct DiscoverCableResult {
     #[serde(serialize_with = "verdict_or_null")]
     pub verdict: &'static str,
     /// What the log lacks for a verdict.
-    pub missing: Option<Missing>,
+    #[serde(skip_serializing_if = "is_absent")]
+    pub missing: M::OfRobots<Option<Missing>>,
     /// Conditions in which the given model disagrees with the log, the most informative first.
     #[serde(rename = "where")]
-    pub places: Vec<WhereResult>,
+    pub places: Vec<WhereResult<M>>,
+    /// Distances from markers; absent if there are too few to estimate their noise.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub markers: Option<M::Markers>,
     /// The effects found, in the order in which they entered.
-    pub effects: Vec<EffectResult>,
+    pub effects: Vec<EffectResult<M>>,
     /// Every candidate alone beside the given model, the best first.
-    pub candidates: Vec<Candidate>,
+    #[serde(skip_serializing_if = "is_absent")]
+    pub candidates: M::OfRobots<Vec<Candidate>>,
     /// Candidates that help the extended model but do not suffice, the best first.
     pub tried: Vec<TriedResult>,
+    /// The reason why the file keeps a value that the log contradicts; absent if it keeps none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub kept: Option<String>,
     /// Values of the extended model, keyed as in the robot file's `friction` and as `effect.key`.
-    pub parameters: Numbers,
+    #[serde(skip_serializing_if = "is_absent")]
+    pub parameters: M::OfRobots<Numbers>,
     /// Standard errors of the fitted values.
-    pub standard_errors: Numbers,
+    #[serde(skip_serializing_if = "is_absent")]
+    pub standard_errors: M::OfRobots<Numbers>,
     /// Recording faults, which concern the log and not the machine.
-    pub faults: Vec<FaultResult>,
+    #[serde(skip_serializing_if = "is_absent")]
+    pub faults: M::OfRobots<Vec<FaultResult>>,
     /// The rest that no effect explains.
-    pub unexplained: Option<UnexplainedResult>,
+    pub unexplained: Option<UnexplainedResult<M>>,
 }
 
 /// The reason why there is no verdict.
@@ -121,13 +142,16 @@ pub fn cable_result(
         reference_variation_n: finite(found.reference_variation_n),
         before,
         after,
+        calibration_error_n: None,
         gap_closed: after.and_then(|after| share(after.rms_n)),
         verdict: found.verdict.name(),
         missing,
         places,
+        markers: None,
         effects: found.findings.iter().map(|finding| effect_result(found, finding)).collect(),
         candidates: found.candidates.iter().map(Candidate::of).collect(),
         tried: found.tried.iter().map(TriedResult::of).collect(),
+        kept: None,
         parameters: parameters(found),
         standard_errors: errors(&found.after, Parameter::all(), ToString::to_string),
         faults: found.faults.iter().map(FaultResult::of).collect(),

@@ -5,6 +5,7 @@ use serde::Serialize;
 
 use super::cable::gap_closed;
 use super::finite;
+use super::machine::{Machine, Robot, is_absent};
 use super::table::TableResult;
 use crate::discover::report::{self, CableDiscovery, Finding, Model, Tried};
 use crate::discover::rest::empirical;
@@ -13,7 +14,8 @@ use crate::fit::result::Numbers;
 
 /// An effect that was found.
 #[derive(Clone, Debug, Serialize)]
-pub struct EffectResult {
+#[serde(bound = "")]
+pub struct EffectResult<M: Machine = Robot> {
     /// Its name in the catalogue.
     pub kind: &'static str,
     /// Its parameters by key, including settings.
@@ -25,12 +27,16 @@ pub struct EffectResult {
     /// Evidence for the effect.
     pub evidence: Evidence,
     /// The best other effect in its place.
-    pub runner_up: Option<RunnerUpResult>,
+    pub runner_up: Option<RunnerUpResult<M>>,
     /// Content of an `empirical` table, which is no name.
-    pub table: Option<TableResult>,
+    #[serde(skip_serializing_if = "is_absent")]
+    pub table: M::OfRobots<Option<TableResult>>,
+    /// Effects that the log does not distinguish from it: any of them may be present instead. A robot names one of them as the best other effect.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub alike: Vec<&'static str>,
     /// The catalogue entry.
     #[serde(skip)]
-    pub effect: Effect,
+    pub effect: M::Entry,
 }
 
 /// Evidence for an effect.
@@ -44,18 +50,21 @@ pub struct Evidence {
 
 /// Another effect that may be present instead.
 #[derive(Clone, Debug, Serialize)]
-pub struct RunnerUpResult {
+#[serde(bound = "")]
+pub struct RunnerUpResult<M: Machine = Robot> {
     /// Its name in the catalogue.
     pub kind: &'static str,
     /// BIC with the effect minus BIC without it.
     pub delta_bic: Option<f64>,
     /// Error with this effect in the other's place, N.
-    pub held_out_rms_n: Option<f64>,
+    #[serde(skip_serializing_if = "is_absent")]
+    pub held_out_rms_n: M::OfRobots<Option<f64>>,
     /// Whether the log cannot distinguish the two.
-    pub as_good: bool,
+    #[serde(skip_serializing_if = "is_absent")]
+    pub as_good: M::OfRobots<bool>,
     /// The catalogue entry.
     #[serde(skip)]
-    pub effect: Effect,
+    pub effect: M::Entry,
 }
 
 /// An effect that helps the extended model but does not suffice.
@@ -63,6 +72,9 @@ pub struct RunnerUpResult {
 pub struct TriedResult {
     /// Its name in the catalogue.
     pub kind: &'static str,
+    /// The grating or hole that it concerns; absent for effects of a whole cable.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub parameters: Option<Numbers>,
     /// Evidence for the effect beside the extended model.
     pub evidence: Evidence,
     /// The reason why it is not named, as a clause.
@@ -110,6 +122,7 @@ pub fn effect_result(found: &CableDiscovery, finding: &Finding) -> EffectResult 
             effect: other.effect,
         }),
         table: (finding.effect == Effect::Empirical).then(|| TableResult::of(&found.after)).flatten(),
+        alike: Vec::new(),
         effect: finding.effect,
     }
 }
@@ -125,6 +138,6 @@ impl TriedResult {
     pub(super) fn of(tried: &Tried) -> Self {
         let Tried { effect, delta_bic, held_out_rms_n, refusal } = tried;
         let evidence = Evidence { delta_bic: finite(*delta_bic), held_out_rms_n: finite(*held_out_rms_n) };
-        Self { kind: effect.kind(), evidence, reason: refusal.in_words() }
+        Self { kind: effect.kind(), parameters: None, evidence, reason: refusal.in_words() }
     }
 }

@@ -8,6 +8,7 @@ mod cable;
 mod common;
 mod effect;
 mod fault;
+mod machine;
 mod place;
 mod table;
 mod wrench;
@@ -16,46 +17,47 @@ use fric_core::robot::file::RobotFile;
 use serde::Serialize;
 
 use super::report::CableDiscovery;
-use super::summary;
 use super::wrench::WrenchDiscovery;
 use crate::fit::FitError;
 use crate::fit::readiness::Readiness;
 
 use self::cable::cable_result;
 use self::common::common_effects;
+use self::machine::is_absent;
 
 pub use cable::{DiscoverCableResult, Missing};
 pub use common::{CommonEffect, CommonParameter};
 pub use effect::{Candidate, EffectResult, Evidence, RunnerUpResult, TriedResult};
 pub use fault::FaultResult;
+pub use machine::{Absent, Machine, Robot, Value};
 pub use place::{UnexplainedResult, WhereResult};
 pub use table::{TablePoint, TableResult};
 pub use wrench::{GeometryResult, TriedTogether, WrenchComponent, WrenchGap};
 
 /// The result of a discovery.
 #[derive(Clone, Debug, Serialize)]
-pub struct DiscoverResult {
+#[serde(bound = "")]
+pub struct DiscoverResult<M: Machine = Robot> {
     /// Name and version of the format.
     pub format: &'static str,
     /// The logs, in order.
     pub log: Vec<String>,
     /// Start of each log, s. Several logs follow one another.
-    pub log_start_s: Vec<f64>,
-    /// Name of the robot.
+    #[serde(skip_serializing_if = "is_absent")]
+    pub log_start_s: M::OfRobots<Vec<f64>>,
+    /// Name of the robot or the manipulator.
     pub robot: String,
-    /// The cables in the robot's order.
-    pub cables: Vec<DiscoverCableResult>,
+    /// The cables in the robot's order, or the tendon.
+    pub cables: Vec<DiscoverCableResult<M>>,
     /// Effects that several cables share.
-    pub common_effects: Vec<CommonEffect>,
+    #[serde(skip_serializing_if = "is_absent")]
+    pub common_effects: M::OfRobots<Vec<CommonEffect>>,
     /// Results for all cables together, if they were compared with the wrench.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub wrench: Option<WrenchGap>,
+    pub wrench: Option<M::OfRobots<WrenchGap>>,
 }
 
 impl DiscoverResult {
-    /// Name and version of the format.
-    pub const FORMAT: &str = "fric-discover/1";
-
     /// Creates the result for a robot's cables. `logs` holds the name and the start of each log, s.
     #[must_use]
     pub fn new(
@@ -100,12 +102,6 @@ impl DiscoverResult {
         self
     }
 
-    /// Returns a summary for people: the verdicts, then the findings.
-    #[must_use]
-    pub fn summary(&self) -> String {
-        summary::describe(self)
-    }
-
     /// Checks that at least one cable has a verdict.
     ///
     /// # Errors
@@ -116,6 +112,17 @@ impl DiscoverResult {
         let name = self.cables.first().map_or("", |cable| cable.name.as_str());
         let others = if self.cables.len() > 1 { ", and nothing of the others" } else { "" };
         Err(FitError::new(format!("the log tells nothing of {name}{others}: {}", first.cause), first.advice))
+    }
+}
+
+impl<M: Machine> DiscoverResult<M> {
+    /// Name and version of the format.
+    pub const FORMAT: &str = "fric-discover/1";
+
+    /// Returns a summary for people: the verdicts, then the findings.
+    #[must_use]
+    pub fn summary(&self) -> String {
+        M::summary(self)
     }
 }
 

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::finite;
+use super::machine::{Machine, Robot, is_absent};
 use crate::discover::faults::RecordingFault;
 use crate::discover::report::Unexplained;
 use crate::discover::rest::neighbours::Neighbour;
@@ -10,43 +11,53 @@ use crate::discover::rest::places::Place;
 
 /// A range of a condition in which the disagreement is concentrated.
 #[derive(Clone, Debug, Serialize)]
-pub struct WhereResult {
-    /// The condition.
+#[serde(bound = "")]
+pub struct WhereResult<M: Machine = Robot> {
+    /// The condition, or the kind of the signal that is wrong.
     pub signal: &'static str,
     /// Lower end of the range, in `unit`.
-    pub from: f64,
+    pub from: M::Bound,
     /// Upper end of the range, in `unit`.
-    pub to: f64,
+    pub to: M::Bound,
     /// Its unit.
     pub unit: &'static str,
     /// Fraction of the excess above the noise in this range.
     pub share_of_excess: Option<f64>,
     /// Fraction of the samples in this range.
-    pub share_of_samples: Option<f64>,
+    #[serde(skip_serializing_if = "is_absent")]
+    pub share_of_samples: M::OfRobots<Option<f64>>,
     /// Fraction of the excess above the noise that is a function of this condition and of the direction of motion.
-    pub explains: Option<f64>,
+    #[serde(skip_serializing_if = "is_absent")]
+    pub explains: M::OfRobots<Option<f64>>,
     /// Number of standard errors above chance.
-    pub significance: Option<f64>,
+    #[serde(skip_serializing_if = "is_absent")]
+    pub significance: M::OfRobots<Option<f64>>,
     /// Time intervals to look at, s since the first sample.
-    pub intervals_s: Vec<[f64; 2]>,
+    #[serde(skip_serializing_if = "is_absent")]
+    pub intervals_s: M::OfRobots<Vec<[f64; 2]>>,
     /// Least and greatest value of the condition.
     #[serde(skip)]
-    pub range: [f64; 2],
+    pub range: M::OfRobots<[f64; 2]>,
 }
 
 /// A rest that no effect explains.
 #[derive(Clone, Debug, Serialize)]
-pub struct UnexplainedResult {
+#[serde(bound = "")]
+pub struct UnexplainedResult<M: Machine = Robot> {
     /// Error above the noise, N.
     pub rms_n: Option<f64>,
+    /// Distance from the markers above the noise, mm; absent if it is noise, or without markers.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rms_mm: Option<f64>,
     /// Conditions in which it is concentrated.
     #[serde(rename = "where")]
-    pub places: Vec<WhereResult>,
+    pub places: Vec<WhereResult<M>>,
     /// Time intervals in which it is large, s since the first sample.
-    pub intervals_s: Vec<[f64; 2]>,
+    #[serde(skip_serializing_if = "is_absent")]
+    pub intervals_s: M::OfRobots<Vec<[f64; 2]>>,
     /// Signals that correlate with it: conditions that it is a function of, the most informative first, then signals of other cables, such as `cable2
     /// sensor_force`.
-    pub goes_with: Vec<String>,
+    pub goes_with: Vec<M::GoesWith>,
 }
 
 impl WhereResult {
@@ -93,6 +104,7 @@ pub fn unexplained(rest: &Unexplained, names: &[&str]) -> UnexplainedResult {
     });
     UnexplainedResult {
         rms_n: finite(rest.rms_n),
+        rms_mm: None,
         places: rest.places.iter().map(WhereResult::of).collect(),
         intervals_s: rest.intervals_s.clone(),
         goes_with: of_cable.chain(of_others).collect(),
