@@ -13,9 +13,10 @@
 
 use std::collections::BTreeMap;
 
+use fric_lab::discover::result::{DiscoverCableResult, EffectResult};
 use fric_tendon::edit::{GratingLine, ManipulatorEdit, rewrite};
 use fric_tendon::file::ManipulatorFile;
-use fric_tendon_lab::discover::{TendonDiscovery, TendonResult, discover};
+use fric_tendon_lab::discover::{Manipulator, TendonDiscovery, discover};
 use fric_tendon_lab::fbg::Calibration;
 use fric_tendon_lab::shape_errors::{ShapeErrors, Way, shapes};
 use fric_tendon_lab::simulate::{Experiment, SimulatedRun, TendonSimulationOptions, simulate};
@@ -89,15 +90,15 @@ fn found(text: &str, run: &SimulatedRun) -> TendonDiscovery {
     discover(&parsed(text), &Run::new(run.samples.clone(), 8).unwrap(), "run").unwrap()
 }
 
-fn told(tendon: &TendonResult) -> String {
+fn told(tendon: &DiscoverCableResult<Manipulator>) -> String {
     let mut kinds: Vec<&str> = tendon.effects.iter().map(|effect| effect.kind).collect();
     kinds.dedup();
     format!("{} {}", tendon.verdict, kinds.join(" "))
 }
 
 /// The same with segments and with what is not told apart.
-fn told_in_full(tendon: &TendonResult) -> String {
-    let name = |effect: &fric_tendon_lab::discover::TendonEffect| {
+fn told_in_full(tendon: &DiscoverCableResult<Manipulator>) -> String {
+    let name = |effect: &EffectResult<Manipulator>| {
         let segment = effect.parameters.get("segment").map_or_else(String::new, |segment| format!(":{segment}"));
         let mut names = vec![format!("{}{segment}", effect.kind)];
         names.extend(effect.alike.iter().map(|other| (*other).to_owned()));
@@ -160,7 +161,7 @@ fn compared(discovery: &TendonDiscovery, run: &SimulatedRun) -> Vec<(&'static st
     let shared: Vec<f64> =
         (0..8).filter(|hole| !is_one || !named.contains(hole)).map(|hole| of_model(run.mu[hole])).collect();
     let mean = shared.iter().sum::<f64>() / shared.len() as f64;
-    let number = |effect: &fric_tendon_lab::discover::TendonEffect| {
+    let number = |effect: &EffectResult<Manipulator>| {
         let (name, key, truth) = match effect.kind {
             "coulomb" => ("shared mu", "mu", mean),
             "hole_friction" => ("mu of a hole", "mu", of_model(run.mu[hole(effect.parameters.get("hole"))?])),

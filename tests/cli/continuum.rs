@@ -505,7 +505,9 @@ fn discovery_names_the_memory_of_the_holes() {
 #[test]
 fn fit_finds_a_stiffness_that_was_stated_wrong() {
     let place = place();
-    place.write("soft.toml", text("cal.toml").replace("200e9", "180e9"));
+    // As an editor on Windows writes it.
+    let soft = format!("\u{feff}{}", text("cal.toml").replace("200e9", "180e9").replace('\n', "\r\n"));
+    place.write("soft.toml", soft);
     let fit = ["continuum", "fit", "mixed.csv", "--model", "soft.toml", "-o", "fitted.toml", "--json", "f.json"];
     let run = place.run(&[&fit[..], &["--parameters", "backbone_stiffness,tendon_offset,mu"]].concat()).succeeds();
     assert!(run.stdout.contains("undetermined: the runs do not tell `hole_radius_m` apart"), "{run:#?}");
@@ -515,6 +517,7 @@ fn fit_finds_a_stiffness_that_was_stated_wrong() {
     let stiffness = result["parameters"]["bending_stiffness_n_m2"].as_f64().unwrap();
     assert!((stiffness / 2.7e-3 - 1.0).abs() < 0.01, "{stiffness}");
     let fitted = String::from_utf8(place.read("fitted.toml")).unwrap();
+    assert!(fitted.starts_with('\u{feff}') && !fitted.replace("\r\n", "").contains(['\r', '\n']), "{fitted:?}");
     let modulus = fitted.lines().find_map(|line| line.strip_prefix("youngs_modulus_pa = ")).unwrap();
     assert!((modulus.trim().parse::<f64>().unwrap() / 200e9 - 1.0).abs() < 0.01);
     let misspelt = [&fit[..5], &["-o", "x.toml", "--parameters", "stiffness"]].concat();

@@ -96,7 +96,39 @@ pub struct GratingLine {
     pub mean_shift_nm: f64,
 }
 
-/// Returns the text of a manipulator file with new values; `origin` names its source in error messages.
+/// What the TOML editor drops from a text: the byte order mark, and the carriage returns of line endings.
+#[derive(Clone, Copy, Debug)]
+struct Layout {
+    has_mark: bool,
+    /// Whether the first line ends in CRLF; a file that mixes line endings gets this one throughout.
+    has_carriage_returns: bool,
+}
+
+/// The byte order mark.
+const MARK: char = '\u{feff}';
+
+impl Layout {
+    fn of(text: &str) -> Self {
+        Self {
+            has_mark: text.starts_with(MARK),
+            has_carriage_returns: text.split('\n').next().is_some_and(|line| line.ends_with('\r')),
+        }
+    }
+
+    /// Returns the text without the mark and with plain line endings.
+    fn removed(self, text: &str) -> String {
+        text.strip_prefix(MARK).unwrap_or(text).replace("\r\n", "\n")
+    }
+
+    /// Returns a text without them with mark and line endings as in the given one.
+    fn restored(self, text: &str) -> String {
+        let text = if self.has_carriage_returns { text.replace('\n', "\r\n") } else { text.to_owned() };
+        if self.has_mark { format!("{MARK}{text}") } else { text }
+    }
+}
+
+/// Returns the text of a manipulator file with new values; byte order mark and line endings stay as they are.
+/// `origin` names its source in error messages.
 ///
 /// ```
 /// use fric_tendon::edit::{ManipulatorEdit, rewrite};
@@ -112,7 +144,9 @@ pub struct GratingLine {
 pub fn rewrite(text: &str, origin: &str, edit: &ManipulatorEdit) -> Result<String, ManipulatorFileError> {
     ManipulatorFile::parse(text, origin)?;
     let invalid = |problem: String| ManipulatorFileError::Invalid { origin: origin.to_owned(), line: None, problem };
-    let mut document: DocumentMut = text.parse().map_err(|error: toml_edit::TomlError| invalid(error.to_string()))?;
+    let layout = Layout::of(text);
+    let mut document: DocumentMut =
+        layout.removed(text).parse().map_err(|error: toml_edit::TomlError| invalid(error.to_string()))?;
     // An empty name denotes the document itself.
     let mut set = |table: &str, key: &str, value: Value| {
         let place = if table.is_empty() {
@@ -192,7 +226,7 @@ pub fn rewrite(text: &str, origin: &str, edit: &ManipulatorEdit) -> Result<Strin
             each => set("backbone", key, list(each))?,
         }
     }
-    let text = document.to_string();
+    let text = layout.restored(&document.to_string());
     ManipulatorFile::parse(&text, &format!("{origin} with the new values"))?;
     Ok(text)
 }

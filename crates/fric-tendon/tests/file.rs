@@ -170,3 +170,15 @@ fn an_edit_makes_one_file_the_other() {
     assert!(text.contains("# holes on a circle of 30 mm"));
     assert_eq!(ManipulatorEdit::between(given.tables(), given.tables()), ManipulatorEdit::default());
 }
+
+/// The edited text differs from the given one in the edited value and the new key alone, whatever the editor on which the file was written.
+#[test]
+fn byte_order_mark_and_line_endings_stay() {
+    let edit = ManipulatorEdit { mu: vec![0.2], segment_stiffness_ratio: vec![1.1], ..ManipulatorEdit::default() };
+    let plain = rewrite(PROTOTYPE, "arm.toml", &edit).unwrap();
+    assert!(plain.contains("segment_stiffness_ratio = 1.1\n") && !plain.contains('\r'));
+    let marked = |text: &str| format!("\u{feff}{}", text.replace('\n', "\r\n"));
+    assert_eq!(rewrite(&marked(PROTOTYPE), "arm.toml", &edit).unwrap(), marked(&plain));
+    let unchanged = rewrite(&marked(PROTOTYPE), "arm.toml", &ManipulatorEdit::default()).unwrap();
+    assert_eq!(unchanged, marked(PROTOTYPE));
+}

@@ -7,7 +7,7 @@ use fric_lab::errors::{ForceError, WrenchError};
 use fric_lab::fit::result::FitResult;
 use fric_lab::hysteresis::HysteresisResult;
 use fric_lab::text::listed;
-use fric_tendon_lab::discover::TendonDiscoverResult;
+use fric_tendon_lab::discover::{Manipulator, rest_in_words};
 use fric_tendon_lab::identify::TendonFitResult;
 use fric_tendon_lab::result::{CalibrationResult, FrictionResult, HoleResult, ShapeResult};
 
@@ -498,7 +498,7 @@ pub fn of_shapes(result: &ShapeResult) -> Verdict {
 
 /// Returns the verdict on a manipulator's discovery.
 #[must_use]
-pub fn of_tendon(result: &TendonDiscoverResult) -> Verdict {
+pub fn of_tendon(result: &DiscoverResult<Manipulator>) -> Verdict {
     let (mut parts, mut todo, mut is_well) = (Vec::new(), Vec::new(), true);
     for tendon in &result.cables {
         let kinds: Vec<&str> = tendon.effects.iter().map(|effect| effect.kind).collect();
@@ -512,8 +512,8 @@ pub fn of_tendon(result: &TendonDiscoverResult) -> Verdict {
         if tendon.verdict == "unexplained" {
             parts.push("Something is left without a name.".to_owned());
         }
-        todo.extend(tendon.effects.iter().map(|effect| format!("{}: {}", effect.kind, effect.words[1])));
-        todo.extend(tendon.unexplained.iter().map(fric_tendon_lab::discover::TendonRest::sentence));
+        todo.extend(tendon.effects.iter().map(|effect| format!("{}: {}", effect.kind, effect.effect[1])));
+        todo.extend(tendon.unexplained.iter().map(rest_in_words));
     }
     if todo.is_empty() {
         todo.push("Nothing: keep the model.".to_owned());

@@ -1,7 +1,9 @@
 //! Assembles the result of a search from its outcome.
 
 use fric_lab::discover::Verdict;
-use fric_lab::discover::result::{DiscoverResult, Evidence};
+use fric_lab::discover::result::{
+    Absent, DiscoverCableResult, DiscoverResult, EffectResult, Evidence, RunnerUpResult, TriedResult, UnexplainedResult,
+};
 use fric_lab::errors::ForceError;
 use fric_lab::fit::result::Numbers;
 use fric_tendon::file::USUAL_SIGMA_N_PER_M;
@@ -17,10 +19,7 @@ use super::model::{Effect, Model, Parameter};
 use super::naming::{Finding, Outcome, Tried};
 use super::noise::{excess_n, rms_n};
 use super::places::{disks, segments};
-use super::result::{
-    MarkerError, TendonDiscoverResult, TendonEffect, TendonMarkers, TendonRest, TendonResult, TendonRunnerUp,
-    TendonTried,
-};
+use super::result::{Manipulator, MarkerError, TendonMarkers};
 use super::worse::Worse;
 
 /// Returns the result of an outcome, with the changes to write. `named` lists the findings that are already in the file of the case.
@@ -31,56 +30,80 @@ pub fn told(case: &Case<'_>, outcome: &Outcome, named: &[Named], log: &str) -> T
         (*verdict != Verdict::Complete && gap_n > 0.0).then(|| (1.0 - (rms_n(fit) - noise_n) / gap_n).min(1.0))
     };
     let evidence = |delta_bic: f64, rms_n: Option<f64>| Evidence { delta_bic: Some(delta_bic), held_out_rms_n: rms_n };
-    let effect = |finding: &Finding| TendonEffect {
+    let runner_up = |kind, delta_bic, effect| RunnerUpResult {
+        kind,
+        delta_bic: Some(delta_bic),
+        held_out_rms_n: Absent,
+        as_good: Absent,
+        effect,
+    };
+    let effect = |finding: &Finding| EffectResult {
         kind: finding.effect.kind(),
         parameters: parameters(case, finding.effect, &last.fit.model),
         standard_errors: standard_errors(case, finding.effect, last),
         gap_closed: closed(&finding.fit),
         evidence: evidence(finding.delta_bic, finding.fit.held_out_n.rms()),
-        runner_up: finding.runner_up.map(|(effect, delta_bic)| TendonRunnerUp { kind: effect.kind(), delta_bic }),
+        runner_up: finding
+            .runner_up
+            .map(|(other, delta_bic)| runner_up(other.kind(), delta_bic, other.cause_and_remedy())),
+        table: Absent,
         alike: Vec::new(),
-        words: finding.effect.cause_and_remedy(),
+        effect: finding.effect.cause_and_remedy(),
     };
-    let of_machine = |one: &Named| TendonEffect {
+    let of_machine = |one: &Named| EffectResult {
         kind: one.candidate.kind(),
         parameters: one.parameters.clone(),
         standard_errors: one.standard_errors.clone(),
         gap_closed: Some(one.gap_closed),
         evidence: evidence(one.delta_bic, after.held_out_n.rms()),
-        runner_up: one.runner_up.map(|(other, delta_bic)| TendonRunnerUp { kind: other.kind(), delta_bic }),
+        runner_up: one.runner_up.map(|(other, delta_bic)| runner_up(other.kind(), delta_bic, other.cause_and_remedy())),
+        table: Absent,
         alike: one.alike.iter().map(|other| other.kind()).collect(),
-        words: one.candidate.cause_and_remedy(),
+        effect: one.candidate.cause_and_remedy(),
     };
-    let helped = |tried: &Tried| TendonTried {
+    let helped = |tried: &Tried| TriedResult {
         kind: tried.effect.kind(),
-        parameters: place_of(tried.effect),
+        parameters: Some(place_of(tried.effect)),
         evidence: evidence(tried.delta_bic, Some(tried.rms_n)),
         reason: tried.reason.clone(),
     };
     let mut tried: Vec<&Tried> = tried.iter().collect();
     tried.sort_by(|one, other| one.delta_bic.total_cmp(&other.delta_bic));
-    let tendon = TendonResult {
-        name: "tendon",
+    let tendon = DiscoverCableResult {
+        name: "tendon".to_owned(),
         samples: case.run_samples,
-        noise_floor_n: *noise_n,
-        calibration_error_n: case.line_error_rms_n(),
+        left_out: Absent,
+        held_out_samples: Absent,
+        held_out_s: Absent,
+        noise_floor_n: Some(*noise_n),
+        wander_n: Absent,
+        reference_variation_n: Absent,
+        calibration_error_n: Some(case.line_error_rms_n()),
         before: ForceError::of(&before.held_out_n),
         after: ForceError::of(&after.held_out_n),
         gap_closed: closed(after),
         verdict: verdict.name(),
+        missing: Absent,
         places: if *verdict == Verdict::Complete { Vec::new() } else { segments(before) },
         markers: marker_errors(markers),
         effects: named.iter().map(of_machine).chain(findings.iter().map(effect)).collect(),
+        candidates: Absent,
         tried: tried.into_iter().map(helped).collect(),
         kept: last.kept.map(|(worse, mu)| kept(&worse, mu)),
+        parameters: Absent,
+        standard_errors: Absent,
+        faults: Absent,
         unexplained: (*verdict == Verdict::Unexplained).then(|| rest(case, outcome)),
     };
     TendonDiscovery {
-        result: TendonDiscoverResult {
-            format: DiscoverResult::FORMAT,
+        result: DiscoverResult {
+            format: DiscoverResult::<Manipulator>::FORMAT,
             log: vec![log.to_owned()],
+            log_start_s: Absent,
             robot: case.file.tables().name.clone(),
             cables: vec![tendon],
+            common_effects: Absent,
+            wrench: None,
         },
         edit: edit(case, outcome),
         time_s: case.samples.iter().map(|sample| sample.time_s).collect(),
@@ -110,7 +133,7 @@ fn marker_errors(markers: &[Option<MarkerFit>; 2]) -> Option<TendonMarkers> {
 }
 
 /// Returns the rest: of the tensions, and of the markers if it exceeds the noise.
-fn rest(case: &Case<'_>, outcome: &Outcome) -> TendonRest {
+fn rest(case: &Case<'_>, outcome: &Outcome) -> UnexplainedResult<Manipulator> {
     let Outcome { given, after, last, are_tensions_explained, markers: [_, markers], .. } = outcome;
     let off = markers.as_ref().filter(|markers| !markers.is_noise());
     // Wrong gratings cause wrong shapes. The bending is reported if the gratings cannot explain the shapes.
@@ -120,10 +143,11 @@ fn rest(case: &Case<'_>, outcome: &Outcome) -> TendonRest {
     let of_gratings = if *are_tensions_explained { Vec::new() } else { segments(after) };
     let of_disks = off.map(disks).unwrap_or_default();
     let places = if bending.is_some() { [of_disks, of_gratings] } else { [of_gratings, of_disks] };
-    TendonRest {
-        rms_n: excess_n(after),
+    UnexplainedResult {
+        rms_n: Some(excess_n(after)),
         rms_mm: off.map(|markers| 1e3 * markers.excess_m()),
         places: places.concat(),
+        intervals_s: Absent,
         goes_with: bending.into_iter().chain(tensions).collect(),
     }
 }

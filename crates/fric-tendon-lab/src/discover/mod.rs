@@ -46,6 +46,7 @@ mod trials;
 mod worse;
 
 use fric_lab::discover::Verdict;
+use fric_lab::discover::result::DiscoverResult;
 use fric_tendon::Tendon;
 use fric_tendon::edit::ManipulatorEdit;
 use fric_tendon::file::ManipulatorFile;
@@ -60,15 +61,14 @@ use super::run::Run;
 
 pub(super) use case::thinned;
 pub use goes_with::GoesWith;
-pub use result::{
-    MarkerError, TendonDiscoverResult, TendonEffect, TendonMarkers, TendonPlace, TendonRest, TendonResult, TendonTried,
-};
+pub use result::{Manipulator, MarkerError, TendonMarkers};
+pub use summary::{alternatives, rest_in_words, tried_in_words};
 
 /// The result of a discovery.
 #[derive(Clone, Debug)]
 pub struct TendonDiscovery {
     /// The result for machines and people.
-    pub result: TendonDiscoverResult,
+    pub result: DiscoverResult<Manipulator>,
     /// The changes to the manipulator file.
     pub edit: ManipulatorEdit,
     /// Times of the compared samples, s.

@@ -2,95 +2,90 @@
 
 use std::fmt::Write as _;
 
+use fric_lab::discover::result::{DiscoverResult, EffectResult, TriedResult, UnexplainedResult};
 use fric_lab::errors::ForceError;
 use fric_lab::fit::HALF_INTERVAL;
 use fric_lab::text::{quantity, table, wrapped};
 
-use super::result::{TendonDiscoverResult, TendonEffect, TendonMarkers, TendonRest, TendonTried};
+use super::result::{Manipulator, TendonMarkers};
 
-impl TendonDiscoverResult {
-    /// Returns a summary for people.
-    #[must_use]
-    pub fn summary(&self) -> String {
-        let number =
-            |error: Option<ForceError>| error.map_or_else(|| "–".to_owned(), |error| format!("{:.4}", error.rms_n));
-        let percent =
-            |share: Option<f64>| share.map_or_else(|| "–".to_owned(), |share| format!("{:.0} %", 100.0 * share));
-        let rows: Vec<[String; 7]> = self
-            .cables
+/// Returns the full summary.
+pub fn describe(result: &DiscoverResult<Manipulator>) -> String {
+    let number =
+        |error: Option<ForceError>| error.map_or_else(|| "–".to_owned(), |error| format!("{:.4}", error.rms_n));
+    let percent = |share: Option<f64>| share.map_or_else(|| "–".to_owned(), |share| format!("{:.0} %", 100.0 * share));
+    let rows: Vec<[String; 7]> = result
+        .cables
+        .iter()
+        .map(|tendon| {
+            let mut kinds: Vec<&str> = tendon.effects.iter().map(|effect| effect.kind).collect();
+            kinds.dedup();
+            [
+                tendon.name.clone(),
+                tendon.verdict.to_owned(),
+                if kinds.is_empty() { "–".to_owned() } else { kinds.join("\n") },
+                tendon.noise_floor_n.map_or_else(|| "–".to_owned(), |noise_n| format!("{noise_n:.4}")),
+                number(tendon.before),
+                number(tendon.after),
+                percent(tendon.gap_closed),
+            ]
+        })
+        .collect();
+    let header = ["", "verdict", "found", "noise\n[N]", "before\n[N]", "after\n[N]", "gap\nclosed"];
+    let mut text = format!("{}: what the model lacks\n\n{}", result.robot, table(&header, 3, &rows));
+    text += "\nBefore and after are the rms difference of tension between gratings and model,\non samples that no fit has seen.\n";
+    let effects: Vec<&EffectResult<Manipulator>> = result.cables.iter().flat_map(|tendon| &tendon.effects).collect();
+    for (place, effect) in effects.iter().enumerate() {
+        let values: Vec<String> = effect
+            .parameters
+            .0
             .iter()
-            .map(|tendon| {
-                let mut kinds: Vec<&str> = tendon.effects.iter().map(|effect| effect.kind).collect();
-                kinds.dedup();
-                [
-                    tendon.name.to_owned(),
-                    tendon.verdict.to_owned(),
-                    if kinds.is_empty() { "–".to_owned() } else { kinds.join("\n") },
-                    format!("{:.4}", tendon.noise_floor_n),
-                    number(tendon.before),
-                    number(tendon.after),
-                    percent(tendon.gap_closed),
-                ]
+            .map(|(name, value)| {
+                let half_interval = effect.standard_errors.get(name).map(|error| HALF_INTERVAL * error);
+                format!("{name} = {}", quantity(*value, half_interval, "1"))
             })
             .collect();
-        let header = ["", "verdict", "found", "noise\n[N]", "before\n[N]", "after\n[N]", "gap\nclosed"];
-        let mut text = format!("{}: what the model lacks\n\n{}", self.robot, table(&header, 3, &rows));
-        text += "\nBefore and after are the rms difference of tension between gratings and model,\non samples that no fit has seen.\n";
-        let effects: Vec<&TendonEffect> = self.cables.iter().flat_map(|tendon| &tendon.effects).collect();
-        for (place, effect) in effects.iter().enumerate() {
-            let values: Vec<String> = effect
-                .parameters
-                .0
-                .iter()
-                .map(|(name, value)| {
-                    let half_interval = effect.standard_errors.get(name).map(|error| HALF_INTERVAL * error);
-                    format!("{name} = {}", quantity(*value, half_interval, "1"))
-                })
-                .collect();
-            // Writing to a String cannot fail.
-            let _ = writeln!(text, "\n{}: {}", effect.kind, values.join(", "));
-            if !effect.alike.is_empty() {
-                text += &wrapped("  or      ", &effect.alternatives());
-            }
-            // Printed once for holes that were found together.
-            if effects.get(place + 1).is_none_or(|next| next.kind != effect.kind) {
-                let [cause, remedy] = effect.words;
-                text += &wrapped("  cause   ", cause);
-                text += &wrapped("  remedy  ", remedy);
-            }
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "\n{}: {}", effect.kind, values.join(", "));
+        if !effect.alike.is_empty() {
+            text += &wrapped("  or      ", &alternatives(effect));
         }
-        for tendon in &self.cables {
-            if let Some(markers) = &tendon.markers {
-                text += "\n";
-                text += &wrapped("markers: ", &markers.sentence());
-            }
-            for tried in &tendon.tried {
-                text += "\n";
-                text += &wrapped("not named: ", &tried.sentence());
-            }
-            if let Some(kept) = &tendon.kept {
-                text += "\n";
-                text += &wrapped("kept: ", kept);
-            }
-            if let Some(rest) = &tendon.unexplained {
-                text += "\n";
-                text += &wrapped("unexplained: ", &rest.sentence());
-            }
+        // Printed once for holes that were found together.
+        if effects.get(place + 1).is_none_or(|next| next.kind != effect.kind) {
+            let [cause, remedy] = effect.effect;
+            text += &wrapped("  cause   ", cause);
+            text += &wrapped("  remedy  ", remedy);
         }
-        text
     }
+    for tendon in &result.cables {
+        if let Some(markers) = &tendon.markers {
+            text += "\n";
+            text += &wrapped("markers: ", &markers.sentence());
+        }
+        for tried in &tendon.tried {
+            text += "\n";
+            text += &wrapped("not named: ", &tried_in_words(tried));
+        }
+        if let Some(kept) = &tendon.kept {
+            text += "\n";
+            text += &wrapped("kept: ", kept);
+        }
+        if let Some(rest) = &tendon.unexplained {
+            text += "\n";
+            text += &wrapped("unexplained: ", &rest_in_words(rest));
+        }
+    }
+    text
 }
 
-impl TendonEffect {
-    /// Returns the effects that may be present instead, in words.
-    #[must_use]
-    pub fn alternatives(&self) -> String {
-        format!(
-            "{}: the run does not tell them apart. The file gets {}; shapes are right with either.",
-            self.alike.join(", or "),
-            self.kind
-        )
-    }
+/// Returns the effects that may be present instead, in words.
+#[must_use]
+pub fn alternatives(effect: &EffectResult<Manipulator>) -> String {
+    format!(
+        "{}: the run does not tell them apart. The file gets {}; shapes are right with either.",
+        effect.alike.join(", or "),
+        effect.kind
+    )
 }
 
 impl TendonMarkers {
@@ -104,45 +99,42 @@ impl TendonMarkers {
     }
 }
 
-impl TendonTried {
-    /// Returns a sentence for people.
-    #[must_use]
-    pub fn sentence(&self) -> String {
-        let mut text = self.kind.to_owned();
-        for (name, value) in &self.parameters.0 {
-            // Writing to a String cannot fail.
-            let _ = write!(text, " at {name} {value}");
-        }
-        format!("{text}: {}.", self.reason)
+/// Returns a candidate that does not suffice, as a sentence.
+#[must_use]
+pub fn tried_in_words(tried: &TriedResult) -> String {
+    let mut text = tried.kind.to_owned();
+    for (name, value) in tried.parameters.iter().flat_map(|parameters| &parameters.0) {
+        // Writing to a String cannot fail.
+        let _ = write!(text, " at {name} {value}");
     }
+    format!("{text}: {}.", tried.reason)
 }
 
-impl TendonRest {
-    /// Returns a sentence for people.
-    #[must_use]
-    pub fn sentence(&self) -> String {
-        let most = |signal: &str| self.places.iter().find(|place| place.signal == signal);
-        let mut text = String::new();
-        // Writing to a String cannot fail.
-        if let Some(place) = most("grating") {
-            let (share, grating) = (100.0 * place.share_of_excess, place.from);
-            let _ = write!(
-                text,
-                "{:.4} N of tension are left above the noise, {share:.0} % of the squares at grating {grating}. ",
-                self.rms_n
-            );
-        }
-        if let (Some(place), Some(rms_mm)) = (most("marker"), self.rms_mm) {
-            let (share, disk) = (100.0 * place.share_of_excess, place.from);
-            let _ = write!(
-                text,
-                "The disks are {rms_mm:.2} mm (rms) off their markers above the noise, {share:.0} % of the squares at disk {disk}. "
-            );
-        }
-        for one in &self.goes_with {
-            text += &one.sentence;
-            text += " ";
-        }
-        text + "No effect of the catalogue accounts for it."
+/// Returns the rest that no effect explains, in sentences.
+#[must_use]
+pub fn rest_in_words(rest: &UnexplainedResult<Manipulator>) -> String {
+    // The signal's place with the greatest share.
+    let most = |signal: &str| {
+        let place = rest.places.iter().find(|place| place.signal == signal)?;
+        Some((100.0 * place.share_of_excess?, place.from))
+    };
+    let mut text = String::new();
+    // Writing to a String cannot fail.
+    if let (Some((share, grating)), Some(rms_n)) = (most("grating"), rest.rms_n) {
+        let _ = write!(
+            text,
+            "{rms_n:.4} N of tension are left above the noise, {share:.0} % of the squares at grating {grating}. "
+        );
     }
+    if let (Some((share, disk)), Some(rms_mm)) = (most("marker"), rest.rms_mm) {
+        let _ = write!(
+            text,
+            "The disks are {rms_mm:.2} mm (rms) off their markers above the noise, {share:.0} % of the squares at disk {disk}. "
+        );
+    }
+    for one in &rest.goes_with {
+        text += &one.sentence;
+        text += " ";
+    }
+    text + "No effect of the catalogue accounts for it."
 }

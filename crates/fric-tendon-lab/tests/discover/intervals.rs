@@ -1,7 +1,8 @@
 //! 95 % intervals hold the truth although the simulator is not the model: μ differs from hole to hole, and gratings are calibrated by ten loads.
 //! `benches/tendon_discover.rs` measures the same on hundreds of runs (docs/manipulators.md).
 
-use fric_tendon_lab::discover::TendonEffect;
+use fric_lab::discover::result::EffectResult;
+use fric_tendon_lab::discover::Manipulator;
 use fric_tendon_lab::simulate::{Experiment, TendonSimulationOptions, simulate};
 
 use super::{PROTOTYPE, found, measured};
@@ -20,7 +21,7 @@ fn true_mu(mu: &[f64], seed: u64) -> Vec<f64> {
 }
 
 /// How far a number of an effect is from the truth, in standard errors.
-fn off(effect: &TendonEffect, key: &str, truth: f64) -> f64 {
+fn off(effect: &EffectResult<Manipulator>, key: &str, truth: f64) -> f64 {
     (effect.parameters.get(key).unwrap() - truth) / effect.standard_errors.get(key).unwrap()
 }
 

@@ -1,10 +1,11 @@
 //! Pages of `continuum`: calibration, friction at the holes, shapes to scale.
 
+use fric_lab::discover::result::DiscoverResult;
 use fric_lab::discover::words::percent;
 use fric_lab::fit::result::Numbers;
 use fric_tendon_lab::Run;
 use fric_tendon_lab::comparison::{WayShapes, spread};
-use fric_tendon_lab::discover::{TendonDiscoverResult, TendonDiscovery};
+use fric_tendon_lab::discover::{Manipulator, TendonDiscovery, alternatives, rest_in_words, tried_in_words};
 use fric_tendon_lab::identify::TendonFitResult;
 use fric_tendon_lab::result::{CalibrationResult, FrictionResult, HoleResult, PickedShape, ShapeResult, WayShape};
 use fric_tendon_lab::shape_errors::{ShapeErrors, Way};
@@ -128,7 +129,7 @@ pub fn discovery(found: &TendonDiscovery, provenance: &Provenance) -> String {
             p { "Verdict: " span class=(format!("verdict {}", tendon.verdict)) { (tendon.verdict) } }
             dl {
                 dt { "samples" } dd { (tendon.samples) }
-                dt { "noise" } dd { (format!("{:.4} N", tendon.noise_floor_n)) }
+                dt { "noise" } dd { (number(tendon.noise_floor_n)) " N" }
                 @if let (Some(before), Some(after)) = (tendon.before, tendon.after) {
                     dt { "rms before, held out" } dd { (format!("{:.4} N", before.rms_n)) }
                     dt { "rms after" } dd { (format!("{:.4} N", after.rms_n)) }
@@ -143,13 +144,13 @@ pub fn discovery(found: &TendonDiscovery, provenance: &Provenance) -> String {
                 h3 { (effect.kind) }
                 p {
                     @for (name, value) in &effect.parameters.0 { (name) " = " (fric_lab::text::significant(*value)) ". " }
-                    (effect.words.join(" "))
+                    (effect.effect.join(" "))
                 }
-                @if !effect.alike.is_empty() { p.soft { "Or " (effect.alternatives()) } }
+                @if !effect.alike.is_empty() { p.soft { "Or " (alternatives(effect)) } }
             }
-            @for tried in &tendon.tried { p.soft { "Not named: " (tried.sentence()) } }
+            @for tried in &tendon.tried { p.soft { "Not named: " (tried_in_words(tried)) } }
             @if let Some(kept) = &tendon.kept { p.soft { "Kept: " (kept) } }
-            @if let Some(rest) = &tendon.unexplained { p.unexplained { (rest.sentence()) } }
+            @if let Some(rest) = &tendon.unexplained { p.unexplained { (rest_in_words(rest)) } }
         }
         h2 { "Gratings less model over time" }
         @for plot in residuals(found) { (plots.figure(&plot, &found.time_s)) }
@@ -178,7 +179,7 @@ pub fn shape_table(result: &ShapeResult) -> String {
 
 /// Returns the findings as a table.
 #[must_use]
-pub fn discovery_table(result: &TendonDiscoverResult) -> String {
+pub fn discovery_table(result: &DiscoverResult<Manipulator>) -> String {
     html! {
         table {
             tr { th.words { "verdict" } th.words { "found" } th { "noise [N]" } th { "rms before [N]" } th { "after [N]" } }
@@ -186,7 +187,7 @@ pub fn discovery_table(result: &TendonDiscoverResult) -> String {
                 tr {
                     td.words { (tendon.verdict) }
                     td.words { (tendon.effects.iter().map(|effect| effect.kind).collect::<Vec<_>>().join(", ")) }
-                    td { (newtons(tendon.noise_floor_n)) }
+                    td { (number(tendon.noise_floor_n)) }
                     td { (number(tendon.before.map(|error| error.rms_n))) } td { (number(tendon.after.map(|error| error.rms_n))) }
                 }
             }

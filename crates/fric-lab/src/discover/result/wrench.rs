@@ -1,0 +1,112 @@
+//! Findings for all cables together, by the wrench.
+
+use serde::Serialize;
+
+use super::effect::Evidence;
+use super::finite;
+use crate::discover::wrench::{GeometryFinding, WrenchDiscovery};
+use crate::errors::WrenchError;
+use crate::fit::result::Numbers;
+
+/// Names of the components with their units.
+const COMPONENTS: [&str; 6] = ["fx_n", "fy_n", "fz_n", "tx_nm", "ty_nm", "tz_nm"];
+
+/// The wrench error before and after, and the findings about the whole robot.
+#[derive(Clone, Debug, Serialize)]
+pub struct WrenchGap {
+    /// `wrench`, or `mass` if the reference is the wrench computed from the platform's mass and pose.
+    pub reference: &'static str,
+    /// Verdict for all cables together: `complete`, `extended` or `unexplained`.
+    pub verdict: &'static str,
+    /// Error of the given model, fitted, on held-out samples.
+    pub before: Option<WrenchError>,
+    /// Error of the extended model on held-out samples.
+    pub after: Option<WrenchError>,
+    /// White noise.
+    pub noise_floor: WrenchError,
+    /// The six components.
+    pub components: Vec<WrenchComponent>,
+    /// Effects that all cables share, with one value.
+    pub alike: Vec<&'static str>,
+    /// Entries of the robot file that are wrong.
+    pub geometry: Vec<GeometryResult>,
+    /// Findings for all cables together that help but do not suffice.
+    pub tried: Vec<TriedTogether>,
+}
+
+/// One component of the wrench.
+#[derive(Clone, Debug, Serialize)]
+pub struct WrenchComponent {
+    /// `fx_n` … `tz_nm`, the unit with it.
+    pub name: &'static str,
+    /// Standard deviation of the component's white noise.
+    pub noise: f64,
+    /// Root mean square error of the given model.
+    pub before: f64,
+    /// Root mean square error of the extended model.
+    pub after: f64,
+}
+
+/// Entries of the robot file that are wrong.
+#[derive(Clone, Debug, Serialize)]
+pub struct GeometryResult {
+    /// Key in the robot file.
+    pub kind: &'static str,
+    /// The cable, if the entry belongs to one.
+    pub cable: Option<String>,
+    /// The correct values.
+    pub parameters: Numbers,
+    /// Evidence for the correction.
+    pub evidence: Evidence,
+}
+
+/// A finding for all cables together that helps but does not suffice.
+#[derive(Clone, Debug, Serialize)]
+pub struct TriedTogether {
+    /// Name of the effect, or key of the robot file.
+    pub kind: String,
+    /// The reason why it is not named, as a clause.
+    pub reason: String,
+}
+
+impl WrenchGap {
+    pub(super) fn of(found: &WrenchDiscovery, names: &[String]) -> Self {
+        let parts = found.noise.iter().zip(found.before.components.iter().zip(&found.after.components));
+        let component = |(name, (noise, (before, after))): (&&'static str, (&f64, (&f64, &f64)))| WrenchComponent {
+            name,
+            noise: *noise,
+            before: *before,
+            after: *after,
+        };
+        let geometry = |of: &GeometryFinding| GeometryResult {
+            kind: of.geometry.key(),
+            cable: of.geometry.cable().and_then(|cable| names.get(cable).cloned()),
+            parameters: Numbers(
+                of.geometry
+                    .names()
+                    .iter()
+                    .zip(&of.numbers)
+                    .map(|(name, number)| ((*name).to_owned(), *number))
+                    .collect(),
+            ),
+            evidence: Evidence { delta_bic: finite(of.delta_bic), held_out_rms_n: None },
+        };
+        let length = |parts: &[f64]| parts.iter().map(|part| part * part).sum::<f64>().sqrt();
+        let (force, torque) = found.noise.split_at(3);
+        Self {
+            reference: found.reference.name(),
+            verdict: found.verdict.name(),
+            before: WrenchError::of(&found.before.errors),
+            after: WrenchError::of(&found.after.errors),
+            noise_floor: WrenchError { force_rms_n: length(force), torque_rms_nm: length(torque) },
+            components: COMPONENTS.iter().zip(parts).map(component).collect(),
+            alike: found.alike.iter().map(|effect| effect.kind()).collect(),
+            geometry: found.geometry.iter().map(geometry).collect(),
+            tried: found
+                .tried
+                .iter()
+                .map(|(kind, refusal)| TriedTogether { kind: kind.clone(), reason: refusal.in_words() })
+                .collect(),
+        }
+    }
+}
