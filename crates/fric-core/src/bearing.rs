@@ -76,10 +76,12 @@ impl<T: Scalar> Bearing<T> {
             cable.set_memory(dwell_stiction::AGE, next);
             multiply(factor);
         }
-        let value = |place| cable.effect(place);
         if acting.has(stribeck::ACTS) {
-            multiply(Stribeck::of(value).factor(signals.speed_m_per_s));
+            let before_m_per_s = cable.memory(stribeck::SPEED);
+            multiply(Stribeck::of(|place| cable.effect(place)).factor(signals.speed_m_per_s, before_m_per_s));
+            cable.set_memory(stribeck::SPEED, T::select(signals.moves, signals.speed_m_per_s, T::splat(UNKNOWN)));
         }
+        let value = |place| cable.effect(place);
         if acting.has(friction_drift::ACTS) {
             multiply(FrictionDrift::of(value).factor(moment.time_s));
         }

@@ -116,7 +116,7 @@ impl Layout {
     }
 
     /// Returns the text without the mark and with plain line endings.
-    fn removed(self, text: &str) -> String {
+    fn removed(text: &str) -> String {
         text.strip_prefix(MARK).unwrap_or(text).replace("\r\n", "\n")
     }
 
@@ -146,7 +146,7 @@ pub fn rewrite(text: &str, origin: &str, edit: &ManipulatorEdit) -> Result<Strin
     let invalid = |problem: String| ManipulatorFileError::Invalid { origin: origin.to_owned(), line: None, problem };
     let layout = Layout::of(text);
     let mut document: DocumentMut =
-        layout.removed(text).parse().map_err(|error: toml_edit::TomlError| invalid(error.to_string()))?;
+        Layout::removed(text).parse().map_err(|error: toml_edit::TomlError| invalid(error.to_string()))?;
     // An empty name denotes the document itself.
     let mut set = |table: &str, key: &str, value: Value| {
         let place = if table.is_empty() {

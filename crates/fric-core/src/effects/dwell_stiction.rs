@@ -10,11 +10,9 @@
 //! Δt/time_s + |Δl|/distance_m`.
 //!
 //! In steady motion `θ = 1/(1 + |v|·time_s/distance_m)`, which is nearly zero at any usual speed. A run begins with θ = 0. The friction of a cycle
-//! uses the θ before it. Neutral: `ratio = 0`.
+//! uses the mean of the θ before and after it. Neutral: `ratio = 0`.
 //!
-//! A run whose rests all have the same length, as the usual run with its half seconds, determines only `ratio·(1 − e^(−rest/time_s))`. Therefore
-//! `time_s` is a setting: the identified values are valid for rests like those of the run, and for others as far as `time_s` is right. A run with
-//! rests of several lengths identifies it if it is requested by name.
+//! Rests of one length determine only `ratio·(1 − e^(−rest/time_s))`; rests of several lengths and creeping motion determine `time_s` too.
 //!
 //! Cause: asperities in contact creep and grow, and grease is squeezed out of the contact. Source: the ageing law of rate-and-state friction
 //! (Dieterich 1979; Ruina 1983), with a bounded age.
@@ -47,7 +45,7 @@ pub const ROW: EffectRow = EffectRow {
             neutral: 0.6,
             min: 1e-3,
             max: 1e4,
-            fitted: false,
+            fitted: true,
             excitation: EXCITATION,
         },
         ParameterRow {
@@ -108,7 +106,7 @@ impl<T: Scalar> DwellStiction<T> {
         let rate = growing + displacement_m.abs() / self.distance_m;
         let settled = growing / rate;
         let next = settled + (age - settled) * (-rate).exp_negative();
-        (T::splat(1.0) + self.ratio * age, next)
+        (T::splat(1.0) + self.ratio * (age + next).scale(T::splat(0.5)), next)
     }
 }
 
@@ -135,7 +133,9 @@ mod tests {
         assert!((worn - rested * (-3.0_f64).exp()).abs() < 3e-3, "{worn}");
         let creeping = age_after(0.0, 20_000, 1e-3);
         assert!((creeping - 1.0 / 1.5).abs() < 1e-9, "{creeping}");
-        assert!((LAW.factor(rested, 0.0, 1e-3).0 - (1.0 + 0.8 * rested)).abs() < 1e-15);
+        // The factor of a cycle that breaks away and wears off to 1/e is that of the mean age.
+        let (factor, after) = LAW.factor(rested, 1e-3, 1e-9);
+        assert!((factor - (1.0 + 0.4 * (rested + after))).abs() < 1e-15);
     }
 
     /// Compares the exact step with many small steps of the differential equation.

@@ -3,9 +3,12 @@
 //! Equation: `μ(v) = μ·(1 + ratio·exp(−(v/velocity)²))`. At rest friction is greater by the fraction `ratio`; at twice `velocity` only 2 % of this
 //! remains. Neutral: `ratio = 0`.
 //!
+//! The friction of a cycle belongs to the motion since the cycle before, so v is the mean of the speeds at both its ends. With the speed at its end
+//! alone, friction would be half a cycle ahead wherever the cable stops or starts.
+//!
 //! Cause: at low speed the lubricant film in the bearing has not formed and the surfaces touch.
 
-use super::{Acting, Effect, EffectRow, Memory, OnMu, first};
+use super::{Acting, Effect, EffectRow, Memory, OnMu, UNKNOWN, first};
 use crate::parameters::ParameterRow;
 use crate::scalar::Scalar;
 
@@ -37,7 +40,7 @@ pub const ROW: EffectRow = EffectRow {
         },
     ],
     example: &[0.6, 0.03],
-    memory: Memory::Nothing,
+    memory: Memory::OfMotion(1),
     on_mu: OnMu::AtMost {
         factor: |values| 1.0 + first(values).max(0.0),
         key: "ratio",
@@ -52,6 +55,9 @@ pub(crate) const ACTS: Acting = Effect::Stribeck.acts();
 pub const RATIO: usize = Effect::Stribeck.first_place();
 /// Index of `velocity_m_per_s`.
 pub const VELOCITY: usize = RATIO + 1;
+
+/// Index of its state: the speed at the end of the cycle before, m/s.
+pub(crate) const SPEED: usize = Effect::Stribeck.memory_places().start;
 
 /// The effect's parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,10 +75,12 @@ impl<T: Scalar> Stribeck<T> {
         Self { ratio: value(RATIO), velocity_m_per_s: value(VELOCITY) }
     }
 
-    /// Returns the factor on μ at a speed.
+    /// Returns the factor on μ in a cycle with these speeds at its end and at the end of the one before, [`UNKNOWN`] at the start of a run.
     #[inline(never)]
-    pub fn factor(&self, speed_m_per_s: T) -> T {
-        let relative = speed_m_per_s / self.velocity_m_per_s;
+    pub fn factor(&self, speed_m_per_s: T, before_m_per_s: T) -> T {
+        let before_m_per_s = T::select(before_m_per_s.lt(T::splat(UNKNOWN)), before_m_per_s, speed_m_per_s);
+        let mean_m_per_s = (before_m_per_s + speed_m_per_s).scale(T::splat(0.5));
+        let relative = mean_m_per_s / self.velocity_m_per_s;
         let fall = (-(relative * relative)).exp_negative();
         T::splat(1.0) + self.ratio * fall
     }

@@ -1,12 +1,13 @@
 //! How well the samples determine an estimate.
 //!
 //! [`scores`] gives the covariance under correlated residuals, over the [`groups`] of samples in one operating condition. [`unlike_pulleys`] adds the
-//! effect of differences between a cable's pulleys. [`determined`] and [`undetermined`] decide which parameters the samples determine. [`directions`]
+//! effect of differences between a cable's pulleys, [`own_noise`] that of noise in the derivatives. [`determined`] and [`undetermined`] decide which parameters the samples determine. [`directions`]
 //! finds the combinations that they leave open.
 
 pub mod determined;
 pub mod directions;
 pub mod groups;
+pub mod own_noise;
 pub mod scores;
 pub mod undetermined;
 pub mod unlike_pulleys;

@@ -14,7 +14,7 @@ use nalgebra::DMatrix;
 use super::determined::{HALF_INTERVAL, Yardstick};
 use super::directions::{LEAST_WEIGHT, OpenDirection, open_directions};
 use super::groups::Groups;
-use super::unlike_pulleys;
+use super::{own_noise, unlike_pulleys};
 use crate::fit::report::{OpenCombination, OpenPart};
 use crate::replay::Deviation;
 use crate::search::optimizer::Termination;
@@ -192,18 +192,21 @@ pub fn covariance(problem: &Problem<'_>, values: &[Values]) -> DMatrix<f64> {
     uncertainty(problem, values, None).1
 }
 
-/// Returns the covariance to report: for a single cable it also covers groups of samples in the same condition, and it includes the effect of unlike
-/// pulleys.
+/// Returns the covariance to report: for a single cable it also covers groups of samples in the same condition, and it includes the effects of unlike
+/// pulleys and of noise in the derivatives.
 pub fn reported_covariance(problem: &Problem<'_>, values: &[Values]) -> DMatrix<f64> {
     let groups = match (&problem.comparison, problem.members.as_slice()) {
         (Comparison::Forces, [member]) => Some(Groups::of(&member.record)),
         _ => None,
     };
-    let (normal, covariance, _) = uncertainty(problem, values, groups);
-    match normal.as_ref().and_then(inverse_of_normal) {
-        Some(inverse) => covariance + unlike_pulleys::covariance(problem, values, &inverse),
-        None => covariance,
+    let (normal, mut covariance, _) = uncertainty(problem, values, groups);
+    if let Some(inverse) = normal.as_ref().and_then(inverse_of_normal) {
+        covariance += unlike_pulleys::covariance(problem, values, &inverse);
     }
+    if let Some(error) = own_noise::error(problem, values) {
+        covariance += &error * error.transpose();
+    }
+    covariance
 }
 
 /// Returns the matrix `JᵀJ` (`None` if it is not finite), the covariance, and the greatest shift of each parameter for residuals of 1 N in every
