@@ -148,7 +148,7 @@ impl<'b, 'a> Search<'b, 'a> {
     fn enter(&mut self, found: &mut Vec<Candidate>) {
         while found.len() < MOST {
             let trial = self.fit(found);
-            if self.excess(&trial) <= NEGLIGIBLE {
+            if self.excess(&trial) <= NEGLIGIBLE && !self.is_promising(found, &trial) {
                 break;
             }
             let enough = self.least_gain(&trial);
@@ -169,6 +169,23 @@ impl<'b, 'a> Search<'b, 'a> {
             found.push(*candidate);
             self.spread(found, *candidate);
         }
+    }
+
+    /// Whether a linear step promises strong evidence for a candidate, and a gain that is large enough. This does not depend on the estimate of the
+    /// noise, whose error may exceed an effect of one cable: that shows in one of six equations.
+    fn is_promising(&mut self, found: &[Candidate], trial: &Trial) -> bool {
+        let unit_square = self.bench.unit_square(&trial.model);
+        let least = LEAST_SIZE * self.noise_squares(false);
+        #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
+        let count = 6.0 * self.bench.count(false) as f64;
+        let refused: Vec<Candidate> = self.refused.keys().copied().collect();
+        self.promises(found).iter().filter(|of| !refused.contains(&of.candidate)).any(|of| {
+            let gain = unit_square * of.gain;
+            #[expect(clippy::cast_precision_loss, reason = "a few parameters")]
+            let more = of.candidate.count() as f64;
+            gain > least
+                && (gain >= trial.training || delta_bic(count, 1.0 - gain / trial.training, more) < -STRONG_BIC)
+        })
     }
 
     /// What several cables have becomes one that all have alike, where that says as much with fewer parameters.
