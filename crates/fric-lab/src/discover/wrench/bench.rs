@@ -313,7 +313,7 @@ impl<'a> Bench<'a> {
         white_noise(&taken.map(|(number, _)| number).collect::<Vec<f64>>())
     }
 
-    /// Returns the mean squared whitened deviation if the force of each cable has an error of this fraction of its tension, and all errors add up.
+    /// Returns the mean squared whitened deviation if the force of each cable has an error of this fraction of its tension, independent of the others'.
     pub fn believed_square(&self, model: &Model, ratio: f64) -> f64 {
         let (structure, _) = self.description.changed(&model.changes);
         let (mut sum, mut count) = (0.0, 0.0);
@@ -321,9 +321,10 @@ impl<'a> Bench<'a> {
             let columns = structure.iter().skip(place * self.records.len());
             let error = |(record, column): (&CableRecord<'_>, &Vector6<f64>)| {
                 let sensor_n = record.rows.get(place).map_or(f64::NAN, |row| row.signals.sensor_force_n);
-                (self.whitening * column).abs() * (ratio * sensor_n * record.params.frictionless_gain()).abs()
+                (self.whitening * column).norm_squared()
+                    * (ratio * sensor_n * record.params.frictionless_gain()).powi(2)
             };
-            sum += self.records.iter().zip(columns).map(error).sum::<Vector6<f64>>().norm_squared();
+            sum += self.records.iter().zip(columns).map(error).sum::<f64>();
             count += 1.0;
         }
         if count > 0.0 { sum / count } else { 0.0 }

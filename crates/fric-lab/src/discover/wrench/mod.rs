@@ -137,7 +137,7 @@ pub fn discover_wrench(measurements: &Measurements<'_>, progress: &Progress) -> 
         let noise = noise_of(&bench, &naming.trial).ok_or_else(too_short)?;
         let believed_square = bench.believed_square(&naming.trial.model, BELIEVED_RATIO);
         let noise_square = bench.unit_square(&naming.trial.model)
-            * noise.iter().map(|noise| noise * noise).sum::<f64>().max(believed_square);
+            * (noise.iter().map(|noise| noise * noise).sum::<f64>() + believed_square);
         let again = bench.judged(base.model.clone());
         let search = Search::new(&bench, again, noise_square);
         let before = naming.named.iter().map(|named| named.candidate).collect::<Vec<_>>();

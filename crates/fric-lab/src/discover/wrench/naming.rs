@@ -115,8 +115,10 @@ impl<'b, 'a> Search<'b, 'a> {
             self.enter(&mut found);
             self.unite(&mut found);
             self.take_apart(&mut found);
+            // An effect that entered before the others were found may stand for a better one, which has to take its place before it is set aside.
+            let mut is_exchanged = self.exchange(&mut found);
             named = self.leave(&mut found);
-            let is_exchanged = self.exchange(&mut found);
+            is_exchanged |= self.exchange(&mut found);
             if !is_exchanged && (set_of(&found) == set || self.refused.len() == refused) {
                 break;
             }
@@ -171,11 +173,11 @@ impl<'b, 'a> Search<'b, 'a> {
         }
     }
 
-    /// Whether a linear step promises strong evidence for a candidate, and a gain that is large enough. This does not depend on the estimate of the
-    /// noise, whose error may exceed an effect of one cable: that shows in one of six equations.
+    /// Whether a linear step promises strong evidence for a candidate, and a gain that is not negligible. The evidence does not depend on the estimate
+    /// of the noise, whose error may exceed an effect of one cable: that shows in one of six equations.
     fn is_promising(&mut self, found: &[Candidate], trial: &Trial) -> bool {
         let unit_square = self.bench.unit_square(&trial.model);
-        let least = LEAST_SIZE * self.noise_squares(false);
+        let least = NEGLIGIBLE * self.noise_squares(false);
         #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
         let count = 6.0 * self.bench.count(false) as f64;
         let refused: Vec<Candidate> = self.refused.keys().copied().collect();
