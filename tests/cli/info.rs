@@ -140,10 +140,26 @@ fn a_log_too_short_to_discover_is_told() {
         place.run(&simulate).succeeds();
         place.run(&["info", "log.mcap", "--json", "j.json", "--force"]).succeeds();
         let json = place.json("j.json");
-        let step = json["steps"].as_array().unwrap().iter().find(|step| step["step"] == "discover").unwrap().clone();
-        assert_eq!(step["possible"], possible, "{step}");
-        assert_eq!(step["reasons"].to_string().contains("too few, 8 s are needed"), !possible, "{step}");
+        for name in ["discover: forces", "discover: wrench"] {
+            let step = json["steps"].as_array().unwrap().iter().find(|step| step["step"] == name).unwrap().clone();
+            assert_eq!(step["possible"], possible, "{step}");
+            assert_eq!(step["reasons"].to_string().contains("too few, 8 s are needed"), !possible, "{step}");
+        }
     }
+}
+
+#[test]
+fn a_log_with_only_the_wrench_can_be_searched_by_it() {
+    let place = Place::empty();
+    place.write("robot.toml", slow_robot());
+    place.run(&["simulate", "--model", "robot.toml", "-o", "all.mcap", "--duration", "9"]).succeeds();
+    place.write("log.mcap", without(&place.read("all.mcap"), &["/reference_forces"]));
+    let table = place.run(&["info", "log.mcap", "--json", "j.json"]).succeeds().stdout;
+    let found = (table, place.json("j.json"));
+    assert_eq!(step(&found, "discover: wrench"), (true, String::new()));
+    assert!(!step(&found, "discover: forces").0);
+    let run = place.run_in_vain(&["discover", "log.mcap"]).fails(1, &["no reference forces on /reference_forces"]);
+    run.advises(&["search without them: --reference wrench."]);
 }
 
 #[test]

@@ -68,7 +68,7 @@ pub fn discover(
     let holdings = runs.read(robot, &mut measurements, &mut watch)?;
     let readiness = match reference {
         Reference::Forces => readiness::to_discover(file, &holdings),
-        Reference::Wrench => readiness::by_wrench(file, ORIGIN, &holdings),
+        Reference::Wrench => readiness::to_discover_by_wrench(file, ORIGIN, &holdings),
     };
     // Missing data of some cables are reported only beside their verdicts.
     readiness.check()?;

@@ -48,7 +48,7 @@ pub fn run(arguments: &DiscoverArguments) -> Outcome {
     let read = read(logs, part, &model, reference)?;
     let readiness = match reference {
         Reference::Forces => readiness::to_discover(&model.robot, &read.holdings),
-        Reference::Wrench => readiness::by_wrench(&model.robot, &model.origin, &read.holdings),
+        Reference::Wrench => readiness::to_discover_by_wrench(&model.robot, &model.origin, &read.holdings),
     };
     // Missing data of some cables are reported only beside their verdicts.
     read.check(&readiness)?;

@@ -353,7 +353,8 @@ fn steps(model: &Model, holdings: &Holdings, problem: Option<&str>) -> Vec<StepR
         step("replay: errors", has_rows && holdings.has_reference(), errors),
         fit("fit: forces", readiness::by_forces(&model.robot, holdings)),
         fit("fit: wrench", readiness::by_wrench(&model.robot, &model.origin, holdings)),
-        fit("discover", readiness::to_discover(&model.robot, holdings)),
+        fit("discover: forces", readiness::to_discover(&model.robot, holdings)),
+        fit("discover: wrench", readiness::to_discover_by_wrench(&model.robot, &model.origin, holdings)),
     ]
 }
 

@@ -84,6 +84,13 @@ impl Holdings {
         referenced as f64 * self.intervals_s / self.intervals.max(1) as f64
     }
 
+    /// Returns how long the log has a pose, and the external wrench if it is measured at all, estimated from the mean row interval, s.
+    #[expect(clippy::cast_precision_loss, reason = "counts of rows")]
+    fn balanced_s(&self) -> f64 {
+        let rows = if self.wrenched > 0 { self.posed.min(self.wrenched) } else { self.posed };
+        rows as f64 * self.intervals_s / self.intervals.max(1) as f64
+    }
+
     /// Whether any cable has a reference.
     #[must_use]
     pub fn has_reference(&self) -> bool {
@@ -180,12 +187,11 @@ pub fn by_forces(robot: &RobotFile, holdings: &Holdings) -> Readiness {
     of_forces(robot, holdings, advice, Some(Reference::Wrench))
 }
 
-/// Returns what is missing for a discovery.
+/// Returns what is missing for a discovery by the forces at the platform.
 #[must_use]
 pub fn to_discover(robot: &RobotFile, holdings: &Holdings) -> Readiness {
-    let advice = "Name their topic as `reference` under `[log]` in the robot file, or record with force sensors at the \
-                  platform.";
-    let mut readiness = of_forces(robot, holdings, advice, None);
+    let advice = "Name their topic as `reference` under `[log]` in the robot file, or search without them";
+    let mut readiness = of_forces(robot, holdings, advice, Some(Reference::Wrench));
     let is_short = |cable: &usize| too_short(holdings.referenced_s(*cable)).is_some();
     let cables: Vec<usize> =
         (0..readiness.cable_count).filter(|cable| !readiness.is_lacking(*cable)).filter(is_short).collect();
@@ -194,6 +200,17 @@ pub fn to_discover(robot: &RobotFile, holdings: &Holdings) -> Readiness {
     if let Some(lack) = too_short(most_s).filter(|_| !cables.is_empty()) {
         let cause = lack.cause + &of(&robot.cable_names(), &cables);
         readiness.lacks.push(Lack { cause, advice: lack.advice, instead: None, cables });
+    }
+    readiness
+}
+
+/// Returns what is missing for a discovery by the wrench on the platform. `origin` names the source of the robot file.
+#[must_use]
+pub fn to_discover_by_wrench(robot: &RobotFile, origin: &str, holdings: &Holdings) -> Readiness {
+    let mut readiness = by_wrench(robot, origin, holdings);
+    if let Some(lack) = too_short(holdings.balanced_s()).filter(|_| readiness.is_possible()) {
+        let cables = (0..readiness.cable_count).collect();
+        readiness.lacks.push(Lack { cause: lack.cause, advice: lack.advice, instead: None, cables });
     }
     readiness
 }
