@@ -82,6 +82,7 @@ impl Effects {
 #[derive(Clone, Copy, Default)]
 pub struct Memory {
     cycles: u32,
+    speed: f64,
     slow_speed: f64,
     slower_speed: f64,
     settled_n: f64,
@@ -148,8 +149,11 @@ impl Cable {
         let displacement_m = length_m - self.length_m.unwrap_or(length_m);
         self.length_m = Some(length_m);
         let time_s = f64::from(self.memory.cycles) * CYCLE_S;
+        // The speed over the cycle is the mean of those at both its ends.
+        let speed_before = if self.memory.cycles == 0 { speed } else { self.memory.speed };
+        let mean_speed = 0.5 * (speed_before + speed);
         let mut mu =
-            self.stribeck.map_or(self.mu, |(ratio, at)| self.mu * (1.0 + ratio * (-(speed / at).powi(2)).exp()));
+            self.stribeck.map_or(self.mu, |(ratio, at)| self.mu * (1.0 + ratio * (-(mean_speed / at).powi(2)).exp()));
         mu *= 1.0 + effects.drift_per_s * time_s;
         let pose_wrap_rad = self.geometry.exit(attachment_m).wrap_rad;
         let wraps_rad: Vec<f64> = self.wraps_rad.iter().map(|wrap| wrap.unwrap_or(pose_wrap_rad)).collect();
@@ -188,8 +192,15 @@ impl Cable {
         let angle = std::f64::consts::TAU * (length_m / period_m);
         let force_n = chain_n * (1.0 + sin * angle.sin() + cos * angle.cos());
         let friction_n = force_n - straight_n;
-        self.memory =
-            Memory { cycles: self.memory.cycles + 1, slow_speed, slower_speed, settled_n, waiting_m, friction_n };
+        self.memory = Memory {
+            cycles: self.memory.cycles + 1,
+            speed,
+            slow_speed,
+            slower_speed,
+            settled_n,
+            waiting_m,
+            friction_n,
+        };
         force_n + self.offset_n
     }
 
