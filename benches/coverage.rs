@@ -65,7 +65,8 @@ fn errors(case: &Case) -> Vec<ParameterError> {
     // A sensor offset and an offset at the platform are one direction; a period and the time of dwell stiction are fitted on request.
     let is_twice = |of: &Parameter| effect == Effect::SensorOffset && of.to_string() == "offset_n";
     let friction = Parameter::all().filter(|of| of.is_friction() && !is_twice(of));
-    let of_effect = Parameter::of(effect).filter(|of| of.row().fitted || ["period_m", "time_s"].contains(&of.row().key));
+    let of_effect =
+        Parameter::of(effect).filter(|of| of.row().fitted || ["period_m", "time_s"].contains(&of.row().key));
     let parameters: Vec<Parameter> = friction.chain(of_effect).collect();
     let options = FitOptions { parameters: Some(parameters.clone()), ..FitOptions::default() };
     let fit = fit_cables(&measurements, &options, &Progress::new()).remove(0);

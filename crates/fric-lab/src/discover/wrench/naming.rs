@@ -14,9 +14,9 @@ use rayon::prelude::*;
 
 use super::bench::{Bench, Model, Trial, Unknown};
 use super::geometry::Geometry;
-use super::screen::{Candidate, Promise, Screen, screen};
+use super::screen::{Candidate, Promise, promises};
 use crate::candidates::catalogue::{around, fitted, has};
-use crate::candidates::ripple::{period_of, periods};
+use crate::candidates::ripple::periods;
 use crate::certainty::undetermined::inverse_of_normal;
 use crate::discover::naming::evidence::delta_bic;
 use crate::discover::naming::justification::is_at_end;
@@ -86,7 +86,7 @@ pub struct Search<'b, 'a> {
     /// Mean of the noise's squares of a sample, of whitened deviations.
     noise_square: f64,
     fits: BTreeMap<Vec<Candidate>, Trial>,
-    screened: BTreeMap<Vec<Candidate>, Screen>,
+    promised: BTreeMap<Vec<Candidate>, Vec<Promise>>,
     refused: BTreeMap<Candidate, Refusal>,
 }
 
@@ -97,7 +97,7 @@ impl<'b, 'a> Search<'b, 'a> {
             bench,
             noise_square,
             fits: BTreeMap::from([(Vec::new(), base)]),
-            screened: BTreeMap::new(),
+            promised: BTreeMap::new(),
             refused: BTreeMap::new(),
         }
     }
@@ -115,10 +115,8 @@ impl<'b, 'a> Search<'b, 'a> {
             self.enter(&mut found);
             self.unite(&mut found);
             self.take_apart(&mut found);
-            // An effect that entered before the others were found may stand for a better one, which has to take its place before it is set aside.
-            let mut is_exchanged = self.exchange(&mut found);
             named = self.leave(&mut found);
-            is_exchanged |= self.exchange(&mut found);
+            let is_exchanged = self.exchange(&mut found);
             if !is_exchanged && (set_of(&found) == set || self.refused.len() == refused) {
                 break;
             }
@@ -150,7 +148,7 @@ impl<'b, 'a> Search<'b, 'a> {
     fn enter(&mut self, found: &mut Vec<Candidate>) {
         while found.len() < MOST {
             let trial = self.fit(found);
-            if self.excess(&trial) <= NEGLIGIBLE && !self.is_promising(found, &trial) {
+            if self.excess(&trial) <= NEGLIGIBLE {
                 break;
             }
             let enough = self.least_gain(&trial);
@@ -171,23 +169,6 @@ impl<'b, 'a> Search<'b, 'a> {
             found.push(*candidate);
             self.spread(found, *candidate);
         }
-    }
-
-    /// Whether a linear step promises strong evidence for a candidate, and a gain that is not negligible. The evidence does not depend on the estimate
-    /// of the noise, whose error may exceed an effect of one cable: that shows in one of six equations.
-    fn is_promising(&mut self, found: &[Candidate], trial: &Trial) -> bool {
-        let unit_square = self.bench.unit_square(&trial.model);
-        let least = NEGLIGIBLE * self.noise_squares(false);
-        #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
-        let count = 6.0 * self.bench.count(false) as f64;
-        let refused: Vec<Candidate> = self.refused.keys().copied().collect();
-        self.promises(found).iter().filter(|of| !refused.contains(&of.candidate)).any(|of| {
-            let gain = unit_square * of.gain;
-            #[expect(clippy::cast_precision_loss, reason = "a few parameters")]
-            let more = of.candidate.count() as f64;
-            gain > least
-                && (gain >= trial.training || delta_bic(count, 1.0 - gain / trial.training, more) < -STRONG_BIC)
-        })
     }
 
     /// What several cables have becomes one that all have alike, where that says as much with fewer parameters.
@@ -233,16 +214,11 @@ impl<'b, 'a> Search<'b, 'a> {
         let others: Vec<Candidate> = found.iter().copied().filter(|of| of.effect() != Some(effect)).collect();
         let is_alike = matches!(candidate, Candidate::Alike(_));
         let before = if is_alike { 1 } else { found.len() - others.len() };
-        let more = own.len() * (count - before);
-        if more == 0 || !is_alike && !self.may_spread(found, &trial, effect, more) {
-            return;
-        }
         let mut model = trial.model.clone();
-        model.alike.retain(|of| of.effect() != Some(effect));
+        model.alike.retain(|of| !own.contains(of));
         for cable in 0..count {
             let start = (!has(effect, &model.values[cable])).then(|| {
-                // From what is left beside those that have it: else each would begin as if it were they.
-                self.promises(found).iter().find(|of| of.candidate == Candidate::Own(cable, effect)).cloned()
+                self.promises(&others).iter().find(|of| of.candidate == Candidate::Own(cable, effect)).cloned()
             });
             match start {
                 Some(None) => return,
@@ -253,6 +229,10 @@ impl<'b, 'a> Search<'b, 'a> {
             }
             let free = &mut model.free[cable];
             free.extend(own.iter().copied().filter(|of| !free.contains(of)).collect::<Vec<Parameter>>());
+        }
+        let more = own.len() * (count - before);
+        if more == 0 {
+            return;
         }
         let apart = self.bench.fit(&model, NEAR_ERRORS);
         let each: Vec<Candidate> = (0..count).map(|cable| Candidate::Own(cable, effect)).collect();
@@ -266,16 +246,6 @@ impl<'b, 'a> Search<'b, 'a> {
                 self.refused.insert(candidate, Refusal::Unsteady("cable"));
             }
         }
-    }
-
-    /// Whether a linear step speaks for giving an effect to all cables that lack it, before this is fitted.
-    fn may_spread(&mut self, found: &[Candidate], trial: &Trial, effect: Effect, more: usize) -> bool {
-        let gains = self.screened(found).each.iter().find(|(of, _)| *of == effect);
-        let Some(gain) = gains.map(|(_, gain)| *gain).filter(|gain| gain.is_finite()) else { return true };
-        let left = trial.training - self.bench.unit_square(&trial.model) * gain;
-        #[expect(clippy::cast_precision_loss, reason = "counts")]
-        let (count, more) = (6.0 * self.bench.count(false) as f64, more as f64);
-        left <= 0.0 || delta_bic(count, left / trial.training, more) < 0.0
     }
 
     /// Sets aside what cannot justify itself, the weakest first: what is fewest standard errors from doing nothing.
@@ -409,7 +379,7 @@ impl<'b, 'a> Search<'b, 'a> {
         if self.excess(&trial) <= NEGLIGIBLE {
             return Vec::new();
         }
-        let tried = self.fitted_beside(found, true).into_iter().filter(|(_, with)| with.held_out < trial.held_out).map(
+        let tried = self.beside(found).into_iter().filter(|(_, with)| with.held_out < trial.held_out).map(
             |(candidate, with)| {
                 let inflation = self.inflation(candidate, &with);
                 let delta_bic = self.delta_bic(&trial, &with, candidate.count(), inflation);
@@ -475,45 +445,28 @@ impl<'b, 'a> Search<'b, 'a> {
         let set = set_of(&[found, &[candidate]].concat());
         if !self.fits.contains_key(&set) {
             let promise = self.promises(found).iter().find(|promise| promise.candidate == candidate)?.clone();
-            self.fits.insert(set.clone(), self.fitted(&promise.model, candidate));
+            self.fits.insert(set.clone(), self.bench.fit(&promise.model, NEAR_ERRORS));
         }
         self.fits.get(&set).cloned()
     }
 
-    /// A model with a new candidate, fitted; the period of a ripple last, for a scan finds it only nearly.
-    fn fitted(&self, model: &Model, candidate: Candidate) -> Trial {
-        let trial = self.bench.fit(model, NEAR_ERRORS);
-        let Some(period) = candidate.effect().and_then(period_of) else { return trial };
-        let mut model = trial.model;
-        match candidate {
-            Candidate::Own(cable, _) => model.free[cable].push(period),
-            _ => model.alike.push(period),
-        }
-        self.bench.fit(&model, NEAR_ERRORS)
-    }
-
-    /// The models with one more of those that promise most and were not refused, fitted.
+    /// The models with one more of those that promise most, fitted.
     fn beside(&mut self, found: &[Candidate]) -> Vec<(Candidate, Trial)> {
-        self.fitted_beside(found, false)
-    }
-
-    /// The same with those that were refused.
-    fn fitted_beside(&mut self, found: &[Candidate], with_refused: bool) -> Vec<(Candidate, Trial)> {
         let best: Vec<Candidate> = {
             let promises = self.promises(found).to_vec();
-            let open = promises.iter().filter(|promise| with_refused || !self.refused.contains_key(&promise.candidate));
+            let open = promises.iter().filter(|promise| !self.refused.contains_key(&promise.candidate));
             open.take(FITTED).map(|promise| promise.candidate).collect()
         };
         let unknown = |candidate: &Candidate| !self.fits.contains_key(&set_of(&[found, &[*candidate]].concat()));
         let wanted: Vec<Candidate> = best.iter().copied().filter(unknown).collect();
-        let promises = self.screened.get(&set_of(found)).map(|of| of.promises.as_slice()).unwrap_or_default();
+        let promises = self.promised.get(&set_of(found)).map(Vec::as_slice).unwrap_or_default();
         let new: Vec<Promise> =
             promises.iter().filter(|promise| wanted.contains(&promise.candidate)).cloned().collect();
         let fit = |promise: &Promise| {
-            let mut trial = self.fitted(&promise.model, promise.candidate);
+            let mut trial = self.bench.fit(&promise.model, NEAR_ERRORS);
             if found.is_empty() {
                 // What is missing may have led the friction astray.
-                let by_given = self.fitted(&self.bench.with_given_friction(&promise.model), promise.candidate);
+                let by_given = self.bench.fit(&self.bench.with_given_friction(&promise.model), NEAR_ERRORS);
                 trial = if by_given.training < trial.training { by_given } else { trial };
             }
             (set_of(&[found, &[promise.candidate]].concat()), trial)
@@ -524,12 +477,8 @@ impl<'b, 'a> Search<'b, 'a> {
     }
 
     fn promises(&mut self, found: &[Candidate]) -> &[Promise] {
-        &self.screened(found).promises
-    }
-
-    fn screened(&mut self, found: &[Candidate]) -> &Screen {
         let set = set_of(found);
-        if !self.screened.contains_key(&set) {
+        if !self.promised.contains_key(&set) {
             let trial = self.fit(found);
             let around = self.around(&trial, true);
             let model = &trial.model;
@@ -540,12 +489,12 @@ impl<'b, 'a> Search<'b, 'a> {
                 Candidate::Geometry(of) => !model.changes.contains_key(&of),
             };
             let is_wanted = |candidate: Candidate| is_new(candidate) && !scales_all(self.bench, model, candidate);
-            let mut all = screen(self.bench, model, &around, is_wanted);
+            let mut all = promises(self.bench, model, &around, is_wanted);
             // Per parameter: the criterion's price is nothing beside the gains that matter, yet of two equals the simpler goes first.
-            all.promises.retain(|promise| promise.gain > 0.0);
-            self.screened.insert(set.clone(), all);
+            all.retain(|promise| promise.gain > 0.0);
+            self.promised.insert(set.clone(), all);
         }
-        self.screened.entry(set).or_default()
+        self.promised.get(&set).map(Vec::as_slice).unwrap_or_default()
     }
 
     /// What a search on each cable begins from; the scan for periods takes its time.
@@ -612,11 +561,11 @@ fn standings(bench: &Bench<'_>, trial: &Trial, candidates: &[Candidate]) -> Vec<
     let covariances = bench.covariances(&trial.model);
     let of = |candidate: &Candidate| {
         let [covariance, independent] = covariances.as_ref()?;
-        // A period has no neutral value that it could be away from.
-        let is_of = |parameter: &Parameter, effect| parameter.effect() == Some(effect) && parameter.row().fitted;
         let is_its = |unknown: &Unknown| match (*candidate, unknown) {
-            (Candidate::Own(cable, effect), Unknown::Own(of, parameter)) => cable == *of && is_of(parameter, effect),
-            (Candidate::Alike(effect), Unknown::Alike(parameter)) => is_of(parameter, effect),
+            (Candidate::Own(cable, effect), Unknown::Own(of, parameter)) => {
+                cable == *of && parameter.effect() == Some(effect)
+            }
+            (Candidate::Alike(effect), Unknown::Alike(parameter)) => parameter.effect() == Some(effect),
             (Candidate::Geometry(geometry), Unknown::Geometry(of, _)) => geometry == *of,
             _ => false,
         };
@@ -649,13 +598,14 @@ fn away_from_neutral(model: &Model, unknown: &Unknown) -> f64 {
 fn take_away(model: &mut Model, candidate: Candidate) {
     match candidate {
         Candidate::Own(cable, effect) => {
-            let is_own = |of: &Parameter| of.effect() == Some(effect);
-            model.free.iter_mut().skip(cable).take(1).for_each(|free| free.retain(|of| !is_own(of)));
+            let own = fitted(effect);
+            model.free.iter_mut().skip(cable).take(1).for_each(|free| free.retain(|of| !own.contains(of)));
             let values = model.values.iter_mut().skip(cable).take(1);
             values.for_each(|values| Parameter::of(effect).for_each(|of| values[of.place()] = of.row().neutral));
         }
         Candidate::Alike(effect) => {
-            model.alike.retain(|of| of.effect() != Some(effect));
+            let own = fitted(effect);
+            model.alike.retain(|of| !own.contains(of));
             let values = model.values.iter_mut();
             values.for_each(|values| Parameter::of(effect).for_each(|of| values[of.place()] = of.row().neutral));
         }

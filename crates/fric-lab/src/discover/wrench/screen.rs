@@ -5,8 +5,6 @@
 //! `bᵀS⁻¹b` with `S = CᵀC − CᵀJ(JᵀJ)⁻¹JᵀC` and `b = Cᵀr − CᵀJ(JᵀJ)⁻¹Jᵀr` (score test; C. R. Rao, *Large sample tests of statistical
 //! hypotheses*, Proc. Cambridge Phil. Soc. 44, 1948). One pass over the log serves all candidates.
 
-use std::collections::BTreeMap;
-
 use fric_core::effects::Effect;
 use fric_core::parameters::Values;
 use nalgebra::{DMatrix, DVector, Vector6};
@@ -14,7 +12,6 @@ use nalgebra::{DMatrix, DVector, Vector6};
 use super::bench::{Bench, Model};
 use super::geometry::Geometry;
 use crate::candidates::catalogue::{fitted, starts};
-use crate::candidates::ripple::period_of;
 use crate::certainty::undetermined::inverse_of_normal;
 use crate::effects::Around;
 use crate::fit::Parameter;
@@ -40,9 +37,7 @@ impl Candidate {
     /// How many parameters it adds.
     pub fn count(self) -> usize {
         match self {
-            Self::Alike(effect) | Self::Own(_, effect) => {
-                fitted(effect).len() + usize::from(period_of(effect).is_some())
-            }
+            Self::Alike(effect) | Self::Own(_, effect) => fitted(effect).len(),
             Self::Geometry(of) => of.count(),
         }
     }
@@ -63,15 +58,6 @@ pub struct Promise {
     pub model: Model,
     /// By how much the whitened sum of squares over the samples learned from would fall.
     pub gain: f64,
-}
-
-/// What a model lacks, by linear steps.
-#[derive(Clone, Debug, Default)]
-pub struct Screen {
-    /// Of every candidate, the best first.
-    pub promises: Vec<Promise>,
-    /// Of an effect that every cable has by itself: by how much the sum of squares would fall if those that lack it had it too.
-    pub each: Vec<(Effect, f64)>,
 }
 
 /// An effect on a cable from one start, with its columns: changes of the cable's force, cycle by cycle.
@@ -95,8 +81,13 @@ impl Columns {
     }
 }
 
-/// The promise of every candidate beside a model, each from its best start.
-pub fn screen(bench: &Bench<'_>, model: &Model, around: &[Around], is_wanted: impl Fn(Candidate) -> bool) -> Screen {
+/// The promise of every candidate beside a model, each from its best start, the best first.
+pub fn promises(
+    bench: &Bench<'_>,
+    model: &Model,
+    around: &[Around],
+    is_wanted: impl Fn(Candidate) -> bool,
+) -> Vec<Promise> {
     let cables: Vec<usize> = (0..bench.records.len()).collect();
     let catalogue = |cable: usize| {
         let wanted =
@@ -161,7 +152,7 @@ pub fn screen(bench: &Bench<'_>, model: &Model, around: &[Around], is_wanted: im
     };
     for (place, start) in all_starts.iter().enumerate() {
         let candidate = Candidate::Own(start.cable, start.effect);
-        let gain = sums.gain(&[place], &all_starts, model);
+        let gain = sums.gain(&[place], &all_starts);
         offer(Promise { candidate, model: beside(model, candidate, &[start]), gain });
     }
     for effect in Effect::ALL.iter().copied().filter(|effect| is_wanted(Candidate::Alike(*effect))) {
@@ -175,22 +166,16 @@ pub fn screen(bench: &Bench<'_>, model: &Model, around: &[Around], is_wanted: im
             let places: Vec<usize> = of_cables.iter().filter_map(|of| of.get(start).copied()).collect();
             let from: Vec<&Start> = places.iter().filter_map(|place| all_starts.get(*place)).collect();
             let candidate = Candidate::Alike(effect);
-            offer(Promise {
-                candidate,
-                model: beside(model, candidate, &from),
-                gain: sums.gain(&places, &all_starts, model),
-            });
+            offer(Promise { candidate, model: beside(model, candidate, &from), gain: sums.gain(&places, &all_starts) });
         }
     }
-    let each = Effect::ALL.iter().copied().filter_map(|effect| Some((effect, sums.gain_of_each(effect, &all_starts)?)));
-    let each = each.collect();
     for of in &geometries {
         let candidate = Candidate::Geometry(of.geometry);
-        let (gain, _) = schur_step(&of.own, &of.mixed, &sums.normal, &of.score, &sums.gradient);
+        let gain = schur_gain(&of.own, &of.mixed, &sums.normal, &of.score, &sums.gradient);
         offer(Promise { candidate, model: beside(model, candidate, &[]), gain });
     }
     promises.sort_by(|one, other| other.gain.total_cmp(&one.gain));
-    Screen { promises, each }
+    promises
 }
 
 fn is_elsewhere(start: &Values, values: &Values) -> bool {
@@ -227,16 +212,15 @@ fn beside(model: &Model, candidate: Candidate, from: &[&Start]) -> Model {
     model
 }
 
-/// `bᵀS⁻¹b` and the step `−S⁻¹b`, without directions that the model has.
-fn schur_step(
+/// `bᵀS⁻¹b`, without directions that the model has.
+fn schur_gain(
     own: &DMatrix<f64>,
     mixed: &DMatrix<f64>,
     normal: &DMatrix<f64>,
     own_gradient: &DVector<f64>,
     gradient: &DVector<f64>,
-) -> (f64, DVector<f64>) {
-    let mut step = DVector::zeros(own.nrows());
-    let Some(inverse) = inverse_of_normal(normal) else { return (f64::NAN, step) };
+) -> f64 {
+    let Some(inverse) = inverse_of_normal(normal) else { return f64::NAN };
     let by_others = mixed.transpose() * inverse;
     let schur = own - &by_others * mixed;
     let score = own_gradient - &by_others * gradient;
@@ -245,20 +229,15 @@ fn schur_step(
     let scaled =
         DMatrix::from_fn(own.nrows(), own.ncols(), |row, column| schur[(row, column)] * unit(row) * unit(column));
     if scaled.iter().any(|entry| !entry.is_finite()) {
-        return (f64::NAN, step);
+        return f64::NAN;
     }
     let eigen = scaled.symmetric_eigen();
     let scaled_score = DVector::from_fn(score.len(), |row, _| score[row] * unit(row));
-    let mut gain = 0.0;
-    for (direction, size) in eigen.eigenvectors.column_iter().zip(eigen.eigenvalues.iter()) {
-        if *size > OWN_RATIO {
-            let along = direction.dot(&scaled_score);
-            gain += along * along / size;
-            step -= direction * (along / size);
-        }
-    }
-    step.iter_mut().enumerate().for_each(|(place, number)| *number *= unit(place));
-    (gain, step)
+    let parts = eigen.eigenvectors.column_iter().zip(eigen.eigenvalues.iter());
+    parts
+        .filter(|(_, size)| **size > OWN_RATIO)
+        .map(|(direction, size)| direction.dot(&scaled_score).powi(2) / size)
+        .sum()
 }
 
 /// The same sums for a geometry, with its whitened changes of the deviations in every sample.
@@ -389,10 +368,7 @@ impl Sums {
     }
 
     /// By how much the sum of squares falls where these starts, of different cables, come alike.
-    ///
-    /// The step to an effect of one parameter that leads out of its range explains nothing: no fit could take it. Such is that to a sensor that
-    /// follows early, which smooths the noise in the linear step alone.
-    fn gain(&self, places: &[usize], starts: &[Start], model: &Model) -> f64 {
+    fn gain(&self, places: &[usize], starts: &[Start]) -> f64 {
         let of: Vec<&Start> = places.iter().filter_map(|place| starts.get(*place)).collect();
         let Some(width) = of.first().map(|start| start.columns.len()) else { return f64::NAN };
         if of.iter().any(|start| start.columns.len() != width) {
@@ -416,60 +392,6 @@ impl Sums {
             mixed += of_cable.rows(start.columns.start, width).transpose();
             score += scores.rows(start.columns.start, width);
         }
-        let (gain, step) = schur_step(&own, &mixed, &self.normal, &score, &self.gradient);
-        let parameter = of.first().map(|start| (start, fitted(start.effect)));
-        let Some((start, [parameter])) = parameter.as_ref().map(|(start, all)| (start, all.as_slice())) else {
-            return gain;
-        };
-        let place = parameter.place();
-        let from = model.values.get(start.cable).map_or(f64::NAN, |values| values[place]);
-        // With a way from the model to the start the step begins at the model.
-        let by = step[0] + step.get(1).map_or(start.values[place] - from, |share| share * (start.values[place] - from));
-        let to = from + by;
-        if to < parameter.row().min || to > parameter.row().max { 0.0 } else { gain }
-    }
-
-    /// By how much the sum of squares falls where every cable with starts of an effect has it by itself: of those that stand at the same place of
-    /// each the best; `None` where there are none.
-    fn gain_of_each(&self, effect: Effect, starts: &[Start]) -> Option<f64> {
-        let mut of_cables: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-        for (place, _) in starts.iter().enumerate().filter(|(_, of)| of.effect == effect) {
-            of_cables.entry(starts[place].cable).or_default().push(place);
-        }
-        let count = of_cables.values().map(Vec::len).min()?;
-        let gain = |order: usize| {
-            let places: Vec<usize> = of_cables.values().map(|places| places[order]).collect();
-            self.joint_gain(&places, starts)
-        };
-        (0..count).map(gain).max_by(f64::total_cmp)
-    }
-
-    fn joint_gain(&self, places: &[usize], starts: &[Start]) -> f64 {
-        let widths: Vec<usize> = places.iter().map(|place| starts[*place].columns.len()).collect();
-        let firsts: Vec<usize> = widths
-            .iter()
-            .scan(0, |first, width| {
-                *first += width;
-                Some(*first - width)
-            })
-            .collect();
-        let width = widths.iter().sum();
-        let mut own = DMatrix::zeros(width, width);
-        for (one, other, sum) in &self.squares {
-            let place = |of: &usize| places.iter().position(|place| place == of);
-            let (Some(row), Some(column)) = (place(one), place(other)) else { continue };
-            let (row, column) = (firsts[row], firsts[column]);
-            own.view_mut((row, column), sum.shape()).copy_from(sum);
-            own.view_mut((column, row), (sum.ncols(), sum.nrows())).copy_from(&sum.transpose());
-        }
-        let mut mixed = DMatrix::zeros(self.normal.nrows(), width);
-        let mut score = DVector::zeros(width);
-        for ((place, first), width) in places.iter().zip(&firsts).zip(&widths) {
-            let start = &starts[*place];
-            let (of_cable, scores) = (&self.mixed[start.cable], &self.scores[start.cable]);
-            mixed.columns_mut(*first, *width).copy_from(&of_cable.rows(start.columns.start, *width).transpose());
-            score.rows_mut(*first, *width).copy_from(&scores.rows(start.columns.start, *width));
-        }
-        schur_step(&own, &mixed, &self.normal, &score, &self.gradient).0
+        schur_gain(&own, &mixed, &self.normal, &score, &self.gradient)
     }
 }
