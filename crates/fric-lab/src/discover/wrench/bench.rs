@@ -1,4 +1,4 @@
-//! Models of all cables together, fitted to the wrench on the platform.
+//! Models of all cables, fitted jointly to the wrench on the platform.
 
 use std::sync::atomic::AtomicBool;
 
@@ -18,37 +18,37 @@ use crate::search::optimizer::minimize;
 use crate::search::problem::{Comparison, Loss, Member, Problem};
 use crate::search::vector::Coordinate;
 
-/// A number of a geometry is no further off than some such share of its size, and the friction than such a share of what is given. Each weighs as one
-/// more deviation, so that what the samples say nothing of stays.
+/// Standard deviations of a geometry's numbers as a fraction of their scale, and of the friction as a fraction of the given values. Each acts as one
+/// additional deviation, so that a number keeps its given value if the samples do not determine it.
 const GEOMETRY_RATIO: f64 = 0.1;
 const FRICTION_RATIO: f64 = 1.0;
 
 /// A model of all cables.
 #[derive(Clone, Debug)]
 pub struct Model {
-    /// Values of each cable.
+    /// Parameter values of each cable.
     pub values: Vec<Values>,
-    /// What is varied of each cable by itself.
+    /// Parameters that are varied for each cable separately.
     pub free: Vec<Vec<Parameter>>,
-    /// What is varied of all cables alike.
+    /// Parameters that are varied with one value for all cables.
     pub alike: Vec<Parameter>,
-    /// What is wrong about the description, and by how much.
+    /// Corrections of the robot file.
     pub changes: Changes,
 }
 
-/// A number that is varied.
+/// A number that a fit varies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unknown {
     /// A parameter of one cable.
     Own(usize, Parameter),
-    /// One that all cables have alike.
+    /// A parameter with one value for all cables.
     Alike(Parameter),
     /// One of a geometry's numbers.
     Geometry(Geometry, usize),
 }
 
 impl Model {
-    /// What is varied, in the order of the columns.
+    /// Returns the numbers that are varied, in the order of the columns.
     pub fn unknowns(&self) -> Vec<Unknown> {
         let own =
             self.free.iter().enumerate().flat_map(|(cable, free)| free.iter().map(move |of| Unknown::Own(cable, *of)));
@@ -69,7 +69,7 @@ impl Model {
         }
     }
 
-    /// The same with other numbers, in the order of the unknowns.
+    /// Returns the model with other numbers, in the order of the unknowns.
     fn moved(&self, numbers: &[f64]) -> Self {
         let mut moved = self.clone();
         for (unknown, number) in self.unknowns().iter().zip(numbers) {
@@ -89,13 +89,13 @@ impl Model {
     }
 }
 
-/// A model that was fitted.
+/// A fitted model.
 #[derive(Clone, Debug)]
 pub struct Trial {
     pub model: Model,
-    /// Sum of squares of the whitened deviations of each block.
+    /// Sum of the squared whitened deviations in each block.
     pub blocks: Vec<f64>,
-    /// The same over the blocks learned from, and those held out.
+    /// The same over the training blocks, and over the held-out blocks.
     pub training: f64,
     pub held_out: f64,
 }
@@ -106,17 +106,17 @@ pub struct Bench<'a> {
     pub records: Vec<CableRecord<'a>>,
     pub description: Description<'a>,
     pub blocks: Vec<Block>,
-    /// Which samples count.
+    /// Whether a sample counts.
     pub counts: Vec<bool>,
-    /// Which have a reference of their own.
+    /// Whether the reference of a sample is measured instead of interpolated.
     pub measured: &'a [bool],
-    /// Turns deviations into numbers of variance 1 that do not depend on each other.
+    /// Transforms deviations into uncorrelated numbers of variance 1.
     pub whitening: Matrix6<f64>,
     pub stop: &'a AtomicBool,
 }
 
 impl<'a> Bench<'a> {
-    /// Samples that count and are learned from, or held out.
+    /// Returns which samples count and belong to the held-out blocks, or to the training blocks.
     pub fn used(&self, held_out: bool) -> Vec<bool> {
         let mut used = vec![false; self.counts.len()];
         for block in self.blocks.iter().filter(|block| block.held_out == held_out) {
@@ -126,12 +126,12 @@ impl<'a> Bench<'a> {
         used
     }
 
-    /// How many samples are held out, or learned from.
+    /// Returns the number of these samples.
     pub fn count(&self, held_out: bool) -> usize {
         self.used(held_out).into_iter().filter(|used| *used).count()
     }
 
-    /// Calls with the problem of a model, in which each cable has all that it varies as its own.
+    /// Calls `run` with the problem of a model. There, parameters with one value for all cables are separate ones of each cable.
     pub fn with_problem<T>(&self, model: &Model, used: Vec<bool>, run: impl FnOnce(&Problem<'_>) -> T) -> T {
         let (structure, outside) = self.description.changed(&model.changes);
         let member = |(record, free): (&CableRecord<'a>, &Vec<Parameter>)| {
@@ -153,7 +153,7 @@ impl<'a> Bench<'a> {
         run(&problem)
     }
 
-    /// Six rows of every sample learned from: derivatives by the unknowns, then the deviation; false when stopped.
+    /// Visits the six rows of every training sample: derivatives by the unknowns, then the deviation. Returns false if stopped.
     pub fn rows(&self, model: &Model, mut visit: impl FnMut(usize, &[Vec<f64>])) -> bool {
         let unknowns = model.unknowns();
         let column = |unknown: Unknown| unknowns.iter().position(|of| *of == unknown);
@@ -185,7 +185,7 @@ impl<'a> Bench<'a> {
         })
     }
 
-    /// Whitened derivatives by the numbers of geometries, in every sample.
+    /// Returns the whitened derivatives by the corrections of the robot file, in every sample.
     fn tangents(&self, model: &Model) -> Vec<Vec<Vector6<f64>>> {
         if model.changes.is_empty() {
             return Vec::new();
@@ -198,7 +198,7 @@ impl<'a> Bench<'a> {
         all
     }
 
-    /// Normal equations of a model over the samples learned from, and the scores if wanted; `None` when stopped.
+    /// Returns the normal equations of a model over the training samples, and adds to `scores`; `None` if stopped.
     pub fn gram(&self, model: &Model, mut scores: Option<&mut Scores>) -> Option<Gram> {
         let unknowns = model.unknowns();
         let mut gram = Gram::new(unknowns.len());
@@ -224,7 +224,7 @@ impl<'a> Bench<'a> {
         completed.then_some(gram)
     }
 
-    /// What is expected of a number before the samples, and how far off it may be; `None` of an effect.
+    /// Returns the prior mean and standard deviation of a number; `None` for parameters of effects.
     fn expected(&self, unknown: &Unknown) -> Option<(f64, f64)> {
         match unknown {
             Unknown::Geometry(of, _) => Some((0.0, GEOMETRY_RATIO * self.description.size(*of))),
@@ -236,7 +236,7 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// Fits a model to the samples learned from, as near to its minimum as asked for, in standard errors.
+    /// Fits a model to the training samples, to within `near_errors` standard errors of its minimum.
     pub fn fit(&self, model: &Model, near_errors: f64) -> Trial {
         let unknowns = model.unknowns();
         let cycle_s = self.records.first().map_or(f64::NAN, |record| record.cycle_s);
@@ -252,7 +252,7 @@ impl<'a> Bench<'a> {
         self.judged(model.moved(&minimum.values))
     }
 
-    /// A model with the friction of the robot file where it is varied.
+    /// Returns the model with the friction of the robot file as the start values of a fit.
     pub fn with_given_friction(&self, model: &Model) -> Model {
         let mut model = model.clone();
         for ((values, free), record) in model.values.iter_mut().zip(&model.free).zip(&self.records) {
@@ -264,15 +264,15 @@ impl<'a> Bench<'a> {
         model
     }
 
-    /// Square of the unit in which models are compared: that of the sensors. By the weight alone their noise is all that deviations have, and gains
-    /// make it smaller with the forces, which explains nothing.
+    /// Returns the square of the unit in which models are compared. By the weight alone, all noise is that of the sensors, and sensor gains scale it
+    /// with the forces. The unit undoes this scaling, which explains nothing.
     pub fn unit_square(&self, model: &Model) -> f64 {
         let gain = Effect::SensorGain.places().start;
         let (sum, count) = model.values.iter().fold((0.0, 0.0), |(sum, count), of| (sum + of[gain].ln(), count + 1.0));
         if self.description.reference == WrenchReference::Mass { (2.0 * sum / count).exp() } else { 1.0 }
     }
 
-    /// A model with its sums of squares.
+    /// Returns a model with its sums of squares.
     pub fn judged(&self, model: Model) -> Trial {
         let deviations = self.deviations(&model);
         let unit_square = self.unit_square(&model);
@@ -288,7 +288,7 @@ impl<'a> Bench<'a> {
         Trial { training: sum(false), held_out: sum(true), blocks, model }
     }
 
-    /// Whitened deviations of every sample; NaN where it does not count.
+    /// Returns the whitened deviations of every sample; NaN if it does not count.
     pub fn deviations(&self, model: &Model) -> Vec<Vector6<f64>> {
         let mut all = vec![Vector6::repeat(f64::NAN); self.counts.len()];
         self.with_problem(model, self.counts.clone(), |problem| {
@@ -301,8 +301,9 @@ impl<'a> Bench<'a> {
         all
     }
 
-    /// Standard deviation of the white noise in a number of each sample, NaN where it does not count; `None` where they are too few. Of the samples on lines
-    /// between two measurements too where they are the most: the sensors' noise is in each, and the lines have next to none.
+    /// Returns the standard deviation of the white noise in a series with one number per sample, NaN if the sample does not count; `None` if there are
+    /// too few. Samples with an interpolated reference are included if they are the majority: they have the full noise of the sensors and hardly any of
+    /// the reference.
     pub fn white_noise(&self, numbers: impl Iterator<Item = f64>) -> Option<f64> {
         let all: Vec<(f64, bool)> = numbers.zip(self.measured.iter().copied()).collect();
         let count =
@@ -312,7 +313,7 @@ impl<'a> Bench<'a> {
         white_noise(&taken.map(|(number, _)| number).collect::<Vec<f64>>())
     }
 
-    /// Mean square of the whitened deviation that errors of all cables make which are this share of their tensions and add up.
+    /// Returns the mean squared whitened deviation if the force of each cable has an error of this fraction of its tension, and all errors add up.
     pub fn believed_square(&self, model: &Model, ratio: f64) -> f64 {
         let (structure, _) = self.description.changed(&model.changes);
         let (mut sum, mut count) = (0.0, 0.0);
@@ -328,7 +329,7 @@ impl<'a> Bench<'a> {
         if count > 0.0 { sum / count } else { 0.0 }
     }
 
-    /// The deviation of each sample as the error of one cable's force alone that comes nearest to it, N.
+    /// Returns the error of one cable's force that alone comes nearest to the deviation of each sample, N.
     pub fn of_cable_n(&self, model: &Model, deviations: &[Vector6<f64>], cable: usize) -> Vec<f64> {
         let (structure, _) = self.description.changed(&model.changes);
         let columns = structure.iter().skip(cable).step_by(self.records.len());
@@ -339,8 +340,8 @@ impl<'a> Bench<'a> {
         columns.zip(deviations).map(nearest).collect()
     }
 
-    /// What errors of all cables that are this share of their tensions make of [`of_cable_n`](Self::of_cable_n) of one at most, N: root mean
-    /// square over the samples.
+    /// Returns the root mean square of [`of_cable_n`](Self::of_cable_n) if the force of each cable has an error of this fraction of its tension, and
+    /// all errors add up, N.
     pub fn believed_n(&self, model: &Model, cable: usize, ratio: f64) -> f64 {
         let (structure, _) = self.description.changed(&model.changes);
         let count = self.records.len();
@@ -360,8 +361,7 @@ impl<'a> Bench<'a> {
         errors.rms().unwrap_or(0.0)
     }
 
-    /// Covariance of the unknowns of a model at its minimum, as correlated deviations scatter them, and as independent ones of the same
-    /// size would.
+    /// Returns the covariance of a model's unknowns at its minimum: with the correlation of the deviations over time, and as if they were independent.
     pub fn covariances(&self, model: &Model) -> Option<[DMatrix<f64>; 2]> {
         let mut scores = Scores::new(model.unknowns().len());
         let (matrix, _, squares) = self.gram(model, Some(&mut scores))?.normal_equations();

@@ -1,7 +1,7 @@
-//! What may be wrong about the platform and the geometry of the cables, so that it does not come out as friction.
+//! Errors of the robot file in the platform and the geometry of the cables, as candidates beside the effects. Otherwise they would be named friction.
 //!
-//! `A^T f + w = 0` (\[P\] 3): the structure matrix `A^T` has the places where cables enter their last pulleys and where they are attached,
-//! the outside wrench `w` that stands for weight and inertia has mass, centre of mass and gravity. A measured wrench has none of these.
+//! In `A^T f + w = 0` (\[P\] 3) the structure matrix `A^T` depends on the points where cables enter their last pulleys and where they are attached.
+//! If the outside wrench `w` is computed from weight and inertia, it depends on mass, centre of mass and gravity; a measured wrench does not.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -13,7 +13,7 @@ use nalgebra::{Vector3, Vector6};
 
 use crate::replay::WrenchReference;
 
-/// A number of the robot file, or three, that may be wrong.
+/// An entry of the robot file that may be wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Geometry {
     /// Mass of the platform.
@@ -22,23 +22,23 @@ pub enum Geometry {
     CenterOfMass,
     /// Direction of gravity in the base frame.
     Gravity,
-    /// Where this cable enters its last pulley.
+    /// The point where the cable of this index enters its last pulley.
     Base(usize),
-    /// Where this cable is attached to the platform.
+    /// The point where the cable of this index is attached to the platform.
     Attachment(usize),
 }
 
-/// By how much each is off: kg, m, and two components across the given gravity, m/s².
+/// Corrections of entries: kg, m, and for gravity two components perpendicular to the given one, m/s².
 pub type Changes = BTreeMap<Geometry, Vec<f64>>;
 
-/// A vector a sample, or one a sample and cable: as given, or changed.
+/// One vector per sample, or per sample and cable: borrowed if unchanged.
 pub type Series<'a> = Cow<'a, [Vector6<f64>]>;
 
-/// Steps for differences: small beside what matters, large beside rounding.
+/// Step of the finite differences, as a fraction of [`Description::size`]. All functions here are nearly linear over it, and rounding is 1e-12 of it.
 const STEP_RATIO: f64 = 1e-4;
 
 impl Geometry {
-    /// The key of the robot file.
+    /// Returns its key in the robot file.
     #[must_use]
     pub const fn key(self) -> &'static str {
         match self {
@@ -50,7 +50,7 @@ impl Geometry {
         }
     }
 
-    /// The cable that it is of.
+    /// Returns the index of its cable, if it belongs to one.
     #[must_use]
     pub const fn cable(self) -> Option<usize> {
         match self {
@@ -59,7 +59,7 @@ impl Geometry {
         }
     }
 
-    /// Names of its numbers in results.
+    /// Returns the names of its numbers in results.
     #[must_use]
     pub const fn names(self) -> &'static [&'static str] {
         match self {
@@ -69,7 +69,7 @@ impl Geometry {
         }
     }
 
-    /// How many numbers it is varied by.
+    /// Returns how many numbers a fit varies for it.
     #[must_use]
     pub const fn count(self) -> usize {
         match self {
@@ -80,20 +80,20 @@ impl Geometry {
     }
 }
 
-/// The robot as it is described, with its poses.
+/// The robot as its file describes it, with the poses of a log.
 #[derive(Clone, Copy, Debug)]
 pub struct Description<'a> {
     pub robot: &'a RobotParams<'a>,
     pub reference: WrenchReference,
     pub poses: &'a [Option<Pose>],
-    /// Columns of the structure matrix, all cables of a sample one after the other.
+    /// Columns of the structure matrix: all cables of a sample, one sample after the other.
     pub structure: &'a [Vector6<f64>],
-    /// The wrench of each sample; NaN where there is none.
+    /// The outside wrench of each sample; NaN where there is none.
     pub outside: &'a [Vector6<f64>],
 }
 
 impl<'a> Description<'a> {
-    /// What may be wrong.
+    /// Returns all entries that may be wrong.
     pub fn candidates(&self) -> Vec<Geometry> {
         let of_platform = [Geometry::Mass, Geometry::CenterOfMass, Geometry::Gravity];
         let of_cables = (0..self.count()).flat_map(|cable| [Geometry::Base(cable), Geometry::Attachment(cable)]);
@@ -105,7 +105,7 @@ impl<'a> Description<'a> {
         self.robot.cables().len()
     }
 
-    /// Structure matrix and outside wrench where some numbers are off by so much.
+    /// Returns structure matrix and outside wrench with corrected entries.
     pub fn changed(&self, changes: &Changes) -> (Series<'a>, Series<'a>) {
         let (mut structure, mut outside) = (Cow::Borrowed(self.structure), Cow::Borrowed(self.outside));
         for cable in 0..self.count() {
@@ -120,7 +120,7 @@ impl<'a> Description<'a> {
         (structure, outside)
     }
 
-    /// A cable whose geometry is off.
+    /// Returns a cable with corrected geometry; `None` if nothing of it is corrected.
     fn moved(&self, cable: usize, changes: &Changes) -> Option<CableParams> {
         let of = |geometry: Geometry| changes.get(&geometry).map(Vec::as_slice);
         let (base, attachment) = (of(Geometry::Base(cable)), of(Geometry::Attachment(cable)));
@@ -131,7 +131,7 @@ impl<'a> Description<'a> {
         params.with_geometry(shifted(params.base_m()?, base), shifted(params.platform_m()?, attachment))
     }
 
-    /// The wrench of mass, centre of mass and gravity that are off.
+    /// Returns the outside wrench with corrected mass, centre of mass and gravity.
     fn wrench(&self, given: Vector6<f64>, pose: Option<&Pose>, changes: &Changes) -> Vector6<f64> {
         let Some(pose) = pose else { return given };
         let given_n: Vector3<f64> = given.fixed_rows::<3>(0).into();
@@ -152,7 +152,7 @@ impl<'a> Description<'a> {
         shifted(self.robot.center_of_mass_m(), by_m).into()
     }
 
-    /// Gravity of the given size in another direction.
+    /// Returns gravity in its corrected direction; its magnitude stays.
     fn gravity_m_per_s2(&self, changes: &Changes) -> Vector3<f64> {
         let given = self.robot.gravity_m_per_s2();
         let Some([across, along]) = changes.get(&Geometry::Gravity).and_then(|by| by.first_chunk::<2>()) else {
@@ -163,7 +163,7 @@ impl<'a> Description<'a> {
         turned * (given.norm() / turned.norm())
     }
 
-    /// The numbers of the robot file as they would be, in the order of [`Geometry::names`].
+    /// Returns the corrected numbers of an entry, in the order of [`Geometry::names`].
     pub fn corrected(&self, of: Geometry, changes: &Changes) -> Vec<f64> {
         let cable = |cable: usize| self.moved(cable, changes).or_else(|| self.robot.cables().get(cable).copied());
         let point = match of {
@@ -176,7 +176,7 @@ impl<'a> Description<'a> {
         point.map_or_else(Vec::new, |point| point.iter().copied().collect())
     }
 
-    /// The platform's numbers that are off, for its table in the robot file.
+    /// Returns the corrections for the `[platform]` table of the robot file.
     pub fn platform_edit(&self, changes: &Changes) -> PlatformEdit {
         let has = |of: Geometry| changes.contains_key(&of);
         PlatformEdit {
@@ -186,7 +186,7 @@ impl<'a> Description<'a> {
         }
     }
 
-    /// How the sum of the wrenches changes with each number of one, in every sample, where the cables have these forces.
+    /// Returns the derivative of the sum of all wrenches by each number of an entry, in every sample. `force_n` gives the force of a sample and cable.
     pub fn tangents(
         &self,
         of: Geometry,
@@ -218,7 +218,7 @@ impl<'a> Description<'a> {
         (0..of.count()).map(tangent).collect()
     }
 
-    /// What a number is beside which a step is small, and beyond which nobody is wrong.
+    /// Returns the scale of an entry's numbers: no robot file is wrong by as much.
     pub fn size(&self, of: Geometry) -> f64 {
         match of {
             Geometry::Mass => self.robot.mass_kg(),
@@ -227,7 +227,7 @@ impl<'a> Description<'a> {
         }
     }
 
-    /// By how much a number may be off: a mass by as much as it is, for there are payloads, the vertical by 1°, a point by 10 mm.
+    /// Returns the usual error of an entry's numbers: the whole mass, because of payloads; 1° of the vertical; 10 mm of a point.
     pub fn usual(&self, of: Geometry) -> f64 {
         let ratio = match of {
             Geometry::Mass => 1.0,
@@ -247,7 +247,7 @@ fn column_of(params: &CableParams, pose: Option<&Pose>) -> Vector6<f64> {
     pose.and_then(|pose| params.structure_column(pose)).unwrap_or_else(|| Vector6::repeat(f64::NAN))
 }
 
-/// Two directions across a vector and each other.
+/// Returns two unit vectors perpendicular to a vector and to each other.
 fn across_of(vector: &Vector3<f64>) -> [Vector3<f64>; 2] {
     let least = vector.abs().imin();
     let axis = Vector3::from_fn(|row, _| f64::from(u8::from(row == least)));

@@ -1,11 +1,12 @@
-//! What is wrong with the force sensors of a log that is compared with the wrench: hum, and stretches in which a sensor is not to be believed.
+//! Faults of the force sensors in a log that is compared with the wrench: hum, and intervals in which a sensor is faulty.
 //!
-//! Hum of the mains gets into the wiring of a sensor, and the platform does not feel it. A line in the spectrum of a sensor's force that goes with
-//! nothing its cable does is hum where the wrench of the cables comes nearer to its reference without that line: a cable that trembles pulls at
-//! the platform, and a measured wrench trembles with it.
+//! Hum of the mains enters the wiring of a sensor and does not act on the platform. A spectral line of a sensor's force that is unrelated to the
+//! motion of its cable counts as hum if the wrench of the cables comes nearer to its reference without it. A cable that really vibrates pulls on the
+//! platform, and a measured wrench shows the same vibration.
 //!
-//! Lines are looked for in the force less its mean over [`WINDOW_S`], taken [`PASSES`] times, in which the motion is all but gone. Of a sine the
-//! share `H = 1 − sin(n·φ/2)/(n·sin(φ/2))` passes each time, φ the angle between two samples and n the samples of the mean.
+//! The lines are searched in the force after [`PASSES`] high-pass filters, each of which subtracts the mean over [`WINDOW_S`]. They remove nearly all
+//! of the motion. Each passes the fraction `H = 1 − sin(n·φ/2)/(n·sin(φ/2))` of a sine, with φ the angle between two samples and n the number of
+//! samples in the mean.
 
 use core::f64::consts::PI;
 
@@ -19,20 +20,20 @@ use crate::fit::wrench::ReferenceWrenches;
 use crate::fit::{CableRecord, Measurements, Row};
 use crate::samples::selection::Standing;
 
-/// Width of the mean, s: one turn of a 50 Hz hum.
+/// Width of the mean, s: one period of 50 Hz.
 const WINDOW_S: f64 = 0.02;
-/// How often the mean is taken off: once leaves lines of a brisk motion that stand before those of a hum.
+/// Number of high-pass filters. After a single one, lines of fast motion exceed those of hum.
 const PASSES: i32 = 3;
-/// A line of which less passes each time is slow beside the window, and may be motion: below some 30 Hz.
+/// A line of which less than this fraction passes each filter may be motion and is not considered. The limit lies near 30 Hz.
 const LEAST_PASSED: f64 = 0.5;
 
-/// A log whose sensors are as far in order as they can be brought to be.
+/// A log with its sensor faults corrected where possible.
 pub struct Sensors<'a> {
     /// The log without hum.
     pub measurements: Measurements<'a>,
-    /// What was wrong with each cable's sensor.
+    /// The faults of each cable's sensor.
     pub faults: Vec<Vec<RecordingFault>>,
-    /// Samples in which some sensor is not to be believed.
+    /// Whether some sensor is faulty in a sample.
     pub is_faulty: Vec<bool>,
 }
 
@@ -40,14 +41,14 @@ pub struct Sensors<'a> {
 struct Hum {
     cable: usize,
     line: Line,
-    /// What of it has passed.
+    /// Fraction of its amplitude that has passed the filters.
     passed: f64,
-    /// In each sample, as the sensor shows it, N.
+    /// The hum in each sample, as the sensor shows it, N.
     force_n: Vec<f64>,
 }
 
 impl<'a> Sensors<'a> {
-    /// Looks at the sensors of a log.
+    /// Finds the faults in a log.
     pub fn of(measurements: &Measurements<'a>, references: &ReferenceWrenches) -> Self {
         let records: Vec<CableRecord<'_>> = measurements.cables().collect();
         let of_cables: Vec<Vec<FaultyStretch>> = records.iter().map(faulty_stretches).collect();
@@ -88,7 +89,7 @@ impl Hum {
     }
 }
 
-/// Lines in the spectrum of a sensor that go with nothing its cable does.
+/// Returns spectral lines of a sensor that are unrelated to the motion of its cable.
 fn hum_of(cable: usize, record: &CableRecord<'_>, is_faulty: &[bool]) -> Vec<Hum> {
     let shown = |(row, is_faulty): (&Row, &bool)| {
         if row.signals.sensor_finite && !is_faulty { row.signals.sensor_force_n } else { f64::NAN }
@@ -101,7 +102,7 @@ fn hum_of(cable: usize, record: &CableRecord<'_>, is_faulty: &[bool]) -> Vec<Hum
     }
     let times = Times::of(record);
     let mut signals = motion_and_load(record);
-    // The load as its sensor shows it is what is looked at.
+    // The last signal is the load as the sensor shows it, which is what is searched.
     signals.truncate(signals.len().saturating_sub(1));
     let quick = (0..PASSES).fold(sensed, |signal, _| less_mean(record, &signal, half));
     let found = lines(&quick, &times, &signals).into_iter().map(|line| {
@@ -119,7 +120,7 @@ fn hum_of(cable: usize, record: &CableRecord<'_>, is_faulty: &[bool]) -> Vec<Hum
     found.filter(|hum| hum.passed > 0.0).collect()
 }
 
-/// A signal less its mean over as many samples on either side; NaN where some of them is, and at the ends of a log.
+/// Returns a signal minus its mean over `half` samples on either side; NaN if one of these is NaN, and at the ends of a log.
 fn less_mean(record: &CableRecord<'_>, signal: &[f64], half: usize) -> Vec<f64> {
     let mut rest = vec![f64::NAN; signal.len()];
     #[expect(clippy::cast_precision_loss, reason = "a few samples")]
@@ -134,7 +135,7 @@ fn less_mean(record: &CableRecord<'_>, signal: &[f64], half: usize) -> Vec<f64> 
     rest
 }
 
-/// Those lines without which the wrench of the cables comes nearer to its reference, frequency by frequency.
+/// Returns the lines without which the wrench of the cables comes nearer to its reference. All cables' lines of a frequency are judged together.
 fn outside_of_the_wrench(
     found: Vec<Hum>,
     records: &[CableRecord<'_>],
@@ -162,7 +163,7 @@ fn outside_of_the_wrench(
         let change = |(place, deviation): &(usize, Vector6<f64>)| {
             let hum_n = |cable: usize| alike.iter().filter(|of| of.cable == cable).map(|of| of.force_n[*place]).sum();
             let hum = scale * at(*place, &hum_n);
-            // Half of what the square of the deviation changes by.
+            // Half of the change of the squared deviation.
             0.5 * hum.norm_squared() - hum.dot(deviation)
         };
         deviations.iter().map(change).sum::<f64>() < 0.0
@@ -171,7 +172,7 @@ fn outside_of_the_wrench(
     found.into_iter().zip(keep).filter(|(_, keep)| *keep).map(|(of, _)| of).collect()
 }
 
-/// Lines of different cables are the same where they are as near as a spectrum can tell.
+/// Whether the frequency of a line equals another one, within the resolution of a spectrum.
 fn is_near(hum: &Hum, frequency_hz: f64) -> bool {
     const NEAR_HZ: f64 = 0.25;
     (hum.line.frequency_hz - frequency_hz).abs() < NEAR_HZ
