@@ -316,11 +316,12 @@ fn refused(place: &Place, arguments: &[&str]) -> Run {
 fn what_a_log_lacks_is_told_and_no_name_made_up() {
     let log = hidden_stribeck();
     let run = refused(&with(without(log, &["/reference_forces"])), &[]);
+    // A bench of one cable has no wrench to compare with.
     run.fails(1, &["no reference forces on /reference_forces"])
-        .advises(&["`reference` under `[log]`", "--reference wrench"]);
+        .advises(&["`reference` under `[log]`", "force sensors at the platform"]);
     let bench = simulated(&bench_robot(), &["--duration", "10", "--seed", "4"]);
     let place = with(with_first_effort(&bench, "/reference_forces", |_, _| f64::NAN));
-    refused(&place, &[]).fails(1, &["no reference force"]).advises(&["--reference wrench"]);
+    refused(&place, &[]).fails(1, &["no reference force"]).advises(&["force sensors at the platform"]);
     let short = simulated(&bench_robot(), &["--duration", "2"]);
     refused(&with(short), &[]).fails(1, &["2.0 s", "8 s are needed"]).advises(&["longer", "fric-cli excite"]);
 }

@@ -168,6 +168,8 @@ impl Lack {
 }
 
 const SILENT_ADVICE: &str = "Compare the names of the cables in the log with those in the robot file.";
+const SENSOR_ADVICE: &str =
+    "Name their topic as `reference` under `[log]` in the robot file, or record with force sensors at the platform.";
 const POSE_ADVICE: &str = "Name the topic of the poses as `pose` under `[log]` in the robot file.";
 const LENGTHS_ADVICE: &str = "Make sure that lengths count from `base_m` to `platform_m`, or name the topic of a measured pose as `pose` under `[log]` in the robot file.";
 
@@ -184,14 +186,14 @@ fn without_pose(log: &LogTable) -> (String, &'static str) {
 #[must_use]
 pub fn by_forces(robot: &RobotFile, holdings: &Holdings) -> Readiness {
     let advice = "Name their topic as `reference` under `[log]` in the robot file, or fit without them";
-    of_forces(robot, holdings, advice, Some(Reference::Wrench))
+    of_forces(robot, holdings, advice)
 }
 
 /// Returns what is missing for a discovery by the forces at the platform.
 #[must_use]
 pub fn to_discover(robot: &RobotFile, holdings: &Holdings) -> Readiness {
     let advice = "Name their topic as `reference` under `[log]` in the robot file, or search without them";
-    let mut readiness = of_forces(robot, holdings, advice, Some(Reference::Wrench));
+    let mut readiness = of_forces(robot, holdings, advice);
     let is_short = |cable: &usize| too_short(holdings.referenced_s(*cable)).is_some();
     let cables: Vec<usize> =
         (0..readiness.cable_count).filter(|cable| !readiness.is_lacking(*cable)).filter(is_short).collect();
@@ -215,7 +217,8 @@ pub fn to_discover_by_wrench(robot: &RobotFile, origin: &str, holdings: &Holding
     readiness
 }
 
-fn of_forces(robot: &RobotFile, holdings: &Holdings, advice: &'static str, instead: Option<Reference>) -> Readiness {
+/// Returns what is missing to compare each cable with its force at the platform. `advice` is for a robot that can do without these forces.
+fn of_forces(robot: &RobotFile, holdings: &Holdings, advice: &'static str) -> Readiness {
     let log = &robot.options().log;
     let (names, params) = (robot.cable_names(), robot.params());
     let mut readiness = Readiness { lacks: silent(&names, holdings), cable_count: names.len() };
@@ -225,12 +228,13 @@ fn of_forces(robot: &RobotFile, holdings: &Holdings, advice: &'static str, inste
     let cables = without(&readiness, &|cable| holdings.cables.get(cable).is_none_or(|of| of.referenced == 0));
     if !cables.is_empty() {
         let (cause, own_advice) = without_reference(&log.reference);
-        readiness.lacks.push(Lack {
-            cause: cause + &of(&names, &cables),
-            advice: own_advice.unwrap_or(advice),
-            instead: instead.filter(|_| own_advice.is_none()),
-            cables,
-        });
+        let can_balance = names.len() > 1 && geometry(robot, "").is_none();
+        let (advice, instead) = match own_advice {
+            Some(own) => (own, None),
+            None if can_balance => (advice, Some(Reference::Wrench)),
+            None => (SENSOR_ADVICE, None),
+        };
+        readiness.lacks.push(Lack { cause: cause + &of(&names, &cables), advice, instead, cables });
     }
     let follows_pose = |cable: usize| params.cables().get(cable).is_some_and(fric_core::CableParams::needs_pose);
     let cables = if holdings.posed == 0 { without(&readiness, &follows_pose) } else { Vec::new() };

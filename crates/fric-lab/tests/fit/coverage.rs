@@ -8,13 +8,14 @@ use std::ops::RangeInclusive;
 
 use fric_core::robot::file::RobotFile;
 use fric_lab::fit::{FitOptions, HALF_INTERVAL, Reference, ResidualFunction};
+use fric_lab::simulate::{HiddenEffect, SimulationOptions};
 use nalgebra::DMatrix;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal, Uniform};
 use rayon::prelude::*;
 
-use super::logs::{FRICTION, Log, deviation, value};
+use super::logs::{FRICTION, Log, deviation, parameter, value};
 use super::oracle::{Bench, PULLEYS, strokes, wandering};
 use crate::simulate::robots::bench;
 
@@ -96,4 +97,56 @@ fn wandering_reference() {
     assert!(by_fit.iter().all(|count| COVERED_WITH_WANDER.contains(count)), "{by_fit:?}");
     // Errors that took the residuals for independent would be too small by several times.
     assert!(by_naive[0] < 150 && by_naive[3] < 150, "{by_naive:?}");
+}
+
+/// Fits of an effect to logs of the simulated bench with this noise of the sensor: how far each parameter is off, in standard errors and as a share
+/// of its value.
+fn deviations(effect: &str, names: &[&str], sensor_noise_n: f64, logs: u64) -> Vec<Vec<(f64, f64)>> {
+    let truth = bench(PULLEYS, "mu = 0.02, sigma_n_per_m = 1000.0, viscous_n_s_per_m = 0.2");
+    let given = bench(PULLEYS, "mu = 0.03, sigma_n_per_m = 500.0");
+    let parameters = FRICTION.iter().chain(names).map(|name| parameter(name)).collect();
+    let options = FitOptions { parameters: Some(parameters), ..FitOptions::default() };
+    let hidden = HiddenEffect::parse(effect).unwrap();
+    let of_log = |seed: u64| {
+        let simulation = SimulationOptions {
+            seed,
+            sensor_noise_n,
+            reference_noise_n: 0.5 * sensor_noise_n,
+            effects: vec![hidden.clone()],
+            ..SimulationOptions::default()
+        };
+        let fit = Log::record(&truth, &simulation).fit(&given, &options).remove(0);
+        let of_name = |name: &&str| {
+            let key = name.split('.').next_back().unwrap();
+            let true_value = hidden.values().iter().find(|(of, _)| *of == key).unwrap().1;
+            (deviation(&fit, name, true_value), value(&fit, name) / true_value - 1.0)
+        };
+        names.iter().map(of_name).collect()
+    };
+    (0..logs).into_par_iter().map(of_log).collect()
+}
+
+/// The sensor's noise is in the rate of its force too, so that least squares finds too small a lag.
+#[test]
+fn noise_in_the_rate_of_the_sensor_force() {
+    let found = deviations("sensor_lag:time_constant_s=0.006", &["sensor_lag.time_constant_s"], 0.02, 12);
+    println!("{found:?}");
+    let covered = found.iter().flatten().filter(|(of_errors, _)| of_errors.abs() <= HALF_INTERVAL).count();
+    assert!(covered >= 11, "{covered}: {found:?}");
+}
+
+/// Laws that change within a cycle: the simulation takes ten steps in each.
+#[test]
+fn friction_that_changes_while_a_cable_stops() {
+    for (effect, names) in [
+        ("stribeck:ratio=0.6,velocity_m_per_s=0.03", &["stribeck.ratio", "stribeck.velocity_m_per_s"][..]),
+        (
+            "dwell_stiction:ratio=0.8,time_s=0.6,distance_m=0.001",
+            &["dwell_stiction.ratio", "dwell_stiction.distance_m"],
+        ),
+    ] {
+        let found = deviations(effect, names, 0.0004, 2);
+        println!("{effect}: {found:?}");
+        assert!(found.iter().flatten().all(|(_, of_value)| of_value.abs() < 0.01), "{effect}: {found:?}");
+    }
 }
