@@ -142,7 +142,7 @@ def without_reference(log, column):
 
 
 def test_what_a_log_lacks_is_told(robot, log):
-    lacks = r'no reference forces on /reference_forces\. .* search without them: reference="wrench"\.'
+    lacks = r"no reference forces on /reference_forces\. .* force sensors at the platform\."
     with pytest.raises(fric.FitError, match=lacks):
         fric.discover(robot, without_reference(log, 0))
     lacks = r"2\.0 s of samples with a reference are too few, 8 s are needed\. Record a longer run"
