@@ -99,9 +99,9 @@ fn wandering_reference() {
     assert!(by_naive[0] < 150 && by_naive[3] < 150, "{by_naive:?}");
 }
 
-/// Fits of an effect to logs of the simulated bench with this noise of the sensor: how far each parameter is off, in standard errors and as a share
-/// of its value.
-fn deviations(effect: &str, names: &[&str], sensor_noise_n: f64, logs: u64) -> Vec<Vec<(f64, f64)>> {
+/// Fits of an effect to logs of the simulated bench with this noise of the sensor, and with a hand on the cable: how far each parameter is off, in
+/// standard errors and as a share of its value.
+fn deviations(effect: &str, names: &[&str], sensor_noise_n: f64, hand_n: f64, logs: u64) -> Vec<Vec<(f64, f64)>> {
     let truth = bench(PULLEYS, "mu = 0.02, sigma_n_per_m = 1000.0, viscous_n_s_per_m = 0.2");
     let given = bench(PULLEYS, "mu = 0.03, sigma_n_per_m = 500.0");
     let parameters = FRICTION.iter().chain(names).map(|name| parameter(name)).collect();
@@ -112,6 +112,7 @@ fn deviations(effect: &str, names: &[&str], sensor_noise_n: f64, logs: u64) -> V
             seed,
             sensor_noise_n,
             reference_noise_n: 0.5 * sensor_noise_n,
+            hand_n,
             effects: vec![hidden.clone()],
             ..SimulationOptions::default()
         };
@@ -126,13 +127,20 @@ fn deviations(effect: &str, names: &[&str], sensor_noise_n: f64, logs: u64) -> V
     (0..logs).into_par_iter().map(of_log).collect()
 }
 
-/// The sensor's noise is in the rate of its force too, so that least squares finds too small a lag.
+/// The correction of a lag contains the noise of the force in its rate; an elastic cable and a contact that slips back follow its peaks. The errors
+/// by that are a multiple of those that a linear model would have.
 #[test]
-fn noise_in_the_rate_of_the_sensor_force() {
-    let found = deviations("sensor_lag:time_constant_s=0.006", &["sensor_lag.time_constant_s"], 0.02, 12);
-    println!("{found:?}");
-    let covered = found.iter().flatten().filter(|(of_errors, _)| of_errors.abs() <= HALF_INTERVAL).count();
-    assert!(covered >= 11, "{covered}: {found:?}");
+fn noise_that_the_model_passes_on() {
+    for (effect, name, hand_n) in [
+        ("sensor_lag:time_constant_s=0.006", "sensor_lag.time_constant_s", 0.0),
+        ("cable_elasticity:compliance_m_per_n=0.00025", "cable_elasticity.compliance_m_per_n", 2.0),
+        ("load_release:ratio=1.0", "load_release.ratio", 2.0),
+    ] {
+        let found = deviations(effect, &[name], 0.02, hand_n, 12);
+        println!("{effect}: {found:?}");
+        let covered = found.iter().flatten().filter(|(of_errors, _)| of_errors.abs() <= HALF_INTERVAL).count();
+        assert!(covered >= 11, "{effect}: {covered} of {found:?}");
+    }
 }
 
 /// Laws that change within a cycle: the simulation takes ten steps in each.
@@ -145,7 +153,7 @@ fn friction_that_changes_while_a_cable_stops() {
             &["dwell_stiction.ratio", "dwell_stiction.distance_m"],
         ),
     ] {
-        let found = deviations(effect, names, 0.0004, 2);
+        let found = deviations(effect, names, 0.0004, 0.0, 2);
         println!("{effect}: {found:?}");
         assert!(found.iter().flatten().all(|(_, of_value)| of_value.abs() < 0.01), "{effect}: {found:?}");
     }
