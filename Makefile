@@ -15,17 +15,19 @@ TARGET := $(or $(CARGO_TARGET_DIR),target)
 BARE_METAL := thumbv7em-none-eabihf
 MIRI_TARGET := riscv64gc-unknown-linux-gnu
 
-# What `make test` does, the tools first, so that what is missing shows at once.
-STEPS := tools format lint test-rust docs test-python instructions bare-metal miri
+# What `make test` does: first what uses every processor, the tools before all, so that what is missing shows at once; then, two at a time, what uses one.
+STEPS := tools format lint test-rust docs
+PAIRED := test-python miri instructions bare-metal
 
 .PHONY: test check format lint test-rust docs test-python instructions bare-metal miri bench install install-cli tools coverage notices deny book
 .PHONY: wheel release platforms python-package
 
-# One after the other; in the end, where the time went.
+# In the end, where the time went. What a paired step prints appears when it has ended.
 test:
-	@set -e; times=; for step in $(STEPS); do \
-		start=$$(date +%s); $(MAKE) --no-print-directory $$step; times="$$times$$step $$(($$(date +%s) - start))\n"; \
-	done; printf "\nseconds of each step\n$$times"
+	@set -e; times=; timed() { name=$$1; shift; start=$$(date +%s); $(MAKE) --no-print-directory "$$@"; times="$$times$$name $$(($$(date +%s) - start))\n"; }; \
+	for step in $(STEPS); do timed $$step $$step; done; \
+	timed "$(PAIRED), two at a time:" --jobs=2 --output-sync=target $(PAIRED); \
+	printf "\nseconds of each step\n$$times"
 
 # While working: formatting, lints and the tests within the crates, without those that run whole programs or long simulations.
 check: format lint

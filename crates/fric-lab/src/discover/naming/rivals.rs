@@ -3,7 +3,8 @@
 //! Where a force sensor's curve is bent, say, a gain, an offset and a nonlinear load explain nearly all of it together, each
 //! with strong evidence, and none of them is there. So a few plain laws are tried as rivals, each as one more column of the
 //! least-squares problem beside what the named effects add. If it makes names superfluous, and what is left explains as much as all names did, these names stand in
-//! for it, and are set aside. Where the law is that of an effect, this has its turn then. A jump of the sensor or of the friction is that of none.
+//! for it, and are set aside. Where the law is that of an effect, this has its turn then. A jump of the sensor or
+//! of the friction is that of none.
 
 use fric_core::effects::Effect;
 use fric_core::parameters::Values;
@@ -60,11 +61,10 @@ pub fn best_rival(
     let residual_n = bench.residuals_n(&model.values);
     let finite = residual_n.iter().filter(|number| number.is_finite());
     let excess: f64 = finite.map(|number| number * number - noise_n * noise_n).sum();
-    let added_by = |(_, neutral): &(Vec<Parameter>, Values)| -> Vec<f64> {
-        let without_n = bench.residuals_n(neutral);
-        residual_n.iter().zip(&without_n).map(|(with, without)| with - without).collect()
-    };
-    let mut signals: Vec<Vec<f64>> = effects.iter().map(added_by).collect();
+    let without_n: Vec<Vec<f64>> = effects.iter().map(|(_, neutral)| bench.residuals_n(neutral)).collect();
+    let added_by =
+        |without_n: &Vec<f64>| residual_n.iter().zip(without_n).map(|(with, without)| with - without).collect();
+    let mut signals: Vec<Vec<f64>> = without_n.iter().map(added_by).collect();
     // Friction warms up; the inertia on trial, for example, does not.
     let mut without = model.values;
     for (parameters, neutral) in effects {
@@ -74,13 +74,10 @@ pub fn best_rival(
     }
     let laws = laws(bench, &bench.added_n(&without));
     let mut laws: Vec<Law> = laws.into_iter().filter(|law| law.of.is_none_or(|of| !kinds.contains(&of))).collect();
-    // What goes with the time may be one jump.
-    let of_time = kinds.iter().zip(effects).filter_map(|(kind, (_, neutral))| match kind {
-        Effect::SensorDrift | Effect::SensorWarmup => Some((neutral, vec![1.0; residual_n.len()])),
-        Effect::FrictionDrift | Effect::FrictionWarmup => Some((neutral, bench.added_n(neutral))),
-        _ => None,
-    });
-    laws.extend(of_time.map(|(neutral, jumping)| jump(&bench.residuals_n(neutral), jumping)));
+    // Whatever has a name may be one jump, of the sensor's zero or of the friction.
+    for ((_, neutral), without_n) in effects.iter().zip(&without_n) {
+        laws.extend([vec![1.0; residual_n.len()], bench.added_n(neutral)].map(|jumping| jump(without_n, jumping)));
+    }
     let names: Vec<&'static str> = laws.iter().map(|law| law.signal).collect();
     signals.extend(laws.into_iter().map(|law| law.values));
     let columns = less_projection(&problem, &model.values, &signals)?;
@@ -203,4 +200,25 @@ fn rates(logs: impl Iterator<Item = std::ops::Range<usize>>, signal: &[f64]) -> 
         }
     }
     rates
+}
+
+#[cfg(test)]
+mod tests {
+    use super::jump;
+
+    #[test]
+    fn a_jump_sets_in_where_it_explains_most() {
+        // What is there from the start, and samples that are missing, do not hide it.
+        let signal: Vec<f64> = (0..400).map(|place| 1.0 + 0.5 * f64::from(place % 7)).collect();
+        let residual = |(place, signal): (usize, &f64)| match place {
+            0..90 => 0.2 * signal,
+            100..120 => f64::NAN,
+            _ => -0.1 * signal,
+        };
+        let residual_n: Vec<f64> = signal.iter().enumerate().map(residual).collect();
+        let law = jump(&residual_n, signal.clone());
+        let expected: Vec<f64> =
+            signal.iter().enumerate().map(|(place, of)| if place < 90 { 0.0 } else { *of }).collect();
+        assert_eq!((law.of, law.values), (None, expected));
+    }
 }
