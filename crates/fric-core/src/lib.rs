@@ -64,6 +64,8 @@ mod status;
 pub mod swivel;
 #[cfg(feature = "robot-file")]
 pub mod text_file;
+#[cfg(feature = "robot-file")]
+pub mod toml_editor;
 mod tunable;
 pub mod words;
 

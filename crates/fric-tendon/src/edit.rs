@@ -2,12 +2,12 @@
 
 use std::borrow::ToOwned;
 use std::format;
-use std::string::{String, ToString};
+use std::string::String;
 use std::vec::Vec;
 
-use toml_edit::{Array, DocumentMut, Item, Table, Value};
+use fric_core::toml_editor::{self, Numbers};
 
-use super::file::{FORMAT, ManipulatorFile, ManipulatorFileError, ManipulatorTables, OneOrEach};
+use super::file::{ManipulatorFile, ManipulatorFileError, ManipulatorTables, OneOrEach};
 use super::measuring::{BaseSensorTable, MarkersTable};
 
 /// The changes; `None` or an empty list keeps a value.
@@ -96,38 +96,7 @@ pub struct GratingLine {
     pub mean_shift_nm: f64,
 }
 
-/// What the TOML editor drops from a text: the byte order mark, and the carriage returns of line endings.
-#[derive(Clone, Copy, Debug)]
-struct Layout {
-    has_mark: bool,
-    /// Whether the first line ends in CRLF; a file that mixes line endings gets this one throughout.
-    has_carriage_returns: bool,
-}
-
-/// The byte order mark.
-const MARK: char = '\u{feff}';
-
-impl Layout {
-    fn of(text: &str) -> Self {
-        Self {
-            has_mark: text.starts_with(MARK),
-            has_carriage_returns: text.split('\n').next().is_some_and(|line| line.ends_with('\r')),
-        }
-    }
-
-    /// Returns the text without the mark and with plain line endings.
-    fn removed(text: &str) -> String {
-        text.strip_prefix(MARK).unwrap_or(text).replace("\r\n", "\n")
-    }
-
-    /// Returns a text without them with mark and line endings as in the given one.
-    fn restored(self, text: &str) -> String {
-        let text = if self.has_carriage_returns { text.replace('\n', "\r\n") } else { text.to_owned() };
-        if self.has_mark { format!("{MARK}{text}") } else { text }
-    }
-}
-
-/// Returns the text of a manipulator file with new values; byte order mark and line endings stay as they are.
+/// Returns the text of a manipulator file with new values. Everything else stays unchanged to the byte, including a value that is set to itself.
 /// `origin` names its source in error messages.
 ///
 /// ```
@@ -143,55 +112,42 @@ impl Layout {
 /// Returns [`ManipulatorFileError::Invalid`] if the text is invalid before or with the new values.
 pub fn rewrite(text: &str, origin: &str, edit: &ManipulatorEdit) -> Result<String, ManipulatorFileError> {
     ManipulatorFile::parse(text, origin)?;
-    let invalid = |problem: String| ManipulatorFileError::Invalid { origin: origin.to_owned(), line: None, problem };
-    let layout = Layout::of(text);
-    let mut document: DocumentMut =
-        Layout::removed(text).parse().map_err(|error: toml_edit::TomlError| invalid(error.to_string()))?;
+    let mut text = text.to_owned();
     // An empty name denotes the document itself.
-    let mut set = |table: &str, key: &str, value: Value| {
-        let place = if table.is_empty() {
-            document.as_item_mut()
-        } else {
-            document.entry(table).or_insert_with(|| {
-                let mut table = Table::new();
-                table.decor_mut().set_prefix("\n");
-                Item::Table(table)
-            })
-        };
-        let Some(place) = place.as_table_like_mut() else {
-            return Err(invalid(format!("`{table}` is no table; see {FORMAT}")));
-        };
-        let mut value = value;
-        if let Some(old) = place.get(key).and_then(Item::as_value) {
-            *value.decor_mut() = old.decor().clone();
-        }
-        place.insert(key, Item::Value(value));
-        Ok(())
+    let mut set = |table: &str, key: &str, value: Numbers<'_>| {
+        toml_editor::set(&mut text, table, key, value).map_err(|problem| ManipulatorFileError::Invalid {
+            origin: origin.to_owned(),
+            line: None,
+            problem,
+        })
     };
-    let list = |values: &[f64]| Value::Array(values.iter().copied().collect::<Array>());
     match edit.mu.as_slice() {
         [] => {}
-        [one] => set("tendon", "mu", (*one).into())?,
-        each => set("tendon", "mu", list(each))?,
+        [one] => set("tendon", "mu", Numbers::One(*one))?,
+        each => set("tendon", "mu", Numbers::List(each))?,
     }
     if let Some(sigma_n_per_m) = edit.sigma_n_per_m {
-        set("tendon", "sigma_n_per_m", sigma_n_per_m.into())?;
+        set("tendon", "sigma_n_per_m", Numbers::One(sigma_n_per_m))?;
     }
     if !edit.lines.is_empty() {
-        let column = |of: fn(&GratingLine) -> f64| list(&edit.lines.iter().map(of).collect::<Vec<_>>());
-        set("gratings", "newton_per_nm", column(|line| line.newton_per_nm))?;
-        set("gratings", "offset_n", column(|line| line.offset_n))?;
-        set("gratings", "standard_error_n", column(|line| line.standard_error_n))?;
-        set("gratings", "line_error_n", column(|line| line.line_error_n))?;
-        set("gratings", "slope_error_n_per_nm", column(|line| line.slope_error_n_per_nm))?;
-        set("gratings", "mean_shift_nm", column(|line| line.mean_shift_nm))?;
+        let columns: [(&str, fn(&GratingLine) -> f64); 6] = [
+            ("newton_per_nm", |line| line.newton_per_nm),
+            ("offset_n", |line| line.offset_n),
+            ("standard_error_n", |line| line.standard_error_n),
+            ("line_error_n", |line| line.line_error_n),
+            ("slope_error_n_per_nm", |line| line.slope_error_n_per_nm),
+            ("mean_shift_nm", |line| line.mean_shift_nm),
+        ];
+        for (key, of) in columns {
+            set("gratings", key, Numbers::List(&edit.lines.iter().map(of).collect::<Vec<_>>()))?;
+        }
     }
     if !edit.drift_nm_per_s.is_empty() {
-        set("gratings", "drift_nm_per_s", list(&edit.drift_nm_per_s))?;
+        set("gratings", "drift_nm_per_s", Numbers::List(&edit.drift_nm_per_s))?;
     }
     if let Some([step_nm, from_s]) = edit.common_step {
-        set("gratings", "common_step_nm", step_nm.into())?;
-        set("gratings", "common_step_s", from_s.into())?;
+        set("gratings", "common_step_nm", Numbers::One(step_nm))?;
+        set("gratings", "common_step_s", Numbers::One(from_s))?;
     }
     let numbers = [
         ("backbone", "youngs_modulus_pa", edit.youngs_modulus_pa),
@@ -204,7 +160,7 @@ pub fn rewrite(text: &str, origin: &str, edit: &ManipulatorEdit) -> Result<Strin
     ];
     for (table, key, value) in numbers {
         if let Some(value) = value {
-            set(table, key, value.into())?;
+            set(table, key, Numbers::One(value))?;
         }
     }
     let vectors = [
@@ -214,7 +170,7 @@ pub fn rewrite(text: &str, origin: &str, edit: &ManipulatorEdit) -> Result<Strin
     ];
     for (table, key, value) in vectors {
         if let Some(value) = value {
-            set(table, key, list(&value))?;
+            set(table, key, Numbers::List(&value))?;
         }
     }
     for (key, values) in
@@ -222,11 +178,10 @@ pub fn rewrite(text: &str, origin: &str, edit: &ManipulatorEdit) -> Result<Strin
     {
         match values.as_slice() {
             [] => {}
-            [one] => set("backbone", key, (*one).into())?,
-            each => set("backbone", key, list(each))?,
+            [one] => set("backbone", key, Numbers::One(*one))?,
+            each => set("backbone", key, Numbers::List(each))?,
         }
     }
-    let text = layout.restored(&document.to_string());
     ManipulatorFile::parse(&text, &format!("{origin} with the new values"))?;
     Ok(text)
 }

@@ -1,4 +1,4 @@
-//! Changes of a TOML text by position; all other bytes stay unchanged.
+//! Changes of a TOML text by position.
 //!
 //! Positions are spans of a parser, so every offset lies between two characters. An invalid position changes nothing.
 
@@ -58,7 +58,7 @@ pub fn beside(last: &Entry, entry: &str) -> Vec<Splice> {
 
 /// Returns a new line under an entry, with the same indentation.
 pub fn below(text: &str, place: &Entry, entry: &str) -> Vec<Splice> {
-    let line = format!("{}{}{entry}", newline(text), indentation(text, place.start));
+    let line = format!("{}{}{entry}", newline(text, place.end), indentation(text, place.start));
     Vec::from([insert(line_end(text, place.end), line)])
 }
 
@@ -80,7 +80,7 @@ pub fn in_list(text: &str, array: &Range<usize>, last: Option<&Entry>, entry: &s
         return beside(last, entry);
     }
     let (own_comma, new_comma) = if comma.is_some() { ("", ",") } else { (",", "") };
-    let line = format!("{}{}{entry}{new_comma}", newline(text), indentation(text, last.start));
+    let line = format!("{}{}{entry}{new_comma}", newline(text, last.end), indentation(text, last.start));
     Vec::from([insert(last.end, own_comma.to_owned()), insert(line_end, line)])
 }
 
@@ -108,7 +108,7 @@ pub fn out_of_list(text: &str, array: &Range<usize>, entries: &[Entry], index: u
 
 /// Returns a new table under the last similar one: the same header, with each entry on its own line.
 pub fn table_below(text: &str, header: &Range<usize>, last: &Entry, entries: &[String]) -> Vec<Splice> {
-    let newline = newline(text);
+    let newline = newline(text, last.end);
     let header_line = line_start(text, header.start)..line_end(text, header.start);
     let header_text = text.get(header_line.clone()).unwrap_or_default();
     // The comment after the header is left out, because it refers to the existing table.
@@ -125,6 +125,14 @@ pub fn table_below(text: &str, header: &Range<usize>, last: &Entry, entries: &[S
     Vec::from([insert(line_end(text, last.end), added)])
 }
 
+/// Returns a new table with one entry at the end of the text, after a blank line.
+pub fn table_at_end(text: &str, name: &str, entry: &str) -> Vec<Splice> {
+    let newline = newline(text, text.len());
+    let last_end = if text.ends_with('\n') { "" } else { newline };
+    let blank = if blank_line_above(text, text.len()).is_some() { "" } else { newline };
+    Vec::from([insert(text.len(), format!("{last_end}{blank}[{name}]{newline}{entry}{newline}"))])
+}
+
 /// Removes a table under a header, from the header's line to that of its last entry, and the blank line before it.
 pub fn without_lines(text: &str, header: &Range<usize>, last: Option<Entry>) -> Vec<Splice> {
     let start = line_start(text, header.start);
@@ -137,9 +145,12 @@ fn insert(place: usize, with: String) -> Splice {
     Splice { range: place..place, with }
 }
 
-/// Returns the line ending of the text.
-fn newline(text: &str) -> &'static str {
-    if text.contains("\r\n") { "\r\n" } else { "\n" }
+/// Returns the line ending of the line at a position; that of the line before, if it is the last line and has none.
+fn newline(text: &str, place: usize) -> &'static str {
+    let behind = text.get(place..).and_then(|rest| rest.find('\n')).map(|found| place + found);
+    let end = behind.or_else(|| text.rfind('\n'));
+    let has_return = end.and_then(|end| text.get(..end)).is_some_and(|line| line.ends_with('\r'));
+    if has_return { "\r\n" } else { "\n" }
 }
 
 fn line_start(text: &str, place: usize) -> usize {
