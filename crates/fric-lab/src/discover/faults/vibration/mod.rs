@@ -1,58 +1,46 @@
 //! A sensor that vibrates: its mount, or the frame that carries it, rings when it is struck.
 //!
-//! What shows is the displacement of a damped oscillator. Struck again and again, at times that are its own, it has the spectrum of a process of
-//! second order, whose poles turn by θ and decay by r from one sample to the next,
+//! The log shows the displacement of a damped oscillator. If it is struck again and again at random times, its spectrum is that of a second-order
+//! process, whose poles turn by θ and decay by r from one sample to the next,
 //!
 //! ```text
 //! S(ω) = P·|1 − r·exp(i(θ − ω))|⁻²·|1 − r·exp(−i(θ + ω))|⁻²
 //! θ = 2πf·dt·√(1 − ζ²)    r = exp(−2πζf·dt)
 //! ```
 //!
-//! beside a level, of white noise, and a part that falls with 1/ω², of what changes slowly. Frequency `f`, damping ratio `ζ` and the three sizes
-//! are those of the greatest likelihood of the averaged periodogram within an octave on either side (P. Whittle, *Estimation and information in
-//! stationary time series*, Arkiv för Matematik 2, 1953). A hum decays by nothing, a sensor that is slow by all at once: at either end of the
-//! range of ζ it is no vibration. Nor is it one where the spectrum of the motion has a line too, or where it follows the length of the cable, as a
-//! ripple does at one speed.
+//! added to a constant level (white noise) and a part that falls with 1/ω² (slow changes). `search` finds frequency `f`, damping ratio `ζ` and the
+//! three sizes with the greatest likelihood of the averaged periodogram within an octave on either side (P. Whittle, *Estimation and information in
+//! stationary time series*, Arkiv för Matematik 2, 1953).
 //!
-//! The vibration by itself is told from the rest by Wiener's filter, `S/(S + rest)`.
+//! A hum does not decay, and a slow sensor decays at once, so a damping ratio at either end of its range is no vibration. Neither is an oscillation
+//! at which the spectrum of the motion has a line too, or one that follows the length of the cable, as a ripple does at one speed.
+//!
+//! Wiener's filter, `S/(S + rest)`, separates the vibration from the rest of a signal.
+
+mod search;
 
 use std::f64::consts::TAU;
 
 use realfft::RealFftPlanner;
 use realfft::num_complex::Complex;
 
-use super::lines::{LEAST_SHARE, Line, mean_square};
-use super::spectrum::{LINE_WIDTH, Spectrum, Times, Together, have_line};
-use super::{Fault, RecordingFault};
-use crate::discover::naming::STRONG_BIC;
+use self::search::loudest;
+use crate::discover::faults::lines::{LEAST_SHARE, Line, mean_square};
+use crate::discover::faults::spectrum::{LINE_WIDTH, Spectrum, Times, Together, have_line};
+use crate::discover::faults::{Fault, RecordingFault};
 use crate::samples::conditions::sign;
 
-/// Damping ratios that are tried: a bell, and half a turn until nothing is left of it.
-const DAMPING: [f64; 2] = [1e-3, 0.12];
-/// How many of them, evenly by their logarithm, and how many frequencies beside a peak, to either side; where the search for one ends, in places of the spectrum.
-const DAMPINGS: f64 = 16.0;
-const FREQUENCIES: i32 = 6;
-const FINEST: f64 = 0.02;
-/// Peaks that are looked at, a fifth of the frequency and more apart, and parameters of an oscillator.
-const PEAKS: usize = 3;
-const PARAMETERS: f64 = 3.0;
-/// Below so many places of the spectrum a peak is not told from what falls with the frequency.
-const FIRST_PLACE: usize = 12;
-/// Above this share of the sampling frequency differences of neighbouring samples are noise.
-const MOST_OF_RATE: f64 = 0.4;
-/// Steps of the search for the sizes.
-const STEPS: usize = 40;
-/// Independent numbers in a place of the periodogram, each stretch: Hann's window makes neighbours alike, and stretches overlap by half.
-const INDEPENDENT: f64 = 0.49;
-/// A wave that follows the length and explains this share of it is a ripple. Of strokes that repeat themselves a vibration goes with the length by up to a
-/// third.
+/// If a wave along the cable explains at least this fraction of the oscillation, it is a ripple. Where strokes repeat themselves, such a wave explains up
+/// to a third of a vibration.
 const MOST_OF_LENGTH: f64 = 0.5;
-/// Waves along the cable that are tried: those that pass at this share of the greatest speed and more.
+
+/// Slowest speed at which a wave along the cable is tried, as a fraction of the greatest speed.
 const LEAST_SPEED: f64 = 0.1;
-/// Samples a turn that show a wave.
+
+/// Number of samples per period that are enough to show a wave.
 const SAMPLES_A_TURN: f64 = 6.0;
 
-/// Where a cable is and how it moves.
+/// Length and speed of a cable in one row.
 #[derive(Clone, Copy, Debug)]
 pub struct Way {
     /// Its length, m.
@@ -64,46 +52,46 @@ pub struct Way {
 /// A vibration of a sensor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Vibration {
-    /// Of the oscillator if it were not damped, Hz.
+    /// Undamped natural frequency, Hz.
     pub frequency_hz: f64,
-    /// Of the critical damping.
+    /// Damping ratio, as a fraction of the critical damping.
     pub damping_ratio: f64,
-    /// Mean squares, each sample: of the blows, the level and the part that falls with the frequency, at the vibration's.
+    /// Mean squares per sample: of the blows, of the level, and of the part that falls with the frequency, at the vibration's frequency.
     sizes: [f64; 3],
-    /// Seconds from one sample to the next.
+    /// Time from one sample to the next, s.
     interval_s: f64,
 }
 
 impl Vibration {
-    /// Root mean square, N.
+    /// Returns the root mean square, N.
     #[must_use]
     pub fn rms_n(&self) -> f64 {
         let [blows, ..] = self.sizes;
         (blows * mean_square_of(self.pole())).sqrt()
     }
 
-    /// Whether a line at a frequency, as broad as a spectrum with places so far apart shows it, lies within its peak.
+    /// Whether a line of a spectrum with this frequency resolution lies within the vibration's peak.
     pub fn overlaps(&self, line_hz: f64, place_hz: f64) -> bool {
         #[expect(clippy::cast_precision_loss, reason = "a small constant")]
         let width_hz = LINE_WIDTH as f64 * place_hz;
         (self.frequency_hz - line_hz).abs() < width_hz + self.damping_ratio * self.frequency_hz
     }
 
-    /// The fault of the recording that it is.
+    /// Returns the vibration as a fault of the recording.
     pub fn fault(&self) -> RecordingFault {
         let parameters =
             vec![("frequency_hz", self.frequency_hz), ("damping_ratio", self.damping_ratio), ("rms_n", self.rms_n())];
         RecordingFault { fault: Fault::Vibration, parameters, intervals_s: Vec::new() }
     }
 
-    /// What of a signal it is, by rows; 0 where there is no sample.
+    /// Returns the vibration's part of a signal, by rows; 0 where there is no sample.
     pub fn in_signal(&self, signal: &[f64], times: &Times) -> Vec<f64> {
         let mut shown = vec![0.0; signal.len()];
         let mut planner = RealFftPlanner::<f64>::new();
         for run in &times.runs {
             let (places, numbers) = (times.of_run(run), signal.get(run.clone()).unwrap_or_default());
             let [Some(first), Some(last)] = [places.first(), places.last()] else { continue };
-            // As much again of nothing: the end of a run does not ring on at its beginning.
+            // Padded with zeros to twice the length, so that the end of a run does not affect its beginning.
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count of samples")]
             let length = (2.0 * (last - first + 1.0)).round() as usize;
             let (there, back) = (planner.plan_fft_forward(length), planner.plan_fft_inverse(length));
@@ -130,7 +118,7 @@ impl Vibration {
         shown
     }
 
-    /// What share of a wave is the vibration's; `rad` is its turn from one sample to the next.
+    /// Returns the vibration's fraction of a wave that turns by `rad` from one sample to the next.
     fn share(&self, rad: f64) -> f64 {
         let [blows, level, slow] = self.sizes;
         let own = blows * resonance(self.pole(), rad);
@@ -143,25 +131,25 @@ impl Vibration {
     }
 }
 
-/// How the oscillator turns and decays in a sample.
+/// Returns the pole of the oscillator: its turn and decay in one sample.
 fn pole(frequency_hz: f64, damping_ratio: f64, interval_s: f64) -> Complex<f64> {
     let turn = TAU * frequency_hz * interval_s;
     Complex::from_polar((-damping_ratio * turn).exp(), turn * (1.0 - damping_ratio * damping_ratio).sqrt())
 }
 
-/// Power spectrum of the oscillator, of blows of mean square 1 each sample.
+/// Returns the power spectrum of the oscillator under blows of mean square 1 per sample.
 fn resonance(pole: Complex<f64>, rad: f64) -> f64 {
     let wave = Complex::from_polar(1.0, -rad);
     1.0 / ((1.0 - pole * wave).norm_sqr() * (1.0 - pole.conj() * wave).norm_sqr())
 }
 
-/// Its mean square.
+/// Returns the mean square of the oscillator under such blows.
 fn mean_square_of(pole: Complex<f64>) -> f64 {
     let (first, second) = (2.0 * pole.re, pole.norm_sqr());
     (1.0 + second) / ((1.0 - second) * ((1.0 + second).powi(2) - first * first))
 }
 
-/// The vibration in a residual, N, NaN where there is no sample; `None` where there is none. `way` is of the cable by rows, `signals` what it does and bears.
+/// Returns the vibration in a residual, N (NaN where there is no sample), or `None`. `way` has the cable's motion by rows, `signals` its motion and load.
 pub fn vibration(residual_n: &[f64], times: &Times, way: &[Way], signals: &[Together]) -> Option<Vibration> {
     let spectrum = Spectrum::of(residual_n, times)?;
     let found = loudest(&spectrum, times)?;
@@ -171,7 +159,7 @@ pub fn vibration(residual_n: &[f64], times: &Times, way: &[Way], signals: &[Toge
     (is_worth_it && !is_of_motion() && !follows_length()).then_some(found)
 }
 
-/// The lines that hum: those that keep their phase, in a spectrum in which they are still.
+/// Returns the lines that hum: those that keep their phase.
 pub fn steady<'a>(lines: &'a [Line], residual_n: &[f64], times: &Times) -> Vec<&'a Line> {
     let Some(spectrum) = Spectrum::of(residual_n, times) else { return lines.iter().collect() };
     let keeps_phase = |line: &&Line| {
@@ -182,152 +170,7 @@ pub fn steady<'a>(lines: &'a [Line], residual_n: &[f64], times: &Times) -> Vec<&
     lines.iter().filter(keeps_phase).collect()
 }
 
-/// A part of a spectrum around a frequency.
-struct Band<'a> {
-    /// Powers of a sample each, of the places from `first` on.
-    powers: Vec<f64>,
-    first: usize,
-    weight: f64,
-    times: &'a Times,
-}
-
-impl Band<'_> {
-    /// The spectra of level, slow part and vibration by place, as Hann's window shows them.
-    fn shapes(&self, frequency_hz: f64, damping_ratio: f64) -> [Vec<f64>; 3] {
-        let pole = pole(frequency_hz, damping_ratio, self.times.interval_s);
-        #[expect(clippy::cast_precision_loss, reason = "a place of the spectrum")]
-        let at = |place: usize| place as f64 * self.times.place_hz();
-        let places = self.first..self.first + self.powers.len();
-        let own = |place: usize| resonance(pole, TAU * at(place) * self.times.interval_s);
-        let seen = |place: usize| (own(place - 1) + 4.0 * own(place) + own(place + 1)) / 6.0;
-        [
-            places.clone().map(seen).collect(),
-            vec![1.0; self.powers.len()],
-            places.map(|place| (frequency_hz / at(place)).powi(2)).collect(),
-        ]
-    }
-
-    /// The sizes of greatest likelihood, and −2 times its logarithm. Each step multiplies a size, which makes the likelihood greater
-    /// (C. Févotte, J. Idier, *Algorithms for nonnegative matrix factorization with the β-divergence*, Neural Computation 23, 2011).
-    fn fit(&self, shapes: &[Vec<f64>; 3], with_oscillator: bool) -> ([f64; 3], f64) {
-        #[expect(clippy::cast_precision_loss, reason = "a small count")]
-        let mean = self.powers.iter().sum::<f64>() / self.powers.len() as f64;
-        #[expect(clippy::cast_precision_loss, reason = "a small count")]
-        let start = |shape: &Vec<f64>| 0.3 * mean * shape.len() as f64 / shape.iter().sum::<f64>();
-        let mut sizes = shapes.each_ref().map(start);
-        if !with_oscillator {
-            sizes[0] = 0.0;
-        }
-        let model = |sizes: &[f64; 3], place: usize| -> f64 {
-            shapes.iter().zip(sizes).map(|(shape, size)| size * shape[place]).sum()
-        };
-        for _ in 0..STEPS {
-            let models: Vec<f64> = (0..self.powers.len()).map(|place| model(&sizes, place)).collect();
-            for (size, shape) in sizes.iter_mut().zip(shapes) {
-                let (mut above, mut below) = (0.0, 0.0);
-                for ((part, model), power) in shape.iter().zip(&models).zip(&self.powers) {
-                    above += part * power / (model * model);
-                    below += part / model;
-                }
-                *size *= (above / below).sqrt();
-            }
-        }
-        let deviance = |(place, power): (usize, &f64)| {
-            let model = model(&sizes, place);
-            model.ln() + power / model
-        };
-        let deviance = self.powers.iter().enumerate().map(deviance).sum::<f64>();
-        (sizes, 2.0 * self.weight * deviance)
-    }
-}
-
-/// The oscillator with the most evidence in a spectrum, if there is one.
-fn loudest(spectrum: &Spectrum, times: &Times) -> Option<Vibration> {
-    let evidence = peaks(spectrum).into_iter().filter_map(|place| oscillator(spectrum, times, place));
-    let (found, _) = evidence.min_by(|(_, one), (_, other)| one.total_cmp(other))?;
-    Some(found)
-}
-
-/// Places where a spectrum stands out from what lies beside, the most first.
-fn peaks(spectrum: &Spectrum) -> Vec<usize> {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss, reason = "a place")]
-    let last = (2.0 * MOST_OF_RATE * spectrum.powers.len() as f64) as usize;
-    let sum = |from: usize, to: usize| spectrum.powers.get(from..to).map(|part| part.iter().sum::<f64>());
-    // By how much a fiftieth of the frequency to either side is louder than what lies beside it, where chance makes less of a mean of many.
-    let stands_out = |place: usize| {
-        let half = (place / 50).max(1);
-        let inside = sum(place - half, place + half + 1)?;
-        let beside = sum(place - 4 * half, place - 2 * half)? + sum(place + 2 * half + 1, place + 4 * half + 1)?;
-        #[expect(clippy::cast_precision_loss, reason = "small counts")]
-        let [inside, beside, half] = [inside / (2 * half + 1) as f64, beside / (4 * half) as f64, half as f64];
-        let by = (inside / beside - 1.0) * (spectrum.stretches * half).sqrt();
-        by.is_finite().then_some((place, by))
-    };
-    let mut places: Vec<(usize, f64)> = (FIRST_PLACE..last).filter_map(stands_out).collect();
-    places.sort_by(|(_, one), (_, other)| other.total_cmp(one));
-    let mut peaks: Vec<usize> = Vec::new();
-    for (place, _) in places {
-        if peaks.len() < PEAKS && peaks.iter().all(|peak| 5 * peak.abs_diff(place) > *peak) {
-            peaks.push(place);
-        }
-    }
-    peaks
-}
-
-/// The oscillator near a place of a spectrum with the evidence for it; `None` where it is not enough.
-fn oscillator(spectrum: &Spectrum, times: &Times, place: usize) -> Option<(Vibration, f64)> {
-    // A place of the spectrum has the power of both of its signs, in so many samples.
-    #[expect(clippy::cast_precision_loss, reason = "a small count")]
-    let samples = (spectrum.powers.len() - 1) as f64;
-    let (first, end) = (place / 2, (2 * place).min(spectrum.powers.len() - 1));
-    let band = Band {
-        powers: spectrum.powers.get(first..end)?.iter().map(|power| samples * power).collect(),
-        first,
-        weight: INDEPENDENT * spectrum.stretches,
-        times,
-    };
-    let damping = |step: f64| DAMPING[0] * (DAMPING[1] / DAMPING[0]).powf(step / DAMPINGS);
-    let fit = |frequency_hz: f64, step: f64| {
-        let (sizes, deviance) = band.fit(&band.shapes(frequency_hz, damping(step)), true);
-        (Tried { frequency_hz, step, sizes }, deviance)
-    };
-    // A grid as wide as the peak may be, then finer around what is best there.
-    #[expect(clippy::cast_precision_loss, reason = "a place of the spectrum")]
-    let (mut hz, mut step) = (place as f64 * times.place_hz(), 0.5 * DAMPINGS);
-    let (mut width_hz, mut width) = (times.place_hz(), 0.125 * DAMPINGS);
-    let mut found = None;
-    while width_hz > FINEST * times.place_hz() {
-        let grid = (-FREQUENCIES..=FREQUENCIES).flat_map(|side| (-4..=4).map(move |more| (side, more)));
-        let near = grid.map(|(side, more)| (hz + f64::from(side) * width_hz, step + f64::from(more) * width));
-        let tried = near.filter(|(_, step)| (0.0..=DAMPINGS).contains(step)).map(|(hz, step)| fit(hz, step));
-        let best = tried.min_by(|(_, one), (_, other)| one.total_cmp(other))?;
-        (hz, step) = (best.0.frequency_hz, best.0.step);
-        found = Some(best);
-        (width_hz, width) = (0.25 * width_hz, width / 3.0);
-    }
-    let (tried, deviance) = found?;
-    let (_, without) = band.fit(&band.shapes(tried.frequency_hz, damping(tried.step)), false);
-    #[expect(clippy::cast_precision_loss, reason = "a small count")]
-    let evidence = deviance - without + PARAMETERS * (band.weight * band.powers.len() as f64).ln();
-    let is_within = tried.step > 0.5 && tried.step < DAMPINGS - 0.5;
-    let vibration = || Vibration {
-        frequency_hz: tried.frequency_hz,
-        damping_ratio: damping(tried.step),
-        sizes: tried.sizes,
-        interval_s: times.interval_s,
-    };
-    (is_within && evidence < -STRONG_BIC).then(|| (vibration(), evidence))
-}
-
-/// An oscillator that was tried.
-struct Tried {
-    frequency_hz: f64,
-    /// Damping ratio, by its logarithm.
-    step: f64,
-    sizes: [f64; 3],
-}
-
-/// Share of a vibration that is a wave along the cable, of one sign or with that of the motion.
+/// Returns the fraction of a vibration that one wave along the cable explains, if its sign is constant or follows the direction of motion.
 fn share_of_length(found: &Vibration, shown_n: &[f64], way: &[Way]) -> f64 {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
     let stride = (1.0 / (SAMPLES_A_TURN * found.frequency_hz * found.interval_s)).max(1.0) as usize;
