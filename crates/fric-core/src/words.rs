@@ -3,10 +3,10 @@
 //! For: programs that hand a running compensator to another process, and other crates whose models have such a state. Numbers keep their bits, NaN included. Which word is what
 //! follows from the order of the fields, so that words are of use to the version of this crate that they are from.
 
-use crate::columns::StateColumns;
-use crate::cycle::{CableOutput, CycleOutput};
+use crate::compensator::columns::StateColumns;
+use crate::compensator::cycle::{CableOutput, CycleOutput};
 use crate::platform::Wrench;
-use crate::status::CableStatus;
+use crate::signals::status::CableStatus;
 
 /// What consists of words.
 pub trait Words {

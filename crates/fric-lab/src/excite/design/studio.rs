@@ -12,7 +12,7 @@ use super::{Experiment, Forecast, Goal, KnownParameter, Question, choose, pieces
 use crate::discover::naming::STRONG_BIC;
 use crate::excite::{Excitation, ExcitationError, ExcitationOptions};
 use crate::fit::{Measurements, Progress, Reference};
-use crate::simulate::motion::Motion;
+use crate::simulate::mechanics::motion::Motion;
 use crate::trajectory::{LOAD_CHANGE_S, Piece, Trajectory, WorkBox};
 
 /// Least and greatest noise, N.

@@ -4,16 +4,16 @@ use fric_core::CableParams;
 use fric_core::robot::file::CableTable;
 use rand_chacha::ChaCha8Rng;
 
+use super::encoder::Encoder;
 use super::random::{Purpose, random, random_of};
+use super::wander::Wander;
 use crate::effects::truth::TruthEffect;
 use crate::random::uniform;
 use crate::simulate::bristle::{BristleChain, Moment, PulleyTruth, STIFF_N_PER_M, SUBSTEPS};
-use crate::simulate::encoder::Encoder;
 use crate::simulate::error::SimulationError;
-use crate::simulate::motion::{CableMotion, Motion, Play, Winch};
+use crate::simulate::mechanics::motion::{CableMotion, Motion, Play, Winch};
 use crate::simulate::options::SimulationOptions;
 use crate::simulate::truth::{CableCause, TruthEffects};
-use crate::simulate::wander::Wander;
 use crate::trajectory::SetPoint;
 
 #[derive(Debug)]

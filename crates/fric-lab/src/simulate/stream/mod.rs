@@ -1,7 +1,9 @@
 //! The simulated robot as a stream of cycles.
 
 mod cable;
+mod encoder;
 mod random;
+mod wander;
 
 use core::ops::Range;
 
@@ -12,13 +14,13 @@ use rand_distr::{Distribution as _, StandardNormal};
 
 use self::cable::SimulatedCable;
 use crate::excite::Excitation;
-use crate::simulate::distribution::Distribution;
 use crate::simulate::error::SimulationError;
-use crate::simulate::motion::{CableMotion, Motion};
+use crate::simulate::mechanics::distribution::Distribution;
+use crate::simulate::mechanics::motion::{CableMotion, Motion};
+use crate::simulate::mechanics::platform::{Platform, balanced_wrench};
+use crate::simulate::mechanics::tension::{TensionLevel, Variation};
+use crate::simulate::mechanics::workspace::{SHORT_SHARE, Workspace};
 use crate::simulate::options::{Run, SimulationOptions};
-use crate::simulate::platform::{Platform, balanced_wrench};
-use crate::simulate::tension::{TensionLevel, Variation};
-use crate::simulate::workspace::{SHORT_SHARE, Workspace};
 use crate::trajectory::{Limits, SetPoint, Trajectory};
 
 pub use cable::chain;

@@ -9,10 +9,10 @@ use fric_core::Pose;
 use nalgebra::{UnitQuaternion, Vector3, Vector6};
 
 use super::distribution::Distribution;
-use super::error::SimulationError;
 use super::platform::Platform;
 use super::tension::TensionLevel;
 use crate::axis::rotation;
+use crate::simulate::error::SimulationError;
 use crate::trajectory::{
     ACCELERATION_M_PER_S2, CROSSING_HALF_M, CROSSING_HALF_RAD, STROKE_ACCELERATION_M_PER_S2, Trajectory, WorkBox,
 };

@@ -10,7 +10,7 @@ use wide::{f64x4, i64x4};
 #[cfg(target_feature = "avx")]
 use wide::{f64x8, i64x8};
 
-use crate::functions;
+use crate::numbers::functions;
 use crate::scalar::{EXP_LOWEST, Mask, Scalar, exp_parts};
 
 /// Number of lanes of a [`Lanes`].

@@ -14,8 +14,8 @@ use crate::errors::{Fault, Outcome};
 use crate::log;
 use crate::results;
 use crate::robot::Robot;
-use crate::runs::{Runs, named_parameters};
 use crate::watch::Watch;
+use crate::work::runs::{Runs, named_parameters};
 
 /// The origin of the robot in messages.
 pub const ORIGIN: &str = "the robot";

@@ -6,7 +6,7 @@
 //! compensators.
 
 use crate::compensator::Compensator;
-use crate::cycle::{CableOutput, CycleInput, CycleOutput};
+use crate::compensator::cycle::{CableOutput, CycleInput, CycleOutput};
 use crate::platform::Wrench;
 use crate::robot::ParamError;
 

@@ -10,7 +10,7 @@
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-use crate::functions;
+use crate::numbers::functions;
 
 /// A real number, or several side by side. Comparisons give masks, which replace branches.
 pub trait Scalar:

@@ -9,9 +9,9 @@ use pyo3::types::{PyDict, PyTuple};
 use crate::arrays::{Axis, Wanted, array, fixed, fixed_rows, numbers};
 use crate::errors::{Fault, Outcome};
 use crate::robot::Robot;
-use crate::runs::{Runs, named_parameters};
 use crate::travel::{self, Reduced};
 use crate::watch::Watch;
+use crate::work::runs::{Runs, named_parameters};
 
 /// Compensated force minus reference, N, of a cable's usable samples, as a function of its parameters.
 ///

@@ -2,9 +2,9 @@
 //!
 //! Symbols and sign convention are those of [`pulley`].
 
-use crate::bearing::Bearing;
 use crate::cable::{Cable, CableModel, Features};
 use crate::effects::cable_elasticity;
+use crate::friction::bearing::Bearing;
 use crate::pulley;
 use crate::scalar::{Mask, Scalar};
 

@@ -3,6 +3,10 @@
 //! [`condition`] takes the raw signals of one cycle and returns finite signals and their faults. It does not depend on friction or its parameters, so
 //! a log can be conditioned once and fitted many times. State: four numbers per cable.
 
+pub(crate) mod doubt;
+pub(crate) mod sample;
+pub(crate) mod status;
+
 use crate::effects::UNKNOWN;
 use crate::scalar::{Mask, Scalar};
 

@@ -4,13 +4,19 @@
 //! panic, for any input. It reads no clock, file or bus. Non-finite input is flagged ([`CableStatus`]) and never affects another cable. Size: about
 //! 1 kB per cable, and 1 kB more per cable for the delay lines.
 
+#[cfg(feature = "alloc")]
+pub(crate) mod any;
+pub(crate) mod columns;
+pub(crate) mod cycle;
+#[cfg(feature = "alloc")]
+pub(crate) mod exchange;
 mod takeover;
+pub(crate) mod tunable;
 
 use crate::cable::{Cable, Features, Moment};
 use crate::cable_cycle::cable_cycle;
-use crate::columns::{BlockOfCables, ParamColumns, StateColumns};
-use crate::cycle::{CableInput, CableOutput, CycleInput, CycleOutput};
-use crate::doubt::{BEYOND_RATIO, LONGEST_LIE_S, Shown, Stored, TOLERATED_N, Trust, review_friction, review_sensor};
+use crate::compensator::columns::{BlockOfCables, ParamColumns, StateColumns};
+use crate::compensator::cycle::{CableInput, CableOutput, CycleInput, CycleOutput};
 use crate::effects::Acting;
 use crate::effects::direction_asymmetry::{self, DirectionAsymmetry};
 use crate::effects::friction_drift::{self, FrictionDrift};
@@ -18,18 +24,21 @@ use crate::effects::load_nonlinearity::{self, LoadNonlinearity};
 use crate::effects::presliding_shape::{self, PreslidingShape};
 use crate::effects::time_delay::{self, Delay, DelayLine, Shifted};
 use crate::effects::viscous_nonlinearity::{self, ViscousNonlinearity};
-use crate::lanes::{Block, CycleLanes, LANES, Lanes};
+use crate::friction::places::{NO_SLIP, PLACES, Places};
+use crate::numbers::lanes::{Block, CycleLanes, LANES, Lanes};
 use crate::parameters::ParameterRow;
-use crate::places::{NO_SLIP, PLACES, Places};
 use crate::platform::{self, Pose, Wrench};
 use crate::pulley::traction_ratio;
 use crate::robot::{MAX_PULLEYS, ParamError, ParamProblem, RobotParams, ValidatedRange};
 use crate::scalar::{Mask, Scalar};
+use crate::signals::doubt::{
+    BEYOND_RATIO, LONGEST_LIE_S, Shown, Stored, TOLERATED_N, Trust, review_friction, review_sensor,
+};
+use crate::signals::status::CableStatus;
 use crate::signals::{
     BEFORE_FIRST, CableSignals, Conditioned, GREATEST_MOTION, RawSignals, SignalLimits, bounded_elapsed, condition,
     next_cycle,
 };
-use crate::status::CableStatus;
 use crate::swivel;
 use crate::words::{Words, words_of};
 use nalgebra::{Matrix3, SMatrix, Vector3};

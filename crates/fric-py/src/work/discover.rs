@@ -10,12 +10,12 @@ use pyo3::prelude::*;
 
 use crate::arrays::fixed;
 use crate::errors::Outcome;
-use crate::fit::{ORIGIN, named_reference};
 use crate::log;
 use crate::results;
 use crate::robot::Robot;
-use crate::runs::Runs;
 use crate::watch::Watch;
+use crate::work::fit::{ORIGIN, named_reference};
+use crate::work::runs::Runs;
 
 /// Finds where the model and logs disagree, and the missing effect: `fric-cli discover`.
 ///

@@ -21,7 +21,7 @@
 
 use nalgebra::{Matrix3, Matrix6, Quaternion, UnitQuaternion, Vector3, Vector6};
 
-use crate::cycle::CableInput;
+use crate::compensator::cycle::CableInput;
 use crate::platform::{Pose, attachment};
 use crate::robot::{CableParams, RobotParams};
 use crate::swivel;

@@ -5,9 +5,7 @@
 //!
 //! Symbols and sign convention are those of [`pulley`](crate::pulley).
 
-use crate::bearing::Bearing;
 use crate::cable::{Cable, CableModel, Features, Looked, Moment};
-use crate::chain::Chain;
 use crate::effects::cable_elasticity::{self, CableElasticity, Stretching};
 use crate::effects::empirical::{self, Conditions, Unnamed};
 use crate::effects::gear_backlash::{self, GearBacklash};
@@ -20,6 +18,8 @@ use crate::effects::sensor_offset::{self, SensorOffset};
 use crate::effects::sensor_warmup::{self, SensorWarmup};
 use crate::effects::winch_ripple;
 use crate::effects::{Acting, UNKNOWN};
+use crate::friction::bearing::Bearing;
+use crate::friction::chain::Chain;
 use crate::scalar::{Mask, Scalar};
 use crate::signals::CableSignals;
 

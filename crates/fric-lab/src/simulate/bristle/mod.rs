@@ -5,7 +5,7 @@
 //!
 //! `dz/dt = v·g(u)`, `u = 1 − sgn(v)·(σ/n)·z/f_c`, `g(u) = sgn(u)·|u|^a`, friction force `f = (σ/n)·z` (\[P\] 16 for the deflection instead of the
 //! force; its exponent a is 1 unless an effect changes it), with the *exact* normal force `F_N = √(F_{j−1}² − 2F_{j−1}F_j cos α + F_j²)` (\[P\] 7).
-//! [Effects](super::effects) change how `f_c` is computed.
+//! [Effects](crate::effects) change how `f_c` is computed.
 //!
 //! The tension is given at the platform, so the chain is solved from there to the winch: `F_{j−1} = F_j − f_j − F_pv·v − m·dv/dt` (\[P\] 5, 6, and
 //! Newton for a pulley with mass). The sensor shows `F_s = F_1 − F_0 cos α₁` (\[P\] 11), or `F_0` if it is in line with the cable.
@@ -19,11 +19,12 @@
 //!
 //! The cable never slips on a pulley in this model. If friction would slacken a cable at the winch, its tension there is zero.
 
+mod presliding;
+
 use core::f64::consts::SQRT_2;
 
-use super::presliding;
-use super::truth::TruthEffects;
 use crate::effects::truth::{Contact, TruthEffect};
+use crate::simulate::truth::TruthEffects;
 
 /// Stiffness that represents "no presliding", N/m: friction reverses within nanometres.
 pub const STIFF_N_PER_M: f64 = 1e9;
@@ -320,9 +321,7 @@ impl Span {
 }
 
 #[cfg(test)]
-#[path = "bristle_tests.rs"]
 mod tests;
 
 #[cfg(test)]
-#[path = "bristle_effect_tests.rs"]
 mod effect_tests;

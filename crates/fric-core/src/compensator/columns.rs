@@ -3,14 +3,14 @@
 //! This is the structure of arrays behind [`Compensator`](crate::Compensator), private to the crate.
 
 use crate::cable::{Cable, CableModel};
-use crate::doubt::{BEYOND_RATIO, Doubts, TOLERATED_N, Trust};
 use crate::effects::time_delay::{self, Delay, DelayLine};
 use crate::effects::{EFFECT_PARAMETER_COUNT, MEMORY, UNKNOWN};
-use crate::lanes::Block;
+use crate::friction::places::{NO_SLIP, PLACES, Places, START_WRAP_FACTOR};
+use crate::numbers::lanes::Block;
 use crate::parameters::FRICTION_COUNT;
-use crate::places::{NO_SLIP, PLACES, Places, START_WRAP_FACTOR};
 use crate::robot::{CableParams, MAX_PULLEYS};
 use crate::signals::SignalState;
+use crate::signals::doubt::{BEYOND_RATIO, Doubts, TOLERATED_N, Trust};
 use crate::swivel::Swivel;
 
 /// Parameters that do not change while running.

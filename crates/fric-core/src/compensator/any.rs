@@ -10,12 +10,12 @@ use core::any::Any;
 use core::fmt;
 use core::iter::repeat;
 
+use crate::compensator::cycle::{CableInput, CableOutput, CycleInput, CycleOutput};
+use crate::compensator::tunable::TunableCompensator;
 use crate::compensator::{Compensator, Snapshot};
-use crate::cycle::{CableInput, CableOutput, CycleInput, CycleOutput};
 use crate::platform::{Pose, Wrench};
 use crate::robot::{MAX_PULLEYS, MOST_CABLES, ParamError, RobotParams};
-use crate::status::CableStatus;
-use crate::tunable::TunableCompensator;
+use crate::signals::status::CableStatus;
 use crate::words::Words as _;
 
 /// A [`Compensator`] for any number of cables up to [`AnyCompensator::MOST_CABLES`]: it uses the smallest of a few sizes that holds the robot. The

@@ -1,7 +1,7 @@
 //! Input and output of a cycle.
 
 use crate::platform::{Pose, Wrench};
-use crate::status::CableStatus;
+use crate::signals::status::CableStatus;
 
 /// Signals of one cable.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -1,6 +1,6 @@
 //! The content of a log, or a simulation, at one time: the signals of a cycle and the reference data.
 
-use crate::cycle::CableInput;
+use crate::compensator::cycle::CableInput;
 use crate::platform::{Pose, Wrench};
 
 /// All signals at one time, for a robot with any number of cables. The data are borrowed: the source of the samples reuses the memory.

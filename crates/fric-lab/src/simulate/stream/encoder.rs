@@ -6,7 +6,7 @@
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-use super::motion::CableMotion;
+use crate::simulate::mechanics::motion::CableMotion;
 
 /// The encoder of one winch.
 #[derive(Debug)]

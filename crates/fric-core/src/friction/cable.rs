@@ -6,8 +6,8 @@
 //! Symbols and sign convention are those of [`pulley`](crate::pulley).
 
 use crate::effects::{Acting, time_delay};
+use crate::friction::places::{Places, START_WRAP_FACTOR};
 use crate::parameters::{MU, OFFSET, ParameterRow, SIGMA, Values};
-use crate::places::{Places, START_WRAP_FACTOR};
 use crate::robot::{CableParams, Presliding};
 use crate::scalar::Scalar;
 

@@ -9,7 +9,7 @@ use core::fmt;
 
 use rtrb::{Consumer, Producer, RingBuffer};
 
-use crate::any::AnyCompensator;
+use crate::compensator::any::AnyCompensator;
 use crate::robot::{ParamError, ParamProblem, RobotParams};
 
 /// Maximum duration of a blend, s.
