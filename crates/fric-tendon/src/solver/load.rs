@@ -3,8 +3,8 @@
 use nalgebra::Vector2;
 
 use super::arc::Arc;
-use super::params::ManipulatorParams;
-use super::shape::turned;
+use crate::params::ManipulatorParams;
+use crate::shape::turned;
 
 /// The effect of the external loads on each segment.
 ///

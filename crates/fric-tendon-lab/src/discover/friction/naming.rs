@@ -2,14 +2,14 @@
 
 use fric_lab::discover::Verdict;
 
-use super::case::{Case, Fit};
-use super::final_fit::{Final, is_own_mu};
 use super::fitting::{covariance, fitted};
-use super::markers::MarkerFit;
 use super::model::{Effect, Model};
-use super::noise::{excess_n, is_negligible, is_noise_at, rms_n};
 use super::trials::{Trial, trials};
-use super::worse::{are_tensions_worse, worse_shape};
+use crate::discover::case::{Case, Fit};
+use crate::discover::final_fit::{Final, is_own_mu};
+use crate::discover::markers::MarkerFit;
+use crate::discover::noise::{excess_n, is_negligible, is_noise_at, rms_n};
+use crate::discover::worse::{are_tensions_worse, worse_shape};
 use crate::error::ContinuumError;
 
 /// Minimum decrease of the BIC for an effect.

@@ -101,7 +101,7 @@ pub struct GratingLine {
 ///
 /// ```
 /// use fric_tendon::edit::{ManipulatorEdit, rewrite};
-/// let text = include_str!("../../../examples/tendon-prototype.toml");
+/// let text = include_str!("../../../../examples/tendon-prototype.toml");
 /// let edit = ManipulatorEdit { mu: vec![0.2], ..ManipulatorEdit::default() };
 /// let edited = rewrite(text, "arm.toml", &edit)?;
 /// assert_eq!(edited, text.replace("mu = 0.1753 ", "mu = 0.2 "));

@@ -21,7 +21,7 @@ use thiserror::Error;
 
 use super::gratings::GratingsTable;
 use super::measuring::{self, BaseSensorTable, MarkersTable};
-use super::params::{
+use crate::params::{
     ManipulatorError, ManipulatorOptions, ManipulatorParams, Tendon, TendonOptions, rectangle_bending_stiffness_n_m2,
 };
 
@@ -113,7 +113,7 @@ pub struct TendonTable {
     /// Friction coefficient: one for all holes, or a list with one per hole, starting at the base plate.
     pub mu: OneOrEach,
     /// Presliding stiffness of a hole, N/m: one for all, or a list. By default the tendon slides in one direction with Coulomb friction;
-    /// [`Friction::History`](super::Friction::History) then uses [`USUAL_SIGMA_N_PER_M`].
+    /// [`Friction::History`](crate::Friction::History) then uses [`USUAL_SIGMA_N_PER_M`].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sigma_n_per_m: Option<OneOrEach>,
     /// Axial stiffness E·A, N.

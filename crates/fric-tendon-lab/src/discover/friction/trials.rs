@@ -2,10 +2,10 @@
 
 use rayon::prelude::*;
 
-use super::case::{Case, Fit};
 use super::fitting::{HoleSlopes, fitted, fitted_from};
 use super::model::{Effect, Model};
 use super::naming::LEAST_EVIDENCE;
+use crate::discover::case::{Case, Fit};
 use crate::shape_errors::Way;
 
 /// Start value of μ in a model without friction.

@@ -5,9 +5,9 @@ use fric_lab::statistics::{Gram, Scores, inverse_of_normal};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use super::case::{Case, Fit};
 use super::model::{Model, Parameter};
 use super::spread::shared_spread;
+use crate::discover::case::{Case, Fit};
 use crate::shape_errors::Way;
 
 const MOST_STEPS: u32 = 8;

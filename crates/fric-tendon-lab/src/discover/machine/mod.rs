@@ -5,15 +5,18 @@
 //! search on the tensions names them. A gain that is negligible, or smaller than the rest, gives no name. Candidates that explain the run equally
 //! well, within the model's own error, are reported together.
 
+pub mod candidate;
+pub mod joint;
+
 use fric_lab::fit::HALF_INTERVAL;
 use fric_lab::fit::result::Numbers;
 use fric_tendon::file::{ManipulatorFile, ManipulatorTables};
 use rayon::prelude::*;
 
-use super::candidate::Candidate;
-use super::case::thinned_to;
-use super::joint::{Jacobian, Joint, Point, Set, Units};
-use super::naming::LEAST_EVIDENCE;
+use self::candidate::Candidate;
+use self::joint::{Jacobian, Joint, Point, Set, Units};
+use crate::discover::case::thinned_to;
+use crate::discover::friction::naming::LEAST_EVIDENCE;
 use crate::identify::errors::{MODEL_MARKER_RATIO, MODEL_TENSION_RATIO};
 use crate::identify::unknown::Unknown;
 use crate::run::{Run, RunSample};

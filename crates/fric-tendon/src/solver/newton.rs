@@ -16,9 +16,9 @@ use fric_core::words::words_of;
 
 use super::arc::{Chord, GREATEST_BEND_RAD};
 use super::chain::{BendRow, Chain, HoleRow, Link};
-use super::friction::{Direction, Passage};
 use super::load::{Moments, moments};
-use super::params::{ManipulatorParams, Tendon};
+use crate::friction::{Direction, Passage};
+use crate::params::{ManipulatorParams, Tendon};
 
 /// Maximum number of Newton steps of one solution.
 const MOST_STEPS: u32 = 60;

@@ -5,7 +5,7 @@
 
 use nalgebra::{Matrix2, Vector2};
 
-use super::case::Case;
+use crate::discover::case::Case;
 
 /// Maximum error of a line in standard errors, constant and slope together: one line in a thousand exceeds it (√χ² of two numbers). Anything beyond
 /// stays in the residual.
