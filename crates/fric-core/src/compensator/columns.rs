@@ -12,6 +12,7 @@ use crate::robot::{CableParams, MAX_PULLEYS};
 use crate::signals::SignalState;
 use crate::signals::doubt::{BEYOND_RATIO, Doubts, TOLERATED_N, Trust};
 use crate::swivel::Swivel;
+use crate::words::words_of;
 
 /// Parameters that do not change while running.
 ///
@@ -462,3 +463,28 @@ fn put<V, const COUNT: usize>(column: &mut [V; COUNT], place: usize, value: V) {
         *entry = value;
     }
 }
+
+words_of!(StateColumns<const CABLES> {
+    sensor_force_n,
+    frozen_count,
+    length_m,
+    frozen_travel_m,
+    friction_n,
+    unseen_cycles,
+    jump_cycles,
+    jump_from_n,
+    jumped_n,
+    stored_from_n,
+    left_n,
+    lumped_friction_n,
+    pulley_friction_n,
+    memory,
+    pose_wrap_factor,
+    pose_traction_ratio,
+    direction_known,
+    direction,
+    moment_arm_m,
+    delayed_displacement_m,
+    delayed_speed_m_per_s,
+    lag_m,
+});

@@ -2,6 +2,7 @@
 
 use crate::platform::{Pose, Wrench};
 use crate::signals::status::CableStatus;
+use crate::words::words_of;
 
 /// Signals of one cable.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -73,3 +74,6 @@ impl<const CABLES: usize> Default for CycleOutput<CABLES> {
         }
     }
 }
+
+words_of!(CableOutput { force_at_platform_n, friction_n, frictionless_n, status });
+words_of!(CycleOutput<const CABLES> { cables, outside_wrench, wrench_status, applied_wrench });

@@ -9,6 +9,7 @@ use nalgebra::{Matrix3, Quaternion, SMatrix, SVector, UnitQuaternion, Vector3};
 use crate::robot::{CableParams, Geometry, RobotParams};
 use crate::scalar::Scalar;
 use crate::swivel::{self, Swivel};
+use crate::words::Words;
 
 /// Greatest deviation of a normalised quaternion's norm from 1: four rounded squares and a root, four rounded quotients.
 const NORM_ROUNDING: f64 = 4.0 * f64::EPSILON;
@@ -190,4 +191,21 @@ pub fn structure_matrix<const CABLES: usize>(robot: &RobotParams<'_>, pose: &Pos
         column.copy_from(&cable.structure_column(pose)?);
     }
     Some(matrix)
+}
+
+impl Words for Wrench {
+    fn each_word(&mut self, show: &mut dyn FnMut(&mut u64)) {
+        for number in self.force_n.iter_mut().chain(&mut self.torque_nm) {
+            number.each_word(show);
+        }
+    }
+}
+
+impl Words for Option<Wrench> {
+    fn each_word(&mut self, show: &mut dyn FnMut(&mut u64)) {
+        let (mut is_known, mut wrench) = (self.is_some(), self.unwrap_or_default());
+        is_known.each_word(show);
+        wrench.each_word(show);
+        *self = is_known.then_some(wrench);
+    }
 }

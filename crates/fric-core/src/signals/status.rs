@@ -3,6 +3,8 @@
 use core::fmt;
 use core::ops::BitOr;
 
+use crate::words::Words;
+
 /// Flags of one cable in one cycle; [`CableStatus::OK`] if there is no fault.
 ///
 /// Every flag concerns its own cable; no flag of one cable changes a bit of another. All of them clear by themselves in the first cycle in which
@@ -132,5 +134,13 @@ impl fmt::Display for CableStatus {
             }
         }
         Ok(())
+    }
+}
+
+impl Words for CableStatus {
+    fn each_word(&mut self, show: &mut dyn FnMut(&mut u64)) {
+        let mut word = u64::from(self.bits());
+        show(&mut word);
+        *self = Self::from_bits(u32::try_from(word).unwrap_or_default());
     }
 }

@@ -12,7 +12,7 @@ use std::string::{String, ToString};
 use std::vec::Vec;
 
 use fric_core::robot::check;
-use fric_core::robot::locate::{Line, Step, describe, error_line, line_of};
+use fric_core::robot::locate::{Line, Step, line_of, read_tables};
 use fric_core::robot::read::exactly;
 use fric_core::text_file;
 use serde::de::{self, Deserializer, SeqAccess, Visitor};
@@ -243,11 +243,7 @@ impl ManipulatorFile {
             line,
             problem: text_file::printable(&problem),
         };
-        if let Some(problem) = text_file::excess(text) {
-            return Err(invalid(None, problem));
-        }
-        let tables: ManipulatorTables =
-            toml::from_str(text).map_err(|error| invalid(error_line(text, &error), describe(text, &error, FORMAT)))?;
+        let tables = read_tables(text, FORMAT).map_err(|(line, problem)| invalid(line, problem))?;
         Self::check(tables).map_err(|error| invalid(line_of(text, &error.path), error.problem))
     }
 
