@@ -130,17 +130,13 @@ pub fn rewrite(text: &str, origin: &str, edit: &ManipulatorEdit) -> Result<Strin
         set("tendon", "sigma_n_per_m", Numbers::One(sigma_n_per_m))?;
     }
     if !edit.lines.is_empty() {
-        let columns: [(&str, fn(&GratingLine) -> f64); 6] = [
-            ("newton_per_nm", |line| line.newton_per_nm),
-            ("offset_n", |line| line.offset_n),
-            ("standard_error_n", |line| line.standard_error_n),
-            ("line_error_n", |line| line.line_error_n),
-            ("slope_error_n_per_nm", |line| line.slope_error_n_per_nm),
-            ("mean_shift_nm", |line| line.mean_shift_nm),
-        ];
-        for (key, of) in columns {
-            set("gratings", key, Numbers::List(&edit.lines.iter().map(of).collect::<Vec<_>>()))?;
-        }
+        let column = |of: fn(&GratingLine) -> f64| edit.lines.iter().map(of).collect::<Vec<_>>();
+        set("gratings", "newton_per_nm", Numbers::List(&column(|line| line.newton_per_nm)))?;
+        set("gratings", "offset_n", Numbers::List(&column(|line| line.offset_n)))?;
+        set("gratings", "standard_error_n", Numbers::List(&column(|line| line.standard_error_n)))?;
+        set("gratings", "line_error_n", Numbers::List(&column(|line| line.line_error_n)))?;
+        set("gratings", "slope_error_n_per_nm", Numbers::List(&column(|line| line.slope_error_n_per_nm)))?;
+        set("gratings", "mean_shift_nm", Numbers::List(&column(|line| line.mean_shift_nm)))?;
     }
     if !edit.drift_nm_per_s.is_empty() {
         set("gratings", "drift_nm_per_s", Numbers::List(&edit.drift_nm_per_s))?;
