@@ -20,7 +20,7 @@ use crate::discover::workbench::{self, Trial, Workbench};
 use crate::fit::SampleCounts;
 use crate::replay::Deviation;
 
-impl<'a> CableLog<'a> {
+impl CableLog<'_> {
     /// Returns a table for a rest that has no name.
     pub(super) fn table(&self, outcome: &Outcome, task: &Task<'_>) -> Option<Table> {
         let Outcome { fitted, rest, stretch, .. } = outcome;

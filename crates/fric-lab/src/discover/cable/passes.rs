@@ -49,7 +49,7 @@ pub(super) struct Rest {
     pub(super) stretch: Option<Stretch>,
 }
 
-impl<'a> CableLog<'a> {
+impl CableLog<'_> {
     /// Runs a pass, then runs further passes if the findings make more parameters observable or show a narrow stretch of cable with a local defect.
     /// Such a stretch may hide other effects or be mistaken for them, so it is left out. Returns `None` where the noise cannot be estimated.
     pub(super) fn passes(&self, start: &mut workbench::Model, held: &[Parameter]) -> Option<Outcome> {

@@ -144,5 +144,3 @@ pub fn design(
     }
     Studio::new(robot, options, duration_s, questions, progress)?.design()
 }
-
-impl<'a> Studio<'a> {}

@@ -33,7 +33,7 @@ pub(super) enum QuestionModels {
     },
 }
 
-impl<'a> Studio<'a> {
+impl Studio<'_> {
     /// Returns the models of a question. The first effect is as in the model, or half as strong as the maximum in machines.
     pub(super) fn case(&self, question: &Question) -> Result<QuestionModels, ExcitationError> {
         let name = self.robot.cable_names().get(question.cable).copied().unwrap_or_default().to_owned();

@@ -21,7 +21,7 @@ const DEFINITION_LIMIT: u64 = 64 * 1024 * 1024;
 /// Number of bytes of an attachment record that are read to find its name.
 const ATTACHMENT_PREFIX_LEN: usize = 64 * 1024;
 
-impl<'a> Scanner<'a> {
+impl Scanner<'_> {
     pub(super) fn accept(&mut self, offset: u64, header: RecordHeader, is_repaired: bool) -> io::Result<()> {
         match header.opcode {
             op::MESSAGE => return self.accept_message(offset, header),

@@ -7,7 +7,7 @@ use crate::recording::damage::{DamageKind, FileEnd};
 use crate::recording::record::RECORD_HEADER_LEN;
 use crate::recording::window::RunningChecksum;
 
-impl<'a> Scanner<'a> {
+impl Scanner<'_> {
     pub(super) fn finish(&mut self) -> io::Result<()> {
         self.close_run();
         self.close_gaps(None);
