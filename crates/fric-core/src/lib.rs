@@ -33,54 +33,37 @@ extern crate alloc;
 #[cfg(feature = "robot-file")]
 extern crate std;
 
-pub mod admittance;
-#[cfg(feature = "alloc")]
-mod any;
-mod bearing;
-pub mod cable;
-pub mod cable_cycle;
-mod chain;
-mod columns;
 mod compensator;
-mod cycle;
-pub mod dahl;
-mod doubt;
 pub mod effects;
-#[cfg(feature = "alloc")]
-mod exchange;
-pub mod forward;
-mod functions;
+mod friction;
+mod geometry;
 mod group;
-mod lanes;
+mod numbers;
 pub mod parameters;
-mod places;
-pub mod platform;
-pub mod pulley;
 pub mod robot;
-mod sample;
-pub mod scalar;
 pub mod signals;
-mod status;
-pub mod swivel;
 #[cfg(feature = "robot-file")]
 pub mod text_file;
-mod tunable;
+#[cfg(feature = "robot-file")]
+pub mod toml_editor;
 pub mod words;
 
 #[cfg(feature = "alloc")]
-pub use any::{AnyCompensator, AnySnapshot, SnapshotMismatch};
-pub use compensator::{Compensator, Snapshot};
-pub use cycle::{CableInput, CableOutput, CycleInput, CycleOutput};
+pub use compensator::any::{AnyCompensator, AnySnapshot, SnapshotMismatch};
+pub use compensator::cycle::{CableInput, CableOutput, CycleInput, CycleOutput};
 #[cfg(feature = "alloc")]
-pub use exchange::{ParameterReceiver, ParameterSender, SendError, parameter_exchange};
+pub use compensator::exchange::{ParameterReceiver, ParameterSender, SendError, parameter_exchange};
+pub use compensator::tunable::TunableCompensator;
+pub use compensator::{Compensator, Snapshot};
+pub use friction::{cable, cable_cycle, dahl, pulley};
+pub use geometry::platform::{Pose, Wrench};
+pub use geometry::{admittance, forward, platform, swivel};
 pub use group::{CableCycle, CableGroup, PoseWrap};
-pub use lanes::{LANES, Lanes};
-pub use platform::{Pose, Wrench};
+pub use numbers::lanes::{LANES, Lanes};
+pub use numbers::scalar;
 pub use robot::{CableParams, KnownReference, ParamError, RobotParams};
-pub use sample::Sample;
-
-pub use status::CableStatus;
-pub use tunable::TunableCompensator;
+pub use signals::sample::Sample;
+pub use signals::status::CableStatus;
 
 /// Compiles the example of the README.
 #[cfg(all(doctest, feature = "robot-file"))]

@@ -1,20 +1,16 @@
-//! The state of a model in the loop as plain words, to be kept elsewhere and gone on from with the same bits.
+//! The state of a running model as plain 64-bit words, from which it continues with the same bits.
 //!
-//! For: programs that hand a running compensator to another process, and other crates whose models have such a state. Numbers keep their bits, NaN included. Which word is what
-//! follows from the order of the fields, so that words are of use to the version of this crate that they are from.
+//! Programs use it to hand a running compensator to another process, and other crates for models with such a state. Each type writes its words beside
+//! its definition. Numbers keep their bits, NaN included. The order of the words is that of the fields, so only the same version of this crate can
+//! read them.
 
-use crate::columns::StateColumns;
-use crate::cycle::{CableOutput, CycleOutput};
-use crate::platform::Wrench;
-use crate::status::CableStatus;
-
-/// What consists of words.
+/// A state that consists of words.
 pub trait Words {
-    /// Shows each word in turn, to be read or replaced; there are as many, whatever the values.
+    /// Calls `show` with each word in turn, which may read or replace it. The number of words does not depend on the values.
     fn each_word(&mut self, show: &mut dyn FnMut(&mut u64));
 }
 
-/// [`Words`](crate::words::Words) of a structure, field by field; one that is left out does not compile.
+/// Implements [`Words`](crate::words::Words) for a structure, field by field; a missing field does not compile.
 #[macro_export]
 macro_rules! words_of {
     ($name:ident $(<const $parameter:ident>)? { $($field:ident),* $(,)? }) => {
@@ -59,55 +55,3 @@ impl<T: Words, const COUNT: usize> Words for [T; COUNT] {
         }
     }
 }
-
-impl Words for Option<Wrench> {
-    fn each_word(&mut self, show: &mut dyn FnMut(&mut u64)) {
-        let (mut is_known, mut wrench) = (self.is_some(), self.unwrap_or_default());
-        is_known.each_word(show);
-        wrench.each_word(show);
-        *self = is_known.then_some(wrench);
-    }
-}
-
-impl Words for Wrench {
-    fn each_word(&mut self, show: &mut dyn FnMut(&mut u64)) {
-        for number in self.force_n.iter_mut().chain(&mut self.torque_nm) {
-            number.each_word(show);
-        }
-    }
-}
-
-impl Words for CableStatus {
-    fn each_word(&mut self, show: &mut dyn FnMut(&mut u64)) {
-        let mut word = u64::from(self.bits());
-        show(&mut word);
-        *self = Self::from_bits(u32::try_from(word).unwrap_or_default());
-    }
-}
-
-words_of!(CableOutput { force_at_platform_n, friction_n, frictionless_n, status });
-words_of!(CycleOutput<const CABLES> { cables, outside_wrench, wrench_status, applied_wrench });
-words_of!(StateColumns<const CABLES> {
-    sensor_force_n,
-    frozen_count,
-    length_m,
-    frozen_travel_m,
-    friction_n,
-    unseen_cycles,
-    jump_cycles,
-    jump_from_n,
-    jumped_n,
-    stored_from_n,
-    left_n,
-    lumped_friction_n,
-    pulley_friction_n,
-    memory,
-    pose_wrap_factor,
-    pose_traction_ratio,
-    direction_known,
-    direction,
-    moment_arm_m,
-    delayed_displacement_m,
-    delayed_speed_m_per_s,
-    lag_m,
-});

@@ -226,6 +226,18 @@ fn what_is_not_there_or_not_right_is_told() {
     assert_eq!(rewrite(&text, "rig.toml", &[]).unwrap(), text);
 }
 
+/// Every other byte stays where the lines of a file end in different ways, and a new line ends like the one above it.
+#[test]
+fn mixed_line_endings_stay() {
+    let text =
+        format!("{HEAD}{}", LAYOUTS[1].replace("name = 'a'\n", "name = 'a'\r\n").replace("] # all\n", "] # all\r\n"));
+    let new = edited(&text, FrictionEdit { mu: Some(0.02), ..FrictionEdit::default() }, &[]);
+    assert_eq!(new, text.replace("] # all\r\n", "] # all\r\n  friction = { mu = 0.02 }\r\n"));
+    let text = format!("{}{}", HEAD.replace('\n', "\r\n"), LAYOUTS[1]);
+    let new = edited(&text, FrictionEdit { mu: Some(0.02), ..FrictionEdit::default() }, &[]);
+    assert_eq!(new, text.replace("] # all\n", "] # all\n  friction = { mu = 0.02 }\n"));
+}
+
 #[test]
 fn a_byte_order_mark_stays() {
     let text = format!("\u{feff}{HEAD}{}", LAYOUTS[0]);

@@ -11,20 +11,13 @@ mod arrays;
 mod catalogue;
 mod compensator;
 mod continuum;
-mod discover;
 mod errors;
-mod excite;
-mod fit;
-mod hysteresis;
 mod log;
-mod replay;
-mod residual_function;
 mod results;
 mod robot;
-mod runs;
-mod simulate;
 mod travel;
 mod watch;
+mod work;
 
 /// The module. It is tested only with the interpreter's global lock; a free-threaded interpreter enables the lock again.
 #[pyo3::pymodule(gil_used = true)]
@@ -43,23 +36,23 @@ mod _fric {
         continuum_simulate,
     };
     #[pymodule_export]
-    use crate::discover::discover;
-    #[pymodule_export]
-    use crate::excite::excite;
-    #[pymodule_export]
-    use crate::fit::fit;
-    #[pymodule_export]
-    use crate::hysteresis::hysteresis;
-    #[pymodule_export]
     use crate::log::{Log, read_log};
-    #[pymodule_export]
-    use crate::replay::replay;
-    #[pymodule_export]
-    use crate::residual_function::{ResidualFunction, residual_function};
     #[pymodule_export]
     use crate::robot::{Cable, Friction, LogPaths, Monitor, Platform, Robot};
     #[pymodule_export]
-    use crate::simulate::simulate;
+    use crate::work::discover::discover;
+    #[pymodule_export]
+    use crate::work::excite::excite;
+    #[pymodule_export]
+    use crate::work::fit::fit;
+    #[pymodule_export]
+    use crate::work::hysteresis::hysteresis;
+    #[pymodule_export]
+    use crate::work::replay::replay;
+    #[pymodule_export]
+    use crate::work::residual_function::{ResidualFunction, residual_function};
+    #[pymodule_export]
+    use crate::work::simulate::simulate;
 
     /// Returns the sentence for an unknown name.
     #[pyfunction]

@@ -9,7 +9,7 @@ use fric_core::dahl::dahl_step;
 use fric_core::pulley::{sliding_friction, sliding_gains, wrap_factor};
 use fric_core::scalar::Scalar;
 
-use super::tangent::Tangent;
+use super::solver::tangent::Tangent;
 
 /// The sliding direction of the tendons.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

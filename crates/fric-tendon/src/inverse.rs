@@ -11,13 +11,13 @@ use core::ops::BitOr;
 use fric_core::robot::check;
 use nalgebra::Vector2;
 
-use super::arc::Arc;
 use super::friction::{Direction, Friction};
-use super::load::turned_further;
 use super::model::{Past, StaticModel, frictions};
-use super::newton::{Law, Point, Target, moved};
 use super::params::{ManipulatorError, ManipulatorParams, Tendon};
 use super::shape::{turned, write_flags};
+use super::solver::arc::Arc;
+use super::solver::load::turned_further;
+use super::solver::newton::{Law, Point, Target, moved};
 
 /// Maximum number of trials for one goal.
 const MOST_TRIALS: u32 = 32;

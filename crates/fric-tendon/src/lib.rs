@@ -48,29 +48,21 @@ extern crate std;
 
 #[cfg(feature = "alloc")]
 mod any;
-mod arc;
-mod chain;
-#[cfg(feature = "manipulator-file")]
-pub mod edit;
-#[cfg(feature = "manipulator-file")]
-pub mod file;
 mod friction;
-#[cfg(feature = "manipulator-file")]
-pub mod gratings;
 mod inverse;
-mod load;
 #[cfg(feature = "manipulator-file")]
-pub mod measuring;
+mod manipulator_file;
 mod model;
-mod newton;
 mod params;
 mod shape;
-mod tangent;
+mod solver;
 
 #[cfg(feature = "alloc")]
 pub use any::AnyStaticModel;
 pub use friction::{Direction, Friction};
 pub use inverse::{Command, Drive, DriveOptions, Goal, GoalStatus};
+#[cfg(feature = "manipulator-file")]
+pub use manipulator_file::{edit, file, gratings, measuring};
 pub use model::{StateMismatch, StaticModel, StaticSnapshot};
 pub use params::rectangle_bending_stiffness_n_m2;
 pub use params::{MAX_DISKS, ManipulatorError, ManipulatorOptions, ManipulatorParams, Tendon, TendonOptions};

@@ -5,10 +5,10 @@ use core::fmt;
 use fric_core::words::{Words, words_of};
 
 use super::friction::Friction;
-use super::load::positions;
-use super::newton::{Contacts, Law, Newton, Point, Target, chords, moved, passages, travels_m};
 use super::params::{ManipulatorError, ManipulatorParams, Tendon, count_error};
 use super::shape::{Shape, ShapeStatus};
+use super::solver::load::positions;
+use super::solver::newton::{Contacts, Law, Newton, Point, Target, chords, moved, passages, travels_m};
 
 /// Number of load steps from the straight, unloaded manipulator, if the last shape is no good start.
 const LOAD_STEPS: u32 = 32;

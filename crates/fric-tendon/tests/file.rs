@@ -181,4 +181,36 @@ fn byte_order_mark_and_line_endings_stay() {
     assert_eq!(rewrite(&marked(PROTOTYPE), "arm.toml", &edit).unwrap(), marked(&plain));
     let unchanged = rewrite(&marked(PROTOTYPE), "arm.toml", &ManipulatorEdit::default()).unwrap();
     assert_eq!(unchanged, marked(PROTOTYPE));
+    // Lines that end in different ways; a value that is set to itself.
+    let mixed = PROTOTYPE.replacen('\n', "\r\n", 5);
+    let edit = ManipulatorEdit { youngs_modulus_pa: Some(2e11), ..edit };
+    assert_eq!(rewrite(&mixed, "arm.toml", &edit).unwrap(), plain.replacen('\n', "\r\n", 5));
+}
+
+/// Tables may be written in braces or with dotted keys, and the text may lack its last line ending.
+#[test]
+fn values_go_into_tables_however_they_are_written() {
+    let markers = Some(MarkersTable { offset_m: [0.001, -0.002], angle_rad: 1e-7 });
+    let edit = ManipulatorEdit { markers, tip_mass_kg: Some(0.002), ..ManipulatorEdit::default() };
+    let edited = |text: &str| {
+        let new = rewrite(text, "arm.toml", &edit).unwrap();
+        let tables = ManipulatorFile::parse(&new, "new").unwrap().tables().clone();
+        assert_eq!((tables.markers, tables.tip.mass_kg), (markers, 0.002), "{new}");
+        new
+    };
+    let (head, rest) = PROTOTYPE.split_once("\n[backbone]").unwrap();
+    let braces =
+        format!("{head}tip = {{ force_n = [0, 1] }} # load\nmarkers = {{ angle_rad = 0.0 }}\n\n[backbone]{rest}");
+    let expected = braces
+        .replace("[0, 1] }", "[0, 1], mass_kg = 0.002 }")
+        .replace("{ angle_rad = 0.0 }", "{ angle_rad = 1e-7, offset_m = [0.001, -0.002] }");
+    assert_eq!(edited(&braces), expected);
+    let dotted = format!("{head}tip.force_n = [0, 1] # load\n\n[backbone]{rest}");
+    let expected = dotted.replace("# load\n", "# load\ntip.mass_kg = 0.002\n");
+    assert_eq!(edited(&dotted), format!("{expected}\n[markers]\nangle_rad = 1e-7\noffset_m = [0.001, -0.002]\n"));
+    let ended = edited(PROTOTYPE.trim_end());
+    assert_eq!(
+        ended,
+        format!("{PROTOTYPE}\n[tip]\nmass_kg = 0.002\n\n[markers]\nangle_rad = 1e-7\noffset_m = [0.001, -0.002]\n")
+    );
 }

@@ -3,7 +3,7 @@
 use super::Compensator;
 use crate::effects::time_delay::DelayLine;
 use crate::effects::{Acting, Effect, Memory, UNKNOWN};
-use crate::places::NO_SLIP;
+use crate::friction::places::NO_SLIP;
 use crate::robot::{ParamError, ParamProblem};
 use crate::signals::BEFORE_FIRST;
 

@@ -22,7 +22,7 @@
 //! from the paper: the set points are shifted, not the friction computed from them, so that the friction belongs to the present force.
 
 use super::{Acting, Effect, EffectRow, Memory, OnMu, UNKNOWN};
-use crate::lanes::LANES;
+use crate::numbers::lanes::LANES;
 use crate::parameters::ParameterRow;
 use crate::scalar::Scalar;
 use crate::signals::CableSignals;

@@ -9,11 +9,11 @@ use std::format;
 use std::string::{String, ToString};
 use std::vec::Vec;
 
-use toml_edit::{Array, ArrayOfTables, Document, InlineTable, Item, Table, TableLike, Value};
+use toml_edit::{Array, ArrayOfTables, Document, Item, Table, Value};
 
 use super::file::{RobotFile, RobotFileError};
 use super::locate::unknown_name;
-use super::splice::{self, Entry, Splice};
+use crate::toml_editor::{Body, Entry, Numbers, Splice, entry, refusal, replaced, splice};
 
 /// Changes of one cable.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -131,20 +131,16 @@ pub struct PlatformEdit {
 /// Returns [`RobotFileError::Invalid`] if the text is invalid before or with the new numbers, or has no table `platform`.
 pub fn set_platform(text: &str, origin: &str, edit: &PlatformEdit) -> Result<String, RobotFileError> {
     RobotFile::parse(text, origin)?;
-    let numbers = [
-        ("mass_kg", edit.mass_kg.map(number)),
-        ("center_of_mass_m", edit.center_of_mass_m.map(list)),
-        ("gravity_m_per_s2", edit.gravity_m_per_s2.map(list)),
+    let values = [
+        ("mass_kg", edit.mass_kg.as_ref().map(|mass_kg| Numbers::One(*mass_kg))),
+        ("center_of_mass_m", edit.center_of_mass_m.as_ref().map(|center_m| Numbers::List(center_m))),
+        ("gravity_m_per_s2", edit.gravity_m_per_s2.as_ref().map(|gravity| Numbers::List(gravity))),
     ];
     let mut text = text.to_owned();
-    for (key, with) in numbers.into_iter().filter_map(|(key, with)| Some((key, with?))) {
-        let splices = Document::parse(text.as_str()).ok().and_then(|document| {
-            let body = Body::of_item(document.get("platform")?)?;
-            match body.table().get(key) {
-                Some(item) => replaced(item, &text, with),
-                None => body.append(&text, "platform", &format!("{key} = {with}")),
-            }
-        });
+    for (key, value) in values.into_iter().filter_map(|(key, value)| Some((key, value?))) {
+        let splices = Document::parse(text.as_str())
+            .ok()
+            .and_then(|document| Body::of_item(document.get("platform")?)?.set(&text, "platform", key, value));
         let problem =
             || "`platform` is missing, or written in a way that cannot be added to; write it in one table".to_owned();
         let splices = splices.ok_or_else(|| RobotFileError::Invalid {
@@ -165,17 +161,20 @@ pub fn set_platform(text: &str, origin: &str, edit: &PlatformEdit) -> Result<Str
 /// Returns [`RobotFileError::Invalid`] if the text is invalid before or with the new number.
 pub fn set_monitor(text: &str, origin: &str, key: &str, value: f64) -> Result<String, RobotFileError> {
     RobotFile::parse(text, origin)?;
+    let value = Numbers::One(value);
     let splices = Document::parse(text).ok().and_then(|document| {
         if let Some(item) = document.get("monitor") {
-            return set(Body::of_item(item)?, text, "monitor", key, value);
+            return Body::of_item(item)?.set(text, "monitor", key, value);
         }
         let (name, item) = document.get_key_value("cycle_s")?;
         let place = Entry { start: name.span()?.start, end: item.as_value()?.span()?.end };
         Some(splice::below(text, &place, &format!("monitor.{}", entry(key, value))))
     });
-    let problem = || "`monitor` is written in a way that cannot be added to; write it in one table".to_owned();
-    let splices =
-        splices.ok_or_else(|| RobotFileError::Invalid { origin: origin.to_owned(), line: None, problem: problem() })?;
+    let splices = splices.ok_or_else(|| RobotFileError::Invalid {
+        origin: origin.to_owned(),
+        line: None,
+        problem: refusal("monitor"),
+    })?;
     let mut text = text.to_owned();
     splice::apply(&mut text, splices);
     RobotFile::parse(&text, &format!("{origin} with the new values"))?;
@@ -193,7 +192,7 @@ impl Draft<'_> {
         let CableEdit { name, friction, base_m, platform_m, effects } = *edit;
         for (key, point_m) in [("base_m", base_m), ("platform_m", platform_m)] {
             if let Some(point_m) = point_m {
-                self.change(name, |cable, text| cable.set_point(text, key, point_m))?;
+                self.change(name, |cable, _| cable.set_point(key, point_m))?;
             }
         }
         for value in friction.values() {
@@ -238,49 +237,11 @@ struct Cable<'a> {
     body: Body<'a>,
 }
 
-/// A table under a header or with dotted keys, or an inline table.
-#[derive(Clone, Copy)]
-enum Body<'a> {
-    Lines(&'a Table),
-    Braces(&'a InlineTable),
-}
-
 /// `effects` as written.
 enum Effects<'a> {
     Missing,
     List(&'a Array),
     Tables(&'a ArrayOfTables),
-}
-
-impl<'a> Body<'a> {
-    fn of_item(item: &'a Item) -> Option<Self> {
-        match item {
-            Item::Table(table) => Some(Self::Lines(table)),
-            Item::Value(Value::InlineTable(table)) => Some(Self::Braces(table)),
-            _ => None,
-        }
-    }
-
-    fn table(self) -> &'a dyn TableLike {
-        match self {
-            Self::Lines(table) => table,
-            Self::Braces(table) => table,
-        }
-    }
-
-    /// Appends an entry after the last one; `dotted` is the prefix of its key if the keys are dotted.
-    fn append(self, text: &str, dotted: &str, entry: &str) -> Option<Vec<Splice>> {
-        let last = splice::last_entry(self.table());
-        let entry = if self.table().is_dotted() { format!("{dotted}.{entry}") } else { entry.to_owned() };
-        match self {
-            Self::Braces(table) if table.is_dotted() => Some(splice::beside(&last?, &entry)),
-            Self::Braces(table) => Some(splice::in_list(text, &table.span()?, last.as_ref(), &entry)),
-            Self::Lines(table) => {
-                let place = last.or_else(|| Some(Entry::from(table.span()?)))?;
-                Some(splice::below(text, &place, &entry))
-            }
-        }
-    }
 }
 
 impl<'a> Cable<'a> {
@@ -320,16 +281,20 @@ impl<'a> Cable<'a> {
 
     fn set_friction(&self, text: &str, (key, value): (&str, f64)) -> Result<Vec<Splice>, String> {
         let splices = match self.body.table().get("friction") {
-            None => self.append(text, &["pulleys", "name"], &format!("friction = {{ {} }}", entry(key, value))),
-            Some(item) => Body::of_item(item).and_then(|body| set(body, text, "friction", key, value)),
+            None => self.append(
+                text,
+                &["pulleys", "name"],
+                &format!("friction = {{ {} }}", entry(key, Numbers::One(value))),
+            ),
+            Some(item) => Body::of_item(item).and_then(|body| body.set(text, "friction", key, Numbers::One(value))),
         };
         splices.ok_or_else(|| self.refuse("friction"))
     }
 
     /// Replaces a point of the geometry, which must exist.
-    fn set_point(&self, text: &str, key: &str, point_m: [f64; 3]) -> Result<Vec<Splice>, String> {
+    fn set_point(&self, key: &str, point_m: [f64; 3]) -> Result<Vec<Splice>, String> {
         let item = self.body.table().get(key);
-        item.and_then(|item| replaced(item, text, list(point_m)))
+        item.and_then(|item| replaced(item, Numbers::List(&point_m)))
             .ok_or_else(|| format!("cable \"{}\" has no `{key}` to be corrected", self.name))
     }
 
@@ -349,7 +314,7 @@ impl<'a> Cable<'a> {
             return Ok(Vec::new());
         }
         let mut entries = Vec::from([format!("kind = {}", quoted(kind))]);
-        entries.extend(parameters.iter().map(|(key, value)| entry(key, *value)));
+        entries.extend(parameters.iter().map(|(key, value)| entry(key, Numbers::One(*value))));
         let braces = || format!("{{ {} }}", entries.join(", "));
         let splices = match effects {
             Effects::Missing => {
@@ -370,7 +335,7 @@ impl<'a> Cable<'a> {
 
     fn set_effect(&self, text: &str, kind: &str, (key, value): (&str, f64)) -> Result<Vec<Splice>, String> {
         let found = self.effects()?.find(kind);
-        found.and_then(|(_, body)| set(body, text, "", key, value)).ok_or_else(|| self.refuse("effects"))
+        found.and_then(|(_, body)| body.set(text, "", key, Numbers::One(value))).ok_or_else(|| self.refuse("effects"))
     }
 
     fn remove_effect(&self, text: &str, kind: &str) -> Result<Vec<Splice>, String> {
@@ -403,38 +368,6 @@ impl<'a> Effects<'a> {
         let is_it = |body: &Body<'a>| body.table().get("kind").and_then(Item::as_str) == Some(kind);
         bodies.into_iter().enumerate().find(|(_, body)| is_it(body))
     }
-}
-
-/// Sets one number of a table: in place, or after the last entry.
-fn set(body: Body<'_>, text: &str, dotted: &str, key: &str, value: f64) -> Option<Vec<Splice>> {
-    let Some(item) = body.table().get(key) else { return body.append(text, dotted, &entry(key, value)) };
-    #[expect(clippy::cast_precision_loss, reason = "as the file is read")]
-    let written = item.as_float().or_else(|| item.as_integer().map(|whole| whole as f64));
-    if written.is_some_and(|written| written.to_bits() == value.to_bits()) {
-        return Some(Vec::new());
-    }
-    Some(Vec::from([Splice { range: item.span()?, with: number(value) }]))
-}
-
-/// Returns the splice that replaces a value.
-fn replaced(item: &Item, text: &str, with: String) -> Option<Vec<Splice>> {
-    let range = item.span()?;
-    let is_same = text.get(range.clone()) == Some(with.as_str());
-    Some(if is_same { Vec::new() } else { Vec::from([Splice { range, with }]) })
-}
-
-/// Formats three numbers as TOML.
-fn list(numbers: [f64; 3]) -> String {
-    format!("[{}]", numbers.map(number).join(", "))
-}
-
-fn entry(key: &str, value: f64) -> String {
-    format!("{key} = {}", number(value))
-}
-
-/// Returns the shortest text that reads back to the same bits, with a point or an exponent, as in TOML.
-fn number(value: f64) -> String {
-    if value.is_nan() { "nan".to_owned() } else { format!("{value:?}") }
 }
 
 /// Names of the catalogue need no escapes; any other name is refused when the text is parsed again.

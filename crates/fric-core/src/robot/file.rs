@@ -15,7 +15,7 @@ use std::vec::Vec;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::locate::{Line, Step, describe, error_line, line_of};
+use super::locate::{Line, Step, line_of, read_tables};
 use super::log_columns;
 pub use super::log_columns::{ColumnTable, POSE_COLUMNS, TIME_COLUMN, WRENCH_COLUMNS};
 use super::read::{exactly, exactly_if_given};
@@ -299,11 +299,7 @@ impl RobotFile {
             line,
             problem: text_file::printable(&problem),
         };
-        if let Some(problem) = text_file::excess(text) {
-            return Err(invalid(None, problem));
-        }
-        let options: RobotOptions =
-            toml::from_str(text).map_err(|error| invalid(error_line(text, &error), describe(text, &error, FORMAT)))?;
+        let options = read_tables(text, FORMAT).map_err(|(line, problem)| invalid(line, problem))?;
         Self::check(options).map_err(|fault| invalid(line_of(text, &fault.path), fault.to_string()))
     }
 

@@ -1,4 +1,5 @@
-//! Where in a TOML text something stands, and what a misspelt key may have meant: for robot files, and for the files of other models.
+//! Reads the TOML text of a model's file, and finds the line of an error and the nearest name to a misspelt one. For robot files and the files of other
+//! models.
 
 use core::fmt;
 use std::borrow::ToOwned;
@@ -6,7 +7,10 @@ use std::format;
 use std::string::String;
 use std::vec::Vec;
 
+use serde::de::DeserializeOwned;
 use toml::de::{DeTable, DeValue};
+
+use crate::text_file;
 
 /// One step into a TOML document.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,17 +58,26 @@ pub fn line_of(text: &str, path: &[Step]) -> Option<usize> {
     Some(before.matches('\n').count() + 1)
 }
 
+/// Reads the tables of a model's file; `format` is the value that the key `format` of the file should have.
+///
+/// # Errors
+/// Returns the line (from 1, if it is known) and the problem in the words of the file, if the text is too long, not TOML or has other keys or types.
+pub fn read_tables<T: DeserializeOwned>(text: &str, format: &str) -> Result<T, (Option<usize>, String)> {
+    if let Some(problem) = text_file::excess(text) {
+        return Err((None, problem));
+    }
+    toml::from_str(text).map_err(|error| (error_line(text, &error), describe(text, &error, format)))
+}
+
 /// The line (from 1) in which an error of the parser stands; one at the end of the text is in the last line with anything in it.
-#[must_use]
-pub fn error_line(text: &str, error: &toml::de::Error) -> Option<usize> {
+fn error_line(text: &str, error: &toml::de::Error) -> Option<usize> {
     let end = text.trim_end().len();
     error.span().map(|span| text.get(..span.start.min(end)).unwrap_or(text).matches('\n').count() + 1)
 }
 
 /// What is wrong with a text that did not become options, in one line and in the words of the file; `format` is what the file's
 /// `format` should be.
-#[must_use]
-pub fn describe(text: &str, error: &toml::de::Error, format: &str) -> String {
+fn describe(text: &str, error: &toml::de::Error, format: &str) -> String {
     let message = error.message().trim().replace('\n', "; ");
     let Ok(root) = DeTable::parse(text) else { return format!("is not valid TOML: {message}") };
     let start = error.span().map_or(0, |span| span.start);

@@ -17,8 +17,6 @@ pub mod read;
 #[cfg(feature = "robot-file")]
 pub(crate) mod reference;
 #[cfg(feature = "robot-file")]
-mod splice;
-#[cfg(feature = "robot-file")]
 mod table;
 #[cfg(feature = "robot-file")]
 mod warnings;

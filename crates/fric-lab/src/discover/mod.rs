@@ -165,7 +165,7 @@ pub fn discover(
         let task = Task { options: *options, own: place, records: &records, progress, stages };
         let (mut found, late) = discover_retimed(record, &task);
         for fault in late.into_iter().chain(noisy) {
-            cable::tell_of(&mut found, &given[place], fault, progress.stop_flag());
+            cable::add_corrected_fault(&mut found, &given[place], fault, progress.stop_flag());
         }
         found
     };

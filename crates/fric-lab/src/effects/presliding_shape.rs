@@ -1,6 +1,6 @@
 //! `presliding_shape` in the simulated robot: bristles that saturate earlier or later than the exponential.
 //!
-//! The exponent is that of [`presliding`](crate::simulate::presliding), solved at each stage of the integration.
+//! The exponent is that of [`presliding`](crate::simulate::bristle::presliding), solved at each stage of the integration.
 
 use super::truth::{Cause, TruthEffect};
 use super::{LabEffect, Sizing, Start, always, as_it_is};

@@ -3,8 +3,8 @@
 use nalgebra::{Vector3, Vector6};
 
 use super::error::ExcitationError;
-use crate::simulate::distribution::Distribution;
-use crate::simulate::platform::Platform;
+use crate::simulate::mechanics::distribution::Distribution;
+use crate::simulate::mechanics::platform::Platform;
 use crate::trajectory::{Phase, SetPoint};
 
 /// The platform with bounds for the forces of its cables.

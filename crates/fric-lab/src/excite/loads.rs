@@ -4,7 +4,7 @@ use fric_core::KnownReference;
 
 use super::error::ExcitationError;
 use super::options::ExcitationOptions;
-use crate::simulate::tension::TensionLevel;
+use crate::simulate::mechanics::tension::TensionLevel;
 
 /// The source of the load.
 #[derive(Clone, Copy, Debug)]

@@ -21,15 +21,15 @@ use fric_core::CableParams;
 use fric_core::robot::file::{CableTable, RobotFile};
 use nalgebra::Vector3;
 
-use crate::simulate::motion::Motion;
-use crate::simulate::platform::Platform;
-use crate::simulate::tension::TensionLevel;
-use crate::simulate::workspace::{Workspace, direction_in};
+use crate::simulate::mechanics::motion::Motion;
+use crate::simulate::mechanics::platform::Platform;
+use crate::simulate::mechanics::tension::TensionLevel;
+use crate::simulate::mechanics::workspace::{Workspace, direction_in};
 use crate::trajectory::{Phase, Piece, SetPoint, Trajectory, WorkBox};
 use hold::Hold;
 use loads::Loads;
 
-pub use crate::simulate::motion::CableMotion;
+pub use crate::simulate::mechanics::motion::CableMotion;
 pub use design::{Aim, Experiment, Forecast, Goal, KnownParameter, LEAST_SCORE, Question, STANDARD_DURATION_S, design};
 pub use error::ExcitationError;
 pub use options::ExcitationOptions;

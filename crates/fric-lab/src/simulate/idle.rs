@@ -17,10 +17,10 @@ use rand_distr::{Distribution as _, StandardNormal};
 use thiserror::Error;
 
 use super::bristle::{BristleChain, Moment, SUBSTEPS};
-use super::distribution::Distribution;
-use super::platform::Platform;
+use super::mechanics::distribution::Distribution;
+use super::mechanics::platform::Platform;
+use super::mechanics::tension::TensionLevel;
 use super::stream::{Purpose, chain, random};
-use super::tension::TensionLevel;
 use super::truth::TruthEffects;
 use super::{SimulationError, SimulationOptions};
 

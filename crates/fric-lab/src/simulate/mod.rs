@@ -17,25 +17,17 @@
 //! see [`fric_core::pulley`].
 
 mod bristle;
-pub(crate) mod distribution;
 mod disturbances;
-mod encoder;
 mod error;
 mod hidden;
 mod idle;
-pub(crate) mod motion;
+pub(crate) mod mechanics;
 mod options;
-pub(crate) mod platform;
-mod presliding;
 mod stated;
 mod stream;
 pub mod sweep;
-pub(crate) mod tension;
 pub(crate) mod truth;
-mod wander;
 mod warnings;
-mod waves;
-pub(crate) mod workspace;
 
 pub use disturbances::{DISTURBANCES, Disturbance, DisturbanceParameter, DisturbanceRow};
 pub use error::{HiddenError, SimulationError};

@@ -5,8 +5,8 @@ use fric_lab::statistics::{blocks, white_noise_in};
 use fric_tendon::file::{ManipulatorFile, OneOrEach};
 use fric_tendon::{ManipulatorParams, Tendon};
 
-use super::lines::take_off;
-use super::model::Model;
+use super::friction::lines::take_off;
+use super::friction::model::Model;
 use crate::error::ContinuumError;
 use crate::gratings::Gratings;
 use crate::run::{Run, RunSample};

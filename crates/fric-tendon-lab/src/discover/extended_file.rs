@@ -4,8 +4,8 @@ use fric_tendon::edit::ManipulatorEdit;
 use fric_tendon::file::USUAL_SIGMA_N_PER_M;
 
 use super::case::Case;
-use super::model::{Effect, Model};
-use super::naming::Outcome;
+use super::friction::model::{Effect, Model};
+use super::friction::naming::Outcome;
 use crate::shape_errors::Way;
 
 /// Returns the changes to the given file.

@@ -5,9 +5,9 @@ use fric_lab::fit::HALF_INTERVAL;
 use nalgebra::{DMatrix, DVector};
 
 use super::case::{Case, Fit};
-use super::fitting::{covariance, fitted};
+use super::friction::fitting::{covariance, fitted};
+use super::friction::model::{Model, Parameter};
 use super::markers::MarkerFit;
-use super::model::{Model, Parameter};
 use super::worse::{Worse, worse_shape};
 use crate::shape_errors::Way;
 

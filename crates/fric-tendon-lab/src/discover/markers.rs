@@ -7,7 +7,7 @@ use fric_lab::replay::Deviation;
 use fric_lab::statistics::white_noise_throughout;
 
 use super::case::{Case, Fit, off_markers};
-use super::model::Model;
+use super::friction::model::Model;
 use crate::fbg::Tension;
 use crate::gratings::GratingSample;
 use crate::run::RunSample;

@@ -25,24 +25,17 @@
 //! calibration error and the differences between holes that share a μ (`spread`).
 
 mod assemble;
-mod candidate;
 mod case;
 mod extended_file;
 mod final_fit;
-mod fitting;
+pub(super) mod friction;
 mod goes_with;
-mod joint;
-mod lines;
 mod machine;
 mod markers;
-mod model;
-mod naming;
 mod noise;
 mod places;
 mod result;
-pub(super) mod spread;
 mod summary;
-mod trials;
 mod worse;
 
 use fric_lab::discover::Verdict;
@@ -51,9 +44,9 @@ use fric_tendon::Tendon;
 use fric_tendon::edit::ManipulatorEdit;
 use fric_tendon::file::ManipulatorFile;
 
-use self::candidate::Candidate;
 use self::case::Case;
 use self::machine::Machine;
+use self::machine::candidate::Candidate;
 use super::error::ContinuumError;
 use super::gratings::Gratings;
 use super::measuring::corrected;
@@ -106,7 +99,7 @@ pub fn discover(file: &ManipulatorFile, run: &Run, log: &str) -> Result<TendonDi
             let run = corrected(run, extended)?;
             let gratings = Gratings::from_file(extended)?.ok_or(ContinuumError::NoGratings)?;
             let with_found = Case::new(extended, &run, &gratings, &kept)?;
-            let outcome = naming::name(&with_found)?.beside(&case)?;
+            let outcome = friction::naming::name(&with_found)?.beside(&case)?;
             // A lag with which the tensions still disagree is something else, for instance the ends of a pull in one direction.
             let is_lag = named.iter().any(|one| one.candidate == Candidate::TensionLag);
             (outcome.verdict != Verdict::Unexplained || !is_lag).then_some((extended, with_found, outcome))
@@ -120,7 +113,7 @@ pub fn discover(file: &ManipulatorFile, run: &Run, log: &str) -> Result<TendonDi
         discovery.edit = ManipulatorEdit { mu, sigma_n_per_m, drift_nm_per_s, ..bending };
         (outcome, discovery)
     } else {
-        let outcome = naming::name(&case)?;
+        let outcome = friction::naming::name(&case)?;
         let discovery = assemble::told(&case, &outcome, &[], log);
         (outcome, discovery)
     };

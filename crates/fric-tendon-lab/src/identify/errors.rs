@@ -11,7 +11,7 @@ use nalgebra::{DMatrix, DVector};
 use super::evaluation::Runs;
 use super::least_squares::{Normal, Solution};
 use super::unknown::Unknown;
-use crate::discover::spread;
+use crate::discover::friction::spread;
 
 /// Root mean square error of the model's tensions relative to the greatest tension: 0.4 mN of 1.7 N in runs with both directions, against the
 /// elastica with each hole's own μ (docs/manipulators.md).

@@ -1,0 +1,193 @@
+//! What a discovery on one cable returns, put together from the outcome of its passes.
+
+use fric_core::effects::Effect;
+use fric_core::parameters::Values;
+
+use super::CableLog;
+use super::given::{has_reference, judged};
+use super::passes::Outcome;
+use crate::discover::Task;
+use crate::discover::faults::RecordingFault;
+use crate::discover::figures::curve::curves;
+use crate::discover::figures::profile::profile;
+use crate::discover::naming::{self, Named, STRONG_BIC, Search};
+use crate::discover::report::{CableDiscovery, Candidate, Finding, Model, RunnerUp, Tried, Unexplained, Verdict};
+use crate::discover::rest::empirical::{Table, has_table, table, without_table};
+use crate::discover::rest::neighbours::neighbours_of;
+use crate::discover::rest::places::Place;
+use crate::discover::rest::{self, WORTH};
+use crate::discover::workbench::{self, Trial, Workbench};
+use crate::fit::SampleCounts;
+use crate::replay::Deviation;
+
+impl CableLog<'_> {
+    /// Returns a table for a rest that has no name.
+    pub(super) fn table(&self, outcome: &Outcome, task: &Task<'_>) -> Option<Table> {
+        let Outcome { fitted, rest, stretch, .. } = outcome;
+        if rest.is_noise && stretch.is_none() || has_table(&fitted.values) {
+            return None;
+        }
+        let bench = self.bench(self.counts);
+        let places: Vec<Place> = stretch.iter().chain(&rest.places).cloned().collect();
+        let model = workbench::Model { values: fitted.values, free: fitted.parameters.clone() };
+        let table = table(&bench, &model, rest.noise_n, &places)?;
+        // Coupling from a neighbouring cable is not this cable's effect, however well a table over this cable's conditions fits it.
+        let neighbours = neighbours_of(&bench.residuals_n(&fitted.values), task.own, task.records);
+        let of_neighbour = neighbours.first().map_or(0.0, |neighbour| neighbour.correlation * neighbour.correlation);
+        (table.gain_ratio > of_neighbour).then_some(table)
+    }
+
+    pub(super) fn report(
+        &self,
+        outcome: &Outcome,
+        table: Option<&Table>,
+        samples: SampleCounts,
+        faults: Vec<RecordingFault>,
+    ) -> CableDiscovery {
+        let Outcome { base, naming, fitted, rest, .. } = outcome;
+        let noise_n = rest.noise_n;
+        let raw = Workbench { record: self.raw, ..self.bench(self.counts) };
+        let held_out = raw.used(true);
+        let with_interpolated =
+            rest::with_interpolated(self.counts, self.measured, |place| has_reference(&self.raw, place));
+        let throughout = Workbench { counts: &with_interpolated, ..raw.clone() };
+        let held_out_of = |values: &Values| judged(&raw.residuals_n(values), &held_out);
+        let before = Model {
+            values: base.values,
+            fitted: base.free.clone(),
+            covariance: crate::certainty::undetermined::covariance(
+                &self.bench(&outcome.counts).problem(&base.free, None),
+                &[base.values],
+            ),
+            held_out_n: held_out_of(&base.values),
+        };
+        let (values, parameters, covariance) = match table {
+            Some(table) => (&table.values, &table.fitted, &table.covariance),
+            None => (&fitted.values, &fitted.parameters, &fitted.covariance),
+        };
+        let after = Model {
+            values: *values,
+            fitted: parameters.clone(),
+            covariance: covariance.clone(),
+            held_out_n: held_out_of(values),
+        };
+        let bench = self.bench(&outcome.counts);
+        let search = Search::new(&bench, noise_n, self.around(base, noise_n), base, self.with_time);
+        // The last step of the ladder is the extended model as it is written.
+        let last = naming.named.len().saturating_sub(1);
+        let steps = naming.ladder.iter().skip(1).enumerate();
+        let steps = steps.map(|(place, step)| if place == last { &fitted.values } else { &step.values });
+        let findings = naming.named.iter().zip(steps);
+        let mut findings: Vec<Finding> =
+            findings.map(|(named, step)| finding(&search, &naming.model, named, held_out_of(step))).collect();
+        findings.extend(table.map(|table| Finding {
+            effect: Effect::Empirical,
+            held_out_n: after.held_out_n,
+            delta_bic: search.delta_bic_of_table(table.training, table.inflation),
+            runner_up: None,
+        }));
+        let rms_n = |trial: &Trial| held_out_of(&trial.values).rms().unwrap_or(f64::NAN);
+        let candidate = |(effect, trial): &(Effect, Trial)| Candidate {
+            effect: *effect,
+            delta_bic: search.delta_bic(base, trial, 1.0),
+            held_out_rms_n: rms_n(trial),
+        };
+        let mut candidates: Vec<Candidate> = naming.first_round.iter().map(candidate).collect();
+        candidates.sort_by(|one, other| one.delta_bic.total_cmp(&other.delta_bic));
+        let of_tried = |tried: &naming::Tried| Tried {
+            effect: tried.effect,
+            delta_bic: search.delta_bic(&naming.model, &tried.trial, tried.inflation),
+            held_out_rms_n: rms_n(&tried.trial),
+            refusal: tried.refusal,
+        };
+        let tried = naming.tried.iter().map(of_tried).collect();
+        let clean_n = self.bench(self.counts).residuals_n(&base.values);
+        let places = self.excess(&clean_n, noise_n).concentrations(self.conditions);
+        let places = if self.excess(&clean_n, noise_n).share() > WORTH { places } else { Vec::new() };
+        let unexplained = self.unexplained(outcome, &after, &held_out_of);
+        let verdict = match (&unexplained, findings.is_empty()) {
+            (Some(_), _) => Verdict::Unexplained,
+            (None, true) => Verdict::Complete,
+            (None, false) => Verdict::Extended,
+        };
+        // The signals that explain most of the given model's residual and of the rest.
+        let told = [places.first(), unexplained.as_ref().and_then(|rest: &Unexplained| rest.places.first())];
+        let mut signals: Vec<&str> = told.into_iter().flatten().map(|place| place.signal).collect();
+        signals.dedup();
+        let (residual_before_n, residual_after_n) = (raw.residuals_n(&base.values), raw.residuals_n(&after.values));
+        let profiles = signals.into_iter().filter_map(|signal| {
+            let condition = self.conditions.iter().find(|condition| condition.signal == signal)?;
+            profile(&self.record, condition, &residual_before_n, &residual_after_n)
+        });
+        let curves = curves(&self.record, &residual_before_n, &residual_after_n);
+        CableDiscovery {
+            curves,
+            samples,
+            reference_variation_n: raw.reference_variation_n(),
+            held_out: rest::ranges(throughout.used(true).into_iter())
+                .into_iter()
+                .map(|range| [range.start, range.end])
+                .collect(),
+            noise_floor_n: noise_n,
+            wander_n: rest.wander_n,
+            verdict,
+            before,
+            after,
+            findings,
+            candidates,
+            tried,
+            places,
+            faults,
+            unexplained,
+            lack: None,
+            profiles: profiles.collect(),
+            times_s: (0..self.record.rows.len()).map(|cycle| self.record.time_s(cycle)).collect(),
+            residual_before_n,
+            residual_after_n,
+        }
+    }
+
+    /// Returns what has no name, from the outcome with its final model. Anything that only a table accounts for has no name.
+    fn unexplained(
+        &self,
+        outcome: &Outcome,
+        after: &Model,
+        held_out_of: &impl Fn(&Values) -> Deviation,
+    ) -> Option<Unexplained> {
+        let unnamed = has_table(&after.values).then(|| without_table(&after.values));
+        let Outcome { rest, stretch, .. } = outcome;
+        if stretch.is_none() && rest.is_noise && unnamed.is_none() {
+            return None;
+        }
+        let of_table = unnamed.and_then(|values| {
+            let bench = self.bench(self.counts);
+            self.rest(&bench, bench.residuals_n(&values), rest.noise_n)
+        });
+        let rms_n = unnamed.map_or(after.held_out_n, |values| held_out_of(&values)).rms().unwrap_or(f64::NAN);
+        let rms_n = (rms_n * rms_n - rest.noise_n * rest.noise_n).max(0.0).sqrt();
+        let rest = of_table.as_ref().unwrap_or(rest);
+        let excess = self.excess(&rest.residual_n, rest.noise_n);
+        let loud = |cycle: usize| rest.residual_n.get(cycle).is_some_and(|number| number.abs() > 4.0 * rest.noise_n);
+        Some(Unexplained {
+            rms_n,
+            places: stretch.iter().chain(if rest.is_noise { &[][..] } else { &rest.places }).cloned().collect(),
+            intervals_s: if rest.is_noise { Vec::new() } else { excess.intervals_s(loud) },
+            neighbours: Vec::new(),
+        })
+    }
+}
+
+fn finding(search: &Search<'_, '_>, model: &Trial, named: &Named, held_out_n: Deviation) -> Finding {
+    let bic = |trial: &Trial| search.delta_bic(&named.without, trial, named.inflation);
+    let delta_bic = bic(model);
+    let runner_up = named.runner_up.as_ref().map(|(effect, trial)| {
+        let other_bic = bic(trial);
+        RunnerUp {
+            effect: *effect,
+            delta_bic: other_bic,
+            held_out_squares: trial.held_out,
+            is_as_good: other_bic - delta_bic < STRONG_BIC,
+        }
+    });
+    Finding { effect: named.effect, held_out_n, delta_bic, runner_up }
+}

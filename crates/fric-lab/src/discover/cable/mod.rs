@@ -1,0 +1,170 @@
+//! Discovery on one cable: takes its record and returns everything that was found.
+
+mod assemble;
+mod given;
+mod passes;
+
+use std::sync::atomic::AtomicBool;
+
+use fric_core::parameters::{MU, Values};
+
+use self::given::{given_model, has_reference};
+use crate::candidates::catalogue::around;
+use crate::discover::faults::oscillations::Oscillations;
+use crate::discover::faults::spectrum::{Times, motion_and_load};
+use crate::discover::faults::{Fault, RecordingFault, coarse_step_n, faulty_stretches, leave_out, of_stretches};
+use crate::discover::naming::Named;
+use crate::discover::readiness::{lack_of, lack_of_noise, lack_of_samples};
+use crate::discover::report::CableDiscovery;
+use crate::discover::rest::places::Excess;
+use crate::discover::workbench::{self, Trial, Workbench};
+use crate::discover::{Task, rest};
+use crate::effects::Around;
+use crate::fit::{CableRecord, FitOptions, Row};
+use crate::samples::conditions::{Condition, conditions, time};
+use crate::samples::selection::Standing;
+use crate::samples::split::{Block, split};
+
+pub use given::{acts, add_corrected_fault, given_to, held_out_squares};
+
+/// The steps of a converter are reported if rounding makes at least this fraction of the noise variance.
+const LEAST_ROUNDING: f64 = 0.1;
+
+/// No model is trusted to better than this fraction of the tension, however low the noise is.
+pub const BELIEVED_RATIO: f64 = 1e-4;
+
+/// Number of progress steps per cable: fit of the given model, first search, second search, table for the rest.
+pub const STAGES: usize = 4;
+
+/// Runs the discovery on one cable.
+pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> CableDiscovery {
+    let stop = task.progress.stop_flag();
+    if let Some(lack) = lack_of(record) {
+        return CableDiscovery::untold(
+            record,
+            crate::samples::selection::count(&crate::fit::cables::prepared(record)),
+            lack,
+        );
+    }
+    let stretches = faulty_stretches(record);
+    let mut standings = crate::fit::cables::prepared(record);
+    leave_out(&stretches, record.interval_s, &mut standings);
+    let gang = crate::search::gang::Gang::new(1, stop);
+    let paper = crate::fit::cables::Search::run(record, &standings, &FitOptions::default(), stop, gang.seat(0));
+    task.stages.finish_one();
+    let samples = crate::samples::selection::count(&paper.standings);
+    if let Some(lack) = lack_of_samples(&samples, record.interval_s) {
+        return CableDiscovery::untold(record, samples, lack);
+    }
+    let counts = crate::fit::cables::used(&paper.standings);
+    let blocks = split(record);
+    let conditions = conditions(record);
+    // The force rate contains the sensor's noise, and so does the residual. No effect would appear steady over it.
+    let steady = conditions.iter().filter(|condition| condition.signal != "force_rate");
+    let with_time: Vec<Condition> = steady.cloned().chain([time(record)]).collect();
+    let (mut start, held) = given_model(record, &paper.solution);
+
+    let measured = crate::samples::interpolated::measured(record);
+    let times = Times::of(record);
+    let bench = Workbench { record: *record, blocks: &blocks, counts: &counts, measured: &measured, stop };
+    // Samples between two measurements count too, because a line may be faster than the measurements.
+    let throughout = rest::with_interpolated(&counts, &measured, |place| has_reference(record, place));
+    let left_by = |values: &Values| Workbench { counts: &throughout, ..bench.clone() }.residuals_n(values);
+    let raw = CableLog {
+        record: *record,
+        raw: *record,
+        blocks: &blocks,
+        counts: &counts,
+        standings: &standings,
+        measured: &measured,
+        conditions: &conditions,
+        with_time: &with_time,
+        stop,
+    };
+    let search = |heard: &Oscillations, start: &mut workbench::Model| {
+        // An oscillation of the sensor is not friction, so it is subtracted from the reference first.
+        let rows = heard.taken_off(record, &times);
+        raw.with_rows(&rows).passes(start, &held)
+    };
+    let signals = motion_and_load(record);
+    let mut heard = Oscillations::lines_of(&left_by(&bench.try_one(&start).values), &times, &signals);
+    let Some(mut outcome) = search(&heard, &mut start) else {
+        return CableDiscovery::untold(record, samples, lack_of_noise());
+    };
+    task.stages.finish_one();
+    // A wrong model may hide an oscillation, or leave an error that only looks like one.
+    let after = Oscillations::of(&left_by(&outcome.fitted.values), &times, record, &signals);
+    let mut faults = after.faults();
+    if !heard.are_like(&after)
+        && let Some(again) = search(&after, &mut start)
+    {
+        // No filter removes the onset of a vibration. An effect that is named only after the removal stands for that remainder.
+        let was_named = |named: &Named| outcome.naming.named.iter().any(|before| before.effect == named.effect);
+        if !after.vibrate() || again.naming.named.iter().all(was_named) {
+            (outcome, heard) = (again, after);
+        }
+    } else {
+        faults = heard.faults();
+    }
+    task.stages.finish_one();
+    let rows = heard.taken_off(record, &times);
+    faults.extend(of_stretches(&stretches, |cycle| record.time_s(cycle)));
+    let step_n = coarse_step_n(record).filter(|step_n| {
+        // Rounding noise is uniform within ± half a step.
+        let rounding_n = record.params.frictionless_gain() * step_n / 12.0_f64.sqrt();
+        rounding_n * rounding_n > LEAST_ROUNDING * outcome.rest.noise_n * outcome.rest.noise_n
+    });
+    let coarse = |step_n| RecordingFault {
+        fault: Fault::CoarseConverter,
+        parameters: vec![("step_n", step_n)],
+        intervals_s: Vec::new(),
+    };
+    faults.extend(step_n.map(coarse));
+    let case = raw.with_rows(&rows);
+    let table = if task.options.empirical { case.table(&outcome, task) } else { None };
+    case.report(&outcome, table.as_ref(), samples, faults)
+}
+
+/// A cable with its log and all that is known of each sample.
+#[derive(Clone, Copy)]
+struct CableLog<'a> {
+    /// The record without hum.
+    record: CableRecord<'a>,
+    /// The record as given.
+    raw: CableRecord<'a>,
+    blocks: &'a [Block],
+    /// Which samples count.
+    counts: &'a [bool],
+    /// The status of each sample before anything was known about the friction.
+    standings: &'a [Standing],
+    measured: &'a [bool],
+    conditions: &'a [Condition],
+    /// The conditions and the time.
+    with_time: &'a [Condition],
+    stop: &'a AtomicBool,
+}
+
+impl<'a> CableLog<'a> {
+    /// Returns the same case with other signals.
+    fn with_rows<'b>(&self, rows: &'b [Row]) -> CableLog<'b>
+    where
+        'a: 'b,
+    {
+        CableLog { record: self.raw.with_signals(rows), ..*self }
+    }
+
+    fn bench<'b>(&self, counts: &'b [bool]) -> Workbench<'b>
+    where
+        'a: 'b,
+    {
+        Workbench { record: self.record, blocks: self.blocks, counts, measured: self.measured, stop: self.stop }
+    }
+
+    fn excess<'b>(&'b self, residual_n: &'b [f64], noise_n: f64) -> Excess<'b> {
+        Excess { record: &self.record, blocks: self.blocks, residual_n, noise_n }
+    }
+
+    fn around(&self, base: &Trial, noise_n: f64) -> Around {
+        around(&self.record, base.values[MU], noise_n)
+    }
+}

@@ -1,0 +1,189 @@
+//! The passes over one cable: fit, name what is missing, fit the extended model, assess what is left, and start again from there.
+
+use fric_core::effects::Effect;
+use fric_core::parameters::{OFFSET, Values};
+use nalgebra::DMatrix;
+
+use super::given::acts;
+use super::{BELIEVED_RATIO, CableLog};
+use crate::discover::naming::{Naming, Search};
+use crate::discover::rest::places::Place;
+use crate::discover::rest::stretch::{Stretch, stretch_of_cable};
+use crate::discover::rest::{WORTH, wander};
+use crate::discover::workbench::{self, Trial, Workbench};
+use crate::fit::{FitOptions, HALF_INTERVAL, Parameter};
+use crate::samples::noise::white_noise;
+use crate::samples::selection::Standing;
+
+/// Maximum number of passes over a cable. Each pass starts from what the previous one found.
+const MOST_PASSES: usize = 3;
+
+/// The outcome of one pass.
+pub(super) struct Outcome {
+    /// The samples that the pass used.
+    pub(super) counts: Vec<bool>,
+    pub(super) base: Trial,
+    pub(super) naming: Naming,
+    /// The model with everything that was found, fitted to all samples as an identification does.
+    pub(super) fitted: Fitted,
+    pub(super) rest: Rest,
+    /// A stretch of cable with a local defect, left out of the assessment of the rest.
+    pub(super) stretch: Option<Place>,
+}
+
+/// A model fitted to all samples.
+#[derive(Clone)]
+pub(super) struct Fitted {
+    pub(super) values: Values,
+    pub(super) parameters: Vec<Parameter>,
+    pub(super) covariance: DMatrix<f64>,
+}
+
+/// What a model leaves unexplained.
+pub(super) struct Rest {
+    pub(super) noise_n: f64,
+    pub(super) wander_n: f64,
+    pub(super) residual_n: Vec<f64>,
+    pub(super) is_noise: bool,
+    pub(super) places: Vec<Place>,
+    pub(super) stretch: Option<Stretch>,
+}
+
+impl CableLog<'_> {
+    /// Runs a pass, then runs further passes if the findings make more parameters observable or show a narrow stretch of cable with a local defect.
+    /// Such a stretch may hide other effects or be mistaken for them, so it is left out. Returns `None` where the noise cannot be estimated.
+    pub(super) fn passes(&self, start: &mut workbench::Model, held: &[Parameter]) -> Option<Outcome> {
+        let mut outcome = self.pass(self.counts, start)?;
+        let told = self.newly_determined(self.counts, &outcome.naming, held);
+        if told.iter().any(|parameter| !start.free.contains(parameter)) {
+            start.free.extend(told);
+            outcome = self.pass(self.counts, start).unwrap_or(outcome);
+        }
+        if let Some(found) = outcome.rest.stretch.take() {
+            let outside: Vec<bool> =
+                self.counts.iter().zip(&found.cycles).map(|(counts, inside)| *counts && !inside).collect();
+            let again = self.pass(&outside, start);
+            let is_clearer =
+                |again: &Outcome| again.rest.is_noise || again.naming.named.len() > outcome.naming.named.len();
+            if let Some(again) = again.filter(is_clearer) {
+                outcome = Outcome { stretch: Some(found.place), ..again };
+            }
+        }
+        Some(outcome)
+    }
+
+    /// Fits, names effects and assesses the rest, until no further effect can be named.
+    fn pass(&self, counts: &[bool], start: &workbench::Model) -> Option<Outcome> {
+        let bench = self.bench(counts);
+        let base = bench.try_one(start);
+        let noise_n = self.noise_n(&bench, &base)?;
+        let mut search = Search::new(&bench, noise_n, self.around(&base, noise_n), &base, self.with_time);
+        let (mut before, mut rows): (Vec<Effect>, Vec<Effect>) = (Vec::new(), Vec::new());
+        let mut passes = 0;
+        loop {
+            passes += 1;
+            let naming = search.run(&before);
+            let fitted = self.fitted(counts, &naming.model, noise_n);
+            let found: Vec<Effect> = naming.named.iter().map(|named| named.effect).collect();
+            // Effects that were offered and did not stay would be offered again.
+            let more = if found == rows || passes == MOST_PASSES {
+                Vec::new()
+            } else {
+                self.missing(&bench, &workbench::Model { values: fitted.values, free: fitted.parameters.clone() })?
+            };
+            if more.is_empty() {
+                let residual_n = bench.residuals_n(&fitted.values);
+                let rest = self.rest(&bench, residual_n, self.least_n(&base))?;
+                return Some(Outcome { counts: counts.to_vec(), base, naming, fitted, rest, stretch: None });
+            }
+            before = found.iter().copied().chain(more).collect();
+            rows = found;
+        }
+    }
+
+    /// Returns the effects that would be missing if `model` were the given model.
+    fn missing(&self, bench: &Workbench<'_>, model: &workbench::Model) -> Option<Vec<Effect>> {
+        let base = bench.try_one(model);
+        let noise_n = self.noise_n(bench, &base)?;
+        let naming = Search::new(bench, noise_n, self.around(&base, noise_n), &base, self.with_time).run(&[]);
+        Some(naming.named.iter().map(|named| named.effect).collect())
+    }
+
+    /// Returns the standard deviation of the white noise in the model's residual, N.
+    pub(super) fn noise_n(&self, bench: &Workbench<'_>, model: &Trial) -> Option<f64> {
+        let residual_n = bench.residuals_n(&model.values);
+        Some(white_noise(&bench.measured_of(&residual_n))?.max(self.least_n(model)))
+    }
+
+    /// Returns the force below which the model is not trusted, N.
+    fn least_n(&self, model: &Trial) -> f64 {
+        BELIEVED_RATIO * self.around(model, 0.0).tension_n
+    }
+
+    /// Assesses the residual of a model, N.
+    pub(super) fn rest(&self, bench: &Workbench<'_>, residual_n: Vec<f64>, least_n: f64) -> Option<Rest> {
+        let noise_n = white_noise(&bench.measured_of(&residual_n))?.max(least_n);
+        let excess = self.excess(&residual_n, noise_n);
+        let places = excess.places(self.conditions);
+        let share = excess.share();
+        let is_small = share <= WORTH;
+        let stretch = if is_small { None } else { stretch_of_cable(&excess, self.conditions) };
+        let wander = if is_small || stretch.is_some() { 0.0 } else { wander(&excess, &places) };
+        let is_noise = share - wander <= WORTH * (1.0 + wander);
+        Some(Rest { noise_n, wander_n: noise_n * wander.sqrt(), is_noise, places, stretch, residual_n })
+    }
+
+    /// Fits the model with everything found to all samples that count, as an identification of the extended robot file does. Friction that is neither
+    /// in the file nor found stays out. An offset that is larger than chance stays out too, because naming has refused it.
+    pub(super) fn fitted(&self, counts: &[bool], model: &Trial, noise_n: f64) -> Fitted {
+        let given = self.record.params.values();
+        let is_known = |parameter: &Parameter| {
+            !parameter.is_friction() || acts(parameter, &model.values) || acts(parameter, &given)
+        };
+        let of = |also: fn(&Parameter) -> bool| {
+            let params = self.record.params.with_values(&model.values).ok()?;
+            let mut parameters = FitOptions::default().free(&params);
+            parameters.retain(|parameter| is_known(parameter) || also(parameter));
+            let options = FitOptions { parameters: Some(parameters), ..FitOptions::default() };
+            let left_out = self.counts.iter().zip(counts).map(|(all, counts)| *all && !counts);
+            let standing = |(standing, left_out)| if left_out { Standing::Flagged } else { standing };
+            let standings: Vec<Standing> = self.standings.iter().copied().zip(left_out).map(standing).collect();
+            let gang = crate::search::gang::Gang::new(1, self.stop);
+            let record = self.record.with_params(&params);
+            let solution =
+                crate::fit::cables::Search::run(&record, &standings, &options, self.stop, gang.seat(0)).solution;
+            let parameters = solution.unknowns.iter().map(|unknown| unknown.parameter).collect();
+            Some(Fitted { values: *solution.values.first()?, parameters, covariance: solution.covariance })
+        };
+        let has_chance_offset = |fitted: &Fitted| {
+            let place = fitted.parameters.iter().position(|parameter| parameter.place() == OFFSET);
+            let error_n = place.map_or(0.0, |place| fitted.covariance[(place, place)].sqrt());
+            // An offset that is known less well than a single sample stands in for something else.
+            let is_chance =
+                fitted.values[OFFSET].abs() <= HALF_INTERVAL * error_n && HALF_INTERVAL * error_n <= noise_n;
+            model.values[OFFSET].abs() > 0.0 || is_chance
+        };
+        of(|parameter| parameter.place() == OFFSET).filter(has_chance_offset).or_else(|| of(|_| false)).unwrap_or_else(
+            || {
+                let problem = self.bench(counts).problem(&model.free, None);
+                let covariance = crate::certainty::undetermined::covariance(&problem, &[model.values]);
+                Fitted { values: model.values, parameters: model.free.clone(), covariance }
+            },
+        )
+    }
+
+    /// Returns which of the held parameters the log determines once the model has the effects that were missing.
+    fn newly_determined(&self, counts: &[bool], naming: &Naming, held: &[Parameter]) -> Vec<Parameter> {
+        if held.is_empty() || naming.named.is_empty() {
+            return Vec::new();
+        }
+        let bench = self.bench(counts);
+        let mut with_all = naming.model.model();
+        with_all.free.extend(held);
+        let trial = bench.try_one(&with_all);
+        let (_, all) = crate::certainty::undetermined::vagueness(&bench.problem(&trial.free, None), &[trial.values]);
+        let is_told =
+            |(vagueness, of): &(f64, crate::search::solve::Unknown)| *vagueness <= 1.0 && held.contains(&of.parameter);
+        all.into_iter().filter(is_told).map(|(_, of)| of.parameter).collect()
+    }
+}

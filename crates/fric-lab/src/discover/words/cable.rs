@@ -1,0 +1,190 @@
+//! What was found on one cable in words: the verdict, the gap, and where something lies.
+
+use std::fmt::Write as _;
+
+use fric_core::effects::Effect;
+
+use super::{condition, intervals, newtons, percent};
+use crate::discover::rest::places::LEAST_CONCENTRATION;
+use crate::discover::result::{DiscoverCableResult, UnexplainedResult, WhereResult};
+use crate::text::{listed, quantity, significant};
+
+/// The lower end of a range counts as zero below this fraction of the upper end.
+const NO_MORE_THAN_ZERO: f64 = 0.01;
+
+impl WhereResult {
+    /// Returns the range as the words that follow "it sits".
+    #[must_use]
+    pub fn range_in_words(&self) -> String {
+        let [least, greatest] = self.range;
+        let is_last = self.to >= greatest;
+        // A magnitude starts at 0, even if noise keeps it from reaching 0.
+        let from_zero = least >= 0.0 && self.from < NO_MORE_THAN_ZERO * self.to && !is_last;
+        let is_first = self.from <= least || from_zero;
+        let value = |number: f64| {
+            if matches!(self.unit, "m" | "m/s") {
+                quantity(number, None, self.unit)
+            } else {
+                with_unit(number, self.unit)
+            }
+        };
+        match self.signal {
+            "standstill" if self.from >= 0.5 => return "while the cable rests".to_owned(),
+            "standstill" if self.to <= 0.5 => return "while the cable moves".to_owned(),
+            "direction" if self.to <= 0.0 => return "while the cable is reeled in".to_owned(),
+            "direction" if self.from >= 0.0 => return "while the cable is paid out".to_owned(),
+            "standstill" | "direction" => return "throughout".to_owned(),
+            "frequency" => return format!("at {:.2} Hz", self.from),
+            "way_since_reversal" => {
+                return match (is_first, is_last) {
+                    (true, true) => "throughout".to_owned(),
+                    (true, false) => format!("within {} after a reversal", value(self.to)),
+                    (false, true) => format!("more than {} after a reversal", value(self.from)),
+                    (false, false) => format!("{} to {} after a reversal", value(self.from), value(self.to)),
+                };
+            }
+            _ => {}
+        }
+        let noun = plural(self.signal);
+        match (is_first, is_last) {
+            (true, true) => format!("at all {noun}"),
+            (true, false) => format!("at {noun} below {}", value(self.to)),
+            (false, true) => format!("at {noun} above {}", value(self.from)),
+            (false, false) => format!("at {noun} of {} to {}", value(self.from), value(self.to)),
+        }
+    }
+
+    /// Returns the fraction of the excess in the range, as a sentence without its full stop. `of` names the quantity.
+    #[must_use]
+    pub fn in_words(&self, of: &str) -> String {
+        // Writing to a String cannot fail.
+        let mut text = match self.share_of_excess {
+            Some(share) => format!("{} of {of} sits {}", percent(share), self.range_in_words()),
+            None => format!("{of} sits {}", self.range_in_words()),
+        };
+        if let Some(share) = self.share_of_samples.filter(|share| *share < 0.995) {
+            let _ = write!(text, ", {} of the samples", percent(share));
+        }
+        if self.significance.is_some_and(|significance| significance < LEAST_CONCENTRATION) {
+            text += ", which may be chance";
+        }
+        if !self.intervals_s.is_empty() {
+            let _ = write!(text, "; look at {}", intervals(&self.intervals_s));
+        }
+        text
+    }
+}
+
+fn plural(signal: &str) -> String {
+    match signal {
+        "force_rate" => "rates of the sensor force".to_owned(),
+        _ => condition(signal) + "s",
+    }
+}
+
+fn with_unit(number: f64, unit: &str) -> String {
+    let text = significant(number);
+    if unit == "1" { text } else { format!("{text} {unit}") }
+}
+
+impl DiscoverCableResult {
+    /// Returns the verdict on the cable in sentences.
+    #[must_use]
+    pub fn verdict_in_words(&self) -> String {
+        if let Some(missing) = &self.missing {
+            return format!("Nothing can be told: {}. {}", missing.cause, missing.advice);
+        }
+        let kinds: Vec<&str> = self.effects.iter().map(|effect| effect.kind).collect();
+        let wander_n = self.wander_n.filter(|wander_n| *wander_n > 0.0).map(newtons);
+        let mut text = match (self.verdict, kinds.as_slice()) {
+            ("complete", _) if wander_n.is_some() => "No effect of the catalogue is missing.".to_owned(),
+            ("complete", _) => {
+                "Nothing is missing: with values fitted to the log, the model agrees with it to the noise.".to_owned()
+            }
+            ("extended", kinds) => format!("The model lacks {}; with it, what is left is noise.", listed(kinds)),
+            (_, kinds) => {
+                let named: Vec<&str> = kinds.iter().copied().filter(|kind| *kind != Effect::Empirical.kind()).collect();
+                let lacks =
+                    if named.is_empty() { String::new() } else { format!("The model lacks {}. ", listed(&named)) };
+                let rest = lacks + "Something remains that no effect of the catalogue accounts for.";
+                if named.len() == kinds.len() {
+                    rest
+                } else {
+                    rest + " A table stands in for it, unnamed: how large it is, and where."
+                }
+            }
+        };
+        if kinds.len() > 1 {
+            text = text.replace("with it,", "with them,");
+        }
+        if !self.faults.is_empty() {
+            text += " The log has trouble of its own that is no matter of friction.";
+        }
+        if let Some(wander) = wander_n {
+            text += " Beside white noise a slow wander of ";
+            text += &wander;
+            text += " is left that goes with nothing the cable does.";
+        }
+        text
+    }
+
+    /// Returns the gap before and after, as a sentence without its full stop.
+    #[must_use]
+    pub fn gap_in_words(&self) -> Option<String> {
+        let (before, after, floor_n) = (self.before?, self.after?, self.noise_floor_n?);
+        let ends = format!(
+            "rms {} before, {} after; the noise is {}",
+            newtons(before.rms_n),
+            newtons(after.rms_n),
+            newtons(floor_n)
+        );
+        Some(match self.gap_closed.filter(|_| !self.effects.is_empty()) {
+            Some(share) => format!("{ends}: {} of the gap closed", percent(share)),
+            None if self.verdict == "complete" => {
+                format!("rms {} with fitted values; the noise is {}", newtons(after.rms_n), newtons(floor_n))
+            }
+            None => ends,
+        })
+    }
+
+    /// Returns the remaining error relative to the reference's own variation, as a sentence without its full stop; `None` if nothing was measured.
+    #[must_use]
+    pub fn variation_in_words(&self) -> Option<String> {
+        let (after, variation_n) = (self.after?, self.reference_variation_n?);
+        if self.is_constant() {
+            return Some(format!(
+                "the reference varies by {} only: a model that predicts a constant agrees with it as well, so that nothing is \
+                 known of a gain, or of what goes with the load",
+                newtons(variation_n)
+            ));
+        }
+        Some(format!("rms after is {} of what the reference varies by", percent(after.rms_n / variation_n)))
+    }
+
+    /// Whether the reference varies by no more than the model's error.
+    #[must_use]
+    pub fn is_constant(&self) -> bool {
+        let left_n = self.after.map_or(f64::INFINITY, |after| after.rms_n);
+        self.reference_variation_n.is_some_and(|variation_n| variation_n <= left_n)
+    }
+}
+
+impl UnexplainedResult {
+    /// Returns where the rest is concentrated, as sentences without their full stops.
+    #[must_use]
+    pub fn in_words(&self) -> Vec<String> {
+        let mut sentences = Vec::new();
+        sentences.extend(self.places.iter().take(2).map(|place| place.in_words("the rest")));
+        let neighbours: Vec<String> = self.goes_with.iter().filter(|signal| signal.contains(' ')).cloned().collect();
+        if !neighbours.is_empty() {
+            sentences.push(format!("it goes with signals of other cables: {}", listed(&neighbours)));
+        }
+        if !self.intervals_s.is_empty() {
+            sentences.push(format!("it is loud at {}", intervals(&self.intervals_s)));
+        }
+        if sentences.is_empty() {
+            sentences.push("it is spread over the whole log and goes with no condition".to_owned());
+        }
+        sentences
+    }
+}

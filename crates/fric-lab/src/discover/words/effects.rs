@@ -1,0 +1,167 @@
+//! The effects that were found, refused or found in common, in words.
+
+use fric_core::effects::Effect;
+
+use super::{condition, evidence, name_of, newtons};
+use crate::discover::naming::Refusal;
+use crate::discover::result::{
+    CommonEffect, CommonParameter, EffectResult, Evidence, RunnerUpResult, TablePoint, TableResult, TriedResult,
+};
+use crate::fit::HALF_INTERVAL;
+use crate::text::{listed, quantity};
+
+impl EffectResult {
+    /// Returns the parameters with their 95 % intervals.
+    #[must_use]
+    pub fn values_in_words(&self) -> String {
+        if let Some(table) = &self.table {
+            return table.in_words();
+        }
+        let one = |parameter: &fric_core::parameters::ParameterRow| {
+            let value = self.parameters.get(parameter.key)?;
+            let half = self.standard_errors.get(parameter.key).map(|error| HALF_INTERVAL * error);
+            Some(format!("{} {}", name_of(parameter.key), quantity(value, half, parameter.unit)))
+        };
+        let all: Vec<String> = self.effect.row().parameters.iter().filter_map(one).collect();
+        all.join(", ")
+    }
+
+    /// Returns the alternative explanation, as a sentence without its full stop.
+    #[must_use]
+    pub fn alternative_in_words(&self) -> Option<String> {
+        let RunnerUpResult { kind, delta_bic, held_out_rms_n, as_good, effect } = self.runner_up.as_ref()?;
+        let rms = held_out_rms_n.map(newtons)?;
+        if *as_good {
+            return Some(format!(
+                "the log cannot tell it from {kind} (rms {rms}); to tell them apart record {}",
+                excitation([self.effect, *effect])
+            ));
+        }
+        let own = self.evidence.held_out_rms_n.map(newtons)?;
+        Some(if delta_bic.is_some_and(|number| number < 0.0) {
+            format!(
+                "next best would be {kind} in its place, rms {rms} against {own} (ΔBIC within the extended model {} against {})",
+                evidence(*delta_bic),
+                evidence(self.evidence.delta_bic)
+            )
+        } else {
+            "nothing else in the catalogue helps".to_owned()
+        })
+    }
+}
+
+impl TableResult {
+    /// Returns what the table changes, by how much and where, and what it looks like, as a sentence without its full stop.
+    #[must_use]
+    pub fn in_words(&self) -> String {
+        let largest = self.points.iter().max_by(|one, other| one.value.abs().total_cmp(&other.value.abs()));
+        let (Some(largest), Some(first), Some(last)) = (largest, self.points.first(), self.points.last()) else {
+            return "unnamed".to_owned();
+        };
+        let value = |point: &TablePoint| {
+            let half = point.standard_error.map(|error| HALF_INTERVAL * error);
+            if self.changes == "force" {
+                format!("a force at the platform of up to {}", quantity(point.value, half, "N"))
+            } else {
+                let half = half.map(|half| 100.0 * half);
+                format!("a change of the friction by up to {}", quantity(100.0 * point.value, half, "%"))
+            }
+        };
+        let at = |number: f64| quantity(number, None, self.unit);
+        format!(
+            "unnamed: {} over the {} of {} to {}, largest at {}; physics that look like it: {}",
+            value(largest),
+            condition(self.over),
+            at(first.at),
+            at(last.at),
+            at(largest.at),
+            self.looks_like.join("; ")
+        )
+    }
+}
+
+/// Returns what to record to distinguish the effects.
+fn excitation(effects: [Effect; 2]) -> String {
+    let mut all: Vec<&str> =
+        effects.into_iter().filter_map(|effect| Some(effect.row().parameters.first()?.excitation)).collect();
+    all.dedup();
+    all.join("; and ")
+}
+
+impl TriedResult {
+    /// Returns the evidence and the reason for the refusal, as a sentence without its full stop.
+    #[must_use]
+    pub fn in_words(&self) -> String {
+        let Evidence { delta_bic, held_out_rms_n } = &self.evidence;
+        let rms = held_out_rms_n.map_or_else(|| "–".to_owned(), newtons);
+        format!("{} helps, to rms {rms} with ΔBIC {}, but {}", self.kind, evidence(*delta_bic), self.reason)
+    }
+}
+
+impl Refusal {
+    /// Returns the reason why a candidate that helps is not named, as a clause.
+    #[must_use]
+    pub fn in_words(self) -> String {
+        match self {
+            Self::Weak => "the evidence is weaker than what chance may give".to_owned(),
+            Self::AtBound => "its parameter runs to the end of its range".to_owned(),
+            Self::Open(other) => format!("the log cannot tell it from {}", name_of(other)),
+            Self::Unsteady(signal) => {
+                format!(
+                    "its size is not one constant, it changes with the {}: something else is taken for it",
+                    condition(signal)
+                )
+            }
+            Self::StandsIn(signal) => format!(
+                "a law without a name that goes with the {} explains more, and leaves little for it",
+                condition(signal)
+            ),
+            Self::Usual => "it is no more than what robots without it have".to_owned(),
+            Self::UsualInstead(usual) => {
+                format!("{} of a size that robots usually have leaves little for it to explain", usual.kind())
+            }
+            Self::Bent(signal) => {
+                format!(
+                    "what is left would go away if its size went with the {}: its law is another one",
+                    condition(signal)
+                )
+            }
+        }
+    }
+}
+
+impl CommonEffect {
+    /// Returns on how many of all cables the effect occurs, with its parameters over them.
+    #[must_use]
+    pub fn in_words(&self, cable_count: usize) -> String {
+        let on = if self.cables.len() == cable_count {
+            match cable_count {
+                2 => "both cables".to_owned(),
+                count => format!("all {} cables", counted(count)),
+            }
+        } else {
+            listed(&self.cables)
+        };
+        let values: Vec<String> = self.parameters.iter().map(CommonParameter::in_words).collect();
+        format!("{} on {on}: {}", self.kind, values.join(", "))
+    }
+}
+
+impl CommonParameter {
+    /// Returns the mean with its 95 % interval, or says that the cables differ.
+    #[must_use]
+    pub fn in_words(&self) -> String {
+        let name = name_of(self.key);
+        if self.differs {
+            let [least, greatest] = [self.least, self.greatest].map(|value| quantity(value, None, self.unit));
+            return format!("{name} {least} to {greatest}, which is more than the errors");
+        }
+        format!("{name} {}", quantity(self.mean, Some(HALF_INTERVAL * self.standard_error), self.unit))
+    }
+}
+
+fn counted(count: usize) -> String {
+    const WORDS: [&str; 13] =
+        ["no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve"];
+    WORDS.get(count).map_or_else(|| count.to_string(), |word| (*word).to_owned())
+}

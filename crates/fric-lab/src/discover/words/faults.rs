@@ -1,0 +1,67 @@
+//! Faults of the recording in words, each with what to do about it.
+
+use super::{intervals, newtons};
+use crate::discover::faults::Fault;
+use crate::discover::result::FaultResult;
+use crate::text::{quantity, significant, wrapped};
+
+/// Describes the recording faults of each cable, one paragraph per fault; empty if there are none.
+pub fn recording_lines<'a>(cables: impl Iterator<Item = (&'a str, &'a [FaultResult])>) -> String {
+    let told = cables.flat_map(|(name, faults)| {
+        faults.iter().map(move |fault| wrapped(&format!("{name}, recording: "), &fault.in_words()))
+    });
+    let text: String = told.collect();
+    if text.is_empty() { text } else { format!("\n{text}") }
+}
+
+impl FaultResult {
+    /// Returns the fault and what to do, as a sentence without its full stop.
+    #[must_use]
+    pub fn in_words(&self) -> String {
+        let value = |key: &str| self.parameters.get(key).unwrap_or(f64::NAN);
+        let left_out = || format!("at {}: left out of all the rest", intervals(&self.intervals_s));
+        match self.fault {
+            Fault::Hum => format!(
+                "it hums at {:.2} Hz with an amplitude of {}: no friction does; look at wiring and amplifiers",
+                value("frequency_hz"),
+                newtons(value("amplitude_n"))
+            ),
+            Fault::Vibration => format!(
+                "it vibrates at {:.2} Hz, damped by {} of the critical, {} rms: a mount or a frame that rings; stiffen it, fix the sensor nearer to the \
+                 pulley, or drive it with less jerk",
+                value("frequency_hz"),
+                significant(value("damping_ratio")),
+                newtons(value("rms_n"))
+            ),
+            Fault::NoisyLength => format!(
+                "the length trembles by {} m (standard deviation), which the model takes for motion; `length_noise_m` = {} m of the monitor keeps \
+                 it out, which an extended file sets; look at the encoder's resolution, supply and shielding",
+                significant(value("noise_m")),
+                significant(value("length_noise_m"))
+            ),
+            Fault::Frozen => format!("the force sensor stands still {}", left_out()),
+            Fault::Clipped => format!("the force sensor is at the end of its range {}", left_out()),
+            Fault::Spikes => {
+                format!(
+                    "the force sensor spikes {}; look at its cable, its plugs and what switches beside it",
+                    left_out()
+                )
+            }
+            Fault::CoarseConverter => format!(
+                "the force sensor has steps of {}, which are part of the noise; use more of the converter's range, or one of more bits",
+                newtons(value("step_n"))
+            ),
+            Fault::ReferenceDelay => format!(
+                "the reference comes late by {}, and was put where it belongs; stamp it where it is measured, or take the filter of its \
+                 amplifier into account",
+                quantity(value("delay_s"), None, "s")
+            ),
+            Fault::ClockSkew => format!(
+                "the reference gets ahead by {} s each second, and comes late by {} s at the beginning: its clock is another one; it was put \
+                 where it belongs; record both with one clock, or synchronise them",
+                significant(value("skew_ratio")),
+                significant(value("delay_s"))
+            ),
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! `fit`: identifies the parameters of the friction model from logs.
+
+use fric_lab::discover::{CorrectedFit, fit_cables_corrected};
+use fric_lab::fit::readiness;
+use fric_lab::fit::result::{FitResult, Fits};
+use fric_lab::fit::{CableFit, FitOptions, Measurements, Reference, Weighing, fit_wrench, residuals_n, rewritten};
+use fric_work::fit_report::fit_report;
+use fric_work::provenance::Provenance;
+use fric_work::report;
+use pyo3::prelude::*;
+
+use crate::arrays::{array, fixed};
+use crate::errors::{Fault, Outcome};
+use crate::log;
+use crate::results;
+use crate::robot::Robot;
+use crate::watch::Watch;
+use crate::work::runs::{Runs, named_parameters};
+
+/// The origin of the robot in messages.
+pub const ORIGIN: &str = "the robot";
+
+/// Returns the reference of a name.
+pub fn named_reference(name: &str) -> Outcome<Reference> {
+    Reference::ALL.into_iter().find(|known| known.name() == name).ok_or_else(|| {
+        let names = Reference::ALL.into_iter().map(Reference::name);
+        Fault::config(fric_core::robot::unknown_name("reference", name, names))
+    })
+}
+
+/// Identifies the friction of a robot's cables from logs: `fric-cli fit`.
+///
+/// `log` is a Log, a path, or a list of them, each a run of its own. `reference` is what the model is compared with: the cable forces measured at the
+/// platform, or the wrench on the platform (measured, else that of its mass), for all cables at once. `parameters` names those to vary, such as "mu"
+/// or "stribeck.ratio"; by default the friction and each effect of the cable. `huber` weights large deviations linearly. Data that allow no fit raise
+/// FitError.
+///
+/// >>> robot = Robot.read("examples/mini-ipanema.toml")
+/// >>> robot.cable("cable1").friction.mu = 0.03
+/// >>> result = fit(robot, simulate(robot, duration_s=20.0))
+/// >>> cable = result.cable("cable1")
+/// >>> abs(cable.values["mu"] - 0.03) < 5 * cable.standard_errors["mu"]
+/// True
+/// >>> result.robot.cable("cable1").friction.mu == cable.values["mu"]
+/// True
+#[pyfunction]
+#[pyo3(
+    signature = (robot, log, *, reference="forces", parameters=None, huber=false, progress=None),
+    text_signature = "(robot, log, *, reference=\"forces\", parameters=None, huber=False, progress=False)"
+)]
+pub fn fit(
+    robot: &Bound<'_, Robot>,
+    log: &Bound<'_, PyAny>,
+    reference: &str,
+    parameters: Option<Vec<String>>,
+    huber: bool,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> Outcome<Py<PyAny>> {
+    let py = robot.py();
+    let mut watch = Watch::new(py, progress)?;
+    let reference = named_reference(reference)?;
+    let options = FitOptions {
+        parameters: parameters.as_deref().map(named_parameters).transpose()?,
+        weighing: if huber { Weighing::Huber } else { Weighing::LeastSquares },
+    };
+    let runs = Runs::new(log)?;
+    let given = robot.borrow().clone();
+    let file = &given.file;
+    log::warn(py, &file.warnings())?;
+    let lack = readiness::geometry(file, ORIGIN).filter(|_| reference == Reference::Wrench);
+    lack.map_or(Ok(()), |lack| Err(lack.error()))?;
+    let mut measurements = Measurements::new(&file.params(), reference);
+    let holdings = runs.read(robot, &mut measurements, &mut watch)?;
+    let readiness = match reference {
+        Reference::Forces => readiness::by_forces(file, &holdings),
+        Reference::Wrench => readiness::by_wrench(file, ORIGIN, &holdings),
+    };
+    log::warn(py, &readiness.check()?)?;
+    let (fits, faults, corrected) = watch.fit(|progress| match reference {
+        Reference::Forces => {
+            let CorrectedFit { cables, faults, measurements } = fit_cables_corrected(&measurements, &options, progress);
+            Ok((Fits::Forces(cables), faults, measurements))
+        }
+        Reference::Wrench => {
+            fit_wrench(&measurements, &options, progress).map(|fit| (Fits::Wrench(fit), Vec::new(), None))
+        }
+    })??;
+    let measurements = corrected.unwrap_or(measurements);
+    let result = FitResult::new(file, &fits).with_faults(&faults);
+    result.check_used()?;
+    log::warn(py, &result.warnings(&fits, &readiness))?;
+    let residuals_n = py.detach(|| residuals_n(&measurements, fits.cables()));
+    let text = rewritten(&given.to_toml()?, ORIGIN, fits.cables())?;
+    let cable = |(fit, residuals_n): (&CableFit, Vec<f64>)| {
+        let count = fit.fitted.len();
+        // Matrices are stored by columns, arrays by rows.
+        let [covariance, correlation] = [fit.covariance.transpose(), fit.correlation().transpose()]
+            .map(|matrix| array(py, matrix.as_slice().to_vec(), &[count, count]));
+        let names: Vec<String> = fit.fitted.iter().map(ToString::to_string).collect();
+        Ok((names, covariance?, correlation?, fixed(py, residuals_n)))
+    };
+    let cables = fits.cables().iter().zip(residuals_n).map(cable).collect::<Outcome<Vec<_>>>()?;
+    let provenance = Provenance::of_call("fric.fit", &runs.files(), Some((&result.robot, &given.to_toml()?)));
+    let page = |provenance: &Provenance| report::fit::page(&result, fits.cables(), provenance);
+    let shown = results::shown(py, result.summary(), &result, page, report::fit::table(&result), &provenance)?;
+    let fields = (shown, fit_report(&result, fits.cables()), Py::new(py, Robot::parse(text, ORIGIN)?)?, cables);
+    Ok(results::of(py, "FitResult", fields)?.unbind())
+}

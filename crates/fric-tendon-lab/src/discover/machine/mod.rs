@@ -1,0 +1,448 @@
+//! Finds wrong numbers of bending, loads and measurement in a file, from tensions and markers together.
+//!
+//! Candidates enter one after the other, each time the one that decreases the joint cost most. Every entered candidate is then tested again for
+//! removal and for replacement. Friction of holes, drifts and wrong lines take part as candidates so that nothing else is named in their place; the
+//! search on the tensions names them. A gain that is negligible, or smaller than the rest, gives no name. Candidates that explain the run equally
+//! well, within the model's own error, are reported together.
+
+pub mod candidate;
+pub mod joint;
+
+use fric_lab::fit::HALF_INTERVAL;
+use fric_lab::fit::result::Numbers;
+use fric_tendon::file::{ManipulatorFile, ManipulatorTables};
+use rayon::prelude::*;
+
+use self::candidate::Candidate;
+use self::joint::{Jacobian, Joint, Point, Set, Units};
+use crate::discover::case::thinned_to;
+use crate::discover::friction::naming::LEAST_EVIDENCE;
+use crate::identify::errors::{MODEL_MARKER_RATIO, MODEL_TENSION_RATIO};
+use crate::identify::unknown::Unknown;
+use crate::run::{Run, RunSample};
+
+/// Maximum number of samples to compare. Shapes are quasi-static, and turning points are kept.
+const MOST_SAMPLES: usize = 200;
+/// Number of candidates with a name, and of others, that are fitted in each step, in the order of their predicted gains.
+const MOST_TRIALS: usize = 4;
+const MOST_OTHER_TRIALS: usize = 3;
+const MOST_CANDIDATES: usize = 4;
+/// Remaining squares per number above which a fit counts as stuck, and the points from which it is restarted, in widest intervals.
+const STUCK_RATIO: f64 = 2.0;
+const RESTARTS: [f64; 6] = [-6.0, -4.0, -2.0, 2.0, 4.0, 6.0];
+/// Candidates that promise this fraction of the best one's evidence are fitted completely before they are compared.
+const NEAR_RATIO: f64 = 0.8;
+/// Negligible change, as a fraction of the greatest tension and of the length.
+const PRACTICAL_RATIO: f64 = 0.0005;
+/// Temperature sensitivity of a silica grating, `α_Λ + α_n`, 1/K, and the C-band wavelength, nm, which is used if the file states none.
+const SILICA_PER_K: f64 = 6.85e-6;
+const USUAL_WAVELENGTH_NM: f64 = 1550.0;
+
+/// The findings of the search.
+pub struct Machine {
+    pub named: Vec<Named>,
+    /// The tables of the file with the findings.
+    pub tables: ManipulatorTables,
+    /// μ of each hole, as far as the run distinguishes it from the shared one; empty if the file has no friction with memory.
+    pub mu: Vec<f64>,
+}
+
+impl Machine {
+    /// Returns empty findings.
+    pub fn none(file: &ManipulatorFile) -> Self {
+        Self { named: Vec::new(), tables: file.tables().clone(), mu: Vec::new() }
+    }
+}
+
+/// A named candidate.
+#[derive(Clone, Debug)]
+pub struct Named {
+    pub candidate: Candidate,
+    pub parameters: Numbers,
+    pub standard_errors: Numbers,
+    pub delta_bic: f64,
+    pub gap_closed: f64,
+    /// The best other candidate in its place, and its evidence.
+    pub runner_up: Option<(Candidate, f64)>,
+    /// Candidates that the run does not distinguish from it.
+    pub alike: Vec<Candidate>,
+}
+
+/// A fitted candidate.
+struct Trial {
+    candidate: Candidate,
+    at: Place,
+    /// Decrease of the cost.
+    gain: f64,
+    /// BIC with the candidate minus BIC without it, assuming white noise.
+    delta_bic: f64,
+}
+
+/// A candidate that entered, with the alternatives tried in its place.
+#[derive(Clone)]
+struct Entry {
+    candidate: Candidate,
+    gain: f64,
+    delta_bic: f64,
+    runner_up: Option<(Candidate, f64)>,
+    alike: Vec<Candidate>,
+}
+
+/// A minimum with its slopes.
+#[derive(Clone)]
+struct Place {
+    point: Point,
+    set: Set,
+    jacobian: Jacobian,
+    units: Units,
+}
+
+/// Searches for wrong numbers. Returns `None` if tensions and markers cannot be compared.
+pub fn search(file: &ManipulatorFile, run: &Run) -> Option<Machine> {
+    let kept = thinned_to(run.samples(), MOST_SAMPLES);
+    let samples: Vec<RunSample> = kept.iter().filter_map(|place| run.samples().get(*place)).cloned().collect();
+    let run = Run::new(samples, run.disk_count()).ok()?;
+    let candidates = Candidate::all(file.tables(), run.has_markers());
+    let mut search = Search { joint: Joint::new(file, &run, &candidates)?, candidates };
+    let start = search.joint.start()?;
+    let (common, units) = (search.joint.common(), search.joint.units(&start));
+    let jacobian = search.joint.jacobian(&start)?;
+    let point = search.joint.fitted(&start, &common, &jacobian, &[Unknown::SharedMu], units)?;
+    let before = search.settled(point, common)?;
+    let mut entries: Vec<Entry> = Vec::new();
+    let mut now = before.clone();
+    while entries.len() < MOST_CANDIDATES {
+        let chosen: Vec<Candidate> = entries.iter().map(|entry| entry.candidate).collect();
+        let Some((entry, place)) = search.enter(&mut now, &chosen) else { break };
+        entries.push(entry);
+        now = place;
+    }
+    if entries.len() > 1 {
+        (entries, now) = search.reconsidered(entries, now, &before)?;
+    }
+    search.named(file, &entries, &before, &now)
+}
+
+struct Search {
+    joint: Joint,
+    candidates: Vec<Candidate>,
+}
+
+impl Search {
+    fn place(&self, point: Point, set: Set) -> Option<Place> {
+        let jacobian = self.joint.jacobian(&point)?;
+        let units = self.joint.units(&point);
+        Some(Place { point, set, jacobian, units })
+    }
+
+    /// Returns the minimum near a point that was found with slopes of another one.
+    fn settled(&self, point: Point, set: Set) -> Option<Place> {
+        let near = self.place(point, set)?;
+        let point = self.joint.fitted(&near.point, &near.set, &near.jacobian, &[], near.units)?;
+        let units = self.joint.units(&point);
+        Some(Place { point, units, ..near })
+    }
+
+    fn set_of(&self, common: &Set, candidates: &[Candidate]) -> Set {
+        candidates.iter().fold(common.clone(), |set, candidate| self.joint.with(&set, *candidate))
+    }
+
+    /// Returns the candidate that decreases the cost most beside the present ones, if it is significant.
+    fn enter(&mut self, now: &mut Place, chosen: &[Candidate]) -> Option<(Entry, Place)> {
+        self.begin_step(now, chosen);
+        let gram = self.joint.gram(&now.point, &now.jacobian, now.units);
+        let count = self.count(&now.point);
+        let (own_gain, _) = self.joint.linear(&now.point, &now.set, (&gram.0, &gram.1))?;
+        let promised = |candidate: &Candidate| {
+            let set = self.joint.with(&now.set, *candidate);
+            let (gain, _) = self.joint.linear(&now.point, &set, (&gram.0, &gram.1))?;
+            let score = gain - own_gain - self.joint.numbers(*candidate) * count.ln();
+            (score > LEAST_EVIDENCE).then_some((*candidate, set, score))
+        };
+        let beside = self.candidates.iter().filter(|candidate| !chosen.contains(candidate));
+        let mut ranking: Vec<(Candidate, Set, f64)> = beside.filter_map(promised).collect();
+        ranking.sort_by(|(.., one), (.., other)| other.total_cmp(one));
+        let (named, others): (Vec<_>, Vec<_>) = ranking.into_iter().partition(|(candidate, ..)| candidate.is_named());
+        let picked: Vec<(Candidate, Set, f64)> =
+            named.into_iter().take(MOST_TRIALS).chain(others.into_iter().take(MOST_OTHER_TRIALS)).collect();
+        let cost = self.joint.cost(&now.point, &now.set, now.units);
+        let trial = |(candidate, set, _): (Candidate, Set, f64)| {
+            let fresh = candidate.frees(&self.joint.runs.given);
+            let point = self.joint.fitted(&now.point, &set, &now.jacobian, &fresh, now.units)?;
+            let point = self.restarted(point, &set, &fresh, now.units);
+            let gain = cost - self.joint.cost(&point, &set, now.units);
+            let delta_bic = self.joint.numbers(candidate) * count.ln() - gain;
+            let is_possible = candidate != Candidate::TipLoad || self.has_possible_tip(&point);
+            let is_enough = delta_bic < -LEAST_EVIDENCE && self.is_practical(&now.point, &point);
+            (is_possible && is_enough).then_some((candidate, point, set, delta_bic))
+        };
+        let trials: Vec<(Candidate, Point, Set, f64)> = picked.into_par_iter().filter_map(trial).collect();
+        // Candidates near the best are fitted with their own slopes.
+        let best = trials.iter().map(|(.., delta_bic)| *delta_bic).fold(0.0, f64::min);
+        let near = trials.into_par_iter().filter(|(.., delta_bic)| *delta_bic <= NEAR_RATIO * best);
+        let sharpened = |(candidate, point, set, _): (Candidate, Point, Set, f64)| {
+            let at = self.settled(point, set)?;
+            let gain = cost - self.joint.cost(&at.point, &at.set, now.units);
+            let delta_bic = self.joint.numbers(candidate) * count.ln() - gain;
+            Some(Trial { candidate, at, gain, delta_bic })
+        };
+        let mut trials: Vec<Trial> = near.filter_map(sharpened).collect();
+        trials.sort_by(|one, other| one.delta_bic.total_cmp(&other.delta_bic));
+        while !trials.is_empty() {
+            let place = taken(&trials, self.margin(now));
+            let design = self.design(trials.get(place)?);
+            let evidence = |trial: &Trial| self.joint.numbers(trial.candidate) * count.ln() - trial.gain / design;
+            let trial = trials.get(place)?;
+            if evidence(trial) > -LEAST_EVIDENCE {
+                trials.remove(place);
+                continue;
+            }
+            let bound = trials.first()?.delta_bic + self.margin(now);
+            let others = || trials.iter().filter(|other| other.candidate != trial.candidate);
+            let alike = others().filter(|other| other.candidate.is_named() && other.delta_bic < bound);
+            let entry = Entry {
+                candidate: trial.candidate,
+                gain: trial.gain,
+                delta_bic: evidence(trial),
+                runner_up: others().next().map(|other| (other.candidate, evidence(other))),
+                alike: alike.map(|other| other.candidate).collect(),
+            };
+            return Some((entry, trials.swap_remove(place).at));
+        }
+        None
+    }
+
+    /// Returns the ratio of the variance of a candidate's numbers to that under white noise. The gain must be divided by it to be evidence.
+    fn design(&self, trial: &Trial) -> f64 {
+        let joint = &self.joint;
+        let Some(errors) = joint.errors(&trial.at.point, &trial.at.set, &trial.at.jacobian) else {
+            return f64::INFINITY;
+        };
+        let unknowns = trial.candidate.frees(&joint.runs.given);
+        let places: Vec<usize> = unknowns.iter().filter_map(|unknown| joint.place(*unknown)).collect();
+        let own = errors.iter().filter(|error| places.contains(&error.place));
+        own.map(|error| (error.whole / error.white).powi(2)).filter(|ratio| ratio.is_finite()).fold(1.0, f64::max)
+    }
+
+    /// Returns a better minimum if a fit got stuck: a manipulator under its weight can fall to another side within the search range. The search
+    /// restarts from the values of the file, with the candidate's number at some distances from the stated one.
+    fn restarted(&self, point: Point, set: &Set, fresh: &[Unknown], units: Units) -> Point {
+        let cost = self.joint.cost(&point, set, units);
+        let [unknown] = fresh else { return point };
+        if cost < STUCK_RATIO * self.count(&point) {
+            return point;
+        }
+        let given = &self.joint.runs.given;
+        let widest = unknown.widest(given, self.joint.runs.greatest_tension_n);
+        let at = |share: f64| self.joint.at(*unknown, share * widest);
+        let starts: Vec<Point> = RESTARTS.into_par_iter().filter_map(at).collect();
+        let by_cost = |one: &&Point, other: &&Point| {
+            self.joint.cost(one, set, units).total_cmp(&self.joint.cost(other, set, units))
+        };
+        let Some(best) = starts.iter().min_by(by_cost) else { return point };
+        let settled = self.settled(best.clone(), set.clone()).and_then(|near| self.settled(near.point, near.set));
+        match settled {
+            Some(other) if self.joint.cost(&other.point, set, units) < cost => other.point,
+            _ => point,
+        }
+    }
+
+    /// Sets the time from which on a common shift of all gratings would explain most, if the file states none.
+    fn begin_step(&mut self, now: &mut Place, chosen: &[Candidate]) {
+        let Some(shift) = self.joint.place(Unknown::CommonShift) else { return };
+        let Some(gratings) = &mut self.joint.runs.given.gratings else { return };
+        if gratings.common_step_nm.is_some() || chosen.contains(&Candidate::Temperature) {
+            return;
+        }
+        gratings.common_step_s = None;
+        let Some(whole) = self.joint.slope(&now.point, shift) else { return };
+        now.jacobian.replace(shift, whole);
+        let begin = self.joint.step_begin(&now.point, &now.set, &now.jacobian, now.units).unwrap_or(0);
+        let times_s = self.joint.runs.times_s();
+        let before = begin.checked_sub(1).and_then(|before| times_s.get(before));
+        let Some(gratings) = &mut self.joint.runs.given.gratings else { return };
+        gratings.common_step_s = before.zip(times_s.get(begin)).map(|(before, at)| 0.5 * (before + at));
+        if let Some(slope) = self.joint.slope(&now.point, shift) {
+            now.jacobian.replace(shift, slope);
+        }
+    }
+
+    /// Tests each candidate again: whether it is significant beside the others, and whether another one is better in its place.
+    fn reconsidered(&mut self, mut entries: Vec<Entry>, mut now: Place, before: &Place) -> Option<(Vec<Entry>, Place)> {
+        let mut at = 0;
+        while at < entries.len() {
+            let others: Vec<Candidate> = entries
+                .iter()
+                .enumerate()
+                .filter(|(place, _)| *place != at)
+                .map(|(_, entry)| entry.candidate)
+                .collect();
+            let set = self.set_of(&before.set, &others);
+            let fresh: Vec<Unknown> =
+                others.iter().flat_map(|candidate| candidate.frees(&self.joint.runs.given)).collect();
+            let step_s = self.joint.runs.given.gratings.as_ref().and_then(|table| table.common_step_s);
+            let point = self.joint.fitted(&now.point, &set, &now.jacobian, &fresh, now.units)?;
+            let mut without = self.settled(point, set)?;
+            match self.enter(&mut without, &others) {
+                None => {
+                    entries.remove(at);
+                    now = without;
+                    continue;
+                }
+                Some((entry, place)) => {
+                    if entry.candidate != entries[at].candidate
+                        && others.contains(&Candidate::Temperature)
+                        && let Some(gratings) = &mut self.joint.runs.given.gratings
+                    {
+                        gratings.common_step_s = step_s;
+                    }
+                    now = place;
+                    entries[at] = entry;
+                }
+            }
+            at += 1;
+        }
+        Some((entries, now))
+    }
+
+    /// Returns the final names.
+    fn named(&self, file: &ManipulatorFile, entries: &[Entry], before: &Place, now: &Place) -> Option<Machine> {
+        let joint = &self.joint;
+        let count = self.count(&now.point);
+        let squares = |point: &Point| {
+            let sums = joint.sums(point);
+            sums.tension_n2 / now.units.tension_n.powi(2) + sums.marker_m2 / now.units.marker_m.powi(2)
+        };
+        let left = (squares(&now.point) - count).max(0.0);
+        // Wrong lines cause wrong shapes, and a rest above the noise may have any cause.
+        let has_wrong_lines =
+            entries.iter().any(|entry| matches!(entry.candidate, Candidate::AllLines | Candidate::Line(_)));
+        if has_wrong_lines || left > count {
+            return Some(Machine::none(file));
+        }
+        let errors = joint.errors(&now.point, &now.set, &now.jacobian)?;
+        let error = |unknown: Unknown| {
+            let place = joint.place(unknown)?;
+            errors.iter().find(|error| error.place == place).map(|error| error.whole)
+        };
+        let is_clear = |entry: &&Entry| {
+            let unknowns = entry.candidate.frees(&joint.runs.given);
+            let mut off = unknowns.iter().map(|unknown| (joint.found(&now.point, *unknown), error(*unknown)));
+            entry.candidate.is_named()
+                && entry.gain > left
+                && off.any(|(distance, error)| error.is_some_and(|error| distance.abs() > HALF_INTERVAL * error))
+        };
+        let clear: Vec<&Entry> = entries.iter().filter(is_clear).collect();
+        let mut tables = file.tables().clone();
+        for unknown in clear.iter().flat_map(|entry| entry.candidate.frees(&joint.runs.given)) {
+            if unknown == Unknown::CommonShift
+                && let (Some(to), Some(from)) = (&mut tables.gratings, &joint.runs.given.gratings)
+            {
+                to.common_step_s = from.common_step_s;
+            }
+            unknown.put(&mut tables, joint.found(&now.point, unknown));
+        }
+        let gap = (squares(&before.point) - count).max(0.0).sqrt();
+        let gap_closed = if gap > 0.0 { 1.0 - left.sqrt() / gap } else { 1.0 };
+        let named = clear.iter().map(|entry| {
+            let (parameters, standard_errors) = numbers(entry.candidate, file.tables(), &tables, &error);
+            Named {
+                candidate: entry.candidate,
+                parameters,
+                standard_errors,
+                delta_bic: entry.delta_bic,
+                gap_closed,
+                runner_up: entry.runner_up,
+                alike: entry.alike.clone(),
+            }
+        });
+        let remembers =
+            file.tables().tendon.mu == joint.runs.given.tendon.mu && file.tables().tendon.sigma_n_per_m.is_some();
+        let mu = if remembers {
+            now.point.state.tables(&joint.runs.given).tendon.mu.as_slice().to_vec()
+        } else {
+            Vec::new()
+        };
+        Some(Machine { named: named.collect(), tables, mu })
+    }
+
+    fn count(&self, point: &Point) -> f64 {
+        let sums = self.joint.sums(point);
+        (sums.tension_count + sums.marker_count).max(2.0)
+    }
+
+    fn has_possible_tip(&self, point: &Point) -> bool {
+        self.joint.runs.given.tip.mass_kg + self.joint.found(point, Unknown::TipMass) >= 0.0
+    }
+
+    /// Whether the residual decreases by more than a negligible amount, in tensions or in distances of the disks.
+    fn is_practical(&self, before: &Point, after: &Point) -> bool {
+        let [one, other] = [before, after].map(|point| self.joint.sums(point));
+        let tension_n2 = (one.tension_n2 - other.tension_n2) / one.tension_count.max(1.0);
+        let marker_m2 = 2.0 * (one.marker_m2 - other.marker_m2) / one.marker_count.max(1.0);
+        tension_n2 > (PRACTICAL_RATIO * self.joint.runs.greatest_tension_n).powi(2)
+            || marker_m2 > (PRACTICAL_RATIO * self.joint.length_m).powi(2)
+    }
+
+    /// Returns the difference up to which two candidates explain a run equally: chance plus the model's own error.
+    fn margin(&self, now: &Place) -> f64 {
+        let sums = self.joint.sums(&now.point);
+        let tension = MODEL_TENSION_RATIO * self.joint.runs.greatest_tension_n / now.units.tension_n;
+        let marker = MODEL_MARKER_RATIO * self.joint.length_m / now.units.marker_m;
+        LEAST_EVIDENCE + sums.tension_count * tension * tension + sums.marker_count * marker * marker
+    }
+}
+
+/// Returns the index of the trial that enters; the best trial comes first. Among equal trials it is one without a name here if it is as good, else
+/// the one whose stated value is least reliable.
+fn taken(trials: &[Trial], margin: f64) -> usize {
+    let best = trials.first().map_or(0.0, |trial| trial.delta_bic);
+    let is_unnamed = |trial: &Trial| !trial.candidate.is_named() && trial.delta_bic < best + LEAST_EVIDENCE;
+    let close = || trials.iter().enumerate().filter(|(_, trial)| trial.delta_bic < best + margin);
+    let by_rank = || close().max_by_key(|(place, trial)| (trial.candidate.rank(), std::cmp::Reverse(*place)));
+    trials.iter().position(is_unnamed).or_else(|| by_rank().map(|(place, _)| place)).unwrap_or(0)
+}
+
+/// Returns the parameters of a candidate and their standard errors.
+fn numbers(
+    candidate: Candidate,
+    given: &ManipulatorTables,
+    tables: &ManipulatorTables,
+    error: &dyn Fn(Unknown) -> Option<f64>,
+) -> (Numbers, Numbers) {
+    let (mut parameters, mut errors) = (Vec::new(), Vec::new());
+    for unknown in candidate.frees(given) {
+        let mut add = |key: String, value: f64, per_distance: f64| {
+            parameters.push((key.clone(), value));
+            errors.extend(error(unknown).map(|error| (key, per_distance.abs() * error)));
+        };
+        match unknown {
+            Unknown::SegmentStiffness(segment) => {
+                #[expect(clippy::cast_precision_loss, reason = "a small count")]
+                let number = (segment + 1) as f64;
+                parameters.push(("segment".to_owned(), number));
+                let value = unknown.value(tables);
+                errors.extend(error(unknown).map(|error| ("stiffness_ratio".to_owned(), value * error)));
+                parameters.push(("stiffness_ratio".to_owned(), value));
+            }
+            Unknown::Stiffness => {
+                let ratio = unknown.value(tables) / unknown.value(given);
+                add(unknown.key(), unknown.value(tables), unknown.value_per_distance(tables));
+                add("stiffness_ratio".to_owned(), ratio, ratio);
+            }
+            Unknown::CommonShift => {
+                let table = tables.gratings.as_ref();
+                let wavelengths = table.and_then(|table| table.wavelength_nm.as_ref());
+                let wavelength_nm =
+                    wavelengths.and_then(|all| all.as_slice().first()).copied().unwrap_or(USUAL_WAVELENGTH_NM);
+                let kelvin = (wavelength_nm * SILICA_PER_K).recip();
+                let shift_nm = unknown.value(tables);
+                add(unknown.key(), shift_nm, 1.0);
+                add("temperature_k".to_owned(), shift_nm * kelvin, kelvin);
+                parameters.extend(table.and_then(|table| table.common_step_s).map(|at| ("from_s".to_owned(), at)));
+            }
+            _ => add(unknown.key(), unknown.value(tables), unknown.value_per_distance(tables)),
+        }
+    }
+    (Numbers(parameters), Numbers(errors))
+}

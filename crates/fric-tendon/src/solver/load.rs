@@ -1,0 +1,90 @@
+//! Weight and tip load: the balance of forces and moments from the tip to the base, \[C\] 8–10.
+
+use nalgebra::Vector2;
+
+use super::arc::Arc;
+use crate::params::ManipulatorParams;
+use crate::shape::turned;
+
+/// The effect of the external loads on each segment.
+///
+/// `Q_i` is the moment of everything beyond a cross-section of segment i, averaged over the segment: for dead loads W at points p it is `Q_i = Σ (p −
+/// c_i) × W` with the centroid `c_i` of the segment's arc, plus the contribution of the segment's own weight. It is the derivative of the work with
+/// respect to the bend, so its own derivative is symmetric: `∂Q_i/∂θ_j` depends only on the segment nearer to the tip.
+#[derive(Clone, Copy, Debug)]
+#[expect(clippy::struct_field_names, reason = "the unit")]
+pub struct Moments<const DISKS: usize> {
+    /// `Q_i`, N m.
+    pub moment_nm: [f64; DISKS],
+    /// `∂Q_i/∂θ_j` for `j < i`, also with i and j exchanged, N m.
+    pub slope_nm: [f64; DISKS],
+    /// `∂Q_i/∂θ_i`, N m.
+    pub own_slope_nm: [f64; DISKS],
+}
+
+/// Returns the centres of the disks, base frame.
+pub fn positions<const DISKS: usize>(pitch_m: f64, bend_rad: &[f64; DISKS]) -> [[f64; 2]; DISKS] {
+    let mut place_m = Vector2::zeros();
+    let mut turn = (0.0, 1.0);
+    bend_rad.map(|bend_rad| {
+        let arc = Arc::new(pitch_m, bend_rad);
+        place_m += turned(turn, arc.end_m);
+        turn = turned_further(turn, arc.turn);
+        place_m.into()
+    })
+}
+
+/// Combines two rotations, given as sine and cosine.
+pub fn turned_further((sin, cos): (f64, f64), (other_sin, other_cos): (f64, f64)) -> (f64, f64) {
+    (sin * other_cos + cos * other_sin, cos * other_cos - sin * other_sin)
+}
+
+/// Returns the moments of weight and tip load, multiplied by `share`.
+pub fn moments<const DISKS: usize>(params: &ManipulatorParams, bend_rad: &[f64; DISKS], share: f64) -> Moments<DISKS> {
+    #[derive(Clone, Copy)]
+    #[expect(clippy::struct_field_names, reason = "the unit")]
+    struct Segment {
+        end_m: Vector2<f64>,
+        centroid_m: Vector2<f64>,
+        slope_m: Vector2<f64>,
+        curvature_m: Vector2<f64>,
+    }
+    let count = params.disk_count.min(DISKS);
+    let mut place_m = Vector2::zeros();
+    let mut turn = (0.0, 1.0);
+    let segments = bend_rad.map(|bend_rad| {
+        let arc = Arc::new(params.pitch_m, bend_rad);
+        let segment = Segment {
+            end_m: place_m + turned(turn, arc.end_m),
+            centroid_m: place_m + turned(turn, arc.centroid_m),
+            slope_m: turned(turn, arc.centroid_slope_m),
+            curvature_m: turned(turn, arc.centroid_curvature_m),
+        };
+        place_m = segment.end_m;
+        turn = turned_further(turn, arc.turn);
+        segment
+    });
+    let mut moments = Moments { moment_nm: [0.0; DISKS], slope_nm: [0.0; DISKS], own_slope_nm: [0.0; DISKS] };
+    // Sums over the loads beyond: W, p × W and p · W.
+    let mut force_n = Vector2::zeros();
+    let mut cross_nm = 0.0;
+    let mut dot_nm = 0.0;
+    let add = |sums: (&mut Vector2<f64>, &mut f64, &mut f64), at_m: Vector2<f64>, load_n: Vector2<f64>| {
+        *sums.0 += load_n;
+        *sums.1 += at_m.perp(&load_n);
+        *sums.2 += at_m.dot(&load_n);
+    };
+    let own_n = share * params.backbone_weight_n;
+    let mut next_n = share * (params.disk_weight_n + params.tip_force_n);
+    let rows = moments.moment_nm.iter_mut().zip(&mut moments.slope_nm).zip(&mut moments.own_slope_nm);
+    for (((moment, slope), own_slope), segment) in rows.zip(&segments).take(count).rev() {
+        add((&mut force_n, &mut cross_nm, &mut dot_nm), segment.end_m, next_n);
+        let turning_nm = dot_nm - segment.centroid_m.dot(&force_n);
+        *moment = cross_nm - segment.centroid_m.perp(&force_n) + segment.slope_m.dot(&own_n);
+        *slope = segment.slope_m.perp(&own_n) - turning_nm;
+        *own_slope = segment.curvature_m.dot(&own_n) - segment.slope_m.perp(&force_n) - turning_nm;
+        add((&mut force_n, &mut cross_nm, &mut dot_nm), segment.centroid_m, own_n);
+        next_n = share * params.disk_weight_n;
+    }
+    moments
+}

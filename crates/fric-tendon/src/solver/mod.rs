@@ -1,0 +1,7 @@
+//! The equations of a shape and their solution: arcs, loads, and Newton steps along the chain of segments.
+
+pub mod arc;
+pub mod chain;
+pub mod load;
+pub mod newton;
+pub mod tangent;

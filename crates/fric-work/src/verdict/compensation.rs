@@ -1,0 +1,268 @@
+//! Verdicts on a replay, a fit and a hysteresis: how much of an error compensation leaves.
+
+use fric_lab::errors::{ForceError, WrenchError};
+use fric_lab::fit::result::FitResult;
+use fric_lab::hysteresis::HysteresisResult;
+use fric_lab::text::listed;
+
+use super::{Tone, Verdict, counted};
+use crate::replay::{CableResult, ReplayResult};
+
+/// Maximum remaining fraction of the error for a model that works. Twice and half this value change only the wording, no number. The measured robots
+/// of \[P\] leave 5 to 20 %.
+const WORKS: f64 = 0.3;
+
+/// Fraction of flagged samples above which they are mentioned.
+const MANY_FLAGGED: f64 = 0.01;
+
+/// Formats a remaining fraction of an error, in per cent with one decimal.
+#[must_use]
+pub fn left_in_words(left: f64) -> String {
+    if left.is_finite() { format!("{:.1} %", 100.0 * left) } else { "–".to_owned() }
+}
+
+/// Formats the range of remaining fractions.
+pub(crate) fn range_in_words(shares: impl Iterator<Item = f64>) -> String {
+    let (least, greatest) = shares
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, greatest), share| (least.min(share), greatest.max(share)));
+    let [least, greatest] = [least, greatest].map(left_in_words);
+    if least == greatest { least } else { format!("{least} to {greatest}") }
+}
+
+/// Errors before and after, and their name.
+struct Compared {
+    name: String,
+    before: f64,
+    after: f64,
+    unit: &'static str,
+}
+
+impl Compared {
+    fn of_cable(cable: &CableResult) -> Option<Self> {
+        let (before, after) = cable.before.as_ref().zip(cable.after.as_ref())?;
+        Some(Self { name: cable.name.clone(), before: before.rms_n, after: after.rms_n, unit: "N" })
+    }
+
+    fn of_wrench(before: &WrenchError, after: &WrenchError) -> [Self; 2] {
+        [
+            Self {
+                name: "the force on the platform".to_owned(),
+                before: before.force_rms_n,
+                after: after.force_rms_n,
+                unit: "N",
+            },
+            Self {
+                name: "the torque on the platform".to_owned(),
+                before: before.torque_rms_nm,
+                after: after.torque_rms_nm,
+                unit: "Nm",
+            },
+        ]
+    }
+
+    fn left(&self) -> f64 {
+        self.after / self.before
+    }
+
+    /// Whether the error became worse by an amount that the tables show.
+    fn is_worse(&self) -> bool {
+        self.after > self.before && format!("{:.4}", self.after) != format!("{:.4}", self.before)
+    }
+
+    pub(super) fn in_words(&self) -> String {
+        format!("{} (rms {:.4} {} before, {:.4} {} after)", self.name, self.before, self.unit, self.after, self.unit)
+    }
+}
+
+/// Returns a sentence about errors that became worse; `None` if none did.
+fn worse(all: &[Compared]) -> Option<String> {
+    let worse: Vec<String> = all.iter().filter(|one| one.is_worse()).map(Compared::in_words).collect();
+    (!worse.is_empty()).then(|| format!("Compensation makes {} worse.", listed(&worse)))
+}
+
+/// Returns the remaining fraction of errors that did not become worse; `None` if there are none.
+fn share_left(of: &str, all: &[Compared]) -> Option<String> {
+    let better = all.iter().filter(|one| !one.is_worse());
+    let shares: Vec<f64> = better.map(Compared::left).filter(|left| left.is_finite()).collect();
+    (!shares.is_empty()).then(|| format!("{} of {of} that friction causes", range_in_words(shares.into_iter())))
+}
+
+fn wrench_left(wrench: &[Compared]) -> Option<String> {
+    share_left("the error of the wrench on the platform", wrench)
+}
+
+impl CableResult {
+    /// Returns the remaining fraction of the error with compensation; `None` without a reference.
+    #[must_use]
+    pub fn left(&self) -> Option<f64> {
+        let (before, after): (&ForceError, &ForceError) = self.before.as_ref().zip(self.after.as_ref())?;
+        Some(after.rms_n / before.rms_n).filter(|left| left.is_finite())
+    }
+}
+
+impl ReplayResult {
+    /// Returns the effect of compensation on the error of the forces, in a sentence; errors that become worse come first.
+    #[must_use]
+    pub fn verdict(&self) -> Verdict {
+        let cables: Vec<Compared> = self.cables.iter().filter_map(Compared::of_cable).collect();
+        let wrench: Vec<Compared> =
+            self.wrench.iter().flat_map(|wrench| Compared::of_wrench(&wrench.before, &wrench.after)).collect();
+        let of_cables = share_left("the force error", &cables);
+        let of_cables = of_cables.map(|words| {
+            let count = cables.iter().filter(|cable| !cable.is_worse()).count();
+            format!("{words} ({})", counted(count, "cable"))
+        });
+        let of_wrench = if cables.is_empty() { wrench_left(&wrench) } else { None };
+        let all: Vec<Compared> = cables.into_iter().chain(wrench).collect();
+        let greatest = all.iter().map(Compared::left).filter(|left| left.is_finite()).fold(0.0, f64::max);
+        let left = of_cables.or(of_wrench);
+        let (tone, sentence) = match (worse(&all), left) {
+            (Some(worse), left) => {
+                (Tone::Bad, left.map_or(worse.clone(), |left| format!("{worse} Elsewhere it leaves {left}.")))
+            }
+            (None, Some(left)) if greatest <= WORKS => (Tone::Well, format!("Compensation works: it leaves {left}.")),
+            (None, Some(left)) => (Tone::Mixed, format!("Compensation helps in part: it leaves {left}.")),
+            (None, None) => (
+                Tone::Mixed,
+                "The forces are compensated, but how well is not known: the log has nothing to compare them with."
+                    .to_owned(),
+            ),
+        };
+        Verdict { tone, sentence, todo: self.todo(tone, all.is_empty()) }
+    }
+
+    fn todo(&self, tone: Tone, is_uncompared: bool) -> Vec<String> {
+        let mut todo = Vec::new();
+        if is_uncompared {
+            todo.push(
+                "Record the force at the platform, or state one that is known as `reference` under `[log]` in the robot file, to learn how \
+                 well the model fits."
+                    .to_owned(),
+            );
+        }
+        if !is_uncompared && tone == Tone::Bad {
+            todo.push(
+                "Do not use these values in the control loop: fit them to a log of this machine (fric-cli fit)."
+                    .to_owned(),
+            );
+        }
+        if !is_uncompared && tone != Tone::Well {
+            todo.push("See what the model lacks: fric-cli discover with the same log and model.".to_owned());
+        }
+        for cable in self.cables.iter().filter(|cable| is_many(cable.flagged, cable.samples)) {
+            todo.push(format!(
+                "Look at {}: {} of {} samples are flagged; the warnings of the command say why.",
+                cable.name, cable.flagged, cable.samples
+            ));
+        }
+        for cable in self.cables.iter().filter(|cable| !cable.faults.is_empty()) {
+            todo.push(format!("Mend the recording of {}; its faults stand below.", cable.name));
+        }
+        if todo.is_empty() {
+            todo.push("Nothing: the values can go to the control loop.".to_owned());
+        }
+        todo
+    }
+}
+
+#[expect(clippy::cast_precision_loss, reason = "counts of samples")]
+fn is_many(flagged: u64, samples: u64) -> bool {
+    flagged as f64 > MANY_FLAGGED * samples as f64
+}
+
+/// Returns the verdict on a fit: the remaining fraction of the error.
+#[must_use]
+pub fn of_fit(result: &FitResult) -> Verdict {
+    let of_cable = |cable: &fric_lab::fit::result::FitCableResult| {
+        let (before, after) = cable.before.zip(cable.after)?;
+        Some(Compared { name: cable.name.clone(), before: before.rms_n, after: after.rms_n, unit: "N" })
+    };
+    let cables: Vec<Compared> = result.cables.iter().filter_map(of_cable).collect();
+    let wrench: Vec<Compared> =
+        result.wrench.iter().flat_map(|wrench| Compared::of_wrench(&wrench.before, &wrench.after)).collect();
+    let left = share_left("the force error", &cables).or_else(|| wrench_left(&wrench));
+    let all: Vec<Compared> = cables.into_iter().chain(wrench).collect();
+    let greatest = all.iter().map(Compared::left).filter(|left| left.is_finite()).fold(0.0, f64::max);
+    let fitted = format!("Friction is fitted on {}", counted(result.cables.len(), "cable"));
+    let worse = worse(&all);
+    let it = if worse.is_some() { "elsewhere it" } else { "it" };
+    let left = left.map_or_else(|| format!("{fitted}."), |left| format!("{fitted}; {it} leaves {left}."));
+    let (tone, sentence) = match worse {
+        Some(worse) => (Tone::Bad, format!("{worse} {left}")),
+        None if greatest <= WORKS => (Tone::Well, left),
+        None => (Tone::Mixed, left),
+    };
+    let mut todo = Vec::new();
+    for cable in &result.cables {
+        if !cable.undetermined.is_empty() {
+            todo.push(format!(
+                "{}: the log does not determine {}, kept as given; record a run that does (fric-cli excite).",
+                cable.name,
+                listed(&cable.undetermined)
+            ));
+        }
+        if !cable.at_bound.is_empty() {
+            todo.push(format!(
+                "{}: {} is at the end of its range; see what else the model lacks (fric-cli discover).",
+                cable.name,
+                listed(&cable.at_bound)
+            ));
+        }
+        if !cable.faults.is_empty() {
+            todo.push(format!("Mend the recording of {}; its faults stand below.", cable.name));
+        }
+    }
+    if tone != Tone::Well {
+        todo.push("See what the model lacks: fric-cli discover with the same log and model.".to_owned());
+    }
+    todo.push("Replay another log with the fitted file: that judges it, this log taught it.".to_owned());
+    Verdict { tone, sentence, todo }
+}
+
+/// Returns the verdict on a hysteresis: the remaining fraction of its width.
+#[must_use]
+pub fn of_hysteresis(result: &HysteresisResult) -> Verdict {
+    let of_axis = |axis: &fric_lab::hysteresis::AxisResult| {
+        let (before, after) = axis.without.as_ref().zip(axis.with.as_ref())?;
+        let name = format!("the hysteresis on axis {}", axis.axis);
+        axis.lasting_ratio.map(|_| Compared { name, before: before.width, after: after.width, unit: axis.unit })
+    };
+    let all: Vec<Compared> = result.axes.iter().filter_map(of_axis).collect();
+    let axes: Vec<&str> =
+        result.axes.iter().filter(|axis| axis.lasting_ratio.is_some()).map(|axis| axis.axis).collect();
+    let greatest = all.iter().map(Compared::left).fold(0.0, f64::max);
+    let worse: Vec<String> = all
+        .iter()
+        .filter(|one| one.is_worse())
+        .map(|one| format!("{} ({:.4} {} without, {:.4} {} with)", one.name, one.before, one.unit, one.after, one.unit))
+        .collect();
+    let left = || {
+        let left = range_in_words(all.iter().map(Compared::left));
+        format!("{left} of the width is left on {} {}", if axes.len() == 1 { "axis" } else { "axes" }, listed(&axes))
+    };
+    let (tone, sentence) = if all.is_empty() {
+        (Tone::Mixed, "The wrench has no hysteresis beyond scatter, with or without compensation.".to_owned())
+    } else if !worse.is_empty() {
+        (Tone::Bad, format!("Compensation makes {} wider; {}.", listed(&worse), left()))
+    } else if greatest <= WORKS {
+        (Tone::Well, format!("Compensation takes the hysteresis of the wrench away: {}.", left()))
+    } else {
+        (Tone::Mixed, format!("Compensation takes part of the hysteresis of the wrench away: {}.", left()))
+    };
+    let missing: Vec<&str> = result.axes.iter().filter(|axis| axis.passes == 0).map(|axis| axis.axis).collect();
+    let mut todo = Vec::new();
+    if tone != Tone::Well && !all.is_empty() {
+        todo.push("See what the model lacks: fric-cli discover with the same log and model.".to_owned());
+    }
+    if !missing.is_empty() {
+        todo.push(format!(
+            "Not crossed: {}. Record the platform going to and fro across this position along (x, y, z) or about (a, b, c) these axes, \
+             several times, with nothing else moving.",
+            missing.join(", ")
+        ));
+    }
+    if todo.is_empty() {
+        todo.push("Nothing: the values can go to the control loop.".to_owned());
+    }
+    Verdict { tone, sentence, todo }
+}

@@ -1,0 +1,102 @@
+//! The verdict on a discovery: what the model lacks, on which cables, and what to do about it.
+
+use fric_lab::discover::result::{DiscoverCableResult, DiscoverResult};
+use fric_lab::text::listed;
+
+use super::{Tone, Verdict};
+
+/// Returns the verdict on a discovery: the missing effects, the cables, and the remedies.
+#[must_use]
+pub fn of_discovery(result: &DiscoverResult) -> Verdict {
+    let count = result.cables.len();
+    let with = |verdict: &str| -> Vec<&DiscoverCableResult> {
+        result.cables.iter().filter(|cable| cable.verdict == verdict).collect()
+    };
+    let on = |cables: &[&str]| {
+        if cables.len() == count && count > 1 { format!("all {count} cables") } else { listed(cables) }
+    };
+    let mut kinds: Vec<(&str, Vec<&str>, &str)> = Vec::new();
+    for cable in &result.cables {
+        for effect in &cable.effects {
+            match kinds.iter_mut().find(|(kind, ..)| *kind == effect.kind) {
+                Some((_, names, _)) if names.last() == Some(&cable.name.as_str()) => {}
+                Some((_, names, _)) => names.push(&cable.name),
+                None => kinds.push((effect.kind, vec![&cable.name], effect.effect.row().remedy)),
+            }
+        }
+    }
+    let names =
+        |cables: &[&DiscoverCableResult]| on(&cables.iter().map(|cable| cable.name.as_str()).collect::<Vec<_>>());
+    let [complete, unexplained, untold] = ["complete", "unexplained", "untold"].map(with);
+    let is_worse = |cable: &&DiscoverCableResult| {
+        let (before, after) = (cable.before.map(|error| error.rms_n), cable.after.map(|error| error.rms_n));
+        before
+            .zip(after)
+            .is_some_and(|(before, after)| after > before && format!("{after:.4}") != format!("{before:.4}"))
+    };
+    let worse: Vec<&DiscoverCableResult> = result.cables.iter().filter(is_worse).collect();
+    let mut parts = Vec::new();
+    if !worse.is_empty() {
+        parts.push(format!("The extended model is worse on {}.", names(&worse)));
+    }
+    let is_whole_complete =
+        complete.len() == count && result.wrench.as_ref().is_none_or(|gap| gap.verdict == "complete");
+    if is_whole_complete {
+        parts.push(format!("The model is complete on {}: what is left is noise.", names(&complete)));
+    } else {
+        if !kinds.is_empty() {
+            let all: Vec<String> = kinds.iter().map(|(kind, cables, _)| format!("{kind} ({})", on(cables))).collect();
+            parts.push(format!("The model lacks {}.", listed(&all)));
+        }
+        if !unexplained.is_empty() {
+            parts.push(format!("Something without a name is left on {}.", names(&unexplained)));
+        }
+        if !untold.is_empty() {
+            parts.push(format!("The log does not tell anything of {}.", names(&untold)));
+        }
+        if result.wrench.as_ref().is_some_and(|gap| gap.verdict == "unexplained") {
+            parts.push("Of the wrench on the platform something is left without a name.".to_owned());
+        }
+        if !complete.is_empty() {
+            let rest = if complete.len() == 1 { "agrees" } else { "agree" };
+            parts.push(format!("{} {rest} with the model to the noise.", capitalised(&names(&complete))));
+        }
+    }
+    let mut todo: Vec<String> = Vec::new();
+    for (kind, cables, remedy) in &kinds {
+        todo.push(format!("{kind} on {}: {remedy}.", on(cables)));
+    }
+    if let Some(wrong) = result.wrench.as_ref().filter(|gap| !gap.geometry.is_empty()) {
+        todo.extend(wrong.in_words().into_iter().filter(|sentence| sentence.starts_with("The robot file's")));
+    }
+    for cable in &unexplained {
+        todo.push(format!("Look where the rest of {} lies, below, and record more there.", cable.name));
+    }
+    for missing in result.cables.iter().filter_map(|cable| cable.missing.as_ref()) {
+        if !todo.iter().any(|known| known == missing.advice) {
+            todo.push(missing.advice.to_owned());
+        }
+    }
+    for cable in result.cables.iter().filter(|cable| !cable.faults.is_empty()) {
+        todo.push(format!("Mend the recording of {}; its faults stand below.", cable.name));
+    }
+    if !kinds.is_empty() {
+        todo.push("Until then compensate with the extended file: fric-cli discover -o writes it.".to_owned());
+    }
+    if todo.is_empty() {
+        todo.push("Nothing: keep the model.".to_owned());
+    }
+    let tone = if !worse.is_empty() {
+        Tone::Bad
+    } else if is_whole_complete {
+        Tone::Well
+    } else {
+        Tone::Mixed
+    };
+    Verdict { tone, sentence: parts.join(" "), todo }
+}
+
+fn capitalised(text: &str) -> String {
+    // Names of cables keep their case.
+    if text.starts_with("all ") { format!("A{}", text.get(1..).unwrap_or_default()) } else { text.to_owned() }
+}

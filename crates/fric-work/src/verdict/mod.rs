@@ -1,0 +1,38 @@
+//! Verdicts: a result in a sentence, with what to do, at the beginning of every page.
+//!
+//! Numbers in the sentences equal those of the tables, including the rounding.
+
+mod compensation;
+mod discovery;
+mod manipulator;
+
+pub use compensation::{left_in_words, of_fit, of_hysteresis};
+pub use discovery::of_discovery;
+pub use manipulator::{of_calibration, of_hole, of_hole_frictions, of_shapes, of_tendon, of_tendon_fit};
+
+/// The tone of a verdict.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tone {
+    /// Nothing to do.
+    Well,
+    /// Something to look at.
+    Mixed,
+    /// Something became worse, or no verdict is possible.
+    Bad,
+}
+
+/// A result in a sentence.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Verdict {
+    /// Its tone.
+    pub tone: Tone,
+    /// The sentence.
+    pub sentence: String,
+    /// What to do, in sentences.
+    pub todo: Vec<String>,
+}
+
+/// Formats a number of things.
+pub(crate) fn counted(count: usize, thing: &str) -> String {
+    if count == 1 { format!("{count} {thing}") } else { format!("{count} {thing}s") }
+}
