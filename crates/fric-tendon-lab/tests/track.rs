@@ -1,7 +1,9 @@
 //! A path of goals through the inverse, on the independent elastica.
 
 use fric_tendon::file::ManipulatorFile;
-use fric_tendon::{Drive, DriveOptions, Friction, Goal, GoalStatus, ManipulatorOptions, ManipulatorParams, StaticModel};
+use fric_tendon::{
+    Drive, DriveOptions, Friction, Goal, GoalStatus, ManipulatorOptions, ManipulatorParams, StaticModel,
+};
 use fric_tendon_lab::ContinuumError;
 use fric_tendon_lab::follow::{FollowedGoal, Follower, GoalPath, Goals};
 use fric_tendon_lab::shape_errors::Way;
@@ -63,7 +65,11 @@ fn a_pull_reaches_some_bends_only() {
     assert!(matches!(refused(&[0.3, 7.0]), ContinuumError::NotPulledTo { row: 2, .. }));
     assert!(matches!(refused(&[0.3, f64::NAN]), ContinuumError::NotFinite { row: 2, .. }));
     let sentence = refused(&[-0.2]).to_string();
-    assert!(sentence.starts_with("the simulated manipulator has no bend of -0.2000 rad (goal 1): a pull takes it from 0.0000 to "));
+    assert!(
+        sentence.starts_with(
+            "the simulated manipulator has no bend of -0.2000 rad (goal 1): a pull takes it from 0.0000 to "
+        )
+    );
 }
 
 #[test]

@@ -35,9 +35,13 @@ pub fn continuum_track(
 ) -> Outcome<Py<PyAny>> {
     let wanted = goals(bend_rad, tip_m, &[Axis::Rows])?;
     let goals = if bend_rad.is_some() {
-        Goals::BendRad(wanted.iter().filter_map(|goal| if let Goal::BendRad(one) = goal { Some(*one) } else { None }).collect())
+        Goals::BendRad(
+            wanted.iter().filter_map(|goal| if let Goal::BendRad(one) = goal { Some(*one) } else { None }).collect(),
+        )
     } else {
-        Goals::TipM(wanted.iter().filter_map(|goal| if let Goal::TipM(one) = goal { Some(*one) } else { None }).collect())
+        Goals::TipM(
+            wanted.iter().filter_map(|goal| if let Goal::TipM(one) = goal { Some(*one) } else { None }).collect(),
+        )
     };
     let options = TrackOptions { seed, mu_spread_ratio, ..TrackOptions::new(goals) };
     let params = manipulator.file.params();
