@@ -67,12 +67,16 @@ fn main() {
             let tips = TrackOptions { goals: Goals::TipM(pulled_tips(&params, &bends).unwrap()), ..bends.clone() };
             for (rows, options) in [(&mut by_tip, &tips), (&mut by_bend, &bends)] {
                 let tracks = track(&params, options).unwrap();
-                rows.iter_mut().for_each(|row| row.add(&tracks));
+                for row in rows.iter_mut() {
+                    row.add(&tracks);
+                }
             }
         }
         for (what, rows) in [("tip positions of a single pull", by_tip), ("bends", by_bend)] {
             println!("μ ± {:.0} %, goals: {what}; mean (least to greatest of the seeds)", 100.0 * mu_spread_ratio);
-            rows.iter().for_each(Row::print);
+            for row in &rows {
+                row.print();
+            }
         }
     }
 }

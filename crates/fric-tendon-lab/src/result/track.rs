@@ -190,16 +190,17 @@ impl TrackResult {
         let sentences = [
             (
                 GoalStatus::OUT_OF_REACH,
-                "out of reach: their commands are the nearest; check the range of the tensions and the goals",
+                "out of reach, with the nearest command; check the range of the tensions and the goals",
             ),
             (
                 GoalStatus::NOT_CONVERGED,
-                "without a tension: their commands repeat the last one; check stiffness and weight in the file",
+                "without a tension, with the last command again; check stiffness and weight in the file",
             ),
         ];
         let warning = |(flag, what): (GoalStatus, &str)| {
             let count = self.count_of(flag);
-            (count > 0).then(|| format!("{count} of {} goals are {what}", self.goals))
+            let verb = if count == 1 { "is" } else { "are" };
+            (count > 0).then(|| format!("{count} of {} goals {verb} {what}", self.goals))
         };
         sentences.into_iter().filter_map(warning).collect()
     }
@@ -215,7 +216,7 @@ impl TrackResult {
             .collect();
         let flags = if counts.is_empty() { String::new() } else { format!("; {}", counts.join(", ")) };
         let head =
-            format!("{}: {} goals by `{}`, {} reached{flags}", self.manipulator, self.goals, self.way, self.reached);
+            format!("{}: by `{}` {} of {} goals reached{flags}", self.manipulator, self.way, self.reached, self.goals);
         let has_second = self.tension_base_n.iter().any(|[_, second_n]| *second_n > 0.0);
         let mut heads = vec!["", "goal", "tension\n[N]"];
         if has_second {
