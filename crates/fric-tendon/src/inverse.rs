@@ -282,6 +282,9 @@ impl<const DISKS: usize> StaticModel<DISKS> {
             return self.command(goal, &holes, drive, &begin, GoalStatus::HELD);
         }
         let (found, status) = self.search(goal, &holes, drive, begin);
+        if status.contains(GoalStatus::NOT_CONVERGED) {
+            return self.unchanged(status);
+        }
         self.command(goal, &holes, drive, &found, status)
     }
 
