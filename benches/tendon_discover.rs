@@ -122,7 +122,7 @@ fn stated(text: &str, key: &str, segment: Option<f64>) -> Option<f64> {
             *ratios.as_slice().get(hole(segment)?)?
         }
         "hole_radius_m" => tables.hole_radius_m,
-        "precurvature_per_m" => file.params().rest_bend_rad()[0] / tables.pitch_m,
+        "precurvature_per_m" => file.params().rest_bend_rad()[0] / file.params().pitch_m()[0],
         "marker_offset_x_m" => markers.offset_m[0],
         "marker_offset_y_m" => markers.offset_m[1],
         "marker_angle_rad" => markers.angle_rad,
@@ -252,6 +252,16 @@ fn main() {
                 Case {
                     name: "far",
                     truth: |text| text.replace("hole_radius_m = 0.015 ", "hole_radius_m = 0.01575 "),
+                    ..usual()
+                },
+                Case {
+                    name: "uneven",
+                    truth: |text| {
+                        text.replace(
+                            "pitch_m = 0.037 ",
+                            "pitch_m = [0.039, 0.037, 0.035, 0.037, 0.037, 0.041, 0.033, 0.037]",
+                        )
+                    },
                     ..usual()
                 },
                 Case { name: "warm", spoil: |samples| step(samples, 5.0), ..usual() },

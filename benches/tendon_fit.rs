@@ -155,7 +155,7 @@ fn main() {
                     "marker_angle_rad" => markers.angle_rad,
                     "tip_mass_kg" => tables.tip.mass_kg,
                     "gravity_angle_rad" => y.atan2(x),
-                    "precurvature_per_m" => truth.params().rest_bend_rad()[0] / tables.pitch_m,
+                    "precurvature_per_m" => truth.params().rest_bend_rad()[0] / truth.params().pitch_m()[0],
                     "tip_force_x_n" | "tip_force_y_n" => 0.0,
                     _ => continue,
                 };

@@ -21,6 +21,7 @@ from ._results import (
     SimulatedTendon,
     TendonDiscovery,
     TendonFit,
+    TendonTrack,
 )
 
 __all__ = [
@@ -54,6 +55,7 @@ __all__ = [
     "continuum_read_run",
     "continuum_shape",
     "continuum_simulate",
+    "continuum_track",
     "discover",
     "excite",
     "fit",
@@ -488,5 +490,13 @@ def continuum_simulate(
     grating_noise_nm: float = 0.0005,
     marker_noise_m: float = 0.00025,
 ) -> SimulatedTendon: ...
+def continuum_track(
+    manipulator: Manipulator,
+    *,
+    bend_rad: ArrayLike | None = None,
+    tip_m: ArrayLike | None = None,
+    seed: int = 0,
+    mu_spread_ratio: float = 0.1,
+) -> TendonTrack: ...
 def _command_line(words: Sequence[str]) -> int: ...
 def _unknown_name(what: str, name: str, known: Sequence[str]) -> str: ...

@@ -21,6 +21,7 @@ from ._fric import continuum_read_loads as read_loads
 from ._fric import continuum_read_run as read_run
 from ._fric import continuum_shape as shape
 from ._fric import continuum_simulate as simulate
+from ._fric import continuum_track as track
 from ._results import (
     CalibrationResult,
     Command,
@@ -31,6 +32,7 @@ from ._results import (
     SimulatedTendon,
     TendonDiscovery,
     TendonFit,
+    TendonTrack,
 )
 from ._status import GoalStatus, ShapeStatus
 
@@ -50,6 +52,7 @@ __all__ = [
     "TendonDiscovery",
     "TendonFit",
     "TendonRun",
+    "TendonTrack",
     "calibrate",
     "discover",
     "fit",
@@ -59,6 +62,7 @@ __all__ = [
     "read_run",
     "shape",
     "simulate",
+    "track",
 ]
 
 for _name in __all__:

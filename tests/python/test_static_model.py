@@ -172,3 +172,23 @@ def test_mistakes_are_named(arm, model):
 def test_the_flags_are_the_core_s():
     assert {flag.name: flag.value for flag in continuum.ShapeStatus} == fric._fric.SHAPE_STATUS_BITS
     assert {flag.name: flag.value for flag in continuum.GoalStatus} == fric._fric.GOAL_STATUS_BITS
+
+
+def test_a_path_on_the_simulated_arm(arm):
+    path = continuum.track(arm, bend_rad=BENDS_RAD, seed=4)
+    assert path.ways == ["none", "coulomb", "history"]
+    assert path.tip_m.shape == (3, len(BENDS_RAD), 2) and path.wanted_tip_m.shape == (len(BENDS_RAD), 2)
+    error_m = np.linalg.norm(path.tip_m - path.wanted_tip_m, axis=2)
+    assert np.allclose(error_m, path.error_m, rtol=0, atol=1e-15)
+    none_rad, _, history_rad = np.abs(path.bend_rad - BENDS_RAD).mean(axis=1)
+    assert history_rad < 0.1 * none_rad
+    # The commands are those of a model that follows the path.
+    commands = continuum.StaticModel(arm).follow(bend_rad=BENDS_RAD)
+    assert same(commands.base_tension_n[:, 0], path.base_tension_n[2])
+    assert np.array_equal(commands.status, path.status[2])
+    again = continuum.track(arm, tip_m=path.wanted_tip_m, seed=4)
+    assert (np.abs(again.along_m[2]) < 0.1 * np.abs(again.along_m[0])).mean() > 0.8
+    with pytest.raises(fric.FricError, match=r"`tip_m` is nan in row 2|`tip_m` is NaN in row 2"):
+        continuum.track(arm, tip_m=[[0.2, 0.1], [np.nan, 0.1]])
+    with pytest.raises(fric.FricError, match=r"no bend of 9\.0000 rad \(goal 1\)"):
+        continuum.track(arm, bend_rad=[9.0])

@@ -82,6 +82,7 @@ def examples():
         continuum.hole(np.linspace(0.5, 2.0, 4), np.linspace(0.5, 2.0, 4) * 0.9, angle_rad, angle_rad),
         continuum.shape(calibrated, tendon.run, mixed=True, shapes=2),
         continuum.discover(calibrated, tendon.run),
+        continuum.track(arm, bend_rad=[0.3, 0.2]),
         continuum.fit(calibrated, tendon.run, parameters=["backbone_stiffness"]),
         fleet.FleetRun("fit", "results", 1, 0, 0, (failure,)),
         failure,

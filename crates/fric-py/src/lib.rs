@@ -33,7 +33,7 @@ mod _fric {
     use crate::continuum::{
         Manipulator, StaticModel, StaticSnapshot, TendonRun, continuum_calibrate, continuum_discover, continuum_fit,
         continuum_friction, continuum_hole, continuum_read_loads, continuum_read_run, continuum_shape,
-        continuum_simulate,
+        continuum_simulate, continuum_track,
     };
     #[pymodule_export]
     use crate::log::{Log, read_log};

@@ -15,6 +15,13 @@ pub const LOADS: [&str; 2] = ["load_g", "load_n"];
 /// A load on a single hole: tensions on both sides, and the angles between them and the normal force (\[C\] 16).
 pub const HOLE: [&str; 4] = ["tension_1_n", "tension_2_n", "angle_1_rad", "angle_2_rad"];
 
+/// Tension of the second tendon at the base, N, in commands.
+pub const SECOND_TENSION_BASE: &str = "second_tension_base_n";
+/// Wanted bend of the whole manipulator, rad.
+pub const BEND: &str = "bend_rad";
+/// Wanted position of the tip, m.
+pub const TIP: [&str; 2] = ["tip_x_m", "tip_y_m"];
+
 /// Parts of column names that occur only in a manipulator's run or bench.
 pub const MARKS: [&str; 6] = [TENSION_BASE, "shift_", "marker_", "load_", "tension_1_n", "angle_1_rad"];
 
@@ -47,6 +54,12 @@ pub fn of_calibration(disk_count: usize) -> Vec<String> {
 #[must_use]
 pub fn of_hole() -> Vec<String> {
     HOLE.map(ToOwned::to_owned).to_vec()
+}
+
+/// Returns all columns that a path of goals may have.
+#[must_use]
+pub fn of_path() -> Vec<String> {
+    [TIME, BEND].into_iter().chain(TIP).map(ToOwned::to_owned).collect()
 }
 
 /// Shift per strain of a silica grating at 1550 nm, `λ_B(1 − P_e)` (\[C\] 3), nm.

@@ -117,6 +117,29 @@ pub enum ContinuumError {
         /// Time, s.
         time_s: f64,
     },
+    /// A path has no goals.
+    #[error("the path has neither `bend_rad` nor `tip_x_m` and `tip_y_m`; add one of them")]
+    NoGoals,
+    /// A path has goals of two kinds.
+    #[error(
+        "the path has both `bend_rad` and `tip_x_m`; a goal is a bend or a position of the tip, take one of them out"
+    )]
+    TwoKindsOfGoals,
+    /// A single pull of the simulated manipulator does not come to a bend.
+    #[error(
+        "the simulated manipulator has no bend of {bend_rad:.4} rad (goal {row}): a pull takes it from {least_rad:.4} to \
+         {greatest_rad:.4} rad; take the goal out of the path"
+    )]
+    NotPulledTo {
+        /// The goal, from 1.
+        row: usize,
+        /// The bend, rad.
+        bend_rad: f64,
+        /// Bend before the pull, rad.
+        least_rad: f64,
+        /// Bend at the end of the pull, rad.
+        greatest_rad: f64,
+    },
     /// The model has no shapes for the runs.
     #[error(
         "the model finds no shape for the runs, so that nothing can be identified; check stiffness, weight and tension against the manipulator file"

@@ -309,8 +309,8 @@ pub fn check_travel(
     if gratings.len() != count {
         return Err(ContinuumError::WrongCount { what: "gratings", count: gratings.len(), needed: count });
     }
-    let gap_m = params.pitch_m() - params.disk_thickness_m();
-    for (place, grating) in gratings.iter().enumerate() {
+    for (place, (grating, pitch_m)) in gratings.iter().zip(params.pitch_m()).enumerate() {
+        let gap_m = pitch_m - params.disk_thickness_m();
         #[expect(clippy::cast_precision_loss, reason = "a number of segments")]
         let beyond_ratio = (count - place) as f64 / count as f64;
         let travel_m = greatest_bend_rad.abs() * params.hole_radius_m() * beyond_ratio;

@@ -3,7 +3,7 @@
 //! A run comes as named [`columns`] and becomes a checked [`Run`]. [`fbg`] converts the shifts of gratings to tensions; [`gratings`] does so for a
 //! whole run and finds dead ones. [`friction`] computes the friction at every hole from tensions, and the μ of a single hole. [`comparison`] computes
 //! shapes by the four friction models, and [`shape_errors`] compares them with markers. [`result`] holds the results for machines and people.
-//! [`simulate`] is a manipulator whose true physics differ from the model.
+//! [`follow`] finds the tensions for a path of goals. [`simulate`] is a manipulator whose true physics differ from the model.
 //!
 //! \[C\] is the paper that [`fric_tendon`] names.
 
@@ -14,6 +14,7 @@ pub mod comparison;
 pub mod discover;
 mod error;
 pub mod fbg;
+pub mod follow;
 pub mod friction;
 pub mod gratings;
 pub mod identify;

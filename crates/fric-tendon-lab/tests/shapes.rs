@@ -41,13 +41,37 @@ fn with_weight_and_load_to_five_thousandths() {
 }
 
 #[test]
+fn segments_of_different_lengths_are_the_elasticas() {
+    let flat = ManipulatorOptions {
+        pitch_m: &[0.05, 0.03, 0.045, 0.035, 0.02, 0.046, 0.03, 0.04],
+        ..ManipulatorOptions::published()
+    };
+    let standing = ManipulatorOptions {
+        gravity_m_per_s2: [-9.81, 0.0],
+        disk_mass_kg: 0.0003,
+        precurvature_per_m: &[0.4],
+        tip_force_n: [0.0, 0.01],
+        ..flat
+    };
+    for tension_n in [[0.5, 0.0], [1.2, 0.0], [0.9, 0.2]] {
+        let (share, bend_deg) = deviation(&flat, tension_n, 40);
+        assert!(share < 0.003, "{share} at {bend_deg}°");
+        let (share, bend_deg) = deviation(&standing, tension_n, 40);
+        assert!(share < 0.006, "{share} at {bend_deg}°");
+        // The mean pitch is another arm.
+        let even = deviation(&ManipulatorOptions { pitch_m: &[0.037], ..flat }, tension_n, 40);
+        assert!((even.1 - deviation(&flat, tension_n, 40).1).abs() > 0.05, "{even:?}");
+    }
+}
+
+#[test]
 fn refinement_converges_with_the_square() {
     // The same length and weight in more and more segments under a load on the tip. The elastica's own error falls with the
     // square of its links, and is made small beside what is measured.
     let of = |disks: usize, links: usize| {
         let options = ManipulatorOptions {
             disk_count: disks,
-            pitch_m: 0.296 / f64::from(u32::try_from(disks).unwrap()),
+            pitch_m: &[0.296 / f64::from(u32::try_from(disks).unwrap())],
             disk_mass_kg: 0.0,
             gravity_m_per_s2: [0.0, -9.81],
             tip_force_n: [0.0, -0.04],

@@ -282,6 +282,9 @@ impl<const DISKS: usize> StaticModel<DISKS> {
             return self.command(goal, &holes, drive, &begin, GoalStatus::HELD);
         }
         let (found, status) = self.search(goal, &holes, drive, begin);
+        if status.contains(GoalStatus::NOT_CONVERGED) {
+            return self.unchanged(status);
+        }
         self.command(goal, &holes, drive, &found, status)
     }
 
@@ -463,9 +466,9 @@ impl Tip {
         let (mut place_m, mut turn) = (Vector2::zeros(), (0.0, 1.0));
         // Σ change and Σ change·centroid: the tip moves by Σ change·(tip − centroid), rotated by a quarter turn.
         let (mut turning_rad, mut moment) = (0.0, Vector2::zeros());
-        let bends = point.bend_rad.iter().zip(&change.bend_rad).take(params.disk_count());
-        for (bend_rad, change_rad) in bends {
-            let arc = Arc::new(params.pitch_m(), *bend_rad);
+        let segments = params.pitch_m().iter().zip(point.bend_rad.iter().zip(&change.bend_rad));
+        for (pitch_m, (bend_rad, change_rad)) in segments {
+            let arc = Arc::new(*pitch_m, *bend_rad);
             let centroid_m: Vector2<f64> = place_m + turned(turn, arc.centroid_m);
             turning_rad += change_rad;
             moment += *change_rad * centroid_m;

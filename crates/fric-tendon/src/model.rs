@@ -5,7 +5,7 @@ use core::fmt;
 use fric_core::words::{Words, words_of};
 
 use super::friction::Friction;
-use super::params::{ManipulatorError, ManipulatorParams, Tendon, count_error};
+use super::params::{MAX_DISKS, ManipulatorError, ManipulatorParams, Tendon, count_error};
 use super::shape::{Shape, ShapeStatus};
 use super::solver::load::positions;
 use super::solver::newton::{Contacts, Law, Newton, Point, Target, chords, moved, passages, travels_m};
@@ -120,7 +120,7 @@ impl<const DISKS: usize> Past<DISKS> {
 
 impl<const DISKS: usize> State<DISKS> {
     /// Returns the straight state without tension and with relaxed holes.
-    fn relaxed(disk_count: usize, pitch_m: f64) -> Self {
+    fn relaxed(disk_count: usize, pitch_m: &[f64; MAX_DISKS]) -> Self {
         Self { shape: Shape::straight(disk_count, pitch_m), history: None }
     }
 }
@@ -135,7 +135,7 @@ impl<const DISKS: usize> StaticModel<DISKS> {
         if count > DISKS {
             return Err(count_error("disk_count", count, 1, DISKS));
         }
-        Ok(Self { params: *params, newton: Newton::new(), state: State::relaxed(count, params.pitch_m) })
+        Ok(Self { params: *params, newton: Newton::new(), state: State::relaxed(count, &params.pitch_m) })
     }
 
     /// Returns the parameters.
@@ -152,7 +152,7 @@ impl<const DISKS: usize> StaticModel<DISKS> {
 
     /// Resets the holes' history and the last shape.
     pub fn reset(&mut self) {
-        self.state = State::relaxed(self.params.disk_count, self.params.pitch_m);
+        self.state = State::relaxed(self.params.disk_count, &self.params.pitch_m);
     }
 
     /// Returns a copy of the full state: the shape and the memory of the holes.
@@ -372,7 +372,7 @@ impl<const DISKS: usize> StaticModel<DISKS> {
         self.state.shape = Shape {
             count,
             bend_rad: point.bend_rad,
-            position_m: positions(self.params.pitch_m, &point.bend_rad),
+            position_m: positions(&self.params.pitch_m, &point.bend_rad),
             base_tension_n,
             tension_n: point.tension_n,
             friction_n: frictions(point, base_tension_n),

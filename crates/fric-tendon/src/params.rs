@@ -68,8 +68,9 @@ impl TendonOptions<'static> {
 pub struct ManipulatorOptions<'a> {
     /// Number of disks without the base plate, 1…[`MAX_DISKS`]; the number of segments is the same.
     pub disk_count: usize,
-    /// Distance between the centres of neighbouring disks, m: the length of backbone in a segment, which bends within the disks too.
-    pub pitch_m: f64,
+    /// Distance between the centres of neighbouring disks, m: the length of backbone in a segment, which bends within the disks too. One for all
+    /// segments, or one per segment, starting at the base plate.
+    pub pitch_m: &'a [f64],
     /// Thickness of a disk, m.
     pub disk_thickness_m: f64,
     /// Radius of the circle of holes, m.
@@ -78,7 +79,7 @@ pub struct ManipulatorOptions<'a> {
     pub bending_stiffness_n_m2: f64,
     /// E·I of a segment relative to that, 0.01…100: one for all segments, or one per segment, starting at the base plate.
     pub segment_stiffness_ratio: &'a [f64],
-    /// Curvature of the unloaded backbone, 1/m, towards +y, at most 1 rad in a segment: one for all segments, or one per segment.
+    /// Curvature of the unloaded backbone, 1/m, towards +y, at most 1 rad in the longest segment: one for all segments, or one per segment.
     pub precurvature_per_m: &'a [f64],
     /// Mass of a disk, kg.
     pub disk_mass_kg: f64,
@@ -103,7 +104,7 @@ impl ManipulatorOptions<'static> {
     pub const fn published() -> Self {
         Self {
             disk_count: 8,
-            pitch_m: 0.037,
+            pitch_m: &[0.037],
             disk_thickness_m: 0.002,
             hole_radius_m: 0.015,
             bending_stiffness_n_m2: rectangle_bending_stiffness_n_m2(200e9, 0.006, 0.0003),
@@ -138,7 +139,9 @@ pub(crate) struct TendonParams {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ManipulatorParams {
     pub(crate) disk_count: usize,
-    pub(crate) pitch_m: f64,
+    /// Length of each segment, and their sum, m.
+    pub(crate) pitch_m: [f64; MAX_DISKS],
+    length_m: f64,
     pub(crate) disk_thickness_m: f64,
     pub(crate) hole_radius_m: f64,
     pub(crate) bending_stiffness_n_m2: f64,
@@ -148,7 +151,7 @@ pub struct ManipulatorParams {
     pub(crate) rest_bend_rad: [f64; MAX_DISKS],
     /// Force on each disk, on the backbone of each segment and on the tip, N.
     pub(crate) disk_weight_n: Vector2<f64>,
-    pub(crate) backbone_weight_n: Vector2<f64>,
+    pub(crate) backbone_weight_n: [Vector2<f64>; MAX_DISKS],
     pub(crate) tip_force_n: Vector2<f64>,
     pub(crate) tendons: [TendonParams; 2],
 }
@@ -220,6 +223,23 @@ fn spread(
     Ok(all)
 }
 
+/// Returns the sum of the segments' lengths; for equal ones the product, whose rounding does not grow with their number.
+fn length(pitch_m: &[f64]) -> f64 {
+    let first_m = pitch_m.first().copied().unwrap_or(0.0);
+    #[expect(clippy::cast_precision_loss, reason = "at most MAX_DISKS")]
+    let count = pitch_m.len() as f64;
+    let is_even = pitch_m.iter().all(|pitch_m| pitch_m.to_bits() == first_m.to_bits());
+    if is_even { first_m * count } else { pitch_m.iter().sum() }
+}
+
+fn products(one: &[f64; MAX_DISKS], other: &[f64; MAX_DISKS]) -> [f64; MAX_DISKS] {
+    let mut products = *one;
+    for (product, factor) in products.iter_mut().zip(other) {
+        *product *= factor;
+    }
+    products
+}
+
 impl TendonParams {
     fn new(options: &TendonOptions<'_>, disk_count: usize) -> Result<Self, ManipulatorError> {
         Ok(Self {
@@ -245,10 +265,14 @@ impl ManipulatorParams {
         if count == 0 || count > MAX_DISKS {
             return Err(count_error("disk_count", count, 1, MAX_DISKS));
         }
-        let pitch_m = checked("pitch_m", options.pitch_m, 1e-5, 10.0)?;
+        let pitch_m = spread("pitch_m", options.pitch_m, count, (1e-5, 10.0))?;
+        let used_m = pitch_m.get(..count).unwrap_or(&pitch_m);
+        let (shortest_m, longest_m) = used_m
+            .iter()
+            .fold((f64::INFINITY, 0.0_f64), |(least_m, most_m), pitch_m| (least_m.min(*pitch_m), most_m.max(*pitch_m)));
         let stiffness_n_m2 = checked("bending_stiffness_n_m2", options.bending_stiffness_n_m2, 1e-12, 1e9)?;
         let stiffness_ratio = spread("segment_stiffness_ratio", options.segment_stiffness_ratio, count, (0.01, 100.0))?;
-        let most_per_m = GREATEST_REST_BEND_RAD / pitch_m;
+        let most_per_m = GREATEST_REST_BEND_RAD / longest_m;
         let curvature_per_m =
             spread("precurvature_per_m", options.precurvature_per_m, count, (-most_per_m, most_per_m))?;
         let gravity = checked_vector("gravity_m_per_s2", options.gravity_m_per_s2, 1e3)?;
@@ -263,13 +287,14 @@ impl ManipulatorParams {
         Ok(Self {
             disk_count: count,
             pitch_m,
-            disk_thickness_m: checked("disk_thickness_m", options.disk_thickness_m, 0.0, pitch_m)?,
+            length_m: length(used_m),
+            disk_thickness_m: checked("disk_thickness_m", options.disk_thickness_m, 0.0, shortest_m)?,
             hole_radius_m: checked("hole_radius_m", options.hole_radius_m, 1e-6, 10.0)?,
             bending_stiffness_n_m2: stiffness_n_m2,
             segment_stiffness_n_m2: stiffness_ratio.map(|ratio| stiffness_n_m2 * ratio),
-            rest_bend_rad: curvature_per_m.map(|per_m| per_m * pitch_m),
+            rest_bend_rad: products(&curvature_per_m, &pitch_m),
             disk_weight_n: disk_mass_kg * gravity,
-            backbone_weight_n: backbone_mass_kg_per_m * pitch_m * gravity,
+            backbone_weight_n: pitch_m.map(|pitch_m| backbone_mass_kg_per_m * pitch_m * gravity),
             tip_force_n: tip_force_n + tip_mass_kg * gravity,
             tendons: [tendon(Tendon::Agonist, agonist)?, tendon(Tendon::Antagonist, antagonist)?],
         })
@@ -283,21 +308,20 @@ impl ManipulatorParams {
 
     /// Whether weight or tip load acts.
     pub(crate) fn has_load(&self) -> bool {
-        [self.disk_weight_n, self.backbone_weight_n, self.tip_force_n].iter().any(|load_n| load_n.norm_squared() > 0.0)
+        let [backbone_n, ..] = self.backbone_weight_n;
+        [self.disk_weight_n, backbone_n, self.tip_force_n].iter().any(|load_n| load_n.norm_squared() > 0.0)
     }
 
-    /// Returns the distance between the centres of neighbouring disks, m.
+    /// Returns the length of each segment, starting at the base plate, m: the distance between the centres of neighbouring disks.
     #[must_use]
-    pub fn pitch_m(&self) -> f64 {
-        self.pitch_m
+    pub fn pitch_m(&self) -> &[f64] {
+        self.pitch_m.get(..self.disk_count).unwrap_or(&self.pitch_m)
     }
 
     /// Returns the length of the backbone, m.
     #[must_use]
     pub fn length_m(&self) -> f64 {
-        #[expect(clippy::cast_precision_loss, reason = "at most MAX_DISKS")]
-        let count = self.disk_count as f64;
-        self.pitch_m * count
+        self.length_m
     }
 
     /// Returns the thickness of a disk, m.
@@ -330,10 +354,12 @@ impl ManipulatorParams {
         self.rest_bend_rad.get(..self.disk_count).unwrap_or(&self.rest_bend_rad)
     }
 
-    /// Returns the weight of a disk, the weight of a segment's backbone, and the force on the tip, base frame, N.
+    /// Returns the weight of a disk, the weight of the backbone in the first segment, and the force on the tip, base frame, N. The weight of the
+    /// backbone in another segment goes with its length.
     #[must_use]
     pub fn loads_n(&self) -> [[f64; 2]; 3] {
-        [self.disk_weight_n, self.backbone_weight_n, self.tip_force_n].map(Into::into)
+        let [backbone_n, ..] = self.backbone_weight_n;
+        [self.disk_weight_n, backbone_n, self.tip_force_n].map(Into::into)
     }
 
     /// Returns the friction coefficients of a tendon's holes, starting at the base plate.

@@ -6,7 +6,7 @@ use core::ops::BitOr;
 use fric_core::words::words_of;
 use nalgebra::Vector2;
 
-use super::params::Tendon;
+use super::params::{MAX_DISKS, Tendon};
 
 /// Flags of one solution; [`ShapeStatus::OK`] if there is no fault.
 ///
@@ -117,10 +117,10 @@ words_of!(Shape<const DISKS> { count, bend_rad, position_m, base_tension_n, tens
 
 impl<const DISKS: usize> Shape<DISKS> {
     /// Returns the straight shape without tension.
-    pub(super) fn straight(count: usize, pitch_m: f64) -> Self {
+    pub(super) fn straight(count: usize, pitch_m: &[f64; MAX_DISKS]) -> Self {
         let mut position_m = [[0.0; 2]; DISKS];
         let mut along_m = 0.0;
-        for [x, _] in &mut position_m {
+        for ([x, _], pitch_m) in position_m.iter_mut().zip(pitch_m) {
             along_m += pitch_m;
             *x = along_m;
         }

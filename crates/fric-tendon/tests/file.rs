@@ -45,13 +45,24 @@ fn every_mistake_gets_its_sentence() {
     );
     assert_eq!(
         said("mu = 0.1753 ", "mu = \"low\""),
-        "arm.toml, line 20: `mu` is the text \"low\"; it must be a number, or a list with one for each hole"
+        "arm.toml, line 20: `mu` is the text \"low\"; it must be a number, or a list with one for each hole or segment"
     );
     assert_eq!(
         said("thickness_m = 0.0003", "thickness_m = 0.3e9"),
         "arm.toml, line 15: `thickness_m` is 3e8; allowed is 1e-6 to 1"
     );
     assert!(said("pitch_m", "pich_m").starts_with("arm.toml, line 7: unknown key `pich_m`; did you mean `pitch_m`?"));
+    assert_eq!(
+        said("pitch_m = 0.037 ", "pitch_m = [0.037, 0.05]"),
+        "arm.toml, line 7: `pitch_m` has 2 entries; 8 are needed"
+    );
+    assert_eq!(
+        said("pitch_m = 0.037 ", "pitch_m = [0.037, 0.037, 37, 0.037, 0.037, 0.037, 0.037, 0.037]"),
+        "arm.toml, line 7: `pitch_m` at place 3 is 37; allowed is 1e-5 to 10"
+    );
+    // Disks of 2 mm do not fit into the shortest segment.
+    let thick = said("pitch_m = 0.037 ", "pitch_m = [0.037, 0.037, 0.001, 0.037, 0.037, 0.037, 0.037, 0.037]");
+    assert_eq!(thick, "arm.toml, line 8: `disk_thickness_m` is 0.002; allowed is 0 to 0.001");
     assert_eq!(
         said("[0.0, 0.0]", "[0.0, 0.0, -9.8]"),
         "arm.toml, line 11: `gravity_m_per_s2` has 3 entries; it must be 2 numbers in brackets"
@@ -68,6 +79,23 @@ fn every_mistake_gets_its_sentence() {
     assert_eq!(tip.to_string(), "arm.toml, line 26: `mass_kg` is -1; allowed is 0 to 1000");
     let missing = ManipulatorFile::read(Path::new("no-such.toml")).unwrap_err().to_string();
     assert!(missing.starts_with("cannot read the manipulator file no-such.toml: "));
+}
+
+#[test]
+fn segments_have_their_own_pitch() {
+    let list = "pitch_m = [0.05, 0.045, 0.04, 0.035, 0.035, 0.03, 0.03, 0.031]";
+    let file = ManipulatorFile::parse(&PROTOTYPE.replace("pitch_m = 0.037 ", list), "arm.toml").unwrap();
+    let pitch_m = [0.05, 0.045, 0.04, 0.035, 0.035, 0.03, 0.03, 0.031];
+    assert_eq!(file.params().pitch_m(), pitch_m);
+    assert_eq!(file.tables().segment_pitch_m().collect::<Vec<_>>(), pitch_m);
+    assert!((file.params().length_m() - 0.296).abs() < 1e-15 && (file.tables().length_m() - 0.296).abs() < 1e-15);
+    let written = ManipulatorFile::parse(&file.to_toml().unwrap(), "arm.toml").unwrap();
+    assert_eq!(written.params(), file.params());
+    // One pitch, and the same as a list.
+    let even = ManipulatorFile::parse(PROTOTYPE, "arm.toml").unwrap();
+    let listed = PROTOTYPE.replace("pitch_m = 0.037 ", &format!("pitch_m = {:?}", [0.037; 8]));
+    assert_eq!(ManipulatorFile::parse(&listed, "arm.toml").unwrap().params(), even.params());
+    assert!((even.tables().length_m() - 0.296).abs() < 1e-15);
 }
 
 const GRATINGS: &str = "\n[gratings]\nwavelength_nm = 1550.0\nphotoelastic_ratio = 0.22\n";

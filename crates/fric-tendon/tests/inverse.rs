@@ -154,6 +154,12 @@ fn what_cannot_be_is_a_status() {
     }
     let measured = model.tension_for(Goal::BendRad(0.5), Friction::Measured([&[0.5; 8], &[]]), &drive);
     assert_eq!(measured.status, GoalStatus::NOT_USABLE);
+    // A tip far within the arm's curve: whatever is not found leaves the tensions.
+    let command = ask(&mut model, Goal::TipM([0.1, 0.1]));
+    assert!(
+        !command.status.contains(GoalStatus::NOT_CONVERGED) || command.base_tension_n[0] == before_n,
+        "{command:?}"
+    );
     // More than the capacity bends, and less than nothing.
     let command = ask(&mut model, Goal::BendRad(20.0));
     assert!(command.status.contains(GoalStatus::OUT_OF_REACH), "{command:?}");

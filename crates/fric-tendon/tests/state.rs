@@ -7,7 +7,7 @@ use fric_tendon::{
 /// An arm of so many disks as long as the published one.
 fn params(disk_count: usize) -> ManipulatorParams {
     let count = u32::try_from(disk_count).map(f64::from).unwrap();
-    let options = ManipulatorOptions { disk_count, pitch_m: 0.296 / count, ..ManipulatorOptions::published() };
+    let options = ManipulatorOptions { disk_count, pitch_m: &[0.296 / count], ..ManipulatorOptions::published() };
     ManipulatorParams::new(&options).unwrap()
 }
 

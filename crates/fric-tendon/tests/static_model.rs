@@ -18,11 +18,11 @@ fn published() -> StaticModel<8> {
 /// The energy of a manipulator whose segments carry these tensions, up to a constant; written from scratch, with the
 /// centres of gravity by summation along the arc.
 fn energy(options: &ManipulatorOptions<'_>, bend_rad: &[f64], tension_n: [&[f64]; 2]) -> f64 {
-    let length = options.pitch_m;
     let [gx, gy] = options.gravity_m_per_s2;
     let (mut x, mut y, mut angle, mut sum) = (0.0, 0.0, 0.0_f64, 0.0);
     let lift = |x: f64, y: f64, kg: f64| -kg * (gx * x + gy * y);
     for (place, &bend) in bend_rad.iter().enumerate() {
+        let length = *options.pitch_m.get(place).unwrap_or(&options.pitch_m[0]);
         sum += options.bending_stiffness_n_m2 * bend * bend / (2.0 * length);
         let start = (x, y, angle);
         let parts = 400;
@@ -49,9 +49,18 @@ fn energy(options: &ManipulatorOptions<'_>, bend_rad: &[f64], tension_n: [&[f64]
     sum + lift(x, y, options.tip_mass_kg) - fx * x - fy * y
 }
 
+/// Pitches of the published length, m.
+const UNEVEN_M: [f64; 8] = [0.05, 0.03, 0.045, 0.035, 0.02, 0.046, 0.03, 0.04];
+
 #[test]
 fn shapes_are_minima_of_the_energy() {
+    minimum(&[0.037]);
+    minimum(&UNEVEN_M);
+}
+
+fn minimum(pitch_m: &[f64]) {
     let options = ManipulatorOptions {
+        pitch_m,
         gravity_m_per_s2: [-3.0, -9.0],
         tip_mass_kg: 0.008,
         tip_force_n: [0.02, 0.03],
@@ -117,7 +126,7 @@ fn many_holes_are_a_capstan() {
         let tendon = TendonOptions { mu: &[mu], ..ONE };
         let options = ManipulatorOptions {
             disk_count,
-            pitch_m: 0.296 / f64::from(u32::try_from(disk_count).unwrap()),
+            pitch_m: &[0.296 / f64::from(u32::try_from(disk_count).unwrap())],
             tendons: [tendon; 2],
             ..ManipulatorOptions::published()
         };
@@ -279,7 +288,7 @@ fn every_bend_up_to_a_circle_converges_at_once() {
 fn wrong_parameters_are_named() {
     let refused = |options: &ManipulatorOptions<'_>| ManipulatorParams::new(options).unwrap_err().to_string();
     let good = ManipulatorOptions::published();
-    assert_eq!(refused(&ManipulatorOptions { pitch_m: f64::NAN, ..good }).split_once(' ').unwrap().0, "`pitch_m`");
+    assert_eq!(refused(&ManipulatorOptions { pitch_m: &[f64::NAN], ..good }).split_once(' ').unwrap().0, "`pitch_m`");
     assert_eq!(
         refused(&ManipulatorOptions { tendons: [ONE, TendonOptions { mu: &[0.1, 0.2], ..ONE }], ..good }),
         "`mu` of the antagonist has 2 entries; 8 are needed"

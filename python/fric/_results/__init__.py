@@ -10,6 +10,7 @@ from .continuum import (
     SimulatedTendon,
     TendonDiscovery,
     TendonFit,
+    TendonTrack,
 )
 from .discover import CableDiscovery, DiscoverResult
 from .excite import ExciteResult
@@ -38,6 +39,7 @@ __all__ = [
     "SimulatedTendon",
     "TendonDiscovery",
     "TendonFit",
+    "TendonTrack",
     "Width",
     "WrenchError",
 ]

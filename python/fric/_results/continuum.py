@@ -249,3 +249,25 @@ class TendonFit(Result):
         found = json.loads(shown.json)
         keys = ("parameters", "standard_errors", "given", "undetermined", "before", "after")
         return cls(shown, manipulator, **{key: found[key] for key in keys})
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class TendonTrack(Value):
+    """Result of `track`. Arrays have one row for each friction model in `ways` and one column for each goal."""
+
+    ways: list[str]
+    """Friction models of the commands: "none", "coulomb", "history"."""
+    wanted_tip_m: NDArray[np.float64]
+    """Wanted positions of the tip, base frame, m, (N, 2)."""
+    tip_m: NDArray[np.float64]
+    """Positions of the simulated manipulator's tip, base frame, m, (ways, N, 2)."""
+    error_m: NDArray[np.float64]
+    """Distance of the tip from the goal, m, (ways, N)."""
+    along_m: NDArray[np.float64]
+    """Distance beyond the goal along the curve on which a single pull moves the tip, m, (ways, N). No tension corrects the rest of the distance."""
+    bend_rad: NDArray[np.float64]
+    """Bend of the simulated manipulator, rad, (ways, N)."""
+    base_tension_n: NDArray[np.float64]
+    """Tension at the base, N, (ways, N)."""
+    status: NDArray[np.uint32]
+    """Bits of `GoalStatus`, (ways, N)."""

@@ -47,6 +47,15 @@ pub enum ContinuumCommand {
                       --run mixed --seed 7"
     )]
     Simulate(TendonSimulateArguments),
+    /// Find the tensions at the base that follow a path of bends or tip positions
+    #[command(
+        after_help = "The path is CSV or MCAP with the columns bend_rad, or tip_x_m and tip_y_m, and optionally time_s. Each command starts \
+                      from what the holes remember of the commands before it. Tensions are those that the sensor at the base shows, and \
+                      positions are in the frame of the markers, if the manipulator file states [base_sensor] and [markers].\n\n\
+                      Examples:\n  fric-cli continuum track path.csv --model calibrated.toml -o tensions.csv\n  \
+                      fric-cli continuum track path.csv --model calibrated.toml --simulate"
+    )]
+    Track(TrackArguments),
 }
 
 /// A run and its manipulator.
@@ -180,6 +189,57 @@ pub struct TendonSimulateArguments {
     /// Replace outputs that exist
     #[arg(long)]
     pub force: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct TrackArguments {
+    /// CSV or MCAP: `bend_rad`, or `tip_x_m` and `tip_y_m`; `time_s` if there is one
+    #[arg(required = true, value_name = "PATH")]
+    pub path: PathBuf,
+    /// Manipulator file
+    #[arg(long, value_name = "M.toml", required = true)]
+    pub model: PathBuf,
+    /// Write the tensions, with prediction and flags, to this file: CSV, or MCAP by its ending
+    #[arg(short, long, value_name = "TENSIONS", value_parser = a_file())]
+    pub output: Option<PathBuf>,
+    /// Friction that the commands allow for
+    #[arg(long, value_name = "WAY", value_enum, default_value_t)]
+    pub friction: CompensationName,
+    /// Start with the holes as this run leaves them, instead of the relaxed tendon: CSV or MCAP with `time_s` and `tension_base_n`
+    #[arg(long, value_name = "RUN", conflicts_with = "simulate")]
+    pub after: Option<PathBuf>,
+    /// Tension that a tendon keeps while the other one is pulled, N: of the first, or `FIRST,SECOND`
+    #[arg(long, value_name = "N", value_delimiter = ',', default_value = "0", allow_negative_numbers = true, value_parser = a_number)]
+    pub least_tension_n: Vec<f64>,
+    /// Greatest tension, N: of the first tendon, or `FIRST,SECOND` [default: the capacity of the first; the second is not pulled]
+    #[arg(long, value_name = "N", value_delimiter = ',', allow_negative_numbers = true, value_parser = a_number)]
+    pub greatest_tension_n: Option<Vec<f64>>,
+    /// Keep the tensions for a goal nearer than this, rad (tip: relative to the length)
+    #[arg(long, value_name = "RAD", default_value_t = 0.0, allow_negative_numbers = true, value_parser = a_number)]
+    pub hold_rad: f64,
+    /// Follow the path on a simulated manipulator too, and show how far its tip is from the goals with each friction model
+    #[arg(long, conflicts_with_all = ["least_tension_n", "greatest_tension_n", "hold_rad"])]
+    pub simulate: bool,
+    /// Seed of the simulated manipulator
+    #[arg(long, value_name = "S", default_value_t = 0, allow_negative_numbers = true, value_parser = a_seed, requires = "simulate")]
+    pub seed: u64,
+    /// How far each simulated hole's μ is from the stated one at most, as a share of it
+    #[arg(long, value_name = "RATIO", default_value_t = 0.1, allow_negative_numbers = true, value_parser = a_number, requires = "simulate")]
+    pub mu_spread_ratio: f64,
+    #[command(flatten)]
+    pub result: ResultArguments,
+}
+
+/// The friction that commands allow for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum CompensationName {
+    /// No friction
+    None,
+    /// All holes slide in the direction of each change
+    Coulomb,
+    /// What the holes remember
+    #[default]
+    History,
 }
 
 /// The ways of friction.

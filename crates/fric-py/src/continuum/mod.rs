@@ -10,6 +10,7 @@ mod shape;
 mod simulate;
 mod static_model;
 mod static_rows;
+mod track;
 
 pub use calibration::continuum_calibrate;
 pub use discover::continuum_discover;
@@ -20,6 +21,7 @@ pub use run::{TendonRun, continuum_read_loads, continuum_read_run};
 pub use shape::continuum_shape;
 pub use simulate::continuum_simulate;
 pub use static_model::{StaticModel, StaticSnapshot};
+pub use track::continuum_track;
 
 use fric_tendon_lab::gratings::{GratingSample, Gratings};
 use fric_tendon_lab::{ContinuumError, Run, corrected};

@@ -138,7 +138,11 @@ impl Way {
 }
 
 /// Returns the goals, row by row: bends or positions of the tip.
-fn goals(bend_rad: Option<&Bound<'_, PyAny>>, tip_m: Option<&Bound<'_, PyAny>>, rows: &[Axis]) -> Outcome<Vec<Goal>> {
+pub(super) fn goals(
+    bend_rad: Option<&Bound<'_, PyAny>>,
+    tip_m: Option<&Bound<'_, PyAny>>,
+    rows: &[Axis],
+) -> Outcome<Vec<Goal>> {
     match (bend_rad, tip_m) {
         (Some(value), None) => {
             let wanted = Wanted { name: "bend_rad", shape: rows, entries: "a bend of the whole manipulator" };

@@ -56,8 +56,7 @@ impl MarkerFit {
         }
         let line_error_m = line_error_m(case, &fit.model, &tension_n)?;
         let params = case.file.params();
-        #[expect(clippy::cast_precision_loss, reason = "a small count")]
-        let practical_m = PRACTICAL_RATIO * params.disk_count() as f64 * params.pitch_m();
+        let practical_m = PRACTICAL_RATIO * params.length_m();
         Some(Self { residual_m, tension_n, noise_m, line_error_m, distance_m, greatest_m, practical_m })
     }
 

@@ -50,8 +50,7 @@ fn statistical(normal: &Normal, count: usize) -> DMatrix<f64> {
 
 /// Returns the contribution of the model error: of size b in each of N residuals of a signal, and along each unknown by a fraction.
 fn systematic(runs: &Runs, solution: &Solution, normal: &Normal) -> DMatrix<f64> {
-    #[expect(clippy::cast_precision_loss, reason = "a small count")]
-    let length_m = runs.given.pitch_m * runs.given.disk_count as f64;
+    let length_m = runs.given.length_m();
     let off = [
         MODEL_TENSION_RATIO * runs.greatest_tension_n / solution.units.tension_n,
         MODEL_MARKER_RATIO * length_m / solution.units.marker_m,

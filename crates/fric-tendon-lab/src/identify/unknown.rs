@@ -115,7 +115,7 @@ impl Unknown {
             Self::HoleRadius => tables.hole_radius_m *= ratio,
             Self::Precurvature => {
                 let mut stated = tables.backbone.precurvature_per_m.clone().unwrap_or(OneOrEach::One(0.0));
-                let most = 1.0 / tables.pitch_m;
+                let most = 1.0 / tables.segment_pitch_m().fold(0.0, f64::max);
                 let bend = |per_m: &mut f64| *per_m = (*per_m + distance).clamp(-most, most);
                 match &mut stated {
                     OneOrEach::One(one) => bend(one),
@@ -251,8 +251,7 @@ impl Unknown {
     /// the length, or the tension by a twentieth.
     #[must_use]
     pub fn widest(self, tables: &ManipulatorTables, greatest_tension_n: f64) -> f64 {
-        #[expect(clippy::cast_precision_loss, reason = "a small count")]
-        let length_m = tables.pitch_m * tables.disk_count as f64;
+        let length_m = tables.length_m();
         let force_n = 0.05 * Self::Stiffness.value(tables) / (length_m * length_m);
         let [x, y] = tables.gravity_m_per_s2;
         match self {

@@ -4,11 +4,13 @@ mod calibration;
 mod friction;
 mod hole;
 mod shape;
+mod track;
 
 pub use calibration::{CalibrationResult, GratingResult};
 pub use friction::{BridgedGrating, FrictionResult, FrictionSeries, HoleSummary};
 pub use hole::HoleResult;
 pub use shape::{ErrorResult, PickedShape, ShapeResult, WayErrors, WaySeries, WayShape};
+pub use track::{TrackErrors, TrackResult, TrackSimulation};
 
 /// Returns the time intervals in which a condition holds, from the first to the last sample of each, s.
 fn intervals_s(time_s: &[f64], holds: impl Iterator<Item = bool>) -> Vec<[f64; 2]> {

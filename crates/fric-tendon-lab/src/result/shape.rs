@@ -135,7 +135,7 @@ fn is_prototype(params: &ManipulatorParams) -> bool {
     let published = ManipulatorOptions::published();
     let near = |one: f64, other: f64, share: f64| (one - other).abs() <= share * other;
     params.disk_count() == published.disk_count
-        && near(params.pitch_m(), published.pitch_m, 0.01)
+        && params.pitch_m().iter().all(|pitch_m| published.pitch_m.iter().all(|other_m| near(*pitch_m, *other_m, 0.01)))
         && near(params.disk_thickness_m(), published.disk_thickness_m, 0.01)
         && near(params.hole_radius_m(), published.hole_radius_m, 0.01)
         && near(params.bending_stiffness_n_m2(), published.bending_stiffness_n_m2, 0.1)

@@ -24,9 +24,10 @@ pub struct Elastica {
     segments: usize,
     /// Number of links in a segment.
     links: usize,
-    link_m: f64,
+    /// Length of a link in each segment, m.
+    link_m: Vec<f64>,
     hole_m: f64,
-    /// EI/h, N m.
+    /// Greatest EI/h, N m.
     spring_nm: f64,
     /// Stiffness of each joint, N m, and its unloaded angle, rad.
     springs: Vec<(f64, f64)>,
@@ -60,26 +61,28 @@ impl Elastica {
         let segments = params.disk_count();
         let count = segments * links;
         #[expect(clippy::cast_precision_loss, reason = "a number of links")]
-        let link_m = params.pitch_m() / links as f64;
+        let link_m: Vec<f64> = params.pitch_m().iter().map(|pitch_m| pitch_m / links as f64).collect();
         let [disk_n, backbone_n, tip_n] = params.loads_n().map(Vector2::from);
-        let link_n = backbone_n * (link_m / params.pitch_m());
         let mut force_n = tip_n;
         let mut beyond_n = vec![Vector2::zeros(); count];
         for (place, beyond_n) in beyond_n.iter_mut().enumerate().rev() {
             if (place + 1) % links == 0 {
                 force_n += disk_n;
             }
+            // The stated weight is that of the first segment.
+            let link_n = backbone_n * (link_m[place / links] / params.pitch_m()[0]);
             *beyond_n = force_n + 0.5 * link_n;
             force_n += link_n;
         }
-        let springs = (0..=count).map(|place| joint(params, links, link_m, place)).collect();
+        let springs = (0..=count).map(|place| joint(params, links, &link_m, place)).collect();
+        let shortest_m = link_m.iter().copied().fold(f64::INFINITY, f64::min);
         Self {
             springs,
             segments,
             links,
             link_m,
             hole_m: params.hole_radius_m(),
-            spring_nm: params.bending_stiffness_n_m2() / link_m,
+            spring_nm: params.bending_stiffness_n_m2() / shortest_m,
             beyond_n,
             angle_rad: vec![0.0; count + 1],
             hessian: Banded::new(count + 1, links + 1),
@@ -109,8 +112,9 @@ impl Elastica {
         let mut place_m = Vector2::zeros();
         let segments = self.angle_rad[..self.segments * self.links].chunks(self.links);
         segments
-            .map(|angles_rad| {
-                place_m += angles_rad.iter().map(|angle| self.link_m * unit(*angle)).sum::<Vector2<f64>>();
+            .zip(&self.link_m)
+            .map(|(angles_rad, link_m)| {
+                place_m += angles_rad.iter().map(|angle| *link_m * unit(*angle)).sum::<Vector2<f64>>();
                 place_m.into()
             })
             .collect()
@@ -123,13 +127,14 @@ impl Elastica {
         let last = ((segment + 1) * self.links).min(self.angle_rad.len() - 1);
         let own = segment * self.links..(segment + 1) * self.links;
         let (begin_rad, end_rad) = (self.disk_rad(segment), self.disk_rad(segment + 1));
-        let across = self.angle_rad[own.clone()].iter().map(|angle| self.link_m * unit(*angle)).sum::<Vector2<f64>>();
+        let link_m = self.link_m[segment];
+        let across = self.angle_rad[own.clone()].iter().map(|angle| link_m * unit(*angle)).sum::<Vector2<f64>>();
         let chord_m = across + offset_m * (normal(end_rad) - normal(begin_rad));
         let length_m = chord_m.norm();
         let direction = chord_m / length_m;
         let mut slopes_m = vec![0.0; last - first + 1];
         for place in own {
-            slopes_m[place - first] += self.link_m * normal(self.angle_rad[place]).dot(&direction);
+            slopes_m[place - first] += link_m * normal(self.angle_rad[place]).dot(&direction);
         }
         for (disk, sign, angle_rad) in [(segment, -1.0, begin_rad), (segment + 1, 1.0, end_rad)] {
             for place in self.disk(disk).into_iter().flatten() {
@@ -143,8 +148,8 @@ impl Elastica {
     fn energy_nm(&self, tension_n: [&[f64]; 2]) -> f64 {
         let mut energy = 0.0;
         self.joints(|_, _, stiffness, difference| energy += 0.5 * stiffness * difference * difference);
-        for (angle, beyond_n) in self.angle_rad.iter().zip(&self.beyond_n) {
-            energy -= self.link_m * unit(*angle).dot(beyond_n);
+        for (place, (angle, beyond_n)) in self.angle_rad.iter().zip(&self.beyond_n).enumerate() {
+            energy -= self.link_m[place / self.links] * unit(*angle).dot(beyond_n);
         }
         for (side, tension_n) in [1.0, -1.0].into_iter().zip(tension_n) {
             for (segment, tension_n) in tension_n.iter().enumerate() {
@@ -177,8 +182,9 @@ impl Elastica {
             }
         });
         for (place, (angle, beyond_n)) in self.angle_rad.iter().zip(&self.beyond_n).enumerate() {
-            gradient[place] -= self.link_m * normal(*angle).dot(beyond_n);
-            hessian.add(place, place, self.link_m * unit(*angle).dot(beyond_n));
+            let link_m = self.link_m[place / self.links];
+            gradient[place] -= link_m * normal(*angle).dot(beyond_n);
+            hessian.add(place, place, link_m * unit(*angle).dot(beyond_n));
         }
         for (side, tension_n) in [1.0, -1.0].into_iter().zip(tension_n) {
             for (segment, &tension_n) in tension_n.iter().enumerate() {
@@ -196,9 +202,10 @@ impl Elastica {
         let strand = self.strand(segment, side);
         let offset_m = side * self.hole_m;
         let mut moves = vec![Vector2::zeros(); strand.slopes_m.len()];
+        let link_m = self.link_m[segment];
         for place in segment * self.links..(segment + 1) * self.links {
-            moves[place - strand.first] += self.link_m * normal(self.angle_rad[place]);
-            let bend_m = -self.link_m * unit(self.angle_rad[place]).dot(&strand.direction);
+            moves[place - strand.first] += link_m * normal(self.angle_rad[place]);
+            let bend_m = -link_m * unit(self.angle_rad[place]).dot(&strand.direction);
             hessian.add(place, place, tension_n * bend_m);
         }
         for (disk, sign) in [(segment, -1.0), (segment + 1, 1.0)] {
@@ -288,11 +295,12 @@ impl Elastica {
 
 /// Returns the stiffness of a joint, N m, and its unloaded angle, rad: half a link on either side, each of its own segment; at base and tip only one
 /// half.
-fn joint(params: &ManipulatorParams, links: usize, link_m: f64, place: usize) -> (f64, f64) {
+fn joint(params: &ManipulatorParams, links: usize, link_m: &[f64], place: usize) -> (f64, f64) {
     let half = |link: usize| {
         let segment = link / links;
         let stiffness_n_m2 = params.segment_stiffness_n_m2()[segment];
-        (stiffness_n_m2 / link_m, 0.5 * link_m * params.rest_bend_rad()[segment] / params.pitch_m())
+        let link_m = link_m[segment];
+        (stiffness_n_m2 / link_m, 0.5 * link_m * params.rest_bend_rad()[segment] / params.pitch_m()[segment])
     };
     let count = params.disk_count() * links;
     let sides = [place.checked_sub(1), (place < count).then_some(place)].map(|link| link.map(half));
@@ -327,6 +335,7 @@ mod tests {
 
     fn bent() -> (Elastica, [Vec<f64>; 2]) {
         let options = ManipulatorOptions {
+            pitch_m: &[0.05, 0.03, 0.045, 0.035, 0.02, 0.046, 0.03, 0.04],
             gravity_m_per_s2: [-2.0, -9.0],
             tip_force_n: [0.02, 0.05],
             ..ManipulatorOptions::published()
@@ -402,6 +411,29 @@ mod tests {
         let (whole, half) = (0.296_f64.powi(3), 0.148_f64.powi(3));
         let expected_m = 1e-4 / 3.0 * ((whole - half) / 2.7e-3 + half / 1.35e-3);
         assert!((y_m / expected_m - 1.0).abs() < 1e-4, "{y_m} {expected_m}");
+    }
+
+    #[test]
+    fn unequal_segments_do_not_change_a_uniform_beam() {
+        // Precurvature and a tip force act on the backbone alone, so that the shape does not depend on where the disks are; the backbone's weight
+        // is the same too.
+        let settled = |pitch_m: &[f64]| {
+            let options = ManipulatorOptions {
+                pitch_m,
+                disk_mass_kg: 0.0,
+                precurvature_per_m: &[2.0],
+                gravity_m_per_s2: [-1.0, 3.0],
+                tip_force_n: [0.01, -0.02],
+                ..ManipulatorOptions::published()
+            };
+            let mut elastica = Elastica::new(&ManipulatorParams::new(&options).unwrap(), 60);
+            elastica.settle([&[], &[]]).unwrap();
+            (elastica.disk_position_m()[7], elastica.bend_rad())
+        };
+        let ([x_m, y_m], bend_rad) = settled(&[0.05, 0.03, 0.045, 0.035, 0.02, 0.046, 0.03, 0.04]);
+        let ([even_x_m, even_y_m], even_rad) = settled(&[0.037]);
+        assert!((x_m - even_x_m).hypot(y_m - even_y_m) < 1e-5, "{x_m} {even_x_m} {y_m} {even_y_m}");
+        assert!((bend_rad - even_rad).abs() < 1e-5);
     }
 
     #[test]

@@ -41,8 +41,8 @@ pub struct ManipulatorTables {
     pub name: String,
     /// Number of disks without the base plate.
     pub disk_count: usize,
-    /// Distance between the centres of neighbouring disks, m.
-    pub pitch_m: f64,
+    /// Distance between the centres of neighbouring disks, m: one for all segments, or a list with one per segment, starting at the base plate.
+    pub pitch_m: OneOrEach,
     /// Thickness of a disk, m.
     pub disk_thickness_m: f64,
     /// Radius of the circle of holes, m.
@@ -90,7 +90,7 @@ pub struct BackboneTable {
     /// Bending stiffness of a segment relative to that of the above numbers, 0.01…100: one for all, or a list; default 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub segment_stiffness_ratio: Option<OneOrEach>,
-    /// Unloaded curvature, 1/m, towards the first tendon, at most 1 rad in a segment: one for all, or a list; default 0.
+    /// Unloaded curvature, 1/m, towards the first tendon, at most 1 rad in the longest segment: one for all, or a list; default 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub precurvature_per_m: Option<OneOrEach>,
 }
@@ -122,13 +122,13 @@ pub struct TendonTable {
     pub capacity_n: f64,
 }
 
-/// A number for all holes, or a list with one per hole.
+/// A number for all holes or segments, or a list with one per hole or segment.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum OneOrEach {
     /// One number for all.
     One(f64),
-    /// One number per hole, starting at the base plate.
+    /// One number per hole or segment, starting at the base plate.
     Each(Vec<f64>),
 }
 
@@ -152,7 +152,7 @@ impl<'de> Deserialize<'de> for OneOrEach {
             type Value = OneOrEach;
 
             fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-                formatter.write_str("a number, or a list with one for each hole")
+                formatter.write_str("a number, or a list with one for each hole or segment")
             }
 
             fn visit_f64<E: de::Error>(self, one: f64) -> Result<OneOrEach, E> {
@@ -274,7 +274,7 @@ impl ManipulatorFile {
         let curvature_per_m = stated(&tables.backbone.precurvature_per_m);
         let params = ManipulatorParams::new(&ManipulatorOptions {
             disk_count: tables.disk_count,
-            pitch_m: tables.pitch_m,
+            pitch_m: tables.pitch_m.as_slice(),
             disk_thickness_m: tables.disk_thickness_m,
             hole_radius_m: tables.hole_radius_m,
             bending_stiffness_n_m2: rectangle_bending_stiffness_n_m2(youngs_modulus_pa, width_m, thickness_m),
@@ -313,6 +313,20 @@ impl ManipulatorFile {
     /// A checked file causes no error; the signature is that of the serialiser.
     pub fn to_toml(&self) -> Result<String, toml::ser::Error> {
         toml::to_string(&self.tables)
+    }
+}
+
+impl ManipulatorTables {
+    /// Returns the length of each segment of a checked file, starting at the base plate, m.
+    pub fn segment_pitch_m(&self) -> impl Iterator<Item = f64> {
+        let stated = self.pitch_m.as_slice();
+        (0..self.disk_count).filter_map(move |segment| stated.get(segment).or(stated.last()).copied())
+    }
+
+    /// Returns the length of the backbone of a checked file, m.
+    #[must_use]
+    pub fn length_m(&self) -> f64 {
+        self.segment_pitch_m().sum()
     }
 }
 

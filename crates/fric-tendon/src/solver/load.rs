@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 
 use super::arc::Arc;
-use crate::params::ManipulatorParams;
+use crate::params::{MAX_DISKS, ManipulatorParams};
 use crate::shape::turned;
 
 /// The effect of the external loads on each segment.
@@ -23,15 +23,17 @@ pub struct Moments<const DISKS: usize> {
 }
 
 /// Returns the centres of the disks, base frame.
-pub fn positions<const DISKS: usize>(pitch_m: f64, bend_rad: &[f64; DISKS]) -> [[f64; 2]; DISKS] {
+pub fn positions<const DISKS: usize>(pitch_m: &[f64; MAX_DISKS], bend_rad: &[f64; DISKS]) -> [[f64; 2]; DISKS] {
     let mut place_m = Vector2::zeros();
     let mut turn = (0.0, 1.0);
-    bend_rad.map(|bend_rad| {
-        let arc = Arc::new(pitch_m, bend_rad);
+    let mut position_m = [[0.0; 2]; DISKS];
+    for (position_m, (pitch_m, bend_rad)) in position_m.iter_mut().zip(pitch_m.iter().zip(bend_rad)) {
+        let arc = Arc::new(*pitch_m, *bend_rad);
         place_m += turned(turn, arc.end_m);
         turn = turned_further(turn, arc.turn);
-        place_m.into()
-    })
+        *position_m = place_m.into();
+    }
+    position_m
 }
 
 /// Combines two rotations, given as sine and cosine.
@@ -52,9 +54,12 @@ pub fn moments<const DISKS: usize>(params: &ManipulatorParams, bend_rad: &[f64; 
     let count = params.disk_count.min(DISKS);
     let mut place_m = Vector2::zeros();
     let mut turn = (0.0, 1.0);
-    let segments = bend_rad.map(|bend_rad| {
-        let arc = Arc::new(params.pitch_m, bend_rad);
-        let segment = Segment {
+    let none_m = Vector2::zeros();
+    let none = Segment { end_m: none_m, centroid_m: none_m, slope_m: none_m, curvature_m: none_m };
+    let mut segments = [none; DISKS];
+    for (segment, (pitch_m, bend_rad)) in segments.iter_mut().zip(params.pitch_m().iter().zip(bend_rad)) {
+        let arc = Arc::new(*pitch_m, *bend_rad);
+        *segment = Segment {
             end_m: place_m + turned(turn, arc.end_m),
             centroid_m: place_m + turned(turn, arc.centroid_m),
             slope_m: turned(turn, arc.centroid_slope_m),
@@ -62,8 +67,7 @@ pub fn moments<const DISKS: usize>(params: &ManipulatorParams, bend_rad: &[f64; 
         };
         place_m = segment.end_m;
         turn = turned_further(turn, arc.turn);
-        segment
-    });
+    }
     let mut moments = Moments { moment_nm: [0.0; DISKS], slope_nm: [0.0; DISKS], own_slope_nm: [0.0; DISKS] };
     // Sums over the loads beyond: W, p × W and p · W.
     let mut force_n = Vector2::zeros();
@@ -74,10 +78,11 @@ pub fn moments<const DISKS: usize>(params: &ManipulatorParams, bend_rad: &[f64; 
         *sums.1 += at_m.perp(&load_n);
         *sums.2 += at_m.dot(&load_n);
     };
-    let own_n = share * params.backbone_weight_n;
     let mut next_n = share * (params.disk_weight_n + params.tip_force_n);
     let rows = moments.moment_nm.iter_mut().zip(&mut moments.slope_nm).zip(&mut moments.own_slope_nm);
-    for (((moment, slope), own_slope), segment) in rows.zip(&segments).take(count).rev() {
+    let weights = segments.iter().zip(&params.backbone_weight_n);
+    for (((moment, slope), own_slope), (segment, weight_n)) in rows.zip(weights).take(count).rev() {
+        let own_n = share * weight_n;
         add((&mut force_n, &mut cross_nm, &mut dot_nm), segment.end_m, next_n);
         let turning_nm = dot_nm - segment.centroid_m.dot(&force_n);
         *moment = cross_nm - segment.centroid_m.perp(&force_n) + segment.slope_m.dot(&own_n);

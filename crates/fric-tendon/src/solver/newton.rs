@@ -79,9 +79,9 @@ pub struct Target {
 pub fn chords<const DISKS: usize>(params: &ManipulatorParams, bend_rad: &[f64; DISKS]) -> [[Chord; DISKS]; 2] {
     let mut both = [[Chord::NONE; DISKS]; 2];
     let [first, second] = &mut both;
-    let segments = first.iter_mut().zip(second).zip(bend_rad);
-    for ((first, second), bend_rad) in segments.take(params.disk_count) {
-        [*first, *second] = Chord::both(params.pitch_m, params.hole_radius_m, *bend_rad);
+    let segments = first.iter_mut().zip(second).zip(params.pitch_m().iter().zip(bend_rad));
+    for ((first, second), (pitch_m, bend_rad)) in segments {
+        [*first, *second] = Chord::both(*pitch_m, params.hole_radius_m, *bend_rad);
     }
     both
 }
@@ -187,7 +187,8 @@ impl<'a, const DISKS: usize> Problem<'a, DISKS> {
     fn new(params: &'a ManipulatorParams, start: &Point<DISKS>, target: &'a Target, law: &'a Law<'a, DISKS>) -> Self {
         let largest_n = target.base_tension_n.into_iter().fold(0.0, f64::max);
         // When a tendon is released, a residual matters only if it bends the manipulator visibly.
-        let least_n = 1e-6 * params.bending_stiffness_n_m2 / (params.pitch_m * params.hole_radius_m);
+        let [pitch_m, ..] = params.pitch_m;
+        let least_n = 1e-6 * params.bending_stiffness_n_m2 / (pitch_m * params.hole_radius_m);
         Self {
             params,
             target,
@@ -230,14 +231,15 @@ impl<'a, const DISKS: usize> Problem<'a, DISKS> {
         let tendons = first_chords.iter().zip(first_n).zip(second_chords.iter().zip(second_n));
         let loads = moment_nm.iter().zip(slope_nm.iter().zip(&own_slope_nm));
         let bends = point.bend_rad.iter().zip(&step.bend_rad);
-        let segments = self.params.segment_stiffness_n_m2.iter().zip(&self.params.rest_bend_rad);
+        let backbone = self.params.pitch_m.iter().zip(&self.params.segment_stiffness_n_m2);
+        let segments = backbone.zip(&self.params.rest_bend_rad);
         let (mut squares, mut work_nm) = (0.0, 0.0);
         for (link, (((bend, segment), load), tendons)) in
             links.iter_mut().zip(bends.zip(segments).zip(loads).zip(tendons)).take(self.unknowns.count)
         {
             let (bend_rad, change_rad) = bend;
-            let (stiffness_n_m2, rest_rad) = segment;
-            let compliance = self.params.pitch_m / stiffness_n_m2;
+            let ((pitch_m, stiffness_n_m2), rest_rad) = segment;
+            let compliance = pitch_m / stiffness_n_m2;
             let (outside_nm, (outside_slope, outside_own_slope)) = load;
             let ((first, first_n), (second, second_n)) = tendons;
             let moment_nm = first_n * first.arm_m + second_n * second.arm_m + outside_nm;

@@ -6,8 +6,10 @@ mod fit;
 mod friction;
 mod hole;
 pub mod info;
+mod rows;
 mod shape;
 mod simulate;
+mod track;
 
 use std::fs::{self, File, Metadata};
 use std::io::Read as _;
@@ -39,6 +41,7 @@ pub fn run(command: &ContinuumCommand) -> Outcome {
         ContinuumCommand::Hole(arguments) => hole::run(arguments),
         ContinuumCommand::Shape(arguments) => shape::run(arguments),
         ContinuumCommand::Simulate(arguments) => simulate::run(arguments),
+        ContinuumCommand::Track(arguments) => track::run(arguments),
     }
 }
 

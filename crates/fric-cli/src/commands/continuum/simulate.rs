@@ -1,22 +1,18 @@
 //! `continuum simulate`: the run of a simulated manipulator.
 
-use std::io::Write as _;
-use std::path::Path;
-
-use fric_log::output::{CompleteFile, OutputError, OutputFile};
-use fric_log::write::LogWriter;
+use fric_log::output::{CompleteFile, OutputFile};
 use fric_tendon_lab::simulate::{Experiment, SimulatedRun, TendonSimulationOptions, simulate};
 use fric_tendon_lab::{ContinuumError, as_measured, columns};
 use serde::Serialize;
 
 use super::Model;
+use super::rows::{Channel, RowsFile, write_text};
 use crate::arguments::continuum::{ExperimentName, TendonSimulateArguments};
 use crate::failure::{Failure, Outcome};
 use crate::output::{self, Written};
 
-/// The topic of a run in MCAP.
-const TOPIC: &str = "/tendon_run";
-const MESSAGE: &str = "fric_msgs/msg/TendonRun";
+/// A run in MCAP.
+const CHANNEL: Channel = Channel { topic: "/tendon_run", message: "fric_msgs/msg/TendonRun" };
 
 /// The true state: `fric-continuum-truth/1`.
 #[derive(Debug, Serialize)]
@@ -49,12 +45,7 @@ pub fn run(arguments: &TendonSimulateArguments) -> Outcome {
         marker_noise_m: arguments.marker_noise_m,
         ..TendonSimulationOptions::default()
     };
-    let is_mcap = output.extension().is_some_and(|ending| ending == "mcap");
-    let target = if is_mcap {
-        Target::Log(Box::new(LogWriter::create(output, &inputs, *force)?))
-    } else {
-        Target::Text(OutputFile::create(output, &inputs, *force)?)
-    };
+    let target = RowsFile::create(output, &inputs, *force)?;
     let create = |path: &Option<std::path::PathBuf>| {
         path.as_ref().map(|path| OutputFile::create(path, &inputs, *force)).transpose()
     };
@@ -68,7 +59,7 @@ pub fn run(arguments: &TendonSimulateArguments) -> Outcome {
         run.truth.iter().filter(|truth| truth.is_mixed()).count(),
         options.seed,
     );
-    let mut files = vec![Written::new(target.write(&run, model.disk_count())?, told)];
+    let mut files = vec![Written::new(write_run(target, &run, model.disk_count())?, told)];
     if let Some(file) = calibration {
         let told = format!("{} load steps on the same gratings", run.calibration.len());
         files.push(Written::new(write_calibration(file, &run, model.disk_count())?, told));
@@ -108,45 +99,16 @@ fn truth_of<'a>(manipulator: &'a str, run: &'a SimulatedRun) -> Truth<'a> {
     }
 }
 
-/// The destination of the run.
-enum Target {
-    Log(Box<LogWriter>),
-    Text(OutputFile),
-}
-
-impl Target {
-    fn write(self, run: &SimulatedRun, disk_count: usize) -> Outcome<CompleteFile> {
-        let mut names = vec![columns::TENSION_BASE.to_owned()];
-        names.extend(columns::shifts(disk_count).into_iter().chain(columns::markers(disk_count)));
-        let rows = run.samples.iter().map(|sample| {
-            let markers = sample.marker_m.iter().flatten();
-            let numbers = std::iter::once(&sample.tension_base_n).chain(&sample.shift_nm).chain(markers);
-            (sample.time_s, numbers.copied().collect::<Vec<f64>>())
-        });
-        match self {
-            Self::Log(mut writer) => {
-                let channel = writer.add_numbers(TOPIC, MESSAGE, &names)?;
-                for (time_s, numbers) in rows {
-                    #[expect(
-                        clippy::cast_possible_truncation,
-                        clippy::cast_sign_loss,
-                        reason = "seconds of a short run"
-                    )]
-                    let stamp_nanos = (time_s * 1e9).round() as u64;
-                    writer.write_numbers(&channel, stamp_nanos, &numbers)?;
-                }
-                Ok(writer.complete()?)
-            }
-            Self::Text(file) => {
-                names.insert(0, columns::TIME.to_owned());
-                let rows = rows.map(|(time_s, mut numbers)| {
-                    numbers.insert(0, time_s);
-                    numbers
-                });
-                write_text(file, &names, rows)
-            }
-        }
-    }
+/// Writes the run with all its columns.
+fn write_run(file: RowsFile, run: &SimulatedRun, disk_count: usize) -> Outcome<CompleteFile> {
+    let mut names = vec![columns::TENSION_BASE.to_owned()];
+    names.extend(columns::shifts(disk_count).into_iter().chain(columns::markers(disk_count)));
+    let time_s: Vec<f64> = run.samples.iter().map(|sample| sample.time_s).collect();
+    let rows = run.samples.iter().map(|sample| {
+        let markers = sample.marker_m.iter().flatten();
+        std::iter::once(&sample.tension_base_n).chain(&sample.shift_nm).chain(markers).copied().collect()
+    });
+    file.write(CHANNEL, &names, Some(&time_s), rows)
 }
 
 fn write_calibration(file: OutputFile, run: &SimulatedRun, disk_count: usize) -> Outcome<CompleteFile> {
@@ -154,22 +116,4 @@ fn write_calibration(file: OutputFile, run: &SimulatedRun, disk_count: usize) ->
     names.extend(columns::shifts(disk_count));
     let rows = run.calibration.iter().map(|step| std::iter::once(step.load_n).chain(step.shift_nm.clone()).collect());
     write_text(file, &names, rows)
-}
-
-/// Writes all digits, so that the reader gets the exact numbers.
-fn write_text(file: OutputFile, names: &[String], rows: impl Iterator<Item = Vec<f64>>) -> Outcome<CompleteFile> {
-    let path = file.path().to_owned();
-    let mut writer = csv::Writer::from_writer(file);
-    let failed = |error: csv::Error| written(&path, error.into());
-    writer.write_record(names).map_err(failed)?;
-    for row in rows {
-        writer.write_record(row.iter().map(f64::to_string)).map_err(failed)?;
-    }
-    let mut file = writer.into_inner().map_err(|error| written(&path, error.into_error()))?;
-    file.flush().map_err(|error| written(&path, error))?;
-    Ok(file.complete()?)
-}
-
-fn written(path: &Path, source: std::io::Error) -> Failure {
-    OutputError::File { path: path.to_owned(), source }.into()
 }

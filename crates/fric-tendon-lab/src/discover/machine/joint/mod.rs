@@ -106,8 +106,7 @@ impl Joint {
                 unknowns.push(unknown);
             }
         }
-        #[expect(clippy::cast_precision_loss, reason = "a small count")]
-        let length_m = runs.given.pitch_m * count as f64;
+        let length_m = runs.given.length_m();
         let line_count = runs.start(&[]).lines.len();
         Some(Self { runs, unknowns, line_count, length_m })
     }
