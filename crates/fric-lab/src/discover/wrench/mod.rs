@@ -1,15 +1,18 @@
-//! Discovery with no force sensor at the platform: all cables jointly against the outside wrench, measured or by mass and pose.
+//! Discovery without force sensors at the platform: all cables jointly against the outside wrench, measured or computed from mass and pose.
 //!
-//! `A^T f(p) + w = 0` (\[P\] 3) has six equations a sample. The deviations are weighed by the inverse of their covariance, which is found anew with
-//! every model that is better. For verdicts on a cable its share of a deviation is the error of its force alone that comes nearest to it:
-//! what is said of one cable's rest may sit in another whose force has the same lever.
+//! `A^T f(p) + w = 0` (\[P\] 3) gives six equations per sample: the wrenches of the cable forces `f` and the outside wrench `w` add up to zero. Their
+//! deviations are multiplied by a whitening, the inverse root of their covariance, and it is computed again from each better model. For the verdict on a
+//! single cable, its share of a deviation is the error of its force alone that comes nearest to the deviation. If cables have similar lever arms, the
+//! cause may be in another one.
 //!
-//! **What it cannot see.** Forces that hold each other in balance (`A^T f = 0`: inner tension) change no wrench; what does the same to the
-//! force of every cable in such a combination has no evidence and is not named.
+//! **What the wrench does not show.** Cable forces in balance with each other (`A^T f = 0`, inner tension) have no wrench. An effect that changes the
+//! forces of all cables in such a combination leaves no evidence and is not named.
 
 mod bench;
+mod candidate;
 mod geometry;
 mod naming;
+mod report;
 mod screen;
 mod sensors;
 
@@ -17,81 +20,75 @@ use fric_core::Wrench;
 use fric_core::effects::Effect;
 use fric_core::robot::edit::{CableEdit, rewrite, set_platform};
 use fric_core::robot::file::{RobotFile, RobotFileError};
-use nalgebra::{DMatrix, Matrix6, Vector6};
+use nalgebra::{Matrix6, Vector6};
 
-use self::bench::{Bench, Trial, Unknown};
+use self::bench::{Bench, Trial};
 use self::geometry::{Changes, Description};
-use self::naming::{Named, Naming, Search};
-use self::screen::Candidate;
+use self::naming::{Naming, Search};
 use self::sensors::Sensors;
 use super::cable::{BELIEVED_RATIO, acts};
 use super::extended::extended;
-use super::faults::RecordingFault;
-use super::figures::curve::curves;
 use super::naming::Refusal;
-use super::report::{CableDiscovery, Finding, Model, RunnerUp, Tried, Unexplained, Verdict};
-use super::rest::places::Excess;
-use super::rest::{WORTH, ranges, wander, with_interpolated};
+use super::report::{CableDiscovery, Verdict};
 use crate::fit::wrench::{ReferenceWrenches, first_model};
-use crate::fit::{CableRecord, FitError, Measurements, Parameter, Progress, Row};
-use crate::replay::{Deviation, WrenchErrors, WrenchReference};
-use crate::samples::conditions::conditions;
+use crate::fit::{CableRecord, FitError, Measurements, Progress};
+use crate::replay::{WrenchErrors, WrenchReference};
 use crate::samples::split::split;
 
 pub use geometry::Geometry;
 
-/// Searches with what was found taken for given, and deviations weighed by it.
+/// Maximum number of searches. Each starts from the names of the one before, with the whitening and the noise of its model.
 const LOOKS: usize = 3;
-/// How near to its minimum a model comes that is reported, in standard errors.
+/// Distance from its minimum to which the reported model is optimised, in standard errors.
 const AT_MINIMUM: f64 = 0.1;
-/// A direction with less than this share of the greatest variance, components on one scale, has rounding only.
+/// With all components on one scale, a direction with less than this fraction of the greatest variance contains only rounding errors.
 const LEAST_VARIANCE_RATIO: f64 = 1e-9;
 
-/// What came out for all cables together.
+/// The result for all cables together.
 #[derive(Clone, Debug)]
 pub struct WrenchDiscovery {
-    /// Each cable: its effects and its model. What concerns a reference force of its own is not there.
+    /// The effects and the model of each cable. Everything that needs a reference force of the cable is empty or NaN.
     pub cables: Vec<CableDiscovery>,
-    /// What the forces were compared with.
+    /// The reference of the comparison.
     pub reference: WrenchReference,
-    /// Of all cables together.
+    /// The verdict on all cables together.
     pub verdict: Verdict,
-    /// Deviation of the given model on the samples held out.
+    /// Deviation of the given model on the held-out samples.
     pub before: WrenchDeviation,
-    /// And of the extended one.
+    /// Deviation of the extended model on the held-out samples.
     pub after: WrenchDeviation,
-    /// White noise of the six components, N and N m.
+    /// Standard deviation of the white noise in the six components, N and N m.
     pub noise: [f64; 6],
-    /// Effects that all cables have alike.
+    /// Effects that all cables have with the same parameters.
     pub alike: Vec<Effect>,
-    /// What is wrong about the description of the robot.
+    /// Wrong entries of the robot file.
     pub geometry: Vec<GeometryFinding>,
-    /// What helps and does not suffice, and is of no cable alone: names and reasons.
+    /// Candidates of all cables or of the robot file that help but do not suffice: names and reasons.
     pub tried: Vec<(String, Refusal)>,
     edits: Edits,
 }
 
-/// Deviation of the wrench.
+/// Deviation of the cables' wrench from its reference.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct WrenchDeviation {
-    /// Of force and torque.
+    /// Errors of force and torque.
     pub errors: WrenchErrors,
     /// Root mean square of each component, N and N m.
     pub components: [f64; 6],
 }
 
-/// A number of the robot file that is wrong.
+/// A wrong entry of the robot file.
 #[derive(Clone, Debug)]
 pub struct GeometryFinding {
-    /// Which.
+    /// The entry.
     pub geometry: Geometry,
-    /// What it should be, in the order of [`Geometry::names`].
+    /// Its corrected numbers, in the order of [`Geometry::names`].
     pub numbers: Vec<f64>,
-    /// Schwarz's criterion with it less without it; negative speaks for it.
+    /// BIC of the model with the correction minus that of the model without it; negative values favour the correction.
     pub delta_bic: f64,
 }
 
-/// What is to be written beside the parameters.
+/// Corrections of the robot file in addition to the parameters of the friction.
 #[derive(Clone, Debug)]
 struct Edits {
     platform: fric_core::robot::edit::PlatformEdit,
@@ -99,11 +96,11 @@ struct Edits {
     platform_m: Vec<Option<[f64; 3]>>,
 }
 
-/// Looks at all cables with the wrench on the platform; for [`Measurements`] with [`Reference::Wrench`](crate::fit::Reference::Wrench) of a robot of
-/// which every cable has an attachment.
+/// Finds what the model lacks from the wrench on the platform. Takes [`Measurements`] with [`Reference::Wrench`](crate::fit::Reference::Wrench) of a robot
+/// whose cables all have attachments.
 ///
 /// # Errors
-/// [`FitError`] where the wrench cannot tell the forces of the cables, or the log is too short to tell the noise.
+/// [`FitError`] if the wrench does not determine the forces of the cables, or if the log is too short to estimate the noise.
 pub fn discover_wrench(measurements: &Measurements<'_>, progress: &Progress) -> Result<WrenchDiscovery, FitError> {
     let sensors = Sensors::of(measurements, &ReferenceWrenches::of(measurements)?);
     let measurements = &sensors.measurements;
@@ -147,12 +144,12 @@ pub fn discover_wrench(measurements: &Measurements<'_>, progress: &Progress) -> 
             break;
         }
     }
-    // As an identification does it, with all samples.
+    // The reported model is fitted to all samples, as an identification does it.
     let mut all = bench.clone();
     all.blocks.iter_mut().for_each(|block| block.held_out = false);
     let fitted = naming.confirmed(&all, |model| all.fit(&with_given(&all, model), AT_MINIMUM));
     let covariances = all.covariances(&fitted.model);
-    Case {
+    report::Case {
         bench: &bench,
         base: &base,
         naming: &naming,
@@ -163,7 +160,7 @@ pub fn discover_wrench(measurements: &Measurements<'_>, progress: &Progress) -> 
     .report(covariances.map(|[covariance, _]| covariance))
 }
 
-/// A model with the given friction where the samples do not determine it, now that it has what it lacked.
+/// Returns a model in which friction that the samples do not determine beside the names has its given values and is not varied.
 fn with_given(bench: &Bench<'_>, model: &bench::Model) -> bench::Model {
     let (_, all) = bench.with_problem(model, bench.used(false), |problem| {
         crate::certainty::undetermined::vagueness(problem, &model.values)
@@ -184,15 +181,15 @@ fn too_short() -> FitError {
     )
 }
 
-/// What turns the deviations of a model into independent ones of variance 1. Directions in which a robot has none, such as torques of a point that
-/// hangs on cables, stay out.
+/// Returns the matrix that turns the deviations of a model into independent ones of variance 1; `None` if there are none. Directions in which a robot
+/// has no deviations are left out, such as the torques of a platform that is a point.
 fn whitening(bench: &Bench<'_>, model: &bench::Model) -> Option<Matrix6<f64>> {
     let plain = Bench { whitening: Matrix6::identity(), ..bench.clone() };
     let deviations = plain.deviations(model);
     let finite = || deviations.iter().filter(|deviation| deviation.iter().all(|part| part.is_finite()));
     let count = finite().fold(0.0, |count, _| count + 1.0);
     let covariance = finite().map(|deviation| deviation * deviation.transpose()).sum::<Matrix6<f64>>() / count;
-    // Forces and torques on one scale.
+    // The unit of each component is its standard deviation, so that forces and torques can be compared.
     let size = |component: usize| covariance[(component, component)].sqrt();
     let unit = Matrix6::from_fn(|row, column| if row == column && size(row) > 0.0 { size(row).recip() } else { 0.0 });
     let eigen = (unit * covariance * unit).symmetric_eigen();
@@ -202,7 +199,7 @@ fn whitening(bench: &Bench<'_>, model: &bench::Model) -> Option<Matrix6<f64>> {
     (greatest > 0.0 && scaled.iter().all(|entry| entry.is_finite())).then_some(scaled)
 }
 
-/// Standard deviation of the white noise in each component of the deviations.
+/// Returns the standard deviation of the white noise in each component of the deviations; `None` if there are too few.
 fn noise_of(bench: &Bench<'_>, trial: &Trial) -> Option<[f64; 6]> {
     let deviations = bench.deviations(&trial.model);
     let mut noise = [0.0; 6];
@@ -210,180 +207,6 @@ fn noise_of(bench: &Bench<'_>, trial: &Trial) -> Option<[f64; 6]> {
         *noise = bench.white_noise(deviations.iter().map(|deviation| deviation[component]))?;
     }
     Some(noise)
-}
-
-/// What is to be reported of.
-struct Case<'b, 'a> {
-    bench: &'b Bench<'a>,
-    base: &'b Trial,
-    naming: &'b Naming,
-    /// The extended model, fitted to all samples.
-    fitted: &'b Trial,
-    samples: crate::fit::SampleCounts,
-    /// What was wrong with the sensor of each cable.
-    faults: &'b [Vec<RecordingFault>],
-}
-
-impl Case<'_, '_> {
-    fn report(&self, covariance: Option<DMatrix<f64>>) -> Result<WrenchDiscovery, FitError> {
-        let Self { bench, base, naming, fitted, .. } = *self;
-        let plain = Bench { whitening: Matrix6::identity(), ..bench.clone() };
-        let noise = noise_of(&plain, fitted).ok_or_else(too_short)?;
-        let held_out = bench.used(true);
-        let deviation = |trial: &Trial| WrenchDeviation::of(&plain.deviations(&trial.model), &held_out);
-        let (before, after) = (deviation(base), deviation(fitted));
-        let covariance = covariance.unwrap_or_else(|| {
-            let count = fitted.model.unknowns().len();
-            DMatrix::from_element(count, count, f64::INFINITY)
-        });
-        let cables: Vec<CableDiscovery> =
-            (0..bench.records.len()).map(|cable| self.cable(cable, &covariance)).collect();
-        let is_any = |verdict: Verdict| cables.iter().any(|cable| cable.verdict == verdict);
-        let verdict = if is_any(Verdict::Unexplained) {
-            Verdict::Unexplained
-        } else if naming.named.is_empty() {
-            Verdict::Complete
-        } else {
-            Verdict::Extended
-        };
-        let changes = &fitted.model.changes;
-        let description = &bench.description;
-        let geometry = naming::geometries(&naming.named)
-            .map(|(named, of)| GeometryFinding {
-                geometry: of,
-                numbers: description.corrected(of, changes),
-                delta_bic: named.delta_bic,
-            })
-            .collect();
-        let alike = naming.named.iter().filter_map(|named| match named.candidate {
-            Candidate::Alike(effect) => Some(effect),
-            _ => None,
-        });
-        let point = |of: Geometry| {
-            let numbers = changes.contains_key(&of).then(|| description.corrected(of, changes));
-            numbers.and_then(|numbers| numbers.first_chunk::<3>().copied())
-        };
-        let count = bench.records.len();
-        let edits = Edits {
-            platform: description.platform_edit(changes),
-            base_m: (0..count).map(|cable| point(Geometry::Base(cable))).collect(),
-            platform_m: (0..count).map(|cable| point(Geometry::Attachment(cable))).collect(),
-        };
-        let tried = naming.tried.iter().filter_map(|tried| match tried.candidate {
-            Candidate::Alike(effect) => Some((effect.kind().to_owned(), tried.refusal)),
-            Candidate::Geometry(of) => Some((of.key().to_owned(), tried.refusal)),
-            Candidate::Own(..) => None,
-        });
-        Ok(WrenchDiscovery {
-            reference: description.reference,
-            verdict,
-            before,
-            after,
-            noise,
-            alike: alike.collect(),
-            geometry,
-            tried: tried.collect(),
-            edits,
-            cables,
-        })
-    }
-
-    fn cable(&self, cable: usize, covariance: &DMatrix<f64>) -> CableDiscovery {
-        let Self { bench, base, naming, fitted, samples, faults } = *self;
-        let record = &bench.records[cable];
-        let residual_n = |trial: &Trial| bench.of_cable_n(&trial.model, &bench.deviations(&trial.model), cable);
-        let (residual_before_n, residual_after_n) = (residual_n(base), residual_n(fitted));
-        let noise_n = bench.white_noise(residual_after_n.iter().copied()).unwrap_or(f64::NAN);
-        // No model is believed to less than a share of the tension; such errors of all cables may add up.
-        let believed_n = bench.believed_n(&fitted.model, cable, BELIEVED_RATIO);
-        let floor_n = noise_n.hypot(believed_n);
-        let excess = Excess { record, blocks: &bench.blocks, residual_n: &residual_after_n, noise_n: floor_n };
-        let share = excess.share();
-        let all = if share <= WORTH { Vec::new() } else { conditions(record) };
-        let places = excess.places(&all);
-        let wander = if share <= WORTH { 0.0 } else { wander(&excess, &places) };
-        let is_noise = share - wander <= WORTH * (1.0 + wander);
-        let model = |trial: &Trial, covariance: &DMatrix<f64>| {
-            let (columns, fitted): (Vec<usize>, Vec<Parameter>) = trial
-                .model
-                .unknowns()
-                .into_iter()
-                .enumerate()
-                .filter_map(|(column, unknown)| match unknown {
-                    Unknown::Own(of, parameter) if of == cable => Some((column, parameter)),
-                    Unknown::Alike(parameter) => Some((column, parameter)),
-                    _ => None,
-                })
-                .unzip();
-            Model {
-                values: trial.model.values[cable],
-                covariance: covariance.select_rows(&columns).select_columns(&columns),
-                fitted,
-                held_out_n: Deviation::default(),
-            }
-        };
-        let findings: Vec<Finding> = naming.named.iter().filter_map(|named| finding(named, cable)).collect();
-        let tried = naming.tried.iter().filter_map(|tried| match tried.candidate {
-            Candidate::Own(of, effect) if of == cable => {
-                Some(Tried { effect, delta_bic: tried.delta_bic, held_out_rms_n: f64::NAN, refusal: tried.refusal })
-            }
-            _ => None,
-        });
-        let unexplained = (!is_noise).then(|| Unexplained {
-            rms_n: (share.max(0.0) * floor_n * floor_n).sqrt(),
-            places: places.clone(),
-            intervals_s: excess.intervals_s(|cycle| {
-                residual_after_n.get(cycle).is_some_and(|number: &f64| number.abs() > 4.0 * floor_n)
-            }),
-            neighbours: Vec::new(),
-        });
-        let is_sound = |place: usize| record.rows.get(place).is_some_and(Row::is_sound);
-        let judging = Bench { counts: with_interpolated(&bench.counts, bench.measured, is_sound), ..bench.clone() };
-        let count = base.model.unknowns().len();
-        CableDiscovery {
-            samples,
-            reference_variation_n: f64::NAN,
-            held_out: ranges(judging.used(true).into_iter())
-                .into_iter()
-                .map(|range| [range.start, range.end])
-                .collect(),
-            noise_floor_n: noise_n,
-            wander_n: floor_n * wander.sqrt(),
-            verdict: match (&unexplained, findings.is_empty()) {
-                (Some(_), _) => Verdict::Unexplained,
-                (None, true) => Verdict::Complete,
-                (None, false) => Verdict::Extended,
-            },
-            before: model(base, &DMatrix::from_element(count, count, f64::NAN)),
-            after: model(fitted, covariance),
-            findings,
-            candidates: Vec::new(),
-            tried: tried.collect(),
-            places: Vec::new(),
-            faults: faults.get(cable).cloned().unwrap_or_default(),
-            unexplained,
-            lack: None,
-            profiles: Vec::new(),
-            curves: curves(record, &residual_before_n, &residual_after_n),
-            times_s: (0..record.rows.len()).map(|cycle| record.time_s(cycle)).collect(),
-            residual_before_n,
-            residual_after_n,
-        }
-    }
-}
-
-/// A name as one of a cable's.
-fn finding(named: &Named, cable: usize) -> Option<Finding> {
-    let effect = match named.candidate {
-        Candidate::Alike(effect) => effect,
-        Candidate::Own(of, effect) if of == cable => effect,
-        _ => return None,
-    };
-    let runner_up = named.runner_up.and_then(|(candidate, delta_bic, is_as_good)| {
-        let effect = candidate.effect()?;
-        Some(RunnerUp { effect, delta_bic, held_out_squares: f64::NAN, is_as_good })
-    });
-    Some(Finding { effect, held_out_n: Deviation::default(), delta_bic: named.delta_bic, runner_up })
 }
 
 impl WrenchDeviation {
@@ -404,10 +227,10 @@ impl WrenchDeviation {
     }
 }
 
-/// The text of a robot file with what was found: as [`extended`], and corrected numbers of platform and geometry in their places.
+/// Returns the text of a robot file with the effects found, as [`extended`] does, and with the corrected entries of platform and geometry.
 ///
 /// # Errors
-/// [`RobotFileError`] as [`rewrite`].
+/// Returns the [`RobotFileError`] of [`rewrite`].
 pub fn extended_by_wrench(text: &str, origin: &str, found: &WrenchDiscovery) -> Result<String, RobotFileError> {
     let text = extended(text, origin, &found.cables)?;
     let robot = RobotFile::parse(&text, origin)?;

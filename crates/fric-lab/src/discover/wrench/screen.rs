@@ -1,15 +1,16 @@
-//! What each candidate would explain, by one linear step from the model at hand.
+//! Ranks candidates by how much one linear step from a model explains with each.
 //!
-//! For a candidate with the columns `C` (how the deviations change with its parameters where a search for it begins, and between
-//! there and the model at hand), beside the model's own derivatives `J` and deviations `r`: the sum of squares falls by
-//! `bᵀS⁻¹b` with `S = CᵀC − CᵀJ(JᵀJ)⁻¹JᵀC` and `b = Cᵀr − CᵀJ(JᵀJ)⁻¹Jᵀr` (score test; C. R. Rao, *Large sample tests of statistical
-//! hypotheses*, Proc. Cambridge Phil. Soc. 44, 1948). One pass over the log serves all candidates.
+//! A candidate adds columns `C` beside the model's derivatives `J` and deviations `r`: the derivatives of the deviations by the candidate's
+//! parameters at the start of its search, and, if the start is not the model itself, the change of the deviations from the model to the start. The sum
+//! of squares falls by `bᵀS⁻¹b` with `S = CᵀC − CᵀJ(JᵀJ)⁻¹JᵀC` and `b = Cᵀr − CᵀJ(JᵀJ)⁻¹Jᵀr` (score test; C. R. Rao, *Large sample tests of
+//! statistical hypotheses*, Proc. Cambridge Phil. Soc. 44, 1948). All candidates share one pass over the training samples.
 
 use fric_core::effects::Effect;
 use fric_core::parameters::Values;
 use nalgebra::{DMatrix, DVector, Vector6};
 
 use super::bench::{Bench, Model};
+use super::candidate::Candidate;
 use super::geometry::Geometry;
 use crate::candidates::catalogue::{fitted, starts};
 use crate::certainty::undetermined::inverse_of_normal;
@@ -19,57 +20,29 @@ use crate::search::gang::forces_of;
 use crate::search::gram::Gram;
 use crate::search::pass::{Forces, Part};
 
-/// A direction of which less than this share is its own is one that the model has.
+/// A direction of a candidate counts as one that the model already has if less than this fraction of its squares is independent of the model.
 const OWN_RATIO: f64 = 1e-6;
 
-/// What may be missing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Candidate {
-    /// An effect that all cables have alike.
-    Alike(Effect),
-    /// An effect of one cable.
-    Own(usize, Effect),
-    /// Something wrong about the description of the robot.
-    Geometry(Geometry),
-}
-
-impl Candidate {
-    /// How many parameters it adds.
-    pub fn count(self) -> usize {
-        match self {
-            Self::Alike(effect) | Self::Own(_, effect) => fitted(effect).len(),
-            Self::Geometry(of) => of.count(),
-        }
-    }
-
-    /// The effect, where it is one.
-    pub fn effect(self) -> Option<Effect> {
-        match self {
-            Self::Alike(effect) | Self::Own(_, effect) => Some(effect),
-            Self::Geometry(_) => None,
-        }
-    }
-}
-
-/// A candidate with the model that a search for it begins from.
+/// A candidate with what a linear step promises.
 #[derive(Clone, Debug)]
 pub struct Promise {
     pub candidate: Candidate,
+    /// The model with the candidate at the best start of its search.
     pub model: Model,
-    /// By how much the whitened sum of squares over the samples learned from would fall.
+    /// Decrease of the whitened sum of squares over the training samples.
     pub gain: f64,
 }
 
-/// An effect on a cable from one start, with its columns: changes of the cable's force, cycle by cycle.
+/// One start of the search for an effect on a cable.
 struct Start {
     cable: usize,
     effect: Effect,
     values: Values,
-    /// First of its columns among the cable's, and how many.
+    /// Its columns among those of the cable: changes of the cable's force.
     columns: std::ops::Range<usize>,
 }
 
-/// Columns of a cable, one after the other in each sample learned from.
+/// The columns of a cable's starts, for each training sample one after the other.
 struct Columns {
     numbers: Vec<f64>,
     count: usize,
@@ -81,7 +54,7 @@ impl Columns {
     }
 }
 
-/// The promise of every candidate beside a model, each from its best start, the best first.
+/// Returns what every wanted candidate promises beside a model from its best start, the best first.
 pub fn promises(
     bench: &Bench<'_>,
     model: &Model,
@@ -112,7 +85,7 @@ pub fn promises(
         let forces = forces_of(&parts, bench.stop).unwrap_or_default();
         let mut first = 0;
         for ((effect, start), part) in from.iter().zip(&parts) {
-            // The way from the model at hand to the start is a column too, where there is one.
+            // One more column for the change from the model to the start.
             let count = part.free.len() + usize::from(is_elsewhere(start, values));
             all_starts.push(Start { cable, effect: *effect, values: *start, columns: first..first + count });
             first += count;
@@ -166,7 +139,8 @@ pub fn promises(
             let places: Vec<usize> = of_cables.iter().filter_map(|of| of.get(start).copied()).collect();
             let from: Vec<&Start> = places.iter().filter_map(|place| all_starts.get(*place)).collect();
             let candidate = Candidate::Alike(effect);
-            offer(Promise { candidate, model: beside(model, candidate, &from), gain: sums.gain(&places, &all_starts) });
+            let gain = sums.gain(&places, &all_starts);
+            offer(Promise { candidate, model: beside(model, candidate, &from), gain });
         }
     }
     for of in &geometries {
@@ -182,7 +156,7 @@ fn is_elsewhere(start: &Values, values: &Values) -> bool {
     start.iter().zip(values).any(|(one, other)| one.to_bits() != other.to_bits())
 }
 
-/// A model with one more candidate, from its start; what all cables have alike begins from their mean.
+/// Returns a model with one more candidate at its start; an effect of all cables alike starts from the mean of their starts.
 fn beside(model: &Model, candidate: Candidate, from: &[&Start]) -> Model {
     let mut model = model.clone();
     match candidate {
@@ -212,7 +186,7 @@ fn beside(model: &Model, candidate: Candidate, from: &[&Start]) -> Model {
     model
 }
 
-/// `bᵀS⁻¹b`, without directions that the model has.
+/// Returns `bᵀS⁻¹b` without directions that the model already has; NaN if the sums are.
 fn schur_gain(
     own: &DMatrix<f64>,
     mixed: &DMatrix<f64>,
@@ -240,7 +214,7 @@ fn schur_gain(
         .sum()
 }
 
-/// The same sums for a geometry, with its whitened changes of the deviations in every sample.
+/// The sums of an entry of the robot file, and the whitened derivatives of the deviations by its numbers in every sample.
 struct GeometrySums {
     geometry: Geometry,
     tangents: Vec<Vec<Vector6<f64>>>,
@@ -273,15 +247,17 @@ impl GeometrySums {
     }
 }
 
-/// Sums over the samples learned from.
+/// Sums over the training samples.
 struct Sums {
+    /// `JᵀJ`.
     normal: DMatrix<f64>,
+    /// `Jᵀr`.
     gradient: DVector<f64>,
-    /// `JᵀC` of each cable.
+    /// `CᵀJ` of each cable.
     mixed: Vec<DMatrix<f64>>,
     /// `Cᵀr` of each cable.
     scores: Vec<DVector<f64>>,
-    /// `CᵀC` of the columns of each start, and of each pair of cables' starts of the same effect that stand at the same place.
+    /// `CᵀC` of each start with itself, and with the start of the same effect on each other cable that has the same index among its starts.
     squares: Vec<(usize, usize, DMatrix<f64>)>,
 }
 
@@ -300,7 +276,7 @@ impl Sums {
         let mut mixed: Vec<Vec<f64>> = columns.iter().map(|of| vec![0.0; of.count * count]).collect();
         let mut scores: Vec<DVector<f64>> = columns.iter().map(|of| DVector::zeros(of.count)).collect();
         let mut levers_of: Vec<Vec<Vector6<f64>>> = vec![Vec::new(); cables];
-        // Of a cable: the rows weighed by its lever, derivatives and deviation.
+        // The product of a cable's whitened column of the structure matrix with the rows: derivatives, then deviation.
         let mut seen = vec![0.0; count + 1];
         let mut sample = 0;
         bench.rows(model, |place, rows| {
@@ -367,7 +343,7 @@ impl Sums {
         Self { normal, gradient, mixed, scores, squares }
     }
 
-    /// By how much the sum of squares falls where these starts, of different cables, come alike.
+    /// Returns the decrease of the sum of squares if one step, the same on all of them, is made from these starts of different cables.
     fn gain(&self, places: &[usize], starts: &[Start]) -> f64 {
         let of: Vec<&Start> = places.iter().filter_map(|place| starts.get(*place)).collect();
         let Some(width) = of.first().map(|start| start.columns.len()) else { return f64::NAN };

@@ -1,0 +1,73 @@
+//! What a name must show to stay.
+
+use std::collections::BTreeMap;
+
+use super::standing::{Standing, standings};
+use super::{LEAST_AWAY, Named, Search, without};
+use crate::discover::naming::{LEAST_SIZE, Refusal, STRONG_BIC};
+use crate::discover::wrench::bench::Trial;
+use crate::discover::wrench::candidate::Candidate;
+
+impl Search<'_, '_> {
+    /// Sets aside names that cannot stay, the least significant first, and returns the others with their evidence.
+    pub(super) fn leave(&mut self, found: &mut Vec<Candidate>) -> Vec<Named> {
+        loop {
+            let trial = self.fit(found);
+            let mut weakest_first: Vec<(Standing, Candidate)> =
+                standings(self.bench, &trial, found).into_iter().zip(found.iter().copied()).collect();
+            weakest_first.sort_by(|(one, _), (other, _)| one.away.total_cmp(&other.away));
+            let mut named = BTreeMap::new();
+            let mut refused = None;
+            for (standing, candidate) in weakest_first {
+                let (delta_bic, refusal) = self.judged(found, candidate, &trial, &standing);
+                refused = refusal.map(|refusal| (candidate, refusal));
+                if refused.is_some() {
+                    break;
+                }
+                named.insert(candidate, Named { candidate, delta_bic, runner_up: None });
+            }
+            let Some((candidate, refusal)) = refused else {
+                return found.iter().filter_map(|of| named.remove(of)).collect();
+            };
+            found.retain(|of| *of != candidate);
+            self.refused.insert(candidate, refusal);
+        }
+    }
+
+    /// Returns the evidence for a name and, if it cannot stay, the reason.
+    fn judged(
+        &mut self,
+        found: &[Candidate],
+        candidate: Candidate,
+        trial: &Trial,
+        standing: &Standing,
+    ) -> (f64, Option<Refusal>) {
+        let Standing { inflation, away } = *standing;
+        let without = self.fit(&without(found, candidate));
+        let delta_bic = self.delta_bic(&without, trial, candidate.count(), inflation);
+        let is_small = without.held_out - trial.held_out <= LEAST_SIZE * self.noise_squares(true);
+        let refusal = if self.is_at_end(candidate, trial) {
+            Some(Refusal::AtBound)
+        } else if is_small
+            || delta_bic >= -STRONG_BIC
+            || away < LEAST_AWAY
+            || self.beyond_one_block(trial, &without) < STRONG_BIC * inflation
+        {
+            Some(Refusal::Weak)
+        } else if !self.is_more_than_usual(candidate, trial) {
+            Some(Refusal::Usual)
+        } else {
+            None
+        };
+        (delta_bic, refusal)
+    }
+
+    /// Returns the decrease of the squares over the held-out blocks except the one in which it is greatest, in variances of the noise.
+    fn beyond_one_block(&self, trial: &Trial, without: &Trial) -> f64 {
+        let blocks = self.bench.blocks.iter().zip(trial.blocks.iter().zip(&without.blocks));
+        let gains = blocks.filter(|(block, _)| block.held_out).map(|(_, (with, without))| without - with);
+        let (sum, greatest) =
+            gains.fold((0.0, 0.0), |(sum, greatest): (f64, f64), gain| (sum + gain, greatest.max(gain)));
+        (sum - greatest) * 6.0 / self.noise_square
+    }
+}

@@ -1,0 +1,64 @@
+//! How significant the names of a model are.
+
+use nalgebra::DVector;
+
+use crate::candidates::ripple::is_period;
+use crate::certainty::undetermined::inverse_of_normal;
+use crate::discover::wrench::bench::{Bench, Model, Trial, Unknown};
+use crate::discover::wrench::candidate::Candidate;
+use crate::fit::Parameter;
+
+/// The certainty of a name's parameters.
+pub struct Standing {
+    /// Factor by which memory in the deviations weakens the evidence, at least 1; infinite if the samples do not determine the parameters.
+    pub inflation: f64,
+    /// Distance of all parameters together from their neutral values, in standard errors.
+    pub away: f64,
+}
+
+impl Standing {
+    /// If the samples do not determine the parameters.
+    pub const UNDETERMINED: Self = Self { inflation: f64::INFINITY, away: 0.0 };
+}
+
+/// Returns the certainty of each of a model's candidates.
+pub fn standings(bench: &Bench<'_>, trial: &Trial, candidates: &[Candidate]) -> Vec<Standing> {
+    if candidates.is_empty() {
+        return Vec::new();
+    }
+    let unknowns = trial.model.unknowns();
+    let covariances = bench.covariances(&trial.model);
+    let of = |candidate: &Candidate| {
+        let [covariance, independent] = covariances.as_ref()?;
+        // The period of a ripple has no neutral value.
+        let is_of = |parameter: &Parameter, effect| parameter.effect() == Some(effect) && !is_period(parameter);
+        let is_its = |unknown: &Unknown| match (*candidate, unknown) {
+            (Candidate::Own(cable, effect), Unknown::Own(of, parameter)) => cable == *of && is_of(parameter, effect),
+            (Candidate::Alike(effect), Unknown::Alike(parameter)) => is_of(parameter, effect),
+            (Candidate::Geometry(geometry), Unknown::Geometry(of, _)) => geometry == *of,
+            _ => false,
+        };
+        let places: Vec<usize> = (0..unknowns.len()).filter(|place| unknowns.get(*place).is_some_and(is_its)).collect();
+        let inflation =
+            places.iter().map(|place| covariance[(*place, *place)] / independent[(*place, *place)]).fold(1.0, f64::max);
+        let away = places.iter().map(|place| away_from_neutral(&trial.model, &unknowns[*place]));
+        let away = DVector::from_iterator(places.len(), away);
+        let inverse = inverse_of_normal(&covariance.select_rows(&places).select_columns(&places))?;
+        let away = (away.transpose() * inverse * &away)[(0, 0)].sqrt();
+        Some(Standing { inflation, away })
+    };
+    candidates.iter().map(|candidate| of(candidate).unwrap_or(Standing::UNDETERMINED)).collect()
+}
+
+fn away_from_neutral(model: &Model, unknown: &Unknown) -> f64 {
+    let from_neutral = |cable: usize, of: &Parameter| {
+        model.values.get(cable).map_or(f64::NAN, |values| values[of.place()] - of.row().neutral)
+    };
+    match unknown {
+        Unknown::Own(cable, of) => from_neutral(*cable, of),
+        Unknown::Alike(of) => from_neutral(0, of),
+        Unknown::Geometry(of, place) => {
+            model.changes.get(of).and_then(|numbers| numbers.get(*place)).copied().unwrap_or(0.0)
+        }
+    }
+}

@@ -1,0 +1,199 @@
+//! The result of a search by the wrench: each cable, the wrench before and after, the corrections of the robot file.
+
+use nalgebra::{DMatrix, Matrix6};
+
+use super::bench::{Bench, Trial, Unknown};
+use super::candidate::Candidate;
+use super::geometry::Geometry;
+use super::naming::{Named, Naming};
+use super::{Edits, GeometryFinding, WrenchDeviation, WrenchDiscovery, noise_of, too_short};
+use crate::discover::cable::BELIEVED_RATIO;
+use crate::discover::faults::RecordingFault;
+use crate::discover::figures::curve::curves;
+use crate::discover::report::{CableDiscovery, Finding, Model, RunnerUp, Tried, Unexplained, Verdict};
+use crate::discover::rest::places::Excess;
+use crate::discover::rest::{WORTH, ranges, wander, with_interpolated};
+use crate::fit::{FitError, Parameter, Row, SampleCounts};
+use crate::replay::Deviation;
+use crate::samples::conditions::conditions;
+
+/// A finished search.
+pub struct Case<'b, 'a> {
+    pub bench: &'b Bench<'a>,
+    /// The given model, fitted.
+    pub base: &'b Trial,
+    pub naming: &'b Naming,
+    /// The extended model, fitted to all samples.
+    pub fitted: &'b Trial,
+    pub samples: SampleCounts,
+    /// The faults of each cable's sensor.
+    pub faults: &'b [Vec<RecordingFault>],
+}
+
+impl Case<'_, '_> {
+    /// Returns the result. Without a covariance of the extended model's unknowns, none of them counts as determined.
+    ///
+    /// # Errors
+    /// [`FitError`] if the log is too short to estimate the noise.
+    pub fn report(&self, covariance: Option<DMatrix<f64>>) -> Result<WrenchDiscovery, FitError> {
+        let Self { bench, base, naming, fitted, .. } = *self;
+        let plain = Bench { whitening: Matrix6::identity(), ..bench.clone() };
+        let noise = noise_of(&plain, fitted).ok_or_else(too_short)?;
+        let held_out = bench.used(true);
+        let deviation = |trial: &Trial| WrenchDeviation::of(&plain.deviations(&trial.model), &held_out);
+        let (before, after) = (deviation(base), deviation(fitted));
+        let covariance = covariance.unwrap_or_else(|| {
+            let count = fitted.model.unknowns().len();
+            DMatrix::from_element(count, count, f64::INFINITY)
+        });
+        let cables: Vec<CableDiscovery> =
+            (0..bench.records.len()).map(|cable| self.cable(cable, &covariance)).collect();
+        let is_any = |verdict: Verdict| cables.iter().any(|cable| cable.verdict == verdict);
+        let verdict = if is_any(Verdict::Unexplained) {
+            Verdict::Unexplained
+        } else if naming.named.is_empty() {
+            Verdict::Complete
+        } else {
+            Verdict::Extended
+        };
+        let changes = &fitted.model.changes;
+        let description = &bench.description;
+        let geometry = naming
+            .geometries()
+            .map(|(named, of)| GeometryFinding {
+                geometry: of,
+                numbers: description.corrected(of, changes),
+                delta_bic: named.delta_bic,
+            })
+            .collect();
+        let alike = naming.named.iter().filter_map(|named| match named.candidate {
+            Candidate::Alike(effect) => Some(effect),
+            _ => None,
+        });
+        let point = |of: Geometry| {
+            let numbers = changes.contains_key(&of).then(|| description.corrected(of, changes));
+            numbers.and_then(|numbers| numbers.first_chunk::<3>().copied())
+        };
+        let count = bench.records.len();
+        let edits = Edits {
+            platform: description.platform_edit(changes),
+            base_m: (0..count).map(|cable| point(Geometry::Base(cable))).collect(),
+            platform_m: (0..count).map(|cable| point(Geometry::Attachment(cable))).collect(),
+        };
+        let tried = naming.tried.iter().filter_map(|tried| match tried.candidate {
+            Candidate::Alike(effect) => Some((effect.kind().to_owned(), tried.refusal)),
+            Candidate::Geometry(of) => Some((of.key().to_owned(), tried.refusal)),
+            Candidate::Own(..) => None,
+        });
+        Ok(WrenchDiscovery {
+            reference: description.reference,
+            verdict,
+            before,
+            after,
+            noise,
+            alike: alike.collect(),
+            geometry,
+            tried: tried.collect(),
+            edits,
+            cables,
+        })
+    }
+
+    /// Returns the result of one cable.
+    fn cable(&self, cable: usize, covariance: &DMatrix<f64>) -> CableDiscovery {
+        let Self { bench, base, naming, fitted, samples, faults } = *self;
+        let record = &bench.records[cable];
+        let residual_n = |trial: &Trial| bench.of_cable_n(&trial.model, &bench.deviations(&trial.model), cable);
+        let (residual_before_n, residual_after_n) = (residual_n(base), residual_n(fitted));
+        let noise_n = bench.white_noise(residual_after_n.iter().copied()).unwrap_or(f64::NAN);
+        // No friction model is exact, and the errors of all cables may add up.
+        let believed_n = bench.believed_n(&fitted.model, cable, BELIEVED_RATIO);
+        let floor_n = noise_n.hypot(believed_n);
+        let excess = Excess { record, blocks: &bench.blocks, residual_n: &residual_after_n, noise_n: floor_n };
+        let share = excess.share();
+        let all = if share <= WORTH { Vec::new() } else { conditions(record) };
+        let places = excess.places(&all);
+        let wander = if share <= WORTH { 0.0 } else { wander(&excess, &places) };
+        let is_noise = share - wander <= WORTH * (1.0 + wander);
+        let model = |trial: &Trial, covariance: &DMatrix<f64>| {
+            let (columns, fitted): (Vec<usize>, Vec<Parameter>) = trial
+                .model
+                .unknowns()
+                .into_iter()
+                .enumerate()
+                .filter_map(|(column, unknown)| match unknown {
+                    Unknown::Own(of, parameter) if of == cable => Some((column, parameter)),
+                    Unknown::Alike(parameter) => Some((column, parameter)),
+                    _ => None,
+                })
+                .unzip();
+            Model {
+                values: trial.model.values[cable],
+                covariance: covariance.select_rows(&columns).select_columns(&columns),
+                fitted,
+                held_out_n: Deviation::default(),
+            }
+        };
+        let findings: Vec<Finding> = naming.named.iter().filter_map(|named| finding(named, cable)).collect();
+        let tried = naming.tried.iter().filter_map(|tried| match tried.candidate {
+            Candidate::Own(of, effect) if of == cable => {
+                Some(Tried { effect, delta_bic: tried.delta_bic, held_out_rms_n: f64::NAN, refusal: tried.refusal })
+            }
+            _ => None,
+        });
+        let unexplained = (!is_noise).then(|| Unexplained {
+            rms_n: (share.max(0.0) * floor_n * floor_n).sqrt(),
+            places: places.clone(),
+            intervals_s: excess.intervals_s(|cycle| {
+                residual_after_n.get(cycle).is_some_and(|number: &f64| number.abs() > 4.0 * floor_n)
+            }),
+            neighbours: Vec::new(),
+        });
+        let is_sound = |place: usize| record.rows.get(place).is_some_and(Row::is_sound);
+        let judging = Bench { counts: with_interpolated(&bench.counts, bench.measured, is_sound), ..bench.clone() };
+        let count = base.model.unknowns().len();
+        CableDiscovery {
+            samples,
+            reference_variation_n: f64::NAN,
+            held_out: ranges(judging.used(true).into_iter())
+                .into_iter()
+                .map(|range| [range.start, range.end])
+                .collect(),
+            noise_floor_n: noise_n,
+            wander_n: floor_n * wander.sqrt(),
+            verdict: match (&unexplained, findings.is_empty()) {
+                (Some(_), _) => Verdict::Unexplained,
+                (None, true) => Verdict::Complete,
+                (None, false) => Verdict::Extended,
+            },
+            before: model(base, &DMatrix::from_element(count, count, f64::NAN)),
+            after: model(fitted, covariance),
+            findings,
+            candidates: Vec::new(),
+            tried: tried.collect(),
+            places: Vec::new(),
+            faults: faults.get(cable).cloned().unwrap_or_default(),
+            unexplained,
+            lack: None,
+            profiles: Vec::new(),
+            curves: curves(record, &residual_before_n, &residual_after_n),
+            times_s: (0..record.rows.len()).map(|cycle| record.time_s(cycle)).collect(),
+            residual_before_n,
+            residual_after_n,
+        }
+    }
+}
+
+/// Returns a name as a finding of a cable; `None` if the cable does not have the effect.
+fn finding(named: &Named, cable: usize) -> Option<Finding> {
+    let effect = match named.candidate {
+        Candidate::Alike(effect) => effect,
+        Candidate::Own(of, effect) if of == cable => effect,
+        _ => return None,
+    };
+    let runner_up = named.runner_up.and_then(|(candidate, delta_bic, is_as_good)| {
+        let effect = candidate.effect()?;
+        Some(RunnerUp { effect, delta_bic, held_out_squares: f64::NAN, is_as_good })
+    });
+    Some(Finding { effect, held_out_n: Deviation::default(), delta_bic: named.delta_bic, runner_up })
+}
