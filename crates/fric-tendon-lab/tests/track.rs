@@ -120,7 +120,7 @@ fn paths_are_checked() {
         said(&[x.clone(), y.clone(), column("bend_rad", &[0.1, 0.2])]),
         ContinuumError::TwoKindsOfGoals.to_string()
     );
-    assert!(said(&[x.clone()]).starts_with("column `tip_y_m` is missing beside `tip_x_m`"));
+    assert!(said(std::slice::from_ref(&x)).starts_with("column `tip_y_m` is missing beside `tip_x_m`"));
     assert!(said(&[column("bend_deg", &[1.0])]).contains("bend_rad"));
     assert!(said(&[column("bend_rad", &[0.1, f64::NAN])]).starts_with("`bend_rad` is NaN in row 2"));
     let times = said(&[column("time_s", &[0.0, 0.0]), column("bend_rad", &[0.1, 0.2])]);

@@ -51,12 +51,12 @@ pub fn continuum_track(
         array(py, tracks.iter().flat_map(|track| &track.goals).map(of).collect(), &[ways, count])
     };
     let of_first = |track: &Track| track.goals.iter().flat_map(|goal| goal.wanted_m).collect::<Vec<f64>>();
-    let tips_m = tracks.iter().flat_map(|track| &track.goals).flat_map(|goal| goal.tip_m).collect();
+    let reached_m = tracks.iter().flat_map(|track| &track.goals).flat_map(|goal| goal.tip_m).collect();
     let status = tracks.iter().flat_map(|track| &track.goals).map(|goal| goal.status.bits()).collect();
     let fields = (
         tracks.iter().map(|track| track.way.name()).collect::<Vec<_>>(),
         array(py, tracks.first().map(of_first).unwrap_or_default(), &[count, 2])?,
-        array(py, tips_m, &[ways, count, 2])?,
+        array(py, reached_m, &[ways, count, 2])?,
         rows(&TrackedGoal::error_m)?,
         rows(&|goal| goal.along_m)?,
         rows(&|goal| goal.bend_rad)?,

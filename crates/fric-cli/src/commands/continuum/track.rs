@@ -82,15 +82,15 @@ pub fn run(arguments: &TrackArguments) -> Outcome {
             ));
         }
     }
-    let followed: Vec<FollowedGoal> =
+    let answers: Vec<FollowedGoal> =
         goals.each().map(|goal| FollowedGoal::as_measured(&follower.next(goal), &model.file)).collect();
     let simulation = if arguments.simulate { Some(simulated(arguments, &model, goals)?) } else { None };
-    let outcome = TrackResult::new(model.name(), way, path.time_s(), path.goals(), &followed, simulation);
+    let outcome = TrackResult::new(model.name(), way, path.time_s(), path.goals(), &answers, simulation);
     warn_all(&outcome.warnings());
     let mut files = Vec::new();
     if let Some(file) = rows_file {
         let what = format!("the tensions for {} goals", outcome.goals);
-        files.push(Written::new(write(file, &path, &followed)?, what));
+        files.push(Written::new(write(file, &path, &answers)?, what));
     }
     json.finish(&outcome, &outcome.summary(), files)
 }
@@ -139,8 +139,8 @@ fn simulated(arguments: &TrackArguments, model: &Model, goals: Goals) -> Outcome
 }
 
 /// Writes the goals as stated, the tensions, the prediction and the flags.
-fn write(file: RowsFile, path: &GoalPath, followed: &[FollowedGoal]) -> Outcome<CompleteFile> {
-    let has_second = followed.iter().any(|goal| goal.tension_base_n[1] > 0.0);
+fn write(file: RowsFile, path: &GoalPath, answers: &[FollowedGoal]) -> Outcome<CompleteFile> {
+    let has_second = answers.iter().any(|goal| goal.tension_base_n[1] > 0.0);
     let wanted: Vec<Vec<f64>> = match path.goals() {
         Goals::BendRad(bend_rad) => bend_rad.iter().map(|bend_rad| vec![*bend_rad]).collect(),
         Goals::TipM(tip_m) => tip_m.iter().map(|tip_m| tip_m.to_vec()).collect(),
@@ -155,7 +155,7 @@ fn write(file: RowsFile, path: &GoalPath, followed: &[FollowedGoal]) -> Outcome<
     }
     names.extend(["predicted_bend_rad", "predicted_tip_x_m", "predicted_tip_y_m"].map(ToOwned::to_owned));
     names.extend(FLAGS.map(|(name, _)| name.to_owned()));
-    let rows = wanted.into_iter().zip(followed).map(|(mut row, goal)| {
+    let rows = wanted.into_iter().zip(answers).map(|(mut row, goal)| {
         row.extend(goal.tension_base_n.into_iter().take(if has_second { 2 } else { 1 }));
         row.push(goal.bend_rad);
         row.extend(goal.tip_m);
