@@ -21,7 +21,7 @@ use crate::results;
 /// >>> arm = continuum.Manipulator.read("examples/tendon-prototype.toml")
 /// >>> path = continuum.track(arm, bend_rad=[0.4, 0.9, 0.7, 0.75])
 /// >>> error_mm = dict(zip(path.ways, 1e3 * path.error_m.mean(axis=1)))
-/// >>> 2 * error_mm["history"] < error_mm["none"]
+/// >>> bool(2 * error_mm["history"] < error_mm["none"])
 /// True
 #[pyfunction]
 #[pyo3(signature = (manipulator, *, bend_rad=None, tip_m=None, seed=0, mu_spread_ratio=0.1))]
