@@ -11,6 +11,7 @@ mod cdr;
 mod closed_stdout;
 mod command_line;
 mod continuum;
+mod continuum_path;
 mod convert;
 mod correct;
 mod csv_logs;

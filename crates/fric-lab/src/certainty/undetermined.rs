@@ -193,7 +193,7 @@ pub fn covariance(problem: &Problem<'_>, values: &[Values]) -> DMatrix<f64> {
 }
 
 /// Returns the covariance to report: for a single cable it also covers groups of samples in the same condition, and it includes the effects of unlike
-/// pulleys and of noise in the derivatives.
+/// pulleys and of the sensor's noise in the model.
 pub fn reported_covariance(problem: &Problem<'_>, values: &[Values]) -> DMatrix<f64> {
     let groups = match (&problem.comparison, problem.members.as_slice()) {
         (Comparison::Forces, [member]) => Some(Groups::of(&member.record)),

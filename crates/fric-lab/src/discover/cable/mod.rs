@@ -145,7 +145,7 @@ struct CableLog<'a> {
 }
 
 impl<'a> CableLog<'a> {
-    /// Returns the same case with other signals.
+    /// Returns the same log with other signals.
     fn with_rows<'b>(&self, rows: &'b [Row]) -> CableLog<'b>
     where
         'a: 'b,
