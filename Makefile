@@ -22,6 +22,9 @@ PAIRED := test-python miri instructions bare-metal
 .PHONY: test check format lint test-rust docs test-python instructions bare-metal miri bench install install-cli tools coverage notices deny book
 .PHONY: wheel release platforms python-package
 
+# Cargo would look for the job server of a make that runs two steps at a time, which only a sub-make may use.
+unexport MAKEFLAGS MFLAGS
+
 # In the end, where the time went. What a paired step prints appears when it has ended.
 test:
 	@set -e; times=; timed() { name=$$1; shift; start=$$(date +%s); $(MAKE) --no-print-directory "$$@"; times="$$times$$name $$(($$(date +%s) - start))\n"; }; \

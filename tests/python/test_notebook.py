@@ -5,7 +5,7 @@ import sys
 
 import nbformat
 import pytest
-from support import ROOT
+from support import HANG_S, ROOT
 
 
 @pytest.mark.parametrize(
@@ -26,7 +26,7 @@ def test_a_notebook_runs(tmp_path, name, figures, told):
     code = f"""
 import nbclient, nbformat
 notebook = nbformat.read({str(path)!r}, as_version=4)
-nbclient.NotebookClient(notebook, timeout=120, resources={{"metadata": {{"path": {str(path.parent)!r}}}}}).execute()
+nbclient.NotebookClient(notebook, timeout={HANG_S}, resources={{"metadata": {{"path": {str(path.parent)!r}}}}}).execute()
 nbformat.write(notebook, {str(done)!r})
 """
     ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)

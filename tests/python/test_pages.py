@@ -12,7 +12,7 @@ import fric
 import numpy as np
 import pyarrow
 import pytest
-from support import LOG, ROBOT, ROOT, SLOW_BENCH, run
+from support import HANG_S, LOG, ROBOT, ROOT, SLOW_BENCH, run
 from tools import hint, program
 
 BROWSER = program("chromium")
@@ -30,7 +30,7 @@ USE = (ROOT / "tests" / "python" / "use.html").as_uri()
 def browse(*arguments):
     command = [BROWSER, "--headless=new", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--no-first-run", "--enable-logging=stderr",
                "--host-resolver-rules=MAP * ~NOTFOUND", *arguments]
-    done = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", check=False, timeout=120)
+    done = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", check=False, timeout=HANG_S)
     assert done.returncode == 0, done.stderr
     return done.stdout, [line for line in done.stderr.splitlines() if "CONSOLE" in line]
 

@@ -4,7 +4,7 @@ import subprocess
 import sys
 
 import pytest
-from support import SLOW_BENCH
+from support import HANG_S, SLOW_BENCH
 
 SCRIPT = """
 import concurrent.futures, multiprocessing, sys
@@ -36,5 +36,5 @@ def test_children_fit_and_discover_as_their_parent_does(tmp_path, method):
     script = tmp_path / "script.py"
     script.write_text(SCRIPT.format(text=SLOW_BENCH), encoding="utf-8")
     # Far more than it takes, so that a deadlock is a failure.
-    ended = subprocess.run([sys.executable, script, method], capture_output=True, text=True, timeout=300, check=True)
+    ended = subprocess.run([sys.executable, script, method], capture_output=True, text=True, timeout=HANG_S, check=True)
     assert ended.stdout.startswith("the same 0.0")

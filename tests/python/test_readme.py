@@ -15,7 +15,7 @@ import sys
 
 import fric
 import pytest
-from support import ROOT
+from support import HANG_S, ROOT
 
 CARGO = """#!/bin/sh
 case "$*" in
@@ -67,7 +67,7 @@ def environment(tmp_path_factory):
 
 
 def run(command, clone, environment):
-    done = subprocess.run(command, cwd=clone, env=environment, capture_output=True, text=True, check=False, timeout=300)
+    done = subprocess.run(command, cwd=clone, env=environment, capture_output=True, text=True, check=False, timeout=HANG_S)
     assert done.returncode == 0, f"{command}\n{done.stdout}\n{done.stderr}"
     return done.stdout + done.stderr
 

@@ -11,14 +11,14 @@ import fric
 import numpy as np
 import pytest
 from fric import continuum
-from support import ROBOT, ROOT, SLOW_BENCH
+from support import HANG_S, ROBOT, ROOT, SLOW_BENCH
 
 ARM = ROOT / "examples" / "tendon-prototype.toml"
 
 
 def command(folder, *words, code=0):
     """`python -m fric` in a folder."""
-    done = subprocess.run([sys.executable, "-m", "fric", *words], cwd=folder, capture_output=True, text=True, check=False, timeout=120)
+    done = subprocess.run([sys.executable, "-m", "fric", *words], cwd=folder, capture_output=True, text=True, check=False, timeout=HANG_S)
     assert done.returncode == code, done.stderr
     return done
 
@@ -222,7 +222,7 @@ def test_ctrl_c_ends_the_command_line_in_python(tmp_path):
         while process.poll() is None and not list(tmp_path.iterdir()):
             pass
         process.send_signal(signal.SIGINT)
-        _, told = process.communicate(timeout=60)
+        _, told = process.communicate(timeout=HANG_S)
     finally:
         process.kill()
     assert process.returncode == 1 and "interrupted before the end: nothing was written" in told

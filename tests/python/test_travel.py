@@ -12,7 +12,7 @@ import numpy as np
 import pyarrow
 import pytest
 from fric import continuum, fleet
-from support import BENCH, ROOT, SLOW_BENCH
+from support import BENCH, HANG_S, ROOT, SLOW_BENCH
 
 ARM = ROOT / "examples" / "tendon-prototype.toml"
 
@@ -220,7 +220,7 @@ def test_logs_and_results_go_to_processes_of_other_folders_and_back(tmp_path):
     simulate = [*fric_cli, "simulate", "--model", "robot.toml", "-o", "log.mcap", "--duration", "20"]
     assert subprocess.run(simulate, cwd=tmp_path, check=False).returncode == 0
     command = [sys.executable, "script.py"]
-    ended = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False)
+    ended = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=HANG_S, check=False)
     assert ended.returncode == 0 and ended.stdout.startswith("the same 0.0"), ended.stderr
 
 
@@ -243,5 +243,5 @@ run(interpreters.create(), code)
 
 def test_sub_interpreters_are_refused_in_one_sentence(tmp_path):
     told = tmp_path / "told.txt"
-    subprocess.run([sys.executable, "-c", SUB_INTERPRETER.format(told=str(told))], check=True, timeout=60)
+    subprocess.run([sys.executable, "-c", SUB_INTERPRETER.format(told=str(told))], check=True, timeout=HANG_S)
     assert told.read_text().startswith("fric does not work in sub-interpreters")
