@@ -542,17 +542,23 @@ impl<const CABLES: usize> Compensator<CABLES> {
         let cable = BlockOfCables::new(&self.params, &mut self.state.columns, block, self.place_count);
         let value = |place| Cable::<T>::effect(&cable, place);
         let tension_n = tension_n.max(zero);
-        // Ratio of the present μ to that of the parameters, the greatest over the pulleys.
-        let mut raised = one;
+        // Ratio of the present μ to that of the parameters, the greatest over the pulleys: at the tension, and at most with what the stored
+        // friction adds to it.
+        let [mut raised, mut most_raised] = [one; 2];
         if acting.has(load_nonlinearity::ACTS) {
             let law = LoadNonlinearity::of(value);
-            raised = (0..self.place_count).fold(zero, |greatest, place| {
-                let wrap_factor = Cable::<T>::wrap_factor(&cable, place);
-                greatest.max(law.factor(wrap_factor * tension_n).keep(zero.lt(wrap_factor)))
-            });
+            let raised_at = |tension_n: T| {
+                (0..self.place_count).fold(zero, |greatest, place| {
+                    let wrap_factor = Cable::<T>::wrap_factor(&cable, place);
+                    greatest.max(law.factor(wrap_factor * tension_n).keep(zero.lt(wrap_factor)))
+                })
+            };
+            raised = raised_at(tension_n);
+            most_raised = raised.max(raised_at(tension_n + stored_n.max(doubts.stored_from_n)));
         }
         if acting.has(friction_drift::ACTS) {
-            raised = raised * FrictionDrift::of(value).factor(T::splat(self.state.cycle * self.cycle_s));
+            let drifted = FrictionDrift::of(value).factor(T::splat(self.state.cycle * self.cycle_s));
+            (raised, most_raised) = (raised * drifted, most_raised * drifted);
         }
         let speed_m_per_s: T = raw_signals(input, first).speed_m_per_s;
         let speed_m_per_s = speed_m_per_s.keep(speed_m_per_s.within(GREATEST_MOTION)).abs();
@@ -565,7 +571,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
             viscous_n = viscous_n + ViscousNonlinearity::of(value).force_n(speed_m_per_s);
         }
         let tolerated = [BEYOND_RATIO, TOLERATED_N].map(|tolerated| T::splat(tolerated) / platform_share);
-        let ratio = (bears_ratio - tolerated[0] + bears_per_wrap * wrap_factor) * raised;
+        let ratio = bears_ratio - tolerated[0] + bears_per_wrap * wrap_factor;
         // Viscous friction loads the pulleys behind; a slip limit takes it from the stored friction.
         let limited_n = if self.features.traction { viscous_n } else { zero };
         let stored = Stored {
@@ -573,8 +579,8 @@ impl<const CABLES: usize> Compensator<CABLES> {
             tension_n,
             sum_n: stored_n,
             platform_force_n,
-            bears_n: ratio * (tension_n + viscous_n * platform_share) + (bears_n - tolerated[1]) + limited_n,
-            bears_ratio: ratio,
+            bears_n: ratio * raised * (tension_n + viscous_n * platform_share) + (bears_n - tolerated[1]) + limited_n,
+            fed_ratio: ratio * most_raised,
             platform_share,
             way_m: way_m.max(zero),
             sigma_n_per_m: self.params.model::<T>(block).sigma_n_per_m,

@@ -11,7 +11,7 @@
 //! Cause: the asperities of the contact yield more abruptly (below 1) or more gradually (above 1) than in Dahl's simplest law.
 
 use super::{Acting, Effect, EffectRow, Memory, OnMu};
-use crate::dahl::dahl_step_over;
+use crate::dahl::{dahl_step, dahl_step_over};
 use crate::parameters::ParameterRow;
 use crate::scalar::Scalar;
 
@@ -62,6 +62,17 @@ impl<T: Scalar> PreslidingShape<T> {
         dahl_step_over(friction_n, sliding_n, sigma_n_per_m, displacement_m, |way, left| {
             self.exponential_way(way, left)
         })
+    }
+
+    /// Returns the same for two states under one load, the lower at `f_c` and the other at `friction_n` beyond it: how far they are apart at most, for
+    /// states at that distance anywhere within `±f_c`. The law's slope differs least between them where it is largest, at twice `f_c` from its target,
+    /// by `n·2^(n − 1)` of Dahl's, if n is below 1.
+    #[inline(never)]
+    pub fn step_apart(&self, friction_n: T, sliding_n: T, sigma_n_per_m: T, displacement_m: T) -> T {
+        let least_ratio = self.exponent * T::splat(2.0).pow(self.exponent - T::splat(1.0));
+        let least_sigma_n_per_m = sigma_n_per_m * least_ratio.min(T::splat(1.0));
+        let linear_n = dahl_step(friction_n, sliding_n, least_sigma_n_per_m, displacement_m);
+        self.step(friction_n, sliding_n, sigma_n_per_m, displacement_m).max(linear_n)
     }
 
     /// Returns the distance, in units of `f_c/σ`, over which the exponential law has the same effect as this one over `way`, starting from

@@ -11,7 +11,7 @@
 //! | `S` | `stored_n` | N | friction stored: `Σ\|f_j\|` with `per_pulley`, `\|f\|` with `lumped` |
 //! | `B` | `bears_n` | N | friction that the present load bears at most: the sum of `μkT_j` in steady sliding, drag included |
 //! | `E` | `left_n` | N | how far the force at the platform can be off through what is stored |
-//! | `f_c` | | N | `B`, and what the stored friction itself adds to the load |
+//! | `f_c` | | N | `B`, and what the stored friction itself, before or after the cycle, adds to the load |
 //!
 //! - **Jump**: `|ΔF_s| > max(J, 5 % of the smaller force + 0.1 N·(1 − c))`. For a sensor with lag or a nonlinear curve the limit is reduced by the
 //!   fraction of a change that it shows in one cycle; for a sensor that has not changed for `n` cycles it is `n` times as much. The jump persists
@@ -19,8 +19,9 @@
 //!   is forgotten), or for [`LONGEST_LIE_S`] after the last jump: a level that lasts longer is taken for the load. A jump that is only partly taken
 //!   back persists for that time.
 //! - **Unsettled**: `S − B` exceeds 25 % of `T` + 0.1 N at the platform, or `E` exceeds half of 5 % of the force minus `E` + 0.1 N. While a jump
-//!   persists, `E = S + max(B, S_0)` with `S_0` stored before it, because the true state has stored no more in either direction. After that, `E ←
-//!   E·(e + (1 − e)·B/T)`, `e = exp(−σ|Δl|/f_c)`, which is how two Dahl states under the same load converge; with another exponent, by that law.
+//!   persists, `E = S + max(B + 25 % of T + 0.1 N, S_0 + E_0)`, with `S_0` stored and `E_0` doubtful before it: the true state has stored no more in
+//!   either direction, or is unsettled itself. After that, `E ← E·(e + (1 − e)·B/T)`, `e = exp(−σ|Δl|/f_c)`, which is how two Dahl states under the
+//!   same load converge; with another exponent, by that law.
 
 use crate::dahl::dahl_step;
 use crate::effects::presliding_shape::PreslidingShape;
@@ -160,7 +161,7 @@ pub struct Doubts<T> {
     pub jump_from_n: T,
     /// Sum of all jumps since then, N.
     pub jumped_n: T,
-    /// Friction stored before the jump, N.
+    /// Friction stored before the jump, and what was doubtful then; without a jump, friction stored before the cycle; N.
     pub stored_from_n: T,
     /// `E`, N.
     pub left_n: T,
@@ -198,8 +199,8 @@ pub struct Stored<T: Scalar> {
     pub platform_force_n: T,
     /// `B`, N.
     pub bears_n: T,
-    /// Contribution to it per newton of `T`.
-    pub bears_ratio: T,
+    /// Contribution to the sliding friction per newton of tension, at most.
+    pub fed_ratio: T,
     /// See [`Trust::platform_share`].
     pub platform_share: T,
     /// Displacement of the contacts, m.
@@ -248,7 +249,10 @@ pub fn review_sensor<T: Scalar>(
     doubts.jump_from_n = from_n.keep(stands);
     doubts.jumped_n = jumped_n.keep(stands);
     // It is needed until the cycle has been fully reviewed, whether the jump persists or not.
-    doubts.stored_from_n = T::select(starts, shown.stored_n, doubts.stored_from_n).keep(jumps.or(stands));
+    let persisted = stood.and(jumps.or(stands));
+    let needed = jumps.or(stands).or(zero.lt(doubts.left_n));
+    let stored_n = shown.stored_n + doubts.left_n.keep(starts);
+    doubts.stored_from_n = T::select(persisted, doubts.stored_from_n, stored_n).keep(needed);
     doubts.unseen_cycles = (doubts.unseen_cycles + shown.elapsed_cycles).keep(shown.finite.not());
     [jumps.or(stands), stands.or(shown.finite.not())]
 }
@@ -260,14 +264,16 @@ pub fn review_friction<T: Scalar>(stored: &Stored<T>, doubts: &mut Doubts<T>) ->
     let zero = T::splat(0.0);
     let Stored { tension_n, sum_n: stored_n, bears_n, platform_share, sigma_n_per_m, way_m, .. } = *stored;
     let tolerated_n = tension_n * T::splat(BEYOND_RATIO) + T::splat(TOLERATED_N);
-    let at_most_n = (stored_n + bears_n.max(doubts.stored_from_n)) * platform_share;
+    let at_most_n =
+        ((stored_n + bears_n) * platform_share + tolerated_n).max((stored_n + doubts.stored_from_n) * platform_share);
     // From beyond the sliding friction `f_c`, Dahl's law converges to it as one state to another. `μk(F_0 + F_1)/2` of a sensor pulley grows by
     // `share + 1/2` times its stored friction.
-    let fed = stored.bears_ratio * (platform_share + T::splat(0.5));
-    let sliding_n = bears_n + fed * stored_n;
+    let fed = stored.fed_ratio * (platform_share + T::splat(0.5));
+    // The greater one, as it falls in the cycle.
+    let sliding_n = bears_n + fed * stored_n.max(doubts.stored_from_n);
     let from_n = sliding_n + doubts.left_n;
     let to_n = match &stored.shape {
-        Some(shape) => shape.step(from_n, sliding_n, sigma_n_per_m, way_m),
+        Some(shape) => shape.step_apart(from_n, sliding_n, sigma_n_per_m, way_m),
         None => dahl_step(from_n, sliding_n, sigma_n_per_m, way_m),
     };
     let own_n = (to_n - sliding_n).max(zero);
@@ -276,6 +282,7 @@ pub fn review_friction<T: Scalar>(stored: &Stored<T>, doubts: &mut Doubts<T>) ->
     let left_n = T::select(stored.jump, at_most_n, own_n + fed * (doubts.left_n - own_n));
     // Below the tolerance of a cable without tension there is no doubt any more.
     doubts.left_n = left_n.keep(T::splat(LEFT_RATIO * TOLERATED_N).lt(left_n));
+    doubts.stored_from_n = doubts.stored_from_n.keep(stored.jump.or(zero.lt(doubts.left_n)));
     let excess_n = (stored_n - bears_n) * platform_share;
     // The true force may be smaller than this one by the doubtful amount.
     let least_n = (stored.platform_force_n.abs() - doubts.left_n).max(zero);

@@ -6,15 +6,16 @@
 //! | believed | the twin has no `SENSOR_JUMP`, and is `UNSETTLED` only where it has stored more than `Σμk_j·T` |
 //!
 //! With `cable_elasticity` the play of the stretch may stay off by 3·`play_n`·`compliance_m_per_n`·σ, which is left out.
-//! Spikes that no signal shows are counted and left out, from their first cycle until, after their last, the force has come back to the twin's
-//! (both being slack is not coming back: the force is then 0 whatever is stored):
+//! What no signal shows is counted and left out, from its first cycle until, after its last, the force and what each pulley stores have come back to
+//! the twin's (both being slack is not coming back: the force is then 0 whatever is stored):
 //! - a spike of no more than [`greatest_change_n`], which is what the cable can do. The twin's own force changes by at most 0.4 of that in a cycle;
-//! - a spike that begins while an earlier jump persists and, to within that limit, cancels it or leads back to the force before it ([`Jumps`]).
+//! - a spike that begins while an earlier jump persists and, to within that limit, cancels it or leads back to the force before it ([`Jumps`]);
+//! - what the twin has stored beyond its load during a spike: the twin itself is `UNSETTLED` then.
 
 use fric_core::robot::{MonitorOptions, Presliding};
 use fric_core::{CableInput, CableParams, CableStatus, CycleInput, Pose};
 
-use super::bound::{effect, greatest_mu, sensor_cos};
+use super::bound::{effect, greatest_mu_at, sensor_cos};
 use super::motion::Motion;
 use super::robot::{Robot, magnitude, once_in};
 use crate::random::Random;
@@ -222,24 +223,28 @@ pub fn episode(seed: u64) -> Result<Tally, String> {
             let tolerated_n = 0.05 * other.force_at_platform_n.abs() + 0.1 + play_n(cable(index));
             let is_off = off_n > tolerated_n;
             tally.off += u64::from(is_off);
+            let has = |flag| other.status.contains(flag);
+            let unsettled = has(CableStatus::UNSETTLED);
+            let is_silent = is_off && one.status.is_ok();
+            // What the twin itself does not vouch for is no measure, until the two have met again.
+            line.hidden |= is_silent && unsettled;
             tally.left_out += u64::from(is_off && line.hidden);
-            let is_silent = is_off && !line.hidden && one.status.is_ok();
-            if is_silent {
+            if is_silent && !line.hidden {
                 return Err(format!(
                     "cycle {cycle}, cable {index}: {one:?} beside {other:?}, from {:?}; {:?}",
                     bad.cables[index], robot.cables[index],
                 ));
             }
             let is_slack = (one.status | other.status).contains(CableStatus::SLACK);
-            if off_n < 0.01 * tolerated_n && line.spike.is_none() && !is_slack {
+            let [stored_n, of_twin_n] = [&spoilt, &twin].map(|robot| robot.pulley_friction_n(index));
+            let apart_n: f64 = stored_n.iter().zip(of_twin_n).map(|(one_n, other_n)| (one_n - other_n).abs()).sum();
+            if off_n + apart_n < 0.01 * tolerated_n && line.spike.is_none() && !is_slack {
                 line.hidden = false;
             }
-            let has = |flag| other.status.contains(flag);
             let stored_n: f64 = match robot.cables[index].presliding() {
-                Presliding::PerPulley => twin.pulley_friction_n(index).iter().map(|friction_n| friction_n.abs()).sum(),
+                Presliding::PerPulley => of_twin_n.iter().map(|friction_n| friction_n.abs()).sum(),
                 Presliding::Lumped => f64::INFINITY,
             };
-            let unsettled = has(CableStatus::UNSETTLED);
             let is_false = unsettled && stored_n <= least_borne_n(&robot.cables[index], other.frictionless_n);
             tally.unsettled += u64::from(unsettled && !is_false);
             tally.false_flags += u64::from(has(CableStatus::SENSOR_JUMP) || is_false);
@@ -254,7 +259,7 @@ fn play_n(cable: &CableParams) -> f64 {
     3.0 * value("play_n") * value("compliance_m_per_n") * cable.friction().sigma_n_per_m.unwrap()
 }
 
-/// `Σμk_j·T` of the pulleys whose wrap is fixed, N; no effect lowers it but those that are left out.
+/// `Σμk_j·T` of the pulleys whose wrap is fixed, N; no effect lowers it but those that are left out, the ones that correct the tension among them.
 fn least_borne_n(cable: &CableParams, tension_n: f64) -> f64 {
     let neutral = [
         ("load_nonlinearity", "exponent", 1.0),
@@ -262,12 +267,19 @@ fn least_borne_n(cable: &CableParams, tension_n: f64) -> f64 {
         ("sensor_gain", "gain", 1.0),
         ("sensor_offset", "offset_n", 0.0),
         ("sensor_drift", "rate_n_per_s", 0.0),
+        ("sensor_warmup", "final_n", 0.0),
+        ("sensor_nonlinearity", "curvature_per_n", 0.0),
+        ("sensor_lag", "time_constant_s", 0.0),
+        ("winch_ripple", "sin_n", 0.0),
+        ("winch_ripple", "cos_n", 0.0),
     ];
     if neutral.iter().any(|(kind, key, neutral)| effect(cable, kind, key) != *neutral) {
         return 0.0;
     }
-    let wraps = cable.fixed_wraps_rad().flatten();
-    wraps.map(|wrap_rad| greatest_mu(cable) * 2.0 * (0.5 * wrap_rad).sin() * tension_n.max(0.0)).sum()
+    let wraps = (1..).zip(cable.fixed_wraps_rad()).filter_map(|(pulley, wrap_rad)| Some((pulley, wrap_rad?)));
+    wraps
+        .map(|(pulley, wrap_rad)| greatest_mu_at(cable, pulley) * 2.0 * (0.5 * wrap_rad).sin() * tension_n.max(0.0))
+        .sum()
 }
 
 /// Robots, one after the other, over at least so many cycles of a cable.

@@ -22,16 +22,24 @@ fn amplitude(cable: &CableParams, kind: &str, keys: [&str; 2]) -> f64 {
     sin.hypot(cos)
 }
 
-/// The greatest μ that stands at a pulley, but for `load_nonlinearity`.
-pub fn greatest_mu(cable: &CableParams) -> f64 {
-    cable.friction().mu.max(effect(cable, "pulley_defect", "mu"))
-        * (1.0 + effect(cable, "stribeck", "ratio").max(0.0))
+/// The greatest μ that stands at a pulley, by its number from 1, but for `load_nonlinearity`.
+#[expect(clippy::cast_precision_loss, reason = "a few pulleys")]
+pub fn greatest_mu_at(cable: &CableParams, pulley: usize) -> f64 {
+    let has_defect = effect(cable, "pulley_defect", "pulley") == pulley as f64;
+    let mu = cable.friction().mu;
+    let mu = if has_defect { mu.max(effect(cable, "pulley_defect", "mu")) } else { mu };
+    mu * (1.0 + effect(cable, "stribeck", "ratio").max(0.0))
         * (1.0 + effect(cable, "dwell_stiction", "ratio").max(0.0))
         * (1.0 + effect(cable, "friction_warmup", "ratio").max(0.0))
         * (1.0 + amplitude(cable, "friction_ripple", ["sin_ratio", "cos_ratio"]))
         * (1.0 + effect(cable, "empirical", "friction_ratio").abs())
         * (1.0 + effect(cable, "direction_asymmetry", "coulomb_ratio").abs())
         * (1.0 + effect(cable, "friction_drift", "rate_per_s").abs() * LONGEST_RUN_S)
+}
+
+/// The greatest of all pulleys.
+pub fn greatest_mu(cable: &CableParams) -> f64 {
+    (1..=cable.pulley_count()).fold(0.0, |greatest, pulley| greatest_mu_at(cable, pulley).max(greatest))
 }
 
 /// cos α₁ of the sensor pulley; 0 for a sensor in line.
