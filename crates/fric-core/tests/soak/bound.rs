@@ -50,17 +50,15 @@ pub fn sensor_cos(cable: &CableParams) -> f64 {
 /// The greatest friction of a cable, N, for forces (N, corrected) and speeds (m/s) up to these.
 pub fn friction_bound_n(cable: &CableParams, force_n: f64, speed_m_per_s: f64, cycle_s: f64) -> f64 {
     let value = |kind, key| effect(cable, kind, key);
-    let exponent = value("load_nonlinearity", "exponent");
-    // Grows faster than the load: what holds it is the core's own limit of μ. And where the force of the sensor is not known from what it
-    // shows in the cycle, nothing is known of the friction.
+    // What holds friction that grows faster than the load is the core's own limit of μ. Where it grows slower, μ depends on the load so strongly at
+    // next to none that the core's two iterations do not reach it. And where the force of the sensor is not known from what it shows in the
+    // cycle, nothing is known of the friction.
     let is_open = [("sensor_lag", "time_constant_s"), ("sensor_nonlinearity", "curvature_per_n")];
-    if exponent > 1.0 || is_open.iter().any(|(kind, key)| value(kind, key).abs() > 0.0) {
+    if value("load_nonlinearity", "exponent") != 1.0 || is_open.iter().any(|(kind, key)| value(kind, key).abs() > 0.0) {
         return f64::INFINITY;
     }
     let mu = greatest_mu(cable);
-    // For an exponent below 1, `μN(N/N₀)^(e−1) ≤ μ(N + N₀)`.
-    let nonlinear_n = if exponent < 1.0 { mu * value("load_nonlinearity", "reference_n") } else { 0.0 };
-    let drag_n = value("bearing_drag", "drag_n") + nonlinear_n;
+    let drag_n = value("bearing_drag", "drag_n");
     let viscous = cable.friction().viscous_n_s_per_m * (1.0 + value("direction_asymmetry", "viscous_ratio").abs());
     let window_s = value("pulley_inertia", "window_s") + cycle_s;
     // A lead takes the speed of three moments, 3, −3 and 1 times: of one that turns round 7 times.

@@ -1,6 +1,6 @@
 //! One robot over a few ten thousand cycles, and what is checked of it.
 
-use fric_core::effects::Effect;
+use fric_core::effects::{Effect, Memory};
 use fric_core::robot::{MonitorOptions, Presliding};
 use fric_core::{CableInput, CableParams, CableStatus, Compensator, CycleInput, CycleOutput, Pose};
 
@@ -77,7 +77,7 @@ impl Episode {
         let motions: Vec<Motion> = robot.cables.iter().map(motion).collect();
         let watches = robot.cables.iter().map(|cable| Watch::new(&robot, cable)).collect();
         let straight = robot.cables.iter().map(|cable| comes_straight(cable, monitor)).collect();
-        let of_time = |cable: &CableParams| ["friction_drift", "sensor_drift"].iter().any(|kind| acts(cable, kind));
+        let of_time = |cable: &CableParams| acting(cable).any(|effect| effect.row().goes_by_time);
         let drifts = robot.cables.iter().map(of_time).collect();
         let base = Watched { compensator: robot.compensator(), watches, cycles: 0.0 };
         Self {
@@ -136,9 +136,9 @@ impl Episode {
         let mut spoilt = self.base.clone();
         let (mut pending, mut late) = (0.0, None);
         self.tally.faults += faults.cables.len() as u64 + u64::from(faults.cycle.is_some());
-        // Delay lines hand on what they have been fed before the way back begins.
+        // What a delay line or the smoothing of a sensor's lag has been fed is gone before the way back begins.
         let settle =
-            8 + self.robot.cables.iter().map(|cable| delay_cycles(cable, self.robot.cycle_s)).max().unwrap_or(0);
+            8 + self.robot.cables.iter().map(|cable| settling_cycles(cable, self.robot.cycle_s)).max().unwrap_or(0);
         for cycle in 0..cycles + settle + RECOVERY_CYCLES {
             let stroke = cycle.checked_sub(cycles + settle);
             if stroke == Some(0) {
@@ -284,18 +284,29 @@ fn chain_distance_n(one_n: [f64; 8], other_n: [f64; 8]) -> f64 {
 /// Whether nothing but stored friction tells a cable from its twin, so that it can only come nearer. With play in the length the two
 /// do not move alike until both have been pushed to the same edge.
 fn comes_straight(cable: &CableParams, monitor: &MonitorOptions) -> bool {
-    let others = ["time_delay", "cable_elasticity", "pulley_inertia", "pulley_eccentricity"];
-    monitor.length_noise_m == 0.0 && cable.traction_mu().is_none() && !others.iter().any(|kind| acts(cable, kind))
+    let is_other = |effect: &Effect| {
+        effect.row().memory != Memory::Nothing || matches!(effect, Effect::TimeDelay | Effect::PulleyEccentricity)
+    };
+    monitor.length_noise_m == 0.0 && cable.traction_mu().is_none() && !acting(cable).any(|effect| is_other(&effect))
 }
 
-fn acts(cable: &CableParams, kind: &str) -> bool {
-    let row = Effect::of_kind(kind).unwrap().row();
-    row.parameters.iter().any(|parameter| effect(cable, kind, parameter.key).to_bits() != parameter.neutral.to_bits())
+/// The effects of the catalogue that act.
+fn acting(cable: &CableParams) -> impl Iterator<Item = Effect> {
+    Effect::CATALOGUE.iter().copied().filter(|effect| acts(cable, *effect))
+}
+
+fn acts(cable: &CableParams, which: Effect) -> bool {
+    let is_neutral = |key, neutral: f64| effect(cable, which.kind(), key).to_bits() == neutral.to_bits();
+    !which.row().parameters.iter().all(|parameter| is_neutral(parameter.key, parameter.neutral))
 }
 
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some cycles")]
-fn delay_cycles(cable: &CableParams, cycle_s: f64) -> u32 {
-    (effect(cable, "time_delay", "delay_s") / cycle_s).max(0.0).ceil() as u32
+fn settling_cycles(cable: &CableParams, cycle_s: f64) -> u32 {
+    let delay_s = effect(cable, "time_delay", "delay_s").max(0.0);
+    // From 10⁹ N to 10⁻⁶ N, smoothed twice: `(1 + 41)·e^(−41)` is below 10⁻¹⁵.
+    let smoothed_s =
+        if acts(cable, Effect::SensorLag) { 41.0 * effect(cable, "sensor_lag", "smoothing_s") } else { 0.0 };
+    ((delay_s + smoothed_s) / cycle_s).ceil() as u32
 }
 
 /// The way over which a cable forgets to 1/e at a force, amply.
@@ -306,8 +317,9 @@ fn memory_m(cable: &CableParams, force_n: f64) -> f64 {
     let of_load_m = cable.memory_m_per_n(greatest_mu(cable).min(0.5), sigma_n_per_m) * corrected_n;
     #[expect(clippy::cast_precision_loss, reason = "a handful")]
     let of_drag_m = cable.pulley_count() as f64 * effect(cable, "bearing_drag", "drag_n") / sigma_n_per_m;
-    let nonlinear = if acts(cable, "load_nonlinearity") { 4.0 } else { 1.0 };
-    2.0 * sensor_share(cable) * (nonlinear * of_load_m + of_drag_m)
+    let nonlinear = if acts(cable, Effect::LoadNonlinearity) { 4.0 } else { 1.0 };
+    // What moves the winch through its play moves no cable.
+    2.0 * sensor_share(cable) * (nonlinear * of_load_m + of_drag_m) + effect(cable, "gear_backlash", "play_m")
 }
 
 /// How often what rubs at the sensor pulley counts in the tension, at least once: the more, the less it is wrapped.
