@@ -30,7 +30,7 @@ fn main() {
     let is_wanted = |effect: &Effect| {
         *effect != Effect::Empirical && (kinds.is_empty() || kinds.split(',').any(|kind| kind == effect.kind()))
     };
-    let wanted: Vec<Effect> = Effect::CATALOGUE.iter().copied().filter(is_wanted).collect();
+    let wanted: Vec<Effect> = Effect::kinds().filter(is_wanted).collect();
     let cases = wanted.into_iter().flat_map(|effect| (0..count).map(move |seed| case(effect, offset * 10_000 + seed)));
     let cases: Vec<Case> = cases.collect();
     let errors: Vec<ParameterError> = cases.into_par_iter().flat_map_iter(|case| errors(&case)).collect();

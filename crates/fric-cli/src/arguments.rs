@@ -345,7 +345,7 @@ pub struct SimulateArguments {
 
 /// What `--effect` can hide.
 fn effects_help() -> String {
-    let effects = Effect::CATALOGUE.iter().map(|effect| {
+    let effects = Effect::kinds().map(|effect| {
         let row = effect.row();
         let keys = row.parameters.iter().map(|parameter| parameter.key);
         (row.kind, keys.collect::<Vec<_>>(), row.cause)

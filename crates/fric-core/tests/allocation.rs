@@ -3,6 +3,7 @@
 
 use allocation_counter::measure;
 use fric_core::effects::Effect;
+use fric_core::effects::ripple::PERIOD_KEY;
 use fric_core::forward::PoseFollower;
 use fric_core::robot::{
     CableOptions, FrictionOptions, GeometryOptions, MonitorOptions, PlatformOptions, Presliding, PulleyOptions,
@@ -35,7 +36,12 @@ fn everything_on() -> Compensator<8> {
             };
             for effect in Effect::CATALOGUE {
                 for (parameter, example) in effect.row().parameters.iter().zip(effect.row().example) {
-                    let value = if parameter.key == "delay_s" { 0.0105 } else { *example };
+                    let value = match parameter.key {
+                        "delay_s" => 0.0105,
+                        // The second ripple has a period of its own.
+                        PERIOD_KEY if effect.is_second() => 0.4 * example,
+                        _ => *example,
+                    };
                     options.effects.set(*effect, parameter.key, value).unwrap();
                 }
             }

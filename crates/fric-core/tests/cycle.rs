@@ -67,43 +67,46 @@ fn draw(
 fn draw_effects(random: &mut Random, presliding: Presliding, options: &mut CableOptions<'_>) -> Effects {
     let mut effects = Effects::NONE;
     let all = random.below(2) == 0;
-    let mut set = |kind: &str, random: &mut Random, parameters: &mut [(&str, &mut f64, f64, f64)]| {
+    let mut set = |effect: Effect, random: &mut Random, parameters: &mut [(&str, &mut f64, f64, f64)]| {
         if !all && random.below(2) == 0 {
             return;
         }
         for (key, value, least, greatest) in parameters {
             **value = random.range(*least, *greatest);
-            options.effects.set(Effect::of_kind(kind).unwrap(), key, **value).unwrap();
+            options.effects.set(effect, key, **value).unwrap();
         }
     };
     let of = &mut effects;
     let direction =
         &mut [("coulomb_ratio", &mut of.coulomb_ratio, -0.2, 0.2), ("viscous_ratio", &mut of.viscous_ratio, -0.9, 0.9)];
-    set("direction_asymmetry", random, direction);
-    set("bearing_drag", random, &mut [("drag_n", &mut of.drag_n, 0.0, 0.3)]);
+    set(Effect::DirectionAsymmetry, random, direction);
+    set(Effect::BearingDrag, random, &mut [("drag_n", &mut of.drag_n, 0.0, 0.3)]);
     if presliding == Presliding::PerPulley {
         let load = &mut [
             ("exponent", &mut of.load_exponent, 0.85, 1.15),
             ("reference_n", &mut of.load_reference_n, 5.0, 30.0),
         ];
-        set("load_nonlinearity", random, load);
+        set(Effect::LoadNonlinearity, random, load);
     }
-    set("friction_drift", random, &mut [("rate_per_s", &mut of.drift_per_s, -0.3, 0.3)]);
-    set("presliding_shape", random, &mut [("exponent", &mut of.dahl_exponent, 0.3, 3.0)]);
-    set("sensor_gain", random, &mut [("gain", &mut of.gain, 0.9, 1.1)]);
-    set("sensor_offset", random, &mut [("offset_n", &mut of.sensor_offset_n, -0.5, 0.5)]);
-    set("sensor_drift", random, &mut [("rate_n_per_s", &mut of.sensor_drift_n_per_s, -0.5, 0.5)]);
+    set(Effect::FrictionDrift, random, &mut [("rate_per_s", &mut of.drift_per_s, -0.3, 0.3)]);
+    set(Effect::PreslidingShape, random, &mut [("exponent", &mut of.dahl_exponent, 0.3, 3.0)]);
+    set(Effect::SensorGain, random, &mut [("gain", &mut of.gain, 0.9, 1.1)]);
+    set(Effect::SensorOffset, random, &mut [("offset_n", &mut of.sensor_offset_n, -0.5, 0.5)]);
+    set(Effect::SensorDrift, random, &mut [("rate_n_per_s", &mut of.sensor_drift_n_per_s, -0.5, 0.5)]);
     let inertia = &mut [("mass_kg", &mut of.mass_kg, 0.0, 0.01), ("window_s", &mut of.mass_window_s, 0.002, 0.01)];
-    set("pulley_inertia", random, inertia);
-    let [sin, cos, period_m] = &mut of.ripple;
-    let ripple =
-        &mut [("sin_ratio", sin, -0.05, 0.05), ("cos_ratio", cos, -0.05, 0.05), ("period_m", period_m, 0.03, 0.3)];
-    set("pulley_eccentricity", random, ripple);
+    set(Effect::PulleyInertia, random, inertia);
+    let [one, other] = &mut of.ripples;
+    for (effect, [sin, cos, period_m], longest_m) in
+        [(Effect::PulleyEccentricity, one, 0.3), (Effect::PulleyEccentricity2, other, 0.025)]
+    {
+        let periods = ("period_m", period_m, 0.1 * longest_m, longest_m);
+        set(effect, random, &mut [("sin_ratio", sin, -0.05, 0.05), ("cos_ratio", cos, -0.05, 0.05), periods]);
+    }
     let stretch = &mut [
         ("compliance_m_per_n", &mut of.compliance_m_per_n, 0.0, 1e-4),
         ("play_n", &mut of.stretch_play_n, 0.0, 0.1),
     ];
-    set("cable_elasticity", random, stretch);
+    set(Effect::CableElasticity, random, stretch);
     effects
 }
 

@@ -1,5 +1,6 @@
 //! New parameters in a robot file: every layout, comments and order kept, numbers to the bit.
 
+use fric_core::effects::Effect;
 use fric_core::robot::edit::{CableEdit, EffectEdit, FrictionEdit, rewrite, set_monitor};
 use fric_core::robot::file::{EffectTable, RobotFile, RobotOptions};
 use proptest::prelude::*;
@@ -61,15 +62,20 @@ fn changed(text: &str, friction: &FrictionEdit, effects: &[EffectEdit<'_>]) -> R
     cable.friction.sigma_n_per_m = sigma_n_per_m.or(cable.friction.sigma_n_per_m);
     cable.friction.viscous_n_s_per_m = viscous_n_s_per_m.unwrap_or(cable.friction.viscous_n_s_per_m);
     cable.friction.offset_n = offset_n.unwrap_or(cable.friction.offset_n);
+    let place = |effects: &[EffectTable], effect: Effect| {
+        let mut of_kind = effects.iter().enumerate().filter(|(_, of)| of.kind == effect.kind());
+        of_kind.nth(usize::from(effect.is_second())).map(|(place, _)| place)
+    };
     for effect in effects {
-        match effect {
-            EffectEdit::Remove { kind } => cable.effects.retain(|effect| effect.kind != *kind),
-            EffectEdit::Set { kind, parameters } => {
-                if !cable.effects.iter().any(|effect| effect.kind == *kind) {
-                    cable.effects.push(EffectTable { kind: (*kind).to_owned(), parameters: [].into() });
-                }
-                let effect = cable.effects.iter_mut().find(|effect| effect.kind == *kind).unwrap();
-                effect.parameters.extend(parameters.iter().map(|(key, value)| ((*key).to_owned(), *value)));
+        match *effect {
+            EffectEdit::Remove { effect } => drop(cable.effects.remove(place(&cable.effects, effect).unwrap())),
+            EffectEdit::Set { effect, parameters } => {
+                let place = place(&cable.effects, effect).unwrap_or_else(|| {
+                    cable.effects.push(EffectTable { kind: effect.kind().to_owned(), parameters: [].into() });
+                    cable.effects.len() - 1
+                });
+                let parameters = parameters.iter().map(|(key, value)| ((*key).to_owned(), *value));
+                cable.effects[place].parameters.extend(parameters);
             }
         }
     }
@@ -86,8 +92,14 @@ fn edited(text: &str, friction: FrictionEdit, effects: &[EffectEdit<'_>]) -> Str
 }
 
 const SET: [EffectEdit<'static>; 2] = [
-    EffectEdit::Set { kind: "stribeck", parameters: &[("ratio", 0.5), ("velocity_m_per_s", 0.02)] },
-    EffectEdit::Set { kind: "time_delay", parameters: &[("delay_s", 0.006)] },
+    EffectEdit::Set { effect: Effect::Stribeck, parameters: &[("ratio", 0.5), ("velocity_m_per_s", 0.02)] },
+    EffectEdit::Set { effect: Effect::TimeDelay, parameters: &[("delay_s", 0.006)] },
+];
+/// Two of one kind, around another.
+const TWICE: [EffectEdit<'static>; 3] = [
+    EffectEdit::Set { effect: Effect::WinchRipple, parameters: &[("sin_n", 0.5), ("period_m", 0.03)] },
+    SET[0],
+    EffectEdit::Set { effect: Effect::WinchRipple2, parameters: &[("cos_n", -0.2), ("period_m", 0.015)] },
 ];
 
 #[test]
@@ -100,7 +112,7 @@ fn every_layout_takes_every_value() {
     };
     for text in texts() {
         for friction in [all, FrictionEdit { offset_n: None, ..all }, FrictionEdit::default()] {
-            for effects in [&SET[..], &SET[1..], &SET[..1], &[]] {
+            for effects in [&SET[..], &SET[1..], &SET[..1], &TWICE, &[]] {
                 let new = edited(&text, friction, effects);
                 assert_eq!(options(&new), changed(&text, &friction, effects), "{text}\n{new}");
                 // In the same order, for what is new has none.
@@ -122,12 +134,27 @@ fn an_effect_added_can_be_taken_away() {
         };
         let with = edited(&text, FrictionEdit::default(), &SET);
         for kinds in [&["stribeck"][..], &["time_delay"], &["stribeck", "time_delay"], &["time_delay", "stribeck"]] {
-            let effects: Vec<_> = kinds.iter().map(|kind| EffectEdit::Remove { kind }).collect();
+            let remove = |kind: &&str| EffectEdit::Remove { effect: Effect::of_kind(kind).unwrap() };
+            let effects: Vec<_> = kinds.iter().map(remove).collect();
             let without = edited(&with, FrictionEdit::default(), &effects);
             assert_eq!(options(&without), changed(&with, &FrictionEdit::default(), &effects), "{with}\n{without}");
             // Of the comments only those on the line of an effect go.
             if kinds.iter().all(|kind| !has(kind)) {
                 assert_eq!(comments(&without), comments(&text), "{without}");
+            }
+        }
+    }
+}
+
+#[test]
+fn each_of_two_of_a_kind_is_changed_and_taken_away_by_itself() {
+    for text in texts() {
+        let with = edited(&text, FrictionEdit::default(), &TWICE);
+        for effect in [Effect::WinchRipple, Effect::WinchRipple2] {
+            let set = [EffectEdit::Set { effect, parameters: &[("sin_n", 0.7)] }];
+            for edits in [set, [EffectEdit::Remove { effect }]] {
+                let new = edited(&with, FrictionEdit::default(), &edits);
+                assert_eq!(options(&new), changed(&with, &FrictionEdit::default(), &edits), "{with}\n{new}");
             }
         }
     }
@@ -182,7 +209,7 @@ fn it_looks_like_written_by_hand() {
          { kind = 'stribeck', ratio = 0.5, velocity_m_per_s = 0.02 } # grease\n]\n"
     );
     let text = format!("{HEAD}{}", LAYOUTS[11]);
-    let bus = edited(&text, FrictionEdit::default(), &[EffectEdit::Remove { kind: "stribeck" }]);
+    let bus = edited(&text, FrictionEdit::default(), &[EffectEdit::Remove { effect: Effect::Stribeck }]);
     assert!(bus.ends_with("effects = [\n  { kind = 'time_delay', delay_s = 0.002 } # bus\n]\n"), "{bus}");
 }
 
@@ -203,17 +230,17 @@ fn what_is_not_there_or_not_right_is_told() {
         ),
         (says("a", mu(f64::NAN), &[]), &["`mu` is NaN"]),
         (says("a", mu(f64::NEG_INFINITY), &[]), &["`mu` is -inf"]),
-        (says("b", mu(0.01), &[EffectEdit::Remove { kind: "stribeck" }]), &["cable \"b\" has no effect `stribeck`"]),
         (
-            says("b", mu(0.01), &[EffectEdit::Set { kind: "stribek", parameters: &[] }]),
-            &["`stribek`", "did you mean `stribeck`?"],
+            says("b", mu(0.01), &[EffectEdit::Remove { effect: Effect::Stribeck }]),
+            &["cable \"b\" has no effect `stribeck`"],
         ),
         (
-            says("b", mu(0.01), &[EffectEdit::Set { kind: "a\"\n[b]", parameters: &[] }]),
-            &["rig.toml with the new values, line ", "unknown effect"],
+            says("b", mu(0.01), &[EffectEdit::Remove { effect: Effect::WinchRipple2 }]),
+            &["cable \"b\" has no effect `winch_ripple_2` to be removed"],
         ),
+        (says("b", mu(0.01), &TWICE[2..]), &["cable \"b\" has no effect `winch_ripple` for a second one to follow"]),
         (
-            says("b", mu(0.01), &[EffectEdit::Set { kind: "stribeck", parameters: &[("rati", 0.5)] }]),
+            says("b", mu(0.01), &[EffectEdit::Set { effect: Effect::Stribeck, parameters: &[("rati", 0.5)] }]),
             &["`rati`", "did you mean `ratio`?"],
         ),
     ] {
@@ -269,8 +296,8 @@ proptest! {
         let friction = FrictionEdit { mu, sigma_n_per_m, viscous_n_s_per_m, offset_n };
         let (stribeck, delay) = ([("ratio", ratio)], [("delay_s", delay_s)]);
         let effects = [
-            EffectEdit::Set { kind: "stribeck", parameters: &stribeck },
-            EffectEdit::Set { kind: "time_delay", parameters: &delay },
+            EffectEdit::Set { effect: Effect::Stribeck, parameters: &stribeck },
+            EffectEdit::Set { effect: Effect::TimeDelay, parameters: &delay },
         ];
         let new = edited(&text, friction, &effects);
         let (found, wanted) = (options(&new), changed(&text, &friction, &effects));

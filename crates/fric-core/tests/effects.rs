@@ -105,6 +105,41 @@ fn in_steady_sliding_each_effect_does_what_its_equation_says() {
     }
 }
 
+/// Of two ripples of a kind, forces add and factors multiply.
+#[test]
+fn two_ripples_of_a_kind_each_do_what_their_equation_says() {
+    let at = |[sin, cos, period_m]: [f64; 3], length_m: f64| {
+        let angle = std::f64::consts::TAU * length_m / period_m;
+        sin * angle.sin() + cos * angle.cos()
+    };
+    for presliding in FORMS {
+        for (s, speed) in [(1.0, 0.1), (-1.0, -0.1)] {
+            for (kind, ripples) in [
+                ("winch_ripple", [[0.3, -0.2, 0.03], [0.1, 0.25, 0.0151]]),
+                ("friction_ripple", [[0.2, 0.1, 0.07], [-0.15, 0.05, 0.031]]),
+                ("pulley_eccentricity", [[0.03, 0.01, 0.06], [0.02, -0.02, 0.05]]),
+            ] {
+                let mut effects = EffectParams::NEUTRAL;
+                for (effect, ripple) in Effect::all_of_kind(kind).zip(&ripples) {
+                    for (parameter, value) in effect.row().parameters.iter().zip(ripple) {
+                        effects.set(effect, parameter.key, *value).unwrap();
+                    }
+                }
+                let options = CableOptions { presliding, friction: STIFF, effects, ..CableOptions::new(&GUIDE) };
+                let slid_n = slide(&mut compensator::<1>(&[options], UNMONITORED), 20.0, speed);
+                let [one, other] = ripples.map(|ripple| at(ripple, 1.0 + 0.1 * s));
+                let factor = (1.0 + one) * (1.0 + other);
+                let expected_n = match kind {
+                    "winch_ripple" => behind_guide(20.0 - one - other, s, 0.02, 0.0, 0.0),
+                    "friction_ripple" => behind_guide(20.0, s, 0.02 * factor, 0.0, 0.0),
+                    _ => behind_guide(20.0, s, 0.02, 0.0, 0.0) * factor,
+                };
+                assert_near(slid_n, expected_n, 1e-6);
+            }
+        }
+    }
+}
+
 /// `f = μF_N(F_N/F_0)^(p − 1)`, `F_N = k(F_0 + F_1)/2` by bisection.
 #[test]
 fn friction_grows_with_a_power_of_the_load() {
@@ -460,7 +495,8 @@ fn every_name_has_a_cause_a_remedy_and_its_parameters() {
     let mut claimed = Vec::new();
     for effect in Effect::ALL {
         let (kind, row) = (effect.kind(), effect.row());
-        assert_eq!(Effect::ALL.iter().filter(|other| other.kind() == kind).count(), 1, "{kind}");
+        let name = effect.to_string();
+        assert_eq!(Effect::ALL.iter().filter(|other| other.to_string() == name).count(), 1, "{name}");
         assert!(!row.cause.is_empty() && !row.remedy.is_empty());
         assert_eq!(effect.places().len(), row.parameters.len());
         for (place, parameter) in effect.places().zip(row.parameters) {

@@ -53,7 +53,7 @@ pub struct Effects {
     pub sensor_drift_n_per_s: f64,
     pub mass_kg: f64,
     pub mass_window_s: f64,
-    pub ripple: [f64; 3],
+    pub ripples: [[f64; 3]; 2],
     pub compliance_m_per_n: f64,
     pub stretch_play_n: f64,
 }
@@ -72,7 +72,7 @@ impl Effects {
         sensor_drift_n_per_s: 0.0,
         mass_kg: 0.0,
         mass_window_s: 0.002,
-        ripple: [0.0, 0.0, 0.1],
+        ripples: [[0.0, 0.0, 0.1]; 2],
         compliance_m_per_n: 0.0,
         stretch_play_n: 0.0,
     };
@@ -188,9 +188,11 @@ impl Cable {
         } else {
             self.per_pulley(mu, sensor_n, motion, &wraps_rad)
         };
-        let [sin, cos, period_m] = effects.ripple;
-        let angle = std::f64::consts::TAU * (length_m / period_m);
-        let force_n = chain_n * (1.0 + sin * angle.sin() + cos * angle.cos());
+        let mut force_n = chain_n;
+        for [sin, cos, period_m] in effects.ripples {
+            let angle = std::f64::consts::TAU * (length_m / period_m);
+            force_n *= 1.0 + sin * angle.sin() + cos * angle.cos();
+        }
         let friction_n = force_n - straight_n;
         self.memory = Memory {
             cycles: self.memory.cycles + 1,

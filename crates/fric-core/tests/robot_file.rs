@@ -337,6 +337,24 @@ fn bad_files() -> Vec<Bad> {
             27,
             &["`kind`", "stribeck", "already has", "cable1"],
         ),
+        bad(
+            "velocity_m_per_s = 0.02 }",
+            "velocity_m_per_s = 0.02 }, { kind = \"winch_ripple\" },\n { kind = \"winch_ripple\" },\n { kind = \"winch_ripple\" }",
+            29,
+            &["`kind`", "`winch_ripple`", "already has twice", "cable1"],
+        ),
+        bad(
+            "velocity_m_per_s = 0.02 }",
+            "velocity_m_per_s = 0.02 }, { kind = \"winch_ripple\", sin_n = 0.1, period_m = 0.03 },\n { kind = \"winch_ripple\", cos_n = 0.1, period_m = 0.0302 }",
+            28,
+            &["`period_m` of effect `winch_ripple` is within 1 %", "cable1"],
+        ),
+        bad(
+            "velocity_m_per_s = 0.02 }",
+            "velocity_m_per_s = 0.02 }, { kind = \"winch_ripple\", sin_n = 0.1 },\n { kind = \"winch_ripple\", cos_n = -2e4 }",
+            28,
+            &["`cos_n` of effect `winch_ripple` is -20000;", "cable1"],
+        ),
         Bad {
             text: with(EXAMPLE, "base_m = [0.55, 0.4, 0.5]", "").replace("platform_m = [0.06, 0.05, -0.05]", ""),
             line: Some(24),

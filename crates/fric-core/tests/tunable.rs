@@ -246,12 +246,12 @@ fn a_slip_limit_that_is_dropped_is_gone() {
 
 const FORMS: [Presliding; 2] = [Presliding::PerPulley, Presliding::Lumped];
 
-/// Three cables with some effects, each `(kind, key, value)`.
+/// Three cables with some effects, each `(effect, key, value)`.
 #[expect(clippy::unwrap_used, reason = "a test")]
-fn robot_with(presliding: Presliding, effects: &[(&str, &str, f64)]) -> Compensator<3> {
+fn robot_with(presliding: Presliding, effects: &[(Effect, &str, f64)]) -> Compensator<3> {
     let mut params = EffectParams::NEUTRAL;
-    for (kind, key, value) in effects {
-        params.set(Effect::of_kind(kind).unwrap(), key, *value).unwrap();
+    for (effect, key, value) in effects {
+        params.set(*effect, key, *value).unwrap();
     }
     let friction = FrictionOptions { sigma_n_per_m: Some(5000.0), ..FRICTION };
     let cables: Vec<_> =
@@ -300,21 +300,21 @@ fn run_with_changes(
         .collect()
 }
 
-/// Parameters of some effects: kind, key, value.
-type Effects = Vec<(&'static str, &'static str, f64)>;
+/// Parameters of some effects: effect, key, value.
+type Effects = Vec<(Effect, &'static str, f64)>;
 
 /// Each effect as its row's example has it; a lead; and some that remember together.
 fn effects() -> Vec<Effects> {
     let example = |effect: &Effect| {
         let values = effect.row().parameters.iter().zip(effect.row().example);
-        values.map(|(parameter, value)| (effect.kind(), parameter.key, *value)).collect()
+        values.map(|(parameter, value)| (*effect, parameter.key, *value)).collect()
     };
     let together = vec![
-        ("time_delay", "delay_s", 0.02),
-        ("pulley_eccentricity", "sin_ratio", 0.02),
-        ("pulley_inertia", "mass_kg", 0.1),
+        (Effect::TimeDelay, "delay_s", 0.02),
+        (Effect::PulleyEccentricity, "sin_ratio", 0.02),
+        (Effect::PulleyInertia, "mass_kg", 0.1),
     ];
-    let others = [vec![("time_delay", "delay_s", -0.003)], together];
+    let others = [vec![(Effect::TimeDelay, "delay_s", -0.003)], together];
     Effect::CATALOGUE.iter().map(example).chain(others).collect()
 }
 
@@ -339,7 +339,7 @@ fn each_effect_switched_on_again_knows_nothing_of_the_first_time() {
 /// What goes with the time of a run begins with the change, not with a loop that has been running for long.
 #[test]
 fn a_drift_begins_where_it_is_switched_on() {
-    let drift = [("sensor_drift", "rate_n_per_s", 0.5)];
+    let drift = [(Effect::SensorDrift, "rate_n_per_s", 0.5)];
     for presliding in FORMS {
         let (without, with) = (robot_with(presliding, &[]), robot_with(presliding, &drift));
         let changed = run_with_changes(without.clone(), &[(2000, &with)], 2100, 1);
@@ -361,7 +361,7 @@ fn a_drift_begins_where_it_is_switched_on() {
 fn inertia_switched_on_again_gives_no_jump() {
     for presliding in FORMS {
         let (without, with) =
-            (robot_with(presliding, &[]), robot_with(presliding, &[("pulley_inertia", "mass_kg", 0.1)]));
+            (robot_with(presliding, &[]), robot_with(presliding, &[(Effect::PulleyInertia, "mass_kg", 0.1)]));
         // Fast one way, then fast the other way.
         let outputs = run_with_changes(with.clone(), &[(200, &without), (350, &with)], 400, 1);
         let steepest_n = (1..400).filter(|at| ![200, 350].contains(at)).map(|at| gap_n(&outputs[at], &outputs[at - 1]));
@@ -417,9 +417,9 @@ fn another_delay_leaves_no_lag_behind() {
         robot_with(
             Presliding::PerPulley,
             &[
-                ("time_delay", "delay_s", delay_s),
-                ("pulley_eccentricity", "sin_ratio", 0.02),
-                ("pulley_eccentricity", "period_m", 0.03),
+                (Effect::TimeDelay, "delay_s", delay_s),
+                (Effect::PulleyEccentricity, "sin_ratio", 0.02),
+                (Effect::PulleyEccentricity, "period_m", 0.03),
             ],
         )
     };

@@ -7,7 +7,7 @@ use pyo3::types::PyDict;
 
 /// Returns the rows of the catalogue in order, starting with the friction that every model has.
 pub fn catalogue(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
-    Effect::ALL.iter().map(|effect| entry(py, *effect)).collect()
+    Effect::ALL.iter().filter(|effect| !effect.is_second()).map(|effect| entry(py, *effect)).collect()
 }
 
 fn entry(py: Python<'_>, effect: Effect) -> PyResult<Bound<'_, PyDict>> {

@@ -65,7 +65,6 @@ struct FoundCable {
 #[derive(Deserialize)]
 struct FoundEffect {
     kind: String,
-    parameters: BTreeMap<String, Option<f64>>,
     runner_up: Option<FoundRunnerUp>,
 }
 
@@ -146,7 +145,7 @@ fn effect(kind: &str) -> Result<Effect, QuestionError> {
     let kind = kind.trim();
     let effect = Effect::of_kind(kind).filter(|effect| *effect != Effect::Empirical);
     effect.ok_or_else(|| {
-        let known = Effect::ALL.iter().filter(|effect| **effect != Effect::Empirical).map(|effect| effect.kind());
+        let known = Effect::kinds().filter(|effect| *effect != Effect::Empirical).map(Effect::kind);
         QuestionError::Names(unknown_name("effect", kind, known))
     })
 }
@@ -206,17 +205,9 @@ fn of_found(
             continue;
         };
         let mut values = params.values();
-        let mut set = |name: &str, value: Option<f64>| {
-            if let Some((parameter, value)) = Parameter::named(name).zip(value) {
-                values[parameter.place()] = value.clamp(parameter.row().min, parameter.row().max);
-            }
-        };
         for (name, value) in &of_cable.parameters {
-            set(name, *value);
-        }
-        for effect in &of_cable.effects {
-            for (key, value) in &effect.parameters {
-                set(&format!("{}.{key}", effect.kind), *value);
+            if let Some((parameter, value)) = Parameter::named(name).zip(*value) {
+                values[parameter.place()] = value.clamp(parameter.row().min, parameter.row().max);
             }
         }
         let known_n = of_cable.noise_floor_n.filter(|noise_n| *noise_n > 0.0);
@@ -234,14 +225,21 @@ fn of_found(
 
 /// Returns the open questions of a cable.
 fn aims(found: &FoundCable) -> Vec<Aim> {
-    let of_kind = |kind: &str| Effect::of_kind(kind).filter(|effect| *effect != Effect::Empirical);
-    let apart = found.effects.iter().filter_map(|effect| {
+    // Of two of a kind, the model has the second only beside the first.
+    let of_kind = |kind: &str, is_present: bool| {
+        let has = |effect: &Effect| Parameter::of(*effect).any(|of| found.parameters.contains_key(&of.to_string()));
+        let effects = Effect::all_of_kind(kind).filter(|effect| *effect != Effect::Empirical);
+        effects.filter(move |effect| has(effect) == is_present).collect::<Vec<Effect>>()
+    };
+    let apart = found.effects.iter().enumerate().filter_map(|(place, effect)| {
         let runner_up = effect.runner_up.as_ref().filter(|runner_up| runner_up.as_good)?;
-        Some(Aim::Separate([Some(of_kind(&effect.kind)?), Some(of_kind(&runner_up.kind)?)]))
+        let after = found.effects.iter().skip(place + 1).filter(|other| other.kind == effect.kind).count();
+        let named = *of_kind(&effect.kind, true).iter().rev().nth(after)?;
+        Some(Aim::Separate([Some(named), Some(*of_kind(&runner_up.kind, false).first()?)]))
     });
     let helps = |tried: &&FoundTried| tried.evidence.delta_bic.is_some_and(|delta_bic| delta_bic < 0.0);
-    let tried = found.tried.iter().filter(helps).filter_map(|tried| of_kind(&tried.kind)).take(MOST_TRIED);
-    let tried = tried.map(|effect| Aim::Separate([Some(effect), None]));
+    let tried = found.tried.iter().filter(helps).filter_map(|tried| of_kind(&tried.kind, false).first().copied());
+    let tried = tried.take(MOST_TRIED).map(|effect| Aim::Separate([Some(effect), None]));
     let open = Parameter::all().filter(|parameter| {
         let name = parameter.to_string();
         let value = found.parameters.get(&name).copied().flatten();

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, NamedTuple
 
@@ -58,8 +59,9 @@ def _of_discovery(result: DiscoverResult) -> Rows:
             error = cable.standard_errors.get(parameter)
             state = "kept" if error is None else "fitted"
             yield _row(cable.name, parameter, value, standard_error=error, state=state, verdict=verdict)
-        for effect in cable.effects:
-            yield _row(cable.name, f"found.{effect['kind']}", 1.0, state="found", verdict=verdict)
+        # A row a kind: how many of it were found.
+        for kind, count in Counter(effect["kind"] for effect in cable.effects).items():
+            yield _row(cable.name, f"found.{kind}", float(count), state="found", verdict=verdict)
         if cable.noise_floor_n is not None:
             yield _row(cable.name, "noise_floor_n", cable.noise_floor_n, state="measured", verdict=verdict)
         for row in _force_errors(cable.name, cable.before, cable.after):

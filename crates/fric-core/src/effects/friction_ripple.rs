@@ -2,11 +2,11 @@
 //!
 //! Equation: `μ(l) = μ·(1 + sin_ratio·sin(2πl/period_m) + cos_ratio·cos(2πl/period_m))`, where l is the cable length, behind a play of the gear if
 //! there is one. During motion in one direction the force ripples as with `pulley_eccentricity`, but unlike there it reverses with the motion. For
-//! the zero of the length and the period, see there. Neutral: both ratios 0.
+//! the zero of the length and the period, see there. Of two of them the factors multiply. Neutral: both ratios 0.
 //!
 //! Cause: a bearing with a flat spot, an out-of-round groove, a drum on which the cable lies unevenly.
 
-use super::ripple::{self, Ripple};
+use super::ripple::{self, Ripples};
 use super::{Acting, Effect, EffectRow, Memory, OnMu};
 use crate::scalar::Scalar;
 
@@ -28,13 +28,13 @@ pub const ROW: EffectRow = EffectRow {
     goes_by_time: false,
 };
 
-/// The effect as a set of one, to test whether it acts.
-pub(crate) const ACTS: Acting = Effect::FrictionRipple.acts();
-/// Index of `sin_ratio` in [`Values`](crate::parameters::Values).
-pub const SIN: usize = Effect::FrictionRipple.first_place();
+/// The ripples of this kind that a cable can have.
+const RIPPLES: Ripples = Ripples::of([Effect::FrictionRipple, Effect::FrictionRipple2]);
+/// The effects as a set, to test whether any acts.
+pub(crate) const ACTS: Acting = RIPPLES.acts();
 
-/// Returns the factor on μ at a cable length (m), from a cable's parameter values by index.
+/// Returns the factors on μ at a cable length (m) of those that act, from a cable's parameter values by index.
 #[inline(always)]
-pub fn factor<T: Scalar>(value: impl Fn(usize) -> T, length_m: T) -> T {
-    Ripple::of(SIN, value).added_to(T::splat(1.0), length_m)
+pub(crate) fn factors<T: Scalar>(acting: Acting, value: impl Fn(usize) -> T, length_m: T) -> impl Iterator<Item = T> {
+    RIPPLES.acting(acting, value).map(move |ripple| ripple.added_to(T::splat(1.0), length_m))
 }

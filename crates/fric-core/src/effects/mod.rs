@@ -3,10 +3,13 @@
 //! A [row](EffectRow) states the name in the robot file, the parameters with unit, range and neutral value, the physical cause, the remedy on the
 //! machine, the memory, and the influence on μ. Everything that uses effects reads the rows: the robot file, set-up, parameter changes, the
 //! identification, the simulation, the command line, the documentation.
+//!
+//! A cable can have two ripples of one kind, with different periods: the second is a variant of its own, with the row and the file of the first.
 
 pub mod friction;
 pub mod ripple;
 
+use core::fmt;
 use core::ops::Range;
 
 use crate::parameters::{self, FRICTION_COUNT, ParameterRow};
@@ -72,7 +75,8 @@ pub enum OnMu {
     Unbounded,
 }
 
-/// The catalogue: each effect and its file, in the order of their parameters. Passes the list to a macro.
+/// The catalogue: each effect and its file, in the order of their parameters; then the second ones of the kinds that a cable can have twice, with the
+/// file of the first. Passes the list to a macro.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! catalogue {
@@ -102,16 +106,19 @@ macro_rules! catalogue {
             SensorNonlinearity sensor_nonlinearity,
             SensorWarmup sensor_warmup,
             SensorLag sensor_lag,
-            Empirical empirical,
+            Empirical empirical;
+            PulleyEccentricity2 pulley_eccentricity,
+            FrictionRipple2 friction_ripple,
+            WinchRipple2 winch_ripple,
         }
     };
 }
 
 macro_rules! effects {
-    ($($effect:ident $file:ident,)+) => {
+    ($($effect:ident $file:ident),+; $($second:ident $of:ident,)+) => {
         $(pub mod $file;)+
 
-        /// A named cause of friction of a cable: those that every model has, then the catalogue.
+        /// A named cause of friction of a cable: those that every model has, then the catalogue, then the second ones of a kind.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Effect {
             /// Friction in proportion to the load.
@@ -121,11 +128,13 @@ macro_rules! effects {
             /// Friction that builds up over a distance.
             Presliding,
             $(#[doc = concat!("[`", stringify!($file), "`](mod@", stringify!($file), ")")] $effect,)+
+            $(#[doc = concat!("The second [`", stringify!($of), "`](mod@", stringify!($of), ") of a cable")] $second,)+
         }
 
         impl Effect {
             /// All effects.
-            pub const ALL: &[Self] = &[Self::Coulomb, Self::Viscous, Self::Presliding, $(Self::$effect),+];
+            pub const ALL: &[Self] =
+                &[Self::Coulomb, Self::Viscous, Self::Presliding, $(Self::$effect,)+ $(Self::$second),+];
 
             /// Returns its row.
             #[must_use]
@@ -135,7 +144,14 @@ macro_rules! effects {
                     Self::Viscous => &friction::VISCOUS_ROW,
                     Self::Presliding => &friction::PRESLIDING_ROW,
                     $(Self::$effect => &$file::ROW,)+
+                    $(Self::$second => &$of::ROW,)+
                 }
+            }
+
+            /// Whether it is the second of its kind in a cable.
+            #[must_use]
+            pub const fn is_second(self) -> bool {
+                matches!(self, $(Self::$second)|+)
             }
         }
     };
@@ -150,10 +166,26 @@ impl Effect {
     /// The effects that a cable of a robot file can have.
     pub const CATALOGUE: &[Self] = Self::ALL.split_at(OF_FRICTION.len()).1;
 
-    /// Returns the effect with this name in robot files.
+    /// Returns one effect of each kind of the catalogue.
+    pub fn kinds() -> impl Iterator<Item = Self> + Clone {
+        Self::CATALOGUE.iter().copied().filter(|effect| !effect.is_second())
+    }
+
+    /// Returns the effects of a kind that a cable can have, in the order of their entries in a robot file.
+    pub fn all_of_kind(kind: &str) -> impl Iterator<Item = Self> {
+        Self::CATALOGUE.iter().copied().filter(move |effect| effect.kind() == kind)
+    }
+
+    /// Returns the effect, or the first of two, with this name in robot files.
     #[must_use]
     pub fn of_kind(kind: &str) -> Option<Self> {
-        Self::CATALOGUE.iter().copied().find(|effect| effect.kind() == kind)
+        Self::all_of_kind(kind).next()
+    }
+
+    /// Returns the first of its kind, if it is the second.
+    #[must_use]
+    pub fn first(self) -> Option<Self> {
+        if self.is_second() { Self::of_kind(self.kind()) } else { None }
     }
 
     /// Returns its name in robot files and reports.
@@ -190,6 +222,13 @@ impl Effect {
     /// Returns the effect as a set of one, to test whether it acts.
     pub(crate) const fn acts(self) -> Acting {
         Acting(1 << self as u32)
+    }
+}
+
+/// Writes the name that only this effect of a cable has: its kind, with a number if it is the second.
+impl fmt::Display for Effect {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{}{}", self.kind(), if self.is_second() { "_2" } else { "" })
     }
 }
 

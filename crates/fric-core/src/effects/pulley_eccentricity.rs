@@ -3,11 +3,11 @@
 //! Equation: `F ← F·(1 + sin_ratio·sin(2πl/period_m) + cos_ratio·cos(2πl/period_m))` at the platform, where l is the cable length, delayed if there
 //! is a `time_delay`. The zero of the length determines the phase: a length that starts anew with each run needs its own ratios. An identification
 //! finds the ratios. It finds the period only from a start that is right to a fraction of a revolution over the whole range, so the period is not
-//! varied unless requested. Neutral: both ratios 0.
+//! varied unless requested. Of two of them the factors multiply. Neutral: both ratios 0.
 //!
 //! Cause: an eccentric pulley, with its circumference as the period. A ripple that is independent of the load is `winch_ripple`.
 
-use super::ripple::{self, Ripple};
+use super::ripple::{self, Ripples};
 use super::{Acting, Effect, EffectRow, Memory, OnMu};
 use crate::scalar::Scalar;
 
@@ -25,13 +25,13 @@ pub const ROW: EffectRow = EffectRow {
     goes_by_time: false,
 };
 
-/// The effect as a set of one, to test whether it acts.
-pub(crate) const ACTS: Acting = Effect::PulleyEccentricity.acts();
-/// Index of `sin_ratio` in [`Values`](crate::parameters::Values).
-pub const SIN: usize = Effect::PulleyEccentricity.first_place();
+/// The ripples of this kind that a cable can have.
+const RIPPLES: Ripples = Ripples::of([Effect::PulleyEccentricity, Effect::PulleyEccentricity2]);
+/// The effects as a set, to test whether any acts.
+pub(crate) const ACTS: Acting = RIPPLES.acts();
 
-/// Returns the factor on the tension at a cable length (m), from a cable's parameter values by index.
+/// Returns the factors on the tension at a cable length (m) of those that act, from a cable's parameter values by index.
 #[inline(always)]
-pub fn factor<T: Scalar>(value: impl Fn(usize) -> T, length_m: T) -> T {
-    Ripple::of(SIN, value).added_to(T::splat(1.0), length_m)
+pub(crate) fn factors<T: Scalar>(acting: Acting, value: impl Fn(usize) -> T, length_m: T) -> impl Iterator<Item = T> {
+    RIPPLES.acting(acting, value).map(move |ripple| ripple.added_to(T::splat(1.0), length_m))
 }

@@ -3,9 +3,11 @@
 //! A ripple has two amplitudes, of the sine and of the cosine, and a period. The zero of the length determines the phase: a length that starts anew
 //! with each run needs its own amplitudes. An identification finds the amplitudes from any start. It finds the period only from a start that is right
 //! to a fraction of a revolution over the whole range, for instance from a scan of the residual.
+//!
+//! A cable can have two ripples of each kind, with different periods: a motor cogs 14 and 28 times a turn, two pulleys run out of true.
 
-use super::UNKNOWN;
-use crate::parameters::ParameterRow;
+use super::{Acting, Effect, UNKNOWN};
+use crate::parameters::{ParameterRow, Values};
 use crate::scalar::Scalar;
 
 /// Key of the period, which is the third parameter of each of these effects.
@@ -29,6 +31,47 @@ pub(super) const fn rows(
 pub(super) fn amplitude(values: &[f64]) -> f64 {
     let [sin, cos, ..] = values else { return 0.0 };
     libm::hypot(*sin, *cos)
+}
+
+/// Ripples whose periods differ by less than this ratio are one: they part by half a beat only over 50 periods. At half the ratio, a cable that turns a
+/// motor or a pulley some dozens of times does not determine both; at twice the ratio, pulleys that differ by 2 % in size could not be described.
+const SAME_PERIOD_RATIO: f64 = 0.01;
+
+/// Whether an effect is a second ripple with nearly the period of the first, so that no log can tell them apart; not if one of them does nothing.
+#[must_use]
+pub fn repeats_first(effect: Effect, values: &Values) -> bool {
+    let Some(first) = effect.first() else { return false };
+    let both = [first, effect].map(|effect| values.get(effect.places()).unwrap_or_default());
+    let ([.., one_m], [.., other_m]) = (both[0], both[1]) else { return false };
+    both.iter().all(|values| amplitude(values) > 0.0)
+        && (one_m - other_m).abs() < SAME_PERIOD_RATIO * one_m.max(*other_m)
+}
+
+/// The two ripples of a kind that a cable can have: each as a set of one, and the index of its first parameter.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ripples([(Acting, usize); 2]);
+
+impl Ripples {
+    pub(super) const fn of([one, other]: [Effect; 2]) -> Self {
+        Self([(one.acts(), one.first_place()), (other.acts(), other.first_place())])
+    }
+
+    /// Returns both as a set, to test whether any acts.
+    pub(crate) const fn acts(self) -> Acting {
+        let Self([(one, _), (other, _)]) = self;
+        one.and(other)
+    }
+
+    /// Returns those that act, from a cable's parameter values by index.
+    #[inline(always)]
+    pub(crate) fn acting<T: Scalar>(
+        self,
+        acting: Acting,
+        value: impl Fn(usize) -> T,
+    ) -> impl Iterator<Item = Ripple<T>> {
+        let Self(both) = self;
+        both.into_iter().filter(move |(acts, _)| acting.has(*acts)).map(move |(_, first)| Ripple::of(first, &value))
+    }
 }
 
 /// A ripple, with amplitudes of any unit.

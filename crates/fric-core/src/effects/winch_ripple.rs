@@ -2,11 +2,11 @@
 //!
 //! Equation: `F_shown = F_s + sin_n·sin(2πl/period_m) + cos_n·cos(2πl/period_m)` in newtons of the sensor signal, where l is the cable length. A
 //! ripple in proportion to the load is `pulley_eccentricity`; a ripple that reverses with the motion is `friction_ripple`. For the zero of the length
-//! and the period, see there. Neutral: `sin_n` and `cos_n` 0.
+//! and the period, see there. Two of them add up. Neutral: `sin_n` and `cos_n` 0.
 //!
 //! Cause: the cogging of a motor whose current measures the force, at its slot frequency; a drum whose cable pushes on a sensor in its mount.
 
-use super::ripple::{self, Ripple};
+use super::ripple::{self, Ripple, Ripples};
 use super::{Acting, Effect, EffectRow, Memory, OnMu};
 use crate::scalar::Scalar;
 
@@ -25,14 +25,15 @@ pub const ROW: EffectRow = EffectRow {
     goes_by_time: false,
 };
 
-/// The effect as a set of one, to test whether it acts.
-pub(crate) const ACTS: Acting = Effect::WinchRipple.acts();
-/// Index of `sin_n` in [`Values`](crate::parameters::Values).
-pub const SIN: usize = Effect::WinchRipple.first_place();
+/// The ripples of this kind that a cable can have.
+const RIPPLES: Ripples = Ripples::of([Effect::WinchRipple, Effect::WinchRipple2]);
+/// The effects as a set, to test whether any acts.
+pub(crate) const ACTS: Acting = RIPPLES.acts();
 
-/// Returns the sensor force without the ripple for a force shown (N) at a cable length (m), from a cable's parameter values by index.
+/// Returns the sensor force without the ripples that act, for a force shown (N) at a cable length (m), from a cable's parameter values by index.
 #[inline(always)]
-pub fn undo<T: Scalar>(value: impl Fn(usize) -> T, shown_n: T, length_m: T) -> T {
-    let Ripple { sin, cos, period_m } = Ripple::of(SIN, value);
-    Ripple { sin: -sin, cos: -cos, period_m }.added_to(shown_n, length_m)
+pub(crate) fn undo<T: Scalar>(acting: Acting, value: impl Fn(usize) -> T, shown_n: T, length_m: T) -> T {
+    RIPPLES.acting(acting, value).fold(shown_n, |shown_n, Ripple { sin, cos, period_m }| {
+        Ripple { sin: -sin, cos: -cos, period_m }.added_to(shown_n, length_m)
+    })
 }

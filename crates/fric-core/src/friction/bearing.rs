@@ -89,7 +89,7 @@ impl<T: Scalar> Bearing<T> {
             multiply(FrictionWarmup::of(value).factor(moment.time_s));
         }
         if acting.has(friction_ripple::ACTS) {
-            multiply(friction_ripple::factor(value, signals.length_m));
+            friction_ripple::factors(acting, value, signals.length_m).for_each(&mut multiply);
         }
         if acting.has(empirical::ACTS) {
             multiply(unnamed_factor);

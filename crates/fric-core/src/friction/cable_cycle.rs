@@ -93,7 +93,9 @@ pub fn cable_cycle<T: Scalar>(
         slip = leads.and(slips).or(leads.not().and(slip));
     }
     if acting.has(pulley_eccentricity::ACTS) {
-        chain_n = chain_n * pulley_eccentricity::factor(|place| cable.effect(place), signals.length_m);
+        for factor in pulley_eccentricity::factors(acting, |place| cable.effect(place), signals.length_m) {
+            chain_n = chain_n * factor;
+        }
     }
     if acting.has(empirical::ACTS) {
         chain_n = chain_n + unnamed.force_n;
@@ -203,7 +205,7 @@ fn corrected_sensor<T: Scalar>(
         force_n = SensorWarmup::of(value).undo(force_n, moment.time_s);
     }
     if acting.has(winch_ripple::ACTS) {
-        force_n = winch_ripple::undo(value, force_n, signals.length_m);
+        force_n = winch_ripple::undo(acting, value, force_n, signals.length_m);
     }
     if acting.has(sensor_gain::ACTS) {
         force_n = SensorGain::of(value).undo(force_n);

@@ -6,13 +6,14 @@
 
 use std::borrow::ToOwned;
 use std::format;
-use std::string::{String, ToString};
+use std::string::String;
 use std::vec::Vec;
 
 use toml_edit::{Array, ArrayOfTables, Document, Item, Table, Value};
 
 use super::file::{RobotFile, RobotFileError};
 use super::locate::unknown_name;
+use crate::effects::Effect;
 use crate::toml_editor::{Body, Entry, Numbers, Splice, entry, refusal, replaced, splice};
 
 /// Changes of one cable.
@@ -48,15 +49,15 @@ pub struct FrictionEdit {
 pub enum EffectEdit<'a> {
     /// Sets parameters by key, in the units of the effect's catalogue row; the effect is appended if the cable does not have it.
     Set {
-        /// Name in the catalogue.
-        kind: &'a str,
+        /// The effect; the second of its kind needs the first before it.
+        effect: Effect,
         /// Parameters; other parameters of an existing effect are kept.
         parameters: &'a [(&'a str, f64)],
     },
     /// Removes the effect, including a comment on its line; the effect must exist.
     Remove {
-        /// Name in the catalogue.
-        kind: &'a str,
+        /// The effect; a second of its kind then becomes the first.
+        effect: Effect,
     },
 }
 
@@ -79,6 +80,7 @@ impl FrictionEdit {
 /// Numbers read back to the same bits. Everything else stays unchanged to the byte, including a value that is set to itself.
 ///
 /// ```
+/// use fric_core::effects::Effect;
 /// use fric_core::robot::edit::{CableEdit, EffectEdit, FrictionEdit, rewrite};
 /// # fn main() -> Result<(), fric_core::robot::file::RobotFileError> {
 /// let text = r#"
@@ -91,7 +93,7 @@ impl FrictionEdit {
 /// pulleys = [{ wrap_deg = 180.0, sensor = true }]
 /// friction = { mu = 0.019, viscous_n_s_per_m = 0.5 }
 /// "#;
-/// let effects = [EffectEdit::Set { kind: "stribeck", parameters: &[("ratio", 0.5)] }];
+/// let effects = [EffectEdit::Set { effect: Effect::Stribeck, parameters: &[("ratio", 0.5)] }];
 /// let friction = FrictionEdit { mu: Some(0.0161), ..FrictionEdit::default() };
 /// let fitted = rewrite(text, "robot.toml", &[CableEdit { name: "winch", friction, effects: &effects, ..CableEdit::default() }])?;
 /// assert!(fitted.contains("# the left one"));
@@ -200,13 +202,13 @@ impl Draft<'_> {
         }
         for effect in effects {
             match *effect {
-                EffectEdit::Set { kind, parameters } => {
-                    self.change(name, |cable, text| cable.add_effect(text, kind, parameters))?;
+                EffectEdit::Set { effect, parameters } => {
+                    self.change(name, |cable, text| cable.add_effect(text, effect, parameters))?;
                     for value in parameters {
-                        self.change(name, |cable, text| cable.set_effect(text, kind, *value))?;
+                        self.change(name, |cable, text| cable.set_effect(text, effect, *value))?;
                     }
                 }
-                EffectEdit::Remove { kind } => self.change(name, |cable, text| cable.remove_effect(text, kind))?,
+                EffectEdit::Remove { effect } => self.change(name, |cable, text| cable.remove_effect(text, effect))?,
             }
         }
         Ok(())
@@ -308,12 +310,19 @@ impl<'a> Cable<'a> {
     }
 
     /// Appends a new effect with its parameters.
-    fn add_effect(&self, text: &str, kind: &str, parameters: &[(&str, f64)]) -> Result<Vec<Splice>, String> {
+    fn add_effect(&self, text: &str, effect: Effect, parameters: &[(&str, f64)]) -> Result<Vec<Splice>, String> {
         let effects = self.effects()?;
-        if effects.find(kind).is_some() {
+        if effects.find(effect).is_some() {
             return Ok(Vec::new());
         }
-        let mut entries = Vec::from([format!("kind = {}", quoted(kind))]);
+        if effect.first().is_some_and(|first| effects.find(first).is_none()) {
+            return Err(format!(
+                "cable \"{}\" has no effect `{}` for a second one to follow",
+                self.name,
+                effect.kind()
+            ));
+        }
+        let mut entries = Vec::from([format!("kind = \"{}\"", effect.kind())]);
         entries.extend(parameters.iter().map(|(key, value)| entry(key, Numbers::One(*value))));
         let braces = || format!("{{ {} }}", entries.join(", "));
         let splices = match effects {
@@ -333,15 +342,15 @@ impl<'a> Cable<'a> {
         splices.ok_or_else(|| self.refuse("effects"))
     }
 
-    fn set_effect(&self, text: &str, kind: &str, (key, value): (&str, f64)) -> Result<Vec<Splice>, String> {
-        let found = self.effects()?.find(kind);
+    fn set_effect(&self, text: &str, effect: Effect, (key, value): (&str, f64)) -> Result<Vec<Splice>, String> {
+        let found = self.effects()?.find(effect);
         found.and_then(|(_, body)| body.set(text, "", key, Numbers::One(value))).ok_or_else(|| self.refuse("effects"))
     }
 
-    fn remove_effect(&self, text: &str, kind: &str) -> Result<Vec<Splice>, String> {
+    fn remove_effect(&self, text: &str, effect: Effect) -> Result<Vec<Splice>, String> {
         let effects = self.effects()?;
-        let Some((index, body)) = effects.find(kind) else {
-            return Err(format!("cable \"{}\" has no effect `{kind}` to be removed", self.name));
+        let Some((index, body)) = effects.find(effect) else {
+            return Err(format!("cable \"{}\" has no effect `{effect}` to be removed", self.name));
         };
         let splices = match (effects, body) {
             (Effects::List(array), _) => {
@@ -358,19 +367,15 @@ impl<'a> Cable<'a> {
 }
 
 impl<'a> Effects<'a> {
-    /// Returns index and table of the effect of a kind.
-    fn find(&self, kind: &str) -> Option<(usize, Body<'a>)> {
+    /// Returns index and table of an effect.
+    fn find(&self, effect: Effect) -> Option<(usize, Body<'a>)> {
         let bodies: Vec<Body<'a>> = match *self {
             Self::Missing => Vec::new(),
             Self::List(list) => list.iter().filter_map(Value::as_inline_table).map(Body::Braces).collect(),
             Self::Tables(tables) => tables.iter().map(Body::Lines).collect(),
         };
-        let is_it = |body: &Body<'a>| body.table().get("kind").and_then(Item::as_str) == Some(kind);
-        bodies.into_iter().enumerate().find(|(_, body)| is_it(body))
+        let is_of_kind = |body: &Body<'a>| body.table().get("kind").and_then(Item::as_str) == Some(effect.kind());
+        let mut of_kind = bodies.into_iter().enumerate().filter(|(_, body)| is_of_kind(body));
+        of_kind.nth(usize::from(effect.is_second()))
     }
-}
-
-/// Names of the catalogue need no escapes; any other name is refused when the text is parsed again.
-fn quoted(kind: &str) -> String {
-    toml::Value::from(kind).to_string()
 }

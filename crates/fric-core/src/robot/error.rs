@@ -89,7 +89,7 @@ impl fmt::Display for ParamError {
             write!(formatter, " of pulley {}", place + 1)?;
         }
         if let Some(effect) = effect {
-            write!(formatter, " of effect `{}`", effect.kind())?;
+            write!(formatter, " of effect `{effect}`")?;
         }
         write!(formatter, " {problem}")
     }

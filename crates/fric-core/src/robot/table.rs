@@ -63,8 +63,10 @@ impl CableTable {
 
     /// Returns the error with the position of a refused parameter in this cable's table: in one of its effects, or in the table itself.
     pub(super) fn name_parameter(&self, error: ParamError) -> OptionsError {
-        let Some(kind) = error.effect.map(Effect::kind) else { return OptionsError::from(error) };
-        if let Some(index) = self.effects.iter().position(|effect| effect.kind == kind) {
+        let Some(effect) = error.effect else { return OptionsError::from(error) };
+        let kind = effect.kind();
+        let mut of_kind = self.effects.iter().enumerate().filter(|(_, effect)| effect.kind == kind);
+        if let Some((index, _)) = of_kind.nth(usize::from(effect.is_second())) {
             let path = [Step::Key("effects"), Step::Index(index), Step::Key(error.key)];
             return OptionsError::new(&path, error.key, format!("of effect `{kind}` {}", error.problem));
         }
@@ -75,15 +77,21 @@ impl CableTable {
         let mut params = EffectParams::NEUTRAL;
         for (index, effect) in self.effects.iter().enumerate() {
             let path = [Step::Key("effects"), Step::Index(index)];
-            let Some(named) = Effect::of_kind(&effect.kind) else {
-                let known = Effect::CATALOGUE.iter().map(|effect| effect.kind());
-                let problem = format!("names an {}", unknown_name("effect", &effect.kind, known));
+            let before = self.effects.iter().take(index).filter(|other| other.kind == effect.kind).count();
+            let Some(named) = Effect::all_of_kind(&effect.kind).nth(before) else {
+                let problem = match before {
+                    0 => {
+                        let known = Effect::kinds().map(Effect::kind);
+                        format!("names an {}", unknown_name("effect", &effect.kind, known))
+                    }
+                    1 => format!("names the effect `{}`, which the cable already has", effect.kind),
+                    _ => format!(
+                        "names the effect `{}`, which the cable already has twice, as often as it can",
+                        effect.kind
+                    ),
+                };
                 return Err(OptionsError::new(&path, "kind", problem));
             };
-            if self.effects.iter().take(index).any(|other| other.kind == effect.kind) {
-                let problem = format!("names the effect `{}`, which the cable already has", effect.kind);
-                return Err(OptionsError::new(&path, "kind", problem));
-            }
             for (key, value) in &effect.parameters {
                 let known = || named.row().parameters.iter().map(|parameter| parameter.key);
                 if !known().any(|name| name == key) {

@@ -19,7 +19,7 @@ impl RobotFile {
             })
         };
         let mut warnings = Vec::new();
-        for named in Effect::CATALOGUE {
+        for named in Effect::kinds() {
             let has_idle =
                 |effects: &[EffectTable]| effects.iter().any(|effect| effect.kind == named.kind() && is_idle(effect));
             let cables = self.options().cable.iter().filter(|cable| has_idle(&cable.effects));

@@ -15,7 +15,7 @@
 use fric_core::robot::{MonitorOptions, Presliding};
 use fric_core::{CableInput, CableParams, CableStatus, CycleInput, Pose};
 
-use super::bound::{effect, greatest_mu_at, sensor_cos};
+use super::bound::{amplitudes, effect, greatest_mu_at, sensor_cos};
 use super::motion::Motion;
 use super::robot::{Robot, magnitude, once_in};
 use crate::random::Random;
@@ -270,10 +270,9 @@ fn least_borne_n(cable: &CableParams, tension_n: f64) -> f64 {
         ("sensor_warmup", "final_n", 0.0),
         ("sensor_nonlinearity", "curvature_per_n", 0.0),
         ("sensor_lag", "time_constant_s", 0.0),
-        ("winch_ripple", "sin_n", 0.0),
-        ("winch_ripple", "cos_n", 0.0),
     ];
-    if neutral.iter().any(|(kind, key, neutral)| effect(cable, kind, key) != *neutral) {
+    let has_ripple = amplitudes(cable, "winch_ripple", ["sin_n", "cos_n"]) != [0.0; 2];
+    if has_ripple || neutral.iter().any(|(kind, key, neutral)| effect(cable, kind, key) != *neutral) {
         return 0.0;
     }
     let wraps = (1..).zip(cable.fixed_wraps_rad()).filter_map(|(pulley, wrap_rad)| Some((pulley, wrap_rad?)));

@@ -16,10 +16,18 @@ pub fn effect(cable: &CableParams, kind: &str, key: &str) -> f64 {
     cable.effects().get(Effect::of_kind(kind).unwrap(), key).unwrap()
 }
 
-/// Amplitude of a ripple from those of its sine and cosine.
-fn amplitude(cable: &CableParams, kind: &str, keys: [&str; 2]) -> f64 {
-    let [sin, cos] = keys.map(|key| effect(cable, kind, key));
-    sin.hypot(cos)
+/// Amplitudes of the two ripples of a kind, from those of sine and cosine.
+pub fn amplitudes(cable: &CableParams, kind: &str, keys: [&str; 2]) -> [f64; 2] {
+    let mut both = Effect::all_of_kind(kind).map(|effect| {
+        let [sin, cos] = keys.map(|key| cable.effects().get(effect, key).unwrap());
+        sin.hypot(cos)
+    });
+    [(); 2].map(|()| both.next().unwrap())
+}
+
+/// The greatest factor of two ripples together.
+fn factor([one, other]: [f64; 2]) -> f64 {
+    (1.0 + one) * (1.0 + other)
 }
 
 /// The greatest μ that stands at a pulley, by its number from 1, but for `load_nonlinearity`.
@@ -31,7 +39,7 @@ pub fn greatest_mu_at(cable: &CableParams, pulley: usize) -> f64 {
     mu * (1.0 + effect(cable, "stribeck", "ratio").max(0.0))
         * (1.0 + effect(cable, "dwell_stiction", "ratio").max(0.0))
         * (1.0 + effect(cable, "friction_warmup", "ratio").max(0.0))
-        * (1.0 + amplitude(cable, "friction_ripple", ["sin_ratio", "cos_ratio"]))
+        * factor(amplitudes(cable, "friction_ripple", ["sin_ratio", "cos_ratio"]))
         * (1.0 + effect(cable, "empirical", "friction_ratio").abs())
         * (1.0 + effect(cable, "direction_asymmetry", "coulomb_ratio").abs())
         * (1.0 + effect(cable, "friction_drift", "rate_per_s").abs() * LONGEST_RUN_S)
@@ -75,7 +83,8 @@ pub fn friction_bound_n(cable: &CableParams, force_n: f64, speed_m_per_s: f64, c
     let cos = sensor_cos(cable);
     let gain = 1.0 / (1.0 - cos);
     // What the winch adds to what is shown, or takes from it.
-    let rippled_n = gain * amplitude(cable, "winch_ripple", ["sin_n", "cos_n"]) / value("sensor_gain", "gain");
+    let winch_n: f64 = amplitudes(cable, "winch_ripple", ["sin_n", "cos_n"]).iter().sum();
+    let rippled_n = gain * winch_n / value("sensor_gain", "gain");
     let mut tension_n = gain * force_n + rippled_n;
     let mut friction_n = rippled_n;
     for (place, wrap_rad) in cable.fixed_wraps_rad().enumerate() {
@@ -92,7 +101,7 @@ pub fn friction_bound_n(cable: &CableParams, force_n: f64, speed_m_per_s: f64, c
         friction_n += share * (stored_n + moved_n);
         tension_n += share * (stored_n + moved_n);
     }
-    let ripple = amplitude(cable, "pulley_eccentricity", ["sin_ratio", "cos_ratio"]);
+    let ripple = factor(amplitudes(cable, "pulley_eccentricity", ["sin_ratio", "cos_ratio"])) - 1.0;
     // A slack cable's friction takes all its tension away.
     friction_n.max(gain * force_n + rippled_n) + ripple * tension_n + value("empirical", "force_n").abs()
 }

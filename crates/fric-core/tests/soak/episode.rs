@@ -285,7 +285,7 @@ fn chain_distance_n(one_n: [f64; 8], other_n: [f64; 8]) -> f64 {
 /// do not move alike until both have been pushed to the same edge.
 fn comes_straight(cable: &CableParams, monitor: &MonitorOptions) -> bool {
     let is_other = |effect: &Effect| {
-        effect.row().memory != Memory::Nothing || matches!(effect, Effect::TimeDelay | Effect::PulleyEccentricity)
+        effect.row().memory != Memory::Nothing || matches!(effect, Effect::TimeDelay | Effect::PulleyEccentricity | Effect::PulleyEccentricity2)
     };
     monitor.length_noise_m == 0.0 && cable.traction_mu().is_none() && !acting(cable).any(|effect| is_other(&effect))
 }
@@ -295,9 +295,10 @@ fn acting(cable: &CableParams) -> impl Iterator<Item = Effect> {
     Effect::CATALOGUE.iter().copied().filter(|effect| acts(cable, *effect))
 }
 
-fn acts(cable: &CableParams, which: Effect) -> bool {
-    let is_neutral = |key, neutral: f64| effect(cable, which.kind(), key).to_bits() == neutral.to_bits();
-    !which.row().parameters.iter().all(|parameter| is_neutral(parameter.key, parameter.neutral))
+fn acts(cable: &CableParams, effect: Effect) -> bool {
+    let values = cable.values();
+    let mut parameters = effect.places().zip(effect.row().parameters);
+    parameters.any(|(place, parameter)| values[place].to_bits() != parameter.neutral.to_bits())
 }
 
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some cycles")]

@@ -29,11 +29,8 @@ impl Robot {
         let count = 1 + random.below(MOST_CABLES as u64);
         // Every other robot has effects, a few of them.
         let has_effects = once_in(random, 2);
-        let kinds: Vec<&str> = Effect::CATALOGUE
-            .iter()
-            .map(|effect| effect.kind())
-            .filter(|_| has_effects && once_in(random, 5))
-            .collect();
+        let kinds: Vec<&str> =
+            Effect::kinds().map(Effect::kind).filter(|_| has_effects && once_in(random, 5)).collect();
         Self { cables: (0..count).map(|_| cable(random, cycle_s, &kinds)).collect(), cycle_s, monitor }
     }
 

@@ -3,7 +3,7 @@
 use fric_core::robot::{MonitorOptions, Presliding};
 use fric_core::{CableInput, CableOutput, CableParams, CableStatus};
 
-use super::bound::{effect, friction_bound_n, sensor_cos};
+use super::bound::{amplitudes, effect, friction_bound_n, sensor_cos};
 use super::robot::Robot;
 
 /// Flags of signals that are not to be believed.
@@ -53,17 +53,15 @@ impl Law {
         // What is stored is all the friction there is, and resists the motion.
         let is_plain = cable.friction().viscous_n_s_per_m == 0.0
             && is("pulley_inertia", "mass_kg", 0.0)
-            && is("pulley_eccentricity", "sin_ratio", 0.0)
-            && is("pulley_eccentricity", "cos_ratio", 0.0)
+            && amplitudes(cable, "pulley_eccentricity", ["sin_ratio", "cos_ratio"]) == [0.0; 2]
+            && amplitudes(cable, "winch_ripple", ["sin_n", "cos_n"]) == [0.0; 2]
             && is("sensor_gain", "gain", 1.0)
             && is("sensor_offset", "offset_n", 0.0)
             && is("sensor_drift", "rate_n_per_s", 0.0)
             && is("sensor_warmup", "final_n", 0.0)
             && is("sensor_nonlinearity", "curvature_per_n", 0.0)
             && is("sensor_lag", "time_constant_s", 0.0)
-            && is("winch_ripple", "sin_n", 0.0)
             && is("empirical", "force_n", 0.0)
-            && is("winch_ripple", "cos_n", 0.0)
             && is("viscous_nonlinearity", "quadratic_n_s2_per_m2", 0.0)
             && sensor_cos(cable) < 1e-9;
         #[expect(clippy::cast_precision_loss, reason = "a handful")]

@@ -125,13 +125,14 @@ fn as_it_is(_: &Around) -> Vec<Start> {
 }
 
 macro_rules! lab {
-    ($($effect:ident $file:ident,)+) => {
+    ($($effect:ident $file:ident),+; $($second:ident $of:ident,)+) => {
         $(mod $file;)+
 
         /// Returns the lab's entry of an effect; `None` for the friction that every model has.
         pub const fn of(effect: Effect) -> Option<LabEffect> {
             match effect {
                 $(Effect::$effect => Some($file::LAB),)+
+                $(Effect::$second => Some($of::LAB),)+
                 Effect::Coulomb | Effect::Viscous | Effect::Presliding => None,
             }
         }

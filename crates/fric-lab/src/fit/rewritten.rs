@@ -47,8 +47,8 @@ pub fn with_values(text: &str, origin: &str, cables: &[NewValues<'_>]) -> Result
     let effect_edits: Vec<Vec<EffectEdit<'_>>> = effects
         .iter()
         .map(|of_cable| {
-            let set = |(kind, parameters)| EffectEdit::Set { kind, parameters };
-            of_cable.iter().map(|(kind, parameters)| set((*kind, parameters.as_slice()))).collect()
+            let set = |(effect, parameters)| EffectEdit::Set { effect, parameters };
+            of_cable.iter().map(|(effect, parameters)| set((*effect, parameters.as_slice()))).collect()
         })
         .collect();
     let edits: Vec<CableEdit<'_>> = names
@@ -71,18 +71,18 @@ pub fn with_values(text: &str, origin: &str, cables: &[NewValues<'_>]) -> Result
     rewrite(text, origin, &edits)
 }
 
-/// Parameters of effects, by kind and key.
-type EffectValues = Vec<(&'static str, Vec<(&'static str, f64)>)>;
+/// Parameters of effects, by effect and key.
+type EffectValues = Vec<(Effect, Vec<(&'static str, f64)>)>;
 
 /// Returns the parameters of each effect to write.
 fn effects_of(new: &NewValues<'_>) -> EffectValues {
     let mut effects = EffectValues::new();
     for parameter in &new.parameters {
-        let Some(kind) = parameter.effect().map(Effect::kind) else { continue };
+        let Some(effect) = parameter.effect() else { continue };
         let number = (parameter.row().key, new.values[parameter.place()]);
-        match effects.iter_mut().find(|(of, _)| *of == kind) {
+        match effects.iter_mut().find(|(of, _)| *of == effect) {
             Some((_, numbers)) => numbers.push(number),
-            None => effects.push((kind, vec![number])),
+            None => effects.push((effect, vec![number])),
         }
     }
     effects

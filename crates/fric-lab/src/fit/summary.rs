@@ -212,7 +212,11 @@ fn effect_table(result: &FitResult, effect: Effect) -> String {
             columns.push(Column { header: "±".to_owned(), cells, last: String::new() });
         }
     }
-    if columns.is_empty() { String::new() } else { format!("\n{}", table_of(result, effect.kind(), &columns, None)) }
+    if columns.is_empty() {
+        String::new()
+    } else {
+        format!("\n{}", table_of(result, &effect.to_string(), &columns, None))
+    }
 }
 
 /// Returns the table of the training samples; one row if it is the same for all cables.

@@ -85,7 +85,7 @@ impl Parameter {
 impl fmt::Display for Parameter {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(effect) = self.effect {
-            write!(formatter, "{}.", effect.kind())?;
+            write!(formatter, "{effect}.")?;
         }
         formatter.write_str(self.row.key)
     }

@@ -5,7 +5,7 @@ use thiserror::Error;
 
 /// Advice, each the end of a sentence.
 mod advice {
-    pub const EFFECT: &str = "give each effect once, with all its parameters";
+    pub const EFFECT: &str = "give each effect once, ripples at most twice, with all its parameters";
     pub const DISTURBANCE: &str = "give each disturbance once, with all its parameters";
     pub const GEOMETRY: &str = "check `base_m`, `platform_m`, `radius_m` and `axis`, above all the unit m";
     pub const LOAD: &str = "leave `reference` out, or `base_m` and `platform_m`";
@@ -28,8 +28,8 @@ pub enum SimulationError {
         /// Greatest allowed value.
         max: f64,
     },
-    /// Two hidden effects of one kind.
-    #[error("the effect `{kind}` is hidden twice; {}", advice::EFFECT)]
+    /// More hidden effects of one kind than a cable can have.
+    #[error("the effect `{kind}` is hidden too often; {}", advice::EFFECT)]
     RepeatedEffect {
         /// Its name in the catalogue.
         kind: &'static str,

@@ -110,7 +110,7 @@ impl fmt::Display for HiddenEffect {
 const NOUN: &str = "effect";
 
 fn find(kind: &str) -> Result<Effect, HiddenError> {
-    let known = Effect::CATALOGUE.iter().map(|effect| effect.kind());
+    let known = Effect::kinds().map(Effect::kind);
     Effect::of_kind(kind).ok_or_else(|| stated::unknown(NOUN, kind, known))
 }
 

@@ -1,5 +1,7 @@
 //! Options of a simulation.
 
+use fric_core::effects::Effect;
+
 use super::disturbances::Disturbance;
 use super::error::SimulationError;
 use super::hidden::HiddenEffect;
@@ -121,8 +123,10 @@ impl SimulationOptions {
             }
         }
         for (place, effect) in self.effects.iter().enumerate() {
-            if self.effects.iter().take(place).any(|other| other.effect() == effect.effect()) {
-                return Err(SimulationError::RepeatedEffect { kind: effect.effect().kind() });
+            let kind = effect.effect().kind();
+            let before = self.effects.iter().take(place).filter(|other| other.effect().kind() == kind).count();
+            if before >= Effect::all_of_kind(kind).count() {
+                return Err(SimulationError::RepeatedEffect { kind });
             }
         }
         for (place, disturbance) in self.disturbances.iter().enumerate() {

@@ -65,6 +65,44 @@ fn its_own_extended_file_is_the_end() {
     }
 }
 
+/// Two of a kind are named as such, each with its period and amplitude, and their file is complete.
+#[test]
+fn two_ripples_of_a_kind_are_both_named() {
+    for (seed, both) in [
+        (70_201, [Effect::WinchRipple, Effect::WinchRipple2]),
+        (70_202, [Effect::FrictionRipple, Effect::FrictionRipple2]),
+        (70_203, [Effect::PulleyEccentricity, Effect::PulleyEccentricity2]),
+    ] {
+        let case = Case { seed, ..Case::hiding(Group::Pair, &both) };
+        let (found, truth) = assert_found(&case, Verdict::Extended);
+        assert!(left_ratio(&found, &truth) < 1.1, "{}: {}", case.name(), left_ratio(&found, &truth));
+        let key = |place: usize| both[0].row().parameters[place].key;
+        let hidden = truth.effects.iter().map(|effect| {
+            let value = |place| effect.params().get(effect.effect(), key(place)).unwrap();
+            (value(2), value(0).hypot(value(1)))
+        });
+        // The stronger was found first, whichever was hidden first.
+        for (period_m, amplitude) in hidden {
+            let named = both.map(|effect| {
+                let [sin, cos, period_m] =
+                    effect.places().map(|place| found.after.values[place]).collect::<Vec<_>>()[..]
+                else {
+                    unreachable!("a ripple has three parameters")
+                };
+                (period_m, sin.hypot(cos))
+            });
+            let is_it = |(found_m, found): &(f64, f64)| {
+                (found_m / period_m - 1.0).abs() < 0.01 && (found / amplitude - 1.0).abs() < 0.1
+            };
+            assert!(named.iter().any(is_it), "{}: {period_m} m, {amplitude} in {named:?}", case.name());
+        }
+        let log = case.log().unwrap();
+        let text = extended(&log.robot_text, "extended", std::slice::from_ref(&found)).unwrap();
+        let (again, _) = look_by(log, &RobotFile::parse(&text, "extended").unwrap());
+        assert_eq!((again.findings.len(), again.verdict), (0, Verdict::Complete), "{}", case.name());
+    }
+}
+
 /// The error that is left, as a multiple of the noise there is.
 fn left_ratio(found: &CableDiscovery, truth: &CaseTruth) -> f64 {
     found.after.held_out_n.rms().unwrap() / truth.floor_n

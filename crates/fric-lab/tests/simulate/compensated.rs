@@ -61,7 +61,7 @@ fn known_to_both(effects: &str) -> (f64, f64) {
 #[test]
 fn every_effect_is_the_same_physics_to_both() {
     // Elasticity has tests of its own: a loop knows the stretch only through the noise of its sensor.
-    let catalogue = Effect::CATALOGUE.iter().filter(|effect| **effect != Effect::CableElasticity).map(|effect| {
+    let catalogue = Effect::kinds().filter(|effect| *effect != Effect::CableElasticity).map(|effect| {
         let values = effect.row().parameters.iter().zip(effect.row().example);
         // Set points bear no noise: nothing has to be smoothed.
         let values =

@@ -26,8 +26,8 @@ fn there_are_enough_of_each_kind() {
     assert!(cases.len() >= 300, "{}", cases.len());
     let names: BTreeSet<String> = cases.iter().map(Case::name).collect();
     assert_eq!(names.len(), cases.len());
-    for effect in Effect::CATALOGUE.iter().filter(|effect| **effect != Effect::Empirical) {
-        let single = |case: &&Case| case.group == Group::Single && case.effects == [*effect];
+    for effect in Effect::kinds().filter(|effect| *effect != Effect::Empirical) {
+        let single = |case: &&Case| case.group == Group::Single && case.effects == [effect];
         assert_eq!(cases.iter().filter(single).count(), 9, "{effect:?}");
     }
     for row in DISTURBANCES {

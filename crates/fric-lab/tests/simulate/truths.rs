@@ -74,10 +74,10 @@ fn time_s(cycle: usize) -> f64 {
 #[test]
 fn neutral_values_change_no_bit() {
     let plain = Signals::of(&rubbing(), &SimulationOptions { seed: 3, duration_s: Some(3.0), ..Default::default() });
-    for effect in Effect::CATALOGUE {
+    for effect in Effect::kinds() {
         let values: Vec<_> =
             effect.row().parameters.iter().map(|parameter| (parameter.key, parameter.neutral)).collect();
-        let effects = vec![HiddenEffect::of(*effect, &values).unwrap()];
+        let effects = vec![HiddenEffect::of(effect, &values).unwrap()];
         let options = SimulationOptions { seed: 3, duration_s: Some(3.0), effects, ..Default::default() };
         assert!(Signals::of(&rubbing(), &options) == plain, "{effect:?}");
     }
@@ -87,8 +87,8 @@ fn neutral_values_change_no_bit() {
 fn effects_change_the_sensor_and_neither_reference_nor_motion() {
     let plain = Signals::of(&rubbing(), &short());
     // A delay is the motion's, and changes that alone.
-    for effect in Effect::CATALOGUE.iter().filter(|effect| **effect != Effect::TimeDelay) {
-        let text = &example(*effect);
+    for effect in Effect::kinds().filter(|effect| *effect != Effect::TimeDelay) {
+        let text = &example(effect);
         let hidden = Signals::of(&rubbing(), &hiding(text));
         assert!(hidden.reference_n == plain.reference_n && hidden.length_m == plain.length_m, "{text}");
         assert!(hidden.speed_m_per_s == plain.speed_m_per_s, "{text}");

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::cable_options::{CableOptions, FrictionOptions, MAX_PULLEYS, Presliding, PulleyOptions, ValidatedRange};
 use crate::effects::pulley_defect::{self, PulleyDefect};
-use crate::effects::{Effect, EffectParams, OnMu};
+use crate::effects::{Effect, EffectParams, OnMu, ripple};
 use crate::parameters::{FRICTION, GREATEST_MU};
 use crate::pulley::wrap_factor;
 use crate::robot::error::{ParamError, ParamProblem, check};
@@ -155,6 +155,7 @@ impl CableParams {
             value.map(|value| check(row.key, value, row.min, row.max)).transpose()?;
         }
         self.check_defect()?;
+        self.check_ripples()?;
         let raised_mu = self.raised_mu()?;
         self.sensor_wrap_rad
             .map_or(Ok(()), |wrap_rad| check_sensor_wrap(wrap_rad, raised_mu).map_err(|error| error.at_pulley(0)))
@@ -169,6 +170,17 @@ impl CableParams {
         }
         let problem = "is the number of none of the cable's pulleys; count them from 1 at the sensor";
         Err(ParamError::conflict("pulley", problem).of_effect(Effect::PulleyDefect))
+    }
+
+    /// Checks whether two ripples of a kind have different periods.
+    fn check_ripples(&self) -> Result<(), ParamError> {
+        let values = self.values();
+        let Some(second) = Effect::CATALOGUE.iter().find(|effect| ripple::repeats_first(**effect, &values)) else {
+            return Ok(());
+        };
+        let problem = "is within 1 % of the period of the other one, and no log can tell such two ripples apart; give \
+                       one of them, or another period";
+        Err(ParamError::conflict(ripple::PERIOD_KEY, problem).of_effect(*second))
     }
 
     /// Returns the pulley with its own friction, counted from 0.

@@ -33,6 +33,7 @@ impl Search<'_, '_> {
                 })
                 .filter(|effect| *effect != Effect::Presliding || slides)
                 .filter(|effect| *effect != Effect::SensorOffset || !has_offset)
+                .filter(|effect| effect.first().is_none_or(|first| has(first, &model.values)))
                 .collect()
         };
         let friction = self.beside(found, &lacking(true));

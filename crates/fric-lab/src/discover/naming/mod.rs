@@ -27,7 +27,7 @@ use fric_core::parameters::Values;
 use self::evidence::{delta_bic, inflation};
 use self::justification::is_at_end;
 use super::workbench::{Trial, Workbench};
-use crate::candidates::catalogue::fitted;
+use crate::candidates::catalogue::{fitted, has};
 use crate::effects::Around;
 use crate::fit::Parameter;
 use crate::samples::conditions::Condition;
@@ -217,6 +217,32 @@ impl<'b, 'a> Search<'b, 'a> {
             let keys: Vec<&str> = Parameter::of(effect).map(|parameter| parameter.row().key).collect();
             self.refused.retain(|_, refusal| !matches!(refusal, Refusal::Open(key) if keys.contains(key)));
             self.refused.insert(effect, refusal);
+            self.renumber(found);
+        }
+    }
+
+    /// Makes a second ripple the first where the first is gone, as in a robot file. What was refused is then the second.
+    fn renumber(&mut self, found: &mut [Effect]) {
+        let given = self.fit(&[]).values;
+        for place in 0..found.len() {
+            let second = found[place];
+            let Some(first) = second.first().filter(|first| !found.contains(first) && !has(*first, &given)) else {
+                continue;
+            };
+            let mut trial = self.fit(found);
+            for (from, to) in Parameter::of(second).zip(Parameter::of(first)) {
+                trial.values[to.place()] = trial.values[from.place()];
+                trial.values[from.place()] = from.row().neutral;
+                trial.free.iter_mut().filter(|of| **of == from).for_each(|of| *of = to);
+            }
+            found[place] = first;
+            let set = set_of(found);
+            self.judged.retain(|(of, _), _| *of != set);
+            self.unrivalled.remove(&set);
+            self.fits.insert(set, trial);
+            if let Some(refusal) = self.refused.remove(&first) {
+                self.refused.insert(second, refusal);
+            }
         }
     }
 
@@ -248,6 +274,7 @@ impl<'b, 'a> Search<'b, 'a> {
                 is_changed = true;
             }
         }
+        self.renumber(found);
         is_changed
     }
 

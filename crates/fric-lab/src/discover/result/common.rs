@@ -41,34 +41,34 @@ pub struct CommonParameter {
 const DIFFERS: f64 = 5.0;
 
 pub fn common_effects(cables: &[DiscoverCableResult]) -> Vec<CommonEffect> {
-    let mut kinds: Vec<&'static str> = Vec::new();
-    for effect in cables.iter().flat_map(|cable| &cable.effects) {
-        if !kinds.contains(&effect.kind) {
-            kinds.push(effect.kind);
+    let mut all: Vec<Effect> = Vec::new();
+    for found in cables.iter().flat_map(|cable| &cable.effects) {
+        if !all.contains(&found.effect) {
+            all.push(found.effect);
         }
     }
-    kinds.into_iter().filter_map(|kind| common_effect(kind, cables)).collect()
+    all.into_iter().filter_map(|effect| common_effect(effect, cables)).collect()
 }
 
 /// Returns an effect over the cables that have it, if there are several.
-fn common_effect(kind: &'static str, cables: &[DiscoverCableResult]) -> Option<CommonEffect> {
+fn common_effect(effect: Effect, cables: &[DiscoverCableResult]) -> Option<CommonEffect> {
     let with: Vec<(&str, &EffectResult)> = cables
         .iter()
-        .filter_map(|cable| Some((cable.name.as_str(), cable.effects.iter().find(|effect| effect.kind == kind)?)))
+        .filter_map(|cable| Some((cable.name.as_str(), cable.effects.iter().find(|found| found.effect == effect)?)))
         .collect();
     // Tables have no common value.
-    if with.first()?.1.effect == Effect::Empirical {
+    if effect == Effect::Empirical {
         return None;
     }
-    let parameters = with.first()?.1.effect.row().parameters.iter().filter_map(|parameter| {
-        let of_cable = |(_, effect): &(&str, &EffectResult)| {
-            Some((effect.parameters.get(parameter.key)?, effect.standard_errors.get(parameter.key)?))
+    let parameters = effect.row().parameters.iter().filter_map(|parameter| {
+        let of_cable = |(_, found): &(&str, &EffectResult)| {
+            Some((found.parameters.get(parameter.key)?, found.standard_errors.get(parameter.key)?))
         };
         let numbers: Vec<(f64, f64)> = with.iter().filter_map(of_cable).collect();
         CommonParameter::of(parameter.key, parameter.unit, &numbers)
     });
     (with.len() > 1).then(|| CommonEffect {
-        kind,
+        kind: effect.kind(),
         cables: with.iter().map(|(name, _)| (*name).to_owned()).collect(),
         parameters: parameters.collect(),
     })

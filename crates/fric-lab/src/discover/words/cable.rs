@@ -87,6 +87,16 @@ fn with_unit(number: f64, unit: &str) -> String {
     if unit == "1" { text } else { format!("{text} {unit}") }
 }
 
+/// Lists effects by kind, each kind once.
+fn names(kinds: &[&str]) -> String {
+    let is_first = |(place, kind): &(usize, &&str)| !kinds[..*place].contains(kind);
+    let name = |(_, kind): (usize, &&str)| {
+        let is_twice = kinds.iter().filter(|other| *other == kind).count() > 1;
+        format!("{kind}{}", if is_twice { " (two)" } else { "" })
+    };
+    listed(&kinds.iter().enumerate().filter(is_first).map(name).collect::<Vec<String>>())
+}
+
 impl DiscoverCableResult {
     /// Returns the verdict on the cable in sentences.
     #[must_use]
@@ -101,11 +111,11 @@ impl DiscoverCableResult {
             ("complete", _) => {
                 "Nothing is missing: with values fitted to the log, the model agrees with it to the noise.".to_owned()
             }
-            ("extended", kinds) => format!("The model lacks {}; with it, what is left is noise.", listed(kinds)),
+            ("extended", kinds) => format!("The model lacks {}; with it, what is left is noise.", names(kinds)),
             (_, kinds) => {
                 let named: Vec<&str> = kinds.iter().copied().filter(|kind| *kind != Effect::Empirical.kind()).collect();
                 let lacks =
-                    if named.is_empty() { String::new() } else { format!("The model lacks {}. ", listed(&named)) };
+                    if named.is_empty() { String::new() } else { format!("The model lacks {}. ", names(&named)) };
                 let rest = lacks + "Something remains that no effect of the catalogue accounts for.";
                 if named.len() == kinds.len() {
                     rest

@@ -44,9 +44,9 @@ impl Studio<'_> {
         match &question.aim {
             Aim::Determine(wanted) => {
                 if let Some(absent) = wanted.iter().find(|of| of.effect().is_some_and(|effect| !has(effect, &model))) {
-                    let kind = absent.effect().map_or("", Effect::kind);
+                    let effect = absent.effect().map_or_else(String::new, |effect| effect.to_string());
                     return Err(bad(format!(
-                        "{name} has no `{kind}` in the robot file, so that nobody knows how large `{absent}` may be; add the effect with \
+                        "{name} has no `{effect}` in the robot file, so that nobody knows how large `{absent}` may be; add the effect with \
                          the values to be expected"
                     )));
                 }
@@ -67,8 +67,9 @@ impl Studio<'_> {
                 let with_known = match known {
                     Some(effect) if has(effect, &model) => without(&model, second),
                     Some(effect) => with_typical(&record, &base, effect, self.duration_s).ok_or_else(|| {
-                        let kind = effect.kind();
-                        bad(format!("{name} has no `{kind}` in the robot file; add it with the values to be expected"))
+                        bad(format!(
+                            "{name} has no `{effect}` in the robot file; add it with the values to be expected"
+                        ))
                     })?,
                     None => base,
                 };

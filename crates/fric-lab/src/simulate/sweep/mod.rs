@@ -108,7 +108,7 @@ pub struct Case {
 /// Returns the effects for pairs and triples. An offset beside the fitted one at the platform is too weak, and a table has no name to be found.
 fn combined() -> Vec<Effect> {
     let left_out = [Effect::SensorOffset, Effect::Empirical];
-    Effect::CATALOGUE.iter().copied().filter(|effect| !left_out.contains(effect)).collect()
+    Effect::kinds().filter(|effect| !left_out.contains(effect)).collect()
 }
 
 /// Pairs that look alike, so that both together say little about a search.

@@ -262,7 +262,7 @@ fn parameters(found: &CableDiscovery) -> Markup {
                 }
                 @for parameter in shown {
                     tr {
-                        td { @if let Some(effect) = parameter.effect() { (effect.kind()) ": " } (name_of(parameter.row().key)) }
+                        td { @if let Some(effect) = parameter.effect() { (effect.to_string()) ": " } (name_of(parameter.row().key)) }
                         td { @if of_finding(&parameter) { "–" } @else { (value(&found.before, &parameter)) } }
                         @if is_extended { td { (value(&found.after, &parameter)) } }
                     }

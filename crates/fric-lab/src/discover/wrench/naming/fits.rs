@@ -100,7 +100,12 @@ impl Search<'_, '_> {
             let trial = self.fit(found);
             let around = self.around(&trial, true);
             let model = &trial.model;
-            let is_wanted = |candidate: Candidate| !candidate.is_in(model) && !scales_all(self.bench, model, candidate);
+            // This search names one ripple of each kind on a cable.
+            let is_wanted = |candidate: Candidate| {
+                !candidate.effect().is_some_and(Effect::is_second)
+                    && !candidate.is_in(model)
+                    && !scales_all(self.bench, model, candidate)
+            };
             let mut all = promises(self.bench, model, &around, is_wanted);
             all.retain(|promise| promise.gain > 0.0);
             self.promised.insert(set.clone(), all);
