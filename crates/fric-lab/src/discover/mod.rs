@@ -19,6 +19,7 @@
 //! The model is the control cycle itself, so the findings run in the cycle unchanged.
 
 mod cable;
+mod effort;
 mod extended;
 mod faults;
 mod figures;

@@ -42,6 +42,8 @@ pub struct Trial {
     pub held_out: f64,
     /// Distance from its minimum at the end of the search, in standard errors.
     pub near_errors: f64,
+    /// Number of evaluations of the model that the search took.
+    pub evaluation_count: usize,
 }
 
 impl Trial {
@@ -157,11 +159,12 @@ impl<'a> Workbench<'a> {
     {
         let bench: &Workbench<'b> = self;
         let mut problem = bench.problem(&model.free, Some(Rc::new(seat)));
-        let mut values = model.values;
+        let (mut values, mut evaluation_count) = (model.values, 0);
         if !model.free.is_empty() {
             let start = within_bounds(&mut problem, &model.values);
-            let (found, _) = search_near(&problem, &[start], self.record.cycle_s, near_errors);
+            let (found, minimum) = search_near(&problem, &[start], self.record.cycle_s, near_errors);
             values = found.first().copied().unwrap_or(values);
+            evaluation_count = minimum.evaluation_count;
         }
         let residuals_n = bench.residuals_with(&problem, &values);
         let sum = |held_out: bool| {
@@ -170,7 +173,7 @@ impl<'a> Workbench<'a> {
             of_blocks.filter(|number| number.is_finite()).map(|number| number * number).sum()
         };
         let (training, held_out) = (sum(false), sum(true));
-        Trial { values, free: model.free.clone(), training, held_out, near_errors }
+        Trial { values, free: model.free.clone(), training, held_out, near_errors, evaluation_count }
     }
 
     /// Returns the force of the model minus the reference in each cycle, N; NaN where a sample does not count.

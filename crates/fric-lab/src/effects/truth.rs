@@ -59,6 +59,11 @@ pub trait TruthEffect: core::fmt::Debug + Send + Sync {
         1.0
     }
 
+    /// Returns by how much the friction force of a bristle leads its deflection, s: damping of the bristle divided by its stiffness.
+    fn bristle_lead_s(&self) -> f64 {
+        0.0
+    }
+
     /// Returns the factor on the presliding exponent, which is 1 without effects.
     fn presliding_exponent(&self) -> f64 {
         1.0
@@ -71,6 +76,11 @@ pub trait TruthEffect: core::fmt::Debug + Send + Sync {
 
     /// Returns the compliance of the cable from the winch to the platform, m/N.
     fn compliance_m_per_n(&self) -> f64 {
+        0.0
+    }
+
+    /// Returns the rate at which the cable from the winch to the platform grows longer by itself, m/s.
+    fn creep_m_per_s(&self) -> f64 {
         0.0
     }
 

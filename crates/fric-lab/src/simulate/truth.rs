@@ -108,6 +108,10 @@ impl TruthEffect for TruthEffects {
         self.product(|effect| effect.viscous_factor(speed_m_per_s))
     }
 
+    fn bristle_lead_s(&self) -> f64 {
+        self.sum(TruthEffect::bristle_lead_s)
+    }
+
     fn presliding_exponent(&self) -> f64 {
         self.product(TruthEffect::presliding_exponent)
     }
@@ -118,6 +122,10 @@ impl TruthEffect for TruthEffects {
 
     fn compliance_m_per_n(&self) -> f64 {
         self.sum(TruthEffect::compliance_m_per_n)
+    }
+
+    fn creep_m_per_s(&self) -> f64 {
+        self.sum(TruthEffect::creep_m_per_s)
     }
 
     fn platform_factor(&self, length_m: f64) -> f64 {

@@ -294,6 +294,50 @@ fn a_defect_of_the_cable_is_felt_where_it_passes() {
     assert!(passed > 10, "{passed}");
 }
 
+/// A damped bristle has the force `f + lead·df/dt`, if f is that of the same bristle without damping. Its load, of which the friction is a part, changes
+/// only to the second order in μ.
+#[test]
+fn a_damped_contact_leads_the_friction_that_it_stores() {
+    const LEAD_S: f64 = 0.006;
+    let robot = bench("{ wrap_deg = 180.0, sensor = true }", "mu = 0.02, sigma_n_per_m = 500.0");
+    // F_1 less F_0: friction of the one pulley.
+    let friction_n = |signals: &Signals| -> Vec<f64> {
+        signals
+            .reference_n
+            .iter()
+            .zip(&signals.sensor_n)
+            .map(|(reference_n, sensor_n)| 2.0 * reference_n - sensor_n)
+            .collect()
+    };
+    let plain_n = friction_n(&Signals::of(&robot, &short()));
+    let damped_n = friction_n(&Signals::of(&robot, &spoilt(&format!("bristle_damping:lead_s={LEAD_S}"))));
+    let added_n = differences(&damped_n, &plain_n);
+    let lead_n = |cycle: usize| LEAD_S * (plain_n[cycle + 1] - plain_n[cycle - 1]) / (2.0 * CYCLE_S);
+    let (mut missed, mut squares) = (0.0, 0.0);
+    for cycle in 1..plain_n.len() - 1 {
+        missed += (added_n[cycle] - lead_n(cycle)).powi(2);
+        squares += lead_n(cycle).powi(2);
+    }
+    let greatest_n = added_n.iter().fold(0.0_f64, |most, added_n| most.max(added_n.abs()));
+    assert!(greatest_n > 0.05, "{greatest_n}");
+    assert!((missed / squares).sqrt() < 0.05, "{}", (missed / squares).sqrt());
+}
+
+/// A cable that creeps as fast as it stretches is an elastic cable.
+#[test]
+fn quick_creep_is_elasticity() {
+    let options = |of: SimulationOptions| SimulationOptions { hand_n: 2.0, ..of };
+    let plain = Signals::of(&rubbing(), &options(short()));
+    let creeping = Signals::of(&rubbing(), &options(spoilt("creep:compliance_m_per_n=1e-4,time_constant_s=0.01")));
+    let elastic = Signals::of(&rubbing(), &options(hiding("cable_elasticity:compliance_m_per_n=1e-4")));
+    let rms_n = |one: &Signals, other: &Signals| {
+        let squares: f64 = differences(&one.sensor_n, &other.sensor_n).iter().map(|number| number * number).sum();
+        (squares / 20e3).sqrt()
+    };
+    let (effect_n, difference_n) = (rms_n(&elastic, &plain), rms_n(&creeping, &elastic));
+    assert!(effect_n > 0.02 && difference_n < 0.2 * effect_n, "{effect_n} {difference_n}");
+}
+
 /// Within its play the winch moves and the cable does not: the friction stays. Through it, friction has the sign of the
 /// cable's motion once it has come farther than presliding reaches.
 #[test]
@@ -427,7 +471,7 @@ fn disturbances_are_read_as_they_are_written_and_errors_name_what_is_known() {
     assert_eq!(
         problem("hmu:amplitude_n=1"),
         "there is no disturbance `hmu`; did you mean `hum`? known are `hum`, `frozen`, `clipped`, `step`, `quantised`, `warming`, \
-         `local_defect`, `vibration`"
+         `local_defect`, `vibration`, `bristle_damping`, `creep`"
     );
     assert!(problem("hum").starts_with("the disturbance `hum` has no value, which would hide nothing"));
     assert_eq!(

@@ -55,11 +55,13 @@ impl CableLog<'_> {
     pub(super) fn passes(&self, start: &mut workbench::Model, held: &[Parameter]) -> Option<Outcome> {
         let mut outcome = self.pass(self.counts, start)?;
         let told = self.newly_determined(self.counts, &outcome.naming, held);
-        if told.iter().any(|parameter| !start.free.contains(parameter)) {
+        if !self.effort.is_spent() && told.iter().any(|parameter| !start.free.contains(parameter)) {
             start.free.extend(told);
             outcome = self.pass(self.counts, start).unwrap_or(outcome);
         }
-        if let Some(found) = outcome.rest.stretch.take() {
+        if !self.effort.is_spent()
+            && let Some(found) = outcome.rest.stretch.take()
+        {
             let outside: Vec<bool> =
                 self.counts.iter().zip(&found.cycles).map(|(counts, inside)| *counts && !inside).collect();
             let again = self.pass(&outside, start);
@@ -77,7 +79,7 @@ impl CableLog<'_> {
         let bench = self.bench(counts);
         let base = bench.try_one(start);
         let noise_n = self.noise_n(&bench, &base)?;
-        let mut search = Search::new(&bench, noise_n, self.around(&base, noise_n), &base, self.with_time);
+        let mut search = Search::new(&bench, noise_n, self.around(&base, noise_n), &base, self.with_time, self.effort);
         let (mut before, mut rows): (Vec<Effect>, Vec<Effect>) = (Vec::new(), Vec::new());
         let mut passes = 0;
         loop {
@@ -86,7 +88,7 @@ impl CableLog<'_> {
             let fitted = self.fitted(counts, &naming.model, noise_n);
             let found: Vec<Effect> = naming.named.iter().map(|named| named.effect).collect();
             // Effects that were offered and did not stay would be offered again.
-            let more = if found == rows || passes == MOST_PASSES {
+            let more = if found == rows || passes == MOST_PASSES || self.effort.is_spent() {
                 Vec::new()
             } else {
                 self.missing(&bench, &workbench::Model { values: fitted.values, free: fitted.parameters.clone() })?
@@ -105,7 +107,8 @@ impl CableLog<'_> {
     fn missing(&self, bench: &Workbench<'_>, model: &workbench::Model) -> Option<Vec<Effect>> {
         let base = bench.try_one(model);
         let noise_n = self.noise_n(bench, &base)?;
-        let naming = Search::new(bench, noise_n, self.around(&base, noise_n), &base, self.with_time).run(&[]);
+        let naming =
+            Search::new(bench, noise_n, self.around(&base, noise_n), &base, self.with_time, self.effort).run(&[]);
         Some(naming.named.iter().map(|named| named.effect).collect())
     }
 

@@ -67,7 +67,9 @@ impl Search<'_, '_> {
         let [learned, held_out] = [false, true].map(|held_out| self.bench.count(held_out) as f64);
         let needed = self.least_gain(&model) * learned / held_out;
         let near_errors = (UNDECIDED * needed * learned / model.training).sqrt().max(NEAR_ERRORS);
-        for (owner, trial) in owners.into_iter().zip(self.bench.try_all(&models, near_errors)) {
+        let fits = self.bench.try_all(&models, near_errors);
+        self.effort.add(&fits);
+        for (owner, trial) in owners.into_iter().zip(fits) {
             let is_better = self.fits.get(&owner).is_none_or(|other| trial.training < other.training);
             if trial.training.is_finite() && is_better {
                 self.fits.insert(owner, trial);
@@ -98,6 +100,7 @@ impl Search<'_, '_> {
         };
         let (sets, models): (Vec<Set>, Vec<Model>) = sets.filter_map(refined).unzip();
         let fits = self.bench.try_all(&models, NEAR_ERRORS);
+        self.effort.add(&fits);
         self.fits.extend(sets.into_iter().zip(fits));
     }
 
@@ -121,6 +124,7 @@ impl Search<'_, '_> {
             model.free.retain(|parameter| !of_effect.contains(parameter));
         }
         let trial = self.bench.try_one(&model);
+        self.effort.add(std::slice::from_ref(&trial));
         self.fits.insert(set, trial.clone());
         trial
     }

@@ -26,6 +26,7 @@ use fric_core::parameters::Values;
 
 use self::evidence::{delta_bic, inflation};
 use self::justification::is_at_end;
+use super::effort::Effort;
 use super::workbench::{Trial, Workbench};
 use crate::candidates::catalogue::{fitted, has};
 use crate::effects::Around;
@@ -121,6 +122,7 @@ pub struct Search<'b, 'a> {
     noise_squares: f64,
     around: Around,
     conditions: &'b [Condition],
+    effort: &'b Effort,
     fits: BTreeMap<Set, Trial>,
     /// Refused candidates and the reasons.
     refused: BTreeMap<Effect, Refusal>,
@@ -138,6 +140,7 @@ impl<'b, 'a> Search<'b, 'a> {
         around: Around,
         base: &Trial,
         conditions: &'b [Condition],
+        effort: &'b Effort,
     ) -> Self {
         #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
         let noise_squares = bench.count(true) as f64 * noise_n * noise_n;
@@ -148,6 +151,7 @@ impl<'b, 'a> Search<'b, 'a> {
             noise_squares,
             around,
             conditions,
+            effort,
             fits,
             refused: BTreeMap::new(),
             judged: BTreeMap::new(),
@@ -167,7 +171,7 @@ impl<'b, 'a> Search<'b, 'a> {
             let before = set_of(&found);
             self.refused = self.beyond_the_log();
             named = self.pass(&mut found);
-            if set_of(&found) == before {
+            if set_of(&found) == before || self.effort.is_spent() {
                 break;
             }
         }
@@ -264,6 +268,9 @@ impl<'b, 'a> Search<'b, 'a> {
     fn exchange(&mut self, found: &mut [Effect]) -> bool {
         let mut is_changed = false;
         for place in 0..found.len() {
+            if self.effort.is_spent() {
+                break;
+            }
             let Some((other, trial)) = self.alternative(found, place) else { continue };
             let model = self.fit(found);
             let is_better = trial.training < model.training && trial.held_out < model.held_out;

@@ -7,7 +7,7 @@
 //! of the friction is that of none.
 
 use fric_core::effects::Effect;
-use fric_core::parameters::Values;
+use fric_core::parameters::{VISCOUS, Values};
 
 use super::projection::{Columns, less_projection};
 use crate::discover::workbench::{Trial, Workbench};
@@ -16,6 +16,8 @@ use crate::search::problem::Problem;
 
 /// Number of cycles on either side over which rates are computed.
 const RATE_CYCLES: usize = 5;
+/// The same for the rate at which contacts store friction. After a quick reversal they do so within a few cycles.
+const STORING_CYCLES: usize = 1;
 /// Time constants of warm-up, as fractions of the log's duration.
 const TIME_CONSTANT_RATIOS: [f64; 4] = [0.06, 0.12, 0.25, 0.5];
 
@@ -74,9 +76,10 @@ pub fn best_rival(
     }
     let laws = laws(bench, &bench.added_n(&without));
     let mut laws: Vec<Law> = laws.into_iter().filter(|law| law.of.is_none_or(|of| !kinds.contains(&of))).collect();
-    // Whatever has a name may be one jump, of the sensor's zero or of the friction.
+    // Whatever has a name may be one jump, of the sensor's zero or of the friction, or the damping of the contacts.
     for ((_, neutral), without_n) in effects.iter().zip(&without_n) {
         laws.extend([vec![1.0; residual_n.len()], bench.added_n(neutral)].map(|jumping| jump(without_n, jumping)));
+        laws.push(contact_damping(bench, neutral));
     }
     let names: Vec<&'static str> = laws.iter().map(|law| law.signal).collect();
     signals.extend(laws.into_iter().map(|law| law.values));
@@ -167,8 +170,8 @@ fn laws(bench: &Workbench<'_>, friction_n: &[f64]) -> Vec<Law> {
     let logs = || record.logs().map(|(start, rows)| start..start + rows.len());
     let law = |signal, of, values| Law { signal, of: Some(of), values };
     let mut laws = vec![
-        law("force_rate", Effect::SensorLag, rates(logs(), &sensor_n)),
-        law("reference_rate", Effect::SensorLag, rates(logs(), &of(&|row| row.reference_n))),
+        law("force_rate", Effect::SensorLag, rates(logs(), &sensor_n, RATE_CYCLES)),
+        law("reference_rate", Effect::SensorLag, rates(logs(), &of(&|row| row.reference_n), RATE_CYCLES)),
         law(
             "sensor_force",
             Effect::SensorNonlinearity,
@@ -190,12 +193,22 @@ fn laws(bench: &Workbench<'_>, friction_n: &[f64]) -> Vec<Law> {
     laws
 }
 
-/// Returns the differences of a signal over some cycles on either side, within each log.
-fn rates(logs: impl Iterator<Item = std::ops::Range<usize>>, signal: &[f64]) -> Vec<f64> {
+/// Damping of the contacts: a force in proportion to the rate at which they store friction, the term `σ₁·dz/dt` of the `LuGre` model (C. Canudas de
+/// Wit, H. Olsson, K. J. Åström, P. Lischinsky, *A New Model for Control of Systems with Friction*, IEEE Trans. Autom. Control 40, 1995, eq. 1–3).
+/// It makes the stored friction lead, as motion that is known late does, but neither the viscous friction nor the friction at constant sliding.
+fn contact_damping(bench: &Workbench<'_>, values: &Values) -> Law {
+    let mut stored = *values;
+    stored[VISCOUS] = 0.0;
+    let logs = bench.record.logs().map(|(start, rows)| start..start + rows.len());
+    Law { signal: "friction_rate", of: None, values: rates(logs, &bench.added_n(&stored), STORING_CYCLES) }
+}
+
+/// Returns the differences of a signal over so many cycles on either side, within each log.
+fn rates(logs: impl Iterator<Item = std::ops::Range<usize>>, signal: &[f64], cycles: usize) -> Vec<f64> {
     let mut rates = vec![f64::NAN; signal.len()];
     for log in logs {
         for place in log.clone() {
-            let (from, to) = (place.saturating_sub(RATE_CYCLES).max(log.start), (place + RATE_CYCLES).min(log.end - 1));
+            let (from, to) = (place.saturating_sub(cycles).max(log.start), (place + cycles).min(log.end - 1));
             rates[place] = signal[to] - signal[from];
         }
     }

@@ -11,7 +11,8 @@
 //! Newton for a pulley with mass). The sensor shows `F_s = F_1 − F_0 cos α₁` (\[P\] 11), or `F_0` if it is in line with the cable.
 //!
 //! An elastic cable moves over its pulleys even when the winch rests: over pulley j of n with the winch's speed plus `(j/n)·c·dF_n/dt`, where c is
-//! its compliance from the winch to the platform.
+//! its compliance from the winch to the platform. A cable that grows longer by itself moves over them likewise. The force of a damped bristle leads its
+//! deflection: `f = (σ/n)·(z + lead·dz/dt)`.
 //!
 //! Nothing is shared with the compensator: the unknown is the deflection, not the force; the normal force is exact, not the approximation \[P\] 8;
 //! the chain runs from the platform to the winch; and the integration uses the two-stage, L-stable, diagonally implicit Runge-Kutta method of second
@@ -81,10 +82,16 @@ struct Bristle {
     pulley: PulleyTruth,
     stiffness_n_per_m: f64,
     deflection_m: f64,
+    /// Rate of the deflection at the end of the last step, m/s.
+    deflection_m_per_s: f64,
+    /// Time by which the force leads the deflection, s.
+    lead_s: f64,
     /// Exponent of presliding, dimensionless.
     exponent: f64,
     /// Pulley mass reduced to the rim, kg.
     mass_kg: f64,
+    /// Position between the winch, 0, and the platform, 1: the share of the cable's stretch that passes this pulley.
+    stretch_share: f64,
     /// Stretch of the cable from the winch to this pulley per tension, m/N.
     compliance_m_per_n: f64,
     /// Whether it is the pulley nearest to the platform.
@@ -109,8 +116,11 @@ impl BristleChain {
             held_ratio: effects.held_ratio(),
             stiffness_n_per_m: sigma_n_per_m / places,
             deflection_m: 0.0,
+            deflection_m_per_s: 0.0,
+            lead_s: effects.bristle_lead_s(),
             exponent: effects.presliding_exponent(),
             mass_kg: effects.pulley_mass_kg(),
+            stretch_share: place / places,
             compliance_m_per_n: effects.compliance_m_per_n() * place / places,
             is_last: place >= count,
         };
@@ -159,7 +169,8 @@ impl BristleChain {
         let mut upstream_n = downstream_n;
         for bristle in self.pulleys.iter().rev() {
             downstream_n = upstream_n;
-            upstream_n = bristle.upstream_n(downstream_n, bristle.deflection_m, at, &self.effects);
+            let force_m = bristle.force_m(bristle.deflection_m, bristle.deflection_m_per_s);
+            upstream_n = bristle.upstream_n(downstream_n, force_m, at, &self.effects);
         }
         match self.pulleys.first() {
             Some(bristle) if self.sensor_pulley => downstream_n - upstream_n * bristle.cos_wrap(at),
@@ -200,16 +211,21 @@ impl Bristle {
     }
 
     /// Returns the speed of the cable over this pulley, m/s.
-    fn speed_m_per_s(&self, at: &Moment) -> f64 {
-        at.speed_m_per_s + self.compliance_m_per_n * at.force_n_per_s
+    fn speed_m_per_s(&self, at: &Moment, effects: &TruthEffects) -> f64 {
+        at.speed_m_per_s + self.compliance_m_per_n * at.force_n_per_s + self.stretch_share * effects.creep_m_per_s()
     }
 
-    fn upstream_n(&self, downstream_n: f64, deflection_m: f64, at: &Moment, effects: &TruthEffects) -> f64 {
-        let speed_m_per_s = self.speed_m_per_s(at);
+    /// Returns the deflection of an undamped bristle with the force of this one, m.
+    fn force_m(&self, deflection_m: f64, deflection_m_per_s: f64) -> f64 {
+        deflection_m + self.lead_s * deflection_m_per_s
+    }
+
+    fn upstream_n(&self, downstream_n: f64, force_m: f64, at: &Moment, effects: &TruthEffects) -> f64 {
+        let speed_m_per_s = self.speed_m_per_s(at, effects);
         let viscous_n = self.pulley.viscous_n_s_per_m * effects.viscous_factor(speed_m_per_s) * speed_m_per_s
             + effects.viscous_n(speed_m_per_s) * self.share;
         let inertia_n = self.mass_kg * at.acceleration_m_per_s2;
-        (downstream_n - self.stiffness_n_per_m * deflection_m - viscous_n - inertia_n).max(0.0)
+        (downstream_n - self.stiffness_n_per_m * force_m - viscous_n - inertia_n).max(0.0)
     }
 
     /// Integrates one step. `forces_n` holds the tensions behind the pulley at the stages; on return, those before it.
@@ -221,15 +237,16 @@ impl Bristle {
         let first_m_per_s = (first_m - begin_m) / own_s;
         let base_m = begin_m + (1.0 - GAMMA) * step_s * first_m_per_s;
         let second_m = self.stage(base_m, own_s, second, forces_n[1], first_m, effects);
+        let second_m_per_s = (second_m - base_m) / own_s;
         let second_m = self.slipped_back_m(second_m, second, forces_n[1], effects);
-        forces_n[0] = self.upstream_n(forces_n[0], first_m, first, effects);
-        forces_n[1] = self.upstream_n(forces_n[1], second_m, second, effects);
-        self.deflection_m = second_m;
+        forces_n[0] = self.upstream_n(forces_n[0], self.force_m(first_m, first_m_per_s), first, effects);
+        forces_n[1] = self.upstream_n(forces_n[1], self.force_m(second_m, second_m_per_s), second, effects);
+        (self.deflection_m, self.deflection_m_per_s) = (second_m, second_m_per_s);
     }
 
     /// Returns the load-independent μ, and friction independent of the load, N.
     fn sliding(&self, at: &Moment, effects: &TruthEffects) -> (f64, f64) {
-        let speed_m_per_s = self.speed_m_per_s(at);
+        let speed_m_per_s = self.speed_m_per_s(at, effects);
         let contact = Contact {
             speed_m_per_s,
             length_m: at.length_m,
@@ -244,11 +261,11 @@ impl Bristle {
     fn sliding_n(
         &self,
         (mu, drag_n): (f64, f64),
-        (force_n, deflection_m): (f64, f64),
+        (force_n, force_m): (f64, f64),
         at: &Moment,
         effects: &TruthEffects,
     ) -> f64 {
-        let upstream_n = self.upstream_n(force_n, deflection_m, at, effects);
+        let upstream_n = self.upstream_n(force_n, force_m, at, effects);
         let squared = upstream_n * upstream_n - 2.0 * upstream_n * force_n * self.cos_wrap(at) + force_n * force_n;
         let normal_n = libm::sqrt(squared.max(0.0));
         mu * effects.load_factor(normal_n) * normal_n + drag_n
@@ -266,7 +283,7 @@ impl Bristle {
 
     /// Solves `z = base + h·v·g(1 − sgn(v)·σ·z/f_c(z))` for z.
     fn stage(&self, base_m: f64, h_s: f64, at: &Moment, force_n: f64, guess_m: f64, effects: &TruthEffects) -> f64 {
-        let speed_m_per_s = self.speed_m_per_s(at);
+        let speed_m_per_s = self.speed_m_per_s(at, effects);
         let travel_m = h_s * speed_m_per_s;
         if travel_m.abs() <= 0.0 {
             return base_m;
@@ -274,7 +291,8 @@ impl Bristle {
         let sliding = self.sliding(at, effects);
         let mut deflection_m = guess_m;
         for _ in 0..MOST_ROUNDS {
-            let sliding_n = self.sliding_n(sliding, (force_n, deflection_m), at, effects);
+            let force_m = self.force_m(deflection_m, (deflection_m - base_m) / h_s);
+            let sliding_n = self.sliding_n(sliding, (force_n, force_m), at, effects);
             let last_m = deflection_m;
             deflection_m =
                 presliding::stage(base_m, travel_m, self.stiffness_n_per_m, sliding_n, self.exponent, last_m);

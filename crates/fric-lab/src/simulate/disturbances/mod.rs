@@ -3,7 +3,9 @@
 //! They produce logs whose disagreement with the model must be found and located without a wrong name. To add one, create a file here that implements
 //! [`TruthEffect`], and add its row to [`DISTURBANCES`].
 
+mod bristle_damping;
 mod clipped;
+mod creep;
 mod frozen;
 mod hum;
 mod local_defect;
@@ -51,8 +53,18 @@ pub struct DisturbanceParameter {
 }
 
 /// Every disturbance.
-pub const DISTURBANCES: &[DisturbanceRow] =
-    &[hum::ROW, frozen::ROW, clipped::ROW, step::ROW, quantised::ROW, warming::ROW, local_defect::ROW, vibration::ROW];
+pub const DISTURBANCES: &[DisturbanceRow] = &[
+    hum::ROW,
+    frozen::ROW,
+    clipped::ROW,
+    step::ROW,
+    quantised::ROW,
+    warming::ROW,
+    local_defect::ROW,
+    vibration::ROW,
+    bristle_damping::ROW,
+    creep::ROW,
+];
 
 /// A disturbance with values, checked against its row.
 ///

@@ -143,6 +143,8 @@ const TRIPLE_STRIDE: usize = 53;
 const MANY: usize = 10;
 /// Effects that show only if the load changes while the winch rests.
 const NEEDS_A_HAND: [Effect; 2] = [Effect::CableElasticity, Effect::LoadRelease];
+/// The same of disturbances.
+const DISTURBANCES_THAT_NEED_A_HAND: [&str; 1] = ["creep"];
 /// Push of the hand along each axis, N: about 1.5 N in a cable.
 const HAND_N: f64 = 3.0;
 
@@ -172,7 +174,9 @@ pub fn cases() -> Vec<Case> {
     cases.extend(triples().step_by(TRIPLE_STRIDE).map(|triple| Case::hiding(Group::Triple, &triple)));
     cases.extend((0..2 * MANY).map(|which| Case::hiding(Group::Many, &many(which))));
     for row in DISTURBANCES {
-        let spoilt = |group, effects: &[Effect]| Case { disturbance: Some(row.kind), ..Case::hiding(group, effects) };
+        let hand_n = if DISTURBANCES_THAT_NEED_A_HAND.contains(&row.kind) { HAND_N } else { 0.0 };
+        let spoilt =
+            |group, effects: &[Effect]| Case { disturbance: Some(row.kind), hand_n, ..Case::hiding(group, effects) };
         for strength_ratio in [1.0, 0.5] {
             let outside = |noise_ratio| Case { strength_ratio, noise_ratio, ..spoilt(Group::Outside, &[]) };
             cases.extend([1.0, 0.5].map(outside));

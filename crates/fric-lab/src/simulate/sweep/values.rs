@@ -36,6 +36,10 @@ pub fn disturbance(kind: &str, strength: &mut Sizing<'_>) -> Result<Disturbance,
             ("frequency_hz", uniform(strength.random, 8.0, 40.0)),
             ("damping_ratio", uniform(strength.random, 0.01, 0.05)),
         ],
+        "bristle_damping" => vec![("lead_s", strength.about(0.01))],
+        "creep" => {
+            vec![("compliance_m_per_n", strength.about(4e-4)), ("time_constant_s", uniform(strength.random, 2.0, 10.0))]
+        }
         // Refused by name.
         _ => Vec::new(),
     };
