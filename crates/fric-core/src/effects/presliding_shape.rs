@@ -87,3 +87,31 @@ impl<T: Scalar> PreslidingShape<T> {
 
 /// Replaces `u = 0` in the power, which occurs in sliding, where the distance does not matter.
 const LEAST_LEFT: f64 = 1e-300;
+
+#[cfg(test)]
+mod tests {
+    use super::PreslidingShape;
+
+    /// Two states under one load, between `−f_c` and `f_c`, over ways that take them from next to nothing to sliding.
+    #[test]
+    fn two_states_are_never_farther_apart_than_stated() {
+        const SLIDING_N: f64 = 1.5;
+        const SIGMA_N_PER_M: f64 = 2000.0;
+        for exponent in [0.2, 0.3, 0.7, 1.0, 1.5, 3.0] {
+            let law = PreslidingShape { exponent };
+            for (lower, upper) in (-10..10).flat_map(|lower| (lower + 1..=10).map(move |upper| (lower, upper))) {
+                let [lower_n, upper_n] = [lower, upper].map(|tenths| f64::from(tenths) / 10.0 * SLIDING_N);
+                for way_m in [-3e-3, -3e-4, -1e-5, 1e-6, 1e-5, 1e-4, 1e-3] {
+                    let step = |friction_n| law.step(friction_n, SLIDING_N, SIGMA_N_PER_M, way_m);
+                    let apart_n = step(upper_n) - step(lower_n);
+                    let most_n = law.step_apart(SLIDING_N + upper_n - lower_n, SLIDING_N, SIGMA_N_PER_M, way_m.abs())
+                        - SLIDING_N;
+                    assert!(
+                        apart_n.abs() <= most_n + 1e-12,
+                        "exponent {exponent}, {lower_n} N and {upper_n} N, {way_m} m: {apart_n} N, stated {most_n} N"
+                    );
+                }
+            }
+        }
+    }
+}

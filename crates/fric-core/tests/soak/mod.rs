@@ -96,16 +96,15 @@ mod tests {
         assert_eq!(seen.false_flags, 0, "{seen:?}");
     }
 
-    /// Seeds of episodes in which a force was off without a flag once: friction that fell within a cycle, a jump beside an earlier doubt, a load that grows
-    /// faster than the friction at its tension, an exponent of presliding below 1, friction stored by a load that came and went during the jump.
+    /// Seeds of episodes in which a force was off without a flag once: friction that fell within a cycle, a jump beside an earlier doubt, friction stored by a
+    /// load that came and went during the jump. The robots of the first three have no effects, so that a new effect does not change them.
     #[test]
     fn an_adversary_that_was_not_told_of_is() {
         for seed in [
             1_393_145_595_135_649_636,
             15_683_459_769_908_904_003,
-            1_168_612_493_878_733_568,
-            2_473_183_856_718_415_514,
             10_854_307_115_657_253_206,
+            2_749_309_096_855_322_189,
         ] {
             let seen = adversary::episode(seed).unwrap_or_else(|problem| panic!("episode {seed}: {problem}"));
             assert!(seen.spikes > 5 && seen.off > seen.left_out, "{seen:?}");
