@@ -33,8 +33,8 @@ const RIPPLES: Ripples = Ripples::of([Effect::FrictionRipple, Effect::FrictionRi
 /// The effects as a set, to test whether any acts.
 pub(crate) const ACTS: Acting = RIPPLES.acts();
 
-/// Returns the factors on μ at a cable length (m) of those that act, from a cable's parameter values by index.
+/// Returns a number times the factors at a cable length (m) of those that act, from a cable's parameter values by index.
 #[inline(always)]
-pub(crate) fn factors<T: Scalar>(acting: Acting, value: impl Fn(usize) -> T, length_m: T) -> impl Iterator<Item = T> {
-    RIPPLES.acting(acting, value).map(move |ripple| ripple.added_to(T::splat(1.0), length_m))
+pub(crate) fn times<T: Scalar>(number: T, acting: Acting, value: impl Fn(usize) -> T, length_m: T) -> T {
+    RIPPLES.apply(acting, value, number, |number, ripple| number * ripple.added_to(T::splat(1.0), length_m))
 }

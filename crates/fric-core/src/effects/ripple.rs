@@ -62,17 +62,32 @@ impl Ripples {
         one.and(other)
     }
 
-    /// Returns those that act, from a cable's parameter values by index.
+    /// Applies those that act, from a cable's parameter values by index, to a number one after the other.
     #[inline(always)]
-    pub(crate) fn acting<T: Scalar>(
+    pub(crate) fn apply<T: Scalar>(
         self,
         acting: Acting,
         value: impl Fn(usize) -> T,
-    ) -> impl Iterator<Item = Ripple<T>> {
-        let Self(both) = self;
-        both.into_iter().filter(move |(acts, _)| acting.has(*acts)).map(move |(_, first)| Ripple::of(first, &value))
+        number: T,
+        apply: impl Fn(T, Ripple<T>) -> T,
+    ) -> T {
+        let Self([(one, of_one), (other, of_other)]) = self;
+        let mut number = number;
+        if acting.has(one) {
+            number = apply(number, Ripple::of(of_one, &value));
+        }
+        if acting.has(other) {
+            seldom();
+            number = apply(number, Ripple::of(of_other, &value));
+        }
+        number
     }
 }
+
+/// Tells the compiler that cycles seldom come by, so that they alone pay for it.
+#[cold]
+#[inline(never)]
+fn seldom() {}
 
 /// A ripple, with amplitudes of any unit.
 #[derive(Clone, Copy, Debug, PartialEq)]

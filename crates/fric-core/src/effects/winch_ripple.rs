@@ -33,7 +33,7 @@ pub(crate) const ACTS: Acting = RIPPLES.acts();
 /// Returns the sensor force without the ripples that act, for a force shown (N) at a cable length (m), from a cable's parameter values by index.
 #[inline(always)]
 pub(crate) fn undo<T: Scalar>(acting: Acting, value: impl Fn(usize) -> T, shown_n: T, length_m: T) -> T {
-    RIPPLES.acting(acting, value).fold(shown_n, |shown_n, Ripple { sin, cos, period_m }| {
+    RIPPLES.apply(acting, value, shown_n, |shown_n, Ripple { sin, cos, period_m }| {
         Ripple { sin: -sin, cos: -cos, period_m }.added_to(shown_n, length_m)
     })
 }

@@ -89,7 +89,7 @@ impl<T: Scalar> Bearing<T> {
             multiply(FrictionWarmup::of(value).factor(moment.time_s));
         }
         if acting.has(friction_ripple::ACTS) {
-            friction_ripple::factors(acting, value, signals.length_m).for_each(&mut multiply);
+            multiply(friction_ripple::times(T::splat(1.0), acting, value, signals.length_m));
         }
         if acting.has(empirical::ACTS) {
             multiply(unnamed_factor);

@@ -93,9 +93,7 @@ pub fn cable_cycle<T: Scalar>(
         slip = leads.and(slips).or(leads.not().and(slip));
     }
     if acting.has(pulley_eccentricity::ACTS) {
-        for factor in pulley_eccentricity::factors(acting, |place| cable.effect(place), signals.length_m) {
-            chain_n = chain_n * factor;
-        }
+        chain_n = pulley_eccentricity::times(chain_n, acting, |place| cable.effect(place), signals.length_m);
     }
     if acting.has(empirical::ACTS) {
         chain_n = chain_n + unnamed.force_n;
