@@ -135,6 +135,18 @@ fn a_wander_of_the_reference_gets_no_name() {
     assert!((found.wander_n - 0.01).abs() < 0.003, "{}", found.wander_n);
 }
 
+/// Friction laws of other simulators, which no effect of the catalogue has, get no false name: of `LuGre`'s law only the Stribeck effect in it is named,
+/// and not the lead of its damped bristles as a delay of the motion; of a creeping cable nothing is.
+#[test]
+fn laws_outside_the_catalogue_get_no_false_name() {
+    let lugre =
+        Case { disturbance: Some("bristle_damping"), seed: 70_006, ..Case::hiding(Group::Mixed, &[Effect::Stribeck]) };
+    let creeping = Case { disturbance: Some("creep"), hand_n: 3.0, seed: 70_007, ..Case::of(Group::Outside) };
+    for case in [lugre, creeping] {
+        assert_found(&case, Verdict::Unexplained);
+    }
+}
+
 #[test]
 fn a_quarter_of_an_effect_is_named_alone() {
     let case =

@@ -99,7 +99,7 @@ pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> CableDiscove
     let after = Oscillations::of(&left_by(&outcome.fitted.values), &times, record, &signals);
     let mut faults = after.faults();
     if !heard.are_like(&after)
-        && !effort.is_spent()
+        && !effort.is_spent(outcome.naming.named.len())
         && let Some(again) = search(&after, &mut start)
     {
         // No filter removes the onset of a vibration. An effect that is named only after the removal stands for that remainder.

@@ -55,11 +55,13 @@ impl CableLog<'_> {
     pub(super) fn passes(&self, start: &mut workbench::Model, held: &[Parameter]) -> Option<Outcome> {
         let mut outcome = self.pass(self.counts, start)?;
         let told = self.newly_determined(self.counts, &outcome.naming, held);
-        if !self.effort.is_spent() && told.iter().any(|parameter| !start.free.contains(parameter)) {
+        if !self.effort.is_spent(outcome.naming.named.len())
+            && told.iter().any(|parameter| !start.free.contains(parameter))
+        {
             start.free.extend(told);
             outcome = self.pass(self.counts, start).unwrap_or(outcome);
         }
-        if !self.effort.is_spent()
+        if !self.effort.is_spent(outcome.naming.named.len())
             && let Some(found) = outcome.rest.stretch.take()
         {
             let outside: Vec<bool> =
@@ -88,7 +90,7 @@ impl CableLog<'_> {
             let fitted = self.fitted(counts, &naming.model, noise_n);
             let found: Vec<Effect> = naming.named.iter().map(|named| named.effect).collect();
             // Effects that were offered and did not stay would be offered again.
-            let more = if found == rows || passes == MOST_PASSES || self.effort.is_spent() {
+            let more = if found == rows || passes == MOST_PASSES || self.effort.is_spent(found.len()) {
                 Vec::new()
             } else {
                 self.missing(&bench, &workbench::Model { values: fitted.values, free: fitted.parameters.clone() })?

@@ -26,7 +26,7 @@ impl Search<'_, '_> {
     /// Adds candidates as long as they help, except those that were refused: the best one with strong evidence, or, if none has strong evidence
     /// alone, those that have it together.
     pub(super) fn enter(&mut self, found: &mut Vec<Effect>) {
-        while found.len() < MOST_EFFECTS && !self.effort.is_spent() {
+        while found.len() < MOST_EFFECTS && !self.is_spent(found) {
             let model = self.fit(found);
             if self.excess(&model) <= NEGLIGIBLE {
                 break;

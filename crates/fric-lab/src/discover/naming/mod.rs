@@ -123,6 +123,8 @@ pub struct Search<'b, 'a> {
     around: Around,
     conditions: &'b [Condition],
     effort: &'b Effort,
+    /// Number of effects that the model has from the start.
+    given_count: usize,
     fits: BTreeMap<Set, Trial>,
     /// Refused candidates and the reasons.
     refused: BTreeMap<Effect, Refusal>,
@@ -152,6 +154,7 @@ impl<'b, 'a> Search<'b, 'a> {
             around,
             conditions,
             effort,
+            given_count: Effect::CATALOGUE.iter().filter(|effect| has(**effect, &base.values)).count(),
             fits,
             refused: BTreeMap::new(),
             judged: BTreeMap::new(),
@@ -171,7 +174,7 @@ impl<'b, 'a> Search<'b, 'a> {
             let before = set_of(&found);
             self.refused = self.beyond_the_log();
             named = self.pass(&mut found);
-            if set_of(&found) == before || self.effort.is_spent() {
+            if set_of(&found) == before || self.is_spent(&found) {
                 break;
             }
         }
@@ -182,6 +185,11 @@ impl<'b, 'a> Search<'b, 'a> {
         self.polish(&found);
         let ladder = (0..=found.len()).map(|count| self.fit(found.get(..count).unwrap_or_default())).collect();
         Naming { model: self.fit(&found), named, ladder, first_round, tried }
+    }
+
+    /// Whether the search has to come to an end.
+    fn is_spent(&self, found: &[Effect]) -> bool {
+        self.effort.is_spent(self.given_count + found.len())
     }
 
     /// Returns the candidates that no log like this one can justify.
@@ -268,7 +276,7 @@ impl<'b, 'a> Search<'b, 'a> {
     fn exchange(&mut self, found: &mut [Effect]) -> bool {
         let mut is_changed = false;
         for place in 0..found.len() {
-            if self.effort.is_spent() {
+            if self.is_spent(found) {
                 break;
             }
             let Some((other, trial)) = self.alternative(found, place) else { continue };

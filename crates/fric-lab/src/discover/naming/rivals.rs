@@ -10,6 +10,7 @@ use fric_core::effects::Effect;
 use fric_core::parameters::{VISCOUS, Values};
 
 use super::projection::{Columns, less_projection};
+use crate::discover::rest::{CREEP_S, crept};
 use crate::discover::workbench::{Trial, Workbench};
 use crate::fit::{Parameter, Row};
 use crate::search::problem::Problem;
@@ -25,6 +26,11 @@ const TIME_CONSTANT_RATIOS: [f64; 4] = [0.06, 0.12, 0.25, 0.5];
 const MOST_BENT: f64 = 0.25;
 /// and the effect beside the law explains less than this fraction of what it explains alone.
 const LEAST_BESIDE_RATIO: f64 = 0.5;
+
+/// Damping of the contacts takes the place of a name only if it removes more than this fraction of the excess that the name leaves. A motion that is
+/// known late is extrapolated, with an error of which the rate of the friction removes a quarter though nothing is damped; of what a delay leaves of
+/// damped contacts it removes three quarters. Half of this fraction refuses true delays, double never applies.
+const LEAST_OF_DAMPING: f64 = 0.5;
 
 /// A law that makes some of the effects superfluous.
 #[derive(Clone, Debug, PartialEq)]
@@ -82,6 +88,7 @@ pub fn best_rival(
         laws.push(contact_damping(bench, neutral));
     }
     let names: Vec<&'static str> = laws.iter().map(|law| law.signal).collect();
+    let least: Vec<f64> = laws.iter().map(|law| law.least_of_excess * excess.max(0.0)).collect();
     signals.extend(laws.into_iter().map(|law| law.values));
     let columns = less_projection(&problem, &model.values, &signals)?;
     let columns = Columns::new(&columns, effects.len(), &residual_n);
@@ -103,7 +110,7 @@ pub fn best_rival(
         }
         let replaces: Vec<usize> = all.iter().copied().filter(|place| !places.contains(place)).collect();
         let (together, gain) = (gain(&[&all[..], &[effects.len() + law]].concat()), gain(&places));
-        if replaces.is_empty() && together - by_name > enough.max(MOST_BENT * excess) {
+        if replaces.is_empty() && together - by_name > enough.max(MOST_BENT * excess).max(least[law]) {
             // The law wins if it explains much of the rest, more than chance would, and shares what it explains with one of the names.
             let of_name = |name: &usize| {
                 let others: Vec<usize> = all.iter().copied().filter(|other| other != name).collect();
@@ -118,8 +125,8 @@ pub fn best_rival(
         #[expect(clippy::cast_precision_loss, reason = "a small count")]
         let is_better = match replaces.len() {
             0 => false,
-            1 => gain > by_name + white,
-            count => gain + (count - 1) as f64 * enough > by_name,
+            1 => gain > by_name + white.max(least[law]),
+            count => gain + (count - 1) as f64 * enough > by_name + least[law],
         };
         is_better.then_some(Rival { signal, replaces, gain })
     };
@@ -132,6 +139,8 @@ struct Law {
     signal: &'static str,
     /// The effect that it is to first order, if it is one.
     of: Option<Effect>,
+    /// Fraction of the excess above the noise that the law has to remove in addition to what the names do.
+    least_of_excess: f64,
     /// In each cycle, of any unit.
     values: Vec<f64>,
 }
@@ -156,10 +165,16 @@ fn jump(residual_n: &[f64], signal: Vec<f64>) -> Law {
         sum_up(&mut before, *residual_n, *signal);
     }
     let sets_in = |(place, signal): (usize, f64)| if place < start { 0.0 } else { signal };
-    Law { signal: "time", of: None, values: signal.into_iter().enumerate().map(sets_in).collect() }
+    Law {
+        signal: "time",
+        of: None,
+        least_of_excess: 0.0,
+        values: signal.into_iter().enumerate().map(sets_in).collect(),
+    }
 }
 
-/// The laws: sensor and reference that follow late, a bent sensor, a drag of turbulence, and what warms up, of the sensor and of the friction.
+/// The laws: sensor and reference that follow late, a bent sensor, a drag of turbulence, what warms up, of the sensor and of the friction, and a cable
+/// that creeps.
 fn laws(bench: &Workbench<'_>, friction_n: &[f64]) -> Vec<Law> {
     let record = &bench.record;
     let of = |value: &dyn Fn(&Row) -> f64| record.rows.iter().map(value).collect::<Vec<f64>>();
@@ -168,7 +183,7 @@ fn laws(bench: &Workbench<'_>, friction_n: &[f64]) -> Vec<Law> {
     #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
     let mean_n = sound().sum::<f64>() / sound().count().max(1) as f64;
     let logs = || record.logs().map(|(start, rows)| start..start + rows.len());
-    let law = |signal, of, values| Law { signal, of: Some(of), values };
+    let law = |signal, of, values| Law { signal, of: Some(of), least_of_excess: 0.0, values };
     let mut laws = vec![
         law("force_rate", Effect::SensorLag, rates(logs(), &sensor_n, RATE_CYCLES)),
         law("reference_rate", Effect::SensorLag, rates(logs(), &of(&|row| row.reference_n), RATE_CYCLES)),
@@ -190,6 +205,8 @@ fn laws(bench: &Workbench<'_>, friction_n: &[f64]) -> Vec<Law> {
         laws.push(law("time", Effect::FrictionWarmup, of_friction));
         laws.push(law("time", Effect::SensorWarmup, decay));
     }
+    let creep = |lag_s| Law { signal: "past_load", of: None, least_of_excess: 0.0, values: crept(record, lag_s) };
+    laws.extend(CREEP_S.map(creep));
     laws
 }
 
@@ -200,7 +217,8 @@ fn contact_damping(bench: &Workbench<'_>, values: &Values) -> Law {
     let mut stored = *values;
     stored[VISCOUS] = 0.0;
     let logs = bench.record.logs().map(|(start, rows)| start..start + rows.len());
-    Law { signal: "friction_rate", of: None, values: rates(logs, &bench.added_n(&stored), STORING_CYCLES) }
+    let values = rates(logs, &bench.added_n(&stored), STORING_CYCLES);
+    Law { signal: "friction_rate", of: None, least_of_excess: LEAST_OF_DAMPING, values }
 }
 
 /// Returns the differences of a signal over so many cycles on either side, within each log.

@@ -10,9 +10,11 @@ pub mod stretch;
 
 use std::ops::Range;
 
+use fric_core::parameters::{MU, SIGMA};
+
 use self::places::{Excess, Place};
 use crate::candidates::ripple::ripple_power;
-use crate::fit::Row;
+use crate::fit::{CableRecord, Row};
 
 /// Maximum fraction of a drift that lies in one tenth of the log.
 const MOST_IN_TENTH: f64 = 0.6;
@@ -29,6 +31,11 @@ const CHANGE_S: f64 = 0.1;
 const FEWEST_QUIET: usize = 16;
 /// Changes with and without motion count as equal up to this many standard deviations of chance.
 const LEAST_RANKS_APART: f64 = 3.0;
+/// Time constants with which a creeping cable or mount follows its load, s. Two lags that differ by a factor of two are hardly told apart, so three,
+/// each four times the one before, do for a second to half a minute.
+pub const CREEP_S: [f64; 3] = [1.0, 4.0, 16.0];
+/// Number of equal shifts of the residual against the load through the log, which give the chance level.
+const SHIFTS: usize = 80;
 /// Minimum excess, as a fraction of the noise variance, that needs an explanation. The rms is then 5 % above the floor.
 pub const WORTH: f64 = 0.1;
 
@@ -39,7 +46,64 @@ pub fn wander(excess: &Excess<'_>, places: &[Place]) -> f64 {
         && places.is_empty()
         && share_of_tenth(excess) < MOST_IN_TENTH
         && share_of_wave(excess) < MOST_WAVE;
-    if is_wander { excess.share() * (1.0 - share_of_motion(excess)) } else { 0.0 }
+    if is_wander { excess.share() * (1.0 - share_of_motion(excess).max(share_of_creep(excess))) } else { 0.0 }
+}
+
+/// Returns the fraction of the excess that follows the past of the load, as friction does over which a cable creeps; zero where this may be chance.
+///
+/// Such a rest goes on while the cable rests, as a drift does. A cable that creeps under its load `F` by `x`, with `τ·dx/dt = F − x`, moves its
+/// contacts, which store friction in proportion; a motion by the presliding distance `d` makes them forget it. So with the way `l` of the cable the
+/// stored part is `dc = dx − c·|dl|/d`. The chance level is the greatest fraction for residuals shifted in time against the load.
+fn share_of_creep(excess: &Excess<'_>) -> f64 {
+    let crept = CREEP_S.map(|lag_s| crept(excess.record, lag_s));
+    let count = excess.residual_n.len();
+    let greatest = |shift: usize| {
+        let residual_n = || excess.residual_n.iter().cycle().skip(shift * count / SHIFTS).take(count);
+        crept.iter().map(|crept| common_squares(residual_n(), crept)).fold(0.0, f64::max)
+    };
+    let squares = greatest(0);
+    if (1..SHIFTS).any(|shift| greatest(shift) >= squares) { 0.0 } else { (squares / excess.sum()).min(1.0) }
+}
+
+/// Returns the part of the sensor force that contacts have stored from a creep with this time constant, N: see [`share_of_creep`].
+pub fn crept(record: &CableRecord<'_>, lag_s: f64) -> Vec<f64> {
+    let values = record.params.values();
+    let presliding_m_per_n = record.params.memory_m_per_n(values[MU], values[SIGMA]);
+    let follows = -libm::expm1(-record.interval_s / lag_s);
+    let mut all = Vec::with_capacity(record.rows.len());
+    for (_, rows) in record.logs() {
+        let (mut followed_n, mut stored_n) = (f64::NAN, 0.0);
+        for row in rows {
+            let force_n = row.signals.sensor_force_n;
+            if !followed_n.is_finite() {
+                followed_n = force_n;
+            }
+            if force_n.is_finite() {
+                let step_n = follows * (force_n - followed_n);
+                let way_m = row.signals.displacement_m.abs();
+                followed_n += step_n;
+                stored_n += step_n;
+                if way_m > 0.0 {
+                    stored_n *= libm::exp(-way_m / (presliding_m_per_n * force_n).max(f64::MIN_POSITIVE));
+                }
+            }
+            all.push(stored_n);
+        }
+    }
+    all
+}
+
+/// Returns how much of a residual's squares, N², is a multiple of a signal, apart from the means of both, over the samples that have a residual.
+fn common_squares<'a>(residual_n: impl Iterator<Item = &'a f64>, signal: &[f64]) -> f64 {
+    let mut sums = [0.0; 5];
+    for (residual_n, signal) in residual_n.zip(signal).filter(|(residual_n, _)| residual_n.is_finite()) {
+        let of_sample = [1.0, *residual_n, *signal, residual_n * signal, signal * signal];
+        sums.iter_mut().zip(of_sample).for_each(|(sum, of_sample)| *sum += of_sample);
+    }
+    let [count, residuals, signals, products, squares] = sums;
+    let covariance = products - residuals * signals / count;
+    let variance = squares - signals * signals / count;
+    if variance > 0.0 { covariance * covariance / variance } else { 0.0 }
 }
 
 /// Returns the fraction of a residual's slow changes that comes with motion of the cable or a change of its load.

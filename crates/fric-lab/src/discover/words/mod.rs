@@ -88,6 +88,7 @@ pub fn condition(signal: &str) -> String {
         "way_since_reversal" => "way since the last reversal".to_owned(),
         "force_rate" => "rate of the sensor force".to_owned(),
         "reference_rate" => "rate of the reference".to_owned(),
+        "past_load" => "past of the load".to_owned(),
         "friction_rate" => "rate at which the contacts store friction".to_owned(),
         "wrap" => "wrap angle".to_owned(),
         _ => signal.replace('_', " "),
