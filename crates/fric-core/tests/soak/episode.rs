@@ -285,7 +285,8 @@ fn chain_distance_n(one_n: [f64; 8], other_n: [f64; 8]) -> f64 {
 /// do not move alike until both have been pushed to the same edge.
 fn comes_straight(cable: &CableParams, monitor: &MonitorOptions) -> bool {
     let is_other = |effect: &Effect| {
-        effect.row().memory != Memory::Nothing || matches!(effect, Effect::TimeDelay | Effect::PulleyEccentricity | Effect::PulleyEccentricity2)
+        effect.row().memory != Memory::Nothing
+            || matches!(effect, Effect::TimeDelay | Effect::PulleyEccentricity | Effect::PulleyEccentricity2)
     };
     monitor.length_noise_m == 0.0 && cable.traction_mu().is_none() && !acting(cable).any(|effect| is_other(&effect))
 }

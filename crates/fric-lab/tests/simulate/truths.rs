@@ -312,11 +312,11 @@ fn a_damped_contact_leads_the_friction_that_it_stores() {
     let plain_n = friction_n(&Signals::of(&robot, &short()));
     let damped_n = friction_n(&Signals::of(&robot, &spoilt(&format!("bristle_damping:lead_s={LEAD_S}"))));
     let added_n = differences(&damped_n, &plain_n);
-    let lead_n = |cycle: usize| LEAD_S * (plain_n[cycle + 1] - plain_n[cycle - 1]) / (2.0 * CYCLE_S);
+    let lead_n = plain_n.windows(3).map(|of| LEAD_S * (of[2] - of[0]) / (2.0 * CYCLE_S));
     let (mut missed, mut squares) = (0.0, 0.0);
-    for cycle in 1..plain_n.len() - 1 {
-        missed += (added_n[cycle] - lead_n(cycle)).powi(2);
-        squares += lead_n(cycle).powi(2);
+    for (lead_n, added_n) in lead_n.zip(&added_n[1..]) {
+        missed += (added_n - lead_n).powi(2);
+        squares += lead_n.powi(2);
     }
     let greatest_n = added_n.iter().fold(0.0_f64, |most, added_n| most.max(added_n.abs()));
     assert!(greatest_n > 0.05, "{greatest_n}");

@@ -85,7 +85,7 @@ pub fn best_rival(
     // Whatever has a name may be one jump, of the sensor's zero or of the friction, or the damping of the contacts.
     for ((_, neutral), without_n) in effects.iter().zip(&without_n) {
         laws.extend([vec![1.0; residual_n.len()], bench.added_n(neutral)].map(|jumping| jump(without_n, jumping)));
-        laws.push(contact_damping(bench, neutral));
+        laws.extend(contact_damping(bench, neutral, without_n));
     }
     let names: Vec<&'static str> = laws.iter().map(|law| law.signal).collect();
     let least: Vec<f64> = laws.iter().map(|law| law.least_of_excess * excess.max(0.0)).collect();
@@ -212,13 +212,16 @@ fn laws(bench: &Workbench<'_>, friction_n: &[f64]) -> Vec<Law> {
 
 /// Damping of the contacts: a force in proportion to the rate at which they store friction, the term `σ₁·dz/dt` of the `LuGre` model (C. Canudas de
 /// Wit, H. Olsson, K. J. Åström, P. Lischinsky, *A New Model for Control of Systems with Friction*, IEEE Trans. Autom. Control 40, 1995, eq. 1–3).
-/// It makes the stored friction lead, as motion that is known late does, but neither the viscous friction nor the friction at constant sliding.
-fn contact_damping(bench: &Workbench<'_>, values: &Values) -> Law {
+/// It makes the stored friction lead, as motion that is known late does, but neither the viscous friction nor the friction at constant sliding. None if
+/// the residual without the name (model minus reference) asks for the opposite: no damping makes friction late.
+fn contact_damping(bench: &Workbench<'_>, values: &Values, residual_n: &[f64]) -> Option<Law> {
     let mut stored = *values;
     stored[VISCOUS] = 0.0;
     let logs = bench.record.logs().map(|(start, rows)| start..start + rows.len());
     let values = rates(logs, &bench.added_n(&stored), STORING_CYCLES);
-    Law { signal: "friction_rate", of: None, least_of_excess: LEAST_OF_DAMPING, values }
+    let products = residual_n.iter().zip(&values).map(|(residual_n, rate)| residual_n * rate);
+    let leads = products.filter(|product| product.is_finite()).sum::<f64>() < 0.0;
+    leads.then_some(Law { signal: "friction_rate", of: None, least_of_excess: LEAST_OF_DAMPING, values })
 }
 
 /// Returns the differences of a signal over so many cycles on either side, within each log.
