@@ -6,7 +6,7 @@
 //!
 //! The implementation is `u ← u·exp(−w·g(b·w))` with `b = a − 1`, `w = k·|u|^b` and `g(x) = ln(1 + x)/x`, which is equivalent and needs no special
 //! case at `a = 1`. There `w = k` and `g = 1`, value and derivatives are right to rounding, and the value has the bits of
-//! [`dahl_step`](crate::dahl::dahl_step). Below 1, sliding is reached after a finite distance, `k = |u|^(1−a)/(1−a)`.
+//! [`dahl_step`]. Below 1, sliding is reached after a finite distance, `k = |u|^(1−a)/(1−a)`.
 //!
 //! Cause: the asperities of the contact yield more abruptly (below 1) or more gradually (above 1) than in Dahl's simplest law.
 
@@ -56,7 +56,7 @@ impl<T: Scalar> PreslidingShape<T> {
         Self { exponent: value(EXPONENT) }
     }
 
-    /// Returns the friction force after a displacement; see [`dahl_step`](crate::dahl::dahl_step) for the arguments.
+    /// Returns the friction force after a displacement; see [`dahl_step`] for the arguments.
     #[inline(never)]
     pub fn step(&self, friction_n: T, sliding_n: T, sigma_n_per_m: T, displacement_m: T) -> T {
         dahl_step_over(friction_n, sliding_n, sigma_n_per_m, displacement_m, |way, left| {
