@@ -9,7 +9,7 @@ use fric_core::robot::unknown_name;
 use fric_lab::columns::{SampleColumns, SampleRows};
 use fric_log::log::Log as LogSource;
 use fric_log::robot::{AttachedRobot, ROBOT_FILE};
-use fric_log::signals::{KnownLength, Role, SignalPaths, SignalReader};
+use fric_log::signals::{LengthWindow, Role, SignalPaths, SignalReader};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::exceptions::{PyKeyError, PyTypeError};
 use pyo3::prelude::*;
@@ -426,17 +426,15 @@ fn ascending(stamp_nanos: &Bound<'_, PyAny>) -> Outcome<Vec<i64>> {
 
 /// Returns derived speeds, as for a log file without speed.
 fn derived_speed_m_per_s(stamp_nanos: &[i64], length_m: &[f64], cable_count: usize) -> Vec<f64> {
-    let rows: Vec<(i64, &[f64])> = stamp_nanos.iter().copied().zip(length_m.chunks(cable_count)).collect();
-    let length =
-        |(stamp_nanos, lengths_m): &(i64, &[f64]), cable: usize| KnownLength::new(*stamp_nanos, *lengths_m.get(cable)?);
-    let mut before = vec![None; cable_count];
-    let mut speed_m_per_s = Vec::with_capacity(length_m.len());
-    for (place, row) in rows.iter().enumerate() {
-        for (cable, before) in before.iter_mut().enumerate() {
-            let now = length(row, cable);
-            let after = || rows.iter().skip(place + 1).take(cable_count).find_map(|row| length(row, cable));
-            speed_m_per_s.push(now.map_or(f64::NAN, |now| now.speed_m_per_s(*before, after())));
-            *before = now.or(*before);
+    let mut speed_m_per_s = vec![f64::NAN; length_m.len()];
+    for cable in 0..cable_count {
+        let of_cable = || length_m.iter().skip(cable).step_by(cable_count);
+        let mut window = LengthWindow::default();
+        stamp_nanos.iter().zip(of_cable()).for_each(|(stamp_nanos, length_m)| window.push(*stamp_nanos, *length_m));
+        let speeds = speed_m_per_s.iter_mut().skip(cable).step_by(cable_count);
+        for (speed_m_per_s, _) in speeds.zip(of_cable()).filter(|(_, length_m)| length_m.is_finite()) {
+            *speed_m_per_s = window.speed_m_per_s();
+            window.advance();
         }
     }
     speed_m_per_s

@@ -32,8 +32,8 @@
 //! NaN and infinities are passed on: the core flags them for the cable concerned. A cable that a message does not name is NaN in that row. An invalid
 //! quaternion, such as all zeros, gives no pose; the sign of a quaternion does not matter.
 //!
-//! A missing speed (an empty `velocity`, or NaN in it) is the derivative of the parabola through the last known length before, the length in, and the
-//! first known length after the row ([`KnownLength::speed_m_per_s`]), even over a gap.
+//! A missing speed (an empty `velocity`, or NaN in it) is the slope of the known lengths of the cable around the row, one to twenty on each side, as
+//! many as their noise asks for ([`LengthWindow`]).
 //!
 //! With a pose from the cable lengths ([`SignalPaths::with_pose_from_lengths`], [`fric_core::forward`]), each row has the pose of its own lengths; a
 //! row whose lengths give no pose has none.
@@ -62,7 +62,7 @@ pub(crate) use layout::{Probe, STAMPS};
 pub use lengths::LengthPoses;
 pub use part::Part;
 pub use reader::SignalReader;
-pub use speed::KnownLength;
+pub use speed::LengthWindow;
 pub use track::CLOCK_STEP_MESSAGES;
 
 use std::collections::BTreeMap;

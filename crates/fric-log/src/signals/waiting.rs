@@ -2,8 +2,6 @@
 
 use fric_core::{CableInput, Pose, Sample, Wrench};
 
-use super::speed::KnownLength;
-
 /// A row.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Row {
@@ -31,11 +29,6 @@ impl Row {
             pose: self.pose,
             outside_wrench: self.outside_wrench,
         }
-    }
-
-    /// Returns the length of a cable.
-    pub fn known_length(&self, cable: usize) -> Option<KnownLength> {
-        KnownLength::new(self.stamp_nanos, self.cables.get(cable)?.length_m)
     }
 
     /// Whether a cable has a length but no speed.

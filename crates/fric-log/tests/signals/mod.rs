@@ -9,6 +9,7 @@ mod layouts;
 mod oracle;
 mod partial;
 mod random;
+mod speed;
 pub mod support;
 mod table;
 mod waiting;

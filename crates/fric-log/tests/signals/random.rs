@@ -1,6 +1,7 @@
 //! Random logs against the oracle.
 
 use fric_log::signals::Role;
+use nalgebra::{DMatrix, DVector};
 
 use super::oracle::{Measured, Topic};
 use super::support::*;
@@ -158,23 +159,54 @@ fn check(joined: &Joined, topics: &[Topic; 6], own: [bool; 2], what: &str) {
     }
 }
 
-/// Slope in a row of the polynomial through the lengths known last before, in, and first after it within two rows: Newton's
-/// divided differences.
+/// Slope in a row of the polynomial that fits the lengths around it best, in the widest window that agrees with all narrower ones: by singular values,
+/// window for window.
 fn derive(lengths_at: &dyn Fn(usize) -> Option<(i64, Vec<f64>)>, place: usize, cable: usize) -> f64 {
     let now = lengths_at(place).unwrap().0;
     let known = |place: usize| {
         let (stamp, lengths) = lengths_at(place)?;
         Some((ms(stamp - now) / 1e3, lengths[cable])).filter(|(_, length)| length.is_finite())
     };
-    let Some((t1, x1)) = known(place) else { return f64::NAN };
-    let slope = |(t, x): (f64, f64)| (x - x1) / (t - t1);
-    let before = (0..place).rev().find_map(known);
-    let after = (place + 1..=place + 2).find_map(known);
-    match (before, after) {
-        (Some(before), Some(after)) => {
-            let bend = (slope(after) - slope(before)) / (after.0 - before.0);
-            slope(before) + bend * (t1 - before.0)
-        }
-        (one, other) => one.or(other).map_or(0.0, slope),
+    if known(place).is_none() {
+        return f64::NAN;
     }
+    let before: Vec<_> = (0..place).rev().filter_map(known).take(20).collect();
+    let after: Vec<_> = (place + 1..=place + 40).filter_map(known).take(20).collect();
+    let window = |reach: usize| {
+        let before = before.iter().take(reach).rev();
+        before.copied().chain(known(place)).chain(after.iter().take(reach).copied()).collect::<Vec<_>>()
+    };
+    // The squared residual of a cubic through each five, which share no length with the five of the greatest.
+    let rests: Vec<f64> = window(20).windows(5).map(|five| polynomial(five, 3).1).collect();
+    let greatest = (0..rests.len()).max_by(|one, other| rests[*one].total_cmp(&rests[*other]));
+    let others: Vec<f64> =
+        (0..rests.len()).filter(|it| it.abs_diff(greatest.unwrap()) > 4).map(|it| rests[it]).collect();
+    let noise = DVector::from_vec(others.clone()).mean().sqrt();
+    let mut slopes = Vec::new();
+    for reach in [1, 2, 3, 4, 6, 8, 11, 15, 20] {
+        let points = window(reach);
+        if points.len() < 3 {
+            continue;
+        }
+        let ([slope, error], _) = polynomial(&points, 3.min(points.len() - 1));
+        let apart = |(other, its_error): &(f64, f64)| (slope - other).abs() > 4.0 * noise * (error + its_error);
+        if slopes.iter().any(apart) || (others.is_empty() && !slopes.is_empty()) {
+            break;
+        }
+        slopes.push((slope, error));
+    }
+    slopes.last().unwrap().0
+}
+
+/// Slope at time 0 with its standard error for unit noise, and the squared residual.
+fn polynomial(points: &[(f64, f64)], degree: usize) -> ([f64; 2], f64) {
+    let used = degree.min(points.len() - 1) + 1;
+    let scale = points.iter().fold(1e-12, |most: f64, point| most.max(point.0.abs()));
+    let powers =
+        DMatrix::from_fn(points.len(), used, |row, power| (points[row].0 / scale).powi(i32::try_from(power).unwrap()));
+    let lengths = DVector::from_iterator(points.len(), points.iter().map(|point| point.1));
+    let inverse = powers.clone().pseudo_inverse(1e-15).unwrap();
+    let values = &inverse * &lengths;
+    let rest = (lengths - powers * &values).norm_squared();
+    if used < 2 { ([0.0; 2], rest) } else { ([values[1] / scale, inverse.row(1).norm() / scale], rest) }
 }
