@@ -4,14 +4,21 @@ use std::f64::consts::TAU;
 
 use fric_core::effects::Effect;
 use fric_core::effects::ripple::PERIOD_KEY;
+use nalgebra::{Matrix3, Vector3};
+use realfft::RealFftPlanner;
+use realfft::num_complex::Complex;
 
 use crate::effects::Periods;
 use crate::samples::record::{CableRecord, Row};
 use crate::search::vector::Parameter;
 
-/// Number of trial periods, and the number of the strongest that are used.
-const PERIODS: usize = 512;
+/// Maximum number of periods in the range of the length, and the number of the strongest that are used.
+const MOST_TURNS: usize = 2048;
 const MOST_PERIODS: usize = 2;
+/// Places into which the range of the length is divided for the scan. At the shortest period an eighth of a turn is lost between them, 2 % of the power.
+const PLACES: usize = 8 * MOST_TURNS;
+/// Minimum number of half periods in the range: fewer are a slow change.
+const LEAST_HALF_TURNS: usize = 4;
 /// Number of golden-section steps over half a period, down to a thousandth.
 const SECTIONS: usize = 14;
 
@@ -54,21 +61,65 @@ fn periods_m(record: &CableRecord<'_>, residual_n: &[f64], carrier: impl Fn(&Row
     if samples.len() < ENOUGH / 10 || range_m <= 0.0 {
         return Vec::new();
     }
-    let few: Vec<(f64, f64)> = samples.iter().step_by(samples.len() / ENOUGH + 1).copied().collect();
-    let powers: Vec<(f64, f64)> = (3..PERIODS)
-        .map(|half_turns| {
-            #[expect(clippy::cast_precision_loss, reason = "a small count")]
-            let period_m = 2.0 * range_m / half_turns as f64;
-            (period_m, ripple_power(&few, period_m))
-        })
-        .collect();
-    let mut peaks: Vec<(f64, f64)> = powers
-        .windows(3)
-        .filter(|three| three[1].1 > three[0].1 && three[1].1 >= three[2].1)
-        .map(|three| three[1])
+    let powers = powers(&samples, least_m, range_m);
+    let mut peaks: Vec<(usize, f64)> = (1..)
+        .zip(powers.windows(3))
+        .filter(|(half_turns, three)| *half_turns >= LEAST_HALF_TURNS && three[1] > three[0] && three[1] >= three[2])
+        .map(|(half_turns, three)| (half_turns, three[1]))
         .collect();
     peaks.sort_by(|one, other| other.1.total_cmp(&one.1));
-    peaks.into_iter().take(MOST_PERIODS).map(|(period_m, _)| sharpened(&few, period_m, range_m)).collect()
+    let few: Vec<(f64, f64)> = samples.iter().step_by(samples.len() / ENOUGH + 1).copied().collect();
+    #[expect(clippy::cast_precision_loss, reason = "a small count")]
+    let period_m = |half_turns: usize| 2.0 * range_m / half_turns as f64;
+    peaks.iter().take(MOST_PERIODS).map(|(half_turns, _)| sharpened(&few, period_m(*half_turns), range_m)).collect()
+}
+
+/// Returns the decrease of the squares by a sine beside a constant, by the number of its half periods in the range: those of [`ripple_power`] with the
+/// lengths rounded to [`PLACES`], by Fourier transforms of the sums per place and of the numbers of samples (W. H. Press and G. B. Rybicki, *Fast
+/// algorithm for spectral analysis of unevenly sampled data*, 1989).
+fn powers(samples: &[(f64, f64)], least_m: f64, range_m: f64) -> Vec<f64> {
+    // Twice the range, so that a harmonic has half a period in it.
+    let [mut sums, mut counts] = [vec![0.0; 2 * PLACES], vec![0.0; 2 * PLACES]];
+    for (length_m, ratio) in samples {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            clippy::cast_precision_loss,
+            reason = "a share of the places"
+        )]
+        let place = ((length_m - least_m) / range_m * PLACES as f64).round() as usize;
+        if let (Some(sum), Some(count)) = (sums.get_mut(place), counts.get_mut(place)) {
+            *sum += ratio;
+            *count += 1.0;
+        }
+    }
+    let transform = RealFftPlanner::<f64>::new().plan_fft_forward(2 * PLACES);
+    let harmonics = |mut values: Vec<f64>| {
+        let mut harmonics = vec![Complex::default(); PLACES + 1];
+        // Both lengths are those of the plan.
+        let is_done = transform.process(&mut values, &mut harmonics).is_ok();
+        if is_done { harmonics } else { Vec::new() }
+    };
+    let (of_sums, of_counts) = (harmonics(sums), harmonics(counts));
+    let power = |half_turns: usize| -> Option<f64> {
+        let [first, single, double] = [0, half_turns, 2 * half_turns].map(|place| of_counts.get(place).copied());
+        let (count, single, double) = (first?.re, single?, double?);
+        let (total, sum) = (of_sums.first()?.re, *of_sums.get(half_turns)?);
+        // Transforms have exp(−iφ): the sine is the negative of the imaginary part.
+        let matrix = Matrix3::new(
+            count,
+            -single.im,
+            single.re,
+            -single.im,
+            0.5 * (count - double.re),
+            -0.5 * double.im,
+            single.re,
+            -0.5 * double.im,
+            0.5 * (count + double.re),
+        );
+        Some(decrease(matrix, Vector3::new(total, -sum.im, sum.re)))
+    };
+    (0..=2 * MOST_TURNS).map(|half_turns| power(half_turns).unwrap_or(0.0)).collect()
 }
 
 /// Refines a period of the grid to the strongest ripple, by golden sections of the number of periods over the whole range.
@@ -85,13 +136,50 @@ fn sharpened(samples: &[(f64, f64)], period_m: f64, range_m: f64) -> f64 {
 
 /// Returns the decrease of the squares by a sine of this period beside a constant.
 pub fn ripple_power(samples: &[(f64, f64)], period_m: f64) -> f64 {
-    let (mut matrix, mut right) = (nalgebra::Matrix3::<f64>::zeros(), nalgebra::Vector3::<f64>::zeros());
+    let (mut matrix, mut right) = (Matrix3::zeros(), Vector3::zeros());
     for (length_m, ratio) in samples {
         let (sin, cos) = (TAU * length_m / period_m).sin_cos();
-        let row = nalgebra::Vector3::new(1.0, sin, cos);
+        let row = Vector3::new(1.0, sin, cos);
         matrix += row * row.transpose();
         right += row * *ratio;
     }
+    decrease(matrix, right)
+}
+
+/// Returns the decrease of the squares by the normal equations of a constant, a sine and a cosine, beside the constant alone.
+fn decrease(matrix: Matrix3<f64>, right: Vector3<f64>) -> f64 {
     let constant = right[0] * right[0] / matrix[(0, 0)];
     matrix.cholesky().map_or(0.0, |factor| factor.solve(&right).dot(&right) - constant)
+}
+
+#[cfg(test)]
+mod tests {
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::SeedableRng;
+    use rand_distr::{Distribution, StandardNormal, Uniform};
+
+    use super::*;
+
+    #[test]
+    fn the_scan_has_the_power_of_each_sine() {
+        let mut random = ChaCha8Rng::seed_from_u64(4);
+        let lengths = Uniform::new(-0.6, 0.7).unwrap();
+        let samples: Vec<(f64, f64)> = (0..5000)
+            .map(|_| {
+                let (length_m, noise): (f64, f64) = (lengths.sample(&mut random), StandardNormal.sample(&mut random));
+                // Of 292 and of 1800 periods in the range of 1.3 m, to a thousandth.
+                let ripple = (TAU * length_m / 4.452e-3).sin() + 0.7 * (TAU * length_m / 0.7222e-3).cos();
+                (length_m, ripple + noise)
+            })
+            .collect();
+        let powers = powers(&samples, -0.6, 1.3);
+        for half_turns in [4_u32, 33, 584, 2001, 3600] {
+            let exact = ripple_power(&samples, 2.6 / f64::from(half_turns));
+            let found = powers[usize::try_from(half_turns).unwrap()];
+            assert!((found - exact).abs() < 0.05 * exact + 10.0, "{half_turns}: {found} instead of {exact}");
+        }
+        let peak =
+            |from: usize, to: usize| (from..to).max_by(|one, other| powers[*one].total_cmp(&powers[*other])).unwrap();
+        assert_eq!((peak(4, 1000), peak(1000, 4097)), (584, 3600));
+    }
 }

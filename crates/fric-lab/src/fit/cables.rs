@@ -117,7 +117,8 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Whether the fitted values, as far as they can be trusted, imply another warm-up than the start values did.
+/// Whether the fitted values, as far as they can be trusted, imply another warm-up than the start values did. A memory that no log is long enough to
+/// forget cannot be trusted.
 fn warm_up_was_misjudged(
     record: &CableRecord<'_>,
     solution: &Solution,
@@ -132,6 +133,9 @@ fn warm_up_was_misjudged(
     };
     let mut renewed = all.to_vec();
     selection::leave_out_warm_up(record, values, &mut renewed);
+    if !renewed.contains(&Standing::Used) {
+        return false;
+    }
     let [before, after] = [standings, &renewed].map(|standings| selection::count(standings).warm_up);
     before.abs_diff(after) * 100 > MISJUDGED_PERCENT * all.len()
 }

@@ -83,6 +83,13 @@ pub fn conditions(record: &CableRecord<'_>) -> Vec<Condition> {
     conditions
 }
 
+/// Returns the force at the platform as a condition. The sensor force contains what a model does not explain: a residual depends on it whatever it
+/// comes from.
+pub fn load(record: &CableRecord<'_>) -> Condition {
+    let values = record.rows.iter().map(|row| row.reference_n).collect();
+    Condition { signal: "load", unit: "N", values, bins: Spacing::Crowds(BINS) }
+}
+
 /// Returns the time as a condition, for warm-up and wear.
 pub fn time(record: &CableRecord<'_>) -> Condition {
     let values = (0..record.rows.len()).map(|cycle| record.time_s(cycle)).collect();

@@ -37,10 +37,15 @@ pub fn white_noise_in(residual: &[f64], block: usize) -> Option<f64> {
     Some((*median * mean_per_median(block)).sqrt())
 }
 
-/// Returns the same for a signal that itself changes slowly, if the noise is permanent. Returns `None` if a tenth of the blocks has less than half of
-/// it, as with the steps of a resolution while nothing moves.
-pub fn lasting_white_noise(signal: &[f64]) -> Option<f64> {
-    let mut squares = block_squares(signal, BLOCK);
+/// Returns the same for a signal that itself changes, if the noise is permanent, from the blocks in which the signal changes by less than `usual_change`
+/// standard deviations of the noise from sample to sample. Where it changes faster, uncertain times of the samples look like noise. Returns `None` if
+/// there is no such block, or a tenth of them has less than half of the noise, as with the steps of a resolution while nothing moves.
+pub fn lasting_white_noise(signal: &[f64], usual_change: f64) -> Option<f64> {
+    // White noise alone changes by √2 standard deviations from sample to sample.
+    let most = 2.0 + usual_change * usual_change;
+    let blocks = blocks_of(signal, BLOCK, |window| [fourth_difference(window), window[2] - window[1]]);
+    let mut squares: Vec<f64> =
+        blocks.into_iter().filter(|[square, change]| *change < most * square).map(|[square, _]| square).collect();
     squares.sort_unstable_by(f64::total_cmp);
     let [quiet, median] = [*squares.get(squares.len() / 10)?, *squares.get(squares.len() / 2)?];
     (quiet > 0.25 * median).then(|| (median * mean_per_median(BLOCK)).sqrt())
@@ -58,14 +63,22 @@ pub fn white_noise_throughout(residual: &[f64]) -> Option<f64> {
 
 /// Returns the mean square of the differences in each block of `block` samples.
 fn block_squares(residual: &[f64], block: usize) -> Vec<f64> {
-    let difference =
-        |window: &[f64]| window.iter().zip(COEFFICIENTS).map(|(number, factor)| number * factor).sum::<f64>() / NORM;
-    let stretches = residual.split(|number| !number.is_finite());
-    let differences: Vec<f64> =
-        stretches.flat_map(|stretch| stretch.windows(COEFFICIENTS.len()).map(difference)).collect();
+    blocks_of(residual, block, |window| [fourth_difference(window)]).into_iter().map(|[square]| square).collect()
+}
+
+fn fourth_difference(window: &[f64]) -> f64 {
+    window.iter().zip(COEFFICIENTS).map(|(number, factor)| number * factor).sum::<f64>() / NORM
+}
+
+/// Returns, for each block of `block` windows of five samples, the mean squares of some numbers of a window.
+fn blocks_of<const N: usize>(signal: &[f64], block: usize, of: impl Fn(&[f64]) -> [f64; N]) -> Vec<[f64; N]> {
+    let stretches = signal.split(|number| !number.is_finite());
+    let numbers: Vec<[f64; N]> = stretches.flat_map(|stretch| stretch.windows(COEFFICIENTS.len()).map(&of)).collect();
     #[expect(clippy::cast_precision_loss, reason = "a small count")]
-    let mean_square = |part: &[f64]| part.iter().map(|d| d * d).sum::<f64>() / block as f64;
-    differences.chunks_exact(block).map(mean_square).collect()
+    let mean_square = |part: &[[f64; N]], place: usize| {
+        part.iter().map(|numbers| numbers[place] * numbers[place]).sum::<f64>() / block as f64
+    };
+    numbers.chunks_exact(block).map(|part| std::array::from_fn(|place| mean_square(part, place))).collect()
 }
 
 #[cfg(test)]
@@ -107,6 +120,22 @@ mod tests {
                 assert!((found / 0.0141 - 1.0).abs() < 0.03, "{distance}: {found}");
             }
         }
+    }
+
+    /// A length that is known to 3 µm, at rest and while it moves; one that is exact, with times that are uncertain by a third of their distance; one that
+    /// does not rest.
+    #[test]
+    fn noise_of_a_length_is_not_that_of_its_times() {
+        let mut random = ChaCha8Rng::seed_from_u64(3);
+        let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
+        let there_and_back = |time: f64| 0.05 * (1e-3 * time).sin().max(0.0);
+        let noisy: Vec<f64> = (0..20_000).map(|k| there_and_back(f64::from(k)) + 3e-6 * normal()).collect();
+        let found_m = lasting_white_noise(&noisy, 2.0).unwrap();
+        assert!((found_m / 3e-6 - 1.0).abs() < 0.03, "{found_m}");
+        let late: Vec<f64> = (0..20_000).map(|k| 2e-3 * (f64::from(k) + 0.3 * normal())).collect();
+        assert_eq!(lasting_white_noise(&late, 2.0), None);
+        let resting: Vec<f64> = (0..20_000).map(|k| there_and_back(f64::from(k) + 0.3 * normal())).collect();
+        assert_eq!(lasting_white_noise(&resting, 2.0), None);
     }
 
     #[test]

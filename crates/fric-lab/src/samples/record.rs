@@ -310,12 +310,13 @@ impl<'a> CableRecord<'a> {
         CableRecord { rows, ..*self }
     }
 
-    /// Returns the standard deviation of the white noise of the length, m; `None` if there is no permanent noise.
+    /// Returns the standard deviation of the white noise of the length, m; `None` if there is no permanent noise, or the cable always moves by more than
+    /// its play from sample to sample.
     pub(crate) fn length_noise_m(&self) -> Option<f64> {
         let of_log = |(_, rows): (usize, &[Row])| {
             rows.iter().map(|row| row.signals.length_m).chain([f64::NAN]).collect::<Vec<f64>>()
         };
-        lasting_white_noise(&self.logs().flat_map(of_log).collect::<Vec<f64>>())
+        lasting_white_noise(&self.logs().flat_map(of_log).collect::<Vec<f64>>(), PLAY_OF_NOISE)
     }
 
     /// Returns the record with cycles that were conditioned with this play.

@@ -22,7 +22,7 @@ use crate::discover::workbench::{self, Trial, Workbench};
 use crate::discover::{Task, rest};
 use crate::effects::Around;
 use crate::fit::{CableRecord, FitOptions, Row};
-use crate::samples::conditions::{Condition, conditions, time};
+use crate::samples::conditions::{Condition, conditions, load, time};
 use crate::samples::selection::Standing;
 use crate::samples::split::{Block, split};
 
@@ -60,9 +60,10 @@ pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> CableDiscove
     let counts = crate::fit::cables::used(&paper.standings);
     let blocks = split(record);
     let conditions = conditions(record);
-    // The force rate contains the sensor's noise, and so does the residual. No effect would appear steady over it.
-    let steady = conditions.iter().filter(|condition| condition.signal != "force_rate");
-    let with_time: Vec<Condition> = steady.cloned().chain([time(record)]).collect();
+    // The sensor force and its rate contain the residual. No effect would appear steady over them.
+    let without_residual =
+        conditions.iter().filter(|condition| !["sensor_force", "force_rate"].contains(&condition.signal));
+    let steady: Vec<Condition> = without_residual.cloned().chain([load(record), time(record)]).collect();
     let (mut start, held) = given_model(record, &paper.solution);
 
     let measured = crate::samples::interpolated::measured(record);
@@ -80,7 +81,7 @@ pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> CableDiscove
         standings: &standings,
         measured: &measured,
         conditions: &conditions,
-        with_time: &with_time,
+        steady: &steady,
         effort: &effort,
         stop,
     };
@@ -143,8 +144,8 @@ struct CableLog<'a> {
     standings: &'a [Standing],
     measured: &'a [bool],
     conditions: &'a [Condition],
-    /// The conditions and the time.
-    with_time: &'a [Condition],
+    /// The conditions over which an effect has one size.
+    steady: &'a [Condition],
     effort: &'a Effort,
     stop: &'a AtomicBool,
 }

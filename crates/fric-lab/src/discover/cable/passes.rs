@@ -81,7 +81,7 @@ impl CableLog<'_> {
         let bench = self.bench(counts);
         let base = bench.try_one(start);
         let noise_n = self.noise_n(&bench, &base)?;
-        let mut search = Search::new(&bench, noise_n, self.around(&base, noise_n), &base, self.with_time, self.effort);
+        let mut search = Search::new(&bench, noise_n, self.around(&base, noise_n), &base, self.steady, self.effort);
         let (mut before, mut rows): (Vec<Effect>, Vec<Effect>) = (Vec::new(), Vec::new());
         let mut passes = 0;
         loop {
@@ -109,8 +109,7 @@ impl CableLog<'_> {
     fn missing(&self, bench: &Workbench<'_>, model: &workbench::Model) -> Option<Vec<Effect>> {
         let base = bench.try_one(model);
         let noise_n = self.noise_n(bench, &base)?;
-        let naming =
-            Search::new(bench, noise_n, self.around(&base, noise_n), &base, self.with_time, self.effort).run(&[]);
+        let naming = Search::new(bench, noise_n, self.around(&base, noise_n), &base, self.steady, self.effort).run(&[]);
         Some(naming.named.iter().map(|named| named.effect).collect())
     }
 
@@ -142,8 +141,10 @@ impl CableLog<'_> {
     /// in the file nor found stays out. An offset that is larger than chance stays out too, because naming has refused it.
     pub(super) fn fitted(&self, counts: &[bool], model: &Trial, noise_n: f64) -> Fitted {
         let given = self.record.params.values();
+        // What the log did not determine stays as given: beside a model that lacks something it would stand for that.
         let is_known = |parameter: &Parameter| {
-            !parameter.is_friction() || acts(parameter, &model.values) || acts(parameter, &given)
+            let is_free = model.free.contains(parameter) || !acts(parameter, &given);
+            !parameter.is_friction() || is_free && (acts(parameter, &model.values) || acts(parameter, &given))
         };
         let of = |also: fn(&Parameter) -> bool| {
             let params = self.record.params.with_values(&model.values).ok()?;
