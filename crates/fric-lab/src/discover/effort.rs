@@ -11,7 +11,7 @@ use super::workbench::Trial;
 /// Number of evaluations after which no candidate enters any more, none is exchanged, and no further pass begins; and the number by which each effect
 /// in the model raises it, since every search beside it is one over all candidates. What is named until then still has to justify itself, and the rest
 /// is described as usual. Logs with one hidden effect take up to 800, with five 2800, a real drive with three names 1700. Half of both numbers cuts
-/// these short; double allows a log of 28 s with three wrong names two and a half minutes of one processor.
+/// these short; with double, a log with three wrong names takes twice the time.
 const MOST_EVALUATIONS: usize = 1000;
 const MORE_PER_EFFECT: usize = 400;
 

@@ -1,11 +1,8 @@
 //! Fits trial models of one cable to the training samples and judges them on the held-out samples.
 
-use std::panic::resume_unwind;
 use std::rc::Rc;
 use std::sync::atomic::AtomicBool;
-use std::thread;
 
-use fric_core::LANES;
 use fric_core::parameters::{OFFSET, Values};
 use nalgebra::DVector;
 use rayon::prelude::*;
@@ -40,6 +37,8 @@ pub struct Trial {
     pub training: f64,
     /// Held-out sum of squares of the residuals, N².
     pub held_out: f64,
+    /// Held-out sum of squares of what the model adds to the force that the sensor implies without friction, N².
+    pub added: f64,
     /// Distance from its minimum at the end of the search, in standard errors.
     pub near_errors: f64,
     /// Number of evaluations of the model that the search took.
@@ -119,12 +118,9 @@ impl<'a> Workbench<'a> {
         }
     }
 
-    /// Fits several models, as many in parallel as there are lanes, each to the given distance from its minimum in standard errors. Returns the
-    /// trials in the given order.
+    /// Fits several models, each to the given distance from its minimum in standard errors. Returns the trials in the given order.
     pub fn try_all(&self, models: &[Model], near_errors: f64) -> Vec<Trial> {
-        let together = |models: &[Model]| self.try_together(models, near_errors);
-        let groups: Vec<Vec<Trial>> = models.par_chunks(LANES).map(together).collect();
-        groups.into_iter().flatten().collect()
+        models.par_iter().map(|model| self.fit(model, near_errors)).collect()
     }
 
     /// Fits one model.
@@ -135,30 +131,8 @@ impl<'a> Workbench<'a> {
     /// Fits one model to the given distance from its minimum, in standard errors.
     pub fn fit(&self, model: &Model, near_errors: f64) -> Trial {
         let gang = Gang::new(1, self.stop);
-        self.try_on(model, gang.seat(0), near_errors)
-    }
-
-    fn try_together(&self, models: &[Model], near_errors: f64) -> Vec<Trial> {
-        let gang = Gang::new(models.len(), self.stop);
-        thread::scope(|scope| {
-            let searches: Vec<_> = models
-                .iter()
-                .enumerate()
-                .map(|(place, model)| {
-                    let seat = gang.seat(place);
-                    scope.spawn(|| self.try_on(model, seat, near_errors))
-                })
-                .collect();
-            searches.into_iter().map(|search| search.join().unwrap_or_else(|panic| resume_unwind(panic))).collect()
-        })
-    }
-
-    fn try_on<'b>(&'b self, model: &Model, seat: Seat<'b>, near_errors: f64) -> Trial
-    where
-        'a: 'b,
-    {
-        let bench: &Workbench<'b> = self;
-        let mut problem = bench.problem(&model.free, Some(Rc::new(seat)));
+        let bench: &Workbench<'_> = self;
+        let mut problem = bench.problem(&model.free, Some(Rc::new(gang.seat(0))));
         let (mut values, mut evaluation_count) = (model.values, 0);
         if !model.free.is_empty() {
             let start = within_bounds(&mut problem, &model.values);
@@ -167,13 +141,27 @@ impl<'a> Workbench<'a> {
             evaluation_count = minimum.evaluation_count;
         }
         let residuals_n = bench.residuals_with(&problem, &values);
-        let sum = |held_out: bool| {
-            let blocks = self.blocks.iter().filter(|block| block.held_out == held_out);
-            let of_blocks = blocks.flat_map(|block| residuals_n.get(block.cycles.clone()).unwrap_or_default());
-            of_blocks.filter(|number| number.is_finite()).map(|number| number * number).sum()
+        let residual_n = |cycle: usize| residuals_n.get(cycle).copied().unwrap_or(f64::NAN);
+        let gain = self.record.params.frictionless_gain();
+        let added_n = |cycle: usize| {
+            let frictionless_n = |row: &Row| row.signals.sensor_force_n * gain + values[OFFSET];
+            let row = self.record.rows.get(cycle);
+            residual_n(cycle) + row.map_or(f64::NAN, |row| row.reference_n - frictionless_n(row))
         };
-        let (training, held_out) = (sum(false), sum(true));
-        Trial { values, free: model.free.clone(), training, held_out, near_errors, evaluation_count }
+        let squares = |held_out: bool, number: &dyn Fn(usize) -> f64| -> f64 {
+            let blocks = self.blocks.iter().filter(|block| block.held_out == held_out);
+            let numbers = blocks.flat_map(|block| block.cycles.clone()).map(number);
+            numbers.filter(|number| number.is_finite()).map(|number| number * number).sum()
+        };
+        Trial {
+            values,
+            free: model.free.clone(),
+            training: squares(false, &residual_n),
+            held_out: squares(true, &residual_n),
+            added: squares(true, &added_n),
+            near_errors,
+            evaluation_count,
+        }
     }
 
     /// Returns the force of the model minus the reference in each cycle, N; NaN where a sample does not count.

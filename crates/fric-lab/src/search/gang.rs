@@ -1,8 +1,8 @@
 //! Runs the passes of several searches side by side, each with its own cable.
 //!
-//! A pass over one cable mostly waits for its own results, because the friction of a cycle needs that of the cycle before. Four cables in the lanes
-//! of one pass take hardly longer than one. So up to [`LANES`] searches form a gang. A search that needs a pass waits until all others need one too
-//! or have ended; the last one to arrive runs the pass for all. The result of a search does not depend on the others, because lanes do not interact.
+//! A cable whose few derivatives fit into one lane leaves the other lanes of its pass to other cables, so up to [`LANES`] searches form a gang. (A
+//! search on one cable with many derivatives fills the lanes by itself.) A search that needs a pass waits until all others need one too or have ended;
+//! the last one to arrive runs the pass for all. The result of a search does not depend on the others, because lanes do not interact.
 
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use fric_core::LANES;
 use fric_core::parameters::Values;
 use rayon::prelude::*;
 
-use super::pass::{Forces, LanePass, Part, room_for, with_room_for};
+use super::pass::{Forces, LanePass, Part, with_width_for};
 use super::vector::Parameter;
 
 /// Samples between two checks of the stop flag.
@@ -137,28 +137,24 @@ impl Drop for Seat<'_> {
     }
 }
 
-/// Runs a joint pass for those waiting searches that need the fewest cycles and equal numbers of derivatives. The others keep waiting, because these
-/// may join them later. No other search has work to do meanwhile.
+/// Runs a joint pass for those waiting searches that need the fewest cycles. The others keep waiting, because these may join them later. No other search
+/// has work to do meanwhile.
 fn serve(seats: &mut [State<'_>], stop: &AtomicBool) {
     let wish = |seat: &State<'_>| match seat {
-        State::Waiting(part, _) => Some((part.record.rows.len(), room_for(part.carried()))),
+        State::Waiting(part, _) => Some(part.record.rows.len()),
         _ => None,
     };
     let Some(least) = seats.iter().filter_map(wish).min() else { return };
-    let mut together = Vec::with_capacity(seats.len());
+    let (mut together, mut parts, mut rooms) = (Vec::new(), Vec::new(), Vec::new());
     for seat in seats.iter_mut().filter(|seat| wish(seat) == Some(least)) {
         if let State::Waiting(part, room) = std::mem::replace(seat, State::Served(None)) {
-            together.push((seat, (*part, room)));
+            together.push(seat);
+            parts.push(*part);
+            rooms.push(room);
         }
     }
-    with_room_for!(least.1, serve_together(together, stop));
-}
-
-fn serve_together<const N: usize>(waiting: Vec<(&mut State<'_>, (Part<'_>, Forces))>, stop: &AtomicBool) {
-    let (seats, waiting): (Vec<_>, Vec<_>) = waiting.into_iter().unzip();
-    let (parts, rooms): (Vec<_>, Vec<_>) = waiting.into_iter().unzip();
-    if let Some(forces) = all_forces::<N>(&parts, rooms, stop) {
-        for (seat, forces) in seats.into_iter().zip(forces) {
+    if let Some(forces) = with_width_for!(&parts, all_forces(&parts, rooms, stop)) {
+        for (seat, forces) in together.into_iter().zip(forces) {
             *seat = State::Served(Some(forces));
         }
     }
@@ -168,8 +164,7 @@ fn serve_together<const N: usize>(waiting: Vec<(&mut State<'_>, (Part<'_>, Force
 pub fn forces_of(parts: &[Part<'_>], stop: &AtomicBool) -> Option<Vec<Forces>> {
     let of_lanes = |parts: &[Part<'_>]| {
         let rooms = vec![Forces::default(); parts.len()];
-        let most = parts.iter().map(Part::carried).max().unwrap_or(0);
-        with_room_for!(most, all_forces(parts, rooms, stop))
+        with_width_for!(parts, all_forces(parts, rooms, stop))
     };
     let all: Option<Vec<Vec<Forces>>> = parts.par_chunks(LANES).map(of_lanes).collect();
     Some(all?.into_iter().flatten().collect())

@@ -1,6 +1,6 @@
 //! The least-squares search that `fit` and `discover` share.
 //!
-//! [`pass`] runs the cycle of `fric-core` over records in numbers that carry derivatives ([`dual`]), four cables side by side. Several searches share
+//! [`pass`] runs the cycle of `fric-core` over records in numbers that carry derivatives ([`dual`]), in four lanes. The searches of several cables share
 //! one pass through a [`gang`]. [`problem`] defines residuals and Jacobian, and [`gram`] reduces them to a small triangle as they are computed.
 //! [`optimizer`] runs Levenberg–Marquardt on the triangle in the coordinates of [`vector`]. [`solve`] handles outliers and undetermined parameters.
 

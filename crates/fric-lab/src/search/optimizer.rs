@@ -85,7 +85,8 @@ pub type NormalEquations = (DMatrix<f64>, DVector<f64>, f64);
 /// minimum either stays: the ratio of a friction that does not exist would run to the end of its range.
 ///
 /// A coordinate that a step moves beyond its range stays at that bound, and the search continues with the others. At their minimum, bounded
-/// coordinates that gain from moving inside are released (an active set; J. Nocedal, S. J. Wright, *Numerical Optimization*, 2006, ch. 16.7).
+/// coordinates that gain from moving inside are released (an active set; J. Nocedal, S. J. Wright, *Numerical Optimization*, 2006, ch. 16.7). Each is
+/// released once: where the surface bends back to the bound, the same way would be gone again and again.
 pub fn minimize(
     coordinates: &[Coordinate],
     start: &[f64],
@@ -106,6 +107,7 @@ pub fn minimize(
     let patience = most.div_ceil(start.len() + 1);
     let mut held: Vec<bool> = (0..start.len()).map(|place| !search.tells(place)).collect();
     let mut waiting = held.clone();
+    let mut released = vec![false; start.len()];
     loop {
         let free: Vec<usize> = (0..start.len()).filter(|place| !held[*place]).collect();
         let (termination, arrival) = search.among(free, patience);
@@ -132,14 +134,15 @@ pub fn minimize(
             continue;
         }
         let there = arrival.as_deref().unwrap_or(&search.places);
-        let inward: Vec<usize> =
-            (0..start.len()).filter(|place| held[*place] && search.gains_inside(*place, there)).collect();
+        let inward: Vec<usize> = (0..start.len())
+            .filter(|place| held[*place] && !released[*place] && search.gains_inside(*place, there))
+            .collect();
         if termination != Termination::Converged || inward.is_empty() {
             return search.minimum(termination, arrival);
         }
         let mut from = arrival.unwrap_or_else(|| search.places.clone());
         for place in inward {
-            held[place] = false;
+            (held[place], released[place]) = (false, true);
             from[place] = search.inside(place, &from);
         }
         search.places = from;
@@ -375,5 +378,24 @@ mod tests {
             assert!((found.values[0] + 0.3).abs() < 1e-3, "from {start_s} s: {:?}", found.values);
             assert!((found.values[1] - 12.0).abs() < 0.05, "from {start_s} s: {:?}", found.values);
         }
+    }
+
+    /// The sum of squares falls from the bound by a little and then rises: the slope at the bound promises what is not there.
+    #[test]
+    fn a_value_that_comes_back_to_its_bound_stays_there() {
+        let parameter = Parameter::named("bearing_drag.drag_n").unwrap();
+        let coordinates = [Coordinate::of(&parameter, 1e-3)];
+        let mut evaluations = 0;
+        let evaluate = |values: &[f64]| {
+            evaluations += 1;
+            let (residual, slope) =
+                if values[0] < 0.01 { (2.0 - values[0], -1.0) } else { (1.99 + 3.0 * (values[0] - 0.01), 3.0) };
+            let one = |number| DMatrix::from_element(1, 1, number);
+            Some((one(slope * slope), DVector::from_element(1, slope * residual), residual * residual))
+        };
+        let found = minimize(&coordinates, &[0.5], 1000, 0.01, evaluate);
+        assert_eq!(found.termination, Termination::Converged);
+        assert!(found.values[0] < 0.02, "{:?}", found.values);
+        assert!(evaluations < 20, "{evaluations} evaluations");
     }
 }

@@ -8,25 +8,29 @@ use super::dual::Dual;
 use super::vector::Parameter;
 use crate::samples::record::{CableRecord, Row};
 
-/// Runs `$run::<N>`, where `N` is the number of derivatives that one group of cables carries for `$count` derivatives in all. The compiler generates
-/// the whole cycle for each of a few `N`; larger counts use several groups.
-macro_rules! with_room_for {
-    ($count:expr, $run:ident($($argument:expr),* $(,)?)) => {
-        match $count {
+/// Runs `$run::<N>`, where `N` is the number of derivatives that a lane carries in a pass over `$parts`. The compiler generates the whole cycle for each
+/// `N`.
+macro_rules! with_width_for {
+    ($parts:expr, $run:ident($($argument:expr),* $(,)?)) => {
+        match $crate::search::pass::lane_width($parts) {
             0 => $run::<0>($($argument),*),
-            1..=3 => $run::<3>($($argument),*),
+            1 => $run::<1>($($argument),*),
+            2 => $run::<2>($($argument),*),
+            3 => $run::<3>($($argument),*),
             _ => $run::<6>($($argument),*),
         }
     };
 }
-pub(crate) use with_room_for;
+pub(crate) use with_width_for;
 
-/// Returns the number of derivatives that all groups together have room for.
-pub fn room_for(count: usize) -> usize {
-    fn room<const N: usize>(count: usize) -> usize {
-        N * count.div_ceil(N.max(1))
-    }
-    with_room_for!(count, room(count))
+/// Returns the number of derivatives per lane in a pass: as few as fit into the lanes of one group, because the time of a group grows with them.
+pub fn lane_width(parts: &[Part<'_>]) -> usize {
+    let of_group = |parts: &[Part<'_>]| {
+        let lanes = |width: usize| parts.iter().map(|part| part.carried().div_ceil(width)).sum::<usize>();
+        let none = parts.iter().all(|part| part.carried() == 0);
+        if none { 0 } else { [1, 2, 3].into_iter().find(|width| lanes(*width) <= LANES).unwrap_or(6) }
+    };
+    parts.chunks(LANES).map(of_group).max().unwrap_or(0)
 }
 
 /// One cable's part in a pass.
@@ -90,45 +94,54 @@ impl Forces {
     }
 }
 
-/// Forces of up to [`LANES`] cables with records of the same length, side by side.
+/// Forces of several cables with records of the same length, side by side.
+///
+/// A lane carries the derivatives of one cable with respect to up to `N` parameters. A cable with more of them takes several lanes, and lanes beyond
+/// [`LANES`] run in further groups.
 #[derive(Debug)]
 pub struct LanePass<'a, const N: usize> {
     parts: Vec<Part<'a>>,
-    /// For each part, the order in which the numbers of a cycle enter its forces: the force, the carried derivatives, and 1.
+    /// For each part, where the numbers of its forces stand among those of all groups.
     columns: Vec<Vec<usize>>,
-    /// The groups at rest; each carries `N` of the derivatives.
+    /// The part in each lane of each group.
+    lanes: Vec<[usize; LANES]>,
+    /// The groups at rest.
     at_rest: Vec<CableGroup<Dual<Lanes, N>>>,
     groups: Vec<CableGroup<Dual<Lanes, N>>>,
 }
 
+/// The share of a lane in a pass: a part, and how many of its carried derivatives other lanes carry before it.
+#[derive(Clone, Copy)]
+struct Share {
+    part: usize,
+    first: usize,
+}
+
 impl<'a, const N: usize> LanePass<'a, N> {
-    /// Creates a pass over the first [`LANES`] parts.
+    /// Creates a pass.
     pub fn new(parts: impl IntoIterator<Item = Part<'a>>) -> Self {
-        let parts: Vec<Part<'a>> = parts.into_iter().take(LANES).collect();
-        let of_lane = |lane: usize| parts.get(lane).or(parts.last());
-        let value = |first: usize, place: usize| Dual {
-            value: Lanes::from_lanes(|lane| of_lane(lane).map_or(f64::NAN, |part| part.values[place])),
-            gradient: std::array::from_fn(|derivative| {
-                let is_it =
-                    |part: &Part<'_>| carried(&part.free).nth(first + derivative).is_some_and(|of| of.place() == place);
-                Lanes::from_lanes(|lane| f64::from(u8::from(of_lane(lane).is_some_and(is_it))))
-            }),
+        let parts: Vec<Part<'a>> = parts.into_iter().collect();
+        let shares_of = |(part, of): (usize, &Part<'_>)| {
+            (0..of.carried().max(1)).step_by(N.max(1)).map(move |first| Share { part, first })
         };
-        let most = parts.iter().map(Part::carried).max().unwrap_or(0);
-        let room = N * most.div_ceil(N.max(1));
-        let columns = |part: &Part<'_>| {
-            let mut carried = 1..;
-            let of = |parameter: &Parameter| if parameter.place() == OFFSET { Some(room + 1) } else { carried.next() };
-            std::iter::once(0).chain(part.free.iter().filter_map(of)).collect()
+        let shares: Vec<Share> = parts.iter().enumerate().flat_map(shares_of).collect();
+        // The numbers of a group: the force and the derivatives in all lanes.
+        let place = |lane: usize, number: usize| ((lane / LANES) * (N + 1) + number) * LANES + lane % LANES;
+        let one = shares.len().div_ceil(LANES) * (N + 1) * LANES;
+        let columns_of = |(part, Part { free, .. }): (usize, &Part<'_>)| {
+            let first = shares.iter().position(|share| share.part == part).unwrap_or(0);
+            let mut carried = (first..).flat_map(|lane| (1..=N).map(move |number| place(lane, number)));
+            let of = |parameter: &Parameter| if parameter.place() == OFFSET { Some(one) } else { carried.next() };
+            std::iter::once(place(first, 0)).chain(free.iter().filter_map(of)).collect()
         };
-        let columns = parts.iter().map(columns).collect();
-        let varies = |place: usize| parts.iter().any(|part| part.free.iter().any(|of| of.place() == place));
-        let params: Vec<&CableParams> = parts.iter().map(|part| part.record.params).collect();
-        let cycle_s = parts.first().map_or(f64::NAN, |part| part.record.cycle_s);
-        let of_first =
-            |first: usize| CableGroup::new(&params, &std::array::from_fn(|place| value(first, place)), cycle_s, varies);
-        let at_rest = (0..room.max(1)).step_by(N.max(1)).filter_map(of_first).collect();
-        Self { at_rest, groups: Vec::new(), columns, parts }
+        let columns = parts.iter().enumerate().map(columns_of).collect();
+        let of_shares = |shares: &[Share]| group_of::<N>(&parts, shares);
+        let at_rest = shares.chunks(LANES).filter_map(of_shares).collect();
+        let lanes = |shares: &[Share]| {
+            std::array::from_fn(|lane| shares.get(lane).or(shares.last()).map_or(0, |share| share.part))
+        };
+        let lanes = shares.chunks(LANES).map(lanes).collect();
+        Self { at_rest, groups: Vec::new(), columns, lanes, parts }
     }
 
     /// Starts a log with an empty memory.
@@ -138,29 +151,50 @@ impl<'a, const N: usize> LanePass<'a, N> {
 
     /// Runs the cycles `from..to` and appends the forces of each part to `forces`.
     pub fn advance(&mut self, from: usize, to: usize, forces: &mut [Forces]) {
-        let Some(last) = self.parts.len().checked_sub(1) else { return };
-        let rows: [&[Row]; LANES] = std::array::from_fn(|lane| {
-            self.parts.get(lane.min(last)).and_then(|part| part.record.rows.get(from..to)).unwrap_or_default()
-        });
-        let [first, second, third, fourth] = rows;
-        // The force, its derivatives, and 1.
-        let mut numbers = vec![[1.0; LANES]; N * self.groups.len() + 2];
-        for (((first, second), third), fourth) in first.iter().zip(second).zip(third).zip(fourth) {
-            let rows = [first, second, third, fourth];
-            let mut derivatives = 1;
-            for group in &mut self.groups {
+        let rows: Vec<&[Row]> =
+            self.parts.iter().map(|part| part.record.rows.get(from..to).unwrap_or_default()).collect();
+        let rows_of = |lanes: &[usize; LANES]| lanes.map(|part| rows.get(part).copied().unwrap_or_default());
+        let rows: Vec<[&[Row]; LANES]> = self.lanes.iter().map(rows_of).collect();
+        // The numbers of all groups, and 1.
+        let mut numbers = vec![1.0; self.groups.len() * (N + 1) * LANES + 1];
+        for at in 0..to - from {
+            let of_groups = self.groups.iter_mut().zip(&rows).zip(numbers.chunks_exact_mut((N + 1) * LANES));
+            for ((group, rows), numbers) in of_groups {
+                let [Some(first), Some(second), Some(third), Some(fourth)] = rows.map(|rows| rows.get(at)) else {
+                    return;
+                };
+                let rows = [first, second, third, fourth];
                 let force = group.step(|lane| cycle(rows[lane % LANES])).platform_force_n;
-                numbers[0] = force.value.to_array();
-                for (number, part) in numbers.iter_mut().skip(derivatives).zip(force.gradient) {
-                    *number = part.to_array();
-                }
-                derivatives += N;
+                let parts = std::iter::once(force.value).chain(force.gradient);
+                numbers.chunks_exact_mut(LANES).zip(parts).for_each(|(to, part)| to.copy_from_slice(&part.to_array()));
             }
-            for (lane, (forces, columns)) in forces.iter_mut().zip(&self.columns).enumerate() {
-                forces.numbers.extend(columns.iter().map(|column| numbers[*column][lane]));
+            for (forces, columns) in forces.iter_mut().zip(&self.columns) {
+                forces.numbers.extend(columns.iter().map(|column| numbers[*column]));
             }
         }
     }
+}
+
+/// Creates the group of up to [`LANES`] lanes at rest; further lanes repeat the last one.
+fn group_of<const N: usize>(parts: &[Part<'_>], shares: &[Share]) -> Option<CableGroup<Dual<Lanes, N>>> {
+    let of_lane = |lane: usize| {
+        let share = shares.get(lane).or(shares.last())?;
+        Some((parts.get(share.part)?, share.first))
+    };
+    let value = |place: usize| Dual {
+        value: Lanes::from_lanes(|lane| of_lane(lane).map_or(f64::NAN, |(part, _)| part.values[place])),
+        gradient: std::array::from_fn(|derivative| {
+            let is_it = |(part, first): (&Part<'_>, usize)| {
+                carried(&part.free).nth(first + derivative).is_some_and(|of| of.place() == place)
+            };
+            Lanes::from_lanes(|lane| f64::from(u8::from(of_lane(lane).is_some_and(is_it))))
+        }),
+    };
+    let of_group = || (0..shares.len()).filter_map(of_lane);
+    let params: Vec<&CableParams> = of_group().map(|(part, _)| part.record.params).collect();
+    let cycle_s = of_lane(0)?.0.record.cycle_s;
+    let varies = |place: usize| of_group().any(|(part, _)| part.free.iter().any(|of| of.place() == place));
+    CableGroup::new(&params, &std::array::from_fn(value), cycle_s, varies)
 }
 
 fn cycle(row: &Row) -> CableCycle<'_> {
@@ -203,6 +237,89 @@ impl CandidatePass {
             forces.extend(
                 self.groups.iter_mut().flat_map(|group| group.step(|_| cycle(row)).platform_force_n.to_array()),
             );
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::AtomicBool;
+
+    use fric_core::robot::file::RobotFile;
+    use fric_core::{CableInput, Sample};
+
+    use super::*;
+    use crate::fit::{Measurements, Reference};
+    use crate::search::gang::forces_of;
+
+    const ROBOT: &str = "format = \"fric-robot/1\"\nname = \"bench\"\ncycle_s = 0.001\n[platform]\nmass_kg = 0.5\n[[cable]]\n\
+                         name = \"drive\"\npulleys = [{ wrap_deg = 180.0, sensor = true }, { wrap_deg = 90.0 }]\n\
+                         friction = { mu = 0.019, sigma_n_per_m = 950.0, viscous_n_s_per_m = 0.2, offset_n = 0.1 }\n\
+                         effects = [{ kind = \"stribeck\", ratio = 0.4, velocity_m_per_s = 0.02 },\n\
+                         { kind = \"winch_ripple\", sin_n = 0.03, cos_n = 0.01, period_m = 0.05 },\n\
+                         { kind = \"sensor_gain\", gain = 1.02 }]\n";
+    /// In this order; the offset is carried by no lane.
+    const FREE: [&str; 8] = [
+        "mu",
+        "sigma_n_per_m",
+        "offset_n",
+        "viscous_n_s_per_m",
+        "stribeck.ratio",
+        "winch_ripple.sin_n",
+        "winch_ripple.cos_n",
+        "sensor_gain.gain",
+    ];
+
+    /// The derivatives are those of central differences, however many lanes and groups they need, and the parts of a pass have the same numbers as
+    /// alone.
+    #[test]
+    fn derivatives_spread_over_lanes_are_those_of_differences() {
+        let robot = RobotFile::parse(ROBOT, "bench").unwrap();
+        let mut measurements = Measurements::new(&robot.params(), Reference::Forces);
+        for sample in 0..600_i32 {
+            let t_s = 1e-3 * f64::from(sample);
+            let input = CableInput {
+                sensor_force_n: 15.0 + (5.0 * t_s).sin(),
+                length_m: 0.8 + 0.02 * (20.0 * t_s).sin(),
+                speed_m_per_s: 0.4 * (20.0 * t_s).cos(),
+            };
+            let stamp_nanos = 1_000_000 * i64::from(sample);
+            measurements.add(&Sample {
+                stamp_nanos,
+                cables: &[input],
+                reference_force_n: &[15.0],
+                pose: None,
+                outside_wrench: None,
+            });
+        }
+        let record = measurements.cable(0).unwrap();
+        let (stop, values) = (AtomicBool::new(false), record.params.values());
+        let part = |free: &[Parameter], values: Values| Part { record, values, free: free.to_vec() };
+        let all = Parameter::all_named(FREE).unwrap();
+        for together in [vec![1], vec![4], vec![8], vec![8, 1, 3], vec![3, 3, 3, 3], vec![8, 8, 8, 5]] {
+            let parts: Vec<Part<'_>> = together.iter().map(|count| part(&all[..*count], values)).collect();
+            let forces = forces_of(&parts, &stop).unwrap();
+            for (part_of, forces) in parts.iter().zip(&forces) {
+                assert_eq!(&forces_of(std::slice::from_ref(part_of), &stop).unwrap()[0], forces);
+                for (place, parameter) in part_of.free.iter().enumerate() {
+                    let step = 1e-6 * values[parameter.place()].abs().max(1e-3);
+                    let [less, more] = [-step, step].map(|step| {
+                        let mut moved = values;
+                        moved[parameter.place()] += step;
+                        forces_of(&[part(&[], moved)], &stop).unwrap().remove(0)
+                    });
+                    let (mut errors, mut squares) = (0.0, 0.0);
+                    for cycle in 0..record.rows.len() {
+                        let difference = (more.at(cycle).0 - less.at(cycle).0) / (2.0 * step);
+                        errors += (forces.at(cycle).1[place] - difference).powi(2);
+                        squares += difference * difference;
+                    }
+                    assert!(
+                        squares > 0.0 && errors < 1e-8 * squares,
+                        "{parameter} of {together:?}: {errors} {squares}"
+                    );
+                }
+            }
         }
     }
 }

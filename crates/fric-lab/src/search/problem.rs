@@ -17,7 +17,7 @@ use rayon::prelude::*;
 
 use super::gang::{Seat, all_forces};
 use super::gram::Gram;
-use super::pass::{CandidatePass, Forces, LanePass, Part, with_room_for};
+use super::pass::{CandidatePass, Forces, LanePass, Part, with_width_for};
 use super::vector::Parameter;
 use crate::certainty::groups::Groups;
 use crate::certainty::scores::Scores;
@@ -325,8 +325,7 @@ impl<'a> Problem<'a> {
             self.visit_single(part, &forces, visit);
             return true;
         }
-        let most = parts.iter().map(Part::carried).max().unwrap_or(0);
-        with_room_for!(most, visit_chunks(self, &parts, derivatives, visit))
+        with_width_for!(&parts, visit_chunks(self, &parts, derivatives, visit))
     }
 }
 

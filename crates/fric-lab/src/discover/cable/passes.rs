@@ -93,7 +93,7 @@ impl CableLog<'_> {
             let more = if found == rows || passes == MOST_PASSES || self.effort.is_spent(found.len()) {
                 Vec::new()
             } else {
-                self.missing(&bench, &workbench::Model { values: fitted.values, free: fitted.parameters.clone() })?
+                self.missing(&bench, &search, &fitted, &found)?
             };
             if more.is_empty() {
                 let residual_n = bench.residuals_n(&fitted.values);
@@ -105,11 +105,17 @@ impl CableLog<'_> {
         }
     }
 
-    /// Returns the effects that would be missing if `model` were the given model.
-    fn missing(&self, bench: &Workbench<'_>, model: &workbench::Model) -> Option<Vec<Effect>> {
-        let base = bench.try_one(model);
+    /// Returns the effects that would be missing if the model with those that `search` has found were the given one.
+    fn missing(
+        &self,
+        bench: &Workbench<'_>,
+        search: &Search<'_, '_>,
+        fitted: &Fitted,
+        found: &[Effect],
+    ) -> Option<Vec<Effect>> {
+        let base = bench.try_one(&workbench::Model { values: fitted.values, free: fitted.parameters.clone() });
         let noise_n = self.noise_n(bench, &base)?;
-        let naming = Search::new(bench, noise_n, self.around(&base, noise_n), &base, self.steady, self.effort).run(&[]);
+        let naming = search.beyond(found, &base, noise_n, self.around(&base, noise_n)).run(&[]);
         Some(naming.named.iter().map(|named| named.effect).collect())
     }
 

@@ -1,7 +1,7 @@
 //! Cache of the models that a search has fitted: each set of effects is fitted once.
 
 use fric_core::effects::Effect;
-use fric_core::parameters::{MU, OFFSET};
+use fric_core::parameters::{MU, OFFSET, Values};
 
 use super::{LEAST_GAIN, LEAST_SIZE, Search, Set, set_of, without};
 use crate::candidates::catalogue::{fitted, has, starts};
@@ -50,16 +50,20 @@ impl Search<'_, '_> {
         let model = self.fit(found);
         let unknown: Vec<Effect> =
             candidates.iter().copied().filter(|effect| !self.fits.contains_key(&with(effect))).collect();
-        if unknown.iter().any(|effect| period_of(*effect).is_some()) {
+        if unknown.iter().any(|effect| period_of(*effect).is_some() && !self.earlier.contains_key(&with(effect))) {
             let residuals_n = self.bench.residuals_n(&model.values);
             self.around.periods = periods(&self.bench.record, &residuals_n);
         }
         let (mut models, mut owners) = (Vec::new(), Vec::new());
         for effect in unknown {
-            for values in starts(effect, &model.values, &self.around, &self.bench.record) {
-                let mut free = model.free.clone();
-                free.extend(fitted(effect).into_iter().filter(|parameter| !model.free.contains(parameter)));
-                models.push(Model { values, free });
+            let mut free = model.free.clone();
+            free.extend(fitted(effect).into_iter().filter(|parameter| !model.free.contains(parameter)));
+            let starts = match self.earlier.get(&with(&effect)) {
+                Some(earlier) => vec![start_from(earlier, effect, &model.values, &free)],
+                None => starts(effect, &model.values, &self.around, &self.bench.record),
+            };
+            for values in starts {
+                models.push(Model { values, free: free.clone() });
                 owners.push(with(&effect));
             }
         }
@@ -141,18 +145,22 @@ impl Search<'_, '_> {
     }
 
     /// Returns the decrease of the held-out sum of squares that a candidate needs to enter beside a model, N².
-    pub(super) fn least_gain(&mut self, model: &Trial) -> f64 {
+    pub(super) fn least_gain(&self, model: &Trial) -> f64 {
         let gap = (model.held_out - self.noise_squares).max(0.0);
-        (LEAST_GAIN * gap).max(self.believed_squares(model)).max(LEAST_SIZE * self.noise_squares)
+        let believed = BELIEVED_RATIO * BELIEVED_RATIO * model.added;
+        (LEAST_GAIN * gap).max(believed).max(LEAST_SIZE * self.noise_squares)
     }
+}
 
-    /// Returns the part of the held-out sum of squares to which a model is not trusted, N².
-    fn believed_squares(&self, model: &Trial) -> f64 {
-        let added_n = self.bench.added_n(&model.values);
-        let squares: f64 =
-            self.bench.used(true).iter().zip(&added_n).filter(|(used, _)| **used).map(|(_, n)| n * n).sum();
-        BELIEVED_RATIO * BELIEVED_RATIO * squares
+/// Returns the values of a model with an effect as an earlier fit had them, where both vary them; the effect's settings are always those of the fit.
+fn start_from(earlier: &Trial, effect: Effect, model: &Values, free: &[Parameter]) -> Values {
+    let is_settled = |parameter: &Parameter| !free.contains(parameter);
+    let taken = earlier.free.iter().copied().filter(|parameter| free.contains(parameter));
+    let mut values = *model;
+    for parameter in taken.chain(Parameter::of(effect).filter(is_settled)) {
+        values[parameter.place()] = earlier.values[parameter.place()];
     }
+    values
 }
 
 /// Whether the held-out sum of squares decreases by at least `enough`, N².

@@ -126,6 +126,8 @@ pub struct Search<'b, 'a> {
     /// Number of effects that the model has from the start.
     given_count: usize,
     fits: BTreeMap<Set, Trial>,
+    /// Fits of another search from which the first fits of these sets start.
+    earlier: BTreeMap<Set, Trial>,
     /// Refused candidates and the reasons.
     refused: BTreeMap<Effect, Refusal>,
     /// For effects in sets: the factor by which memory weakens the evidence, and the reason why the effect cannot stay.
@@ -156,10 +158,22 @@ impl<'b, 'a> Search<'b, 'a> {
             effort,
             given_count: Effect::CATALOGUE.iter().filter(|effect| has(**effect, &base.values)).count(),
             fits,
+            earlier: BTreeMap::new(),
             refused: BTreeMap::new(),
             judged: BTreeMap::new(),
             unrivalled: BTreeSet::new(),
         }
+    }
+
+    /// Returns the search for what a model with the effects found lacks, as the given model of the same samples. Its candidates start from the fits that
+    /// this search has of them beside these effects.
+    pub fn beyond(&self, found: &[Effect], base: &Trial, noise_n: f64, around: Around) -> Self {
+        let is_beside = |(set, _): &(&Set, &Trial)| found.iter().all(|effect| set.contains(effect));
+        let beside = |(set, trial): (&Set, &Trial)| {
+            (set.iter().copied().filter(|effect| !found.contains(effect)).collect(), trial.clone())
+        };
+        let earlier = self.fits.iter().filter(is_beside).map(beside).collect();
+        Self { earlier, ..Self::new(self.bench, noise_n, around, base, self.conditions, self.effort) }
     }
 
     /// Names the effects that the model lacks. Effects that were found before are in the model from the start and must justify themselves like the
