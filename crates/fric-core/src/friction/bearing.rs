@@ -132,7 +132,7 @@ impl<T: Scalar> Bearing<T> {
 
     /// Returns μ of the pulley at a position, between two tensions, for a direction of motion (−1, 0, +1).
     #[inline(always)]
-    pub fn mu_at(&self, place: usize, (upstream_n, downstream_n): (T, T), direction: T, cable: &impl Cable<T>) -> T {
+    pub fn mu_at(&self, place: usize, tensions: (T, T), direction: T, cable: &impl Cable<T>) -> T {
         let mut mu = self.mu;
         if self.acting.has(pulley_defect::ACTS) {
             let is_defect = PulleyDefect::of(|place| cable.effect(place)).is_at(cable.pulley_number(place));
@@ -142,7 +142,7 @@ impl<T: Scalar> Bearing<T> {
             mu = mu * asymmetry(cable).coulomb_factor(direction);
         }
         if self.acting.has(load_nonlinearity::ACTS) {
-            let normal_n = (upstream_n + downstream_n).scale(cable.wrap_factor(place)).scale(T::splat(0.5));
+            let normal_n = normal_n(place, tensions, cable);
             mu = mu * LoadNonlinearity::of(|place| cable.effect(place)).factor(normal_n);
         }
         if self.acting.has(RAISES_MU) { mu.min(self.greatest_mu) } else { mu }
@@ -152,6 +152,26 @@ impl<T: Scalar> Bearing<T> {
     #[inline(always)]
     pub fn depends_on_load(&self) -> bool {
         self.acting.has(load_nonlinearity::ACTS)
+    }
+
+    /// Returns the μ at whose load [`tangent`](Self::tangent)s are drawn first: the greatest for an exponent below 1, none above. The friction law is
+    /// concave over the load for the one, convex for the other, so Newton's method comes from that side.
+    #[inline(always)]
+    pub fn first_mu(&self, cable: &impl Cable<T>) -> T {
+        let is_concave = LoadNonlinearity::of(|place| cable.effect(place)).exponent.lt(T::splat(1.0));
+        self.greatest_mu.keep(is_concave)
+    }
+
+    /// Returns the tangent to the friction law `f(F_N)` where it has `mu` between two tensions: its slope, and its value at `F_N = 0`, N.
+    ///
+    /// `f ∝ F_N^p` has the slope `p·μ`, and `μ` itself where `f` is held at the greatest μ. No slope is above that one, with which every pulley has a
+    /// solution; a convex law that is steeper has none short of it.
+    #[inline(always)]
+    pub fn tangent(&self, place: usize, mu: T, tensions: (T, T), cable: &impl Cable<T>) -> (T, T) {
+        let exponent = LoadNonlinearity::of(|place| cable.effect(place)).exponent;
+        let greatest_mu = self.greatest_mu;
+        let slope = T::select(mu.lt(greatest_mu), (exponent * mu).min(greatest_mu), greatest_mu);
+        (slope, (mu - slope) * normal_n(place, tensions, cable))
     }
 
     /// Whether the bearings of any cable have friction that does not depend on the load.
@@ -212,6 +232,12 @@ impl<T: Scalar> Bearing<T> {
             dahl_step(friction_n, sliding_n, self.sigma_n_per_m, displacement_m)
         }
     }
+}
+
+/// Returns the normal force on the bearing of the pulley at a position between two tensions, N (\[P\] 8).
+#[inline(always)]
+fn normal_n<T: Scalar>(place: usize, (upstream_n, downstream_n): (T, T), cable: &impl Cable<T>) -> T {
+    (upstream_n + downstream_n).scale(cable.wrap_factor(place)).scale(T::splat(0.5))
 }
 
 #[inline(always)]

@@ -116,9 +116,18 @@ impl<T: Scalar> Chain<'_, T> {
             let tension_n = |coulomb_n: T, viscous_n: T, divisor: T| (coulomb_n + viscous_n) / divisor;
             let before_n = if needs_tensions { tension_n(coulomb_n, viscous_n, divisor) } else { frictionless_n };
             let mu = if place == 0 {
-                self.mu_of_sensor_pulley(wrap_factor, direction, (frictionless_n, resisting_n), cable)
+                let tensions_n = |mu: T, resisting_n: T| {
+                    let (gain, viscous_gain) = pulley::sensor_gains(direction, mu, wrap_factor, model.sensor_cos);
+                    let behind_n = sensor_force_n * gain + resisting_n * viscous_gain;
+                    (before_sensor_n(behind_n, (mu, wrap_factor), direction, resisting_n), behind_n)
+                };
+                self.sliding_mu((place, direction, resisting_n), tensions_n, cable)
             } else {
-                self.mu_of_guide_pulley(place, direction, (before_n, resisting_n), cable)
+                let tensions_n = |mu: T, resisting_n: T| {
+                    let (gain, viscous_gain) = pulley::sliding_gains(direction, mu, wrap_factor);
+                    (before_n, before_n * gain + resisting_n * viscous_gain)
+                };
+                self.sliding_mu((place, direction, resisting_n), tensions_n, cable)
             };
             let coupling = mu.scale(direction).scale(wrap_factor);
             let (plus, minus) = (two + coupling, two - coupling);
@@ -140,9 +149,7 @@ impl<T: Scalar> Chain<'_, T> {
                 let traction_ratio = cable.traction_ratio(place);
                 let behind_n = tension_n(coulomb_n, viscous_n, divisor);
                 let (held_n, slips) = if place == 0 {
-                    // [P] 10 inverted: the tension on the winch side from the one behind the pulley.
-                    let (inverse_gain, inverse_viscous) = pulley::sliding_gains(-direction, mu, wrap_factor);
-                    let before_n = behind_n * inverse_gain - resisting_n * inverse_viscous;
+                    let before_n = before_sensor_n(behind_n, (mu, wrap_factor), direction, resisting_n);
                     let (_, slips) = pulley::limit_traction(before_n, behind_n, traction_ratio);
                     let tensions = (before_n, behind_n);
                     let (_, held_n) =
@@ -167,51 +174,43 @@ impl<T: Scalar> Chain<'_, T> {
         (frictionless_n + moved_n + viscous_n, moved_n, slip)
     }
 
-    /// Returns μ of the sensor pulley in steady sliding.
+    /// Returns μ of the pulley at a position in steady sliding, `f = μ·F_N`. `tensions_n` returns those before and behind it for a μ and for the force
+    /// that resists besides.
     ///
-    /// If μ depends on the load, it is first evaluated at the frictionless tension and then at the resulting tensions.
+    /// If μ depends on the load, so do the tensions on μ. Newton's method solves the two: each step solves the pulley for a bearing whose friction is the
+    /// tangent to the law, [`Bearing::tangent`]. It starts at the side from which it converges without passing the solution
+    /// ([`Bearing::first_mu`]), and ends with μ at the last load. So μ never exceeds its bound, and with an exponent below 1 friction that adds to the
+    /// load is never too great.
     #[inline(always)]
-    fn mu_of_sensor_pulley(
+    fn sliding_mu(
         &self,
-        wrap_factor: T,
-        direction: T,
-        (frictionless_n, resisting_n): (T, T),
+        (place, direction, resisting_n): (usize, T, T),
+        tensions_n: impl Fn(T, T) -> (T, T),
         cable: &impl Cable<T>,
     ) -> T {
-        let mu_at = |tensions| self.bearing.mu_at(0, tensions, direction, cable);
-        let mut mu = mu_at((frictionless_n, frictionless_n));
-        if self.bearing.depends_on_load() {
-            for _ in 0..LOAD_STEPS {
-                let (gain, viscous_gain) = pulley::sensor_gains(direction, mu, wrap_factor, self.model.sensor_cos);
-                let (inverse_gain, inverse_viscous) = pulley::sliding_gains(-direction, mu, wrap_factor);
-                let behind_n = self.sensor_force_n * gain + resisting_n * viscous_gain;
-                mu = mu_at((behind_n * inverse_gain - resisting_n * inverse_viscous, behind_n));
-            }
+        let bearing = &self.bearing;
+        let zero = T::splat(0.0);
+        if !bearing.depends_on_load() {
+            return bearing.mu_at(place, (zero, zero), direction, cable);
         }
-        mu
-    }
-
-    /// Returns μ of another pulley in steady sliding, in the same way.
-    #[inline(always)]
-    fn mu_of_guide_pulley(
-        &self,
-        place: usize,
-        direction: T,
-        (before_n, resisting_n): (T, T),
-        cable: &impl Cable<T>,
-    ) -> T {
-        let mu_at = |tensions| self.bearing.mu_at(place, tensions, direction, cable);
-        let mut mu = mu_at((before_n, before_n));
-        if self.bearing.depends_on_load() {
-            let wrap_factor = cable.wrap_factor(place);
-            for _ in 0..LOAD_STEPS {
-                let (gain, viscous_gain) = pulley::sliding_gains(direction, mu, wrap_factor);
-                mu = mu_at((before_n, before_n * gain + resisting_n * viscous_gain));
-            }
+        let mut tensions = tensions_n(bearing.first_mu(cable), resisting_n);
+        let mut mu = bearing.mu_at(place, tensions, direction, cable);
+        for _ in 0..NEWTON_STEPS {
+            let (slope, constant_n) = bearing.tangent(place, mu, tensions, cable);
+            tensions = tensions_n(slope, resisting_n + constant_n.scale(direction));
+            mu = bearing.mu_at(place, tensions, direction, cable);
         }
         mu
     }
 }
 
-/// Number of fixed-point iterations between μ and the load that it depends on; each reduces the error by a factor of about `μ/2`.
-const LOAD_STEPS: usize = 2;
+/// Steps of Newton's method between μ and the load that it depends on. With one, friction at next to no load can be wrong by half of the tension; with
+/// three, by nothing that matters, but a cycle would compute one power more per pulley.
+const NEWTON_STEPS: usize = 2;
+
+/// Returns the tension on the winch side of a sliding pulley from the one behind it, N: \[P\] 10 inverted.
+#[inline(always)]
+fn before_sensor_n<T: Scalar>(behind_n: T, (mu, wrap_factor): (T, T), direction: T, resisting_n: T) -> T {
+    let (inverse_gain, inverse_viscous) = pulley::sliding_gains(-direction, mu, wrap_factor);
+    behind_n * inverse_gain - resisting_n * inverse_viscous
+}

@@ -30,7 +30,7 @@ fn factor([one, other]: [f64; 2]) -> f64 {
     (1.0 + one) * (1.0 + other)
 }
 
-/// The greatest μ that stands at a pulley, by its number from 1, but for `load_nonlinearity`.
+/// The greatest μ that stands at a pulley, by its number from 1, at the reference load of `load_nonlinearity`.
 #[expect(clippy::cast_precision_loss, reason = "a few pulleys")]
 pub fn greatest_mu_at(cable: &CableParams, pulley: usize) -> f64 {
     let has_defect = effect(cable, "pulley_defect", "pulley") == pulley as f64;
@@ -58,11 +58,9 @@ pub fn sensor_cos(cable: &CableParams) -> f64 {
 /// The greatest friction of a cable, N, for forces (N, corrected) and speeds (m/s) up to these.
 pub fn friction_bound_n(cable: &CableParams, force_n: f64, speed_m_per_s: f64, cycle_s: f64) -> f64 {
     let value = |kind, key| effect(cable, kind, key);
-    // What holds friction that grows faster than the load is the core's own limit of μ. Where it grows slower, μ depends on the load so strongly at
-    // next to none that the core's two iterations do not reach it. And where the force of the sensor is not known from what it shows in the
-    // cycle, nothing is known of the friction.
+    // Where the force of the sensor is not known from what it shows in the cycle, nothing is known of the friction.
     let is_open = [("sensor_lag", "time_constant_s"), ("sensor_nonlinearity", "curvature_per_n")];
-    if value("load_nonlinearity", "exponent") != 1.0 || is_open.iter().any(|(kind, key)| value(kind, key).abs() > 0.0) {
+    if is_open.iter().any(|(kind, key)| value(kind, key).abs() > 0.0) {
         return f64::INFINITY;
     }
     let mu = greatest_mu(cable);
@@ -88,20 +86,54 @@ pub fn friction_bound_n(cable: &CableParams, force_n: f64, speed_m_per_s: f64, c
     let mut tension_n = gain * force_n + rippled_n;
     let mut friction_n = rippled_n;
     for (place, wrap_rad) in cable.fixed_wraps_rad().enumerate() {
-        let half = 0.5 * mu * 2.0 * (0.5 * wrap_rad.unwrap_or(PI)).sin();
+        let wrap_factor = 2.0 * (0.5 * wrap_rad.unwrap_or(PI)).sin();
         let is_sensor = place == 0 && cable.sensor_wrap_rad().is_some();
         let share = if is_sensor { gain * cos.abs() } else { 1.0 };
         // Both tensions together are at most 2T + (2·share + 1)(f + moved) at the sensor pulley, 2T + f + moved behind.
         let both = if is_sensor { 2.0 * share + 1.0 } else { 1.0 };
-        let left = 1.0 - half * both;
-        if left <= 0.05 {
+        let outside_n = 2.0 * tension_n + both * (moved_n + stored_too_n);
+        let Some(sliding_n) = most_sliding_n(cable, (mu, wrap_factor), (outside_n, both), drag_n) else {
             return f64::INFINITY;
-        }
-        let stored_n = (half * (2.0 * tension_n + both * (moved_n + stored_too_n)) + drag_n) / left + stored_too_n;
+        };
+        let stored_n = sliding_n + stored_too_n;
         friction_n += share * (stored_n + moved_n);
         tension_n += share * (stored_n + moved_n);
     }
     let ripple = factor(amplitudes(cable, "pulley_eccentricity", ["sin_ratio", "cos_ratio"])) - 1.0;
     // A slack cable's friction takes all its tension away.
     friction_n.max(gain * force_n + rippled_n) + ripple * tension_n + value("empirical", "force_n").abs()
+}
+
+/// The greatest friction `f = μ(F_N)·F_N + drag` of a sliding pulley, N, whose normal force is `k/2` times `outside_n + both·f`; `None` if it is hardly bounded.
+fn most_sliding_n(
+    cable: &CableParams,
+    (mu, wrap_factor): (f64, f64),
+    (outside_n, both): (f64, f64),
+    drag_n: f64,
+) -> Option<f64> {
+    let [exponent, reference_n] = ["exponent", "reference_n"].map(|key| effect(cable, "load_nonlinearity", key));
+    let proportional_n = |mu: f64| {
+        let half = 0.5 * mu * wrap_factor;
+        let left = 1.0 - half * both;
+        (left > 0.05).then(|| (half * outside_n + drag_n) / left)
+    };
+    if exponent == 1.0 {
+        return proportional_n(mu);
+    }
+    let most_mu = core_mu_limit(cable);
+    let law_n = |friction_n: f64| {
+        let normal_n = 0.5 * wrap_factor * (outside_n + both * friction_n);
+        let factor = (normal_n / reference_n).max(1e-6).powf(exponent - 1.0);
+        normal_n * (mu * factor).min(most_mu) + drag_n
+    };
+    // The law grows with the load, so going over it from above comes down to the greatest solution, and never passes it. Where the limit of μ bounds
+    // nothing, an exponent below 1 does.
+    let start_n = proportional_n(most_mu).or((exponent < 1.0).then_some(1e15))?;
+    Some((0..300).fold(start_n, |friction_n, _| law_n(friction_n).min(friction_n)))
+}
+
+/// The limit that set-up puts on μ, 0.9, or less where two thirds of the sensor pulley's signal would be lost to friction.
+fn core_mu_limit(cable: &CableParams) -> f64 {
+    let taken = cable.sensor_wrap_rad().map_or(0.0, |wrap_rad| 2.0 * (0.5 * wrap_rad).sin() * (1.0 + wrap_rad.cos()));
+    if taken > 0.0 { (4.0 / 3.0 * (1.0 - sensor_cos(cable)) / taken).min(0.9) } else { 0.9 }
 }
