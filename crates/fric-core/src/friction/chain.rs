@@ -116,18 +116,18 @@ impl<T: Scalar> Chain<'_, T> {
             let tension_n = |coulomb_n: T, viscous_n: T, divisor: T| (coulomb_n + viscous_n) / divisor;
             let before_n = if needs_tensions { tension_n(coulomb_n, viscous_n, divisor) } else { frictionless_n };
             let mu = if place == 0 {
-                let tensions_n = |mu: T, resisting_n: T| {
+                let around_n = |mu: T, resisting_n: T| {
                     let (gain, viscous_gain) = pulley::sensor_gains(direction, mu, wrap_factor, model.sensor_cos);
                     let behind_n = sensor_force_n * gain + resisting_n * viscous_gain;
                     (before_sensor_n(behind_n, (mu, wrap_factor), direction, resisting_n), behind_n)
                 };
-                self.sliding_mu((place, direction, resisting_n), tensions_n, cable)
+                self.sliding_mu((place, direction, resisting_n), around_n, cable)
             } else {
-                let tensions_n = |mu: T, resisting_n: T| {
+                let around_n = |mu: T, resisting_n: T| {
                     let (gain, viscous_gain) = pulley::sliding_gains(direction, mu, wrap_factor);
                     (before_n, before_n * gain + resisting_n * viscous_gain)
                 };
-                self.sliding_mu((place, direction, resisting_n), tensions_n, cable)
+                self.sliding_mu((place, direction, resisting_n), around_n, cable)
             };
             let coupling = mu.scale(direction).scale(wrap_factor);
             let (plus, minus) = (two + coupling, two - coupling);

@@ -141,12 +141,12 @@ impl<'a> Workbench<'a> {
             evaluation_count = minimum.evaluation_count;
         }
         let residuals_n = bench.residuals_with(&problem, &values);
-        let residual_n = |cycle: usize| residuals_n.get(cycle).copied().unwrap_or(f64::NAN);
+        let left_n = |cycle: usize| residuals_n.get(cycle).copied().unwrap_or(f64::NAN);
         let gain = self.record.params.frictionless_gain();
         let added_n = |cycle: usize| {
             let frictionless_n = |row: &Row| row.signals.sensor_force_n * gain + values[OFFSET];
             let row = self.record.rows.get(cycle);
-            residual_n(cycle) + row.map_or(f64::NAN, |row| row.reference_n - frictionless_n(row))
+            left_n(cycle) + row.map_or(f64::NAN, |row| row.reference_n - frictionless_n(row))
         };
         let squares = |held_out: bool, number: &dyn Fn(usize) -> f64| -> f64 {
             let blocks = self.blocks.iter().filter(|block| block.held_out == held_out);
@@ -156,8 +156,8 @@ impl<'a> Workbench<'a> {
         Trial {
             values,
             free: model.free.clone(),
-            training: squares(false, &residual_n),
-            held_out: squares(true, &residual_n),
+            training: squares(false, &left_n),
+            held_out: squares(true, &left_n),
             added: squares(true, &added_n),
             near_errors,
             evaluation_count,
