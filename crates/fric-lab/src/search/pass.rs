@@ -302,15 +302,15 @@ mod tests {
             for (part_of, forces) in parts.iter().zip(&forces) {
                 assert_eq!(&forces_of(std::slice::from_ref(part_of), &stop).unwrap()[0], forces);
                 for (place, parameter) in part_of.free.iter().enumerate() {
-                    let step = 1e-6 * values[parameter.place()].abs().max(1e-3);
-                    let [less, more] = [-step, step].map(|step| {
+                    let change = 1e-6 * values[parameter.place()].abs().max(1e-3);
+                    let [less, more] = [-change, change].map(|change| {
                         let mut moved = values;
-                        moved[parameter.place()] += step;
+                        moved[parameter.place()] += change;
                         forces_of(&[part(&[], moved)], &stop).unwrap().remove(0)
                     });
                     let (mut errors, mut squares) = (0.0, 0.0);
                     for cycle in 0..record.rows.len() {
-                        let difference = (more.at(cycle).0 - less.at(cycle).0) / (2.0 * step);
+                        let difference = (more.at(cycle).0 - less.at(cycle).0) / (2.0 * change);
                         errors += (forces.at(cycle).1[place] - difference).powi(2);
                         squares += difference * difference;
                     }
