@@ -2,7 +2,9 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use fric_core::pulley::{limit_traction, sensor_gains, sliding_friction, sliding_gains, wrap_factor};
+use fric_core::pulley::{
+    limit_traction, sensor_gains, sliding_friction, sliding_gains, slipping_sensor, traction_ratio, wrap_factor,
+};
 use fric_core::robot::{CableOptions, FrictionOptions, Presliding, PulleyOptions};
 use fric_core::{CableInput, CableStatus, Compensator, CycleInput};
 
@@ -97,6 +99,36 @@ fn traction_holds_the_ratio_at_its_bound() {
     let (held_n, slips) = limit_traction(10.0, 1.0, ratio);
     assert!(slips);
     assert_near(held_n, 10.0 / ratio, 1e-15);
+}
+
+/// \[P\] 4: along the wrap the tension that a slipping cable can hold grows by `dT = μ_p·T·dα`, here in a hundred thousand steps of the midpoint rule.
+#[test]
+fn the_slip_limit_grows_along_the_wrap() {
+    for (traction_mu, wrap_rad) in [(0.3, PI), (0.05, 6.0), (1.4, 0.7), (0.0, 2.0), (0.7, 0.0)] {
+        let half_step = 0.5e-5 * traction_mu * wrap_rad;
+        let ratio = (0..100_000).fold(1.0, |tension: f64, _| tension * (1.0 + half_step) / (1.0 - half_step));
+        assert_near(traction_ratio(traction_mu, wrap_rad), ratio, 1e-9);
+    }
+}
+
+/// The tensions before and behind have the ratio of the bound that was passed, and the sensor shows its force by \[P\] 11.
+#[test]
+fn a_slipping_sensor_pulley_still_shows_its_force() {
+    let mut random = Random::new(5);
+    for _ in 0..1000 {
+        let (wrap_rad, traction_mu) = (random.range(0.7, 2.0 * PI - 0.7), random.range(0.05, 0.5));
+        let (force_n, ratio) = (random.range(0.1, 300.0), traction_ratio(traction_mu, wrap_rad));
+        let rises = random.below(2) == 1;
+        let cos = wrap_rad.cos();
+        let unlimited = if rises { (1.0, 1.1 * ratio) } else { (1.1 * ratio, 1.0) };
+        let (before_n, behind_n) = slipping_sensor(force_n, cos, unlimited, ratio);
+        let expected_ratio = if rises { ratio } else { 1.0 / ratio };
+        // Where friction would take all of the sensor's force there are no such tensions.
+        if expected_ratio > cos + 1e-3 {
+            assert_near(behind_n / before_n, expected_ratio, 1e-12);
+            assert_near(behind_n - cos * before_n, force_n, 1e-9);
+        }
+    }
 }
 
 /// Drives one cable in one direction until its presliding is over; gives the output.

@@ -174,7 +174,7 @@ impl<T: Scalar> Chain<'_, T> {
         (frictionless_n + moved_n + viscous_n, moved_n, slip)
     }
 
-    /// Returns μ of the pulley at a position in steady sliding, `f = μ·F_N`. `tensions_n` returns those before and behind it for a μ and for the force
+    /// Returns μ of the pulley at a position in steady sliding, `f = μ·F_N`. `around_n` returns the tensions before and behind it for a μ and for the force
     /// that resists besides.
     ///
     /// If μ depends on the load, so do the tensions on μ. Newton's method solves the two: each step solves the pulley for a bearing whose friction is the
@@ -185,7 +185,7 @@ impl<T: Scalar> Chain<'_, T> {
     fn sliding_mu(
         &self,
         (place, direction, resisting_n): (usize, T, T),
-        tensions_n: impl Fn(T, T) -> (T, T),
+        around_n: impl Fn(T, T) -> (T, T),
         cable: &impl Cable<T>,
     ) -> T {
         let bearing = &self.bearing;
@@ -193,11 +193,11 @@ impl<T: Scalar> Chain<'_, T> {
         if !bearing.depends_on_load() {
             return bearing.mu_at(place, (zero, zero), direction, cable);
         }
-        let mut tensions = tensions_n(bearing.first_mu(cable), resisting_n);
+        let mut tensions = around_n(bearing.first_mu(cable), resisting_n);
         let mut mu = bearing.mu_at(place, tensions, direction, cable);
         for _ in 0..NEWTON_STEPS {
             let (slope, constant_n) = bearing.tangent(place, mu, tensions, cable);
-            tensions = tensions_n(slope, resisting_n + constant_n.scale(direction));
+            tensions = around_n(slope, resisting_n + constant_n.scale(direction));
             mu = bearing.mu_at(place, tensions, direction, cable);
         }
         mu
