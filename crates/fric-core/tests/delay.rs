@@ -37,24 +37,45 @@ fn out_of_range_delays_are_held_within() {
     assert!((0..100).all(|_| line.shift(1.0, true, Delay::from_cycles(f64::NAN)).is_finite()));
 }
 
-/// A parabola is led to where it goes; between cycles each of the two values that were is interpolated, which misses the share
+/// A parabola is led to where it goes; from one cycle on each of the two values that were is interpolated between cycles, which misses the share
 /// `f·(1 − f)·c` of the curvature `c`.
 #[test]
 fn a_lead_follows_the_parabola() {
     let (a, b, c) = (3.0, -0.2, 0.01);
     let parabola = |cycle: f64| a + b * cycle + c * cycle * cycle;
     let missed = |age: f64| c * (age - age.floor()) * (1.0 - (age - age.floor()));
-    for lead in [0.25, 1.0, 7.5, 7.3, 20.0] {
+    for lead in [0.01, 0.25, 0.5, 0.99, 1.0, 7.5, 7.3, 20.0] {
         let mut line = DelayLine::EMPTY;
         for cycle in 0..60 {
             let time = f64::from(cycle);
             let shifted = line.shift(parabola(time), true, Delay::from_cycles(-lead));
             // Until all it rests on is known to be in order.
-            let is_led = time >= (2.0 * lead).floor() + 2.0;
-            let led = parabola(time + lead) - 3.0 * missed(lead) + missed(2.0 * lead);
-            assert_near(shifted, if is_led { led } else { parabola(time) }, 1e-12);
+            let (known, error) = if lead < 1.0 {
+                (3.0, 0.0)
+            } else {
+                ((2.0 * lead).floor() + 2.0, missed(2.0 * lead) - 3.0 * missed(lead))
+            };
+            let led = parabola(time + lead) + error;
+            assert_near(shifted, if time >= known { led } else { parabola(time) }, 1e-12);
         }
     }
+}
+
+/// A search for the lead would stop where its slope jumps: below one cycle, and at one cycle from below, it does not.
+#[test]
+fn a_short_lead_has_a_slope_without_jumps() {
+    let mut random = Random::new(22);
+    let history: Vec<f64> = (0..20).map(|_| random.range(-1.0, 1.0)).collect();
+    let led = |lead: f64| {
+        let mut line = DelayLine::EMPTY;
+        history.iter().map(|value| line.shift(*value, true, Delay::from_cycles(-lead))).next_back().unwrap()
+    };
+    let step = 1e-5;
+    for lead in (1..100).map(|percent| 0.01 * f64::from(percent)) {
+        let [before, after] = [led(lead) - led(lead - step), led(lead + step) - led(lead)];
+        assert!((after - before).abs() < 10.0 * step * step, "{lead}: {before} {after}");
+    }
+    assert_near(led(1.0 - 1e-9), led(1.0), 1e-7);
 }
 
 /// What makes up for cycles that were not believed is no speed to go on with.

@@ -7,9 +7,16 @@
 //! x(t + τ) ≈ 3·x(t) − 3·x(t − τ) + x(t − 2τ)
 //! ```
 //!
-//! for the position and for the speed. A constant acceleration is followed exactly. The remaining error of a position is its third derivative times
-//! τ³, and noise is multiplied by at most √19, whatever the lead (an extrapolation from the last cycles alone would multiply it by `1 + 2τ/dt` and
-//! more). Neutral: `delay_s = 0`.
+//! for the position and for the speed. Values between two cycles are interpolated linearly. For a lead below one cycle, `u = τ/dt < 1`, it is the parabola
+//! through the last three cycles instead, whose derivative by τ has no jump there:
+//!
+//! ```text
+//! x(t + τ) ≈ x(t) + u·(3·x(t) − 4·x(t − dt) + x(t − 2dt))/2 + u²·(x(t) − 2·x(t − dt) + x(t − 2dt))/2
+//! ```
+//!
+//! A constant acceleration is followed exactly. The remaining error of a position is its third derivative times
+//! τ³, below one cycle times dt³, and noise is multiplied by at most √19, whatever the lead (an extrapolation from the last cycles alone would multiply
+//! it by `1 + 2τ/dt` and more). Neutral: `delay_s = 0`.
 //!
 //! The friction state follows the motion that is known. The output force is that of a step ahead from this state, to the end of the parabola; the
 //! stored state does not take this step. So a parabola that continues after the end of a motion releases no friction, and its effect vanishes as soon
@@ -111,6 +118,16 @@ impl Taps {
         let ages = ages(cycles).map(|age| libm::floor(age) as usize);
         Self { ages, leads: cycles < 0.0 }
     }
+
+    /// Whether they belong to a lead below one cycle, which uses the last three values.
+    fn are_last(self) -> bool {
+        self.leads && self.ages[0] == 0
+    }
+
+    /// Returns the age of the oldest value that they use.
+    fn oldest(self) -> usize {
+        if self.are_last() { 2 } else { self.ages[1] + 1 }
+    }
 }
 
 /// Returns the ages of the values that a delay needs, in cycles; the second is used only by a lead.
@@ -120,12 +137,13 @@ fn ages<T: Scalar>(cycles: T) -> [T; 2] {
     [age, age + age]
 }
 
-/// Returns the fractions of the ages beyond the whole cycles of each lane's taps.
+/// Returns the fractions of the ages beyond the whole cycles of each lane's taps; for a lead below one cycle the lead in cycles and its square.
 pub(crate) fn fractions<T: Scalar>(cycles: T, taps: impl Fn(usize) -> Taps) -> [T; 2] {
     let [once, twice] = ages(cycles);
     #[expect(clippy::cast_precision_loss, reason = "at most twice MAX_DELAY_CYCLES")]
     let whole = |which: usize| T::from_lanes(|lane| taps(lane).ages[which] as f64);
-    [once - whole(0), twice - whole(1)]
+    let are_last = T::splat(0.0).lt(T::from_lanes(|lane| f64::from(taps(lane).are_last())));
+    [once - whole(0), T::select(are_last, once * once, twice - whole(1))]
 }
 
 /// The last [`MAX_DELAY_CYCLES`] values of one signal, the newest at index `newest`.
@@ -209,6 +227,10 @@ impl DelayLine {
         if !taps.leads || self.stands(taps) {
             return About::default();
         }
+        if taps.are_last() {
+            let [now, before] = [0, 1].map(|age| self.at(age));
+            return About { value: 0.0, slopes: [0.5 * (3.0 * now - before), 0.5 * (now - before)] };
+        }
         let [once, twice] = taps.ages;
         About { value: 3.0 * self.since(once) - self.since(twice), slopes: [3.0 * self.at(once), -self.at(twice)] }
     }
@@ -225,6 +247,11 @@ impl DelayLine {
         if self.stands(taps) {
             return About { value: newest, slopes: [0.0; 2] };
         }
+        if taps.are_last() {
+            let [once, twice] = [1, 2].map(|age| self.at(age));
+            let slopes = [0.5 * (3.0 * newest - 4.0 * once + twice), 0.5 * (newest - 2.0 * once + twice)];
+            return About { value: newest, slopes };
+        }
         let [[once, before_once], [twice, before_twice]] = taps.ages.map(|age| [self.at(age), self.at(age + 1)]);
         if taps.leads {
             let slopes = [3.0 * (once - before_once), before_twice - twice];
@@ -234,11 +261,10 @@ impl DelayLine {
         }
     }
 
-    /// Whether a lead would use invalid values: the oldest one, the one before it (which it is the difference to), or the first valid one, which may
-    /// contain the change of several cycles.
+    /// Whether a lead would use invalid values, or the first valid one, which may contain the change of several cycles.
     #[inline]
     fn stands(&self, taps: Taps) -> bool {
-        taps.leads && self.in_order < taps.ages[1] + 3
+        taps.leads && self.in_order < taps.oldest() + 2
     }
 
     /// Returns the value `age` cycles ago; the oldest one beyond that.

@@ -4,11 +4,15 @@
 //! window), and has no lag. A difference to the previous row would be the speed of half a cycle ago, which would delay viscous friction and the
 //! acceleration of the pulleys. A control loop without a measured speed has this lag; a log need not.
 //!
-//! The wider the window, the less of an encoder's steps and noise remains in the slope, and the more of a changing acceleration is lost. The widest
-//! window is taken whose slope agrees with those of all narrower ones, within [`AGREEMENT`] standard errors of each: the intersection of confidence
+//! The wider the window, the less of an encoder's steps and noise remains in the slope, and the more of a changing acceleration is lost. A row bears
+//! the widest window whose slope agrees with those of all narrower ones, within [`AGREEMENT`] standard errors of each: the intersection of confidence
 //! intervals (A. Goldenshluger and A. Nemirovski, *On spatially adaptive estimation of nonparametric regression*, 1997; V. Katkovnik, *A new method
 //! for varying adaptive bandwidth selection*, 1999). The noise of the lengths comes from the same rows, by what is left of five lengths in succession
 //! after their own cubic.
+//!
+//! A window that changes from one row to the next makes the speed jump by the difference of two slopes, and the acceleration by that over a cycle. So
+//! it changes gradually: each row has the narrowest window that it and its neighbours bear, and the speed is the mean over the windows of the row and
+//! its neighbours. None of these is wider than the row bears.
 
 use std::collections::VecDeque;
 use std::ops::{Range, RangeInclusive};
@@ -19,10 +23,18 @@ use super::waiting::Row;
 
 /// Lengths on each side of the row in the windows, from the narrowest to the widest.
 const WINDOWS: [usize; 9] = [1, 2, 3, 4, 6, 8, 11, 15, 20];
-/// Standard errors within which the slopes of two windows agree. In `tests/signals/speed.rs` white noise leaves 1.05 times the error of the widest
-/// window (5 % of that of the parabola), and an encoder's steps in quick strokes leave 79 % of the parabola's; half of it 6.3 times and 49 %, twice 1.0
-/// times and 137 %.
+const WIDEST: usize = WINDOWS[WINDOWS.len() - 1];
+/// Standard errors within which the slopes of two windows agree. In `tests/signals/speed.rs` white noise leaves 1.12 times the error of the widest
+/// window (5 % of that of the parabola), and an encoder's steps in quick strokes leave 61 % of the parabola's; half of it 8.5 times and 34 %, twice 1.0
+/// times and 120 %.
 const AGREEMENT: f64 = 4.0;
+
+/// Rows on each side that are a row's neighbours. On a drive whose force goes by the acceleration, one instead of two leaves 5 % more of it unexplained
+/// where the motion is extrapolated by a cycle; more than two change nothing.
+const NEIGHBOURS: usize = 2;
+
+/// Least noise of a length as a fraction of it. Lengths on a line would otherwise have no noise but that of their own rounding and of this arithmetic's.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// Lengths that the noise is estimated from together: a cubic goes through any four.
 const FIVE: usize = 5;
@@ -35,6 +47,28 @@ struct KnownLength {
     /// What is left of this length and the four before it after their cubic, squared, m². One number of the variance of a length; unknown until it is
     /// needed.
     rest_m2: Option<f64>,
+    /// Unknown until they are needed.
+    slopes: Option<Slopes>,
+}
+
+/// The slopes of the length at a row.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+struct Slopes {
+    /// By window, as far as the row bears them, m/s.
+    speeds_m_per_s: [f64; WINDOWS.len()],
+    /// Number of windows that the row bears; none if no other length is known.
+    count: usize,
+}
+
+impl Slopes {
+    /// Adds the slope of the next window. Windows before the first that has enough lengths stand for it.
+    fn push(&mut self, window: usize, speed_m_per_s: f64) {
+        let narrower = if self.count == 0 { 0 } else { window };
+        if let Some(speeds) = self.speeds_m_per_s.get_mut(narrower..=window) {
+            speeds.fill(speed_m_per_s);
+        }
+        self.count = window + 1;
+    }
 }
 
 /// The known lengths of a cable around the one whose speed is asked for.
@@ -60,12 +94,12 @@ pub struct LengthWindow {
 
 impl LengthWindow {
     /// Lengths on each side of the one asked for that its speed may depend on: so many rows have to wait.
-    pub const REACH: usize = WINDOWS[WINDOWS.len() - 1];
+    pub const REACH: usize = WIDEST + 2 * NEIGHBOURS;
 
     /// Adds a later length. One that is not finite is not known, and left out.
     pub fn push(&mut self, stamp_nanos: i64, length_m: f64) {
         if length_m.is_finite() {
-            self.lengths.push_back(KnownLength { stamp_nanos, length_m, rest_m2: None });
+            self.lengths.push_back(KnownLength { stamp_nanos, length_m, rest_m2: None, slopes: None });
         }
     }
 
@@ -87,17 +121,38 @@ impl LengthWindow {
     /// Returns the speed at the length asked for; 0 if no other one is known. Lengths before one that is not earlier, or after one that is not later,
     /// count as unknown: the clock was set there.
     pub fn speed_m_per_s(&mut self) -> f64 {
-        let run = self.run();
+        let run = self.run(self.now);
+        let near = |place: usize, count: usize| {
+            place.saturating_sub(count).max(*run.start())..=(place + count).min(*run.end())
+        };
+        let slopes: Vec<Slopes> = near(self.now, 2 * NEIGHBOURS).map(|place| self.slopes(place)).collect();
+        let first = *near(self.now, 2 * NEIGHBOURS).start();
+        let borne = |place: usize| slopes.get(place - first).map(|of| of.count).filter(|count| *count > 0);
+        let speeds = slopes.get(self.now - first).copied().unwrap_or_default().speeds_m_per_s;
+        let of_neighbours = near(self.now, NEIGHBOURS).filter_map(|place| {
+            let narrowest = near(place, NEIGHBOURS).filter_map(borne).min()?;
+            speeds.get(narrowest - 1)
+        });
+        let (sum, count) = of_neighbours.fold((0.0, 0.0), |(sum, count), speed| (sum + speed, count + 1.0));
+        if count > 0.0 { sum / count } else { 0.0 }
+    }
+
+    /// Returns the slopes at a length.
+    fn slopes(&mut self, place: usize) -> Slopes {
+        let Some(now) = self.lengths.get(place).copied() else { return Slopes::default() };
+        if let Some(known) = now.slopes {
+            return known;
+        }
+        let run = self.run(place);
         let noise_m = self.noise_m(&run);
-        let Some(now) = self.lengths.get(self.now).copied() else { return 0.0 };
         let ends = [run.start(), run.end()].map(|end| self.lengths.get(*end).map_or(0.0, |it| seconds(now, *it)));
         let scale_s = ends[1].max(-ends[0]);
         let mut fit = Cubic::default();
         let mut agreed = [f64::NEG_INFINITY, f64::INFINITY];
-        let mut speed_m_per_s = 0.0;
-        let mut within = self.now..self.now + 1;
-        for reach in WINDOWS {
-            let wider = self.now.saturating_sub(reach).max(*run.start())..(self.now + reach).min(*run.end()) + 1;
+        let mut slopes = Slopes::default();
+        let mut within = place..place + 1;
+        for (window, reach) in WINDOWS.into_iter().enumerate() {
+            let wider = place.saturating_sub(reach).max(*run.start())..(place + reach).min(*run.end()) + 1;
             if wider == within {
                 break;
             }
@@ -114,31 +169,34 @@ impl LengthWindow {
             if agreed[0] > agreed[1] {
                 break;
             }
-            speed_m_per_s = slope_m / scale_s;
+            slopes.push(window, slope_m / scale_s);
             if noise_m.is_none() {
                 break;
             }
         }
-        speed_m_per_s
+        if let Some(known) = self.lengths.get_mut(place) {
+            known.slopes = Some(slopes);
+        }
+        slopes
     }
 
-    /// Returns the places within reach, around the one asked for, whose times ascend.
-    fn run(&self) -> RangeInclusive<usize> {
+    /// Returns the places around one, within its widest window, whose times ascend.
+    fn run(&self, around: usize) -> RangeInclusive<usize> {
         let ascends = |place: usize| {
             let stamp = |place: usize| self.lengths.get(place).map(|it| it.stamp_nanos);
             stamp(place) < stamp(place + 1)
         };
-        let last = (self.now + Self::REACH).min(self.lengths.len().saturating_sub(1));
-        let first = (self.now.saturating_sub(Self::REACH)..self.now).rev().take_while(|place| ascends(*place)).last();
-        let end = (self.now..last).take_while(|place| ascends(*place)).last().map_or(self.now, |place| place + 1);
-        first.unwrap_or(self.now)..=end
+        let last = (around + WIDEST).min(self.lengths.len().saturating_sub(1));
+        let first = (around.saturating_sub(WIDEST)..around).rev().take_while(|place| ascends(*place)).last();
+        let end = (around..last).take_while(|place| ascends(*place)).last().map_or(around, |place| place + 1);
+        first.unwrap_or(around)..=end
     }
 
-    /// Returns the standard deviation of the noise of the lengths in a run, `None` if there are too few. A single jump or spike does not count: the
+    /// Returns the standard deviation of the noise of the lengths in a run, at least that of their rounding; `None` if there are too few. A single jump or spike does not count: the
     /// greatest rest is left out, with all that share a length with it.
     fn noise_m(&mut self, run: &RangeInclusive<usize>) -> Option<f64> {
         let of_five: Range<usize> = run.start() + FIVE - 1..run.end() + 1;
-        let mut rests = [0.0; 2 * Self::REACH];
+        let mut rests = [0.0; 2 * WIDEST];
         let mut count = 0;
         for (place, slot) in of_five.zip(&mut rests) {
             let known = self.lengths.get(place)?.rest_m2;
@@ -153,7 +211,9 @@ impl LengthWindow {
             .enumerate()
             .filter(|(place, _)| place.abs_diff(greatest) >= FIVE)
             .fold((0.0, 0.0), |(sum, count), (_, rest_m2)| (sum + rest_m2, count + 1.0));
-        (count > 0.0).then(|| (sum / count).sqrt())
+        let rounding_m =
+            ROUNDING * self.lengths.range(run.clone()).fold(0.0, |most: f64, it| most.max(it.length_m.abs()));
+        (count > 0.0).then(|| (sum / count).sqrt().max(rounding_m))
     }
 
     /// Returns what is left of the five lengths up to a place after their cubic: the square of their fourth divided difference, normalised.

@@ -133,14 +133,15 @@ fn check(joined: &Joined, topics: &[Topic; 6], own: [bool; 2], what: &str) {
         let (stamp, it) = kept.get(place)?;
         Some((*stamp, if own[0] { lengths.at(*stamp, 2) } else { vec![it[2], it[0]] }))
     };
+    let derived: Vec<Vec<f64>> =
+        (0..if own[1] { 0 } else { 2 }).map(|cable| derive(&lengths_at, kept.len(), cable)).collect();
     for (place, (row, (stamp, it))) in joined.rows.iter().zip(kept).enumerate() {
         let what = format!("{what} at {stamp}");
         assert_eq!(row.stamp_nanos, *stamp, "{what}");
         assert_eq!(row.force_n, [it[5], it[3]], "{what}");
         let length = lengths_at(place).unwrap().1;
         assert_near(&row.length_m, &length, &what);
-        let derived: Vec<f64> = (0..2).map(|cable| derive(&lengths_at, place, cable)).collect();
-        let speed = if own[1] { speeds.at(*stamp, 2) } else { derived };
+        let speed = if own[1] { speeds.at(*stamp, 2) } else { derived.iter().map(|of| of[place]).collect() };
         assert_near(&row.speed_m_per_s, &speed, &what);
         let reference = references.at(*stamp, 2);
         assert_near(&row.reference_n, &[reference[1], reference[0]], &what);
@@ -159,43 +160,69 @@ fn check(joined: &Joined, topics: &[Topic; 6], own: [bool; 2], what: &str) {
     }
 }
 
-/// Slope in a row of the polynomial that fits the lengths around it best, in the widest window that agrees with all narrower ones: by singular values,
-/// window for window.
-fn derive(lengths_at: &dyn Fn(usize) -> Option<(i64, Vec<f64>)>, place: usize, cable: usize) -> f64 {
-    let now = lengths_at(place).unwrap().0;
-    let known = |place: usize| {
-        let (stamp, lengths) = lengths_at(place)?;
-        Some((ms(stamp - now) / 1e3, lengths[cable])).filter(|(_, length)| length.is_finite())
+type Lengths<'a> = &'a dyn Fn(usize) -> Option<(i64, Vec<f64>)>;
+
+/// In each row the mean slope over the windows of the row and its two neighbours on each side, of which each has the narrowest that itself and its own
+/// two neighbours bear.
+fn derive(lengths_at: Lengths<'_>, count: usize, cable: usize) -> Vec<f64> {
+    let is_known = |place: &usize| lengths_at(*place).is_some_and(|(_, lengths)| lengths[cable].is_finite());
+    let known: Vec<usize> = (0..count).filter(is_known).collect();
+    // A row waits for 24 rows of each cable.
+    let seen_by = |at: usize| known.partition_point(|place| *place <= known[at] + 48);
+    let of_known = |at: usize| {
+        // Its slopes are asked for by the fourth before it, if that has seen it.
+        let first = (at.saturating_sub(4)..at).find(|first| seen_by(*first) > at).unwrap_or(at);
+        let around = &known[at.saturating_sub(20)..(at + 21).min(seen_by(first))];
+        slopes(lengths_at, around, known[at], cable)
     };
-    if known(place).is_none() {
-        return f64::NAN;
+    let all: Vec<Vec<f64>> = (0..known.len()).map(of_known).collect();
+    let mut speeds = vec![f64::NAN; count];
+    for (now, place) in known.iter().enumerate() {
+        let near = |at: usize| at.saturating_sub(2)..(at + 3).min(seen_by(now));
+        let narrowest = |at: usize| all[near(at)].iter().map(Vec::len).min().unwrap();
+        let of_neighbours = DVector::from_iterator(near(now).len(), near(now).map(|at| all[now][narrowest(at) - 1]));
+        speeds[*place] = of_neighbours.mean();
     }
-    let before: Vec<_> = (0..place).rev().filter_map(known).take(20).collect();
-    let after: Vec<_> = (place + 1..=place + 40).filter_map(known).take(20).collect();
-    let window = |reach: usize| {
-        let before = before.iter().take(reach).rev();
-        before.copied().chain(known(place)).chain(after.iter().take(reach).copied()).collect::<Vec<_>>()
-    };
+    speeds
+}
+
+/// Slopes in a row of the polynomials that fit the lengths around it best, window for window, as far as each agrees with all narrower ones: by singular
+/// values.
+fn slopes(lengths_at: Lengths<'_>, around: &[usize], place: usize, cable: usize) -> Vec<f64> {
+    let now = lengths_at(place).unwrap().0;
+    let points: Vec<(f64, f64)> = around
+        .iter()
+        .map(|place| lengths_at(*place).unwrap())
+        .map(|(stamp, lengths)| (ms(stamp - now) / 1e3, lengths[cable]))
+        .collect();
+    let at = around.iter().position(|it| *it == place).unwrap();
+    let window = |reach: usize| &points[at.saturating_sub(reach)..(at + reach + 1).min(points.len())];
     // The squared residual of a cubic through each five, which share no length with the five of the greatest.
     let rests: Vec<f64> = window(20).windows(5).map(|five| polynomial(five, 3).1).collect();
     let greatest = (0..rests.len()).max_by(|one, other| rests[*one].total_cmp(&rests[*other]));
     let others: Vec<f64> =
         (0..rests.len()).filter(|it| it.abs_diff(greatest.unwrap()) > 4).map(|it| rests[it]).collect();
-    let noise = DVector::from_vec(others.clone()).mean().sqrt();
-    let mut slopes = Vec::new();
-    for reach in [1, 2, 3, 4, 6, 8, 11, 15, 20] {
+    let greatest_length = around.iter().map(|place| lengths_at(*place).unwrap().1[cable].abs()).fold(0.0, f64::max);
+    let noise = DVector::from_vec(others.clone()).mean().sqrt().max(64.0 * f64::EPSILON * greatest_length);
+    let (mut slopes, mut count, mut within) = (Vec::new(), 0, 0);
+    for (place, reach) in [1, 2, 3, 4, 6, 8, 11, 15, 20].into_iter().enumerate() {
         let points = window(reach);
+        if points.len() == within {
+            break;
+        }
         if points.len() < 3 {
             continue;
         }
-        let ([slope, error], _) = polynomial(&points, 3.min(points.len() - 1));
+        let ([slope, error], _) = polynomial(points, 3.min(points.len() - 1));
         let apart = |(other, its_error): &(f64, f64)| (slope - other).abs() > 4.0 * noise * (error + its_error);
         if slopes.iter().any(apart) || (others.is_empty() && !slopes.is_empty()) {
             break;
         }
-        slopes.push((slope, error));
+        // Windows with too few lengths count as the next.
+        slopes.resize(place + 1, (slope, error));
+        (count, within) = (place + 1, points.len());
     }
-    slopes.last().unwrap().0
+    slopes.into_iter().take(count).map(|(slope, _)| slope).collect()
 }
 
 /// Slope at time 0 with its standard error for unit noise, and the squared residual.

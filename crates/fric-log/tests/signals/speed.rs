@@ -53,7 +53,7 @@ fn a_changing_acceleration_is_followed_at_irregular_times() {
 }
 
 /// The standard error of the slope of a cubic through 2m + 1 values is s/dt·√(S₆/(S₂S₆ − S₄²)) with the sums Sₙ of kⁿ over them; no window has less
-/// than the widest, which is refused now and then.
+/// than the widest, which is refused now and then, and then for its neighbours too.
 #[test]
 fn noise_is_averaged_over_the_widest_window() {
     let mut noise = normal(3);
@@ -63,11 +63,11 @@ fn noise_is_averaged_over_the_widest_window() {
         .collect();
     let errors = lengths.iter().zip(derived_m_per_s(&lengths)).map(|((t, _), found)| found - (0.1 - 0.04 * t));
     let error = rms(errors.skip(LengthWindow::REACH).take(5000 - 2 * LengthWindow::REACH));
-    let reach = i32::try_from(LengthWindow::REACH).unwrap();
+    let reach: i32 = 20;
     let [second, fourth, sixth] =
         [2, 4, 6].map(|power| (-reach..=reach).map(|k| f64::from(k).powi(power)).sum::<f64>());
     let least = 1e-6 / 1e-3 * (sixth / (second * sixth - fourth * fourth)).sqrt();
-    assert!((0.95..1.1).contains(&(error / least)), "{error} instead of {least}");
+    assert!((0.95..1.15).contains(&(error / least)), "{error} instead of {least}");
 }
 
 /// Strokes there and back of 0.1 s, at up to 0.37 m/s and 11.5 m/s², and rests, read in steps of 1 µm.
@@ -89,7 +89,7 @@ fn steps_of_the_encoder_go_and_the_motion_stays() {
     let found: Vec<f64> = lengths.iter().zip(derived_m_per_s(&lengths)).map(|((t, _), it)| it - speed(*t)).collect();
     let neighbours = lengths.windows(3).map(|it| (it[2].1 - it[0].1) / 2e-3 - speed(it[1].0));
     let (ours, theirs) = (rms(found[1..3999].iter().copied()), rms(neighbours));
-    assert!(ours < 0.85 * theirs, "{ours} instead of {theirs}");
+    assert!(ours < 0.65 * theirs, "{ours} instead of {theirs}");
 }
 
 #[test]
