@@ -167,6 +167,19 @@ fn two_effects_are_named_together() {
     assert!((found.after.values[place] - gain).abs() < 1e-3, "{} {gain}", found.after.values[place]);
 }
 
+/// Beside the other's error neither the asymmetry nor the drift helps on the samples held out.
+#[test]
+fn effects_that_hide_each_other_are_named_together() {
+    let case = Case { seed: 620_275, ..Case::hiding(Group::Pair, &[Effect::DirectionAsymmetry, Effect::SensorDrift]) };
+    let (found, truth) = assert_found(&case, Verdict::Extended);
+    assert!(left_ratio(&found, &truth) < 1.05);
+    let drift = truth.effects.iter().find(|effect| effect.effect() == Effect::SensorDrift).unwrap();
+    let (_, rate_n_per_s) = drift.values()[0];
+    let place = fric_lab::fit::Parameter::named("sensor_drift.rate_n_per_s").unwrap().place();
+    let error = found.after.values[place] / rate_n_per_s - 1.0;
+    assert!(error.abs() < 0.03, "{error}");
+}
+
 #[test]
 fn hum_is_placed_by_its_frequency_and_hides_no_effect() {
     let case = Case { disturbance: Some("hum"), seed: 70_005, ..Case::hiding(Group::Mixed, &[Effect::SensorGain]) };

@@ -48,8 +48,9 @@ impl Search<'_, '_> {
     pub(super) fn beside(&mut self, found: &[Effect], candidates: &[Effect]) -> Vec<(Effect, Trial)> {
         let with = |effect: &Effect| set_of(&[found, &[*effect]].concat());
         let model = self.fit(found);
-        let unknown: Vec<Effect> =
-            candidates.iter().copied().filter(|effect| !self.fits.contains_key(&with(effect))).collect();
+        // A model that fits worse than without one of its effects was fitted from elsewhere, to another minimum.
+        let is_known = |effect: &Effect| self.fits.get(&with(effect)).is_some_and(|of| of.training <= model.training);
+        let unknown: Vec<Effect> = candidates.iter().copied().filter(|effect| !is_known(effect)).collect();
         if unknown.iter().any(|effect| period_of(*effect).is_some() && !self.earlier.contains_key(&with(effect))) {
             let residuals_n = self.bench.residuals_n(&model.values);
             self.around.periods = periods(&self.bench.record, &residuals_n);
@@ -73,7 +74,10 @@ impl Search<'_, '_> {
         let near_errors = (UNDECIDED * needed * learned / model.training).sqrt().max(NEAR_ERRORS);
         let fits = self.bench.try_all(&models, near_errors);
         self.effort.add(&fits);
-        for (owner, trial) in owners.into_iter().zip(fits) {
+        // Where every start leads away, the effect is best left out.
+        let left_out = |model_with: Model| Trial { free: model_with.free, ..model.clone() };
+        let left_out: Vec<(Set, Trial)> = owners.iter().cloned().zip(models.into_iter().map(left_out)).collect();
+        for (owner, trial) in owners.into_iter().zip(fits).chain(left_out) {
             let is_better = self.fits.get(&owner).is_none_or(|other| trial.training < other.training);
             if trial.training.is_finite() && is_better {
                 self.fits.insert(owner, trial);
@@ -90,6 +94,34 @@ impl Search<'_, '_> {
             .collect();
         self.refine(contenders.iter().map(with));
         candidates.iter().filter_map(|effect| Some((*effect, self.fits.get(&with(effect))?.clone()))).collect()
+    }
+
+    /// Chooses the settings of the effects in a model again, such as the window of an acceleration: beside another effect another one may be best. The
+    /// periods of ripples are no matter of choice.
+    pub(super) fn settle(&mut self, found: &[Effect]) {
+        for effect in found.iter().copied().filter(|effect| period_of(*effect).is_none()) {
+            let trial = self.fit(found);
+            let settings: Vec<usize> =
+                Parameter::of(effect).filter(|of| !of.row().fitted).map(|of| of.place()).collect();
+            let with_settings_of = |start: Values| {
+                let mut values = trial.values;
+                for place in &settings {
+                    values[*place] = start[*place];
+                }
+                Model { values, free: trial.free.clone() }
+            };
+            let others: Vec<Model> = starts(effect, &trial.values, &self.around, &self.bench.record)
+                .into_iter()
+                .filter(|start| settings.iter().any(|place| start[*place].to_bits() != trial.values[*place].to_bits()))
+                .map(with_settings_of)
+                .collect();
+            let fits = self.bench.try_all(&others, trial.near_errors);
+            self.effort.add(&fits);
+            let best = fits.into_iter().min_by(|one, other| one.training.total_cmp(&other.training));
+            if let Some(best) = best.filter(|best| best.training < trial.training) {
+                self.fits.insert(set_of(found), best);
+            }
+        }
     }
 
     /// Optimises the models with some sets of effects to their minima, including the periods of ripples, which a scan finds only approximately.

@@ -1,12 +1,13 @@
 //! Finds which effects are missing: candidates enter, are exchanged, and must justify themselves.
 //!
 //! 1. *Enter.* Every candidate is fitted together with everything that the model has. The best one on the training samples enters if its evidence is
-//!    strong and it also helps on the held-out samples. If none has strong evidence alone, those enter that have it beside each other. Friction that
-//!    every model has needs no strong evidence here, because a missing part of it hides everything else.
+//!    strong and it also helps on the held-out samples. Friction that every model has needs no strong evidence here, because a missing part of it hides
+//!    everything else.
 //! 2. *Leave.* An effect stays if all of the following hold: the evidence for it is strong; it is large enough to matter; its parameters keep clear
 //!    of their bounds and can be distinguished from the others; it has one size in every operating condition; and neither an unnamed law nor an
 //!    effect of typical size makes it superfluous. An effect that cannot stay is set aside, and the next one is tried.
 //! 3. *Exchange.* Each remaining effect is compared with every other effect in its place.
+//! 4. *Enter together.* If nothing changes any more and something is left, two or three effects enter that can stay only beside each other.
 //!
 //! Effects that were set aside are tried again beside everything that was found since.
 
@@ -17,6 +18,7 @@ pub mod justification;
 pub mod projection;
 mod rivals;
 mod steadiness;
+mod together;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -222,7 +224,7 @@ impl<'b, 'a> Search<'b, 'a> {
             let before = self.refused.len();
             self.enter(found);
             let named = self.leave(found);
-            if self.refused.len() == before && !self.exchange(found) {
+            if self.refused.len() == before && !self.exchange(found) && !self.enter_together(found) {
                 return named;
             }
         }
