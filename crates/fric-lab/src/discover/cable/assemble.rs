@@ -17,8 +17,11 @@ use crate::discover::rest::neighbours::neighbours_of;
 use crate::discover::rest::places::Place;
 use crate::discover::rest::{self, WORTH};
 use crate::discover::workbench::{self, Trial, Workbench};
-use crate::fit::SampleCounts;
+use crate::certainty::log_zeros::log_zeros;
+use crate::fit::{LogValue, SampleCounts};
 use crate::replay::Deviation;
+use crate::samples::record::PerLog;
+use crate::search::problem::Problem;
 
 impl CableLog<'_> {
     /// Returns a table for a rest that has no name.
@@ -120,7 +123,8 @@ impl CableLog<'_> {
             profile(&self.record, condition, &residual_before_n, &residual_after_n)
         });
         let curves = curves(&self.record, &residual_before_n, &residual_after_n);
-        CableDiscovery {
+        let per_log = self.log_values(outcome, &after);
+        let mut found = CableDiscovery {
             curves,
             samples,
             reference_variation_n: raw.reference_variation_n(),
@@ -133,6 +137,7 @@ impl CableLog<'_> {
             verdict,
             before,
             after,
+            per_log,
             findings,
             candidates,
             tried,
@@ -144,7 +149,17 @@ impl CableLog<'_> {
             times_s: (0..self.record.rows.len()).map(|cycle| self.record.time_s(cycle)).collect(),
             residual_before_n,
             residual_after_n,
-        }
+        };
+        found.add_to_zeros(&[]);
+        found
+    }
+
+    /// Returns the value of each log of its own in a model, from all samples.
+    fn log_values(&self, outcome: &Outcome, model: &Model) -> Vec<Option<LogValue>> {
+        let Some(PerLog { zero, .. }) = self.record.per_log else { return Vec::new() };
+        let bench = self.bench(&outcome.counts);
+        let problem = Problem { used: outcome.counts.clone(), ..bench.problem(&model.fitted, None) };
+        LogValue::of_logs(zero, &model.values, &log_zeros(&problem, &model.values), &[])
     }
 
     /// Returns what has no name, from the outcome with its final model. Anything that only a table accounts for has no name.
