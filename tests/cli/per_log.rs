@@ -77,8 +77,18 @@ fn a_fit_gives_each_log_its_own_zero() {
 fn a_discovery_takes_zeros_for_no_effect() {
     let place = place();
     let run = place.run(&[
-        "discover", "a.mcap", "b.mcap", "c.mcap", "--model", "robot.toml", "--per-log", "offset_n", "-o", "found.toml",
-        "--json", "found.json",
+        "discover",
+        "a.mcap",
+        "b.mcap",
+        "c.mcap",
+        "--model",
+        "robot.toml",
+        "--per-log",
+        "offset_n",
+        "-o",
+        "found.toml",
+        "--json",
+        "found.json",
     ]);
     let run = run.succeeds();
     let cable = place.json("found.json")["cables"][0].clone();

@@ -29,7 +29,9 @@ pub fn extended(text: &str, origin: &str, discoveries: &[CableDiscovery]) -> Res
                 |parameter: &Parameter| cable.per_log.iter().flatten().any(|log| log.parameter == *parameter);
             // For a table, only the range of its own condition is written.
             let written = |parameter: &Parameter| {
-                cable.after.fitted.contains(parameter) || is_per_log(parameter) || found(parameter) && !is_idle(parameter, &cable.after.values)
+                cable.after.fitted.contains(parameter)
+                    || is_per_log(parameter)
+                    || found(parameter) && !is_idle(parameter, &cable.after.values)
             };
             NewValues { values: &cable.after.values, parameters: Parameter::all().filter(written).collect() }
         })

@@ -12,7 +12,7 @@ use crate::samples::interpolated::measured;
 use crate::samples::record::PerLog;
 use crate::samples::split::split;
 
-/// Number of fits of the given model. Each leaves a hundredth of the zero or less.
+/// Number of fits of the given model. What each leaves is of second order in its change of the zeros.
 const ROUNDS: usize = 3;
 
 /// Returns the cycles with the zeros of the given model changed in the signals, and by how much in each log, N. Returns `None` if the sensor has the same

@@ -11,9 +11,9 @@ use std::thread;
 use super::report::{CableFit, ForceErrors, LogValue, OpenCombination};
 use super::{FitOptions, Progress, start};
 use crate::candidates::newcomers::with_newcomers;
-use crate::samples::interpolated::measured;
 use crate::certainty::log_zeros::{LogZeroEstimate, log_zeros};
 use crate::replay::Deviation;
+use crate::samples::interpolated::measured;
 use crate::samples::record::{CableRecord, LogZero, Measurements, PerLog, Row};
 use crate::samples::selection;
 use crate::samples::selection::Standing;
@@ -25,7 +25,8 @@ use crate::search::vector::Parameter;
 
 /// Another fit is run if the warm-up estimate was wrong by more than this percentage of the samples.
 const MISJUDGED_PERCENT: usize = 1;
-/// Maximum number of fits with the zeros of a sensor changed in the signals. Each leaves a hundredth of the zero or less.
+/// Maximum number of fits with the zeros of a sensor changed in the signals. What a fit leaves is of second order in its change of the zeros, so that the
+/// second one is usually the last.
 const MOST_TARES: usize = 4;
 
 /// Fits every cable that has a reference.
@@ -106,12 +107,7 @@ fn with_sensor_zeros(record: &CableRecord<'_>, options: &FitOptions, stop: &Atom
 }
 
 /// Adds the values of each log to a fit, which gets that of the last log.
-fn with_log_values(
-    fit: &mut CableFit,
-    record: &CableRecord<'_>,
-    zeros: &[Option<LogZeroEstimate>],
-    changed_n: &[f64],
-) {
+fn with_log_values(fit: &mut CableFit, record: &CableRecord<'_>, zeros: &[Option<LogZeroEstimate>], changed_n: &[f64]) {
     let Some(PerLog { zero, .. }) = record.per_log else { return };
     fit.per_log = LogValue::of_logs(zero, &fit.values, zeros, changed_n);
     if let Some(last) = LogValue::last(&fit.per_log) {
@@ -266,9 +262,9 @@ pub(crate) fn cable_fits(
                 covariance: solution.covariance.select_rows(&places).select_columns(&places),
                 termination: solution.termination,
                 evaluation_count: solution.evaluation_count,
-                errors: forces.get(member).map_or_else(ForceErrors::default, |forces| {
-                    force_errors(&of.record, forces, shifts_n.as_deref())
-                }),
+                errors: forces
+                    .get(member)
+                    .map_or_else(ForceErrors::default, |forces| force_errors(&of.record, forces, shifts_n.as_deref())),
             }
         })
         .collect()

@@ -258,7 +258,17 @@ impl<'a> Measurements<'a> {
         let interval_s = usual_interval_s(times_s).unwrap_or(cycle_s);
         let length_play_m = self.robot.monitor().length_noise_m;
         let per_log = self.per_log.map(|zero| PerLog { zero, in_columns: false });
-        Some(CableRecord { params, rows, starts, times_s, cycle_s, interval_s, reference_is_known, length_play_m, per_log })
+        Some(CableRecord {
+            params,
+            rows,
+            starts,
+            times_s,
+            cycle_s,
+            interval_s,
+            reference_is_known,
+            length_play_m,
+            per_log,
+        })
     }
 
     /// Returns all cables in order.

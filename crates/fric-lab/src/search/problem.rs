@@ -406,7 +406,8 @@ impl<'a> Problem<'a> {
                 let lever = zeros.lever(gradient);
                 let (root, slope) = self.loss.root(force_n + lever * of_log.change_n - reference.reference_n);
                 row.fill(0.0);
-                for ((entry, part), by_free) in row.iter_mut().zip(gradient.iter().take(free_count)).zip(&of_log.by_free)
+                for ((entry, part), by_free) in
+                    row.iter_mut().zip(gradient.iter().take(free_count)).zip(&of_log.by_free)
                 {
                     let eliminated = if per_log.in_columns { 0.0 } else { lever * by_free };
                     *entry = slope * (part - eliminated);
@@ -423,7 +424,9 @@ impl<'a> Problem<'a> {
 
     /// Removes from a signal of every cycle what zeros of the logs could make up for, over the samples that count.
     pub fn without_zeros(&self, values: &Values, signal: &mut [f64]) {
-        let Some((zeros, forces)) = self.per_log().and_then(|per_log| self.zeros(per_log, values, false)) else { return };
+        let Some((zeros, forces)) = self.per_log().and_then(|per_log| self.zeros(per_log, values, false)) else {
+            return;
+        };
         for of_log in &zeros.logs {
             let (mut products, mut squares) = (0.0, 0.0);
             let counts = |cycle: &usize| self.used.get(*cycle).copied().unwrap_or(false);

@@ -93,7 +93,11 @@ pub struct Candidate {
 }
 
 /// Returns the standard errors of the fitted ones among some parameters, by name.
-pub fn errors(found: &CableDiscovery, of: impl Iterator<Item = Parameter>, name: impl Fn(&Parameter) -> String) -> Numbers {
+pub fn errors(
+    found: &CableDiscovery,
+    of: impl Iterator<Item = Parameter>,
+    name: impl Fn(&Parameter) -> String,
+) -> Numbers {
     Numbers(of.filter_map(|parameter| Some((name(&parameter), finite(found.standard_error(&parameter)?)?))).collect())
 }
 
