@@ -60,7 +60,7 @@ fn a_fit_gives_each_log_its_own_zero() {
     let place = place();
     let fit = |options: &[&str]| {
         let all = ["fit", "a.mcap", "b.mcap", "c.mcap", "--model", "robot.toml", "-o", "fitted.toml", "--force"];
-        let run = place.run(&[&all, &["--json", "fit.json", "--report", "fit.html"], options].concat()).succeeds();
+        let run = place.run(&[&all[..], &["--json", "fit.json", "--report", "fit.html"], options].concat()).succeeds();
         (place.json("fit.json")["cables"][0].clone(), run.stdout)
     };
     let (cable, stdout) = fit(&["--per-log", "offset_n"]);

@@ -171,7 +171,9 @@ impl CableDiscovery {
     /// Takes over that the zeros of the logs were changed in the data by so much before, N.
     pub(crate) fn add_to_zeros(&mut self, changed_n: &[f64]) {
         for (log, changed_n) in self.per_log.iter_mut().zip(changed_n) {
-            log.iter_mut().for_each(|log| log.value += changed_n);
+            if let Some(log) = log {
+                log.value += changed_n;
+            }
         }
         if let Some(last) = LogValue::last(&self.per_log) {
             self.after.values[last.parameter.place()] = last.value;

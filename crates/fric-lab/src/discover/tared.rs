@@ -27,9 +27,9 @@ pub fn tared(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<(Vec<Row>, V
         let record = record.with_signals(&rows);
         let bench = Workbench { record, blocks: &blocks, counts: &counts, measured: &measured, stop };
         let given = bench.try_one(&start);
-        let changes_n = bench.problem(&given.free, None).zero_changes_n(&given.values);
-        for (changed_n, change_n) in changed_n.iter_mut().zip(changes_n) {
-            *changed_n += change_n.unwrap_or(0.0);
+        let steps_n = bench.problem(&given.free, None).zero_changes_n(&given.values);
+        for (changed_n, step_n) in changed_n.iter_mut().zip(steps_n) {
+            *changed_n += step_n.unwrap_or(0.0);
         }
     }
     Some((record.with_zeros(&changed_n), changed_n))

@@ -200,8 +200,8 @@ impl<'a> Workbench<'a> {
     fn residuals_with(&self, problem: &Problem<'_>, values: &Values) -> Vec<f64> {
         let forces = problem.forces(&[*values]).unwrap_or_default();
         let force_n = |cycle: usize| forces.first().map_or(f64::NAN, |forces| forces.at(cycle).0);
-        let shifts_n = problem.zero_shifts_n(values);
-        let shift_n = |cycle: usize| shifts_n.as_ref().and_then(|shifts_n| shifts_n.get(cycle)).copied().unwrap_or(0.0);
+        let by_zeros_n = problem.zero_shifts_n(values);
+        let shift_n = |cycle: usize| by_zeros_n.as_ref().and_then(|of| of.get(cycle)).copied().unwrap_or(0.0);
         let left_n = |cycle: usize, row: &Row| force_n(cycle) - row.reference_n + shift_n(cycle);
         let rows = self.record.rows.iter().zip(self.counts).enumerate();
         rows.map(|(cycle, (row, counts))| if *counts { left_n(cycle, row) } else { f64::NAN }).collect()

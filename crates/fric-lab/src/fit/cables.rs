@@ -74,7 +74,9 @@ fn fit_cable<'a>(
     // The errors must be those that a replay finds.
     search.problem.forget_step();
     let mut fits = cable_fits(&search.problem, &[record.params.values()], &search.solution, &search.standings);
-    fits.iter_mut().for_each(|fit| with_log_values(fit, record, &zeros, &[]));
+    for fit in &mut fits {
+        with_log_values(fit, record, &zeros, &[]);
+    }
     fits
 }
 

@@ -112,7 +112,9 @@ impl Zeros {
             }
         }
         let is_known = squares > 0.0;
-        by_free.iter_mut().for_each(|sum| *sum = if is_known { *sum / squares } else { 0.0 });
+        for sum in &mut by_free {
+            *sum = if is_known { *sum / squares } else { 0.0 };
+        }
         Zero { cycles, change_n, by_free, is_known }
     }
 }

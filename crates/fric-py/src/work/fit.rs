@@ -45,7 +45,6 @@ pub fn named_reference(name: &str) -> Outcome<Reference> {
 /// >>> result.robot.cable("cable1").friction.mu == cable.values["mu"]
 /// True
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "keyword arguments of Python")]
 #[pyo3(
     signature = (robot, log, *, reference="forces", parameters=None, per_log=None, huber=false, progress=None),
     text_signature = "(robot, log, *, reference=\"forces\", parameters=None, per_log=None, huber=False, progress=False)"

@@ -123,8 +123,7 @@ impl CableLog<'_> {
             profile(&self.record, condition, &residual_before_n, &residual_after_n)
         });
         let curves = curves(&self.record, &residual_before_n, &residual_after_n);
-        let per_log = self.log_values(outcome, &after);
-        let mut found = CableDiscovery {
+        CableDiscovery {
             curves,
             samples,
             reference_variation_n: raw.reference_variation_n(),
@@ -137,7 +136,7 @@ impl CableLog<'_> {
             verdict,
             before,
             after,
-            per_log,
+            per_log: Vec::new(),
             findings,
             candidates,
             tried,
@@ -149,13 +148,11 @@ impl CableLog<'_> {
             times_s: (0..self.record.rows.len()).map(|cycle| self.record.time_s(cycle)).collect(),
             residual_before_n,
             residual_after_n,
-        };
-        found.add_to_zeros(&[]);
-        found
+        }
     }
 
     /// Returns the value of each log of its own in a model, from all samples.
-    fn log_values(&self, outcome: &Outcome, model: &Model) -> Vec<Option<LogValue>> {
+    pub(super) fn log_values(&self, outcome: &Outcome, model: &Model) -> Vec<Option<LogValue>> {
         let Some(PerLog { zero, .. }) = self.record.per_log else { return Vec::new() };
         let bench = self.bench(&outcome.counts);
         let problem = Problem { used: outcome.counts.clone(), ..bench.problem(&model.fitted, None) };
