@@ -296,6 +296,7 @@ def discover(
     log: Log | _Path | Sequence[Log | _Path],
     *,
     reference: Literal["forces", "wrench"] = "forces",
+    per_log: Sequence[str] | None = None,
     empirical: bool = True,
     progress: _Progress = False,
 ) -> DiscoverResult: ...
@@ -305,6 +306,7 @@ def fit(
     *,
     reference: Literal["forces", "wrench"] = "forces",
     parameters: Sequence[str] | None = None,
+    per_log: Sequence[str] | None = None,
     huber: bool = False,
     progress: _Progress = False,
 ) -> FitResult: ...

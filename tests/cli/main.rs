@@ -32,6 +32,7 @@ mod lengths;
 mod logs;
 mod outputs;
 mod part;
+mod per_log;
 mod replay;
 mod replay_output;
 mod report;

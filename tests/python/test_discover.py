@@ -46,6 +46,9 @@ def told(cable):
     attributes = {name: getattr(cable, name) for name in dir(cable) if not name.startswith("_")}
     for name in ("time_s", "residual_before_n", "residual_after_n", "where_in_words"):
         del attributes[name]
+    # The key is absent where the logs share all values.
+    if not attributes["per_log"]:
+        del attributes["per_log"]
     for name in ("before", "after"):
         error = attributes[name]
         attributes[name] = error and {"rms_n": error.rms_n, "mae_n": error.mae_n}
@@ -64,6 +67,17 @@ def test_a_discovery_tells_what_the_command_line_tells(place, robot, logs):
     assert result.common_effects == json.loads(expected)["common_effects"] == []
     read = [fric.read_log(path, robot) for path in paths]
     assert result.cables[0].residual_after_n.shape == (sum(map(len, read)),)
+
+
+def test_zeros_of_the_logs_are_no_effect():
+    tared = [SLOW_BENCH.replace("friction = {", f"friction = {{ offset_n = {zero_n},") for zero_n in (0.3, -0.5, 0.1)]
+    logs = [fric.simulate(fric.Robot.from_toml(text), seed=seed, duration_s=24.0) for seed, text in enumerate(tared)]
+    result = fric.discover(fric.Robot.from_toml(SLOW_BENCH), logs, per_log=["offset_n"])
+    winch = result.cable("winch")
+    assert (winch.verdict, winch.effects) == ("complete", [])
+    assert [log["log"] for log in winch.per_log] == ["log 1", "log 2", "log 3"]
+    assert told(winch) == json.loads(result.to_json())["cables"][0]
+    assert result.robot.cable("winch").friction.offset_n == winch.per_log[2]["parameters"]["offset_n"]
 
 
 def test_the_hidden_effect_is_named_with_its_values(robot, result):

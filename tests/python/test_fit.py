@@ -91,6 +91,31 @@ def test_several_logs_are_runs_of_their_own(place, robot, log):
     assert result.cables[0].residuals_n.shape == (2 * len(log),)
 
 
+def test_each_log_has_its_own_zero():
+    zeros_n = (0.3, -0.5, 0.1)
+    tared = [BENCH.replace("friction = {", f"friction = {{ offset_n = {zero_n},") for zero_n in zeros_n]
+    logs = [fric.simulate(fric.Robot.from_toml(text), seed=seed, duration_s=12.0) for seed, text in enumerate(tared)]
+    robot = fric.Robot.from_toml(BENCH)
+    result = fric.fit(robot, logs, per_log=["offset_n"])
+    winch = result.cable("winch")
+    for log, zero_n in zip(winch.per_log, zeros_n):
+        error_n = log["standard_errors"]["offset_n"]
+        assert error_n < 0.1 and log["parameters"]["offset_n"] == pytest.approx(zero_n, abs=3.5 * error_n)
+    assert "offset_n" not in winch.parameters and winch.values["offset_n"] == winch.per_log[2]["parameters"]["offset_n"]
+    assert result.robot.cable("winch").friction.offset_n == winch.values["offset_n"]
+    assert "log 2: offset_n = " in str(result)
+    common = fric.fit(robot, logs).cable("winch")
+    assert common.per_log == [] and common.after.rms_n > 5 * winch.after.rms_n
+    assert np.sqrt(np.nanmean(winch.residuals_n**2)) == pytest.approx(winch.after.rms_n, rel=1e-9)
+    for given, per_log, words in (
+        (logs, ["mu"], "`per_log`: `mu` has one value for all logs"),
+        (logs, ["offset"], "did you mean `offset_n`"),
+        (logs[0], ["offset_n"], "there is one"),
+    ):
+        with pytest.raises(fric.ConfigError, match=words):
+            fric.fit(robot, given, per_log=per_log)
+
+
 def test_comments_go_only_where_something_was_edited():
     robot = fric.Robot.from_toml(BENCH)
     assert robot.to_toml() == BENCH

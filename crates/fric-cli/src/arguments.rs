@@ -8,6 +8,7 @@ use std::path::PathBuf;
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use fric_core::effects::Effect;
+use fric_lab::fit::{LogZero, Reference, zero_per_log};
 use fric_lab::simulate::DISTURBANCES;
 use fric_log::signals::Part;
 
@@ -202,6 +203,8 @@ pub struct FitArguments {
     /// [default: those of `friction`, and of the effects that each cable has]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub parameters: Option<Vec<String>>,
+    #[command(flatten)]
+    pub per_log: PerLogArguments,
     /// Weigh deviations that are far out less (Huber's loss) instead of leaving out what cannot be a measurement
     #[arg(long)]
     pub huber: bool,
@@ -210,6 +213,35 @@ pub struct FitArguments {
     pub report: Option<PathBuf>,
     #[command(flatten)]
     pub result: ResultArguments,
+}
+
+#[derive(Debug, Args)]
+pub struct PerLogArguments {
+    /// Give each of several logs its own value of this zero, because sensors are tared anew: `offset_n` at the platform, or
+    /// `sensor_offset.offset_n` at the sensor
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    pub per_log: Vec<String>,
+}
+
+impl PerLogArguments {
+    /// The zero that each log has of its own.
+    pub fn zero(&self, log_count: usize, reference: ReferenceName) -> Outcome<Option<LogZero>> {
+        zero_per_log(&self.per_log, log_count, reference.into()).map_err(|error| {
+            let failure = Failure::usage(format!("--per-log: {error}"));
+            match error.advice(|reference| format!("--reference {}", reference.name())) {
+                Some(advice) => failure.advise(advice),
+                None => failure,
+            }
+        })
+    }
+
+    /// Makes sure that none is given where there is no log of a robot.
+    pub fn check_none(&self) -> Outcome {
+        if self.per_log.is_empty() {
+            return Ok(());
+        }
+        Err(Failure::usage("--per-log is for the logs of robots, not for the run of a manipulator"))
+    }
 }
 
 #[derive(Debug, Args)]
@@ -229,6 +261,8 @@ pub struct DiscoverArguments {
     /// What to compare the model with
     #[arg(long, value_name = "WHAT", default_value = "forces")]
     pub reference: ReferenceName,
+    #[command(flatten)]
+    pub per_log: PerLogArguments,
     /// Write a page with figures of what was found to this HTML file
     #[arg(long, value_name = "R.html", value_parser = a_file())]
     pub report: Option<PathBuf>,
@@ -271,6 +305,15 @@ pub enum ReferenceName {
     Forces,
     /// The outside wrench on the platform, or without one the platform's mass; all cables at once, no sensor there
     Wrench,
+}
+
+impl From<ReferenceName> for Reference {
+    fn from(name: ReferenceName) -> Self {
+        match name {
+            ReferenceName::Forces => Self::Forces,
+            ReferenceName::Wrench => Self::Wrench,
+        }
+    }
 }
 
 #[derive(Debug, Args)]

@@ -53,6 +53,13 @@ pub fn fit_report(result: &FitResult, fits: &[CableFit]) -> String {
                 let _ = writeln!(text, "    C({first}, {second}) = {value:+.4}");
             }
         }
+        for log in &cable.per_log {
+            for (name, value) in &log.parameters.0 {
+                let error = log.standard_errors.get(name);
+                let _ = write!(text, "    {}: {name} = {}", log.log, value_text(*value, error));
+                let _ = writeln!(text, " +/- {}", error.map_or_else(|| "?".to_owned(), plain));
+            }
+        }
         for fault in &cable.faults {
             let _ = writeln!(text, "    recording: {}", fault.in_words());
         }

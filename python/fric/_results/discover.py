@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from .._fric import Robot
 from .base import Result, Shown, Value, of_cable
-from .fit import LeftOut
+from .fit import LeftOut, LogValues
 from .replay import Fault, ForceError
 
 
@@ -221,6 +221,9 @@ class CableDiscovery(Value):
     """Values of the extended model by the keys of the robot file. Those of an effect are named like "stribeck.ratio"."""
     standard_errors: dict[str, float]
     """Standard errors of the fitted values."""
+    per_log: list[LogValues]
+    """What each log has of its own (`discover(..., per_log=[...])`), in the order of the logs; empty if they share all values. `parameters` has that of
+    the last log."""
     faults: list[Fault]
     """Faults of the recording, which were corrected before the model was compared with the log."""
     unexplained: Unexplained | None
@@ -280,6 +283,7 @@ class DiscoverResult(Result):
             CableDiscovery(
                 before=ForceError._of(cable.pop("before", None)),
                 after=ForceError._of(cable.pop("after", None)),
+                per_log=cable.pop("per_log", []),
                 where_in_words=words,
                 time_s=time_s,
                 residual_before_n=before_n,

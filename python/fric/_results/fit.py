@@ -23,6 +23,14 @@ class LeftOut(TypedDict):
     outliers: int
 
 
+class LogValues(TypedDict):
+    """What a log has of its own: its name, values, and their standard errors. Without a sample that counts it has no values."""
+
+    log: str
+    parameters: dict[str, float]
+    standard_errors: dict[str, float]
+
+
 class OpenPart(TypedDict):
     """Parameter of a combination that the samples do not determine."""
 
@@ -51,6 +59,9 @@ class CableFit(Value):
     """Standard errors of the fitted values."""
     undetermined: list[str]
     """Parameters that the samples do not determine. They keep their given values."""
+    per_log: list[LogValues]
+    """What each log has of its own (`fit(..., per_log=[...])`), in the order of the logs; empty if they share all values. `values` has that of the
+    last log."""
     open: list[list[OpenPart]]
     """Combinations that the samples do not determine, each a list of parts: `cable`, `parameter`, and the `step` by which the parameter changes with
     the others. The first part is the parameter of this cable that is kept."""
@@ -116,6 +127,7 @@ class FitResult(Result):
                 before=ForceError._of(cable.pop("before", None)),
                 after=ForceError._of(cable.pop("after", None)),
                 faults=cable.pop("faults", []),
+                per_log=cable.pop("per_log", []),
                 **{key: value for key, value in cable.items() if key != "mean_reference_n"},
             )
             for cable, (parameters, covariance, correlation, residuals_n) in zip(found["cables"], cables)

@@ -18,7 +18,7 @@ use fric_work::report;
 
 /// Runs the command.
 pub fn run(arguments: &DiscoverArguments) -> Outcome {
-    let DiscoverArguments { logs, model, part, output, reference, report, no_empirical, result } = arguments;
+    let DiscoverArguments { logs, model, part, output, reference, per_log, report, no_empirical, result } = arguments;
     if continuum::is_manipulator(model.as_deref()) {
         return continuum::discover::run(arguments);
     }
@@ -30,6 +30,7 @@ pub fn run(arguments: &DiscoverArguments) -> Outcome {
     output::check_distinct(&[output.as_deref(), report.as_deref(), json_file])?;
     check_named_once(logs)?;
     let part = part.part()?;
+    let per_log = per_log.zero(logs.len(), *reference)?;
     let mut inputs = logs.clone();
     inputs.extend(model.clone());
     let model = find_model(model.as_deref(), logs)?;
@@ -54,10 +55,11 @@ pub fn run(arguments: &DiscoverArguments) -> Outcome {
     read.check(&readiness)?;
     let options = DiscoverOptions { empirical: !no_empirical };
     let what = if reference == Reference::Forces { "stages" } else { "searches" };
-    let found = watched("discovering", what, |progress| Discoveries::of(&read.measurements, &options, progress))??;
+    let measurements = read.measurements.with_zero_per_log(per_log);
+    let found = watched("discovering", what, |progress| Discoveries::of(&measurements, &options, progress))??;
 
     let names = logs.iter().map(|log| shown_path(log));
-    let starts: Vec<(String, f64)> = names.zip(read.measurements.log_starts_s()).collect();
+    let starts: Vec<(String, f64)> = names.zip(measurements.log_starts_s()).collect();
     let outcome = DiscoverResult::new(&model.robot, &starts, &readiness, found.cables()).with_wrench(found.wrench());
     outcome.check_told()?;
     let mut files = Vec::new();

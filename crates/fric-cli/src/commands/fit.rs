@@ -5,6 +5,7 @@ use fric_lab::fit::readiness;
 use fric_lab::fit::result::{FitResult, Fits};
 use fric_lab::fit::{FitOptions, Parameter, Reference, Weighing, fit_wrench, rewritten};
 use fric_log::output::OutputFile;
+use fric_work::provenance::shown_path;
 use fric_work::report;
 
 use super::continuum;
@@ -16,7 +17,7 @@ use crate::warnings::warn_all;
 
 /// Runs the command.
 pub fn run(arguments: &FitArguments) -> Outcome {
-    let FitArguments { logs, model, part, output, reference, report, parameters, huber, result } = arguments;
+    let FitArguments { logs, model, part, output, reference, report, parameters, per_log, huber, result } = arguments;
     if let Some(model) = model.as_deref().filter(|model| continuum::is_manipulator(Some(model))) {
         return Err(Failure::usage(format!(
             "{} is a manipulator file, and `fit` identifies cable robots",
@@ -32,6 +33,7 @@ pub fn run(arguments: &FitArguments) -> Outcome {
         parameters: parameters.as_deref().map(named).transpose()?,
         weighing: if *huber { Weighing::Huber } else { Weighing::LeastSquares },
     };
+    let per_log = per_log.zero(logs.len(), *reference)?;
     let mut inputs = logs.clone();
     inputs.extend(model.clone());
     let model = find_model(model.as_deref(), logs)?;
@@ -44,8 +46,8 @@ pub fn run(arguments: &FitArguments) -> Outcome {
             let read = read(logs, part, &model, Reference::Forces)?;
             let readiness = readiness::by_forces(&model.robot, &read.holdings);
             warn_all(&read.check(&readiness)?);
-            let fit =
-                watched("fitting", "cables", |progress| fit_cables_corrected(&read.measurements, &options, progress))?;
+            let measurements = read.measurements.with_zero_per_log(per_log);
+            let fit = watched("fitting", "cables", |progress| fit_cables_corrected(&measurements, &options, progress))?;
             (Fits::Forces(fit.cables), fit.faults, readiness)
         }
         ReferenceName::Wrench => {
@@ -58,7 +60,8 @@ pub fn run(arguments: &FitArguments) -> Outcome {
             (Fits::Wrench(fit), Vec::new(), readiness)
         }
     };
-    let outcome = FitResult::new(&model.robot, &fits).with_faults(&faults);
+    let names: Vec<String> = logs.iter().map(|log| shown_path(log)).collect();
+    let outcome = FitResult::new(&model.robot, &names, &fits).with_faults(&faults);
     outcome.check_used()?;
     warn_all(&outcome.warnings(&fits, &readiness));
     let text = rewritten(&model.text, &model.origin, fits.cables())?;

@@ -70,11 +70,12 @@ fn entrants(
     given: &[Values],
 ) -> Vec<Vec<Values>> {
     let forces = growing.forces(current).unwrap_or_default();
+    let shifts_n = current.first().and_then(|values| growing.zero_shifts_n(values));
     let of_member = |((member, forces), (values, given)): ((&Member<'_>, &Arc<Forces>), (&Values, &Values))| {
         if catalogue::has(effect, given) {
             return vec![*values];
         }
-        let residual_n = residual_n(growing, member, forces);
+        let residual_n = residual_n(growing, member, forces, shifts_n.as_deref());
         let mut around = catalogue::around(&member.record, values[MU], white_noise(&residual_n).unwrap_or(0.0));
         around.periods = periods(&member.record, &residual_n);
         let free: Vec<Parameter> = wanted(effect, member).collect();
@@ -101,10 +102,13 @@ fn entrants(
 }
 
 /// Returns the model's residual for a cable's reference. In a fit to the wrench it is the white noise of the cable's own force, without a reference.
-fn residual_n(problem: &Problem<'_>, member: &Member<'_>, forces: &Forces) -> Vec<f64> {
+fn residual_n(problem: &Problem<'_>, member: &Member<'_>, forces: &Forces, zero_shifts_n: Option<&[f64]>) -> Vec<f64> {
     let rows = member.record.rows.iter().enumerate();
+    let shift_n = |cycle: usize| zero_shifts_n.and_then(|shifts_n| shifts_n.get(cycle)).copied().unwrap_or(0.0);
     match problem.comparison {
-        Comparison::Forces => rows.map(|(cycle, effect)| forces.at(cycle).0 - effect.reference_n).collect(),
+        Comparison::Forces => {
+            rows.map(|(cycle, effect)| forces.at(cycle).0 - effect.reference_n + shift_n(cycle)).collect()
+        }
         Comparison::Wrench { .. } => Vec::new(),
     }
 }

@@ -7,6 +7,7 @@
 pub mod determined;
 pub mod directions;
 pub mod groups;
+pub mod log_zeros;
 pub mod own_noise;
 pub mod scores;
 pub mod undetermined;

@@ -13,7 +13,8 @@ use crate::fit::rewritten::{NewValues, with_values};
 /// each effect that was found, and the monitor's `length_noise_m` where the lengths are noisy. A cable without a verdict keeps its values, and
 /// everything else stays as written. `origin` names the source of the file in error messages.
 ///
-/// A replay with the new file gives the discovery's `after` errors on the same samples, to the last bit.
+/// A replay with the new file gives the discovery's `after` errors on the same samples, to the last bit. Of a parameter with a value per log the file
+/// has that of the last one, and only on this log the replay gives the same.
 ///
 /// # Errors
 /// Returns the [`RobotFileError`] of [`rewrite`](fric_core::robot::edit::rewrite).
@@ -24,9 +25,13 @@ pub fn extended(text: &str, origin: &str, discoveries: &[CableDiscovery]) -> Res
             let found = |parameter: &Parameter| {
                 cable.findings.iter().any(|finding| finding.effect.places().contains(&parameter.place()))
             };
+            let is_per_log =
+                |parameter: &Parameter| cable.per_log.iter().flatten().any(|log| log.parameter == *parameter);
             // For a table, only the range of its own condition is written.
             let written = |parameter: &Parameter| {
-                cable.after.fitted.contains(parameter) || found(parameter) && !is_idle(parameter, &cable.after.values)
+                cable.after.fitted.contains(parameter)
+                    || is_per_log(parameter)
+                    || found(parameter) && !is_idle(parameter, &cable.after.values)
             };
             NewValues { values: &cable.after.values, parameters: Parameter::all().filter(written).collect() }
         })

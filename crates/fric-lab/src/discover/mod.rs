@@ -29,6 +29,7 @@ mod report;
 mod rest;
 pub mod result;
 mod summary;
+mod tared;
 pub mod words;
 pub(crate) mod workbench;
 mod wrench;
@@ -164,7 +165,12 @@ pub fn discover(
         let noisy = steadied.as_ref().and_then(|steadied| steadied.faults.get(place)?.clone());
         let stages = Stages::new(progress, cable::STAGES);
         let task = Task { options: *options, own: place, records: &records, progress, stages };
-        let (mut found, late) = discover_retimed(record, &task);
+        let tared = tared::tared(record, progress.stop_flag());
+        let (mut found, late) = match &tared {
+            Some((rows, _)) => discover_retimed(&record.with_signals(rows), &task),
+            None => discover_retimed(record, &task),
+        };
+        found.add_to_zeros(tared.as_ref().map_or(&[][..], |(_, changed_n)| changed_n));
         for fault in late.into_iter().chain(noisy) {
             cable::add_corrected_fault(&mut found, &given[place], fault, progress.stop_flag());
         }

@@ -11,7 +11,7 @@ use super::naming::Refusal;
 use super::readiness::Lack;
 use super::rest::neighbours::Neighbour;
 use super::rest::places::Place;
-use crate::fit::{CableRecord, Parameter, SampleCounts};
+use crate::fit::{CableRecord, LogValue, Parameter, SampleCounts};
 use crate::replay::Deviation;
 
 /// The verdict on a cable.
@@ -122,6 +122,9 @@ pub struct CableDiscovery {
     pub before: Model,
     /// The extended model; equal to the given one if nothing was found.
     pub after: Model,
+    /// The value of each log of its own in the extended model, in the order of the logs; `None` for a log without a sample that counts, and nothing if
+    /// all logs share all parameters. `after` holds the value of the last log.
+    pub per_log: Vec<Option<LogValue>>,
     /// The effects found, in the order in which they entered.
     pub findings: Vec<Finding>,
     /// Every candidate alone beside the given model, the best first.
@@ -158,6 +161,25 @@ impl Model {
 }
 
 impl CableDiscovery {
+    /// Returns the standard error of a parameter of the extended model, in its unit; `None` if it was not fitted.
+    #[must_use]
+    pub fn standard_error(&self, parameter: &Parameter) -> Option<f64> {
+        let last = LogValue::last(&self.per_log).filter(|last| last.parameter == *parameter);
+        last.map(|last| last.standard_error).or_else(|| self.after.standard_error(parameter))
+    }
+
+    /// Takes over that the zeros of the logs were changed in the data by so much before, N.
+    pub(crate) fn add_to_zeros(&mut self, changed_n: &[f64]) {
+        for (log, changed_n) in self.per_log.iter_mut().zip(changed_n) {
+            if let Some(log) = log {
+                log.value += changed_n;
+            }
+        }
+        if let Some(last) = LogValue::last(&self.per_log) {
+            self.after.values[last.parameter.place()] = last.value;
+        }
+    }
+
     /// Returns the result of a cable without a verdict.
     pub(crate) fn untold(record: &CableRecord<'_>, samples: SampleCounts, lack: Lack) -> Self {
         let model = Model {
@@ -175,6 +197,7 @@ impl CableDiscovery {
             verdict: Verdict::Untold,
             before: model.clone(),
             after: model,
+            per_log: Vec::new(),
             findings: Vec::new(),
             candidates: Vec::new(),
             tried: Vec::new(),

@@ -1,6 +1,7 @@
 //! The result of a discovery for people: the verdicts of all cables, then the findings on each.
 
 use super::result::{DiscoverCableResult, DiscoverResult, EffectResult, WrenchComponent, WrenchGap};
+use crate::fit::summary::log_table;
 use crate::text::{listed, table, wrapped};
 
 /// Width of the label column, in characters.
@@ -25,6 +26,7 @@ pub(crate) fn describe(result: &DiscoverResult) -> String {
         text.push('\n');
         text += &wrapped("", LEGEND);
     }
+    text += &log_table(result.cables.iter().map(|cable| (cable.name.as_str(), cable.per_log.as_slice())));
     for effect in &result.common_effects {
         text += "\n";
         text += &wrapped("", &effect.in_words(result.cables.len()));

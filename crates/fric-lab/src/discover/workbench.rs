@@ -148,6 +148,13 @@ impl<'a> Workbench<'a> {
             let row = self.record.rows.get(cycle);
             left_n(cycle) + row.map_or(f64::NAN, |row| row.reference_n - frictionless_n(row))
         };
+        // Zeros of the logs are no part of what the model adds.
+        let without_zeros_n = problem.per_log().map(|_| bench.added_with(&problem, &values));
+        let added_n = |cycle: usize| match &without_zeros_n {
+            Some(added_n) if left_n(cycle).is_finite() => added_n.get(cycle).copied().unwrap_or(f64::NAN),
+            Some(_) => f64::NAN,
+            None => added_n(cycle),
+        };
         let squares = |held_out: bool, number: &dyn Fn(usize) -> f64| -> f64 {
             let blocks = self.blocks.iter().filter(|block| block.held_out == held_out);
             let numbers = blocks.flat_map(|block| block.cycles.clone()).map(number);
@@ -164,14 +171,19 @@ impl<'a> Workbench<'a> {
         }
     }
 
-    /// Returns the force of the model minus the reference in each cycle, N; NaN where a sample does not count.
+    /// Returns the force of the model minus the reference in each cycle, N; NaN where a sample does not count. Where each log has a zero of its own, the
+    /// training samples of a log determine it.
     pub fn residuals_n(&self, values: &Values) -> Vec<f64> {
         self.residuals_with(&self.problem(&[], None), values)
     }
 
     /// Returns what the model adds in each cycle to the force that the sensor implies without friction, N.
     pub fn added_n(&self, values: &Values) -> Vec<f64> {
-        let forces = self.problem(&[], None).forces(&[*values]).unwrap_or_default();
+        self.added_with(&self.problem(&[], None), values)
+    }
+
+    fn added_with(&self, problem: &Problem<'_>, values: &Values) -> Vec<f64> {
+        let forces = problem.forces(&[*values]).unwrap_or_default();
         let gain = self.record.params.frictionless_gain();
         let added_n = |(cycle, row): (usize, &Row)| {
             let force_n = forces.first().map_or(f64::NAN, |forces| forces.at(cycle).0);
@@ -188,8 +200,11 @@ impl<'a> Workbench<'a> {
     fn residuals_with(&self, problem: &Problem<'_>, values: &Values) -> Vec<f64> {
         let forces = problem.forces(&[*values]).unwrap_or_default();
         let force_n = |cycle: usize| forces.first().map_or(f64::NAN, |forces| forces.at(cycle).0);
+        let by_zeros_n = problem.zero_shifts_n(values);
+        let shift_n = |cycle: usize| by_zeros_n.as_ref().and_then(|of| of.get(cycle)).copied().unwrap_or(0.0);
+        let left_n = |cycle: usize, row: &Row| force_n(cycle) - row.reference_n + shift_n(cycle);
         let rows = self.record.rows.iter().zip(self.counts).enumerate();
-        rows.map(|(cycle, (row, counts))| if *counts { force_n(cycle) - row.reference_n } else { f64::NAN }).collect()
+        rows.map(|(cycle, (row, counts))| if *counts { left_n(cycle, row) } else { f64::NAN }).collect()
     }
 }
 

@@ -8,21 +8,26 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::thread;
 
-use super::report::{CableFit, ForceErrors, OpenCombination};
+use super::report::{CableFit, ForceErrors, LogValue, OpenCombination};
 use super::{FitOptions, Progress, start};
 use crate::candidates::newcomers::with_newcomers;
+use crate::certainty::log_zeros::{LogZeroEstimate, log_zeros};
+use crate::replay::Deviation;
 use crate::samples::interpolated::measured;
-use crate::samples::record::{CableRecord, Measurements};
+use crate::samples::record::{CableRecord, LogZero, Measurements, PerLog, Row};
 use crate::samples::selection;
 use crate::samples::selection::Standing;
 use crate::search::gang::{Gang, Seat};
 use crate::search::pass::Forces;
 use crate::search::problem::{Comparison, Loss, Member, Problem};
-use crate::search::solve::{Solution, solve};
+use crate::search::solve::{NEAR_ERRORS, Solution, solve};
 use crate::search::vector::Parameter;
 
 /// Another fit is run if the warm-up estimate was wrong by more than this percentage of the samples.
 const MISJUDGED_PERCENT: usize = 1;
+/// Maximum number of fits with the zeros of a sensor changed in the signals. What a fit leaves is of second order in its change of the zeros, so that the
+/// second one is usually the last.
+const MOST_TARES: usize = 4;
 
 /// Fits every cable that has a reference.
 #[must_use]
@@ -60,10 +65,56 @@ fn fit_cable<'a>(
     progress: &'a Progress,
     seat: Seat<'a>,
 ) -> Vec<CableFit> {
+    if let Some(PerLog { zero: LogZero::Sensor, .. }) = record.per_log {
+        drop(seat);
+        return with_sensor_zeros(record, options, progress.stop_flag());
+    }
     let search = Search::run(record, &prepared(record), options, progress.stop_flag(), seat);
+    let zeros = search.log_zeros();
     // The errors must be those that a replay finds.
     search.problem.forget_step();
-    cable_fits(&search.problem, &[record.params.values()], &search.solution, &search.standings)
+    let mut fits = cable_fits(&search.problem, &[record.params.values()], &search.solution, &search.standings);
+    for fit in &mut fits {
+        with_log_values(fit, record, &zeros, &[]);
+    }
+    fits
+}
+
+/// Fits a cable whose sensor has a zero of its own in each log. Friction in presliding is not quite linear in the zero, so what is found is changed in
+/// the signals, until a fit finds nothing more.
+fn with_sensor_zeros(record: &CableRecord<'_>, options: &FitOptions, stop: &AtomicBool) -> Vec<CableFit> {
+    let mut changed_n = vec![0.0; record.logs().count()];
+    let mut rounds = 0;
+    loop {
+        rounds += 1;
+        let rows = record.with_zeros(&changed_n);
+        let tared = record.with_signals(&rows);
+        let gang = Gang::new(1, stop);
+        let search = Search::run(&tared, &prepared(&tared), options, stop, gang.seat(0));
+        let zeros = search.log_zeros();
+        let is_near = |zero: &LogZeroEstimate| zero.change_n.abs() <= NEAR_ERRORS * zero.standard_error_n;
+        if rounds == MOST_TARES || zeros.iter().flatten().all(is_near) {
+            search.problem.forget_step();
+            let mut fits = cable_fits(&search.problem, &[record.params.values()], &search.solution, &search.standings);
+            for fit in &mut fits {
+                fit.errors.before_n = frictionless_errors(record);
+                with_log_values(fit, record, &zeros, &changed_n);
+            }
+            return fits;
+        }
+        for (changed_n, zero) in changed_n.iter_mut().zip(&zeros) {
+            *changed_n += zero.map_or(0.0, |zero| zero.change_n);
+        }
+    }
+}
+
+/// Adds the values of each log to a fit, which gets that of the last log.
+fn with_log_values(fit: &mut CableFit, record: &CableRecord<'_>, zeros: &[Option<LogZeroEstimate>], changed_n: &[f64]) {
+    let Some(PerLog { zero, .. }) = record.per_log else { return };
+    fit.per_log = LogValue::of_logs(zero, &fit.values, zeros, changed_n);
+    if let Some(last) = LogValue::last(&fit.per_log) {
+        fit.values[zero.place()] = last.value;
+    }
 }
 
 /// The whole search for the parameters of a cable.
@@ -90,7 +141,7 @@ impl<'a> Search<'a> {
     ) -> Self {
         let given = record.params.values();
         let problem = Problem {
-            members: vec![Member { record: *record, free: options.free(record.params) }],
+            members: vec![Member { record: *record, free: options.shared(record) }],
             comparison: Comparison::Forces,
             loss: Loss::Squares,
             used: used(all),
@@ -114,6 +165,13 @@ impl<'a> Search<'a> {
             solution.evaluation_count += evaluation_count;
         }
         Self { problem, start, solution, standings }
+    }
+}
+
+impl Search<'_> {
+    /// Returns the zero of each log; nothing if all logs have the same.
+    fn log_zeros(&self) -> Vec<Option<LogZeroEstimate>> {
+        self.solution.values.first().map_or_else(Vec::new, |values| log_zeros(&self.problem, values))
     }
 }
 
@@ -176,6 +234,7 @@ pub(crate) fn cable_fits(
     standings: &[Standing],
 ) -> Vec<CableFit> {
     let forces = problem.forces(&solution.values).unwrap_or_default();
+    let shifts_n = solution.values.first().and_then(|values| problem.zero_shifts_n(values));
     let is_of = |member: usize, open: &OpenCombination| open.parts.first().is_some_and(|held| held.cable == member);
     let members = problem.members.iter().zip(given).enumerate();
     members
@@ -192,6 +251,7 @@ pub(crate) fn cable_fits(
             CableFit {
                 samples: selection::count(standings),
                 values,
+                per_log: Vec::new(),
                 fitted,
                 undetermined: undetermined.map(|unknown| unknown.parameter).collect(),
                 open: solution.open.iter().filter(|open| is_of(member, open)).cloned().collect(),
@@ -204,7 +264,9 @@ pub(crate) fn cable_fits(
                 covariance: solution.covariance.select_rows(&places).select_columns(&places),
                 termination: solution.termination,
                 evaluation_count: solution.evaluation_count,
-                errors: forces.get(member).map_or_else(ForceErrors::default, |forces| force_errors(&of.record, forces)),
+                errors: forces
+                    .get(member)
+                    .map_or_else(ForceErrors::default, |forces| force_errors(&of.record, forces, shifts_n.as_deref())),
             }
         })
         .collect()
@@ -214,8 +276,15 @@ pub(crate) fn cable_fits(
 #[must_use]
 pub fn residuals_n(measurements: &Measurements<'_>, fits: &[CableFit]) -> Vec<Vec<f64>> {
     let stop = AtomicBool::new(false);
+    let records: Vec<CableRecord<'_>> = measurements.cables().collect();
+    let tared = |(record, fit): (&CableRecord<'_>, &CableFit)| fit.tared(record);
+    let tared: Vec<Option<Vec<Row>>> = records.iter().zip(fits).map(tared).collect();
+    let tared = records.iter().zip(&tared).map(|(record, rows)| match rows {
+        Some(rows) => record.with_signals(rows),
+        None => *record,
+    });
     let problem = Problem {
-        members: measurements.cables().map(|record| Member { record, free: Vec::new() }).collect(),
+        members: tared.map(|record| Member { record, free: Vec::new() }).collect(),
         comparison: Comparison::Forces,
         loss: Loss::Squares,
         used: Vec::new(),
@@ -232,13 +301,22 @@ pub fn residuals_n(measurements: &Measurements<'_>, fits: &[CableFit]) -> Vec<Ve
 
 /// Returns the errors of the force at the platform without and with compensation, over every sample that has a reference, including flagged ones, as
 /// in a replay.
-fn force_errors(record: &CableRecord<'_>, forces: &Forces) -> ForceErrors {
-    let gain = record.params.frictionless_gain();
-    let mut errors = ForceErrors::default();
+fn force_errors(record: &CableRecord<'_>, forces: &Forces, zero_shifts_n: Option<&[f64]>) -> ForceErrors {
+    let mut errors = ForceErrors { before_n: frictionless_errors(record), ..ForceErrors::default() };
     for (cycle, row) in record.rows.iter().enumerate().filter(|(_, row)| row.reference_n.is_finite()) {
         errors.reference_n.add(row.reference_n);
-        errors.before_n.add(row.signals.sensor_force_n * gain - row.reference_n);
-        errors.after_n.add(forces.at(cycle).0 - row.reference_n);
+        let shift_n = zero_shifts_n.and_then(|shifts_n| shifts_n.get(cycle)).copied();
+        errors.after_n.add(forces.at(cycle).0 - row.reference_n + shift_n.unwrap_or(0.0));
     }
     errors
+}
+
+/// Returns the error of the force at the platform without compensation, over every sample that has a reference.
+fn frictionless_errors(record: &CableRecord<'_>) -> Deviation {
+    let gain = record.params.frictionless_gain();
+    let known = record.rows.iter().filter(|row| row.reference_n.is_finite());
+    known.fold(Deviation::default(), |mut sum, row| {
+        sum.add(row.signals.sensor_force_n * gain - row.reference_n);
+        sum
+    })
 }

@@ -5,6 +5,7 @@ use fric_core::effects::Effect;
 use fric_core::parameters::OFFSET;
 
 use crate::candidates::ripple::is_period;
+use crate::samples::record::{CableRecord, LogZero};
 use crate::search::solve::Weighing;
 use crate::search::vector::Parameter;
 
@@ -18,6 +19,20 @@ pub struct FitOptions {
 }
 
 impl FitOptions {
+    /// Returns the free parameters of a cable that all its logs share: not the zero that each log has of its own, nor by default the other zero, whose
+    /// effect on the force is nearly the same.
+    pub(crate) fn shared(&self, record: &CableRecord<'_>) -> Vec<Parameter> {
+        let mut free = self.free(record.params);
+        if let Some(per_log) = record.per_log {
+            let is_wanted = |zero: &LogZero| *zero != per_log.zero && self.parameters.is_some();
+            let is_zero = |parameter: &Parameter| {
+                LogZero::ALL.iter().any(|zero| parameter.place() == zero.place() && !is_wanted(zero))
+            };
+            free.retain(|parameter| !is_zero(parameter));
+        }
+        free
+    }
+
     /// Returns the free parameters of a cable.
     pub(crate) fn free(&self, params: &CableParams) -> Vec<Parameter> {
         self.parameters.clone().unwrap_or_else(|| {

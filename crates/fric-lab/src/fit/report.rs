@@ -3,7 +3,9 @@
 use fric_core::parameters::Values;
 use nalgebra::DMatrix;
 
+use crate::certainty::log_zeros::LogZeroEstimate;
 use crate::replay::{Deviation, WrenchErrors, WrenchReference};
+use crate::samples::record::{CableRecord, LogZero, Row};
 use crate::samples::selection::SampleCounts;
 use crate::search::optimizer::Termination;
 use crate::search::vector::Parameter;
@@ -37,13 +39,51 @@ pub struct OpenPart {
     pub step: f64,
 }
 
+/// The value of a parameter in one of several logs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LogValue {
+    /// The parameter.
+    pub parameter: Parameter,
+    /// Its value, in its unit.
+    pub value: f64,
+    /// Its standard error.
+    pub standard_error: f64,
+}
+
+impl LogValue {
+    /// Returns the values of all logs from their zeros, which differ from the model's values and from what has been changed in the data already.
+    pub(crate) fn of_logs(
+        zero: LogZero,
+        values: &Values,
+        estimates: &[Option<LogZeroEstimate>],
+        changed_n: &[f64],
+    ) -> Vec<Option<Self>> {
+        let parameter = Parameter::all().find(|parameter| parameter.place() == zero.place());
+        let changed_n = changed_n.iter().copied().chain(std::iter::repeat(0.0));
+        let of_log = |(estimate, changed_n): (&Option<LogZeroEstimate>, f64)| {
+            let LogZeroEstimate { change_n, standard_error_n } = (*estimate)?;
+            let value = values[zero.place()] + changed_n + change_n;
+            Some(Self { parameter: parameter?, value, standard_error: standard_error_n })
+        };
+        estimates.iter().zip(changed_n).map(of_log).collect()
+    }
+
+    /// Returns the value that stands for all logs in a robot file: that of the last one, whose zero is the latest.
+    pub(crate) fn last(logs: &[Option<Self>]) -> Option<Self> {
+        logs.iter().rev().flatten().next().copied()
+    }
+}
+
 /// One cable's parameters and their uncertainty.
 #[derive(Clone, Debug)]
 pub struct CableFit {
     /// Sample counts by use.
     pub samples: SampleCounts,
-    /// All parameters, fitted or not.
+    /// All parameters, fitted or not. Of a parameter with a value per log it is that of the last log.
     pub values: Values,
+    /// The value of each log of its own, in the order of the logs; `None` for a log without a sample that counts, and nothing if all logs share all
+    /// parameters.
+    pub per_log: Vec<Option<LogValue>>,
     /// The fitted parameters, in the order of the covariance.
     pub fitted: Vec<Parameter>,
     /// The parameters that the samples do not determine; `values` holds the given values.
@@ -81,8 +121,18 @@ impl CableFit {
     /// Returns the standard error of a parameter, in its unit; `None` if it was not fitted.
     #[must_use]
     pub fn standard_error(&self, parameter: &Parameter) -> Option<f64> {
+        if let Some(last) = LogValue::last(&self.per_log).filter(|last| last.parameter == *parameter) {
+            return Some(last.standard_error);
+        }
         let place = self.fitted.iter().position(|fitted| fitted == parameter)?;
         Some(self.covariance.get((place, place))?.sqrt())
+    }
+
+    /// Returns a cable's cycles with the zero of each log changed in the data, so that `values` hold for all; `None` if all logs have the same zero.
+    pub(crate) fn tared(&self, record: &CableRecord<'_>) -> Option<Vec<Row>> {
+        let last = LogValue::last(&self.per_log)?;
+        let change_n = |log: &Option<LogValue>| log.map_or(0.0, |log| log.value - last.value);
+        Some(record.with_zeros(&self.per_log.iter().map(change_n).collect::<Vec<_>>()))
     }
 
     /// Returns the correlations of the fitted parameters, −1 to 1, in the order of the covariance; NaN for a parameter without an error.

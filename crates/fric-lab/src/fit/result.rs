@@ -7,7 +7,7 @@ use serde::{Serialize, Serializer};
 
 use super::error::FitError;
 use super::readiness::Readiness;
-use super::report::{CableFit, OpenCombination, OpenPart, WrenchFit};
+use super::report::{CableFit, LogValue, OpenCombination, OpenPart, WrenchFit};
 use super::summary;
 use crate::discover::RecordingFault;
 use crate::discover::result::FaultResult;
@@ -70,6 +70,9 @@ pub struct FitCableResult {
     pub standard_errors: Numbers,
     /// Parameters that the samples do not determine; they keep the given value.
     pub undetermined: Vec<String>,
+    /// What each log has of its own, in the order of the logs; absent if they share all parameters. `parameters` has the value of the last log.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub per_log: Vec<LogValues>,
     /// Combinations that the samples leave open: a kept parameter of this cable, with the parameters that change with it.
     pub open: Vec<OpenResult>,
     /// Parameters at a bound that the samples would move beyond it.
@@ -86,6 +89,38 @@ pub struct FitCableResult {
     /// Faults of the recording that were corrected before the fit.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<FaultResult>,
+}
+
+/// What a log has of its own. Without a sample that counts it has no values.
+#[derive(Clone, Debug, Serialize)]
+pub struct LogValues {
+    /// Its name.
+    pub log: String,
+    /// Values by parameter.
+    pub parameters: Numbers,
+    /// Their standard errors.
+    pub standard_errors: Numbers,
+}
+
+impl LogValues {
+    /// What the values mean, one sentence without its full stop.
+    pub const EXPLANATION: &str = "each log has its own value, and the robot file that of the last one";
+
+    /// Returns the results of all logs.
+    pub(crate) fn of_logs(logs: &[Option<LogValue>], names: &[String]) -> Vec<Self> {
+        let of_log = |(place, value): (usize, &Option<LogValue>)| {
+            let numbers = |number: fn(&LogValue) -> f64| {
+                let of = value.iter().map(|value| (value.parameter.to_string(), number(value)));
+                Numbers(of.filter(|(_, number)| number.is_finite()).collect())
+            };
+            Self {
+                log: names.get(place).cloned().unwrap_or_else(|| format!("log {}", place + 1)),
+                parameters: numbers(|value| value.value),
+                standard_errors: numbers(|value| value.standard_error),
+            }
+        };
+        logs.iter().enumerate().map(of_log).collect()
+    }
 }
 
 /// A combination of parameters that the samples leave open: changing them together by these steps has no effect.
@@ -150,9 +185,9 @@ impl FitResult {
     /// Name and version of the format.
     pub const FORMAT: &str = "fric-fit/1";
 
-    /// Creates the result of a robot's fits.
+    /// Creates the result of a robot's fits to logs with these names.
     #[must_use]
-    pub fn new(robot: &RobotFile, fits: &Fits) -> Self {
+    pub fn new(robot: &RobotFile, logs: &[String], fits: &Fits) -> Self {
         let names = robot.cable_names();
         let cables = names.iter().zip(fits.cables());
         let (reference, wrench) = match fits {
@@ -167,7 +202,7 @@ impl FitResult {
             format: Self::FORMAT,
             robot: robot.options().name.clone(),
             reference,
-            cables: cables.map(|(name, fit)| cable_result(name, fit, &names)).collect(),
+            cables: cables.map(|(name, fit)| cable_result(name, fit, &names, logs)).collect(),
             wrench,
         }
     }
@@ -255,10 +290,11 @@ fn open_result(open: &OpenCombination, names: &[&str]) -> Option<OpenResult> {
     (parts.len() > 1).then_some(OpenResult(parts))
 }
 
-fn cable_result(name: &str, fit: &CableFit, names: &[&str]) -> FitCableResult {
+fn cable_result(name: &str, fit: &CableFit, names: &[&str], logs: &[String]) -> FitCableResult {
     let shown = |parameter: &Parameter| {
         let value = fit.values[parameter.place()];
         let relevant = parameter.is_friction()
+            || fit.per_log.iter().flatten().any(|log| log.parameter == *parameter)
             || [&fit.fitted, &fit.undetermined, &fit.at_bound].iter().any(|list| list.contains(parameter));
         (relevant && value < NO_PRESLIDING_N_PER_M).then(|| (parameter.to_string(), value))
     };
@@ -278,6 +314,7 @@ fn cable_result(name: &str, fit: &CableFit, names: &[&str]) -> FitCableResult {
         parameters: Numbers(Parameter::all().filter_map(|parameter| shown(&parameter)).collect()),
         standard_errors: Numbers(Parameter::all().filter_map(|parameter| error(&parameter)).collect()),
         undetermined: fit.undetermined.iter().map(ToString::to_string).collect(),
+        per_log: LogValues::of_logs(&fit.per_log, logs),
         open: fit.open.iter().filter_map(|open| open_result(open, names)).collect(),
         at_bound: fit.at_bound.iter().map(ToString::to_string).collect(),
         before: ForceError::of(&fit.errors.before_n),

@@ -174,7 +174,8 @@ fn slide(problem: &Problem<'_>, given: &[Values], cycle_s: f64) -> Vec<Values> {
 /// Returns residuals and Jacobian of sliding samples. Without presliding a cycle does not depend on earlier ones, so for a single cable some evenly
 /// spread cycles suffice.
 fn sliding_gram(problem: &Problem<'_>, values: &[Values]) -> Option<Gram> {
-    let stiff = values.iter().all(|of| of[SIGMA] >= NO_PRESLIDING_N_PER_M);
+    // Cycles without their log have no zero of their own.
+    let stiff = problem.per_log().is_none() && values.iter().all(|of| of[SIGMA] >= NO_PRESLIDING_N_PER_M);
     let (Comparison::Forces, [member], true) =
         (&problem.comparison, problem.members.as_slice(), stiff && is_simple(problem))
     else {

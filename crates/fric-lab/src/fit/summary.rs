@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use fric_core::effects::Effect;
 use fric_core::parameters::{FRICTION_COUNT, MU, OFFSET, SIGMA, VISCOUS};
 
-use super::result::{FitCableResult, FitResult, Numbers, OpenPartResult, OpenResult};
+use super::result::{FitCableResult, FitResult, LogValues, Numbers, OpenPartResult, OpenResult};
 use crate::discover::words::recording_lines;
 use crate::search::vector::Parameter;
 use crate::text::{digits_of, number, plain, table, wrapped};
@@ -25,6 +25,7 @@ pub(crate) fn describe(result: &FitResult) -> String {
     for effect in Effect::CATALOGUE {
         text += &effect_table(result, *effect);
     }
+    text += &log_table(result.cables.iter().map(|cable| (cable.name.as_str(), cable.per_log.as_slice())));
     text += "\nsamples\n\n";
     text += &sample_table(result);
     text += &recording_lines(result.cables.iter().map(|cable| (cable.name.as_str(), cable.faults.as_slice())));
@@ -217,6 +218,27 @@ fn effect_table(result: &FitResult, effect: Effect) -> String {
     } else {
         format!("\n{}", table_of(result, &effect.to_string(), &columns, None))
     }
+}
+
+/// Returns what each log has of its own on each cable, and what of it stands in a robot file; empty if the logs share all parameters.
+pub(crate) fn log_table<'a>(cables: impl Iterator<Item = (&'a str, &'a [LogValues])>) -> String {
+    let (mut rows, mut parameter) = (Vec::new(), None);
+    for (name, logs) in cables {
+        for log in logs {
+            let value = log.parameters.0.first();
+            let error = value.and_then(|(name, _)| log.standard_errors.get(name));
+            parameter = parameter.or(value.map(|(name, _)| name.as_str()));
+            rows.push(vec![
+                name.to_owned(),
+                log.log.clone(),
+                cell(value.map(|(_, value)| number(*value, error.map_or(4, digits_of)))),
+                cell(error.map(plain)),
+            ]);
+        }
+    }
+    let Some(parameter) = parameter else { return String::new() };
+    let title = format!("{parameter}: {}", LogValues::EXPLANATION);
+    format!("\n{}\n{}", wrapped("", &title), table(&["cable", "log", &format!("{parameter}\n[N]"), "±"], 2, &rows))
 }
 
 /// Returns the table of the training samples; one row if it is the same for all cables.

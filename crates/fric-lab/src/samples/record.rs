@@ -5,7 +5,8 @@
 
 use std::ops::Range;
 
-use fric_core::effects::UNKNOWN;
+use fric_core::effects::{UNKNOWN, sensor_offset};
+use fric_core::parameters::OFFSET;
 use fric_core::robot::RobotParams;
 use fric_core::signals::{BEFORE_FIRST, Conditioned, RawSignals, SignalLimits, SignalState, condition, next_cycle};
 use fric_core::{CableInput, CableParams, Pose, PoseWrap, Sample, Wrench};
@@ -36,6 +37,37 @@ impl Reference {
             Self::Wrench => "wrench",
         }
     }
+}
+
+/// A zero that may differ from log to log, because the sensors are tared anew for each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LogZero {
+    /// That of the force at the platform, `offset_n`.
+    Platform,
+    /// That of the force sensor, `sensor_offset.offset_n`.
+    Sensor,
+}
+
+impl LogZero {
+    /// All zeros.
+    pub const ALL: [Self; 2] = [Self::Platform, Self::Sensor];
+
+    /// Returns the index of its parameter in [`Values`](fric_core::parameters::Values).
+    #[must_use]
+    pub const fn place(self) -> usize {
+        match self {
+            Self::Platform => OFFSET,
+            Self::Sensor => sensor_offset::OFFSET,
+        }
+    }
+}
+
+/// How a fit treats a zero that each log has of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct PerLog {
+    pub zero: LogZero,
+    /// Whether each log's zero has a column of its own in the Jacobian, instead of being eliminated.
+    pub in_columns: bool,
 }
 
 /// One cycle of one cable.
@@ -79,6 +111,7 @@ pub struct Measurements<'a> {
     reference: Reference,
     cables: Vec<Vec<Row>>,
     platform: PlatformRecord,
+    per_log: Option<LogZero>,
     starts: Vec<usize>,
     times_s: Vec<f64>,
     log_start: LogStart,
@@ -105,6 +138,7 @@ impl<'a> Measurements<'a> {
             reference,
             cables: vec![Vec::new(); count],
             platform: PlatformRecord::default(),
+            per_log: None,
             starts: Vec::new(),
             times_s: Vec::new(),
             log_start: LogStart::default(),
@@ -113,6 +147,12 @@ impl<'a> Measurements<'a> {
             signals: vec![SignalState::start(); count],
             pose_wraps: vec![PoseWrap::START; count],
         }
+    }
+
+    /// Lets each log have a zero of its own, in all fits to forces.
+    #[must_use]
+    pub fn with_zero_per_log(self, zero: Option<LogZero>) -> Self {
+        Self { per_log: zero, ..self }
     }
 
     /// Starts another log: the memory of a cable does not carry over.
@@ -217,7 +257,18 @@ impl<'a> Measurements<'a> {
         let cycle_s = self.robot.cycle_s();
         let interval_s = usual_interval_s(times_s).unwrap_or(cycle_s);
         let length_play_m = self.robot.monitor().length_noise_m;
-        Some(CableRecord { params, rows, starts, times_s, cycle_s, interval_s, reference_is_known, length_play_m })
+        let per_log = self.per_log.map(|zero| PerLog { zero, in_columns: false });
+        Some(CableRecord {
+            params,
+            rows,
+            starts,
+            times_s,
+            cycle_s,
+            interval_s,
+            reference_is_known,
+            length_play_m,
+            per_log,
+        })
     }
 
     /// Returns all cables in order.
@@ -277,9 +328,27 @@ pub struct CableRecord<'a> {
     pub(crate) reference_is_known: bool,
     /// Play to either side within which a change of the measured length counts as noise, m.
     pub(crate) length_play_m: f64,
+    /// The zero that each log has of its own.
+    pub(crate) per_log: Option<PerLog>,
 }
 
 impl<'a> CableRecord<'a> {
+    /// Returns the cycles with the zero of each log changed by so much, N, in the data instead of the parameter: a model with the common zero leaves on
+    /// them what it leaves with a zero per log.
+    pub(crate) fn with_zeros(&self, changes_n: &[f64]) -> Vec<Row> {
+        let mut rows = self.rows.to_vec();
+        let Some(PerLog { zero, .. }) = self.per_log else { return rows };
+        for ((start, log), change_n) in self.logs().zip(changes_n) {
+            for row in rows.iter_mut().skip(start).take(log.len()) {
+                match zero {
+                    LogZero::Platform => row.reference_n -= change_n,
+                    LogZero::Sensor => row.signals.sensor_force_n -= change_n,
+                }
+            }
+        }
+        rows
+    }
+
     /// Returns a stretch of its cycles, as a log of its own.
     pub(crate) fn stretch(&self, cycles: &Range<usize>) -> Self {
         let rows = self.rows.get(cycles.clone()).unwrap_or_default();

@@ -2,7 +2,8 @@
 //!
 //! [`pass`] runs the cycle of `fric-core` over records in numbers that carry derivatives ([`dual`]), in four lanes. The searches of several cables share
 //! one pass through a [`gang`]. [`problem`] defines residuals and Jacobian, and [`gram`] reduces them to a small triangle as they are computed.
-//! [`optimizer`] runs Levenberg–Marquardt on the triangle in the coordinates of [`vector`]. [`solve`] handles outliers and undetermined parameters.
+//! [`optimizer`] runs Levenberg–Marquardt on the triangle in the coordinates of [`vector`]. [`solve`] handles outliers and undetermined parameters. [`zeros`] eliminates
+//! what each of several logs has of its own.
 
 pub mod dual;
 pub mod gang;
@@ -12,3 +13,4 @@ pub mod pass;
 pub mod problem;
 pub mod solve;
 pub mod vector;
+pub mod zeros;

@@ -15,13 +15,14 @@ use fric_core::{LANES, Lanes};
 use nalgebra::{DMatrix, Matrix6, Vector6};
 use rayon::prelude::*;
 
-use super::gang::{Seat, all_forces};
+use super::gang::{Seat, all_forces, forces_of};
 use super::gram::Gram;
 use super::pass::{CandidatePass, Forces, LanePass, Part, with_width_for};
 use super::vector::Parameter;
+use super::zeros::Zeros;
 use crate::certainty::groups::Groups;
 use crate::certainty::scores::Scores;
-use crate::samples::record::CableRecord;
+use crate::samples::record::{CableRecord, LogZero, PerLog};
 
 /// Number of samples that are evaluated before they are assembled.
 const CHUNK: usize = 2048;
@@ -35,9 +36,12 @@ pub struct Member<'a> {
 }
 
 impl<'a> Member<'a> {
-    /// Returns the cable's part in a pass.
+    /// Returns the cable's part in a pass. The derivative with respect to a sensor's zero per log comes behind those of the free parameters.
     fn part(&self, values: &Values, derivatives: bool) -> Part<'a> {
-        let free = if derivatives { self.free.clone() } else { Vec::new() };
+        let mut free = if derivatives { self.free.clone() } else { Vec::new() };
+        if derivatives && self.record.per_log.is_some_and(|per_log| per_log.zero == LogZero::Sensor) {
+            free.extend(Parameter::all().filter(|parameter| parameter.place() == LogZero::Sensor.place()));
+        }
         Part { record: self.record, values: *values, free }
     }
 }
@@ -106,9 +110,11 @@ pub struct Problem<'a> {
 pub type Rows<'a> = std::slice::ChunksExact<'a, f64>;
 
 impl Problem<'_> {
-    /// Returns the number of free parameters of all cables.
+    /// Returns the number of columns of the Jacobian: the free parameters of all cables, and a zero of each log if these have columns.
     pub fn parameter_count(&self) -> usize {
-        self.members.iter().map(|member| member.free.len()).sum()
+        let zeros = self.per_log().filter(|(_, per_log)| per_log.in_columns);
+        let zero_count = zeros.map_or(0, |(member, _)| member.record.logs().count());
+        self.members.iter().map(|member| member.free.len()).sum::<usize>() + zero_count
     }
 
     /// Returns the number of residuals that count.
@@ -203,6 +209,7 @@ impl Problem<'_> {
         let width = count.next_multiple_of(LANES);
         let counted_from = cycles.start + cycles.len() / 8;
         let mut sums = vec![0.0; count];
+        let (mut totals, mut count_of_samples) = (vec![0.0; count], 0.0);
         let mut of_sample = vec![0.0; self.members.len()];
         let mut residuals = Vec::new();
         for from in cycles.clone().step_by(CHUNK) {
@@ -223,8 +230,16 @@ impl Problem<'_> {
                     }
                     self.compare(place, &of_sample, &mut residuals);
                     *sum += residuals.iter().map(|residual| self.loss.root(*residual).0.powi(2)).sum::<f64>();
+                    if let (Some(total), Some(residual)) = (totals.get_mut(candidate), residuals.first()) {
+                        *total += residual;
+                    }
                 }
+                count_of_samples += 1.0;
             }
+        }
+        // A zero of this log takes up the mean of its residuals.
+        if self.per_log().is_some() && count_of_samples > 0.0 {
+            sums.iter_mut().zip(&totals).for_each(|(sum, total)| *sum -= total * total / count_of_samples);
         }
         sums
     }
@@ -318,6 +333,9 @@ impl<'a> Problem<'a> {
 
     /// Evaluates all samples that count, with or without derivatives with respect to the free parameters. Returns false if stopped.
     pub fn visit(&self, values: &[Values], derivatives: bool, visit: impl FnMut(usize, Rows<'_>)) -> bool {
+        if let (Some((member, per_log)), [values]) = (self.per_log(), values) {
+            return self.visit_logs((member, per_log), values, derivatives, visit);
+        }
         let parts: Vec<Part<'a>> =
             self.members.iter().zip(values).map(|(member, values)| member.part(values, derivatives)).collect();
         if let (Some(seat), [part]) = (&self.seat, parts.as_slice()) {
@@ -326,6 +344,105 @@ impl<'a> Problem<'a> {
             return true;
         }
         with_width_for!(&parts, visit_chunks(self, &parts, derivatives, visit))
+    }
+}
+
+/// A cable whose logs have zeros of their own.
+impl<'a> Problem<'a> {
+    /// Returns the single cable and the zero that each of its logs has of its own; `None` if all logs have the same.
+    pub fn per_log(&self) -> Option<(&Member<'a>, PerLog)> {
+        let (Comparison::Forces, [member]) = (&self.comparison, self.members.as_slice()) else { return None };
+        member.record.per_log.map(|per_log| (member, per_log))
+    }
+
+    /// Returns the zeros of the logs that are best at some values, and the forces that they result from; `None` if stopped.
+    fn zeros(
+        &self,
+        (member, per_log): (&Member<'a>, PerLog),
+        values: &Values,
+        derivatives: bool,
+    ) -> Option<(Zeros, Arc<Forces>)> {
+        let part = member.part(values, derivatives || per_log.zero == LogZero::Sensor);
+        let forces = match &self.seat {
+            Some(seat) => seat.forces(&part)?,
+            None => forces_of(std::slice::from_ref(&part), self.stop)?.pop().map(Arc::new)?,
+        };
+        let free_count = if part.free.is_empty() { 0 } else { member.free.len() };
+        Some((Zeros::new((&member.record, per_log.zero), &forces, free_count, (&self.used, self.loss)), forces))
+    }
+
+    /// Returns what the zeros of the logs change in every cycle, N, beyond the common zero in `values`; `None` if all logs have the same. The samples
+    /// that count determine them, and they hold for all.
+    pub fn zero_shifts_n(&self, values: &Values) -> Option<Vec<f64>> {
+        let (zeros, forces) = self.zeros(self.per_log()?, values, false)?;
+        let of_log = |of: &super::zeros::Zero| -> Vec<f64> {
+            of.cycles.clone().map(|cycle| zeros.lever(forces.at(cycle).1) * of.change_n).collect()
+        };
+        Some(zeros.logs.iter().flat_map(of_log).collect())
+    }
+
+    /// Returns by how much the zero of each log differs from the common zero in `values`, N; `None` for a log without a sample that counts.
+    pub fn zero_changes_n(&self, values: &Values) -> Vec<Option<f64>> {
+        let found = self.per_log().and_then(|per_log| self.zeros(per_log, values, false));
+        let of = |zero: &super::zeros::Zero| zero.is_known.then_some(zero.change_n);
+        found.map_or_else(Vec::new, |(zeros, _)| zeros.logs.iter().map(of).collect())
+    }
+
+    /// Evaluates the samples log by log, each log with its best zero.
+    fn visit_logs(
+        &self,
+        (member, per_log): (&Member<'a>, PerLog),
+        values: &Values,
+        derivatives: bool,
+        mut visit: impl FnMut(usize, Rows<'_>),
+    ) -> bool {
+        let Some((zeros, forces)) = self.zeros((member, per_log), values, derivatives) else { return false };
+        let free_count = if derivatives { member.free.len() } else { 0 };
+        let mut row = vec![0.0; if derivatives { self.parameter_count() } else { 0 } + 1];
+        for (log, of_log) in zeros.logs.iter().enumerate() {
+            for place in of_log.cycles.clone().filter(|place| self.used.get(*place).copied().unwrap_or(false)) {
+                let (force_n, gradient) = forces.at(place);
+                let Some(reference) = member.record.rows.get(place) else { continue };
+                let lever = zeros.lever(gradient);
+                let (root, slope) = self.loss.root(force_n + lever * of_log.change_n - reference.reference_n);
+                row.fill(0.0);
+                for ((entry, part), by_free) in
+                    row.iter_mut().zip(gradient.iter().take(free_count)).zip(&of_log.by_free)
+                {
+                    let eliminated = if per_log.in_columns { 0.0 } else { lever * by_free };
+                    *entry = slope * (part - eliminated);
+                }
+                if let Some(entry) = row.get_mut(free_count + log).filter(|_| derivatives && per_log.in_columns) {
+                    *entry = slope * lever;
+                }
+                row.last_mut().into_iter().for_each(|entry| *entry = root);
+                visit(place, row.chunks_exact(row.len()));
+            }
+        }
+        true
+    }
+
+    /// Removes from a signal of every cycle what zeros of the logs could make up for, over the samples that count.
+    pub fn without_zeros(&self, values: &Values, signal: &mut [f64]) {
+        let Some((zeros, forces)) = self.per_log().and_then(|per_log| self.zeros(per_log, values, false)) else {
+            return;
+        };
+        for of_log in &zeros.logs {
+            let (mut products, mut squares) = (0.0, 0.0);
+            let counts = |cycle: &usize| self.used.get(*cycle).copied().unwrap_or(false);
+            for cycle in of_log.cycles.clone().filter(counts) {
+                let lever = zeros.lever(forces.at(cycle).1);
+                if let Some(number) = signal.get(cycle).filter(|number| number.is_finite()) {
+                    products += lever * number;
+                    squares += lever * lever;
+                }
+            }
+            for (cycle, number) in of_log.cycles.clone().zip(signal.iter_mut().skip(of_log.cycles.start)) {
+                if squares > 0.0 {
+                    *number -= zeros.lever(forces.at(cycle).1) * products / squares;
+                }
+            }
+        }
     }
 }
 

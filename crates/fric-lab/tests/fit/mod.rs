@@ -10,6 +10,7 @@ mod jacobian;
 pub mod logs;
 mod newcomers;
 mod oracle;
+mod per_log;
 mod published;
 mod residual_function;
 mod together;

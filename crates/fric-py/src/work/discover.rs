@@ -15,7 +15,7 @@ use crate::results;
 use crate::robot::Robot;
 use crate::watch::Watch;
 use crate::work::fit::{ORIGIN, named_reference};
-use crate::work::runs::Runs;
+use crate::work::runs::{Runs, named_zero};
 
 /// Finds where the model and logs disagree, and the missing effect: `fric-cli discover`.
 ///
@@ -23,6 +23,10 @@ use crate::work::runs::Runs;
 /// platform, or the wrench on the platform (measured, else that of its mass), for all cables at once. Half of the log, in blocks, judges what was
 /// learned from the other half. A cable with too little information in the log says so in its verdict; a log without information about any cable
 /// raises FitError.
+///
+/// `per_log` names the zero of which each of several logs has its own value, because sensors are tared anew: "offset_n" at the platform or
+/// "sensor_offset.offset_n" at the sensor. Held-out samples are judged with the value that the other samples of their log determine; the robot gets
+/// that of the last log.
 ///
 /// A rest without a name that depends on the speed, the length or the load of the cable becomes a table, the effect `empirical`, reported as unnamed;
 /// `empirical=False` turns this off.
@@ -45,13 +49,14 @@ use crate::work::runs::Runs;
 /// True
 #[pyfunction]
 #[pyo3(
-    signature = (robot, log, *, reference="forces", empirical=true, progress=None),
-    text_signature = "(robot, log, *, reference=\"forces\", empirical=True, progress=False)"
+    signature = (robot, log, *, reference="forces", per_log=None, empirical=true, progress=None),
+    text_signature = "(robot, log, *, reference=\"forces\", per_log=None, empirical=True, progress=False)"
 )]
 pub fn discover(
     robot: &Bound<'_, Robot>,
     log: &Bound<'_, PyAny>,
     reference: &str,
+    per_log: Option<Vec<String>>,
     empirical: bool,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> Outcome<Py<PyAny>> {
@@ -62,9 +67,10 @@ pub fn discover(
     let file = &given.file;
     log::warn(py, &file.warnings())?;
     let reference = named_reference(reference)?;
+    let zero = named_zero(per_log.as_deref(), &runs, reference)?;
     let lack = readiness::geometry(file, ORIGIN).filter(|_| reference == Reference::Wrench);
     lack.map_or(Ok(()), |lack| Err(lack.error()))?;
-    let mut measurements = Measurements::new(&file.params(), reference);
+    let mut measurements = Measurements::new(&file.params(), reference).with_zero_per_log(zero);
     let holdings = runs.read(robot, &mut measurements, &mut watch)?;
     let readiness = match reference {
         Reference::Forces => readiness::to_discover(file, &holdings),

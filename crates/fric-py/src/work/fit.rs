@@ -15,7 +15,7 @@ use crate::log;
 use crate::results;
 use crate::robot::Robot;
 use crate::watch::Watch;
-use crate::work::runs::{Runs, named_parameters};
+use crate::work::runs::{Runs, named_parameters, named_zero};
 
 /// The origin of the robot in messages.
 pub const ORIGIN: &str = "the robot";
@@ -32,7 +32,8 @@ pub fn named_reference(name: &str) -> Outcome<Reference> {
 ///
 /// `log` is a Log, a path, or a list of them, each a run of its own. `reference` is what the model is compared with: the cable forces measured at the
 /// platform, or the wrench on the platform (measured, else that of its mass), for all cables at once. `parameters` names those to vary, such as "mu"
-/// or "stribeck.ratio"; by default the friction and each effect of the cable. `huber` weights large deviations linearly. Data that allow no fit raise
+/// or "stribeck.ratio"; by default the friction and each effect of the cable. `per_log` names the zero of which each of several logs has its own value,
+/// because sensors are tared anew: "offset_n" at the platform or "sensor_offset.offset_n" at the sensor; the robot gets that of the last log. `huber` weights large deviations linearly. Data that allow no fit raise
 /// FitError.
 ///
 /// >>> robot = Robot.read("examples/mini-ipanema.toml")
@@ -45,14 +46,15 @@ pub fn named_reference(name: &str) -> Outcome<Reference> {
 /// True
 #[pyfunction]
 #[pyo3(
-    signature = (robot, log, *, reference="forces", parameters=None, huber=false, progress=None),
-    text_signature = "(robot, log, *, reference=\"forces\", parameters=None, huber=False, progress=False)"
+    signature = (robot, log, *, reference="forces", parameters=None, per_log=None, huber=false, progress=None),
+    text_signature = "(robot, log, *, reference=\"forces\", parameters=None, per_log=None, huber=False, progress=False)"
 )]
 pub fn fit(
     robot: &Bound<'_, Robot>,
     log: &Bound<'_, PyAny>,
     reference: &str,
     parameters: Option<Vec<String>>,
+    per_log: Option<Vec<String>>,
     huber: bool,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> Outcome<Py<PyAny>> {
@@ -64,12 +66,13 @@ pub fn fit(
         weighing: if huber { Weighing::Huber } else { Weighing::LeastSquares },
     };
     let runs = Runs::new(log)?;
+    let zero = named_zero(per_log.as_deref(), &runs, reference)?;
     let given = robot.borrow().clone();
     let file = &given.file;
     log::warn(py, &file.warnings())?;
     let lack = readiness::geometry(file, ORIGIN).filter(|_| reference == Reference::Wrench);
     lack.map_or(Ok(()), |lack| Err(lack.error()))?;
-    let mut measurements = Measurements::new(&file.params(), reference);
+    let mut measurements = Measurements::new(&file.params(), reference).with_zero_per_log(zero);
     let holdings = runs.read(robot, &mut measurements, &mut watch)?;
     let readiness = match reference {
         Reference::Forces => readiness::by_forces(file, &holdings),
@@ -86,7 +89,7 @@ pub fn fit(
         }
     })??;
     let measurements = corrected.unwrap_or(measurements);
-    let result = FitResult::new(file, &fits).with_faults(&faults);
+    let result = FitResult::new(file, &runs.names(), &fits).with_faults(&faults);
     result.check_used()?;
     log::warn(py, &result.warnings(&fits, &readiness))?;
     let residuals_n = py.detach(|| residuals_n(&measurements, fits.cables()));

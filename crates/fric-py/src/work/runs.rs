@@ -1,7 +1,7 @@
 //! The logs of a fit or a discovery.
 
 use fric_lab::fit::readiness::Holdings;
-use fric_lab::fit::{Measurements, Parameter, Reference};
+use fric_lab::fit::{LogZero, Measurements, Parameter, Reference, zero_per_log};
 use fric_log::signals::Role;
 use fric_work::provenance::shown_path;
 use pyo3::exceptions::PyTypeError;
@@ -158,6 +158,15 @@ fn add(
         })
     })?;
     Ok(holdings)
+}
+
+/// Returns the zero that each log has of its own, by name.
+pub fn named_zero(per_log: Option<&[String]>, runs: &Runs<'_>, reference: Reference) -> Outcome<Option<LogZero>> {
+    zero_per_log(per_log.unwrap_or_default(), runs.0.len(), reference).map_err(|error| {
+        let advice = error.advice(|reference| format!("reference=\"{}\"", reference.name()));
+        let advice = advice.map_or_else(String::new, |advice| format!(". {advice}"));
+        Fault::config(format!("`per_log`: {}{advice}", error.cause))
+    })
 }
 
 /// Returns parameters by name.

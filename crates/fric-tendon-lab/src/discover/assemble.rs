@@ -70,6 +70,7 @@ pub fn told(case: &Case<'_>, outcome: &Outcome, named: &[Named], log: &str) -> T
     let mut tried: Vec<&Tried> = tried.iter().collect();
     tried.sort_by(|one, other| one.delta_bic.total_cmp(&other.delta_bic));
     let tendon = DiscoverCableResult {
+        per_log: Vec::new(),
         name: "tendon".to_owned(),
         samples: case.run_samples,
         left_out: Absent,

@@ -1,6 +1,6 @@
 //! The page of a fit: values with their errors, correlations, and the remaining gap to the reference.
 
-use fric_lab::fit::result::{FitCableResult, FitResult};
+use fric_lab::fit::result::{FitCableResult, FitResult, LogValues};
 use fric_lab::text::plain;
 use maud::{Markup, html};
 
@@ -26,6 +26,7 @@ pub fn page(result: &FitResult, fits: &[fric_lab::fit::CableFit], provenance: &P
                     ul { @for fault in &cable.faults { li { (fault.in_words()) } } }
                 }
                 (values(std::slice::from_ref(cable)))
+                (log_values(&cable.per_log))
                 @for Correlation { first, second, value } in correlations(fit) {
                     p.soft { "Correlation of " (first) " and " (second) ": " (format!("{value:.3}")) }
                 }
@@ -62,6 +63,28 @@ fn values(cables: &[FitCableResult]) -> Markup {
                         td { (cable.name) } td { (name) } td { (value_text(*value, cable.standard_errors.get(name))) }
                         td { (cable.standard_errors.get(name).map_or_else(|| "–".to_owned(), plain)) }
                         td.words { (remark(cable, name)) }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Returns what each log has of its own as a table; empty if the logs share all parameters.
+pub(crate) fn log_values(logs: &[LogValues]) -> Markup {
+    html! {
+        @if !logs.is_empty() {
+            h3 { "Of each log its own" }
+            p.soft { (LogValues::EXPLANATION) "." }
+            table {
+                tr { th.words { "log" } th.words { "parameter" } th { "value" } th { "±" } }
+                @for log in logs {
+                    @for (name, value) in &log.parameters.0 {
+                        tr {
+                            td.words { (log.log) } td.words { (name) }
+                            td { (value_text(*value, log.standard_errors.get(name))) }
+                            td { (log.standard_errors.get(name).map_or_else(|| "–".to_owned(), plain)) }
+                        }
                     }
                 }
             }

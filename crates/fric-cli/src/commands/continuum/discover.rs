@@ -14,8 +14,9 @@ use fric_work::report;
 
 /// Runs the command.
 pub fn run(arguments: &DiscoverArguments) -> Outcome {
-    let DiscoverArguments { logs, model, part, output, reference, report, no_empirical, result } = arguments;
+    let DiscoverArguments { logs, model, part, output, reference, per_log, report, no_empirical, result } = arguments;
     part.check_none()?;
+    per_log.check_none()?;
     if *reference == ReferenceName::Wrench {
         return Err(Failure::usage("--reference wrench is for robots; a manipulator has no platform")
             .advise("Leave --reference away: the gratings are the reference."));

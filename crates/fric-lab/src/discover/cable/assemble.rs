@@ -6,6 +6,7 @@ use fric_core::parameters::Values;
 use super::CableLog;
 use super::given::{has_reference, judged};
 use super::passes::Outcome;
+use crate::certainty::log_zeros::log_zeros;
 use crate::discover::Task;
 use crate::discover::faults::RecordingFault;
 use crate::discover::figures::curve::curves;
@@ -17,8 +18,10 @@ use crate::discover::rest::neighbours::neighbours_of;
 use crate::discover::rest::places::Place;
 use crate::discover::rest::{self, WORTH};
 use crate::discover::workbench::{self, Trial, Workbench};
-use crate::fit::SampleCounts;
+use crate::fit::{LogValue, SampleCounts};
 use crate::replay::Deviation;
+use crate::samples::record::PerLog;
+use crate::search::problem::Problem;
 
 impl CableLog<'_> {
     /// Returns a table for a rest that has no name.
@@ -133,6 +136,7 @@ impl CableLog<'_> {
             verdict,
             before,
             after,
+            per_log: Vec::new(),
             findings,
             candidates,
             tried,
@@ -145,6 +149,14 @@ impl CableLog<'_> {
             residual_before_n,
             residual_after_n,
         }
+    }
+
+    /// Returns the value of each log of its own in a model, from all samples.
+    pub(super) fn log_values(&self, outcome: &Outcome, model: &Model) -> Vec<Option<LogValue>> {
+        let Some(PerLog { zero, .. }) = self.record.per_log else { return Vec::new() };
+        let bench = self.bench(&outcome.counts);
+        let problem = Problem { used: outcome.counts.clone(), ..bench.problem(&model.fitted, None) };
+        LogValue::of_logs(zero, &model.values, &log_zeros(&problem, &model.values), &[])
     }
 
     /// Returns what has no name, from the outcome with its final model. Anything that only a table accounts for has no name.

@@ -74,7 +74,7 @@ pub(super) fn given_model(
 ) -> (workbench::Model, Vec<Parameter>) {
     let given = record.params.values();
     let undetermined = |parameter: &Parameter| paper.undetermined.iter().any(|unknown| unknown.parameter == *parameter);
-    let all = FitOptions::default().free(record.params);
+    let all = FitOptions::default().shared(record);
     let acting = all.into_iter().filter(|parameter| acts(parameter, &given));
     let (held, free): (Vec<Parameter>, Vec<Parameter>) = acting.partition(undetermined);
     let mut values = given;

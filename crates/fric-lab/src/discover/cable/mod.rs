@@ -127,7 +127,10 @@ pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> CableDiscove
     faults.extend(step_n.map(coarse));
     let case = raw.with_rows(&rows);
     let table = if task.options.empirical { case.table(&outcome, task) } else { None };
-    case.report(&outcome, table.as_ref(), samples, faults)
+    let mut found = case.report(&outcome, table.as_ref(), samples, faults);
+    found.per_log = case.log_values(&outcome, &found.after);
+    found.add_to_zeros(&[]);
+    found
 }
 
 /// A cable with its log and all that is known of each sample.

@@ -154,7 +154,7 @@ impl CableLog<'_> {
         };
         let of = |also: fn(&Parameter) -> bool| {
             let params = self.record.params.with_values(&model.values).ok()?;
-            let mut parameters = FitOptions::default().free(&params);
+            let mut parameters = FitOptions::default().shared(&self.record.with_params(&params));
             parameters.retain(|parameter| is_known(parameter) || also(parameter));
             let options = FitOptions { parameters: Some(parameters), ..FitOptions::default() };
             let left_out = self.counts.iter().zip(counts).map(|(all, counts)| *all && !counts);

@@ -23,7 +23,8 @@ impl Search<'_, '_> {
         let model = self.fit(found);
         let slides = model.values[MU] > 0.0;
         // A sensor offset and an offset at the platform have the same effect on the force.
-        let has_offset = model.free.iter().any(|parameter| parameter.place() == OFFSET);
+        let has_offset =
+            model.free.iter().any(|parameter| parameter.place() == OFFSET) || self.bench.record.per_log.is_some();
         let lacking = |friction: bool| -> Vec<Effect> {
             Effect::ALL
                 .iter()

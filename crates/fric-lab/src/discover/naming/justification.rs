@@ -117,7 +117,8 @@ impl Search<'_, '_> {
     /// others known. An offset at the platform is considered too, because every cable may have one.
     fn confused_with(&self, model: &Trial, effect: Effect) -> Option<&'static str> {
         let mut free = model.free.clone();
-        let has_offset = free.iter().any(|parameter| [OFFSET, OFFSET_OF_SENSOR].contains(&parameter.place()));
+        let has_offset = free.iter().any(|parameter| [OFFSET, OFFSET_OF_SENSOR].contains(&parameter.place()))
+            || self.bench.record.per_log.is_some();
         free.extend(Parameter::all().filter(|parameter| parameter.place() == OFFSET && !has_offset));
         let of_effect = fitted(effect);
         let (covariance, all) =

@@ -27,6 +27,14 @@ pub fn less_projection(problem: &Problem<'_>, values: &Values, signals: &[Vec<f6
         }
     });
     let factors = inverse_of_normal(&matrix)? * right;
+    let signals: Vec<Vec<f64>> = signals
+        .iter()
+        .map(|signal| {
+            let mut signal = signal.clone();
+            problem.without_zeros(values, &mut signal);
+            signal
+        })
+        .collect();
     let mut left = vec![vec![f64::NAN; problem.used.len()]; signals.len()];
     let mut place = places.iter();
     problem.rows(&[*values], |row| {

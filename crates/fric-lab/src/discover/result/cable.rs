@@ -12,7 +12,7 @@ use crate::discover::report::{CableDiscovery, Model, Verdict};
 use crate::discover::rest::empirical;
 use crate::errors::ForceError;
 use crate::fit::Parameter;
-use crate::fit::result::{LeftOut, Numbers};
+use crate::fit::result::{LeftOut, LogValues, Numbers};
 
 /// One cable, or the tendon of a manipulator.
 #[derive(Clone, Debug, Serialize)]
@@ -78,6 +78,9 @@ pub struct DiscoverCableResult<M: Machine = Robot> {
     /// Standard errors of the fitted values.
     #[serde(skip_serializing_if = "is_absent")]
     pub standard_errors: M::OfRobots<Numbers>,
+    /// What each log has of its own, in the order of the logs; absent if they share all parameters. `parameters` has the value of the last log.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub per_log: Vec<LogValues>,
     /// Recording faults, which concern the log and not the machine.
     #[serde(skip_serializing_if = "is_absent")]
     pub faults: M::OfRobots<Vec<FaultResult>>,
@@ -116,6 +119,7 @@ pub fn cable_result(
     names: &[&str],
     found: &CableDiscovery,
     lack: Option<(String, &'static str)>,
+    logs: &[String],
 ) -> DiscoverCableResult {
     let samples = found.samples;
     let (before, after) = (ForceError::of(&found.before.held_out_n), ForceError::of(&found.after.held_out_n));
@@ -153,7 +157,8 @@ pub fn cable_result(
         tried: found.tried.iter().map(TriedResult::of).collect(),
         kept: None,
         parameters: parameters(found),
-        standard_errors: errors(&found.after, Parameter::all(), ToString::to_string),
+        standard_errors: errors(found, Parameter::all(), ToString::to_string),
+        per_log: LogValues::of_logs(&found.per_log, logs),
         faults: found.faults.iter().map(FaultResult::of).collect(),
         unexplained: found.unexplained.as_ref().map(|rest| unexplained(rest, names)),
     }
@@ -181,7 +186,8 @@ fn parameters(found: &CableDiscovery) -> Numbers {
     let shown = |parameter: Parameter| {
         let value = model.values[parameter.place()];
         let of_finding = of_finding(&parameter) && !empirical::is_idle(&parameter, &model.values);
-        let relevant = parameter.is_friction() || model.fitted.contains(&parameter) || of_finding;
+        let is_per_log = found.per_log.iter().flatten().any(|log| log.parameter == parameter);
+        let relevant = parameter.is_friction() || is_per_log || model.fitted.contains(&parameter) || of_finding;
         (relevant && value < NO_PRESLIDING_N_PER_M).then(|| (parameter.to_string(), value))
     };
     Numbers(Parameter::all().filter_map(shown).collect())

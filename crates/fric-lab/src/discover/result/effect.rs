@@ -7,7 +7,7 @@ use super::cable::gap_closed;
 use super::finite;
 use super::machine::{Machine, Robot, is_absent};
 use super::table::TableResult;
-use crate::discover::report::{self, CableDiscovery, Finding, Model, Tried};
+use crate::discover::report::{self, CableDiscovery, Finding, Tried};
 use crate::discover::rest::empirical;
 use crate::fit::Parameter;
 use crate::fit::result::Numbers;
@@ -93,8 +93,12 @@ pub struct Candidate {
 }
 
 /// Returns the standard errors of the fitted ones among some parameters, by name.
-pub fn errors(model: &Model, of: impl Iterator<Item = Parameter>, name: impl Fn(&Parameter) -> String) -> Numbers {
-    Numbers(of.filter_map(|parameter| Some((name(&parameter), finite(model.standard_error(&parameter)?)?))).collect())
+pub fn errors(
+    found: &CableDiscovery,
+    of: impl Iterator<Item = Parameter>,
+    name: impl Fn(&Parameter) -> String,
+) -> Numbers {
+    Numbers(of.filter_map(|parameter| Some((name(&parameter), finite(found.standard_error(&parameter)?)?))).collect())
 }
 
 pub fn effect_result(found: &CableDiscovery, finding: &Finding) -> EffectResult {
@@ -111,7 +115,7 @@ pub fn effect_result(found: &CableDiscovery, finding: &Finding) -> EffectResult 
                 .map(|parameter| (key(&parameter), values[parameter.place()]))
                 .collect(),
         ),
-        standard_errors: errors(&found.after, Parameter::of(finding.effect), key),
+        standard_errors: errors(found, Parameter::of(finding.effect), key),
         gap_closed: held_out_rms_n.and_then(|rms_n| gap_closed(found, rms_n)),
         evidence: Evidence { delta_bic: finite(finding.delta_bic), held_out_rms_n },
         runner_up: finding.runner_up.as_ref().map(|other| RunnerUpResult {

@@ -67,16 +67,17 @@ impl DiscoverResult {
         discoveries: &[CableDiscovery],
     ) -> Self {
         let names = robot.cable_names();
+        let log: Vec<String> = logs.iter().map(|(name, _)| name.clone()).collect();
         let cables = discoveries.iter().take(names.len()).enumerate();
         let cables: Vec<DiscoverCableResult> = cables
             .map(|(place, found)| {
                 let lack = readiness.lack_of(place).map(|lack| (lack.cause.clone(), lack.advice));
-                cable_result(place, &names, found, lack)
+                cable_result(place, &names, found, lack, &log)
             })
             .collect();
         Self {
             format: Self::FORMAT,
-            log: logs.iter().map(|(name, _)| name.clone()).collect(),
+            log,
             log_start_s: logs.iter().map(|(_, start_s)| *start_s).collect(),
             robot: robot.options().name.clone(),
             common_effects: common_effects(&cables),

@@ -168,6 +168,7 @@ impl Case<'_, '_> {
             },
             before: model(base, &DMatrix::from_element(count, count, f64::NAN)),
             after: model(fitted, covariance),
+            per_log: Vec::new(),
             findings,
             candidates: Vec::new(),
             tried: tried.collect(),

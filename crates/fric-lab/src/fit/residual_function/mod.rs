@@ -137,6 +137,7 @@ impl Cable {
             interval_s: self.interval_s,
             reference_is_known: self.reference_is_known,
             length_play_m: 0.0,
+            per_log: None,
         }
     }
 }

@@ -15,6 +15,7 @@ use maud::{Markup, PreEscaped, html};
 use self::drawings::{ladder, of_table, over_condition};
 use self::plots::{Common, curves, over_time, periodic};
 use crate::provenance::Provenance;
+use crate::report::fit::log_values;
 use crate::report::plot::Plots;
 use crate::report::{Page, number};
 use crate::verdict;
@@ -137,6 +138,7 @@ fn details(plots: &mut Plots, common: &Common, cable: &DiscoverCableResult, foun
         }
         (candidates(cable))
         (parameters(found))
+        (log_values(&cable.per_log))
     }
 }
 
