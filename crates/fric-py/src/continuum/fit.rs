@@ -47,6 +47,7 @@ pub fn continuum_fit(
     measured.iter().try_for_each(|run| check_disks(manipulator, run))?;
     let file = &manipulator.file;
     let found = py.detach(|| with_own_threads(|| identify(file, &measured, &sources, &options)))??;
+    log::warn(py, &measured.iter().filter_map(Run::begin_warning).collect::<Vec<_>>())?;
     log::warn(py, &found.result.warnings())?;
     let text = rewrite(&manipulator.text, "manipulator", &found.edit)?;
     let result = &found.result;
