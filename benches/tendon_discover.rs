@@ -20,7 +20,10 @@ use fric_tendon_lab::discover::{Manipulator, TendonDiscovery, discover};
 use fric_tendon_lab::fbg::Calibration;
 use fric_tendon_lab::shape_errors::{ShapeErrors, Way, shapes};
 use fric_tendon_lab::simulate::{Experiment, SimulatedRun, TendonSimulationOptions, simulate};
-use fric_tendon_lab::{Run, RunSample, as_measured, corrected};
+use fric_tendon_lab::{Run, RunSample, as_measured, corrected, steadied};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use rand_distr::{Distribution, StandardNormal};
 
 const PROTOTYPE: &str = include_str!("../examples/tendon-prototype.toml");
 /// Half a 95 % interval in standard errors.
@@ -138,7 +141,7 @@ fn stated(text: &str, key: &str, segment: Option<f64>) -> Option<f64> {
 /// Mean distance of the disks from their markers by the history with a file, mm.
 fn shape_mm(text: &str, run: &SimulatedRun) -> f64 {
     let file = parsed(text);
-    let run = corrected(&Run::new(run.samples.clone(), 8).unwrap(), &file).unwrap();
+    let (run, _) = steadied(&corrected(&Run::new(run.samples.clone(), 8).unwrap(), &file).unwrap());
     let mut errors = ShapeErrors::default();
     let computed = shapes(file.params(), run.samples(), Way::History, &[]).unwrap();
     computed.iter().zip(run.samples()).for_each(|(shape, sample)| errors.add(shape, &sample.marker_m));
@@ -264,6 +267,7 @@ fn main() {
                     },
                     ..usual()
                 },
+                Case { name: "shaky", spoil: |samples| shake(samples, 0.01), ..usual() },
                 Case { name: "warm", spoil: |samples| step(samples, 5.0), ..usual() },
                 Case { name: "cold", spoil: |samples| step(samples, -5.0), ..usual() },
                 Case { name: "smooth", given: |text| text.replace("mu = 0.1753 ", "mu = 0.0 "), ..usual() },
@@ -351,6 +355,15 @@ fn main() {
 }
 
 /// A step of the temperature in the middle of a run, of gratings in silica at 1550 nm.
+/// White noise on the tension at the base; every case has the same.
+fn shake(samples: &mut [RunSample], noise_n: f64) {
+    let mut random = ChaCha8Rng::seed_from_u64(1);
+    for sample in samples {
+        let deviate: f64 = StandardNormal.sample(&mut random);
+        sample.tension_base_n = (sample.tension_base_n + noise_n * deviate).max(0.0);
+    }
+}
+
 fn step(samples: &mut [RunSample], kelvin: f64) {
     let middle = samples.len() / 2;
     for shift_nm in samples.iter_mut().skip(middle).flat_map(|sample| &mut sample.shift_nm) {

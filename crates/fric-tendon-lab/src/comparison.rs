@@ -2,6 +2,7 @@
 
 use fric_tendon::{ManipulatorParams, ShapeStatus, Tendon};
 
+use super::base_noise::{BaseNoise, steadied};
 use super::error::ContinuumError;
 use super::friction::distributions;
 use super::gratings::GratingSample;
@@ -17,6 +18,8 @@ pub struct WayShapes {
     pub shapes: Vec<ComputedShape>,
     /// The errors over all samples.
     pub errors: ShapeErrors,
+    /// Noise that was taken off the tension at the base, which only the history is sensitive to.
+    pub base_noise: Option<BaseNoise>,
 }
 
 /// Computes a run by those friction models whose inputs it contains, in the order of [`Way::ALL`]: `none`, `coulomb` and `history` need the tension
@@ -46,12 +49,13 @@ pub fn compare(
     let all: Vec<WayShapes> = ways
         .into_iter()
         .map(|way| {
-            let shapes = shapes(params, samples, way, measured.unwrap_or_default())?;
+            let (steady, base_noise) = if way == Way::History { steadied(run) } else { (run.clone(), None) };
+            let shapes = shapes(params, steady.samples(), way, measured.unwrap_or_default())?;
             let mut errors = ShapeErrors::default();
             for (shape, sample) in shapes.iter().zip(samples) {
                 errors.add(shape, &sample.marker_m);
             }
-            Ok(WayShapes { way, shapes, errors })
+            Ok(WayShapes { way, shapes, errors, base_noise })
         })
         .collect::<Result<_, ContinuumError>>()?;
     for (place, sample) in samples.iter().enumerate() {

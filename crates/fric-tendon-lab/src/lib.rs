@@ -9,6 +9,7 @@
 
 #![allow(clippy::doc_markdown, reason = "symbols of equations are no code items")]
 
+mod base_noise;
 pub mod columns;
 pub mod comparison;
 pub mod discover;
@@ -24,7 +25,9 @@ pub mod result;
 mod run;
 pub mod shape_errors;
 pub mod simulate;
+mod trend;
 
+pub use base_noise::{BaseNoise, steadied};
 pub use error::ContinuumError;
 pub use loads::{hole_loads, load_steps};
 pub use measuring::{as_measured, corrected};

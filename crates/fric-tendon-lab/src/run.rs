@@ -3,6 +3,10 @@
 use super::columns::{self, Columns};
 use super::error::ContinuumError;
 
+/// Base tension of the first sample, as a fraction of the run's greatest, above which the holes may remember something from before the run. They hold
+/// friction in proportion to the tension, so that at half of it a memory of a fortieth of the greatest friction counts, at twice a tenth does not.
+const BEGIN_RATIO: f64 = 0.05;
+
 /// The measurements at one time. A list that was not measured is empty.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RunSample {
@@ -103,6 +107,28 @@ impl Run {
     #[must_use]
     pub fn samples(&self) -> &[RunSample] {
         &self.samples
+    }
+
+    /// Returns a warning in one sentence if the tendon is under tension at the beginning, N: what the holes remember from before is unknown.
+    #[must_use]
+    pub fn begin_warning(&self) -> Option<String> {
+        let greatest_n = self.samples.iter().map(|sample| sample.tension_base_n).fold(0.0, f64::max);
+        let first_n = self.samples.first().map_or(f64::NAN, |first| first.tension_base_n);
+        (first_n > BEGIN_RATIO * greatest_n).then(|| {
+            format!(
+                "the run begins at {first_n:.2} N at the base, and the history takes the tendon as pulled from slack to there; if it was released \
+                 before, friction is wrong until the tension passes the one from which it was released. Begin runs with a slack tendon"
+            )
+        })
+    }
+
+    /// Returns the run with other tensions at the base, which must be finite and not negative.
+    pub(super) fn with_base_tension(&self, tension_n: &[f64]) -> Self {
+        let mut run = self.clone();
+        for (sample, tension_n) in run.samples.iter_mut().zip(tension_n) {
+            sample.tension_base_n = *tension_n;
+        }
+        run
     }
 
     /// Returns the number of disks of the manipulator.

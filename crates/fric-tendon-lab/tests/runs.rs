@@ -54,6 +54,9 @@ fn columns_become_the_samples() {
         assert!(one.shift_reference_nm.is_nan());
     }
     assert!(read.has_tension() && read.has_shifts() && read.has_markers() && !read.has_reference());
+    assert_eq!(read.begin_warning(), None);
+    let cut = Run::new(run.samples[46..].to_vec(), 8).unwrap();
+    assert!(cut.begin_warning().unwrap().contains("begins at 0.9"), "{:?}", cut.begin_warning());
     // Each group may be missing.
     let mut columns = columns(&run.samples);
     columns.truncate(2);

@@ -105,8 +105,8 @@ pub struct TendonFitArguments {
     /// Write the manipulator file with the identified values to this file
     #[arg(short, long, value_name = "FITTED.toml", required = true, value_parser = a_file())]
     pub output: PathBuf,
-    /// Identify these only: `backbone_stiffness`, `segment_stiffness`, `tendon_offset`, `precurvature`, `marker_frame`, `tip_load`,
-    /// `gravity_direction`, `mu`, `hole_mu`, `sigma`, `base_gain`, `base_offset`, `tension_lag`, `calibration` [default: all but those of
+    /// Identify these only: `backbone_stiffness`, `segment_stiffness`, `pitch`, `tendon_offset`, `precurvature`, `marker_frame`,
+    /// `tip_load`, `gravity_direction`, `mu`, `hole_mu`, `sigma`, `base_gain`, `base_offset`, `tension_lag`, `calibration` [default: all but those of
     /// segments, single holes, the sensor at the base and the gratings]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub parameters: Option<Vec<String>>,

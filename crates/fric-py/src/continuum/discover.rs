@@ -9,6 +9,7 @@ use pyo3::prelude::*;
 use super::{ARRAYS, Manipulator, TendonRun, check_disks, flat};
 use crate::arrays::{fixed, fixed_rows};
 use crate::errors::Outcome;
+use crate::log;
 use crate::results;
 use crate::watch::with_own_threads;
 
@@ -20,6 +21,8 @@ pub fn continuum_discover(py: Python<'_>, manipulator: &Manipulator, run: &Tendo
     let (file, files, run) = (&manipulator.file, run.files(), &run.run);
     let source = files.first().map_or_else(|| ARRAYS.to_owned(), |path| shown_path(path));
     let found = py.detach(|| with_own_threads(|| discover(file, run, &source)))??;
+    let noise = found.base_noise.map(|noise| noise.warning());
+    log::warn(py, &run.begin_warning().into_iter().chain(noise).collect::<Vec<_>>())?;
     let text = rewrite(&manipulator.text, "manipulator", &found.edit)?;
     let disks = file.params().disk_count();
     let provenance = manipulator.provenance("fric.continuum.discover", &files);

@@ -18,7 +18,7 @@ use crate::watch::with_own_threads;
 /// Identifies stiffness, geometry, loads and friction of a manipulator from runs that each have two of: tension at the base, gratings, markers.
 /// `runs` is one or several runs, each starting with a relaxed tendon.
 ///
-/// `parameters` names what to identify: "backbone_stiffness", "segment_stiffness", "tendon_offset", "precurvature", "marker_frame", "tip_load",
+/// `parameters` names what to identify: "backbone_stiffness", "segment_stiffness", "pitch", "tendon_offset", "precurvature", "marker_frame", "tip_load",
 /// "gravity_direction", "mu", "hole_mu", "sigma", "base_gain", "base_offset", "tension_lag", "calibration". Parameters that the runs do not determine
 /// keep the manipulator's values and cause a LogWarning.
 ///
@@ -47,6 +47,7 @@ pub fn continuum_fit(
     measured.iter().try_for_each(|run| check_disks(manipulator, run))?;
     let file = &manipulator.file;
     let found = py.detach(|| with_own_threads(|| identify(file, &measured, &sources, &options)))??;
+    log::warn(py, &measured.iter().filter_map(Run::begin_warning).collect::<Vec<_>>())?;
     log::warn(py, &found.result.warnings())?;
     let text = rewrite(&manipulator.text, "manipulator", &found.edit)?;
     let result = &found.result;

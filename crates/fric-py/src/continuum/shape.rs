@@ -61,6 +61,9 @@ pub fn continuum_shape(
     if let Some(gratings) = Gratings::from_file(&manipulator.file)? {
         gratings.check_travel(params, greatest_rad)?;
     }
+    if ways.iter().any(|way| way.way == Way::History) {
+        log::warn(py, &run.begin_warning().into_iter().collect::<Vec<_>>())?;
+    }
     log::warn(py, &result.warnings(&ways))?;
     let provenance = manipulator.provenance("fric.continuum.shape", &files);
     let page = |provenance: &Provenance| report::shape(&result, run, &ways, provenance);

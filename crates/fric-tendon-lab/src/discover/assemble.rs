@@ -107,6 +107,7 @@ pub fn told(case: &Case<'_>, outcome: &Outcome, named: &[Named], log: &str) -> T
             wrench: None,
         },
         edit: edit(case, outcome),
+        base_noise: None,
         time_s: case.samples.iter().map(|sample| sample.time_s).collect(),
         residual_before_n: before.residual_n.clone(),
         residual_after_n: after.residual_n.clone(),

@@ -36,6 +36,8 @@ pub struct Case<'a> {
     pub newton_per_nm: Vec<f64>,
     /// Noise of the gratings, N, used to weight the errors of the calibration lines; estimated from the given model's residual.
     pub noise_n: f64,
+    /// Standard error of the tension at the base if that is an estimate without its noise, N.
+    pub base_error_n: f64,
     pub run_samples: usize,
 }
 
@@ -58,12 +60,13 @@ pub struct Fit {
 }
 
 impl<'a> Case<'a> {
-    /// Prepares a run. `kept` holds the samples to compare.
+    /// Prepares a run. `kept` holds the samples to compare, `base_error_n` is the standard error of the tension at the base, N.
     pub fn new(
         file: &'a ManipulatorFile,
         run: &Run,
         gratings: &Gratings,
         kept: &[usize],
+        base_error_n: f64,
     ) -> Result<Self, ContinuumError> {
         let tensions = gratings.unbridged(run)?;
         let judged = gratings.read(run)?;
@@ -87,6 +90,7 @@ impl<'a> Case<'a> {
         let mut case = Self {
             file,
             noise_n: 0.0,
+            base_error_n,
             line_error_n: observed_n.iter().map(line_errors).collect(),
             observed_n,
             is_dead: kept.iter().filter_map(|place| Some(judged.get(*place)?.is_bridged.clone())).collect(),

@@ -47,6 +47,7 @@ use fric_tendon::file::ManipulatorFile;
 use self::case::Case;
 use self::machine::Machine;
 use self::machine::candidate::Candidate;
+use super::base_noise::{BaseNoise, steadied};
 use super::error::ContinuumError;
 use super::gratings::Gratings;
 use super::measuring::corrected;
@@ -64,6 +65,8 @@ pub struct TendonDiscovery {
     pub result: DiscoverResult<Manipulator>,
     /// The changes to the manipulator file.
     pub edit: ManipulatorEdit,
+    /// Noise that was taken off the tension at the base.
+    pub base_noise: Option<BaseNoise>,
     /// Times of the compared samples, s.
     pub time_s: Vec<f64>,
     /// Residual of the given model, fitted, in each segment, N; NaN where nothing was measured.
@@ -88,9 +91,12 @@ pub fn discover(file: &ManipulatorFile, run: &Run, log: &str) -> Result<TendonDi
     }
     run.check_capacity(file.params().capacity_n(Tendon::Agonist))?;
     let gratings = Gratings::from_file(file)?.ok_or(ContinuumError::NoGratings)?;
+    let (run, base_noise) = steadied(run);
+    let run = &run;
+    let base_error_n = base_noise.map_or(0.0, |noise| noise.error_n);
     let kept = thinned(run.samples());
     let as_given = corrected(run, file)?;
-    let case = Case::new(file, &as_given, &gratings, &kept)?;
+    let case = Case::new(file, &as_given, &gratings, &kept, base_error_n)?;
     let Machine { named, tables, mu: mu_of_holes } = machine::search(file, run).unwrap_or_else(|| Machine::none(file));
     let extended = if named.is_empty() { None } else { ManipulatorFile::check(tables).ok() };
     // The search for friction starts with these findings in the file.
@@ -98,7 +104,7 @@ pub fn discover(file: &ManipulatorFile, run: &Run, log: &str) -> Result<TendonDi
         Some(extended) => {
             let run = corrected(run, extended)?;
             let gratings = Gratings::from_file(extended)?.ok_or(ContinuumError::NoGratings)?;
-            let with_found = Case::new(extended, &run, &gratings, &kept)?;
+            let with_found = Case::new(extended, &run, &gratings, &kept, base_error_n)?;
             let outcome = friction::naming::name(&with_found)?.beside(&case)?;
             // A lag with which the tensions still disagree is something else, for instance the ends of a pull in one direction.
             let is_lag = named.iter().any(|one| one.candidate == Candidate::TensionLag);
@@ -122,5 +128,6 @@ pub fn discover(file: &ManipulatorFile, run: &Run, log: &str) -> Result<TendonDi
     if is_settled && !mu_of_holes.is_empty() && discovery.edit != ManipulatorEdit::default() {
         discovery.edit.mu = mu_of_holes;
     }
+    discovery.base_noise = base_noise;
     Ok(discovery)
 }

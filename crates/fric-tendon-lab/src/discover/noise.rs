@@ -83,6 +83,8 @@ pub fn is_noise_at(case: &Case<'_>, fit: &Fit, grating: usize) -> bool {
     common.rms() <= common.chance().hypot(practical_n(case))
 }
 
+/// Returns the error that is no evidence: a negligible one, and two standard errors of the tension at the base, which all gratings have in common.
 fn practical_n(case: &Case<'_>) -> f64 {
-    PRACTICAL_RATIO * case.samples.iter().map(|sample| sample.tension_base_n).fold(0.0, f64::max)
+    let negligible_n = PRACTICAL_RATIO * case.samples.iter().map(|sample| sample.tension_base_n).fold(0.0, f64::max);
+    negligible_n.hypot(2.0 * case.base_error_n)
 }

@@ -20,6 +20,7 @@ use nalgebra::DMatrix;
 
 use self::evaluation::Runs;
 use self::least_squares::{Solution, solve};
+use super::base_noise::{BaseNoise, steadied};
 use super::error::ContinuumError;
 use super::gratings::Gratings;
 use super::run::Run;
@@ -59,7 +60,8 @@ pub fn identify(
     names: &[String],
     options: &TendonFitOptions,
 ) -> Result<Identification, ContinuumError> {
-    let mut runs = Runs::new(file, runs)?;
+    let (runs, base_noise): (Vec<Run>, Vec<Option<BaseNoise>>) = runs.iter().map(steadied).unzip();
+    let mut runs = Runs::new(file, &runs)?;
     let counts = runs.sample_counts();
     let count = counts.iter().sum();
     if count < LEAST_SAMPLES {
@@ -121,6 +123,7 @@ pub fn identify(
         (&before, &solution),
         (&unknowns, &wanted, &covariance),
         undetermined,
+        base_noise,
     );
     Ok(Identification { result, edit })
 }

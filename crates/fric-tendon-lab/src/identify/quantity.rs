@@ -12,6 +12,8 @@ pub enum Quantity {
     BackboneStiffness,
     /// Bending stiffness of each segment.
     SegmentStiffness,
+    /// Distances between neighbouring disks.
+    Pitch,
     /// Distance of the holes from the backbone.
     TendonOffset,
     /// Curvature of the unloaded manipulator.
@@ -40,9 +42,10 @@ pub enum Quantity {
 
 impl Quantity {
     /// All quantities.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::BackboneStiffness,
         Self::SegmentStiffness,
+        Self::Pitch,
         Self::TendonOffset,
         Self::Precurvature,
         Self::MarkerFrame,
@@ -63,6 +66,7 @@ impl Quantity {
         match self {
             Self::BackboneStiffness => "backbone_stiffness",
             Self::SegmentStiffness => "segment_stiffness",
+            Self::Pitch => "pitch",
             Self::TendonOffset => "tendon_offset",
             Self::Precurvature => "precurvature",
             Self::MarkerFrame => "marker_frame",
@@ -125,6 +129,7 @@ impl Quantity {
         let all: Vec<Unknown> = match self {
             Self::BackboneStiffness => vec![Unknown::Stiffness],
             Self::SegmentStiffness => (0..count).map(Unknown::SegmentStiffness).collect(),
+            Self::Pitch => (0..count).map(Unknown::Pitch).collect(),
             Self::TendonOffset => vec![Unknown::HoleRadius],
             Self::Precurvature => vec![Unknown::Precurvature],
             Self::MarkerFrame => vec![Unknown::MarkerOffset(0), Unknown::MarkerOffset(1), Unknown::MarkerAngle],

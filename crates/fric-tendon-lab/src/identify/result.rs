@@ -5,6 +5,7 @@ use fric_tendon::file::ManipulatorTables;
 use nalgebra::DMatrix;
 use serde::Serialize;
 
+use super::super::base_noise::BaseNoise;
 use super::evaluation::{Evaluation, Row};
 use super::least_squares::Solution;
 use super::quantity::Quantity;
@@ -21,6 +22,8 @@ pub struct TendonFitResult {
     pub runs: Vec<String>,
     /// Number of compared samples of each run.
     pub samples: Vec<usize>,
+    /// Noise that was taken off the tension at the base of each run; null for none.
+    pub base_noise: Vec<Option<BaseNoise>>,
     /// Identified values, by key.
     pub parameters: Numbers,
     /// Their standard errors.
@@ -129,6 +132,7 @@ impl TendonFitResult {
         (before, solution): (&Evaluation, &Solution),
         (unknowns, tables, covariance): (&[Unknown], &ManipulatorTables, &DMatrix<f64>),
         undetermined: Vec<Undetermined>,
+        base_noise: Vec<Option<BaseNoise>>,
     ) -> Self {
         let numbers = |of: &dyn Fn(usize, Unknown) -> f64| {
             Numbers(unknowns.iter().enumerate().map(|(place, unknown)| (unknown.key(), of(place, *unknown))).collect())
@@ -138,6 +142,7 @@ impl TendonFitResult {
             manipulator: given.name.clone(),
             runs: names.to_vec(),
             samples: samples.to_vec(),
+            base_noise,
             parameters: numbers(&|_, unknown| unknown.value(tables)),
             standard_errors: numbers(&|place, unknown| {
                 unknown.value_per_distance(tables) * covariance[(place, place)].max(0.0).sqrt()

@@ -3,6 +3,7 @@
 use fric_lab::fit::HALF_INTERVAL;
 use fric_lab::text::{quantity, table, wrapped};
 
+use super::super::base_noise::BaseNoise;
 use super::result::{Disagreement, TendonFitResult};
 
 impl TendonFitResult {
@@ -29,13 +30,23 @@ impl TendonFitResult {
         for open in &self.undetermined {
             text += &wrapped("undetermined: ", &format!("{}.", open.sentence));
         }
+        for noise in self.noises() {
+            text += &wrapped("noise: ", &format!("{noise}."));
+        }
         text
     }
 
-    /// Returns one sentence for each number that the runs do not determine.
+    /// Returns one sentence for each run with noise on the tension at the base.
+    fn noises(&self) -> impl Iterator<Item = String> {
+        let of_run =
+            |(name, noise): (&String, &Option<BaseNoise>)| noise.map(|noise| format!("{name}: {}", noise.warning()));
+        self.runs.iter().zip(&self.base_noise).filter_map(of_run)
+    }
+
+    /// Returns one sentence for each number that the runs do not determine, and for each run with noise on the tension at the base.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
-        self.undetermined.iter().map(|open| open.sentence.clone()).collect()
+        self.undetermined.iter().map(|open| open.sentence.clone()).chain(self.noises()).collect()
     }
 }
 

@@ -1,6 +1,6 @@
 //! The numbers of a manipulator file that a run may determine, each as a distance from its value in the file.
 //!
-//! An unknown is 0 if the file is right. Stiffness, distance of the holes, μ and σ are logarithms of the ratio to the file's value, so that they stay
+//! An unknown is 0 if the file is right. Stiffness, pitch, distance of the holes, μ and σ are logarithms of the ratio to the file's value, so that they stay
 //! positive; the others are differences, in the unit of their key.
 
 use fric_tendon::file::{ManipulatorTables, OneOrEach};
@@ -20,6 +20,8 @@ pub enum Unknown {
     Stiffness,
     /// Bending stiffness of one segment.
     SegmentStiffness(usize),
+    /// Length of one segment: the distance of its disk from the one before.
+    Pitch(usize),
     /// Distance of the holes from the backbone.
     HoleRadius,
     /// Curvature of all segments of the unloaded manipulator.
@@ -59,6 +61,7 @@ impl Unknown {
         match self {
             Self::Stiffness => "bending_stiffness_n_m2".to_owned(),
             Self::SegmentStiffness(segment) => format!("segment_{}_stiffness_ratio", segment + 1),
+            Self::Pitch(segment) => format!("pitch_{}_m", segment + 1),
             Self::HoleRadius => "hole_radius_m".to_owned(),
             Self::Precurvature => "precurvature_per_m".to_owned(),
             Self::MarkerOffset(axis) => format!("marker_offset_{}_m", axis_name(axis)),
@@ -111,6 +114,13 @@ impl Unknown {
                     *one = (*one * ratio).clamp(0.01, 100.0);
                 }
                 tables.backbone.segment_stiffness_ratio = Some(OneOrEach::Each(all));
+            }
+            Self::Pitch(segment) => {
+                let mut all: Vec<f64> = tables.segment_pitch_m().collect();
+                if let Some(pitch_m) = all.get_mut(segment) {
+                    *pitch_m *= ratio;
+                }
+                tables.pitch_m = OneOrEach::Each(all);
             }
             Self::HoleRadius => tables.hole_radius_m *= ratio,
             Self::Precurvature => {
@@ -206,6 +216,7 @@ impl Unknown {
                 backbone.thickness_m,
             ),
             Self::SegmentStiffness(segment) => at(&backbone.segment_stiffness_ratio, segment, 1.0),
+            Self::Pitch(segment) => tables.segment_pitch_m().nth(segment).unwrap_or(f64::NAN),
             Self::HoleRadius => tables.hole_radius_m,
             Self::Precurvature => at(&backbone.precurvature_per_m, 0, 0.0),
             Self::MarkerOffset(axis) => markers.offset_m[axis.min(1)],
@@ -238,6 +249,7 @@ impl Unknown {
         match self {
             Self::Stiffness
             | Self::SegmentStiffness(_)
+            | Self::Pitch(_)
             | Self::HoleRadius
             | Self::SharedMu
             | Self::HoleMu(_)
@@ -257,6 +269,7 @@ impl Unknown {
         match self {
             Self::Stiffness | Self::HoleRadius | Self::BaseGain => 0.05,
             Self::SegmentStiffness(_) | Self::SharedMu => 0.25,
+            Self::Pitch(_) => 0.01 * length_m / self.value(tables),
             Self::HoleMu(_) => 0.5,
             Self::Precurvature => 0.03 / length_m,
             Self::MarkerOffset(_) => 0.01 * length_m,
@@ -297,6 +310,7 @@ impl Unknown {
             Self::BaseLag => 1,
             Self::BaseOffset => 2,
             Self::BaseGain => 3,
+            Self::Pitch(_) => 4,
             Self::HoleRadius => 5,
             Self::TipForce(_) => 6,
             Self::GravityAngle => 7,

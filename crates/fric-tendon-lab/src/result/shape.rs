@@ -7,6 +7,7 @@ use fric_tendon::{ManipulatorOptions, ManipulatorParams, ShapeStatus};
 use serde::Serialize;
 
 use super::{BridgedGrating, millimetres};
+use crate::base_noise::BaseNoise;
 use crate::comparison::{WayShapes, is_beyond};
 use crate::gratings::GratingSample;
 use crate::run::Run;
@@ -61,6 +62,9 @@ pub struct WayErrors {
     pub all: ErrorResult,
     /// Number of samples for which the model has no shape.
     pub missing: usize,
+    /// Noise that was taken off the tension at the base.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub base_noise: Option<BaseNoise>,
 }
 
 /// Distances between disks and markers.
@@ -186,7 +190,13 @@ impl ShapeResult {
                 }
             }
             let missing = way.errors.missing_count;
-            WayErrors { way: way.way.name(), picked: (&errors).into(), all: (&way.errors).into(), missing }
+            WayErrors {
+                way: way.way.name(),
+                picked: (&errors).into(),
+                all: (&way.errors).into(),
+                missing,
+                base_noise: way.base_noise,
+            }
         };
         let series = |way: &WayShapes| WaySeries {
             way: way.way.name(),
@@ -220,6 +230,7 @@ impl ShapeResult {
         let mut warnings: Vec<String> = self.bridged.iter().map(|one| one.warning(self.samples)).collect();
         for way in ways {
             let name = way.way.name();
+            warnings.extend(way.base_noise.map(|noise| noise.warning()));
             let beyond: Vec<ShapeStatus> =
                 way.shapes.iter().map(|shape| shape.status).filter(|status| is_beyond(*status)).collect();
             if let Some(status) = beyond.first() {

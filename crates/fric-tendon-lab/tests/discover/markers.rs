@@ -88,6 +88,26 @@ fn a_soft_segment_is_no_hole() {
     assert!((effect.parameters.get("stiffness_ratio").unwrap() / 0.5 - 1.0).abs() < 0.02);
 }
 
+/// Disks that have slid along the backbone: the distances are those of the truth, within a twentieth of the displacement.
+#[test]
+fn disks_that_are_not_evenly_spaced_are_named() {
+    let pitch_m = [0.039, 0.037, 0.035, 0.037, 0.037, 0.041, 0.033, 0.037];
+    let truth = PROTOTYPE.replace("pitch_m = 0.037 ", &format!("pitch_m = {pitch_m:?} "));
+    for experiment in [Experiment::OneWay, Experiment::Mixed] {
+        let (text, samples) = measured_of(&truth, &options(experiment, 32));
+        let discovery = found(&text, &samples);
+        assert_eq!(told(&discovery), ("extended", vec!["uneven_pitch"]), "{experiment:?}");
+        let parameters = &discovery.result.cables[0].effects[0].parameters;
+        for (segment, truth_m) in pitch_m.iter().enumerate() {
+            let found_m = parameters.get(&format!("pitch_{}_m", segment + 1)).unwrap();
+            assert!((found_m - truth_m).abs() < 1e-4, "{} {found_m}", segment + 1);
+        }
+        assert_nothing_worse(&text, &samples, &discovery);
+        let written = rewrite(&text, "arm", &discovery.edit).unwrap();
+        assert_eq!(told(&found(&written, &samples)), ("complete", Vec::new()));
+    }
+}
+
 /// Upright in gravity, a load on the tip and a base that leans are two things.
 #[test]
 fn loads_are_named() {

@@ -23,6 +23,8 @@ pub struct ManipulatorEdit {
     pub drift_nm_per_s: Vec<f64>,
     /// Common shift of all gratings from a time on, nm, and that time, s.
     pub common_step: Option<[f64; 2]>,
+    /// Distance of each disk from the one before, starting at the base plate, m.
+    pub pitch_m: Vec<f64>,
     /// Young's modulus of the backbone, Pa, which determines its bending stiffness.
     pub youngs_modulus_pa: Option<f64>,
     /// Bending stiffness of each segment relative to the backbone's.
@@ -66,6 +68,7 @@ impl ManipulatorEdit {
             lines: Vec::new(),
             drift_nm_per_s: Vec::new(),
             common_step: changed(&step(given), &step(wanted)).flatten(),
+            pitch_m: changed(&given.pitch_m, &wanted.pitch_m).map_or_else(Vec::new, |all| all.as_slice().to_vec()),
             youngs_modulus_pa: changed(&backbone.youngs_modulus_pa, &wanted_backbone.youngs_modulus_pa),
             segment_stiffness_ratio: list(&backbone.segment_stiffness_ratio, &wanted_backbone.segment_stiffness_ratio),
             precurvature_per_m: list(&backbone.precurvature_per_m, &wanted_backbone.precurvature_per_m),
@@ -168,6 +171,9 @@ pub fn rewrite(text: &str, origin: &str, edit: &ManipulatorEdit) -> Result<Strin
         if let Some(value) = value {
             set(table, key, Numbers::List(&value))?;
         }
+    }
+    if !edit.pitch_m.is_empty() {
+        set("", "pitch_m", Numbers::List(&edit.pitch_m))?;
     }
     for (key, values) in
         [("segment_stiffness_ratio", &edit.segment_stiffness_ratio), ("precurvature_per_m", &edit.precurvature_per_m)]

@@ -9,6 +9,7 @@ use super::{Model, about, read_table};
 use crate::arguments::{DiscoverArguments, ReferenceName};
 use crate::failure::{Failure, Outcome};
 use crate::output::{self, JsonTarget, Written};
+use crate::warnings::warn_all;
 use fric_work::provenance::shown_path;
 use fric_work::report;
 
@@ -40,6 +41,8 @@ pub fn run(arguments: &DiscoverArguments) -> Outcome {
     let table = read_table(log, &columns::of_run(model.disk_count()))?;
     let run = Run::from_columns(&table, model.disk_count()).map_err(|error| about(log, error))?;
     let found = discover(&model.file, &run, &shown_path(log)).map_err(|error| about(log, error))?;
+    let noise = found.base_noise.map(|noise| noise.warning());
+    warn_all(&run.begin_warning().into_iter().chain(noise).collect::<Vec<_>>());
     let mut files = Vec::new();
     if let Some(file) = extended {
         let text = rewrite(&model.text, &model.origin, &found.edit)?;

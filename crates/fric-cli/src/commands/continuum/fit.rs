@@ -11,6 +11,7 @@ use crate::arguments::continuum::TendonFitArguments;
 use crate::failure::{Failure, Outcome};
 use crate::measurements::check_named_once;
 use crate::output::{self, JsonTarget, Written};
+use crate::warnings::warn_all;
 
 /// Runs the command.
 pub fn run(arguments: &TendonFitArguments) -> Outcome {
@@ -38,6 +39,11 @@ pub fn run(arguments: &TendonFitArguments) -> Outcome {
         [only] => about(only, error),
         _ => Failure::from(error),
     })?;
+    for (path, run) in runs.iter().zip(&measured) {
+        warn_all(
+            &run.begin_warning().map(|text| format!("{}: {text}", path.display())).into_iter().collect::<Vec<_>>(),
+        );
+    }
     let fitted = file.complete_with(&rewrite(&model.text, &model.origin, &found.edit)?)?;
     let files = vec![Written::new(fitted, "the manipulator file with these values")];
     json.finish(&found.result, &found.result.summary(), files)

@@ -55,6 +55,9 @@ pub fn run(arguments: &ShapeArguments) -> Outcome {
         warn("no sample has friction of both directions beyond doubt: no shape is shown");
     }
     let result = ShapeResult::new(model.name(), params, &run, measured.as_deref(), &ways, &picked);
+    if ways.iter().any(|way| way.way == Way::History) {
+        warn_all(&run.begin_warning().into_iter().collect::<Vec<_>>());
+    }
     warn_all(&result.warnings(&ways));
     let greatest_rad = result.greatest_bend_rad();
     if let Some(Err(error)) = Gratings::from_file(&model.file)?.map(|one| one.check_travel(params, greatest_rad)) {

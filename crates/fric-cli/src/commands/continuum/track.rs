@@ -8,7 +8,7 @@ use fric_tendon_lab::follow::{FollowedGoal, Follower, GoalPath, Goals};
 use fric_tendon_lab::result::{TrackResult, TrackSimulation};
 use fric_tendon_lab::shape_errors::Way;
 use fric_tendon_lab::simulate::track::{TrackOptions, track};
-use fric_tendon_lab::{ContinuumError, columns};
+use fric_tendon_lab::{ContinuumError, columns, steadied};
 
 use super::rows::{Channel, RowsFile, is_mcap};
 use super::{Model, about, read_run, read_table};
@@ -73,6 +73,13 @@ pub fn run(arguments: &TrackArguments) -> Outcome {
             ));
         }
         run.check_capacity(params.capacity_n(Tendon::Agonist)).map_err(|error| about(after, error))?;
+        warn_all(
+            &run.begin_warning().map(|text| format!("{}: {text}", after.display())).into_iter().collect::<Vec<_>>(),
+        );
+        let (run, noise) = steadied(&run);
+        warn_all(
+            &noise.map(|noise| format!("{}: {}", after.display(), noise.warning())).into_iter().collect::<Vec<_>>(),
+        );
         let missing = follower.advance(run.samples().iter().map(|sample| [sample.tension_base_n, 0.0]));
         if missing > 0 {
             warn(&format!(

@@ -11,6 +11,8 @@ pub enum Candidate {
     Stiffness,
     /// Bending stiffness of one segment.
     SegmentStiffness(usize),
+    /// Distances between neighbouring disks.
+    UnevenPitch,
     /// Distance of the holes from the backbone.
     TendonOffset,
     /// Curvature of the unloaded manipulator.
@@ -53,6 +55,7 @@ impl Candidate {
         if has_markers {
             all.extend([
                 Self::Stiffness,
+                Self::UnevenPitch,
                 Self::TendonOffset,
                 Self::Precurvature,
                 Self::MarkerFrame,
@@ -78,6 +81,7 @@ impl Candidate {
     pub fn kind(self) -> &'static str {
         match self {
             Self::Stiffness | Self::SegmentStiffness(_) => "backbone_stiffness",
+            Self::UnevenPitch => "uneven_pitch",
             Self::TendonOffset => "tendon_offset",
             Self::Precurvature => "precurvature",
             Self::MarkerFrame => "marker_frame",
@@ -98,6 +102,7 @@ impl Candidate {
         match self {
             Self::Stiffness => vec![Unknown::Stiffness],
             Self::SegmentStiffness(segment) => vec![Unknown::SegmentStiffness(segment)],
+            Self::UnevenPitch => (0..tables.disk_count).map(Unknown::Pitch).collect(),
             Self::TendonOffset => vec![Unknown::HoleRadius],
             Self::Precurvature => vec![Unknown::Precurvature],
             Self::MarkerFrame => vec![Unknown::MarkerOffset(0), Unknown::MarkerOffset(1), Unknown::MarkerAngle],
@@ -125,7 +130,7 @@ impl Candidate {
             Self::TendonOffset => 4,
             Self::Precurvature => 3,
             Self::BaseGain | Self::BaseOffset | Self::TensionLag => 2,
-            Self::SegmentStiffness(_) => 1,
+            Self::SegmentStiffness(_) | Self::UnevenPitch => 1,
             Self::Hole(_) | Self::AllHoles | Self::Drift(_) | Self::Line(_) | Self::AllLines => 0,
         }
     }
@@ -140,6 +145,10 @@ impl Candidate {
             Self::SegmentStiffness(_) => [
                 "One segment bends more or less than the others.",
                 "Look for a crack, a kink or a clamped place in this segment.",
+            ],
+            Self::UnevenPitch => [
+                "The disks are not where they are stated along the backbone.",
+                "Measure the distances between the disks, and fix disks that slide.",
             ],
             Self::TendonOffset => [
                 "The holes are nearer to the backbone or further from it than stated.",
