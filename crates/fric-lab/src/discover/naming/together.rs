@@ -17,7 +17,7 @@ use super::{NEGLIGIBLE, STRONG_BIC, Search};
 use crate::candidates::catalogue::{fitted, starts};
 use crate::discover::workbench::Trial;
 
-/// Number of sets that are fitted.
+/// Number of sets that are fitted. In the four logs of a sweep in which one entered it was the first; on the real drive EMPS the second explains most.
 const MOST_SETS: usize = 3;
 /// A candidate that adds less than this fraction of the sum of squares adds nothing.
 const NOTHING: f64 = 1e-9;
