@@ -12,8 +12,8 @@
 //! In steady motion `θ = 1/(1 + |v|·time_s/distance_m)`, which is nearly zero at any usual speed. A run begins with θ = 0. The friction of a cycle
 //! uses the mean of the θ before and after it. Neutral: `ratio = 0`.
 //!
-//! Rests of one length determine only `ratio·(1 − e^(−rest/time_s))`. Therefore `time_s` is a setting: the identified values are valid for rests like
-//! those of the run, and for others as far as `time_s` is right. A fit that names it identifies it if the run has rests of several lengths.
+//! Rests of one length determine only `ratio·(1 − e^(−rest/time_s))`. A fit identifies `time_s` if the run has rests of several lengths. If not, it stays
+//! as stated: the identified values are valid for rests like those of the run, and for others as far as `time_s` is right.
 //!
 //! Cause: asperities in contact creep and grow, and grease is squeezed out of the contact. Source: the ageing law of rate-and-state friction
 //! (Dieterich 1979; Ruina 1983), with a bounded age.

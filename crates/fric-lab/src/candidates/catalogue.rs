@@ -6,6 +6,8 @@
 use fric_core::effects::Effect;
 use fric_core::parameters::{MU, NO_PRESLIDING_N_PER_M, SIGMA, VISCOUS, Values};
 
+use super::ripple::is_period;
+use crate::certainty::assumed::is_assumed;
 use crate::effects;
 use crate::effects::{Around, Periods};
 use crate::replay::Deviation;
@@ -59,6 +61,12 @@ pub fn has(effect: Effect, values: &Values) -> bool {
             .filter(|parameter| parameter.row().fitted)
             .any(|parameter| values[parameter.place()].to_bits() != parameter.row().neutral.to_bits()),
     }
+}
+
+/// Whether a fit varies a parameter once its effect acts, although it has no neutral value from which a candidate could start: the period of a ripple,
+/// and the time in which contacts age at rest.
+pub fn is_fitted_once_it_acts(parameter: &Parameter) -> bool {
+    is_period(parameter) || is_assumed(parameter)
 }
 
 /// Returns the parameters that a fit varies for an effect.

@@ -12,11 +12,11 @@ use crate::effects::Periods;
 use crate::samples::record::{CableRecord, Row};
 use crate::search::vector::Parameter;
 
-/// Maximum number of periods in the range of the length, and the number of the strongest that are used.
-const MOST_TURNS: usize = 2048;
+/// Number of the strongest periods that are used.
 const MOST_PERIODS: usize = 2;
-/// Places into which the range of the length is divided for the scan. At the shortest period an eighth of a turn is lost between them, 2 % of the power.
-const PLACES: usize = 8 * MOST_TURNS;
+/// Places per turn at the shortest period, by which the scan divides the range of the length: at most an eighth of a turn is lost between them, 2 % of
+/// the power.
+const PLACES_PER_TURN: usize = 8;
 /// Minimum number of half periods in the range: fewer are a slow change.
 const LEAST_HALF_TURNS: usize = 4;
 /// Number of golden-section steps over half a period, down to a thousandth.
@@ -61,7 +61,7 @@ fn periods_m(record: &CableRecord<'_>, residual_n: &[f64], carrier: impl Fn(&Row
     if samples.len() < ENOUGH / 10 || range_m <= 0.0 {
         return Vec::new();
     }
-    let powers = powers(&samples, least_m, range_m);
+    let powers = powers(&samples, least_m, range_m, most_turns(range_m, samples.len()));
     let mut peaks: Vec<(usize, f64)> = (1..)
         .zip(powers.windows(3))
         .filter(|(half_turns, three)| *half_turns >= LEAST_HALF_TURNS && three[1] > three[0] && three[1] >= three[2])
@@ -74,12 +74,21 @@ fn periods_m(record: &CableRecord<'_>, residual_n: &[f64], carrier: impl Fn(&Row
     peaks.iter().take(MOST_PERIODS).map(|(half_turns, _)| sharpened(&few, period_m(*half_turns), range_m)).collect()
 }
 
+/// Returns the number of turns in the range at the shortest period that is sought: the least that a robot file may state, but two samples a turn.
+fn most_turns(range_m: f64, sample_count: usize) -> usize {
+    let least_m = period_of(Effect::WinchRipple).map_or(f64::INFINITY, |period| period.row().min);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a cast saturates")]
+    let turns = (range_m / least_m) as usize;
+    turns.min(sample_count / 2)
+}
+
 /// Returns the decrease of the squares by a sine beside a constant, by the number of its half periods in the range: those of [`ripple_power`] with the
-/// lengths rounded to [`PLACES`], by Fourier transforms of the sums per place and of the numbers of samples (W. H. Press and G. B. Rybicki, *Fast
+/// lengths rounded to places, by Fourier transforms of the sums per place and of the numbers of samples (W. H. Press and G. B. Rybicki, *Fast
 /// algorithm for spectral analysis of unevenly sampled data*, 1989).
-fn powers(samples: &[(f64, f64)], least_m: f64, range_m: f64) -> Vec<f64> {
+fn powers(samples: &[(f64, f64)], least_m: f64, range_m: f64, most_turns: usize) -> Vec<f64> {
+    let places = (PLACES_PER_TURN * most_turns).next_power_of_two();
     // Twice the range, so that a harmonic has half a period in it.
-    let [mut sums, mut counts] = [vec![0.0; 2 * PLACES], vec![0.0; 2 * PLACES]];
+    let [mut sums, mut counts] = [vec![0.0; 2 * places], vec![0.0; 2 * places]];
     for (length_m, ratio) in samples {
         #[expect(
             clippy::cast_possible_truncation,
@@ -87,15 +96,15 @@ fn powers(samples: &[(f64, f64)], least_m: f64, range_m: f64) -> Vec<f64> {
             clippy::cast_precision_loss,
             reason = "a share of the places"
         )]
-        let place = ((length_m - least_m) / range_m * PLACES as f64).round() as usize;
+        let place = ((length_m - least_m) / range_m * places as f64).round() as usize;
         if let (Some(sum), Some(count)) = (sums.get_mut(place), counts.get_mut(place)) {
             *sum += ratio;
             *count += 1.0;
         }
     }
-    let transform = RealFftPlanner::<f64>::new().plan_fft_forward(2 * PLACES);
+    let transform = RealFftPlanner::<f64>::new().plan_fft_forward(2 * places);
     let harmonics = |mut values: Vec<f64>| {
-        let mut harmonics = vec![Complex::default(); PLACES + 1];
+        let mut harmonics = vec![Complex::default(); places + 1];
         // Both lengths are those of the plan.
         let is_done = transform.process(&mut values, &mut harmonics).is_ok();
         if is_done { harmonics } else { Vec::new() }
@@ -119,7 +128,7 @@ fn powers(samples: &[(f64, f64)], least_m: f64, range_m: f64) -> Vec<f64> {
         );
         Some(decrease(matrix, Vector3::new(total, -sum.im, sum.re)))
     };
-    (0..=2 * MOST_TURNS).map(|half_turns| power(half_turns).unwrap_or(0.0)).collect()
+    (0..=2 * most_turns).map(|half_turns| power(half_turns).unwrap_or(0.0)).collect()
 }
 
 /// Refines a period of the grid to the strongest ripple, by golden sections of the number of periods over the whole range.
@@ -172,14 +181,31 @@ mod tests {
                 (length_m, ripple + noise)
             })
             .collect();
-        let powers = powers(&samples, -0.6, 1.3);
-        for half_turns in [4_u32, 33, 584, 2001, 3600] {
+        let powers = powers(&samples, -0.6, 1.3, most_turns(1.3, samples.len()));
+        for half_turns in [4_u32, 33, 584, 2001, 3600, 4999] {
             let exact = ripple_power(&samples, 2.6 / f64::from(half_turns));
             let found = powers[usize::try_from(half_turns).unwrap()];
             assert!((found - exact).abs() < 0.05 * exact + 10.0, "{half_turns}: {found} instead of {exact}");
         }
         let peak =
             |from: usize, to: usize| (from..to).max_by(|one, other| powers[*one].total_cmp(&powers[*other])).unwrap();
-        assert_eq!((peak(4, 1000), peak(1000, 4097)), (584, 3600));
+        assert_eq!((powers.len(), peak(4, 1000), peak(1000, 5001)), (5001, 584, 3600));
+    }
+
+    /// The slots of a motor whose drum takes up far more than a turn: 49 m at 14.96 mm.
+    #[test]
+    fn a_short_period_on_a_long_way_is_found() {
+        let mut random = ChaCha8Rng::seed_from_u64(5);
+        let (way_m, period_m) = (49.0, 14.96e-3);
+        let samples: Vec<(f64, f64)> = (0..40_000)
+            .map(|k| {
+                let (length_m, noise): (f64, f64) = (way_m * f64::from(k) / 4e4, StandardNormal.sample(&mut random));
+                (length_m, 0.5 * (TAU * length_m / period_m).cos() + noise)
+            })
+            .collect();
+        let powers = powers(&samples, 0.0, way_m, most_turns(way_m, samples.len()));
+        let strongest = (4..powers.len()).max_by(|one, other| powers[*one].total_cmp(&powers[*other])).unwrap();
+        let half_turns = u32::try_from(strongest).unwrap();
+        assert!((f64::from(half_turns) - 2.0 * way_m / period_m).abs() <= 1.0, "{half_turns}");
     }
 }

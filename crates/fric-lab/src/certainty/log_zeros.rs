@@ -30,7 +30,7 @@ pub fn log_zeros(problem: &Problem<'_>, values: &Values) -> Vec<Option<LogZeroEs
             per_log.in_columns = true;
         }
     }
-    let covariance = reported_covariance(&with_columns, &[*values]);
+    let covariance = reported_covariance(&with_columns, &[*values], &[]);
     let estimate = |(log, change_n): (usize, Option<f64>)| {
         let variance = covariance.get((shared + log, shared + log)).copied().unwrap_or(f64::INFINITY);
         change_n.map(|change_n| LogZeroEstimate { change_n, standard_error_n: variance.sqrt() })

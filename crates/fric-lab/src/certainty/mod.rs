@@ -1,9 +1,10 @@
 //! How well the samples determine an estimate.
 //!
 //! [`scores`] gives the covariance under correlated residuals, over the [`groups`] of samples in one operating condition. [`unlike_pulleys`] adds the
-//! effect of differences between a cable's pulleys, [`own_noise`] that of the sensor's noise in the model. [`determined`] and [`undetermined`] decide
-//! which parameters the samples determine. [`directions`] finds the combinations that they leave open.
+//! effect of differences between a cable's pulleys, [`own_noise`] that of the sensor's noise in the model, [`assumed`] that of a time that the samples do
+//! not determine. [`determined`] and [`undetermined`] decide which parameters the samples determine. [`directions`] finds the combinations that they leave open.
 
+pub mod assumed;
 pub mod determined;
 pub mod directions;
 pub mod groups;

@@ -2,9 +2,10 @@
 //! with.
 //!
 //! While a parameter is undetermined (see [`Yardstick`]), one parameter is held and the rest is fitted again. The open directions of the information
-//! matrix ([`open_directions`]) select it: the parameter with the most weight in the least known direction. Among the parameters of one cable an
-//! offset comes last, because it does no harm elsewhere. Among the offsets of several cables that only have an effect together (an inner tension of
-//! the platform), the one with the most weight is held, because the others compensate for its error.
+//! matrix ([`open_directions`]) select it: the parameter with the most weight in the least known direction. A time
+//! that is [`assumed`] comes first. Among the parameters of one cable an offset comes last, because it does no harm elsewhere. Among the offsets of
+//! several cables that only have an effect together (an inner tension of the platform), the one with the most weight is held, because the others
+//! compensate for its error.
 
 use std::sync::Arc;
 
@@ -14,7 +15,7 @@ use nalgebra::DMatrix;
 use super::determined::{HALF_INTERVAL, Yardstick};
 use super::directions::{LEAST_WEIGHT, OpenDirection, open_directions};
 use super::groups::Groups;
-use super::{own_noise, unlike_pulleys};
+use super::{assumed, own_noise, unlike_pulleys};
 use crate::fit::report::{OpenCombination, OpenPart};
 use crate::replay::Deviation;
 use crate::search::optimizer::Termination;
@@ -77,15 +78,20 @@ impl Knowledge {
         }
         let is_offset =
             |place: usize| self.unknowns.get(place).is_some_and(|unknown| unknown.parameter.place() == OFFSET);
+        let is_assumed =
+            |place: usize| self.unknowns.get(place).is_some_and(|unknown| assumed::is_assumed(&unknown.parameter));
         let of_direction = |direction: &OpenDirection| {
             let parts = direction.parts();
             let (offsets, others): (Vec<usize>, Vec<usize>) = parts.iter().partition(|place| is_offset(**place));
             let first_of = |places: Vec<usize>| places.into_iter().find(|place| !is_kept(*place));
-            let held = if offsets.len() > 1 {
-                first_of(offsets).or_else(|| first_of(others))
-            } else {
-                first_of(others).or_else(|| first_of(offsets))
-            };
+            let assumed = first_of(parts.iter().copied().filter(|place| is_assumed(*place)).collect());
+            let held = assumed.or_else(|| {
+                if offsets.len() > 1 {
+                    first_of(offsets).or_else(|| first_of(others))
+                } else {
+                    first_of(others).or_else(|| first_of(offsets))
+                }
+            });
             Some((held?, parts, direction.clone()))
         };
         let (held, mut parts, direction) = self.directions().iter().find_map(of_direction)?;
@@ -193,8 +199,8 @@ pub fn covariance(problem: &Problem<'_>, values: &[Values]) -> DMatrix<f64> {
 }
 
 /// Returns the covariance to report: for a single cable it also covers groups of samples in the same condition, and it includes the effects of unlike
-/// pulleys and of the sensor's noise in the model.
-pub fn reported_covariance(problem: &Problem<'_>, values: &[Values]) -> DMatrix<f64> {
+/// pulleys, of the sensor's noise in the model, and of the times among what is `undetermined` that are assumed.
+pub fn reported_covariance(problem: &Problem<'_>, values: &[Values], undetermined: &[Unknown]) -> DMatrix<f64> {
     let groups = match (&problem.comparison, problem.members.as_slice()) {
         (Comparison::Forces, [member]) => Some(Groups::of(&member.record)),
         _ => None,
@@ -206,7 +212,7 @@ pub fn reported_covariance(problem: &Problem<'_>, values: &[Values]) -> DMatrix<
     if let Some(error) = own_noise::error(problem, values) {
         covariance += &error * error.transpose();
     }
-    covariance
+    covariance + assumed::covariance(problem, values, undetermined)
 }
 
 /// Returns the matrix `JᵀJ` (`None` if it is not finite), the covariance, and the greatest shift of each parameter for residuals of 1 N in every

@@ -33,9 +33,12 @@ impl TruthEffect for AgeingContacts {
     }
 }
 
+/// Times of ageing to start from, s.
+const TIMES_S: [f64; 3] = [0.6, 0.2, 1.8];
+
 /// Starts from a distance over which presliding builds up.
 fn starts(_: &Around) -> Vec<Start> {
-    vec![vec![("ratio", 0.3), ("distance_m", 1e-3)]]
+    TIMES_S.map(|time_s| vec![("ratio", 0.3), ("time_s", time_s), ("distance_m", 1e-3)]).to_vec()
 }
 
 fn typical(scale: &mut Sizing<'_>) -> Start {

@@ -4,7 +4,7 @@ use fric_core::CableParams;
 use fric_core::effects::Effect;
 use fric_core::parameters::OFFSET;
 
-use crate::candidates::ripple::is_period;
+use crate::candidates::catalogue::is_fitted_once_it_acts;
 use crate::samples::record::{CableRecord, LogZero};
 use crate::search::solve::Weighing;
 use crate::search::vector::Parameter;
@@ -44,8 +44,7 @@ impl FitOptions {
             let free = |parameter: &Parameter| parameter.effect().is_none_or(acts);
             // A sensor offset and an offset at the platform have the same effect on the force, so only one of them is varied.
             let twice = |parameter: &Parameter| parameter.place() == OFFSET && acts(Effect::SensorOffset);
-            // A ripple's period has no neutral value to start from, but an effect that acts has a period.
-            let varies = |parameter: &Parameter| parameter.row().fitted || is_period(parameter);
+            let varies = |parameter: &Parameter| parameter.row().fitted || is_fitted_once_it_acts(parameter);
             // A table states itself whether it changes the force or the friction.
             let is_idle = |parameter: &Parameter| {
                 parameter.effect() == Some(Effect::Empirical)

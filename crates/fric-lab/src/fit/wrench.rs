@@ -58,7 +58,7 @@ pub fn fit_wrench(
     let held_out = case.held_out();
     let Found { problem, mut solution, standings } = case.identified(&|_| true);
     if !solution.unknowns.is_empty() {
-        solution.covariance = reported_covariance(&problem, &solution.values);
+        solution.covariance = reported_covariance(&problem, &solution.values, &solution.undetermined);
     }
     let cables = cable_fits(&problem, &case.given(), &solution, &standings);
     let [before, after] = case.errors(&problem, &solution.values, &|_| true);

@@ -79,7 +79,7 @@ pub fn solve(
     let mut solution = settle(problem, starts, given, cycle_s, weighing, standings);
     solution.hold_undetermined(problem, given, cycle_s);
     if matches!(problem.comparison, Comparison::Forces) && !solution.unknowns.is_empty() {
-        solution.covariance = reported_covariance(problem, &solution.values);
+        solution.covariance = reported_covariance(problem, &solution.values, &solution.undetermined);
     }
     solution
 }

@@ -82,7 +82,7 @@ impl CableLog<'_> {
         let steps = steps.map(|(place, step)| if place == last { &fitted.values } else { &step.values });
         let findings = naming.named.iter().zip(steps);
         let mut findings: Vec<Finding> =
-            findings.map(|(named, step)| finding(&search, &naming.model, named, held_out_of(step))).collect();
+            findings.map(|(named, step)| finding(&search, named, held_out_of(step))).collect();
         findings.extend(table.map(|table| Finding {
             effect: Effect::Empirical,
             held_out_n: after.held_out_n,
@@ -189,9 +189,9 @@ impl CableLog<'_> {
     }
 }
 
-fn finding(search: &Search<'_, '_>, model: &Trial, named: &Named, held_out_n: Deviation) -> Finding {
+fn finding(search: &Search<'_, '_>, named: &Named, held_out_n: Deviation) -> Finding {
     let bic = |trial: &Trial| search.delta_bic(&named.without, trial, named.inflation);
-    let delta_bic = bic(model);
+    let delta_bic = bic(&named.with);
     let runner_up = named.runner_up.as_ref().map(|(effect, trial)| {
         let other_bic = bic(trial);
         RunnerUp {

@@ -82,41 +82,38 @@ impl CableLog<'_> {
         let base = bench.try_one(start);
         let noise_n = self.noise_n(&bench, &base)?;
         let mut search = Search::new(&bench, noise_n, self.around(&base, noise_n), &base, self.steady, self.effort);
-        let (mut before, mut rows): (Vec<Effect>, Vec<Effect>) = (Vec::new(), Vec::new());
-        let mut passes = 0;
-        loop {
-            passes += 1;
-            let naming = search.run(&before);
-            let fitted = self.fitted(counts, &naming.model, noise_n);
-            let found: Vec<Effect> = naming.named.iter().map(|named| named.effect).collect();
-            // Effects that were offered and did not stay would be offered again.
-            let more = if found == rows || passes == MOST_PASSES || self.effort.is_spent(found.len()) {
-                Vec::new()
-            } else {
-                self.missing(&bench, &search, &fitted, &found)?
-            };
-            if more.is_empty() {
-                let residual_n = bench.residuals_n(&fitted.values);
-                let rest = self.rest(&bench, residual_n, self.least_n(&base))?;
-                return Some(Outcome { counts: counts.to_vec(), base, naming, fitted, rest, stretch: None });
+        let mut naming = search.run(&[]);
+        let mut fitted = self.fitted(counts, &naming.model, noise_n);
+        for _ in 1..MOST_PASSES {
+            if self.effort.is_spent(naming.named.len()) {
+                break;
             }
-            before = found.iter().copied().chain(more).collect();
-            rows = found;
+            let beyond = self.beyond(&bench, &search, &fitted, &naming.effects())?;
+            if beyond.named.is_empty() {
+                break;
+            }
+            // Beside what is missing, everything has to justify itself again. What does not stay then would still be named from the extended file.
+            let again = search.run(&[naming.effects(), beyond.effects()].concat());
+            let is_new = again.effects().iter().any(|effect| !naming.effects().contains(effect));
+            naming = if is_new { again } else { naming.followed_by(beyond) };
+            fitted = self.fitted(counts, &naming.model, noise_n);
         }
+        let residual_n = bench.residuals_n(&fitted.values);
+        let rest = self.rest(&bench, residual_n, self.least_n(&base))?;
+        Some(Outcome { counts: counts.to_vec(), base, naming, fitted, rest, stretch: None })
     }
 
-    /// Returns the effects that would be missing if the model with those that `search` has found were the given one.
-    fn missing(
+    /// Names what would be missing if the model with the effects that `search` has found were the given one.
+    fn beyond(
         &self,
         bench: &Workbench<'_>,
         search: &Search<'_, '_>,
         fitted: &Fitted,
         found: &[Effect],
-    ) -> Option<Vec<Effect>> {
+    ) -> Option<Naming> {
         let base = bench.try_one(&workbench::Model { values: fitted.values, free: fitted.parameters.clone() });
         let noise_n = self.noise_n(bench, &base)?;
-        let naming = search.beyond(found, &base, noise_n, self.around(&base, noise_n)).run(&[]);
-        Some(naming.named.iter().map(|named| named.effect).collect())
+        Some(search.beyond(found, &base, noise_n, self.around(&base, noise_n)).run(&[]))
     }
 
     /// Returns the standard deviation of the white noise in the model's residual, N.
@@ -152,20 +149,36 @@ impl CableLog<'_> {
             let is_free = model.free.contains(parameter) || !acts(parameter, &given);
             !parameter.is_friction() || is_free && (acts(parameter, &model.values) || acts(parameter, &given))
         };
-        let of = |also: fn(&Parameter) -> bool| {
-            let params = self.record.params.with_values(&model.values).ok()?;
-            let mut parameters = FitOptions::default().shared(&self.record.with_params(&params));
-            parameters.retain(|parameter| is_known(parameter) || also(parameter));
-            let options = FitOptions { parameters: Some(parameters), ..FitOptions::default() };
-            let left_out = self.counts.iter().zip(counts).map(|(all, counts)| *all && !counts);
-            let standing = |(standing, left_out)| if left_out { Standing::Flagged } else { standing };
-            let standings: Vec<Standing> = self.standings.iter().copied().zip(left_out).map(standing).collect();
-            let gang = crate::search::gang::Gang::new(1, self.stop);
+        let left_out = self.counts.iter().zip(counts).map(|(all, counts)| *all && !counts);
+        let standing = |(standing, left_out)| if left_out { Standing::Flagged } else { standing };
+        let standings: Vec<Standing> = self.standings.iter().copied().zip(left_out).map(standing).collect();
+        let solved = |start: &Values, parameters: Vec<Parameter>| {
+            let params = self.record.params.with_values(start).ok()?;
             let record = self.record.with_params(&params);
+            let options = FitOptions { parameters: Some(parameters), ..FitOptions::default() };
+            let gang = crate::search::gang::Gang::new(1, self.stop);
             let solution =
                 crate::fit::cables::Search::run(&record, &standings, &options, self.stop, gang.seat(0)).solution;
             let parameters = solution.unknowns.iter().map(|unknown| unknown.parameter).collect();
             Some(Fitted { values: *solution.values.first()?, parameters, covariance: solution.covariance })
+        };
+        let of_file = FitOptions::default().shared(&self.record);
+        let of = |also: fn(&Parameter) -> bool| {
+            let params = self.record.params.with_values(&model.values).ok()?;
+            let mut parameters = FitOptions::default().shared(&self.record.with_params(&params));
+            parameters.retain(|parameter| is_known(parameter) || also(parameter));
+            let fitted = solved(&model.values, parameters.clone())?;
+            // What these samples do not determine stays in the file as it was. The model that is judged has it so too.
+            let stays = |parameter: &Parameter| of_file.contains(parameter) && !fitted.parameters.contains(parameter);
+            let mut start = fitted.values;
+            for parameter in of_file.iter().filter(|parameter| stays(parameter)) {
+                start[parameter.place()] = given[parameter.place()];
+            }
+            if start == fitted.values {
+                return Some(fitted);
+            }
+            parameters.retain(|parameter| !stays(parameter));
+            solved(&start, parameters)
         };
         let has_chance_offset = |fitted: &Fitted| {
             let place = fitted.parameters.iter().position(|parameter| parameter.place() == OFFSET);

@@ -9,7 +9,7 @@ use super::evidence::inflation;
 use super::rivals::{Chance, Rival, best_rival};
 use super::steadiness::{Portrait, Steadiness};
 use super::{LEAST_SIZE, Named, Refusal, STRONG_BIC, Search, set_of, without};
-use crate::candidates::catalogue::fitted;
+use crate::candidates::catalogue::{fitted, has};
 use crate::discover::rest::WORTH;
 use crate::discover::workbench::Trial;
 use crate::effects;
@@ -41,8 +41,11 @@ impl Search<'_, '_> {
                 (inflation, self.refusal(&model, effect, &without, inflation))
             });
             self.judged.insert((set.clone(), effect), (inflation, refusal));
-            let refusal = refusal.or_else(|| self.usual_instead(found, effect, inflation));
-            named.push(Named { effect, without, runner_up: None, inflation, refusal });
+            let refusal = refusal
+                .or_else(|| self.usual_instead(found, effect, inflation))
+                .or_else(|| self.straight(&others, effect, inflation));
+            let with = model.clone();
+            named.push(Named { effect, with, without, runner_up: None, inflation, refusal });
         }
         if named.iter().all(|named| named.refusal.is_none()) && !self.unrivalled.contains(&set) {
             match self.rival(&model, &named) {
@@ -73,6 +76,26 @@ impl Search<'_, '_> {
             let (_, without) = self.beside(&others, &[usual]).pop()?;
             (self.delta_bic(&without, &with, inflation) >= -STRONG_BIC).then_some(Refusal::UsualInstead(usual))
         })
+    }
+
+    /// Whether strong evidence for a bent sensor is missing beside a straight one: where the loads are few or uneven, a curve does what a gain with an
+    /// offset would.
+    fn straight(&mut self, others: &[Effect], effect: Effect, inflation: f64) -> Option<Refusal> {
+        if effect != Effect::SensorNonlinearity {
+            return None;
+        }
+        let model = self.fit(others);
+        let has_offset =
+            model.free.iter().any(|parameter| parameter.place() == OFFSET) || self.bench.record.per_log.is_some();
+        let of_a_line = [(Effect::SensorGain, false), (Effect::SensorOffset, has_offset)];
+        let is_missing =
+            |(of, is_there): &(Effect, bool)| !is_there && !others.contains(of) && !has(*of, &model.values);
+        let missing: Vec<Effect> = of_a_line.into_iter().filter(is_missing).map(|(of, _)| of).collect();
+        let mut line = others.to_vec();
+        self.add(&mut line, &missing);
+        let straight = self.fit(&line);
+        let bent = self.fit(&[others, &[effect]].concat());
+        (self.delta_bic(&straight, &bent, inflation) >= -STRONG_BIC).then_some(Refusal::Straight)
     }
 
     /// Returns a law without a name that makes some of the effects superfluous.

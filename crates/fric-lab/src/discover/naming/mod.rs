@@ -58,6 +58,8 @@ type Set = Vec<Effect>;
 pub struct Named {
     /// The effect.
     pub effect: Effect,
+    /// The model with the effect in which it was judged.
+    pub with: Trial,
     /// The model without the effect, fitted again.
     pub without: Trial,
     /// The best other effect in its place.
@@ -85,6 +87,8 @@ pub enum Refusal {
     Usual,
     /// The effect explains no more than this other effect does at a typical size.
     UsualInstead(Effect),
+    /// A gain with an offset explains as much as the curve of the sensor.
+    Straight,
     /// The rest would vanish if the effect's size varied with this condition, so its law is a different one.
     Bent(&'static str),
 }
@@ -102,6 +106,24 @@ pub struct Naming {
     pub first_round: Vec<(Effect, Trial)>,
     /// Candidates that improve the final model but do not suffice, the best first.
     pub tried: Vec<Tried>,
+}
+
+impl Naming {
+    /// Returns the effects found.
+    pub fn effects(&self) -> Vec<Effect> {
+        self.named.iter().map(|named| named.effect).collect()
+    }
+
+    /// Returns this naming with what a search from its model has named beyond it.
+    pub fn followed_by(self, beyond: Self) -> Self {
+        Self {
+            model: beyond.model,
+            named: [self.named, beyond.named].concat(),
+            ladder: self.ladder.into_iter().chain(beyond.ladder.into_iter().skip(1)).collect(),
+            first_round: self.first_round,
+            tried: beyond.tried,
+        }
+    }
 }
 
 /// A candidate that helps but does not suffice.
@@ -199,8 +221,12 @@ impl<'b, 'a> Search<'b, 'a> {
         }
         let tried = self.tried(&found);
         self.polish(&found);
+        let model = self.fit(&found);
+        for named in &mut named {
+            named.with = model.clone();
+        }
         let ladder = (0..=found.len()).map(|count| self.fit(found.get(..count).unwrap_or_default())).collect();
-        Naming { model: self.fit(&found), named, ladder, first_round, tried }
+        Naming { model, named, ladder, first_round, tried }
     }
 
     /// Whether the search has to come to an end.

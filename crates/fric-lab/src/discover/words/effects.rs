@@ -120,6 +120,7 @@ impl Refusal {
             Self::UsualInstead(usual) => {
                 format!("{} of a size that robots usually have leaves little for it to explain", usual.kind())
             }
+            Self::Straight => "a gain with an offset of the sensor explains as much".to_owned(),
             Self::Bent(signal) => {
                 format!(
                     "what is left would go away if its size went with the {}: its law is another one",
