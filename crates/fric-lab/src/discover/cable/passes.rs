@@ -169,15 +169,16 @@ impl CableLog<'_> {
             parameters.retain(|parameter| is_known(parameter) || also(parameter));
             let fitted = solved(&model.values, parameters.clone())?;
             // What these samples do not determine stays in the file as it was. The model that is judged has it so too.
-            let stays = |parameter: &Parameter| of_file.contains(parameter) && !fitted.parameters.contains(parameter);
-            let mut start = fitted.values;
-            for parameter in of_file.iter().filter(|parameter| stays(parameter)) {
-                start[parameter.place()] = given[parameter.place()];
+            let is_held = |parameter: &&Parameter| !fitted.parameters.contains(parameter);
+            let (mut start, mut is_changed) = (fitted.values, false);
+            for place in of_file.iter().filter(is_held).map(Parameter::place) {
+                is_changed |= start[place].to_bits() != given[place].to_bits();
+                start[place] = given[place];
             }
-            if start == fitted.values {
+            if !is_changed {
                 return Some(fitted);
             }
-            parameters.retain(|parameter| !stays(parameter));
+            parameters.retain(|parameter| fitted.parameters.contains(parameter) || !of_file.contains(parameter));
             solved(&start, parameters)
         };
         let has_chance_offset = |fitted: &Fitted| {
