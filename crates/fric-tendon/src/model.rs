@@ -372,7 +372,7 @@ impl<const DISKS: usize> StaticModel<DISKS> {
         self.state.shape = Shape {
             count,
             bend_rad: point.bend_rad,
-            position_m: positions(&self.params.pitch_m, &point.bend_rad),
+            position_m: positions(&self.params, &point.bend_rad),
             base_tension_n,
             tension_n: point.tension_n,
             friction_n: frictions(point, base_tension_n),
