@@ -12,7 +12,8 @@
 //!
 //! Source: the beam of Euler and Bernoulli with the assumed linear curvature (Ritz). For small loads a straight segment has its closed form, `y =
 //! F·L³/(3·E·I)`: the arc gives three quarters of it, the skew one. Deviations: terms of β² other than its energy, such as the pull of F and of the
-//! tendons along the segment, are left out (1.7 % of β for 2 N on the published manipulator); half of a segment's own weight acts on its end. `β_max`
+//! tendons along the segment, are left out (1.7 % of β for 2 N on the published manipulator); half of a segment's own weight acts on its end; the
+//! angle of a tendon at a hole is that of the arcs. `β_max`
 //! limits the first of these where a load bends a single segment by more than a radian.
 
 use nalgebra::Vector2;
